@@ -1,0 +1,29 @@
+//! Physics of laser light for renderers.
+//!
+//! This facade re-exports the crates of the workspace under one name. A renderer that wants only
+//! one of them depends on that one: none of the three physics crates imports another, and they meet
+//! through plain numbers.
+//!
+//! | module | crate | what it holds |
+//! |---|---|---|
+//! | [`beam`] | `tem00-beam` | Gaussian beams and laser lines as lights to evaluate and sample |
+//! | [`speckle`] | `tem00-speckle` | pupil field → pattern → stack → look-up |
+//! | [`decorrelation`] | `tem00-decorrelation` | imaging geometry → displacement → correlation |
+//! | [`statistics`] | `tem00-statistics` | closed forms, estimators, hypothesis tests |
+//! | [`numerics`] | `tem00-numerics` | grids, pruned Fourier transform, pupil functions |
+#![cfg_attr(
+    feature = "tracer",
+    doc = "| [`tracer`] | `tem00-tracer` | a minimal reference path tracer (feature `tracer`) |"
+)]
+
+pub use tem00_beam as beam;
+pub use tem00_decorrelation as decorrelation;
+pub use tem00_numerics as numerics;
+pub use tem00_speckle as speckle;
+pub use tem00_statistics as statistics;
+#[cfg(feature = "tracer")]
+pub use tem00_tracer as tracer;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -5,7 +5,14 @@
 
 mod error;
 mod gaussian;
+mod line;
+mod normal;
+mod profile;
+mod real;
 
 pub use error::BeamError;
 pub use gaussian::GaussianBeam;
 pub use glam::DVec3;
+pub use line::{FanGeometry, LaserLine};
+pub use profile::LineProfile;
+pub use real::Real;

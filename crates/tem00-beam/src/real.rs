@@ -1,0 +1,86 @@
+/// A floating-point type of the renderer face: `f32` or `f64`.
+///
+/// The trait is sealed.
+pub trait Real: sealed::Scalar {}
+
+impl Real for f32 {}
+impl Real for f64 {}
+
+pub(crate) mod sealed {
+    use core::fmt::Debug;
+    use core::ops::{Add, Div, Mul, Neg, Sub};
+
+    /// The operations a placed light needs of its scalar.
+    #[expect(unnameable_types, reason = "it seals `Real`")]
+    pub trait Scalar:
+        Copy
+        + Debug
+        + PartialEq
+        + PartialOrd
+        + Send
+        + Sync
+        + Add<Output = Self>
+        + Sub<Output = Self>
+        + Mul<Output = Self>
+        + Div<Output = Self>
+        + Neg<Output = Self>
+        + 'static
+    {
+        const ZERO: Self;
+        const ONE: Self;
+        /// Half the spacing of uniform variates in [0, 1) of this type.
+        const HALF_SPACING: f64;
+        /// Rounds a double-precision number.
+        fn of(x: f64) -> Self;
+        /// Widens to double precision, without loss.
+        fn wide(self) -> f64;
+        fn sqrt(self) -> Self;
+        fn exp(self) -> Self;
+        fn abs(self) -> Self;
+    }
+
+    impl Scalar for f32 {
+        const ZERO: Self = 0.0;
+        const ONE: Self = 1.0;
+        const HALF_SPACING: f64 = (Self::EPSILON / 4.0) as f64;
+
+        #[expect(clippy::cast_possible_truncation, reason = "rounding is the purpose")]
+        fn of(x: f64) -> Self {
+            x as Self
+        }
+        fn wide(self) -> f64 {
+            f64::from(self)
+        }
+        fn sqrt(self) -> Self {
+            self.sqrt()
+        }
+        fn exp(self) -> Self {
+            self.exp()
+        }
+        fn abs(self) -> Self {
+            self.abs()
+        }
+    }
+
+    impl Scalar for f64 {
+        const ZERO: Self = 0.0;
+        const ONE: Self = 1.0;
+        const HALF_SPACING: Self = Self::EPSILON / 4.0;
+
+        fn of(x: f64) -> Self {
+            x
+        }
+        fn wide(self) -> f64 {
+            self
+        }
+        fn sqrt(self) -> Self {
+            self.sqrt()
+        }
+        fn exp(self) -> Self {
+            self.exp()
+        }
+        fn abs(self) -> Self {
+            self.abs()
+        }
+    }
+}

@@ -1,12 +1,55 @@
 //! Gaussian beams and laser lines as light sources that a renderer can evaluate and sample.
 //!
+//! Whatever the orientation of the surface a laser falls on, it receives the power of the laser:
+//! all queries derive from an energy-flow vector without divergence, and from a phase-space density
+//! whose straight rays reproduce that flow.
+//!
+//! # Conventions
+//!
 //! Lengths are in metres, angles in radians, power in watts. Light travels along +z of its own
-//! frame. A beam radius is where the irradiance has fallen to 1/e² of the axis.
+//! frame. A beam radius is where the irradiance has fallen to 1/e² of the axis; the radius and not
+//! the diameter, a half-angle for divergence, the full angle for a fan.
+//!
+//! # Two faces
+//!
+//! - *Physics*, in `f64` and in the frame of the beam: [`GaussianBeam`] with z = 0 at the waist,
+//!   [`LaserLine`] with z = 0 at the lens. Constructors check, so that nothing fails later.
+//! - *Renderer*, in `f32` or `f64` and in world coordinates: [`SpotLight`] and [`LineLight`], plain
+//!   structs prepared from the above by a [`Placement`], queried through the trait [`Emitter`]:
+//!   next-event estimation, ray sampling, densities, radiance and bounds.
+//!
+//! # Scope and non-goals
+//!
+//! Paraxial, scalar, circular beams of one wavelength in free space, with M² ≥ 1. Not here: elliptic
+//! beams, lenses and mirrors, beams wider than 0.5 rad, polarisation, interference between beams,
+//! and what a surface does with the light.
+//!
+//! # Examples
+//!
+//! Light one point of a scene with a 5 mW laser:
+//!
+//! ```
+//! use tem00_beam::{DVec3, Emitter, GaussianBeam, Placement, SpotLight};
+//!
+//! let beam = GaussianBeam::from_waist(650e-9, 0.1e-3)?;
+//! let placement = Placement {
+//!     origin: DVec3::new(0.0, 0.0, 0.3),
+//!     direction: DVec3::NEG_Z,
+//!     fan_axis: DVec3::X,
+//! };
+//! let light = SpotLight::place(&beam, 0.3, &placement, 5e-3)?;
+//!
+//! let event = light.next_event([0.0, 0.0, 0.0]).expect("the point is in the beam");
+//! assert_eq!(event.wi, [0.0, 0.0, 1.0]);
+//! assert!((event.e_perp / 318.3e3 - 1.0).abs() < 1e-3); // W/m²
+//! # Ok::<(), tem00_beam::BeamError>(())
+//! ```
 
 mod error;
 mod gaussian;
 mod line;
 mod normal;
+mod placed;
 mod profile;
 mod real;
 
@@ -14,5 +57,9 @@ pub use error::BeamError;
 pub use gaussian::GaussianBeam;
 pub use glam::DVec3;
 pub use line::{FanGeometry, LaserLine};
+pub use placed::{
+    Axis, Bounds, Emitter, LineLight, NextEvent, Placement, RayPdf, RaySample, SampledEvent,
+    SpotLight,
+};
 pub use profile::LineProfile;
 pub use real::Real;

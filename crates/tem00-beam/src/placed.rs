@@ -1,0 +1,100 @@
+//! The renderer face: placed lights as plain structs, generic over the scalar.
+
+mod emitter;
+mod frame;
+mod line;
+mod phase_space;
+mod record;
+mod spot;
+
+pub use emitter::Emitter;
+pub use frame::Placement;
+pub use line::LineLight;
+pub use record::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent};
+pub use spot::SpotLight;
+
+use crate::real::Real;
+use crate::real::sealed::Scalar;
+use crate::{BeamError, GaussianBeam};
+
+/// The cut-off of a freshly placed light, in beam radii.
+const DEFAULT_CUTOFF: f64 = 4.0;
+
+/// The squared beam radius along one principal axis: `w²(z) = w0_sq + theta_sq (z − z0)²`.
+///
+/// The sum is kept in this form on purpose. Multiplied out into powers of z it loses all digits of
+/// `f32` near a tight waist.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis<T> {
+    /// Squared waist radius, in m².
+    pub w0_sq: T,
+    /// Squared divergence half-angle, in rad².
+    pub theta_sq: T,
+    /// Position of the waist, in metres, on the coordinate the light says.
+    pub z0: T,
+    /// Unused, 0. Completes a row of four.
+    pub pad: T,
+}
+
+impl Axis<f64> {
+    fn new(beam: &GaussianBeam, z0: f64) -> Self {
+        Self {
+            w0_sq: beam.waist_radius() * beam.waist_radius(),
+            theta_sq: beam.divergence() * beam.divergence(),
+            z0,
+            pad: 0.0,
+        }
+    }
+}
+
+impl<T: Real> Axis<T> {
+    /// Returns the squared beam radius `w²(z)`, in m².
+    pub fn radius_sq_at(&self, z: T) -> T {
+        let dz = z - self.z0;
+        self.w0_sq + self.theta_sq * dz * dz
+    }
+
+    /// Returns the relative growth of the radius `w'/w`, which is 1/R.
+    fn growth_at(&self, z: T) -> T {
+        self.theta_sq * (z - self.z0) / self.radius_sq_at(z)
+    }
+
+    /// Returns the standard deviations of position at the waist, and of slope.
+    fn deviations(&self) -> (T, T) {
+        let half = T::of(0.5);
+        (half * self.w0_sq.sqrt(), half * self.theta_sq.sqrt())
+    }
+
+    /// Returns the mean and standard deviation of the slope at the offset `x` from the axis.
+    fn conditional_slope(&self, x: T, z: T) -> (T, T) {
+        let w_sq = self.radius_sq_at(z);
+        let mean = x * self.growth_at(z);
+        (
+            mean,
+            T::of(0.5) * (self.w0_sq / w_sq * self.theta_sq).sqrt(),
+        )
+    }
+}
+
+/// Rounds the fields of a light to `f32`, unless one of them leaves its range.
+fn to_single<const N: usize>(fields: [f64; N]) -> Result<[f32; N], BeamError> {
+    let mut rounded = [0.0; N];
+    for (single, field) in rounded.iter_mut().zip(fields) {
+        *single = <f32 as Scalar>::of(field);
+        let zero = field.abs() < f64::MIN_POSITIVE;
+        if !(single.is_normal() || zero) {
+            return Err(BeamError::SinglePrecision(field));
+        }
+    }
+    Ok(rounded)
+}
+
+/// Returns the power, if it is one.
+fn checked_power(power: f64) -> Result<f64, BeamError> {
+    if power >= 0.0 && power.is_finite() {
+        Ok(power)
+    } else {
+        Err(BeamError::Power(power))
+    }
+}

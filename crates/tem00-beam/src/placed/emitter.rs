@@ -1,0 +1,272 @@
+use super::phase_space::PhaseSpace;
+use super::record::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent};
+use crate::real::Real;
+
+/// A light that a renderer can evaluate and sample, without allocation.
+///
+/// All points and vectors are in world coordinates. The light shines from the aperture plane into
+/// the half-space that its axis points to; points behind that plane receive nothing.
+///
+/// There are two ways to light a surface, which belong to different path spaces and must not be
+/// added up:
+///
+/// - [`next_event`](Self::next_event) takes the mean direction of the energy flow, a *delta* light:
+///   `L = f · |n·wi| · V · e_perp`. No other technique can find that direction.
+/// - [`next_event_sampled`](Self::next_event_sampled), [`sample_ray`](Self::sample_ray),
+///   [`ray_pdf`](Self::ray_pdf) and [`radiance`](Self::radiance) share the phase-space density of
+///   the light and may be combined by multiple importance sampling.
+///
+/// Light beyond the cut-off (the field `cutoff`, in beam radii, 4 by default) is dropped by
+/// [`irradiance`](Self::irradiance), [`flux`](Self::flux) and both next-event forms, which loses the
+/// fraction exp(−2 · cutoff²) of the power of a spot, 1e−14 by default. The power is not raised to
+/// make up for it. Rays are not cut off.
+///
+/// Uniform variates are expected in [0, 1). One that is 0 acts as half the spacing of such variates
+/// in the type at hand.
+///
+/// # Validity
+///
+/// In `f32` the irradiance carries the rounding of the coordinates: its relative error is about
+/// `4 ε |p| / w`, with ε = 1.2e−7, the coordinates `p` and the beam radius `w`.
+///
+/// The trait is sealed. [`SpotLight`](crate::SpotLight) and [`LineLight`](crate::LineLight)
+/// implement it.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_beam::{DVec3, Emitter, GaussianBeam, Placement, SpotLight};
+///
+/// let placement = Placement {
+///     origin: DVec3::new(0.0, 0.0, 0.5),
+///     direction: DVec3::NEG_Z,
+///     fan_axis: DVec3::X,
+/// };
+/// let beam = GaussianBeam::from_waist(650e-9, 0.2e-3)?;
+/// let light = SpotLight::place(&beam, 0.5, &placement, 5e-3)?;
+///
+/// // A surface through the world's origin, tilted by 60°.
+/// let event = light.next_event([0.0, 0.0, 0.0]).expect("the point is lit");
+/// let normal = DVec3::new(60f64.to_radians().sin(), 0.0, 60f64.to_radians().cos());
+/// let irradiance = event.e_perp * DVec3::from(event.wi).dot(normal);
+///
+/// let upright = light.irradiance([0.0, 0.0, 0.0]);
+/// assert!((irradiance / upright - 0.5).abs() < 1e-12);
+/// # Ok::<(), tem00_beam::BeamError>(())
+/// ```
+pub trait Emitter<T: Real>: PhaseSpace<T> {
+    /// Returns the irradiance, in W/m², of a plane through `p` at right angles to the axis.
+    fn irradiance(&self, p: [T; 3]) -> T {
+        let local = self.frame().local_from_world_point(p);
+        self.flow_in_front(local)
+            .map_or(T::ZERO, |flow| flow.irradiance)
+    }
+
+    /// Returns the energy-flow vector at `p`, in W/m².
+    ///
+    /// A surface whose normal `n` lies on the lit side receives the irradiance `max(0, −F·n)`.
+    fn flux(&self, p: [T; 3]) -> [T; 3] {
+        let frame = self.frame();
+        match self.flow_in_front(frame.local_from_world_point(p)) {
+            Some(flow) => {
+                let [x, y] = flow.slope;
+                let e = flow.irradiance;
+                frame.world_from_local_vector([e * x, e * y, e])
+            }
+            None => [T::ZERO; 3],
+        }
+    }
+
+    /// Returns the light at `p` as one direction: that of the mean energy flow.
+    ///
+    /// A surface of normal `n` receives the irradiance `e_perp · |n·wi|`, and reflects
+    /// `f · |n·wi| · V · e_perp`. Returns `None` outside the cut-off and behind the aperture, where
+    /// no shadow ray is needed.
+    fn next_event(&self, p: [T; 3]) -> Option<NextEvent<T>> {
+        let frame = self.frame();
+        let local = frame.local_from_world_point(p);
+        let flow = self.flow_in_front(local)?;
+        let length = secant(flow.slope);
+        Some(NextEvent {
+            point: frame.world_from_aperture(aperture_point(local, flow.slope)),
+            distance: local[2] * length,
+            wi: towards_light(frame.world_from_local_vector(direction(flow.slope))),
+            e_perp: flow.irradiance * length,
+        })
+    }
+
+    /// Returns the light at `p` as one direction, drawn from the phase-space density at `p`.
+    ///
+    /// The estimate of the reflected radiance is `f · |n·wi| · V · value`: `value` has been divided
+    /// by the density already. The mean over `u` is that of [`next_event`](Self::next_event).
+    /// Returns `None` outside the cut-off and behind the aperture.
+    fn next_event_sampled(&self, p: [T; 3], u: [T; 2]) -> Option<SampledEvent<T>> {
+        let frame = self.frame();
+        let local = frame.local_from_world_point(p);
+        self.flow_in_front(local)?;
+        let drawn = self.sample_slope(local, u);
+        Some(SampledEvent {
+            point: frame.world_from_aperture(aperture_point(local, drawn.slope)),
+            distance: local[2] * secant(drawn.slope),
+            wi: towards_light(frame.world_from_local_vector(direction(drawn.slope))),
+            value: drawn.value,
+            pdf: drawn.pdf,
+        })
+    }
+
+    /// Draws a ray that leaves the aperture.
+    ///
+    /// Every ray stands for the same power, so straight rays reproduce the irradiance at every
+    /// distance:
+    ///
+    /// ```text
+    /// radiance · cos / (pdf_position · pdf_direction) = power
+    /// ```
+    fn sample_ray(&self, u: [T; 4]) -> RaySample<T> {
+        let frame = self.frame();
+        let (position, slope) = self.draw(u);
+        let pdf = self.densities(position, slope);
+        RaySample {
+            origin: frame.world_from_aperture(position),
+            flux: self.power(),
+            direction: frame.world_from_local_vector(direction(slope)),
+            cos: T::ONE / secant(slope),
+            pdf_position: pdf.position,
+            pdf_direction: pdf.direction,
+        }
+    }
+
+    /// Returns the densities with which [`sample_ray`](Self::sample_ray) draws the ray through `o`
+    /// along the unit vector `d`; 0 for a ray against the axis.
+    ///
+    /// Any point `o` of the ray will do: the position density is that of the ray's point on the
+    /// aperture plane. In `f32` this needs the coordinates to resolve the source, which for a line
+    /// is about a micrometre wide.
+    fn ray_pdf(&self, o: [T; 3], d: [T; 3]) -> RayPdf<T> {
+        let frame = self.frame();
+        match slope_of(frame.local_from_world_vector(d)) {
+            Some(slope) => {
+                let position = aperture_point(frame.local_from_world_point(o), slope);
+                self.densities(position, slope)
+            }
+            None => RayPdf {
+                position: T::ZERO,
+                direction: T::ZERO,
+            },
+        }
+    }
+
+    /// Returns the radiance, in W/(m² sr), of the ray through `o` along the unit vector `d`, the
+    /// direction of travel; 0 for a ray against the axis.
+    ///
+    /// Radiance is constant along a ray in free space, so any point `o` of it will do. Its integral
+    /// over direction, weighted with the cosine to the axis, is the irradiance at `o`.
+    fn radiance(&self, o: [T; 3], d: [T; 3]) -> T {
+        let frame = self.frame();
+        match slope_of(frame.local_from_world_vector(d)) {
+            Some(slope) => {
+                let position = aperture_point(frame.local_from_world_point(o), slope);
+                let pdf = self.densities(position, slope);
+                self.power() * pdf.position * pdf.direction * secant(slope)
+            }
+            None => T::ZERO,
+        }
+    }
+
+    /// Returns bounds of the light from the aperture to the distance `l`, in metres, along its axis.
+    ///
+    /// The box holds all points within the cut-off. The cone holds the mean energy flow at all of
+    /// them; a sampled ray is outside it with a probability of about exp(−2 · cutoff²).
+    fn bounds(&self, l: T) -> Bounds<T> {
+        let frame = self.frame();
+        let reach = self.reach(l);
+        let mut bounds = Bounds {
+            min: frame.origin,
+            max: frame.origin,
+            axis: frame.ez,
+            half_angle: T::of(reach.slope.wide().atan()),
+        };
+        for i in 0..3 {
+            let across =
+                reach.half_width[0] * frame.ex[i].abs() + reach.half_width[1] * frame.ey[i].abs();
+            let far = frame.origin[i] + l * frame.ez[i];
+            bounds.min[i] = smaller(frame.origin[i], far) - across;
+            bounds.max[i] = larger(frame.origin[i], far) + across;
+        }
+        bounds
+    }
+
+    /// Writes the [`irradiance`](Self::irradiance) at the points `(x[i], y[i], z[i])` to `out[i]`.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `x.len() == y.len() == z.len() == out.len()`.
+    fn irradiance_batch(&self, x: &[T], y: &[T], z: &[T], out: &mut [T]) {
+        for (p, out) in points(x, y, z, out.len()).zip(out) {
+            *out = self.irradiance(p);
+        }
+    }
+
+    /// Writes the [`next_event`](Self::next_event) at the points `(x[i], y[i], z[i])` to `out[i]`.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `x.len() == y.len() == z.len() == out.len()`.
+    fn next_event_batch(&self, x: &[T], y: &[T], z: &[T], out: &mut [Option<NextEvent<T>>]) {
+        for (p, out) in points(x, y, z, out.len()).zip(out) {
+            *out = self.next_event(p);
+        }
+    }
+}
+
+/// Gathers points from separate coordinates.
+fn points<'a, T: Real>(
+    x: &'a [T],
+    y: &'a [T],
+    z: &'a [T],
+    len: usize,
+) -> impl Iterator<Item = [T; 3]> + 'a {
+    assert!(
+        x.len() == len && y.len() == len && z.len() == len,
+        "x, y, z and out must be of equal length, got {}, {}, {} and {len}",
+        x.len(),
+        y.len(),
+        z.len(),
+    );
+    x.iter().zip(y).zip(z).map(|((&x, &y), &z)| [x, y, z])
+}
+
+fn smaller<T: Real>(a: T, b: T) -> T {
+    if b < a { b } else { a }
+}
+
+pub(super) fn larger<T: Real>(a: T, b: T) -> T {
+    if b > a { b } else { a }
+}
+
+/// Returns `√(1 + s²)`, the length of the ray per distance along the axis.
+pub(super) fn secant<T: Real>(slope: [T; 2]) -> T {
+    (T::ONE + slope[0] * slope[0] + slope[1] * slope[1]).sqrt()
+}
+
+/// Returns the unit vector of a slope, in the frame of the light.
+pub(super) fn direction<T: Real>(slope: [T; 2]) -> [T; 3] {
+    let cos = T::ONE / secant(slope);
+    [slope[0] * cos, slope[1] * cos, cos]
+}
+
+/// Returns the slope of a direction, unless it runs against the axis.
+fn slope_of<T: Real>(direction: [T; 3]) -> Option<[T; 2]> {
+    let [x, y, z] = direction;
+    (z > T::ZERO).then(|| [x / z, y / z])
+}
+
+/// Follows the ray through `local` back to the aperture plane.
+pub(super) fn aperture_point<T: Real>(local: [T; 3], slope: [T; 2]) -> [T; 2] {
+    let [x, y, z] = local;
+    [x - slope[0] * z, y - slope[1] * z]
+}
+
+fn towards_light<T: Real>([x, y, z]: [T; 3]) -> [T; 3] {
+    [-x, -y, -z]
+}

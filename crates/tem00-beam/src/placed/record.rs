@@ -1,0 +1,73 @@
+//! What the queries of a placed light return.
+
+/// The light that arrives at a point, as one direction and one irradiance.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NextEvent<T> {
+    /// Point of the aperture plane that the light seems to come from.
+    pub point: [T; 3],
+    /// Distance to `point`, in metres.
+    pub distance: T,
+    /// Unit vector towards the light, against the mean energy flow.
+    pub wi: [T; 3],
+    /// Irradiance of a surface square to `wi`, in W/m².
+    pub e_perp: T,
+}
+
+/// The light that arrives at a point, as a random direction and its density.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampledEvent<T> {
+    /// Point of the aperture plane that the ray comes from.
+    pub point: [T; 3],
+    /// Distance to `point`, in metres.
+    pub distance: T,
+    /// Unit vector towards the light.
+    pub wi: [T; 3],
+    /// Radiance divided by `pdf`, in W/m².
+    pub value: T,
+    /// Probability density of `wi`, per steradian.
+    pub pdf: T,
+}
+
+/// A ray that leaves the aperture.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RaySample<T> {
+    /// Point of the aperture plane.
+    pub origin: [T; 3],
+    /// Power the ray stands for, in watts: that of the light, to be divided by the number of rays.
+    pub flux: T,
+    /// Unit vector along the ray.
+    pub direction: [T; 3],
+    /// Cosine of the angle between the ray and the axis.
+    pub cos: T,
+    /// Probability density of `origin` given the direction, per m² of the aperture plane.
+    pub pdf_position: T,
+    /// Probability density of `direction`, per steradian.
+    pub pdf_direction: T,
+}
+
+/// The probability densities of a ray; their product is the joint density.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayPdf<T> {
+    /// Density of the position given the direction, per m² of the aperture plane.
+    pub position: T,
+    /// Density of the direction, per steradian.
+    pub direction: T,
+}
+
+/// Bounds of the light in space and direction, as a light hierarchy stores them.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds<T> {
+    /// Smallest corner of an axis-aligned box around the lit volume.
+    pub min: [T; 3],
+    /// Largest corner of the box.
+    pub max: [T; 3],
+    /// Unit vector along the axis.
+    pub axis: [T; 3],
+    /// Half-angle, in radians, of the cone about `axis` that the light travels in.
+    pub half_angle: T,
+}

@@ -1,0 +1,266 @@
+use core::f64::consts::{FRAC_2_PI, PI};
+
+use super::emitter::{Emitter, larger, secant};
+use super::frame::Frame;
+use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
+use super::record::RayPdf;
+use super::{Axis, DEFAULT_CUTOFF, Placement, to_single};
+use crate::normal::{normal_density, standard_normal};
+use crate::real::Real;
+use crate::{BeamError, GaussianBeam};
+
+/// A Gaussian beam in a scene, prepared for a renderer.
+///
+/// A plain struct of 24 scalars, six rows of four, whose layout suits a GPU buffer. Its fields are
+/// public: [`place`](SpotLight::place) checks its arguments, whoever writes the fields keeps them
+/// meaningful. All lengths share one unit, metres unless the caller uses another throughout.
+///
+/// With the local coordinates `(x, y, z) = (e · (p − origin))`:
+///
+/// ```text
+/// E = 2 P / (π w_x w_y) · exp(−2 (x²/w_x² + y²/w_y²))     if x²/w_x² + y²/w_y² ≤ cutoff², z ≥ 0
+/// F = E · (x w_x'/w_x, y w_y'/w_y, 1)
+/// ```
+///
+/// A ray crosses the waist at x₀ ~ N(0, w₀/2) with the slope s ~ N(0, δ/2), likewise along y: the
+/// Wigner function of a Gaussian Schell-model beam, which is nowhere negative. Its radiance is
+///
+/// ```text
+/// L = 4 P / (π² w₀² δ²) · exp(−2 |x₀|²/w₀² − 2 |s|²/δ²) / cos⁴ θ
+/// ```
+///
+/// # Examples
+///
+/// ```
+/// use tem00_beam::{DVec3, Emitter, GaussianBeam, Placement, SpotLight};
+///
+/// let beam = GaussianBeam::from_waist(650e-9, 50e-6)?;
+/// let placement = Placement {
+///     origin: DVec3::ZERO,
+///     direction: DVec3::Z,
+///     fan_axis: DVec3::X,
+/// };
+/// let light = SpotLight::place(&beam, 0.1, &placement, 1e-3)?.to_f32()?;
+///
+/// let waist = light.irradiance([0.0, 0.0, 0.1]);
+/// assert!((waist / 254.6e3 - 1.0).abs() < 1e-3); // W/m²
+/// # Ok::<(), tem00_beam::BeamError>(())
+/// ```
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpotLight<T> {
+    /// Centre of the aperture, in metres.
+    pub origin: [T; 3],
+    /// Power, in watts.
+    pub power: T,
+    /// Unit vector of the local x axis.
+    pub ex: [T; 3],
+    /// Distance from the axis, in beam radii, beyond which no light arrives.
+    pub cutoff: T,
+    /// Unit vector of the local y axis.
+    pub ey: [T; 3],
+    /// Unused, 0. Completes a row of four.
+    pub pad_ey: T,
+    /// Unit vector along the direction of travel.
+    pub ez: [T; 3],
+    /// Unused, 0. Completes a row of four.
+    pub pad_ez: T,
+    /// Beam radius along x; its `z0` is the distance from the aperture to the waist.
+    pub x: Axis<T>,
+    /// Beam radius along y; its `z0` is the distance from the aperture to the waist.
+    pub y: Axis<T>,
+}
+
+impl SpotLight<f64> {
+    /// Places a beam in a scene, with its waist at the signed distance `waist_distance`, in metres,
+    /// from the aperture along the axis, and a power in watts.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if `waist_distance` or the placement's origin is not finite or beyond
+    /// 1e30 m, if `power` is negative or not finite, or if the placement's axes are not finite,
+    /// have no length, or are parallel.
+    pub fn place(
+        beam: &GaussianBeam,
+        waist_distance: f64,
+        placement: &Placement,
+        power: f64,
+    ) -> Result<Self, BeamError> {
+        if !crate::gaussian::is_coordinate(waist_distance) {
+            return Err(BeamError::WaistDistance(waist_distance));
+        }
+        let power = super::checked_power(power)?;
+        let frame = placement.frame()?;
+        let axis = Axis::new(beam, waist_distance);
+        Ok(Self {
+            origin: frame.origin,
+            power,
+            ex: frame.ex,
+            cutoff: DEFAULT_CUTOFF,
+            ey: frame.ey,
+            pad_ey: 0.0,
+            ez: frame.ez,
+            pad_ez: 0.0,
+            x: axis,
+            y: axis,
+        })
+    }
+
+    /// Returns the light in single precision.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a field or the peak irradiance is outside the range of normal `f32`
+    /// numbers.
+    pub fn to_f32(&self) -> Result<SpotLight<f32>, BeamError> {
+        let peak = FRAC_2_PI * self.power / (self.x.w0_sq * self.y.w0_sq).sqrt();
+        to_single([peak])?;
+        Ok(SpotLight::from_array(to_single(self.to_array())?))
+    }
+}
+
+impl<T: Real> SpotLight<T> {
+    /// Returns the 24 fields in the order of memory.
+    pub fn to_array(&self) -> [T; 24] {
+        let Self { origin: o, ex, .. } = self;
+        let Self { ey, ez, x, y, .. } = self;
+        [
+            o[0],
+            o[1],
+            o[2],
+            self.power, //
+            ex[0],
+            ex[1],
+            ex[2],
+            self.cutoff, //
+            ey[0],
+            ey[1],
+            ey[2],
+            self.pad_ey, //
+            ez[0],
+            ez[1],
+            ez[2],
+            self.pad_ez, //
+            x.w0_sq,
+            x.theta_sq,
+            x.z0,
+            x.pad, //
+            y.w0_sq,
+            y.theta_sq,
+            y.z0,
+            y.pad,
+        ]
+    }
+
+    /// Creates a light from its 24 fields in the order of memory.
+    pub fn from_array(fields: [T; 24]) -> Self {
+        let f = |i: usize| fields[i];
+        let axis = |i: usize| Axis {
+            w0_sq: f(i),
+            theta_sq: f(i + 1),
+            z0: f(i + 2),
+            pad: f(i + 3),
+        };
+        Self {
+            origin: [f(0), f(1), f(2)],
+            power: f(3),
+            ex: [f(4), f(5), f(6)],
+            cutoff: f(7),
+            ey: [f(8), f(9), f(10)],
+            pad_ey: f(11),
+            ez: [f(12), f(13), f(14)],
+            pad_ez: f(15),
+            x: axis(16),
+            y: axis(20),
+        }
+    }
+}
+
+impl<T: Real> Emitter<T> for SpotLight<T> {}
+
+impl<T: Real> PhaseSpace<T> for SpotLight<T> {
+    fn frame(&self) -> Frame<T> {
+        Frame {
+            origin: self.origin,
+            ex: self.ex,
+            ey: self.ey,
+            ez: self.ez,
+        }
+    }
+
+    fn power(&self) -> T {
+        self.power
+    }
+
+    fn flow(&self, [x, y, z]: [T; 3]) -> Option<Flow<T>> {
+        let (wx_sq, wy_sq) = (self.x.radius_sq_at(z), self.y.radius_sq_at(z));
+        let rho_sq = x * x / wx_sq + y * y / wy_sq;
+        if rho_sq > self.cutoff * self.cutoff {
+            return None;
+        }
+        let peak = T::of(2.0 / PI) * self.power / (wx_sq.sqrt() * wy_sq.sqrt());
+        Some(Flow {
+            irradiance: peak * (T::of(-2.0) * rho_sq).exp(),
+            slope: [x * self.x.growth_at(z), y * self.y.growth_at(z)],
+        })
+    }
+
+    fn sample_slope(&self, local: [T; 3], u: [T; 2]) -> SlopeSample<T> {
+        let [x, y, z] = local;
+        let (mean_x, sigma_x) = self.x.conditional_slope(x, z);
+        let (mean_y, sigma_y) = self.y.conditional_slope(y, z);
+        let deviation = [
+            sigma_x * standard_normal(u[0]),
+            sigma_y * standard_normal(u[1]),
+        ];
+        let slope = [mean_x + deviation[0], mean_y + deviation[1]];
+        let sec = secant(slope);
+        let density = normal_density(deviation[0], sigma_x) * normal_density(deviation[1], sigma_y);
+        SlopeSample {
+            slope,
+            pdf: density * sec * sec * sec,
+            value: self.flow(local).map_or(T::ZERO, |flow| flow.irradiance) * sec,
+        }
+    }
+
+    fn draw(&self, u: [T; 4]) -> ([T; 2], [T; 2]) {
+        let along = |axis: &Axis<T>, u_position: T, u_slope: T| {
+            let (sigma_position, sigma_slope) = axis.deviations();
+            let slope = sigma_slope * standard_normal(u_slope);
+            let waist = sigma_position * standard_normal(u_position);
+            (waist - slope * axis.z0, slope)
+        };
+        let (x, slope_x) = along(&self.x, u[0], u[2]);
+        let (y, slope_y) = along(&self.y, u[1], u[3]);
+        ([x, y], [slope_x, slope_y])
+    }
+
+    fn densities(&self, position: [T; 2], slope: [T; 2]) -> RayPdf<T> {
+        let along = |axis: &Axis<T>, position: T, slope: T| {
+            let (sigma_position, sigma_slope) = axis.deviations();
+            let waist = position + slope * axis.z0;
+            (
+                normal_density(waist, sigma_position),
+                normal_density(slope, sigma_slope),
+            )
+        };
+        let (position_x, slope_x) = along(&self.x, position[0], slope[0]);
+        let (position_y, slope_y) = along(&self.y, position[1], slope[1]);
+        // dω = cos³ ds_x ds_y
+        let sec = secant(slope);
+        RayPdf {
+            position: position_x * position_y,
+            direction: slope_x * slope_y * sec * sec * sec,
+        }
+    }
+
+    fn reach(&self, l: T) -> Reach<T> {
+        // w² is convex in z, so it is largest at one of the ends.
+        let radius =
+            |axis: &Axis<T>| larger(axis.radius_sq_at(T::ZERO), axis.radius_sq_at(l)).sqrt();
+        Reach {
+            half_width: [self.cutoff * radius(&self.x), self.cutoff * radius(&self.y)],
+            slope: self.cutoff * larger(self.x.theta_sq, self.y.theta_sq).sqrt(),
+        }
+    }
+}

@@ -18,6 +18,8 @@
 //!   structs prepared from the above by a [`Placement`], queried through the trait [`Emitter`]:
 //!   next-event estimation, ray sampling, densities, radiance and bounds.
 //!
+//! Formulas as printed by Bergmann et al. 2016, each with the size of its error, are in [`paper`].
+//!
 //! # Scope and non-goals
 //!
 //! Paraxial, scalar, circular beams of one wavelength in free space, with M² ≥ 1. Not here: elliptic
@@ -49,6 +51,7 @@ mod error;
 mod gaussian;
 mod line;
 mod normal;
+pub mod paper;
 mod placed;
 mod profile;
 mod real;

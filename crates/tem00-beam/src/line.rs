@@ -73,7 +73,8 @@ pub struct FanGeometry {
 ///
 /// # References
 ///
-/// - S. Bergmann et al., 2016, section 4, whose scaling of x is normalised here.
+/// - S. Bergmann et al., 2016, section 4, whose scaling of x is normalised here; see
+///   [`paper::PrintedFan`](crate::paper::PrintedFan).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaserLine {
     focus: GaussianBeam,

@@ -3,7 +3,7 @@
 mod emitter;
 mod frame;
 mod line;
-mod phase_space;
+pub(crate) mod phase_space;
 mod record;
 mod spot;
 

@@ -195,6 +195,15 @@ impl<T: Real> LineLight<T> {
         }
     }
 
+    /// Returns `T = tan(α/2)`, the slope of the edges of the fan.
+    pub fn half_slope(&self) -> T {
+        if self.flat > T::ZERO {
+            self.flat
+        } else {
+            T::of(2.0) * self.sigma
+        }
+    }
+
     /// Returns the largest slope within the cut-off.
     fn largest_slope(&self) -> T {
         self.flat + T::of(2.0) * self.cutoff * self.sigma

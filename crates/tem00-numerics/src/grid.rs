@@ -231,7 +231,6 @@ const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
 #[expect(
     clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
     clippy::cast_possible_wrap,
     reason = "the result lies in [0, period) and grids are far smaller than 2⁶³"
 )]

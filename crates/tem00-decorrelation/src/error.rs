@@ -1,0 +1,113 @@
+use core::{error, fmt};
+
+use glam::{DMat3, DVec3};
+
+/// Why a description of camera, light or surface was rejected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum DecorrelationError {
+    /// The wavelength, in metres, is not a positive finite number.
+    Wavelength(f64),
+    /// The focal length, in metres, is not a positive finite number.
+    FocalLength(f64),
+    /// The f-number is not a finite number of at least 0.5, the limit of any lens in air.
+    FNumber(f64),
+    /// The pixel pitch, in metres, is not a positive finite number.
+    PixelPitch(f64),
+    /// The distance from surface to pupil is not a finite number above the focal length, so that no
+    /// real image forms.
+    SurfaceToPupil {
+        /// The rejected distance, in metres.
+        surface_to_pupil: f64,
+        /// The focal length it must exceed, in metres.
+        focal_length: f64,
+    },
+    /// The pupil that follows from focal length and f-number is smaller than the wavelength.
+    PupilDiameter {
+        /// The pupil diameter that follows, in metres.
+        pupil_diameter: f64,
+        /// The wavelength, in metres.
+        wavelength: f64,
+    },
+    /// The columns of the matrix are not right-handed orthonormal axes within 10⁻⁶.
+    Axes(DMat3),
+    /// The vector from the target to the camera, in metres, is zero or not finite.
+    ViewDirection(DVec3),
+    /// The upward direction is zero, not finite, or parallel to the direction of view.
+    Up(DVec3),
+    /// The vector from the surface point to the pupil, in metres, is zero or not finite, or the
+    /// point does not lie in front of the camera.
+    ToPupil(DVec3),
+    /// The direction to the light source is zero or not finite.
+    DirectionToSource(DVec3),
+    /// The curvature of the wavefront, in 1/m, is not finite.
+    Curvature(f64),
+    /// The principal axis of the wavefront is zero, not finite, or parallel to the direction to the
+    /// source.
+    PrincipalAxis(DVec3),
+    /// The surface normal is zero or not finite.
+    Normal(DVec3),
+}
+
+impl fmt::Display for DecorrelationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const POSITIVE: &str = "must be positive and finite, got";
+        const DIRECTION: &str = "must be finite and not zero, got";
+        match self {
+            Self::Wavelength(got) => write!(f, "wavelength {POSITIVE} {got:e} m"),
+            Self::FocalLength(got) => write!(f, "focal length {POSITIVE} {got:e} m"),
+            Self::FNumber(got) => write!(f, "f-number must be finite and at least 0.5, got {got}"),
+            Self::PixelPitch(got) => write!(f, "pixel pitch {POSITIVE} {got:e} m"),
+            Self::SurfaceToPupil {
+                surface_to_pupil,
+                focal_length,
+            } => write!(
+                f,
+                "surface-to-pupil distance must be finite and exceed the focal length of \
+                 {focal_length:e} m, got {surface_to_pupil:e} m"
+            ),
+            Self::PupilDiameter {
+                pupil_diameter,
+                wavelength,
+            } => write!(
+                f,
+                "pupil diameter (focal length / f-number) must exceed the wavelength of \
+                 {wavelength:e} m, got {pupil_diameter:e} m"
+            ),
+            Self::Axes(got) => write!(
+                f,
+                "camera axes must be right-handed and orthonormal within 1e-6, got columns {got}"
+            ),
+            Self::ViewDirection(got) => write!(
+                f,
+                "vector from the target to the camera {DIRECTION} {got} m"
+            ),
+            Self::Up(got) => write!(
+                f,
+                "upward direction must be finite, not zero and not along the view, got {got}"
+            ),
+            Self::ToPupil(got) => write!(
+                f,
+                "vector from surface to pupil must be finite and lead from a point in front of the \
+                 camera, got {got} m"
+            ),
+            Self::DirectionToSource(got) => {
+                write!(f, "direction to the source {DIRECTION} {got}")
+            }
+            Self::Curvature(got) => {
+                write!(
+                    f,
+                    "wavefront curvature (1/R) must be finite, got {got:e} 1/m"
+                )
+            }
+            Self::PrincipalAxis(got) => write!(
+                f,
+                "principal axis must be finite, not zero and not along the direction to the \
+                 source, got {got}"
+            ),
+            Self::Normal(got) => write!(f, "surface normal {DIRECTION} {got}"),
+        }
+    }
+}
+
+impl error::Error for DecorrelationError {}

@@ -4,6 +4,7 @@ mod correlation;
 mod error;
 mod frame;
 mod geometry;
+mod motion;
 mod wavefront;
 
 pub use correlation::{
@@ -13,6 +14,8 @@ pub use correlation::{
 pub use error::DecorrelationError;
 pub use frame::{CameraFrame, LineOfSight};
 pub use geometry::{ImagingGeometry, LensData};
+pub use glam::{DMat3, DVec2, DVec3};
+pub use motion::{ImageOrientation, Motion, SpeckleMotion, SurfacePoint};
 pub use wavefront::Wavefront;
 
 /// The smallest cosine between two directions that still counts as different from zero, `2⁻²⁶`.

@@ -1,10 +1,88 @@
 //! How a speckle pattern moves and changes when the surface, the camera or the laser moves.
+//!
+//! Given the optics of a camera and the motion of a surface point, this crate returns where the
+//! speckle goes on the sensor, how far the pattern slides across the pupil, and how much of the old
+//! pattern is left: everything a renderer needs to look up the right pattern, and nothing that
+//! depends on how the pattern was made.
+//!
+//! # Conventions
+//!
+//! - SI units and radians; world vectors are [`DVec3`], vectors in the pupil or image [`DVec2`].
+//! - A [`CameraFrame`] has `b1` to the right and `b2` up in the pupil plane, and `b3` from the scene
+//!   towards the camera.
+//! - Directions lead *away from the surface*: to the pupil, to the light source.
+//! - A wavefront has a *curvature* 1/R, positive where the wave diverges; zero is a plane wave.
+//! - `correlation` is always that of intensity: 1 for the same pattern, 0 for a new one.
+//!
+//! # Main types
+//!
+//! | question | answer |
+//! |---|---|
+//! | How large are the speckles of this camera? | [`ImagingGeometry`] |
+//! | Which way is the camera turned, where does it see the point? | [`CameraFrame`], [`LineOfSight`] |
+//! | How is the point lit? | [`Wavefront`], [`SurfacePoint`] |
+//! | What moved? | [`Motion`] |
+//! | What happens to the speckle? | [`SpeckleMotion`] |
+//! | Where do I look in the pattern? | [`ImagingGeometry::pattern_coordinate`], [`slice_coordinate`] |
+//!
+//! The module [`paper`] holds the formulas as Bergmann et al. 2016 print them, each with the size of
+//! its error.
+//!
+//! # Scope and non-goals
+//!
+//! First-order theory of small translations: a thin lens in focus, an unaberrated circular pupil,
+//! fully developed speckle, an illuminated patch much wider than a resolution cell. Rotations, large
+//! motions, thick lenses and changes of wavelength are not covered.
+//!
+//! # Example
+//!
+//! A surface under a collimated laser moves sideways by a quarter of a millimetre:
+//!
+//! ```
+//! use tem00_decorrelation::{
+//!     CameraFrame, DVec3, ImageOrientation, ImagingGeometry, LensData, LineOfSight, Motion,
+//!     SpeckleMotion, SurfacePoint, Wavefront,
+//! };
+//!
+//! let geometry = ImagingGeometry::from_lens(LensData {
+//!     wavelength: 650e-9,
+//!     focal_length: 25e-3,
+//!     f_number: 8.0,
+//!     surface_to_pupil: 0.3,
+//!     pixel_pitch: 3.45e-6,
+//! })?;
+//! let eye = DVec3::new(0.0, 0.0, 0.3);
+//! let camera = CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y)?;
+//! let point = SurfacePoint::new(
+//!     LineOfSight::new(&camera, eye)?,
+//!     DVec3::Z,
+//!     Wavefront::plane(DVec3::new(1.0, 0.0, 1.0))?,
+//! )?;
+//!
+//! let motion = Motion { surface: DVec3::new(0.25e-3, 0.0, 0.0), ..Motion::default() };
+//! let speckle = SpeckleMotion::new(&geometry, &point, &motion, ImageOrientation::ScreenUpright);
+//!
+//! let pixels = speckle.image_displacement / geometry.pixel_pitch();
+//! assert!((pixels.x - 6.588).abs() < 1e-3);
+//! assert!((speckle.correlation - 0.807).abs() < 1e-3);
+//! # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+//! ```
+//!
+//! # References
+//!
+//! - M. Sjödahl, *Calculation of speckle displacement, decorrelation, and object-point location in
+//!   imaging systems*, Applied Optics 34, 1995.
+//! - D. W. Li and F. P. Chiang, *Decorrelation functions in laser speckle photography*, Journal of
+//!   the Optical Society of America A 3, 1986.
+//! - S. Bergmann et al., *A Phenomenological Approach to Integrating Gaussian Beam Properties and
+//!   Speckle into a Physically-Based Renderer*, 2016, §6.3 and §6.4.
 
 mod correlation;
 mod error;
 mod frame;
 mod geometry;
 mod motion;
+pub mod paper;
 mod wavefront;
 
 pub use correlation::{

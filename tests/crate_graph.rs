@@ -1,0 +1,150 @@
+//! The arrows between the crates point down, and the physics crates stay light.
+
+use std::{collections::BTreeSet, fs, path::Path};
+
+use toml::de::{DeTable, DeValue};
+
+/// What each crate may depend on: crates of this workspace, then crates from outside.
+const ALLOWED: &[(&str, &[&str], &[&str])] = &[
+    (
+        "tem00-numerics",
+        &[],
+        &["libm", "num-complex", "rayon", "rustfft"],
+    ),
+    (
+        "tem00-statistics",
+        &["tem00-numerics"],
+        &["libm", "num-complex", "statrs"],
+    ),
+    ("tem00-beam", &[], &["bytemuck", "glam", "libm"]),
+    (
+        "tem00-speckle",
+        &["tem00-numerics"],
+        &["num-complex", "rand_chacha", "rand_core", "rayon"],
+    ),
+    ("tem00-decorrelation", &["tem00-numerics"], &["glam"]),
+    (
+        "tem00-tracer",
+        &[
+            "tem00-beam",
+            "tem00-decorrelation",
+            "tem00-numerics",
+            "tem00-speckle",
+        ],
+        &[
+            "glam",
+            "obvhs",
+            "ply-rs-bw",
+            "rand_chacha",
+            "rand_core",
+            "rayon",
+            "stl_io",
+            "strsim",
+            "tobj",
+            "toml",
+        ],
+    ),
+    (
+        "tem00-cli",
+        &[
+            "tem00-numerics",
+            "tem00-speckle",
+            "tem00-statistics",
+            "tem00-tracer",
+        ],
+        &[
+            "clap",
+            "ctrlc",
+            "exr",
+            "indicatif",
+            "miette",
+            "npyz",
+            "num-complex",
+            "png",
+            "rayon",
+            "serde",
+            "serde_json",
+            "tempfile",
+            "thiserror",
+        ],
+    ),
+];
+
+/// Crates of the workspace that judge the others, and so may appear in the tests of any of them.
+const JUDGES: &[&str] = &["tem00-statistics", "tem00-numerics"];
+
+/// Physics crates, which a renderer links: what they need beyond plain arithmetic is a choice.
+const PHYSICS: &[&str] = &[
+    "tem00-numerics",
+    "tem00-beam",
+    "tem00-speckle",
+    "tem00-decorrelation",
+];
+
+fn manifest(name: &str) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let path = root.join("crates").join(name).join("Cargo.toml");
+    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn keys(manifest: &str, section: &str) -> BTreeSet<String> {
+    let document = DeTable::parse(manifest).expect("a manifest is valid TOML");
+    match document.get_ref().get(section).map(|value| value.get_ref()) {
+        Some(DeValue::Table(table)) => table.keys().map(|key| key.get_ref().to_string()).collect(),
+        _ => BTreeSet::new(),
+    }
+}
+
+#[test]
+fn every_crate_of_the_workspace_has_its_place_in_the_graph() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates");
+    let found: BTreeSet<_> = fs::read_dir(folder)
+        .expect("the workspace has crates")
+        .map(|entry| entry.expect("a readable folder").file_name())
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect();
+    let placed = ALLOWED.iter().map(|(name, ..)| (*name).to_owned()).collect();
+    assert_eq!(found, placed, "crates in the workspace and in the graph");
+}
+
+#[test]
+fn dependencies_point_down() {
+    for (name, inside, outside) in ALLOWED {
+        for dependency in keys(&manifest(name), "dependencies") {
+            let allowed = if dependency.starts_with("tem00") {
+                inside
+            } else {
+                outside
+            };
+            assert!(
+                allowed.contains(&dependency.as_str()),
+                "{name} must not depend on {dependency}"
+            );
+        }
+    }
+}
+
+#[test]
+fn tests_borrow_only_from_the_judges() {
+    for (name, inside, _) in ALLOWED {
+        for dependency in keys(&manifest(name), "dev-dependencies") {
+            assert!(
+                !dependency.starts_with("tem00")
+                    || JUDGES.contains(&dependency.as_str())
+                    || inside.contains(&dependency.as_str()),
+                "the tests of {name} must not depend on {dependency}"
+            );
+        }
+    }
+}
+
+#[test]
+fn physics_crates_bring_no_threads_unless_asked() {
+    for name in PHYSICS {
+        let features = keys(&manifest(name), "features");
+        assert!(
+            !features.contains("default"),
+            "{name} must have no default features"
+        );
+    }
+}

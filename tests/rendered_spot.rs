@@ -1,0 +1,148 @@
+//! A rendered laser spot has the power and the profile of its beam, with and without speckle.
+
+use std::{path::Path, sync::atomic::AtomicBool};
+
+use tem00::{
+    beam::GaussianBeam,
+    statistics::t_test_mean,
+    tracer::{
+        Frame, RenderOptions, Scene, SpeckleModel, SpecklePlan, parse_scene, render_frame,
+    },
+};
+
+const SEEDS: u64 = 20;
+const WAIST: f64 = 0.2e-3;
+const POWER: f64 = 2e-3;
+
+/// A correct renderer fails one of these tests with this probability.
+const SIGNIFICANCE: f64 = 1e-3;
+
+/// A spot that comes in at an angle, seen by a camera that looks straight at the plate.
+fn scene(incidence: f64) -> Scene {
+    let (sin, cos) = incidence.to_radians().sin_cos();
+    let text = format!(
+        r#"
+        [camera]
+        position = [0, 0, 0.3]
+        look_at = [0, 0, 0]
+        focal_length = 25e-3
+        f_number = 8
+        pixel_pitch = "3.45 um"
+        resolution = [128, 48]
+
+        [[laser]]
+        wavelength = "650 nm"
+        power = {POWER}
+        position = [{x}, 0, {z}]
+        look_at = [0, 0, 0]
+        spot = {{ waist_radius = {WAIST} }}
+
+        [[surface]]
+        rectangle = {{ centre = [0, 0, 0], normal = [0, 0, 1], size = [0.02, 0.02] }}
+        lambertian = {{ reflectance = 0.5 }}
+        "#,
+        x = 0.25 * sin,
+        z = 0.25 * cos,
+    );
+    parse_scene(&text, Path::new(".")).expect("a valid scene")
+}
+
+fn render(scene: &Scene, speckle: bool, seed: u64) -> Frame {
+    let options = RenderOptions {
+        samples_per_pixel: 3,
+        seed,
+        ..RenderOptions::default()
+    };
+    let model = speckle.then(|| {
+        let plan = SpecklePlan::new(scene, options.formulas, seed).expect("a small pattern");
+        SpeckleModel::generate(scene, &plan).expect("a small pattern")
+    });
+    let cancel = AtomicBool::new(false);
+    render_frame(scene, model.as_ref(), 0, &options, |_| (), &cancel).expect("a render")
+}
+
+#[test]
+fn the_target_receives_the_power_of_the_beam() {
+    for incidence in [0.0, 30.0, 60.0] {
+        let scene = scene(incidence);
+        let power: Vec<f64> = (0..SEEDS)
+            .map(|seed| render(&scene, false, seed).lasers[0].power_on_target)
+            .collect();
+        let test = t_test_mean(&power, POWER).expect("renders with noise");
+        assert!(test.p_value > SIGNIFICANCE, "at {incidence}°: p = {:e}, {power:?}", test.p_value);
+    }
+}
+
+#[test]
+fn the_spot_has_the_radius_and_the_radiance_of_the_beam() {
+    let incidence = 30.0_f64;
+    let scene = scene(incidence);
+    let camera = &scene.camera;
+    // One pixel on the plate, in metres.
+    let pixel = 3.45e-6 * 0.3 / camera.image_distance();
+    let beam = GaussianBeam::from_waist(650e-9, WAIST).expect("a valid beam");
+    let expected_across = beam.radius_at(0.0);
+    let expected_along = expected_across / incidence.to_radians().cos();
+    let (mut along, mut across, mut flux) = (Vec::new(), Vec::new(), Vec::new());
+    for seed in 0..SEEDS {
+        let layer = render(&scene, false, seed).lasers.remove(0).coherent_before;
+        let (mut sum, mut xx, mut yy) = (0.0, 0.0, 0.0);
+        for (y, row) in layer.rows().enumerate() {
+            for (x, &radiance) in row.iter().enumerate() {
+                let radiance = f64::from(radiance);
+                sum += radiance;
+                xx += radiance * (x as f64 + 0.5 - 64.0).powi(2);
+                yy += radiance * (y as f64 + 0.5 - 24.0).powi(2);
+            }
+        }
+        // The variance of the pixel's own box, 1/12, is taken off.
+        let radius = |moment: f64| 2.0 * (moment / sum - 1.0 / 12.0).sqrt() * pixel;
+        along.push(radius(xx));
+        across.push(radius(yy));
+        // A Lambertian surface turns irradiance E into radiance ρ E / π.
+        flux.push(sum * pixel * pixel * std::f64::consts::PI / 0.5);
+    }
+    for (name, measured, expected) in [
+        ("radius across", across, expected_across),
+        ("radius along", along, expected_along),
+        ("reflected power", flux, POWER),
+    ] {
+        let test = t_test_mean(&measured, expected).expect("renders with noise");
+        assert!(
+            test.p_value > SIGNIFICANCE,
+            "{name}: p = {:e}, {measured:?} | {expected}",
+            test.p_value
+        );
+    }
+}
+
+#[test]
+fn speckle_moves_light_about_but_keeps_its_power() {
+    let scene = scene(0.0);
+    let ratio: Vec<f64> = (0..SEEDS)
+        .map(|seed| {
+            let layers = render(&scene, true, seed).lasers.remove(0);
+            let sum = |values: &[f32]| values.iter().map(|&v| f64::from(v)).sum::<f64>();
+            sum(layers.coherent_after.values()) / sum(layers.coherent_before.values())
+        })
+        .collect();
+    let test = t_test_mean(&ratio, 1.0).expect("renders with speckle");
+    assert!(test.p_value > SIGNIFICANCE, "p = {:e}, {ratio:?}", test.p_value);
+    let spread = ratio.iter().map(|r| (r - 1.0).powi(2)).sum::<f64>() / SEEDS as f64;
+    assert!(spread > 1e-4, "speckle leaves no trace: {ratio:?}");
+}
+
+#[test]
+fn a_render_has_the_same_bits_for_any_number_of_threads() {
+    let scene = scene(30.0);
+    let with_threads = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("a thread pool");
+        pool.install(|| render(&scene, true, 5))
+    };
+    let one = with_threads(1);
+    assert_eq!(one, with_threads(3));
+    assert_ne!(one, render(&scene, true, 6), "the seed has no effect");
+}

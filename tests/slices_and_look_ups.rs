@@ -1,0 +1,137 @@
+//! Stacks decorrelate by their closed-form law, and looked-up intensities are as exponential
+//! between the samples as on them.
+
+use rand::RngExt;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use tem00::{
+    numerics::Grid,
+    speckle::{PupilField, SlicePath, SpeckleStack},
+    statistics::{exponential_cumulative, kolmogorov_smirnov, pearson_correlation},
+};
+
+const SIZE: usize = 256;
+const DIAMETER: usize = 128;
+const HALF_PERIOD: usize = 4;
+
+fn stack(seed: u64, path: SlicePath) -> SpeckleStack {
+    let field = PupilField::new(SIZE, DIAMETER, seed).expect("a valid field");
+    SpeckleStack::generate(&field, path).expect("a small stack")
+}
+
+fn slice(stack: &SpeckleStack, u: f64) -> Grid<f32> {
+    Grid::from_fn(SIZE, SIZE, |x, y| {
+        stack.intensity_at(x as f64, y as f64, u) as f32
+    })
+}
+
+/// Four standard errors of a correlation of two patterns, averaged over `patterns` pairs.
+///
+/// A pattern holds at most (4/π)⁻¹ C² independent speckle cells.
+fn tolerance(patterns: u64) -> f64 {
+    let cells = std::f64::consts::FRAC_PI_4 * (DIAMETER * DIAMETER) as f64;
+    // Between neighbouring slices the fluctuations of intensity are themselves exponential: their
+    // products spread by a factor of up to 3 more than those of independent normal numbers.
+    4.0 * 3.0 / (cells * patterns as f64).sqrt()
+}
+
+#[test]
+fn slices_decorrelate_by_the_closed_form() {
+    const PATTERNS: u64 = 4;
+    for path in [
+        SlicePath::Circle {
+            half_period: HALF_PERIOD,
+        },
+        SlicePath::Straight {
+            half_period: HALF_PERIOD,
+        },
+    ] {
+        for distance in 1..=HALF_PERIOD {
+            let mut sum = 0.0;
+            for seed in 0..PATTERNS {
+                let stack = stack(seed, path);
+                let first = seed as f64;
+                let a = slice(&stack, first);
+                let b = slice(&stack, first + distance as f64);
+                sum += pearson_correlation(&a, &b).expect("bright patterns");
+            }
+            let measured = sum / PATTERNS as f64;
+            let expected = stack(0, path).correlation_at(distance as f64);
+            assert!(
+                (measured - expected).abs() < tolerance(PATTERNS) + 1.0 / DIAMETER as f64,
+                "{path:?}, {distance} slices apart: {measured} | {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn opposite_slices_are_uncorrelated() {
+    for path in [
+        SlicePath::Circle {
+            half_period: HALF_PERIOD,
+        },
+        SlicePath::Straight {
+            half_period: HALF_PERIOD,
+        },
+    ] {
+        let stack = stack(7, path);
+        for index in 0..HALF_PERIOD {
+            let a = slice(&stack, index as f64);
+            let b = slice(&stack, (index + HALF_PERIOD) as f64);
+            let correlation = pearson_correlation(&a, &b).expect("bright patterns");
+            assert!(correlation.abs() < tolerance(1), "slice {index}: {correlation}");
+            let law = stack.correlation_between(index, index + HALF_PERIOD);
+            // The rounding of the centres to the lattice leaves a sliver of a lens at most.
+            assert!(law < 1e-3, "slice {index}: {law}");
+        }
+    }
+}
+
+#[test]
+fn looked_up_intensity_is_exponential_at_any_fraction() {
+    let path = SlicePath::Circle {
+        half_period: HALF_PERIOD,
+    };
+    let fractions = [
+        [0.0, 0.0, 0.0],
+        [0.5, 0.5, 0.0],
+        [0.25, 0.75, 0.5],
+        [0.5, 0.5, 0.5],
+        [0.1, 0.9, 0.3],
+    ];
+    for fraction in fractions {
+        // One look-up every four samples, two speckles apart, in several stacks.
+        let mut samples = Vec::new();
+        for seed in 0..6 {
+            let stack = stack(seed, path);
+            for y in (0..SIZE).step_by(4) {
+                for x in (0..SIZE).step_by(4) {
+                    let at = |cell: usize, k: usize| cell as f64 + fraction[k];
+                    samples.push(stack.intensity_at(at(x, 0), at(y, 1), at(1, 2)));
+                }
+            }
+        }
+        let test = kolmogorov_smirnov(&samples, exponential_cumulative).expect("enough samples");
+        assert!(test.p_value > 1e-3, "at {fraction:?}: p = {:e}", test.p_value);
+    }
+}
+
+#[test]
+fn scattered_look_ups_have_mean_and_contrast_one() {
+    const LOOK_UPS: u32 = 40_000;
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let stack = stack(1, SlicePath::Circle { half_period: 8 });
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for _ in 0..LOOK_UPS {
+        let [x, y, u]: [f64; 3] = random.random();
+        let intensity = stack.intensity_at(1e4 * x, 1e4 * y, 1e3 * u);
+        sum += intensity;
+        squares += intensity * intensity;
+    }
+    let mean = sum / f64::from(LOOK_UPS);
+    let second = squares / f64::from(LOOK_UPS);
+    // Exponential: var I = 1, var I² = 24 − 4 = 20; four standard errors.
+    let scale = 4.0 / f64::from(LOOK_UPS).sqrt();
+    assert!((mean - 1.0).abs() < scale, "mean {mean}");
+    assert!((second - 2.0).abs() < scale * 20_f64.sqrt(), "second moment {second}");
+}

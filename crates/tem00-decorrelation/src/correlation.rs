@@ -57,7 +57,12 @@ pub fn pupil_overlap_correlation(shift: f64) -> f64 {
 ///
 /// - D. W. Li and F. P. Chiang, *Decorrelation functions in laser speckle photography*, 1986.
 pub fn axial_correlation(shift: f64) -> f64 {
-    sinc(PI * shift).powi(2)
+    let phase = PI * shift;
+    if phase.is_infinite() {
+        // The limit; the sine of infinity has no value.
+        return 0.0;
+    }
+    sinc(phase).powi(2)
 }
 
 /// Returns the intensity correlation left after a pupil displacement and an axial displacement
@@ -218,6 +223,8 @@ mod tests {
         }
         // The first zero of the sine, with sin π = 1.2e−16 in floating point.
         assert!(axial_correlation(1.0) < 1e-30, "not a zero");
+        assert!(axial_correlation(f64::NEG_INFINITY) == 0.0, "the limit");
+        assert!(axial_correlation(f64::MAX) == 0.0, "an overflow");
         // The revival, at a_O = 2.86.
         assert!(
             (axial_correlation(1.43) - 0.0472).abs() < 5e-5,

@@ -44,8 +44,8 @@ impl CameraFrame {
             .to_cols_array()
             .iter()
             .fold(0.0_f64, |a, b| a.max(b.abs()));
-        // A maximum drops NaN, hence the separate check.
-        if !(axes.is_finite() && largest <= TOLERANCE && axes.determinant() > 0.0) {
+        // A maximum drops NaN, but no NaN has a positive determinant.
+        if !(largest <= TOLERANCE && axes.determinant() > 0.0) {
             return Err(DecorrelationError::Axes(axes));
         }
         let towards_camera = axes.z_axis.normalize();

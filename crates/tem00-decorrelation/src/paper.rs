@@ -15,6 +15,38 @@
 //! Vectors are in *surface coordinates* n1, n2, n3, with n3 the normal; [`EulerAngles::between`]
 //! provides them.
 //!
+//! # Examples
+//!
+//! The look-up of the paper from end to end, for a surface that moves by 0.1 mm along x under a
+//! camera tilted by 45° and a laser emitter 0.5 m above:
+//!
+//! ```
+//! use tem00_decorrelation::{CameraFrame, DVec2, DVec3, ImagingGeometry, LensData, paper};
+//!
+//! let geometry = ImagingGeometry::from_lens(LensData {
+//!     wavelength: 650e-9,
+//!     focal_length: 25e-3,
+//!     f_number: 8.0,
+//!     surface_to_pupil: 0.3,
+//!     pixel_pitch: 3.45e-6,
+//! })?;
+//! let camera = CameraFrame::look_at(DVec3::new(1.0, 0.0, 1.0), DVec3::ZERO, DVec3::Y)?;
+//! let (surface_axes, angles) = paper::EulerAngles::between(&camera, DVec3::Z)?;
+//! let to_surface = surface_axes.transpose();
+//! let a = to_surface * DVec3::new(0.1e-3, 0.0, 0.0);
+//! let emitter = paper::Emitter { direction: to_surface * DVec3::Z, distance: 0.5 };
+//!
+//! let on_sensor = paper::image_displacement(geometry.magnification(), angles, a);
+//! let in_pupil = paper::pupil_displacement(angles, emitter, 0.3, a).unwrap_or(DVec2::ZERO);
+//! let (pixel, h_p, half_period) = (DVec2::new(320.0, 240.0), 4.0, 16);
+//! let c = paper::pattern_coordinate(&geometry, pixel, on_sensor, h_p);
+//! let u = paper::slice_coordinate(&geometry, in_pupil, 0.0, half_period);
+//!
+//! assert!((c - DVec2::new(773.9, 583.9)).length() < 0.1);
+//! assert!((u - 0.796).abs() < 1e-3);
+//! # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+//! ```
+//!
 //! [`SurfacePoint::image_displacement`]: crate::SurfacePoint::image_displacement
 //! [`SurfacePoint::pupil_displacement`]: crate::SurfacePoint::pupil_displacement
 //! [`Motion`]: crate::Motion
@@ -44,7 +76,8 @@ impl EulerAngles {
     /// the columns of a matrix, so that its transpose takes world vectors to surface coordinates.
     ///
     /// Two angles cannot express every rotation. The axes in the surface are free, however, and
-    /// there is a choice for which two suffice: n2 across both the normal and b1.
+    /// there is a choice for which two suffice: n2 across both the normal and b1, on the side that
+    /// keeps q1 within ±90°.
     ///
     /// # Errors
     ///
@@ -417,6 +450,7 @@ mod tests {
             let normal = DVec3::from_array(normal);
             prop_assume!(normal.normalize().cross(axes.x_axis).length() > 1e-3);
             let (surface, angles) = EulerAngles::between(&camera, normal).unwrap();
+            prop_assert!(angles.q1.cos() >= 0.0, "q1 = {}", angles.q1);
             let difference = surface * angles.camera_axes() - axes;
             // n2 rounds by ε over the sine between the normal and b1.
             let largest = difference.to_cols_array().iter().fold(0.0_f64, |m, x| m.max(x.abs()));

@@ -1,0 +1,42 @@
+//! Closed forms, estimators and hypothesis tests of speckle statistics.
+//!
+//! What speckle theory says of a pattern, what a pattern says of itself, and whether the two agree.
+//!
+//! # Conventions
+//!
+//! - Intensities of the closed forms are in units of their mean.
+//! - Lengths of the closed forms are in units of the speckle size `h = λ d / D`, with the
+//!   wavelength, the distance from pupil to image and the pupil diameter: the period of the finest
+//!   fringes in the pattern. Its half width at half maximum is 0.514 h and its first zero 1.22 h.
+//! - Estimates from images are in pixels. A lag or frequency `(x, y)` of a computed grid stands at
+//!   `(x, y)`, negative ones at the far end, so that
+//!   [`Grid::wrapped`](tem00_numerics::Grid::wrapped) takes them as they are.
+//! - Every estimator says what it assumes and how it is biased. Input that determines no answer is
+//!   a [`StatisticsError`]; no result is NaN.
+//!
+//! # Main items
+//!
+//! - First order: [`exponential_density`], [`exponential_cumulative`], [`GammaIntensity`],
+//!   [`contrast_of_phasor_sum`].
+//! - Second order: [`airy_autocovariance`], [`airy_power_spectrum`], [`pixel_contrast`],
+//!   [`contrast_squared_spread`].
+//!
+//! # Scope and non-goals
+//!
+//! Fully developed, fully polarised speckle behind a circular pupil. No plotting, no general
+//! statistics: the distributions behind the tests come from `statrs`.
+
+mod error;
+mod first_order;
+mod pixel;
+mod second_order;
+
+pub use error::StatisticsError;
+pub use first_order::{
+    GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,
+};
+pub use pixel::pixel_contrast;
+pub use second_order::{
+    AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, COHERENCE_AREA, airy_autocovariance, airy_power_spectrum,
+    contrast_squared_spread,
+};

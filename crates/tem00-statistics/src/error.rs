@@ -2,6 +2,8 @@ use core::{error, fmt};
 
 use tem00_numerics::Fft2Error;
 
+use crate::Axis;
+
 /// Why a law could not be constructed, a quantity not estimated or a hypothesis not tested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -47,6 +49,20 @@ pub enum StatisticsError {
     SpeckleSize(f64),
     /// The autocovariance is not positive and finite at zero lag.
     ZeroLag(f64),
+    /// The speckles are smaller than a pixel along one axis.
+    Unresolved {
+        /// The axis along which they were measured.
+        axis: Axis,
+        /// The autocovariance of neighbouring pixels.
+        neighbours: f64,
+    },
+    /// The autocovariance has not fallen to one half at the largest lag.
+    TooCoarse {
+        /// The axis along which they were measured.
+        axis: Axis,
+        /// The largest lag, in pixels.
+        largest_lag: usize,
+    },
     /// The distribution function returned a value that is no probability.
     Probability {
         /// The sample at which it was evaluated.
@@ -111,6 +127,16 @@ impl fmt::Display for StatisticsError {
             Self::ZeroLag(got) => write!(
                 f,
                 "autocovariance at zero lag must be positive and finite, got {got:e}"
+            ),
+            Self::Unresolved { axis, neighbours } => write!(
+                f,
+                "speckle size along {axis} must be at least one pixel, got an autocovariance of \
+                 neighbouring pixels of {neighbours:.4}, below the 0.0328 of one pixel"
+            ),
+            Self::TooCoarse { axis, largest_lag } => write!(
+                f,
+                "autocovariance along {axis} must fall to one half within the image, got more \
+                 than that up to a lag of {largest_lag} pixels"
             ),
             Self::Probability { sample, value } => write!(
                 f,

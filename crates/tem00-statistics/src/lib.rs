@@ -20,23 +20,35 @@
 //!   [`contrast_of_phasor_sum`].
 //! - Second order: [`airy_autocovariance`], [`airy_power_spectrum`], [`pixel_contrast`],
 //!   [`contrast_squared_spread`].
+//! - Estimators: [`Moments`], [`Contrast`], [`pearson_correlation`], [`autocovariance`],
+//!   [`power_spectrum`], [`radial_average`], [`SpeckleSize`], [`decorrelated_samples`].
 //!
 //! # Scope and non-goals
 //!
 //! Fully developed, fully polarised speckle behind a circular pupil. No plotting, no general
 //! statistics: the distributions behind the tests come from `statrs`.
 
+mod autocovariance;
 mod error;
 mod first_order;
+mod moments;
 mod pixel;
 mod second_order;
+mod speckle_size;
+#[cfg(test)]
+mod synthetic;
 
+pub use autocovariance::{
+    Boundary, Ring, autocovariance, decorrelated_samples, power_spectrum, radial_average,
+};
 pub use error::StatisticsError;
 pub use first_order::{
     GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,
 };
+pub use moments::{Contrast, Moments, pearson_correlation};
 pub use pixel::pixel_contrast;
 pub use second_order::{
     AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, COHERENCE_AREA, airy_autocovariance, airy_power_spectrum,
     contrast_squared_spread,
 };
+pub use speckle_size::{Axis, SpeckleSize};

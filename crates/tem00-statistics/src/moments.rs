@@ -1,0 +1,527 @@
+use tem00_numerics::Grid;
+
+use crate::{StatisticsError, second_order::pixels_per_contrast_sample};
+
+/// Mean and standard deviation of samples.
+///
+/// # Bias
+///
+/// The mean is unbiased, whether the samples are independent or not. The variance, with the divisor
+/// n − 1, is unbiased for independent samples; for the pixels of one image it is too small by the
+/// share 4h² / πnₚ, where h is the speckle size and nₚ the number of pixels, both in pixels.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_statistics::Moments;
+///
+/// let moments = Moments::of(&[1.0, 2.0, 3.0, 4.0])?;
+/// assert_eq!(moments.mean(), 2.5);
+/// assert!((moments.standard_deviation() - 1.290_994).abs() < 1e-6); // √(5/3)
+/// # Ok::<(), tem00_statistics::StatisticsError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moments {
+    count: usize,
+    mean: f64,
+    standard_deviation: f64,
+}
+
+impl Moments {
+    /// Estimates the moments from `samples`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if there are fewer than two samples or one is not finite.
+    pub fn of<T>(samples: &[T]) -> Result<Self, StatisticsError>
+    where
+        T: Copy + Into<f64>,
+    {
+        let scaled = Scaled::new(samples)?;
+        Ok(Self {
+            count: samples.len(),
+            mean: scaled.mean * scaled.unit,
+            standard_deviation: scaled.standard_deviation * scaled.unit,
+        })
+    }
+
+    /// Returns the number of samples.
+    pub const fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Returns the mean.
+    pub const fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    /// Returns the standard deviation.
+    pub const fn standard_deviation(&self) -> f64 {
+        self.standard_deviation
+    }
+
+    /// Returns the standard error of the mean, `s / √n`, for independent samples.
+    pub fn standard_error(&self) -> f64 {
+        self.standard_deviation / (self.count as f64).sqrt()
+    }
+}
+
+/// The contrast of samples, their standard deviation over their mean, and its uncertainty.
+///
+/// ```text
+/// C = s / m         1 for fully developed speckle
+/// ```
+///
+/// # Bias
+///
+/// For n independent samples of fully developed speckle the expectation is 1 − 1/n in first order.
+/// Nothing is corrected. For an image, n is the number of pixels over that of
+/// [`with_speckle_size`](Self::with_speckle_size), in order of magnitude.
+///
+/// # Independence
+///
+/// The standard error holds for independent samples of any distribution. Neighbouring pixels are
+/// not independent: [`with_speckle_size`](Self::with_speckle_size) gives the error of an image.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_statistics::Contrast;
+///
+/// let contrast = Contrast::of(&[1.0, 3.0])?;
+/// assert!((contrast.value() - 0.5_f64.sqrt()).abs() < 1e-15);
+/// # Ok::<(), tem00_statistics::StatisticsError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contrast {
+    value: f64,
+    standard_error: f64,
+}
+
+impl Contrast {
+    /// Estimates the contrast from `samples`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if there are fewer than two samples, one is not finite, or the mean is not
+    /// positive.
+    pub fn of<T>(samples: &[T]) -> Result<Self, StatisticsError>
+    where
+        T: Copy + Into<f64>,
+    {
+        let scaled = Scaled::new(samples)?;
+        let (mean, deviation) = (scaled.mean, scaled.standard_deviation);
+        if mean <= f64::EPSILON {
+            return Err(StatisticsError::Mean(mean * scaled.unit));
+        }
+        let value = deviation / mean;
+        // The influence of one sample on s / m, (Δ² − s²) / 2sm − Δ s / m².
+        let influence = |sample: T| {
+            let delta = (sample.into() / scaled.unit - mean) / deviation;
+            value * (0.5 * (delta * delta - 1.0) - delta * value)
+        };
+        let squares = if deviation > 0.0 {
+            samples.iter().map(|&x| influence(x).powi(2)).sum()
+        } else {
+            0.0
+        };
+        Ok(Self {
+            value,
+            standard_error: f64::sqrt(squares) / samples.len() as f64,
+        })
+    }
+
+    /// Returns this contrast with the standard error of an image whose speckles are `speckle_size`
+    /// pixels large and all of whose pixels were given.
+    ///
+    /// ```text
+    /// n pixels count as n / 0.585 h² independent samples
+    /// ```
+    ///
+    /// # Validity
+    ///
+    /// Fully developed speckle behind a circular pupil, in an image many speckles across, each
+    /// pixel a point sample. Below two pixels the factor 0.585 h² is replaced by the sum of the
+    /// squared Airy autocovariance over the pixels, which goes to 1.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless `speckle_size` is positive and finite.
+    pub fn with_speckle_size(self, speckle_size: f64) -> Result<Self, StatisticsError> {
+        if !(speckle_size > 0.0 && speckle_size.is_finite()) {
+            return Err(StatisticsError::SpeckleSize(speckle_size));
+        }
+        Ok(Self {
+            standard_error: self.standard_error * pixels_per_contrast_sample(speckle_size).sqrt(),
+            ..self
+        })
+    }
+
+    /// Returns the contrast.
+    pub const fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// Returns the standard error of the contrast.
+    pub const fn standard_error(&self) -> f64 {
+        self.standard_error
+    }
+}
+
+/// Returns Pearson's correlation coefficient of two grids of the same size, in [−1, 1].
+///
+/// ```text
+/// r = Σ (a − ā)(b − b̄) / √(Σ (a − ā)² Σ (b − b̄)²)
+/// ```
+///
+/// For two speckle patterns it estimates the correlation γ of their intensities.
+///
+/// # Bias
+///
+/// Of the order of 1/n for n independent pairs of samples; none where the grids are independent.
+///
+/// # Independence
+///
+/// None is assumed of the value. Where the two grids are independent speckle patterns of the size
+/// h, in pixels, its standard deviation is `√(0.585 h² / nₚ)` for nₚ pixels.
+///
+/// # Errors
+///
+/// Returns an error if the grids differ in size, hold fewer than two samples, a sample is not
+/// finite or all samples of a grid are the same.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_numerics::Grid;
+/// use tem00_statistics::pearson_correlation;
+///
+/// let ramp = Grid::from_fn(4, 4, |x, y| (x + y) as f32);
+/// let inverted = ramp.map(|value| 1.0 - 2.0 * value);
+/// assert!((pearson_correlation(&ramp, &inverted)? + 1.0).abs() < 1e-14);
+/// # Ok::<(), tem00_statistics::StatisticsError>(())
+/// ```
+pub fn pearson_correlation(first: &Grid<f32>, second: &Grid<f32>) -> Result<f64, StatisticsError> {
+    let size = |grid: &Grid<f32>| (grid.width(), grid.height());
+    if size(first) != size(second) {
+        return Err(StatisticsError::Size {
+            first: size(first),
+            second: size(second),
+        });
+    }
+    let a = Scaled::new(first.values())?;
+    let b = Scaled::new(second.values())?;
+    a.check_varies()?;
+    b.check_varies()?;
+    let product = |(&x, &y): (&f32, &f32)| a.standardise(x) * b.standardise(y);
+    let pairs = first.values().iter().zip(second.values());
+    let sum: f64 = pairs.map(product).sum();
+    Ok((sum / (first.values().len() - 1) as f64).clamp(-1.0, 1.0))
+}
+
+/// Mean and standard deviation in units of a power of two near the largest magnitude, so that their
+/// sums neither overflow nor underflow and the unit adds no rounding.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scaled {
+    pub(crate) unit: f64,
+    pub(crate) mean: f64,
+    pub(crate) standard_deviation: f64,
+    constant: Option<f64>,
+}
+
+impl Scaled {
+    pub(crate) fn new<T>(samples: &[T]) -> Result<Self, StatisticsError>
+    where
+        T: Copy + Into<f64>,
+    {
+        let (low, high) = range(samples)?;
+        let unit = power_of_two_near(high.abs().max(low.abs()));
+        if low >= high {
+            return Ok(Self {
+                unit,
+                mean: low / unit,
+                standard_deviation: 0.0,
+                constant: Some(low),
+            });
+        }
+        let count = samples.len() as f64;
+        let values = || samples.iter().map(|&x| x.into() / unit);
+        let mean = values().sum::<f64>() / count;
+        let squares: f64 = values().map(|x| (x - mean) * (x - mean)).sum();
+        Ok(Self {
+            unit,
+            mean,
+            standard_deviation: (squares / (count - 1.0)).sqrt(),
+            constant: None,
+        })
+    }
+
+    /// Returns an error if all samples were the same.
+    pub(crate) fn check_varies(&self) -> Result<(), StatisticsError> {
+        match self.constant {
+            Some(value) => Err(StatisticsError::Constant(value)),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns how many standard deviations a sample lies above the mean.
+    pub(crate) fn standardise(&self, sample: impl Into<f64>) -> f64 {
+        (sample.into() / self.unit - self.mean) / self.standard_deviation
+    }
+}
+
+fn power_of_two_near(magnitude: f64) -> f64 {
+    if magnitude > 0.0 {
+        libm::ldexp(1.0, libm::ilogb(magnitude))
+    } else {
+        1.0
+    }
+}
+
+/// Returns the smallest and the largest of at least two finite samples.
+fn range<T>(samples: &[T]) -> Result<(f64, f64), StatisticsError>
+where
+    T: Copy + Into<f64>,
+{
+    if samples.len() < 2 {
+        return Err(StatisticsError::Samples {
+            given: samples.len(),
+            needed: 2,
+        });
+    }
+    check_finite(samples)?;
+    let values = samples.iter().map(|&x| x.into());
+    Ok(
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        }),
+    )
+}
+
+/// Returns an error at the first sample that is not finite.
+pub(crate) fn check_finite<T>(samples: &[T]) -> Result<(), StatisticsError>
+where
+    T: Copy + Into<f64>,
+{
+    let bad = samples.iter().position(|&x| !x.into().is_finite());
+    match bad {
+        Some(index) => Err(StatisticsError::NotFinite {
+            index,
+            value: samples[index].into(),
+        }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::{autocovariance::single, synthetic::speckle_tile};
+
+    fn exponential_samples(count: usize, rng: &mut ChaCha8Rng) -> Vec<f64> {
+        (0..count)
+            .map(|_| -(1.0 - rng.random::<f64>()).ln())
+            .collect()
+    }
+
+    #[test]
+    fn moments_of_small_integers_are_exact() {
+        let moments = Moments::of(&[2_u8, 4, 4, 4, 5, 5, 7, 9]).unwrap();
+        assert_eq!(moments.count(), 8);
+        // The sum of squares about 5 is 32.
+        assert_relative_eq!(moments.mean(), 5.0, max_relative = 1e-15);
+        let variance = moments.standard_deviation().powi(2);
+        assert_relative_eq!(variance, 32.0 / 7.0, max_relative = 1e-15);
+        assert_relative_eq!(
+            moments.standard_error(),
+            (4.0_f64 / 7.0).sqrt(),
+            max_relative = 1e-15
+        );
+    }
+
+    #[test]
+    fn contrast_of_few_exponential_samples_is_biased_as_stated() {
+        const BLOCKS: u32 = 20_000;
+        const LENGTH: usize = 50;
+        let mut rng = ChaCha8Rng::seed_from_u64(11);
+        let contrasts: Vec<_> = (0..BLOCKS)
+            .map(|_| Contrast::of(&exponential_samples(LENGTH, &mut rng)).unwrap())
+            .collect();
+        let values: Vec<_> = contrasts.iter().map(Contrast::value).collect();
+        let moments = Moments::of(&values).unwrap();
+        let length = LENGTH as f64;
+        // 3.3 σ is α = 0.001; the next order in 1/n is 1/n² times a number of order one.
+        let tolerance = 3.3 * moments.standard_error() + 3.0 / (length * length);
+        assert_abs_diff_eq!(moments.mean(), 1.0 - 1.0 / length, epsilon = tolerance);
+        assert!(tolerance < 0.3 / length, "the bias would not be seen");
+    }
+
+    #[test]
+    fn standard_error_of_the_contrast_is_that_of_many_trials() {
+        const TRIALS: u32 = 2_000;
+        const LENGTH: usize = 500;
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let contrasts: Vec<_> = (0..TRIALS)
+            .map(|_| Contrast::of(&exponential_samples(LENGTH, &mut rng)).unwrap())
+            .collect();
+        let values: Vec<_> = contrasts.iter().map(Contrast::value).collect();
+        let errors: f64 = contrasts.iter().map(|c| c.standard_error().powi(2)).sum();
+        let estimated = (errors / f64::from(TRIALS)).sqrt();
+        let spread = Moments::of(&values).unwrap().standard_deviation();
+        // 1/√n for exponential samples; a standard deviation from 2000 trials is known to 1/√4000
+        // = 1.6 %, here 3.3 σ, and the first order in 1/n errs by some 10/n = 2 %.
+        assert_relative_eq!(spread, 500.0_f64.sqrt().recip(), max_relative = 0.072);
+        assert_relative_eq!(spread, estimated, max_relative = 0.072);
+    }
+
+    #[test]
+    fn speckle_size_widens_the_error_of_the_contrast_as_tiles_do() {
+        const TILES: u64 = 300;
+        for (size, diameter) in [(64, 32), (96, 24)] {
+            let speckle_size = size as f64 / diameter as f64;
+            let contrast = |seed| {
+                let (tile, _) = speckle_tile(size, diameter, seed);
+                let contrast = Contrast::of(tile.values()).unwrap();
+                contrast.with_speckle_size(speckle_size).unwrap()
+            };
+            let contrasts: Vec<_> = (0..TILES).map(contrast).collect();
+            let values: Vec<_> = contrasts.iter().map(Contrast::value).collect();
+            let errors: f64 = contrasts.iter().map(Contrast::standard_error).sum();
+            let spread = Moments::of(&values).unwrap().standard_deviation();
+            // A spread from 300 tiles is known to 1/√600 = 4.1 %, here 3.3 σ; the first order in
+            // 1/C errs by some 2/C.
+            let tolerance = 3.3 * 0.041 + 2.0 / diameter as f64;
+            assert_relative_eq!(spread, errors / TILES as f64, max_relative = tolerance);
+            assert_relative_eq!(
+                spread,
+                0.5 * crate::contrast_squared_spread(diameter as f64),
+                max_relative = tolerance
+            );
+        }
+    }
+
+    #[test]
+    fn correlation_of_two_waves_is_the_cosine_of_their_phase() {
+        let wave = |phase: f64| {
+            Grid::from_fn(32, 3, |x, _| {
+                let argument = core::f64::consts::TAU * 3.0 * x as f64 / 32.0;
+                single(100.0 + (argument + phase).cos())
+            })
+        };
+        for phase in [0.0_f64, 0.4, 1.5, 3.0] {
+            let correlation = pearson_correlation(&wave(0.0), &wave(phase)).unwrap();
+            // Values near 100 are stored to 4e−6, and 96 of them average it.
+            assert_abs_diff_eq!(correlation, phase.cos(), epsilon = 4e-6);
+        }
+    }
+
+    #[test]
+    fn independent_patterns_do_not_correlate() {
+        const PAIRS: u64 = 24;
+        let (size, diameter) = (128, 64);
+        let correlation = |seed| {
+            let (first, _) = speckle_tile(size, diameter, seed);
+            let (second, _) = speckle_tile(size, diameter, seed + 1_000);
+            pearson_correlation(&first, &second).unwrap()
+        };
+        let squares: f64 = (0..PAIRS).map(|seed| correlation(seed).powi(2)).sum();
+        // √(0.585) h / size per pair; the sum of squares over the variance is χ² with 24 degrees of
+        // freedom, within 7.5 and 53.5 but for 0.001 (Abramowitz & Stegun 1964, table 26.8).
+        let variance = 0.585 / (diameter * diameter) as f64;
+        let chi_squared = squares / variance;
+        assert!((7.5..53.5).contains(&chi_squared), "{chi_squared}");
+    }
+
+    #[test]
+    fn samples_that_determine_nothing_are_refused() {
+        assert_eq!(
+            Moments::of::<f64>(&[]),
+            Err(StatisticsError::Samples {
+                given: 0,
+                needed: 2
+            })
+        );
+        assert_eq!(
+            Contrast::of(&[1.0]),
+            Err(StatisticsError::Samples {
+                given: 1,
+                needed: 2
+            })
+        );
+        assert_eq!(
+            Contrast::of(&[1.0, f64::INFINITY]),
+            Err(StatisticsError::NotFinite {
+                index: 1,
+                value: f64::INFINITY
+            })
+        );
+        for dark in [[0.0, 0.0], [-1.0, 1.0], [-2.0, 1.0]] {
+            assert!(
+                matches!(Contrast::of(&dark), Err(StatisticsError::Mean(_))),
+                "{dark:?}"
+            );
+        }
+        let ramp = Grid::from_fn(2, 2, |x, _| x as f32);
+        let flat = Grid::filled(2, 2, 0.3_f32);
+        let long = Grid::filled(4, 1, 0.3_f32);
+        assert_eq!(
+            pearson_correlation(&ramp, &flat),
+            Err(StatisticsError::Constant(f64::from(0.3_f32)))
+        );
+        assert_eq!(
+            pearson_correlation(&ramp, &long),
+            Err(StatisticsError::Size {
+                first: (2, 2),
+                second: (4, 1)
+            })
+        );
+        let contrast = Contrast::of(&[1.0, 2.0]).unwrap();
+        for size in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(
+                matches!(
+                    contrast.with_speckle_size(size),
+                    Err(StatisticsError::SpeckleSize(_))
+                ),
+                "{size}"
+            );
+        }
+    }
+
+    #[test]
+    fn equal_samples_have_no_contrast_and_no_error() {
+        let contrast = Contrast::of(&[0.1, 0.1, 0.1]).unwrap();
+        assert!(contrast.value().abs() < f64::MIN_POSITIVE, "{contrast:?}");
+        assert!(contrast.standard_error().abs() < f64::MIN_POSITIVE);
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_overflows(
+            samples in proptest::collection::vec(-f64::MAX..f64::MAX, 2..9),
+            exponent in -1_074..1,
+        ) {
+            let scaled: Vec<f64> = samples.iter().map(|&x| libm::ldexp(x, exponent)).collect();
+            let moments = Moments::of(&scaled).unwrap();
+            prop_assert!(moments.mean().is_finite(), "{moments:?}");
+            // √2 · f64::MAX is the largest standard deviation, of two opposite samples.
+            prop_assert!(!moments.standard_deviation().is_nan(), "{moments:?}");
+            if let Ok(contrast) = Contrast::of(&scaled) {
+                prop_assert!(contrast.value().is_finite(), "{contrast:?}");
+                prop_assert!(contrast.standard_error().is_finite(), "{contrast:?}");
+            }
+        }
+
+        #[test]
+        fn contrast_does_not_depend_on_the_unit(exponent in -900_i32..900) {
+            let samples = [0.3, 1.7, 0.2, 2.9];
+            let scaled = samples.map(|x| libm::ldexp(x, exponent));
+            // A power of two changes no bit.
+            prop_assert_eq!(Contrast::of(&samples), Contrast::of(&scaled));
+        }
+    }
+}

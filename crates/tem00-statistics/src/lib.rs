@@ -22,15 +22,32 @@
 //!   [`contrast_squared_spread`].
 //! - Estimators: [`Moments`], [`Contrast`], [`pearson_correlation`], [`autocovariance`],
 //!   [`power_spectrum`], [`radial_average`], [`SpeckleSize`], [`decorrelated_samples`].
+//! - Hypothesis tests: [`kolmogorov_smirnov`], [`chi_squared`], [`t_test_mean`].
 //!
 //! # Scope and non-goals
 //!
 //! Fully developed, fully polarised speckle behind a circular pupil. No plotting, no general
 //! statistics: the distributions behind the tests come from `statrs`.
+//!
+//! # Example
+//!
+//! ```
+//! use tem00_statistics::{Contrast, exponential_cumulative, kolmogorov_smirnov};
+//!
+//! // The quantiles of an exponential law stand for a measured pattern.
+//! let quantile = |i| -(1.0 - (f64::from(i) + 0.5) / 10_000.0_f64).ln();
+//! let samples: Vec<f64> = (0..10_000).map(quantile).collect();
+//!
+//! let contrast = Contrast::of(&samples)?;
+//! assert!((contrast.value() - 1.0).abs() < contrast.standard_error());
+//! assert!(kolmogorov_smirnov(&samples, exponential_cumulative)?.p_value > 0.99);
+//! # Ok::<(), tem00_statistics::StatisticsError>(())
+//! ```
 
 mod autocovariance;
 mod error;
 mod first_order;
+mod hypothesis;
 mod moments;
 mod pixel;
 mod second_order;
@@ -45,6 +62,7 @@ pub use error::StatisticsError;
 pub use first_order::{
     GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,
 };
+pub use hypothesis::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean};
 pub use moments::{Contrast, Moments, pearson_correlation};
 pub use pixel::pixel_contrast;
 pub use second_order::{

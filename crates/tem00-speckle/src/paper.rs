@@ -139,3 +139,109 @@ fn bilinear(slice: &Grid<f32>, x: f64, y: f64) -> f64 {
     };
     (1.0 - fy) * along(row) + fy * along(row + 1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stack(size: usize, diameter: usize, half_period: usize, seed: u64) -> BilinearStack {
+        let field = PupilField::new(size, diameter, seed).unwrap();
+        BilinearStack::generate(&field, half_period).unwrap()
+    }
+
+    /// Mean and variance of the look-up at one fraction of every printed cell, over seeds.
+    fn moments(
+        [size, diameter, half_period]: [usize; 3],
+        [fx, fy]: [f64; 2],
+        u: f64,
+        seeds: u64,
+    ) -> (f64, f64) {
+        let (mut sum, mut square, mut count) = (0.0, 0.0, 0.0);
+        for seed in 0..seeds {
+            let stack = stack(size, diameter, half_period, seed);
+            let cells = u32::try_from(size).unwrap() - 1;
+            for index in 0..cells * cells {
+                let (x, y) = (f64::from(index % cells), f64::from(index / cells));
+                let intensity = stack.intensity_at(x + fx, y + fy, u);
+                sum += intensity;
+                square += intensity * intensity;
+                count += 1.0;
+            }
+        }
+        let mean = sum / count;
+        (mean, square / count - mean * mean)
+    }
+
+    #[test]
+    fn bilinear_intensity_has_the_contrast_of_the_closed_form() {
+        const SEEDS: u32 = 16;
+        for fractions in [[0.0, 0.0], [0.5, 0.5], [0.5, 0.0], [0.25, 0.75]] {
+            let (mean, variance) = moments([64, 32, 1], fractions, 0.0, SEEDS.into());
+            let [fx, fy] = fractions;
+            let expected = stack(64, 32, 1, 0).contrast_between_samples(fx, fy);
+            // The spread of a tile's squared contrast is 1.53/C; α = 6e−5. The row and the column
+            // that the printed wrap leaves out shift the mean by some 1/64 · 2/√(2C).
+            let tolerance = 4.0 * 1.53 / 32.0 / f64::from(SEEDS).sqrt();
+            let difference = variance - expected * expected;
+            assert!(difference.abs() < tolerance, "{fractions:?}: {difference}");
+            assert!((mean - 1.0).abs() < 0.01, "{fractions:?}: mean {mean}");
+        }
+    }
+
+    #[test]
+    fn bilinear_contrast_has_its_known_values() {
+        for (size, contrast) in [(256, 0.7566), (512, 0.9271), (1_024, 0.9809)] {
+            let got = stack(size, 128, 1, 0).contrast_between_samples(0.5, 0.5);
+            // 1/(2N) = 4e−5 for unit phasors, and the rounding of the four digits.
+            assert!((got - contrast).abs() < 2e-4, "Q/C = {}: {got}", size / 128);
+        }
+    }
+
+    #[test]
+    fn blended_intensity_has_the_contrast_of_the_closed_form() {
+        const SEEDS: u32 = 16;
+        for f in [0.25, 0.5] {
+            let (_, variance) = moments([64, 32, 8], [0.0, 0.0], 2.0 + f, SEEDS.into());
+            let expected = stack(64, 32, 8, 0).contrast_between_slices(2, f);
+            // As above.
+            let tolerance = 4.0 * 1.53 / 32.0 / f64::from(SEEDS).sqrt();
+            let difference = variance - expected * expected;
+            assert!(difference.abs() < tolerance, "f = {f}: {difference}");
+        }
+        // √(1 − ½ (1 − γ₁)) with γ₁ = 0.5673 for M = 8, of a pupil large enough to be a disc.
+        let got = stack(1_024, 512, 8, 0).contrast_between_slices(0, 0.5);
+        assert!((got - 0.885).abs() < 2e-3, "contrast {got}");
+    }
+
+    #[test]
+    fn printed_wraps_lose_the_last_interval() {
+        let printed = stack(32, 16, 3, 4);
+        let pattern = |index: usize| {
+            let field = &printed.field;
+            field
+                .pattern_at(printed.path.centre(index, field))
+                .into_values()
+        };
+        let first = pattern(0);
+        let at = |x, y, u| printed.intensity_at(x, y, u);
+        // Sample Q − 1 is never shown: the look-up is back at sample 0.
+        assert!(
+            (at(31.0, 5.0, 0.0) - f64::from(first[(0, 5)])).abs() < 1e-12,
+            "x"
+        );
+        assert!(
+            (at(5.0, 31.0, 0.0) - f64::from(first[(5, 0)])).abs() < 1e-12,
+            "y"
+        );
+        // Just before, it was at sample Q − 1: a jump.
+        let (last, jump) = (f64::from(first[(31, 5)]), at(31.0 - 1e-9, 5.0, 0.0));
+        assert!((jump - last).abs() < 1e-6, "{jump} before the wrap");
+        // The same for slice 2M − 1 = 5.
+        assert!(
+            (at(7.0, 5.0, 5.0) - f64::from(first[(7, 5)])).abs() < 1e-12,
+            "u"
+        );
+        let (last, jump) = (f64::from(pattern(5)[(7, 5)]), at(7.0, 5.0, 5.0 - 1e-9));
+        assert!((jump - last).abs() < 1e-6, "{jump} before the wrap in u");
+    }
+}

@@ -181,3 +181,138 @@ fn neighbours(cell: usize, size: usize) -> [usize; 4] {
     let wrap = |index: usize| if index < size { index } else { index - size };
     [wrap(cell + size - 1), cell, wrap(cell + 1), wrap(cell + 2)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The cubic B-spline by its definition (Unser 1999, eq. 5).
+    fn kernel(x: f64) -> f64 {
+        let x = x.abs();
+        if x < 1.0 {
+            2.0 / 3.0 - x * x + 0.5 * x * x * x
+        } else {
+            (2.0 - x.min(2.0)).powi(3) / 6.0
+        }
+    }
+
+    /// What interpolation at the fraction `f` makes of the wave `exp(−2πi k x / Q)`, over the wave.
+    fn gain(k: f64, f: f64, size: usize) -> Complex<f64> {
+        let angle = 2.0 * PI * k / to_f64(size);
+        let filter = (0.5 * angle / (0.5 * angle).sin()).powi(4);
+        let filter = if filter.is_nan() { 1.0 } else { filter };
+        [-1.0, 0.0, 1.0, 2.0]
+            .iter()
+            .map(|t| Complex::from_polar(filter * kernel(t - f), -angle * (t - f)))
+            .sum()
+    }
+
+    fn points(mask: &Mask) -> Vec<[f64; 2]> {
+        let [half_width, half_height] = mask.half_extent().map(|h| i32::try_from(h).unwrap());
+        let inside = |x: i32, y: i32| {
+            let row = mask.row(y.unsigned_abs() as usize);
+            let x = x.unsigned_abs() as usize;
+            x <= row.outer && row.hole.is_none_or(|hole| x > hole)
+        };
+        (-half_height..=half_height)
+            .flat_map(|y| (-half_width..=half_width).map(move |x| (x, y)))
+            .filter(|&(x, y)| inside(x, y))
+            .map(|(x, y)| [f64::from(x), f64::from(y)])
+            .collect()
+    }
+
+    fn mask(size: usize, diameter: usize, pupil: crate::Pupil) -> Mask {
+        let field = PupilField::new(size, diameter, 0).unwrap();
+        field.with_pupil(pupil).unwrap().mask().clone()
+    }
+
+    /// The mean over the mask of `term(gain at f)`.
+    fn mean(
+        mask: &Mask,
+        size: usize,
+        f: [f64; 2],
+        term: impl Fn([f64; 2], Complex<f64>) -> f64,
+    ) -> f64 {
+        let sum: f64 = points(mask)
+            .iter()
+            .map(|&[x, y]| term([x, y], gain(x, f[0], size) * gain(y, f[1], size)))
+            .sum();
+        sum / to_f64(mask.count())
+    }
+
+    const FRACTIONS: [[f64; 2]; 5] = [
+        [0.0, 0.0],
+        [0.5, 0.0],
+        [0.0, 0.25],
+        [0.5, 0.5],
+        [0.875, 0.125],
+    ];
+
+    #[test]
+    #[expect(clippy::cast_possible_truncation, reason = "exact fractions")]
+    fn weights_are_the_kernel_at_the_four_samples() {
+        for f in [0.0, 0.125, 0.25, 0.5, 0.75, 0.999_023_437_5] {
+            let weights = weights(f as f32);
+            for (t, weight) in [-1.0, 0.0, 1.0, 2.0].iter().zip(weights) {
+                let error = f64::from(weight) - kernel(t - f);
+                assert!(error.abs() < 1e-7, "tap {t} at {f}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
+    #[expect(clippy::cast_possible_truncation, reason = "exact fractions")]
+    fn the_closed_variance_is_the_mean_square_gain() {
+        for (size, diameter) in [(20, 10), (32, 16), (33, 16), (64, 9)] {
+            for pupil in [
+                crate::Pupil::Circle,
+                crate::Pupil::Annulus { inner: 0.4 },
+                crate::Pupil::Rectangle { height: 0.8 },
+            ] {
+                let mask = mask(size, diameter, pupil);
+                let variance = Variance::new(&mask, size);
+                for [fx, fy] in FRACTIONS {
+                    let expected = mean(&mask, size, [fx, fy], |_, g| g.norm_sqr());
+                    let got = variance.at(&weights(fx as f32), &weights(fy as f32));
+                    let error = f64::from(got) - expected;
+                    // Sums of 16 terms of at most 4 in f32.
+                    assert!(
+                        error.abs() < 1e-6,
+                        "{pupil:?}, {size}, ({fx}, {fy}): {error:e}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_error_of_the_spline_is_as_documented() {
+        for (size, rms_limit, covariance_limit) in [(64, 4.5e-3, 3.2e-3), (128, 2.1e-4, 1.2e-4)] {
+            let mask = mask(size, 32, crate::Pupil::Circle);
+            let (mut rms, mut deviation) = (0.0_f64, 0.0_f64);
+            for here in FRACTIONS {
+                let square = mean(&mask, size, here, |_, g| (g - 1.0).norm_sqr());
+                rms = rms.max(square.sqrt());
+                let normal = mean(&mask, size, here, |_, g| g.norm_sqr());
+                let cells = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 0.0], [0.0, 2.0]];
+                for (there, cell) in FRACTIONS.iter().flat_map(|f| cells.map(|c| (f, c))) {
+                    let lag = [there[0] - here[0] + cell[0], there[1] - here[1] + cell[1]];
+                    let covariance = mean(&mask, size, here, |[x, y], g| {
+                        let angle = 2.0 * PI * (x * lag[0] + y * lag[1]) / to_f64(size);
+                        let other = gain(x, there[0], size) * gain(y, there[1], size);
+                        (g * other.conj() * Complex::from_polar(1.0, angle)).re
+                    });
+                    let other = mean(&mask, size, *there, |_, g| g.norm_sqr());
+                    let gamma = covariance * covariance / (normal * other);
+                    let exact = mask.correlation(lag, size).powi(2);
+                    deviation = deviation.max((gamma - exact).abs());
+                }
+            }
+            assert!(
+                rms < rms_limit && rms > 0.5 * rms_limit,
+                "rms error {rms:e}"
+            );
+            assert!(deviation < covariance_limit, "deviation {deviation:e}");
+        }
+    }
+}

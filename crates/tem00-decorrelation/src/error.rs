@@ -111,3 +111,54 @@ impl fmt::Display for DecorrelationError {
 }
 
 impl error::Error for DecorrelationError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_message_names_the_parameter_and_its_value() {
+        use DecorrelationError as E;
+        let vector = DVec3::new(1.25, 2.5, -3.75);
+        let cases = [
+            (E::Wavelength(-1.25), "wavelength", "-1.25e0 m"),
+            (E::FocalLength(-1.25), "focal length", "-1.25e0 m"),
+            (E::FNumber(0.25), "f-number", "0.25"),
+            (E::PixelPitch(-1.25), "pixel pitch", "-1.25e0 m"),
+            (
+                E::SurfaceToPupil {
+                    surface_to_pupil: 0.02,
+                    focal_length: 0.025,
+                },
+                "2.5e-2",
+                "2e-2 m",
+            ),
+            (
+                E::PupilDiameter {
+                    pupil_diameter: 1e-9,
+                    wavelength: 6.5e-7,
+                },
+                "6.5e-7",
+                "1e-9 m",
+            ),
+            (E::Axes(DMat3::IDENTITY * 2.5), "camera axes", "2.5"),
+            (E::ViewDirection(vector), "target to the camera", "-3.75"),
+            (E::Up(vector), "upward direction", "-3.75"),
+            (E::ToPupil(vector), "surface to pupil", "-3.75"),
+            (
+                E::DirectionToSource(vector),
+                "direction to the source",
+                "-3.75",
+            ),
+            (E::Curvature(f64::INFINITY), "curvature", "inf 1/m"),
+            (E::PrincipalAxis(vector), "principal axis", "-3.75"),
+            (E::Normal(vector), "surface normal", "-3.75"),
+        ];
+        for (error, name, value) in cases {
+            let message = error.to_string();
+            assert!(message.contains(name), "no {name} in: {message}");
+            assert!(message.contains(value), "no {value} in: {message}");
+            assert!(message.contains("must "), "nothing allowed in: {message}");
+        }
+    }
+}

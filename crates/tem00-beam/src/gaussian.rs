@@ -265,7 +265,7 @@ impl GaussianBeam {
     /// use tem00_beam::{DVec3, GaussianBeam};
     ///
     /// let beam = GaussianBeam::from_waist(650e-9, 50e-6)?;
-    /// let (sin, cos) = 60f64.to_radians().sin_cos();
+    /// let (sin, cos) = 60_f64.to_radians().sin_cos();
     /// let normal = DVec3::new(sin, 0.0, -cos);
     /// let on_axis = DVec3::new(0.0, 0.0, 0.3);
     ///
@@ -548,14 +548,14 @@ mod tests {
     proptest! {
         #[test]
         fn no_query_yields_nan(
-            wavelength in -29.0..5.0f64,
-            ratio in 0.0..20.0f64,
+            wavelength in -29.0..5.0_f64,
+            ratio in 0.0..20.0_f64,
             x in proptest::num::f64::NORMAL,
             y in proptest::num::f64::NORMAL,
             z in proptest::num::f64::NORMAL | proptest::num::f64::ZERO,
         ) {
-            let wavelength = 10f64.powf(wavelength);
-            let beam = GaussianBeam::from_waist(wavelength, wavelength * 10f64.powf(ratio)).unwrap();
+            let wavelength = 10_f64.powf(wavelength);
+            let beam = GaussianBeam::from_waist(wavelength, wavelength * 10_f64.powf(ratio)).unwrap();
             let queries = [
                 beam.radius_at(z),
                 beam.curvature_at(z),

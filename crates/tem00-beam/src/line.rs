@@ -59,7 +59,7 @@ pub struct FanGeometry {
 /// let line = LaserLine::new(
 ///     GaussianBeam::from_waist(650e-9, 0.1e-3)?,
 ///     FanGeometry {
-///         fan_angle: 30f64.to_radians(),
+///         fan_angle: 30_f64.to_radians(),
 ///         apex_offset: 2e-3,
 ///         focus_distance: 0.2,
 ///     },
@@ -352,7 +352,7 @@ mod tests {
         let ratio = line.irradiance_per_watt(edge) * thickness(edge)
             / (line.irradiance_per_watt(centre) * thickness(centre));
         assert!(
-            (ratio - (-2.0f64).exp()).abs() < 1e-14,
+            (ratio - (-2.0_f64).exp()).abs() < 1e-14,
             "1/e² at the edge: {ratio}"
         );
     }

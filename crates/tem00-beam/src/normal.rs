@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn quantile_is_odd_about_one_half() {
-        for p in [0.25, 0.0625, 2f64.powi(-20)] {
+        for p in [0.25, 0.0625, 2_f64.powi(-20)] {
             let sum = normal_quantile(p) + normal_quantile(1.0 - p);
             assert!(sum.abs() < 1e-12, "p = {p}: {sum:e}");
         }
@@ -156,7 +156,7 @@ mod tests {
             let x: f64 = standard_normal(u);
             assert!(x.abs() < 8.3, "u = {u}: {x}");
         }
-        for u in [0.0f32, 0.5, 1.0 - f32::EPSILON / 2.0] {
+        for u in [0.0_f32, 0.5, 1.0 - f32::EPSILON / 2.0] {
             let x: f32 = standard_normal(u);
             assert!(x.abs() < 5.5, "u = {u}: {x}");
         }

@@ -98,3 +98,6 @@ fn checked_power(power: f64) -> Result<f64, BeamError> {
         Err(BeamError::Power(power))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -161,7 +161,7 @@ mod tests {
         let gaussian = LineProfile::GaussianTan.slope_density(t).unwrap();
         let powell = LineProfile::Powell { edge: 0.1 }.slope_density(t).unwrap();
         let width = SQRT_2 * 0.1 * t;
-        for u in [-0.3f64, -0.25, 0.0, 0.1, 0.24, 0.4] {
+        for u in [-0.3_f64, -0.25, 0.0, 0.1, 0.24, 0.4] {
             let expected =
                 (2.0 / core::f64::consts::PI).sqrt() / t * (-2.0 * u * u / (t * t)).exp();
             assert!((gaussian.at(u) / expected - 1.0).abs() < 1e-14, "u = {u}");

@@ -147,3 +147,150 @@ impl DiscConeSampler {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    fn beam() -> GaussianBeam {
+        GaussianBeam::from_waist(650e-9, 50e-6).unwrap()
+    }
+
+    /// ∫ f over [0, b] by the midpoint rule.
+    fn integrate(f: impl Fn(f64) -> f64, b: f64) -> f64 {
+        const INTERVALS: u32 = 20_000;
+        let h = b / f64::from(INTERVALS);
+        (0..INTERVALS)
+            .map(|i| f((f64::from(i) + 0.5) * h))
+            .sum::<f64>()
+            * h
+    }
+
+    #[test]
+    fn the_cone_loses_what_is_beyond_it() {
+        let delta = beam().divergence();
+        for l in [0.5, (-2.0_f64).exp(), 1e-2, 1e-4] {
+            let edge = modified_divergence(&beam(), l).unwrap();
+            let profile = |s: f64| (-2.0 * (s / delta).powi(2)).exp();
+            assert!((profile(edge) / l - 1.0).abs() < 1e-12, "l = {l}");
+            let norm = 2.0 / (PI * delta * delta);
+            let inside = integrate(|s| norm * profile(s) * TAU * s, edge);
+            let lost = lost_by_cone(l).unwrap();
+            // Midpoint rule: (edge / 20000)² / 24 · f' at the ends, 1e−9.
+            assert!(
+                (1.0 - inside - lost).abs() < 1e-8,
+                "l = {l}: {inside}, {lost}"
+            );
+            let norm = 2.0 * (2.0 / PI).sqrt() / delta;
+            let inside = integrate(|s| norm * profile(s), edge);
+            let lost = lost_by_fan_cone(l).unwrap();
+            assert!(
+                (1.0 - inside - lost).abs() < 1e-8,
+                "l = {l}: {inside}, {lost}"
+            );
+        }
+    }
+
+    #[test]
+    fn rays_fill_disc_and_cone_uniformly() {
+        const COUNT: u32 = 40_000;
+        let sampler = DiscConeSampler::new(&beam(), 0.1, 1e-2).unwrap();
+        let radius = beam().radius_at(0.1);
+        let cone = modified_divergence(&beam(), 1e-2).unwrap();
+        assert!(
+            (sampler.aperture_radius() / radius - 1.0).abs() < 1e-15,
+            "{sampler:?}"
+        );
+        assert!(
+            (sampler.half_angle() / cone - 1.0).abs() < 1e-15,
+            "{sampler:?}"
+        );
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let mut sums = [0.0; 4];
+        for _ in 0..COUNT {
+            let ray = sampler.sample(rng.random());
+            let area = ray.origin.length_squared() / (radius * radius);
+            let sine = ray.direction.truncate().length_squared();
+            let angle = (sine.sqrt() / (0.5 * cone).sin()).powi(2) / 4.0;
+            assert!(
+                ray.origin.z.abs() < f64::MIN_POSITIVE && area <= 1.0,
+                "{ray:?}"
+            );
+            assert!(angle <= 1.0 && ray.direction.is_normalized(), "{ray:?}");
+            let quadrant = |x: f64| if x > 0.0 { 1.0 } else { 0.0 };
+            let terms = [
+                area,
+                angle,
+                quadrant(ray.origin.x),
+                quadrant(ray.direction.y),
+            ];
+            for (sum, term) in sums.iter_mut().zip(terms) {
+                *sum += term / f64::from(COUNT);
+            }
+        }
+        // Uniform variates and coins deviate by 1/√12 and 1/2; 3.9 σ is exceeded with 1e−4.
+        let sigma = f64::from(COUNT).sqrt().recip();
+        for (mean, deviation) in sums.into_iter().zip([0.2887, 0.2887, 0.5, 0.5]) {
+            assert!((mean - 0.5).abs() < 3.9 * deviation * sigma, "{sums:?}");
+        }
+    }
+
+    #[test]
+    fn the_literal_weight_adds_up_to_power_times_solid_angle() {
+        const COUNT: u32 = 40_000;
+        let l = 1e-4;
+        let z = 1.0;
+        let sampler = DiscConeSampler::new(&beam(), 0.0, l).unwrap();
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for _ in 0..COUNT {
+            let ray = sampler.sample(rng.random());
+            let hit = ray.origin + ray.direction * (z / ray.direction.z);
+            let irradiance = beam().irradiance_per_watt(hit.truncate().length(), z);
+            // The surface is square to the axis, so cos θ_s is cos θ and cancels.
+            let weight = irradiance / (ray.pdf_position * ray.pdf_direction);
+            sum += weight / f64::from(COUNT);
+            squares += weight * weight / f64::from(COUNT);
+        }
+        let error = ((squares - sum * sum) / f64::from(COUNT)).sqrt();
+        let solid_angle = PI * (50e-6 / z).powi(2);
+        // A fraction l, and (w_A / w)² = 1.5e−4 more at the rim, falls outside the cone.
+        let bias = 3e-4 * solid_angle;
+        assert!(
+            (sum - solid_angle).abs() < 3.9 * error + bias,
+            "{sum:e} ± {error:e}"
+        );
+        assert!(
+            error < 0.02 * solid_angle,
+            "the test must be sharp: {error:e}"
+        );
+    }
+
+    #[test]
+    fn impossible_arguments_are_rejected() {
+        for l in [0.0, 1.0, -0.5, 2.0, f64::NAN] {
+            let results = [
+                modified_divergence(&beam(), l),
+                lost_by_cone(l),
+                lost_by_fan_cone(l),
+                DiscConeSampler::new(&beam(), 0.0, l).map(|sampler| sampler.half_angle()),
+            ];
+            let rejected = |r: &Result<f64, _>| matches!(r, Err(BeamError::CutoffFraction(_)));
+            assert!(results.iter().all(rejected), "l = {l}: {results:?}");
+        }
+        let wide = GaussianBeam::from_divergence(650e-9, 0.5).unwrap();
+        let result = DiscConeSampler::new(&wide, 0.0, 1e-30);
+        assert!(
+            matches!(result, Err(BeamError::CutoffFraction(_))),
+            "{result:?}"
+        );
+        let result = DiscConeSampler::new(&wide, f64::NAN, 0.1);
+        assert!(
+            matches!(result, Err(BeamError::WaistDistance(_))),
+            "{result:?}"
+        );
+    }
+}

@@ -37,7 +37,7 @@ pub struct PrintedEvent {
 /// ```
 /// use tem00_beam::paper;
 ///
-/// let tilted = paper::radiance(100.0, 60f64.to_radians().cos());
+/// let tilted = paper::radiance(100.0, 60_f64.to_radians().cos());
 /// assert!(tilted.is_some_and(|radiance| (radiance - 200.0).abs() < 1e-9));
 /// assert_eq!(paper::radiance(100.0, -0.1), None);
 /// ```
@@ -115,4 +115,150 @@ fn printed_event(
         wi: wi.to_array(),
         radiance: radiance(irradiance, wi.dot(DVec3::from(n)))?,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paper::PrintedFan;
+    use crate::{Emitter, FanGeometry, LaserLine, LineProfile, Placement};
+
+    const PLACEMENT: Placement = Placement {
+        origin: DVec3::ZERO,
+        direction: DVec3::Z,
+        fan_axis: DVec3::X,
+    };
+
+    fn beam() -> GaussianBeam {
+        GaussianBeam::from_waist(650e-9, 50e-6).unwrap()
+    }
+
+    #[test]
+    fn a_tilted_surface_receives_too_much_by_the_cosine() {
+        const NODES: i32 = 48;
+        for degrees in [0.0_f64, 30.0, 60.0, 75.0] {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let h = 4.3 * beam().radius_at(0.3) / f64::from(NODES);
+            let mut power = 0.0;
+            for i in -NODES..=NODES {
+                for j in -NODES..=NODES {
+                    // A node (s, t) of the surface, s along the tilt.
+                    let (s, t) = (f64::from(i) * h / cos, f64::from(j) * h);
+                    let r = (s * cos).hypot(t);
+                    let printed = radiance(beam().irradiance_per_watt(r, 0.3 + s * sin), cos);
+                    power += printed.unwrap() * cos * h * h / cos;
+                }
+            }
+            // The beam widens along the surface, which adds the square of δ tan τ / 2.
+            let tolerance = (beam().divergence() * sin / cos).powi(2) / 2.0 + 1e-12;
+            assert!((power * cos - 1.0).abs() < tolerance, "{degrees}°: {power}");
+        }
+    }
+
+    #[test]
+    fn the_ratio_of_radii_follows_the_energy() {
+        // dx/dz = F_x / F_z from the receiver back to the aperture, by Runge and Kutta's method.
+        const STEPS: u32 = 2_000;
+        let (start, end) = (0.12, -0.15);
+        let h = (end - start) / f64::from(STEPS);
+        let slope = |x: f64, z: f64| {
+            let flux = beam().flux_per_watt(DVec3::new(x, 0.0, z));
+            flux.x / flux.z
+        };
+        let receiver = DVec3::new(3e-4, 0.0, start);
+        let mut x = receiver.x;
+        for i in 0..STEPS {
+            let z = start + f64::from(i) * h;
+            let k1 = slope(x, z);
+            let k2 = slope(x + 0.5 * h * k1, z + 0.5 * h);
+            let k3 = slope(x + 0.5 * h * k2, z + 0.5 * h);
+            let k4 = slope(x + h * k3, z + h);
+            x += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+        }
+        let point = streamline_point(&beam(), receiver, end);
+        // (h / z_R)⁴ = 2e−8 per Rayleigh range, of which there are 20; most of it cancels.
+        assert!((x / point.x - 1.0).abs() < 1e-8, "{x:e}, {:e}", point.x);
+    }
+
+    #[test]
+    fn printed_spot_is_brighter_than_the_correct_one_by_the_inverse_cosine() {
+        let light = SpotLight::place(&beam(), 0.1, &PLACEMENT, 2e-3).unwrap();
+        let p = [1e-4, 2e-4, 0.15];
+        let n = DVec3::new(0.6, 0.0, -0.8);
+        let printed = spot_next_event(&light, p, n.to_array()).unwrap();
+        let aperture = streamline_point(&beam(), DVec3::new(1e-4, 2e-4, 0.05), -0.1);
+        let expected = DVec3::new(aperture.x, aperture.y, 0.0);
+        let miss = expected.distance(DVec3::from(printed.point));
+        assert!(miss < 1e-17, "{printed:?}: {miss:e}");
+        let cos = DVec3::from(printed.wi).dot(n);
+        let e = light.irradiance(p);
+        assert!(
+            (printed.radiance * cos / e - 1.0).abs() < 1e-14,
+            "{printed:?}"
+        );
+        let back = DVec3::from(p) + DVec3::from(printed.wi) * printed.distance;
+        assert!(back.distance(expected) < 1e-16, "{printed:?}");
+    }
+
+    #[test]
+    fn printed_line_is_the_printed_fan() {
+        let geometry = FanGeometry {
+            fan_angle: 0.5,
+            apex_offset: 2e-3,
+            focus_distance: 0.1,
+        };
+        for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
+            let line = LaserLine::new(beam(), geometry, profile).unwrap();
+            let light = LineLight::place(&line, &PLACEMENT, 2e-3).unwrap();
+            let fan = PrintedFan::new(beam(), 0.5, 0.1).unwrap();
+            let p = DVec3::new(0.01, 2e-4, 0.15);
+            let printed = line_next_event(&light, p.to_array(), [0.0, 0.0, -1.0]).unwrap();
+            let e = printed.radiance * -printed.wi[2];
+            let expected = 2e-3 * fan.irradiance_per_watt(p);
+            assert!(
+                (e / expected - 1.0).abs() < 1e-13,
+                "{profile:?}: {e}, {expected}"
+            );
+            let within = DVec3::from(printed.point).length() / beam().radius_at(0.1);
+            assert!(within < 1.0, "the point is inside the aperture: {within}");
+        }
+    }
+
+    #[test]
+    fn unlit_points_have_no_event() {
+        let spot = SpotLight::place(&beam(), 0.1, &PLACEMENT, 2e-3).unwrap();
+        let facing = [0.0, 0.0, -1.0];
+        let away = [0.0, 0.0, 1.0];
+        assert!(
+            spot_next_event(&spot, [0.0, 0.0, 0.1], away).is_none(),
+            "back side"
+        );
+        assert!(
+            spot_next_event(&spot, [0.1, 0.0, 0.1], facing).is_none(),
+            "cut-off"
+        );
+        assert!(
+            spot_next_event(&spot, [0.0, 0.0, -0.1], facing).is_none(),
+            "behind"
+        );
+        let geometry = FanGeometry {
+            fan_angle: 0.5,
+            apex_offset: 2e-3,
+            focus_distance: 0.1,
+        };
+        let line = LaserLine::new(beam(), geometry, LineProfile::GaussianTan).unwrap();
+        let line = LineLight::place(&line, &PLACEMENT, 2e-3).unwrap();
+        assert!(
+            line_next_event(&line, [0.0, 0.0, 0.1], away).is_none(),
+            "back side"
+        );
+        assert!(
+            line_next_event(&line, [0.0, 0.1, 0.1], facing).is_none(),
+            "cut-off"
+        );
+        assert!(
+            line_next_event(&line, [0.0, 0.0, 0.0], facing).is_none(),
+            "at the lens"
+        );
+    }
 }

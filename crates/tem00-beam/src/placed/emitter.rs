@@ -47,7 +47,7 @@ use crate::real::Real;
 ///
 /// // A surface through the world's origin, tilted by 60°.
 /// let event = light.next_event([0.0, 0.0, 0.0]).expect("the point is lit");
-/// let normal = DVec3::new(60f64.to_radians().sin(), 0.0, 60f64.to_radians().cos());
+/// let normal = DVec3::new(60_f64.to_radians().sin(), 0.0, 60_f64.to_radians().cos());
 /// let irradiance = event.e_perp * DVec3::from(event.wi).dot(normal);
 ///
 /// let upright = light.irradiance([0.0, 0.0, 0.0]);

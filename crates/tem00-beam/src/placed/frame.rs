@@ -88,3 +88,79 @@ impl<T: Real> Frame<T> {
 fn dot<T: Real>(a: [T; 3], b: [T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLACEMENT: Placement = Placement {
+        origin: DVec3::new(0.1, -0.2, 0.3),
+        direction: DVec3::new(0.3, -0.5, 0.8),
+        fan_axis: DVec3::new(1.0, 0.2, 0.1),
+    };
+
+    #[test]
+    fn axes_are_right_handed_and_orthonormal() {
+        let frame = PLACEMENT.frame().unwrap();
+        let [ex, ey, ez] = [frame.ex, frame.ey, frame.ez].map(DVec3::from);
+        // Three rounded operations per component.
+        let same = |a: DVec3, b: DVec3| a.distance(b) < 4.0 * f64::EPSILON;
+        assert!(
+            same(ex.cross(ey), ez) && same(ey.cross(ez), ex),
+            "{frame:?}"
+        );
+        assert!(same(ez, PLACEMENT.direction.normalize()), "{frame:?}");
+        let normal = PLACEMENT.direction.cross(PLACEMENT.fan_axis).normalize();
+        assert!(same(ey, normal), "the fan axis lies in the fan plane");
+        assert!(
+            ex.dot(PLACEMENT.fan_axis) > 0.0,
+            "x points along the fan axis"
+        );
+    }
+
+    #[test]
+    fn world_and_local_coordinates_are_inverse() {
+        let frame = PLACEMENT.frame().unwrap();
+        let v = [0.3, -0.7, 0.2];
+        let back = frame.local_from_world_vector(frame.world_from_local_vector(v));
+        let p = frame.local_from_world_point(frame.world_from_aperture([0.3, -0.7]));
+        assert!(DVec3::from(back).distance(v.into()) < 1e-15, "{back:?}");
+        assert!(
+            DVec3::from(p).distance(DVec3::new(0.3, -0.7, 0.0)) < 1e-15,
+            "{p:?}"
+        );
+    }
+
+    #[test]
+    fn impossible_placements_are_rejected() {
+        let nan = DVec3::new(0.0, f64::NAN, 0.0);
+        for origin in [nan, DVec3::X * 1e31, DVec3::Z * f64::INFINITY] {
+            let result = Placement {
+                origin,
+                ..PLACEMENT
+            }
+            .frame();
+            assert!(matches!(result, Err(BeamError::Origin(_))), "{origin}");
+        }
+        for direction in [nan, DVec3::ZERO, DVec3::Z * f64::INFINITY] {
+            let result = Placement {
+                direction,
+                ..PLACEMENT
+            }
+            .frame();
+            assert!(
+                matches!(result, Err(BeamError::Direction(_))),
+                "{direction}"
+            );
+        }
+        let nearly = PLACEMENT.direction * 3.0 + DVec3::X * 1e-7;
+        for fan_axis in [nan, DVec3::ZERO, -PLACEMENT.direction, nearly] {
+            let result = Placement {
+                fan_axis,
+                ..PLACEMENT
+            }
+            .frame();
+            assert!(matches!(result, Err(BeamError::FanAxis(_))), "{fan_axis}");
+        }
+    }
+}

@@ -42,7 +42,7 @@ use crate::{BeamError, LaserLine};
 /// };
 ///
 /// let fan = FanGeometry {
-///     fan_angle: 30f64.to_radians(),
+///     fan_angle: 30_f64.to_radians(),
 ///     apex_offset: 2e-3,
 ///     focus_distance: 0.2,
 /// };
@@ -205,7 +205,7 @@ impl<T: Real> LineLight<T> {
     }
 
     /// Returns the largest slope within the cut-off.
-    fn largest_slope(&self) -> T {
+    pub(super) fn largest_slope(&self) -> T {
         self.flat + T::of(2.0) * self.cutoff * self.sigma
     }
 }

@@ -1,0 +1,378 @@
+use core::mem::{align_of, offset_of, size_of};
+
+use glam::DVec3;
+use proptest::prelude::*;
+
+use super::*;
+use crate::{FanGeometry, LaserLine, LineProfile};
+
+const ORIGIN: DVec3 = DVec3::new(0.1, -0.2, 0.3);
+const POWER: f64 = 5e-3;
+
+fn placement() -> Placement {
+    Placement {
+        origin: ORIGIN,
+        direction: DVec3::new(0.3, -0.5, 0.8),
+        fan_axis: DVec3::new(1.0, 0.2, 0.1),
+    }
+}
+
+fn beam() -> GaussianBeam {
+    GaussianBeam::from_waist(650e-9, 50e-6).unwrap()
+}
+
+fn spot() -> SpotLight<f64> {
+    SpotLight::place(&beam(), 0.15, &placement(), POWER).unwrap()
+}
+
+fn laser_line(profile: LineProfile) -> LaserLine {
+    let fan = FanGeometry {
+        fan_angle: 0.5,
+        apex_offset: 2e-3,
+        focus_distance: 0.15,
+    };
+    LaserLine::new(beam(), fan, profile).unwrap()
+}
+
+fn line() -> LineLight<f64> {
+    let line = laser_line(LineProfile::Powell { edge: 0.1 });
+    LineLight::place(&line, &placement(), POWER).unwrap()
+}
+
+/// World coordinates of a point in the frame of the lights, which share it.
+fn world(local: DVec3) -> [f64; 3] {
+    let light = spot();
+    let [ex, ey, ez] = [light.ex, light.ey, light.ez].map(DVec3::from);
+    (ORIGIN + local.x * ex + local.y * ey + local.z * ez).to_array()
+}
+
+fn rotated(local: DVec3) -> DVec3 {
+    DVec3::from(world(local)) - ORIGIN
+}
+
+#[test]
+fn lights_fill_six_rows_of_four_scalars() {
+    assert_eq!(size_of::<SpotLight<f32>>(), 96, "spot, f32");
+    assert_eq!(size_of::<SpotLight<f64>>(), 192, "spot, f64");
+    assert_eq!(size_of::<LineLight<f32>>(), 96, "line, f32");
+    assert_eq!(size_of::<LineLight<f64>>(), 192, "line, f64");
+    assert_eq!(align_of::<SpotLight<f32>>(), 4, "spot, f32");
+    assert_eq!(size_of::<NextEvent<f32>>(), 32, "next event");
+    assert_eq!(size_of::<RaySample<f32>>(), 40, "ray");
+}
+
+#[test]
+fn lights_can_be_shared_between_threads() {
+    fn shared<T: Copy + Send + Sync>() {}
+    shared::<SpotLight<f32>>();
+    shared::<SpotLight<f64>>();
+    shared::<LineLight<f32>>();
+    shared::<LineLight<f64>>();
+}
+
+#[test]
+fn arrays_hold_the_fields_in_the_order_of_memory() {
+    let numbers: [f64; 24] = core::array::from_fn(|i| i as f64);
+    let spot = SpotLight::from_array(numbers);
+    let line = LineLight::from_array(numbers);
+    let bits = numbers.map(f64::to_bits);
+    assert_eq!(spot.to_array().map(f64::to_bits), bits, "spot");
+    assert_eq!(line.to_array().map(f64::to_bits), bits, "line");
+    let checks = [
+        (spot.power, offset_of!(SpotLight<f64>, power)),
+        (spot.cutoff, offset_of!(SpotLight<f64>, cutoff)),
+        (spot.ez[0], offset_of!(SpotLight<f64>, ez)),
+        (spot.y.w0_sq, offset_of!(SpotLight<f64>, y)),
+        (line.apex_offset, offset_of!(LineLight<f64>, apex_offset)),
+        (
+            line.source_radius,
+            offset_of!(LineLight<f64>, source_radius),
+        ),
+        (line.y.w0_sq, offset_of!(LineLight<f64>, y)),
+        (line.sigma, offset_of!(LineLight<f64>, sigma)),
+    ];
+    for (index, bytes) in checks {
+        assert!((index * 8.0 - bytes as f64).abs() < 0.5, "{index}: {bytes}");
+    }
+}
+
+#[test]
+fn a_placed_light_is_the_laser_in_another_frame() {
+    for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
+        let laser = laser_line(profile);
+        let light = LineLight::place(&laser, &placement(), POWER).unwrap();
+        for (x, y, z) in [(0.0, 0.0, 0.01), (0.03, 5e-5, 0.15), (-0.05, -1e-3, 0.4)] {
+            let local = DVec3::new(x, y, z);
+            let expected = rotated(POWER * laser.flux_per_watt(local));
+            let flux = DVec3::from(light.flux(world(local)));
+            // 1e−16 m of rounding beside a thickness of 5e−5 m.
+            assert!(
+                flux.distance(expected) <= 1e-10 * expected.length(),
+                "{local}: {flux}"
+            );
+        }
+    }
+    for (x, y, z) in [(0.0, 0.0, 0.01), (3e-4, -2e-4, 0.01), (5e-5, 1e-5, 0.15)] {
+        let local = DVec3::new(x, y, z);
+        let from_waist = local - DVec3::Z * 0.15;
+        let expected = rotated(POWER * beam().flux_per_watt(from_waist));
+        let flux = DVec3::from(spot().flux(world(local)));
+        assert!(
+            flux.distance(expected) <= 1e-10 * expected.length(),
+            "{local}: {flux}"
+        );
+    }
+}
+
+#[test]
+fn next_event_and_flux_light_a_surface_alike() {
+    let (spot, line) = (spot(), line());
+    let lights: [(&dyn Emitter<f64>, DVec3); 2] = [
+        (&spot, DVec3::new(2e-4, 1e-4, 0.2)),
+        (&line, DVec3::new(0.04, 1e-4, 0.2)),
+    ];
+    for (light, local) in lights {
+        let p = world(local);
+        let n = DVec3::new(0.2, 0.5, -0.7).normalize();
+        let event = light.next_event(p).unwrap();
+        let received = -DVec3::from(light.flux(p)).dot(n);
+        let wi = DVec3::from(event.wi);
+        assert!(
+            (event.e_perp * wi.dot(n) / received - 1.0).abs() < 1e-14,
+            "{event:?}"
+        );
+        assert!((wi.length() - 1.0).abs() < 1e-15, "{event:?}");
+        let reached = DVec3::from(p) + wi * event.distance;
+        let miss = reached.distance(DVec3::from(event.point));
+        assert!(miss < 1e-15, "{event:?}: {miss:e}");
+        let axis = DVec3::from(spot.ez);
+        let height = (DVec3::from(event.point) - ORIGIN).dot(axis);
+        assert!(height.abs() < 1e-16, "on the aperture plane: {height:e}");
+        let plane = -DVec3::from(light.flux(p)).dot(-axis);
+        assert!((light.irradiance(p) / plane - 1.0).abs() < 1e-14, "{plane}");
+    }
+}
+
+#[test]
+fn nothing_arrives_beyond_the_cutoff_or_behind_the_aperture() {
+    let mut spot = spot();
+    spot.cutoff = 2.5;
+    let w = beam().radius_at(0.1);
+    let mut line = line();
+    line.cutoff = 2.5;
+    let r = (0.252_f64).hypot(0.02);
+    let thickness = beam().radius_at(r - 0.152);
+    let edge = line.largest_slope() * 0.252;
+    let expected_edge = 0.25_f64.tan() * (1.0 + 2.0 * 2.5 * 0.1) * 0.252;
+    assert!((edge / expected_edge - 1.0).abs() < 1e-14, "{edge}");
+    let cases: [(&dyn Emitter<f64>, DVec3, bool); 8] = [
+        (&spot, DVec3::new(1.5 * w, 1.99 * w, 0.25), true),
+        (&spot, DVec3::new(1.5 * w, 2.01 * w, 0.25), false),
+        (&spot, DVec3::new(0.0, 0.0, -1e-6), false),
+        (&line, DVec3::new(0.02, 2.49 * thickness, 0.25), true),
+        (&line, DVec3::new(0.02, 2.51 * thickness, 0.25), false),
+        (&line, DVec3::new(0.999 * edge, 0.0, 0.25), true),
+        (&line, DVec3::new(-1.001 * edge, 0.0, 0.25), false),
+        (&line, DVec3::new(0.0, 0.0, -1e-6), false),
+    ];
+    for (light, local, lit) in cases {
+        let p = world(local);
+        assert_eq!(light.next_event(p).is_some(), lit, "{local}");
+        assert_eq!(
+            light.next_event_sampled(p, [0.3, 0.6]).is_some(),
+            lit,
+            "{local}"
+        );
+        assert_eq!(light.irradiance(p) > 0.0, lit, "{local}");
+        assert_eq!(DVec3::from(light.flux(p)) != DVec3::ZERO, lit, "{local}");
+    }
+}
+
+#[test]
+fn bounds_hold_all_that_is_lit() {
+    const EXTENT: f64 = 0.4;
+    let (spot, line) = (spot(), line());
+    let lights: [(&dyn Emitter<f64>, f64); 2] = [(&spot, 4e-3), (&line, 0.2)];
+    for (light, width) in lights {
+        let bounds = light.bounds(EXTENT);
+        let (min, max) = (DVec3::from(bounds.min), DVec3::from(bounds.max));
+        let mut lit = 0;
+        for i in 0..64_000 {
+            // A lattice without a common period.
+            let fraction = |step: f64| (f64::from(i) * step).fract() - 0.5;
+            let local = DVec3::new(
+                width * fraction(0.618_033_988_7),
+                8e-3 * fraction(0.414_213_562_4),
+                EXTENT * (fraction(0.732_050_807_6) + 0.5),
+            );
+            let p = world(local);
+            let Some(event) = light.next_event(p) else {
+                continue;
+            };
+            lit += 1;
+            let point = DVec3::from(p);
+            assert!(point.cmpge(min).all() && point.cmple(max).all(), "{local}");
+            let travel = -DVec3::from(event.wi);
+            let angle = travel.angle_between(DVec3::from(bounds.axis));
+            assert!(angle <= bounds.half_angle, "{local}: {angle}");
+        }
+        assert!(lit > 1000, "the test must meet the light: {lit}");
+    }
+    let line_cone = line.bounds(EXTENT).half_angle;
+    let edge = line.largest_slope().atan();
+    assert!(
+        line_cone < 1.01 * edge,
+        "the cone must be tight: {line_cone}, {edge}"
+    );
+}
+
+#[test]
+fn a_cone_of_bounds_is_missed_by_few_rays() {
+    let (spot, line) = (spot(), line());
+    let lights: [&dyn Emitter<f64>; 2] = [&spot, &line];
+    for light in lights {
+        let bounds = light.bounds(1.0);
+        let cone = bounds.half_angle.cos();
+        for i in 0..4096_u32 {
+            let digit = |shift: u32| (f64::from(i >> shift & 7) + 0.5) / 8.0;
+            let ray = light.sample_ray([digit(0), digit(3), digit(6), digit(9)]);
+            assert!(ray.cos >= cone, "{ray:?}");
+        }
+    }
+}
+
+#[test]
+fn batches_equal_single_calls() {
+    let light = line();
+    let points: Vec<[f64; 3]> = (0..9)
+        .map(|i| world(DVec3::new(0.012 * f64::from(i - 2), 1e-5, 0.1)))
+        .collect();
+    let [x, y, z] = [0, 1, 2].map(|k| points.iter().map(|p| p[k]).collect::<Vec<_>>());
+    let mut irradiance = [0.0; 9];
+    let mut events = [None; 9];
+    light.irradiance_batch(&x, &y, &z, &mut irradiance);
+    light.next_event_batch(&x, &y, &z, &mut events);
+    for (i, &p) in points.iter().enumerate() {
+        assert_eq!(
+            irradiance[i].to_bits(),
+            light.irradiance(p).to_bits(),
+            "{i}"
+        );
+        assert_eq!(events[i], light.next_event(p), "{i}");
+    }
+    assert!(
+        events.iter().any(Option::is_some) && events.iter().any(Option::is_none),
+        "both"
+    );
+}
+
+#[test]
+#[should_panic(expected = "must be of equal length, got 3, 3, 3 and 4")]
+fn batches_of_unequal_length_panic() {
+    spot().irradiance_batch(&[0.0; 3], &[0.0; 3], &[0.0; 3], &mut [0.0; 4]);
+}
+
+#[test]
+fn invalid_numbers_are_rejected() {
+    for power in [-1e-3, f64::NAN, f64::INFINITY] {
+        let result = SpotLight::place(&beam(), 0.1, &placement(), power);
+        assert!(matches!(result, Err(BeamError::Power(_))), "{power}");
+        let laser = laser_line(LineProfile::GaussianTan);
+        let result = LineLight::place(&laser, &placement(), power);
+        assert!(matches!(result, Err(BeamError::Power(_))), "{power}");
+    }
+    for distance in [f64::NAN, f64::NEG_INFINITY, 1e31] {
+        let result = SpotLight::place(&beam(), distance, &placement(), POWER);
+        assert!(
+            matches!(result, Err(BeamError::WaistDistance(_))),
+            "{distance}"
+        );
+    }
+}
+
+#[test]
+fn single_precision_is_refused_where_it_cannot_hold_the_light() {
+    let far = Placement {
+        origin: DVec3::X * 1e29,
+        ..placement()
+    };
+    let wide = GaussianBeam::from_waist(650e-9, 1e21).unwrap();
+    let tiny = GaussianBeam::from_waist(1e-25, 1e-22).unwrap();
+    let cases = [
+        SpotLight::place(&beam(), 0.1, &far, POWER).map(|light| light.to_f32().is_ok()),
+        SpotLight::place(&wide, 0.1, &placement(), POWER).map(|light| light.to_f32().is_ok()),
+        SpotLight::place(&tiny, 0.1, &placement(), POWER).map(|light| light.to_f32().is_ok()),
+        SpotLight::place(&beam(), 0.1, &placement(), 1e32).map(|light| light.to_f32().is_ok()),
+    ];
+    assert_eq!(cases, [Ok(true), Ok(false), Ok(false), Ok(false)], "spots");
+    assert!(
+        spot().to_f32().is_ok() && line().to_f32().is_ok(),
+        "ordinary lights"
+    );
+    let strong = LineLight::place(&laser_line(LineProfile::GaussianTan), &placement(), 1e36);
+    let error = strong.and_then(|light| light.to_f32()).unwrap_err();
+    assert!(matches!(error, BeamError::SinglePrecision(_)), "{error}");
+}
+
+#[test]
+fn a_laser_without_power_is_dark() {
+    let light = SpotLight::place(&beam(), 0.1, &placement(), 0.0).unwrap();
+    let p = world(DVec3::new(0.0, 0.0, 0.1));
+    assert!(light.next_event(p).is_none(), "no event");
+    assert!(
+        light.sample_ray([0.5; 4]).flux.abs() < f64::MIN_POSITIVE,
+        "no flux"
+    );
+}
+
+proptest! {
+    /// Rounding moves a point by ε|p| and that changes ln E by 4 x/w² times as much, x ≤ ρ w.
+    #[test]
+    fn single_precision_errs_by_the_rounding_of_coordinates(
+        rho in 0.0..1.5_f64,
+        azimuth in 0.0..6.3_f64,
+        z in 0.05..0.5_f64,
+        as_line in any::<bool>(),
+    ) {
+        let (sin, cos) = azimuth.sin_cos();
+        let w = beam().radius_at(z - 0.15);
+        let x = if as_line { 0.02 } else { rho * w * cos };
+        let p = world(DVec3::new(x, rho * w * sin, z));
+        let single = p.map(<f32 as Scalar>::of);
+        let double = single.map(f64::from);
+        let (e32, e64) = if as_line {
+            (line().to_f32().unwrap().irradiance(single), line().irradiance(double))
+        } else {
+            (spot().to_f32().unwrap().irradiance(single), spot().irradiance(double))
+        };
+        // Origin, three axes and the difference are each rounded by ε/2 of less than 1 m.
+        let moved = 4.0 * f64::from(f32::EPSILON) * DVec3::from(double).length().max(0.5);
+        let bound = 4.0 * rho.max(0.1) * moved / w + 4.0 * (moved / w).powi(2) + 2e-6;
+        let error = f64::from(e32) / e64 - 1.0;
+        prop_assert!(error.abs() <= bound, "{} > {}", error, bound);
+    }
+
+    #[test]
+    fn no_finite_point_yields_nan(
+        x in proptest::num::f64::NORMAL | proptest::num::f64::ZERO,
+        y in proptest::num::f64::NORMAL | proptest::num::f64::ZERO,
+        z in proptest::num::f64::NORMAL | proptest::num::f64::ZERO,
+        u in 0.0..1.0_f64,
+    ) {
+        let (spot, line) = (spot(), line());
+        let lights: [&dyn Emitter<f64>; 2] = [&spot, &line];
+        for light in lights {
+            let p = [x, y, z];
+            prop_assert!(light.irradiance(p) >= 0.0, "irradiance");
+            prop_assert!(light.flux(p).iter().all(|f| f.is_finite()), "flux");
+            if let Some(event) = light.next_event(p) {
+                prop_assert!(event.e_perp > 0.0 && event.distance >= 0.0, "{:?}", event);
+            }
+            if let Some(event) = light.next_event_sampled(p, [u, 1.0 - u]) {
+                prop_assert!(event.value > 0.0 && event.pdf > 0.0, "{:?}", event);
+            }
+            let direction = DVec3::new(x, y, z).normalize_or(DVec3::Z).to_array();
+            prop_assert!(light.radiance(p, direction) >= 0.0, "radiance");
+        }
+    }
+}

@@ -29,7 +29,7 @@ mod grid;
 mod pupil;
 
 #[cfg(feature = "fft")]
-pub use fft::{Fft2, Fft2Error};
+pub use fft::{Fft2, Fft2Error, Fft2Scratch};
 pub use grid::{Grid, GridError, wrap_coordinate};
 pub use pupil::{
     circular_path_overlap, circular_path_overlap_inverse, disc_overlap, disc_overlap_inverse, jinc,

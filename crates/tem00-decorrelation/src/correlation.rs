@@ -40,8 +40,8 @@ pub fn pupil_overlap_correlation(shift: f64) -> f64 {
 /// [`axial_decorrelation_length`](crate::ImagingGeometry::axial_decorrelation_length), where the
 /// correlation first vanishes. Beyond, it revives to 4.7 % at most. The function is even.
 ///
-/// In the notation of the original x = `a_O`/2. Bergmann et al. 2016 take the pattern for decorrelated
-/// at `a_O` = 1, where 40.5 % are left: see
+/// In the notation of the original x = `a_O`/2. Bergmann et al. 2016 take the pattern for
+/// decorrelated at `a_O` = 1, where 40.5 % are left: see
 /// [`paper::axial_decorrelation_length`](crate::paper::axial_decorrelation_length).
 ///
 /// # Examples

@@ -101,17 +101,11 @@ impl ImagingGeometry {
             surface_to_pupil,
             pixel_pitch,
         } = lens;
-        if !is_positive_finite(wavelength) {
-            return Err(DecorrelationError::Wavelength(wavelength));
-        }
-        if !is_positive_finite(focal_length) {
-            return Err(DecorrelationError::FocalLength(focal_length));
-        }
+        check_positive(wavelength, DecorrelationError::Wavelength)?;
+        check_positive(focal_length, DecorrelationError::FocalLength)?;
+        check_positive(pixel_pitch, DecorrelationError::PixelPitch)?;
         if !(f_number >= 0.5 && f_number.is_finite()) {
             return Err(DecorrelationError::FNumber(f_number));
-        }
-        if !is_positive_finite(pixel_pitch) {
-            return Err(DecorrelationError::PixelPitch(pixel_pitch));
         }
         if !(surface_to_pupil > focal_length && surface_to_pupil.is_finite()) {
             return Err(DecorrelationError::SurfaceToPupil {
@@ -234,8 +228,12 @@ impl ImagingGeometry {
     }
 }
 
-fn is_positive_finite(x: f64) -> bool {
-    x > 0.0 && x.is_finite()
+fn check_positive(x: f64, error: fn(f64) -> DecorrelationError) -> Result<(), DecorrelationError> {
+    if x > 0.0 && x.is_finite() {
+        Ok(())
+    } else {
+        Err(error(x))
+    }
 }
 
 #[cfg(test)]

@@ -25,14 +25,14 @@
 //! | What happens to the speckle? | [`SpeckleMotion`] |
 //! | Where do I look in the pattern? | [`ImagingGeometry::pattern_coordinate`], [`slice_coordinate`] |
 //!
-//! The module [`paper`] holds the formulas as Bergmann et al. 2016 print them, each with the size of
-//! its error.
+//! The module [`paper`] holds the formulas as Bergmann et al. 2016 print them, each with the size
+//! of its error.
 //!
 //! # Scope and non-goals
 //!
 //! First-order theory of small translations: a thin lens in focus, an unaberrated circular pupil,
-//! fully developed speckle, an illuminated patch much wider than a resolution cell. Rotations, large
-//! motions, thick lenses and changes of wavelength are not covered.
+//! fully developed speckle, an illuminated patch much wider than a resolution cell. Rotations,
+//! large motions, thick lenses and changes of wavelength are not covered.
 //!
 //! # Example
 //!

@@ -16,8 +16,8 @@ use crate::{
 ///   ════════════●═════════════════●═══════ ──▶ a   surface
 /// ```
 ///
-/// Only differences count. The camera sees the point move by `surface − camera`, and the point moves
-/// by `surface − source` through the wave that lights it. If all three move together, nothing
+/// Only differences count. The camera sees the point move by `surface − camera`, and the point
+/// moves by `surface − source` through the wave that lights it. If all three move together, nothing
 /// changes.
 ///
 /// # Validity
@@ -145,8 +145,8 @@ impl SurfacePoint {
     /// spherical wave this is the pair of Sjödahl 1995:
     /// see [`paper::pupil_displacement`](crate::paper::pupil_displacement).
     ///
-    /// Returns `None` where the surface is seen edge-on under a curved wave: the speckle then rushes
-    /// across the pupil, and the pattern counts as decorrelated.
+    /// Returns `None` where the surface is seen edge-on under a curved wave: the speckle then
+    /// rushes across the pupil, and the pattern counts as decorrelated.
     ///
     /// # Examples
     ///
@@ -175,8 +175,8 @@ impl SurfacePoint {
         displacement.is_finite().then_some(displacement)
     }
 
-    /// Projects `turn` along the normal onto the plane across the line of sight: the scatterers of a
-    /// surface respond only to what lies in the surface.
+    /// Projects `turn` along the normal onto the plane across the line of sight: the scatterers of
+    /// a surface respond only to what lies in the surface.
     fn along_normal_onto_sight(&self, turn: DVec3) -> Option<DVec3> {
         let (n, l) = (self.normal, self.sight.direction());
         let along = turn.dot(l);

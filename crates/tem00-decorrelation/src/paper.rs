@@ -1,5 +1,5 @@
-//! Formulas as printed in Bergmann et al. 2016, where they differ from the rest of this crate or are
-//! a special case of it.
+//! Formulas as printed in Bergmann et al. 2016, where they differ from the rest of this crate or
+//! are a special case of it.
 //!
 //! They serve to reproduce the figures of that paper and to show what the difference amounts to.
 //!
@@ -123,8 +123,8 @@ pub struct Emitter {
     pub direction: DVec3,
     /// Distance `d_SL` from the surface to the emitter, in metres; infinite for collimated light.
     ///
-    /// The pair is right if this is the radius of the *wavefront*. For a Gaussian beam the two differ
-    /// by any factor and in sign, and a laser line has two radii.
+    /// The pair is right if this is the radius of the *wavefront*. For a Gaussian beam the two
+    /// differ by any factor and in sign, and a laser line has two radii.
     pub distance: f64,
 }
 
@@ -153,8 +153,8 @@ pub fn image_displacement(magnification: f64, angles: EulerAngles, a: DVec3) -> 
 /// metres: the pair of §6.4 as printed, after Sjödahl 1995.
 ///
 /// It is right where the line of sight is the optical axis and the emitter's distance is the radius
-/// of a spherical wavefront; the test suite compares it with the exact optical paths. Returns `None`
-/// where the printed fractions have no value, in a grazing view.
+/// of a spherical wavefront; the test suite compares it with the general law. Returns
+/// `None` where the printed fractions have no value, in a grazing view.
 pub fn pupil_displacement(
     angles: EulerAngles,
     emitter: Emitter,
@@ -180,8 +180,8 @@ pub fn pupil_displacement(
     displacement.is_finite().then_some(displacement)
 }
 
-/// Returns the sum `a_P^C + a_P^S` of a camera motion in the pupil plane and the displacement of the
-/// speckle there, both in metres, as §6.4 combines them.
+/// Returns the sum `a_P^C + a_P^S` of a camera motion in the pupil plane and the displacement of
+/// the speckle there, both in metres, as §6.4 combines them.
 ///
 /// If both are displacements in one frame, the camera moving *with* the speckle must see nothing
 /// change: the sign of the camera motion must be negative.
@@ -206,9 +206,10 @@ pub fn axial_decorrelation_length(geometry: &ImagingGeometry) -> f64 {
 /// ```
 ///
 /// `pupil_displacement` and `axial_displacement` are in metres. On a circular stack this is wrong in
-/// γ by up to 0.195 for motion in the plane (at `|a_P|` = 0.273 D) and by up to 0.790 for motion along
-/// the axis (at `d_z` = 0.431 `d_z⁰`). As `d_z` has a sign, one motion can undo the decorrelation by the
-/// other, and as u is not limited to M, large motions bring the old pattern back.
+/// γ by up to 0.195 for motion in the plane (at `|a_P|` = 0.273 D) and by up to 0.790 for motion
+/// along the axis (at `d_z` = 0.431 `d_z⁰`). As `d_z` has a sign, one motion can undo the
+/// decorrelation by the other, and as u is not limited to M, large motions bring the old pattern
+/// back.
 pub fn slice_coordinate(
     geometry: &ImagingGeometry,
     pupil_displacement: DVec2,

@@ -66,8 +66,8 @@ impl Wavefront {
         })
     }
 
-    /// Creates an astigmatic wave from the direction to its source, of any length, a principal axis,
-    /// and the curvatures 1/R along and across that axis, in 1/m.
+    /// Creates an astigmatic wave from the direction to its source, of any length, a principal
+    /// axis, and the curvatures 1/R along and across that axis, in 1/m.
     ///
     /// The axis may have any length; only its part across the direction to the source counts.
     ///

@@ -1,8 +1,8 @@
 //! The first-order theory against exact optical paths.
 //!
-//! Light from a source reaches a pupil point p by way of a scatterer at x with the phase
-//! k (ψ(x) + |p − x|). The speckle at p is the same as before where the gradient of that phase along
-//! the surface is the same as before. Here the gradient is formed with exact distances, and Newton's
+//! Light from a source reaches a pupil point p by way of a scatterer at x with the phase k (ψ(x) +
+//! |p − x|). The speckle at p is the same as before where the gradient of that phase along the
+//! surface is the same as before. Here the gradient is formed with exact distances, and Newton's
 //! method finds the pupil point that restores it after a motion.
 //!
 //! All comparisons use central differences: half the difference of the results for +δ and −δ. The
@@ -128,8 +128,8 @@ impl SetUp {
         self.camera.right() * p.x + self.camera.up() * p.y
     }
 
-    /// The phase gradient along the surface, over −k, at the scatterer after `motion`, for the light
-    /// to the point `p` of the pupil.
+    /// The phase gradient along the surface, over −k, at the scatterer after `motion`, for the
+    /// light to the point `p` of the pupil.
     fn gradient(&self, source: &dyn Source, motion: &Motion, p: DVec2) -> DVec2 {
         let x = motion.surface;
         let pupil_point = self.pupil + motion.camera + self.in_pupil(p);

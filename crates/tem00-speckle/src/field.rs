@@ -1,7 +1,7 @@
 use core::f64::consts::PI;
 
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Grid};
+use tem00_numerics::{Fft2, Fft2Scratch, Grid};
 
 use crate::{
     Phasors, Pupil, SpeckleError, SpeckleField, SpecklePattern,
@@ -244,7 +244,8 @@ impl PupilField {
 
     /// Returns the complex amplitude behind the pupil displaced by `offset` lattice points.
     pub fn field_at(&self, offset: [i64; 2]) -> SpeckleField {
-        SpeckleField::new(self.amplitude(offset, None), self.speckle_size())
+        let values = self.amplitude(offset, None, &mut Fft2Scratch::default());
+        SpeckleField::new(values, self.speckle_size())
     }
 
     /// The amplitude, centred on zero frequency; `filter` weighs the pupil points of each axis.
@@ -252,14 +253,18 @@ impl PupilField {
         &self,
         offset: [i64; 2],
         filter: Option<&[Vec<f32>; 2]>,
+        scratch: &mut Fft2Scratch,
     ) -> Grid<Complex<f32>> {
         let [half_width, half_height] = self.mask.half_extent();
         let centre_x = self.centring_phase(half_width);
         let centre_y = self.centring_phase(half_height);
+        let aperture = self.aperture(offset, filter);
+        let mut values = Grid::filled(self.size(), self.size(), Complex::new(0.0, 0.0));
         self.transform
-            .forward(&self.aperture(offset, filter), |x, y, value| {
+            .forward_into(&aperture, &mut values, scratch, |x, y, value| {
                 value * centre_x[x] * centre_y[y]
-            })
+            });
+        values
     }
 
     pub(crate) const fn mask(&self) -> &Mask {

@@ -1,5 +1,5 @@
 use num_complex::Complex;
-use tem00_numerics::{Grid, wrap_coordinate};
+use tem00_numerics::{Fft2Scratch, Grid, wrap_coordinate};
 
 use crate::{
     PupilField, SlicePath, SpeckleError,
@@ -98,12 +98,13 @@ impl SpeckleStack {
         let mut slices = Vec::new();
         slices.try_reserve_exact(count).map_err(|_| memory)?;
         let filters = prefilters(field);
+        let mut scratch = Fft2Scratch::default();
         for index in 0..count {
             let centre = path.centre(index, field);
             let next = path.centre((index + 1) % count, field);
             let step = nearest_shift(centre, next, field.size());
             slices.push(Slice {
-                coefficients: field.amplitude(centre, Some(&filters)),
+                coefficients: field.amplitude(centre, Some(&filters), &mut scratch),
                 centre,
                 #[expect(clippy::cast_precision_loss, reason = "lattice points are small")]
                 step: step.map(|s| s as f64),

@@ -1,0 +1,134 @@
+use std::io::Cursor;
+
+use glam::DVec3;
+use ply_rs_bw::{
+    parser::{ParseError, Parser, Reader},
+    ply::{Property, PropertyAccess, PropertyAccessResult},
+};
+
+use super::Polygons;
+use crate::MeshError;
+
+/// Reads the vertices and faces of a PLY file, text or binary.
+pub(super) fn parse(content: &[u8]) -> Result<Polygons, MeshError> {
+    let mut reader = Reader::new(Cursor::new(content));
+    let header = Parser::<Skipped>::new()
+        .read_header(&mut reader)
+        .map_err(|error| format_error(&error))?;
+    let mut polygons = Polygons::default();
+    for element in header.elements.values() {
+        match element.name.as_str() {
+            "vertex" => {
+                let vertices = Parser::<Vertex>::new()
+                    .read_payload_for_element(&mut reader, element, &header)
+                    .map_err(|error| format_error(&error))?;
+                polygons.vertices = vertices.into_iter().map(|vertex| vertex.0).collect();
+            }
+            "face" => {
+                let faces = Parser::<Face>::new()
+                    .read_payload_for_element(&mut reader, element, &header)
+                    .map_err(|error| format_error(&error))?;
+                add_faces(&mut polygons, &faces)?;
+            }
+            _ => {
+                Parser::<Skipped>::new()
+                    .read_payload_for_element(&mut reader, element, &header)
+                    .map_err(|error| format_error(&error))?;
+            }
+        }
+    }
+    Ok(polygons)
+}
+
+fn add_faces(polygons: &mut Polygons, faces: &[Face]) -> Result<(), MeshError> {
+    for (index, face) in faces.iter().enumerate() {
+        if face.0.len() < 3 {
+            let got = face.0.len();
+            return Err(MeshError::Format {
+                line: None,
+                message: format!("face {index} (from 0) needs three corners, got {got}"),
+            });
+        }
+        polygons.push(&face.0);
+    }
+    Ok(())
+}
+
+/// Puts an error of the parser on one line, without the grammar that did not match.
+fn format_error(error: &ParseError) -> MeshError {
+    let text = error.to_string();
+    let prefix = error.line().map(|line| format!("Line {line}: "));
+    let message = prefix
+        .and_then(|prefix| text.strip_prefix(&prefix))
+        .unwrap_or(&text);
+    let message = message
+        .split_once("\n\tError: Couldn't parse")
+        .map_or(message, |(what, _)| what);
+    let words: Vec<&str> = message.split_whitespace().collect();
+    MeshError::Format {
+        line: error.line(),
+        message: words.join(" "),
+    }
+}
+
+/// A vertex, which stays NaN in each coordinate that the file does not give.
+struct Vertex(DVec3);
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self(DVec3::NAN)
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let coordinate = match name {
+            "x" => &mut self.0.x,
+            "y" => &mut self.0.y,
+            "z" => &mut self.0.z,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        *coordinate = match property {
+            Property::Char(value) => value.into(),
+            Property::UChar(value) => value.into(),
+            Property::Short(value) => value.into(),
+            Property::UShort(value) => value.into(),
+            Property::Int(value) => value.into(),
+            Property::UInt(value) => value.into(),
+            Property::Float(value) => value.into(),
+            Property::Double(value) => value,
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+/// The vertex indices of a face.
+struct Face(Vec<u32>);
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        // Both names are common.
+        if !matches!(name, "vertex_indices" | "vertex_index") {
+            return PropertyAccessResult::Ignored;
+        }
+        match property.to_u32_list() {
+            Some(indices) => {
+                self.0 = indices;
+                PropertyAccessResult::Set
+            }
+            None => PropertyAccessResult::UnsupportedType,
+        }
+    }
+}
+
+/// An element that is read past.
+struct Skipped;
+
+impl PropertyAccess for Skipped {
+    fn new() -> Self {
+        Self
+    }
+}

@@ -1,0 +1,148 @@
+use glam::DVec3;
+
+use crate::{Ray, Rectangle, Sphere, mesh};
+
+/// What a leaf of the hierarchy holds.
+#[derive(Clone, Debug)]
+pub(super) enum Primitive {
+    Triangle([DVec3; 3]),
+    Rectangle(Rectangle),
+    Sphere(Sphere),
+}
+
+/// A ray with the shear that turns it into the third axis.
+///
+/// In sheared coordinates a ray meets a triangle where the origin lies inside the triangle's
+/// projection. The test of an edge uses its two corners alone and changes nothing but its sign when
+/// they are swapped, so no ray slips between two triangles that share an edge (Woop, Benthin and
+/// Wald, *Watertight Ray/Triangle Intersection*, 2013).
+#[derive(Clone, Debug)]
+pub(super) struct ShearedRay {
+    ray: Ray,
+    axes: [usize; 3],
+    shear: DVec3,
+}
+
+impl ShearedRay {
+    pub(super) fn new(ray: Ray) -> Self {
+        let direction = ray.direction;
+        let main = direction.abs().max_position();
+        let axes = [(main + 1) % 3, (main + 2) % 3, main];
+        let shear = DVec3::new(direction[axes[0]], direction[axes[1]], 1.0) / direction[main];
+        Self { ray, axes, shear }
+    }
+
+    fn to_local(&self, point: DVec3) -> DVec3 {
+        let offset = point - self.ray.origin;
+        let [x, y, z] = self.axes.map(|axis| offset[axis]);
+        DVec3::new(x - self.shear.x * z, y - self.shear.y * z, self.shear.z * z)
+    }
+
+    /// Returns the distance to a triangle and the barycentric weights of its corners there.
+    fn triangle(&self, corners: &[DVec3; 3]) -> Option<(f64, DVec3)> {
+        let [a, b, c] = corners.map(|corner| self.to_local(corner));
+        let weights = DVec3::new(
+            c.x * b.y - c.y * b.x,
+            a.x * c.y - a.y * c.x,
+            b.x * a.y - b.y * a.x,
+        );
+        let outside = weights.min_element() < 0.0 && weights.max_element() > 0.0;
+        let sum = weights.element_sum();
+        if outside || sum == 0.0 {
+            return None;
+        }
+        let weights = weights / sum;
+        let distance = weights.dot(DVec3::new(a.z, b.z, c.z));
+        Some((distance, weights))
+    }
+
+    /// Returns the distance to a rectangle and where it is met, as fractions of the half edges.
+    fn rectangle(&self, rectangle: &Rectangle) -> Option<(f64, f64, f64)> {
+        let Ray { origin, direction } = self.ray;
+        let approach = rectangle.normal().dot(direction);
+        if approach == 0.0 {
+            return None;
+        }
+        let offset = rectangle.centre() - origin;
+        let distance = rectangle.normal().dot(offset) / approach;
+        let point = distance * direction - offset;
+        let fraction = |half_edge: DVec3| point.dot(half_edge) / half_edge.length_squared();
+        let (u, v) = (fraction(rectangle.half_u()), fraction(rectangle.half_v()));
+        (u.abs() <= 1.0 && v.abs() <= 1.0).then_some((distance, u, v))
+    }
+
+    /// Returns the nearest positive distance to a sphere.
+    fn sphere(&self, sphere: &Sphere) -> Option<f64> {
+        let Ray { origin, direction } = self.ray;
+        let radius = sphere.radius();
+        let offset = sphere.centre() - origin;
+        let middle = offset.dot(direction);
+        // How far the ray passes the centre keeps its digits where the difference of the squared
+        // distance and the squared radius loses them: at small, distant spheres.
+        let miss = (offset - middle * direction).length();
+        let half_chord_square = (radius - miss) * (radius + miss);
+        if half_chord_square < 0.0 {
+            return None;
+        }
+        let far = middle.abs() + half_chord_square.sqrt();
+        if far == 0.0 {
+            return None;
+        }
+        // The product of both distances is known without cancellation.
+        let distance = offset.length();
+        let other = (distance - radius) * (distance + radius) / far;
+        let (near, far) = if middle > 0.0 {
+            (other, far)
+        } else {
+            (-far, -other)
+        };
+        [near, far].into_iter().find(|&distance| distance > 0.0)
+    }
+}
+
+impl Primitive {
+    /// Returns the lowest and the highest corner of the axis-parallel box around the primitive.
+    pub(super) fn bounds(&self) -> (DVec3, DVec3) {
+        match self {
+            Self::Triangle([a, b, c]) => (a.min(*b).min(*c), a.max(*b).max(*c)),
+            Self::Rectangle(rectangle) => rectangle.bounds(),
+            Self::Sphere(sphere) => sphere.bounds(),
+        }
+    }
+
+    /// Returns the nearest positive distance at which the ray meets the primitive.
+    pub(super) fn distance(&self, ray: &ShearedRay) -> Option<f64> {
+        let distance = match self {
+            Self::Triangle(corners) => ray.triangle(corners)?.0,
+            Self::Rectangle(rectangle) => ray.rectangle(rectangle)?.0,
+            Self::Sphere(sphere) => ray.sphere(sphere)?,
+        };
+        (distance > 0.0).then_some(distance)
+    }
+
+    /// Returns the point where the ray meets the primitive, and the unit normal there.
+    ///
+    /// The point is composed of the primitive's own points, so that it lies on the primitive within
+    /// the rounding of their coordinates, however long the ray.
+    pub(super) fn point_and_normal(&self, ray: &ShearedRay) -> Option<(DVec3, DVec3)> {
+        match self {
+            Self::Triangle(corners) => {
+                let (_, weights) = ray.triangle(corners)?;
+                let [a, b, c] = *corners;
+                let point = weights.x * a + weights.y * b + weights.z * c;
+                Some((point, mesh::normal(corners)?))
+            }
+            Self::Rectangle(rectangle) => {
+                let (_, u, v) = ray.rectangle(rectangle)?;
+                let point = rectangle.centre() + u * rectangle.half_u() + v * rectangle.half_v();
+                Some((point, rectangle.normal()))
+            }
+            Self::Sphere(sphere) => {
+                let distance = ray.sphere(sphere)?;
+                let point = ray.ray.origin + distance * ray.ray.direction;
+                let normal = (point - sphere.centre()).try_normalize()?;
+                Some((sphere.centre() + sphere.radius() * normal, normal))
+            }
+        }
+    }
+}

@@ -100,8 +100,11 @@ pub fn jinc(x: f64) -> f64 {
     2.0 * libm::j1(x) / x
 }
 
-/// Returns `sinc(x) = sin(x) / x`, which is 1 at x = 0.
+/// Returns `sinc(x) = sin(x) / x`, which is 1 at x = 0 and 0 at infinity.
 pub fn sinc(x: f64) -> f64 {
+    if x.is_infinite() {
+        return 0.0;
+    }
     if x.abs() < 1e-4 {
         // 1 − x²/6 + x⁴/120: the last term is below 1e−18.
         return 1.0 - x * x / 6.0;
@@ -168,8 +171,7 @@ mod tests {
     /// The overlap by quadrature: the lens is twice the area of a circular segment.
     fn overlap_by_quadrature(rho: f64) -> f64 {
         const STEPS: u32 = 200_000;
-        // Substituting t = ρ + (1−ρ)s² removes the square-root end point at t = 1 only partly;
-        // t = cos φ removes it entirely: ∫ 2√(1−t²) dt = ∫ 2 sin²φ dφ from 0 to acos ρ.
+        // With t = cos φ the area 4/π ∫ √(1−t²) dt from ρ to 1 has a smooth integrand.
         let end = rho.acos();
         let h = end / f64::from(STEPS);
         let sum: f64 = (0..STEPS)
@@ -201,6 +203,14 @@ mod tests {
     fn overlap_beyond_contact_is_zero() {
         for shift in [1.0, -1.0, 1.5, f64::INFINITY] {
             assert!(disc_overlap(shift).abs() < f64::MIN_POSITIVE, "at {shift}");
+        }
+    }
+
+    #[test]
+    fn pupil_functions_vanish_at_infinity() {
+        for x in [f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(sinc(x).abs() < f64::MIN_POSITIVE, "sinc({x}) = {}", sinc(x));
+            assert!(jinc(x).abs() < f64::MIN_POSITIVE, "jinc({x}) = {}", jinc(x));
         }
     }
 

@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Makes the pictures of this folder again: one small render of every scene.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+work="$(mktemp -d)"
+trap 'rm -rf "$work"' EXIT
+for scene in scenes/*.toml; do
+    cargo run --locked --release -- render "$scene" --spp "${1:-64}" -o "$work"
+done
+cargo run --locked --release -- render scenes/spot.toml --spp "${1:-64}" --no-speckle -o "$work/without"
+cp "$work"/*.png docs/figures/
+cp "$work/without/spot.png" docs/figures/spot_without_speckle.png

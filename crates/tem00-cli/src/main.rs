@@ -1,2 +1,12 @@
 //! Under construction.
+
+mod atomic;
+mod colour;
+mod failure;
+mod image;
+mod interrupt;
+mod preview;
+mod progress;
+mod table;
+
 fn main() {}

@@ -1,0 +1,105 @@
+//! Why the program ends early, and the exit code that says so.
+
+use std::{io, path::Path};
+
+use miette::{Diagnostic, NamedSource, Report, SourceSpan};
+use thiserror::Error;
+
+/// Why the program ends before its work is done.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The user gave something that cannot be used. Exit code 2.
+    Input(Report),
+    /// The work itself failed. Exit code 1.
+    Running(Report),
+    /// The user asked for the end. Exit code 130, as shells count it.
+    Interrupted,
+    /// Nobody reads standard output any more, as after `| head`. Exit code 0: they had enough.
+    NoReader,
+}
+
+impl Failure {
+    /// Returns a complaint about the input: what is wrong with which value, and what is allowed.
+    pub(crate) fn input(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Input(Report::new(Problem {
+            message: message.into(),
+            help: Some(help.into()),
+            source_code: None,
+            span: None,
+        }))
+    }
+
+    /// Returns a complaint about a place in a text file.
+    pub(crate) fn input_at(
+        message: impl Into<String>,
+        help: Option<String>,
+        (file, text): (&Path, &str),
+        span: core::ops::Range<usize>,
+    ) -> Self {
+        Self::Input(Report::new(Problem {
+            message: message.into(),
+            help,
+            source_code: Some(NamedSource::new(
+                file.display().to_string(),
+                text.to_owned(),
+            )),
+            span: Some(span.into()),
+        }))
+    }
+
+    /// Returns a failure of the work itself.
+    pub(crate) fn running(message: impl Into<String>) -> Self {
+        Self::Running(Report::new(Problem {
+            message: message.into(),
+            help: None,
+            source_code: None,
+            span: None,
+        }))
+    }
+
+    /// Returns the failure to write a file.
+    pub(crate) fn writing(path: &Path, error: impl core::fmt::Display) -> Self {
+        Self::running(format!("cannot write {}: {error}", path.display()))
+    }
+
+    /// Returns the failure to write standard output.
+    pub(crate) fn stdout(error: &io::Error) -> Self {
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            Self::NoReader
+        } else {
+            Self::running(format!("cannot write to standard output: {error}"))
+        }
+    }
+
+    /// Returns the exit code of the program.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            Self::NoReader => 0,
+            Self::Running(_) => 1,
+            Self::Input(_) => 2,
+            Self::Interrupted => 130,
+        }
+    }
+
+    /// Returns what to print on standard error, if anything.
+    pub(crate) fn report(&self) -> Option<String> {
+        match self {
+            Self::Input(report) | Self::Running(report) => Some(format!("{report:?}")),
+            Self::Interrupted => Some("tem00: interrupted\n".into()),
+            Self::NoReader => None,
+        }
+    }
+}
+
+/// One message with the place it is about.
+#[derive(Debug, Diagnostic, Error)]
+#[error("{message}")]
+struct Problem {
+    message: String,
+    #[help]
+    help: Option<String>,
+    #[source_code]
+    source_code: Option<NamedSource<String>>,
+    #[label("here")]
+    span: Option<SourceSpan>,
+}

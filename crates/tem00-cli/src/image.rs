@@ -1,0 +1,204 @@
+//! Image files: PNG, OpenEXR and NumPy.
+
+mod exr_file;
+mod npy_file;
+mod png_file;
+
+use std::{fs::File, io::BufReader, path::Path};
+
+use num_complex::Complex;
+use tem00_numerics::Grid;
+use thiserror::Error;
+
+pub(crate) use exr_file::{Layer, write_exr};
+pub(crate) use npy_file::{write_npy_complex, write_npy_f32};
+pub(crate) use png_file::{write_grey_png, write_rgb_png};
+
+/// The most pixels that are read from a file: 2²⁸, which is 1 GiB of `f32`.
+const MAXIMUM_PIXELS: u64 = 1 << 28;
+
+/// The image formats, told apart by the end of the file's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    /// 16-bit grey or colour, for the eye.
+    Png,
+    /// OpenEXR, `f32` layers.
+    Exr,
+    /// A NumPy array.
+    Npy,
+}
+
+impl Format {
+    /// Returns the format that the name of `path` asks for.
+    pub(crate) fn of_path(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?;
+        [("png", Self::Png), ("exr", Self::Exr), ("npy", Self::Npy)]
+            .into_iter()
+            .find(|(name, _)| extension.eq_ignore_ascii_case(name))
+            .map(|(_, format)| format)
+    }
+}
+
+/// How the grey values of a PNG file relate to light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Transfer {
+    /// In proportion, as sensors deliver them.
+    Linear,
+    /// By the sRGB curve, as pictures for the screen are stored.
+    Srgb,
+}
+
+/// An image in proportion to the light, and how it was understood.
+#[derive(Debug)]
+pub(crate) struct LoadedImage {
+    /// One value per pixel.
+    pub(crate) values: Grid<f32>,
+    /// What was taken from the file and how, in words.
+    pub(crate) interpretation: String,
+    /// The share of pixels at the largest value that the file can hold, if it has one.
+    pub(crate) saturated: Option<f64>,
+}
+
+/// Why an image file could not be read or written.
+#[derive(Debug, Error)]
+pub(crate) enum ImageError {
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+    #[error("not a readable PNG file: {0}")]
+    PngDecoding(#[from] png::DecodingError),
+    #[error("{0}")]
+    PngEncoding(#[from] png::EncodingError),
+    #[error("not a readable OpenEXR file: {0}")]
+    Exr(#[from] exr::error::Error),
+    #[error("not a readable NPY file: {0}")]
+    Npy(std::io::Error),
+    #[error("{0} is not supported: use .png, .exr or .npy")]
+    Format(String),
+    #[error("the image has {width} × {height} pixels; between 1 and {MAXIMUM_PIXELS} are allowed")]
+    Size { width: u64, height: u64 },
+    #[error("the array has the shape {0:?}; two dimensions, height × width, are needed")]
+    Shape(Vec<u64>),
+    #[error("values of the type {0} are not supported: use f4, f8, u1, u2, c8 or c16")]
+    ValueType(String),
+    #[error("there is no channel {wanted}; the file has {}", available.join(", "))]
+    Channel {
+        wanted: String,
+        available: Vec<String>,
+    },
+    #[error("the pixel ({x}, {y}) is {value}; images of light hold finite numbers, none negative")]
+    Value { x: usize, y: usize, value: f32 },
+}
+
+/// Reads an image of any of the formats as one value per pixel, in proportion to the light.
+///
+/// `channel` picks one channel of a file that has several; without it the mean of R, G and B is
+/// taken, or the first channel. `transfer` overrides what a PNG file says about its values.
+///
+/// # Errors
+///
+/// Returns an error if the file cannot be read, is none of the formats, is empty or too large, or
+/// holds a value that is no amount of light.
+pub(crate) fn read_image(
+    path: &Path,
+    channel: Option<&str>,
+    transfer: Option<Transfer>,
+) -> Result<LoadedImage, ImageError> {
+    let format = Format::of_path(path).ok_or_else(|| {
+        ImageError::Format(path.file_name().map_or_else(
+            || path.display().to_string(),
+            |name| name.to_string_lossy().into_owned(),
+        ))
+    })?;
+    let reader = BufReader::new(File::open(path)?);
+    let image = match format {
+        Format::Png => png_file::read(reader, channel, transfer),
+        Format::Exr => exr_file::read(reader, channel),
+        Format::Npy => npy_file::read(reader),
+    }?;
+    check_values(&image.values)?;
+    Ok(image)
+}
+
+/// Returns the number of pixels, or an error if there are none or too many.
+fn checked_area(width: u64, height: u64) -> Result<usize, ImageError> {
+    width
+        .checked_mul(height)
+        .filter(|area| (1..=MAXIMUM_PIXELS).contains(area))
+        .and_then(|area| usize::try_from(area).ok())
+        .ok_or(ImageError::Size { width, height })
+}
+
+/// Returns the grid of values whose number was checked against the size before.
+fn grid(width: usize, height: usize, values: Vec<f32>) -> Result<Grid<f32>, ImageError> {
+    Grid::from_vec(width, height, values).map_err(|_| ImageError::Size {
+        width: width as u64,
+        height: height as u64,
+    })
+}
+
+fn check_values(values: &Grid<f32>) -> Result<(), ImageError> {
+    let bad = |value: &&f32| !(value.is_finite() && **value >= 0.0);
+    for (y, row) in values.rows().enumerate() {
+        if let Some((x, &value)) = row.iter().enumerate().find(|(_, value)| bad(value)) {
+            return Err(ImageError::Value { x, y, value });
+        }
+    }
+    Ok(())
+}
+
+/// Returns |U|² in `f32`, the intensity of a complex amplitude.
+fn intensity(amplitude: Complex<f32>) -> f32 {
+    amplitude.norm_sqr()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_tells_the_format() {
+        assert_eq!(Format::of_path(Path::new("a/b.PNG")), Some(Format::Png));
+        assert_eq!(Format::of_path(Path::new("b.exr")), Some(Format::Exr));
+        assert_eq!(Format::of_path(Path::new("b.npy")), Some(Format::Npy));
+        assert_eq!(Format::of_path(Path::new("b.jpg")), None);
+        assert_eq!(Format::of_path(Path::new("png")), None);
+    }
+
+    #[test]
+    fn light_is_finite_and_not_negative() {
+        let with = |value| {
+            check_values(&Grid::from_fn(3, 2, |x, y| {
+                if (x, y) == (1, 1) { value } else { 0.5 }
+            }))
+        };
+        assert!(with(0.0).is_ok(), "darkness is allowed");
+        for bad in [-1.0, f32::NAN, f32::INFINITY] {
+            assert!(
+                matches!(with(bad), Err(ImageError::Value { x: 1, y: 1, .. })),
+                "{bad} is found where it is"
+            );
+        }
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused_before_memory_is_taken() {
+        assert!(checked_area(1_000_000, 1_000_000).is_err(), "too large");
+        assert!(checked_area(u64::MAX, 2).is_err(), "the product overflows");
+        assert!(checked_area(0, 5).is_err(), "empty");
+        assert_eq!(checked_area(1 << 14, 1 << 14).ok(), Some(1 << 28));
+    }
+
+    #[test]
+    fn a_file_that_is_not_what_its_name_says_is_an_error() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for name in ["a.png", "a.exr", "a.npy", "a.txt"] {
+            let path = folder.path().join(name);
+            std::fs::write(&path, "no image at all").expect("the file is written");
+            assert!(read_image(&path, None, None).is_err(), "{name}");
+        }
+        assert!(
+            read_image(&folder.path().join("b.png"), None, None).is_err(),
+            "missing"
+        );
+    }
+}

@@ -1,0 +1,279 @@
+use std::io::{BufRead, Seek, SeekFrom, Write};
+
+use exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
+    LayerAttributes, MetaData, ReadChannels, ReadLayers, Text, WritableImage,
+};
+use tem00_numerics::Grid;
+
+use super::{ImageError, LoadedImage, checked_area, grid};
+
+/// Named channels of the same size, stored as one part of an OpenEXR file.
+#[derive(Debug)]
+pub(crate) struct Layer<'a> {
+    /// The name of the layer; unique within the file.
+    pub(crate) name: String,
+    /// The wavelength of the light in metres, if it has only one. Stored as `wavelength_m`.
+    ///
+    /// This is the only attribute of its kind: the order of several would change from run to run,
+    /// and with it the bytes of the file.
+    pub(crate) wavelength: Option<f64>,
+    /// What the layer holds, in words. Stored as the standard attribute `comments`.
+    pub(crate) comments: String,
+    /// The channels by name.
+    pub(crate) channels: Vec<(&'static str, &'a Grid<f32>)>,
+}
+
+/// Writes layers of 32-bit floating-point channels.
+///
+/// # Panics
+///
+/// Panics unless all channels have the same size.
+pub(crate) fn write_exr(writer: impl Write + Seek, layers: &[Layer<'_>]) -> Result<(), ImageError> {
+    let Some((_, first)) = layers.first().and_then(|layer| layer.channels.first()) else {
+        return Err(ImageError::Size {
+            width: 0,
+            height: 0,
+        });
+    };
+    let size = (first.width(), first.height());
+    let parts: Vec<_> = layers.iter().map(|layer| part(layer, size)).collect();
+    let image = Image::from_layers(ImageAttributes::with_size(size), parts);
+    Ok(image.write().to_buffered(writer)?)
+}
+
+fn part(layer: &Layer<'_>, size: (usize, usize)) -> exr::prelude::Layer<AnyChannels<FlatSamples>> {
+    let mut attributes = LayerAttributes::named(&*layer.name);
+    attributes.comments = Some(Text::from(&*layer.comments));
+    attributes.software_name = Some(Text::from(concat!("tem00 ", env!("CARGO_PKG_VERSION"))));
+    if let Some(wavelength) = layer.wavelength {
+        let value = AttributeValue::F64(wavelength);
+        attributes.other.insert(Text::from("wavelength_m"), value);
+    }
+    let channels = layer.channels.iter().map(|&(name, values)| {
+        assert_eq!(
+            (values.width(), values.height()),
+            size,
+            "the channel {name} has the size of the others"
+        );
+        AnyChannel::new(name, FlatSamples::F32(values.values().to_vec()))
+    });
+    // Scan lines in increasing order: the bytes do not depend on the threads that compress them.
+    exr::prelude::Layer::new(
+        size,
+        attributes,
+        Encoding::SMALL_LOSSLESS,
+        AnyChannels::sort(channels.collect()),
+    )
+}
+
+/// Reads one channel, or the mean of R, G and B.
+///
+/// `channel` is `channel` or `layer.channel`.
+pub(super) fn read(
+    mut reader: impl BufRead + Seek,
+    channel: Option<&str>,
+) -> Result<LoadedImage, ImageError> {
+    for header in MetaData::read_from_buffered(&mut reader, false)?.headers {
+        checked_area(
+            header.layer_size.width() as u64,
+            header.layer_size.height() as u64,
+        )?;
+    }
+    reader.seek(SeekFrom::Start(0))?;
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .from_buffered(reader)?;
+    let channels: Vec<_> = image.layer_data.iter().flat_map(channels_of).collect();
+    let (chosen, interpretation) = select(&channels, channel)?;
+    let (width, height) = chosen.first().map_or((0, 0), |channel| channel.size);
+    let mut sum = vec![0.0_f32; width * height];
+    for channel in &chosen {
+        for (sum, value) in sum.iter_mut().zip(channel.samples.values_as_f32()) {
+            *sum += value;
+        }
+    }
+    if chosen.len() > 1 {
+        sum.iter_mut().for_each(|sum| *sum /= 3.0);
+    }
+    Ok(LoadedImage {
+        values: grid(width, height, sum)?,
+        interpretation,
+        saturated: None,
+    })
+}
+
+/// A channel of a file that was read.
+struct NamedChannel<'a> {
+    layer: String,
+    name: String,
+    size: (usize, usize),
+    samples: &'a FlatSamples,
+}
+
+impl NamedChannel<'_> {
+    fn full_name(&self) -> String {
+        if self.layer.is_empty() {
+            self.name.clone()
+        } else {
+            format!("{}.{}", self.layer, self.name)
+        }
+    }
+}
+
+fn channels_of(layer: &exr::prelude::Layer<AnyChannels<FlatSamples>>) -> Vec<NamedChannel<'_>> {
+    let name = layer.attributes.layer_name.as_ref();
+    let name = name.map_or_else(String::new, ToString::to_string);
+    let named = |channel| {
+        let channel: &AnyChannel<FlatSamples> = channel;
+        NamedChannel {
+            layer: name.clone(),
+            name: channel.name.to_string(),
+            size: (layer.size.width(), layer.size.height()),
+            samples: &channel.sample_data,
+        }
+    };
+    layer.channel_data.list.iter().map(named).collect()
+}
+
+fn select<'a, 'b>(
+    channels: &'b [NamedChannel<'a>],
+    wanted: Option<&str>,
+) -> Result<(Vec<&'b NamedChannel<'a>>, String), ImageError> {
+    let missing = |wanted: &str| ImageError::Channel {
+        wanted: wanted.to_owned(),
+        available: channels.iter().map(NamedChannel::full_name).collect(),
+    };
+    let named = |wanted: &str| {
+        let matches = |channel: &&NamedChannel<'_>| channel.full_name() == wanted;
+        let by_full_name = channels.iter().find(matches);
+        by_full_name.or_else(|| channels.iter().find(|channel| channel.name == wanted))
+    };
+    let one =
+        |channel: &'b NamedChannel<'a>| (vec![channel], format!("channel {}", channel.full_name()));
+    if let Some(wanted) = wanted {
+        return named(wanted).map(one).ok_or_else(|| missing(wanted));
+    }
+    let first = channels.first().ok_or_else(|| missing("at all"))?;
+    let colours: Vec<_> = channels
+        .iter()
+        .filter(|channel| channel.layer == first.layer && ["R", "G", "B"].contains(&&*channel.name))
+        .collect();
+    Ok(if colours.len() == 3 {
+        (colours, "mean of R, G and B".into())
+    } else {
+        one(first)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+
+    fn example() -> [Grid<f32>; 3] {
+        // Speckle spans many orders of magnitude, hence the powers.
+        [1, 2, 3].map(|k| Grid::from_fn(7, 5, |x, y| (0.1 * (x + 7 * y * k) as f32).exp()))
+    }
+
+    fn written(grids: &[Grid<f32>; 3]) -> Vec<u8> {
+        let mut file = Cursor::new(Vec::new());
+        let layers = [
+            Layer {
+                name: "total".into(),
+                wavelength: None,
+                comments: "linear sRGB".into(),
+                channels: vec![("R", &grids[0]), ("G", &grids[1]), ("B", &grids[2])],
+            },
+            Layer {
+                name: "laser 0".into(),
+                wavelength: Some(650e-9),
+                comments: "W/(m² sr)".into(),
+                channels: vec![("speckle", &grids[1]), ("incoherent", &grids[2])],
+            },
+        ];
+        write_exr(&mut file, &layers).expect("written");
+        file.into_inner()
+    }
+
+    #[test]
+    fn every_channel_survives_bit_by_bit() {
+        let grids = example();
+        let file = written(&grids);
+        let channel = |name| {
+            read(Cursor::new(&file), Some(name))
+                .expect("an EXR file")
+                .values
+        };
+        assert_eq!(channel("total.R"), grids[0]);
+        assert_eq!(channel("laser 0.speckle"), grids[1]);
+        assert_eq!(channel("incoherent"), grids[2]);
+    }
+
+    #[test]
+    fn without_a_name_the_mean_of_the_colours_is_taken() {
+        let grids = example();
+        let image = read(Cursor::new(written(&grids)), None).expect("an EXR file");
+        assert_eq!(image.interpretation, "mean of R, G and B");
+        for (index, got) in image.values.values().iter().enumerate() {
+            let mean = grids
+                .iter()
+                .map(|grid| f64::from(grid.values()[index]))
+                .sum::<f64>()
+                / 3.0;
+            // Three roundings of 2⁻²⁴.
+            assert!(
+                (f64::from(*got) / mean - 1.0).abs() < 2e-7,
+                "{got} is {mean}"
+            );
+        }
+    }
+
+    #[test]
+    fn attributes_are_stored_with_their_layer() {
+        let file = written(&example());
+        let meta = MetaData::read_from_buffered(&file[..], true).expect("an EXR header");
+        let [total, laser] = &meta.headers[..] else {
+            panic!("the file has two layers");
+        };
+        assert!(
+            total.own_attributes.other.is_empty(),
+            "the total has no wavelength"
+        );
+        assert_eq!(laser.own_attributes.layer_name, Some(Text::from("laser 0")));
+        assert_eq!(
+            laser.own_attributes.other.get(&Text::from("wavelength_m")),
+            Some(&AttributeValue::F64(650e-9))
+        );
+    }
+
+    #[test]
+    fn the_bytes_are_the_same_every_time() {
+        let grids = example();
+        let file = written(&grids);
+        assert!((0..8).all(|_| written(&grids) == file), "the bytes differ");
+    }
+
+    #[test]
+    fn a_missing_channel_names_those_that_exist() {
+        let file = written(&example());
+        let error = read(Cursor::new(&file), Some("spekle")).expect_err("there is none");
+        assert!(error.to_string().contains("laser 0.speckle"), "{error}");
+    }
+
+    #[test]
+    fn a_cut_file_is_an_error() {
+        let file = written(&example());
+        for length in [0, 8, 100, file.len() - 10] {
+            assert!(
+                read(Cursor::new(&file[..length]), None).is_err(),
+                "{length} bytes"
+            );
+        }
+    }
+}

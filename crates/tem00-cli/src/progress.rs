@@ -1,0 +1,86 @@
+//! The progress bar on standard error.
+
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+
+/// A bar with percent, samples per second and time left.
+///
+/// It is drawn only if standard error is a terminal.
+pub(crate) struct Progress(ProgressBar);
+
+impl Progress {
+    /// Starts a bar that is full after `total` samples.
+    pub(crate) fn of_samples(total: u64, message: String) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
+        let template = "{msg} {wide_bar} {percent:>3} %  {rate}  {left} left";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(
+                style
+                    .with_key(
+                        "rate",
+                        |state: &ProgressState, out: &mut dyn core::fmt::Write| {
+                            // A line that cannot be formatted is a line that is not shown.
+                            let _ = write!(out, "{} samples/s", si_prefixed(state.per_sec()));
+                        },
+                    )
+                    .with_key(
+                        "left",
+                        |state: &ProgressState, out: &mut dyn core::fmt::Write| {
+                            let _ = write!(out, "{}", HumanDuration(state.eta()));
+                        },
+                    ),
+            );
+        }
+        bar.set_message(message);
+        Self(bar)
+    }
+
+    /// Moves the bar to `done` samples.
+    pub(crate) fn set(&self, done: u64) {
+        self.0.set_position(done);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// Writes a positive number with three digits and an SI prefix.
+pub(crate) fn si_prefixed(value: f64) -> String {
+    let (scale, prefix) = match value {
+        v if v >= 1e9 => (1e9, " G"),
+        v if v >= 1e6 => (1e6, " M"),
+        v if v >= 1e3 => (1e3, " k"),
+        _ => (1.0, " "),
+    };
+    let scaled = value / scale;
+    let digits = if scaled >= 100.0 {
+        0
+    } else if scaled >= 10.0 {
+        1
+    } else {
+        2
+    };
+    format!("{scaled:.digits$}{prefix}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_have_three_digits_and_a_prefix() {
+        assert_eq!(si_prefixed(3.456), "3.46 ");
+        assert_eq!(si_prefixed(12_345.0), "12.3 k");
+        assert_eq!(si_prefixed(234_567_890.0), "235 M");
+        assert_eq!(si_prefixed(1e9), "1.00 G");
+    }
+
+    #[test]
+    fn a_bar_nobody_sees_can_be_moved() {
+        let progress = Progress::of_samples(10, "frame 1 of 1".into());
+        progress.set(3);
+        assert_eq!(progress.0.position(), 3);
+    }
+}

@@ -1,0 +1,131 @@
+use core::f64::consts::PI;
+use core::ops::Bound;
+
+use glam::DVec3;
+use tem00_beam::{FanGeometry, GaussianBeam, LineProfile};
+
+use super::error::Problem;
+use super::placement::{Placement, across, rejected};
+use super::quantity::{ANGLE, LENGTH, NUMBER, POWER};
+use super::section::Section;
+use super::value::Value;
+use crate::{BeamShape, Laser, LaserDescription};
+
+const KEYS: &[&str] = &[
+    "wavelength",
+    "power",
+    "position",
+    "look_at",
+    "line_direction",
+    "spot",
+    "line",
+];
+const SPOT_KEYS: &[&str] = &["waist_radius", "waist_distance", "m_squared"];
+const LINE_KEYS: &[&str] = &[
+    "fan_angle",
+    "thickness",
+    "focus_distance",
+    "apex_offset",
+    "profile",
+    "edge",
+    "m_squared",
+];
+const PROFILES: &[(&str, LineProfile)] = &[
+    ("gaussian", LineProfile::GaussianTan),
+    ("powell", LineProfile::Powell { edge: 0.05 }),
+];
+
+pub(super) fn read(root: &Section<'_>) -> Result<Vec<Laser>, Problem> {
+    let sections = root.tables("laser", KEYS)?;
+    if sections.is_empty() {
+        return Err(Problem::new("the scene needs a laser: a section [[laser]]"));
+    }
+    sections.iter().map(laser).collect()
+}
+
+fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
+    let wavelength = section.required("wavelength", "\"650 nm\"")?.within(
+        &LENGTH,
+        10e-9..=1e-3,
+        "from 10 nm to 1 mm",
+    )?;
+    let placement = Placement::read(section)?;
+    let axis = placement.axis();
+    let (kind, beam) = section.one_of("shape", &[("spot", SPOT_KEYS), ("line", LINE_KEYS)])?;
+    let shape = match kind {
+        "spot" => spot(&beam, axis.length())?,
+        _ => line(&beam, axis.length(), wavelength)?,
+    };
+    let sideways = across(axis, DVec3::X, DVec3::Y);
+    let description = LaserDescription {
+        wavelength,
+        power: section.required("power", "\"5 mW\"")?.positive(&POWER)?,
+        position: placement.position,
+        look_at: placement.look_at,
+        line_direction: section.or("line_direction", sideways, Value::direction)?,
+        shape,
+    };
+    Laser::new(description).map_err(|error| rejected(&error, &[&beam, section]))
+}
+
+/// Reads a round beam whose waist is, unless it is given, at `distance`.
+fn spot(section: &Section<'_>, distance: f64) -> Result<BeamShape, Problem> {
+    Ok(BeamShape::Spot {
+        waist_radius: section
+            .required("waist_radius", "\"0.5 mm\"")?
+            .positive(&LENGTH)?,
+        waist_distance: section.or("waist_distance", distance, |value| value.quantity(&LENGTH))?,
+        m_squared: section.or("m_squared", 1.0, m_squared)?,
+    })
+}
+
+/// Reads a laser line that is, unless it is given, in focus at `distance`.
+fn line(section: &Section<'_>, distance: f64, wavelength: f64) -> Result<BeamShape, Problem> {
+    let fan_angle = section.required("fan_angle", "\"30 deg\"")?.within(
+        &ANGLE,
+        (Bound::Excluded(0.0), Bound::Excluded(PI)),
+        "greater than 0° and less than 180°",
+    )?;
+    let thickness = section.required("thickness", "\"0.2 mm\"")?;
+    let waist_radius = thickness.positive(&LENGTH)? / 2.0;
+    let m_squared = section.or("m_squared", 1.0, m_squared)?;
+    let focus_distance = section.or("focus_distance", distance, |value| value.quantity(&LENGTH))?;
+    let focus = GaussianBeam::from_waist(wavelength, waist_radius)
+        .and_then(|beam| beam.with_m_squared(m_squared))
+        .map_err(|error| {
+            Problem::new(error.to_string())
+                .at(thickness.span())
+                .with_help("the waist radius of a line is half its thickness")
+        })?;
+    // A lens that receives a round beam fans it out from a point where it would be this wide.
+    let apex_offset = focus.radius_at(focus_distance) / (0.5 * fan_angle).tan();
+    Ok(BeamShape::Line {
+        waist_radius,
+        m_squared,
+        fan: FanGeometry {
+            fan_angle,
+            apex_offset: section.or("apex_offset", apex_offset, |value| value.positive(&LENGTH))?,
+            focus_distance,
+        },
+        profile: profile(section)?,
+    })
+}
+
+fn m_squared(value: &Value<'_>) -> Result<f64, Problem> {
+    value.within(&NUMBER, 1.0.., "1 or greater")
+}
+
+fn profile(section: &Section<'_>) -> Result<LineProfile, Problem> {
+    let profile = section.or("profile", LineProfile::GaussianTan, |value| {
+        value.one_of(PROFILES)
+    })?;
+    match (profile, section.optional("edge")) {
+        (profile, None) => Ok(profile),
+        (LineProfile::Powell { .. }, Some(edge)) => Ok(LineProfile::Powell {
+            edge: edge.within(&NUMBER, 1e-6..=1.0, "from 1e-6 to 1")?,
+        }),
+        (_, Some(edge)) => Err(Problem::new("`edge` belongs to the profile \"powell\"")
+            .at(edge.span())
+            .with_help("write `profile = \"powell\"` as well")),
+    }
+}

@@ -1,0 +1,220 @@
+use core::fmt::Display;
+use core::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::Problem;
+use super::value::{Value, nearest};
+
+/// A table that a section may have: its key, and the keys that it may have itself.
+pub(super) type Choice = (&'static str, &'static [&'static str]);
+
+/// One table of the file.
+///
+/// It is opened with the keys that it may have. A key that is not among them is an error at once,
+/// before a missing key is missed: a typo in a required key is both.
+#[derive(Clone, Debug)]
+pub(super) struct Section<'a> {
+    header: String,
+    keys: &'static [&'static str],
+    table: &'a DeTable<'a>,
+    span: Range<usize>,
+    source: &'a str,
+}
+
+impl<'a> Section<'a> {
+    /// Opens the document itself.
+    pub(super) fn root(
+        document: &'a DeTable<'a>,
+        source: &'a str,
+        keys: &'static [&'static str],
+    ) -> Result<Self, Problem> {
+        Self {
+            header: "the scene".to_owned(),
+            keys,
+            table: document,
+            span: 0..0,
+            source,
+        }
+        .checked(None)
+    }
+
+    /// Returns the value of a key, if the file gives one.
+    pub(super) fn optional(&self, key: &'static str) -> Option<Value<'a>> {
+        debug_assert!(self.keys.contains(&key), "{key} is not declared");
+        let item = self.table.get(key)?;
+        Some(Value::new(key, item, self.source))
+    }
+
+    /// Returns the value of a key that must be there; `example` shows how it may look.
+    pub(super) fn required(&self, key: &'static str, example: &str) -> Result<Value<'a>, Problem> {
+        self.optional(key).ok_or_else(|| {
+            self.problem(format_args!("{} needs the key `{key}`", self.header))
+                .with_help(format!("for example `{key} = {example}`"))
+        })
+    }
+
+    /// Returns what `read` makes of the value of a key, or `default` without such a key.
+    pub(super) fn or<T>(
+        &self,
+        key: &'static str,
+        default: T,
+        read: impl FnOnce(&Value<'a>) -> Result<T, Problem>,
+    ) -> Result<T, Problem> {
+        self.optional(key).map_or(Ok(default), |value| read(&value))
+    }
+
+    /// Opens the table of a key, if the file has one.
+    pub(super) fn table(
+        &self,
+        key: &'static str,
+        keys: &'static [&'static str],
+    ) -> Result<Option<Self>, Problem> {
+        let Some(value) = self.optional(key) else {
+            return Ok(None);
+        };
+        let header = format!("[{}]", self.path_to(key));
+        match self.table.get(key).map(Spanned::get_ref) {
+            Some(DeValue::Table(table)) => self.open(header, table, value.span(), keys).map(Some),
+            _ => Err(value.must_be(format_args!("a table: write `{header}` and its keys below"))),
+        }
+    }
+
+    /// Opens every table of a key of which the file may have several.
+    pub(super) fn tables(
+        &self,
+        key: &'static str,
+        keys: &'static [&'static str],
+    ) -> Result<Vec<Self>, Problem> {
+        let Some(value) = self.optional(key) else {
+            return Ok(Vec::new());
+        };
+        let header = format!("[[{key}]]");
+        let wrong = |place: &Value<'a>| {
+            place.must_be(format_args!("written `{header}`, with its keys below"))
+        };
+        let Some(DeValue::Array(items)) = self.table.get(key).map(Spanned::get_ref) else {
+            return Err(wrong(&value));
+        };
+        items
+            .iter()
+            .map(|item| match item.get_ref() {
+                DeValue::Table(table) => self.open(header.clone(), table, item.span(), keys),
+                _ => Err(wrong(&Value::new(key, item, self.source))),
+            })
+            .collect()
+    }
+
+    /// Opens the one table of `choices` that the file has, or returns `None` without any.
+    pub(super) fn at_most_one_of(
+        &self,
+        what: &str,
+        choices: &[Choice],
+    ) -> Result<Option<(&'static str, Self)>, Problem> {
+        let mut given: Vec<_> = choices
+            .iter()
+            .filter_map(|&(key, keys)| Some((self.optional(key)?.span(), key, keys)))
+            .collect();
+        given.sort_by_key(|(span, ..)| span.start);
+        match given.as_slice() {
+            [] => Ok(None),
+            [(_, key, keys)] => Ok(self.table(key, keys)?.map(|section| (*key, section))),
+            [(_, first, _), (span, second, _), ..] => {
+                let header = &self.header;
+                let message =
+                    format!("{header} must have one {what}, got `{first}` and `{second}`");
+                Err(Problem::new(message)
+                    .at(span.clone())
+                    .with_help(format!("start another {header} for the second")))
+            }
+        }
+    }
+
+    /// Opens the one table of `choices` that the file has.
+    pub(super) fn one_of(
+        &self,
+        what: &str,
+        choices: &[Choice],
+    ) -> Result<(&'static str, Self), Problem> {
+        self.at_most_one_of(what, choices)?.ok_or_else(|| {
+            let headers = choices
+                .iter()
+                .map(|(key, _)| format!("[{}]", self.path_to(key)));
+            let headers: Vec<String> = headers.collect();
+            let (header, headers) = (&self.header, headers.join(" or "));
+            self.problem(format_args!("{header} needs a {what}: {headers}"))
+        })
+    }
+
+    /// Returns whether the file gives the key.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
+    /// Returns a problem placed at the header of the section.
+    pub(super) fn problem(&self, message: impl Display) -> Problem {
+        Problem::new(message.to_string()).at(self.span.clone())
+    }
+
+    /// Returns a problem that was found when an object was made of the section, placed at the value
+    /// of `key` if the file gives one.
+    pub(super) fn problem_with(&self, key: &str, message: impl Display) -> Problem {
+        let span = self.table.get(key).map_or(self.span.clone(), Spanned::span);
+        Problem::new(message.to_string()).at(span)
+    }
+
+    fn open(
+        &self,
+        header: String,
+        table: &'a DeTable<'a>,
+        span: Range<usize>,
+        keys: &'static [&'static str],
+    ) -> Result<Self, Problem> {
+        Self {
+            header,
+            keys,
+            table,
+            span,
+            source: self.source,
+        }
+        .checked(Some(self))
+    }
+
+    /// The path of a key of this section, as in "laser.spot".
+    fn path_to(&self, key: &str) -> String {
+        match self.header.trim_matches(['[', ']']) {
+            "the scene" => key.to_owned(),
+            own => format!("{own}.{key}"),
+        }
+    }
+
+    /// Complains about the first key that the section does not know.
+    fn checked(self, parent: Option<&Self>) -> Result<Self, Problem> {
+        let unknown = self
+            .table
+            .keys()
+            .filter(|key| !self.keys.contains(&key.get_ref().as_ref()))
+            .min_by_key(|key| key.span().start);
+        match unknown {
+            None => Ok(self),
+            Some(key) => Err(self.unknown(key.get_ref(), parent).at(key.span())),
+        }
+    }
+
+    fn unknown(&self, key: &str, parent: Option<&Self>) -> Problem {
+        let header = &self.header;
+        let message = match nearest(key, self.keys) {
+            Some(meant) => format!("unknown key `{key}` in {header}; did you mean `{meant}`?"),
+            None => format!("unknown key `{key}` in {header}"),
+        };
+        let help = match parent {
+            Some(parent) if parent.keys.contains(&key) && parent.header != "the scene" => format!(
+                "`{key}` belongs to {}: write it above the line `{header}`",
+                parent.header
+            ),
+            _ => format!("allowed here: {}", self.keys.join(", ")),
+        };
+        Problem::new(message).with_help(help)
+    }
+}

@@ -1,0 +1,218 @@
+use core::fmt::Display;
+use core::ops::{Range, RangeBounds, RangeInclusive};
+
+use glam::DVec3;
+use toml::Spanned;
+use toml::de::DeValue;
+
+use super::error::Problem;
+use super::quantity::{Dimension, LENGTH, NUMBER};
+
+/// A value of the file, with what it takes to complain about it: its name, its text and its place.
+#[derive(Clone, Debug)]
+pub(super) struct Value<'a> {
+    name: String,
+    item: &'a Spanned<DeValue<'a>>,
+    source: &'a str,
+}
+
+impl<'a> Value<'a> {
+    pub(super) fn new(key: &str, item: &'a Spanned<DeValue<'a>>, source: &'a str) -> Self {
+        Self {
+            name: format!("`{key}`"),
+            item,
+            source,
+        }
+    }
+
+    /// Returns the place of the value in the file.
+    pub(super) fn span(&self) -> Range<usize> {
+        self.item.span()
+    }
+
+    /// Returns the problem that the value is not `allowed`.
+    pub(super) fn must_be(&self, allowed: impl Display) -> Problem {
+        let (name, got) = (&self.name, self.as_written());
+        Problem::new(format!("{name} must be {allowed}, got {got}")).at(self.span())
+    }
+
+    /// The value as the file has it, on one line and not too long.
+    fn as_written(&self) -> String {
+        const LONGEST: usize = 60;
+        let text = self.source.get(self.span()).unwrap_or_default();
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let line = words.join(" ");
+        match line.char_indices().nth(LONGEST) {
+            Some((cut, _)) => format!("{}…", &line[..cut]),
+            None => line,
+        }
+    }
+
+    /// Returns the value in SI units: a bare number, or a string with a unit.
+    pub(super) fn quantity(&self, dimension: &Dimension) -> Result<f64, Problem> {
+        let value = match self.item.get_ref() {
+            DeValue::Integer(integer) => decimal(integer.as_str(), integer.radix()),
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::String(text) => dimension.parse(text),
+            _ => None,
+        };
+        let value = value.ok_or_else(|| self.not_a(dimension))?;
+        let (_, greatest) = dimension.magnitudes;
+        if value.abs() <= greatest {
+            return Ok(value);
+        }
+        let allowed = format!(
+            "a finite number of at most {greatest:e} {}",
+            dimension.si_unit
+        );
+        Err(self.must_be(allowed.trim_end()))
+    }
+
+    fn not_a(&self, dimension: &Dimension) -> Problem {
+        let (noun, units) = (dimension.noun, dimension.units());
+        if units.is_empty() {
+            return self.must_be(noun);
+        }
+        self.must_be(format_args!("{noun} in {units}"))
+            .with_help(dimension.how_to_write())
+    }
+
+    /// Returns a quantity that is greater than zero.
+    pub(super) fn positive(&self, dimension: &Dimension) -> Result<f64, Problem> {
+        let (least, _) = dimension.magnitudes;
+        let allowed = format!("positive, at least {least:e} {}", dimension.si_unit);
+        self.within(dimension, least.., allowed.trim_end())
+    }
+
+    /// Returns a quantity in `range`, which `allowed` describes.
+    pub(super) fn within(
+        &self,
+        dimension: &Dimension,
+        range: impl RangeBounds<f64>,
+        allowed: &str,
+    ) -> Result<f64, Problem> {
+        let value = self.quantity(dimension)?;
+        if range.contains(&value) {
+            return Ok(value);
+        }
+        let problem = self.must_be(allowed);
+        Err(match self.item.get_ref() {
+            DeValue::Integer(_) | DeValue::Float(_) if !dimension.si_unit.is_empty() => {
+                problem.with_help(dimension.how_to_write())
+            }
+            _ => problem,
+        })
+    }
+
+    /// Returns the size, in metres, of a unit of length: "mm", "25.4 mm" or a bare number.
+    pub(super) fn unit_of_length(&self) -> Result<f64, Problem> {
+        match self
+            .item
+            .get_ref()
+            .as_str()
+            .and_then(|text| LENGTH.size_of(text))
+        {
+            Some(size) => Ok(size),
+            None => self.positive(&LENGTH),
+        }
+    }
+
+    /// Returns a whole number in `range`.
+    pub(super) fn integer(&self, range: RangeInclusive<u64>) -> Result<u64, Problem> {
+        let value = match self.item.get_ref() {
+            DeValue::Integer(integer) => {
+                u64::from_str_radix(integer.as_str(), integer.radix()).ok()
+            }
+            _ => None,
+        };
+        value.filter(|value| range.contains(value)).ok_or_else(|| {
+            let (least, most) = range.into_inner();
+            self.must_be(format_args!("a whole number from {least} to {most}"))
+        })
+    }
+
+    /// Returns a string.
+    pub(super) fn string(&self) -> Result<&'a str, Problem> {
+        self.item
+            .get_ref()
+            .as_str()
+            .ok_or_else(|| self.must_be("a string in quotation marks"))
+    }
+
+    /// Returns what the string names among `choices`.
+    pub(super) fn one_of<T: Copy>(&self, choices: &[(&'static str, T)]) -> Result<T, Problem> {
+        let text = self.string()?;
+        if let Some((_, chosen)) = choices.iter().find(|(name, _)| *name == text) {
+            return Ok(*chosen);
+        }
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        let problem = self.must_be(format_args!("one of \"{}\"", names.join("\", \"")));
+        Err(match nearest(text, &names) {
+            Some(meant) => problem.with_help(format!("did you mean \"{meant}\"?")),
+            None => problem,
+        })
+    }
+
+    /// Returns the elements of an array of exactly `N`.
+    pub(super) fn elements<const N: usize>(&self, allowed: &str) -> Result<[Self; N], Problem> {
+        let array = self.item.get_ref().as_array();
+        let elements: Vec<Self> = array
+            .into_iter()
+            .flat_map(|array| array.iter())
+            .enumerate()
+            .map(|(index, item)| Self {
+                name: format!("element {} of {}", index + 1, self.name),
+                item,
+                source: self.source,
+            })
+            .collect();
+        elements.try_into().map_err(|_| self.must_be(allowed))
+    }
+
+    /// Returns a vector of three lengths, in metres.
+    pub(super) fn lengths(&self) -> Result<DVec3, Problem> {
+        self.vector(&LENGTH, "three lengths, such as [0, \"5 mm\", \"0.3 m\"]")
+    }
+
+    /// Returns a vector that points somewhere, of length 1.
+    pub(super) fn direction(&self) -> Result<DVec3, Problem> {
+        const ALLOWED: &str = "three numbers that are not all zero, such as [0, 0, 1]";
+        let vector = self.vector(&NUMBER, ALLOWED)?;
+        // The largest component first, so that no square leaves the range of numbers.
+        let largest = vector.abs().max_element();
+        (vector / largest)
+            .try_normalize()
+            .ok_or_else(|| self.must_be(ALLOWED))
+    }
+
+    fn vector(&self, dimension: &Dimension, allowed: &str) -> Result<DVec3, Problem> {
+        let [x, y, z] = self.elements(allowed)?;
+        Ok(DVec3::new(
+            x.quantity(dimension)?,
+            y.quantity(dimension)?,
+            z.quantity(dimension)?,
+        ))
+    }
+}
+
+/// Returns the number that an integer spells; digits beyond those of `f64` are rounded.
+fn decimal(digits: &str, radix: u32) -> Option<f64> {
+    if radix == 10 {
+        return digits.parse().ok();
+    }
+    let value = u32::from_str_radix(digits, radix).ok()?;
+    Some(f64::from(value))
+}
+
+/// Returns the word of `words` that `word` is most likely a misspelling of, if any is close.
+pub(super) fn nearest<'w>(word: &str, words: &[&'w str]) -> Option<&'w str> {
+    // The Jaro–Winkler similarity of unrelated words is around a half, of a typo above nine tenths.
+    const CLOSE: f64 = 0.8;
+    let word = word.to_lowercase();
+    words
+        .iter()
+        .map(|&candidate| (strsim::jaro_winkler(&word, candidate), candidate))
+        .filter(|(similarity, _)| *similarity >= CLOSE)
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+        .map(|(_, candidate)| candidate)
+}

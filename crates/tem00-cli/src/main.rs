@@ -1,12 +1,53 @@
-//! Under construction.
+//! The program `tem00`.
 
+mod args;
 mod atomic;
 mod colour;
 mod failure;
+mod frame_files;
 mod image;
 mod interrupt;
+mod pattern;
 mod preview;
 mod progress;
+mod render;
+mod stats;
+mod summary;
 mod table;
 
-fn main() {}
+use std::{
+    io::{self, Write},
+    process::ExitCode,
+};
+
+use clap::Parser;
+
+use crate::{
+    args::{Cli, Command},
+    failure::Failure,
+};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match run(&cli.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            if let Some(report) = failure.report() {
+                // Without standard error there is nobody left to tell.
+                let _ = write!(io::stderr(), "{report}");
+            }
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+fn run(command: &Command) -> Result<(), Failure> {
+    interrupt::install()?;
+    let mut out = io::stdout().lock();
+    match command {
+        Command::Render(args) => render::run(args, &mut out),
+        Command::Pattern(args) => pattern::run(args, &mut out),
+        Command::Stats(args) => stats::run(args, &mut out),
+    }?;
+    out.flush().map_err(|error| Failure::stdout(&error))
+}

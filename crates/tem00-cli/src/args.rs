@@ -1,0 +1,261 @@
+//! The command line.
+
+use std::{num::NonZeroUsize, path::PathBuf};
+
+use clap::{Args, Parser, Subcommand};
+use tem00_speckle::Pupil;
+
+use crate::image::Transfer;
+
+const EXAMPLES: &str = "\
+Examples:
+  tem00 render scenes/line_with_speckle.toml          render a scene into out/line_with_speckle/
+  tem00 pattern -o speckle.png                        write a speckle pattern and check it
+  tem00 stats photo.png                               measure the speckle in an image
+
+Data goes to standard output, everything else to standard error.
+Exit codes: 0 fine, 1 failure while running, 2 bad input or usage, 130 interrupted.";
+
+/// Laser light with physically correct speckle, from scene file to image.
+#[derive(Debug, Parser)]
+#[command(name = "tem00", version, max_term_width = 100, after_help = EXAMPLES)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Render(RenderArgs),
+    Pattern(PatternArgs),
+    Stats(StatsArgs),
+}
+
+/// Render a scene: PNG preview, OpenEXR layers and a JSON summary.
+///
+/// A scene file needs a laser, a camera and a surface, and no more. The size of the speckle
+/// patterns is chosen from the camera, the image and the motion, and printed with its reason.
+#[derive(Args, Debug)]
+#[command(after_help = RENDER_EXAMPLES)]
+pub(crate) struct RenderArgs {
+    /// The scene file.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+
+    /// The folder for the images, made if it is missing [default: out/<name of the scene>].
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Camera samples per pixel, at least 1 [default: from the scene].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) spp: Option<u32>,
+
+    /// The seed of everything random [default: from the scene].
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+
+    /// Threads to render with; the image does not depend on it [default: all].
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Leave the speckle out.
+    #[arg(long)]
+    pub(crate) no_speckle: bool,
+
+    /// Use the formulas as printed in Bergmann et al. 2016, with their errors, for comparison.
+    #[arg(long)]
+    pub(crate) paper: bool,
+
+    /// The radiance in W/(m² sr) that the preview shows as white [default: from the image].
+    #[arg(long, value_name = "RADIANCE", value_parser = positive)]
+    pub(crate) white_level: Option<f64>,
+}
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  tem00 render scenes/spot.toml                       quick look, into out/spot/
+  tem00 render scenes/spot.toml --spp 256 -o good     slower, with less noise
+  tem00 render scenes/spot.toml --paper -o printed    the formulas as printed, to lay beside
+  tem00 render scenes/spot.toml --no-speckle          the same light without interference
+
+Files:
+  <scene>.png     preview, 16 bits, in the colour of the laser; frame_0000.png … for several frames
+  <scene>.exr     layers per laser: coherent_before, speckle, coherent_after, incoherent, in W/(m² sr)
+  summary.json    power on the target, speckle size, contrast, exposure, speed";
+
+/// Generate a speckle pattern and compare it with the theory.
+///
+/// The pattern has Q × Q samples, is periodic, and has the mean 1. A random field of the diameter C
+/// in the pupil makes speckles of Q / C samples. The table on standard output lists what was
+/// measured beside what the theory says and how far the two may differ.
+#[derive(Args, Debug)]
+#[command(after_help = PATTERN_EXAMPLES)]
+pub(crate) struct PatternArgs {
+    /// The file to write: .png (16-bit grey), .exr or .npy (raw intensity, mean 1).
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+
+    /// The size Q of the pattern, in samples.
+    #[arg(long, value_name = "Q", default_value_t = 512)]
+    pub(crate) size: usize,
+
+    /// The diameter C of the pupil, in samples: 8 to Q / 2 [default: Q / 4, speckles of 4 samples].
+    #[arg(long, value_name = "C")]
+    pub(crate) diameter: Option<usize>,
+
+    /// The seed of the random phases.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+
+    /// The shape of the pupil; annulus:0.3 sets the inner diameter, rectangle:0.5 the height, both
+    /// in units of C [annulus alone: 0.5; rectangle alone: 1].
+    #[arg(long, value_name = "circle|annulus[:INNER]|rectangle[:HEIGHT]", default_value = "circle",
+          value_parser = pupil)]
+    pub(crate) pupil: Pupil,
+
+    /// Write the complex amplitude instead of the intensity (.npy, or .exr with two channels).
+    #[arg(long)]
+    pub(crate) amplitude: bool,
+}
+
+const PATTERN_EXAMPLES: &str = "\
+Examples:
+  tem00 pattern -o speckle.png
+  tem00 pattern -o fine.npy --size 2048 --diameter 1024 --seed 7
+  tem00 pattern -o telescope.exr --pupil annulus:0.4";
+
+/// Measure the speckle in an image, and compare it with the theory.
+///
+/// The image may come from a camera, a simulation or this program: a PNG of 8 or 16 bits, an OpenEXR
+/// channel, or a two-dimensional NumPy array. The light should be even over the image: crop it to a
+/// uniformly lit part first.
+#[derive(Args, Debug)]
+#[command(after_help = STATS_EXAMPLES)]
+pub(crate) struct StatsArgs {
+    /// The image: .png, .exr or .npy.
+    pub(crate) image: PathBuf,
+
+    /// The channel to take: R, G, B, or `channel` or `layer.channel` of an OpenEXR file [default:
+    /// the mean of R, G and B, or the first one].
+    #[arg(long, value_name = "NAME")]
+    pub(crate) channel: Option<String>,
+
+    /// How the grey values of a PNG relate to light [default: as the file says, else linear].
+    #[arg(long, value_name = "CURVE")]
+    pub(crate) transfer: Option<Transfer>,
+
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+const STATS_EXAMPLES: &str = "\
+Examples:
+  tem00 stats photo.png
+  tem00 stats photo.png --channel R --transfer srgb
+  tem00 stats out/spot/spot.exr --channel speckle --json";
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("must be a positive number".into()),
+    }
+}
+
+fn pupil(text: &str) -> Result<Pupil, String> {
+    let (name, proportion) = match text.split_once(':') {
+        Some((name, proportion)) => (name, Some(positive(proportion)?)),
+        None => (text, None),
+    };
+    match (name, proportion) {
+        ("circle", None) => Ok(Pupil::Circle),
+        ("annulus", inner) => Ok(Pupil::Annulus {
+            inner: inner.unwrap_or(0.5),
+        }),
+        ("rectangle", height) => Ok(Pupil::Rectangle {
+            height: height.unwrap_or(1.0),
+        }),
+        _ => Err("must be circle, annulus, annulus:INNER, rectangle or rectangle:HEIGHT".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    fn parse(line: &str) -> Result<Command, clap::Error> {
+        Cli::try_parse_from(line.split_whitespace()).map(|cli| cli.command)
+    }
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_option_of_render_is_understood() {
+        let line = "tem00 render a.toml -o d --spp 3 --seed 4 --threads 2 --no-speckle --paper \
+                    --white-level 1e3";
+        let Ok(Command::Render(args)) = parse(line) else {
+            panic!("the line is valid");
+        };
+        assert_eq!(args.scene, PathBuf::from("a.toml"));
+        assert_eq!(args.output, Some(PathBuf::from("d")));
+        assert_eq!((args.spp, args.seed), (Some(3), Some(4)));
+        assert_eq!(args.threads, NonZeroUsize::new(2));
+        assert!(args.no_speckle && args.paper, "both switches are on");
+        assert_eq!(args.white_level, Some(1e3));
+    }
+
+    #[test]
+    fn a_scene_is_all_that_render_needs() {
+        let Ok(Command::Render(args)) = parse("tem00 render a.toml") else {
+            panic!("the line is valid");
+        };
+        assert!(
+            args.output.is_none() && args.spp.is_none() && args.seed.is_none(),
+            "{args:?}"
+        );
+        assert!(!args.no_speckle && !args.paper, "{args:?}");
+    }
+
+    #[test]
+    fn pupils_carry_their_proportion() {
+        let of = |text| pupil(text).ok();
+        assert_eq!(of("circle"), Some(Pupil::Circle));
+        assert_eq!(of("annulus"), Some(Pupil::Annulus { inner: 0.5 }));
+        assert_eq!(of("annulus:0.3"), Some(Pupil::Annulus { inner: 0.3 }));
+        assert_eq!(
+            of("rectangle:0.25"),
+            Some(Pupil::Rectangle { height: 0.25 })
+        );
+        for bad in [
+            "circle:1",
+            "square",
+            "annulus:",
+            "annulus:-1",
+            "rectangle:nan",
+        ] {
+            assert!(of(bad).is_none(), "{bad} is no pupil");
+        }
+    }
+
+    #[test]
+    fn bad_values_are_usage_errors_that_name_them() {
+        for (line, part) in [
+            ("tem00 render a.toml --spp 0", "0"),
+            ("tem00 render a.toml --threads 0", "0"),
+            ("tem00 render a.toml --white-level -1", "-1"),
+            ("tem00 render a.toml --white-level=nan", "nan"),
+            ("tem00 render a.toml --see 3", "--seed"),
+            ("tem00 patern -o a.png", "pattern"),
+            ("tem00 pattern", "--output"),
+        ] {
+            let error = parse(line).expect_err("the line is wrong");
+            assert_eq!(error.exit_code(), 2, "{line}");
+            assert!(error.to_string().contains(part), "{line}: {error}");
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! The files of one rendered frame.
+
+use std::path::{Path, PathBuf};
+
+use tem00_numerics::Grid;
+use tem00_tracer::Frame;
+
+use crate::{
+    atomic::write_atomically,
+    failure::Failure,
+    image::{Layer, write_exr, write_rgb_png},
+    preview::Picture,
+};
+
+/// Where the files of a frame go.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct FramePaths {
+    /// The preview.
+    pub(crate) preview: PathBuf,
+    /// The layers.
+    pub(crate) layers: PathBuf,
+}
+
+impl FramePaths {
+    /// Names the files of frame `frame` of `frames`: after the scene if it is the only one.
+    pub(crate) fn new(folder: &Path, scene_name: &str, frame: u32, frames: u32) -> Self {
+        let stem = if frames == 1 {
+            scene_name.to_owned()
+        } else {
+            format!("frame_{frame:04}")
+        };
+        Self {
+            preview: folder.join(format!("{stem}.png")),
+            layers: folder.join(format!("{stem}.exr")),
+        }
+    }
+}
+
+/// Returns the picture that the eye would see.
+pub(crate) fn picture_of(frame: &Frame) -> Picture {
+    let mut picture = Picture::dark(frame.lamps.width(), frame.lamps.height());
+    for laser in &frame.lasers {
+        picture.add_laser(&laser.coherent_after, laser.wavelength);
+        picture.add_laser(&laser.incoherent, laser.wavelength);
+    }
+    picture.add_white(&frame.lamps);
+    picture
+}
+
+/// Writes the preview with the radiance `white` shown as white.
+///
+/// # Errors
+///
+/// Returns a failure if the file cannot be written.
+pub(crate) fn write_preview(
+    path: &Path,
+    picture: &Picture,
+    white: f32,
+    description: &str,
+) -> Result<(), Failure> {
+    let text = [
+        ("Description", description.to_owned()),
+        (
+            "Exposure",
+            format!("white is the radiance {white:e} W/(m² sr)"),
+        ),
+    ];
+    write_atomically(path, |file| {
+        write_rgb_png(file, &picture.exposed(white), &text)
+    })
+    .map_err(|error| Failure::writing(path, error))
+}
+
+/// Writes all layers: the picture in linear sRGB, each laser's, and the lamps'.
+///
+/// # Errors
+///
+/// Returns a failure if the file cannot be written.
+pub(crate) fn write_layers(path: &Path, frame: &Frame, picture: &Picture) -> Result<(), Failure> {
+    let colours = [0, 1, 2].map(|component| picture.component(component));
+    let layers = layers_of(frame, &colours);
+    write_atomically(path, |file| write_exr(file, &layers))
+        .map_err(|error| Failure::writing(path, error))
+}
+
+fn layers_of<'a>(frame: &'a Frame, [red, green, blue]: &'a [Grid<f32>; 3]) -> Vec<Layer<'a>> {
+    let total = Layer {
+        name: "picture".into(),
+        wavelength: None,
+        comments: "all light in linear sRGB, in W/(m² sr) at the strongest component".into(),
+        channels: vec![("R", red), ("G", green), ("B", blue)],
+    };
+    let lasers = frame.lasers.iter().enumerate().map(|(index, laser)| Layer {
+        name: format!("laser_{index}"),
+        wavelength: Some(laser.wavelength),
+        comments: "radiance in W/(m² sr); speckle is a factor with mean 1".into(),
+        channels: vec![
+            ("coherent_before", &laser.coherent_before),
+            ("speckle", &laser.speckle),
+            ("coherent_after", &laser.coherent_after),
+            ("incoherent", &laser.incoherent),
+        ],
+    });
+    let lamps = Layer {
+        name: "lamps".into(),
+        wavelength: None,
+        comments: "radiance of the lamps in W/(m² sr)".into(),
+        channels: vec![("radiance", &frame.lamps)],
+    };
+    core::iter::once(total)
+        .chain(lasers)
+        .chain(core::iter::once(lamps))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use tem00_tracer::LaserLayers;
+
+    use super::*;
+    use crate::image::read_image;
+
+    fn frame() -> Frame {
+        let layer = |k: f32| Grid::from_fn(6, 4, |x, y| k + (x + 6 * y) as f32);
+        Frame {
+            lasers: vec![LaserLayers {
+                wavelength: 650e-9,
+                coherent_before: layer(1.0),
+                speckle: layer(2.0),
+                coherent_after: layer(3.0),
+                incoherent: layer(4.0),
+                power_on_target: 1e-3,
+            }],
+            lamps: layer(0.5),
+        }
+    }
+
+    #[test]
+    fn a_single_frame_is_named_after_the_scene() {
+        let folder = Path::new("out");
+        let single = FramePaths::new(folder, "spot", 0, 1);
+        assert_eq!(single.preview, Path::new("out/spot.png"));
+        let third = FramePaths::new(folder, "spot", 2, 5);
+        assert_eq!(third.layers, Path::new("out/frame_0002.exr"));
+    }
+
+    #[test]
+    fn every_layer_can_be_read_back() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("a.exr");
+        let frame = frame();
+        write_layers(&path, &frame, &picture_of(&frame)).expect("written");
+        let read = |name| {
+            read_image(&path, Some(name), None)
+                .expect("the channel is there")
+                .values
+        };
+        let laser = &frame.lasers[0];
+        assert_eq!(read("laser_0.coherent_before"), laser.coherent_before);
+        assert_eq!(read("laser_0.speckle"), laser.speckle);
+        assert_eq!(read("laser_0.coherent_after"), laser.coherent_after);
+        assert_eq!(read("laser_0.incoherent"), laser.incoherent);
+        assert_eq!(read("lamps.radiance"), frame.lamps);
+        // Red laser light and lamps: (3 + 4 + 2 i) + (0.5 + i) at pixel i; blue holds no laser light.
+        assert!(
+            (read("picture.R")[(2, 0)] - 13.5).abs() < 1e-5,
+            "red is all light"
+        );
+        assert!(
+            (read("picture.B")[(2, 0)] - 2.5).abs() < 1e-5,
+            "blue is the lamps'"
+        );
+    }
+
+    #[test]
+    fn the_preview_shows_the_white_level_as_white() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("a.png");
+        write_preview(&path, &picture_of(&frame()), 27.0, "").expect("written");
+        let red = read_image(&path, Some("R"), None)
+            .expect("a preview")
+            .values;
+        // 27 W/(m² sr) first reached where 7.5 + 3 i ≥ 27, at i = 7; half a step of 2.27/65535.
+        assert!((red[(0, 0)] - 7.5 / 27.0).abs() < 2e-5, "{}", red[(0, 0)]);
+        assert!(
+            red[(0, 1)] < 1.0 && red[(1, 1)] >= 1.0,
+            "white begins at the white level"
+        );
+    }
+}

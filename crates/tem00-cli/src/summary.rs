@@ -1,0 +1,280 @@
+//! What a render found, as JSON.
+
+use serde::Serialize;
+use tem00_statistics::{Contrast, StatisticsError, pixel_contrast};
+use tem00_tracer::{LaserLayers, PatternPlan, Scene, SpecklePlan};
+
+/// The summary of a render. Keys carry their unit.
+#[derive(Debug, Serialize)]
+pub(crate) struct Summary {
+    pub(crate) program: &'static str,
+    pub(crate) scene: String,
+    pub(crate) formulas: &'static str,
+    pub(crate) seed: u64,
+    pub(crate) samples_per_pixel: u32,
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) lasers: Vec<LaserSummary>,
+    pub(crate) exposure: Exposure,
+    pub(crate) frames: Vec<FrameSummary>,
+    pub(crate) threads: usize,
+    pub(crate) samples: u64,
+    pub(crate) seconds: f64,
+    pub(crate) samples_per_second: f64,
+}
+
+/// One laser and its speckle pattern.
+#[derive(Debug, Serialize)]
+pub(crate) struct LaserSummary {
+    wavelength_m: f64,
+    power_w: f64,
+    /// `None` if the speckle was left out.
+    pattern: Option<PatternSummary>,
+}
+
+/// The choice of a speckle pattern.
+#[derive(Debug, Serialize)]
+struct PatternSummary {
+    speckle_size_pixels: f64,
+    size_q: usize,
+    diameter_c: usize,
+    slices: usize,
+    memory_bytes: u64,
+    why: String,
+}
+
+/// How radiance became brightness in the previews.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Exposure {
+    /// The radiance shown as white.
+    #[serde(rename = "white_level_w_per_m2_sr")]
+    pub(crate) white_level: f32,
+    /// Who chose it.
+    pub(crate) chosen_by: &'static str,
+}
+
+impl Exposure {
+    /// The white level that the user asked for.
+    #[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]
+    pub(crate) fn asked(level: f64) -> Self {
+        Self {
+            // What f32 cannot hold is shown as black or white all the same.
+            white_level: (level as f32).clamp(f32::MIN_POSITIVE, f32::MAX),
+            chosen_by: "as asked",
+        }
+    }
+
+    /// The white level that the first frame suggests.
+    pub(crate) const fn automatic(white_level: f32) -> Self {
+        Self {
+            white_level,
+            chosen_by: "so that 99.5 % of the lit pixels of the first frame are darker",
+        }
+    }
+}
+
+/// One frame.
+#[derive(Debug, Serialize)]
+pub(crate) struct FrameSummary {
+    pub(crate) preview: String,
+    pub(crate) layers: String,
+    pub(crate) lasers: Vec<FrameLaser>,
+}
+
+/// One laser in one frame.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct FrameLaser {
+    /// The power that reaches the surfaces seen in the image.
+    pub(crate) power_on_target_w: f64,
+    /// The same in units of the laser's power: 1 if the whole footprint is in the image.
+    pub(crate) power_ratio: f64,
+    /// The contrast of the speckle in the lit pixels; `None` without speckle or without light.
+    pub(crate) contrast: Option<ContrastSummary>,
+}
+
+/// The contrast of speckle, measured and expected.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct ContrastSummary {
+    pub(crate) measured: f64,
+    pub(crate) expected: f64,
+    pub(crate) standard_error: f64,
+}
+
+impl LaserSummary {
+    /// Lists the lasers of a scene with the patterns planned for them.
+    pub(crate) fn of_scene(scene: &Scene, plan: Option<&SpecklePlan>) -> Vec<Self> {
+        let pattern = |index: usize| plan.and_then(|plan| plan.patterns().get(index));
+        let lasers = scene.lasers.iter().enumerate();
+        lasers
+            .map(|(index, laser)| Self {
+                wavelength_m: laser.wavelength(),
+                power_w: laser.power(),
+                pattern: pattern(index).map(PatternSummary::new),
+            })
+            .collect()
+    }
+}
+
+impl PatternSummary {
+    fn new(plan: &PatternPlan) -> Self {
+        Self {
+            speckle_size_pixels: plan.speckle_size_in_pixels(),
+            size_q: plan.size(),
+            diameter_c: plan.diameter(),
+            slices: plan.path().slice_count(),
+            memory_bytes: plan.memory_bytes(),
+            why: plan.to_string(),
+        }
+    }
+}
+
+impl FrameLaser {
+    /// Measures the layers of a laser of `power` watts.
+    pub(crate) fn measure(
+        layers: &LaserLayers,
+        power: f64,
+        plan: Option<&PatternPlan>,
+        samples_per_pixel: u32,
+    ) -> Self {
+        let size = plan.map(PatternPlan::speckle_size_in_pixels);
+        // Fewer than two lit pixels, or an even factor: there is no contrast to speak of.
+        let contrast = size.and_then(|size| contrast(layers, size, samples_per_pixel).ok());
+        Self {
+            power_on_target_w: layers.power_on_target,
+            power_ratio: layers.power_on_target / power,
+            contrast,
+        }
+    }
+}
+
+/// Measures the contrast of the speckle factor over the pixels that the laser lights directly.
+fn contrast(
+    layers: &LaserLayers,
+    speckle_size: f64,
+    samples_per_pixel: u32,
+) -> Result<ContrastSummary, StatisticsError> {
+    let pixels = layers
+        .speckle
+        .values()
+        .iter()
+        .zip(layers.coherent_before.values());
+    let lit: Vec<f32> = pixels
+        .filter(|&(_, &radiance)| radiance > 0.0)
+        .map(|(&factor, _)| factor)
+        .collect();
+    let contrast = Contrast::of(&lit)?.with_speckle_size(speckle_size)?;
+    Ok(ContrastSummary {
+        measured: contrast.value(),
+        expected: expected_contrast(speckle_size, samples_per_pixel),
+        standard_error: contrast.standard_error(),
+    })
+}
+
+/// Returns the contrast of fully developed speckle over square pixels, each averaged over n samples
+/// that lie at random in n equal cells of it.
+///
+/// ```text
+/// C² = C²(1 / h) + (1 − C²(1 / h√n)) / n        h in pixels, C(q) of a pixel of q speckle sizes
+/// ```
+///
+/// The first term is the contrast of the perfect average; the second, the variance within a cell, is
+/// what n samples miss.
+fn expected_contrast(speckle_size: f64, samples_per_pixel: u32) -> f64 {
+    let samples = f64::from(samples_per_pixel);
+    let squared = |pixel: f64| pixel_contrast(pixel / speckle_size).powi(2);
+    (squared(1.0) + (1.0 - squared(samples.sqrt().recip())) / samples).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_abs_diff_eq;
+    use tem00_numerics::Grid;
+    use tem00_speckle::PupilField;
+
+    use super::*;
+
+    #[test]
+    fn one_sample_per_pixel_has_contrast_one() {
+        // Whatever the size of the speckle, a single sample is exponentially distributed.
+        for size in [0.3, 1.0, 4.0] {
+            assert_abs_diff_eq!(expected_contrast(size, 1), 1.0, epsilon = 1e-9);
+        }
+    }
+
+    #[test]
+    fn many_samples_average_over_the_pixel() {
+        // 0.711268 is the contrast of pixels as large as a speckle.
+        assert_abs_diff_eq!(expected_contrast(1.0, 1_000_000), 0.711_268, epsilon = 2e-6);
+    }
+
+    #[test]
+    fn a_few_samples_leave_noise() {
+        // A pattern of speckles of 16 samples seen by pixels of 32 samples with 2 × 2 cells, each
+        // looked up at one place that changes from pixel to pixel.
+        let pattern = PupilField::new(2048, 128, 5).expect("valid").pattern();
+        // Multiplicative hashing (Knuth, The Art of Computer Programming, vol. 3, § 6.4).
+        let hash = |x: u32| x.wrapping_mul(2_654_435_761).rotate_right(15);
+        let jitter = |x: usize, y: usize| {
+            let [x, y] = [x, y].map(|i| u32::try_from(i).expect("small"));
+            (hash(hash(x) ^ y) >> 28) as usize
+        };
+        let pixel = |x: usize, y: usize| {
+            let cell = |i: usize, j: usize| {
+                let (cx, cy) = (2 * x + i, 2 * y + j);
+                pattern.values()[(16 * cx + jitter(cx, cy), 16 * cy + jitter(cy, cx + 5))]
+            };
+            0.25 * (cell(0, 0) + cell(0, 1) + cell(1, 0) + cell(1, 1))
+        };
+        let pixels = Grid::from_fn(64, 64, pixel);
+        let measured = Contrast::of(pixels.values()).expect("it varies").value();
+        // Half a speckle to the pixel; the contrast of one tile spreads by about 0.765/128.
+        let expected = expected_contrast(0.5, 4);
+        assert_abs_diff_eq!(measured, expected, epsilon = 4.0 * 0.006 + 0.01);
+    }
+
+    #[test]
+    fn only_lit_pixels_count() {
+        let pattern = PupilField::new(256, 64, 9).expect("valid").pattern();
+        let lit = |x: usize| x < 200;
+        let layers = LaserLayers {
+            wavelength: 650e-9,
+            coherent_before: Grid::from_fn(256, 256, |x, _| if lit(x) { 2.0 } else { 0.0 }),
+            speckle: Grid::from_fn(256, 256, |x, y| {
+                if lit(x) {
+                    pattern.values()[(x, y)]
+                } else {
+                    1.0
+                }
+            }),
+            coherent_after: Grid::filled(256, 256, 0.0),
+            incoherent: Grid::filled(256, 256, 0.0),
+            power_on_target: 1e-3,
+        };
+        let found = contrast(&layers, 4.0, 1).expect("it varies");
+        assert!(
+            (found.measured - found.expected).abs() < 4.0 * found.standard_error,
+            "{found:?}"
+        );
+        // With the even pixels it would be lower by √(200/256), 12 %.
+        assert!(found.standard_error < 0.02, "{found:?}");
+    }
+
+    #[test]
+    fn darkness_has_no_contrast() {
+        let dark = || Grid::filled(4, 4, 0.0);
+        let layers = LaserLayers {
+            wavelength: 650e-9,
+            coherent_before: dark(),
+            speckle: Grid::filled(4, 4, 1.0),
+            coherent_after: dark(),
+            incoherent: dark(),
+            power_on_target: 0.0,
+        };
+        assert!(contrast(&layers, 4.0, 1).is_err(), "nothing is lit");
+        let found = FrameLaser::measure(&layers, 1e-3, None, 1);
+        assert!(
+            found.contrast.is_none() && found.power_ratio.abs() < 1e-300,
+            "{found:?}"
+        );
+    }
+}

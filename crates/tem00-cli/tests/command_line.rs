@@ -1,0 +1,351 @@
+//! The program as its users meet it: exit codes, what goes where, and which files appear.
+
+#![expect(clippy::expect_used, reason = "a test fails by panicking")]
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+
+use serde_json::Value;
+
+/// A spot on a diffuse plane, small enough to be rendered in a moment.
+const SCENE: &str = r#"
+[camera]
+position = ["0 mm", "0 mm", "300 mm"]
+look_at = ["0 mm", "0 mm", "0 mm"]
+focal_length = "25 mm"
+f_number = 8
+pixel_pitch = "3.45 um"
+resolution = [48, 40]
+
+[[laser]]
+wavelength = "650 nm"
+power = "5 mW"
+position = ["100 mm", "0 mm", "300 mm"]
+look_at = ["0 mm", "0 mm", "0 mm"]
+spot = { waist_radius = "0.2 mm" }
+
+[[surface]]
+rectangle = { centre = [0, 0, 0], normal = [0, 0, 1], size = ["20 mm", "20 mm"] }
+
+[render]
+samples_per_pixel = 4
+"#;
+
+fn tem00(folder: &Path, line: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tem00"));
+    command
+        .current_dir(folder)
+        .args(line.split_whitespace())
+        .stdin(Stdio::null());
+    command
+}
+
+fn run(folder: &Path, line: &str) -> Output {
+    tem00(folder, line).output().expect("the program starts")
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+fn scene_folder() -> tempfile::TempDir {
+    let folder = folder();
+    fs::write(folder.path().join("a.toml"), SCENE).expect("the scene is written");
+    folder
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("the folder can be read");
+    let mut names: Vec<_> = entries
+        .map(|entry| entry.expect("the entry can be read").file_name())
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Returns standard error as one line without the frame that long messages are wrapped in.
+fn message(output: &Output) -> String {
+    let words = text(&output.stderr);
+    let words = words.split_whitespace().filter(|word| *word != "│");
+    words.collect::<Vec<_>>().join(" ")
+}
+
+#[track_caller]
+fn assert_code(output: &Output, code: i32) {
+    assert_eq!(output.status.code(), Some(code), "{}", text(&output.stderr));
+}
+
+#[test]
+fn help_teaches_by_examples() {
+    let folder = folder();
+    let output = run(folder.path(), "--help");
+    assert_code(&output, 0);
+    assert!(
+        text(&output.stdout).contains("tem00 pattern -o speckle.png"),
+        "examples are shown"
+    );
+    for command in ["render", "pattern", "stats"] {
+        let output = run(folder.path(), &format!("{command} --help"));
+        assert_code(&output, 0);
+        assert!(
+            text(&output.stdout).contains("Examples:"),
+            "{command} shows examples"
+        );
+    }
+}
+
+#[test]
+fn a_pattern_in_every_format_has_the_same_statistics() {
+    let folder = folder();
+    for name in ["a.png", "a.exr", "a.npy"] {
+        let output = run(
+            folder.path(),
+            &format!("pattern -o {name} --size 128 --seed 3"),
+        );
+        assert_code(&output, 0);
+        assert!(
+            text(&output.stdout).starts_with("quantity"),
+            "the table is the data"
+        );
+        assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+    }
+    assert_eq!(files(folder.path()), ["a.exr", "a.npy", "a.png"]);
+
+    let contrast = |name: &str| {
+        let output = run(folder.path(), &format!("stats {name} --json"));
+        assert_code(&output, 0);
+        let found: Value = serde_json::from_slice(&output.stdout).expect("JSON and nothing else");
+        let rows = found["rows"].as_array().expect("rows");
+        let row = rows
+            .iter()
+            .find(|row| row["quantity"] == "contrast")
+            .expect("a contrast");
+        row["measured"].as_f64().expect("a number")
+    };
+    let exact = contrast("a.npy");
+    assert!(
+        (contrast("a.exr") - exact).abs() < 1e-12,
+        "EXR holds the same f32"
+    );
+    // 16 bits of about ten times the mean: rounding of 1.5e-4 / √12 of the mean, averaged.
+    assert!(
+        (contrast("a.png") - exact).abs() < 1e-5,
+        "PNG holds 16 bits"
+    );
+}
+
+#[test]
+fn bad_input_is_one_message_exit_code_2_and_no_file() {
+    let folder = folder();
+    let path = folder.path();
+    fs::write(path.join("text.png"), "no picture").expect("written");
+    fs::write(path.join("a.toml"), SCENE).expect("written");
+    let before = files(path);
+    for (line, part) in [
+        ("pattern -o a.jpg", "a.jpg"),
+        ("pattern -o a.png --diameter 300", "got 300"),
+        ("pattern -o a.png --diameter 4", "got 4"),
+        ("pattern -o a.png --size 1000000", "16384"),
+        ("pattern -o a.png --size 0", "got 0"),
+        ("pattern -o a.png --pupil annulus:1.5", "1.5"),
+        ("pattern -o a.png --pupil square", "square"),
+        ("pattern -o a.png --amplitude", "amplitude"),
+        ("pattern -o no/a.png", "no/a.png"),
+        ("pattern -o a.png --sede 3", "--seed"),
+        ("stats missing.png", "missing.png"),
+        ("stats text.png", "text.png"),
+        ("stats a.toml", "a.toml"),
+        ("render missing.toml", "missing.toml"),
+        ("render a.toml --spp 0", "0"),
+        ("render a.toml --white-level 0", "positive"),
+        ("render a.toml -o text.png/out", "text.png/out"),
+        ("rendr a.toml", "render"),
+    ] {
+        let output = run(path, line);
+        assert_code(&output, 2);
+        assert!(
+            message(&output).contains(part),
+            "{line}: {}",
+            message(&output)
+        );
+        assert!(output.stdout.is_empty(), "{line}: nothing is data");
+        assert_eq!(files(path), before, "{line}");
+    }
+}
+
+#[test]
+fn bad_scenes_are_located_and_leave_no_folder() {
+    for (good, bad, part) in [
+        ("wavelength", "wave_length", "wavelength"),
+        ("\"650 nm\"", "\"-650 nm\"", "-650"),
+        ("wavelength = \"650 nm\"", "", "wavelength"),
+        ("\"0.2 mm\"", "\"0.2 kg\"", "kg"),
+        ("[48, 40]", "[1000000, 1000000]", "1000000"),
+        (
+            "samples_per_pixel = 4",
+            "samples_per_pixel = 0",
+            "samples_per_pixel",
+        ),
+        (
+            "[render]",
+            "[speckle]\nsize = 64\ndiameter = 48\n[render]",
+            "48",
+        ),
+        (
+            "rectangle = { centre",
+            "mesh = { file = \"no.ply\" }\n#",
+            "no.ply",
+        ),
+        ("[camera]", "[camera", "TOML"),
+    ] {
+        let folder = folder();
+        let scene = SCENE.replacen(good, bad, 1);
+        assert_ne!(scene, SCENE, "{good} is replaced");
+        fs::write(folder.path().join("a.toml"), scene).expect("written");
+        let output = run(folder.path(), "render a.toml");
+        assert_code(&output, 2);
+        let message = message(&output);
+        assert!(
+            message.contains("a.toml") && message.contains(part),
+            "{bad}: {message}"
+        );
+        assert_eq!(files(folder.path()), ["a.toml"], "{bad}");
+    }
+}
+
+#[test]
+fn a_render_writes_preview_layers_and_summary() {
+    let folder = scene_folder();
+    let output = run(folder.path(), "render a.toml --seed 5");
+    assert_code(&output, 0);
+    let out = folder.path().join("out").join("a");
+    assert_eq!(files(&out), ["a.exr", "a.png", "summary.json"]);
+    assert_eq!(
+        text(&output.stdout).lines().count(),
+        3,
+        "the names of the files are the data"
+    );
+
+    let summary = fs::read(out.join("summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_slice(&summary).expect("JSON");
+    assert_eq!(summary["seed"], 5);
+    assert_eq!(summary["samples"], 48 * 40 * 4);
+    // h = λ d / D = 650 nm · 27.27 mm / 3.125 mm = 5.67 µm, 1.64 pixels of 3.45 µm.
+    let size = summary["lasers"][0]["pattern"]["speckle_size_pixels"].as_f64();
+    assert!((size.expect("a size") - 1.644).abs() < 0.005, "{size:?}");
+    assert!(
+        summary["exposure"]["white_level_w_per_m2_sr"].as_f64() > Some(0.0),
+        "{summary}"
+    );
+}
+
+#[test]
+fn files_do_not_depend_on_the_number_of_threads() {
+    let folder = scene_folder();
+    for threads in [1, 3] {
+        let line = format!("render a.toml -o {threads} --threads {threads}");
+        assert_code(&run(folder.path(), &line), 0);
+    }
+    for name in ["a.png", "a.exr"] {
+        let file = |threads: &str| fs::read(folder.path().join(threads).join(name));
+        let (one, three) = (file("1").expect("written"), file("3").expect("written"));
+        assert!(one == three, "{name} differs");
+    }
+}
+
+#[test]
+fn without_speckle_the_factor_is_one() {
+    let folder = scene_folder();
+    assert_code(&run(folder.path(), "render a.toml -o . --no-speckle"), 0);
+    // The factor is even, which is no speckle to measure.
+    let output = run(folder.path(), "stats a.exr --channel laser_0.speckle");
+    assert_code(&output, 2);
+    assert!(
+        message(&output).contains("all of them are 1"),
+        "{}",
+        message(&output)
+    );
+}
+
+#[test]
+fn frames_are_numbered_and_share_one_exposure() {
+    let folder = folder();
+    let moving = SCENE.replace(
+        "[render]",
+        "displacement_per_frame = [\"0.05 mm\", 0, 0]\n[render]\nframes = 2",
+    );
+    fs::write(folder.path().join("a.toml"), moving).expect("written");
+    assert_code(
+        &run(
+            folder.path(),
+            "render a.toml -o . --white-level 1e3 --paper",
+        ),
+        0,
+    );
+    let names = [
+        "a.toml",
+        "frame_0000.exr",
+        "frame_0000.png",
+        "frame_0001.exr",
+        "frame_0001.png",
+        "summary.json",
+    ];
+    assert_eq!(files(folder.path()), names);
+    let summary = fs::read(folder.path().join("summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_slice(&summary).expect("JSON");
+    assert_eq!(summary["exposure"]["white_level_w_per_m2_sr"], 1e3);
+    assert_eq!(summary["formulas"], "as printed in Bergmann et al. 2016");
+    assert_eq!(summary["frames"].as_array().map(Vec::len), Some(2));
+}
+
+#[test]
+fn nobody_reading_is_no_failure() {
+    let folder = folder();
+    let mut child = tem00(folder.path(), "pattern -o a.npy --size 64")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("the program ends");
+    assert_code(&output, 0);
+    assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+    assert_eq!(files(folder.path()), ["a.npy"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_render_cleanly() {
+    use std::{thread::sleep, time::Duration};
+
+    let folder = scene_folder();
+    let child = tem00(folder.path(), "render a.toml -o out --spp 10000")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // The folder appears when the render is about to start.
+    while !folder.path().join("out").exists() {
+        sleep(Duration::from_millis(5));
+    }
+    sleep(Duration::from_millis(100));
+    let interrupt = format!("kill -INT {}", child.id());
+    let sent = Command::new("sh").args(["-c", &interrupt]).status();
+    assert!(sent.expect("a shell").success(), "the signal is sent");
+
+    let output = child.wait_with_output().expect("the program ends");
+    assert_code(&output, 130);
+    assert!(output.stdout.is_empty(), "nothing was written");
+    assert!(
+        files(&folder.path().join("out")).is_empty(),
+        "nothing is left"
+    );
+}

@@ -435,6 +435,8 @@ mod tests {
         let rings = radial_average(&grid, [1.0, 2.0]).unwrap();
         // Half way along x is 20, along y 24; rings are two wide.
         assert_eq!(rings.len(), 11);
+        // From 1 to 3: 4 cells on the axis y = 0 and 5 on either side of it.
+        assert_eq!((rings[0].count, rings[1].count), (1, 14));
         for (index, ring) in rings.iter().enumerate() {
             // ⟨r²⟩ − ⟨r⟩² is the variance within a ring two wide, at most 1.
             let variance = ring.mean - ring.radius * ring.radius;

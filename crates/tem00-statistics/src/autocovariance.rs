@@ -41,7 +41,7 @@ pub enum Boundary {
 /// # Validity
 ///
 /// The transforms are in `f32`: the result is off by some 10⁻⁶, times the pixels of the image per
-/// pair in the finite case. The memory needed is 20 bytes per lag.
+/// pair in the finite case. The memory needed is about 20 bytes per lag.
 ///
 /// # Errors
 ///

@@ -77,17 +77,27 @@ impl<T: Real> Axis<T> {
     }
 }
 
-/// Rounds the fields of a light to `f32`, unless one of them leaves its range.
+/// Rounds the fields of a light to `f32`, unless one of them overflows.
 fn to_single<const N: usize>(fields: [f64; N]) -> Result<[f32; N], BeamError> {
     let mut rounded = [0.0; N];
     for (single, field) in rounded.iter_mut().zip(fields) {
         *single = <f32 as Scalar>::of(field);
-        let zero = field.abs() < f64::MIN_POSITIVE;
-        if !(single.is_normal() || zero) {
+        if !single.is_finite() {
             return Err(BeamError::SinglePrecision(field));
         }
     }
     Ok(rounded)
+}
+
+/// Checks that `f32` holds all digits of the quantities that a light divides by.
+fn check_digits<const N: usize>(quantities: [f64; N]) -> Result<(), BeamError> {
+    for quantity in quantities {
+        let dark = quantity.abs() < f64::MIN_POSITIVE;
+        if !(<f32 as Scalar>::of(quantity).is_normal() || dark) {
+            return Err(BeamError::SinglePrecision(quantity));
+        }
+    }
+    Ok(())
 }
 
 /// Returns the power, if it is one.

@@ -2,7 +2,7 @@ use super::emitter::{Emitter, larger};
 use super::frame::Frame;
 use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
 use super::record::RayPdf;
-use super::{Axis, DEFAULT_CUTOFF, Placement, to_single};
+use super::{Axis, DEFAULT_CUTOFF, Placement, check_digits, checked_power, to_single};
 use crate::normal::{normal_density, standard_normal};
 use crate::profile::SlopeDensity;
 use crate::real::Real;
@@ -98,7 +98,7 @@ impl LineLight<f64> {
     /// negative or not finite, or if the placement's axes are not finite, have no length, or are
     /// parallel.
     pub fn place(line: &LaserLine, placement: &Placement, power: f64) -> Result<Self, BeamError> {
-        let power = super::checked_power(power)?;
+        let power = checked_power(power)?;
         let frame = placement.frame()?;
         let SlopeDensity { flat, sigma } = line.slope_density();
         Ok(Self {
@@ -121,12 +121,14 @@ impl LineLight<f64> {
     ///
     /// # Errors
     ///
-    /// Returns an error if a field or the peak irradiance is outside the range of normal `f32`
+    /// Returns an error if a field overflows, or if the squared waist or divergence, the source
+    /// radius, the slope deviation or the peak irradiance is outside the range of normal `f32`
     /// numbers.
     pub fn to_f32(&self) -> Result<LineLight<f32>, BeamError> {
         let across = normal_density(0.0, 0.5 * self.y.w0_sq.sqrt());
         let peak = self.power * self.slope_density().at(0.0) / self.apex_offset * across;
-        to_single([peak])?;
+        let (y, source) = (self.y, self.source_radius);
+        check_digits([y.w0_sq, y.theta_sq, source, self.sigma, peak])?;
         Ok(LineLight::from_array(to_single(self.to_array())?))
     }
 }

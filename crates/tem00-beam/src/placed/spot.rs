@@ -4,7 +4,8 @@ use super::emitter::{Emitter, larger, secant};
 use super::frame::Frame;
 use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
 use super::record::RayPdf;
-use super::{Axis, DEFAULT_CUTOFF, Placement, to_single};
+use super::{Axis, DEFAULT_CUTOFF, Placement, check_digits, checked_power, to_single};
+use crate::gaussian::is_coordinate;
 use crate::normal::{normal_density, standard_normal};
 use crate::real::Real;
 use crate::{BeamError, GaussianBeam};
@@ -86,10 +87,10 @@ impl SpotLight<f64> {
         placement: &Placement,
         power: f64,
     ) -> Result<Self, BeamError> {
-        if !crate::gaussian::is_coordinate(waist_distance) {
+        if !is_coordinate(waist_distance) {
             return Err(BeamError::WaistDistance(waist_distance));
         }
-        let power = super::checked_power(power)?;
+        let power = checked_power(power)?;
         let frame = placement.frame()?;
         let axis = Axis::new(beam, waist_distance);
         Ok(Self {
@@ -110,11 +111,12 @@ impl SpotLight<f64> {
     ///
     /// # Errors
     ///
-    /// Returns an error if a field or the peak irradiance is outside the range of normal `f32`
-    /// numbers.
+    /// Returns an error if a field overflows, or if a squared waist or divergence or the peak
+    /// irradiance is outside the range of normal `f32` numbers.
     pub fn to_f32(&self) -> Result<SpotLight<f32>, BeamError> {
         let peak = FRAC_2_PI * self.power / (self.x.w0_sq * self.y.w0_sq).sqrt();
-        to_single([peak])?;
+        let [x, y] = [self.x, self.y];
+        check_digits([x.w0_sq, x.theta_sq, y.w0_sq, y.theta_sq, peak])?;
         Ok(SpotLight::from_array(to_single(self.to_array())?))
     }
 }

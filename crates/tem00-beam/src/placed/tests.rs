@@ -296,22 +296,47 @@ fn single_precision_is_refused_where_it_cannot_hold_the_light() {
         origin: DVec3::X * 1e29,
         ..placement()
     };
-    let wide = GaussianBeam::from_waist(650e-9, 1e21).unwrap();
-    let tiny = GaussianBeam::from_waist(1e-25, 1e-22).unwrap();
-    let cases = [
-        SpotLight::place(&beam(), 0.1, &far, POWER).map(|light| light.to_f32().is_ok()),
-        SpotLight::place(&wide, 0.1, &placement(), POWER).map(|light| light.to_f32().is_ok()),
-        SpotLight::place(&tiny, 0.1, &placement(), POWER).map(|light| light.to_f32().is_ok()),
-        SpotLight::place(&beam(), 0.1, &placement(), 1e32).map(|light| light.to_f32().is_ok()),
-    ];
-    assert_eq!(cases, [Ok(true), Ok(false), Ok(false), Ok(false)], "spots");
+    let beam_of = |wavelength, waist| GaussianBeam::from_waist(wavelength, waist).unwrap();
+    let accepted = |beam: GaussianBeam, placement: &Placement, power| {
+        let light = SpotLight::place(&beam, 0.1, placement, power).unwrap();
+        match light.to_f32() {
+            Ok(_) => true,
+            Err(error) => {
+                let expected = matches!(error, BeamError::SinglePrecision(_));
+                assert!(expected, "{error}");
+                false
+            }
+        }
+    };
+    let tilted = Placement {
+        direction: DVec3::new(1e-16, 1e-60, 1.0),
+        ..placement()
+    };
+    assert!(accepted(beam(), &far, POWER), "a distant origin");
+    assert!(accepted(beam(), &tilted, POWER), "axes that round to 0");
+    assert!(accepted(beam(), &placement(), 0.0), "a dark laser");
     assert!(
-        spot().to_f32().is_ok() && line().to_f32().is_ok(),
-        "ordinary lights"
+        !accepted(beam_of(1e-9, 1e20), &placement(), 1e10),
+        "w₀² overflows"
     );
-    let strong = LineLight::place(&laser_line(LineProfile::GaussianTan), &placement(), 1e36);
-    let error = strong.and_then(|light| light.to_f32()).unwrap_err();
-    assert!(matches!(error, BeamError::SinglePrecision(_)), "{error}");
+    assert!(
+        !accepted(beam_of(1e-6, 1e17), &placement(), 1.0),
+        "δ² underflows"
+    );
+    assert!(
+        !accepted(beam_of(1e-25, 1e-22), &placement(), 1e-40),
+        "w₀² underflows"
+    );
+    assert!(
+        !accepted(beam(), &placement(), 1e32),
+        "the irradiance overflows"
+    );
+    let gaussian = laser_line(LineProfile::GaussianTan);
+    let lines = [POWER, 1e36].map(|power| {
+        let light = LineLight::place(&gaussian, &placement(), power).unwrap();
+        light.to_f32().is_ok()
+    });
+    assert_eq!(lines, [true, false], "a line whose irradiance overflows");
 }
 
 #[test]

@@ -138,8 +138,8 @@ fn kolmogorov_survival(lambda: f64) -> f64 {
 ///
 /// # Validity
 ///
-/// Many counts per bin: the p-value takes χ² to have its limiting law. With five expected counts it
-/// is within some 0.01 in the middle, and too small in the far tail.
+/// The p-value takes χ² to have the law that it reaches for many counts per bin; five expected
+/// counts are the customary least.
 ///
 /// # Errors
 ///
@@ -183,7 +183,7 @@ pub fn chi_squared(
     Ok(TestOutcome { statistic, p_value })
 }
 
-/// The smallest expected count for which χ² has its limiting law to the eye.
+/// The customary least for which χ² nearly has its limiting law.
 const FEWEST_EXPECTED: f64 = 5.0;
 
 fn merge_sparse_bins(

@@ -216,6 +216,7 @@ pub fn pearson_correlation(first: &Grid<f32>, second: &Grid<f32>) -> Result<f64,
     let product = |(&x, &y): (&f32, &f32)| a.standardise(x) * b.standardise(y);
     let pairs = first.values().iter().zip(second.values());
     let sum: f64 = pairs.map(product).sum();
+    // Rounding can carry the quotient past ±1.
     Ok((sum / (first.values().len() - 1) as f64).clamp(-1.0, 1.0))
 }
 

@@ -1,0 +1,95 @@
+use core::{error, fmt};
+
+use tem00_beam::BeamError;
+use tem00_decorrelation::DecorrelationError;
+use tem00_speckle::SpeckleError;
+
+/// Why a part of a scene could not be constructed.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum TracerError {
+    /// A quantity is outside its range.
+    OutOfRange {
+        /// The name of the parameter.
+        parameter: &'static str,
+        /// The rejected value.
+        value: f64,
+        /// What is allowed, with the unit.
+        allowed: &'static str,
+    },
+    /// A vector that must point somewhere is zero, not finite or parallel to its partner.
+    Direction {
+        /// The name of the parameter.
+        parameter: &'static str,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// The image has no pixels or more than the film can hold.
+    Resolution {
+        /// The requested number of columns.
+        width: usize,
+        /// The requested number of rows.
+        height: usize,
+    },
+    /// The laser's beam is not possible.
+    Beam(BeamError),
+    /// The camera's imaging geometry is not possible.
+    Imaging(DecorrelationError),
+    /// The speckle pattern is not possible.
+    Speckle(SpeckleError),
+    /// The speckle patterns do not fit the memory that the scene allows.
+    PatternMemory {
+        /// The bytes that one laser's patterns need at least.
+        needed: u64,
+        /// The bytes that the scene allows for them.
+        allowed: u64,
+    },
+    /// The scene has none of something it needs.
+    Missing(&'static str),
+}
+
+impl fmt::Display for TracerError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutOfRange {
+                parameter,
+                value,
+                allowed,
+            } => write!(f, "{parameter} must be {allowed}, got {value}"),
+            Self::Direction { parameter, allowed } => write!(f, "{parameter} must be {allowed}"),
+            Self::Resolution { width, height } => write!(
+                f,
+                "resolution must be at least 1 × 1 and at most {} pixels in all, got {width} × {height}",
+                crate::camera::MAXIMUM_PIXELS
+            ),
+            Self::Beam(source) => source.fmt(f),
+            Self::Imaging(source) => source.fmt(f),
+            Self::Speckle(source) => source.fmt(f),
+            Self::PatternMemory { needed, allowed } => write!(
+                f,
+                "the speckle patterns of a laser need at least {needed} bytes and may take {allowed}"
+            ),
+            Self::Missing(what) => write!(f, "the scene needs {what}"),
+        }
+    }
+}
+
+impl error::Error for TracerError {}
+
+impl From<BeamError> for TracerError {
+    fn from(source: BeamError) -> Self {
+        Self::Beam(source)
+    }
+}
+
+impl From<DecorrelationError> for TracerError {
+    fn from(source: DecorrelationError) -> Self {
+        Self::Imaging(source)
+    }
+}
+
+impl From<SpeckleError> for TracerError {
+    fn from(source: SpeckleError) -> Self {
+        Self::Speckle(source)
+    }
+}

@@ -1,0 +1,212 @@
+use glam::DVec3;
+use tem00_beam::{
+    BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile, Placement,
+    SpotLight, paper,
+};
+use tem00_decorrelation::{DecorrelationError, Wavefront};
+
+use crate::TracerError;
+
+/// What determines a [`Laser`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaserDescription {
+    /// The vacuum wavelength, in metres.
+    pub wavelength: f64,
+    /// The power of the beam, in watts.
+    pub power: f64,
+    /// The centre of the aperture, in metres.
+    pub position: DVec3,
+    /// A point on the axis in front of the aperture, in metres.
+    pub look_at: DVec3,
+    /// Across the axis: the direction in which a line opens. Its part along the axis is ignored.
+    pub line_direction: DVec3,
+    /// The shape of the beam.
+    pub shape: BeamShape,
+}
+
+/// The shape of a laser's beam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BeamShape {
+    /// A round Gaussian beam.
+    Spot {
+        /// The waist radius, in metres.
+        waist_radius: f64,
+        /// The distance of the waist from the aperture, in metres; negative behind it.
+        waist_distance: f64,
+        /// The beam quality factor M².
+        m_squared: f64,
+    },
+    /// A laser line.
+    Line {
+        /// The waist radius across the line, in metres: half its thickness in focus.
+        waist_radius: f64,
+        /// The beam quality factor M² across the line.
+        m_squared: f64,
+        /// The fan: full opening angle, offset of its apex, distance of the focus.
+        fan: FanGeometry,
+        /// How the power is spread along the line.
+        profile: LineProfile,
+    },
+}
+
+/// A laser in the scene: a spot or a line, placed, with its power.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Laser {
+    description: LaserDescription,
+    source: Source,
+}
+
+/// The beam and the light prepared from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Source {
+    Spot {
+        beam: GaussianBeam,
+        light: SpotLight<f64>,
+    },
+    Line {
+        line: LaserLine,
+        light: LineLight<f64>,
+    },
+}
+
+impl Laser {
+    /// Creates a laser.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the beam is not possible (see [`BeamError`](tem00_beam::BeamError)), if
+    /// `look_at` is the position, or if the line direction is parallel to the axis.
+    pub fn new(description: LaserDescription) -> Result<Self, TracerError> {
+        let placement = Placement {
+            origin: description.position,
+            direction: description.look_at - description.position,
+            fan_axis: description.line_direction,
+        };
+        let (wavelength, power) = (description.wavelength, description.power);
+        let source = match description.shape {
+            BeamShape::Spot {
+                waist_radius,
+                waist_distance,
+                m_squared,
+            } => {
+                let beam = beam(wavelength, waist_radius, m_squared)?;
+                Source::Spot {
+                    beam,
+                    light: SpotLight::place(&beam, waist_distance, &placement, power)?,
+                }
+            }
+            BeamShape::Line {
+                waist_radius,
+                m_squared,
+                fan,
+                profile,
+            } => {
+                let line =
+                    LaserLine::new(beam(wavelength, waist_radius, m_squared)?, fan, profile)?;
+                Source::Line {
+                    line,
+                    light: LineLight::place(&line, &placement, power)?,
+                }
+            }
+        };
+        Ok(Self {
+            description,
+            source,
+        })
+    }
+
+    /// Returns what the laser was created from.
+    pub const fn description(&self) -> &LaserDescription {
+        &self.description
+    }
+
+    /// Returns the vacuum wavelength, in metres.
+    pub const fn wavelength(&self) -> f64 {
+        self.description.wavelength
+    }
+
+    /// Returns the power of the beam, in watts.
+    pub const fn power(&self) -> f64 {
+        self.description.power
+    }
+
+    /// Returns how the laser lights `point`, or `None` where it sends no light.
+    pub(crate) fn illuminate(&self, point: DVec3) -> Option<Illumination> {
+        let event = match &self.source {
+            Source::Spot { light, .. } => light.next_event(point.to_array()),
+            Source::Line { light, .. } => light.next_event(point.to_array()),
+        }?;
+        Some(Illumination {
+            source: DVec3::from_array(event.point),
+            direction: DVec3::from_array(event.wi),
+            irradiance: event.e_perp,
+        })
+    }
+
+    /// Returns how the laser lights `point` of a surface with the unit normal `normal`, by eq. (3)
+    /// of Bergmann et al. 2016 as printed.
+    pub(crate) fn illuminate_as_printed(
+        &self,
+        point: DVec3,
+        normal: DVec3,
+    ) -> Option<Illumination> {
+        let (point, normal) = (point.to_array(), normal.to_array());
+        let event = match &self.source {
+            Source::Spot { light, .. } => paper::spot_next_event(light, point, normal),
+            Source::Line { light, .. } => paper::line_next_event(light, point, normal),
+        }?;
+        Some(Illumination {
+            source: DVec3::from_array(event.point),
+            direction: DVec3::from_array(event.wi),
+            irradiance: event.radiance,
+        })
+    }
+
+    /// Returns the wavefront at `point`, whose unit direction to the source is `direction`.
+    ///
+    /// A spot's wavefront has the curvature 1/R(z) of its beam in both directions. A line's has, in
+    /// the fan, that of a wave from the apex and, across the fan, that of the focused beam.
+    pub(crate) fn wavefront_at(
+        &self,
+        point: DVec3,
+        direction: DVec3,
+    ) -> Result<Wavefront, DecorrelationError> {
+        let offset = point - self.description.position;
+        let along = |axis: [f64; 3]| offset.dot(DVec3::from_array(axis));
+        match &self.source {
+            Source::Spot { beam, light } => {
+                let from_waist = along(light.ez) - light.x.z0;
+                Wavefront::spherical(direction, beam.curvature_at(from_waist))
+            }
+            Source::Line { line, light } => {
+                let depth = along(light.ez) + line.fan().apex_offset;
+                let slant = along(light.ex).hypot(depth);
+                let across = line
+                    .focus()
+                    .curvature_at(slant - line.waist_slant_distance());
+                let normal = DVec3::from_array(light.ey);
+                Wavefront::astigmatic(direction, normal, across, 1.0 / slant)
+            }
+        }
+    }
+
+    /// Returns the unit direction from `point` to the middle of the aperture.
+    pub(crate) fn direction_from(&self, point: DVec3) -> Option<DVec3> {
+        (self.description.position - point).try_normalize()
+    }
+}
+
+fn beam(wavelength: f64, waist_radius: f64, m_squared: f64) -> Result<GaussianBeam, BeamError> {
+    GaussianBeam::from_waist(wavelength, waist_radius)?.with_m_squared(m_squared)
+}
+
+/// How a laser lights a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Illumination {
+    /// The point of the aperture from which the light comes, in metres.
+    pub source: DVec3,
+    /// The unit direction towards the light.
+    pub direction: DVec3,
+    /// The irradiance on a plane across that direction, in W/m².
+    pub irradiance: f64,
+}

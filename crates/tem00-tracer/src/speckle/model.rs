@@ -1,0 +1,173 @@
+use glam::{DVec2, DVec3};
+use tem00_decorrelation::{CameraFrame, DecorrelationError, ImagingGeometry, paper as printed};
+use tem00_speckle::{PupilField, SpeckleStack, paper::BilinearStack};
+
+use super::{MovedPoint, PatternPlan, SpecklePlan, upright};
+use crate::{Scene, TracerError};
+
+/// The speckle patterns of a scene, ready to be looked up.
+#[derive(Clone, Debug)]
+pub struct SpeckleModel {
+    scene: Scene,
+    patterns: Vec<Pattern>,
+}
+
+/// The pattern of one laser.
+#[derive(Clone, Debug)]
+struct Pattern {
+    geometry: ImagingGeometry,
+    /// Slices per pupil diameter.
+    slices_per_diameter: f64,
+    half_period: usize,
+    stack: Stack,
+}
+
+#[derive(Clone, Debug)]
+enum Stack {
+    Derived(SpeckleStack),
+    AsPrinted(BilinearStack, PupilField),
+}
+
+/// A surface point that a camera sample has hit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpecklePoint {
+    /// The image point of the sample, in pixels.
+    pub pixel: DVec2,
+    /// The point of the surface, in metres.
+    pub position: DVec3,
+    /// The unit normal on the side that is seen.
+    pub normal: DVec3,
+    /// The index of the surface in the scene.
+    pub surface: usize,
+}
+
+impl SpeckleModel {
+    /// Generates the patterns of a plan.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the memory for a stack cannot be had.
+    pub fn generate(scene: &Scene, plan: &SpecklePlan) -> Result<Self, TracerError> {
+        let patterns = scene.lasers.iter().zip(plan.patterns());
+        let patterns = patterns
+            .map(|(laser, pattern)| {
+                Pattern::generate(scene.camera.imaging_geometry(laser.wavelength())?, pattern)
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            scene: scene.clone(),
+            patterns,
+        })
+    }
+
+    /// Returns the speckle factor of laser `index` at a surface point, in `frame`.
+    pub(crate) fn factor(&self, index: usize, point: &SpecklePoint, frame: u32) -> f64 {
+        let pattern = &self.patterns[index];
+        let still = frame == 0 || !self.scene.moves();
+        match &pattern.stack {
+            Stack::Derived(stack) => {
+                let (pixel, shift) = if still {
+                    (point.pixel, 0.0)
+                } else {
+                    self.reference(index, point, frame)
+                };
+                let c = pattern.geometry.pattern_coordinate(
+                    upright(pixel),
+                    DVec2::ZERO,
+                    stack.speckle_size(),
+                );
+                stack.intensity_at(c.x, c.y, shift * pattern.slices_per_diameter)
+            }
+            Stack::AsPrinted(stack, field) => {
+                let (displacement, u) = if still {
+                    (DVec2::ZERO, 0.0)
+                } else {
+                    self.reference_as_printed(index, point, frame)
+                };
+                let c = printed::pattern_coordinate(
+                    &pattern.geometry,
+                    upright(point.pixel),
+                    displacement,
+                    field.speckle_size(),
+                );
+                stack.intensity_at(c.x, c.y, u)
+            }
+        }
+    }
+
+    /// Returns where the surface point stood in the image of the first frame, in pixels, and how
+    /// far the pupil has moved over its speckle since, in diameters.
+    fn reference(&self, index: usize, point: &SpecklePoint, frame: u32) -> (DVec2, f64) {
+        let scene = &self.scene;
+        let before = point.position - scene.surface_displacement(point.surface, frame);
+        // A point that the first camera could not have seen brings speckle of its own.
+        let pixel = scene.camera.project(before).unwrap_or(point.pixel);
+        let shift = MovedPoint::new(scene, &scene.lasers[index], point, frame)
+            .map_or(1.0, |moved| moved.shift(&self.patterns[index].geometry));
+        (pixel, shift)
+    }
+
+    /// Returns the displacement in the image and the slice coordinate by the printed formulas.
+    fn reference_as_printed(&self, index: usize, point: &SpecklePoint, frame: u32) -> (DVec2, f64) {
+        let pattern = &self.patterns[index];
+        // Where a printed formula has no value, the pattern counts as decorrelated.
+        self.printed_motion(index, point, frame)
+            .ok()
+            .flatten()
+            .unwrap_or((DVec2::ZERO, pattern.half_period as f64))
+    }
+
+    fn printed_motion(
+        &self,
+        index: usize,
+        point: &SpecklePoint,
+        frame: u32,
+    ) -> Result<Option<(DVec2, f64)>, DecorrelationError> {
+        let (scene, pattern) = (&self.scene, &self.patterns[index]);
+        let camera = scene.camera_at(frame);
+        let axes = CameraFrame::from_axes(camera.axes())?;
+        let (surface_axes, angles) = printed::EulerAngles::between(&axes, point.normal)?;
+        let to_surface = surface_axes.transpose();
+        let to_emitter = scene.lasers[index].description().position - point.position;
+        let emitter = printed::Emitter {
+            direction: to_surface * to_emitter.normalize_or_zero(),
+            distance: to_emitter.length(),
+        };
+        let surface = scene.surface_displacement(point.surface, frame);
+        let moved = f64::from(frame) * scene.camera_displacement_per_frame;
+        let in_image = printed::image_displacement(
+            pattern.geometry.magnification(),
+            angles,
+            to_surface * (surface - moved),
+        );
+        let distance = camera.position().distance(point.position);
+        let in_pupil = printed::pupil_displacement(angles, emitter, distance, to_surface * surface);
+        Ok(in_pupil.map(|in_pupil| {
+            let of_camera = DVec2::new(moved.dot(axes.right()), moved.dot(axes.up()));
+            let u = printed::slice_coordinate(
+                &pattern.geometry,
+                printed::relative_pupil_displacement(of_camera, in_pupil),
+                (surface - moved).dot(axes.towards_camera()),
+                pattern.half_period,
+            );
+            (in_image, u)
+        }))
+    }
+}
+
+impl Pattern {
+    fn generate(geometry: ImagingGeometry, plan: &PatternPlan) -> Result<Self, TracerError> {
+        let field = PupilField::new(plan.size(), plan.diameter(), plan.seed())?;
+        let stack = if plan.is_as_printed() {
+            Stack::AsPrinted(BilinearStack::generate(&field, plan.half_period())?, field)
+        } else {
+            Stack::Derived(SpeckleStack::generate(&field, plan.path())?)
+        };
+        Ok(Self {
+            geometry,
+            slices_per_diameter: plan.slices_per_diameter(),
+            half_period: plan.half_period(),
+            stack,
+        })
+    }
+}

@@ -1,0 +1,102 @@
+//! A minimal reference path tracer that shows how laser beams, speckle and its decorrelation meet.
+//!
+//! A scene of surfaces, lasers and lamps is seen by a camera with a real lens and sensor. Light that
+//! goes from a laser over *one* surface into the camera is coherent: each camera sample of it is
+//! multiplied by the speckle pattern at its place in the image. All other light is left as it is.
+//!
+//! # Conventions
+//!
+//! - Lengths are in metres, powers in watts, radiances in W/(m² sr), all in `f64`; images are `f32`.
+//! - Image points are in pixels, x to the right and y down; the image is upright.
+//! - The first frame is the reference that later frames' speckle has moved and changed from.
+//! - The same seed gives the same bits for any number of threads.
+//!
+//! # Main types
+//!
+//! [`read_scene`] makes a [`Scene`] of a file; [`SpecklePlan`] chooses the patterns and says why,
+//! [`SpeckleModel`] generates them, and [`render_frame`] renders a [`Frame`] of layers.
+//!
+//! # Scope and non-goals
+//!
+//! Flat-shaded meshes, rectangles and spheres; diffuse and rough metallic surfaces; a camera that is
+//! sharp everywhere. Lasers are sampled by next-event estimation only: they do not pass through
+//! mirrors or lenses. Each laser is traced at its own wavelength and lamps are white.
+//!
+//! # Example
+//!
+//! ```
+//! use std::sync::atomic::AtomicBool;
+//!
+//! use tem00_tracer::{RenderOptions, SpeckleModel, SpecklePlan, parse_scene, render_frame};
+//!
+//! let scene = parse_scene(
+//!     r#"
+//!     [camera]
+//!     position = ["0 mm", "0 mm", "300 mm"]
+//!     look_at = ["0 mm", "0 mm", "0 mm"]
+//!     focal_length = "25 mm"
+//!     f_number = 8
+//!     pixel_pitch = "3.45 um"
+//!     resolution = [32, 32]
+//!
+//!     [[laser]]
+//!     wavelength = "650 nm"
+//!     power = "1 mW"
+//!     position = ["100 mm", "0 mm", "300 mm"]
+//!     look_at = ["0 mm", "0 mm", "0 mm"]
+//!     spot = { waist_radius = "0.1 mm" }
+//!
+//!     [[surface]]
+//!     rectangle = { centre = [0, 0, 0], normal = [0, 0, 1], size = ["20 mm", "20 mm"] }
+//!     "#,
+//!     std::path::Path::new("."),
+//! )?;
+//! let options = RenderOptions { samples_per_pixel: 4, ..RenderOptions::default() };
+//! let plan = SpecklePlan::new(&scene, options.formulas, options.seed)?;
+//! let speckle = SpeckleModel::generate(&scene, &plan)?;
+//!
+//! let frame = render_frame(&scene, Some(&speckle), 0, &options, |_| (), &AtomicBool::new(false))?;
+//!
+//! // The whole spot is in the image.
+//! assert!((frame.lasers[0].power_on_target / 1e-3 - 1.0).abs() < 0.02);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod camera;
+mod error;
+mod film;
+mod integrator;
+mod intersector;
+mod lamp;
+mod laser;
+mod material;
+mod mesh;
+mod mesh_file;
+mod metal;
+mod ray;
+mod render;
+mod sampler;
+mod scene;
+mod scene_file;
+mod shape;
+mod speckle;
+
+pub use camera::{Camera, CameraDescription, MAXIMUM_PIXELS};
+pub use error::TracerError;
+pub use film::{Frame, LaserLayers};
+pub use intersector::Intersector;
+pub use lamp::Lamp;
+pub use laser::{BeamShape, Laser, LaserDescription};
+pub use material::{BsdfSample, Material};
+pub use mesh::{MeshError, TriangleMesh};
+pub use mesh_file::read_mesh;
+pub use metal::Metal;
+pub use ray::{Frame as LocalFrame, Ray};
+pub use render::{Formulas, RenderError, RenderOptions, render_frame};
+pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface};
+pub use scene_file::{SceneError, parse_scene, read_scene};
+pub use shape::{Hit, Rectangle, Shape, Sphere};
+pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
+
+/// The beam types that a scene is described with.
+pub use tem00_beam::{FanGeometry, LineProfile};

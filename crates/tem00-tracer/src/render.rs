@@ -1,0 +1,236 @@
+use core::{
+    error, fmt,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::{
+    Camera, Frame, Intersector, Lamp, Scene, Shape, SpeckleModel, TracerError,
+    film::{self, Pixel, Row},
+    integrator::Integrator,
+    sampler::{Sampler, Strata},
+};
+
+/// Which formulas a render uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Formulas {
+    /// The physics as it was derived and checked for this project.
+    #[default]
+    Derived,
+    /// The formulas as printed in Bergmann et al. 2016, with their errors, for comparison.
+    AsPrinted,
+}
+
+/// How a frame is rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RenderOptions {
+    /// The number of camera samples per pixel, at least 1.
+    pub samples_per_pixel: u32,
+    /// The seed of the camera samples.
+    pub seed: u64,
+    /// The formulas.
+    pub formulas: Formulas,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self {
+            samples_per_pixel: 16,
+            seed: 0,
+            formulas: Formulas::Derived,
+        }
+    }
+}
+
+/// Why a frame was not rendered.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The caller asked to stop.
+    Cancelled,
+    /// The scene cannot be rendered.
+    Scene(TracerError),
+}
+
+impl fmt::Display for RenderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cancelled => write!(f, "the render was cancelled"),
+            Self::Scene(source) => source.fmt(f),
+        }
+    }
+}
+
+impl error::Error for RenderError {}
+
+impl From<TracerError> for RenderError {
+    fn from(source: TracerError) -> Self {
+        Self::Scene(source)
+    }
+}
+
+/// The light that one pass over the image follows.
+#[derive(Clone, Copy, Debug)]
+enum Pass {
+    Laser(usize),
+    Lamps,
+}
+
+impl Scene {
+    /// Returns the camera as it stands in `frame`.
+    pub fn camera_at(&self, frame: u32) -> Camera {
+        self.camera
+            .translated(f64::from(frame) * self.camera_displacement_per_frame)
+    }
+
+    /// Returns the shapes as they stand in `frame`: the surfaces, then the area lamps.
+    pub fn shapes_at(&self, frame: u32) -> Vec<Shape> {
+        let surfaces = self.surfaces.iter().map(|surface| {
+            surface
+                .shape
+                .translated(f64::from(frame) * surface.displacement_per_frame)
+        });
+        let lamps = self.lamps.iter().filter_map(|lamp| match lamp {
+            Lamp::Area { rectangle, .. } => Some(Shape::Rectangle(*rectangle)),
+            Lamp::Point { .. } => None,
+        });
+        surfaces.chain(lamps).collect()
+    }
+
+    /// Returns the number of camera samples that one frame takes, over all its sources of light.
+    pub fn samples_per_frame(&self, samples_per_pixel: u32) -> u64 {
+        (self.camera.width() * self.camera.height()) as u64
+            * u64::from(samples_per_pixel)
+            * self.passes().len() as u64
+    }
+
+    fn passes(&self) -> Vec<Pass> {
+        let lasers = (0..self.lasers.len()).map(Pass::Laser);
+        let lamps = (!self.lamps.is_empty()).then_some(Pass::Lamps);
+        lasers.chain(lamps).collect()
+    }
+}
+
+/// Renders one frame, on the threads of the current rayon pool.
+///
+/// Without a `speckle` model every speckle factor is 1. `progress` is told, from any thread, the
+/// number of camera samples done since its last call; once `cancel` is set, the render stops at the
+/// next row. The result has the same bits for any number of threads.
+///
+/// # Errors
+///
+/// Returns [`RenderError::Cancelled`] if `cancel` was set before the end, and an error if there are
+/// no samples or the geometry cannot be built.
+pub fn render_frame(
+    scene: &Scene,
+    speckle: Option<&SpeckleModel>,
+    frame: u32,
+    options: &RenderOptions,
+    progress: impl Fn(u64) + Sync,
+    cancel: &AtomicBool,
+) -> Result<Frame, RenderError> {
+    if options.samples_per_pixel == 0 {
+        return Err(TracerError::OutOfRange {
+            parameter: "samples_per_pixel",
+            value: 0.0,
+            allowed: "at least 1",
+        }
+        .into());
+    }
+    let intersector = Intersector::build(&scene.shapes_at(frame))?;
+    let integrator = Integrator {
+        scene,
+        camera: scene.camera_at(frame),
+        intersector: &intersector,
+        speckle,
+        formulas: options.formulas,
+        frame,
+    };
+    let (mut lasers, mut lamps) = (Vec::new(), None);
+    for pass in scene.passes() {
+        let rows = render_pass(&integrator, pass, options, &progress, cancel)?;
+        match pass {
+            Pass::Laser(index) => {
+                lasers.push(film::laser_layers(scene.lasers[index].wavelength(), &rows));
+            }
+            Pass::Lamps => lamps = Some(film::lamp_layer(&rows)),
+        }
+    }
+    let dark = || tem00_numerics::Grid::filled(scene.camera.width(), scene.camera.height(), 0.0);
+    Ok(Frame {
+        lasers,
+        lamps: lamps.unwrap_or_else(dark),
+    })
+}
+
+fn render_pass(
+    integrator: &Integrator<'_>,
+    pass: Pass,
+    options: &RenderOptions,
+    progress: &(impl Fn(u64) + Sync),
+    cancel: &AtomicBool,
+) -> Result<Vec<Row>, RenderError> {
+    let height = integrator.camera.height();
+    (0..height)
+        .into_par_iter()
+        .map(|y| {
+            if cancel.load(Ordering::Relaxed) {
+                return Err(RenderError::Cancelled);
+            }
+            let row = render_row(integrator, pass, options, y);
+            progress(row.pixels.len() as u64 * u64::from(options.samples_per_pixel));
+            Ok(row)
+        })
+        .collect()
+}
+
+fn render_row(integrator: &Integrator<'_>, pass: Pass, options: &RenderOptions, y: usize) -> Row {
+    let width = integrator.camera.width();
+    let strata = Strata::new(options.samples_per_pixel);
+    let pixels = (0..width)
+        .map(|x| {
+            let stream = stream(integrator, pass, y * width + x);
+            let mut sampler = Sampler::new(options.seed, stream);
+            render_pixel(integrator, pass, strata, (x, y), &mut sampler)
+        })
+        .collect();
+    Row { pixels }
+}
+
+/// Every pixel of every pass of every frame has a stream of random numbers of its own.
+fn stream(integrator: &Integrator<'_>, pass: Pass, pixel: usize) -> u64 {
+    let scene = integrator.scene;
+    let pass = match pass {
+        Pass::Laser(index) => index,
+        Pass::Lamps => scene.lasers.len(),
+    } as u64;
+    let passes = scene.lasers.len() as u64 + 1;
+    (u64::from(integrator.frame) * passes + pass) << 28 | pixel as u64
+}
+
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "an image has at most 2²⁸ pixels"
+)]
+fn render_pixel(
+    integrator: &Integrator<'_>,
+    pass: Pass,
+    strata: Strata,
+    (x, y): (usize, usize),
+    sampler: &mut Sampler,
+) -> Pixel {
+    let samples = strata.columns * strata.rows;
+    let mut mean = Pixel::default();
+    for index in 0..samples {
+        let [u, v] = strata.position(index, sampler.uniform_2d());
+        let image_point = DVec2::new(x as f64 + u, y as f64 + v);
+        let sample = match pass {
+            Pass::Laser(laser) => integrator.laser_sample(laser, image_point, sampler),
+            Pass::Lamps => integrator.lamp_sample(image_point, sampler),
+        };
+        mean.add(&sample, 1.0 / f64::from(samples));
+    }
+    mean
+}

@@ -221,10 +221,17 @@ pub fn wrap_coordinate(x: f64, period: usize) -> (usize, f64) {
     assert!(period > 0, "a period of zero cells");
     assert!(x.is_finite(), "the coordinate {x} is not finite");
     let floor = x.floor();
-    let cell = floor.rem_euclid(period as f64) as usize;
+    let cell = if floor.abs() < WHOLE_I64 {
+        wrap_index(floor as i64, period)
+    } else {
+        floor.rem_euclid(period as f64) as usize
+    };
     // A tiny negative x has x − ⌊x⌋ = 1 after rounding.
     (cell.min(period - 1), (x - floor).min(ALMOST_ONE))
 }
+
+/// Below 2⁶³ every whole `f64` is an `i64`, whose remainder is several times quicker.
+const WHOLE_I64: f64 = 9_223_372_036_854_775_808.0;
 
 /// The largest `f64` below one.
 const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;

@@ -111,16 +111,11 @@ pub(crate) fn unit_phasor(word: u32) -> Complex<f32> {
     let quarter = word.wrapping_add(1 << 29) >> 30;
     let angle = TURN * word.wrapping_sub(quarter << 30) as i32 as f32;
     let (sin, cos) = sin_cos_octant(angle);
-    let (re, im) = if quarter & 1 == 0 {
-        (cos, sin)
-    } else {
-        (-sin, cos)
-    };
-    if quarter & 2 == 0 {
-        Complex::new(re, im)
-    } else {
-        Complex::new(-re, -im)
-    }
+    let odd = quarter & 1 == 1;
+    let (re, im) = if odd { (sin, cos) } else { (cos, sin) };
+    // The real part is negative in the quarters 1 and 2, the imaginary part in 2 and 3.
+    let negate = |x: f32, quarter: u32| f32::from_bits(x.to_bits() ^ (quarter & 2) << 30);
+    Complex::new(negate(re, quarter + 1), negate(im, quarter))
 }
 
 /// Taylor series on [−π/4, π/4]: the first terms left out are 2e−9 (sine) and 2.5e−8 (cosine).

@@ -143,6 +143,8 @@ pub(crate) struct Taps {
     x: [f32; 4],
     y: [f32; 4],
     pub(crate) variance: f32,
+    /// The point, reduced to one period.
+    pub(crate) point: [f64; 2],
 }
 
 impl Taps {
@@ -157,22 +159,33 @@ impl Taps {
             x,
             y,
             variance: variance.at(&x, &y),
+            point: [to_f64(column) + fx, to_f64(row) + fy],
         }
     }
 
+    #[inline]
     pub(crate) fn amplitude(&self, coefficients: &Grid<Complex<f32>>) -> Complex<f32> {
-        let along = |row: usize| -> Complex<f32> {
-            let values = coefficients.row(row);
-            let columns = self.columns.iter().zip(&self.x);
-            columns
-                .map(|(&column, weight)| values[column] * weight)
-                .sum()
-        };
-        self.rows
+        let mut columns = [Complex::new(0.0, 0.0); 4];
+        for (&row, weight) in self.rows.iter().zip(self.y) {
+            let values = self.gather(coefficients.row(row));
+            for (column, value) in columns.iter_mut().zip(values) {
+                *column += value * weight;
+            }
+        }
+        columns
             .iter()
-            .zip(&self.y)
-            .map(|(&row, weight)| along(row) * weight)
+            .zip(self.x)
+            .map(|(c, weight)| c * weight)
             .sum()
+    }
+
+    /// The four values of a row; in one piece unless the taps straddle its ends.
+    #[inline]
+    fn gather(&self, row: &[Complex<f32>]) -> [Complex<f32>; 4] {
+        match row[self.columns[0]..].first_chunk() {
+            Some(values) => *values,
+            None => self.columns.map(|column| row[column]),
+        }
     }
 }
 

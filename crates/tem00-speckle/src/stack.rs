@@ -178,7 +178,7 @@ impl SpeckleStack {
             return f64::from(amplitude.norm_sqr() / taps.variance);
         }
         let next = &self.slices[(index + 1) % self.slices.len()];
-        let common_frame = slice.phase_to_next(x, y, self.size());
+        let common_frame = slice.phase_to_next(taps.point, self.size());
         let next = taps.amplitude(&next.coefficients) * common_frame;
         slice.blend(amplitude, next, fraction) / f64::from(taps.variance)
     }
@@ -228,18 +228,15 @@ impl SpeckleStack {
 }
 
 impl Slice {
-    /// exp(−2πi step·r / Q): from the next slice's own frame to this one's.
+    /// exp(−2πi step·r / Q): from the next slice's own frame to this one's, at r in one period.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a fraction of a turn in units of 2⁻³²"
     )]
-    fn phase_to_next(&self, x: f64, y: f64, size: usize) -> Complex<f32> {
-        let period = to_f64(size);
+    fn phase_to_next(&self, [x, y]: [f64; 2], size: usize) -> Complex<f32> {
         // Steps are whole numbers, so that whole periods of x and y only add whole turns.
-        let x = x.rem_euclid(period);
-        let y = y.rem_euclid(period);
-        let turns = -(self.step[0] * x + self.step[1] * y) / period;
+        let turns = -(self.step[0] * x + self.step[1] * y) / to_f64(size);
         unit_phasor(((turns - turns.floor()) * 4_294_967_296.0) as u32)
     }
 

@@ -7,7 +7,7 @@ use super::section::Section;
 use super::value::Value;
 use crate::{Camera, CameraDescription};
 
-const KEYS: &[&str] = &[
+pub(super) const KEYS: &[&str] = &[
     "position",
     "look_at",
     "up",

@@ -7,11 +7,11 @@ use tem00_beam::{FanGeometry, GaussianBeam, LineProfile};
 use super::error::Problem;
 use super::placement::{Placement, across, rejected};
 use super::quantity::{ANGLE, LENGTH, NUMBER, POWER};
-use super::section::Section;
+use super::section::{Choice, Section};
 use super::value::Value;
 use crate::{BeamShape, Laser, LaserDescription};
 
-const KEYS: &[&str] = &[
+pub(super) const KEYS: &[&str] = &[
     "wavelength",
     "power",
     "position",
@@ -30,6 +30,7 @@ const LINE_KEYS: &[&str] = &[
     "edge",
     "m_squared",
 ];
+pub(super) const SHAPES: &[Choice] = &[("spot", SPOT_KEYS), ("line", LINE_KEYS)];
 const PROFILES: &[(&str, LineProfile)] = &[
     ("gaussian", LineProfile::GaussianTan),
     ("powell", LineProfile::Powell { edge: 0.05 }),
@@ -51,7 +52,7 @@ fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
     )?;
     let placement = Placement::read(section)?;
     let axis = placement.axis();
-    let (kind, beam) = section.one_of("shape", &[("spot", SPOT_KEYS), ("line", LINE_KEYS)])?;
+    let (kind, beam) = section.one_of("shape", SHAPES)?;
     let shape = match kind {
         "spot" => spot(&beam, axis.length())?,
         _ => line(&beam, axis.length(), wavelength)?,

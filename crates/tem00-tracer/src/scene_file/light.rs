@@ -5,8 +5,8 @@ use super::section::{Choice, Section};
 use super::surface::rectangle;
 use crate::Lamp;
 
-const KEYS: &[&str] = &["point", "rectangle"];
-const SHAPES: &[Choice] = &[
+pub(super) const KEYS: &[&str] = &["point", "rectangle"];
+pub(super) const SHAPES: &[Choice] = &[
     ("point", &["position", "power"]),
     ("rectangle", &["centre", "normal", "up", "size", "radiance"]),
 ];

@@ -4,8 +4,8 @@ use super::section::Section;
 use super::value::Value;
 use crate::{RenderSettings, SpeckleSettings};
 
-const RENDER_KEYS: &[&str] = &["samples_per_pixel", "seed", "frames"];
-const SPECKLE_KEYS: &[&str] = &["size", "diameter", "half_period", "memory"];
+pub(super) const RENDER_KEYS: &[&str] = &["samples_per_pixel", "seed", "frames"];
+pub(super) const SPECKLE_KEYS: &[&str] = &["size", "diameter", "half_period", "memory"];
 
 /// The largest pattern size and number of slices: what a memory of a tebibyte could hold.
 const MOST: u64 = 1 << 20;

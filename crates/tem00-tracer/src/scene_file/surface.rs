@@ -10,7 +10,7 @@ use super::section::{Choice, Section};
 use super::value::Value;
 use crate::{Laser, Rectangle, Shape, Sphere, Surface, TriangleMesh, read_mesh};
 
-const KEYS: &[&str] = &[
+pub(super) const KEYS: &[&str] = &[
     "name",
     "displacement_per_frame",
     "rectangle",
@@ -19,7 +19,7 @@ const KEYS: &[&str] = &[
     "lambertian",
     "conductor",
 ];
-const SHAPES: &[Choice] = &[
+pub(super) const SHAPES: &[Choice] = &[
     ("rectangle", &["centre", "normal", "up", "size"]),
     ("sphere", &["centre", "radius"]),
     ("mesh", &["file", "unit", "scale", "rotation", "position"]),

@@ -55,6 +55,19 @@ impl<T: Real> Axis<T> {
         self.w0_sq + self.theta_sq * dz * dz
     }
 
+    fn to_row(self) -> [T; 4] {
+        [self.w0_sq, self.theta_sq, self.z0, self.pad]
+    }
+
+    fn from_row([w0_sq, theta_sq, z0, pad]: [T; 4]) -> Self {
+        Self {
+            w0_sq,
+            theta_sq,
+            z0,
+            pad,
+        }
+    }
+
     /// Returns the relative growth of the radius `w'/w`, which is 1/R.
     fn growth_at(&self, z: T) -> T {
         self.theta_sq * (z - self.z0) / self.radius_sq_at(z)
@@ -78,15 +91,20 @@ impl<T: Real> Axis<T> {
 }
 
 /// Rounds the fields of a light to `f32`, unless one of them overflows.
-fn to_single<const N: usize>(fields: [f64; N]) -> Result<[f32; N], BeamError> {
-    let mut rounded = [0.0; N];
-    for (single, field) in rounded.iter_mut().zip(fields) {
-        *single = <f32 as Scalar>::of(field);
-        if !single.is_finite() {
-            return Err(BeamError::SinglePrecision(field));
-        }
+fn to_single(rows: [[f64; 4]; 6]) -> Result<[[f32; 4]; 6], BeamError> {
+    let overflow = |field: &&f64| !<f32 as Scalar>::of(**field).is_finite();
+    match rows.as_flattened().iter().find(overflow) {
+        Some(&field) => Err(BeamError::SinglePrecision(field)),
+        None => Ok(rows.map(|row| row.map(<f32 as Scalar>::of))),
     }
-    Ok(rounded)
+}
+
+fn row<T: Real>([x, y, z]: [T; 3], w: T) -> [T; 4] {
+    [x, y, z, w]
+}
+
+fn first_three<T: Real>([x, y, z, _]: [T; 4]) -> [T; 3] {
+    [x, y, z]
 }
 
 /// Checks that `f32` holds all digits of the quantities that a light divides by.

@@ -2,7 +2,9 @@ use super::emitter::{Emitter, larger};
 use super::frame::Frame;
 use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
 use super::record::RayPdf;
-use super::{Axis, DEFAULT_CUTOFF, Placement, check_digits, checked_power, to_single};
+use super::{
+    Axis, DEFAULT_CUTOFF, Placement, check_digits, checked_power, first_three, row, to_single,
+};
 use crate::normal::{normal_density, standard_normal};
 use crate::profile::SlopeDensity;
 use crate::real::Real;
@@ -10,7 +12,7 @@ use crate::{BeamError, LaserLine};
 
 /// A laser line in a scene, prepared for a renderer.
 ///
-/// A plain struct of 24 scalars, six rows of four, whose layout suits a GPU buffer. Its fields are
+/// A plain struct of 24 scalars, six rows of four as a GPU buffer wants them. Its fields are
 /// public: [`place`](LineLight::place) checks its arguments, whoever writes the fields keeps them
 /// meaningful. All lengths share one unit, metres unless the caller uses another throughout.
 ///
@@ -129,64 +131,38 @@ impl LineLight<f64> {
         let peak = self.power * self.slope_density().at(0.0) / self.apex_offset * across;
         let (y, source) = (self.y, self.source_radius);
         check_digits([y.w0_sq, y.theta_sq, source, self.sigma, peak])?;
-        Ok(LineLight::from_array(to_single(self.to_array())?))
+        Ok(LineLight::from_rows(to_single(self.to_rows())?))
     }
 }
 
 impl<T: Real> LineLight<T> {
-    /// Returns the 24 fields in the order of memory.
-    pub fn to_array(&self) -> [T; 24] {
-        let Self { origin: o, ex, .. } = self;
-        let Self { ey, ez, y, pad, .. } = self;
+    /// Returns the fields in the order of memory, as six rows of four.
+    pub fn to_rows(&self) -> [[T; 4]; 6] {
         [
-            o[0],
-            o[1],
-            o[2],
-            self.power, //
-            ex[0],
-            ex[1],
-            ex[2],
-            self.cutoff, //
-            ey[0],
-            ey[1],
-            ey[2],
-            self.apex_offset, //
-            ez[0],
-            ez[1],
-            ez[2],
-            self.source_radius, //
-            y.w0_sq,
-            y.theta_sq,
-            y.z0,
-            y.pad, //
-            self.flat,
-            self.sigma,
-            pad[0],
-            pad[1],
+            row(self.origin, self.power),
+            row(self.ex, self.cutoff),
+            row(self.ey, self.apex_offset),
+            row(self.ez, self.source_radius),
+            self.y.to_row(),
+            [self.flat, self.sigma, self.pad[0], self.pad[1]],
         ]
     }
 
-    /// Creates a light from its 24 fields in the order of memory.
-    pub fn from_array(fields: [T; 24]) -> Self {
-        let f = |i: usize| fields[i];
+    /// Creates a light from its fields in the order of memory, as six rows of four.
+    pub fn from_rows([origin, ex, ey, ez, y, profile]: [[T; 4]; 6]) -> Self {
         Self {
-            origin: [f(0), f(1), f(2)],
-            power: f(3),
-            ex: [f(4), f(5), f(6)],
-            cutoff: f(7),
-            ey: [f(8), f(9), f(10)],
-            apex_offset: f(11),
-            ez: [f(12), f(13), f(14)],
-            source_radius: f(15),
-            y: Axis {
-                w0_sq: f(16),
-                theta_sq: f(17),
-                z0: f(18),
-                pad: f(19),
-            },
-            flat: f(20),
-            sigma: f(21),
-            pad: [f(22), f(23)],
+            origin: first_three(origin),
+            power: origin[3],
+            ex: first_three(ex),
+            cutoff: ex[3],
+            ey: first_three(ey),
+            apex_offset: ey[3],
+            ez: first_three(ez),
+            source_radius: ez[3],
+            y: Axis::from_row(y),
+            flat: profile[0],
+            sigma: profile[1],
+            pad: [profile[2], profile[3]],
         }
     }
 

@@ -4,7 +4,9 @@ use super::emitter::{Emitter, larger, secant};
 use super::frame::Frame;
 use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
 use super::record::RayPdf;
-use super::{Axis, DEFAULT_CUTOFF, Placement, check_digits, checked_power, to_single};
+use super::{
+    Axis, DEFAULT_CUTOFF, Placement, check_digits, checked_power, first_three, row, to_single,
+};
 use crate::gaussian::is_coordinate;
 use crate::normal::{normal_density, standard_normal};
 use crate::real::Real;
@@ -12,7 +14,7 @@ use crate::{BeamError, GaussianBeam};
 
 /// A Gaussian beam in a scene, prepared for a renderer.
 ///
-/// A plain struct of 24 scalars, six rows of four, whose layout suits a GPU buffer. Its fields are
+/// A plain struct of 24 scalars, six rows of four as a GPU buffer wants them. Its fields are
 /// public: [`place`](SpotLight::place) checks its arguments, whoever writes the fields keeps them
 /// meaningful. All lengths share one unit, metres unless the caller uses another throughout.
 ///
@@ -117,63 +119,36 @@ impl SpotLight<f64> {
         let peak = FRAC_2_PI * self.power / (self.x.w0_sq * self.y.w0_sq).sqrt();
         let [x, y] = [self.x, self.y];
         check_digits([x.w0_sq, x.theta_sq, y.w0_sq, y.theta_sq, peak])?;
-        Ok(SpotLight::from_array(to_single(self.to_array())?))
+        Ok(SpotLight::from_rows(to_single(self.to_rows())?))
     }
 }
 
 impl<T: Real> SpotLight<T> {
-    /// Returns the 24 fields in the order of memory.
-    pub fn to_array(&self) -> [T; 24] {
-        let Self { origin: o, ex, .. } = self;
-        let Self { ey, ez, x, y, .. } = self;
+    /// Returns the fields in the order of memory, as six rows of four.
+    pub fn to_rows(&self) -> [[T; 4]; 6] {
         [
-            o[0],
-            o[1],
-            o[2],
-            self.power, //
-            ex[0],
-            ex[1],
-            ex[2],
-            self.cutoff, //
-            ey[0],
-            ey[1],
-            ey[2],
-            self.pad_ey, //
-            ez[0],
-            ez[1],
-            ez[2],
-            self.pad_ez, //
-            x.w0_sq,
-            x.theta_sq,
-            x.z0,
-            x.pad, //
-            y.w0_sq,
-            y.theta_sq,
-            y.z0,
-            y.pad,
+            row(self.origin, self.power),
+            row(self.ex, self.cutoff),
+            row(self.ey, self.pad_ey),
+            row(self.ez, self.pad_ez),
+            self.x.to_row(),
+            self.y.to_row(),
         ]
     }
 
-    /// Creates a light from its 24 fields in the order of memory.
-    pub fn from_array(fields: [T; 24]) -> Self {
-        let f = |i: usize| fields[i];
-        let axis = |i: usize| Axis {
-            w0_sq: f(i),
-            theta_sq: f(i + 1),
-            z0: f(i + 2),
-            pad: f(i + 3),
-        };
+    /// Creates a light from its fields in the order of memory, as six rows of four.
+    pub fn from_rows([origin, ex, ey, ez, x, y]: [[T; 4]; 6]) -> Self {
         Self {
-            origin: [f(0), f(1), f(2)],
-            power: f(3),
-            ex: [f(4), f(5), f(6)],
-            cutoff: f(7),
-            ey: [f(8), f(9), f(10)],
-            pad_ey: f(11),
-            ez: [f(12), f(13), f(14)],
-            pad_ez: f(15),
-            x: axis(16),
-            y: axis(20),
+            origin: first_three(origin),
+            power: origin[3],
+            ex: first_three(ex),
+            cutoff: ex[3],
+            ey: first_three(ey),
+            pad_ey: ey[3],
+            ez: first_three(ez),
+            pad_ez: ez[3],
+            x: Axis::from_row(x),
+            y: Axis::from_row(y),
         }
     }
 }

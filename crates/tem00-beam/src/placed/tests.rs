@@ -71,13 +71,13 @@ fn lights_can_be_shared_between_threads() {
 }
 
 #[test]
-fn arrays_hold_the_fields_in_the_order_of_memory() {
-    let numbers: [f64; 24] = core::array::from_fn(|i| i as f64);
-    let spot = SpotLight::from_array(numbers);
-    let line = LineLight::from_array(numbers);
-    let bits = numbers.map(f64::to_bits);
-    assert_eq!(spot.to_array().map(f64::to_bits), bits, "spot");
-    assert_eq!(line.to_array().map(f64::to_bits), bits, "line");
+fn rows_hold_the_fields_in_the_order_of_memory() {
+    let numbers = core::array::from_fn(|i| core::array::from_fn(|j| (4 * i + j) as f64));
+    let spot = SpotLight::from_rows(numbers);
+    let line = LineLight::from_rows(numbers);
+    let bits = |rows: [[f64; 4]; 6]| rows.map(|row| row.map(f64::to_bits));
+    assert_eq!(bits(spot.to_rows()), bits(numbers), "spot");
+    assert_eq!(bits(line.to_rows()), bits(numbers), "line");
     let checks = [
         (spot.power, offset_of!(SpotLight<f64>, power)),
         (spot.cutoff, offset_of!(SpotLight<f64>, cutoff)),

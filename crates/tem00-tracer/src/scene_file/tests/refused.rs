@@ -344,6 +344,15 @@ fn unreadable_files_are_refused_by_name() {
 }
 
 #[test]
+fn long_values_are_cut_between_characters() {
+    let long = format!("\"{}\"", "µ".repeat(100));
+    let error = parse(&with("\"0.5 mm\"", &long)).unwrap_err();
+    // The quotation mark and 59 characters.
+    let cut = format!("got \"{}…", "µ".repeat(59));
+    assert!(error.message().ends_with(&cut), "{error}");
+}
+
+#[test]
 fn errors_point_at_the_bytes_that_are_wrong() {
     let text = with("\"5 mW\"", "\"−5 mW\"");
     let error = parse(&text).unwrap_err();

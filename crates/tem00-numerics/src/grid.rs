@@ -231,7 +231,7 @@ pub fn wrap_coordinate(x: f64, period: usize) -> (usize, f64) {
 }
 
 /// Below 2⁶³ every whole `f64` is an `i64`, whose remainder is several times quicker.
-const WHOLE_I64: f64 = 9_223_372_036_854_775_808.0;
+const WHOLE_I64: f64 = (1_u64 << 63) as f64;
 
 /// The largest `f64` below one.
 const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
@@ -299,6 +299,14 @@ mod tests {
             // x carries 12 digits before the point: 1e12 · 2⁻⁵³ ≈ 1.1e−4 of absolute rounding.
             prop_assert!((turns - turns.round()).abs() < 2.5e-4, "{turns} turns");
         }
+    }
+
+    #[test]
+    fn huge_coordinates_keep_their_remainder() {
+        // 2⁷⁰ = 16¹⁷ · 4, and 16 ≡ 1 modulo 5.
+        let x = 2.0_f64.powi(70);
+        assert_eq!(wrap_coordinate(x, 5), (4, 0.0));
+        assert_eq!(wrap_coordinate(-x, 5), (1, 0.0));
     }
 
     #[test]

@@ -626,6 +626,18 @@ mod tests {
     }
 
     #[test]
+    fn coordinate_and_correlation_are_inverse_to_each_other() {
+        for path in [circle(6), straight(6)] {
+            let stack = stack(64, 32, path);
+            for u in [0.0, 0.3, 1.0, 2.5, 5.0] {
+                let back = stack.coordinate_of(stack.correlation_at(u));
+                // γ is known to 2⁻⁵³ and its slope at u = 5 is some 1e−3.
+                assert!((back - u).abs() < 1e-10, "{path:?}: {u} became {back}");
+            }
+        }
+    }
+
+    #[test]
     fn correlations_without_a_coordinate_go_to_the_ends() {
         for (path, end) in [
             (circle(6), 6.0),

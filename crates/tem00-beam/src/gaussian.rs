@@ -481,6 +481,14 @@ mod tests {
     }
 
     #[test]
+    fn flux_is_zero_where_the_irradiance_vanishes() {
+        // At the waist's side, x / R alone would overflow.
+        let beam = GaussianBeam::from_waist(1e-29, 1e-29).unwrap();
+        let far = DVec3::new(1e300, 0.0, beam.rayleigh_range());
+        assert_eq!(beam.flux_per_watt(far), DVec3::ZERO, "{far}");
+    }
+
+    #[test]
     fn constructor_rejects_values_that_are_not_lengths() {
         for bad in [0.0, -1.0, 1e-31, 1e31, f64::NAN, f64::INFINITY] {
             assert!(

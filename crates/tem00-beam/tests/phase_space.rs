@@ -40,6 +40,10 @@ fn line(profile: LineProfile) -> (LaserLine, LineLight<f64>) {
         apex_offset: 2e-3,
         focus_distance: 0.2,
     };
+    line_of(fan, profile)
+}
+
+fn line_of(fan: FanGeometry, profile: LineProfile) -> (LaserLine, LineLight<f64>) {
     let focus = GaussianBeam::from_waist(WAVELENGTH, 50e-6).expect("a valid beam");
     let line = LaserLine::new(focus, fan, profile).expect("a valid line");
     let light = LineLight::place(&line, &placement(), POWER).expect("a valid light");
@@ -146,6 +150,37 @@ fn rays_of_a_line_reproduce_its_thickness() {
             assert!(
                 (mean_square - 1.0).abs() < SIGMAS * (2.0 / n).sqrt(),
                 "{profile:?}, r = {r}: {mean_square}"
+            );
+        }
+    }
+}
+
+#[test]
+fn rays_of_a_wide_fan_pass_apex_and_waist_within_diffraction() {
+    const COUNT: usize = 100_000;
+    let n = COUNT as f64;
+    let fan = FanGeometry {
+        fan_angle: 120_f64.to_radians(),
+        apex_offset: 0.3,
+        focus_distance: 0.2,
+    };
+    for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
+        let (line, light) = line_of(fan, profile);
+        let axes = axes(light.ex, light.ey, light.ez);
+        let [mut at_apex, mut at_waist] = [0.0; 2];
+        for ray in rays(&light, COUNT) {
+            let (p, s) = crossing(axes, &ray, 0.0);
+            let sec = 1_f64.hypot(s.x);
+            let b = (p.x - fan.apex_offset * s.x) / sec;
+            let along = (p.x * s.x + fan.apex_offset) / sec;
+            let y = p.y + s.y / sec * (line.waist_slant_distance() - along);
+            at_apex += (2.0 * b / line.source_radius()).powi(2) / n;
+            at_waist += (2.0 * y / line.focus().waist_radius()).powi(2) / n;
+        }
+        for mean_square in [at_apex, at_waist] {
+            assert!(
+                (mean_square - 1.0).abs() < SIGMAS * (2.0 / n).sqrt(),
+                "{profile:?}: {at_apex}, {at_waist}"
             );
         }
     }

@@ -346,6 +346,10 @@ fn single_precision_is_refused_where_it_cannot_hold_the_light() {
         "w₀² underflows"
     );
     assert!(
+        !accepted(beam_of(1e-6, 1e10), &placement(), 1e39),
+        "the power overflows"
+    );
+    assert!(
         !accepted(beam(), &placement(), 1e32),
         "the irradiance overflows"
     );

@@ -26,7 +26,12 @@ fn displaced_sphere() -> TriangleMesh {
             PI * (f64::from(j) + 0.5) / f64::from(ROWS + 1),
         );
         let radius = 1.0 + 0.05 * (13.0 * phi).sin() * (17.0 * theta).sin();
-        radius * DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
+        radius
+            * DVec3::new(
+                theta.sin() * phi.cos(),
+                theta.sin() * phi.sin(),
+                theta.cos(),
+            )
     };
     let vertices = (0..=ROWS)
         .flat_map(|j| (0..COLUMNS).map(move |i| vertex(i, j)))
@@ -79,7 +84,10 @@ fn intersections(criterion: &mut Criterion) {
     let shapes = [Shape::Mesh(displaced_sphere())];
     let intersector = Intersector::build(&shapes).expect("a valid scene");
     let mut group = criterion.benchmark_group("rays, one thread");
-    for (name, rays) in [("coherent", coherent_rays()), ("scattered", scattered_rays())] {
+    for (name, rays) in [
+        ("coherent", coherent_rays()),
+        ("scattered", scattered_rays()),
+    ] {
         group.throughput(Throughput::Elements(rays.len() as u64));
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
@@ -121,7 +129,10 @@ fn renders(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(
         scene.samples_per_frame(options.samples_per_pixel),
     ));
-    for (name, speckle) in [("laser line", None), ("laser line with speckle", Some(&model))] {
+    for (name, speckle) in [
+        ("laser line", None),
+        ("laser line with speckle", Some(&model)),
+    ] {
         group.bench_function(name, |bencher| {
             let cancel = AtomicBool::new(false);
             bencher.iter(|| render_frame(&scene, speckle, 0, &options, |_| (), &cancel));

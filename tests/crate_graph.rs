@@ -103,7 +103,10 @@ fn every_crate_of_the_workspace_has_its_place_in_the_graph() {
         .map(|entry| entry.expect("a readable folder").file_name())
         .map(|name| name.to_string_lossy().into_owned())
         .collect();
-    let placed = ALLOWED.iter().map(|(name, ..)| (*name).to_owned()).collect();
+    let placed = ALLOWED
+        .iter()
+        .map(|(name, ..)| (*name).to_owned())
+        .collect();
     assert_eq!(found, placed, "crates in the workspace and in the graph");
 }
 

@@ -81,7 +81,10 @@ fn contrast_is_that_of_a_sum_of_finitely_many_phasors() {
             / PATTERNS as f64;
         // The contrast² of one pattern spreads by 1.53/C; four standard errors of the mean.
         let spread = contrast_squared_spread(field.effective_diameter()) / (PATTERNS as f64).sqrt();
-        assert!((mean - expected).abs() < 4.0 * spread, "C = {diameter}: {mean} | {expected}");
+        assert!(
+            (mean - expected).abs() < 4.0 * spread,
+            "C = {diameter}: {mean} | {expected}"
+        );
         // Without the 1/N the difference would show at C = 16, N = 197.
         if diameter == 16 {
             assert!((1.0 - expected) > 0.004, "1/N = {}", 1.0 - expected);
@@ -114,6 +117,9 @@ fn autocovariance_is_that_of_the_pupil() {
         let expected = field.amplitude_correlation([x as f64, y as f64]).powi(2);
         // Four standard errors, and the 1/N ≈ 1.2e−3 by which a sample mean lowers all lags.
         let tolerance = 4.0 * (variance / PATTERNS as f64).sqrt() + 2e-3;
-        assert!((mean - expected).abs() < tolerance, "lag ({x}, {y}): {mean} | {expected}");
+        assert!(
+            (mean - expected).abs() < tolerance,
+            "lag ({x}, {y}): {mean} | {expected}"
+        );
     }
 }

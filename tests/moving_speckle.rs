@@ -50,15 +50,24 @@ fn the_pattern_moves_by_exactly_the_image_displacement() {
     // The magnification is 1/11, so the surface moves by 6.588 and −2.899 pixels.
     let in_pixels = displacement / LENS.pixel_pitch;
     let expected = DVec2::new(0.25e-3, -0.11e-3) / 11.0 / 3.45e-6;
-    assert!((in_pixels - expected).length() < 1e-9, "{in_pixels} | {expected}");
+    assert!(
+        (in_pixels - expected).length() < 1e-9,
+        "{in_pixels} | {expected}"
+    );
     for i in 0..50 {
         let pixel = DVec2::new(0.37 * f64::from(i), 100.0 - 1.71 * f64::from(i));
         let before = intensity(pixel, DVec2::ZERO);
         let after = intensity(pixel + in_pixels, displacement);
         // Rounding of the coordinates, 1e−14, and of the single-precision weights.
-        assert!((after - before).abs() < 1e-5, "at {pixel}: {before}, then {after}");
+        assert!(
+            (after - before).abs() < 1e-5,
+            "at {pixel}: {before}, then {after}"
+        );
         let unmoved = intensity(pixel, displacement);
-        assert!((unmoved - before).abs() > 1e-5, "the pattern stands still at {pixel}");
+        assert!(
+            (unmoved - before).abs() > 1e-5,
+            "the pattern stands still at {pixel}"
+        );
     }
 }
 
@@ -136,7 +145,10 @@ fn rendered_speckle_moves_with_the_surface_and_decorrelates() {
             "{pixels:?}: {measured} | {expected}"
         );
         let still = correlation(&frames, [0, 0]);
-        assert!(still.abs() < TOLERANCE, "{pixels:?}: {still} without following the motion");
+        assert!(
+            still.abs() < TOLERANCE,
+            "{pixels:?}: {still} without following the motion"
+        );
     }
 }
 

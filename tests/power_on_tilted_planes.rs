@@ -82,7 +82,10 @@ fn a_spot_brings_its_power_to_every_plane() {
             // A tilted plane is reached at other distances, where the waist matters less or more.
             let power = power_on(&light, &plane, apex, [1.4 * slope; 2]);
             let error = power / POWER - 1.0;
-            assert!(error.abs() < TOLERANCE, "tilt {tilt}°, azimuth {azimuth}: {error:e}");
+            assert!(
+                error.abs() < TOLERANCE,
+                "tilt {tilt}°, azimuth {azimuth}: {error:e}"
+            );
         }
     }
 }

@@ -5,9 +5,7 @@ use std::{path::Path, sync::atomic::AtomicBool};
 use tem00::{
     beam::GaussianBeam,
     statistics::t_test_mean,
-    tracer::{
-        Frame, RenderOptions, Scene, SpeckleModel, SpecklePlan, parse_scene, render_frame,
-    },
+    tracer::{Frame, RenderOptions, Scene, SpeckleModel, SpecklePlan, parse_scene, render_frame},
 };
 
 const SEEDS: u64 = 20;
@@ -69,7 +67,11 @@ fn the_target_receives_the_power_of_the_beam() {
             .map(|seed| render(&scene, false, seed).lasers[0].power_on_target)
             .collect();
         let test = t_test_mean(&power, POWER).expect("renders with noise");
-        assert!(test.p_value > SIGNIFICANCE, "at {incidence}°: p = {:e}, {power:?}", test.p_value);
+        assert!(
+            test.p_value > SIGNIFICANCE,
+            "at {incidence}°: p = {:e}, {power:?}",
+            test.p_value
+        );
     }
 }
 
@@ -127,7 +129,11 @@ fn speckle_moves_light_about_but_keeps_its_power() {
         })
         .collect();
     let test = t_test_mean(&ratio, 1.0).expect("renders with speckle");
-    assert!(test.p_value > SIGNIFICANCE, "p = {:e}, {ratio:?}", test.p_value);
+    assert!(
+        test.p_value > SIGNIFICANCE,
+        "p = {:e}, {ratio:?}",
+        test.p_value
+    );
     let spread = ratio.iter().map(|r| (r - 1.0).powi(2)).sum::<f64>() / SEEDS as f64;
     assert!(spread > 1e-4, "speckle leaves no trace: {ratio:?}");
 }

@@ -79,7 +79,10 @@ fn opposite_slices_are_uncorrelated() {
             let a = slice(&stack, index as f64);
             let b = slice(&stack, (index + HALF_PERIOD) as f64);
             let correlation = pearson_correlation(&a, &b).expect("bright patterns");
-            assert!(correlation.abs() < tolerance(1), "slice {index}: {correlation}");
+            assert!(
+                correlation.abs() < tolerance(1),
+                "slice {index}: {correlation}"
+            );
             let law = stack.correlation_between(index, index + HALF_PERIOD);
             // The rounding of the centres to the lattice leaves a sliver of a lens at most.
             assert!(law < 1e-3, "slice {index}: {law}");
@@ -112,7 +115,11 @@ fn looked_up_intensity_is_exponential_at_any_fraction() {
             }
         }
         let test = kolmogorov_smirnov(&samples, exponential_cumulative).expect("enough samples");
-        assert!(test.p_value > 1e-3, "at {fraction:?}: p = {:e}", test.p_value);
+        assert!(
+            test.p_value > 1e-3,
+            "at {fraction:?}: p = {:e}",
+            test.p_value
+        );
     }
 }
 
@@ -133,5 +140,8 @@ fn scattered_look_ups_have_mean_and_contrast_one() {
     // Exponential: var I = 1, var I² = 24 − 4 = 20; four standard errors.
     let scale = 4.0 / f64::from(LOOK_UPS).sqrt();
     assert!((mean - 1.0).abs() < scale, "mean {mean}");
-    assert!((second - 2.0).abs() < scale * 20_f64.sqrt(), "second moment {second}");
+    assert!(
+        (second - 2.0).abs() < scale * 20_f64.sqrt(),
+        "second moment {second}"
+    );
 }

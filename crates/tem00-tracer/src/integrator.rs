@@ -215,6 +215,7 @@ impl Integrator<'_> {
     fn speckle_factor(&self, laser: usize, pixel: DVec2, vertex: &Vertex<'_>) -> f64 {
         self.speckle.map_or(1.0, |model| {
             model.factor(
+                self.scene,
                 laser,
                 &SpecklePoint {
                     pixel,

@@ -123,6 +123,10 @@ impl Scene {
 ///
 /// Returns [`RenderError::Cancelled`] if `cancel` was set before the end, and an error if there are
 /// no samples or the geometry cannot be built.
+///
+/// # Panics
+///
+/// Panics unless `speckle` has a pattern for every laser, as a model of the same scene has.
 pub fn render_frame(
     scene: &Scene,
     speckle: Option<&SpeckleModel>,
@@ -139,6 +143,10 @@ pub fn render_frame(
         }
         .into());
     }
+    assert!(
+        speckle.is_none_or(|model| model.pattern_count() >= scene.lasers.len()),
+        "the speckle model belongs to another scene"
+    );
     let intersector = Intersector::build(&scene.shapes_at(frame))?;
     let integrator = Integrator {
         scene,

@@ -3,12 +3,11 @@ use tem00_decorrelation::{CameraFrame, DecorrelationError, ImagingGeometry, pape
 use tem00_speckle::{PupilField, SpeckleStack, paper::BilinearStack};
 
 use super::{MovedPoint, PatternPlan, SpecklePlan, upright};
-use crate::{Scene, TracerError};
+use crate::{Laser, Scene, TracerError};
 
 /// The speckle patterns of a scene, ready to be looked up.
 #[derive(Clone, Debug)]
 pub struct SpeckleModel {
-    scene: Scene,
     patterns: Vec<Pattern>,
 }
 
@@ -54,22 +53,30 @@ impl SpeckleModel {
                 Pattern::generate(scene.camera.imaging_geometry(laser.wavelength())?, pattern)
             })
             .collect::<Result<_, _>>()?;
-        Ok(Self {
-            scene: scene.clone(),
-            patterns,
-        })
+        Ok(Self { patterns })
     }
 
-    /// Returns the speckle factor of laser `index` at a surface point, in `frame`.
-    pub(crate) fn factor(&self, index: usize, point: &SpecklePoint, frame: u32) -> f64 {
+    /// Returns the number of patterns: one for each laser of the scene.
+    pub(crate) fn pattern_count(&self) -> usize {
+        self.patterns.len()
+    }
+
+    /// Returns the speckle factor of laser `index` at a surface point, in `frame` of the scene.
+    pub(crate) fn factor(
+        &self,
+        scene: &Scene,
+        index: usize,
+        point: &SpecklePoint,
+        frame: u32,
+    ) -> f64 {
         let pattern = &self.patterns[index];
-        let still = frame == 0 || !self.scene.moves();
+        let still = frame == 0 || !scene.moves();
         match &pattern.stack {
             Stack::Derived(stack) => {
                 let (pixel, shift) = if still {
                     (point.pixel, 0.0)
                 } else {
-                    self.reference(index, point, frame)
+                    pattern.reference(scene, &scene.lasers[index], point, frame)
                 };
                 let c = pattern.geometry.pattern_coordinate(
                     upright(pixel),
@@ -82,7 +89,7 @@ impl SpeckleModel {
                 let (displacement, u) = if still {
                     (DVec2::ZERO, 0.0)
                 } else {
-                    self.reference_as_printed(index, point, frame)
+                    pattern.reference_as_printed(scene, &scene.lasers[index], point, frame)
                 };
                 let c = printed::pattern_coordinate(
                     &pattern.geometry,
@@ -93,65 +100,6 @@ impl SpeckleModel {
                 stack.intensity_at(c.x, c.y, u)
             }
         }
-    }
-
-    /// Returns where the surface point stood in the image of the first frame, in pixels, and how
-    /// far the pupil has moved over its speckle since, in diameters.
-    fn reference(&self, index: usize, point: &SpecklePoint, frame: u32) -> (DVec2, f64) {
-        let scene = &self.scene;
-        let before = point.position - scene.surface_displacement(point.surface, frame);
-        // A point that the first camera could not have seen brings speckle of its own.
-        let pixel = scene.camera.project(before).unwrap_or(point.pixel);
-        let shift = MovedPoint::new(scene, &scene.lasers[index], point, frame)
-            .map_or(1.0, |moved| moved.shift(&self.patterns[index].geometry));
-        (pixel, shift)
-    }
-
-    /// Returns the displacement in the image and the slice coordinate by the printed formulas.
-    fn reference_as_printed(&self, index: usize, point: &SpecklePoint, frame: u32) -> (DVec2, f64) {
-        let pattern = &self.patterns[index];
-        // Where a printed formula has no value, the pattern counts as decorrelated.
-        self.printed_motion(index, point, frame)
-            .ok()
-            .flatten()
-            .unwrap_or((DVec2::ZERO, pattern.half_period as f64))
-    }
-
-    fn printed_motion(
-        &self,
-        index: usize,
-        point: &SpecklePoint,
-        frame: u32,
-    ) -> Result<Option<(DVec2, f64)>, DecorrelationError> {
-        let (scene, pattern) = (&self.scene, &self.patterns[index]);
-        let camera = scene.camera_at(frame);
-        let axes = CameraFrame::from_axes(camera.axes())?;
-        let (surface_axes, angles) = printed::EulerAngles::between(&axes, point.normal)?;
-        let to_surface = surface_axes.transpose();
-        let to_emitter = scene.lasers[index].description().position - point.position;
-        let emitter = printed::Emitter {
-            direction: to_surface * to_emitter.normalize_or_zero(),
-            distance: to_emitter.length(),
-        };
-        let surface = scene.surface_displacement(point.surface, frame);
-        let moved = f64::from(frame) * scene.camera_displacement_per_frame;
-        let in_image = printed::image_displacement(
-            pattern.geometry.magnification(),
-            angles,
-            to_surface * (surface - moved),
-        );
-        let distance = camera.position().distance(point.position);
-        let in_pupil = printed::pupil_displacement(angles, emitter, distance, to_surface * surface);
-        Ok(in_pupil.map(|in_pupil| {
-            let of_camera = DVec2::new(moved.dot(axes.right()), moved.dot(axes.up()));
-            let u = printed::slice_coordinate(
-                &pattern.geometry,
-                printed::relative_pupil_displacement(of_camera, in_pupil),
-                (surface - moved).dot(axes.towards_camera()),
-                pattern.half_period,
-            );
-            (in_image, u)
-        }))
     }
 }
 
@@ -169,5 +117,74 @@ impl Pattern {
             half_period: plan.half_period(),
             stack,
         })
+    }
+
+    /// Returns where the surface point stood in the image of the first frame, in pixels, and how
+    /// far the pupil has moved over its speckle since, in diameters.
+    fn reference(
+        &self,
+        scene: &Scene,
+        laser: &Laser,
+        point: &SpecklePoint,
+        frame: u32,
+    ) -> (DVec2, f64) {
+        let before = point.position - scene.surface_displacement(point.surface, frame);
+        // A point that the first camera could not have seen brings speckle of its own.
+        let pixel = scene.camera.project(before).unwrap_or(point.pixel);
+        let shift = MovedPoint::new(scene, laser, point, frame)
+            .map_or(1.0, |moved| moved.shift(&self.geometry));
+        (pixel, shift)
+    }
+
+    /// Returns the displacement in the image and the slice coordinate by the printed formulas.
+    fn reference_as_printed(
+        &self,
+        scene: &Scene,
+        laser: &Laser,
+        point: &SpecklePoint,
+        frame: u32,
+    ) -> (DVec2, f64) {
+        // Where a printed formula has no value, the pattern counts as decorrelated.
+        self.printed_motion(scene, laser, point, frame)
+            .ok()
+            .flatten()
+            .unwrap_or((DVec2::ZERO, self.half_period as f64))
+    }
+
+    fn printed_motion(
+        &self,
+        scene: &Scene,
+        laser: &Laser,
+        point: &SpecklePoint,
+        frame: u32,
+    ) -> Result<Option<(DVec2, f64)>, DecorrelationError> {
+        let camera = scene.camera_at(frame);
+        let axes = CameraFrame::from_axes(camera.axes())?;
+        let (surface_axes, angles) = printed::EulerAngles::between(&axes, point.normal)?;
+        let to_surface = surface_axes.transpose();
+        let to_emitter = laser.description().position - point.position;
+        let emitter = printed::Emitter {
+            direction: to_surface * to_emitter.normalize_or_zero(),
+            distance: to_emitter.length(),
+        };
+        let surface = scene.surface_displacement(point.surface, frame);
+        let moved = f64::from(frame) * scene.camera_displacement_per_frame;
+        let in_image = printed::image_displacement(
+            self.geometry.magnification(),
+            angles,
+            to_surface * (surface - moved),
+        );
+        let distance = camera.position().distance(point.position);
+        let in_pupil = printed::pupil_displacement(angles, emitter, distance, to_surface * surface);
+        Ok(in_pupil.map(|in_pupil| {
+            let of_camera = DVec2::new(moved.dot(axes.right()), moved.dot(axes.up()));
+            let u = printed::slice_coordinate(
+                &self.geometry,
+                printed::relative_pupil_displacement(of_camera, in_pupil),
+                (surface - moved).dot(axes.towards_camera()),
+                self.half_period,
+            );
+            (in_image, u)
+        }))
     }
 }

@@ -244,27 +244,28 @@ impl PupilField {
 
     /// Returns the complex amplitude behind the pupil displaced by `offset` lattice points.
     pub fn field_at(&self, offset: [i64; 2]) -> SpeckleField {
-        let values = self.amplitude(offset, None, &mut Fft2Scratch::default());
+        let zero = Complex::new(0.0, 0.0);
+        let mut values = Grid::filled(self.size(), self.size(), zero);
+        self.amplitude_into(&mut values, offset, None, &mut Fft2Scratch::default());
         SpeckleField::new(values, self.speckle_size())
     }
 
     /// The amplitude, centred on zero frequency; `filter` weighs the pupil points of each axis.
-    pub(crate) fn amplitude(
+    pub(crate) fn amplitude_into(
         &self,
+        values: &mut Grid<Complex<f32>>,
         offset: [i64; 2],
         filter: Option<&[Vec<f32>; 2]>,
         scratch: &mut Fft2Scratch,
-    ) -> Grid<Complex<f32>> {
+    ) {
         let [half_width, half_height] = self.mask.half_extent();
         let centre_x = self.centring_phase(half_width);
         let centre_y = self.centring_phase(half_height);
         let aperture = self.aperture(offset, filter);
-        let mut values = Grid::filled(self.size(), self.size(), Complex::new(0.0, 0.0));
         self.transform
-            .forward_into(&aperture, &mut values, scratch, |x, y, value| {
+            .forward_into(&aperture, values, scratch, |x, y, value| {
                 value * centre_x[x] * centre_y[y]
             });
-        values
     }
 
     pub(crate) const fn mask(&self) -> &Mask {

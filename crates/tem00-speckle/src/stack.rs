@@ -91,20 +91,16 @@ impl SpeckleStack {
     /// [`SlicePath::memory_bytes`] is refused.
     pub fn generate(field: &PupilField, path: SlicePath) -> Result<Self, SpeckleError> {
         path.check()?;
-        let count = path.slice_count();
-        let memory = SpeckleError::Memory {
-            bytes: path.memory_bytes(field.size()),
-        };
-        let mut slices = Vec::new();
-        slices.try_reserve_exact(count).map_err(|_| memory)?;
         let filters = prefilters(field);
         let mut scratch = Fft2Scratch::default();
-        for index in 0..count {
+        let mut slices = Vec::new();
+        for (index, mut coefficients) in reserve(path, field.size())?.into_iter().enumerate() {
             let centre = path.centre(index, field);
-            let next = path.centre((index + 1) % count, field);
+            let next = path.centre((index + 1) % path.slice_count(), field);
             let step = nearest_shift(centre, next, field.size());
+            field.amplitude_into(&mut coefficients, centre, Some(&filters), &mut scratch);
             slices.push(Slice {
-                coefficients: field.amplitude(centre, Some(&filters), &mut scratch),
+                coefficients,
                 centre,
                 #[expect(clippy::cast_precision_loss, reason = "lattice points are small")]
                 step: step.map(|s| s as f64),
@@ -225,6 +221,25 @@ impl SpeckleStack {
         };
         self.law.coordinate_of(overlap)
     }
+}
+
+/// Empty slices along `path`, or an error if there is no room for all of them.
+fn reserve(path: SlicePath, size: usize) -> Result<Vec<Grid<Complex<f32>>>, SpeckleError> {
+    let refused = SpeckleError::Memory {
+        bytes: path.memory_bytes(size),
+    };
+    // All the room first: it is only used, and taken from the machine, from the next loop on.
+    let room = |_| {
+        let mut values = Vec::new();
+        values.try_reserve_exact(size * size).map(|()| values)
+    };
+    let rooms: Result<Vec<_>, _> = (0..path.slice_count()).map(room).collect();
+    let zero = Complex::new(0.0, 0.0);
+    let slice = |mut values: Vec<_>| {
+        values.resize(size * size, zero);
+        Grid::from_vec(size, size, values).map_err(|_| refused)
+    };
+    rooms.map_err(|_| refused)?.into_iter().map(slice).collect()
 }
 
 impl Slice {
@@ -666,6 +681,15 @@ mod tests {
                 refused
             );
         }
+    }
+
+    #[test]
+    fn memory_that_no_machine_has_is_refused() {
+        let path = circle(SlicePath::MAX_HALF_PERIOD);
+        // 512 TiB, more than an address has bits for.
+        let bytes = path.memory_bytes(PupilField::MAX_SIZE);
+        let refused = reserve(path, PupilField::MAX_SIZE);
+        assert_eq!(refused, Err(SpeckleError::Memory { bytes }));
     }
 
     #[test]

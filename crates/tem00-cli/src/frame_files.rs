@@ -87,13 +87,13 @@ fn layers_of<'a>(frame: &'a Frame, [red, green, blue]: &'a [Grid<f32>; 3]) -> Ve
     let total = Layer {
         name: "picture".into(),
         wavelength: None,
-        comments: "all light in linear sRGB, in W/(m² sr) at the strongest component".into(),
+        comments: "all light in linear sRGB, in W/(m^2 sr)".into(),
         channels: vec![("R", red), ("G", green), ("B", blue)],
     };
     let lasers = frame.lasers.iter().enumerate().map(|(index, laser)| Layer {
         name: format!("laser_{index}"),
         wavelength: Some(laser.wavelength),
-        comments: "radiance in W/(m² sr); speckle is a factor with mean 1".into(),
+        comments: "radiance in W/(m^2 sr); speckle is a factor with mean 1".into(),
         channels: vec![
             ("coherent_before", &laser.coherent_before),
             ("speckle", &laser.speckle),
@@ -104,7 +104,7 @@ fn layers_of<'a>(frame: &'a Frame, [red, green, blue]: &'a [Grid<f32>; 3]) -> Ve
     let lamps = Layer {
         name: "lamps".into(),
         wavelength: None,
-        comments: "radiance of the lamps in W/(m² sr)".into(),
+        comments: "radiance of the lamps in W/(m^2 sr)".into(),
         channels: vec![("radiance", &frame.lamps)],
     };
     core::iter::once(total)

@@ -19,6 +19,8 @@ pub(crate) struct Layer<'a> {
     /// and with it the bytes of the file.
     pub(crate) wavelength: Option<f64>,
     /// What the layer holds, in words. Stored as the standard attribute `comments`.
+    ///
+    /// Readers disagree on the encoding of other characters than ASCII: they become `?`.
     pub(crate) comments: String,
     /// The channels by name.
     pub(crate) channels: Vec<(&'static str, &'a Grid<f32>)>,
@@ -44,7 +46,7 @@ pub(crate) fn write_exr(writer: impl Write + Seek, layers: &[Layer<'_>]) -> Resu
 
 fn part(layer: &Layer<'_>, size: (usize, usize)) -> exr::prelude::Layer<AnyChannels<FlatSamples>> {
     let mut attributes = LayerAttributes::named(&*layer.name);
-    attributes.comments = Some(Text::from(&*layer.comments));
+    attributes.comments = Some(Text::from(&*ascii(&layer.comments)));
     attributes.software_name = Some(Text::from(concat!("tem00 ", env!("CARGO_PKG_VERSION"))));
     if let Some(wavelength) = layer.wavelength {
         let value = AttributeValue::F64(wavelength);
@@ -65,6 +67,11 @@ fn part(layer: &Layer<'_>, size: (usize, usize)) -> exr::prelude::Layer<AnyChann
         Encoding::SMALL_LOSSLESS,
         AnyChannels::sort(channels.collect()),
     )
+}
+
+fn ascii(text: &str) -> String {
+    let printable = |character: char| character.is_ascii().then_some(character);
+    text.chars().map(|c| printable(c).unwrap_or('?')).collect()
 }
 
 /// Reads one channel, or the mean of R, G and B.
@@ -193,7 +200,7 @@ mod tests {
             Layer {
                 name: "laser 0".into(),
                 wavelength: Some(650e-9),
-                comments: "W/(m² sr)".into(),
+                comments: "λ".into(),
                 channels: vec![("speckle", &grids[1]), ("incoherent", &grids[2])],
             },
         ];

@@ -275,21 +275,29 @@ fn without_speckle_the_factor_is_one() {
     );
 }
 
+/// Returns what a preview says about its exposure.
+fn exposure(preview: &Path) -> String {
+    let file = fs::File::open(preview).expect("a preview");
+    let reader = png::Decoder::new(std::io::BufReader::new(file)).read_info();
+    let reader = reader.expect("a PNG");
+    let mut texts = reader.info().utf8_text.iter();
+    let chunk = texts.find(|chunk| chunk.keyword == "Exposure");
+    chunk
+        .expect("the exposure is stated")
+        .get_text()
+        .expect("UTF-8")
+}
+
 #[test]
 fn frames_are_numbered_and_share_one_exposure() {
     let folder = folder();
+    // The laser leaves the image, so that the second frame alone would be exposed differently.
     let moving = SCENE.replace(
         "[render]",
-        "displacement_per_frame = [\"0.05 mm\", 0, 0]\n[render]\nframes = 2",
+        "displacement_per_frame = [\"10.2 mm\", 0, 0]\n[render]\nframes = 2",
     );
     fs::write(folder.path().join("a.toml"), moving).expect("written");
-    assert_code(
-        &run(
-            folder.path(),
-            "render a.toml -o . --white-level 1e3 --paper",
-        ),
-        0,
-    );
+    assert_code(&run(folder.path(), "render a.toml -o ."), 0);
     let names = [
         "a.toml",
         "frame_0000.exr",
@@ -299,11 +307,28 @@ fn frames_are_numbered_and_share_one_exposure() {
         "summary.json",
     ];
     assert_eq!(files(folder.path()), names);
+    let [first, second] =
+        ["frame_0000.png", "frame_0001.png"].map(|name| exposure(&folder.path().join(name)));
+    assert!(first.contains("W/(m² sr)"), "{first}");
+    assert_eq!(first, second);
+}
+
+#[test]
+fn what_was_asked_for_is_in_the_summary() {
+    let folder = scene_folder();
+    let line = "render a.toml -o . --white-level 1e3 --paper --spp 2 --seed 9 --threads 1";
+    assert_code(&run(folder.path(), line), 0);
+    assert!(
+        exposure(&folder.path().join("a.png")).contains("1e3 W"),
+        "the exposure is stated"
+    );
     let summary = fs::read(folder.path().join("summary.json")).expect("a summary");
     let summary: Value = serde_json::from_slice(&summary).expect("JSON");
     assert_eq!(summary["exposure"]["white_level_w_per_m2_sr"], 1e3);
     assert_eq!(summary["formulas"], "as printed in Bergmann et al. 2016");
-    assert_eq!(summary["frames"].as_array().map(Vec::len), Some(2));
+    assert_eq!(summary["samples_per_pixel"], 2);
+    assert_eq!(summary["seed"], 9);
+    assert_eq!(summary["threads"], 1);
 }
 
 #[test]

@@ -6,12 +6,12 @@ use glam::{DVec2, DVec3};
 use tem00::{
     decorrelation::{
         CameraFrame, ImageOrientation, ImagingGeometry, LensData, LineOfSight, Motion,
-        SpeckleMotion, SurfacePoint, Wavefront,
+        SpeckleMotion, SurfacePoint, Wavefront, axial_correlation,
     },
-    numerics::Grid,
+    numerics::{Grid, circular_path_overlap},
     speckle::{PupilField, SlicePath, SpeckleStack},
     statistics::pearson_correlation,
-    tracer::{RenderOptions, SpeckleModel, SpecklePlan, parse_scene, render_frame},
+    tracer::{Formulas, RenderOptions, SpeckleModel, SpecklePlan, parse_scene, render_frame},
 };
 
 const LENS: LensData = LensData {
@@ -71,8 +71,19 @@ fn the_pattern_moves_by_exactly_the_image_displacement() {
     }
 }
 
-/// Two frames of a plate that moves by `surface`, in metres: their speckle layers.
+/// The speckle layers of two frames of a plate that moves by `surface`, in metres.
 fn frames(surface: DVec3, camera: DVec3, seed: u64) -> [Grid<f32>; 2] {
+    frames_through(LENS, Formulas::Derived, surface, camera, seed)
+}
+
+/// The same through any lens and by either set of formulas.
+fn frames_through(
+    lens: LensData,
+    formulas: Formulas,
+    surface: DVec3,
+    camera: DVec3,
+    seed: u64,
+) -> [Grid<f32>; 2] {
     let [a, c] = [surface, camera].map(|v| format!("[{}, {}, {}]", v.x, v.y, v.z));
     // The waist lies on the plate, where the wavefront is plane.
     let text = format!(
@@ -82,9 +93,9 @@ fn frames(surface: DVec3, camera: DVec3, seed: u64) -> [Grid<f32>; 2] {
         [camera]
         position = [0, 0, 0.3]
         look_at = [0, 0, 0]
-        focal_length = 25e-3
-        f_number = 8
-        pixel_pitch = "3.45 um"
+        focal_length = {focal_length}
+        f_number = {f_number}
+        pixel_pitch = {pixel_pitch}
         resolution = [128, 128]
         displacement_per_frame = {c}
 
@@ -98,13 +109,16 @@ fn frames(surface: DVec3, camera: DVec3, seed: u64) -> [Grid<f32>; 2] {
         [[surface]]
         displacement_per_frame = {a}
         rectangle = {{ centre = [0, 0, 0], normal = [0, 0, 1], size = [0.04, 0.04] }}
-        "#
+        "#,
+        focal_length = lens.focal_length,
+        f_number = lens.f_number,
+        pixel_pitch = lens.pixel_pitch,
     );
     let scene = parse_scene(&text, Path::new(".")).expect("a valid scene");
     let options = RenderOptions {
         samples_per_pixel: 16,
         seed,
-        ..RenderOptions::default()
+        formulas,
     };
     let plan = SpecklePlan::new(&scene, options.formulas, seed).expect("a small pattern");
     let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
@@ -163,15 +177,47 @@ fn a_camera_that_moves_along_with_the_surface_sees_the_same_speckle() {
 
 #[test]
 fn motion_along_the_line_of_sight_decorrelates_by_defocus() {
+    // A wide pupil loses correlation before the image grows: by 0.1 % here, 0.08 pixels at the edge.
+    let lens = LensData {
+        f_number: 1.4,
+        pixel_pitch: 0.6e-6,
+        ..LENS
+    };
+    let geometry = ImagingGeometry::from_lens(lens).expect("a lens");
+    for (part, seed) in [(0.25, 6), (0.5, 7)] {
+        let dz = part * geometry.axial_decorrelation_length();
+        let surface = DVec3::new(0.0, 0.0, dz);
+        let frames = frames_through(lens, Formulas::Derived, surface, DVec3::ZERO, seed);
+        let measured = correlation(&frames, [0, 0]);
+        let expected = axial_correlation(part);
+        assert!(
+            (measured - expected).abs() < TOLERANCE,
+            "{part} of the way to the first zero: {measured} | {expected}"
+        );
+    }
+}
+
+#[test]
+fn as_printed_speckle_moves_with_the_surface_but_decorrelates_too_fast() {
+    // Two signs of the paper cancel for motion in the plane; its linear map of the displacement to
+    // the slices does not give the correlation of the overlap.
     let geometry = ImagingGeometry::from_lens(LENS).expect("a lens");
-    // A quarter of the way to the first zero.
-    let dz = 0.25 * geometry.axial_decorrelation_length();
-    let surface = DVec3::new(0.0, 0.0, dz);
-    let measured = correlation(&frames(surface, DVec3::ZERO, 6), [0, 0]);
-    let expected = speckle_motion(surface).correlation;
-    // The image also grows by dz/L = 4 %, which shifts speckle near the edges: only a bound.
+    let pixel = LENS.pixel_pitch * 11.0;
+    let pixels = [14, 16];
+    let [dx, dy] = pixels.map(|p: usize| p as f64 * pixel);
+    let surface = DVec3::new(dx, dy, 0.0);
+    let frames = frames_through(LENS, Formulas::AsPrinted, surface, DVec3::ZERO, 8);
+    let measured = correlation(&frames, pixels);
+    // The printed pair takes the emitter, 0.25 m away, for the centre of the wavefront.
+    let shift = surface.length() * (1.0 + 0.3 / 0.25) / geometry.pupil_diameter();
+    let printed = circular_path_overlap(shift).powi(2);
     assert!(
-        measured < expected + TOLERANCE && measured > 0.05,
-        "{measured} | {expected}"
+        (measured - printed).abs() < TOLERANCE,
+        "{measured} | {printed}"
+    );
+    let theory = speckle_motion(surface).correlation;
+    assert!(
+        theory - printed > 2.0 * TOLERANCE,
+        "{theory} | {printed}: too close to tell"
     );
 }

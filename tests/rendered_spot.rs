@@ -15,13 +15,14 @@ const POWER: f64 = 2e-3;
 /// A correct renderer fails one of these tests with this probability.
 const SIGNIFICANCE: f64 = 1e-3;
 
-/// A spot that comes in at an angle, seen by a camera that looks straight at the plate.
-fn scene(incidence: f64) -> Scene {
+/// A spot that comes in at an angle, in degrees, to a plate that is seen at another.
+fn scene(incidence: f64, view: f64) -> Scene {
     let (sin, cos) = incidence.to_radians().sin_cos();
+    let (view_sin, view_cos) = view.to_radians().sin_cos();
     let text = format!(
         r#"
         [camera]
-        position = [0, 0, 0.3]
+        position = [0, {camera_y}, {camera_z}]
         look_at = [0, 0, 0]
         focal_length = 25e-3
         f_number = 8
@@ -41,6 +42,8 @@ fn scene(incidence: f64) -> Scene {
         "#,
         x = 0.25 * sin,
         z = 0.25 * cos,
+        camera_y = 0.3 * view_sin,
+        camera_z = 0.3 * view_cos,
     );
     parse_scene(&text, Path::new(".")).expect("a valid scene")
 }
@@ -61,15 +64,15 @@ fn render(scene: &Scene, speckle: bool, seed: u64) -> Frame {
 
 #[test]
 fn the_target_receives_the_power_of_the_beam() {
-    for incidence in [0.0, 30.0, 60.0] {
-        let scene = scene(incidence);
+    for (incidence, view) in [(0.0, 0.0), (30.0, 0.0), (60.0, 0.0), (30.0, 40.0)] {
+        let scene = scene(incidence, view);
         let power: Vec<f64> = (0..SEEDS)
             .map(|seed| render(&scene, false, seed).lasers[0].power_on_target)
             .collect();
         let test = t_test_mean(&power, POWER).expect("renders with noise");
         assert!(
             test.p_value > SIGNIFICANCE,
-            "at {incidence}°: p = {:e}, {power:?}",
+            "at {incidence}°, seen at {view}°: p = {:e}, {power:?}",
             test.p_value
         );
     }
@@ -78,7 +81,7 @@ fn the_target_receives_the_power_of_the_beam() {
 #[test]
 fn the_spot_has_the_radius_and_the_radiance_of_the_beam() {
     let incidence = 30.0_f64;
-    let scene = scene(incidence);
+    let scene = scene(incidence, 0.0);
     let camera = &scene.camera;
     // One pixel on the plate, in metres.
     let pixel = 3.45e-6 * 0.3 / camera.image_distance();
@@ -120,7 +123,7 @@ fn the_spot_has_the_radius_and_the_radiance_of_the_beam() {
 
 #[test]
 fn speckle_moves_light_about_but_keeps_its_power() {
-    let scene = scene(0.0);
+    let scene = scene(0.0, 0.0);
     let ratio: Vec<f64> = (0..SEEDS)
         .map(|seed| {
             let layers = render(&scene, true, seed).lasers.remove(0);
@@ -140,7 +143,7 @@ fn speckle_moves_light_about_but_keeps_its_power() {
 
 #[test]
 fn a_render_has_the_same_bits_for_any_number_of_threads() {
-    let scene = scene(30.0);
+    let scene = scene(30.0, 0.0);
     let with_threads = |threads| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)

@@ -203,7 +203,7 @@ fn as_printed_speckle_moves_with_the_surface_but_decorrelates_too_fast() {
     // the slices does not give the correlation of the overlap.
     let geometry = ImagingGeometry::from_lens(LENS).expect("a lens");
     let pixel = LENS.pixel_pitch * 11.0;
-    let pixels = [14, 16];
+    let pixels = [5, 4];
     let [dx, dy] = pixels.map(|p: usize| p as f64 * pixel);
     let surface = DVec3::new(dx, dy, 0.0);
     let frames = frames_through(LENS, Formulas::AsPrinted, surface, DVec3::ZERO, 8);

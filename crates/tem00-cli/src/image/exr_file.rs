@@ -252,6 +252,7 @@ mod tests {
             total.own_attributes.other.is_empty(),
             "the total has no wavelength"
         );
+        assert_eq!(laser.own_attributes.comments, Some(Text::from("?")));
         assert_eq!(laser.own_attributes.layer_name, Some(Text::from("laser 0")));
         assert_eq!(
             laser.own_attributes.other.get(&Text::from("wavelength_m")),

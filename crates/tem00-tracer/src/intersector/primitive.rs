@@ -85,10 +85,8 @@ impl ShearedRay {
             return None;
         }
         let far = middle.abs() + half_chord_square.sqrt();
-        if far == 0.0 {
-            return None;
-        }
-        // The product of both distances is known without cancellation.
+        // The product of both distances is known without cancellation. Where a ray starts as a
+        // tangent both are 0, the quotient is NaN and nothing is found.
         let distance = offset.length();
         let other = (distance - radius) * (distance + radius) / far;
         let (near, far) = if middle > 0.0 {
@@ -139,8 +137,8 @@ impl Primitive {
             }
             Self::Sphere(sphere) => {
                 let distance = ray.sphere(sphere)?;
-                let point = ray.ray.origin + distance * ray.ray.direction;
-                let normal = (point - sphere.centre()).try_normalize()?;
+                let offset = sphere.centre() - ray.ray.origin;
+                let normal = (distance * ray.ray.direction - offset).try_normalize()?;
                 Some((sphere.centre() + sphere.radius() * normal, normal))
             }
         }

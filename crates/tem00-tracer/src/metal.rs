@@ -423,7 +423,7 @@ mod tests {
         (root * angle.cos(), root * angle.sin())
     }
 
-    /// Reflectance from the complex amplitudes of both polarisations (Born and Wolf, §1.5, eq. 21a).
+    /// Reflectance from the complex amplitudes of both polarisations (Born and Wolf, §1.5).
     fn reflectance_from_amplitudes(cosine: f64, index: Complex) -> f64 {
         let c = (cosine, 0.0);
         let square = mul(index, index);

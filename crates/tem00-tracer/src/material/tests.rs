@@ -1,0 +1,352 @@
+use core::f64::consts::PI;
+
+use proptest::prelude::*;
+use tem00_statistics::chi_squared;
+
+use super::*;
+
+const RED: f64 = 650e-9;
+
+fn iron(roughness: f64) -> Material {
+    Material::conductor(Metal::Iron, roughness).unwrap()
+}
+
+/// A metal that reflects everything but 4n/(k² + 1) = 4e−12 of the light.
+fn perfect(roughness: f64) -> Material {
+    Material::conductor(Metal::Custom { n: 1e-6, k: 1e3 }, roughness).unwrap()
+}
+
+fn direction(cosine: f64, azimuth: f64) -> DVec3 {
+    let radius = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
+    DVec3::new(radius * azimuth.cos(), radius * azimuth.sin(), cosine)
+}
+
+/// ∫ f dω over the upper hemisphere, by the midpoint rule in u = (θ/(π/2))^(1/2) and azimuth.
+///
+/// The substitution puts points where lobes around the normal are narrow.
+fn integrate(f: impl Fn(DVec3) -> f64, rings: u32, sectors: u32) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..rings {
+        let u = (f64::from(i) + 0.5) / f64::from(rings);
+        let theta = 0.5 * PI * u * u;
+        let weight = theta.sin() * PI * u;
+        for j in 0..sectors {
+            let azimuth = TAU * (f64::from(j) + 0.5) / f64::from(sectors);
+            sum += weight * f(direction(theta.cos(), azimuth));
+        }
+    }
+    sum * TAU / (f64::from(rings) * f64::from(sectors))
+}
+
+#[test]
+fn lambertian_reflects_its_reflectance() {
+    let material = Material::lambertian(0.37).unwrap();
+    let wo = direction(0.3, 1.0);
+    let albedo = integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, 200, 4);
+    // The midpoint rule errs by h²/24 times the change of the derivative, (1/200)² · π/24 · 4.
+    assert!((albedo - 0.37).abs() < 1e-5, "albedo = {albedo}");
+}
+
+#[test]
+fn nothing_reflects_more_than_it_receives() {
+    for roughness in [0.1, 0.3, 0.6, 1.0] {
+        for cosine in [0.05, 0.3, 0.7, 1.0] {
+            let wo = direction(cosine, 0.4);
+            let material = perfect(roughness);
+            let albedo = integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, 400, 400);
+            // The quadrature of lobes as narrow as α = 0.1 is good to 1e−4 on this grid.
+            assert!(
+                albedo < 1.0 + 1e-4,
+                "α = {roughness}, cos = {cosine}: {albedo}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_roughest_perfect_metal_is_a_lommel_seeliger_surface() {
+    // With α = 1 facets point everywhere alike, D = 1/π and r = 1:
+    // f = 1 / (2π (o + i)), whose albedo is 1 − o ln(1 + 1/o).
+    let material = perfect(1.0);
+    for cosine in [0.1, 0.3, 0.7, 1.0] {
+        let wo = direction(cosine, 0.4);
+        let wi = direction(0.6, 2.5);
+        let closed = 1.0 / (TAU * (cosine + 0.6));
+        let got = material.evaluate(wo, wi, RED);
+        assert!((got / closed - 1.0).abs() < 1e-11, "{got}, not {closed}");
+
+        let albedo = integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, 2000, 4);
+        let closed = 1.0 - cosine * (1.0 / cosine).ln_1p();
+        // The midpoint rule on 400 rings: (1/400)² / 24 · f'' with f'' up to some 30.
+        assert!(
+            (albedo - closed).abs() < 1e-5,
+            "cos = {cosine}: {albedo}, not {closed}"
+        );
+    }
+}
+
+#[test]
+fn a_nearly_smooth_perfect_metal_reflects_nearly_everything() {
+    let wo = direction(1.0, 0.0);
+    let material = perfect(0.1);
+    let albedo = integrate(|wi| material.evaluate(wo, wi, RED) * wi.z, 400, 4);
+    // At normal incidence G₂ ≥ 1 / (1 + α² tan²θ / 4): facets at 10 α lose 20 % and are 1 %.
+    assert!((0.98..1.0 + 1e-4).contains(&albedo), "albedo = {albedo}");
+}
+
+/// Masking alone loses nothing (Heitz 2014, the weak white furnace): drawn from all visible
+/// facets, directions above and below the surface have a total density of 1.
+#[test]
+fn pdf_is_normalised_over_all_that_visible_facets_reflect() {
+    for (roughness, cosine) in [(0.1, 0.9), (0.3, 0.2), (0.6, 0.5), (1.0, 0.1), (1.0, 1.0)] {
+        let wo = direction(cosine, 0.0);
+        let material = iron(roughness);
+        let facets = Ggx { alpha: roughness };
+        let above = integrate(|wi| material.pdf(wo, wi), 500, 500);
+        // The other directions, integrated over the facets: dω = 4 (wo·h) dh.
+        let below = integrate(
+            |facet| {
+                let cosine = wo.dot(facet);
+                let wi = 2.0 * cosine * facet - wo;
+                if cosine <= 0.0 || wi.z > 0.0 {
+                    return 0.0;
+                }
+                4.0 * cosine * facets.reflected_pdf(wo, facet)
+            },
+            500,
+            500,
+        );
+        let total = above + below;
+        // The second integrand ends at a jump, which costs up to one cell in 500.
+        assert!(
+            (total - 1.0).abs() < 2e-3,
+            "α = {roughness}, cos = {cosine}: {total}"
+        );
+    }
+    let lambertian = Material::lambertian(0.5).unwrap();
+    let total = integrate(|wi| lambertian.pdf(DVec3::Z, wi), 200, 4);
+    assert!((total - 1.0).abs() < 1e-4, "lambertian: {total}");
+}
+
+proptest! {
+    #[test]
+    fn light_may_travel_backwards(
+        roughness in 0.01_f64..=1.0,
+        (cos_o, cos_i) in (0.001_f64..=1.0, 0.001_f64..=1.0),
+        (azimuth_o, azimuth_i) in (0.0_f64..6.3, 0.0_f64..6.3),
+        below in any::<bool>(),
+    ) {
+        let side = if below { -1.0 } else { 1.0 };
+        let wo = side * direction(cos_o, azimuth_o);
+        let wi = side * direction(cos_i, azimuth_i);
+        for material in [iron(roughness), Material::lambertian(0.5).unwrap()] {
+            let (there, back) = (material.evaluate(wo, wi, RED), material.evaluate(wi, wo, RED));
+            // The half vector is the same to the bit; cosines with it differ in rounding.
+            prop_assert!((there - back).abs() <= 1e-13 * there, "{there} and {back}");
+            prop_assert!(there > 0.0 && there.is_finite(), "f = {there}");
+        }
+    }
+
+    #[test]
+    fn sample_agrees_with_evaluate_and_pdf(
+        roughness in 0.01_f64..=1.0,
+        cosine in 0.001_f64..=1.0,
+        azimuth in 0.0_f64..6.3,
+        u in 0.0_f64..1.0,
+        v in 0.0_f64..1.0,
+        below in any::<bool>(),
+    ) {
+        let wo = direction(cosine, azimuth) * if below { -1.0 } else { 1.0 };
+        for material in [iron(roughness), Material::lambertian(0.5).unwrap()] {
+            let Some(sample) = material.sample(wo, [u, v], RED) else { continue };
+            let BsdfSample { wi, weight, pdf } = sample;
+            prop_assert!((wi.length() - 1.0).abs() < 1e-13, "|wi| = {}", wi.length());
+            prop_assert!(wi.z * wo.z > 0.0, "wi = {wi}");
+            prop_assert!(weight > 0.0 && weight <= 1.0, "weight = {weight}");
+            // The facet recomputed from wo + wi is off by 1e−16 / (wo·h), and the density
+            // changes by 1/α of that relatively: 1e−14 / α·(wo·h), with both at 1e−3 … 1e−2.
+            let tolerance = 1e-9;
+            let want = material.evaluate(wo, wi, RED) * wi.z.abs() / pdf;
+            prop_assert!((weight / want - 1.0).abs() < tolerance, "{weight}, not {want}");
+            let again = material.pdf(wo, wi);
+            prop_assert!((pdf / again - 1.0).abs() < tolerance, "pdf {pdf}, not {again}");
+        }
+    }
+}
+
+/// Bins over cos θ and azimuth, and one more for the draws that find no direction.
+const RINGS: u32 = 8;
+const SECTORS: u32 = 12;
+
+fn bin(wi: DVec3) -> usize {
+    let ring = (wi.z.abs() * f64::from(RINGS))
+        .floor()
+        .min(f64::from(RINGS - 1));
+    let turn = (wi.y.atan2(wi.x) / TAU).rem_euclid(1.0);
+    let sector = (turn * f64::from(SECTORS))
+        .floor()
+        .min(f64::from(SECTORS - 1));
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small whole number"
+    )]
+    let index = (ring * f64::from(SECTORS) + sector) as usize;
+    index
+}
+
+/// The probability of every bin, by the midpoint rule on 60 × 60 points in each.
+fn expected(material: &Material, wo: DVec3) -> Vec<f64> {
+    const POINTS: u32 = 60;
+    let mut bins = Vec::new();
+    let cell = f64::from(RINGS * POINTS).recip() * TAU / f64::from(SECTORS * POINTS);
+    for ring in 0..RINGS {
+        for sector in 0..SECTORS {
+            let mut sum = 0.0;
+            for i in 0..POINTS {
+                let z = (f64::from(ring * POINTS + i) + 0.5) / f64::from(RINGS * POINTS);
+                for j in 0..POINTS {
+                    let azimuth =
+                        TAU * (f64::from(sector * POINTS + j) + 0.5) / f64::from(SECTORS * POINTS);
+                    let wi = direction(z, azimuth);
+                    sum += material.pdf(wo, wi.with_z(wo.z.signum() * wi.z));
+                }
+            }
+            bins.push(sum * cell);
+        }
+    }
+    bins.push(1.0 - bins.iter().sum::<f64>());
+    bins
+}
+
+/// A plain additive recurrence would be too even for a χ² test; this is `SplitMix64`.
+fn uniforms(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 * (0.5_f64).powi(53)
+    }
+}
+
+#[test]
+fn draws_follow_the_pdf() {
+    const DRAWS: u32 = 60_000;
+    let cases = [
+        (Material::lambertian(0.5).unwrap(), direction(0.5, 0.0)),
+        (iron(0.3), direction(0.7, 0.4)),
+        (iron(0.6), direction(0.2, 2.0)),
+        (iron(1.0), direction(1.0, 0.0)),
+        (iron(0.5), -direction(0.4, 1.0)),
+    ];
+    for (seed, (material, wo)) in (1..).zip(cases) {
+        let probabilities = expected(&material, wo);
+        let mut uniform = uniforms(seed);
+        let mut observed = vec![0_u64; probabilities.len()];
+        for _ in 0..DRAWS {
+            let sample = material.sample(wo, [uniform(), uniform()], RED);
+            observed[sample.map_or(probabilities.len() - 1, |s| bin(s.wi))] += 1;
+        }
+        let expected: Vec<f64> = probabilities
+            .into_iter()
+            .map(|probability| probability.max(0.0) * f64::from(DRAWS))
+            .collect();
+        let outcome = chi_squared(&observed, &expected, 1).unwrap();
+        // A correct sampler fails one of the five tests at a random seed with 5e−4.
+        assert!(outcome.p_value > 1e-4, "{material:?}: {outcome:?}");
+    }
+}
+
+#[test]
+fn mirror_direction_is_brightest_for_smooth_metal() {
+    let material = iron(0.01);
+    let wo = direction(0.8, 0.3);
+    let mirror = DVec3::new(-wo.x, -wo.y, wo.z);
+    // D(0) = 1/(π α²), V = 1/(4 cos²θ) but for α², and the facet sees the light at cos θ.
+    let reflectance = fresnel_reflectance(0.8, Metal::Iron.refractive_index(RED).unwrap());
+    let peak = reflectance / (PI * 1e-4) / (4.0 * 0.64);
+    let got = material.evaluate(wo, mirror, RED);
+    // Masking at α² tan²θ / 4 = 1.4e−5 for each direction is left out above.
+    assert!((got / peak - 1.0).abs() < 4e-5, "{got}, not {peak}");
+}
+
+#[test]
+fn no_light_passes_through_or_along_the_surface() {
+    let along = DVec3::X;
+    for material in [iron(0.3), Material::lambertian(1.0).unwrap()] {
+        for (wo, wi) in [(DVec3::Z, -DVec3::Z), (along, DVec3::Z), (DVec3::Z, along)] {
+            assert!(
+                material.evaluate(wo, wi, RED).abs() < f64::MIN_POSITIVE,
+                "{wo} {wi}"
+            );
+            assert!(material.pdf(wo, wi).abs() < f64::MIN_POSITIVE, "{wo} {wi}");
+        }
+        assert_eq!(
+            material.sample(along, [0.5, 0.5], RED),
+            None,
+            "nothing to draw"
+        );
+    }
+}
+
+#[test]
+fn extreme_uniforms_give_proper_directions() {
+    let largest = 1.0 - f64::EPSILON / 2.0;
+    for roughness in [0.01, 1.0] {
+        for u in [0.0, largest] {
+            for v in [0.0, 0.25, largest] {
+                for wo in [DVec3::Z, direction(1e-9, 0.0), -direction(1e-9, 2.0)] {
+                    for material in [iron(roughness), Material::lambertian(1.0).unwrap()] {
+                        let Some(s) = material.sample(wo, [u, v], RED) else {
+                            continue;
+                        };
+                        assert!(
+                            s.wi.is_finite() && s.weight.is_finite() && s.pdf > 0.0,
+                            "{material:?}, wo = {wo}, u = {u}, v = {v}: {s:?}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn impossible_materials_are_refused() {
+    let refused = |result: Result<Material, TracerError>, name: &str| {
+        assert!(
+            matches!(result, Err(TracerError::OutOfRange { parameter, .. }) if parameter == name),
+            "{name}: {result:?}"
+        );
+    };
+    for reflectance in [-0.1, 1.1, f64::NAN] {
+        refused(Material::lambertian(reflectance), "reflectance");
+    }
+    for roughness in [0.0, 0.0099, 1.01, f64::NAN] {
+        refused(Material::conductor(Metal::Gold, roughness), "roughness");
+    }
+    refused(
+        Material::conductor(Metal::Custom { n: -1.0, k: 1.0 }, 0.3),
+        "n",
+    );
+}
+
+#[test]
+fn metals_say_which_wavelengths_they_know() {
+    assert!(iron(0.3).check_wavelength(RED).is_ok(), "red");
+    let result = iron(0.3).check_wavelength(10.6e-6);
+    assert!(
+        matches!(
+            result,
+            Err(TracerError::OutOfRange {
+                parameter: "wavelength",
+                ..
+            })
+        ),
+        "{result:?}"
+    );
+    let anything = Material::lambertian(0.5).unwrap();
+    assert!(anything.check_wavelength(10.6e-6).is_ok(), "grey is grey");
+}

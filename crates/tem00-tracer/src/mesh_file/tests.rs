@@ -250,6 +250,18 @@ fn text_keeps_double_precision() {
 }
 
 #[test]
+fn scale_is_the_length_of_the_unit() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("inches.obj");
+    fs::write(&path, OBJ).unwrap();
+    for scale in [0.0254, 1.0, 1e-6] {
+        let mesh = read_mesh(&path, scale).unwrap();
+        let (low, high) = (DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 1.5));
+        assert_eq!(mesh.bounds(), (scale * low, scale * high), "scale {scale}");
+    }
+}
+
+#[test]
 fn broken_obj_files_are_explained() {
     for (content, expected) in [
         ("", "the mesh has no triangles"),
@@ -311,6 +323,10 @@ fn broken_stl_files_are_explained() {
             text.replacen("outer", "inner", 1),
             "line 3: expected solid, facet, outer, vertex, \
              endloop, endfacet or endsolid, got \"inner\"",
+        ),
+        (
+            text.clone() + "solid more\n",
+            "line 45: the file ends before \"endsolid\"",
         ),
         (
             text.replace("endsolid pyramid", ""),

@@ -3,6 +3,11 @@
 //! The mesh is a displaced sphere of 262 144 triangles. Coherent rays come from a pinhole, scattered
 //! ones join random points of a sphere around the mesh.
 
+#![expect(
+    clippy::expect_used,
+    reason = "a benchmark has no one to hand an error to"
+)]
+
 use std::{f64::consts::PI, hint::black_box, path::Path, sync::atomic::AtomicBool};
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -14,7 +19,9 @@ use tem00::tracer::{
     parse_scene, render_frame,
 };
 
-const RAYS: usize = 1 << 14;
+/// Rays per image side, and their square.
+const SIDE: usize = 128;
+const RAYS: usize = SIDE * SIDE;
 
 /// A sphere of 512 × 256 quadrilaterals with ripples.
 fn displaced_sphere() -> TriangleMesh {
@@ -48,14 +55,13 @@ fn displaced_sphere() -> TriangleMesh {
 }
 
 fn coherent_rays() -> Vec<Ray> {
-    let side = (RAYS as f64).sqrt() as usize;
     let origin = DVec3::new(0.0, 0.0, 4.0);
-    (0..side * side)
+    (0..RAYS)
         .map(|i| {
-            let at = |k: usize| (k as f64 + 0.5) / side as f64 - 0.5;
+            let at = |k: usize| (k as f64 + 0.5) / SIDE as f64 - 0.5;
             Ray {
                 origin,
-                direction: DVec3::new(0.6 * at(i % side), 0.6 * at(i / side), -1.0).normalize(),
+                direction: DVec3::new(0.6 * at(i % SIDE), 0.6 * at(i / SIDE), -1.0).normalize(),
             }
         })
         .collect()

@@ -1,5 +1,10 @@
 //! Scenes whose radiance is known in closed form: an integrating sphere, and plates under lamps.
 
+#![expect(
+    clippy::expect_used,
+    reason = "a test stops at what it does not expect"
+)]
+
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{

@@ -1,5 +1,10 @@
 //! The arrows between the crates point down, and the physics crates stay light.
 
+#![expect(
+    clippy::expect_used,
+    reason = "a test stops at what it does not expect"
+)]
+
 use std::{collections::BTreeSet, fs, path::Path};
 
 use toml::de::{DeTable, DeValue};

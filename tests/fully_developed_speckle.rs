@@ -4,6 +4,11 @@
 //! The tests are statistical but not flaky: all seeds are fixed. A correct generator fails at a
 //! given seed with the stated probability at most.
 
+#![expect(
+    clippy::expect_used,
+    reason = "a test stops at what it does not expect"
+)]
+
 use proptest::prelude::*;
 use tem00::{
     speckle::{Phasors, Pupil, PupilField},
@@ -15,6 +20,11 @@ use tem00::{
 
 /// The Kolmogorov–Smirnov test assumes independent samples, but neighbouring pixels share a
 /// speckle: only every so many pixels, beyond the first zero of the autocovariance, are taken.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a stride is a few pixels"
+)]
 fn independent_samples(field: &PupilField) -> Vec<f64> {
     let stride = (AIRY_FIRST_ZERO * field.speckle_size()).ceil() as usize;
     decorrelated_samples(field.pattern().values(), stride).expect("a finite pattern")

@@ -1,6 +1,11 @@
 //! Rays drawn from the phase space of a beam reproduce its radius and irradiance at every distance,
 //! and agree with next-event estimation on a tilted surface.
 
+#![expect(
+    clippy::expect_used,
+    reason = "a test stops at what it does not expect"
+)]
+
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use tem00::{
@@ -111,6 +116,11 @@ fn agreement(light: &impl Emitter<f64>, target: &Target, half: [f64; 2], seed: u
     for (point, direction) in rays(light, seed) {
         let t = normal.dot(target.centre - point) / normal.dot(direction);
         let offset = point + t * direction - target.centre;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the bin lies in [0, BINS)"
+        )]
         let bin = |value: f64, half: f64| {
             let bin = ((value / half + 1.0) * 0.5 * BINS as f64).floor();
             (0.0..BINS as f64).contains(&bin).then_some(bin as usize)

@@ -1,6 +1,11 @@
 //! Stacks decorrelate by their closed-form law, and looked-up intensities are as exponential
 //! between the samples as on them.
 
+#![expect(
+    clippy::expect_used,
+    reason = "a test stops at what it does not expect"
+)]
+
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use tem00::{
@@ -18,6 +23,10 @@ fn stack(seed: u64, path: SlicePath) -> SpeckleStack {
     SpeckleStack::generate(&field, path).expect("a small stack")
 }
 
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "patterns are stored in single precision"
+)]
 fn slice(stack: &SpeckleStack, u: f64) -> Grid<f32> {
     Grid::from_fn(SIZE, SIZE, |x, y| {
         stack.intensity_at(x as f64, y as f64, u) as f32

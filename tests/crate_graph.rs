@@ -21,7 +21,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &["tem00-numerics"],
         &["libm", "num-complex", "statrs"],
     ),
-    ("tem00-beam", &[], &["bytemuck", "glam", "libm"]),
+    ("tem00-beam", &[], &["glam", "libm"]),
     (
         "tem00-speckle",
         &["tem00-numerics"],
@@ -43,9 +43,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "rand_chacha",
             "rand_core",
             "rayon",
-            "stl_io",
             "strsim",
-            "tobj",
             "toml",
         ],
     ),

@@ -1,6 +1,6 @@
 //! The command line.
 
-use std::{num::NonZeroUsize, path::PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use tem00_speckle::Pupil;
@@ -54,9 +54,9 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
-    /// Threads to render with; the image does not depend on it [default: all].
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<NonZeroUsize>,
+    /// Threads to render with, 1 to 1024; the image does not depend on it [default: all].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
 
     /// Leave the speckle out.
     #[arg(long)]
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(args.scene, PathBuf::from("a.toml"));
         assert_eq!(args.output, Some(PathBuf::from("d")));
         assert_eq!((args.spp, args.seed), (Some(3), Some(4)));
-        assert_eq!(args.threads, NonZeroUsize::new(2));
+        assert_eq!(args.threads, Some(2));
         assert!(args.no_speckle && args.paper, "both switches are on");
         assert_eq!(args.white_level, Some(1e3));
     }
@@ -246,7 +246,8 @@ mod tests {
     fn bad_values_are_usage_errors_that_name_them() {
         for (line, part) in [
             ("tem00 render a.toml --spp 0", "0"),
-            ("tem00 render a.toml --threads 0", "0"),
+            ("tem00 render a.toml --threads 0", "1..=1024"),
+            ("tem00 render a.toml --threads 1000000", "1..=1024"),
             ("tem00 render a.toml --white-level -1", "-1"),
             ("tem00 render a.toml --white-level=nan", "nan"),
             ("tem00 render a.toml --see 3", "--seed"),

@@ -2,7 +2,6 @@
 
 use std::{
     io::{self, Write},
-    num::NonZeroUsize,
     path::{Path, PathBuf},
     sync::atomic::{AtomicU64, Ordering},
     time::{Duration, Instant},
@@ -237,9 +236,9 @@ impl<'a> Render<'a> {
     }
 }
 
-fn thread_pool(threads: Option<NonZeroUsize>) -> Result<ThreadPool, Failure> {
+fn thread_pool(threads: Option<u16>) -> Result<ThreadPool, Failure> {
     ThreadPoolBuilder::new()
-        .num_threads(threads.map_or(0, NonZeroUsize::get))
+        .num_threads(threads.map_or(0, usize::from))
         .build()
         .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))
 }

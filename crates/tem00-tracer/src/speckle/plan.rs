@@ -338,3 +338,126 @@ fn diameter_for(speckles: f64) -> usize {
 fn diameters_for(shift: f64) -> usize {
     ((1.0 + shift).ceil() as usize).max(2)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::parse_scene;
+
+    /// A plate under a collimated spot; `more` is appended to the scene.
+    fn scene(displacement: &str, more: &str) -> Scene {
+        let text = format!(
+            r#"
+            [render]
+            frames = 2
+            [camera]
+            position = [0, 0, 0.3]
+            resolution = [300, 200]
+            [[laser]]
+            wavelength = "650 nm"
+            power = "1 mW"
+            position = [0, 0, 0.2]
+            spot = {{ waist_radius = "1 mm" }}
+            [[surface]]
+            displacement_per_frame = {displacement}
+            rectangle = {{ size = [0.04, 0.04] }}
+            {more}
+            "#
+        );
+        parse_scene(&text, Path::new(".")).unwrap()
+    }
+
+    fn plan(displacement: &str, more: &str) -> Result<PatternPlan, TracerError> {
+        let plan = SpecklePlan::new(&scene(displacement, more), Formulas::Derived, 0)?;
+        Ok(plan.patterns()[0].clone())
+    }
+
+    #[test]
+    fn nothing_repeats_within_the_image() {
+        let plan = plan("[0, 0, 0]", "").unwrap();
+        // h = λ (1 + m) F with m = 1/11, in pixels of 3.45 µm.
+        let speckle_size = 650e-9 * 12.0 / 11.0 * 8.0 / 3.45e-6;
+        assert!(
+            (plan.speckle_size_in_pixels() / speckle_size - 1.0).abs() < 1e-12,
+            "{plan}"
+        );
+        // 300 pixels hold 182.5 speckles: the next power of two is 256.
+        assert_eq!((plan.diameter(), plan.size()), (256, 512), "{plan}");
+        assert_eq!(plan.path(), SlicePath::Still, "{plan}");
+    }
+
+    #[test]
+    fn motion_widens_the_pattern_and_asks_for_slices() {
+        let plan = plan("[\"4 mm\", 0, 0]", "").unwrap();
+        // 4 mm are 105 pixels: 405 pixels hold 246.6 speckles. The pupil of 3.125 mm is left
+        // behind, so that the path is three diameters long.
+        assert_eq!((plan.diameter(), plan.size()), (256, 768), "{plan}");
+        assert!((plan.largest_shift() - 4.0 / 3.125).abs() < 1e-3, "{plan}");
+        assert_eq!(
+            plan.path(),
+            SlicePath::Straight { half_period: 48 },
+            "{plan}"
+        );
+        assert!((plan.slices_per_diameter() - 32.0).abs() < 1e-12, "{plan}");
+    }
+
+    #[test]
+    fn memory_bounds_the_number_of_slices() {
+        let motion = "[\"0.2 mm\", 0, 0]";
+        let slices = |memory: &str| {
+            let more = format!("[speckle]\nmemory = \"{memory}\"");
+            plan(motion, &more).map(|plan| plan.path().slice_count())
+        };
+        // 512² complex samples are 2 MiB a slice.
+        assert_eq!(slices("128 MiB"), Ok(64));
+        assert_eq!(slices("127 MiB"), Ok(32));
+        assert_eq!(slices("16 MiB"), Ok(8));
+        assert_eq!(
+            slices("15 MiB"),
+            Err(TracerError::PatternMemory {
+                needed: 16 << 20,
+                allowed: 15 << 20
+            })
+        );
+    }
+
+    #[test]
+    fn what_the_scene_asks_for_is_kept_and_said() {
+        let plan = plan("[0, 0, 0]", "[speckle]\nsize = 300\ndiameter = 100").unwrap();
+        assert_eq!((plan.size(), plan.diameter()), (300, 100), "{plan}");
+        let text = plan.to_string();
+        assert!(
+            text.contains("C = 100, LESS than the 182.5 speckles"),
+            "{text}"
+        );
+        assert!(text.contains("as the scene asks"), "{text}");
+    }
+
+    #[test]
+    fn printed_formulas_get_the_circle_of_the_paper() {
+        let scene = scene("[\"0.2 mm\", 0, 0]", "");
+        let plan = SpecklePlan::new(&scene, Formulas::AsPrinted, 0).unwrap();
+        let path = plan.patterns()[0].path();
+        assert_eq!(path, SlicePath::Circle { half_period: 32 }, "{plan}");
+    }
+
+    #[test]
+    fn lasers_have_seeds_of_their_own() {
+        let second = r#"
+            [[laser]]
+            wavelength = "532 nm"
+            power = "1 mW"
+            position = [0.1, 0, 0.2]
+            spot = { waist_radius = "1 mm" }
+        "#;
+        let scene = scene("[0, 0, 0]", second);
+        let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+        let [first, second] = plan.patterns() else {
+            panic!("two lasers have two patterns");
+        };
+        assert_ne!(first.seed(), second.seed());
+        assert!(second.speckle_size_in_pixels() < first.speckle_size_in_pixels());
+    }
+}

@@ -10,6 +10,7 @@ use crate::{
     failure::Failure,
     image::{Layer, write_exr, write_rgb_png},
     preview::Picture,
+    summary::Exposure,
 };
 
 /// Where the files of a frame go.
@@ -38,13 +39,32 @@ impl FramePaths {
 
 /// Returns the picture that the eye would see.
 pub(crate) fn picture_of(frame: &Frame) -> Picture {
+    let mut picture = laser_picture_of(frame);
+    picture.add_white(&frame.lamps);
+    picture
+}
+
+/// Returns the picture without the light of the lamps.
+fn laser_picture_of(frame: &Frame) -> Picture {
     let mut picture = Picture::dark(frame.lamps.width(), frame.lamps.height());
     for laser in &frame.lasers {
         picture.add_laser(&laser.coherent_after, laser.wavelength);
         picture.add_laser(&laser.incoherent, laser.wavelength);
     }
-    picture.add_white(&frame.lamps);
     picture
+}
+
+/// Chooses the white level for the light of the lasers, or for all light if no laser is seen.
+///
+/// A thin line on an object that a lamp lights is few of the pixels: with the lamp's counted, the
+/// line would be burnt out.
+pub(crate) fn automatic_exposure(frame: &Frame) -> Exposure {
+    let lasers = laser_picture_of(frame);
+    if lasers.is_dark() {
+        Exposure::for_all_light(picture_of(frame).automatic_white_level())
+    } else {
+        Exposure::for_laser_light(lasers.automatic_white_level())
+    }
 }
 
 /// Writes the preview with the radiance `white` shown as white.
@@ -118,6 +138,31 @@ mod tests {
     use tem00_tracer::LaserLayers;
 
     use super::*;
+
+    #[test]
+    fn a_bright_lamp_does_not_burn_out_a_thin_line() {
+        let line = Grid::from_fn(100, 100, |_, y| if y == 50 { 3.0 } else { 0.0 });
+        let dark = Grid::filled(100, 100, 0.0);
+        let mut frame = Frame {
+            lasers: vec![LaserLayers {
+                wavelength: 650e-9,
+                coherent_before: line.clone(),
+                speckle: Grid::filled(100, 100, 1.0),
+                coherent_after: line,
+                incoherent: dark.clone(),
+                power_on_target: 1.0,
+            }],
+            lamps: Grid::filled(100, 100, 0.2),
+        };
+        let white = automatic_exposure(&frame).white_level;
+        assert!((white - 3.0).abs() < 1e-6, "white level {white}");
+        frame.lasers[0].coherent_after = dark;
+        let white = automatic_exposure(&frame).white_level;
+        assert!(
+            (white - 0.2).abs() < 1e-6,
+            "white level {white} of the lamp"
+        );
+    }
     use crate::image::read_image;
 
     fn frame() -> Frame {

@@ -65,6 +65,11 @@ impl Picture {
         self.0.map(|pixel| pixel[component])
     }
 
+    /// Returns whether there is no light at all.
+    pub(crate) fn is_dark(&self) -> bool {
+        self.0.values().iter().flatten().all(|&value| value <= 0.0)
+    }
+
     /// Returns the level that the picture should show as white: 99.5 % of the lit pixels lie below
     /// it. A pixel is lit if it exceeds 1 % of the brightest.
     ///

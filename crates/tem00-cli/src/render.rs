@@ -16,8 +16,9 @@ use tem00_tracer::{
 use crate::{
     args::RenderArgs,
     atomic::{create_writable_folder, write_atomically},
+    colour::xyz_of_wavelength,
     failure::Failure,
-    frame_files::{FramePaths, picture_of, write_layers, write_preview},
+    frame_files::{FramePaths, automatic_exposure, picture_of, write_layers, write_preview},
     interrupt,
     progress::{Progress, si_prefixed},
     summary::{Exposure, FrameLaser, FrameSummary, LaserSummary, Summary},
@@ -102,6 +103,7 @@ impl<'a> Render<'a> {
 
     /// Renders and writes all frames.
     fn frames(&self) -> Result<Summary, Failure> {
+        self.note_invisible_lasers();
         let model = self.speckle()?;
         let frames = self.scene.render.frames;
         let (mut exposure, mut summaries) = (None, Vec::new());
@@ -114,6 +116,17 @@ impl<'a> Render<'a> {
         }
         let samples = u64::from(frames) * self.samples_per_frame();
         Ok(self.summary(summaries, exposure, samples, elapsed))
+    }
+
+    fn note_invisible_lasers(&self) {
+        for (index, laser) in self.scene.lasers.iter().enumerate() {
+            if xyz_of_wavelength(laser.wavelength()).is_none() {
+                note(&format!(
+                    "preview: laser {index}: light of {:.1} nm is invisible and shown in grey",
+                    1e9 * laser.wavelength()
+                ));
+            }
+        }
     }
 
     fn speckle(&self) -> Result<Option<SpeckleModel>, Failure> {
@@ -161,7 +174,7 @@ impl<'a> Render<'a> {
         // The first frame sets the exposure of all, so that they can be compared.
         let exposure = exposure.get_or_insert_with(|| match self.args.white_level {
             Some(level) => Exposure::asked(level),
-            None => Exposure::automatic(picture.automatic_white_level()),
+            None => automatic_exposure(frame),
         });
         write_preview(
             &paths.preview,
@@ -204,7 +217,7 @@ impl<'a> Render<'a> {
             width: self.scene.camera.width(),
             height: self.scene.camera.height(),
             lasers: LaserSummary::of_scene(&self.scene, self.plan.as_ref()),
-            exposure: exposure.unwrap_or(Exposure::automatic(1.0)),
+            exposure: exposure.unwrap_or(Exposure::for_all_light(1.0)),
             frames,
             threads: rayon::current_num_threads(),
             samples,

@@ -64,8 +64,16 @@ impl Exposure {
         }
     }
 
-    /// The white level that the first frame suggests.
-    pub(crate) const fn automatic(white_level: f32) -> Self {
+    /// The white level that the lasers' light in the first frame suggests.
+    pub(crate) const fn for_laser_light(white_level: f32) -> Self {
+        Self {
+            white_level,
+            chosen_by: "so that 99.5 % of the pixels that laser light reaches in the first frame are darker",
+        }
+    }
+
+    /// The white level that all light in the first frame suggests.
+    pub(crate) const fn for_all_light(white_level: f32) -> Self {
         Self {
             white_level,
             chosen_by: "so that 99.5 % of the lit pixels of the first frame are darker",

@@ -117,7 +117,7 @@ impl Scene {
 ///
 /// Without a `speckle` model every speckle factor is 1. `progress` is told, from any thread, the
 /// number of camera samples done since its last call; once `cancel` is set, the render stops at the
-/// next row. The result has the same bits for any number of threads.
+/// next pixel. The result has the same bits for any number of threads.
 ///
 /// # Errors
 ///
@@ -183,28 +183,33 @@ fn render_pass(
     let height = integrator.camera.height();
     (0..height)
         .into_par_iter()
-        .map(|y| {
-            if cancel.load(Ordering::Relaxed) {
-                return Err(RenderError::Cancelled);
-            }
-            let row = render_row(integrator, pass, options, y);
-            progress(row.pixels.len() as u64 * u64::from(options.samples_per_pixel));
-            Ok(row)
-        })
+        .map(|y| render_row(integrator, pass, options, progress, cancel, y))
         .collect()
 }
 
-fn render_row(integrator: &Integrator<'_>, pass: Pass, options: &RenderOptions, y: usize) -> Row {
+fn render_row(
+    integrator: &Integrator<'_>,
+    pass: Pass,
+    options: &RenderOptions,
+    progress: &(impl Fn(u64) + Sync),
+    cancel: &AtomicBool,
+    y: usize,
+) -> Result<Row, RenderError> {
     let width = integrator.camera.width();
     let strata = Strata::new(options.samples_per_pixel);
-    let pixels = (0..width)
-        .map(|x| {
-            let stream = stream(integrator, pass, y * width + x);
-            let mut sampler = Sampler::new(options.seed, stream);
-            render_pixel(integrator, pass, strata, (x, y), &mut sampler)
-        })
-        .collect();
-    Row { pixels }
+    let pixels = (0..width).map(|x| {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
+        let stream = stream(integrator, pass, y * width + x);
+        let mut sampler = Sampler::new(options.seed, stream);
+        let pixel = render_pixel(integrator, pass, strata, (x, y), &mut sampler);
+        progress(u64::from(options.samples_per_pixel));
+        Ok(pixel)
+    });
+    Ok(Row {
+        pixels: pixels.collect::<Result<_, _>>()?,
+    })
 }
 
 /// Every pixel of every pass of every frame has a stream of random numbers of its own.

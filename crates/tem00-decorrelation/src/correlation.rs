@@ -57,12 +57,7 @@ pub fn pupil_overlap_correlation(shift: f64) -> f64 {
 ///
 /// - D. W. Li and F. P. Chiang, *Decorrelation functions in laser speckle photography*, 1986.
 pub fn axial_correlation(shift: f64) -> f64 {
-    let phase = PI * shift;
-    if phase.is_infinite() {
-        // The limit; the sine of infinity has no value.
-        return 0.0;
-    }
-    sinc(phase).powi(2)
+    sinc(PI * shift).powi(2)
 }
 
 /// Returns the intensity correlation left after a pupil displacement and an axial displacement

@@ -79,9 +79,9 @@ Examples:
   tem00 render scenes/spot.toml --no-speckle          the same light without interference
 
 Files:
-  <scene>.png     preview, 16 bits, in the colour of the laser; frame_0000.png … for several frames
+  <scene>.png     preview, 16 bits, in the colour of the laser; <scene>_0000.png … for several frames
   <scene>.exr     layers per laser: coherent_before, speckle, coherent_after, incoherent, in W/(m² sr)
-  summary.json    power on the target, speckle size, contrast, exposure, speed";
+  <scene>.json    power on the target, speckle size, contrast, exposure, speed";
 
 /// Generate a speckle pattern and compare it with the theory.
 ///

@@ -23,12 +23,13 @@ pub(crate) struct FramePaths {
 }
 
 impl FramePaths {
-    /// Names the files of frame `frame` of `frames`: after the scene if it is the only one.
+    /// Names the files of frame `frame` of `frames` after the scene, with a number if there are
+    /// several.
     pub(crate) fn new(folder: &Path, scene_name: &str, frame: u32, frames: u32) -> Self {
         let stem = if frames == 1 {
             scene_name.to_owned()
         } else {
-            format!("frame_{frame:04}")
+            format!("{scene_name}_{frame:04}")
         };
         Self {
             preview: folder.join(format!("{stem}.png")),
@@ -181,12 +182,12 @@ mod tests {
     }
 
     #[test]
-    fn a_single_frame_is_named_after_the_scene() {
+    fn files_are_named_after_the_scene() {
         let folder = Path::new("out");
         let single = FramePaths::new(folder, "spot", 0, 1);
         assert_eq!(single.preview, Path::new("out/spot.png"));
         let third = FramePaths::new(folder, "spot", 2, 5);
-        assert_eq!(third.layers, Path::new("out/frame_0002.exr"));
+        assert_eq!(third.layers, Path::new("out/spot_0002.exr"));
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
     let pool = thread_pool(args.threads)?;
     let summary = pool.install(|| render.frames())?;
     report(&summary);
-    let path = render.folder.join("summary.json");
+    let path = render.folder.join(format!("{}.json", render.name));
     write_summary(&path, &summary)?;
     let files = summary
         .frames

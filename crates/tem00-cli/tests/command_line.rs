@@ -227,14 +227,14 @@ fn a_render_writes_preview_layers_and_summary() {
     let output = run(folder.path(), "render a.toml --seed 5");
     assert_code(&output, 0);
     let out = folder.path().join("out").join("a");
-    assert_eq!(files(&out), ["a.exr", "a.png", "summary.json"]);
+    assert_eq!(files(&out), ["a.exr", "a.json", "a.png"]);
     assert_eq!(
         text(&output.stdout).lines().count(),
         3,
         "the names of the files are the data"
     );
 
-    let summary = fs::read(out.join("summary.json")).expect("a summary");
+    let summary = fs::read(out.join("a.json")).expect("a summary");
     let summary: Value = serde_json::from_slice(&summary).expect("JSON");
     assert_eq!(summary["seed"], 5);
     assert_eq!(summary["samples"], 48 * 40 * 4);
@@ -299,16 +299,16 @@ fn frames_are_numbered_and_share_one_exposure() {
     fs::write(folder.path().join("a.toml"), moving).expect("written");
     assert_code(&run(folder.path(), "render a.toml -o ."), 0);
     let names = [
+        "a.json",
         "a.toml",
-        "frame_0000.exr",
-        "frame_0000.png",
-        "frame_0001.exr",
-        "frame_0001.png",
-        "summary.json",
+        "a_0000.exr",
+        "a_0000.png",
+        "a_0001.exr",
+        "a_0001.png",
     ];
     assert_eq!(files(folder.path()), names);
     let [first, second] =
-        ["frame_0000.png", "frame_0001.png"].map(|name| exposure(&folder.path().join(name)));
+        ["a_0000.png", "a_0001.png"].map(|name| exposure(&folder.path().join(name)));
     assert!(first.contains("W/(m² sr)"), "{first}");
     assert_eq!(first, second);
 }
@@ -322,7 +322,7 @@ fn what_was_asked_for_is_in_the_summary() {
         exposure(&folder.path().join("a.png")).contains("1e3 W"),
         "the exposure is stated"
     );
-    let summary = fs::read(folder.path().join("summary.json")).expect("a summary");
+    let summary = fs::read(folder.path().join("a.json")).expect("a summary");
     let summary: Value = serde_json::from_slice(&summary).expect("JSON");
     assert_eq!(summary["exposure"]["white_level_w_per_m2_sr"], 1e3);
     assert_eq!(summary["formulas"], "as printed in Bergmann et al. 2016");

@@ -22,7 +22,10 @@ pub(super) const KEYS: &[&str] = &[
 pub(super) const SHAPES: &[Choice] = &[
     ("rectangle", &["centre", "normal", "up", "size"]),
     ("sphere", &["centre", "radius"]),
-    ("mesh", &["file", "unit", "scale", "rotation", "position"]),
+    (
+        "mesh",
+        &["file", "unit", "scale", "rotation", "position", "centre"],
+    ),
 ];
 const ROTATION_KEYS: &[&str] = &["axis", "angle"];
 
@@ -97,18 +100,29 @@ fn sphere(section: &Section<'_>) -> Result<Sphere, Problem> {
     Sphere::new(centre, radius).map_err(|error| rejected(&error, &[section]))
 }
 
-/// Reads a mesh file and puts it in its place: scaled, then rotated, then moved.
+/// Reads a mesh file and puts it in its place: scaled, then rotated, then moved by `position` or
+/// until the middle of its box is at `centre`.
 fn mesh(section: &Section<'_>, base_directory: &Path) -> Result<TriangleMesh, Problem> {
     let file = section.required("file", "\"part.ply\"")?;
     let unit = section.or("unit", 1e-3, |value| value.unit_of_length())?;
     let scale = section.or("scale", 1.0, |value| value.positive(&NUMBER))?;
     let rotation = rotation(section)?;
     let position = section.or("position", DVec3::ZERO, Value::lengths)?;
+    let centre = section.optional("centre");
+    if let (Some(centre), true) = (&centre, section.has("position")) {
+        let message = "`centre` and `position` both place the mesh: give one of the two";
+        return Err(Problem::new(message).at(centre.span()));
+    }
     let path = base_directory.join(file.string()?);
     let failed = |error| Problem::new(format!("`file` must be a mesh: {error}")).at(file.span());
     let mesh = read_mesh(&path, unit * scale).map_err(failed)?;
     let vertices = mesh.vertices().iter().map(|v| rotation * *v + position);
-    TriangleMesh::new(vertices.collect(), mesh.triangles().to_vec()).map_err(failed)
+    let mesh = TriangleMesh::new(vertices.collect(), mesh.triangles().to_vec()).map_err(failed)?;
+    let Some(centre) = centre else {
+        return Ok(mesh);
+    };
+    let (low, high) = mesh.bounds();
+    Ok(mesh.translated(centre.lengths()? - 0.5 * (low + high)))
 }
 
 fn rotation(section: &Section<'_>) -> Result<DQuat, Problem> {

@@ -236,6 +236,21 @@ fn every_key_reaches_the_scene() {
 }
 
 #[test]
+fn a_mesh_can_be_placed_by_the_middle_of_its_box() {
+    let keys = "centre = [0, \"5 mm\", 0]\nrotation = { axis = [0, 0, 1], angle = \"90 deg\" }";
+    let scene = parse_with_mesh("a.obj", TETRAHEDRON, keys).unwrap();
+    // The turned tetrahedron is 1 mm wide along every axis.
+    let (low, high) = scene.surfaces[0].shape.bounds();
+    let centre = DVec3::new(0.0, 5e-3, 0.0);
+    assert!(low.distance(centre - 0.5e-3) < 1e-15, "{low}");
+    assert!(high.distance(centre + 0.5e-3) < 1e-15, "{high}");
+
+    let both = "centre = [0, 0, 0]\nposition = [0, 0, 0]";
+    let error = parse_with_mesh("a.obj", TETRAHEDRON, both).unwrap_err();
+    assert!(error.message().contains("give one of the two"), "{error}");
+}
+
+#[test]
 fn meshes_are_scaled_then_turned_then_moved() {
     let keys = "unit = \"cm\"\nscale = 2\nposition = [\"3 mm\", 0, \"1 mm\"]\n\
                 rotation = { axis = [0, 0, 7], angle = \"90 deg\" }";

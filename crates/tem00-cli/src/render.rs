@@ -37,6 +37,7 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
     let pool = thread_pool(args.threads)?;
     let summary = pool.install(|| render.frames())?;
     report(&summary);
+    render.hint_at_what_is_not_seen(&summary);
     let path = render.folder.join(format!("{}.json", render.name));
     write_summary(&path, &summary)?;
     let files = summary
@@ -126,6 +127,31 @@ impl<'a> Render<'a> {
                     1e9 * laser.wavelength()
                 ));
             }
+        }
+    }
+
+    /// Where a laser lights nothing in the image, tells where things stand.
+    fn hint_at_what_is_not_seen(&self, summary: &Summary) {
+        let unseen = |frame: &FrameSummary| {
+            frame
+                .lasers
+                .iter()
+                .any(|laser| laser.power_on_target_w <= 0.0)
+        };
+        if !summary.frames.iter().any(unseen) {
+            return;
+        }
+        note("hint: the camera sees no light of a laser; the surfaces stand at");
+        for surface in &self.scene.surfaces {
+            let (low, high) = surface.shape.bounds();
+            let span = |low: f64, high: f64| format!("{:.1} … {:.1} mm", 1e3 * low, 1e3 * high);
+            note(&format!(
+                "  {}: x {}, y {}, z {}",
+                surface.name,
+                span(low.x, high.x),
+                span(low.y, high.y),
+                span(low.z, high.z)
+            ));
         }
     }
 

@@ -376,3 +376,15 @@ fn ctrl_c_ends_a_render_cleanly() {
         "nothing is left"
     );
 }
+
+#[test]
+fn a_picture_without_laser_light_says_where_things_stand() {
+    let folder = folder();
+    let away = SCENE.replace("centre = [0, 0, 0]", "centre = [\"70 mm\", 0, 0]");
+    fs::write(folder.path().join("a.toml"), away).expect("written");
+    let output = run(folder.path(), "render a.toml --spp 1");
+    assert_code(&output, 0);
+    let notes = text(&output.stderr);
+    assert!(notes.contains("sees no light of a laser"), "{notes}");
+    assert!(notes.contains("surface 1: x 60.0 … 80.0 mm"), "{notes}");
+}

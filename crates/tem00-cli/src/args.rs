@@ -16,7 +16,7 @@ Examples:
 Data goes to standard output, everything else to standard error.
 Exit codes: 0 fine, 1 failure while running, 2 bad input or usage, 130 interrupted.";
 
-/// Laser light with physically correct speckle, from scene file to image.
+/// Laser light with speckle, from scene file to image.
 #[derive(Debug, Parser)]
 #[command(name = "tem00", version, max_term_width = 100, after_help = EXAMPLES)]
 pub(crate) struct Cli {

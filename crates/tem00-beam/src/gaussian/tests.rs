@@ -1,0 +1,267 @@
+use proptest::prelude::*;
+
+use super::*;
+
+const HENE: f64 = 632.8e-9;
+
+fn beam() -> GaussianBeam {
+    GaussianBeam::from_waist(HENE, 100e-6).unwrap()
+}
+
+/// ∫ f over [a, b] by Simpson's rule.
+fn integrate(f: impl Fn(f64) -> f64, a: f64, b: f64) -> f64 {
+    const INTERVALS: u32 = 2_000;
+    let h = (b - a) / f64::from(INTERVALS);
+    let weighted = |i: u32| {
+        let weight = match i {
+            0 | INTERVALS => 1.0,
+            i if i % 2 == 1 => 4.0,
+            _ => 2.0,
+        };
+        weight * f(a + f64::from(i) * h)
+    };
+    (0..=INTERVALS).map(weighted).sum::<f64>() * h / 3.0
+}
+
+#[test]
+fn every_cross_section_carries_the_full_power() {
+    for m_squared in [1.0, 3.0] {
+        let beam = beam().with_m_squared(m_squared).unwrap();
+        let z_r = beam.rayleigh_range();
+        for z in [-10.0 * z_r, -z_r, 0.0, 0.3 * z_r, 100.0 * z_r] {
+            // exp(−2 · 4²) ≈ 1e−14 of the power lies beyond four beam radii.
+            let cutoff = 4.0 * beam.radius_at(z);
+            let ring = |r| beam.irradiance_per_watt(r, z) * 2.0 * PI * r;
+            let power = integrate(ring, 0.0, cutoff);
+            assert!((power - 1.0).abs() < 1e-10, "z = {z:e} m: P = {power}");
+        }
+    }
+}
+
+#[test]
+fn radius_approaches_the_divergence_cone() {
+    let beam = beam().with_m_squared(2.0).unwrap();
+    let z = 1e4 * beam.rayleigh_range();
+    let half_angle = beam.radius_at(z) / z;
+    // The relative deviation from the asymptote is (z_R / z)² / 2 = 5e−9.
+    let deviation = half_angle / beam.divergence() - 1.0;
+    assert!(deviation.abs() < 6e-9, "deviation {deviation:e}");
+}
+
+#[test]
+fn m_squared_scales_divergence_and_rayleigh_range_but_not_the_waist() {
+    let ideal = beam();
+    let real = ideal.with_m_squared(1.7).unwrap();
+    let same = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-15;
+    assert!(
+        same(real.divergence(), 1.7 * ideal.divergence()),
+        "{real:?}"
+    );
+    assert!(
+        same(real.rayleigh_range(), ideal.rayleigh_range() / 1.7),
+        "{real:?}"
+    );
+    assert!(same(real.radius_at(0.0), 100e-6), "{real:?}");
+}
+
+#[test]
+fn divergence_and_waist_determine_each_other() {
+    let beam = GaussianBeam::from_divergence(HENE, 2.5e-3).unwrap();
+    let again = GaussianBeam::from_waist(HENE, beam.waist_radius()).unwrap();
+    assert!(
+        (again.divergence() / 2.5e-3 - 1.0).abs() < 1e-15,
+        "{again:?}"
+    );
+}
+
+#[test]
+fn curvature_is_the_relative_growth_of_the_radius() {
+    let beam = beam();
+    let z_r = beam.rayleigh_range();
+    for x in [-20.0, -1.0, -0.2, 0.0, 0.5, 1.0, 3.0] {
+        let h = 1e-4 * z_r;
+        let growth = (beam.radius_at(x * z_r + h) / beam.radius_at(x * z_r - h)).ln() / (2.0 * h);
+        // (h / z_R)² / 6 times the third derivative of ln w, at most 3 / z_R³, is 5e−9 / z_R.
+        let difference = (growth - beam.curvature_at(x * z_r)) * z_r;
+        assert!(difference.abs() < 1e-8, "z = {x} z_R: {difference:e}");
+    }
+}
+
+#[test]
+fn curvature_vanishes_at_the_waist_and_peaks_at_the_rayleigh_range() {
+    let beam = beam();
+    let z_r = beam.rayleigh_range();
+    assert!(
+        beam.curvature_at(0.0).abs() < f64::MIN_POSITIVE,
+        "at the waist"
+    );
+    for sign in [-1.0, 1.0] {
+        let peak = beam.curvature_at(sign * z_r) * z_r;
+        assert!((peak - 0.5 * sign).abs() < 1e-15, "{peak}");
+        let far = 1e6 * z_r;
+        // 1/R = 1/z · (1 − (z_R / z)²)
+        let radius = 1.0 / beam.curvature_at(sign * far);
+        assert!((radius / (sign * far) - 1.0).abs() < 2e-12, "{radius}");
+    }
+}
+
+#[test]
+fn gouy_phase_accumulates_the_transverse_momentum() {
+    // ζ' = λ / (π w²): the spread of transverse wave numbers costs axial phase
+    // (Feng and Winful 2001).
+    let beam = beam();
+    for x in [-5.0, -1.0, 0.1, 1.0, 4.0] {
+        let z = x * beam.rayleigh_range();
+        let rate = |z: f64| HENE / (PI * beam.radius_at(z).powi(2));
+        let phase = integrate(rate, 0.0, z);
+        let difference = phase - beam.gouy_phase_at(z);
+        // Simpson: (5 / 2000)⁴ · 5 · max|f⁗| / 180 = 3e−11.
+        assert!(difference.abs() < 1e-10, "z = {x} z_R: {difference:e}");
+    }
+    let limit = beam.gouy_phase_at(1e12);
+    assert!((limit - PI / 2.0).abs() < 1e-12, "{limit}");
+}
+
+#[test]
+fn encircled_power_is_the_integral_of_the_irradiance() {
+    let beam = beam();
+    for z in [0.0, 0.2] {
+        let w = beam.radius_at(z);
+        for rho in [0.1, 0.5, 1.0, 2.0] {
+            let ring = |r| beam.irradiance_per_watt(r, z) * 2.0 * PI * r;
+            let power = integrate(ring, 0.0, rho * w);
+            let closed = beam.encircled_power(rho * w, z);
+            assert!(
+                (power - closed).abs() < 1e-11,
+                "ρ = {rho}: {power}, {closed}"
+            );
+        }
+    }
+    let within_w = beam.encircled_power(beam.radius_at(0.3), 0.3);
+    assert!(
+        (within_w - 0.864_664_716_763_387_3).abs() < 1e-14,
+        "1 − e⁻²: {within_w}"
+    );
+}
+
+#[test]
+fn flux_has_no_divergence() {
+    let beam = beam();
+    let (w0, z_r) = (beam.waist_radius(), beam.rayleigh_range());
+    for z in [-2.0, -0.5, 0.3, 1.0, 5.0] {
+        let w = beam.radius_at(z * z_r);
+        let p = DVec3::new(0.6 * w, -0.4 * w, z * z_r);
+        let (h, h_z) = (1e-4 * w0, 1e-4 * z_r);
+        let slope = |axis: DVec3, h: f64| {
+            let step = axis * h;
+            let change = beam.flux_per_watt(p + step) - beam.flux_per_watt(p - step);
+            change.dot(axis) / (2.0 * h)
+        };
+        let divergence = slope(DVec3::X, h) + slope(DVec3::Y, h) + slope(DVec3::Z, h_z);
+        // The terms that cancel are of the size E/R; a central difference errs by h²/6 of the
+        // third derivative, here at most 60 in units of w₀ and z_R: 1e−7 of E/z_R.
+        let scale = beam.flux_per_watt(p).z / z_r;
+        assert!(
+            (divergence / scale).abs() < 2e-7,
+            "z = {z} z_R: {:e}",
+            divergence / scale
+        );
+    }
+}
+
+#[test]
+fn flux_is_zero_where_the_irradiance_vanishes() {
+    // At the waist's side, x / R alone would overflow.
+    let beam = GaussianBeam::from_waist(1e-29, 1e-29).unwrap();
+    let far = DVec3::new(1e300, 0.0, beam.rayleigh_range());
+    assert_eq!(beam.flux_per_watt(far), DVec3::ZERO, "{far}");
+}
+
+#[test]
+fn constructor_rejects_values_that_are_not_lengths() {
+    for bad in [0.0, -1.0, 1e-31, 1e31, f64::NAN, f64::INFINITY] {
+        assert!(
+            matches!(
+                GaussianBeam::from_waist(bad, 100e-6),
+                Err(BeamError::Wavelength(_))
+            ),
+            "wavelength {bad}"
+        );
+        assert!(
+            matches!(
+                GaussianBeam::from_divergence(bad, 1e-3),
+                Err(BeamError::Wavelength(_))
+            ),
+            "wavelength {bad}"
+        );
+        assert!(
+            matches!(
+                GaussianBeam::from_waist(HENE, bad),
+                Err(BeamError::WaistRadius(_))
+            ),
+            "waist {bad}"
+        );
+    }
+}
+
+#[test]
+fn constructor_rejects_impossible_divergence_and_quality() {
+    for bad in [0.0, -1e-3, 0.500_001, f64::NAN, f64::INFINITY] {
+        assert!(
+            matches!(
+                GaussianBeam::from_divergence(HENE, bad),
+                Err(BeamError::Divergence(_))
+            ),
+            "divergence {bad}"
+        );
+    }
+    assert!(
+        matches!(
+            GaussianBeam::from_divergence(HENE, 1e-300),
+            Err(BeamError::WaistRadius(_))
+        ),
+        "a waist beyond all lengths"
+    );
+    for bad in [0.999, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(
+            matches!(beam().with_m_squared(bad), Err(BeamError::MSquared(_))),
+            "M² = {bad}"
+        );
+    }
+}
+
+#[test]
+fn paraxial_limit_follows_m_squared() {
+    let tight = GaussianBeam::from_waist(HENE, 1.01 * 2.0 * HENE / PI).unwrap();
+    assert!(tight.divergence() < 0.5, "{}", tight.divergence());
+    let error = tight.with_m_squared(1.1).unwrap_err();
+    let minimum = 1.1 * 2.0 * HENE / PI;
+    assert!(
+        matches!(error, BeamError::NotParaxial { minimum: m, .. } if (m / minimum - 1.0).abs() < 1e-12),
+        "{error}"
+    );
+}
+
+proptest! {
+    #[test]
+    fn no_query_yields_nan(
+        wavelength in -29.0..5.0_f64,
+        ratio in 0.0..20.0_f64,
+        x in proptest::num::f64::NORMAL,
+        y in proptest::num::f64::NORMAL,
+        z in proptest::num::f64::NORMAL | proptest::num::f64::ZERO,
+    ) {
+        let wavelength = 10_f64.powf(wavelength);
+        let beam = GaussianBeam::from_waist(wavelength, wavelength * 10_f64.powf(ratio)).unwrap();
+        let queries = [
+            beam.radius_at(z),
+            beam.curvature_at(z),
+            beam.gouy_phase_at(z),
+            beam.peak_irradiance_per_watt(z),
+            beam.irradiance_per_watt(x, z),
+            beam.encircled_power(x.abs(), z),
+            beam.flux_per_watt(DVec3::new(x, y, z)).length(),
+        ];
+        prop_assert!(queries.iter().all(|q| !q.is_nan()), "{:?}: {:?}", beam, queries);
+    }
+}

@@ -1,0 +1,439 @@
+use core::f64::consts::PI;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::{Phasors, Pupil};
+
+fn stack(size: usize, diameter: usize, path: SlicePath) -> SpeckleStack {
+    let field = PupilField::new(size, diameter, 17).unwrap();
+    SpeckleStack::generate(&field, path).unwrap()
+}
+
+fn circle(half_period: usize) -> SlicePath {
+    SlicePath::Circle { half_period }
+}
+
+fn straight(half_period: usize) -> SlicePath {
+    SlicePath::Straight { half_period }
+}
+
+/// The field of the pupil at `centre`, in the frame of the lattice, at any r, in `f64`.
+fn amplitude_by_definition(field: &PupilField, centre: [i64; 2], r: [f64; 2]) -> Complex<f64> {
+    let reach = i64::try_from(field.diameter()).unwrap() / 2;
+    let rim = 4 * i64::try_from(field.diameter()).unwrap().pow(2);
+    let mut sum = Complex::new(0.0, 0.0);
+    for ky in -reach..=reach {
+        for kx in -reach..=reach {
+            if 16 * (kx * kx + ky * ky) <= rim {
+                let k = [kx + centre[0], ky + centre[1]];
+                let p = field.phasor(k);
+                #[expect(clippy::cast_precision_loss, reason = "small integers")]
+                let turns = (k[0] as f64 * r[0] + k[1] as f64 * r[1]) / to_f64(field.size());
+                sum += Complex::new(f64::from(p.re), f64::from(p.im))
+                    * Complex::from_polar(1.0, -2.0 * PI * turns);
+            }
+        }
+    }
+    sum / to_f64(field.phasor_count()).sqrt()
+}
+
+/// Mean and squared contrast of the look-up over all cells, at one fraction of each.
+fn moments(stack: &SpeckleStack, [fx, fy]: [f64; 2], u: f64) -> (f64, f64) {
+    let size = u32::try_from(stack.size()).unwrap();
+    let (mut sum, mut square) = (0.0, 0.0);
+    for y in 0..size {
+        for x in 0..size {
+            let intensity = stack.intensity_at(f64::from(x) + fx, f64::from(y) + fy, u);
+            sum += intensity;
+            square += intensity * intensity;
+        }
+    }
+    let cells = f64::from(size * size);
+    let mean = sum / cells;
+    (mean, square / cells / (mean * mean) - 1.0)
+}
+
+#[test]
+fn whole_coordinates_give_the_patterns_of_the_slices() {
+    for path in [SlicePath::Still, circle(3), straight(2)] {
+        let stack = stack(64, 16, path);
+        for (index, u) in (0..stack.slice_count()).zip(0_u32..) {
+            let pattern = stack.field().pattern_at(stack.offset(index));
+            let (mut sum, mut worst) = (0.0, 0.0_f64);
+            for (y, row) in (0_u32..).zip(pattern.values().rows()) {
+                for (x, &expected) in (0_u32..).zip(row) {
+                    let got = stack.intensity_at(x.into(), y.into(), u.into());
+                    let error = got - f64::from(expected);
+                    sum += error * error;
+                    worst = worst.max(error.abs());
+                }
+            }
+            // The field is off by 2e−4 rms at a speckle size of 4; I = |U|² doubles that, times
+            // √⟨I⟩ = 1. The largest of 4096 is some 10 times that, at the brightest speckles.
+            let rms = (sum / 4_096.0).sqrt();
+            assert!(rms < 4e-4, "{path:?}, slice {index}: rms {rms:e}");
+            assert!(worst < 6e-3, "{path:?}, slice {index}: {worst:e}");
+        }
+    }
+}
+
+#[test]
+fn fractional_coordinates_give_the_field_of_the_lattice() {
+    for path in [circle(3), straight(4), SlicePath::Still] {
+        let stack = stack(64, 9, path);
+        let count = stack.slice_count();
+        for (x, y, u) in [
+            (0.5, 0.5, 0.5),
+            (63.7, 63.9, 1.25),
+            (-17.3, 200.1, 2.75),
+            (31.0, 8.4, 5.5),
+            (12.6, 12.0, 7.9),
+        ] {
+            let (index, f) = wrap_coordinate(u, count);
+            let here = stack.offset(index);
+            let step = nearest_shift(here, stack.offset((index + 1) % count), 64);
+            let next = [here[0] + step[0], here[1] + step[1]];
+            let f = if count == 1 { 0.0 } else { f };
+            let rho = stack.field().overlap(step);
+            let field = amplitude_by_definition(stack.field(), here, [x, y]) * (1.0 - f)
+                + amplitude_by_definition(stack.field(), next, [x, y]) * f;
+            let variance = (1.0 - f).powi(2) + f * f + 2.0 * f * (1.0 - f) * rho;
+            let expected = field.norm_sqr() / variance;
+            let got = stack.intensity_at(x, y, u);
+            // The spline's error at a speckle size of 7 is below 2e−5.
+            let error = (got - expected).abs() / (1.0 + expected);
+            assert!(
+                error < 1e-4,
+                "{path:?} at ({x}, {y}, {u}): {got} for {expected}"
+            );
+        }
+    }
+}
+
+/// Over a tile of unit phasors the mean at one fraction is exactly what the renormalisation
+/// leaves: by Parseval it holds no noise.
+#[test]
+fn the_mean_is_one_between_samples_and_slices() {
+    for (size, limit) in [(64, 7e-4), (128, 5e-5)] {
+        let mut worst = 0.0_f64;
+        for path in [circle(3), circle(8), straight(3), straight(8)] {
+            let stack = stack(size, 32, path);
+            for fractions in [[0.5, 0.5], [0.5, 0.0], [0.25, 0.75], [0.0, 0.0]] {
+                for u in [0.0, 0.5, 1.5, 2.25] {
+                    let (mean, _) = moments(&stack, fractions, u);
+                    worst = worst.max((mean - 1.0).abs());
+                }
+            }
+        }
+        // The limits are the stated sizes of the one approximation, the cross term of two slices.
+        assert!(
+            worst < limit && worst > 0.9 * limit,
+            "Q = {size}: mean off by {worst:e}"
+        );
+    }
+}
+
+/// Amplitude correlation of two coordinates of a stack, blends included, from the overlaps.
+fn blended_overlap(law: PathLaw, u0: f64, u1: f64) -> f64 {
+    let taps = |u: f64| {
+        [
+            (u.floor(), 1.0 - u + u.floor()),
+            (u.floor() + 1.0, u - u.floor()),
+        ]
+    };
+    let cross = |a: f64, b: f64| -> f64 {
+        taps(a)
+            .iter()
+            .flat_map(|&(i, wi)| taps(b).map(|(j, wj)| wi * wj * law.overlap_at(j - i)))
+            .sum()
+    };
+    cross(u0, u1) / (cross(u0, u0) * cross(u1, u1)).sqrt()
+}
+
+#[test]
+fn blending_rounds_the_cusp_of_the_law_as_documented() {
+    for (half_period, stated) in [(8, 0.2), (32, 0.06)] {
+        let law = PathLaw {
+            path: circle(half_period),
+            pupil: Pupil::Circle,
+            speckle_size: 2.0,
+        };
+        let mut worst = 0.0_f64;
+        for start in 0..16_u32 {
+            for distance in 0..32_u32 {
+                let (u, du) = (f64::from(start) / 16.0, f64::from(distance) / 16.0);
+                let gamma = blended_overlap(law, u, u + du).powi(2);
+                worst = worst.max((gamma - law.overlap_at(du).powi(2)).abs());
+            }
+        }
+        assert!(
+            worst < stated && worst > 0.9 * stated,
+            "M = {half_period}: {worst}"
+        );
+    }
+}
+
+#[test]
+fn the_mean_is_one_between_samples_of_a_slice() {
+    for pupil in [
+        Pupil::Circle,
+        Pupil::Annulus { inner: 0.5 },
+        Pupil::Rectangle { height: 0.5 },
+    ] {
+        let field = PupilField::new(32, 16, 3).unwrap();
+        let field = field.with_pupil(pupil).unwrap();
+        let stack = SpeckleStack::generate(&field, SlicePath::Still).unwrap();
+        for fractions in [[0.0, 0.0], [0.5, 0.5], [0.3, 0.9]] {
+            let (mean, _) = moments(&stack, fractions, 0.0);
+            // Exact but for the rounding of f32.
+            assert!(
+                (mean - 1.0).abs() < 2e-6,
+                "{pupil:?} at {fractions:?}: {mean}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_contrast_is_one_at_every_coordinate() {
+    const TILES: u64 = 12;
+    for (fractions, u) in [
+        ([0.0, 0.0], 0.0),
+        ([0.5, 0.5], 0.5),
+        ([0.5, 0.0], 1.0),
+        ([0.2, 0.7], 3.5),
+    ] {
+        let squared: f64 = (0..TILES)
+            .map(|seed| {
+                let field = PupilField::new(64, 32, seed).unwrap();
+                let field = field.with_phasors(Phasors::Gaussian);
+                let stack = SpeckleStack::generate(&field, circle(2)).unwrap();
+                moments(&stack, fractions, u).1
+            })
+            .sum::<f64>()
+            / 12.0;
+        // The spread of one tile is 1.53/C and its bias 1/N = 1.3e−3; α = 6e−5.
+        let tolerance = 4.0 * 1.53 / 32.0 / 12.0_f64.sqrt() + 1.3e-3;
+        assert!(
+            (squared - 1.0).abs() < tolerance,
+            "{fractions:?}, {u}: {squared}"
+        );
+    }
+}
+
+#[test]
+fn neighbours_are_correlated_by_the_closed_form() {
+    // Rounding moves each centre by up to ½ in x and y, so the distance of two by up to √2 and
+    // the overlap by up to (4/π) √2/C = 1.8/C; the roughness of the lattice rim is far smaller.
+    let tolerance = |diameter: f64| 2.0 / diameter;
+    for (size, diameter, path) in [
+        (64, 32, circle(8)),
+        (1_024, 512, circle(8)),
+        (1_024, 512, straight(8)),
+        (1_024, 200, straight(16)),
+    ] {
+        let law = PathLaw {
+            path,
+            pupil: Pupil::Circle,
+            speckle_size: to_f64(size) / to_f64(diameter),
+        };
+        let field = PupilField::new(size, diameter, 0).unwrap();
+        let count = path.slice_count();
+        for i in [0, 3, 7] {
+            for (distance, u) in (0..count).zip(0_u32..) {
+                let j = (i + distance) % count;
+                let shift = nearest_shift(path.centre(i, &field), path.centre(j, &field), size);
+                let exact = field.overlap(shift).powi(2);
+                let closed = law.overlap_at(u.into()).powi(2);
+                assert!(
+                    (exact - closed).abs() < tolerance(to_f64(diameter)),
+                    "{path:?}, C = {diameter}: γ({i}, {j}) = {exact}, law {closed}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_law_has_its_known_values() {
+    // 1 − 1/M − sin(π/M)/π squared, for M = 4, 8, 16.
+    let stack = |half_period| stack(16, 8, circle(half_period));
+    for (half_period, gamma) in [
+        (4, 0.275_541_973_262_254),
+        (8, 0.567_292_284_154_527),
+        (16, 0.766_326_598_814_221),
+    ] {
+        let law = stack(half_period).correlation_at(1.0);
+        assert!((law - gamma).abs() < 1e-14, "M = {half_period}: {law}");
+    }
+}
+
+#[test]
+fn opposite_slices_are_uncorrelated() {
+    for path in [circle(5), straight(5)] {
+        let stack = stack(128, 64, path);
+        for i in 0..10 {
+            let gamma = stack.correlation_between(i, (i + 5) % 10);
+            // A distance short of C by √2 leaves an overlap of (8√2/3π)(√2/C)^1.5 = 4e−3.
+            assert!(gamma < 2e-5, "{path:?}: γ({i}, {i} + 5) = {gamma:e}");
+        }
+    }
+}
+
+/// For two slices of unit phasors the tile's covariance of amplitudes is the counted overlap;
+/// here the intensities are compared, which holds on average over the speckles of a tile.
+#[test]
+fn look_ups_decorrelate_as_the_slices_do() {
+    const TILES: u32 = 8;
+    for distance in [1.0, 2.0, 4.0] {
+        let (mut covariance, mut expected) = (0.0, 0.0);
+        for seed in 0..TILES {
+            let field = PupilField::new(64, 32, seed.into()).unwrap();
+            let stack = SpeckleStack::generate(&field, circle(4)).unwrap();
+            for i in 0..64 * 64_u32 {
+                let (x, y) = (f64::from(i % 64) + 0.5, f64::from(i / 64) + 0.25);
+                let product = (stack.intensity_at(x, y, 0.0) - 1.0)
+                    * (stack.intensity_at(x, y, distance) - 1.0);
+                covariance += product / 4_096.0 / f64::from(TILES);
+            }
+            expected = stack.correlation_at(distance);
+        }
+        // The spread of a covariance is at most that of the squared contrast, 1.53/C; α = 6e−5.
+        // Rounded centres add up to 1.8/C.
+        let tolerance = 4.0 * 1.53 / 32.0 / f64::from(TILES).sqrt() + 1.8 / 32.0;
+        assert!(
+            (covariance - expected).abs() < tolerance,
+            "{distance}: {covariance}"
+        );
+    }
+}
+
+#[test]
+fn the_pattern_is_continuous_across_every_wrap() {
+    for path in [circle(4), straight(3)] {
+        let stack = stack(64, 32, path);
+        let (q, period) = (64.0, to_f64(stack.slice_count()));
+        let e = 1e-6;
+        for (a, b) in [(0.3, 0.2), (17.5, 40.1), (33.2, 63.6)] {
+            let pairs = [
+                [(q - e, a, b / 11.0), (q + e, a, b / 11.0)],
+                [(a, q - e, b / 11.0), (a, q + e, b / 11.0)],
+                [(a, b, period - e), (a, b, period + e)],
+                [(a, b, 1.0 - e), (a, b, 1.0 + e)],
+            ];
+            for [(x0, y0, u0), (x1, y1, u1)] in pairs {
+                let (before, after) = (
+                    stack.intensity_at(x0, y0, u0),
+                    stack.intensity_at(x1, y1, u1),
+                );
+                // |∇I| ≤ 2 I π/h_p, and in u the two blends: below 20 per step at I < 5. The
+                // rounding of f32 adds 1e−6.
+                assert!(
+                    (before - after).abs() < 20.0 * 2.0 * e + 1e-5,
+                    "{path:?}: {before}, {after}"
+                );
+            }
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn look_ups_repeat_with_the_size_and_the_slice_count(
+        x in -200.0_f64..200.0, y in -200.0_f64..200.0, u in -30.0_f64..30.0,
+        turns in -1_000_000_i32..1_000_000, straight_path: bool,
+    ) {
+        let path = if straight_path { straight(2) } else { circle(2) };
+        let stack = stack(16, 8, path);
+        let turns = f64::from(turns);
+        let here = stack.intensity_at(x, y, u);
+        let there = stack.intensity_at(x + 16.0 * turns, y - 16.0 * turns, u + 4.0 * turns);
+        // Coordinates of 1.6e7 carry 2e−9 of rounding; the slope of I is below 50.
+        prop_assert!((here - there).abs() < 1e-5 * (1.0 + here), "{here} and {there}");
+        prop_assert!(here >= 0.0);
+    }
+
+    #[test]
+    fn the_coordinate_of_a_correlation_has_it(
+        gamma in 0.001_f64..1.0, path in 0_usize..2, pupil in 0_usize..3, diameter in 14_usize..33,
+    ) {
+        let pupil = [
+            Pupil::Circle, Pupil::Annulus { inner: 0.3 }, Pupil::Rectangle { height: 0.7 },
+        ][pupil];
+        let law = PathLaw {
+            path: [circle(6), straight(6)][path],
+            pupil,
+            speckle_size: 64.0 / to_f64(diameter),
+        };
+        let u = law.coordinate_of(gamma.sqrt());
+        prop_assert!((0.0..=6.0).contains(&u), "u = {u}");
+        // Slopes of γ in u are below 1; bisection and Newton go down to rounding.
+        prop_assert!((law.overlap_at(u).powi(2) - gamma).abs() < 1e-9, "u = {u}");
+    }
+}
+
+#[test]
+fn coordinate_and_correlation_are_inverse_to_each_other() {
+    for path in [circle(6), straight(6)] {
+        let stack = stack(64, 32, path);
+        for u in [0.0, 0.3, 1.0, 2.5, 5.0] {
+            let back = stack.coordinate_of(stack.correlation_at(u));
+            // γ is known to 2⁻⁵³ and its slope at u = 5 is some 1e−3.
+            assert!((back - u).abs() < 1e-10, "{path:?}: {u} became {back}");
+        }
+    }
+}
+
+#[test]
+fn correlations_without_a_coordinate_go_to_the_ends() {
+    for (path, end) in [
+        (circle(6), 6.0),
+        (straight(6), 3.0),
+        (SlicePath::Still, 0.0),
+    ] {
+        let stack = stack(64, 16, path);
+        for gamma in [0.0, -0.5, f64::NAN, f64::NEG_INFINITY] {
+            let u = stack.coordinate_of(gamma);
+            assert!((u - end).abs() < 1e-12, "{path:?}: γ = {gamma} at {u}");
+        }
+        for gamma in [1.0, 1.5, f64::INFINITY] {
+            assert!(stack.coordinate_of(gamma).abs() < 1e-12, "γ = {gamma}");
+        }
+    }
+}
+
+#[test]
+fn paths_without_slices_are_refused() {
+    let field = PupilField::new(64, 16, 0).unwrap();
+    for half_period in [0, 1 << 16, usize::MAX] {
+        let refused = Err(SpeckleError::HalfPeriod(half_period));
+        assert_eq!(SpeckleStack::generate(&field, circle(half_period)), refused);
+        assert_eq!(
+            SpeckleStack::generate(&field, straight(half_period)),
+            refused
+        );
+    }
+}
+
+#[test]
+fn memory_that_no_machine_has_is_refused() {
+    let path = circle(SlicePath::MAX_HALF_PERIOD);
+    // 512 TiB, more than an address has bits for.
+    let bytes = path.memory_bytes(PupilField::MAX_SIZE);
+    let refused = reserve(path, PupilField::MAX_SIZE);
+    assert_eq!(refused, Err(SpeckleError::Memory { bytes }));
+}
+
+#[test]
+fn the_memory_is_known_before_it_is_taken() {
+    let stack = stack(32, 8, circle(3));
+    let bytes: usize = stack
+        .slices
+        .iter()
+        .map(|slice| size_of_val(slice.coefficients.values()))
+        .sum();
+    assert_eq!(stack.memory_bytes(), bytes as u64);
+    // No overflow, whatever is asked for.
+    assert_eq!(circle(usize::MAX).memory_bytes(usize::MAX), u64::MAX);
+}

@@ -1,0 +1,209 @@
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use proptest::prelude::*;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::*;
+use crate::{autocovariance::single, synthetic::speckle_tile};
+
+fn exponential_samples(count: usize, rng: &mut ChaCha8Rng) -> Vec<f64> {
+    (0..count)
+        .map(|_| -(1.0 - rng.random::<f64>()).ln())
+        .collect()
+}
+
+#[test]
+fn moments_of_small_integers_are_exact() {
+    let moments = Moments::of(&[2_u8, 4, 4, 4, 5, 5, 7, 9]).unwrap();
+    assert_eq!(moments.count(), 8);
+    // The sum of squares about 5 is 32.
+    assert_relative_eq!(moments.mean(), 5.0, max_relative = 1e-15);
+    let variance = moments.standard_deviation().powi(2);
+    assert_relative_eq!(variance, 32.0 / 7.0, max_relative = 1e-15);
+    assert_relative_eq!(
+        moments.standard_error(),
+        (4.0_f64 / 7.0).sqrt(),
+        max_relative = 1e-15
+    );
+}
+
+#[test]
+fn contrast_of_few_exponential_samples_is_biased_as_stated() {
+    const BLOCKS: u32 = 20_000;
+    const LENGTH: usize = 50;
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let contrasts: Vec<_> = (0..BLOCKS)
+        .map(|_| Contrast::of(&exponential_samples(LENGTH, &mut rng)).unwrap())
+        .collect();
+    let values: Vec<_> = contrasts.iter().map(Contrast::value).collect();
+    let moments = Moments::of(&values).unwrap();
+    let length = LENGTH as f64;
+    // 3.3 σ is α = 0.001; the next order in 1/n is 1/n² times a number of order one.
+    let tolerance = 3.3 * moments.standard_error() + 3.0 / (length * length);
+    assert_abs_diff_eq!(moments.mean(), 1.0 - 1.0 / length, epsilon = tolerance);
+    assert!(tolerance < 0.3 / length, "the bias would not be seen");
+}
+
+#[test]
+fn standard_error_of_the_contrast_is_that_of_many_trials() {
+    const TRIALS: u32 = 2_000;
+    const LENGTH: usize = 500;
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let contrasts: Vec<_> = (0..TRIALS)
+        .map(|_| Contrast::of(&exponential_samples(LENGTH, &mut rng)).unwrap())
+        .collect();
+    let values: Vec<_> = contrasts.iter().map(Contrast::value).collect();
+    let errors: f64 = contrasts.iter().map(|c| c.standard_error().powi(2)).sum();
+    let estimated = (errors / f64::from(TRIALS)).sqrt();
+    let spread = Moments::of(&values).unwrap().standard_deviation();
+    // 1/√n for exponential samples; a standard deviation from 2000 trials is known to 1/√4000
+    // = 1.6 %, here 3.3 σ, and the first order in 1/n errs by some 10/n = 2 %.
+    assert_relative_eq!(spread, 500.0_f64.sqrt().recip(), max_relative = 0.072);
+    assert_relative_eq!(spread, estimated, max_relative = 0.072);
+}
+
+#[test]
+fn speckle_size_widens_the_error_of_the_contrast_as_tiles_do() {
+    const TILES: u64 = 300;
+    for (size, diameter) in [(64, 32), (96, 24)] {
+        let speckle_size = size as f64 / diameter as f64;
+        let contrast = |seed| {
+            let (tile, _) = speckle_tile(size, diameter, seed);
+            let contrast = Contrast::of(tile.values()).unwrap();
+            contrast.with_speckle_size(speckle_size).unwrap()
+        };
+        let contrasts: Vec<_> = (0..TILES).map(contrast).collect();
+        let values: Vec<_> = contrasts.iter().map(Contrast::value).collect();
+        let errors: f64 = contrasts.iter().map(Contrast::standard_error).sum();
+        let spread = Moments::of(&values).unwrap().standard_deviation();
+        // A spread from 300 tiles is known to 1/√600 = 4.1 %, here 3.3 σ; the first order in
+        // 1/C errs by some 2/C.
+        let tolerance = 3.3 * 0.041 + 2.0 / diameter as f64;
+        assert_relative_eq!(spread, errors / TILES as f64, max_relative = tolerance);
+        assert_relative_eq!(
+            spread,
+            0.5 * crate::contrast_squared_spread(diameter as f64),
+            max_relative = tolerance
+        );
+    }
+}
+
+#[test]
+fn correlation_of_two_waves_is_the_cosine_of_their_phase() {
+    let wave = |phase: f64| {
+        Grid::from_fn(32, 3, |x, _| {
+            let argument = core::f64::consts::TAU * 3.0 * x as f64 / 32.0;
+            single(100.0 + (argument + phase).cos())
+        })
+    };
+    for phase in [0.0_f64, 0.4, 1.5, 3.0] {
+        let correlation = pearson_correlation(&wave(0.0), &wave(phase)).unwrap();
+        // Values near 100 are stored to 4e−6, and 96 of them average it.
+        assert_abs_diff_eq!(correlation, phase.cos(), epsilon = 4e-6);
+    }
+}
+
+#[test]
+fn independent_patterns_do_not_correlate() {
+    const PAIRS: u64 = 24;
+    let (size, diameter) = (128, 64);
+    let correlation = |seed| {
+        let (first, _) = speckle_tile(size, diameter, seed);
+        let (second, _) = speckle_tile(size, diameter, seed + 1_000);
+        pearson_correlation(&first, &second).unwrap()
+    };
+    let squares: f64 = (0..PAIRS).map(|seed| correlation(seed).powi(2)).sum();
+    // √(0.585) h / size per pair; the sum of squares over the variance is χ² with 24 degrees of
+    // freedom, within 7.5 and 53.5 but for 0.001 (Abramowitz & Stegun 1964, table 26.8).
+    let variance = 0.585 / (diameter * diameter) as f64;
+    let chi_squared = squares / variance;
+    assert!((7.5..53.5).contains(&chi_squared), "{chi_squared}");
+}
+
+#[test]
+fn samples_that_determine_nothing_are_refused() {
+    assert_eq!(
+        Moments::of::<f64>(&[]),
+        Err(StatisticsError::Samples {
+            given: 0,
+            needed: 2
+        })
+    );
+    assert_eq!(
+        Contrast::of(&[1.0]),
+        Err(StatisticsError::Samples {
+            given: 1,
+            needed: 2
+        })
+    );
+    assert_eq!(
+        Contrast::of(&[1.0, f64::INFINITY]),
+        Err(StatisticsError::NotFinite {
+            index: 1,
+            value: f64::INFINITY
+        })
+    );
+    for dark in [[0.0, 0.0], [-1.0, 1.0], [-2.0, 1.0]] {
+        assert!(
+            matches!(Contrast::of(&dark), Err(StatisticsError::Mean(_))),
+            "{dark:?}"
+        );
+    }
+    let ramp = Grid::from_fn(2, 2, |x, _| x as f32);
+    let flat = Grid::filled(2, 2, 0.3_f32);
+    let long = Grid::filled(4, 1, 0.3_f32);
+    assert_eq!(
+        pearson_correlation(&ramp, &flat),
+        Err(StatisticsError::Constant(f64::from(0.3_f32)))
+    );
+    assert_eq!(
+        pearson_correlation(&ramp, &long),
+        Err(StatisticsError::Size {
+            first: (2, 2),
+            second: (4, 1)
+        })
+    );
+    let contrast = Contrast::of(&[1.0, 2.0]).unwrap();
+    for size in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(
+            matches!(
+                contrast.with_speckle_size(size),
+                Err(StatisticsError::SpeckleSize(_))
+            ),
+            "{size}"
+        );
+    }
+}
+
+#[test]
+fn equal_samples_have_no_contrast_and_no_error() {
+    let contrast = Contrast::of(&[0.1, 0.1, 0.1]).unwrap();
+    assert!(contrast.value().abs() < f64::MIN_POSITIVE, "{contrast:?}");
+    assert!(contrast.standard_error().abs() < f64::MIN_POSITIVE);
+}
+
+proptest! {
+    #[test]
+    fn nothing_overflows(
+        samples in proptest::collection::vec(-f64::MAX..f64::MAX, 2..9),
+        exponent in -1_074..1,
+    ) {
+        let scaled: Vec<f64> = samples.iter().map(|&x| libm::ldexp(x, exponent)).collect();
+        let moments = Moments::of(&scaled).unwrap();
+        prop_assert!(moments.mean().is_finite(), "{moments:?}");
+        // √2 · f64::MAX is the largest standard deviation, of two opposite samples.
+        prop_assert!(!moments.standard_deviation().is_nan(), "{moments:?}");
+        if let Ok(contrast) = Contrast::of(&scaled) {
+            prop_assert!(contrast.value().is_finite(), "{contrast:?}");
+            prop_assert!(contrast.standard_error().is_finite(), "{contrast:?}");
+        }
+    }
+
+    #[test]
+    fn contrast_does_not_depend_on_the_unit(exponent in -900_i32..900) {
+        let samples = [0.3, 1.7, 0.2, 2.9];
+        let scaled = samples.map(|x| libm::ldexp(x, exponent));
+        // A power of two changes no bit.
+        prop_assert_eq!(Contrast::of(&samples), Contrast::of(&scaled));
+    }
+}

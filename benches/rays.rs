@@ -55,13 +55,14 @@ fn displaced_sphere() -> TriangleMesh {
 }
 
 fn coherent_rays() -> Vec<Ray> {
-    let origin = DVec3::new(0.0, 0.0, 4.0);
+    // Seen from the equator: the triangles of the poles are slivers.
+    let origin = DVec3::new(4.0, 0.0, 0.0);
     (0..RAYS)
         .map(|i| {
             let at = |k: usize| (k as f64 + 0.5) / SIDE as f64 - 0.5;
             Ray {
                 origin,
-                direction: DVec3::new(0.6 * at(i % SIDE), 0.6 * at(i / SIDE), -1.0).normalize(),
+                direction: DVec3::new(-1.0, 0.5 * at(i % SIDE), 0.5 * at(i / SIDE)).normalize(),
             }
         })
         .collect()

@@ -5,12 +5,18 @@
     reason = "a test stops at what it does not expect"
 )]
 
-use std::{path::Path, sync::atomic::AtomicBool};
+use std::{
+    path::Path,
+    sync::atomic::{AtomicBool, AtomicU64, Ordering},
+};
 
 use tem00::{
     beam::GaussianBeam,
     statistics::t_test_mean,
-    tracer::{Frame, RenderOptions, Scene, SpeckleModel, SpecklePlan, parse_scene, render_frame},
+    tracer::{
+        Frame, RenderError, RenderOptions, Scene, SpeckleModel, SpecklePlan, parse_scene,
+        render_frame,
+    },
 };
 
 const SEEDS: u64 = 20;
@@ -159,4 +165,22 @@ fn a_render_has_the_same_bits_for_any_number_of_threads() {
     let one = with_threads(1);
     assert_eq!(one, with_threads(3));
     assert_ne!(one, render(&scene, true, 6), "the seed has no effect");
+}
+
+#[test]
+fn a_render_stops_within_a_pixel_when_it_is_told_to() {
+    let scene = scene(0.0, 0.0);
+    let options = RenderOptions {
+        samples_per_pixel: 1 << 22,
+        ..RenderOptions::default()
+    };
+    let (cancel, done) = (AtomicBool::new(false), AtomicU64::new(0));
+    let progress = |samples| {
+        done.fetch_add(samples, Ordering::Relaxed);
+        cancel.store(true, Ordering::Relaxed);
+    };
+    let result = render_frame(&scene, None, 0, &options, progress, &cancel);
+    assert_eq!(result, Err(RenderError::Cancelled));
+    let done = done.load(Ordering::Relaxed);
+    assert!(done < 1 << 22, "{done} samples until the stop");
 }

@@ -117,7 +117,7 @@ impl Scene {
 ///
 /// Without a `speckle` model every speckle factor is 1. `progress` is told, from any thread, the
 /// number of camera samples done since its last call; once `cancel` is set, the render stops at the
-/// next pixel. The result has the same bits for any number of threads.
+/// next sample. The result has the same bits for any number of threads.
 ///
 /// # Errors
 ///
@@ -158,7 +158,15 @@ pub fn render_frame(
     };
     let (mut lasers, mut lamps) = (Vec::new(), None);
     for pass in scene.passes() {
-        let rows = render_pass(&integrator, pass, options, &progress, cancel)?;
+        let job = PassJob {
+            integrator: &integrator,
+            pass,
+            strata: Strata::new(options.samples_per_pixel),
+            seed: options.seed,
+            progress: &progress,
+            cancel,
+        };
+        let rows = job.rows()?;
         match pass {
             Pass::Laser(index) => {
                 lasers.push(film::laser_layers(scene.lasers[index].wavelength(), &rows));
@@ -173,77 +181,78 @@ pub fn render_frame(
     })
 }
 
-fn render_pass(
-    integrator: &Integrator<'_>,
-    pass: Pass,
-    options: &RenderOptions,
-    progress: &(impl Fn(u64) + Sync),
-    cancel: &AtomicBool,
-) -> Result<Vec<Row>, RenderError> {
-    let height = integrator.camera.height();
-    (0..height)
-        .into_par_iter()
-        .map(|y| render_row(integrator, pass, options, progress, cancel, y))
-        .collect()
-}
-
-fn render_row(
-    integrator: &Integrator<'_>,
-    pass: Pass,
-    options: &RenderOptions,
-    progress: &(impl Fn(u64) + Sync),
-    cancel: &AtomicBool,
-    y: usize,
-) -> Result<Row, RenderError> {
-    let width = integrator.camera.width();
-    let strata = Strata::new(options.samples_per_pixel);
-    let pixels = (0..width).map(|x| {
-        if cancel.load(Ordering::Relaxed) {
-            return Err(RenderError::Cancelled);
-        }
-        let stream = stream(integrator, pass, y * width + x);
-        let mut sampler = Sampler::new(options.seed, stream);
-        let pixel = render_pixel(integrator, pass, strata, (x, y), &mut sampler);
-        progress(u64::from(options.samples_per_pixel));
-        Ok(pixel)
-    });
-    Ok(Row {
-        pixels: pixels.collect::<Result<_, _>>()?,
-    })
-}
-
-/// Every pixel of every pass of every frame has a stream of random numbers of its own.
-fn stream(integrator: &Integrator<'_>, pass: Pass, pixel: usize) -> u64 {
-    let scene = integrator.scene;
-    let pass = match pass {
-        Pass::Laser(index) => index,
-        Pass::Lamps => scene.lasers.len(),
-    } as u64;
-    let passes = scene.lasers.len() as u64 + 1;
-    (u64::from(integrator.frame) * passes + pass) << 28 | pixel as u64
-}
-
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "an image has at most 2²⁸ pixels"
-)]
-fn render_pixel(
-    integrator: &Integrator<'_>,
+/// One pass over the image.
+struct PassJob<'a, P> {
+    integrator: &'a Integrator<'a>,
     pass: Pass,
     strata: Strata,
-    (x, y): (usize, usize),
-    sampler: &mut Sampler,
-) -> Pixel {
-    let samples = strata.columns * strata.rows;
-    let mut mean = Pixel::default();
-    for index in 0..samples {
-        let [u, v] = strata.position(index, sampler.uniform_2d());
-        let image_point = DVec2::new(x as f64 + u, y as f64 + v);
-        let sample = match pass {
-            Pass::Laser(laser) => integrator.laser_sample(laser, image_point, sampler),
-            Pass::Lamps => integrator.lamp_sample(image_point, sampler),
-        };
-        mean.add(&sample, 1.0 / f64::from(samples));
-    }
-    mean
+    seed: u64,
+    progress: &'a P,
+    cancel: &'a AtomicBool,
 }
+
+impl<P: Fn(u64) + Sync> PassJob<'_, P> {
+    fn rows(&self) -> Result<Vec<Row>, RenderError> {
+        let camera = &self.integrator.camera;
+        (0..camera.height())
+            .into_par_iter()
+            .map(|y| {
+                let pixels = (0..camera.width()).map(|x| self.pixel(x, y));
+                Ok(Row {
+                    pixels: pixels.collect::<Result<_, _>>()?,
+                })
+            })
+            .collect()
+    }
+
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "an image has at most 2²⁸ pixels"
+    )]
+    fn pixel(&self, x: usize, y: usize) -> Result<Pixel, RenderError> {
+        let mut sampler = Sampler::new(self.seed, self.stream(x, y));
+        let samples = self.strata.columns * self.strata.rows;
+        let mut mean = Pixel::default();
+        let mut unreported = 0;
+        for index in 0..samples {
+            if self.cancel.load(Ordering::Relaxed) {
+                return Err(RenderError::Cancelled);
+            }
+            let [u, v] = self.strata.position(index, sampler.uniform_2d());
+            let image_point = DVec2::new(x as f64 + u, y as f64 + v);
+            mean.add(
+                &self.sample(image_point, &mut sampler),
+                1.0 / f64::from(samples),
+            );
+            unreported += 1;
+            if unreported == REPORTED_AT_ONCE {
+                (self.progress)(unreported);
+                unreported = 0;
+            }
+        }
+        (self.progress)(unreported);
+        Ok(mean)
+    }
+
+    fn sample(&self, image_point: DVec2, sampler: &mut Sampler) -> Pixel {
+        match self.pass {
+            Pass::Laser(laser) => self.integrator.laser_sample(laser, image_point, sampler),
+            Pass::Lamps => self.integrator.lamp_sample(image_point, sampler),
+        }
+    }
+
+    /// Every pixel of every pass of every frame has a stream of random numbers of its own.
+    fn stream(&self, x: usize, y: usize) -> u64 {
+        let scene = self.integrator.scene;
+        let pass = match self.pass {
+            Pass::Laser(index) => index,
+            Pass::Lamps => scene.lasers.len(),
+        } as u64;
+        let passes = scene.lasers.len() as u64 + 1;
+        let pixel = (y * self.integrator.camera.width() + x) as u64;
+        (u64::from(self.integrator.frame) * passes + pass) << 28 | pixel
+    }
+}
+
+/// The most samples of a pixel that are done before progress is told.
+const REPORTED_AT_ONCE: u64 = 1 << 12;

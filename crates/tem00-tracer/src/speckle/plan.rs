@@ -195,6 +195,12 @@ impl PatternPlan {
         self.path.memory_bytes(self.size)
     }
 
+    /// Whether the motion carries the pupil round the lattice, back to where it started.
+    #[expect(clippy::cast_precision_loss, reason = "sizes are far below 2⁵³")]
+    fn speckle_returns(&self) -> bool {
+        (1.0 + self.largest_shift) * self.diameter as f64 > self.size as f64
+    }
+
     pub(super) const fn seed(&self) -> u64 {
         self.seed
     }
@@ -252,9 +258,14 @@ impl fmt::Display for PatternPlan {
             SlicePath::Still => write!(f, "one slice, since nothing moves; ")?,
             _ => write!(
                 f,
-                "{} slices for a motion of up to {:.2} pupil diameters; ",
+                "{} slices for a motion of up to {:.2} pupil diameters{}; ",
                 self.path.slice_count(),
-                self.largest_shift
+                self.largest_shift,
+                if self.speckle_returns() {
+                    ", within which the first speckle RETURNS"
+                } else {
+                    ""
+                }
             )?,
         }
         write!(
@@ -401,6 +412,15 @@ mod tests {
             "{plan}"
         );
         assert!((plan.slices_per_diameter() - 32.0).abs() < 1e-12, "{plan}");
+    }
+
+    #[test]
+    fn a_pattern_too_short_for_the_motion_is_said_to_return() {
+        let motion = "[\"4 mm\", 0, 0]";
+        let chosen = plan(motion, "").unwrap().to_string();
+        assert!(!chosen.contains("RETURNS"), "{chosen}");
+        let asked = plan(motion, "[speckle]\nsize = 512\ndiameter = 256").unwrap();
+        assert!(asked.to_string().contains("RETURNS"), "{asked}");
     }
 
     #[test]

@@ -6,6 +6,9 @@ use crate::{Ray, TracerError};
 /// The most pixels an image may have: 2²⁸, which is 16 384 × 16 384.
 pub const MAXIMUM_PIXELS: usize = 1 << 28;
 
+/// The sine of the smallest accepted angle between `up` and the viewing direction.
+const SMALLEST_SINE: f64 = 1e-6;
+
 /// What determines a [`Camera`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraDescription {
@@ -52,9 +55,9 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// Returns an error if a length is not positive and finite, if the focus distance does not
-    /// exceed the focal length, if the camera looks at itself or along `up`, or if the image is
-    /// empty or has more than [`MAXIMUM_PIXELS`] pixels.
+    /// Returns an error if a length is not positive and finite, if the f-number is below 0.5, if the
+    /// focus distance does not exceed the focal length, if the camera looks at itself or along `up`,
+    /// or if the image is empty or has more than [`MAXIMUM_PIXELS`] pixels.
     pub fn new(description: CameraDescription) -> Result<Self, TracerError> {
         check_lengths(&description)?;
         let [width, height] = description.resolution;
@@ -72,9 +75,10 @@ impl Camera {
                 parameter: "look_at",
                 allowed: "a point other than the camera's position",
             })?;
-        let right = view
-            .cross(description.up.normalize_or_zero())
-            .try_normalize()
+        let across = view.cross(description.up.normalize_or_zero());
+        // Rounding alone makes the product of parallel directions about 1e−16 long.
+        let right = (across.length() > SMALLEST_SINE)
+            .then(|| across.normalize())
             .ok_or(TracerError::Direction {
                 parameter: "up",
                 allowed: "a direction across the viewing direction",
@@ -214,6 +218,13 @@ fn check_lengths(description: &CameraDescription) -> Result<(), TracerError> {
             });
         }
     }
+    if description.f_number < 0.5 {
+        return Err(TracerError::OutOfRange {
+            parameter: "f_number",
+            value: description.f_number,
+            allowed: "at least 0.5, the limit of an aplanatic lens",
+        });
+    }
     if description.focus_distance <= description.focal_length {
         return Err(TracerError::OutOfRange {
             parameter: "focus_distance",
@@ -321,6 +332,17 @@ mod tests {
         for description in bad {
             assert!(Camera::new(description).is_err(), "{description:?}");
         }
+    }
+
+    #[test]
+    fn up_along_the_view_is_rejected_in_spite_of_rounding() {
+        let oblique = CameraDescription {
+            position: DVec3::new(0.1, 0.2, 0.3),
+            look_at: DVec3::new(0.03, 0.0, 0.0),
+            up: DVec3::new(0.7, 2.0, 3.0),
+            ..description()
+        };
+        assert!(Camera::new(oblique).is_err(), "{:?}", Camera::new(oblique));
     }
 
     proptest! {

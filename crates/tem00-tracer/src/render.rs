@@ -126,7 +126,8 @@ impl Scene {
 ///
 /// # Panics
 ///
-/// Panics unless `speckle` has a pattern for every laser, as a model of the same scene has.
+/// Panics unless `frame < scene.render.frames` and `speckle` has a pattern for every laser, as a model
+/// of the same scene has.
 pub fn render_frame(
     scene: &Scene,
     speckle: Option<&SpeckleModel>,
@@ -143,6 +144,11 @@ pub fn render_frame(
         }
         .into());
     }
+    assert!(
+        frame < scene.render.frames,
+        "frame {frame} of a scene with {}",
+        scene.render.frames
+    );
     assert!(
         speckle.is_none_or(|model| model.pattern_count() >= scene.lasers.len()),
         "the speckle model belongs to another scene"

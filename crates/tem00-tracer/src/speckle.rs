@@ -2,6 +2,7 @@
 
 mod model;
 mod plan;
+mod survey;
 
 use glam::{DVec2, DVec3};
 pub use model::SpeckleModel;
@@ -46,22 +47,44 @@ impl MovedPoint {
         })
     }
 
-    /// How far the pupil has moved over the speckle, in pupil diameters, so that the overlap gives
-    /// the correlation.
+    /// Returns how far the pupil has moved over the speckle of a surface point since the first frame,
+    /// in pupil diameters.
     ///
-    /// Motion along the line of sight is turned into the shift of equal correlation. Shifts beyond
-    /// one diameter keep their size: it tells the speckle of two later frames apart.
-    fn shift(&self, geometry: &ImagingGeometry) -> f64 {
+    /// The overlap at that shift gives the correlation with the first frame. Motion along the line of
+    /// sight is turned into the shift of equal correlation. Shifts beyond one diameter keep growing,
+    /// which tells the speckle of two later frames apart: exactly so for motion across the line of
+    /// sight; along it, beyond the first zero of the correlation, by the unit of that zero, without
+    /// the revival of 4.7 % behind it.
+    fn shift_of(
+        scene: &Scene,
+        laser: &Laser,
+        hit: &SpecklePoint,
+        frame: u32,
+        geometry: &ImagingGeometry,
+    ) -> f64 {
+        // Where the theory has no value, every frame has speckle of its own.
+        Self::new(scene, laser, hit, frame)
+            .ok()
+            .and_then(|moved| moved.shift(geometry))
+            .unwrap_or(f64::from(frame))
+    }
+
+    fn shift(&self, geometry: &ImagingGeometry) -> Option<f64> {
         let speckle = SpeckleMotion::new(
             geometry,
             &self.point,
             &self.motion,
             ImageOrientation::ScreenUpright,
         );
-        let lateral = speckle
-            .pupil_displacement
-            .map_or(1.0, |shift| shift.length() / geometry.pupil_diameter());
-        equivalent_pupil_shift(speckle.correlation).max(lateral)
+        let lateral = speckle.pupil_displacement?.length() / geometry.pupil_diameter();
+        let depth = self.point.sight().depth();
+        let axial = speckle.axial_displacement / geometry.axial_decorrelation_length_at(depth);
+        let beyond_the_zero = if axial.abs() >= 1.0 { axial.abs() } else { 0.0 };
+        Some(
+            equivalent_pupil_shift(speckle.correlation)
+                .max(lateral)
+                .max(beyond_the_zero),
+        )
     }
 }
 

@@ -8,7 +8,7 @@ pub(super) const RENDER_KEYS: &[&str] = &["samples_per_pixel", "seed", "frames"]
 pub(super) const SPECKLE_KEYS: &[&str] = &["size", "diameter", "half_period", "memory"];
 
 /// The largest pattern size and number of slices: what a memory of a tebibyte could hold.
-const MOST: u64 = 1 << 20;
+const MOST: u64 = 1 << 15;
 
 pub(super) fn render(root: &Section<'_>) -> Result<RenderSettings, Problem> {
     let default = RenderSettings::default();

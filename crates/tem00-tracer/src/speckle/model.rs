@@ -17,6 +17,8 @@ struct Pattern {
     geometry: ImagingGeometry,
     /// Slices per pupil diameter.
     slices_per_diameter: f64,
+    /// The largest shift that the slices hold, in pupil diameters.
+    reach: f64,
     half_period: usize,
     stack: Stack,
 }
@@ -38,6 +40,15 @@ pub(crate) struct SpecklePoint {
     pub normal: DVec3,
     /// The index of the surface in the scene.
     pub surface: usize,
+}
+
+impl SpecklePoint {
+    /// Returns where the point stood in the image of the first frame, in pixels, or `None` if that
+    /// was behind the camera.
+    pub(super) fn reference(&self, scene: &Scene, frame: u32) -> Option<DVec2> {
+        let before = self.position - scene.surface_displacement(self.surface, frame);
+        scene.camera.project(before)
+    }
 }
 
 impl SpeckleModel {
@@ -115,6 +126,7 @@ impl Pattern {
             geometry,
             slices_per_diameter: plan.slices_per_diameter(),
             half_period: plan.half_period(),
+            reach: plan.reach(),
             stack,
         })
     }
@@ -128,12 +140,11 @@ impl Pattern {
         point: &SpecklePoint,
         frame: u32,
     ) -> (DVec2, f64) {
-        let before = point.position - scene.surface_displacement(point.surface, frame);
-        // A point that the first camera could not have seen brings speckle of its own.
-        let pixel = scene.camera.project(before).unwrap_or(point.pixel);
-        let shift = MovedPoint::new(scene, laser, point, frame)
-            .map_or(1.0, |moved| moved.shift(&self.geometry));
-        (pixel, shift)
+        // A point that started behind the camera has no place in its image: any will do.
+        let pixel = point.reference(scene, frame).unwrap_or(point.pixel);
+        let shift = MovedPoint::shift_of(scene, laser, point, frame, &self.geometry);
+        // Beyond the reach the speckle is new to the first frame, wherever the pupil stands.
+        (pixel, shift.min(self.reach))
     }
 
     /// Returns the displacement in the image and the slice coordinate by the printed formulas.

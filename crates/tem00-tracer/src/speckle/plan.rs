@@ -1,20 +1,15 @@
 use core::fmt;
 
-use glam::DVec2;
-use tem00_decorrelation::ImagingGeometry;
 use tem00_speckle::{PupilField, SlicePath};
 
-use super::{MovedPoint, SpecklePoint};
-use crate::{Formulas, Intersector, Laser, Scene, TracerError};
+use super::survey::Survey;
+use crate::{Formulas, Laser, Scene, SpeckleSettings, TracerError};
 
 /// Slices per pupil diameter that are tried, the best first.
 ///
-/// Blending between slices deviates from the correlation law by 0.06 at most with 32 slices per
+/// Blending between slices deviates from the correlation law by less than 0.06 with 32 slices per
 /// diameter, 0.11 with 16, 0.2 with 8 and 0.4 with 4.
 const SLICES_PER_DIAMETER: [usize; 4] = [32, 16, 8, 4];
-
-/// Rays per image side with which the motion in a scene is surveyed.
-const SURVEY_POINTS: u32 = 16;
 
 /// The smallest pupil field that is chosen without being asked: about 800 phasors.
 const SMALLEST_DIAMETER: usize = 32;
@@ -37,27 +32,20 @@ pub struct PatternPlan {
     size: usize,
     diameter: usize,
     path: SlicePath,
+    frames: u32,
     as_printed: bool,
     chosen: bool,
     seed: u64,
-}
-
-/// What the motion in a scene asks of a pattern.
-#[derive(Clone, Copy, Debug)]
-struct Survey {
-    /// The image side plus the largest displacement in the image, in pixels.
-    extent: f64,
-    /// The largest motion of the pupil over the speckle, in pupil diameters.
-    shift: f64,
 }
 
 impl SpecklePlan {
     /// Chooses the patterns for a scene.
     ///
     /// The diameter C of the pupil field is at least the image side in speckles, so that nothing
-    /// repeats in the image; the size Q is twice that, or more if the motion carries the pupil by
+    /// repeats in the image; the size Q is twice that, or more if several frames carry the pupil by
     /// more than its diameter; the number of slices is the largest of a few that fits the memory.
-    /// What the scene file sets is kept.
+    /// What the scene file sets is kept. What the motion asks for beyond the memory is left out, and
+    /// said so.
     ///
     /// # Errors
     ///
@@ -105,45 +93,67 @@ impl PatternPlan {
     ) -> Result<Self, TracerError> {
         let geometry = scene.camera.imaging_geometry(laser.wavelength())?;
         let survey = Survey::new(scene, laser, &geometry)?;
-        let speckle_size = geometry.speckle_size_in_pixels();
-        let settings = scene.speckle;
-        let diameter = settings
-            .diameter
-            .or(settings.size.map(|size| size / 2))
-            .unwrap_or_else(|| diameter_for(survey.extent / speckle_size));
-        let as_printed = formulas == Formulas::AsPrinted;
-        let diameters = if as_printed {
+        let mut plan = Self {
+            wavelength: laser.wavelength(),
+            speckle_size_in_pixels: geometry.speckle_size_in_pixels(),
+            extent: survey.extent,
+            largest_shift: survey.shift,
+            size: 0,
+            diameter: 0,
+            path: SlicePath::Still,
+            frames: scene.render.frames,
+            as_printed: formulas == Formulas::AsPrinted,
+            chosen: scene.speckle.size.is_none() && scene.speckle.diameter.is_none(),
+            seed,
+        };
+        let candidates = plan.sizes(&scene.speckle, &survey);
+        let mut smallest = u64::MAX;
+        for &(diameter, size) in &candidates {
+            (plan.diameter, plan.size) = (diameter, size);
+            for path in plan.paths(scene) {
+                plan.path = path;
+                smallest = smallest.min(plan.memory_bytes());
+                if plan.memory_bytes() <= memory && PupilField::new(size, diameter, seed).is_ok() {
+                    return Ok(plan);
+                }
+            }
+        }
+        // C ≤ Q/2 and the bounds of both are the pupil field's to check.
+        PupilField::new(plan.size, plan.diameter, seed)?;
+        Err(TracerError::PatternMemory {
+            needed: smallest,
+            allowed: memory,
+        })
+    }
+
+    /// Returns the pairs of C and Q that are tried, the best first.
+    fn sizes(&self, settings: &SpeckleSettings, survey: &Survey) -> Vec<(usize, usize)> {
+        // Two frames need no third place on the lattice: whatever is new is new to the first.
+        let diameters = if self.as_printed || self.frames <= 2 {
             2
         } else {
             diameters_for(survey.shift)
         };
-        let size = settings
-            .size
-            .unwrap_or_else(|| diameter.saturating_mul(diameters));
-        // C ≤ Q/2 and the bounds of both are the pupil field's to check.
-        PupilField::new(size, diameter, seed)?;
-        let mut plan = Self {
-            wavelength: laser.wavelength(),
-            speckle_size_in_pixels: speckle_size,
-            extent: survey.extent,
-            largest_shift: survey.shift,
-            size,
-            diameter,
-            path: SlicePath::Still,
-            as_printed,
-            chosen: settings.size.is_none() && settings.diameter.is_none(),
-            seed,
-        };
-        plan.path = plan.choose_path(scene, memory)?;
-        Ok(plan)
+        let asked = settings.diameter.or(settings.size.map(|size| size / 2));
+        let whole = diameter_for(survey.extent / self.speckle_size_in_pixels);
+        let image = diameter_for(survey.side / self.speckle_size_in_pixels);
+        [(whole, diameters), (whole, 2), (image, 2)]
+            .into_iter()
+            .map(|(diameter, diameters)| {
+                let diameter = asked.unwrap_or(diameter);
+                let size = diameter.saturating_mul(diameters);
+                (diameter, settings.size.unwrap_or(size))
+            })
+            .collect()
     }
 
-    fn choose_path(&self, scene: &Scene, memory: u64) -> Result<SlicePath, TracerError> {
+    /// Returns the paths that are tried at the chosen C and Q, the best first.
+    fn paths(&self, scene: &Scene) -> Vec<SlicePath> {
         let path = |half_period| match self.as_printed {
             true => SlicePath::Circle { half_period },
             false => SlicePath::Straight { half_period },
         };
-        let candidates: Vec<_> = match (scene.speckle.half_period, scene.moves()) {
+        match (scene.speckle.half_period, scene.moves()) {
             (Some(half_period), _) => vec![path(half_period)],
             (None, true) => SLICES_PER_DIAMETER
                 .iter()
@@ -151,17 +161,7 @@ impl PatternPlan {
                 .collect(),
             (None, false) if self.as_printed => vec![path(1)],
             (None, false) => vec![SlicePath::Still],
-        };
-        let smallest = candidates
-            .last()
-            .map_or(0, |path| path.memory_bytes(self.size));
-        candidates
-            .into_iter()
-            .find(|path| path.memory_bytes(self.size) <= memory)
-            .ok_or(TracerError::PatternMemory {
-                needed: smallest,
-                allowed: memory,
-            })
+        }
     }
 
     /// Returns the size Q of the pattern, in samples.
@@ -195,10 +195,16 @@ impl PatternPlan {
         self.path.memory_bytes(self.size)
     }
 
-    /// Whether the motion carries the pupil round the lattice, back to where it started.
+    /// Returns the largest shift that the slices hold, in pupil diameters: the way round the lattice
+    /// less the diameter of the pupil itself.
     #[expect(clippy::cast_precision_loss, reason = "sizes are far below 2⁵³")]
-    fn speckle_returns(&self) -> bool {
-        (1.0 + self.largest_shift) * self.diameter as f64 > self.size as f64
+    pub(super) fn reach(&self) -> f64 {
+        self.size as f64 / self.diameter as f64 - 1.0
+    }
+
+    /// Whether some of the later frames have moved beyond the reach, and so share their speckle.
+    fn later_frames_share(&self) -> bool {
+        self.frames > 2 && self.largest_shift > self.reach()
     }
 
     pub(super) const fn seed(&self) -> u64 {
@@ -261,8 +267,8 @@ impl fmt::Display for PatternPlan {
                 "{} slices for a motion of up to {:.2} pupil diameters{}; ",
                 self.path.slice_count(),
                 self.largest_shift,
-                if self.speckle_returns() {
-                    ", within which the first speckle RETURNS"
+                if self.later_frames_share() {
+                    ", MORE than the slices hold: frames beyond share their speckle"
                 } else {
                     ""
                 }
@@ -276,59 +282,8 @@ impl fmt::Display for PatternPlan {
     }
 }
 
-impl Survey {
-    /// Follows a few rays in the last frame, in which everything has moved furthest.
-    fn new(scene: &Scene, laser: &Laser, geometry: &ImagingGeometry) -> Result<Self, TracerError> {
-        let side = scene.camera.width().max(scene.camera.height());
-        #[expect(clippy::cast_precision_loss, reason = "an image side is below 2²⁸")]
-        let mut survey = Self {
-            extent: side as f64,
-            shift: 0.0,
-        };
-        if !scene.moves() {
-            return Ok(survey);
-        }
-        let frame = scene.render.frames - 1;
-        let camera = scene.camera_at(frame);
-        let intersector = Intersector::build(&scene.shapes_at(frame))?;
-        let mut largest = DVec2::ZERO;
-        for pixel in survey_pixels(&camera) {
-            let Some(hit) = intersector.intersect(&camera.ray(pixel)) else {
-                continue;
-            };
-            let point = SpecklePoint {
-                pixel,
-                position: hit.position,
-                normal: hit.normal,
-                surface: hit.surface,
-            };
-            let before = hit.position - scene.surface_displacement(hit.surface, frame);
-            if let Some(reference) = scene.camera.project(before) {
-                largest = largest.max((reference - pixel).abs());
-            }
-            let shift = MovedPoint::new(scene, laser, &point, frame)
-                .map_or(1.0, |moved| moved.shift(geometry));
-            survey.shift = survey.shift.max(shift);
-        }
-        survey.extent += largest.max_element();
-        Ok(survey)
-    }
-}
-
-fn survey_pixels(camera: &crate::Camera) -> impl Iterator<Item = DVec2> {
-    #[expect(clippy::cast_precision_loss, reason = "an image side is below 2²⁸")]
-    let size = DVec2::new(camera.width() as f64, camera.height() as f64);
-    let position = |index: u32| (f64::from(index) + 0.5) / f64::from(SURVEY_POINTS);
-    (0..SURVEY_POINTS * SURVEY_POINTS).map(move |index| {
-        let cell = DVec2::new(
-            position(index % SURVEY_POINTS),
-            position(index / SURVEY_POINTS),
-        );
-        cell * size
-    })
-}
-
-/// The smallest power of two that covers `speckles` speckles.
+/// The smallest multiple of 8 without prime factors above 5 that covers `speckles` speckles: a size
+/// that Fourier transforms like.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -336,7 +291,20 @@ fn survey_pixels(camera: &crate::Camera) -> impl Iterator<Item = DVec2> {
 )]
 fn diameter_for(speckles: f64) -> usize {
     let smallest = (speckles.ceil() as usize).max(SMALLEST_DIAMETER);
-    smallest.checked_next_power_of_two().unwrap_or(usize::MAX)
+    let multiples = smallest.div_ceil(8)..=PupilField::MAX_SIZE / 8;
+    multiples
+        .map(|multiple| 8 * multiple)
+        .find(|&diameter| is_smooth(diameter))
+        .unwrap_or(smallest)
+}
+
+fn is_smooth(mut number: usize) -> bool {
+    for prime in [2, 3, 5] {
+        while number.is_multiple_of(prime) {
+            number /= prime;
+        }
+    }
+    number == 1
 }
 
 /// The size of the torus, in pupil diameters, on which a straight path of `shift` diameters ends
@@ -351,133 +319,4 @@ fn diameters_for(shift: f64) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use super::*;
-    use crate::parse_scene;
-
-    /// A plate under a collimated spot; `more` is appended to the scene.
-    fn scene(displacement: &str, more: &str) -> Scene {
-        let text = format!(
-            r#"
-            [render]
-            frames = 2
-            [camera]
-            position = [0, 0, 0.3]
-            resolution = [300, 200]
-            [[laser]]
-            wavelength = "650 nm"
-            power = "1 mW"
-            position = [0, 0, 0.2]
-            spot = {{ waist_radius = "1 mm" }}
-            [[surface]]
-            displacement_per_frame = {displacement}
-            rectangle = {{ size = [0.04, 0.04] }}
-            {more}
-            "#
-        );
-        parse_scene(&text, Path::new(".")).unwrap()
-    }
-
-    fn plan(displacement: &str, more: &str) -> Result<PatternPlan, TracerError> {
-        let plan = SpecklePlan::new(&scene(displacement, more), Formulas::Derived, 0)?;
-        Ok(plan.patterns()[0].clone())
-    }
-
-    #[test]
-    fn nothing_repeats_within_the_image() {
-        let plan = plan("[0, 0, 0]", "").unwrap();
-        // h = λ (1 + m) F with m = 1/11, in pixels of 3.45 µm.
-        let speckle_size = 650e-9 * 12.0 / 11.0 * 8.0 / 3.45e-6;
-        assert!(
-            (plan.speckle_size_in_pixels() / speckle_size - 1.0).abs() < 1e-12,
-            "{plan}"
-        );
-        // 300 pixels hold 182.5 speckles: the next power of two is 256.
-        assert_eq!((plan.diameter(), plan.size()), (256, 512), "{plan}");
-        assert_eq!(plan.path(), SlicePath::Still, "{plan}");
-    }
-
-    #[test]
-    fn motion_widens_the_pattern_and_asks_for_slices() {
-        let plan = plan("[\"4 mm\", 0, 0]", "").unwrap();
-        // 4 mm are 105 pixels: 405 pixels hold 246.6 speckles. The pupil of 3.125 mm is left
-        // behind, so that the path is three diameters long.
-        assert_eq!((plan.diameter(), plan.size()), (256, 768), "{plan}");
-        assert!((plan.largest_shift() - 4.0 / 3.125).abs() < 1e-3, "{plan}");
-        assert_eq!(
-            plan.path(),
-            SlicePath::Straight { half_period: 48 },
-            "{plan}"
-        );
-        assert!((plan.slices_per_diameter() - 32.0).abs() < 1e-12, "{plan}");
-    }
-
-    #[test]
-    fn a_pattern_too_short_for_the_motion_is_said_to_return() {
-        let motion = "[\"4 mm\", 0, 0]";
-        let chosen = plan(motion, "").unwrap().to_string();
-        assert!(!chosen.contains("RETURNS"), "{chosen}");
-        let asked = plan(motion, "[speckle]\nsize = 512\ndiameter = 256").unwrap();
-        assert!(asked.to_string().contains("RETURNS"), "{asked}");
-    }
-
-    #[test]
-    fn memory_bounds_the_number_of_slices() {
-        let motion = "[\"0.2 mm\", 0, 0]";
-        let slices = |memory: &str| {
-            let more = format!("[speckle]\nmemory = \"{memory}\"");
-            plan(motion, &more).map(|plan| plan.path().slice_count())
-        };
-        // 512² complex samples are 2 MiB a slice.
-        assert_eq!(slices("128 MiB"), Ok(64));
-        assert_eq!(slices("127 MiB"), Ok(32));
-        assert_eq!(slices("16 MiB"), Ok(8));
-        assert_eq!(
-            slices("15 MiB"),
-            Err(TracerError::PatternMemory {
-                needed: 16 << 20,
-                allowed: 15 << 20
-            })
-        );
-    }
-
-    #[test]
-    fn what_the_scene_asks_for_is_kept_and_said() {
-        let plan = plan("[0, 0, 0]", "[speckle]\nsize = 300\ndiameter = 100").unwrap();
-        assert_eq!((plan.size(), plan.diameter()), (300, 100), "{plan}");
-        let text = plan.to_string();
-        assert!(
-            text.contains("C = 100, LESS than the 182.5 speckles"),
-            "{text}"
-        );
-        assert!(text.contains("as the scene asks"), "{text}");
-    }
-
-    #[test]
-    fn printed_formulas_get_the_circle_of_the_paper() {
-        let scene = scene("[\"0.2 mm\", 0, 0]", "");
-        let plan = SpecklePlan::new(&scene, Formulas::AsPrinted, 0).unwrap();
-        let path = plan.patterns()[0].path();
-        assert_eq!(path, SlicePath::Circle { half_period: 32 }, "{plan}");
-    }
-
-    #[test]
-    fn lasers_have_seeds_of_their_own() {
-        let second = r#"
-            [[laser]]
-            wavelength = "532 nm"
-            power = "1 mW"
-            position = [0.1, 0, 0.2]
-            spot = { waist_radius = "1 mm" }
-        "#;
-        let scene = scene("[0, 0, 0]", second);
-        let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
-        let [first, second] = plan.patterns() else {
-            panic!("two lasers have two patterns");
-        };
-        assert_ne!(first.seed(), second.seed());
-        assert!(second.speckle_size_in_pixels() < first.speckle_size_in_pixels());
-    }
-}
+mod tests;

@@ -1,0 +1,159 @@
+use std::path::Path;
+
+use super::*;
+use crate::parse_scene;
+
+/// A plate under a collimated spot as wide as the image, in a number of frames; `more` is appended.
+fn scene(frames: u32, displacement: &str, more: &str) -> Scene {
+    let text = format!(
+        r#"
+        [render]
+        frames = {frames}
+        [camera]
+        position = [0, 0, 0.3]
+        resolution = [300, 200]
+        [[laser]]
+        wavelength = "650 nm"
+        power = "1 mW"
+        position = [0, 0, 0.2]
+        spot = {{ waist_radius = "5 mm" }}
+        [[surface]]
+        displacement_per_frame = {displacement}
+        rectangle = {{ size = [0.1, 0.1] }}
+        {more}
+        "#
+    );
+    parse_scene(&text, Path::new(".")).unwrap()
+}
+
+fn plan(frames: u32, displacement: &str, more: &str) -> Result<PatternPlan, TracerError> {
+    let plan = SpecklePlan::new(&scene(frames, displacement, more), Formulas::Derived, 0)?;
+    Ok(plan.patterns()[0].clone())
+}
+
+#[test]
+fn nothing_repeats_within_the_image() {
+    let plan = plan(2, "[0, 0, 0]", "").unwrap();
+    // h = λ (1 + m) F with m = 1/11, in pixels of 3.45 µm.
+    let speckle_size = 650e-9 * 12.0 / 11.0 * 8.0 / 3.45e-6;
+    let error = plan.speckle_size_in_pixels() / speckle_size - 1.0;
+    assert!(error.abs() < 1e-12, "{plan}");
+    // 300 pixels hold 182.5 speckles: the next size is 192 = 2⁶ · 3.
+    assert_eq!((plan.diameter(), plan.size()), (192, 384), "{plan}");
+    assert_eq!(plan.path(), SlicePath::Still, "{plan}");
+}
+
+#[test]
+fn sizes_have_small_prime_factors() {
+    let sizes = [1.0, 33.0, 182.5, 247.0, 385.0, 1e4].map(diameter_for);
+    assert_eq!(sizes, [32, 40, 192, 256, 400, 10_000]);
+    // What no pattern can hold is left to the pupil field to refuse.
+    assert_eq!(diameter_for(1e9), 1_000_000_000);
+}
+
+#[test]
+fn motion_of_several_frames_widens_the_pattern_and_asks_for_slices() {
+    let plan = plan(3, "[\"2 mm\", 0, 0]", "").unwrap();
+    // 4 mm are 105.4 pixels: 405.4 pixels hold 246.6 speckles. The pupil of 3.125 mm is left behind,
+    // so that the way round the lattice is three diameters long.
+    assert_eq!((plan.diameter(), plan.size()), (256, 768), "{plan}");
+    assert!((plan.largest_shift() - 4.0 / 3.125).abs() < 1e-2, "{plan}");
+    let path = SlicePath::Straight { half_period: 48 };
+    assert_eq!(plan.path(), path, "{plan}");
+    assert!((plan.slices_per_diameter() - 32.0).abs() < 1e-12, "{plan}");
+    assert!((plan.reach() - 2.0).abs() < 1e-12, "{plan}");
+}
+
+#[test]
+fn two_frames_need_no_more_than_two_diameters() {
+    let plan = plan(2, "[\"4 mm\", 0, 0]", "").unwrap();
+    assert_eq!((plan.diameter(), plan.size()), (256, 512), "{plan}");
+    assert!(!plan.to_string().contains("MORE"), "{plan}");
+}
+
+#[test]
+fn opposite_motions_widen_the_pattern_twice() {
+    // Two halves that close in by 10 pixels each bring speckle from 10 pixels beyond both sides.
+    let more = "[[surface]]\ndisplacement_per_frame = [0.3795e-3, 0, 0]\n\
+                rectangle = { centre = [-0.05, 0, 0.001], size = [0.1, 0.1] }";
+    let plan = plan(2, "[-0.3795e-3, 0, 0]", more).unwrap();
+    assert!((plan.extent - 320.0).abs() < 3.0, "{plan}");
+}
+
+#[test]
+fn memory_bounds_the_number_of_slices() {
+    let motion = "[\"0.2 mm\", 0, 0]";
+    let slices = |memory: &str| {
+        let more = format!("[speckle]\nmemory = \"{memory}\"");
+        plan(2, motion, &more).map(|plan| plan.path().slice_count())
+    };
+    // 384² complex samples are 9/8 MiB a slice.
+    assert_eq!(slices("72 MiB"), Ok(64));
+    assert_eq!(slices("71 MiB"), Ok(32));
+    assert_eq!(slices("9 MiB"), Ok(8));
+    assert_eq!(
+        slices("8 MiB"),
+        Err(TracerError::PatternMemory {
+            needed: 9 << 20,
+            allowed: 8 << 20
+        })
+    );
+}
+
+#[test]
+fn a_motion_that_does_not_fit_the_memory_is_cut_and_said() {
+    let motion = "[\"20 mm\", 0, 0]";
+    let plan = plan(4, motion, "[speckle]\nmemory = \"64 MiB\"").unwrap();
+    assert!(plan.memory_bytes() <= 64 << 20, "{plan}");
+    assert!(
+        plan.to_string().contains("MORE than the slices hold"),
+        "{plan}"
+    );
+}
+
+#[test]
+fn points_without_light_ask_for_nothing() {
+    // The plate behind the laser passes the apex of its beam, but no light meets it.
+    let more = "[[surface]]\ndisplacement_per_frame = [0, \"50 mm\", 0]\n\
+                rectangle = { centre = [0.01, 0, 0.21], size = [0.002, 0.2] }";
+    let plan = plan(3, "[0, 0, 0]", more).unwrap();
+    assert!(plan.largest_shift() < 1e-9, "{plan}");
+}
+
+#[test]
+fn what_the_scene_asks_for_is_kept_and_said() {
+    let plan = plan(2, "[0, 0, 0]", "[speckle]\nsize = 300\ndiameter = 100").unwrap();
+    assert_eq!((plan.size(), plan.diameter()), (300, 100), "{plan}");
+    let text = plan.to_string();
+    assert!(
+        text.contains("C = 100, LESS than the 182.5 speckles"),
+        "{text}"
+    );
+    assert!(text.contains("as the scene asks"), "{text}");
+}
+
+#[test]
+fn printed_formulas_get_the_circle_of_the_paper() {
+    let scene = scene(2, "[\"0.2 mm\", 0, 0]", "");
+    let plan = SpecklePlan::new(&scene, Formulas::AsPrinted, 0).unwrap();
+    let path = plan.patterns()[0].path();
+    assert_eq!(path, SlicePath::Circle { half_period: 32 }, "{plan}");
+}
+
+#[test]
+fn lasers_have_seeds_of_their_own() {
+    let second = r#"
+        [[laser]]
+        wavelength = "532 nm"
+        power = "1 mW"
+        position = [0.1, 0, 0.2]
+        spot = { waist_radius = "1 mm" }
+    "#;
+    let scene = scene(2, "[0, 0, 0]", second);
+    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let [first, second] = plan.patterns() else {
+        panic!("two lasers have two patterns");
+    };
+    assert_ne!(first.seed(), second.seed());
+    assert!(second.speckle_size_in_pixels() < first.speckle_size_in_pixels());
+}

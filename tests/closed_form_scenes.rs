@@ -12,7 +12,7 @@ use tem00::{
     tracer::{Frame, RenderOptions, parse_scene, render_frame},
 };
 
-/// A correct renderer fails one of these tests with this probability.
+/// A correct renderer fails a comparison with this probability at a given set of seeds.
 const SIGNIFICANCE: f64 = 1e-3;
 
 fn render(scene: &str, seed: u64, samples_per_pixel: u32) -> Frame {

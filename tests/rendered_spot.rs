@@ -23,7 +23,7 @@ const SEEDS: u64 = 20;
 const WAIST: f64 = 0.2e-3;
 const POWER: f64 = 2e-3;
 
-/// A correct renderer fails one of these tests with this probability.
+/// A correct renderer fails a comparison with this probability at a given set of seeds.
 const SIGNIFICANCE: f64 = 1e-3;
 
 /// A spot that comes in at an angle, in degrees, to a plate that is seen at another.

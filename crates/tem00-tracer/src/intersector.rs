@@ -284,7 +284,7 @@ fn build_hierarchy(boxes: &[Aabb]) -> Result<CwBvh, TracerError> {
         return Err(TracerError::OutOfRange {
             parameter: "depth of the box hierarchy",
             value: depth.into(),
-            allowed: "at most 31 (too many shapes are in the same place)",
+            allowed: "at most 31 (too many triangles or shapes lie within each other's boxes)",
         });
     }
     Ok(wide)

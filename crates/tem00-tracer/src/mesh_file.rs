@@ -12,8 +12,8 @@ use crate::{MeshError, TriangleMesh};
 ///
 /// The extension of the file name, in any case, says which. PLY and STL may be text or binary.
 /// Coordinates are multiplied by `scale`, the length of the file's unit in metres, 1e−3 for a file
-/// in millimetres. Polygons are cut into fans around their first corner, which is right for convex
-/// ones. Everything but vertices and faces is passed over: normals, colours, materials, textures.
+/// in millimetres. Polygons are halved again and again by chords between their corners, which is right
+/// for convex ones. Everything but vertices and faces is passed over: normals, colours, materials, textures.
 /// Groups and several solids become one mesh.
 ///
 /// # Errors
@@ -75,13 +75,19 @@ struct Polygons {
 }
 
 impl Polygons {
-    /// Adds a polygon as a fan of triangles around its first corner.
+    /// Adds a polygon as triangles.
+    ///
+    /// Halves of halves keep the triangles as wide as the corners allow. A fan around one corner would
+    /// make slivers, which overlap so much that no hierarchy of boxes tells them apart.
     fn push(&mut self, corners: &[u32]) {
-        let Some((&first, rest)) = corners.split_first() else {
-            return;
-        };
-        let fan = rest.windows(2).map(|pair| [first, pair[0], pair[1]]);
-        self.triangles.extend(fan);
+        if let [first, .., last] = corners
+            && corners.len() > 2
+        {
+            let middle = corners.len() / 2;
+            self.push(&corners[..=middle]);
+            self.triangles.push([*first, corners[middle], *last]);
+            self.push(&corners[middle..]);
+        }
     }
 }
 

@@ -464,3 +464,35 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_polygon_of_many_corners_can_be_met() {
+    const CORNERS: u32 = 5_000;
+    let angle = |i: u32| f64::from(i) / f64::from(CORNERS) * core::f64::consts::TAU;
+    let mut text: String = (0..CORNERS)
+        .map(|i| format!("v {} {} 0\n", angle(i).cos(), angle(i).sin()))
+        .collect();
+    text += "f";
+    for corner in 1..=CORNERS {
+        text += &format!(" {corner}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("disc.obj");
+    fs::write(&path, text).unwrap();
+    let mesh = read_mesh(&path, 1.0).unwrap();
+    assert_eq!(mesh.triangles().len(), 4_998);
+    let intersector = crate::Intersector::build(&[crate::Shape::Mesh(mesh)]).unwrap();
+    for i in 0..200_u32 {
+        let radius = f64::from(i) / 200.0;
+        let origin = DVec3::new(
+            radius * angle(37 * i).cos(),
+            radius * angle(37 * i).sin(),
+            1.0,
+        );
+        let ray = crate::Ray {
+            origin,
+            direction: DVec3::NEG_Z,
+        };
+        assert!(intersector.intersect(&ray).is_some(), "missed at {origin}");
+    }
+}

@@ -217,7 +217,7 @@ impl<P: Fn(u64) + Sync> PassJob<'_, P> {
     )]
     fn pixel(&self, x: usize, y: usize) -> Result<Pixel, RenderError> {
         let mut sampler = Sampler::new(self.seed, self.stream(x, y));
-        let samples = self.strata.columns * self.strata.rows;
+        let samples = self.strata.samples();
         let mut mean = Pixel::default();
         let mut unreported = 0;
         for index in 0..samples {

@@ -137,8 +137,10 @@ impl PatternPlan {
         let asked = settings.diameter.or(settings.size.map(|size| size / 2));
         let whole = diameter_for(survey.extent / self.speckle_size_in_pixels);
         let image = diameter_for(survey.side / self.speckle_size_in_pixels);
-        [(whole, diameters), (whole, 2), (image, 2)]
-            .into_iter()
+        let halved = core::iter::successors(Some(diameters), |&d| (d > 2).then(|| (d / 2).max(2)));
+        halved
+            .map(|diameters| (whole, diameters))
+            .chain([(image, 2)])
             .map(|(diameter, diameters)| {
                 let diameter = asked.unwrap_or(diameter);
                 let size = diameter.saturating_mul(diameters);

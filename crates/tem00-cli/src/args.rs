@@ -46,8 +46,8 @@ pub(crate) struct RenderArgs {
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 
-    /// Camera samples per pixel, at least 1 [default: from the scene].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    /// Camera samples per pixel, 1 to a million [default: from the scene].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) spp: Option<u32>,
 
     /// The seed of everything random [default: from the scene].
@@ -67,7 +67,7 @@ pub(crate) struct RenderArgs {
     pub(crate) paper: bool,
 
     /// The radiance in W/(m² sr) that the preview shows as white [default: from the image].
-    #[arg(long, value_name = "RADIANCE", value_parser = positive)]
+    #[arg(long, value_name = "RADIANCE", value_parser = radiance)]
     pub(crate) white_level: Option<f64>,
 }
 
@@ -159,6 +159,14 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("must be a positive number".into()),
+    }
+}
+
+/// Reads a radiance that single precision can hold.
+fn radiance(text: &str) -> Result<f64, String> {
+    match positive(text)? {
+        value if (1e-30..=1e30).contains(&value) => Ok(value),
+        _ => Err("must lie between 1e-30 and 1e30 W/(m² sr)".into()),
     }
 }
 

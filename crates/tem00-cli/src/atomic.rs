@@ -41,6 +41,9 @@ pub(crate) fn write_atomically<E: From<io::Error>>(
 ///
 /// Returns the error of the file system, before any work was done.
 pub(crate) fn create_writable_folder(folder: &Path) -> io::Result<()> {
+    if folder.exists() && !folder.is_dir() {
+        return Err(io::ErrorKind::NotADirectory.into());
+    }
     fs::create_dir_all(folder)?;
     temporary_file_in(folder)?.close()
 }

@@ -68,7 +68,7 @@ pub(crate) enum ImageError {
     PngDecoding(#[from] png::DecodingError),
     #[error("{0}")]
     PngEncoding(#[from] png::EncodingError),
-    #[error("not a readable OpenEXR file: {0}")]
+    #[error("OpenEXR: {0}")]
     Exr(#[from] exr::error::Error),
     #[error("not a readable NPY file: {0}")]
     Npy(std::io::Error),

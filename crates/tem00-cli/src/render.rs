@@ -1,6 +1,7 @@
 //! `tem00 render`: from a scene file to images.
 
 use std::{
+    fs,
     io::{self, Write},
     path::{Path, PathBuf},
     sync::atomic::{AtomicU64, Ordering},
@@ -38,7 +39,7 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
     let summary = pool.install(|| render.frames())?;
     report(&summary);
     render.hint_at_what_is_not_seen(&summary);
-    let path = render.folder.join(format!("{}.json", render.name));
+    let path = render.summary_path();
     write_summary(&path, &summary)?;
     let files = summary
         .frames
@@ -92,14 +93,39 @@ impl<'a> Render<'a> {
                 "name a folder that may be written with -o",
             )
         })?;
-        Ok(Self {
+        let render = Self {
             args,
             scene,
             name,
             folder,
             options,
             plan,
-        })
+        };
+        render.check_paths()?;
+        Ok(render)
+    }
+
+    /// Makes sure, before the work, that no folder stands where a file will go.
+    fn check_paths(&self) -> Result<(), Failure> {
+        let frames = self.scene.render.frames;
+        let of_frames = (0..frames).flat_map(|number| {
+            let paths = FramePaths::new(&self.folder, &self.name, number, frames);
+            [paths.preview, paths.layers]
+        });
+        match of_frames
+            .chain([self.summary_path()])
+            .find(|path| path.is_dir())
+        {
+            Some(path) => Err(Failure::input(
+                format!("cannot write {}: it is a folder", path.display()),
+                "name another folder with -o",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn summary_path(&self) -> PathBuf {
+        self.folder.join(format!("{}.json", self.name))
     }
 
     /// Renders and writes all frames.
@@ -208,7 +234,10 @@ impl<'a> Render<'a> {
             exposure.white_level,
             &self.description(),
         )?;
-        write_layers(&paths.layers, frame, &picture)?;
+        write_layers(&paths.layers, frame, &picture).inspect_err(|_| {
+            // Half a result is none; that the preview may be gone already is no matter.
+            let _ = fs::remove_file(&paths.preview);
+        })?;
         let plans = self.plan.as_ref().map(SpecklePlan::patterns);
         let lasers = frame.lasers.iter().zip(&self.scene.lasers).enumerate();
         Ok(FrameSummary {
@@ -294,10 +323,13 @@ fn scene_failure(path: &Path, error: &SceneError) -> Failure {
 }
 
 fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
-    Failure::input(
-        format!("{}: {error}", path.display()),
-        "what [speckle] in the scene file sets overrules the automatic choice",
-    )
+    let help = match error {
+        TracerError::PatternMemory { .. } | TracerError::Speckle(_) => {
+            "[speckle] in the scene file can set memory, size, diameter and half_period"
+        }
+        _ => "docs/scene_file.md lists what is allowed",
+    };
+    Failure::input(format!("{}: {error}", path.display()), help)
 }
 
 fn write_summary(path: &Path, summary: &Summary) -> Result<(), Failure> {

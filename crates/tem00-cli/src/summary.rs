@@ -179,7 +179,7 @@ fn contrast(
 }
 
 /// Returns the contrast of fully developed speckle over square pixels, each averaged over n samples
-/// that lie at random in n equal cells of it.
+/// that lie at random in n equal, nearly square cells of it.
 ///
 /// ```text
 /// C² = C²(1 / h) + (1 − C²(1 / h√n)) / n        h in pixels, C(q) of a pixel of q speckle sizes

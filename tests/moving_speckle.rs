@@ -214,6 +214,21 @@ fn any_two_frames_of_a_steady_motion_correlate_by_their_distance() {
 }
 
 #[test]
+fn a_surface_that_moved_by_two_pupil_diameters_shows_new_speckle() {
+    // Two diameters are once round the smallest lattice: the first pattern must not return.
+    let pixels = [36, 0];
+    let surface = DVec3::new(36.0 * 11.0 * LENS.pixel_pitch, 0.0, 0.0);
+    let lens = LensData {
+        f_number: LENS.focal_length / (0.5 * surface.x),
+        ..LENS
+    };
+    let motion = [surface, DVec3::ZERO];
+    let frames = frames(lens, Formulas::Derived, motion, 2, 11);
+    let measured = correlation(&frames[0], &frames[1], pixels);
+    assert!(measured.abs() < tolerance(lens), "correlation {measured}");
+}
+
+#[test]
 fn a_camera_that_moves_along_with_the_surface_sees_the_same_speckle() {
     let motion = DVec3::new(0.5e-3, 0.2e-3, 0.0);
     let frames = frames(FINE, Formulas::Derived, [motion, motion], 2, 5);

@@ -115,7 +115,7 @@ fn a_motion_that_does_not_fit_the_memory_is_cut_and_said() {
 fn points_without_light_ask_for_nothing() {
     // The plate behind the laser passes the apex of its beam, but no light meets it.
     let more = "[[surface]]\ndisplacement_per_frame = [0, \"50 mm\", 0]\n\
-                rectangle = { centre = [0.01, 0, 0.21], size = [0.002, 0.2] }";
+                rectangle = { centre = [0.001, 0, 0.21], size = [0.0005, 0.2] }";
     let plan = plan(3, "[0, 0, 0]", more).unwrap();
     assert!(plan.largest_shift() < 1e-9, "{plan}");
 }

@@ -50,6 +50,7 @@
 mod error;
 mod gaussian;
 mod line;
+mod located;
 mod normal;
 pub mod paper;
 mod placed;
@@ -60,6 +61,7 @@ pub use error::BeamError;
 pub use gaussian::GaussianBeam;
 pub use glam::DVec3;
 pub use line::{FanGeometry, LaserLine};
+pub use located::LocatedBeam;
 pub use placed::{
     Axis, Bounds, Emitter, LineLight, NextEvent, Placement, RayPdf, RaySample, SampledEvent,
     SpotLight,

@@ -8,6 +8,13 @@ use glam::DVec3;
 pub enum BeamError {
     /// The wavelength, in metres, is not a length from 1e−30 m to 1e30 m.
     Wavelength(f64),
+    /// The two axes of an astigmatic beam, whose light is one, have different wavelengths.
+    Wavelengths {
+        /// The wavelength of the first axis, in metres.
+        x: f64,
+        /// The wavelength of the second axis, in metres.
+        y: f64,
+    },
     /// The waist radius, in metres, is not a length from 1e−30 m to 1e30 m.
     WaistRadius(f64),
     /// The divergence, in radians, is not in the interval (0, 0.5].
@@ -36,6 +43,8 @@ pub enum BeamError {
     Edge(f64),
     /// The distance from the aperture to the waist, in metres, is not finite or beyond 1e30 m.
     WaistDistance(f64),
+    /// The rotation of the principal axes, in radians, is not finite.
+    Rotation(f64),
     /// The power, in watts, is negative or not finite.
     Power(f64),
     /// The origin of a placement has a coordinate, in metres, that is not finite.
@@ -56,6 +65,10 @@ impl fmt::Display for BeamError {
         const POSITION: &str = "must be finite and within ±1e30 m";
         match self {
             Self::Wavelength(got) => write!(f, "wavelength {LENGTH}, got {got:e} m"),
+            Self::Wavelengths { x, y } => write!(
+                f,
+                "wavelengths of the two axes must be equal, got {x:e} m and {y:e} m"
+            ),
             Self::WaistRadius(got) => write!(f, "waist radius {LENGTH}, got {got:e} m"),
             Self::Divergence(got) => {
                 write!(f, "divergence must lie in (0, 0.5] rad, got {got:e} rad")
@@ -89,6 +102,7 @@ impl fmt::Display for BeamError {
                 )
             }
             Self::WaistDistance(got) => write!(f, "waist distance {POSITION}, got {got:e} m"),
+            Self::Rotation(got) => write!(f, "rotation must be finite, got {got:e} rad"),
             Self::Power(got) => {
                 write!(f, "power must be finite and not negative, got {got:e} W")
             }
@@ -129,12 +143,18 @@ mod tests {
             (BeamError::FocusDistance(1e31), "focus distance", "1e31"),
             (BeamError::Edge(3.0), "edge", "3e0"),
             (BeamError::WaistDistance(1e31), "waist distance", "1e31"),
+            (BeamError::Rotation(f64::INFINITY), "rotation", "inf"),
             (BeamError::Power(-2.0), "power", "-2e0"),
             (BeamError::Origin(DVec3::X * 7.0), "origin", "[7, 0, 0]"),
             (BeamError::Direction(DVec3::ZERO), "direction", "[0, 0, 0]"),
             (BeamError::FanAxis(DVec3::Z), "fan axis", "[0, 0, 1]"),
             (BeamError::CutoffFraction(2.0), "fraction", "2e0"),
             (BeamError::SinglePrecision(1e60), "f32", "1e60"),
+            (
+                BeamError::Wavelengths { x: 6.5e-7, y: 5e-7 },
+                "wavelengths",
+                "6.5e-7",
+            ),
             (
                 BeamError::NotParaxial {
                     waist_radius: 1e-9,

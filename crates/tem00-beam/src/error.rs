@@ -45,6 +45,15 @@ pub enum BeamError {
     WaistDistance(f64),
     /// The rotation of the principal axes, in radians, is not finite.
     Rotation(f64),
+    /// An entry of a ray matrix is not finite.
+    MatrixEntry(f64),
+    /// The ray matrix of four dimensions is not symplectic, as that of an optical system is; the
+    /// number is its relative deviation.
+    NotSymplectic(f64),
+    /// The length of a path, in metres, is not finite or beyond 1e30 m.
+    Length(f64),
+    /// The focal length, in metres, has no magnitude from 1e−30 m to 1e30 m.
+    FocalLength(f64),
     /// The power, in watts, is negative or not finite.
     Power(f64),
     /// The origin of a placement has a coordinate, in metres, that is not finite.
@@ -103,6 +112,18 @@ impl fmt::Display for BeamError {
             }
             Self::WaistDistance(got) => write!(f, "waist distance {POSITION}, got {got:e} m"),
             Self::Rotation(got) => write!(f, "rotation must be finite, got {got:e} rad"),
+            Self::MatrixEntry(got) => {
+                write!(f, "entries of a ray matrix must be finite, got {got:e}")
+            }
+            Self::NotSymplectic(got) => write!(
+                f,
+                "ray matrix must be symplectic up to the ratio of the refractive indices, \
+                 got a relative deviation of {got:e}"
+            ),
+            Self::Length(got) => write!(f, "length {POSITION}, got {got:e} m"),
+            Self::FocalLength(got) => {
+                write!(f, "magnitude of the focal length {LENGTH}, got {got:e} m")
+            }
             Self::Power(got) => {
                 write!(f, "power must be finite and not negative, got {got:e} W")
             }
@@ -144,6 +165,10 @@ mod tests {
             (BeamError::Edge(3.0), "edge", "3e0"),
             (BeamError::WaistDistance(1e31), "waist distance", "1e31"),
             (BeamError::Rotation(f64::INFINITY), "rotation", "inf"),
+            (BeamError::Length(1e31), "length", "1e31"),
+            (BeamError::FocalLength(0.0), "focal length", "0e0"),
+            (BeamError::MatrixEntry(f64::INFINITY), "matrix", "inf"),
+            (BeamError::NotSymplectic(0.5), "symplectic", "5e-1"),
             (BeamError::Power(-2.0), "power", "-2e0"),
             (BeamError::Origin(DVec3::X * 7.0), "origin", "[7, 0, 0]"),
             (BeamError::Direction(DVec3::ZERO), "direction", "[0, 0, 0]"),

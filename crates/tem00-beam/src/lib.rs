@@ -48,6 +48,7 @@
 //! ```
 
 mod astigmatic;
+mod astigmatic_system;
 mod error;
 mod gaussian;
 mod line;
@@ -59,9 +60,10 @@ mod profile;
 mod real;
 
 pub use astigmatic::AstigmaticBeam;
+pub use astigmatic_system::AstigmaticSystem;
 pub use error::BeamError;
 pub use gaussian::GaussianBeam;
-pub use glam::DVec3;
+pub use glam::{DMat2, DVec2, DVec3};
 pub use line::{FanGeometry, LaserLine};
 pub use located::LocatedBeam;
 pub use placed::{

@@ -22,7 +22,7 @@ use crate::{BeamError, GaussianBeam, LocatedBeam};
 /// # Validity
 ///
 /// Both axes are paraxial. A beam whose ellipse turns on its way, as behind a cylinder lens that is
-/// aligned with neither axis, has general astigmatism instead.
+/// aligned with neither axis, is a [`GeneralAstigmaticBeam`](crate::GeneralAstigmaticBeam).
 ///
 /// # Examples
 ///

@@ -229,7 +229,13 @@ impl AstigmaticBeam {
     pub fn irradiance_per_watt(&self, point: DVec3) -> f64 {
         let radii = DVec2::from(self.radii_at(point.z));
         let rho = self.principal(point) / radii;
-        self.peak_irradiance_per_watt(point.z) * (-2.0 * rho.length_squared()).exp()
+        let exponent = 2.0 * rho.length_squared();
+        // exp is 0 beyond. The comparison also refuses the distance of a point beyond all numbers.
+        if exponent < 750.0 {
+            self.peak_irradiance_per_watt(point.z) * (-exponent).exp()
+        } else {
+            0.0
+        }
     }
 
     /// Returns the energy-flow vector per watt of beam power, in m⁻², at `point`.

@@ -252,7 +252,9 @@ proptest! {
         ] {
             prop_assert!(number.is_finite(), "{beam:?} at {point}: {number}");
         }
-        prop_assert!(beam.flux_per_watt(point).is_finite(), "{beam:?} at {point}");
+        for point in [point, DVec3::MAX, DVec3::MIN] {
+            prop_assert!(beam.flux_per_watt(point).is_finite(), "{beam:?} at {point}");
+        }
         for plane in beam.circular_planes().into_iter().flatten() {
             prop_assert!(plane.is_finite(), "{beam:?}: {plane}");
         }

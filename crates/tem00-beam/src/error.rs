@@ -1,6 +1,7 @@
 use core::{error, fmt};
 
 use glam::{DMat2, DVec3};
+use num_complex::Complex64;
 
 /// Why a beam, a laser line or a placed light could not be constructed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +64,9 @@ pub enum BeamError {
     MixedMoments(DMat2),
     /// The slope moments are not symmetric and positive definite.
     SlopeMoments(DMat2),
+    /// The complex curvature, in m⁻¹, is not finite, not symmetric or has an imaginary part that is
+    /// not negative definite.
+    ComplexCurvature([[Complex64; 2]; 2]),
     /// The power, in watts, is negative or not finite.
     Power(f64),
     /// The origin of a placement has a coordinate, in metres, that is not finite.
@@ -146,6 +150,11 @@ impl fmt::Display for BeamError {
                 f,
                 "slope moments must be symmetric and positive definite, got {got}"
             ),
+            Self::ComplexCurvature([[xx, xy], [yx, yy]]) => write!(
+                f,
+                "complex curvature must be finite and symmetric with a negative definite imaginary \
+                 part, got [[{xx}, {xy}], [{yx}, {yy}]] m⁻¹"
+            ),
             Self::Power(got) => {
                 write!(f, "power must be finite and not negative, got {got:e} W")
             }
@@ -206,6 +215,11 @@ mod tests {
                 BeamError::SlopeMoments(DMat2::ZERO),
                 "slope moments",
                 "[[0, 0], [0, 0]]",
+            ),
+            (
+                BeamError::ComplexCurvature([[Complex64::I; 2]; 2]),
+                "complex curvature",
+                "[[0+1i, 0+1i], [0+1i, 0+1i]]",
             ),
             (BeamError::Power(-2.0), "power", "-2e0"),
             (BeamError::Origin(DVec3::X * 7.0), "origin", "[7, 0, 0]"),

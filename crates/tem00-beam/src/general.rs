@@ -1,6 +1,7 @@
 use core::f64::consts::PI;
 
 use glam::{DMat2, DVec2, DVec3};
+use num_complex::Complex64;
 
 use crate::gaussian::{PARAXIAL_LIMIT, is_length};
 use crate::{AstigmaticBeam, AstigmaticSystem, BeamError};
@@ -135,6 +136,64 @@ impl GeneralAstigmaticBeam {
             shift,
             slope: slope_root,
         };
+        Self::checked(wavelength, generator)
+    }
+
+    /// Creates a coherent beam, with an M² of 1 in both modes, from its wavelength, in metres, and the
+    /// complex curvature `Q⁻¹` of its field at z = 0, in m⁻¹.
+    ///
+    /// ```text
+    /// field ∝ exp(−i π/λ · xᵀ Q⁻¹ x)     Q⁻¹ = 1/R − i λ/(π w²), as tensors
+    /// ```
+    ///
+    /// The real part is the curvature of the wavefront, positive where the beam diverges; the
+    /// imaginary part holds the ellipse of the irradiance. Their axes may differ.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if `wavelength` is not a length from 1e−30 m to 1e30 m; if `curvature` is not
+    /// finite, not symmetric (to 1e−9 of its largest entry) or has an imaginary part that is not
+    /// negative definite; or if the beam has a radius beyond 1e30 m or a divergence above 0.5 rad.
+    ///
+    /// # Examples
+    ///
+    /// A collimated circular beam with a radius of 1 mm, `z_R` = 4.96 m:
+    ///
+    /// ```
+    /// use tem00_beam::{Complex64, GeneralAstigmaticBeam};
+    ///
+    /// let rayleigh_range = core::f64::consts::PI * 1e-6 / 633e-9;
+    /// let (q, zero) = (Complex64::new(0.0, -1.0 / rayleigh_range), Complex64::ZERO);
+    /// let beam = GeneralAstigmaticBeam::from_complex_curvature(633e-9, [[q, zero], [zero, q]])?;
+    /// assert!((beam.radii_at(rayleigh_range)[0] / 1e-3 - 2_f64.sqrt()).abs() < 1e-12);
+    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// ```
+    pub fn from_complex_curvature(
+        wavelength: f64,
+        curvature: [[Complex64; 2]; 2],
+    ) -> Result<Self, BeamError> {
+        if !is_length(wavelength) {
+            return Err(BeamError::Wavelength(wavelength));
+        }
+        let largest = curvature
+            .as_flattened()
+            .iter()
+            .fold(0.0, |max: f64, q| max.max(q.norm()));
+        let [[xx, xy], [yx, yy]] = curvature;
+        let matrix = |part: fn(Complex64) -> f64| {
+            let off = 0.5 * part(xy + yx);
+            DMat2::from_cols_array(&[part(xx), off, off, part(yy)])
+        };
+        let root = square_root(matrix(|q| -q.im))
+            .filter(|_| matrix(|q| q.re).is_finite() && (xy - yx).norm() <= 1e-9 * largest)
+            .ok_or(BeamError::ComplexCurvature(curvature))?;
+        let unit = (wavelength / (4.0 * PI)).sqrt();
+        let (position, spread) = (unit * root.inverse().transpose(), unit * root);
+        let slope = matrix(|q| q.re) * position;
+        let generator = Generator::from_columns(
+            [position.x_axis, position.y_axis, DVec2::ZERO, DVec2::ZERO],
+            [slope.x_axis, slope.y_axis, spread.x_axis, spread.y_axis],
+        );
         Self::checked(wavelength, generator)
     }
 
@@ -287,6 +346,26 @@ impl GeneralAstigmaticBeam {
         )
     }
 
+    /// Returns the complex curvature, in m⁻¹, at the distance `z` from the reference plane.
+    ///
+    /// ```text
+    /// Q⁻¹ = 1/R − i λ/(π w²), as tensors
+    /// ```
+    ///
+    /// For a coherent beam it is all there is to know. A beam with M² above 1 has no field of this
+    /// form; the tensor is then that of the coherent beam with the same irradiance and, but for the
+    /// twist, the same mean energy flow at this z.
+    pub fn complex_curvature_at(&self, z: f64) -> [[Complex64; 2]; 2] {
+        let re = self.curvature_tensor_at(z);
+        let im = self.ellipse_at(z).inverse() * (-self.wavelength / (4.0 * PI));
+        let twist_free = 0.5 * (re.x_axis.y + re.y_axis.x);
+        let off = Complex64::new(twist_free, im.x_axis.y);
+        [
+            [Complex64::new(re.x_axis.x, im.x_axis.x), off],
+            [off, Complex64::new(re.y_axis.y, im.y_axis.y)],
+        ]
+    }
+
     /// Returns the irradiance on the axis per watt of beam power, in m⁻², at the distance `z` from
     /// the reference plane.
     pub fn peak_irradiance_per_watt(&self, z: f64) -> f64 {
@@ -398,9 +477,9 @@ fn square_root(matrix: DMat2) -> Option<DMat2> {
     let xy = 0.5 * (matrix.x_axis.y + matrix.y_axis.x);
     let first = xx.sqrt();
     let off = xy / first;
+    // Not a number where the first entry is negative or the first row is 0.
     let rest = yy - off * off;
-    let valid =
-        xx > 0.0 && rest > 0.0 && matrix.is_finite() && asymmetry <= 1e-9 * first * yy.sqrt();
+    let valid = rest > 0.0 && matrix.is_finite() && asymmetry <= 1e-9 * first * yy.sqrt();
     valid.then(|| DMat2::from_cols(DVec2::new(first, off), DVec2::new(0.0, rest.sqrt())))
 }
 

@@ -68,6 +68,7 @@ pub use general::{GeneralAstigmaticBeam, SecondMoments};
 pub use glam::{DMat2, DVec2, DVec3};
 pub use line::{FanGeometry, LaserLine};
 pub use located::LocatedBeam;
+pub use num_complex::Complex64;
 pub use placed::{
     Axis, Bounds, Emitter, LineLight, NextEvent, Placement, RayPdf, RaySample, SampledEvent,
     SpotLight,

@@ -130,8 +130,7 @@ impl Ellipse {
         Self {
             columns,
             scale,
-            // Zero only beyond 1e240 m, where the square underflows.
-            root_determinant: squares.sqrt().max(f64::MIN_POSITIVE),
+            root_determinant: squares.sqrt(),
         }
     }
 
@@ -162,6 +161,12 @@ impl Ellipse {
         let sum: DVec2 = self.columns.iter().map(weight).sum();
         let solved = sum / self.root_determinant;
         self.columns.map(|c| solved.perp_dot(c))
+    }
+
+    /// Returns `Σ⁻¹`.
+    pub(super) fn inverse(&self) -> DMat2 {
+        let columns = self.columns.map(|c| c.perp() / self.root_determinant);
+        covariance(&columns, &columns) * self.scale.recip() * self.scale.recip()
     }
 
     /// Returns `xᵀ Σ⁻¹ x`.

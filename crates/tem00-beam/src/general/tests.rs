@@ -351,6 +351,125 @@ fn the_index_of_refraction_shortens_wavelength_and_slopes() {
 }
 
 #[test]
+fn diffraction_limited_moments_pass_and_better_ones_do_not() {
+    let quantum = RED / (4.0 * PI);
+    let ideal = |m_squared: f64, z: f64| {
+        let (position, slope) = (1e-10, (quantum * m_squared).powi(2) / 1e-10);
+        SecondMoments {
+            position: DMat2::IDENTITY * (position + slope * z * z),
+            mixed: DMat2::IDENTITY * (slope * z),
+            slope: DMat2::IDENTITY * slope,
+        }
+    };
+    // The Rayleigh range is 2 mm: at 0.2 m the waist is in the last 12 digits.
+    for z in [0.0, 0.2] {
+        let beam = GeneralAstigmaticBeam::from_moments(RED, &ideal(1.0, z));
+        let [smaller, _] = beam.unwrap().beam_quality();
+        assert!((smaller - 1.0).abs() < 1e-11, "z = {z}: {smaller}");
+        let better = GeneralAstigmaticBeam::from_moments(RED, &ideal(1.0 - 2e-6, z));
+        assert!(matches!(better, Err(BeamError::MSquared(_))), "{better:?}");
+    }
+}
+
+/// The product of two complex 2×2 matrices.
+fn product(a: [[Complex64; 2]; 2], b: [[Complex64; 2]; 2]) -> [[Complex64; 2]; 2] {
+    let entry = |i: usize, j: usize| a[i][0] * b[0][j] + a[i][1] * b[1][j];
+    [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]
+}
+
+fn inverse([[a, b], [c, d]]: [[Complex64; 2]; 2]) -> [[Complex64; 2]; 2] {
+    let determinant = a * d - b * c;
+    [[d, -b], [-c, a]].map(|row| row.map(|entry| entry / determinant))
+}
+
+/// `p + m q` for real p and m.
+fn affine(p: DMat2, m: DMat2, q: [[Complex64; 2]; 2]) -> [[Complex64; 2]; 2] {
+    let complex = |m: DMat2| {
+        m.transpose()
+            .to_cols_array_2d()
+            .map(|row| row.map(Complex64::from))
+    };
+    let (p, mq) = (complex(p), product(complex(m), q));
+    [0, 1].map(|i| [0, 1].map(|j| p[i][j] + mq[i][j]))
+}
+
+#[test]
+fn a_coherent_beam_obeys_the_law_of_complex_curvature() {
+    // An oblique elliptic beam of radii 0.3 and 0.8 mm with a wavefront along other axes.
+    let q = [
+        [Complex64::new(2.0, -1.9), Complex64::new(-0.7, 0.8)],
+        [Complex64::new(-0.7, 0.8), Complex64::new(-1.0, -0.9)],
+    ];
+    let beam = GeneralAstigmaticBeam::from_complex_curvature(RED, q).unwrap();
+    for quality in beam.beam_quality() {
+        assert!((quality - 1.0).abs() < 1e-13, "M² = {quality}");
+    }
+    let mut system = AstigmaticSystem::free_space(0.3).unwrap();
+    for element in [
+        AstigmaticSystem::cylinder_lens(0.2, FRAC_PI_4),
+        AstigmaticSystem::free_space(0.15),
+        AstigmaticSystem::cylinder_lens(-0.5, 1.2),
+        AstigmaticSystem::image_rotation(0.6),
+        AstigmaticSystem::free_space(0.2),
+    ] {
+        system = system.then(element.unwrap());
+        let [[a, b], [c, d]] = system.blocks();
+        let want = product(affine(c, d, q), inverse(affine(a, b, q)));
+        let got = beam.through(&system).unwrap().complex_curvature_at(0.0);
+        let scale = want
+            .as_flattened()
+            .iter()
+            .fold(0.0, |max, w| w.norm().max(max));
+        for (got, want) in got.as_flattened().iter().zip(want.as_flattened()) {
+            // Six products of matrices with entries up to 10, and two inverses of ratio 10.
+            let off = (got - want).norm() / scale;
+            assert!(off < 1e-12, "{got}, {want}: {off:e}");
+        }
+    }
+}
+
+#[test]
+fn complex_curvature_holds_radii_and_wavefront() {
+    let (w, curvature) = ([0.3e-3, 0.8e-3], [2.0, -0.5]);
+    let entry = |i: usize| Complex64::new(curvature[i], -RED / (PI * w[i] * w[i]));
+    let zero = Complex64::ZERO;
+    let q = [[entry(0), zero], [zero, entry(1)]];
+    let beam = GeneralAstigmaticBeam::from_complex_curvature(RED, q).unwrap();
+    let [larger, smaller] = beam.radii_at(0.0);
+    assert!((larger / w[1] - 1.0).abs() < 1e-14, "{larger:e}");
+    assert!((smaller / w[0] - 1.0).abs() < 1e-14, "{smaller:e}");
+    let tensor = DMat2::from_diagonal(curvature.into());
+    let off = distance(beam.curvature_tensor_at(0.0), tensor);
+    // The ratio of the radii enters squared.
+    assert!(off < 1e-14, "{off:e}");
+}
+
+#[test]
+fn impossible_complex_curvatures_are_rejected() {
+    let c = |re: f64, im: f64| Complex64::new(re, im);
+    let good = c(1.0, -1.0);
+    for bad in [
+        [[good, c(0.1, 0.0)], [c(0.0, 0.0), good]],
+        [[good, c(0.0, 1.1)], [c(0.0, 1.1), good]],
+        [[good, c(0.0, 0.0)], [c(0.0, 0.0), c(1.0, 1.0)]],
+        [[good, c(0.0, 0.0)], [c(0.0, 0.0), c(f64::NAN, -1.0)]],
+        [[c(0.0, 0.0); 2]; 2],
+    ] {
+        let result = GeneralAstigmaticBeam::from_complex_curvature(RED, bad);
+        assert!(
+            matches!(result, Err(BeamError::ComplexCurvature(_))),
+            "{bad:?}: {result:?}"
+        );
+    }
+    let plain = [[good, c(0.0, 0.0)], [c(0.0, 0.0), good]];
+    let result = GeneralAstigmaticBeam::from_complex_curvature(0.0, plain);
+    assert!(
+        matches!(result, Err(BeamError::Wavelength(_))),
+        "{result:?}"
+    );
+}
+
+#[test]
 fn impossible_moments_are_rejected() {
     let good = SecondMoments {
         position: DMat2::IDENTITY * 1e-8,
@@ -476,8 +595,13 @@ proptest! {
                 let arrays = [beam.beam_quality(), beam.divergences(), beam.radii_at(z)];
                 prop_assert!(numbers.iter().all(|v| !v.is_nan()), "{beam:?}, {point}: {numbers:?}");
                 prop_assert!(arrays.as_flattened().iter().all(|v| !v.is_nan()), "{beam:?}: {arrays:?}");
-                prop_assert!(!beam.flux_per_watt(point).is_nan(), "{beam:?}: {point}");
+                for point in [point, point.with_x(f64::MAX), DVec3::MIN] {
+                    prop_assert!(!beam.flux_per_watt(point).is_nan(), "{beam:?}: {point}");
+                }
                 prop_assert!(!beam.curvature_tensor_at(z).is_nan(), "{beam:?}: {z}");
+                let tensor = beam.complex_curvature_at(z);
+                let number = tensor.as_flattened().iter().sum::<Complex64>();
+                prop_assert!(!number.is_nan(), "{beam:?}: {z}");
                 prop_assert!(!beam.position_per_slope().is_nan(), "{beam:?}");
             }
         }

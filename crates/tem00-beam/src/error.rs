@@ -36,6 +36,12 @@ pub enum BeamError {
     Edge(f64),
     /// The distance from the aperture to the waist, in metres, is not finite or beyond 1e30 m.
     WaistDistance(f64),
+    /// The Rayleigh range, in metres, does not lie between 1e−100 m and 1e100 m.
+    RayleighRange(f64),
+    /// The beam radius, in metres, is not a length from 1e−30 m to 1e30 m.
+    Radius(f64),
+    /// The curvature, in m⁻¹, of a wavefront or a surface is not finite or beyond 1e30 m⁻¹.
+    Curvature(f64),
     /// The power, in watts, is negative or not finite.
     Power(f64),
     /// The origin of a placement has a coordinate, in metres, that is not finite.
@@ -89,6 +95,15 @@ impl fmt::Display for BeamError {
                 )
             }
             Self::WaistDistance(got) => write!(f, "waist distance {POSITION}, got {got:e} m"),
+            Self::RayleighRange(got) => write!(
+                f,
+                "Rayleigh range must lie between 1e-100 m and 1e100 m, got {got:e} m"
+            ),
+            Self::Radius(got) => write!(f, "beam radius {LENGTH}, got {got:e} m"),
+            Self::Curvature(got) => write!(
+                f,
+                "curvature must be finite and within ±1e30 m⁻¹, got {got:e} m⁻¹"
+            ),
             Self::Power(got) => {
                 write!(f, "power must be finite and not negative, got {got:e} W")
             }
@@ -129,6 +144,9 @@ mod tests {
             (BeamError::FocusDistance(1e31), "focus distance", "1e31"),
             (BeamError::Edge(3.0), "edge", "3e0"),
             (BeamError::WaistDistance(1e31), "waist distance", "1e31"),
+            (BeamError::RayleighRange(-1.5), "Rayleigh", "-1.5e0"),
+            (BeamError::Radius(-1.5), "beam radius", "-1.5e0"),
+            (BeamError::Curvature(1e31), "curvature", "1e31"),
             (BeamError::Power(-2.0), "power", "-2e0"),
             (BeamError::Origin(DVec3::X * 7.0), "origin", "[7, 0, 0]"),
             (BeamError::Direction(DVec3::ZERO), "direction", "[0, 0, 0]"),

@@ -12,7 +12,7 @@ use crate::{BeamError, GaussianBeam, LocatedBeam};
 /// 1/q = 1/R − i M² λ / (π w²)     R: radius of the wavefront, w: beam radius
 /// ```
 ///
-/// It knows neither wavelength nor M²: with a ray matrix it answers where the
+/// It knows neither wavelength nor M²: with [`AbcdMatrix`](crate::AbcdMatrix) it answers where the
 /// beam is focused and how deep, and together with the *effective wavelength* `M² λ` also how wide
 /// it is. Both parts follow the convention exp(i (ω t − k z)) of the references, where the imaginary
 /// part of q is positive.

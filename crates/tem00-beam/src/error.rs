@@ -42,6 +42,22 @@ pub enum BeamError {
     Radius(f64),
     /// The curvature, in m⁻¹, of a wavefront or a surface is not finite or beyond 1e30 m⁻¹.
     Curvature(f64),
+    /// An entry of a ray matrix is not finite.
+    MatrixEntry(f64),
+    /// The determinant of a ray matrix is not a positive finite number.
+    Determinant(f64),
+    /// The length of a path, in metres, is not finite or beyond 1e30 m.
+    Length(f64),
+    /// The focal length, in metres, has no magnitude from 1e−30 m to 1e30 m.
+    FocalLength(f64),
+    /// The thickness of a lens, in metres, does not lie between 0 and 1e30 m.
+    Thickness(f64),
+    /// The refractive index does not lie between 0.001 and 1000.
+    Index(f64),
+    /// The angle of incidence, in radians, is not in the open interval (−π/2, π/2).
+    AngleOfIncidence(f64),
+    /// The gradient of a graded-index medium, in m⁻¹, does not lie between 0 and 1e30 m⁻¹.
+    Gradient(f64),
     /// The power, in watts, is negative or not finite.
     Power(f64),
     /// The origin of a placement has a coordinate, in metres, that is not finite.
@@ -104,6 +120,34 @@ impl fmt::Display for BeamError {
                 f,
                 "curvature must be finite and within ±1e30 m⁻¹, got {got:e} m⁻¹"
             ),
+            Self::MatrixEntry(got) => {
+                write!(f, "entries of a ray matrix must be finite, got {got:e}")
+            }
+            Self::Determinant(got) => write!(
+                f,
+                "determinant of a ray matrix must be positive and finite, got {got:e}"
+            ),
+            Self::Length(got) => write!(f, "length {POSITION}, got {got:e} m"),
+            Self::FocalLength(got) => {
+                write!(f, "magnitude of the focal length {LENGTH}, got {got:e} m")
+            }
+            Self::Thickness(got) => {
+                write!(
+                    f,
+                    "thickness must lie between 0 m and 1e30 m, got {got:e} m"
+                )
+            }
+            Self::Index(got) => {
+                write!(f, "refractive index must lie in [0.001, 1000], got {got:e}")
+            }
+            Self::AngleOfIncidence(got) => write!(
+                f,
+                "angle of incidence must lie in (-π/2, π/2) rad, got {got:e} rad"
+            ),
+            Self::Gradient(got) => write!(
+                f,
+                "gradient must lie between 0 m⁻¹ and 1e30 m⁻¹, got {got:e} m⁻¹"
+            ),
             Self::Power(got) => {
                 write!(f, "power must be finite and not negative, got {got:e} W")
             }
@@ -147,6 +191,14 @@ mod tests {
             (BeamError::RayleighRange(-1.5), "Rayleigh", "-1.5e0"),
             (BeamError::Radius(-1.5), "beam radius", "-1.5e0"),
             (BeamError::Curvature(1e31), "curvature", "1e31"),
+            (BeamError::MatrixEntry(f64::INFINITY), "matrix", "inf"),
+            (BeamError::Determinant(-1.0), "determinant", "-1e0"),
+            (BeamError::Length(1e31), "length", "1e31"),
+            (BeamError::FocalLength(0.0), "focal length", "0e0"),
+            (BeamError::Thickness(-1.0), "thickness", "-1e0"),
+            (BeamError::Index(-1.5), "index", "-1.5e0"),
+            (BeamError::AngleOfIncidence(1.75), "incidence", "1.75e0"),
+            (BeamError::Gradient(-3.0), "gradient", "-3e0"),
             (BeamError::Power(-2.0), "power", "-2e0"),
             (BeamError::Origin(DVec3::X * 7.0), "origin", "[7, 0, 0]"),
             (BeamError::Direction(DVec3::ZERO), "direction", "[0, 0, 0]"),

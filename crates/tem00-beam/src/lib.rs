@@ -47,6 +47,7 @@
 //! # Ok::<(), tem00_beam::BeamError>(())
 //! ```
 
+mod abcd;
 mod complex_parameter;
 mod error;
 mod gaussian;
@@ -58,6 +59,7 @@ mod placed;
 mod profile;
 mod real;
 
+pub use abcd::{AbcdMatrix, ThickLens};
 pub use complex_parameter::ComplexBeamParameter;
 pub use error::BeamError;
 pub use gaussian::GaussianBeam;

@@ -3,6 +3,7 @@
 use crate::{BeamError, ComplexBeamParameter, GaussianBeam, LocatedBeam};
 
 mod elements;
+mod resonator;
 
 pub use elements::ThickLens;
 

@@ -46,6 +46,9 @@ pub enum BeamError {
     MatrixEntry(f64),
     /// The determinant of a ray matrix is not a positive finite number.
     Determinant(f64),
+    /// Half the trace of a round trip is not in the open interval (−1, 1): no beam reproduces
+    /// itself.
+    HalfTrace(f64),
     /// The length of a path, in metres, is not finite or beyond 1e30 m.
     Length(f64),
     /// The focal length, in metres, has no magnitude from 1e−30 m to 1e30 m.
@@ -127,6 +130,10 @@ impl fmt::Display for BeamError {
                 f,
                 "determinant of a ray matrix must be positive and finite, got {got:e}"
             ),
+            Self::HalfTrace(got) => write!(
+                f,
+                "half the trace of a round trip must lie in (-1, 1), got {got:e}"
+            ),
             Self::Length(got) => write!(f, "length {POSITION}, got {got:e} m"),
             Self::FocalLength(got) => {
                 write!(f, "magnitude of the focal length {LENGTH}, got {got:e} m")
@@ -193,6 +200,7 @@ mod tests {
             (BeamError::Curvature(1e31), "curvature", "1e31"),
             (BeamError::MatrixEntry(f64::INFINITY), "matrix", "inf"),
             (BeamError::Determinant(-1.0), "determinant", "-1e0"),
+            (BeamError::HalfTrace(-1.25), "half the trace", "-1.25e0"),
             (BeamError::Length(1e31), "length", "1e31"),
             (BeamError::FocalLength(0.0), "focal length", "0e0"),
             (BeamError::Thickness(-1.0), "thickness", "-1e0"),

@@ -261,7 +261,8 @@ proptest! {
         prop_assert!(entries(&system).iter().all(|x| x.is_finite()), "{:?}", system);
         prop_assert!(system.determinant() > 0.0, "{:?}", system);
         let ray = system.transform_ray([height, slope]);
-        prop_assert!(ray.iter().all(|x| !x.is_nan()), "{:?}: {:?}", system, ray);
+        let queries = [system.half_trace(), ray[0], ray[1]];
+        prop_assert!(queries.iter().all(|x| !x.is_nan()), "{:?}: {:?}", system, queries);
 
         let wavelength = 10_f64.powf(wavelength);
         let waist = (wavelength * 10_f64.powf(ratio)).min(1e30);
@@ -270,6 +271,9 @@ proptest! {
         if let Ok(image) = system.transform(&located) {
             prop_assert!(image.radius_at(0.0) > 0.0, "{:?}", image);
             prop_assert!(image.curvature_at(0.0).is_finite(), "{:?}", image);
+        }
+        if let Ok(mode) = system.eigenmode() {
+            prop_assert!(mode.curvature().is_finite(), "{:?}", mode);
         }
     }
 }

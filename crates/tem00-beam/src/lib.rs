@@ -50,6 +50,7 @@
 mod abcd;
 mod complex_parameter;
 mod error;
+mod focus;
 mod gaussian;
 mod line;
 mod located;

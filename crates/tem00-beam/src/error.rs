@@ -46,17 +46,34 @@ pub enum BeamError {
     WaistDistance(f64),
     /// The rotation of the principal axes, in radians, is not finite.
     Rotation(f64),
+    /// The Rayleigh range, in metres, does not lie between 1e−100 m and 1e100 m.
+    RayleighRange(f64),
     /// The beam radius, in metres, is not a length from 1e−30 m to 1e30 m.
     Radius(f64),
+    /// The curvature, in m⁻¹, of a wavefront or a surface is not finite or beyond 1e30 m⁻¹.
+    Curvature(f64),
     /// An entry of a ray matrix is not finite.
     MatrixEntry(f64),
+    /// The determinant of a ray matrix is not a positive finite number.
+    Determinant(f64),
     /// The ray matrix of four dimensions is not symplectic, as that of an optical system is; the
     /// number is its relative deviation.
     NotSymplectic(f64),
+    /// Half the trace of a round trip is not in the open interval (−1, 1): no beam reproduces
+    /// itself.
+    HalfTrace(f64),
     /// The length of a path, in metres, is not finite or beyond 1e30 m.
     Length(f64),
     /// The focal length, in metres, has no magnitude from 1e−30 m to 1e30 m.
     FocalLength(f64),
+    /// The thickness of a lens, in metres, does not lie between 0 and 1e30 m.
+    Thickness(f64),
+    /// The refractive index does not lie between 0.001 and 1000.
+    Index(f64),
+    /// The angle of incidence, in radians, is not in the open interval (−π/2, π/2).
+    AngleOfIncidence(f64),
+    /// The gradient of a graded-index medium, in m⁻¹, does not lie between 0 and 1e30 m⁻¹.
+    Gradient(f64),
     /// The position moments, in m², are not symmetric and positive definite, or spread less than the
     /// mixed and slope moments imply.
     PositionMoments(DMat2),
@@ -125,19 +142,52 @@ impl fmt::Display for BeamError {
             }
             Self::WaistDistance(got) => write!(f, "waist distance {POSITION}, got {got:e} m"),
             Self::Rotation(got) => write!(f, "rotation must be finite, got {got:e} rad"),
+            Self::RayleighRange(got) => write!(
+                f,
+                "Rayleigh range must lie between 1e-100 m and 1e100 m, got {got:e} m"
+            ),
             Self::Radius(got) => write!(f, "beam radius {LENGTH}, got {got:e} m"),
+            Self::Curvature(got) => write!(
+                f,
+                "curvature must be finite and within ±1e30 m⁻¹, got {got:e} m⁻¹"
+            ),
             Self::MatrixEntry(got) => {
                 write!(f, "entries of a ray matrix must be finite, got {got:e}")
             }
+            Self::Determinant(got) => write!(
+                f,
+                "determinant of a ray matrix must be positive and finite, got {got:e}"
+            ),
             Self::NotSymplectic(got) => write!(
                 f,
                 "ray matrix must be symplectic up to the ratio of the refractive indices, \
                  got a relative deviation of {got:e}"
             ),
+            Self::HalfTrace(got) => write!(
+                f,
+                "half the trace of a round trip must lie in (-1, 1), got {got:e}"
+            ),
             Self::Length(got) => write!(f, "length {POSITION}, got {got:e} m"),
             Self::FocalLength(got) => {
                 write!(f, "magnitude of the focal length {LENGTH}, got {got:e} m")
             }
+            Self::Thickness(got) => {
+                write!(
+                    f,
+                    "thickness must lie between 0 m and 1e30 m, got {got:e} m"
+                )
+            }
+            Self::Index(got) => {
+                write!(f, "refractive index must lie in [0.001, 1000], got {got:e}")
+            }
+            Self::AngleOfIncidence(got) => write!(
+                f,
+                "angle of incidence must lie in (-π/2, π/2) rad, got {got:e} rad"
+            ),
+            Self::Gradient(got) => write!(
+                f,
+                "gradient must lie between 0 m⁻¹ and 1e30 m⁻¹, got {got:e} m⁻¹"
+            ),
             Self::PositionMoments(got) => write!(
                 f,
                 "position moments must be symmetric, positive definite and at least what the mixed \
@@ -196,11 +246,19 @@ mod tests {
             (BeamError::Edge(3.0), "edge", "3e0"),
             (BeamError::WaistDistance(1e31), "waist distance", "1e31"),
             (BeamError::Rotation(f64::INFINITY), "rotation", "inf"),
+            (BeamError::RayleighRange(-1.5), "Rayleigh", "-1.5e0"),
+            (BeamError::Radius(-1.5), "beam radius", "-1.5e0"),
+            (BeamError::Curvature(1e31), "curvature", "1e31"),
+            (BeamError::MatrixEntry(f64::INFINITY), "matrix", "inf"),
+            (BeamError::Determinant(-1.0), "determinant", "-1e0"),
+            (BeamError::NotSymplectic(0.5), "symplectic", "5e-1"),
+            (BeamError::HalfTrace(-1.25), "half the trace", "-1.25e0"),
             (BeamError::Length(1e31), "length", "1e31"),
             (BeamError::FocalLength(0.0), "focal length", "0e0"),
-            (BeamError::Radius(-1.5), "beam radius", "-1.5e0"),
-            (BeamError::MatrixEntry(f64::INFINITY), "matrix", "inf"),
-            (BeamError::NotSymplectic(0.5), "symplectic", "5e-1"),
+            (BeamError::Thickness(-1.0), "thickness", "-1e0"),
+            (BeamError::Index(-1.5), "index", "-1.5e0"),
+            (BeamError::AngleOfIncidence(1.75), "incidence", "1.75e0"),
+            (BeamError::Gradient(-3.0), "gradient", "-3e0"),
             (
                 BeamError::PositionMoments(DMat2::ZERO),
                 "position moments",

@@ -22,9 +22,9 @@
 //!
 //! # Scope and non-goals
 //!
-//! Paraxial, scalar, circular beams of one wavelength in free space, with M² ≥ 1. Not here: elliptic
-//! beams, lenses and mirrors, beams wider than 0.5 rad, polarisation, interference between beams,
-//! and what a surface does with the light.
+//! Paraxial, scalar, circular beams of one wavelength, with M² ≥ 1, in free space and through ideal
+//! lenses, mirrors and interfaces. Not here: elliptic beams, aberrations, beams wider than 0.5 rad,
+//! polarisation, interference between beams, and what a surface does with the light.
 //!
 //! # Examples
 //!
@@ -47,8 +47,14 @@
 //! # Ok::<(), tem00_beam::BeamError>(())
 //! ```
 
+mod abcd;
+mod astigmatic;
+mod astigmatic_system;
+mod complex_parameter;
 mod error;
+mod focus;
 mod gaussian;
+mod general;
 mod line;
 mod located;
 mod normal;
@@ -57,11 +63,17 @@ mod placed;
 mod profile;
 mod real;
 
+pub use abcd::{AbcdMatrix, ThickLens};
+pub use astigmatic::AstigmaticBeam;
+pub use astigmatic_system::AstigmaticSystem;
+pub use complex_parameter::ComplexBeamParameter;
 pub use error::BeamError;
 pub use gaussian::GaussianBeam;
-pub use glam::DVec3;
+pub use general::{GeneralAstigmaticBeam, SecondMoments};
+pub use glam::{DMat2, DVec2, DVec3};
 pub use line::{FanGeometry, LaserLine};
 pub use located::LocatedBeam;
+pub use num_complex::Complex64;
 pub use placed::{
     Axis, Bounds, Emitter, LineLight, NextEvent, Placement, RayPdf, RaySample, SampledEvent,
     SpotLight,

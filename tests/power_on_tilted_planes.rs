@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use tem00::beam::{
-    DVec3, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile, Placement,
+    DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile, Placement,
     SpotLight,
 };
 
@@ -97,6 +97,7 @@ fn a_line_brings_its_power_to_every_plane() {
         fan_angle: 10_f64.to_radians(),
         apex_offset: 5e-3,
         focus_distance: DISTANCE,
+        focus_curve: FocusCurve::EqualDistance,
     };
     let half_slope = (0.5 * fan.fan_angle).tan();
     let apex = DVec3::new(0.0, 0.0, -fan.apex_offset);

@@ -60,7 +60,7 @@ mod real;
 pub use error::BeamError;
 pub use gaussian::GaussianBeam;
 pub use glam::DVec3;
-pub use line::{FanGeometry, LaserLine};
+pub use line::{FanGeometry, FocusCurve, LaserLine};
 pub use located::LocatedBeam;
 pub use placed::{
     Axis, Bounds, Emitter, LineLight, NextEvent, Placement, RayPdf, RaySample, SampledEvent,

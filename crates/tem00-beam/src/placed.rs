@@ -1,6 +1,7 @@
 //! The renderer face: placed lights as plain structs, generic over the scalar.
 
 mod emitter;
+mod fan;
 mod frame;
 mod line;
 pub(crate) mod phase_space;
@@ -91,7 +92,7 @@ impl<T: Real> Axis<T> {
 }
 
 /// Rounds the fields of a light to `f32`, unless one of them overflows.
-fn to_single(rows: [[f64; 4]; 6]) -> Result<[[f32; 4]; 6], BeamError> {
+fn to_single<const N: usize>(rows: [[f64; 4]; N]) -> Result<[[f32; 4]; N], BeamError> {
     let overflow = |field: &&f64| !<f32 as Scalar>::of(**field).is_finite();
     match rows.as_flattened().iter().find(overflow) {
         Some(&field) => Err(BeamError::SinglePrecision(field)),

@@ -3,9 +3,11 @@ use core::mem::{align_of, offset_of, size_of};
 use glam::DVec3;
 use proptest::prelude::*;
 
+use super::fan::Fan;
 use super::phase_space::PhaseSpace;
 use super::*;
-use crate::{FanGeometry, LaserLine, LineProfile};
+use crate::profile::SlopeProfile;
+use crate::{FanGeometry, FocusCurve, LaserLine, LineProfile};
 
 const ORIGIN: DVec3 = DVec3::new(0.1, -0.2, 0.3);
 const POWER: f64 = 5e-3;
@@ -31,6 +33,7 @@ fn laser_line(profile: LineProfile) -> LaserLine {
         fan_angle: 0.5,
         apex_offset: 2e-3,
         focus_distance: 0.15,
+        focus_curve: FocusCurve::EqualDistance,
     };
     LaserLine::new(beam(), fan, profile).unwrap()
 }
@@ -52,11 +55,11 @@ fn rotated(local: DVec3) -> DVec3 {
 }
 
 #[test]
-fn lights_fill_six_rows_of_four_scalars() {
+fn lights_fill_rows_of_four_scalars() {
     assert_eq!(size_of::<SpotLight<f32>>(), 96, "spot, f32");
     assert_eq!(size_of::<SpotLight<f64>>(), 192, "spot, f64");
-    assert_eq!(size_of::<LineLight<f32>>(), 96, "line, f32");
-    assert_eq!(size_of::<LineLight<f64>>(), 192, "line, f64");
+    assert_eq!(size_of::<LineLight<f32>>(), 112, "line, f32");
+    assert_eq!(size_of::<LineLight<f64>>(), 224, "line, f64");
     assert_eq!(align_of::<SpotLight<f32>>(), 4, "spot, f32");
     assert_eq!(size_of::<NextEvent<f32>>(), 32, "next event");
     assert_eq!(size_of::<RaySample<f32>>(), 40, "ray");
@@ -73,12 +76,16 @@ fn lights_can_be_shared_between_threads() {
 
 #[test]
 fn rows_hold_the_fields_in_the_order_of_memory() {
-    let numbers = core::array::from_fn(|i| core::array::from_fn(|j| (4 * i + j) as f64));
-    let spot = SpotLight::from_rows(numbers);
-    let line = LineLight::from_rows(numbers);
-    let bits = |rows: [[f64; 4]; 6]| rows.map(|row| row.map(f64::to_bits));
-    assert_eq!(bits(spot.to_rows()), bits(numbers), "spot");
-    assert_eq!(bits(line.to_rows()), bits(numbers), "line");
+    fn numbers<const N: usize>() -> [[f64; 4]; N] {
+        core::array::from_fn(|i| core::array::from_fn(|j| (4 * i + j) as f64))
+    }
+    fn bits<const N: usize>(rows: [[f64; 4]; N]) -> [[u64; 4]; N] {
+        rows.map(|row| row.map(f64::to_bits))
+    }
+    let spot = SpotLight::from_rows(numbers());
+    let line = LineLight::from_rows(numbers());
+    assert_eq!(bits(spot.to_rows()), bits(numbers()), "spot");
+    assert_eq!(bits(line.to_rows()), bits(numbers()), "line");
     let checks = [
         (spot.power, offset_of!(SpotLight<f64>, power)),
         (spot.cutoff, offset_of!(SpotLight<f64>, cutoff)),
@@ -90,7 +97,15 @@ fn rows_hold_the_fields_in_the_order_of_memory() {
             offset_of!(LineLight<f64>, source_radius),
         ),
         (line.y.w0_sq, offset_of!(LineLight<f64>, y)),
+        (line.flat, offset_of!(LineLight<f64>, flat)),
         (line.sigma, offset_of!(LineLight<f64>, sigma)),
+        (line.variable, offset_of!(LineLight<f64>, variable)),
+        (line.mass, offset_of!(LineLight<f64>, mass)),
+        (line.half_slope, offset_of!(LineLight<f64>, half_slope)),
+        (
+            line.focus_on_plane,
+            offset_of!(LineLight<f64>, focus_on_plane),
+        ),
     ];
     for (index, bytes) in checks {
         assert!((index * 8.0 - bytes as f64).abs() < 0.5, "{index}: {bytes}");
@@ -163,7 +178,7 @@ fn nothing_arrives_beyond_the_cutoff_or_behind_the_aperture() {
     line.cutoff = 2.5;
     let r = (0.252_f64).hypot(0.02);
     let thickness = beam().radius_at(r - 0.152);
-    let edge = line.largest_slope() * 0.252;
+    let edge = line.profile().largest_slope(line.cutoff) * 0.252;
     let expected_edge = 0.25_f64.tan() * (1.0 + 2.0 * 2.5 * 0.1) * 0.252;
     assert!((edge / expected_edge - 1.0).abs() < 1e-14, "{edge}");
     let cases: [(&dyn Emitter<f64>, DVec3, bool); 8] = [
@@ -226,7 +241,7 @@ fn the_corner_of_a_fan_lies_on_its_bounds() {
     const EXTENT: f64 = 0.4;
     let line = line();
     let z = EXTENT + line.apex_offset;
-    let slope = 0.999_99 * line.largest_slope();
+    let slope = 0.999_99 * line.profile().largest_slope(line.cutoff);
     let w = beam().radius_at(z * 1_f64.hypot(slope) - 0.152);
     let y = 0.999_99 * line.cutoff * w;
     let p = world(DVec3::new(slope * z, y, EXTENT));

@@ -6,8 +6,8 @@
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 
 use tem00::beam::{
-    BeamError, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile,
-    Placement, paper,
+    BeamError, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight,
+    LineProfile, Placement, paper,
 };
 
 const NODES: i32 = 200;

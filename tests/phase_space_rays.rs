@@ -10,8 +10,8 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use tem00::{
     beam::{
-        DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile, Placement,
-        SpotLight,
+        DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile,
+        Placement, SpotLight,
     },
     statistics::chi_squared,
 };

@@ -4,8 +4,8 @@
 use std::f64::consts::PI;
 
 use tem00::beam::{
-    DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile, Placement,
-    SpotLight,
+    DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile,
+    Placement, SpotLight,
 };
 
 const WAVELENGTH: f64 = 650e-9;

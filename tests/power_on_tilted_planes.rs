@@ -106,7 +106,7 @@ fn a_line_brings_its_power_to_every_plane() {
         (LineProfile::Powell { edge: 0.1 }, 1.8 * half_slope),
     ];
     for (profile, reach) in profiles {
-        let line = LaserLine::new(focus, fan, profile).expect("a valid line");
+        let line = LaserLine::new(focus, fan, profile.clone()).expect("a valid line");
         let light = LineLight::place(&line, &placement(), POWER).expect("a valid light");
         for tilt in [0.0, 30.0, 60.0, 75.0_f64] {
             // The plane leans along the line, where the far end is many times as far as the near

@@ -1,6 +1,6 @@
 use core::{error, fmt};
 
-use glam::DVec3;
+use glam::{DMat2, DVec3};
 
 /// Why a beam, a laser line or a placed light could not be constructed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -8,6 +8,13 @@ use glam::DVec3;
 pub enum BeamError {
     /// The wavelength, in metres, is not a length from 1e−30 m to 1e30 m.
     Wavelength(f64),
+    /// The two axes of an astigmatic beam, whose light is one, have different wavelengths.
+    Wavelengths {
+        /// The wavelength of the first axis, in metres.
+        x: f64,
+        /// The wavelength of the second axis, in metres.
+        y: f64,
+    },
     /// The waist radius, in metres, is not a length from 1e−30 m to 1e30 m.
     WaistRadius(f64),
     /// The divergence, in radians, is not in the interval (0, 0.5].
@@ -36,6 +43,26 @@ pub enum BeamError {
     Edge(f64),
     /// The distance from the aperture to the waist, in metres, is not finite or beyond 1e30 m.
     WaistDistance(f64),
+    /// The rotation of the principal axes, in radians, is not finite.
+    Rotation(f64),
+    /// The beam radius, in metres, is not a length from 1e−30 m to 1e30 m.
+    Radius(f64),
+    /// An entry of a ray matrix is not finite.
+    MatrixEntry(f64),
+    /// The ray matrix of four dimensions is not symplectic, as that of an optical system is; the
+    /// number is its relative deviation.
+    NotSymplectic(f64),
+    /// The length of a path, in metres, is not finite or beyond 1e30 m.
+    Length(f64),
+    /// The focal length, in metres, has no magnitude from 1e−30 m to 1e30 m.
+    FocalLength(f64),
+    /// The position moments, in m², are not symmetric and positive definite, or spread less than the
+    /// mixed and slope moments imply.
+    PositionMoments(DMat2),
+    /// The mixed moments, in metres, are not finite.
+    MixedMoments(DMat2),
+    /// The slope moments are not symmetric and positive definite.
+    SlopeMoments(DMat2),
     /// The power, in watts, is negative or not finite.
     Power(f64),
     /// The origin of a placement has a coordinate, in metres, that is not finite.
@@ -56,6 +83,10 @@ impl fmt::Display for BeamError {
         const POSITION: &str = "must be finite and within ±1e30 m";
         match self {
             Self::Wavelength(got) => write!(f, "wavelength {LENGTH}, got {got:e} m"),
+            Self::Wavelengths { x, y } => write!(
+                f,
+                "wavelengths of the two axes must be equal, got {x:e} m and {y:e} m"
+            ),
             Self::WaistRadius(got) => write!(f, "waist radius {LENGTH}, got {got:e} m"),
             Self::Divergence(got) => {
                 write!(f, "divergence must lie in (0, 0.5] rad, got {got:e} rad")
@@ -89,6 +120,32 @@ impl fmt::Display for BeamError {
                 )
             }
             Self::WaistDistance(got) => write!(f, "waist distance {POSITION}, got {got:e} m"),
+            Self::Rotation(got) => write!(f, "rotation must be finite, got {got:e} rad"),
+            Self::Radius(got) => write!(f, "beam radius {LENGTH}, got {got:e} m"),
+            Self::MatrixEntry(got) => {
+                write!(f, "entries of a ray matrix must be finite, got {got:e}")
+            }
+            Self::NotSymplectic(got) => write!(
+                f,
+                "ray matrix must be symplectic up to the ratio of the refractive indices, \
+                 got a relative deviation of {got:e}"
+            ),
+            Self::Length(got) => write!(f, "length {POSITION}, got {got:e} m"),
+            Self::FocalLength(got) => {
+                write!(f, "magnitude of the focal length {LENGTH}, got {got:e} m")
+            }
+            Self::PositionMoments(got) => write!(
+                f,
+                "position moments must be symmetric, positive definite and at least what the mixed \
+                 and slope moments imply, got {got} m²"
+            ),
+            Self::MixedMoments(got) => {
+                write!(f, "mixed moments must be finite, got {got} m")
+            }
+            Self::SlopeMoments(got) => write!(
+                f,
+                "slope moments must be symmetric and positive definite, got {got}"
+            ),
             Self::Power(got) => {
                 write!(f, "power must be finite and not negative, got {got:e} W")
             }
@@ -129,12 +186,38 @@ mod tests {
             (BeamError::FocusDistance(1e31), "focus distance", "1e31"),
             (BeamError::Edge(3.0), "edge", "3e0"),
             (BeamError::WaistDistance(1e31), "waist distance", "1e31"),
+            (BeamError::Rotation(f64::INFINITY), "rotation", "inf"),
+            (BeamError::Length(1e31), "length", "1e31"),
+            (BeamError::FocalLength(0.0), "focal length", "0e0"),
+            (BeamError::Radius(-1.5), "beam radius", "-1.5e0"),
+            (BeamError::MatrixEntry(f64::INFINITY), "matrix", "inf"),
+            (BeamError::NotSymplectic(0.5), "symplectic", "5e-1"),
+            (
+                BeamError::PositionMoments(DMat2::ZERO),
+                "position moments",
+                "[[0, 0], [0, 0]]",
+            ),
+            (
+                BeamError::MixedMoments(DMat2::IDENTITY),
+                "mixed moments",
+                "[[1, 0], [0, 1]]",
+            ),
+            (
+                BeamError::SlopeMoments(DMat2::ZERO),
+                "slope moments",
+                "[[0, 0], [0, 0]]",
+            ),
             (BeamError::Power(-2.0), "power", "-2e0"),
             (BeamError::Origin(DVec3::X * 7.0), "origin", "[7, 0, 0]"),
             (BeamError::Direction(DVec3::ZERO), "direction", "[0, 0, 0]"),
             (BeamError::FanAxis(DVec3::Z), "fan axis", "[0, 0, 1]"),
             (BeamError::CutoffFraction(2.0), "fraction", "2e0"),
             (BeamError::SinglePrecision(1e60), "f32", "1e60"),
+            (
+                BeamError::Wavelengths { x: 6.5e-7, y: 5e-7 },
+                "wavelengths",
+                "6.5e-7",
+            ),
             (
                 BeamError::NotParaxial {
                     waist_radius: 1e-9,

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::BeamError;
 
 /// The largest divergence, in radians, for which the paraxial model is trusted.
-const PARAXIAL_LIMIT: f64 = 0.5;
+pub(crate) const PARAXIAL_LIMIT: f64 = 0.5;
 
 /// A circular TEM₀₀ Gaussian beam in free space, or its partially coherent relative with M² > 1.
 ///

@@ -47,8 +47,11 @@
 //! # Ok::<(), tem00_beam::BeamError>(())
 //! ```
 
+mod astigmatic;
+mod astigmatic_system;
 mod error;
 mod gaussian;
+mod general;
 mod line;
 mod located;
 mod normal;
@@ -57,9 +60,12 @@ mod placed;
 mod profile;
 mod real;
 
+pub use astigmatic::AstigmaticBeam;
+pub use astigmatic_system::AstigmaticSystem;
 pub use error::BeamError;
 pub use gaussian::GaussianBeam;
-pub use glam::DVec3;
+pub use general::{GeneralAstigmaticBeam, SecondMoments};
+pub use glam::{DMat2, DVec2, DVec3};
 pub use line::{FanGeometry, FocusCurve, LaserLine};
 pub use located::LocatedBeam;
 pub use placed::{

@@ -1,0 +1,392 @@
+use glam::{DMat2, DVec2};
+
+use crate::BeamError;
+use crate::gaussian::{is_coordinate, is_length};
+
+/// How far from symplectic, relative to its largest products, a matrix given by its entries may be.
+const SYMPLECTIC_TOLERANCE: f64 = 1e-9;
+
+/// The ray-transfer matrix of a paraxial system that may act differently in x and y, and mix them.
+///
+/// A ray enters at the position `x = (x, y)`, in metres, with the slope `s = (s_x, s_y)` and leaves
+/// with
+///
+/// ```text
+/// x' = A x + B s
+/// s' = C x + D s
+/// ```
+///
+/// Slopes are those of the ray itself, not multiplied by an index of refraction. The index `n` of
+/// the medium before and `n'` of that behind then show in the matrix:
+///
+/// ```text
+/// A Dᵀ − B Cᵀ = n/n' · 1     A Bᵀ and C Dᵀ symmetric
+/// ```
+///
+/// That makes a system of lenses, mirrors and distances out of four matrices: it is *symplectic* up
+/// to the ratio of the indices, so that no power is lost and no beam gets better.
+///
+/// # Examples
+///
+/// Two equal cylinder lenses at right angles are one lens:
+///
+/// ```
+/// use core::f64::consts::FRAC_PI_2;
+/// use tem00_beam::{AstigmaticSystem, DVec2};
+///
+/// let crossed = AstigmaticSystem::cylinder_lens(0.1, 0.3)?
+///     .then(AstigmaticSystem::cylinder_lens(0.1, 0.3 + FRAC_PI_2)?);
+///
+/// let [_, slope] = crossed.transform_ray([DVec2::new(1e-3, 2e-3), DVec2::ZERO]);
+/// assert!((slope - DVec2::new(-0.01, -0.02)).length() < 1e-15);
+/// # Ok::<(), tem00_beam::BeamError>(())
+/// ```
+///
+/// # References
+///
+/// - A. E. Siegman, *Lasers*, 1986, ch. 15.
+/// - J. A. Arnaud and H. Kogelnik, "Gaussian light beams with general astigmatism", 1969.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AstigmaticSystem {
+    a: DMat2,
+    b: DMat2,
+    c: DMat2,
+    d: DMat2,
+    index_ratio: f64,
+}
+
+impl AstigmaticSystem {
+    /// Creates a system from the blocks `[[A, B], [C, D]]` of its matrix.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if an entry is not finite, if `A Dᵀ − B Cᵀ` is not a positive
+    /// number times the identity, or if `A Bᵀ` or `C Dᵀ` is not symmetric. Deviations of 1e−9 of the
+    /// largest product of entries in such an expression are accepted; no product may overflow.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_beam::{AstigmaticSystem, BeamError, DMat2};
+    ///
+    /// let one = DMat2::IDENTITY;
+    /// let path = AstigmaticSystem::new([[one, 0.1 * one], [DMat2::ZERO, one]])?;
+    /// assert_eq!(path, AstigmaticSystem::free_space(0.1)?);
+    ///
+    /// // No lens makes a beam narrower in x alone and leaves its slopes as they are.
+    /// let narrow = DMat2::from_diagonal([0.5, 1.0].into());
+    /// let magic = AstigmaticSystem::new([[narrow, DMat2::ZERO], [DMat2::ZERO, one]]);
+    /// assert!(matches!(magic, Err(BeamError::NotSymplectic(_))));
+    /// # Ok::<(), BeamError>(())
+    /// ```
+    pub fn new([[a, b], [c, d]]: [[DMat2; 2]; 2]) -> Result<Self, BeamError> {
+        let mut entries = [a, b, c, d].into_iter().flat_map(|m| m.to_cols_array());
+        if let Some(bad) = entries.find(|entry| !entry.is_finite()) {
+            return Err(BeamError::MatrixEntry(bad));
+        }
+        let ratio = a * d.transpose() - b * c.transpose();
+        let index_ratio = 0.5 * (ratio.x_axis.x + ratio.y_axis.y);
+        let products = magnitude(a, d) + magnitude(b, c);
+        let deviation = relative(
+            ratio - DMat2::from_diagonal(DVec2::splat(index_ratio)),
+            products,
+        )
+        .max(relative(skew(a, b), magnitude(a, b)))
+        .max(relative(skew(c, d), magnitude(c, d)));
+        if deviation <= SYMPLECTIC_TOLERANCE && is_length(index_ratio) {
+            Ok(Self {
+                a,
+                b,
+                c,
+                d,
+                index_ratio,
+            })
+        } else {
+            Err(BeamError::NotSymplectic(deviation))
+        }
+    }
+
+    /// Creates the system of a straight path of `length`, in metres; a negative one leads back.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if `length` is not finite or beyond 1e30 m.
+    pub fn free_space(length: f64) -> Result<Self, BeamError> {
+        if is_coordinate(length) {
+            Ok(Self {
+                b: DMat2::IDENTITY * length,
+                ..Self::straight(DMat2::IDENTITY)
+            })
+        } else {
+            Err(BeamError::Length(length))
+        }
+    }
+
+    /// Creates a thin lens of the focal length `focal_length`, in metres, positive where it focuses.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the magnitude of `focal_length` is not a length from 1e−30 m to 1e30 m.
+    pub fn thin_lens(focal_length: f64) -> Result<Self, BeamError> {
+        Self::lens(focal_length, DMat2::IDENTITY)
+    }
+
+    /// Creates a thin cylinder lens of the focal length `focal_length`, in metres, that bends rays
+    /// along the direction at the angle `rotation`, in radians, from x towards y.
+    ///
+    /// The axis of its cylinder is at right angles to that direction: with `rotation = 0` the lens
+    /// acts on x and the line focus is parallel to y.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the magnitude of `focal_length` is not a length from 1e−30 m to 1e30 m,
+    /// or if `rotation` is not finite.
+    pub fn cylinder_lens(focal_length: f64, rotation: f64) -> Result<Self, BeamError> {
+        let u = DVec2::from_angle(finite_rotation(rotation)?);
+        Self::lens(focal_length, DMat2::from_cols(u * u.x, u * u.y))
+    }
+
+    /// Creates a system that turns positions and slopes by the angle `rotation`, in radians, from x
+    /// towards y, as an image rotator of mirrors does.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if `rotation` is not finite.
+    pub fn image_rotation(rotation: f64) -> Result<Self, BeamError> {
+        Ok(Self::straight(DMat2::from_angle(finite_rotation(
+            rotation,
+        )?)))
+    }
+
+    /// Returns the system of this one followed by `next`, in the order in which light meets them.
+    ///
+    /// The matrix is the product `next · self`. Where systems of extreme entries follow one another
+    /// it may overflow, which is an error as soon as it meets a beam.
+    #[must_use]
+    pub fn then(self, next: Self) -> Self {
+        Self {
+            a: next.a * self.a + next.b * self.c,
+            b: next.a * self.b + next.b * self.d,
+            c: next.c * self.a + next.d * self.c,
+            d: next.c * self.b + next.d * self.d,
+            index_ratio: self.index_ratio * next.index_ratio,
+        }
+    }
+
+    /// Returns the ray `[position, slope]` behind the system, from that before it.
+    pub fn transform_ray(&self, [position, slope]: [DVec2; 2]) -> [DVec2; 2] {
+        [
+            self.a * position + self.b * slope,
+            self.c * position + self.d * slope,
+        ]
+    }
+
+    /// Returns the blocks `[[A, B], [C, D]]` of the matrix; `B` is in metres, `C` in m⁻¹.
+    pub const fn blocks(&self) -> [[DMat2; 2]; 2] {
+        [[self.a, self.b], [self.c, self.d]]
+    }
+
+    /// Returns the ratio `n/n'` of the index of refraction before the system to that behind it.
+    ///
+    /// It is also the ratio of the wavelength behind to that before.
+    pub const fn index_ratio(&self) -> f64 {
+        self.index_ratio
+    }
+
+    /// A lens whose power acts along the directions that `projection` keeps.
+    fn lens(focal_length: f64, projection: DMat2) -> Result<Self, BeamError> {
+        if is_length(focal_length.abs()) {
+            Ok(Self {
+                c: projection * (-1.0 / focal_length),
+                ..Self::straight(DMat2::IDENTITY)
+            })
+        } else {
+            Err(BeamError::FocalLength(focal_length))
+        }
+    }
+
+    /// A thin system that applies the orthogonal `matrix` to positions and slopes.
+    const fn straight(matrix: DMat2) -> Self {
+        Self {
+            a: matrix,
+            b: DMat2::ZERO,
+            c: DMat2::ZERO,
+            d: matrix,
+            index_ratio: 1.0,
+        }
+    }
+}
+
+fn finite_rotation(rotation: f64) -> Result<f64, BeamError> {
+    if rotation.is_finite() {
+        Ok(rotation)
+    } else {
+        Err(BeamError::Rotation(rotation))
+    }
+}
+
+/// Returns the antisymmetric part of `a bᵀ`, times 2.
+fn skew(a: DMat2, b: DMat2) -> DMat2 {
+    a * b.transpose() - b * a.transpose()
+}
+
+/// Returns the largest sum of magnitudes of products in `a bᵀ`.
+fn magnitude(a: DMat2, b: DMat2) -> f64 {
+    largest(a.abs() * b.abs().transpose())
+}
+
+/// Returns the largest entry of `residual` relative to `scale`; 0 if all are 0, and infinity where
+/// the products overflow.
+fn relative(residual: DMat2, scale: f64) -> f64 {
+    if !scale.is_finite() {
+        f64::INFINITY
+    } else if scale > 0.0 {
+        largest(residual.abs()) / scale
+    } else {
+        0.0
+    }
+}
+
+fn largest(matrix: DMat2) -> f64 {
+    matrix.to_cols_array().into_iter().fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    /// The largest entry of the difference of two systems.
+    fn distance(one: &AstigmaticSystem, other: &AstigmaticSystem) -> f64 {
+        let pairs = one.blocks().into_iter().flatten();
+        pairs
+            .zip(other.blocks().into_iter().flatten())
+            .map(|(p, q)| largest((p - q).abs()))
+            .fold(0.0, f64::max)
+    }
+
+    fn system() -> AstigmaticSystem {
+        AstigmaticSystem::cylinder_lens(0.1, 0.3)
+            .unwrap()
+            .then(AstigmaticSystem::free_space(0.25).unwrap())
+            .then(AstigmaticSystem::thin_lens(-0.4).unwrap())
+            .then(AstigmaticSystem::image_rotation(1.1).unwrap())
+    }
+
+    #[test]
+    fn crossed_cylinder_lenses_are_one_lens() {
+        let crossed = AstigmaticSystem::cylinder_lens(0.2, 0.7)
+            .unwrap()
+            .then(AstigmaticSystem::cylinder_lens(0.2, 0.7 + FRAC_PI_2).unwrap());
+        let lens = AstigmaticSystem::thin_lens(0.2).unwrap();
+        // Powers of 5 m⁻¹, a few roundings.
+        assert!(distance(&crossed, &lens) < 5e-15, "{crossed:?}");
+    }
+
+    #[test]
+    fn a_cylinder_lens_bends_along_its_direction_only() {
+        for (rotation, along) in [(0.0, DVec2::X), (FRAC_PI_2, DVec2::Y)] {
+            let lens = AstigmaticSystem::cylinder_lens(0.5, rotation).unwrap();
+            let [position, slope] = lens.transform_ray([DVec2::ONE, DVec2::ZERO]);
+            assert_eq!(position, DVec2::ONE, "a thin lens moves no ray");
+            let want = along * -2.0;
+            assert!((slope - want).length() < 1e-15, "{rotation}: {slope}");
+        }
+    }
+
+    #[test]
+    fn rays_pass_one_system_after_the_other() {
+        let (first, second) = (system(), AstigmaticSystem::free_space(0.3).unwrap());
+        let ray = [DVec2::new(1e-3, -2e-3), DVec2::new(-5e-3, 1e-3)];
+        let at_once = first.then(second).transform_ray(ray);
+        let in_turn = second.transform_ray(first.transform_ray(ray));
+        for (one, other) in at_once.into_iter().zip(in_turn) {
+            // Values of about 1e−2 after a few dozen roundings.
+            assert!((one - other).length() < 1e-16, "{one}, {other}");
+        }
+        // Written out for a distance: x + 0.3 s.
+        let [position, slope] = second.transform_ray(ray);
+        let want = DVec2::new(-0.5e-3, -1.7e-3);
+        assert!((position - want).length() < 1e-18, "{position}");
+        assert_eq!(slope, ray[1], "free space bends no ray");
+    }
+
+    #[test]
+    fn image_rotation_turns_from_x_to_y() {
+        let turn = AstigmaticSystem::image_rotation(FRAC_PI_2).unwrap();
+        let [position, slope] = turn.transform_ray([DVec2::X, DVec2::Y]);
+        assert!((position - DVec2::Y).length() < 1e-15, "{position}");
+        assert!((slope + DVec2::X).length() < 1e-15, "{slope}");
+    }
+
+    #[test]
+    fn entries_make_the_system_they_came_from() {
+        let again = AstigmaticSystem::new(system().blocks()).unwrap();
+        assert!(distance(&again, &system()) < 1e-300, "{again:?}");
+        assert!((again.index_ratio() - 1.0).abs() < 1e-13, "{again:?}");
+        let one = DMat2::IDENTITY;
+        let glass = AstigmaticSystem::new([[one, DMat2::ZERO], [DMat2::ZERO, one / 1.5]]).unwrap();
+        assert!((glass.index_ratio() - 1.0 / 1.5).abs() < 1e-15, "{glass:?}");
+        let back = glass.then(system());
+        assert!((back.index_ratio() - 1.0 / 1.5).abs() < 1e-15, "{back:?}");
+    }
+
+    #[test]
+    fn matrices_of_no_system_are_rejected() {
+        let [[a, b], [c, d]] = system().blocks();
+        let off = DMat2::from_cols_array(&[0.0, 1e-3, 0.0, 0.0]);
+        let one = DMat2::IDENTITY;
+        let skewed = DMat2::from_cols_array(&[0.0, 1.0, -1.0, 0.0]);
+        let nan = AstigmaticSystem::new([[a, b], [DMat2::NAN, d]]);
+        assert!(matches!(nan, Err(BeamError::MatrixEntry(_))), "{nan:?}");
+        for blocks in [
+            [[a + off, b], [c, d]],
+            [[a, b + off], [c, d]],
+            [[a, b], [c + off, d]],
+            [[a, b], [c, d + off]],
+            [[a, b], [c, -d]],
+            [[a * 1e200, b], [c, d * 1e200]],
+            [[one * 1e200, skewed * 1e200], [DMat2::ZERO, one * 1e-200]],
+            [[DMat2::ZERO; 2]; 2],
+        ] {
+            let result = AstigmaticSystem::new(blocks);
+            assert!(
+                matches!(result, Err(BeamError::NotSymplectic(_))),
+                "{blocks:?}: {result:?}"
+            );
+        }
+        // Symmetric products alone do not do, nor does one symmetric product.
+        let stretch = DMat2::from_diagonal(DVec2::new(2.0, 1.0));
+        for blocks in [
+            [[stretch, DMat2::ZERO], [DMat2::ZERO, one]],
+            [[one, skewed], [DMat2::ZERO, one]],
+            [[one, DMat2::ZERO], [skewed, one]],
+        ] {
+            let result = AstigmaticSystem::new(blocks);
+            assert!(result.is_err(), "{blocks:?}");
+        }
+    }
+
+    #[test]
+    fn impossible_elements_are_rejected() {
+        for bad in [f64::NAN, f64::INFINITY, 1e31] {
+            let result = AstigmaticSystem::free_space(bad);
+            assert!(matches!(result, Err(BeamError::Length(_))), "{bad}");
+        }
+        for bad in [f64::NAN, f64::INFINITY, 0.0, 1e-31] {
+            for result in [
+                AstigmaticSystem::thin_lens(bad),
+                AstigmaticSystem::cylinder_lens(bad, 0.1),
+            ] {
+                assert!(matches!(result, Err(BeamError::FocalLength(_))), "{bad}");
+            }
+        }
+        for result in [
+            AstigmaticSystem::cylinder_lens(1.0, f64::NAN),
+            AstigmaticSystem::image_rotation(f64::INFINITY),
+        ] {
+            assert!(matches!(result, Err(BeamError::Rotation(_))), "{result:?}");
+        }
+    }
+}

@@ -21,7 +21,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &["tem00-numerics"],
         &["libm", "num-complex", "statrs"],
     ),
-    ("tem00-beam", &[], &["glam", "libm"]),
+    ("tem00-beam", &[], &["fearless_simd", "glam", "libm"]),
     (
         "tem00-speckle",
         &["tem00-numerics"],

@@ -1,5 +1,6 @@
 //! The renderer face: placed lights as plain structs, generic over the scalar.
 
+mod batch;
 mod emitter;
 mod fan;
 mod frame;
@@ -11,7 +12,7 @@ mod spot;
 pub use emitter::Emitter;
 pub use frame::Placement;
 pub use line::LineLight;
-pub use record::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent};
+pub use record::{Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent};
 pub use spot::SpotLight;
 
 use crate::real::Real;
@@ -51,6 +52,7 @@ impl Axis<f64> {
 
 impl<T: Real> Axis<T> {
     /// Returns the squared beam radius `w²(z)`, in m².
+    #[inline(always)]
     pub fn radius_sq_at(&self, z: T) -> T {
         let dz = z - self.z0;
         self.w0_sq + self.theta_sq * dz * dz
@@ -70,6 +72,7 @@ impl<T: Real> Axis<T> {
     }
 
     /// Returns the relative growth of the radius `w'/w`, which is 1/R.
+    #[inline(always)]
     fn growth_at(&self, z: T) -> T {
         self.theta_sq * (z - self.z0) / self.radius_sq_at(z)
     }

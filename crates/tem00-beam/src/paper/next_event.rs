@@ -68,10 +68,7 @@ pub fn streamline_point(beam: &GaussianBeam, receiver: DVec3, aperture_z: f64) -
 /// See [`radiance`] and [`streamline_point`] for what is wrong with it.
 pub fn spot_next_event(light: &SpotLight<f64>, p: [f64; 3], n: [f64; 3]) -> Option<PrintedEvent> {
     let [x, y, z] = light.frame().local_from_world_point(p);
-    if z < 0.0 {
-        return None;
-    }
-    let flow = light.flow([x, y, z])?;
+    let flow = light.lit_flow([x, y, z])?;
     let ratio = |axis: &crate::Axis<f64>| (axis.radius_sq_at(0.0) / axis.radius_sq_at(z)).sqrt();
     let aperture = [x * ratio(&light.x), y * ratio(&light.y)];
     printed_event(light, aperture, p, n, flow.irradiance)

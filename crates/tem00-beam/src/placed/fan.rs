@@ -19,6 +19,7 @@ pub trait Fan {
 }
 
 impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
+    #[inline(always)]
     fn frame(&self) -> Frame<T> {
         let line = self.line();
         Frame {
@@ -33,21 +34,20 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         self.line().power
     }
 
-    fn flow(&self, [x, y, z]: [T; 3]) -> Option<Flow<T>> {
+    #[inline(always)]
+    fn flow(&self, [x, y, z]: [T; 3]) -> Flow<T> {
         let (line, profile) = (self.line(), self.profile());
         let z = z + line.apex_offset;
         let u = x / z;
         let sec = secant(u);
         let (axis, r) = (line.axis_towards(sec), z * sec);
         let w_sq = axis.radius_sq_at(r);
-        if !(profile.reaches(u, line.cutoff) && y * y <= line.cutoff * line.cutoff * w_sq) {
-            return None;
-        }
+        let lit = profile.reaches(u, line.cutoff) & (y * y <= line.cutoff * line.cutoff * w_sq);
         let across = normal_density(y, T::of(0.5) * w_sq.sqrt());
-        Some(Flow {
-            irradiance: line.power * profile.per_slope(u) / z * across,
+        Flow {
+            irradiance: (line.power * profile.per_slope(u) / z * across).only_if(lit),
             slope: [u, y * axis.growth_at(r) * sec],
-        })
+        }
     }
 
     /// Draws the impact parameter, which fixes the ray in the fan plane, then the slope across it.

@@ -206,6 +206,7 @@ impl<T: Real> LineLight<T> {
     }
 
     /// Returns the beam radius across the fan along the rays whose angle has the secant `sec`.
+    #[inline(always)]
     pub(super) fn axis_towards(&self, sec: T) -> Axis<T> {
         if self.focus_on_plane > T::ZERO {
             Axis {
@@ -229,10 +230,12 @@ impl<T: Real> Fan for LineLight<T> {
     type Scalar = T;
     type Profile = SlopeDensity<T>;
 
+    #[inline(always)]
     fn line(&self) -> &Self {
         self
     }
 
+    #[inline(always)]
     fn profile(&self) -> SlopeDensity<T> {
         SlopeDensity {
             variable: self.variable,

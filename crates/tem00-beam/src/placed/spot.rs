@@ -156,6 +156,7 @@ impl<T: Real> SpotLight<T> {
 impl<T: Real> Emitter<T> for SpotLight<T> {}
 
 impl<T: Real> PhaseSpace<T> for SpotLight<T> {
+    #[inline(always)]
     fn frame(&self) -> Frame<T> {
         Frame {
             origin: self.origin,
@@ -169,17 +170,16 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
         self.power
     }
 
-    fn flow(&self, [x, y, z]: [T; 3]) -> Option<Flow<T>> {
+    #[inline(always)]
+    fn flow(&self, [x, y, z]: [T; 3]) -> Flow<T> {
         let (wx_sq, wy_sq) = (self.x.radius_sq_at(z), self.y.radius_sq_at(z));
         let rho_sq = x * x / wx_sq + y * y / wy_sq;
-        if rho_sq > self.cutoff * self.cutoff {
-            return None;
-        }
         let peak = T::of(2.0 / PI) * self.power / (wx_sq.sqrt() * wy_sq.sqrt());
-        Some(Flow {
-            irradiance: peak * (T::of(-2.0) * rho_sq).exp(),
+        Flow {
+            irradiance: (peak * (T::of(-2.0) * rho_sq).exp())
+                .only_if(rho_sq <= self.cutoff * self.cutoff),
             slope: [x * self.x.growth_at(z), y * self.y.growth_at(z)],
-        })
+        }
     }
 
     fn sample_slope(&self, local: [T; 3], u: [T; 2]) -> SlopeSample<T> {
@@ -196,7 +196,7 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
         SlopeSample {
             slope,
             pdf: density * sec * sec * sec,
-            value: self.flow(local).map_or(T::ZERO, |flow| flow.irradiance) * sec,
+            value: self.flow(local).irradiance * sec,
         }
     }
 

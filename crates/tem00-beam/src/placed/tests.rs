@@ -274,35 +274,79 @@ fn a_cone_of_bounds_is_missed_by_few_rays() {
     }
 }
 
-#[test]
-fn batches_equal_single_calls() {
-    let light = line();
-    let points: Vec<[f64; 3]> = (0..9)
-        .map(|i| world(DVec3::new(0.012 * f64::from(i - 2), 1e-5, 0.1)))
+/// More points than a vector holds, and a remainder; lit ones and some of either unlit kind.
+fn batch_points() -> [Vec<f64>; 3] {
+    let points: Vec<[f64; 3]> = (0..203)
+        .map(|i| {
+            let fraction = |step: f64| (f64::from(i) * step).fract() - 0.5;
+            world(DVec3::new(
+                6e-3 * fraction(0.618_033_988_7),
+                1e-3 * fraction(0.414_213_562_4),
+                0.2 + 0.5 * fraction(0.732_050_807_6),
+            ))
+        })
         .collect();
-    let [x, y, z] = [0, 1, 2].map(|k| points.iter().map(|p| p[k]).collect::<Vec<_>>());
-    let mut irradiance = [0.0; 9];
-    let mut events = [None; 9];
-    light.irradiance_batch(&x, &y, &z, &mut irradiance);
-    light.next_event_batch(&x, &y, &z, &mut events);
-    for (i, &p) in points.iter().enumerate() {
+    [0, 1, 2].map(|k| points.iter().map(|p| p[k]).collect())
+}
+
+/// Compares both batch forms with single calls, bit for bit, and returns the number of lit points.
+fn lit_in_batch<T: Real>(light: &impl Emitter<T>) -> usize {
+    let [x, y, z] = batch_points().map(|v| v.into_iter().map(T::of).collect::<Vec<_>>());
+    let mut out = vec![vec![T::ONE; x.len()]; 6];
+    let [e, wi_x, wi_y, wi_z, distance, e_perp] = out.get_disjoint_mut([0, 1, 2, 3, 4, 5]).unwrap();
+    light.irradiance_batch(&x, &y, &z, e);
+    let slices = NextEventSlices {
+        wi: [wi_x, wi_y, wi_z],
+        distance,
+        e_perp,
+    };
+    light.next_event_batch(&x, &y, &z, slices);
+    let mut lit = 0;
+    for i in 0..x.len() {
+        let p = [x[i], y[i], z[i]];
+        let event = light.next_event(p);
+        lit += usize::from(event.is_some());
+        let [a, b, c] = event.map_or([T::ZERO; 3], |event| event.wi);
+        let distance = event.map_or(T::ZERO, |event| event.distance);
+        let e_perp = event.map_or(T::ZERO, |event| event.e_perp);
+        let expected = [light.irradiance(p), a, b, c, distance, e_perp];
+        let got = core::array::from_fn(|k| out[k][i]);
         assert_eq!(
-            irradiance[i].to_bits(),
-            light.irradiance(p).to_bits(),
+            got.map(|t: T| t.wide().to_bits()),
+            expected.map(|t| t.wide().to_bits()),
             "{i}"
         );
-        assert_eq!(events[i], light.next_event(p), "{i}");
     }
-    assert!(
-        events.iter().any(Option::is_some) && events.iter().any(Option::is_none),
-        "both"
-    );
+    lit
 }
 
 #[test]
-#[should_panic(expected = "must be of equal length, got 3, 3, 3 and 4")]
+fn batches_equal_single_calls_to_the_last_bit() {
+    let (spot, line) = (spot(), line());
+    let lit = [
+        lit_in_batch(&spot),
+        lit_in_batch(&spot.to_f32().unwrap()),
+        lit_in_batch(&line),
+        lit_in_batch(&line.to_f32().unwrap()),
+    ];
+    assert!(lit.iter().all(|lit| (20..180).contains(lit)), "{lit:?}");
+}
+
+#[test]
+#[should_panic(expected = "must be of equal length, got 3, 3, 3 and [4]")]
 fn batches_of_unequal_length_panic() {
     spot().irradiance_batch(&[0.0; 3], &[0.0; 3], &[0.0; 3], &mut [0.0; 4]);
+}
+
+#[test]
+#[should_panic(expected = "must be of equal length, got 1, 1, 1 and [1, 1, 1, 2, 1]")]
+fn batches_of_next_events_of_unequal_length_panic() {
+    let out = NextEventSlices {
+        wi: [&mut [0.0], &mut [0.0], &mut [0.0]],
+        distance: &mut [0.0; 2],
+        e_perp: &mut [0.0],
+    };
+    spot().next_event_batch(&[0.0], &[0.0], &[0.0], out);
 }
 
 #[test]

@@ -49,6 +49,7 @@ impl Variable {
         }
     }
 
+    #[inline(always)]
     fn from_code<T: Real>(code: T) -> Self {
         if code < T::of(0.5) {
             Self::Tan
@@ -62,6 +63,7 @@ impl Variable {
     }
 
     /// Returns the variable at a slope.
+    #[inline(always)]
     fn at<T: Real>(self, u: T) -> T {
         match self {
             Self::Tan | Self::Tabulated => u,
@@ -122,6 +124,7 @@ impl SlopeDensity<f64> {
 }
 
 impl<T: Real> SlopeProfile<T> for SlopeDensity<T> {
+    #[inline(always)]
     fn per_slope(&self, u: T) -> T {
         let sec_sq = T::ONE + u * u;
         match self.variable() {
@@ -148,6 +151,7 @@ impl<T: Real> SlopeProfile<T> for SlopeDensity<T> {
         }
     }
 
+    #[inline(always)]
     fn reaches(&self, u: T, cutoff: T) -> bool {
         self.variable().at(u).abs() <= self.end(cutoff)
     }
@@ -164,11 +168,13 @@ impl<T: Real> SlopeProfile<T> for SlopeDensity<T> {
 }
 
 impl<T: Real> SlopeDensity<T> {
+    #[inline(always)]
     fn variable(&self) -> Variable {
         Variable::from_code(self.variable)
     }
 
     /// Returns the end of the cut-off, in the variable.
+    #[inline(always)]
     fn end(&self, cutoff: T) -> T {
         self.flat + T::of(2.0) * cutoff * self.sigma
     }
@@ -183,6 +189,7 @@ impl<T: Real> SlopeDensity<T> {
     }
 
     /// Returns the density per unit of the variable.
+    #[inline(always)]
     fn in_variable(&self, v: T) -> T {
         let density = if self.flat <= T::ZERO {
             normal_density(v, self.sigma)
@@ -247,6 +254,7 @@ impl SlopeDensity<f64> {
 }
 
 /// Returns `√(1 + u²)`, the secant of the angle whose slope is `u`.
+#[inline(always)]
 pub(crate) fn secant<T: Real>(u: T) -> T {
     (T::ONE + u * u).sqrt()
 }

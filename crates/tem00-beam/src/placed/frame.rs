@@ -57,6 +57,19 @@ pub struct Frame<T> {
     pub(super) ez: [T; 3],
 }
 
+impl Frame<f64> {
+    /// Returns the frame with x and y turned by `angle`, in radians, about z by the right hand.
+    pub(super) fn turned(self, angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        let [ex, ey] = [self.ex, self.ey].map(DVec3::from);
+        Self {
+            ex: (cos * ex + sin * ey).to_array(),
+            ey: (cos * ey - sin * ex).to_array(),
+            ..self
+        }
+    }
+}
+
 impl<T: Real> Frame<T> {
     /// Transforms a point of the world into the frame.
     #[inline(always)]

@@ -7,7 +7,7 @@ use super::fan::Fan;
 use super::phase_space::PhaseSpace;
 use super::*;
 use crate::profile::SlopeProfile;
-use crate::{FanGeometry, FocusCurve, LaserLine, LineProfile};
+use crate::{AstigmaticBeam, FanGeometry, FocusCurve, LaserLine, LineProfile, LocatedBeam};
 
 const ORIGIN: DVec3 = DVec3::new(0.1, -0.2, 0.3);
 const POWER: f64 = 5e-3;
@@ -133,6 +133,31 @@ fn a_placed_light_is_the_laser_in_another_frame() {
         let from_waist = local - DVec3::Z * 0.15;
         let expected = rotated(POWER * beam().flux_per_watt(from_waist));
         let flux = DVec3::from(spot().flux(world(local)));
+        assert!(
+            flux.distance(expected) <= 1e-10 * expected.length(),
+            "{local}: {flux}"
+        );
+    }
+}
+
+/// An elliptic beam whose principal axes are turned by 0.4 rad from the light's x and y.
+fn elliptic() -> AstigmaticBeam {
+    let wide = GaussianBeam::from_waist(650e-9, 80e-6)
+        .and_then(|beam| beam.with_m_squared(1.7))
+        .unwrap();
+    let axes = [(beam(), 0.15), (wide, -0.05)].map(|(b, z)| LocatedBeam::new(b, z).unwrap());
+    let beam = AstigmaticBeam::new(axes[0], axes[1]).unwrap();
+    beam.with_rotation(0.4).unwrap()
+}
+
+#[test]
+fn a_placed_elliptic_beam_is_the_beam_in_another_frame() {
+    let light = SpotLight::place_astigmatic(&elliptic(), &placement(), POWER).unwrap();
+    for (x, y, z) in [(0.0, 0.0, 0.01), (3e-4, -2e-4, 0.01), (5e-5, 1e-4, 0.15)] {
+        let local = DVec3::new(x, y, z);
+        let expected = rotated(POWER * elliptic().flux_per_watt(local));
+        let flux = DVec3::from(light.flux(world(local)));
+        // 1e−16 m of rounding beside a radius of 5e−5 m.
         assert!(
             flux.distance(expected) <= 1e-10 * expected.length(),
             "{local}: {flux}"

@@ -1,4 +1,4 @@
-use super::batch::{check_lengths, vectorised};
+use super::batch::{Batch, check_lengths, event_at, irradiance_at};
 use super::phase_space::PhaseSpace;
 use super::record::{Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent};
 use crate::real::Real;
@@ -192,15 +192,8 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     ///
     /// Panics unless `x.len() == y.len() == z.len() == out.len()`.
     fn irradiance_batch(&self, x: &[T], y: &[T], z: &[T], out: &mut [T]) {
-        check_lengths([x.len(), y.len(), z.len()], [out.len()]);
-        vectorised(
-            #[inline(always)]
-            || {
-                for (((&x, &y), &z), out) in x.iter().zip(y).zip(z).zip(out) {
-                    *out = irradiance_at(self, [x, y, z]);
-                }
-            },
-        );
+        check_lengths([x, y, z], [out.len()]);
+        self.run(Batch::Irradiance([x, y, z], out));
     }
 
     /// Writes the [`next_event`](Self::next_event) at the points `(x[i], y[i], z[i])` to
@@ -210,51 +203,10 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     ///
     /// Panics unless `x`, `y`, `z` and the five slices of `out` are of equal length.
     fn next_event_batch(&self, x: &[T], y: &[T], z: &[T], out: NextEventSlices<'_, T>) {
-        let [wi_x, wi_y, wi_z] = out.wi;
-        check_lengths(
-            [x.len(), y.len(), z.len()],
-            [&*wi_x, wi_y, wi_z, out.distance, out.e_perp].map(<[T]>::len),
-        );
-        let towards = wi_x.iter_mut().zip(wi_y).zip(wi_z);
-        let scalars = out.distance.iter_mut().zip(out.e_perp);
-        let points = x.iter().zip(y).zip(z);
-        vectorised(
-            #[inline(always)]
-            || {
-                for ((((&x, &y), &z), wi), scalars) in points.zip(towards).zip(scalars) {
-                    let event = event_at(self, [x, y, z]);
-                    ((*wi.0.0, *wi.0.1), *wi.1) = ((event.wi[0], event.wi[1]), event.wi[2]);
-                    (*scalars.0, *scalars.1) = (event.distance, event.e_perp);
-                }
-            },
-        );
-    }
-}
-
-/// The one law behind [`Emitter::irradiance`] and its batch, which so agree to the last bit.
-#[inline(always)]
-fn irradiance_at<T: Real>(light: &(impl PhaseSpace<T> + ?Sized), p: [T; 3]) -> T {
-    let local = light.frame().local_from_world_point(p);
-    light.flow_in_front(local).irradiance
-}
-
-/// The one law behind [`Emitter::next_event`] and its batch; all 0 where no light arrives.
-#[inline(always)]
-fn event_at<T: Real>(light: &(impl PhaseSpace<T> + ?Sized), p: [T; 3]) -> NextEvent<T> {
-    let frame = light.frame();
-    let local = frame.local_from_world_point(p);
-    let flow = light.flow_in_front(local);
-    let lit = flow.irradiance > T::ZERO;
-    let length = secant(flow.slope);
-    let wi = towards_light(frame.world_from_local_vector(direction(flow.slope)));
-    NextEvent {
-        point: frame.world_from_aperture(aperture_point(local, flow.slope)),
-        distance: (local[2] * length).only_if(lit),
-        wi: wi.map(
-            #[inline(always)]
-            |wi| wi.only_if(lit),
-        ),
-        e_perp: (flow.irradiance * length).only_if(lit),
+        let [wi_x, wi_y, wi_z] = &out.wi;
+        let lengths = [wi_x, wi_y, wi_z, &out.distance, &out.e_perp].map(|slice| slice.len());
+        check_lengths([x, y, z], lengths);
+        self.run(Batch::NextEvents([x, y, z], out));
     }
 }
 
@@ -293,6 +245,6 @@ pub(super) fn aperture_point<T: Real>(local: [T; 3], slope: [T; 2]) -> [T; 2] {
 }
 
 #[inline(always)]
-fn towards_light<T: Real>([x, y, z]: [T; 3]) -> [T; 3] {
+pub(super) fn towards_light<T: Real>([x, y, z]: [T; 3]) -> [T; 3] {
     [-x, -y, -z]
 }

@@ -1,6 +1,7 @@
 //! The laws of a laser line, whatever its profile along the fan.
 #![expect(unnameable_types, reason = "it belongs to a sealed trait")]
 
+use super::batch::Batch;
 use super::frame::Frame;
 use super::line::LineLight;
 use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
@@ -16,6 +17,15 @@ pub trait Fan {
 
     fn line(&self) -> &LineLight<Self::Scalar>;
     fn profile(&self) -> Self::Profile;
+
+    /// Answers a query at many points. A profile without tables and special functions overrides it
+    /// with a loop that fills the vector units.
+    fn run_batch(&self, batch: Batch<'_, Self::Scalar>)
+    where
+        Self: Sized,
+    {
+        batch.over(self);
+    }
 }
 
 impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
@@ -34,6 +44,10 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         self.line().power
     }
 
+    fn run(&self, batch: Batch<'_, T>) {
+        self.run_batch(batch);
+    }
+
     #[inline(always)]
     fn flow(&self, [x, y, z]: [T; 3]) -> Flow<T> {
         let (line, profile) = (self.line(), self.profile());
@@ -43,9 +57,14 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         let (axis, r) = (line.axis_towards(sec), z * sec);
         let w_sq = axis.radius_sq_at(r);
         let lit = profile.reaches(u, line.cutoff) & (y * y <= line.cutoff * line.cutoff * w_sq);
-        let across = normal_density(y, T::of(0.5) * w_sq.sqrt());
+        let irradiance = if lit {
+            let across = normal_density(y, T::of(0.5) * w_sq.sqrt());
+            line.power * profile.per_slope(u) / z * across
+        } else {
+            T::ZERO
+        };
         Flow {
-            irradiance: (line.power * profile.per_slope(u) / z * across).only_if(lit),
+            irradiance,
             slope: [u, y * axis.growth_at(r) * sec],
         }
     }

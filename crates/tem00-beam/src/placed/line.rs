@@ -1,10 +1,11 @@
+use super::batch::{Batch, vectorised};
 use super::emitter::Emitter;
 use super::fan::Fan;
 use super::{
     Axis, DEFAULT_CUTOFF, Placement, check_digits, checked_power, first_three, row, to_single,
 };
 use crate::normal::normal_density;
-use crate::profile::{SlopeDensity, SlopeProfile};
+use crate::profile::{SlopeDensity, SlopeProfile, Variable};
 use crate::real::Real;
 use crate::{BeamError, FocusCurve, LaserLine};
 
@@ -218,6 +219,16 @@ impl<T: Real> LineLight<T> {
         }
     }
 
+    /// Returns the light with the profile of a Gaussian in the variable of this code.
+    #[inline(always)]
+    fn gaussian_in(&self, code: f64) -> Self {
+        Self {
+            flat: T::ZERO,
+            variable: T::of(code),
+            ..*self
+        }
+    }
+
     /// Widens the fields to double precision.
     pub(super) fn wide(&self) -> LineLight<f64> {
         LineLight::from_rows(self.to_rows().map(|row| row.map(T::wide)))
@@ -242,6 +253,27 @@ impl<T: Real> Fan for LineLight<T> {
             flat: self.flat,
             sigma: self.sigma,
             mass: self.mass,
+        }
+    }
+
+    /// Writes the constants of a Gaussian into the loop, whose compiler then drops the branches to
+    /// the other profiles.
+    fn run_batch(&self, batch: Batch<'_, T>) {
+        const TAN: f64 = Variable::Tan.code();
+        const SIN: f64 = Variable::Sin.code();
+        let is_gaussian_in = |code: f64| self.flat == T::ZERO && self.variable == T::of(code);
+        if is_gaussian_in(TAN) {
+            vectorised(
+                #[inline(always)]
+                || batch.over(&self.gaussian_in(TAN)),
+            );
+        } else if is_gaussian_in(SIN) {
+            vectorised(
+                #[inline(always)]
+                || batch.over(&self.gaussian_in(SIN)),
+            );
+        } else {
+            batch.over(self);
         }
     }
 }

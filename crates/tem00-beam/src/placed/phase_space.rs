@@ -1,6 +1,7 @@
 //! What tells one light from another. The module is private, which seals the trait `Emitter`.
 #![expect(unnameable_types, reason = "the trait is sealed")]
 
+use super::batch::{Batch, vectorised};
 use super::frame::Frame;
 use super::record::RayPdf;
 use crate::real::Real;
@@ -26,6 +27,14 @@ pub trait PhaseSpace<T: Real> {
 
     /// Returns how far the light reaches up to the distance `l`.
     fn reach(&self, l: T) -> Reach<T>;
+
+    /// Answers a query at many points.
+    fn run(&self, batch: Batch<'_, T>) {
+        vectorised(
+            #[inline(always)]
+            || batch.over(self),
+        );
+    }
 
     /// Returns the energy flow, with an irradiance of 0 where the point is behind the aperture too.
     #[inline(always)]

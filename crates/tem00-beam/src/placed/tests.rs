@@ -347,13 +347,19 @@ fn lit_in_batch<T: Real>(light: &impl Emitter<T>) -> usize {
 
 #[test]
 fn batches_equal_single_calls_to_the_last_bit() {
-    let (spot, line) = (spot(), line());
-    let lit = [
-        lit_in_batch(&spot),
-        lit_in_batch(&spot.to_f32().unwrap()),
-        lit_in_batch(&line),
-        lit_in_batch(&line.to_f32().unwrap()),
-    ];
+    let spot = spot();
+    let mut lit = vec![lit_in_batch(&spot), lit_in_batch(&spot.to_f32().unwrap())];
+    for profile in [
+        LineProfile::GaussianTan,
+        LineProfile::GaussianAngle,
+        LineProfile::GaussianSin,
+        LineProfile::UniformTan,
+        LineProfile::Powell { edge: 0.1 },
+    ] {
+        let line = LineLight::place(&laser_line(profile), &placement(), POWER).unwrap();
+        lit.push(lit_in_batch(&line));
+        lit.push(lit_in_batch(&line.to_f32().unwrap()));
+    }
     assert!(lit.iter().all(|lit| (20..180).contains(lit)), "{lit:?}");
 }
 

@@ -69,8 +69,8 @@ pub use glam::{DMat2, DVec2, DVec3};
 pub use line::{FanGeometry, FocusCurve, LaserLine};
 pub use located::LocatedBeam;
 pub use placed::{
-    Axis, Bounds, Emitter, LineLight, NextEvent, NextEventSlices, Placement, RayPdf, RaySample,
-    SampledEvent, SpotLight,
+    AstigmaticLight, Axis, Bounds, Ellipse, Emitter, LineLight, NextEvent, NextEventSlices,
+    Placement, RayPdf, RaySample, SampledEvent, SpotLight,
 };
 pub use profile::LineProfile;
 pub use real::Real;

@@ -1,6 +1,8 @@
 //! The renderer face: placed lights as plain structs, generic over the scalar.
 
+mod astigmatic;
 mod batch;
+mod ellipse;
 mod emitter;
 mod fan;
 mod frame;
@@ -9,6 +11,8 @@ pub(crate) mod phase_space;
 mod record;
 mod spot;
 
+pub use astigmatic::AstigmaticLight;
+pub use ellipse::Ellipse;
 pub use emitter::Emitter;
 pub use frame::Placement;
 pub use line::LineLight;

@@ -30,8 +30,8 @@ use crate::real::Real;
 /// In `f32` the irradiance carries the rounding of the coordinates: its relative error is about
 /// `4 ε |p| / w`, with ε = 1.2e−7, the coordinates `p` and the beam radius `w`.
 ///
-/// The trait is sealed. [`SpotLight`](crate::SpotLight) and [`LineLight`](crate::LineLight)
-/// implement it.
+/// The trait is sealed. [`SpotLight`](crate::SpotLight), [`LineLight`](crate::LineLight) and
+/// [`AstigmaticLight`](crate::AstigmaticLight) implement it.
 ///
 /// # Examples
 ///

@@ -348,7 +348,13 @@ fn lit_in_batch<T: Real>(light: &impl Emitter<T>) -> usize {
 #[test]
 fn batches_equal_single_calls_to_the_last_bit() {
     let spot = spot();
-    let mut lit = vec![lit_in_batch(&spot), lit_in_batch(&spot.to_f32().unwrap())];
+    let astigmatic = AstigmaticLight::place(&elliptic().into(), &placement(), POWER).unwrap();
+    let mut lit = vec![
+        lit_in_batch(&spot),
+        lit_in_batch(&spot.to_f32().unwrap()),
+        lit_in_batch(&astigmatic),
+        lit_in_batch(&astigmatic.to_f32().unwrap()),
+    ];
     for profile in [
         LineProfile::GaussianTan,
         LineProfile::GaussianAngle,

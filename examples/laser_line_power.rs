@@ -6,8 +6,8 @@
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 
 use tem00::beam::{
-    BeamError, DVec3, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile,
-    Placement, paper,
+    BeamError, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight,
+    LineProfile, Placement, paper,
 };
 
 const NODES: i32 = 200;
@@ -31,6 +31,7 @@ fn main() -> Result<(), BeamError> {
         fan_angle: 20_f64.to_radians(),
         apex_offset: 2e-3,
         focus_distance: 0.2,
+        focus_curve: FocusCurve::EqualDistance,
     };
     let focus = GaussianBeam::from_waist(650e-9, 0.1e-3)?;
     let line = LaserLine::new(focus, fan, LineProfile::GaussianTan)?;

@@ -21,7 +21,11 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &["tem00-numerics"],
         &["libm", "num-complex", "statrs"],
     ),
-    ("tem00-beam", &[], &["glam", "libm", "num-complex"]),
+    (
+        "tem00-beam",
+        &[],
+        &["fearless_simd", "glam", "libm", "num-complex"],
+    ),
     (
         "tem00-speckle",
         &["tem00-numerics"],

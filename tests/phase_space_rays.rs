@@ -10,8 +10,8 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use tem00::{
     beam::{
-        DVec3, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile, Placement,
-        SpotLight,
+        DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile,
+        Placement, SpotLight,
     },
     statistics::chi_squared,
 };
@@ -42,6 +42,7 @@ fn line() -> LineLight<f64> {
         fan_angle: 10_f64.to_radians(),
         apex_offset: 5e-3,
         focus_distance: WAIST_DISTANCE,
+        focus_curve: FocusCurve::EqualDistance,
     };
     let line = LaserLine::new(focus, fan, LineProfile::GaussianTan).expect("a valid line");
     LineLight::place(&line, &placement(), 1.0).expect("a valid light")

@@ -4,8 +4,8 @@
 use std::f64::consts::PI;
 
 use tem00::beam::{
-    DVec3, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile, Placement,
-    SpotLight,
+    DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile,
+    Placement, SpotLight,
 };
 
 const WAVELENGTH: f64 = 650e-9;
@@ -97,6 +97,7 @@ fn a_line_brings_its_power_to_every_plane() {
         fan_angle: 10_f64.to_radians(),
         apex_offset: 5e-3,
         focus_distance: DISTANCE,
+        focus_curve: FocusCurve::EqualDistance,
     };
     let half_slope = (0.5 * fan.fan_angle).tan();
     let apex = DVec3::new(0.0, 0.0, -fan.apex_offset);
@@ -105,7 +106,7 @@ fn a_line_brings_its_power_to_every_plane() {
         (LineProfile::Powell { edge: 0.1 }, 1.8 * half_slope),
     ];
     for (profile, reach) in profiles {
-        let line = LaserLine::new(focus, fan, profile).expect("a valid line");
+        let line = LaserLine::new(focus, fan, profile.clone()).expect("a valid line");
         let light = LineLight::place(&line, &placement(), POWER).expect("a valid light");
         for tilt in [0.0, 30.0, 60.0, 75.0_f64] {
             // The plane leans along the line, where the far end is many times as far as the near

@@ -71,12 +71,12 @@ pub use error::BeamError;
 pub use gaussian::GaussianBeam;
 pub use general::{GeneralAstigmaticBeam, SecondMoments};
 pub use glam::{DMat2, DVec2, DVec3};
-pub use line::{FanGeometry, LaserLine};
+pub use line::{FanGeometry, FocusCurve, LaserLine};
 pub use located::LocatedBeam;
 pub use num_complex::Complex64;
 pub use placed::{
-    Axis, Bounds, Emitter, LineLight, NextEvent, Placement, RayPdf, RaySample, SampledEvent,
-    SpotLight,
+    AstigmaticLight, Axis, Bounds, Ellipse, Emitter, LineLight, NextEvent, NextEventSlices,
+    Placement, RayPdf, RaySample, SampledEvent, SpotLight,
 };
 pub use profile::LineProfile;
 pub use real::Real;

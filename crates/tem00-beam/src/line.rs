@@ -4,11 +4,29 @@ use glam::DVec3;
 
 use crate::gaussian::is_coordinate;
 use crate::normal::normal_density;
-use crate::profile::SlopeDensity;
+use crate::profile::{SlopeDensity, SlopeProfile};
 use crate::{BeamError, GaussianBeam, LineProfile};
 
 /// The apex offset must exceed this many source radii, so that the fan has a sharp apex.
 const MIN_SOURCE_RADII: f64 = 100.0;
+
+/// Where the waist of a laser line lies, over the angles of the fan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FocusCurve {
+    /// On the circle about the virtual apex: at the same slant distance from it at every angle.
+    ///
+    /// ```text
+    /// r_w = focus_distance + z_a
+    /// ```
+    #[default]
+    EqualDistance,
+    /// On the plane square to the axis: the line is equally thin all along a flat screen there.
+    ///
+    /// ```text
+    /// r_w = (focus_distance + z_a) / cos θ
+    /// ```
+    EqualPlane,
+}
 
 /// The geometry of a laser fan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +42,8 @@ pub struct FanGeometry {
     /// Distance from the lens along the axis to where the line is thinnest, in metres; negative for
     /// a line that diverges from a waist before the lens.
     pub focus_distance: f64,
+    /// Where the line is thinnest off the axis.
+    pub focus_curve: FocusCurve,
 }
 
 /// A laser line: a Gaussian beam, fanned out in one plane by a cylinder or Powell lens.
@@ -36,11 +56,18 @@ pub struct FanGeometry {
 /// ```text
 /// F / P = f(θ) / r · G(y; w) · (sin θ, y w'/w, cos θ)
 /// G(y; w) = √(2/π) / w · exp(−2 y² / w²)
-/// w = w(r − r_w)     with r_w = focus_distance + z_a
+/// w = w(r − r_w)     with r_w = focus_distance + z_a, or that over cos θ (see FocusCurve)
 /// ```
 ///
-/// It has no divergence: any surface that cuts the whole fan receives the full power. The line is
-/// thinnest on the circle of slant distance `r_w` about the apex. Points at z < 0 receive nothing.
+/// It has no divergence, so that any surface that cuts the whole fan receives the full power. In the
+/// cylindrical coordinates (r, θ, y) the flow has no component along θ, and whatever depends on θ
+/// alone, `f` and `r_w`, is a constant of the streamline:
+///
+/// ```text
+/// ∇·F / P = ∂(r F_r)/∂r / r + ∂F_y/∂y = f/r · [∂G/∂r + ∂(G y w'/w)/∂y] = 0
+/// ```
+///
+/// because `G` only scales with `w`. Points at z < 0 receive nothing.
 ///
 /// # Validity
 ///
@@ -54,7 +81,7 @@ pub struct FanGeometry {
 /// A 650 nm module with a 30° fan and a line 0.2 mm thick at 200 mm:
 ///
 /// ```
-/// use tem00_beam::{FanGeometry, GaussianBeam, LaserLine, LineProfile};
+/// use tem00_beam::{FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile};
 ///
 /// let line = LaserLine::new(
 ///     GaussianBeam::from_waist(650e-9, 0.1e-3)?,
@@ -62,6 +89,7 @@ pub struct FanGeometry {
 ///         fan_angle: 30_f64.to_radians(),
 ///         apex_offset: 2e-3,
 ///         focus_distance: 0.2,
+///         focus_curve: FocusCurve::EqualDistance,
 ///     },
 ///     LineProfile::GaussianTan,
 /// )?;
@@ -75,7 +103,7 @@ pub struct FanGeometry {
 ///
 /// - S. Bergmann et al., 2016, section 4, whose scaling of x is normalised here; see
 ///   [`paper::PrintedFan`](crate::paper::PrintedFan).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LaserLine {
     focus: GaussianBeam,
     fan: FanGeometry,
@@ -104,13 +132,13 @@ impl LaserLine {
         if !is_coordinate(fan.focus_distance) {
             return Err(BeamError::FocusDistance(fan.focus_distance));
         }
-        let half_slope = (0.5 * fan.fan_angle).tan();
+        let density = profile.slope_density(fan.fan_angle)?;
         let line = Self {
             focus,
             fan,
             profile,
-            half_slope,
-            density: profile.slope_density(half_slope)?,
+            half_slope: (0.5 * fan.fan_angle).tan(),
+            density,
         };
         let minimum = MIN_SOURCE_RADII * line.source_radius();
         if !(minimum..=1e30).contains(&fan.apex_offset) {
@@ -133,8 +161,8 @@ impl LaserLine {
     }
 
     /// Returns the profile along the line.
-    pub const fn profile(&self) -> LineProfile {
-        self.profile
+    pub const fn profile(&self) -> &LineProfile {
+        &self.profile
     }
 
     /// Returns `T = tan(α/2)`, the slope of the edges of the fan.
@@ -142,9 +170,18 @@ impl LaserLine {
         self.half_slope
     }
 
-    /// Returns the slant distance `r_w` from the virtual apex to the waist, in metres.
+    /// Returns the slant distance `r_w` from the virtual apex to the waist on the axis, in metres.
     pub const fn waist_slant_distance(&self) -> f64 {
         self.fan.focus_distance + self.fan.apex_offset
+    }
+
+    /// Returns the slant distance `r_w` from the virtual apex to the waist, in metres, in the
+    /// direction of the slope `tan θ` in the fan plane.
+    pub fn waist_slant_distance_at(&self, slope: f64) -> f64 {
+        match self.fan.focus_curve {
+            FocusCurve::EqualDistance => self.waist_slant_distance(),
+            FocusCurve::EqualPlane => self.waist_slant_distance() * 1.0_f64.hypot(slope),
+        }
     }
 
     /// Returns the diffraction-limited radius of the virtual apex, in metres.
@@ -181,11 +218,7 @@ impl LaserLine {
         if theta.abs() >= FRAC_PI_2 {
             return 0.0;
         }
-        let slope = theta.tan();
-        match self.density.at(slope) {
-            density if density > 0.0 => density * (1.0 + slope * slope),
-            _ => 0.0,
-        }
+        self.density.per_angle(theta.tan())
     }
 
     /// Returns the irradiance per watt, in m⁻², of a plane of constant z at `point`.
@@ -202,12 +235,13 @@ impl LaserLine {
     /// # Examples
     ///
     /// ```
-    /// use tem00_beam::{DVec3, FanGeometry, GaussianBeam, LaserLine, LineProfile};
+    /// use tem00_beam::{DVec3, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile};
     ///
     /// let fan = FanGeometry {
     ///     fan_angle: 0.5,
     ///     apex_offset: 2e-3,
     ///     focus_distance: 0.2,
+    ///     focus_curve: FocusCurve::EqualDistance,
     /// };
     /// let focus = GaussianBeam::from_waist(650e-9, 0.1e-3)?;
     /// let line = LaserLine::new(focus, fan, LineProfile::Powell { edge: 0.05 })?;
@@ -223,11 +257,11 @@ impl LaserLine {
         }
         let z = point.z + self.fan.apex_offset;
         let slope = point.x / z;
-        let from_waist = point.x.hypot(z) - self.waist_slant_distance();
+        let from_waist = point.x.hypot(z) - self.waist_slant_distance_at(slope);
         let w = self.focus.radius_at(from_waist);
         // f(θ) / r · cos θ = g(tan θ) / z
         let across = normal_density(point.y, 0.5 * w);
-        let irradiance = self.density.at(slope) / z * across;
+        let irradiance = self.density.per_slope(slope) / z * across;
         if irradiance > 0.0 {
             let slope_y = point.y * self.focus.curvature_at(from_waist) * 1.0_f64.hypot(slope);
             irradiance * DVec3::new(slope, slope_y, 1.0)
@@ -237,151 +271,10 @@ impl LaserLine {
     }
 
     /// Returns the density of the slope along the fan.
-    pub(crate) const fn slope_density(&self) -> SlopeDensity<f64> {
-        self.density
+    pub(crate) const fn slope_density(&self) -> &SlopeDensity<f64> {
+        &self.density
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const FAN: FanGeometry = FanGeometry {
-        fan_angle: 0.5,
-        apex_offset: 2e-3,
-        focus_distance: 0.2,
-    };
-
-    fn focus() -> GaussianBeam {
-        GaussianBeam::from_waist(650e-9, 0.1e-3).unwrap()
-    }
-
-    fn lines() -> [LaserLine; 2] {
-        [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.05 }]
-            .map(|profile| LaserLine::new(focus(), FAN, profile).unwrap())
-    }
-
-    #[test]
-    fn power_per_angle_integrates_to_one() {
-        const INTERVALS: u32 = 20_000;
-        for line in lines() {
-            let h = PI / f64::from(INTERVALS);
-            let total: f64 = (0..INTERVALS)
-                .map(|i| line.power_per_angle(-FRAC_PI_2 + (f64::from(i) + 0.5) * h))
-                .sum();
-            assert!((total * h - 1.0).abs() < 1e-12, "{line:?}: {}", total * h);
-            assert!(
-                line.power_per_angle(PI) < f64::MIN_POSITIVE,
-                "behind the lens"
-            );
-        }
-    }
-
-    #[test]
-    fn flux_is_the_power_per_angle_over_the_slant_distance() {
-        let theta: f64 = 0.21;
-        let r = 0.17;
-        for line in lines() {
-            let point = DVec3::new(r * theta.sin(), 0.0, r * theta.cos() - FAN.apex_offset);
-            let w = focus().radius_at(r - 0.202);
-            let expected = line.power_per_angle(theta) / r * (2.0 / PI).sqrt() / w;
-            let flux = line.flux_per_watt(point);
-            // x carries an error of 1e−16 of z, and the roll-off is steep: 20 per unit slope.
-            assert!((flux.length() / expected - 1.0).abs() < 1e-13, "{flux}");
-            assert!((flux.x / flux.z - theta.tan()).abs() < 1e-14, "{flux}");
-        }
-    }
-
-    #[test]
-    fn flux_has_no_divergence() {
-        for line in lines() {
-            let z_r = focus().rayleigh_range();
-            for p in [
-                DVec3::new(0.01, 5e-5, 0.15),
-                DVec3::new(-0.02, 8e-5, 0.3),
-                DVec3::new(0.05, -1e-4, 0.2),
-            ] {
-                let slope = |axis: DVec3, h: f64| {
-                    let step = axis * h;
-                    let change = line.flux_per_watt(p + step) - line.flux_per_watt(p - step);
-                    change.dot(axis) / (2.0 * h)
-                };
-                let divergence =
-                    slope(DVec3::X, 1e-6) + slope(DVec3::Y, 1e-8) + slope(DVec3::Z, 1e-6);
-                // The terms that cancel are of the size F / z_R. A central difference errs by
-                // (h/l)² / 6 · F / l with the shortest lengths l: the roll-off of 1 mm along the
-                // line, 0.1 mm across it; 1e−5 of F / z_R covers both.
-                let scale = line.flux_per_watt(p).length() / z_r;
-                let relative = divergence / scale;
-                assert!(relative.abs() < 1e-5, "{p}: {relative:e}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_lens_and_its_back_are_no_singularity() {
-        for line in lines() {
-            let lens = line.flux_per_watt(DVec3::ZERO);
-            assert!(lens.z > 0.0 && lens.is_finite(), "{lens}");
-            let behind = line.flux_per_watt(DVec3::new(0.0, 0.0, -1e-9));
-            assert_eq!(behind, DVec3::ZERO, "behind the lens");
-        }
-    }
-
-    #[test]
-    fn dimensions_follow_the_geometry() {
-        let [line, _] = lines();
-        let half_slope = 0.25_f64.tan();
-        assert!(
-            (line.half_length_at(0.198) - 0.2 * half_slope).abs() < 1e-15,
-            "{line:?}"
-        );
-        assert!(
-            (line.half_thickness_at(0.2) - 0.1e-3).abs() < 1e-18,
-            "{line:?}"
-        );
-        let waist = 650e-9 / (PI * half_slope);
-        assert!(
-            (line.source_radius() / waist - 1.0).abs() < 1e-14,
-            "{line:?}"
-        );
-        let edge = DVec3::new(line.half_length_at(0.1), 0.0, 0.1);
-        let centre = DVec3::new(0.0, 0.0, 0.1);
-        // Between them the thickness differs, since the waist lies on a circle.
-        let thickness = |p: DVec3| focus().radius_at(p.x.hypot(p.z + 2e-3) - 0.202);
-        let ratio = line.irradiance_per_watt(edge) * thickness(edge)
-            / (line.irradiance_per_watt(centre) * thickness(centre));
-        assert!(
-            (ratio - (-2.0_f64).exp()).abs() < 1e-14,
-            "1/e² at the edge: {ratio}"
-        );
-    }
-
-    #[test]
-    fn impossible_geometry_is_rejected() {
-        let with = |fan| LaserLine::new(focus(), fan, LineProfile::GaussianTan);
-        for fan_angle in [0.0, -0.1, PI, f64::NAN, f64::INFINITY] {
-            let result = with(FanGeometry { fan_angle, ..FAN });
-            assert!(matches!(result, Err(BeamError::FanAngle(_))), "{fan_angle}");
-        }
-        for apex_offset in [0.0, -1e-3, 80e-6, 1e31, f64::NAN] {
-            let result = with(FanGeometry { apex_offset, ..FAN });
-            assert!(
-                matches!(result, Err(BeamError::ApexOffset { .. })),
-                "{apex_offset}"
-            );
-        }
-        for focus_distance in [f64::NAN, f64::INFINITY, -1e31] {
-            let result = with(FanGeometry {
-                focus_distance,
-                ..FAN
-            });
-            assert!(
-                matches!(result, Err(BeamError::FocusDistance(_))),
-                "{focus_distance}"
-            );
-        }
-        let result = LaserLine::new(focus(), FAN, LineProfile::Powell { edge: 0.0 });
-        assert!(matches!(result, Err(BeamError::Edge(_))), "{result:?}");
-    }
-}
+mod tests;

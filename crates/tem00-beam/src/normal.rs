@@ -3,6 +3,7 @@
 use crate::real::Real;
 
 /// The density of a normal distribution of mean 0.
+#[inline(always)]
 pub(crate) fn normal_density<T: Real>(x: T, sigma: T) -> T {
     const INV_SQRT_TAU: f64 = 0.398_942_280_401_432_7;
     let t = x / sigma;

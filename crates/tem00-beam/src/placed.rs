@@ -1,16 +1,22 @@
 //! The renderer face: placed lights as plain structs, generic over the scalar.
 
+mod astigmatic;
+mod batch;
+mod ellipse;
 mod emitter;
+mod fan;
 mod frame;
 mod line;
 pub(crate) mod phase_space;
 mod record;
 mod spot;
 
+pub use astigmatic::AstigmaticLight;
+pub use ellipse::Ellipse;
 pub use emitter::Emitter;
 pub use frame::Placement;
 pub use line::LineLight;
-pub use record::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent};
+pub use record::{Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent};
 pub use spot::SpotLight;
 
 use crate::real::Real;
@@ -50,6 +56,7 @@ impl Axis<f64> {
 
 impl<T: Real> Axis<T> {
     /// Returns the squared beam radius `w²(z)`, in m².
+    #[inline(always)]
     pub fn radius_sq_at(&self, z: T) -> T {
         let dz = z - self.z0;
         self.w0_sq + self.theta_sq * dz * dz
@@ -69,6 +76,7 @@ impl<T: Real> Axis<T> {
     }
 
     /// Returns the relative growth of the radius `w'/w`, which is 1/R.
+    #[inline(always)]
     fn growth_at(&self, z: T) -> T {
         self.theta_sq * (z - self.z0) / self.radius_sq_at(z)
     }
@@ -91,7 +99,7 @@ impl<T: Real> Axis<T> {
 }
 
 /// Rounds the fields of a light to `f32`, unless one of them overflows.
-fn to_single(rows: [[f64; 4]; 6]) -> Result<[[f32; 4]; 6], BeamError> {
+fn to_single<const N: usize>(rows: [[f64; 4]; N]) -> Result<[[f32; 4]; N], BeamError> {
     let overflow = |field: &&f64| !<f32 as Scalar>::of(**field).is_finite();
     match rows.as_flattened().iter().find(overflow) {
         Some(&field) => Err(BeamError::SinglePrecision(field)),

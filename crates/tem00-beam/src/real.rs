@@ -1,3 +1,5 @@
+mod exponential;
+
 /// A floating-point type of the renderer face: `f32` or `f64`.
 ///
 /// The trait is sealed.
@@ -9,6 +11,8 @@ impl Real for f64 {}
 pub(crate) mod sealed {
     use core::fmt::Debug;
     use core::ops::{Add, Div, Mul, Neg, Sub};
+
+    use super::exponential::{exp_f32, exp_f64};
 
     /// The operations a placed light needs of its scalar.
     #[expect(unnameable_types, reason = "it seals `Real`")]
@@ -35,8 +39,14 @@ pub(crate) mod sealed {
         /// Widens to double precision, without loss.
         fn wide(self) -> f64;
         fn sqrt(self) -> Self;
+        /// Returns the exponential, within 1.5 units of the last place; 0 where it is hardly normal.
         fn exp(self) -> Self;
         fn abs(self) -> Self;
+        /// Returns the number itself if `condition` holds, and 0 if not.
+        #[inline(always)]
+        fn only_if(self, condition: bool) -> Self {
+            if condition { self } else { Self::ZERO }
+        }
     }
 
     impl Scalar for f32 {
@@ -45,18 +55,23 @@ pub(crate) mod sealed {
         const HALF_SPACING: f64 = (Self::EPSILON / 4.0) as f64;
 
         #[expect(clippy::cast_possible_truncation, reason = "rounding is the purpose")]
+        #[inline(always)]
         fn of(x: f64) -> Self {
             x as Self
         }
+        #[inline(always)]
         fn wide(self) -> f64 {
             f64::from(self)
         }
+        #[inline(always)]
         fn sqrt(self) -> Self {
             self.sqrt()
         }
+        #[inline(always)]
         fn exp(self) -> Self {
-            self.exp()
+            exp_f32(self)
         }
+        #[inline(always)]
         fn abs(self) -> Self {
             self.abs()
         }
@@ -67,18 +82,23 @@ pub(crate) mod sealed {
         const ONE: Self = 1.0;
         const HALF_SPACING: Self = Self::EPSILON / 4.0;
 
+        #[inline(always)]
         fn of(x: f64) -> Self {
             x
         }
+        #[inline(always)]
         fn wide(self) -> f64 {
             self
         }
+        #[inline(always)]
         fn sqrt(self) -> Self {
             self.sqrt()
         }
+        #[inline(always)]
         fn exp(self) -> Self {
-            self.exp()
+            exp_f64(self)
         }
+        #[inline(always)]
         fn abs(self) -> Self {
             self.abs()
         }

@@ -8,8 +8,8 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_beam::{
-    DVec3, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile, Placement,
-    RaySample, SpotLight,
+    DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile,
+    Placement, RaySample, SpotLight,
 };
 
 const WAVELENGTH: f64 = 650e-9;
@@ -39,6 +39,7 @@ fn line(profile: LineProfile) -> (LaserLine, LineLight<f64>) {
         fan_angle: 30_f64.to_radians(),
         apex_offset: 2e-3,
         focus_distance: 0.2,
+        focus_curve: FocusCurve::EqualDistance,
     };
     line_of(fan, profile)
 }
@@ -132,7 +133,7 @@ fn rays_of_a_line_reproduce_its_thickness() {
     const COUNT: usize = 100_000;
     let n = COUNT as f64;
     for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
-        let (line, light) = line(profile);
+        let (line, light) = line(profile.clone());
         let axes = axes(light.ex, light.ey, light.ez);
         let rays = rays(&light, COUNT);
         for r in [0.01, 0.202, 0.5] {
@@ -163,9 +164,10 @@ fn rays_of_a_wide_fan_pass_apex_and_waist_within_diffraction() {
         fan_angle: 120_f64.to_radians(),
         apex_offset: 0.3,
         focus_distance: 0.2,
+        focus_curve: FocusCurve::EqualDistance,
     };
     for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
-        let (line, light) = line_of(fan, profile);
+        let (line, light) = line_of(fan, profile.clone());
         let axes = axes(light.ex, light.ey, light.ez);
         let [mut at_apex, mut at_waist] = [0.0; 2];
         for ray in rays(&light, COUNT) {
@@ -263,7 +265,7 @@ fn rays_of_a_spot_reproduce_the_irradiance_of_a_tilted_surface() {
 #[test]
 fn rays_of_a_line_reproduce_the_irradiance_of_a_tilted_surface() {
     for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
-        let (line, light) = line(profile);
+        let (line, light) = line(profile.clone());
         let axes = axes(light.ex, light.ey, light.ez);
         let tilt = 50_f64.to_radians();
         let along = DVec3::new(tilt.cos(), 0.0, tilt.sin());
@@ -330,7 +332,7 @@ fn radiance_of_a_spot_integrates_to_the_irradiance() {
 #[test]
 fn radiance_of_a_line_integrates_to_the_irradiance() {
     for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
-        let (line, light) = line(profile);
+        let (line, light) = line(profile.clone());
         let axes = axes(light.ex, light.ey, light.ez);
         for (u, z) in [(0.0, 0.1), (0.2, 0.19), (-0.25, 0.4)] {
             let r = (z + 2e-3) * 1_f64.hypot(u);

@@ -7,7 +7,7 @@
 #![expect(clippy::expect_used, reason = "helpers of tests")]
 
 use proptest::prelude::*;
-use tem00_beam::{DVec3, FanGeometry, GaussianBeam, LaserLine, LineProfile};
+use tem00_beam::{DVec3, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile};
 
 const WAVELENGTH: f64 = 650e-9;
 /// Beam radii that hold all but exp(−2 · 4.2²) = 5e−16 of the power.
@@ -95,6 +95,7 @@ fn line(fan_angle: f64, focus_distance: f64, waist: f64, profile: LineProfile) -
         fan_angle,
         apex_offset: 10e-3,
         focus_distance,
+        focus_curve: FocusCurve::EqualDistance,
     };
     LaserLine::new(
         GaussianBeam::from_waist(WAVELENGTH, waist).expect("a valid beam"),

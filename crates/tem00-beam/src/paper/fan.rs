@@ -83,7 +83,7 @@ impl PrintedFan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FanGeometry, LaserLine, LineProfile};
+    use crate::{FanGeometry, FocusCurve, LaserLine, LineProfile};
 
     fn focus() -> GaussianBeam {
         GaussianBeam::from_waist(650e-9, 0.1e-3).unwrap()
@@ -117,6 +117,7 @@ mod tests {
             fan_angle: 0.5,
             apex_offset,
             focus_distance: 0.2 - apex_offset,
+            focus_curve: FocusCurve::EqualDistance,
         };
         let line = LaserLine::new(focus(), geometry, LineProfile::GaussianTan).unwrap();
         let fan = PrintedFan::new(focus(), 0.5, 0.2).unwrap();

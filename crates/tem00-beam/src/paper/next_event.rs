@@ -68,10 +68,7 @@ pub fn streamline_point(beam: &GaussianBeam, receiver: DVec3, aperture_z: f64) -
 /// See [`radiance`] and [`streamline_point`] for what is wrong with it.
 pub fn spot_next_event(light: &SpotLight<f64>, p: [f64; 3], n: [f64; 3]) -> Option<PrintedEvent> {
     let [x, y, z] = light.frame().local_from_world_point(p);
-    if z < 0.0 {
-        return None;
-    }
-    let flow = light.flow([x, y, z])?;
+    let flow = light.lit_flow([x, y, z])?;
     let ratio = |axis: &crate::Axis<f64>| (axis.radius_sq_at(0.0) / axis.radius_sq_at(z)).sqrt();
     let aperture = [x * ratio(&light.x), y * ratio(&light.y)];
     printed_event(light, aperture, p, n, flow.irradiance)
@@ -89,7 +86,7 @@ pub fn line_next_event(light: &LineLight<f64>, p: [f64; 3], n: [f64; 3]) -> Opti
         return None;
     }
     let w_sq = light.y.radius_sq_at(z + light.apex_offset);
-    let x = x * w_sq.sqrt() / (light.half_slope() * z);
+    let x = x * w_sq.sqrt() / (light.half_slope * z);
     let rho_sq = (x * x + y * y) / w_sq;
     if rho_sq > light.cutoff * light.cutoff {
         return None;
@@ -121,7 +118,7 @@ fn printed_event(
 mod tests {
     use super::*;
     use crate::paper::PrintedFan;
-    use crate::{Emitter, FanGeometry, LaserLine, LineProfile, Placement};
+    use crate::{Emitter, FanGeometry, FocusCurve, LaserLine, LineProfile, Placement};
 
     const PLACEMENT: Placement = Placement {
         origin: DVec3::ZERO,
@@ -206,9 +203,10 @@ mod tests {
             fan_angle: 0.5,
             apex_offset: 2e-3,
             focus_distance: 0.1,
+            focus_curve: FocusCurve::EqualDistance,
         };
         for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
-            let line = LaserLine::new(beam(), geometry, profile).unwrap();
+            let line = LaserLine::new(beam(), geometry, profile.clone()).unwrap();
             let light = LineLight::place(&line, &PLACEMENT, 2e-3).unwrap();
             let fan = PrintedFan::new(beam(), 0.5, 0.1).unwrap();
             let p = DVec3::new(0.01, 2e-4, 0.15);
@@ -245,6 +243,7 @@ mod tests {
             fan_angle: 0.5,
             apex_offset: 2e-3,
             focus_distance: 0.1,
+            focus_curve: FocusCurve::EqualDistance,
         };
         let line = LaserLine::new(beam(), geometry, LineProfile::GaussianTan).unwrap();
         let line = LineLight::place(&line, &PLACEMENT, 2e-3).unwrap();

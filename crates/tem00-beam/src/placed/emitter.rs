@@ -1,5 +1,6 @@
+use super::batch::{Batch, check_lengths, event_at, irradiance_at};
 use super::phase_space::PhaseSpace;
-use super::record::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent};
+use super::record::{Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent};
 use crate::real::Real;
 
 /// A light that a renderer can evaluate and sample, without allocation.
@@ -29,8 +30,8 @@ use crate::real::Real;
 /// In `f32` the irradiance carries the rounding of the coordinates: its relative error is about
 /// `4 ε |p| / w`, with ε = 1.2e−7, the coordinates `p` and the beam radius `w`.
 ///
-/// The trait is sealed. [`SpotLight`](crate::SpotLight) and [`LineLight`](crate::LineLight)
-/// implement it.
+/// The trait is sealed. [`SpotLight`](crate::SpotLight), [`LineLight`](crate::LineLight) and
+/// [`AstigmaticLight`](crate::AstigmaticLight) implement it.
 ///
 /// # Examples
 ///
@@ -57,9 +58,7 @@ use crate::real::Real;
 pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// Returns the irradiance, in W/m², of a plane through `p` at right angles to the axis.
     fn irradiance(&self, p: [T; 3]) -> T {
-        let local = self.frame().local_from_world_point(p);
-        self.flow_in_front(local)
-            .map_or(T::ZERO, |flow| flow.irradiance)
+        irradiance_at(self, p)
     }
 
     /// Returns the energy-flow vector at `p`, in W/m².
@@ -67,7 +66,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// A surface whose normal `n` lies on the lit side receives the irradiance `max(0, −F·n)`.
     fn flux(&self, p: [T; 3]) -> [T; 3] {
         let frame = self.frame();
-        match self.flow_in_front(frame.local_from_world_point(p)) {
+        match self.lit_flow(frame.local_from_world_point(p)) {
             Some(flow) => {
                 let [x, y] = flow.slope;
                 let e = flow.irradiance;
@@ -83,16 +82,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// `f · |n·wi| · V · e_perp`. Returns `None` outside the cut-off and behind the aperture, where
     /// no shadow ray is needed.
     fn next_event(&self, p: [T; 3]) -> Option<NextEvent<T>> {
-        let frame = self.frame();
-        let local = frame.local_from_world_point(p);
-        let flow = self.flow_in_front(local)?;
-        let length = secant(flow.slope);
-        Some(NextEvent {
-            point: frame.world_from_aperture(aperture_point(local, flow.slope)),
-            distance: local[2] * length,
-            wi: towards_light(frame.world_from_local_vector(direction(flow.slope))),
-            e_perp: flow.irradiance * length,
-        })
+        Some(event_at(self, p)).filter(|event| event.e_perp > T::ZERO)
     }
 
     /// Returns the light at `p` as one direction, drawn from the phase-space density at `p`.
@@ -103,7 +93,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     fn next_event_sampled(&self, p: [T; 3], u: [T; 2]) -> Option<SampledEvent<T>> {
         let frame = self.frame();
         let local = frame.local_from_world_point(p);
-        self.flow_in_front(local)?;
+        self.lit_flow(local)?;
         let drawn = self.sample_slope(local, u);
         Some(SampledEvent {
             point: frame.world_from_aperture(aperture_point(local, drawn.slope)),
@@ -202,38 +192,22 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     ///
     /// Panics unless `x.len() == y.len() == z.len() == out.len()`.
     fn irradiance_batch(&self, x: &[T], y: &[T], z: &[T], out: &mut [T]) {
-        for (p, out) in points(x, y, z, out.len()).zip(out) {
-            *out = self.irradiance(p);
-        }
+        check_lengths([x, y, z], [out.len()]);
+        self.run(Batch::Irradiance([x, y, z], out));
     }
 
-    /// Writes the [`next_event`](Self::next_event) at the points `(x[i], y[i], z[i])` to `out[i]`.
+    /// Writes the [`next_event`](Self::next_event) at the points `(x[i], y[i], z[i])` to
+    /// `out.…[i]`. Where no light arrives, all five numbers are 0.
     ///
     /// # Panics
     ///
-    /// Panics unless `x.len() == y.len() == z.len() == out.len()`.
-    fn next_event_batch(&self, x: &[T], y: &[T], z: &[T], out: &mut [Option<NextEvent<T>>]) {
-        for (p, out) in points(x, y, z, out.len()).zip(out) {
-            *out = self.next_event(p);
-        }
+    /// Panics unless `x`, `y`, `z` and the five slices of `out` are of equal length.
+    fn next_event_batch(&self, x: &[T], y: &[T], z: &[T], out: NextEventSlices<'_, T>) {
+        let [wi_x, wi_y, wi_z] = &out.wi;
+        let lengths = [wi_x, wi_y, wi_z, &out.distance, &out.e_perp].map(|slice| slice.len());
+        check_lengths([x, y, z], lengths);
+        self.run(Batch::NextEvents([x, y, z], out));
     }
-}
-
-/// Gathers points from separate coordinates.
-fn points<'a, T: Real>(
-    x: &'a [T],
-    y: &'a [T],
-    z: &'a [T],
-    len: usize,
-) -> impl Iterator<Item = [T; 3]> + 'a {
-    assert!(
-        x.len() == len && y.len() == len && z.len() == len,
-        "x, y, z and out must be of equal length, got {}, {}, {} and {len}",
-        x.len(),
-        y.len(),
-        z.len(),
-    );
-    x.iter().zip(y).zip(z).map(|((&x, &y), &z)| [x, y, z])
 }
 
 fn smaller<T: Real>(a: T, b: T) -> T {
@@ -245,11 +219,13 @@ pub(super) fn larger<T: Real>(a: T, b: T) -> T {
 }
 
 /// Returns `√(1 + s²)`, the length of the ray per distance along the axis.
+#[inline(always)]
 pub(super) fn secant<T: Real>(slope: [T; 2]) -> T {
     (T::ONE + slope[0] * slope[0] + slope[1] * slope[1]).sqrt()
 }
 
 /// Returns the unit vector of a slope, in the frame of the light.
+#[inline(always)]
 pub(super) fn direction<T: Real>(slope: [T; 2]) -> [T; 3] {
     let cos = T::ONE / secant(slope);
     [slope[0] * cos, slope[1] * cos, cos]
@@ -262,11 +238,13 @@ fn slope_of<T: Real>(direction: [T; 3]) -> Option<[T; 2]> {
 }
 
 /// Follows the ray through `local` back to the aperture plane.
+#[inline(always)]
 pub(super) fn aperture_point<T: Real>(local: [T; 3], slope: [T; 2]) -> [T; 2] {
     let [x, y, z] = local;
     [x - slope[0] * z, y - slope[1] * z]
 }
 
-fn towards_light<T: Real>([x, y, z]: [T; 3]) -> [T; 3] {
+#[inline(always)]
+pub(super) fn towards_light<T: Real>([x, y, z]: [T; 3]) -> [T; 3] {
     [-x, -y, -z]
 }

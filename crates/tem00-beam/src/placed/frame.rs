@@ -57,8 +57,22 @@ pub struct Frame<T> {
     pub(super) ez: [T; 3],
 }
 
+impl Frame<f64> {
+    /// Returns the frame with x and y turned by `angle`, in radians, about z by the right hand.
+    pub(super) fn turned(self, angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        let [ex, ey] = [self.ex, self.ey].map(DVec3::from);
+        Self {
+            ex: (cos * ex + sin * ey).to_array(),
+            ey: (cos * ey - sin * ex).to_array(),
+            ..self
+        }
+    }
+}
+
 impl<T: Real> Frame<T> {
     /// Transforms a point of the world into the frame.
+    #[inline(always)]
     pub(crate) fn local_from_world_point(&self, p: [T; 3]) -> [T; 3] {
         // Subtract first, then rotate: the difference is exact where the light is near.
         self.local_from_world_vector([
@@ -69,11 +83,13 @@ impl<T: Real> Frame<T> {
     }
 
     /// Rotates a vector of the world into the frame.
+    #[inline(always)]
     pub(crate) fn local_from_world_vector(&self, v: [T; 3]) -> [T; 3] {
         [dot(v, self.ex), dot(v, self.ey), dot(v, self.ez)]
     }
 
     /// Rotates a vector of the frame into the world.
+    #[inline(always)]
     pub(crate) fn world_from_local_vector(&self, v: [T; 3]) -> [T; 3] {
         core::array::from_fn(|i| v[0] * self.ex[i] + v[1] * self.ey[i] + v[2] * self.ez[i])
     }
@@ -85,6 +101,7 @@ impl<T: Real> Frame<T> {
     }
 }
 
+#[inline(always)]
 fn dot<T: Real>(a: [T; 3], b: [T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -1,6 +1,7 @@
 //! What tells one light from another. The module is private, which seals the trait `Emitter`.
 #![expect(unnameable_types, reason = "the trait is sealed")]
 
+use super::batch::{Batch, vectorised};
 use super::frame::Frame;
 use super::record::RayPdf;
 use crate::real::Real;
@@ -10,8 +11,10 @@ pub trait PhaseSpace<T: Real> {
     fn frame(&self) -> Frame<T>;
     fn power(&self) -> T;
 
-    /// Returns the energy flow, unless the point is outside the cut-off.
-    fn flow(&self, local: [T; 3]) -> Option<Flow<T>>;
+    /// Returns the energy flow, with an irradiance of 0 outside the cut-off.
+    ///
+    /// One path for all points, so that a loop over points fills the vector units.
+    fn flow(&self, local: [T; 3]) -> Flow<T>;
 
     /// Draws a slope from the conditional density at a point.
     fn sample_slope(&self, local: [T; 3], u: [T; 2]) -> SlopeSample<T>;
@@ -25,12 +28,27 @@ pub trait PhaseSpace<T: Real> {
     /// Returns how far the light reaches up to the distance `l`.
     fn reach(&self, l: T) -> Reach<T>;
 
-    /// Returns the energy flow, unless the point is behind the aperture or not lit.
-    fn flow_in_front(&self, local: [T; 3]) -> Option<Flow<T>> {
-        if local[2] < T::ZERO {
-            return None;
+    /// Answers a query at many points.
+    fn run(&self, batch: Batch<'_, T>) {
+        vectorised(
+            #[inline(always)]
+            || batch.over(self),
+        );
+    }
+
+    /// Returns the energy flow, with an irradiance of 0 where the point is behind the aperture too.
+    #[inline(always)]
+    fn flow_in_front(&self, local: [T; 3]) -> Flow<T> {
+        let flow = self.flow(local);
+        Flow {
+            irradiance: flow.irradiance.only_if(local[2] >= T::ZERO),
+            ..flow
         }
-        self.flow(local).filter(|flow| flow.irradiance > T::ZERO)
+    }
+
+    /// Returns the energy flow, unless the point is not lit.
+    fn lit_flow(&self, local: [T; 3]) -> Option<Flow<T>> {
+        Some(self.flow_in_front(local)).filter(|flow| flow.irradiance > T::ZERO)
     }
 }
 

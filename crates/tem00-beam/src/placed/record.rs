@@ -14,6 +14,19 @@ pub struct NextEvent<T> {
     pub e_perp: T,
 }
 
+/// Where the next events at many points go: one slice for each number.
+///
+/// The point of the aperture plane is left out: it is `p + distance · wi`.
+#[derive(Debug)]
+pub struct NextEventSlices<'a, T> {
+    /// Coordinates x, y, z of the unit vectors towards the light.
+    pub wi: [&'a mut [T]; 3],
+    /// Distances to the aperture plane along `wi`, in metres.
+    pub distance: &'a mut [T],
+    /// Irradiances of a surface square to `wi`, in W/m²; 0 where no light arrives.
+    pub e_perp: &'a mut [T],
+}
+
 /// The light that arrives at a point, as a random direction and its density.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]

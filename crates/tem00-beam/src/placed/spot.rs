@@ -7,12 +7,11 @@ use super::record::RayPdf;
 use super::{
     Axis, DEFAULT_CUTOFF, Placement, check_digits, checked_power, first_three, row, to_single,
 };
-use crate::gaussian::is_coordinate;
 use crate::normal::{normal_density, standard_normal};
 use crate::real::Real;
-use crate::{BeamError, GaussianBeam};
+use crate::{AstigmaticBeam, BeamError, GaussianBeam, LocatedBeam};
 
-/// A Gaussian beam in a scene, prepared for a renderer.
+/// A Gaussian beam in a scene, circular or elliptic, prepared for a renderer.
 ///
 /// A plain struct of 24 scalars, six rows of four as a GPU buffer wants them. Its fields are
 /// public: [`place`](SpotLight::place) checks its arguments, whoever writes the fields keeps them
@@ -89,12 +88,31 @@ impl SpotLight<f64> {
         placement: &Placement,
         power: f64,
     ) -> Result<Self, BeamError> {
-        if !is_coordinate(waist_distance) {
-            return Err(BeamError::WaistDistance(waist_distance));
-        }
+        let located = LocatedBeam::new(*beam, waist_distance)?;
+        Self::place_astigmatic(&AstigmaticBeam::stigmatic(located), placement, power)
+    }
+
+    /// Places an elliptic beam in a scene, with its reference plane as the aperture and a power in
+    /// watts.
+    ///
+    /// The local x axis is the first principal axis of the beam: the fan axis of the placement,
+    /// turned by the rotation of the beam about the direction of travel.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the placement's origin is not finite or beyond 1e30 m, if `power` is
+    /// negative or not finite, or if the placement's axes are not finite, have no length, or are
+    /// parallel.
+    pub fn place_astigmatic(
+        beam: &AstigmaticBeam,
+        placement: &Placement,
+        power: f64,
+    ) -> Result<Self, BeamError> {
         let power = checked_power(power)?;
-        let frame = placement.frame()?;
-        let axis = Axis::new(beam, waist_distance);
+        let frame = placement.frame()?.turned(beam.rotation());
+        let [x, y] = beam
+            .axes()
+            .map(|axis| Axis::new(axis.beam(), axis.waist_distance()));
         Ok(Self {
             origin: frame.origin,
             power,
@@ -104,8 +122,8 @@ impl SpotLight<f64> {
             pad_ey: 0.0,
             ez: frame.ez,
             pad_ez: 0.0,
-            x: axis,
-            y: axis,
+            x,
+            y,
         })
     }
 
@@ -156,6 +174,7 @@ impl<T: Real> SpotLight<T> {
 impl<T: Real> Emitter<T> for SpotLight<T> {}
 
 impl<T: Real> PhaseSpace<T> for SpotLight<T> {
+    #[inline(always)]
     fn frame(&self) -> Frame<T> {
         Frame {
             origin: self.origin,
@@ -169,17 +188,16 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
         self.power
     }
 
-    fn flow(&self, [x, y, z]: [T; 3]) -> Option<Flow<T>> {
+    #[inline(always)]
+    fn flow(&self, [x, y, z]: [T; 3]) -> Flow<T> {
         let (wx_sq, wy_sq) = (self.x.radius_sq_at(z), self.y.radius_sq_at(z));
         let rho_sq = x * x / wx_sq + y * y / wy_sq;
-        if rho_sq > self.cutoff * self.cutoff {
-            return None;
-        }
         let peak = T::of(2.0 / PI) * self.power / (wx_sq.sqrt() * wy_sq.sqrt());
-        Some(Flow {
-            irradiance: peak * (T::of(-2.0) * rho_sq).exp(),
+        Flow {
+            irradiance: (peak * (T::of(-2.0) * rho_sq).exp())
+                .only_if(rho_sq <= self.cutoff * self.cutoff),
             slope: [x * self.x.growth_at(z), y * self.y.growth_at(z)],
-        })
+        }
     }
 
     fn sample_slope(&self, local: [T; 3], u: [T; 2]) -> SlopeSample<T> {
@@ -196,7 +214,7 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
         SlopeSample {
             slope,
             pdf: density * sec * sec * sec,
-            value: self.flow(local).map_or(T::ZERO, |flow| flow.irradiance) * sec,
+            value: self.flow(local).irradiance * sec,
         }
     }
 

@@ -3,9 +3,11 @@ use core::mem::{align_of, offset_of, size_of};
 use glam::DVec3;
 use proptest::prelude::*;
 
+use super::fan::Fan;
 use super::phase_space::PhaseSpace;
 use super::*;
-use crate::{FanGeometry, LaserLine, LineProfile};
+use crate::profile::SlopeProfile;
+use crate::{AstigmaticBeam, FanGeometry, FocusCurve, LaserLine, LineProfile, LocatedBeam};
 
 const ORIGIN: DVec3 = DVec3::new(0.1, -0.2, 0.3);
 const POWER: f64 = 5e-3;
@@ -31,6 +33,7 @@ fn laser_line(profile: LineProfile) -> LaserLine {
         fan_angle: 0.5,
         apex_offset: 2e-3,
         focus_distance: 0.15,
+        focus_curve: FocusCurve::EqualDistance,
     };
     LaserLine::new(beam(), fan, profile).unwrap()
 }
@@ -52,11 +55,11 @@ fn rotated(local: DVec3) -> DVec3 {
 }
 
 #[test]
-fn lights_fill_six_rows_of_four_scalars() {
+fn lights_fill_rows_of_four_scalars() {
     assert_eq!(size_of::<SpotLight<f32>>(), 96, "spot, f32");
     assert_eq!(size_of::<SpotLight<f64>>(), 192, "spot, f64");
-    assert_eq!(size_of::<LineLight<f32>>(), 96, "line, f32");
-    assert_eq!(size_of::<LineLight<f64>>(), 192, "line, f64");
+    assert_eq!(size_of::<LineLight<f32>>(), 112, "line, f32");
+    assert_eq!(size_of::<LineLight<f64>>(), 224, "line, f64");
     assert_eq!(align_of::<SpotLight<f32>>(), 4, "spot, f32");
     assert_eq!(size_of::<NextEvent<f32>>(), 32, "next event");
     assert_eq!(size_of::<RaySample<f32>>(), 40, "ray");
@@ -73,12 +76,16 @@ fn lights_can_be_shared_between_threads() {
 
 #[test]
 fn rows_hold_the_fields_in_the_order_of_memory() {
-    let numbers = core::array::from_fn(|i| core::array::from_fn(|j| (4 * i + j) as f64));
-    let spot = SpotLight::from_rows(numbers);
-    let line = LineLight::from_rows(numbers);
-    let bits = |rows: [[f64; 4]; 6]| rows.map(|row| row.map(f64::to_bits));
-    assert_eq!(bits(spot.to_rows()), bits(numbers), "spot");
-    assert_eq!(bits(line.to_rows()), bits(numbers), "line");
+    fn numbers<const N: usize>() -> [[f64; 4]; N] {
+        core::array::from_fn(|i| core::array::from_fn(|j| (4 * i + j) as f64))
+    }
+    fn bits<const N: usize>(rows: [[f64; 4]; N]) -> [[u64; 4]; N] {
+        rows.map(|row| row.map(f64::to_bits))
+    }
+    let spot = SpotLight::from_rows(numbers());
+    let line = LineLight::from_rows(numbers());
+    assert_eq!(bits(spot.to_rows()), bits(numbers()), "spot");
+    assert_eq!(bits(line.to_rows()), bits(numbers()), "line");
     let checks = [
         (spot.power, offset_of!(SpotLight<f64>, power)),
         (spot.cutoff, offset_of!(SpotLight<f64>, cutoff)),
@@ -90,7 +97,15 @@ fn rows_hold_the_fields_in_the_order_of_memory() {
             offset_of!(LineLight<f64>, source_radius),
         ),
         (line.y.w0_sq, offset_of!(LineLight<f64>, y)),
+        (line.flat, offset_of!(LineLight<f64>, flat)),
         (line.sigma, offset_of!(LineLight<f64>, sigma)),
+        (line.variable, offset_of!(LineLight<f64>, variable)),
+        (line.mass, offset_of!(LineLight<f64>, mass)),
+        (line.half_slope, offset_of!(LineLight<f64>, half_slope)),
+        (
+            line.focus_on_plane,
+            offset_of!(LineLight<f64>, focus_on_plane),
+        ),
     ];
     for (index, bytes) in checks {
         assert!((index * 8.0 - bytes as f64).abs() < 0.5, "{index}: {bytes}");
@@ -118,6 +133,31 @@ fn a_placed_light_is_the_laser_in_another_frame() {
         let from_waist = local - DVec3::Z * 0.15;
         let expected = rotated(POWER * beam().flux_per_watt(from_waist));
         let flux = DVec3::from(spot().flux(world(local)));
+        assert!(
+            flux.distance(expected) <= 1e-10 * expected.length(),
+            "{local}: {flux}"
+        );
+    }
+}
+
+/// An elliptic beam whose principal axes are turned by 0.4 rad from the light's x and y.
+fn elliptic() -> AstigmaticBeam {
+    let wide = GaussianBeam::from_waist(650e-9, 80e-6)
+        .and_then(|beam| beam.with_m_squared(1.7))
+        .unwrap();
+    let axes = [(beam(), 0.15), (wide, -0.05)].map(|(b, z)| LocatedBeam::new(b, z).unwrap());
+    let beam = AstigmaticBeam::new(axes[0], axes[1]).unwrap();
+    beam.with_rotation(0.4).unwrap()
+}
+
+#[test]
+fn a_placed_elliptic_beam_is_the_beam_in_another_frame() {
+    let light = SpotLight::place_astigmatic(&elliptic(), &placement(), POWER).unwrap();
+    for (x, y, z) in [(0.0, 0.0, 0.01), (3e-4, -2e-4, 0.01), (5e-5, 1e-4, 0.15)] {
+        let local = DVec3::new(x, y, z);
+        let expected = rotated(POWER * elliptic().flux_per_watt(local));
+        let flux = DVec3::from(light.flux(world(local)));
+        // 1e−16 m of rounding beside a radius of 5e−5 m.
         assert!(
             flux.distance(expected) <= 1e-10 * expected.length(),
             "{local}: {flux}"
@@ -163,7 +203,7 @@ fn nothing_arrives_beyond_the_cutoff_or_behind_the_aperture() {
     line.cutoff = 2.5;
     let r = (0.252_f64).hypot(0.02);
     let thickness = beam().radius_at(r - 0.152);
-    let edge = line.largest_slope() * 0.252;
+    let edge = line.profile().largest_slope(line.cutoff) * 0.252;
     let expected_edge = 0.25_f64.tan() * (1.0 + 2.0 * 2.5 * 0.1) * 0.252;
     assert!((edge / expected_edge - 1.0).abs() < 1e-14, "{edge}");
     let cases: [(&dyn Emitter<f64>, DVec3, bool); 8] = [
@@ -226,7 +266,7 @@ fn the_corner_of_a_fan_lies_on_its_bounds() {
     const EXTENT: f64 = 0.4;
     let line = line();
     let z = EXTENT + line.apex_offset;
-    let slope = 0.999_99 * line.largest_slope();
+    let slope = 0.999_99 * line.profile().largest_slope(line.cutoff);
     let w = beam().radius_at(z * 1_f64.hypot(slope) - 0.152);
     let y = 0.999_99 * line.cutoff * w;
     let p = world(DVec3::new(slope * z, y, EXTENT));
@@ -259,35 +299,91 @@ fn a_cone_of_bounds_is_missed_by_few_rays() {
     }
 }
 
-#[test]
-fn batches_equal_single_calls() {
-    let light = line();
-    let points: Vec<[f64; 3]> = (0..9)
-        .map(|i| world(DVec3::new(0.012 * f64::from(i - 2), 1e-5, 0.1)))
+/// More points than a vector holds, and a remainder; lit ones and some of either unlit kind.
+fn batch_points() -> [Vec<f64>; 3] {
+    let points: Vec<[f64; 3]> = (0..203)
+        .map(|i| {
+            let fraction = |step: f64| (f64::from(i) * step).fract() - 0.5;
+            world(DVec3::new(
+                6e-3 * fraction(0.618_033_988_7),
+                1e-3 * fraction(0.414_213_562_4),
+                0.2 + 0.5 * fraction(0.732_050_807_6),
+            ))
+        })
         .collect();
-    let [x, y, z] = [0, 1, 2].map(|k| points.iter().map(|p| p[k]).collect::<Vec<_>>());
-    let mut irradiance = [0.0; 9];
-    let mut events = [None; 9];
-    light.irradiance_batch(&x, &y, &z, &mut irradiance);
-    light.next_event_batch(&x, &y, &z, &mut events);
-    for (i, &p) in points.iter().enumerate() {
+    [0, 1, 2].map(|k| points.iter().map(|p| p[k]).collect())
+}
+
+/// Compares both batch forms with single calls, bit for bit, and returns the number of lit points.
+fn lit_in_batch<T: Real>(light: &impl Emitter<T>) -> usize {
+    let [x, y, z] = batch_points().map(|v| v.into_iter().map(T::of).collect::<Vec<_>>());
+    let mut out = vec![vec![T::ONE; x.len()]; 6];
+    let [e, wi_x, wi_y, wi_z, distance, e_perp] = out.get_disjoint_mut([0, 1, 2, 3, 4, 5]).unwrap();
+    light.irradiance_batch(&x, &y, &z, e);
+    let slices = NextEventSlices {
+        wi: [wi_x, wi_y, wi_z],
+        distance,
+        e_perp,
+    };
+    light.next_event_batch(&x, &y, &z, slices);
+    let mut lit = 0;
+    for i in 0..x.len() {
+        let p = [x[i], y[i], z[i]];
+        let event = light.next_event(p);
+        lit += usize::from(event.is_some());
+        let [a, b, c] = event.map_or([T::ZERO; 3], |event| event.wi);
+        let distance = event.map_or(T::ZERO, |event| event.distance);
+        let e_perp = event.map_or(T::ZERO, |event| event.e_perp);
+        let expected = [light.irradiance(p), a, b, c, distance, e_perp];
+        let got = core::array::from_fn(|k| out[k][i]);
         assert_eq!(
-            irradiance[i].to_bits(),
-            light.irradiance(p).to_bits(),
+            got.map(|t: T| t.wide().to_bits()),
+            expected.map(|t| t.wide().to_bits()),
             "{i}"
         );
-        assert_eq!(events[i], light.next_event(p), "{i}");
     }
-    assert!(
-        events.iter().any(Option::is_some) && events.iter().any(Option::is_none),
-        "both"
-    );
+    lit
 }
 
 #[test]
-#[should_panic(expected = "must be of equal length, got 3, 3, 3 and 4")]
+fn batches_equal_single_calls_to_the_last_bit() {
+    let spot = spot();
+    let astigmatic = AstigmaticLight::place(&elliptic().into(), &placement(), POWER).unwrap();
+    let mut lit = vec![
+        lit_in_batch(&spot),
+        lit_in_batch(&spot.to_f32().unwrap()),
+        lit_in_batch(&astigmatic),
+        lit_in_batch(&astigmatic.to_f32().unwrap()),
+    ];
+    for profile in [
+        LineProfile::GaussianTan,
+        LineProfile::GaussianAngle,
+        LineProfile::GaussianSin,
+        LineProfile::UniformTan,
+        LineProfile::Powell { edge: 0.1 },
+    ] {
+        let line = LineLight::place(&laser_line(profile), &placement(), POWER).unwrap();
+        lit.push(lit_in_batch(&line));
+        lit.push(lit_in_batch(&line.to_f32().unwrap()));
+    }
+    assert!(lit.iter().all(|lit| (20..180).contains(lit)), "{lit:?}");
+}
+
+#[test]
+#[should_panic(expected = "must be of equal length, got 3, 3, 3 and [4]")]
 fn batches_of_unequal_length_panic() {
     spot().irradiance_batch(&[0.0; 3], &[0.0; 3], &[0.0; 3], &mut [0.0; 4]);
+}
+
+#[test]
+#[should_panic(expected = "must be of equal length, got 1, 1, 1 and [1, 1, 1, 2, 1]")]
+fn batches_of_next_events_of_unequal_length_panic() {
+    let out = NextEventSlices {
+        wi: [&mut [0.0], &mut [0.0], &mut [0.0]],
+        distance: &mut [0.0; 2],
+        e_perp: &mut [0.0],
+    };
+    spot().next_event_batch(&[0.0], &[0.0], &[0.0], out);
 }
 
 #[test]

@@ -1,0 +1,152 @@
+//! The laws of a laser line, whatever its profile along the fan.
+#![expect(unnameable_types, reason = "it belongs to a sealed trait")]
+
+use super::batch::Batch;
+use super::frame::Frame;
+use super::line::LineLight;
+use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
+use super::record::RayPdf;
+use crate::normal::{normal_density, standard_normal};
+use crate::profile::{SlopeProfile, secant};
+use crate::real::Real;
+
+/// A laser line with a profile along its fan.
+pub trait Fan {
+    type Scalar: Real;
+    type Profile: SlopeProfile<Self::Scalar>;
+
+    fn line(&self) -> &LineLight<Self::Scalar>;
+    fn profile(&self) -> Self::Profile;
+
+    /// Answers a query at many points. A profile without tables and special functions overrides it
+    /// with a loop that fills the vector units.
+    fn run_batch(&self, batch: Batch<'_, Self::Scalar>)
+    where
+        Self: Sized,
+    {
+        batch.over(self);
+    }
+}
+
+impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
+    #[inline(always)]
+    fn frame(&self) -> Frame<T> {
+        let line = self.line();
+        Frame {
+            origin: line.origin,
+            ex: line.ex,
+            ey: line.ey,
+            ez: line.ez,
+        }
+    }
+
+    fn power(&self) -> T {
+        self.line().power
+    }
+
+    fn run(&self, batch: Batch<'_, T>) {
+        self.run_batch(batch);
+    }
+
+    #[inline(always)]
+    fn flow(&self, [x, y, z]: [T; 3]) -> Flow<T> {
+        let (line, profile) = (self.line(), self.profile());
+        let z = z + line.apex_offset;
+        let u = x / z;
+        let sec = secant(u);
+        let (axis, r) = (line.axis_towards(sec), z * sec);
+        let w_sq = axis.radius_sq_at(r);
+        let lit = profile.reaches(u, line.cutoff) & (y * y <= line.cutoff * line.cutoff * w_sq);
+        let irradiance = if lit {
+            let across = normal_density(y, T::of(0.5) * w_sq.sqrt());
+            line.power * profile.per_slope(u) / z * across
+        } else {
+            T::ZERO
+        };
+        Flow {
+            irradiance,
+            slope: [u, y * axis.growth_at(r) * sec],
+        }
+    }
+
+    /// Draws the impact parameter, which fixes the ray in the fan plane, then the slope across it.
+    fn sample_slope(&self, [x, y, z]: [T; 3], u: [T; 2]) -> SlopeSample<T> {
+        let line = self.line();
+        let z = z + line.apex_offset;
+        let sigma_b = T::of(0.5) * line.source_radius;
+        let b = sigma_b * standard_normal(u[0]);
+        // The foot of the perpendicular from the apex is at distance b: r' = √(r² − b²) from there.
+        let r = z * secant(x / z);
+        let along = ((r - b) * (r + b)).sqrt();
+        // sin(θ_p − θ) = b / r, with θ_p the angle of the point.
+        let slope_x = (x * along - z * b) / (z * along + x * b);
+        let sec_fan = secant(slope_x);
+        let axis = line.axis_towards(sec_fan);
+        let (mean, sigma_s) = axis.conditional_slope(y, along);
+        let deviation = sigma_s * standard_normal(u[1]);
+        let s = mean + deviation;
+        let sec_elevation = secant(s);
+
+        let f = self.profile().per_angle(slope_x);
+        let across = normal_density(y, T::of(0.5) * axis.radius_sq_at(along).sqrt());
+        let density = normal_density(b, sigma_b) * along * normal_density(deviation, sigma_s);
+        SlopeSample {
+            slope: [slope_x, s * sec_fan],
+            pdf: density * sec_elevation * sec_elevation * sec_elevation,
+            value: line.power * f / along * across * sec_elevation,
+        }
+    }
+
+    fn draw(&self, u: [T; 4]) -> ([T; 2], [T; 2]) {
+        let line = self.line();
+        let (sigma_y, sigma_s) = line.y.deviations();
+        let slope_x = self.profile().quantile(u[2]);
+        let b = T::of(0.5) * line.source_radius * standard_normal(u[0]);
+        let y_waist = sigma_y * standard_normal(u[1]);
+        let s = sigma_s * standard_normal(u[3]);
+        let sec = secant(slope_x);
+        let along = line.apex_offset * sec + b * slope_x;
+        let x = line.apex_offset * slope_x + b * sec;
+        let y = y_waist + s * (along - line.axis_towards(sec).z0);
+        ([x, y], [slope_x, s * sec])
+    }
+
+    /// A ray leaves the aperture at `x = z_a u + b sec θ`, so that `dx dy = sec θ db dy₀`.
+    fn densities(&self, [x, y]: [T; 2], slope: [T; 2]) -> RayPdf<T> {
+        let line = self.line();
+        let (sigma_y, sigma_s) = line.y.deviations();
+        let sec_fan = secant(slope[0]);
+        let s = slope[1] / sec_fan;
+        let sec_elevation = secant(s);
+        let b = (x - line.apex_offset * slope[0]) / sec_fan;
+        let along = (x * slope[0] + line.apex_offset) / sec_fan;
+        let y_waist = y - s * (along - line.axis_towards(sec_fan).z0);
+
+        let source = normal_density(b, T::of(0.5) * line.source_radius);
+        let f = self.profile().per_angle(slope[0]);
+        let elevation = normal_density(s, sigma_s) * sec_elevation * sec_elevation * sec_elevation;
+        RayPdf {
+            position: source * normal_density(y_waist, sigma_y) / sec_fan,
+            direction: f * elevation,
+        }
+    }
+
+    /// In double precision, because the squares of a slope next to infinity overflow.
+    fn reach(&self, l: T) -> Reach<T> {
+        let slope = self.profile().largest_slope(self.line().cutoff).wide();
+        let line = self.line().wide();
+        let sec = secant(slope);
+        let (near, far) = (line.apex_offset, l.wide() + line.apex_offset);
+        // w² is convex in the slant distance and in its secant, so it is largest at a corner.
+        let corners = [(near, 1.0), (near * sec, sec), (far * sec, sec)];
+        let w_sq = corners
+            .map(|(r, sec)| line.axis_towards(sec).radius_sq_at(r))
+            .into_iter()
+            .fold(0.0, f64::max);
+        let elevation = line.cutoff * line.y.theta_sq.sqrt() * sec;
+        Reach {
+            half_width: [T::of(slope * far), T::of(line.cutoff * w_sq.sqrt())],
+            slope: T::of(slope.hypot(elevation)),
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! Densities of the slope of a ray in the fan plane.
+#![expect(unnameable_types, reason = "they belong to a sealed trait")]
+
+use core::f64::consts::{FRAC_PI_2, SQRT_2};
+
+use crate::normal::{interior, normal_density, standard_normal};
+use crate::real::Real;
+
+/// The slope of the angle next to π/2 in double precision: no ray of a fan is steeper.
+const STEEPEST: f64 = 1.633_123_935_319_537e16;
+
+/// The power along a fan, as a density normalised to 1.
+///
+/// Its argument is the slope `u = tan θ`, at most [`STEEPEST`] in size.
+pub trait SlopeProfile<T: Real> {
+    /// Returns the density per unit slope, `g(u)`; 0 or not finite beyond the steepest slope.
+    fn per_slope(&self, u: T) -> T;
+
+    /// Returns the density per radian, `f(θ) = g(u) / cos² θ`.
+    fn per_angle(&self, u: T) -> T;
+
+    /// Returns whether the slope is within the cut-off, given in half-widths at 1/e².
+    fn reaches(&self, u: T, cutoff: T) -> bool;
+
+    /// Returns the largest slope within the cut-off.
+    fn largest_slope(&self, cutoff: T) -> T;
+
+    /// Returns the slope below which the fraction `p` in [0, 1) of the power lies.
+    fn quantile(&self, p: T) -> T;
+}
+
+/// The variable of the fan angle that a density is given in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Variable {
+    Tan,
+    Angle,
+    Sin,
+    Tabulated,
+}
+
+impl Variable {
+    /// Returns the number by which a placed light names the variable.
+    pub(crate) const fn code(self) -> f64 {
+        match self {
+            Self::Tan => 0.0,
+            Self::Angle => 1.0,
+            Self::Sin => 2.0,
+            Self::Tabulated => 3.0,
+        }
+    }
+
+    #[inline(always)]
+    fn from_code<T: Real>(code: T) -> Self {
+        if code < T::of(0.5) {
+            Self::Tan
+        } else if code < T::of(1.5) {
+            Self::Angle
+        } else if code < T::of(2.5) {
+            Self::Sin
+        } else {
+            Self::Tabulated
+        }
+    }
+
+    /// Returns the variable at a slope.
+    #[inline(always)]
+    fn at<T: Real>(self, u: T) -> T {
+        match self {
+            Self::Tan | Self::Tabulated => u,
+            Self::Angle => T::of(u.wide().atan()),
+            Self::Sin => u / secant(u),
+        }
+    }
+
+    /// Returns the slope at a value of the variable; values beyond its ends count as the ends.
+    fn slope(self, v: f64) -> f64 {
+        let slope = match self {
+            Self::Tan | Self::Tabulated => v,
+            Self::Angle => v.clamp(-FRAC_PI_2, FRAC_PI_2).tan(),
+            Self::Sin => {
+                let v = v.clamp(-1.0, 1.0);
+                v / ((1.0 - v) * (1.0 + v)).sqrt()
+            }
+        };
+        slope.clamp(-STEEPEST, STEEPEST)
+    }
+}
+
+/// A uniform density on [−flat, flat], convolved with a normal one of standard deviation sigma, in a
+/// variable of the fan angle.
+///
+/// All line profiles but the tabulated one are of this kind: `flat = 0` is a Gaussian, `sigma = 0` a
+/// top hat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlopeDensity<T> {
+    /// The number of the variable; see [`Variable`].
+    pub(crate) variable: T,
+    pub(crate) flat: T,
+    pub(crate) sigma: T,
+    /// The part of the density inside the range of the variable, by which it is divided.
+    pub(crate) mass: T,
+}
+
+impl SlopeDensity<f64> {
+    /// A Gaussian with its 1/e² points at ±`edge`.
+    pub(crate) const fn gaussian(variable: Variable, edge: f64, mass: f64) -> Self {
+        Self {
+            variable: variable.code(),
+            flat: 0.0,
+            sigma: 0.5 * edge,
+            mass,
+        }
+    }
+
+    /// A uniform density on [−flat, flat] with the roll-off `sigma`.
+    pub(crate) const fn uniform(variable: Variable, flat: f64, sigma: f64) -> Self {
+        Self {
+            variable: variable.code(),
+            flat,
+            sigma,
+            mass: 1.0,
+        }
+    }
+}
+
+impl<T: Real> SlopeProfile<T> for SlopeDensity<T> {
+    #[inline(always)]
+    fn per_slope(&self, u: T) -> T {
+        let sec_sq = T::ONE + u * u;
+        match self.variable() {
+            Variable::Tan => self.in_variable(u),
+            Variable::Angle => self.in_variable(Variable::Angle.at(u)) / sec_sq,
+            Variable::Sin => {
+                let sec = sec_sq.sqrt();
+                self.in_variable(u / sec) / (sec_sq * sec)
+            }
+            Variable::Tabulated => T::ZERO,
+        }
+    }
+
+    fn per_angle(&self, u: T) -> T {
+        let sec_sq = T::ONE + u * u;
+        match self.variable() {
+            Variable::Tan => self.in_variable(u) * sec_sq,
+            Variable::Angle => self.in_variable(Variable::Angle.at(u)),
+            Variable::Sin => {
+                let sec = sec_sq.sqrt();
+                self.in_variable(u / sec) / sec
+            }
+            Variable::Tabulated => T::ZERO,
+        }
+    }
+
+    #[inline(always)]
+    fn reaches(&self, u: T, cutoff: T) -> bool {
+        self.variable().at(u).abs() <= self.end(cutoff)
+    }
+
+    fn largest_slope(&self, cutoff: T) -> T {
+        T::of(self.variable().slope(self.end(cutoff).wide()))
+    }
+
+    fn quantile(&self, p: T) -> T {
+        let mass = self.mass.wide();
+        let p = mass * interior(p) + 0.5 * (1.0 - mass);
+        T::of(self.variable().slope(self.wide().quantile_in_variable(p)))
+    }
+}
+
+impl<T: Real> SlopeDensity<T> {
+    #[inline(always)]
+    fn variable(&self) -> Variable {
+        Variable::from_code(self.variable)
+    }
+
+    /// Returns the end of the cut-off, in the variable.
+    #[inline(always)]
+    fn end(&self, cutoff: T) -> T {
+        self.flat + T::of(2.0) * cutoff * self.sigma
+    }
+
+    fn wide(&self) -> SlopeDensity<f64> {
+        SlopeDensity {
+            variable: self.variable.wide(),
+            flat: self.flat.wide(),
+            sigma: self.sigma.wide(),
+            mass: self.mass.wide(),
+        }
+    }
+
+    /// Returns the density per unit of the variable.
+    #[inline(always)]
+    fn in_variable(&self, v: T) -> T {
+        let density = if self.flat <= T::ZERO {
+            normal_density(v, self.sigma)
+        } else if self.sigma > T::ZERO {
+            T::of(self.wide().rolled_off(v.wide()))
+        } else if v.abs() <= self.flat {
+            T::of(0.5) / self.flat
+        } else {
+            T::ZERO
+        };
+        density / self.mass
+    }
+}
+
+impl SlopeDensity<f64> {
+    /// The uniform density with its roll-off.
+    fn rolled_off(&self, v: f64) -> f64 {
+        let scale = 1.0 / (SQRT_2 * self.sigma);
+        // The difference of complements keeps its digits in the tail.
+        let inner = libm::erfc((v.abs() - self.flat) * scale);
+        let outer = libm::erfc((v.abs() + self.flat) * scale);
+        (inner - outer) / (4.0 * self.flat)
+    }
+
+    /// Inverts the distribution function without the cut at the ends of the variable.
+    fn quantile_in_variable(&self, p: f64) -> f64 {
+        if self.flat <= 0.0 {
+            self.sigma * standard_normal(p)
+        } else if self.sigma > 0.0 {
+            self.rolled_off_quantile(p)
+        } else {
+            self.flat * (2.0 * p - 1.0)
+        }
+    }
+
+    /// Solves `C(v) = p` by Newton's method on `ln C`, which is concave and so converges from
+    /// below.
+    fn rolled_off_quantile(&self, p: f64) -> f64 {
+        const MAX_STEPS: usize = 40;
+        let tail = p.min(1.0 - p);
+        let target = tail.ln();
+        // The quantile of the uniform density alone bounds the root from above.
+        let mut v = self.flat * (2.0 * tail - 1.0);
+        for _ in 0..MAX_STEPS {
+            let cumulative = self.rolled_off_tail(v);
+            let step = (target - cumulative.ln()) * cumulative / self.rolled_off(v);
+            v += step;
+            if step.abs() <= 1e-14 * self.flat {
+                break;
+            }
+        }
+        if p < 0.5 { v } else { -v }
+    }
+
+    /// The part of the uniform density with its roll-off that lies below `v`, for v ≤ 0.
+    fn rolled_off_tail(&self, v: f64) -> f64 {
+        // H(t) = ∫ Φ dt = t Φ(t) + φ(t)
+        let integral = |t: f64| 0.5 * t * libm::erfc(-t / SQRT_2) + normal_density(t, 1.0);
+        let (inner, outer) = ((v + self.flat) / self.sigma, (v - self.flat) / self.sigma);
+        0.5 * self.sigma / self.flat * (integral(inner) - integral(outer))
+    }
+}
+
+/// Returns `√(1 + u²)`, the secant of the angle whose slope is `u`.
+#[inline(always)]
+pub(crate) fn secant<T: Real>(u: T) -> T {
+    (T::ONE + u * u).sqrt()
+}

@@ -64,7 +64,7 @@ pub use line::{FanGeometry, FocusCurve, LaserLine};
 pub use located::LocatedBeam;
 pub use placed::{
     Axis, Bounds, Emitter, LineLight, NextEvent, Placement, RayPdf, RaySample, SampledEvent,
-    SpotLight,
+    SpotLight, TabulatedLineLight,
 };
-pub use profile::LineProfile;
+pub use profile::{AngularKnot, AngularProfile, LineProfile};
 pub use real::Real;

@@ -7,12 +7,14 @@ mod line;
 pub(crate) mod phase_space;
 mod record;
 mod spot;
+mod tabulated;
 
 pub use emitter::Emitter;
 pub use frame::Placement;
 pub use line::LineLight;
 pub use record::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent};
 pub use spot::SpotLight;
+pub use tabulated::TabulatedLineLight;
 
 use crate::real::Real;
 use crate::real::sealed::Scalar;
@@ -86,7 +88,7 @@ impl<T: Real> Axis<T> {
         let mean = x * self.growth_at(z);
         (
             mean,
-            T::of(0.5) * (self.w0_sq / w_sq * self.theta_sq).sqrt(),
+            T::of(0.5) * (self.w0_sq * self.theta_sq).sqrt() / w_sq.sqrt(),
         )
     }
 }

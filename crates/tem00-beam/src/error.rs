@@ -42,6 +42,34 @@ pub enum BeamError {
     FocusDistance(f64),
     /// The relative edge width of a Powell profile is not in the interval [1e−6, 1].
     Edge(f64),
+    /// A table of angles and powers differs in length, or has fewer than two entries.
+    ProfileLength {
+        /// The number of angles.
+        angles: usize,
+        /// The number of powers.
+        powers: usize,
+    },
+    /// An angle of a table, in radians, is not in (−π/2, π/2), or not at least 1e−12 above the
+    /// one before it.
+    ProfileAngle {
+        /// The place in the table, from 0.
+        index: usize,
+        /// The rejected angle, in radians.
+        angle: f64,
+    },
+    /// A power of a table is negative or not finite.
+    ProfilePower {
+        /// The place in the table, from 0.
+        index: usize,
+        /// The rejected power.
+        power: f64,
+    },
+    /// A table has no power at any angle; its total.
+    ProfileTotal(f64),
+    /// A `LineLight` cannot hold a table; a `TabulatedLineLight` can.
+    TabulatedProfile,
+    /// A `TabulatedLineLight` needs a table; a `LineLight` holds the other profiles.
+    NotTabulated,
     /// The distance from the aperture to the waist, in metres, is not finite or beyond 1e30 m.
     WaistDistance(f64),
     /// The rotation of the principal axes, in radians, is not finite.
@@ -140,6 +168,36 @@ impl fmt::Display for BeamError {
                     "edge of the Powell profile must lie in [1e-6, 1], got {got:e}"
                 )
             }
+            Self::ProfileLength { angles, powers } => write!(
+                f,
+                "profile must have as many powers as angles, and at least 2, \
+                 got {angles} angles and {powers} powers"
+            ),
+            Self::ProfileAngle { index, angle } => write!(
+                f,
+                "angles of the profile must ascend within (-π/2, π/2) rad, \
+                 got {angle:e} rad at index {index}"
+            ),
+            Self::ProfilePower { index, power } => write!(
+                f,
+                "powers of the profile must be finite and not negative, \
+                 got {power:e} at index {index}"
+            ),
+            Self::ProfileTotal(got) => {
+                write!(
+                    f,
+                    "profile must have power at some angle, got {got:e} in all"
+                )
+            }
+            Self::TabulatedProfile => write!(
+                f,
+                "a tabulated profile must be placed as a TabulatedLineLight, got a LineLight"
+            ),
+            Self::NotTabulated => write!(
+                f,
+                "a profile that is not tabulated must be placed as a LineLight, \
+                 got a TabulatedLineLight"
+            ),
             Self::WaistDistance(got) => write!(f, "waist distance {POSITION}, got {got:e} m"),
             Self::Rotation(got) => write!(f, "rotation must be finite, got {got:e} rad"),
             Self::RayleighRange(got) => write!(
@@ -244,6 +302,41 @@ mod tests {
             (BeamError::FanAngle(4.0), "fan angle", "4e0"),
             (BeamError::FocusDistance(1e31), "focus distance", "1e31"),
             (BeamError::Edge(3.0), "edge", "3e0"),
+            (
+                BeamError::ProfileLength {
+                    angles: 3,
+                    powers: 4,
+                },
+                "profile",
+                "3 angles and 4 powers",
+            ),
+            (
+                BeamError::ProfileAngle {
+                    index: 2,
+                    angle: 1.75,
+                },
+                "angles",
+                "1.75e0 rad at index 2",
+            ),
+            (
+                BeamError::ProfilePower {
+                    index: 5,
+                    power: -1.5,
+                },
+                "powers",
+                "-1.5e0 at index 5",
+            ),
+            (BeamError::ProfileTotal(0.0), "power", "0e0"),
+            (
+                BeamError::TabulatedProfile,
+                "tabulated",
+                "TabulatedLineLight",
+            ),
+            (
+                BeamError::NotTabulated,
+                "not tabulated",
+                "TabulatedLineLight",
+            ),
             (BeamError::WaistDistance(1e31), "waist distance", "1e31"),
             (BeamError::Rotation(f64::INFINITY), "rotation", "inf"),
             (BeamError::RayleighRange(-1.5), "Rayleigh", "-1.5e0"),

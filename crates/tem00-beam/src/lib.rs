@@ -76,7 +76,7 @@ pub use located::LocatedBeam;
 pub use num_complex::Complex64;
 pub use placed::{
     AstigmaticLight, Axis, Bounds, Ellipse, Emitter, LineLight, NextEvent, NextEventSlices,
-    Placement, RayPdf, RaySample, SampledEvent, SpotLight,
+    Placement, RayPdf, RaySample, SampledEvent, SpotLight, TabulatedLineLight,
 };
-pub use profile::LineProfile;
+pub use profile::{AngularKnot, AngularProfile, LineProfile};
 pub use real::Real;

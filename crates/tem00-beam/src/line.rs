@@ -117,7 +117,7 @@ impl LaserLine {
     ///
     /// # Errors
     ///
-    /// Returns an error if the fan angle is not in (0, π), if the profile's edge is not in
+    /// Returns an error if the fan angle is not in (0, π), if a Powell profile's edge is not in
     /// [1e−6, 1], if the focus distance is not finite or beyond 1e30 m, or if the apex offset is
     /// beyond 1e30 m or below 100 times the [`source_radius`](Self::source_radius): a beam so narrow
     /// on the lens could not be fanned out by that angle only.
@@ -208,6 +208,82 @@ impl LaserLine {
         self.focus.radius_at(z - self.fan.focus_distance)
     }
 
+    /// Returns the half-thickness of the line (1/e² radius across the fan), in metres, on the plane at
+    /// the distance `z` from the lens, where the fan angle is `theta`, in radians within (−π/2, π/2).
+    ///
+    /// It is measured along the normal of the fan plane. On the axis, `theta = 0`, it is
+    /// [`half_thickness_at`](Self::half_thickness_at).
+    pub fn half_thickness_at_angle(&self, z: f64, theta: f64) -> f64 {
+        let slope = theta.tan();
+        let slant = (z + self.fan.apex_offset) * 1.0_f64.hypot(slope);
+        self.focus
+            .radius_at(slant - self.waist_slant_distance_at(slope))
+    }
+
+    /// Returns the fraction of the power between two fan angles, in radians, in either order.
+    ///
+    /// ```text
+    /// |∫ f(θ) dθ| from a to b
+    /// ```
+    ///
+    /// There is no power beyond ±π/2.
+    ///
+    /// # Examples
+    ///
+    /// A fan that is Gaussian has all but 4.6 % of its power between its edges:
+    ///
+    /// ```
+    /// # use tem00_beam::{FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile};
+    /// # let fan = FanGeometry {
+    /// #     fan_angle: 0.5,
+    /// #     apex_offset: 2e-3,
+    /// #     focus_distance: 0.2,
+    /// #     focus_curve: FocusCurve::EqualDistance,
+    /// # };
+    /// # let focus = GaussianBeam::from_waist(650e-9, 0.1e-3)?;
+    /// let line = LaserLine::new(focus, fan, LineProfile::GaussianTan)?;
+    /// assert!((line.power_between_angles(-0.25, 0.25) - 0.9545).abs() < 1e-4);
+    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// ```
+    pub fn power_between_angles(&self, a: f64, b: f64) -> f64 {
+        let [a, b] = [a, b].map(|angle| angle.clamp(-FRAC_PI_2, FRAC_PI_2).tan());
+        self.power_between_slopes(a, b)
+    }
+
+    /// Returns the fraction of the power that falls between `x_min` and `x_max`, in metres, in either
+    /// order, on the plane at the distance `z` from the lens: what a window lets through, or a
+    /// sensor sees, that is high enough for the thickness of the line. It is 0 for z < 0.
+    ///
+    /// # Examples
+    ///
+    /// A window of 40 mm in front of a line of 102 mm:
+    ///
+    /// ```
+    /// # use tem00_beam::{FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineProfile};
+    /// # let fan = FanGeometry {
+    /// #     fan_angle: 0.5,
+    /// #     apex_offset: 2e-3,
+    /// #     focus_distance: 0.2,
+    /// #     focus_curve: FocusCurve::EqualDistance,
+    /// # };
+    /// # let focus = GaussianBeam::from_waist(650e-9, 0.1e-3)?;
+    /// let line = LaserLine::new(focus, fan, LineProfile::UniformTan)?;
+    /// let share = line.power_on_length(-20e-3, 20e-3, 0.198);
+    /// assert!((share - 20e-3 / line.half_length_at(0.198)).abs() < 1e-15);
+    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// ```
+    pub fn power_on_length(&self, x_min: f64, x_max: f64, z: f64) -> f64 {
+        if z < 0.0 {
+            return 0.0;
+        }
+        let depth = z + self.fan.apex_offset;
+        self.power_between_slopes(x_min / depth, x_max / depth)
+    }
+
+    fn power_between_slopes(&self, a: f64, b: f64) -> f64 {
+        self.along(|profile| profile.between(a.min(b), a.max(b)))
+    }
+
     /// Returns the fraction of the power per fan angle `f(θ)`, in rad⁻¹, at the signed angle
     /// `theta` from the axis, in radians; 0 at right angles to the axis and behind it.
     ///
@@ -218,7 +294,7 @@ impl LaserLine {
         if theta.abs() >= FRAC_PI_2 {
             return 0.0;
         }
-        self.density.per_angle(theta.tan())
+        self.along(|profile| profile.per_angle(theta.tan()))
     }
 
     /// Returns the irradiance per watt, in m⁻², of a plane of constant z at `point`.
@@ -261,7 +337,7 @@ impl LaserLine {
         let w = self.focus.radius_at(from_waist);
         // f(θ) / r · cos θ = g(tan θ) / z
         let across = normal_density(point.y, 0.5 * w);
-        let irradiance = self.density.per_slope(slope) / z * across;
+        let irradiance = self.along(|profile| profile.per_slope(slope)) / z * across;
         if irradiance > 0.0 {
             let slope_y = point.y * self.focus.curvature_at(from_waist) * 1.0_f64.hypot(slope);
             irradiance * DVec3::new(slope, slope_y, 1.0)
@@ -270,7 +346,15 @@ impl LaserLine {
         }
     }
 
-    /// Returns the density of the slope along the fan.
+    /// Asks the profile along the fan.
+    fn along(&self, query: impl Fn(&dyn SlopeProfile<f64>) -> f64) -> f64 {
+        match &self.profile {
+            LineProfile::Tabulated(profile) => query(&profile.table()),
+            _ => query(&self.density),
+        }
+    }
+
+    /// Returns the density of the slope along the fan; dark if the profile is tabulated.
     pub(crate) const fn slope_density(&self) -> &SlopeDensity<f64> {
         &self.density
     }

@@ -10,6 +10,7 @@ mod line;
 pub(crate) mod phase_space;
 mod record;
 mod spot;
+mod tabulated;
 
 pub use astigmatic::AstigmaticLight;
 pub use ellipse::Ellipse;
@@ -18,6 +19,7 @@ pub use frame::Placement;
 pub use line::LineLight;
 pub use record::{Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent};
 pub use spot::SpotLight;
+pub use tabulated::TabulatedLineLight;
 
 use crate::real::Real;
 use crate::real::sealed::Scalar;
@@ -93,7 +95,7 @@ impl<T: Real> Axis<T> {
         let mean = x * self.growth_at(z);
         (
             mean,
-            T::of(0.5) * (self.w0_sq / w_sq * self.theta_sq).sqrt(),
+            T::of(0.5) * (self.w0_sq * self.theta_sq).sqrt() / w_sq.sqrt(),
         )
     }
 }

@@ -2,8 +2,11 @@ use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use crate::BeamError;
 
+mod angular;
 mod density;
 
+pub(crate) use angular::AngularTable;
+pub use angular::{AngularKnot, AngularProfile};
 pub(crate) use density::{SlopeDensity, SlopeProfile, Variable, secant};
 
 /// How a laser line spreads its power along the fan.
@@ -68,23 +71,29 @@ pub enum LineProfile {
         /// (a top hat) to 1.
         edge: f64,
     },
+    /// The power per angle of a table. It need not end at the edges of the fan.
+    ///
+    /// Placed in a scene by [`TabulatedLineLight`](crate::TabulatedLineLight).
+    Tabulated(AngularProfile),
 }
 
 impl LineProfile {
-    /// Returns the density of the slope for a fan of the full angle `fan_angle`.
+    /// Returns the density of the slope for a fan of the full angle `fan_angle`; that of a table is
+    /// dark, the table stands in for it.
     pub(crate) fn slope_density(&self, fan_angle: f64) -> Result<SlopeDensity<f64>, BeamError> {
         let half_angle = 0.5 * fan_angle;
         let half_slope = half_angle.tan();
-        Ok(match *self {
+        Ok(match self {
             Self::GaussianTan => SlopeDensity::gaussian(Variable::Tan, half_slope, 1.0),
             Self::GaussianAngle => gaussian_within(Variable::Angle, half_angle, FRAC_PI_2),
             Self::GaussianSin => gaussian_within(Variable::Sin, half_angle.sin(), 1.0),
             Self::UniformTan => SlopeDensity::uniform(Variable::Tan, half_slope, 0.0),
             Self::UniformAngle => SlopeDensity::uniform(Variable::Angle, half_angle, 0.0),
-            Self::Powell { edge } if (1e-6..=1.0).contains(&edge) => {
+            Self::Powell { edge } if (1e-6..=1.0).contains(edge) => {
                 SlopeDensity::uniform(Variable::Tan, half_slope, edge * half_slope)
             }
-            Self::Powell { edge } => return Err(BeamError::Edge(edge)),
+            Self::Powell { edge } => return Err(BeamError::Edge(*edge)),
+            Self::Tabulated(_) => SlopeDensity::uniform(Variable::Tabulated, 0.0, 0.0),
         })
     }
 }

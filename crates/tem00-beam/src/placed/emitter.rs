@@ -231,10 +231,11 @@ pub(super) fn direction<T: Real>(slope: [T; 2]) -> [T; 3] {
     [slope[0] * cos, slope[1] * cos, cos]
 }
 
-/// Returns the slope of a direction, unless it runs against the axis.
+/// Returns the slope of a direction, unless it runs against the axis, or at right angles to it: up to
+/// this cosine the cube of the secant, in the densities, is within the range of `f32`.
 fn slope_of<T: Real>(direction: [T; 3]) -> Option<[T; 2]> {
     let [x, y, z] = direction;
-    (z > T::ZERO).then(|| [x / z, y / z])
+    (z > T::of(1e-12)).then(|| [x / z, y / z])
 }
 
 /// Follows the ray through `local` back to the aperture plane.

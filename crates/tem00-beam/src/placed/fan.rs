@@ -76,10 +76,12 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         let sigma_b = T::of(0.5) * line.source_radius;
         let b = sigma_b * standard_normal(u[0]);
         // The foot of the perpendicular from the apex is at distance b: r' = √(r² − b²) from there.
-        let r = z * secant(x / z);
-        let along = ((r - b) * (r + b)).sqrt();
-        // sin(θ_p − θ) = b / r, with θ_p the angle of the point.
-        let slope_x = (x * along - z * b) / (z * along + x * b);
+        let slope = x / z;
+        let r = z * secant(slope);
+        let along = (r - b).sqrt() * (r + b).sqrt();
+        // tan(θ_p − θ) = b / r', with θ_p the angle of the point.
+        let turn = b / along;
+        let slope_x = (slope - turn) / (T::ONE + slope * turn);
         let sec_fan = secant(slope_x);
         let axis = line.axis_towards(sec_fan);
         let (mean, sigma_s) = axis.conditional_slope(y, along);
@@ -125,8 +127,14 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         let source = normal_density(b, T::of(0.5) * line.source_radius);
         let f = self.profile().per_angle(slope[0]);
         let elevation = normal_density(s, sigma_s) * sec_elevation * sec_elevation * sec_elevation;
+        let position = source * normal_density(y_waist, sigma_y) / sec_fan;
         RayPdf {
-            position: source * normal_density(y_waist, sigma_y) / sec_fan,
+            // A ray that overflows, so that 0 meets infinity, passes far from the light.
+            position: if position > T::ZERO {
+                position
+            } else {
+                T::ZERO
+            },
             direction: f * elevation,
         }
     }
@@ -150,3 +158,6 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

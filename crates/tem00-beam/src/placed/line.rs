@@ -7,7 +7,7 @@ use super::{
 use crate::normal::normal_density;
 use crate::profile::{SlopeDensity, SlopeProfile, Variable};
 use crate::real::Real;
-use crate::{BeamError, FocusCurve, LaserLine};
+use crate::{BeamError, FocusCurve, LaserLine, LineProfile};
 
 /// A laser line in a scene, prepared for a renderer.
 ///
@@ -120,9 +120,22 @@ impl LineLight<f64> {
     /// # Errors
     ///
     /// Returns an error if the placement's origin is not finite or beyond 1e30 m, if `power` is
-    /// negative or not finite, or if the placement's axes are not finite, have no length, or are
-    /// parallel.
+    /// negative or not finite, if the placement's axes are not finite, have no length, or are
+    /// parallel, or if the profile of the line is tabulated: a
+    /// [`TabulatedLineLight`](crate::TabulatedLineLight) places that.
     pub fn place(line: &LaserLine, placement: &Placement, power: f64) -> Result<Self, BeamError> {
+        match line.profile() {
+            LineProfile::Tabulated(_) => Err(BeamError::TabulatedProfile),
+            _ => Self::prepare(line, placement, power),
+        }
+    }
+
+    /// Places a line whatever its profile.
+    pub(super) fn prepare(
+        line: &LaserLine,
+        placement: &Placement,
+        power: f64,
+    ) -> Result<Self, BeamError> {
         let power = checked_power(power)?;
         let frame = placement.frame()?;
         let profile = line.slope_density();

@@ -27,6 +27,9 @@ pub trait SlopeProfile<T: Real> {
 
     /// Returns the slope below which the fraction `p` in [0, 1) of the power lies.
     fn quantile(&self, p: T) -> T;
+
+    /// Returns the fraction of the power between two slopes, `a` ≤ `b`.
+    fn between(&self, a: T, b: T) -> T;
 }
 
 /// The variable of the fan angle that a density is given in.
@@ -73,7 +76,7 @@ impl Variable {
     }
 
     /// Returns the slope at a value of the variable; values beyond its ends count as the ends.
-    fn slope(self, v: f64) -> f64 {
+    pub(super) fn slope(self, v: f64) -> f64 {
         let slope = match self {
             Self::Tan | Self::Tabulated => v,
             Self::Angle => v.clamp(-FRAC_PI_2, FRAC_PI_2).tan(),
@@ -165,6 +168,17 @@ impl<T: Real> SlopeProfile<T> for SlopeDensity<T> {
         let p = mass * interior(p) + 0.5 * (1.0 - mass);
         T::of(self.variable().slope(self.wide().quantile_in_variable(p)))
     }
+
+    fn between(&self, a: T, b: T) -> T {
+        let density = self.wide();
+        let [a, b] = [a, b].map(|u| u.wide().clamp(-STEEPEST, STEEPEST));
+        T::of(match (a < 0.0, b < 0.0) {
+            (true, true) => density.tail(b) - density.tail(a),
+            (true, false) => 1.0 - density.tail(a) - density.tail(-b),
+            // The upper tail keeps its digits where 1 minus it has none.
+            (false, _) => density.tail(-a) - density.tail(-b),
+        })
+    }
 }
 
 impl<T: Real> SlopeDensity<T> {
@@ -212,6 +226,19 @@ impl SlopeDensity<f64> {
         let inner = libm::erfc((v.abs() - self.flat) * scale);
         let outer = libm::erfc((v.abs() + self.flat) * scale);
         (inner - outer) / (4.0 * self.flat)
+    }
+
+    /// The part of the power at slopes below `u`, for u ≤ 0.
+    fn tail(&self, u: f64) -> f64 {
+        let v = self.variable().at(u);
+        let below = if self.flat <= 0.0 {
+            0.5 * libm::erfc(-v / (SQRT_2 * self.sigma))
+        } else if self.sigma > 0.0 {
+            self.rolled_off_tail(v)
+        } else {
+            0.5 * (1.0 + v / self.flat).max(0.0)
+        };
+        (below - 0.5 * (1.0 - self.mass)).max(0.0) / self.mass
     }
 
     /// Inverts the distribution function without the cut at the ends of the variable.

@@ -1,0 +1,318 @@
+use core::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+use super::density::{SlopeProfile, Variable};
+use crate::BeamError;
+use crate::normal::interior;
+use crate::real::Real;
+
+/// The smallest accepted distance between two angles, in radians: finer than any measurement.
+const MIN_SPACING: f64 = 1e-12;
+
+/// The power of a laser line per fan angle, from a table: a data sheet, or a measurement.
+///
+/// Between the angles of the table the power per angle is linear, outside them there is none. Its
+/// integral is normalised to 1, so that the table may be in any unit; its integral and the inverse
+/// of that are in closed form.
+///
+/// A clone shares the table.
+///
+/// # Examples
+///
+/// A line that is twice as bright at its centre as at its edges at ±30°:
+///
+/// ```
+/// use tem00_beam::AngularProfile;
+///
+/// let angles = [-30_f64, 0.0, 30.0].map(f64::to_radians);
+/// let profile = AngularProfile::new(&angles, &[0.5, 1.0, 0.5])?;
+///
+/// let knots = profile.knots();
+/// assert!((knots[1].cumulative - 0.5).abs() < 1e-15);
+/// // ∫ f dθ = 0.75 · 60° · f(0)
+/// assert!((knots[1].density * 45_f64.to_radians() - 1.0).abs() < 1e-15);
+/// # Ok::<(), tem00_beam::BeamError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct AngularProfile {
+    knots: Arc<[AngularKnot<f64>]>,
+}
+
+/// One angle of an [`AngularProfile`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AngularKnot<T> {
+    /// Signed angle from the axis, in radians.
+    pub angle: T,
+    /// Fraction of the power per angle, in rad⁻¹.
+    pub density: T,
+    /// Fraction of the power below the angle, from 0 to 1.
+    pub cumulative: T,
+}
+
+impl AngularProfile {
+    /// Creates a profile from angles, in radians, and the power per angle at each, in any unit.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the two are not of equal length or shorter than 2, if an angle is not in
+    /// (−π/2, π/2) or less than 1e−12 rad above the one before, if a power is negative or not
+    /// finite, or if all of them are 0.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_beam::{AngularProfile, BeamError};
+    ///
+    /// let unsorted = AngularProfile::new(&[-0.3, 0.3, 0.0], &[0.0, 1.0, 0.0]);
+    /// assert!(matches!(
+    ///     unsorted,
+    ///     Err(BeamError::ProfileAngle { index: 2, .. })
+    /// ));
+    /// ```
+    pub fn new(angles: &[f64], powers: &[f64]) -> Result<Self, BeamError> {
+        if angles.len() != powers.len() || angles.len() < 2 {
+            return Err(BeamError::ProfileLength {
+                angles: angles.len(),
+                powers: powers.len(),
+            });
+        }
+        check_angles(angles)?;
+        check_powers(powers)?;
+        let peak = powers.iter().copied().fold(0.0, f64::max);
+        if peak <= 0.0 {
+            return Err(BeamError::ProfileTotal(peak));
+        }
+        let table = angles.iter().zip(powers);
+        let relative = table.map(|(&angle, power)| (angle, power / peak)).collect();
+        Ok(Self {
+            knots: normalised(relative).into(),
+        })
+    }
+
+    /// Creates a profile from pairs of an angle, in radians, and the power per angle there.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn from_pairs(pairs: &[(f64, f64)]) -> Result<Self, BeamError> {
+        let (angles, powers): (Vec<_>, Vec<_>) = pairs.iter().copied().unzip();
+        Self::new(&angles, &powers)
+    }
+
+    /// Returns the angles of the table, with the normalised density and its integral at each.
+    pub fn knots(&self) -> &[AngularKnot<f64>] {
+        &self.knots
+    }
+
+    /// Returns the knots in single precision, as a
+    /// [`TabulatedLineLight<f32>`](crate::TabulatedLineLight) borrows them.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if two neighbouring angles are one in single precision.
+    pub fn to_f32(&self) -> Result<Vec<AngularKnot<f32>>, BeamError> {
+        let knots: Vec<_> = self.knots.iter().map(AngularKnot::rounded).collect();
+        match knots
+            .windows(2)
+            .position(|pair| pair[0].angle >= pair[1].angle)
+        {
+            Some(index) => Err(BeamError::SinglePrecision(self.knots[index].angle)),
+            None => Ok(knots),
+        }
+    }
+
+    /// Returns the table as a density along the fan.
+    pub(crate) fn table(&self) -> AngularTable<'_, f64> {
+        AngularTable(&self.knots)
+    }
+}
+
+impl AngularKnot<f64> {
+    fn rounded<T: Real>(&self) -> AngularKnot<T> {
+        AngularKnot {
+            angle: T::of(self.angle),
+            density: T::of(self.density),
+            cumulative: T::of(self.cumulative),
+        }
+    }
+}
+
+fn check_angles(angles: &[f64]) -> Result<(), BeamError> {
+    let mut least = f64::NEG_INFINITY;
+    for (index, &angle) in angles.iter().enumerate() {
+        if !(angle >= least && angle.abs() < FRAC_PI_2) {
+            return Err(BeamError::ProfileAngle { index, angle });
+        }
+        least = angle + MIN_SPACING;
+    }
+    Ok(())
+}
+
+fn check_powers(powers: &[f64]) -> Result<(), BeamError> {
+    let valid = |power: f64| power >= 0.0 && power.is_finite();
+    match powers.iter().position(|&power| !valid(power)) {
+        Some(index) => Err(BeamError::ProfilePower {
+            index,
+            power: powers[index],
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Integrates and normalises a table whose largest power is 1.
+fn normalised(table: Vec<(f64, f64)>) -> Vec<AngularKnot<f64>> {
+    let mut sum = 0.0;
+    let mut before = table[0];
+    let mut knots = Vec::with_capacity(table.len());
+    for (angle, density) in table {
+        sum += 0.5 * (density + before.1) * (angle - before.0);
+        before = (angle, density);
+        knots.push(AngularKnot {
+            angle,
+            density,
+            cumulative: sum,
+        });
+    }
+    for knot in &mut knots {
+        knot.density /= sum;
+        knot.cumulative /= sum;
+    }
+    knots
+}
+
+/// The knots of a table as a density along the fan; dark if there are fewer than two.
+#[derive(Clone, Copy, Debug)]
+#[expect(unnameable_types, reason = "it belongs to a sealed trait")]
+pub struct AngularTable<'a, T>(pub(crate) &'a [AngularKnot<T>]);
+
+impl<'a, T: Real> AngularTable<'a, T> {
+    /// Returns the knots about the first one for which `beyond` holds.
+    fn interval(self, beyond: impl Fn(&AngularKnot<T>) -> bool) -> Option<Interval> {
+        let last = self.0.len().checked_sub(1)?;
+        let end = self.0.partition_point(|knot| !beyond(knot)).min(last);
+        let start = end.checked_sub(1)?;
+        Some(Interval {
+            start: self.0[start].wide(),
+            end: self.0[end].wide(),
+        })
+    }
+
+    fn interval_at(self, angle: f64) -> Option<Interval> {
+        self.interval(|knot| knot.angle.wide() > angle)
+    }
+
+    /// Returns the density per radian at an angle.
+    fn density_at(self, angle: f64) -> f64 {
+        match self.interval_at(angle) {
+            Some(interval) if interval.holds(angle) => interval.density_at(angle),
+            _ => 0.0,
+        }
+    }
+
+    /// Returns the fraction of the power below an angle.
+    fn cumulative_at(self, angle: f64) -> f64 {
+        self.interval_at(angle)
+            .map_or(0.0, |interval| interval.cumulative_at(angle))
+    }
+
+    /// Returns the largest density per radian.
+    pub(crate) fn peak(self) -> f64 {
+        let densities = self.0.iter().map(|knot| knot.density.wide());
+        densities.fold(0.0, f64::max)
+    }
+}
+
+impl<T: Real> AngularKnot<T> {
+    fn wide(&self) -> AngularKnot<f64> {
+        AngularKnot {
+            angle: self.angle.wide(),
+            density: self.density.wide(),
+            cumulative: self.cumulative.wide(),
+        }
+    }
+}
+
+/// Two neighbouring knots.
+struct Interval {
+    start: AngularKnot<f64>,
+    end: AngularKnot<f64>,
+}
+
+impl Interval {
+    fn holds(&self, angle: f64) -> bool {
+        (self.start.angle..=self.end.angle).contains(&angle)
+    }
+
+    /// Returns the part of the interval that lies below an angle, from 0 to 1.
+    fn part_below(&self, angle: f64) -> f64 {
+        let part = (angle - self.start.angle) / (self.end.angle - self.start.angle);
+        part.clamp(0.0, 1.0)
+    }
+
+    fn density_at(&self, angle: f64) -> f64 {
+        let part = self.part_below(angle);
+        self.start.density + part * (self.end.density - self.start.density)
+    }
+
+    /// The density is linear, so its mean up to an angle is that of its ends.
+    fn cumulative_at(&self, angle: f64) -> f64 {
+        let part = self.part_below(angle);
+        let mean = 0.5 * (self.start.density + self.density_at(angle));
+        self.start.cumulative + mean * part * (self.end.angle - self.start.angle)
+    }
+
+    /// Returns the angle below which the fraction `p` of all power lies.
+    ///
+    /// With the densities a and b at the ends, the fraction q of the power of the interval lies in
+    /// its part t, where `2 a t + (b − a) t² = q (a + b)`. The root in the form without cancellation
+    /// is `t = q (a + b) / (a + √((1 − q) a² + q b²))`.
+    fn angle_at(&self, p: f64) -> f64 {
+        let power = self.end.cumulative - self.start.cumulative;
+        let q = ((p - self.start.cumulative) / power).clamp(0.0, 1.0);
+        let scale = self.start.density.max(self.end.density);
+        let [a, b] = [self.start.density, self.end.density].map(|density| density / scale);
+        let t = q * (a + b) / (a + ((1.0 - q) * a * a + q * b * b).sqrt());
+        // Without power there is no fraction of it: 0 / 0.
+        let t = if t <= 1.0 { t } else { 1.0 };
+        self.start.angle + t * (self.end.angle - self.start.angle)
+    }
+}
+
+impl<T: Real> SlopeProfile<T> for AngularTable<'_, T> {
+    fn per_slope(&self, u: T) -> T {
+        self.per_angle(u) / (T::ONE + u * u)
+    }
+
+    fn per_angle(&self, u: T) -> T {
+        T::of(self.density_at(u.wide().atan()))
+    }
+
+    /// The table itself says where the light ends.
+    fn reaches(&self, _: T, _: T) -> bool {
+        true
+    }
+
+    fn largest_slope(&self, _: T) -> T {
+        let ends = [self.0.first(), self.0.last()];
+        let angles = ends.into_iter().flatten();
+        let widest = angles.fold(0.0, |widest: f64, knot| widest.max(knot.angle.wide().abs()));
+        T::of(Variable::Angle.slope(widest))
+    }
+
+    fn quantile(&self, p: T) -> T {
+        let p = interior(p);
+        let angle = self
+            .interval(|knot| knot.cumulative.wide() > p)
+            .map_or(0.0, |interval| interval.angle_at(p));
+        T::of(Variable::Angle.slope(angle))
+    }
+
+    fn between(&self, a: T, b: T) -> T {
+        let [below_a, below_b] = [a, b].map(|u| self.cumulative_at(u.wide().atan()));
+        T::of(below_b - below_a)
+    }
+}
+
+#[cfg(test)]
+mod tests;

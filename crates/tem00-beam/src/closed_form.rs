@@ -23,3 +23,8 @@
 ///
 /// Its front page says what they take and return.
 pub const WGSL: &str = include_str!("../shaders/tem00_beam.wgsl");
+
+/// Irradiance and next event of spots and lines in C99, for `float` and for `double`.
+///
+/// The text of the header `tem00_beam.h`, which includes itself by that name: save it under it.
+pub const C_HEADER: &str = include_str!("../include/tem00_beam.h");

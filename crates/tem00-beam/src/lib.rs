@@ -16,7 +16,8 @@
 //!   [`LaserLine`] with z = 0 at the lens. Constructors check, so that nothing fails later.
 //! - *Renderer*, in `f32` or `f64` and in world coordinates: [`SpotLight`] and [`LineLight`], plain
 //!   structs prepared from the above by a [`Placement`], queried through the trait [`Emitter`]:
-//!   next-event estimation, ray sampling, densities, radiance and bounds.
+//!   next-event estimation, ray sampling, densities, radiance and bounds. The text of their
+//!   [closed forms](closed_form) in WGSL and C is for kernels that cannot call a library.
 //!
 //! Formulas as printed by Bergmann et al. 2016, each with the size of its error, are in [`paper`].
 //!
@@ -50,6 +51,7 @@
 mod abcd;
 mod astigmatic;
 mod astigmatic_system;
+pub mod closed_form;
 mod complex_parameter;
 mod error;
 mod focus;

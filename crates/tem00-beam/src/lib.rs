@@ -47,6 +47,7 @@
 //! # Ok::<(), tem00_beam::BeamError>(())
 //! ```
 
+mod cross_section;
 mod error;
 mod gaussian;
 mod line;
@@ -57,6 +58,7 @@ mod placed;
 mod profile;
 mod real;
 
+pub use cross_section::CrossSection;
 pub use error::BeamError;
 pub use gaussian::GaussianBeam;
 pub use glam::DVec3;

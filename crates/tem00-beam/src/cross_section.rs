@@ -18,7 +18,8 @@ use marginal::{Interval, power_beyond};
 /// ```
 ///
 /// A circular beam has two equal radii. Powers are fractions of the whole, from 0 to 1; an aperture
-/// of negative size holds nothing. They carry 12 digits however small or far the aperture is.
+/// of negative size holds nothing. They are right to 1e−12, and to about 1e−11 of themselves where
+/// they are smaller, however small, large or far the aperture is.
 ///
 /// # Examples
 ///

@@ -206,11 +206,13 @@ fn gouy_phase_is_the_argument_of_the_complex_beam_parameter_to_twelve_digits() {
 }
 
 #[test]
-fn radius_stays_finite_where_the_distance_in_rayleigh_ranges_does_not() {
+fn radius_and_curvature_survive_where_squares_of_the_distance_overflow() {
     let beam = GaussianBeam::from_waist(1e-30, 1e-30).unwrap();
     let radius = beam.radius_at(1e300);
     // δ = 1/π
     assert!((radius / 1e300 * PI - 1.0).abs() < 1e-15, "{radius}");
+    let curvature = beam.curvature_at(1e300);
+    assert!((curvature * 1e300 - 1.0).abs() < 1e-15, "{curvature}");
 }
 
 #[test]

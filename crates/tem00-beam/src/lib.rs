@@ -49,6 +49,7 @@
 
 mod cross_section;
 mod error;
+mod fit;
 mod gaussian;
 mod line;
 mod located;
@@ -60,6 +61,7 @@ mod real;
 
 pub use cross_section::CrossSection;
 pub use error::BeamError;
+pub use fit::{CausticFit, Estimate, FitError, RadiusErrors};
 pub use gaussian::GaussianBeam;
 pub use glam::DVec3;
 pub use line::{FanGeometry, LaserLine};

@@ -1,6 +1,7 @@
 //! Parameters of a beam from measured data, with their standard errors.
 
 mod caustic;
+mod knife_edge;
 mod least_squares;
 #[cfg(test)]
 mod synthetic;
@@ -8,6 +9,7 @@ mod synthetic;
 use core::{error, fmt};
 
 pub use caustic::{CausticFit, RadiusErrors};
+pub use knife_edge::KnifeEdgeFit;
 
 /// A fitted value and its standard error, in the same unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

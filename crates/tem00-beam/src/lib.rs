@@ -61,7 +61,7 @@ mod real;
 
 pub use cross_section::CrossSection;
 pub use error::BeamError;
-pub use fit::{CausticFit, Estimate, FitError, RadiusErrors};
+pub use fit::{CausticFit, Estimate, FitError, KnifeEdgeFit, RadiusErrors};
 pub use gaussian::GaussianBeam;
 pub use glam::DVec3;
 pub use line::{FanGeometry, LaserLine};

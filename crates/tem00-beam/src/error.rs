@@ -29,6 +29,12 @@ pub enum BeamError {
         /// The smallest waist radius the model accepts at this wavelength and M², in metres.
         minimum: f64,
     },
+    /// A radius of a cross-section, in metres, is not a length from 1e−30 m to 1e30 m.
+    Radius(f64),
+    /// The factor by which the beam radius may grow is not a finite number greater than 1.
+    Growth(f64),
+    /// The fraction of the power that a circle is to hold is not in the interval [0, 1).
+    PowerFraction(f64),
     /// The full fan angle, in radians, is not in the open interval (0, π).
     FanAngle(f64),
     /// The distance of the virtual apex behind the lens is too short for the beam it belongs to.
@@ -150,6 +156,13 @@ impl fmt::Display for BeamError {
                 f,
                 "waist radius {waist_radius:e} m is below the paraxial limit of {minimum:e} m"
             ),
+            Self::Radius(got) => write!(f, "radius {LENGTH}, got {got:e} m"),
+            Self::Growth(got) => {
+                write!(f, "growth must be finite and greater than 1, got {got:e}")
+            }
+            Self::PowerFraction(got) => {
+                write!(f, "power fraction must lie in [0, 1), got {got:e}")
+            }
             Self::FanAngle(got) => {
                 write!(f, "full fan angle must lie in (0, π) rad, got {got:e} rad")
             }
@@ -299,6 +312,9 @@ mod tests {
             (BeamError::WaistRadius(-1.5), "waist radius", "-1.5e0"),
             (BeamError::Divergence(2.5), "divergence", "2.5e0"),
             (BeamError::MSquared(0.5), "M²", "5e-1"),
+            (BeamError::Radius(-1.5), "radius", "-1.5e0"),
+            (BeamError::Growth(0.5), "growth", "5e-1"),
+            (BeamError::PowerFraction(1.5), "power fraction", "1.5e0"),
             (BeamError::FanAngle(4.0), "fan angle", "4e0"),
             (BeamError::FocusDistance(1e31), "focus distance", "1e31"),
             (BeamError::Edge(3.0), "edge", "3e0"),

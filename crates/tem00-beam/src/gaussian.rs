@@ -2,15 +2,16 @@ use core::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::BeamError;
+use crate::{BeamError, CrossSection};
 
 /// The largest divergence, in radians, for which the paraxial model is trusted.
 pub(crate) const PARAXIAL_LIMIT: f64 = 0.5;
 
-/// A circular TEM₀₀ Gaussian beam in free space, or its partially coherent relative with M² > 1.
+/// A circular TEM₀₀ Gaussian beam in a homogeneous medium, or its partially coherent relative with
+/// M² > 1.
 ///
-/// The beam travels along +z and its waist lies at z = 0. The wavelength `λ`, the waist radius `w₀`
-/// and the beam quality factor `M²` determine everything else:
+/// The beam travels along +z and its waist lies at z = 0. The wavelength `λ` in the medium it
+/// travels in, the waist radius `w₀` and the beam quality factor `M²` determine everything else:
 ///
 /// ```text
 /// z_R  = π w₀² / (M² λ)           Rayleigh range
@@ -59,8 +60,11 @@ pub struct GaussianBeam {
 }
 
 impl GaussianBeam {
-    /// Creates a diffraction-limited beam (M² = 1) from its vacuum wavelength and waist radius,
-    /// both in metres.
+    /// Creates a diffraction-limited beam (M² = 1) from its wavelength and waist radius, both in
+    /// metres.
+    ///
+    /// The wavelength is that in the medium the beam travels in, `λ_vacuum / n`; in air or vacuum
+    /// they are one.
     ///
     /// # Errors
     ///
@@ -90,8 +94,8 @@ impl GaussianBeam {
         .paraxial()
     }
 
-    /// Creates a diffraction-limited beam (M² = 1) from its vacuum wavelength, in metres, and its
-    /// far-field divergence half-angle, in radians.
+    /// Creates a diffraction-limited beam (M² = 1) from its wavelength in the medium it travels in,
+    /// in metres, and its far-field divergence half-angle, in radians.
     ///
     /// ```text
     /// w₀ = λ / (π δ)
@@ -167,7 +171,9 @@ impl GaussianBeam {
         Ok(self)
     }
 
-    /// Returns the vacuum wavelength `λ`, in metres.
+    /// Returns the wavelength `λ` in the medium the beam travels in, in metres.
+    ///
+    /// It is the vacuum wavelength divided by the refractive index.
     pub const fn wavelength(&self) -> f64 {
         self.wavelength
     }
@@ -196,9 +202,101 @@ impl GaussianBeam {
         self.m_squared * self.wavelength / (PI * self.waist_radius)
     }
 
+    /// Returns the confocal parameter `2 z_R`, in metres: the length over which the beam radius
+    /// stays within √2 of the waist.
+    pub const fn confocal_parameter(&self) -> f64 {
+        2.0 * self.rayleigh_range()
+    }
+
+    /// Returns the depth of focus, in metres: the full length, half of it on either side of the
+    /// waist, over which the beam radius stays within `growth` times the waist radius.
+    ///
+    /// ```text
+    /// 2 z_R √(growth² − 1)
+    /// ```
+    ///
+    /// There is no one convention. With `growth = √2`, where the irradiance on the axis has halved,
+    /// it is the confocal parameter `2 z_R`; makers of optics also quote a growth by 5 %, which
+    /// gives `0.64 z_R`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if `growth` is not a finite number greater than 1.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_beam::GaussianBeam;
+    ///
+    /// let beam = GaussianBeam::from_waist(1064e-9, 10e-6)?;
+    /// assert!((beam.rayleigh_range() - 295e-6).abs() < 1e-6);
+    /// assert!((beam.depth_of_focus(1.05)? - 189e-6).abs() < 1e-6);
+    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// ```
+    pub fn depth_of_focus(&self, growth: f64) -> Result<f64, BeamError> {
+        if !(growth > 1.0 && growth.is_finite()) {
+            return Err(BeamError::Growth(growth));
+        }
+        // √(growth² − 1), where neither the square overflows nor the difference loses digits.
+        let lengths = (growth - 1.0).sqrt() * (growth + 1.0).sqrt();
+        Ok(self.confocal_parameter() * lengths)
+    }
+
+    /// Returns the beam parameter product `w₀ δ = M² λ / π`, in m·rad.
+    ///
+    /// No lens or mirror changes it. Data sheets give it in mm·mrad, which is 1e−6 m·rad.
+    ///
+    /// # Examples
+    ///
+    /// A diffraction-limited beam at 1064 nm has 0.339 mm·mrad:
+    ///
+    /// ```
+    /// use tem00_beam::GaussianBeam;
+    ///
+    /// let beam = GaussianBeam::from_waist(1064e-9, 10e-6)?;
+    /// assert!((beam.beam_parameter_product() / 1e-6 - 0.339).abs() < 0.001);
+    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// ```
+    pub const fn beam_parameter_product(&self) -> f64 {
+        self.m_squared * self.wavelength / PI
+    }
+
     /// Returns the beam radius `w(z)`, in metres, at the signed distance `z` from the waist.
     pub fn radius_at(&self, z: f64) -> f64 {
-        self.waist_radius * 1.0_f64.hypot(z / self.rayleigh_range())
+        self.waist_radius.hypot(self.divergence() * z)
+    }
+
+    /// Returns the full width at half maximum `√(2 ln 2) w(z)`, in metres, of the irradiance at the
+    /// signed distance `z` from the waist.
+    pub fn fwhm_at(&self, z: f64) -> f64 {
+        let [width, _] = self.cross_section_at(z).fwhm();
+        width
+    }
+
+    /// Returns the D4σ width `2 w(z)`, in metres, at the signed distance `z` from the waist: four
+    /// times the standard deviation of the irradiance, a diameter.
+    pub fn d4_sigma_at(&self, z: f64) -> f64 {
+        let [width, _] = self.cross_section_at(z).d4_sigma();
+        width
+    }
+
+    /// Returns the distribution of the irradiance over the plane at the signed distance `z`, in
+    /// metres, from the waist.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_beam::GaussianBeam;
+    ///
+    /// let beam = GaussianBeam::from_waist(650e-9, 0.1e-3)?;
+    /// let spot = beam.cross_section_at(0.3);
+    /// let through_pinhole = spot.power_in_circle(beam.radius_at(0.3));
+    /// assert!((through_pinhole - 0.8647).abs() < 0.0001);
+    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// ```
+    pub fn cross_section_at(&self, z: f64) -> CrossSection {
+        let radius = self.radius_at(z);
+        CrossSection::of_radii([radius, radius])
     }
 
     /// Returns the wavefront curvature `1/R(z)`, in m⁻¹, at the signed distance `z` from the waist.

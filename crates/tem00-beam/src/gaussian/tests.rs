@@ -1,3 +1,5 @@
+use core::f64::consts::SQRT_2;
+
 use proptest::prelude::*;
 
 use super::*;
@@ -120,6 +122,154 @@ fn gouy_phase_accumulates_the_transverse_momentum() {
     }
     let limit = beam.gouy_phase_at(1e12);
     assert!((limit - PI / 2.0).abs() < 1e-12, "{limit}");
+}
+
+/// Distances from 1e−30 m to 1e30 m on both sides of the waist, and the waist.
+fn distances() -> impl Iterator<Item = f64> {
+    let one_side = (-30..=30).map(|exponent| 1.7 * 10_f64.powi(exponent));
+    one_side.flat_map(|z| [-z, z]).chain([0.0])
+}
+
+/// Beams from the smallest waist to the largest, the last two far from diffraction-limited.
+fn beams() -> Vec<GaussianBeam> {
+    [
+        (1e-30, 1e-30, 1.0),
+        (HENE, 100e-6, 1.0),
+        (1e-30, 1e30, 1.0),
+        (1064e-9, 5e-3, 25.0),
+        (1e-9, 1e20, 1e25),
+    ]
+    .map(|(wavelength, waist_radius, m_squared)| {
+        let beam = GaussianBeam::from_waist(wavelength, waist_radius).unwrap();
+        beam.with_m_squared(m_squared).unwrap()
+    })
+    .to_vec()
+}
+
+#[test]
+fn radius_is_the_hyperbola_to_twelve_digits_at_every_distance() {
+    for beam in beams() {
+        let z_r = beam.rayleigh_range();
+        for z in distances() {
+            // Scaled by the larger leg, so that no square leaves the range.
+            let (x, w0) = (z.abs() / z_r, beam.waist_radius());
+            let expected = if x < 1.0 {
+                w0 * (1.0 + x * x).sqrt()
+            } else {
+                w0 * x * (1.0 + 1.0 / (x * x)).sqrt()
+            };
+            let error = beam.radius_at(z) / expected - 1.0;
+            // Ten roundings between the two.
+            assert!(error.abs() < 3e-15, "{beam:?}, z = {z:e}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn curvature_is_one_over_z_plus_z_r_squared_over_z_to_twelve_digits() {
+    for beam in beams() {
+        let z_r = beam.rayleigh_range();
+        for z in distances() {
+            // R = z + z_R²/z is z_R (x + 1/x), which is the same at x and 1/x.
+            let x = z / z_r;
+            let expected = x / (1.0 + x * x) / z_r;
+            let error = beam.curvature_at(z) - expected;
+            // Ten roundings; below 1e−300 numbers have fewer digits.
+            assert!(
+                error.abs() <= 3e-15 * expected.abs() + 1e-300,
+                "{beam:?}, z = {z:e}: {error:e} of {expected:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn gouy_phase_is_the_argument_of_the_complex_beam_parameter_to_twelve_digits() {
+    for beam in beams() {
+        let z_r = beam.rayleigh_range();
+        for z in distances() {
+            // The argument of z_R + i z, which halves twice by half-angle formulas:
+            // tan(ζ/2) = x / (1 + √(1 + x²)).
+            let halved = |x: f64| x / (1.0 + 1.0_f64.hypot(x));
+            let expected = 4.0 * halved(halved(z / z_r)).atan();
+            let error = beam.gouy_phase_at(z) - expected;
+            // Ten roundings.
+            assert!(
+                error.abs() <= 3e-15 * expected.abs(),
+                "{beam:?}, z = {z:e}: {error:e} of {expected:e}"
+            );
+            let argument = z.atan2(z_r);
+            let error = beam.gouy_phase_at(z) - argument;
+            assert!(error.abs() <= 1e-15 * argument.abs(), "{z:e}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn radius_and_curvature_survive_where_squares_of_the_distance_overflow() {
+    let beam = GaussianBeam::from_waist(1e-30, 1e-30).unwrap();
+    let radius = beam.radius_at(1e300);
+    // δ = 1/π
+    assert!((radius / 1e300 * PI - 1.0).abs() < 1e-15, "{radius}");
+    let curvature = beam.curvature_at(1e300);
+    assert!((curvature * 1e300 - 1.0).abs() < 1e-15, "{curvature}");
+}
+
+#[test]
+fn depth_of_focus_is_where_the_radius_has_grown() {
+    let beam = beam().with_m_squared(1.4).unwrap();
+    for growth in [1.0 + 1e-9, 1.05, SQRT_2, 3.0, 1e200] {
+        let depth = beam.depth_of_focus(growth).unwrap();
+        for z in [-depth / 2.0, depth / 2.0] {
+            let got = beam.radius_at(z) / beam.waist_radius();
+            assert!((got / growth - 1.0).abs() < 2e-15, "{growth}: {got}");
+        }
+    }
+    // Near 1 the radius hides the depth, 2 z_R √(2 · 1e−9).
+    let depth = beam.depth_of_focus(1.0 + 1e-9).unwrap() / beam.rayleigh_range();
+    let expected = 2.0 * (2e-9_f64).sqrt();
+    // 1 + 1e−9 itself is rounded by 1e−16, which is 1e−7 of its excess.
+    assert!((depth / expected - 1.0).abs() < 1e-7, "{depth}");
+    let confocal = beam.depth_of_focus(SQRT_2).unwrap() / beam.confocal_parameter();
+    assert!((confocal - 1.0).abs() < 1e-15, "{confocal}");
+    for bad in [1.0, 0.5, -2.0, f64::NAN, f64::INFINITY] {
+        let result = beam.depth_of_focus(bad);
+        assert!(matches!(result, Err(BeamError::Growth(_))), "{bad}");
+    }
+}
+
+#[test]
+fn beam_parameter_product_is_waist_times_divergence() {
+    for beam in beams() {
+        let product = beam.waist_radius() * beam.divergence();
+        let error = beam.beam_parameter_product() / product - 1.0;
+        assert!(error.abs() < 1e-15, "{beam:?}: {error:e}");
+    }
+}
+
+#[test]
+fn cross_section_has_the_radius_and_the_irradiance_of_the_beam() {
+    let beam = beam();
+    for z in [-0.1, 0.0, 0.4] {
+        let w = beam.radius_at(z);
+        let spot = beam.cross_section_at(z);
+        let pairs = [
+            (spot.radii()[0], w),
+            (spot.radii()[1], w),
+            (
+                spot.irradiance_per_watt([30e-6, -40e-6]),
+                beam.irradiance_per_watt(50e-6, z),
+            ),
+            (spot.power_in_circle(70e-6), beam.encircled_power(70e-6, z)),
+            (beam.d4_sigma_at(z), 2.0 * w),
+            (beam.fwhm_at(z), 1.177_410_022_515_475 * w),
+        ];
+        for (i, (got, expected)) in pairs.into_iter().enumerate() {
+            // A handful of roundings, at most 5e−15 in the exponent of the irradiance.
+            let error = got / expected - 1.0;
+            assert!(error.abs() < 1e-14, "z = {z}, pair {i}: {error:e}");
+        }
+    }
 }
 
 #[test]
@@ -260,6 +410,9 @@ proptest! {
             beam.peak_irradiance_per_watt(z),
             beam.irradiance_per_watt(x, z),
             beam.encircled_power(x.abs(), z),
+            beam.fwhm_at(z),
+            beam.d4_sigma_at(z),
+            beam.cross_section_at(z).power_in_circle_at([x, y], x.hypot(y)),
             beam.flux_per_watt(DVec3::new(x, y, z)).length(),
         ];
         prop_assert!(queries.iter().all(|q| !q.is_nan()), "{:?}: {:?}", beam, queries);

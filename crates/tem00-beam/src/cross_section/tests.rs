@@ -1,0 +1,492 @@
+use core::f64::consts::SQRT_2;
+
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+use super::*;
+
+fn spot(w_x: f64, w_y: f64) -> CrossSection {
+    CrossSection::new([w_x, w_y]).unwrap()
+}
+
+/// ∫ f over [a, b] by Simpson's rule.
+fn simpson(f: impl Fn(f64) -> f64, a: f64, b: f64, intervals: u32) -> f64 {
+    let h = (b - a) / f64::from(intervals);
+    let weighted = |i: u32| {
+        let weight = match i {
+            0 => 1.0,
+            i if i == intervals => 1.0,
+            i if i % 2 == 1 => 4.0,
+            _ => 2.0,
+        };
+        weight * f(a + f64::from(i) * h)
+    };
+    (0..=intervals).map(weighted).sum::<f64>() * h / 3.0
+}
+
+/// The power within a circle by quadrature over its area: Simpson's rule along the radius, equal
+/// weights around it, where the integrand is periodic.
+fn power_by_area(spot: &CrossSection, centre: [f64; 2], radius: f64) -> f64 {
+    const SPOKES: u32 = 120;
+    let ring = |r: f64| {
+        let spoke = |i: u32| {
+            let (sin, cos) = (2.0 * PI * f64::from(i) / f64::from(SPOKES)).sin_cos();
+            spot.irradiance_per_watt([centre[0] + r * cos, centre[1] + r * sin])
+        };
+        (0..SPOKES).map(spoke).sum::<f64>() * 2.0 * PI * r / f64::from(SPOKES)
+    };
+    simpson(ring, 0.0, radius, 2_000)
+}
+
+/// The power of a circular beam within a circle off its axis: Marcum's 1 − Q₁, as a series of
+/// positive terms, `Σ Poisson(k; a) · Σ_{j > k} Poisson(j; b)`, `a = 2 d² / w²`, `b = 2 r² / w²`.
+fn marcum(offset: f64, radius: f64, w: f64) -> f64 {
+    const TERMS: usize = 400;
+    let poisson = |mean: f64| {
+        let next = move |(k, term): (f64, f64)| (k + 1.0, term * mean / (k + 1.0));
+        core::iter::successors(Some((0.0, (-mean).exp())), move |&state| Some(next(state)))
+            .map(|(_, term)| term)
+            .take(TERMS)
+            .collect::<Vec<_>>()
+    };
+    let shifts = poisson(2.0 * (offset / w).powi(2));
+    let counts = poisson(2.0 * (radius / w).powi(2));
+    let mut beyond = 0.0;
+    let mut sum = 0.0;
+    for k in (0..TERMS - 1).rev() {
+        beyond += counts[k + 1];
+        sum += shifts[k] * beyond;
+    }
+    sum
+}
+
+fn assert_relative(got: f64, expected: f64, tolerance: f64, what: &str) {
+    let error = got / expected - 1.0;
+    assert!(
+        error.abs() < tolerance,
+        "{what}: {got:e} for {expected:e}, off by {error:e}"
+    );
+}
+
+#[test]
+fn decentred_circle_holds_the_integral_over_its_area() {
+    for [w_x, w_y] in [[1.0, 1.0], [1.0, 0.4], [0.7, 2.0]] {
+        let spot = spot(w_x, w_y);
+        for centre in [[0.0, 0.0], [0.3, 0.0], [0.5, -0.8], [-1.5, 1.0], [0.0, 2.0]] {
+            for radius in [0.2, 1.0, 1.6] {
+                let expected = power_by_area(&spot, centre, radius);
+                let got = spot.power_in_circle_at(centre, radius);
+                // Simpson: (1.6 / 2000)⁴ / 180 · 1.6 · f⁗, on average 300, is 1e−12.
+                let error = got - expected;
+                assert!(
+                    error.abs() < 2e-12,
+                    "{w_x}, {w_y} at {centre:?}, {radius}: {error:e}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn decentred_circle_in_a_circular_beam_follows_marcums_function() {
+    let spot = spot(1.5, 1.5);
+    for offset in [0.0, 0.1, 1.0, 4.0, 11.0] {
+        for radius in [1e-9, 1e-3, 0.2, 1.5, 3.0, 12.0] {
+            let expected = marcum(offset, radius, 1.5);
+            for [cos, sin] in [[1.0, 0.0], [0.0, -1.0], [-0.6, 0.8]] {
+                let got = spot.power_in_circle_at([offset * cos, offset * sin], radius);
+                // The quadrature stops at 1e−13; 400 positive terms and exponents of up to 200 round
+                // by 600 · 2e−16.
+                assert_relative(got, expected, 2.5e-13, &format!("{offset}, {radius}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn centred_circle_agrees_with_its_closed_form_in_every_decade() {
+    let spot = spot(1e-3, 1e-3);
+    for exponent in -30..=30 {
+        let radius = 3.0 * 10_f64.powi(exponent);
+        let got = spot.power_in_circle_at([0.0, 0.0], radius);
+        let closed = spot.power_in_circle(radius);
+        assert_relative(got, closed, 2e-13, &format!("radius {radius:e}"));
+    }
+}
+
+#[test]
+fn small_circle_holds_its_area_times_the_irradiance() {
+    for [w_x, w_y] in [[1.0, 1.0], [1e6, 1.0], [1e-3, 1.0]] {
+        let spot = spot(w_x, w_y);
+        let centre = [1.3 * w_x, -2.1 * w_y];
+        let radius = 1e-8 * w_x.min(w_y);
+        let expected = PI * radius * radius * spot.irradiance_per_watt(centre);
+        let got = spot.power_in_circle_at(centre, radius);
+        // The next term is of the order (4 r / w)² = 1.6e−15 of the first.
+        assert_relative(got, expected, 2e-13, &format!("{w_x}, {w_y}"));
+    }
+}
+
+#[test]
+fn edge_of_a_huge_circle_is_a_knife_edge() {
+    // (3, 4, 5) · 2^e: the distance from the axis to the edge is exact.
+    for (w_x, w_y) in [(1.0, 1.0), (1.0, 30.0), (1e3, 1.0)] {
+        let spot = spot(w_x, w_y);
+        for exponent in [46, 48, 60, 90, 300] {
+            let unit = 2_f64.powi(exponent);
+            for shift in [0.0, -1.0, 0.25, 1.0] {
+                let depth = if exponent <= 48 { shift } else { 0.0 };
+                let radius = 5.0 * unit + depth;
+                let got = spot.power_in_circle_at([3.0 * unit, -4.0 * unit], radius);
+                let w = (0.6 * w_x).hypot(0.8 * w_y);
+                let expected = 0.5 * libm::erfc(-SQRT_2 * depth / w);
+                // The edge bends by w_x² / 2r, here at most 2e−9 of w for w_x = 1e3 and 2e−13 else.
+                let bend = (w_x * w_x).max(w_y * w_y) / (radius * w);
+                let error = got - expected;
+                assert!(
+                    error.abs() < bend + 1e-13,
+                    "{w_x}, {w_y}, 2^{exponent}, {depth}: {error:e}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn distance_to_the_edge_survives_the_cancellation_of_its_squares() {
+    // √(x² + r²) − r = x² / 2r: both summands exceed it by 8 to 17 digits.
+    for (x, radius) in [(2e4, 1e9), (2e8, 1e17), (2e12, 1e25)] {
+        let spot = spot(1.0, 0.7);
+        let sides = [([-radius, x], spot), ([x, radius], spot.transposed())];
+        for (centre, across) in sides {
+            let expected = across.power_past_knife_edge(x * x / (2.0 * radius));
+            let got = spot.power_in_circle_at(centre, radius);
+            // The edge bends by w² / 2r and leans by x / r, which changes w by (x / r)² of itself.
+            let (bend, lean) = (1.0 / radius, (x / radius).powi(2));
+            let error = got - expected;
+            assert!(
+                error.abs() < bend + lean + 1e-13,
+                "{centre:?}: {got}, {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn slim_beam_through_a_circle_is_cut_at_the_ends_of_a_diameter() {
+    // With u = √2 h / w_y on a chord of half-length h at the depth h² / 2r from the end:
+    // ∫ erfc(u) dx = w_y² / (2r) · ∫ u erfc(u) du = w_y² / (8r); the next order is w_y⁴ / r³.
+    let radius = 0.5_f64;
+    for slim in [1e-6, 1e-4, 1e-3_f64] {
+        let density = (2.0 / PI).sqrt() * (-2.0 * radius * radius).exp();
+        let expected = libm::erf(SQRT_2 * radius) - 2.0 * density * slim * slim / (8.0 * radius);
+        for spot in [spot(1.0, slim), spot(slim, 1.0)] {
+            let got = spot.power_in_circle(radius);
+            let error = got - expected;
+            let next = 10.0 * slim.powi(4);
+            assert!(error.abs() < next + 2e-13, "{slim}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn slim_beam_grazed_by_a_wide_circle_keeps_twelve_digits() {
+    // Drawn at random, the edge within the beam. Values by quadrature along x at 45 digits, mpmath 1.3 (F. Johansson et al.):
+    // ∫ g(x) [erf(√2 (y + h) / w_y) − erf(√2 (y − h) / w_y)] / 2 dx.
+    for (w_y, centre, radius, expected) in GRAZED {
+        let got = spot(1.0, w_y).power_in_circle_at(centre, radius);
+        let error = got - expected;
+        assert!(error.abs() < 1e-12, "{w_y}, {centre:?}: {error:e}");
+    }
+}
+
+#[expect(clippy::excessive_precision, reason = "as drawn and computed")]
+const GRAZED: [(f64, [f64; 2], f64, f64); 9] = [
+    (
+        9.70111210077337e-05,
+        [83109780.5572273, 24191188.3199602],
+        86558934.67151998,
+        0.29354344073876154,
+    ),
+    (
+        22662.80188256881,
+        [0.0, 0.0],
+        1237.6033093018357,
+        0.086971134390103025,
+    ),
+    (
+        322251.6137966858,
+        [-154478.70478892257, 14413.658054325439],
+        205659.55827193428,
+        0.59866650632266882,
+    ),
+    (
+        155931.67272985357,
+        [4366492.833254616, -2354073.1103758155],
+        5097030.997373408,
+        0.99979276772248427,
+    ),
+    (
+        3.2541398097818774e-08,
+        [550650.2392647866, -4408899.923887041],
+        4443153.696751253,
+        0.8402217489483268,
+    ),
+    (
+        46972738.30372418,
+        [2849156394723779.0, -1391670808020719.0],
+        3170873649562709.5,
+        0.066915397734290463,
+    ),
+    (
+        97723516.27655335,
+        [-8.961678891450496e19, -3.3133111606653223e19],
+        9.554565369546265e19,
+        0.98884813018040685,
+    ),
+    (
+        2.8047121468326997e-08,
+        [811372554.5532265, -9625129023.917578],
+        9659266750.045425,
+        0.15916758347621091,
+    ),
+    (
+        1.4601062571241465e-07,
+        [33.6785902562798, -63.63862383887245],
+        72.74483403817307,
+        0.99911114557734448,
+    ),
+];
+
+#[test]
+fn circle_radius_inverts_the_encircled_power() {
+    for spot in [spot(1e-3, 1e-3), spot(1e-3, 0.3e-3), spot(1e-9, 1e3)] {
+        for fraction in [1e-12, 1e-3, 0.3, 0.5, 0.864_664_716_763, 0.999, 1.0 - 1e-9] {
+            let radius = spot.circle_radius(fraction).unwrap();
+            let error = spot.power_in_circle(radius) - fraction;
+            assert!(error.abs() < 1e-12, "{spot:?}, {fraction}: {error:e}");
+        }
+        let none = spot.circle_radius(0.0).unwrap();
+        assert!(none.abs() < f64::MIN_POSITIVE, "{none}");
+        for bad in [-1e-9, 1.0, 2.0, f64::NAN] {
+            let result = spot.circle_radius(bad);
+            assert!(matches!(result, Err(BeamError::PowerFraction(_))), "{bad}");
+        }
+    }
+}
+
+#[test]
+fn square_slit_and_knife_edge_are_products_and_sums_of_error_functions() {
+    let [w_x, w_y] = [1e-3, 0.4e-3];
+    let spot = spot(w_x, w_y);
+    for side in [1e-12, 1e-5, 0.3e-3, 1e-3, 5e-3] {
+        let expected = libm::erf(side / (SQRT_2 * w_x)) * libm::erf(side / (SQRT_2 * w_y));
+        // A product of two error functions of a few rounding errors each.
+        assert_relative(spot.power_in_square(side), expected, 3e-15, "square");
+    }
+    let [past_low, past_high] = [-0.2e-3, 0.9e-3].map(|x| spot.power_past_knife_edge(x));
+    let slit = spot.power_in_slit(0.35e-3, 1.1e-3);
+    assert!((past_low - past_high - slit).abs() < 1e-15, "{slit}");
+    let across = spot.transposed().power_in_slit(0.1e-3, 0.2e-3);
+    let rectangle = spot.power_in_rectangle([0.35e-3, 0.1e-3], [1.1e-3, 0.2e-3]);
+    assert!((rectangle - slit * across).abs() < 1e-15, "{rectangle}");
+}
+
+#[test]
+fn rectangle_holds_the_integral_over_its_area() {
+    let spot = spot(1.0, 0.7);
+    let ([x, y], [a, b]) = ([0.4, -0.9], [1.2, 0.8]);
+    let column = |x: f64| {
+        let (low, high) = (y - b / 2.0, y + b / 2.0);
+        simpson(|y| spot.irradiance_per_watt([x, y]), low, high, 200)
+    };
+    let expected = simpson(column, x - a / 2.0, x + a / 2.0, 200);
+    let got = spot.power_in_rectangle([x, y], [a, b]);
+    // Simpson: (1.2 / 200)⁴ / 180 · max|f⁗|, about 500 E, is 4e−9 of the power at most.
+    assert_relative(got, expected, 4e-9, "rectangle");
+}
+
+#[test]
+fn far_and_narrow_slits_keep_their_relative_accuracy() {
+    let spot = spot(1.0, 1.0);
+    let density = |x: f64| (2.0 / PI).sqrt() * (-2.0 * x * x).exp();
+    for centre in [0.0, -0.5, 3.0, 12.0] {
+        let width = 1e-9;
+        let got = spot.power_in_slit(centre, width);
+        // The next term is (4 x · width)² / 24 = 1e−16 of the first; exp(−2x²) amplifies the
+        // rounding of its argument by 4x².
+        let tolerance = 2e-15 * (1.0 + centre * centre);
+        assert_relative(got, width * density(centre), tolerance, "narrow");
+    }
+    // On both sides of the switch to the series, which is at a width of √2 · 3e−3 w or less.
+    for (centre, width) in [(0.3, 4.2e-3), (0.3, 4.3e-3), (2.0, 1.4e-3), (2.0, 1.6e-3)] {
+        let (a, b) = (centre - width / 2.0, centre + width / 2.0);
+        let expected = simpson(density, a, b, 20);
+        // Simpson errs by 1e−17; a difference of error functions loses 1 / width.
+        assert_relative(spot.power_in_slit(centre, width), expected, 2e-13, "switch");
+    }
+}
+
+#[test]
+fn tenth_and_ninetieth_percent_lie_the_knife_edge_width_apart() {
+    let spot = spot(1e-3, 3e-3);
+    for (spot, width) in [spot, spot.transposed()]
+        .iter()
+        .zip(spot.knife_edge_width())
+    {
+        let above = spot.power_past_knife_edge(width / 2.0);
+        let below = spot.power_past_knife_edge(-width / 2.0);
+        assert!((above - 0.1).abs() < 1e-15, "{above}");
+        assert!((below - 0.9).abs() < 1e-15, "{below}");
+    }
+}
+
+#[test]
+fn widths_are_those_of_the_irradiance() {
+    let spot = spot(1e-3, 0.4e-3);
+    let peak = spot.irradiance_per_watt([0.0, 0.0]);
+    let [x, y] = spot.fwhm();
+    for edge in [[x / 2.0, 0.0], [0.0, -y / 2.0]] {
+        assert_relative(spot.irradiance_per_watt(edge), peak / 2.0, 1e-15, "FWHM");
+    }
+    let slit = |x: f64| x * x * (2.0 / PI).sqrt() / 1e-3 * (-2.0 * (x / 1e-3).powi(2)).exp();
+    let deviation = simpson(slit, -6e-3, 6e-3, 2_000).sqrt();
+    // Simpson on a function that vanishes at both ends converges exponentially.
+    assert_relative(spot.d4_sigma()[0], 4.0 * deviation, 1e-12, "D4σ");
+    assert_relative(spot.d4_sigma()[1], 0.8e-3, 1e-15, "D4σ");
+    // ∫ E² dA is half the peak irradiance for 1 W.
+    assert_relative(spot.effective_area(), 2.0 / peak, 1e-15, "area");
+}
+
+#[test]
+fn both_tails_keep_their_relative_accuracy() {
+    let spot = spot(1.0, 1.0);
+    let (near, far) = (
+        spot.power_past_knife_edge(8.0),
+        spot.power_past_knife_edge(9.0),
+    );
+    for centre in [8.5, -8.5] {
+        // The argument of exp(−128) is rounded by 1e−14.
+        assert_relative(spot.power_in_slit(centre, 1.0), near - far, 1e-13, "tail");
+    }
+}
+
+#[test]
+fn everything_passes_an_aperture_without_an_edge() {
+    for spot in [spot(1.0, 1.0), spot(1.0, 2.0), spot(1e-30, 1e30)] {
+        let powers = [
+            spot.power_in_circle(f64::INFINITY),
+            spot.power_in_circle_at([1.0, 2.0], f64::INFINITY),
+            spot.power_in_square(f64::INFINITY),
+            spot.power_in_slit(1.0, f64::INFINITY),
+            spot.power_past_knife_edge(f64::NEG_INFINITY),
+        ];
+        for power in powers {
+            assert!((power - 1.0).abs() < 1e-15, "{spot:?}: {power}");
+        }
+    }
+}
+
+#[test]
+fn radii_of_beams_at_absurd_distances_yield_fractions() {
+    for radii in [[1e300, 1e-30], [1e-30, f64::MAX], [f64::MAX, f64::MAX]] {
+        let spot = CrossSection::of_radii(radii);
+        for size in [1e-300, 1.0, 1e10, 1e300] {
+            for centre in [[0.0, 0.0], [1.0, -1e300], [size, size], [0.0, size]] {
+                let power = spot.power_in_circle_at(centre, size);
+                assert!((0.0..=1.0).contains(&power), "{spot:?}, {size:e}: {power}");
+            }
+        }
+    }
+}
+
+#[test]
+fn apertures_of_negative_size_hold_nothing() {
+    let spot = spot(1.0, 2.0);
+    let powers = [
+        spot.power_in_circle(-1.0),
+        spot.transposed().power_in_circle_at([0.1, 0.2], -1.0),
+        spot.power_in_square(-1.0),
+        spot.power_in_slit(0.1, -1.0),
+        CrossSection::new([1.0, 1.0]).unwrap().power_in_circle(-1.0),
+    ];
+    for power in powers {
+        assert!(power.abs() < f64::MIN_POSITIVE, "{power}");
+    }
+}
+
+#[test]
+fn radii_that_are_not_lengths_are_rejected() {
+    for bad in [0.0, -1.0, 1e31, f64::NAN, f64::INFINITY] {
+        for radii in [[bad, 1.0], [1.0, bad]] {
+            let result = CrossSection::new(radii);
+            assert!(matches!(result, Err(BeamError::Radius(_))), "{radii:?}");
+        }
+    }
+}
+
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    }
+}
+
+proptest! {
+    #![proptest_config(config(200))]
+
+    #[test]
+    fn power_in_a_circle_keeps_its_symmetries_and_grows(
+        exponents in prop::array::uniform2(-4.0..4.0_f64),
+        centre in prop::array::uniform2(-3.0..3.0_f64),
+        radius in -3.0..6.0_f64,
+    ) {
+        let spot = spot(10_f64.powf(exponents[0]), 10_f64.powf(exponents[1]));
+        let [w_x, w_y] = spot.radii();
+        let (radius, [x, y]) = (10_f64.powf(radius), [centre[0] * w_x, centre[1] * w_y]);
+        let power = spot.power_in_circle_at([x, y], radius);
+        let mirrored = spot.power_in_circle_at([-x, y], radius);
+        let transposed = spot.transposed().power_in_circle_at([y, x], radius);
+        let wider = spot.power_in_circle_at([x, y], 1.01 * radius);
+        let centred = spot.power_in_circle_at([0.0, 0.0], radius);
+        prop_assert!((0.0..=1.0).contains(&power), "{}", power);
+        prop_assert!((power - mirrored).abs() <= 1e-13 * power, "{} {}", power, mirrored);
+        prop_assert!((power - transposed).abs() <= 1e-13 * power, "{} {}", power, transposed);
+        prop_assert!(wider >= power * (1.0 - 2e-13), "{} {}", power, wider);
+        prop_assert!(centred >= power * (1.0 - 2e-13), "{} {}", power, centred);
+        // Between the inscribed and the circumscribed square.
+        let square = |side: f64| spot.power_in_rectangle([x, y], [side, side]);
+        prop_assert!(power <= square(2.0 * radius) * (1.0 + 2e-13), "{}", power);
+        prop_assert!(power >= square(SQRT_2 * radius) * (1.0 - 2e-13), "{}", power);
+    }
+
+    #[test]
+    fn no_query_yields_nan(
+        exponents in prop::array::uniform2(-29.9..29.9_f64),
+        x in proptest::num::f64::ANY,
+        y in proptest::num::f64::ANY,
+        size in proptest::num::f64::ANY,
+        near in -3.0..3.0_f64,
+    ) {
+        let spot = spot(10_f64.powf(exponents[0]), 10_f64.powf(exponents[1]));
+        let [x, y, size] = [x, y, size].map(|v| if v.is_finite() { v } else { f64::MAX });
+        let powers = [
+            spot.power_in_circle(size),
+            spot.power_in_circle_at([x, y], size),
+            spot.power_in_circle_at([size, near * spot.radii()[1]], size),
+            spot.power_in_circle_at([near, y], y),
+            spot.power_in_circle_at([near, 1.0], 10_f64.powf(near)),
+            spot.power_in_square(size),
+            spot.power_in_rectangle([x, y], [size, y]),
+            spot.power_in_slit(x, size),
+            spot.power_past_knife_edge(x),
+        ];
+        prop_assert!(
+            powers.iter().all(|p| (0.0..=1.0).contains(p)),
+            "{:?}: {:?}", spot, powers
+        );
+        prop_assert!(!spot.irradiance_per_watt([x, y]).is_nan(), "{:?}", spot);
+    }
+}

@@ -1,0 +1,223 @@
+//! Parameters of a beam from measured data, with their standard errors.
+
+mod caustic;
+mod knife_edge;
+mod least_squares;
+#[cfg(test)]
+mod synthetic;
+
+use core::{error, fmt};
+
+pub use caustic::{CausticFit, RadiusErrors};
+pub use knife_edge::KnifeEdgeFit;
+
+/// A fitted value and its standard error, in the same unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The value that fits best.
+    pub value: f64,
+    /// The standard deviation of the value over repeated measurements, to first order.
+    pub standard_error: f64,
+}
+
+/// Why measured data could not be fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FitError {
+    /// The lists of measured values differ in length.
+    LengthsDiffer {
+        /// The number of positions.
+        positions: usize,
+        /// The number of values that belong to them.
+        values: usize,
+    },
+    /// There are fewer points than the parameters and one error estimate need.
+    TooFewPoints {
+        /// The number of points.
+        got: usize,
+        /// The smallest number accepted.
+        needed: usize,
+    },
+    /// The wavelength, in metres, is not a length from 1e−30 m to 1e30 m.
+    Wavelength(f64),
+    /// A position, in metres, is not finite or beyond 1e30 m.
+    Position {
+        /// Its place in the list.
+        index: usize,
+        /// The rejected position, in metres.
+        value: f64,
+    },
+    /// A beam radius, in metres, is not a length from 1e−30 m to 1e30 m.
+    Radius {
+        /// Its place in the list.
+        index: usize,
+        /// The rejected radius, in metres.
+        value: f64,
+    },
+    /// The standard deviation of a radius, in metres, is not a length from 1e−30 m to 1e30 m.
+    Deviation {
+        /// Its place in the list.
+        index: usize,
+        /// The rejected standard deviation, in metres.
+        value: f64,
+    },
+    /// A power is not finite or beyond 1e30.
+    Power {
+        /// Its place in the list.
+        index: usize,
+        /// The rejected power, in the caller's unit.
+        value: f64,
+    },
+    /// All positions are the same.
+    EqualPositions,
+    /// The power does not change along the trace, so that it has no edge.
+    NoEdge,
+    /// The data leave a parameter open: no divergence is to be seen, or no waist, or an edge falls
+    /// between two positions.
+    Undetermined,
+    /// The search for the best parameters did not come to an end.
+    NotConverged,
+}
+
+impl fmt::Display for FitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const LENGTH: &str = "must lie between 1e-30 m and 1e30 m";
+        match self {
+            Self::LengthsDiffer { positions, values } => write!(
+                f,
+                "each position needs one value, got {positions} positions and {values} values"
+            ),
+            Self::TooFewPoints { got, needed } => {
+                write!(f, "the fit needs at least {needed} points, got {got}")
+            }
+            Self::Wavelength(got) => write!(f, "wavelength {LENGTH}, got {got:e} m"),
+            Self::Position { index, value } => write!(
+                f,
+                "position {index} must be finite and within ±1e30 m, got {value:e} m"
+            ),
+            Self::Radius { index, value } => {
+                write!(f, "radius {index} {LENGTH}, got {value:e} m")
+            }
+            Self::Deviation { index, value } => {
+                write!(f, "standard deviation {index} {LENGTH}, got {value:e} m")
+            }
+            Self::Power { index, value } => write!(
+                f,
+                "power {index} must be finite and within ±1e30, got {value:e}"
+            ),
+            Self::EqualPositions => write!(f, "positions must differ, but all are the same"),
+            Self::NoEdge => write!(f, "the power does not change along the trace"),
+            Self::Undetermined => write!(f, "the data do not determine all parameters"),
+            Self::NotConverged => write!(f, "the search for the best fit did not converge"),
+        }
+    }
+}
+
+impl error::Error for FitError {}
+
+/// Checks that both lists have one length, and at least `needed` entries.
+fn check_count(positions: &[f64], values: &[f64], needed: usize) -> Result<(), FitError> {
+    if positions.len() != values.len() {
+        return Err(FitError::LengthsDiffer {
+            positions: positions.len(),
+            values: values.len(),
+        });
+    }
+    if positions.len() < needed {
+        return Err(FitError::TooFewPoints {
+            got: positions.len(),
+            needed,
+        });
+    }
+    Ok(())
+}
+
+/// Returns the first value, with its index, that is not valid.
+fn find_invalid(values: &[f64], is_valid: impl Fn(f64) -> bool) -> Option<(usize, f64)> {
+    values
+        .iter()
+        .copied()
+        .enumerate()
+        .find(|&(_, value)| !is_valid(value))
+}
+
+/// The positions of a measurement, mapped to the interval [−1, 1].
+///
+/// The fits work on such coordinates, so that the unit of the data makes no difference.
+#[derive(Clone, Debug)]
+struct Axis {
+    middle: f64,
+    half_range: f64,
+    coordinates: Vec<f64>,
+}
+
+impl Axis {
+    fn new(positions: &[f64]) -> Result<Self, FitError> {
+        if let Some((index, value)) = find_invalid(positions, crate::gaussian::is_coordinate) {
+            return Err(FitError::Position { index, value });
+        }
+        let first = positions.iter().copied().fold(f64::INFINITY, f64::min);
+        let last = positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (middle, half_range) = (0.5 * first + 0.5 * last, 0.5 * last - 0.5 * first);
+        if half_range < f64::MIN_POSITIVE {
+            return Err(FitError::EqualPositions);
+        }
+        let coordinates = positions.iter().map(|x| (x - middle) / half_range);
+        Ok(Self {
+            middle,
+            half_range,
+            coordinates: coordinates.collect(),
+        })
+    }
+
+    /// The position that an estimated coordinate stands for.
+    fn position(&self, coordinate: f64, variance: f64) -> Estimate {
+        Estimate {
+            value: self.middle + self.half_range * coordinate,
+            standard_error: self.half_range * variance.sqrt(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_name_the_value_that_is_wrong() {
+        let (index, value) = (7, -1.5);
+        let cases = [
+            (
+                FitError::LengthsDiffer {
+                    positions: 5,
+                    values: 4,
+                },
+                "5 positions",
+                "4 values",
+            ),
+            (
+                FitError::TooFewPoints { got: 3, needed: 4 },
+                "4 points",
+                "3",
+            ),
+            (FitError::Wavelength(value), "wavelength", "-1.5e0"),
+            (FitError::Position { index, value }, "position 7", "-1.5e0"),
+            (FitError::Radius { index, value }, "radius 7", "-1.5e0"),
+            (
+                FitError::Deviation { index, value },
+                "deviation 7",
+                "-1.5e0",
+            ),
+            (FitError::Power { index, value }, "power 7", "-1.5e0"),
+            (FitError::EqualPositions, "positions", "same"),
+            (FitError::NoEdge, "power", "change"),
+            (FitError::Undetermined, "data", "parameters"),
+            (FitError::NotConverged, "search", "converge"),
+        ];
+        for (error, name, detail) in cases {
+            let text = error.to_string();
+            assert!(text.contains(name), "{text:?} does not name {name:?}");
+            assert!(text.contains(detail), "{text:?} does not show {detail:?}");
+        }
+    }
+}

@@ -29,7 +29,7 @@ pub enum BeamError {
         /// The smallest waist radius the model accepts at this wavelength and M², in metres.
         minimum: f64,
     },
-    /// A radius of a cross-section, in metres, is not a length from 1e−30 m to 1e30 m.
+    /// The beam radius, in metres, is not a length from 1e−30 m to 1e30 m.
     Radius(f64),
     /// The factor by which the beam radius may grow is not a finite number greater than 1.
     Growth(f64),
@@ -82,8 +82,6 @@ pub enum BeamError {
     Rotation(f64),
     /// The Rayleigh range, in metres, does not lie between 1e−100 m and 1e100 m.
     RayleighRange(f64),
-    /// The beam radius, in metres, is not a length from 1e−30 m to 1e30 m.
-    Radius(f64),
     /// The curvature, in m⁻¹, of a wavefront or a surface is not finite or beyond 1e30 m⁻¹.
     Curvature(f64),
     /// An entry of a ray matrix is not finite.
@@ -156,7 +154,6 @@ impl fmt::Display for BeamError {
                 f,
                 "waist radius {waist_radius:e} m is below the paraxial limit of {minimum:e} m"
             ),
-            Self::Radius(got) => write!(f, "radius {LENGTH}, got {got:e} m"),
             Self::Growth(got) => {
                 write!(f, "growth must be finite and greater than 1, got {got:e}")
             }
@@ -312,7 +309,6 @@ mod tests {
             (BeamError::WaistRadius(-1.5), "waist radius", "-1.5e0"),
             (BeamError::Divergence(2.5), "divergence", "2.5e0"),
             (BeamError::MSquared(0.5), "M²", "5e-1"),
-            (BeamError::Radius(-1.5), "radius", "-1.5e0"),
             (BeamError::Growth(0.5), "growth", "5e-1"),
             (BeamError::PowerFraction(1.5), "power fraction", "1.5e0"),
             (BeamError::FanAngle(4.0), "fan angle", "4e0"),

@@ -5,11 +5,14 @@
 //! stated where it is used.
 #![expect(clippy::expect_used, reason = "helpers of tests")]
 
+mod lines;
+
+use lines::{profiles, slopes};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_beam::{
     DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, LineProfile,
-    Placement, RaySample, SpotLight,
+    Placement, RaySample, SpotLight, TabulatedLineLight,
 };
 
 const WAVELENGTH: f64 = 650e-9;
@@ -34,21 +37,43 @@ fn spot(waist: f64, m_squared: f64, waist_distance: f64) -> (GaussianBeam, SpotL
     (beam, light.expect("a valid light"))
 }
 
-fn line(profile: LineProfile) -> (LaserLine, LineLight<f64>) {
-    let fan = FanGeometry {
-        fan_angle: 30_f64.to_radians(),
-        apex_offset: 2e-3,
-        focus_distance: 0.2,
-        focus_curve: FocusCurve::EqualDistance,
-    };
-    line_of(fan, profile)
+/// A fan of 30° from an apex 2 mm behind the lens, in focus at 0.2 m.
+const FAN: FanGeometry = FanGeometry {
+    fan_angle: 0.523_598_775_598_298_8,
+    apex_offset: 2e-3,
+    focus_distance: 0.2,
+    focus_curve: FocusCurve::EqualDistance,
+};
+
+fn line(profile: LineProfile, fan: FanGeometry) -> LaserLine {
+    let focus = GaussianBeam::from_waist(WAVELENGTH, 50e-6).expect("a valid beam");
+    LaserLine::new(focus, fan, profile).expect("a valid line")
 }
 
-fn line_of(fan: FanGeometry, profile: LineProfile) -> (LaserLine, LineLight<f64>) {
-    let focus = GaussianBeam::from_waist(WAVELENGTH, 50e-6).expect("a valid beam");
-    let line = LaserLine::new(focus, fan, profile).expect("a valid line");
-    let light = LineLight::place(&line, &placement(), POWER).expect("a valid light");
-    (line, light)
+/// Lines of every profile, with each of the two curves of focus.
+fn lines(fan: FanGeometry) -> impl Iterator<Item = LaserLine> {
+    let curves = [FocusCurve::EqualDistance, FocusCurve::EqualPlane];
+    curves.into_iter().flat_map(move |focus_curve| {
+        let fan = FanGeometry { focus_curve, ..fan };
+        profiles(fan.fan_angle).map(|profile| line(profile, fan))
+    })
+}
+
+/// Places a line as the light that its profile needs.
+fn place(line: &LaserLine) -> Box<dyn Emitter<f64> + '_> {
+    match line.profile() {
+        LineProfile::Tabulated(_) => {
+            Box::new(TabulatedLineLight::place(line, &placement(), POWER).expect("a valid light"))
+        }
+        _ => Box::new(LineLight::place(line, &placement(), POWER).expect("a valid light")),
+    }
+}
+
+/// The local axes of all lights.
+fn line_axes() -> [DVec3; 3] {
+    let ez = placement().direction.normalize();
+    let ey = ez.cross(placement().fan_axis).normalize();
+    [ey.cross(ez), ey, ez]
 }
 
 fn rng() -> ChaCha8Rng {
@@ -130,27 +155,29 @@ fn rays_of_a_spot_reproduce_radius_and_curvature() {
 
 #[test]
 fn rays_of_a_line_reproduce_its_thickness() {
-    const COUNT: usize = 100_000;
+    const COUNT: usize = 50_000;
     let n = COUNT as f64;
-    for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
-        let (line, light) = line(profile.clone());
-        let axes = axes(light.ex, light.ey, light.ez);
-        let rays = rays(&light, COUNT);
+    for line in lines(FAN) {
+        let light = place(&line);
+        let rays = rays(&*light, COUNT);
         for r in [0.01, 0.202, 0.5] {
             // On the cylinder of slant distance r from the virtual apex, in units of σ = w/2.
-            let sigma = 0.5 * line.focus().radius_at(r - 0.202);
             let mean_square: f64 = rays
                 .iter()
                 .map(|ray| {
-                    let (p, s) = crossing(axes, ray, 0.0);
-                    let along = r / 1_f64.hypot(s.x) - 2e-3;
+                    let (p, s) = crossing(line_axes(), ray, 0.0);
+                    let sigma = 0.5
+                        * line
+                            .focus()
+                            .radius_at(r - line.waist_slant_distance_at(s.x));
+                    let along = r / 1_f64.hypot(s.x) - FAN.apex_offset;
                     let y = p.y + s.y * along;
                     (y / sigma).powi(2) / n
                 })
                 .sum();
             assert!(
                 (mean_square - 1.0).abs() < SIGMAS * (2.0 / n).sqrt(),
-                "{profile:?}, r = {r}: {mean_square}"
+                "{line:?}, r = {r}: {mean_square}"
             );
         }
     }
@@ -158,31 +185,29 @@ fn rays_of_a_line_reproduce_its_thickness() {
 
 #[test]
 fn rays_of_a_wide_fan_pass_apex_and_waist_within_diffraction() {
-    const COUNT: usize = 100_000;
+    const COUNT: usize = 50_000;
     let n = COUNT as f64;
     let fan = FanGeometry {
         fan_angle: 120_f64.to_radians(),
         apex_offset: 0.3,
-        focus_distance: 0.2,
-        focus_curve: FocusCurve::EqualDistance,
+        ..FAN
     };
-    for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
-        let (line, light) = line_of(fan, profile.clone());
-        let axes = axes(light.ex, light.ey, light.ez);
+    for line in lines(fan) {
+        let light = place(&line);
         let [mut at_apex, mut at_waist] = [0.0; 2];
-        for ray in rays(&light, COUNT) {
-            let (p, s) = crossing(axes, &ray, 0.0);
+        for ray in rays(&*light, COUNT) {
+            let (p, s) = crossing(line_axes(), &ray, 0.0);
             let sec = 1_f64.hypot(s.x);
             let b = (p.x - fan.apex_offset * s.x) / sec;
             let along = (p.x * s.x + fan.apex_offset) / sec;
-            let y = p.y + s.y / sec * (line.waist_slant_distance() - along);
+            let y = p.y + s.y / sec * (line.waist_slant_distance_at(s.x) - along);
             at_apex += (2.0 * b / line.source_radius()).powi(2) / n;
             at_waist += (2.0 * y / line.focus().waist_radius()).powi(2) / n;
         }
         for mean_square in [at_apex, at_waist] {
             assert!(
                 (mean_square - 1.0).abs() < SIGMAS * (2.0 / n).sqrt(),
-                "{profile:?}: {at_apex}, {at_waist}"
+                "{line:?}: {at_apex}, {at_waist}"
             );
         }
     }
@@ -196,46 +221,40 @@ fn chi_square_limit(freedom: f64) -> f64 {
     freedom * (1.0 - spread + QUANTILE * spread.sqrt()).powi(3)
 }
 
-/// χ² of rays that hit a tilted rectangle, in bins, against next-event irradiance in the same bins.
-///
-/// `half` are the half-sizes of the rectangle in the local directions `along` and `across`.
-fn chi_square_on_surface(
-    light: &dyn Emitter<f64>,
-    axes: [DVec3; 3],
-    centre: DVec3,
-    [along, across]: [DVec3; 2],
+/// Bins on each side of a rectangle, points of the quadrature on each side of a bin, and rays.
+const BINS: usize = 16;
+const FINE: usize = 12;
+const RAYS: usize = 60_000;
+
+/// χ² of samples (s, t) in bins up to ±`half`, against their probability density, and the number of
+/// bins that count: those that expect ten samples.
+fn chi_square(
+    samples: impl ExactSizeIterator<Item = [f64; 2]>,
+    density: impl Fn(f64, f64) -> f64,
     half: [f64; 2],
 ) -> (f64, f64) {
-    const RAYS: usize = 200_000;
-    const BINS: usize = 16;
-    const FINE: usize = 24;
-    let normal = along.cross(across);
+    let count = samples.len() as f64;
     let mut counts = vec![0.0; BINS * BINS];
-    for ray in rays(light, RAYS) {
-        let (p, s) = crossing(axes, &ray, 0.0);
-        let hit = p + s * (normal.dot(centre - p) / normal.dot(s));
-        let bin = |direction: DVec3, half: f64| {
-            let t = ((hit - centre).dot(direction) / half + 1.0) * 0.5 * BINS as f64;
-            (0..BINS).find(|&bin| (bin as f64..(bin + 1) as f64).contains(&t))
-        };
-        if let (Some(i), Some(j)) = (bin(along, half[0]), bin(across, half[1])) {
+    let bin = |s: f64, half: f64| {
+        let t = (s / half + 1.0) * 0.5 * BINS as f64;
+        (0..BINS).find(|&bin| (bin as f64..(bin + 1) as f64).contains(&t))
+    };
+    for [s, t] in samples {
+        if let (Some(i), Some(j)) = (bin(s, half[0]), bin(t, half[1])) {
             counts[i * BINS + j] += 1.0;
         }
     }
     let [a, b] = half.map(|half| 2.0 * half / (BINS * FINE) as f64);
-    let world_normal = normal.x * axes[0] + normal.y * axes[1] + normal.z * axes[2];
-    let irradiance = |i: usize, j: usize| {
-        let p = centre
-            + along * ((i as f64 + 0.5) * a - half[0])
-            + across * ((j as f64 + 0.5) * b - half[1]);
-        light.next_event(world(axes, p)).map_or(0.0, |event| {
-            event.e_perp * DVec3::from(event.wi).dot(world_normal).abs()
-        })
+    let at = |i: usize, j: usize| {
+        density(
+            (i as f64 + 0.5) * a - half[0],
+            (j as f64 + 0.5) * b - half[1],
+        )
     };
     let expected = |bin: usize| {
         let (i, j) = (bin / BINS * FINE, bin % BINS * FINE);
         let cells = (i..i + FINE).flat_map(|i| (j..j + FINE).map(move |j| (i, j)));
-        cells.map(|(i, j)| irradiance(i, j)).sum::<f64>() * a * b / POWER * RAYS as f64
+        cells.map(|(i, j)| at(i, j)).sum::<f64>() * a * b * count
     };
     let terms: Vec<f64> = (0..BINS * BINS)
         .map(|bin| (counts[bin], expected(bin)))
@@ -245,16 +264,42 @@ fn chi_square_on_surface(
     (terms.iter().sum(), terms.len() as f64)
 }
 
+/// χ² of rays that hit a tilted rectangle, in bins, against next-event irradiance in the same bins.
+///
+/// `half` are the half-sizes of the rectangle in the local directions `along` and `across`.
+fn chi_square_on_surface(
+    light: &dyn Emitter<f64>,
+    centre: DVec3,
+    [along, across]: [DVec3; 2],
+    half: [f64; 2],
+) -> (f64, f64) {
+    let axes = line_axes();
+    let normal = along.cross(across);
+    let rays = rays(light, RAYS);
+    let hits = rays.iter().map(|ray| {
+        let (p, s) = crossing(axes, ray, 0.0);
+        let hit = p + s * (normal.dot(centre - p) / normal.dot(s)) - centre;
+        [hit.dot(along), hit.dot(across)]
+    });
+    let world_normal = DVec3::from(world_direction(axes, normal));
+    let irradiance = |s: f64, t: f64| {
+        let p = centre + along * s + across * t;
+        light.next_event(world(axes, p)).map_or(0.0, |event| {
+            event.e_perp * DVec3::from(event.wi).dot(world_normal).abs()
+        })
+    };
+    chi_square(hits, |s, t| irradiance(s, t) / POWER, half)
+}
+
 #[test]
 fn rays_of_a_spot_reproduce_the_irradiance_of_a_tilted_surface() {
     let (beam, light) = spot(5e-6, 1.0, 0.02);
-    let axes = axes(light.ex, light.ey, light.ez);
     let tilt = 60_f64.to_radians();
     let along = DVec3::new(tilt.cos(), 0.0, tilt.sin());
     let w = beam.radius_at(0.03);
     let centre = DVec3::new(0.0, 0.0, 0.05);
     let half = [3.0 * w, 1.6 * w];
-    let (chi_square, bins) = chi_square_on_surface(&light, axes, centre, [along, DVec3::Y], half);
+    let (chi_square, bins) = chi_square_on_surface(&light, centre, [along, DVec3::Y], half);
     assert!(bins > 100.0, "{bins} bins");
     assert!(
         chi_square < chi_square_limit(bins),
@@ -263,20 +308,56 @@ fn rays_of_a_spot_reproduce_the_irradiance_of_a_tilted_surface() {
 }
 
 #[test]
-fn rays_of_a_line_reproduce_the_irradiance_of_a_tilted_surface() {
-    for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
-        let (line, light) = line(profile.clone());
-        let axes = axes(light.ex, light.ey, light.ez);
-        let tilt = 50_f64.to_radians();
-        let along = DVec3::new(tilt.cos(), 0.0, tilt.sin());
-        let centre = DVec3::new(0.0, 0.0, 0.1);
-        let half = [line.half_length_at(0.1), 2.0 * line.half_thickness_at(0.1)];
-        let (chi_square, bins) =
-            chi_square_on_surface(&light, axes, centre, [along, DVec3::Y], half);
+fn rays_of_a_line_reproduce_the_irradiance_of_tilted_surfaces() {
+    let tilt = 50_f64.to_radians();
+    let along = DVec3::new(tilt.cos(), 0.0, tilt.sin());
+    for line in lines(FAN) {
+        let light = place(&line);
+        for z in [0.02, 0.2, 0.4] {
+            let centre = DVec3::new(0.0, 0.0, z);
+            let half = [line.half_length_at(z), 2.0 * line.half_thickness_at(z)];
+            let (chi_square, bins) =
+                chi_square_on_surface(&*light, centre, [along, DVec3::Y], half);
+            assert!(bins > 100.0, "{bins} bins");
+            assert!(
+                chi_square < chi_square_limit(bins),
+                "{line:?}, z = {z}: {chi_square}, {bins} bins"
+            );
+        }
+    }
+}
+
+/// χ² of the slopes of rays, in bins up to `half`, against the density of their directions.
+fn chi_square_of_directions(light: &dyn Emitter<f64>, half: [f64; 2]) -> (f64, f64) {
+    let rays = rays(light, RAYS);
+    let slopes = rays.iter().map(|ray| {
+        let (_, slope) = crossing(line_axes(), ray, 0.0);
+        [slope.x, slope.y]
+    });
+    // dω = cos³ ds_x ds_y
+    let density = |s: f64, t: f64| {
+        let slope = DVec3::new(s, t, 1.0);
+        let direction = world_direction(line_axes(), slope.normalize());
+        let pdf = light.ray_pdf(placement().origin.to_array(), direction);
+        pdf.direction * slope.length().powi(-3)
+    };
+    chi_square(slopes, density, half)
+}
+
+#[test]
+fn rays_of_a_line_have_the_density_of_their_directions() {
+    for line in lines(FAN) {
+        let light = place(&line);
+        // Bins of slope that end at the edges of the top hats, where their density jumps.
+        let half = [
+            4.0 / 3.0 * line.half_slope(),
+            1.2 * line.focus().divergence(),
+        ];
+        let (chi_square, bins) = chi_square_of_directions(&*light, half);
         assert!(bins > 100.0, "{bins} bins");
         assert!(
             chi_square < chi_square_limit(bins),
-            "{profile:?}: {chi_square}, {bins} bins"
+            "{line:?}: {chi_square}, {bins} bins"
         );
     }
 }
@@ -331,27 +412,27 @@ fn radiance_of_a_spot_integrates_to_the_irradiance() {
 
 #[test]
 fn radiance_of_a_line_integrates_to_the_irradiance() {
-    for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
-        let (line, light) = line(profile.clone());
-        let axes = axes(light.ex, light.ey, light.ez);
+    for line in lines(FAN) {
+        let light = place(&line);
         for (u, z) in [(0.0, 0.1), (0.2, 0.19), (-0.25, 0.4)] {
-            let r = (z + 2e-3) * 1_f64.hypot(u);
-            let w = line.focus().radius_at(r - 0.202);
-            let local = DVec3::new(u * (z + 2e-3), 0.6 * w, z);
-            let p = world(axes, local);
             let sec = 1_f64.hypot(u);
-            let slope_y = local.y * line.focus().curvature_at(r - 0.202) * sec;
+            let r = (z + FAN.apex_offset) * sec;
+            let from_waist = r - line.waist_slant_distance_at(u);
+            let w = line.focus().radius_at(from_waist);
+            let local = DVec3::new(u * (z + FAN.apex_offset), 0.6 * w, z);
+            let p = world(line_axes(), local);
+            let slope_y = local.y * line.focus().curvature_at(from_waist) * sec;
             let spread_x = 0.5 * line.source_radius() / r * sec * sec;
             let spread_y = 0.5 * line.focus().waist_radius() * line.focus().divergence() / w * sec;
             let sum = integrate_over_slopes(
-                |d| light.radiance(p, world_direction(axes, d)) * d.z,
+                |d| light.radiance(p, world_direction(line_axes(), d)) * d.z,
                 [u, slope_y],
                 [spread_x, spread_y],
             );
             let error = sum / light.irradiance(p) - 1.0;
             // The closed form neglects (w_b / r)² = 6e−11 and smaller, times the curvature of the
             // profile, 1e2; coordinates of 0.5 m are rounded to 1e−16 m beside w_b = 8e−7 m.
-            assert!(error.abs() < 2e-8, "{profile:?}, u = {u}: {error:e}");
+            assert!(error.abs() < 2e-8, "{line:?}, u = {u}: {error:e}");
         }
     }
 }
@@ -359,11 +440,10 @@ fn radiance_of_a_line_integrates_to_the_irradiance() {
 #[test]
 fn radiance_times_cosine_over_densities_is_the_power() {
     let (_, spot) = spot(50e-6, 1.3, 0.15);
-    let (_, gaussian) = line(LineProfile::GaussianTan);
-    let (_, powell) = line(LineProfile::Powell { edge: 0.1 });
-    let lights: [&dyn Emitter<f64>; 3] = [&spot, &gaussian, &powell];
+    let lasers: Vec<LaserLine> = lines(FAN).collect();
+    let lights = lasers.iter().map(place).chain([Box::new(spot) as _]);
     for light in lights {
-        for ray in rays(light, 1000) {
+        for ray in rays(&*light, 1000) {
             let pdf = light.ray_pdf(ray.origin, ray.direction);
             // Rounding of world coordinates, 1e−16 m, beside a source of 4e−7 m, five σ out.
             let tolerance = 1e-8;
@@ -391,36 +471,52 @@ fn direction_density_integrates_to_one() {
     let density = |d| light.ray_pdf(origin, world_direction(local, d)).direction;
     let sum = integrate_over_slopes(density, [0.0; 2], [sigma; 2]);
     assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+}
 
-    // The slope across a fan is s sec θ, so the nodes are shared out over a wider range of it.
-    let (line, light) = line(LineProfile::GaussianTan);
-    let local = axes(light.ex, light.ey, light.ez);
-    let sigma = [0.5 * line.half_slope(), 0.5 * line.focus().divergence()];
-    let density = |d| light.ray_pdf(origin, world_direction(local, d)).direction;
-    let sum = integrate_over_slopes(density, [0.0; 2], sigma);
-    assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+#[test]
+fn direction_density_of_a_line_integrates_to_one() {
+    const INTERVALS: i32 = 72;
+    for line in lines(FAN) {
+        let light = place(&line);
+        let mut sum = 0.0;
+        for (u, du) in slopes(&line) {
+            // The slope across is s sec θ, s normal.
+            let h = 0.125 * line.focus().divergence() * 1_f64.hypot(u);
+            for i in -INTERVALS / 2..=INTERVALS / 2 {
+                let slope = DVec3::new(u, f64::from(i) * h, 1.0);
+                let direction = world_direction(line_axes(), slope.normalize());
+                let pdf = light.ray_pdf(placement().origin.to_array(), direction);
+                sum += pdf.direction * slope.length().powi(-3) * h * du;
+            }
+        }
+        // The rule along the fan errs by 1e−9.
+        assert!((sum - 1.0).abs() < 1e-8, "{line:?}: {sum}");
+    }
 }
 
 #[test]
 fn position_density_integrates_to_one_over_the_aperture() {
     const INTERVALS: i32 = 72;
-    let (_, light) = line(LineProfile::GaussianTan);
-    let local = axes(light.ex, light.ey, light.ez);
-    let (u, s): (f64, f64) = (0.3, 1e-3);
-    let direction = world_direction(local, DVec3::new(u, s, 1.0).normalize());
-    // The rays of one direction: a patch of the apex, projected on to the lens.
-    let sec = 1_f64.hypot(u);
-    let h = [0.25 * 0.5 * light.source_radius * sec, 0.25 * 25e-6];
-    let centre = DVec3::new(u * 2e-3, s * (2e-3 * sec - 0.202) / sec, 0.0);
-    let mut sum = 0.0;
-    for i in -INTERVALS / 2..=INTERVALS / 2 {
-        for j in -INTERVALS / 2..=INTERVALS / 2 {
-            let offset = DVec3::new(f64::from(i) * h[0], f64::from(j) * h[1], 0.0);
-            let p = world(local, centre + offset);
-            sum += light.ray_pdf(p, direction).position * h[0] * h[1];
+    let (u, s): (f64, f64) = (0.2, 1e-3);
+    let direction = world_direction(line_axes(), DVec3::new(u, s, 1.0).normalize());
+    for line in lines(FAN) {
+        let light = place(&line);
+        // The rays of one direction: a patch of the apex, projected on to the lens.
+        let sec = 1_f64.hypot(u);
+        let h = [0.25 * 0.5 * line.source_radius() * sec, 0.25 * 25e-6];
+        let along = FAN.apex_offset * sec;
+        let y = s / sec * (along - line.waist_slant_distance_at(u));
+        let centre = DVec3::new(u * FAN.apex_offset, y, 0.0);
+        let mut sum = 0.0;
+        for i in -INTERVALS / 2..=INTERVALS / 2 {
+            for j in -INTERVALS / 2..=INTERVALS / 2 {
+                let offset = DVec3::new(f64::from(i) * h[0], f64::from(j) * h[1], 0.0);
+                let p = world(line_axes(), centre + offset);
+                sum += light.ray_pdf(p, direction).position * h[0] * h[1];
+            }
         }
+        assert!((sum - 1.0).abs() < 1e-9, "{line:?}: {sum}");
     }
-    assert!((sum - 1.0).abs() < 1e-9, "{sum}");
 }
 
 /// The mean and the standard error of the reflected radiance (for f = 1) by sampled next events.
@@ -441,68 +537,60 @@ fn sampled_mean(light: &dyn Emitter<f64>, p: [f64; 3], n: DVec3) -> (f64, f64) {
     (mean, (variance / COUNT as f64).sqrt())
 }
 
+fn check_sampled_mean(light: &dyn Emitter<f64>, local: DVec3) {
+    let [ex, ey, ez] = line_axes();
+    let p = world(line_axes(), local);
+    let n = (ex * 0.3 + ey * 0.8 - ez * 0.4).normalize();
+    let delta = light.next_event(p).expect("the point is lit");
+    let expected = delta.e_perp * DVec3::from(delta.wi).dot(n);
+    let (mean, error) = sampled_mean(light, p, n);
+    // The line's closed form is off by (w_b / r)² = 6e−11, far below the standard error.
+    assert!(
+        (mean - expected).abs() < SIGMAS * error,
+        "{mean} ± {error}, expected {expected}"
+    );
+    assert!(error < 0.01 * expected, "the test must be sharp: {error}");
+}
+
 #[test]
 fn sampled_next_events_average_to_the_delta_form() {
     let (beam, spot) = spot(5e-6, 1.0, 0.02);
-    let (line, fan) = line(LineProfile::GaussianTan);
     let w = beam.radius_at(0.03);
-    let thickness = line.half_thickness_at(0.1);
-    let cases: [(&dyn Emitter<f64>, [DVec3; 3], DVec3); 2] = [
-        (
-            &spot,
-            axes(spot.ex, spot.ey, spot.ez),
-            DVec3::new(0.7 * w, 0.4 * w, 0.05),
-        ),
-        (
-            &fan,
-            axes(fan.ex, fan.ey, fan.ez),
-            DVec3::new(0.02, thickness, 0.1),
-        ),
-    ];
-    for (light, axes, local) in cases {
-        let p = world(axes, local);
-        let n = (axes[0] * 0.3 + axes[1] * 0.8 - axes[2] * 0.4).normalize();
-        let delta = light.next_event(p).expect("the point is lit");
-        let expected = delta.e_perp * DVec3::from(delta.wi).dot(n);
-        let (mean, error) = sampled_mean(light, p, n);
-        // The line's closed form is off by (w_b / r)² = 6e−11, far below the standard error.
+    check_sampled_mean(&spot, DVec3::new(0.7 * w, 0.4 * w, 0.05));
+    for line in lines(FAN) {
+        let thickness = line.half_thickness_at(0.1);
+        check_sampled_mean(&*place(&line), DVec3::new(0.02, thickness, 0.1));
+    }
+}
+
+fn check_sampled_values(light: &dyn Emitter<f64>, local: DVec3) {
+    let mut rng = rng();
+    let p = world(line_axes(), local);
+    for _ in 0..1000 {
+        let event = light
+            .next_event_sampled(p, rng.random())
+            .expect("the point is lit");
+        let travel = (-DVec3::from(event.wi)).to_array();
+        let radiance = light.radiance(p, travel);
+        // Rounding of world coordinates, 1e−16 m, beside a source of 4e−7 m, five σ out.
         assert!(
-            (mean - expected).abs() < SIGMAS * error,
-            "{mean} ± {error}, expected {expected}"
+            (event.value * event.pdf / radiance - 1.0).abs() < 1e-8,
+            "{event:?}: {radiance}"
         );
-        assert!(error < 0.01 * expected, "the test must be sharp: {error}");
+        // The point and the distance describe the same ray.
+        let back = DVec3::from(p) + DVec3::from(event.wi) * event.distance;
+        let miss = back.distance(DVec3::from(event.point));
+        assert!(miss < 1e-15, "{event:?}: {miss:e}");
     }
 }
 
 #[test]
 fn sampled_value_is_radiance_over_density() {
     let (beam, spot) = spot(5e-6, 1.0, 0.02);
-    let (line, fan) = line(LineProfile::Powell { edge: 0.1 });
-    let spot_point = DVec3::new(beam.radius_at(0.03), 0.0, 0.05);
-    let fan_point = DVec3::new(0.0265, line.half_thickness_at(0.1), 0.1);
-    let cases: [(&dyn Emitter<f64>, [DVec3; 3], DVec3); 2] = [
-        (&spot, axes(spot.ex, spot.ey, spot.ez), spot_point),
-        (&fan, axes(fan.ex, fan.ey, fan.ez), fan_point),
-    ];
-    let mut rng = rng();
-    for (light, axes, local) in cases {
-        let p = world(axes, local);
-        for _ in 0..1000 {
-            let event = light
-                .next_event_sampled(p, rng.random())
-                .expect("the point is lit");
-            let travel = (-DVec3::from(event.wi)).to_array();
-            let radiance = light.radiance(p, travel);
-            // Rounding of world coordinates, 1e−16 m, beside a source of 4e−7 m, five σ out.
-            assert!(
-                (event.value * event.pdf / radiance - 1.0).abs() < 1e-8,
-                "{event:?}: {radiance}"
-            );
-            // The point and the distance describe the same ray.
-            let back = DVec3::from(p) + DVec3::from(event.wi) * event.distance;
-            let miss = back.distance(DVec3::from(event.point));
-            assert!(miss < 1e-15, "{event:?}: {miss:e}");
-        }
+    check_sampled_values(&spot, DVec3::new(beam.radius_at(0.03), 0.0, 0.05));
+    for line in lines(FAN) {
+        let point = DVec3::new(0.0265, line.half_thickness_at(0.1), 0.1);
+        check_sampled_values(&*place(&line), point);
     }
 }
 
@@ -541,9 +629,8 @@ fn sampled_slopes_have_the_conditional_spread() {
 #[test]
 fn uniforms_at_their_ends_give_finite_rays() {
     let (_, spot) = spot(50e-6, 1.0, 0.15);
-    let (_, gaussian) = line(LineProfile::GaussianTan);
-    let (_, powell) = line(LineProfile::Powell { edge: 0.1 });
-    let lights: [&dyn Emitter<f64>; 3] = [&spot, &gaussian, &powell];
+    let lasers: Vec<LaserLine> = lines(FAN).collect();
+    let lights = lasers.iter().map(place).chain([Box::new(spot) as _]);
     let last = 1.0 - f64::EPSILON / 2.0;
     for light in lights {
         for bits in 0..16 {

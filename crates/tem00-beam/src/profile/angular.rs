@@ -1,13 +1,16 @@
 use core::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use super::density::{SlopeProfile, Variable};
+use super::density::{SlopeProfile, Variable, edge_rounding};
 use crate::BeamError;
 use crate::normal::interior;
 use crate::real::Real;
 
 /// The smallest accepted distance between two angles, in radians: finer than any measurement.
 const MIN_SPACING: f64 = 1e-12;
+
+/// The part of the power between two knots that no drawn angle comes closer to either than.
+const MIN_PART: f64 = 1e-12;
 
 /// The power of a laser line per fan angle, from a table: a data sheet, or a measurement.
 ///
@@ -216,6 +219,14 @@ impl<'a, T: Real> AngularTable<'a, T> {
             .map_or(0.0, |interval| interval.cumulative_at(angle))
     }
 
+    /// Moves an angle away from the ends of the table by the rounding of its slope.
+    fn off_the_ends(self, angle: f64) -> f64 {
+        let [first, last] =
+            [self.0.first(), self.0.last()].map(|knot| knot.map_or(0.0, |knot| knot.angle.wide()));
+        let margin = edge_rounding::<T>() * first.abs().max(last.abs());
+        angle.max(first + margin).min(last - margin)
+    }
+
     /// Returns the largest density per radian.
     pub(crate) fn peak(self) -> f64 {
         let densities = self.0.iter().map(|knot| knot.density.wide());
@@ -269,7 +280,8 @@ impl Interval {
     /// is `t = q (a + b) / (a + √((1 − q) a² + q b²))`.
     fn angle_at(&self, p: f64) -> f64 {
         let power = self.end.cumulative - self.start.cumulative;
-        let q = ((p - self.start.cumulative) / power).clamp(0.0, 1.0);
+        // Off the knots, where the density may be 0.
+        let q = ((p - self.start.cumulative) / power).clamp(MIN_PART, 1.0 - MIN_PART);
         let scale = self.start.density.max(self.end.density);
         let [a, b] = [self.start.density, self.end.density].map(|density| density / scale);
         let t = q * (a + b) / (a + ((1.0 - q) * a * a + q * b * b).sqrt());
@@ -304,7 +316,7 @@ impl<T: Real> SlopeProfile<T> for AngularTable<'_, T> {
         let p = interior(p);
         let angle = self
             .interval(|knot| knot.cumulative.wide() > p)
-            .map_or(0.0, |interval| interval.angle_at(p));
+            .map_or(0.0, |interval| self.off_the_ends(interval.angle_at(p)));
         T::of(Variable::Angle.slope(angle))
     }
 

@@ -71,7 +71,8 @@ fn a_triangle_has_its_eighths_at_half_the_height() {
     let triangle = AngularProfile::from_pairs(&[(-0.6, 0.0), (0.0, 7.0), (0.6, 0.0)]).unwrap();
     for (p, angle) in [(0.125, -0.3), (0.5, 0.0), (0.875, 0.3)] {
         let u: f64 = triangle.table().quantile(p);
-        assert!((u.atan() - angle).abs() < 1e-15, "{p}: {u}");
+        // A drawn angle keeps 1e−12 of the power away from a knot.
+        assert!((u.atan() - angle).abs() < 1e-12, "{p}: {u}");
     }
 }
 
@@ -173,8 +174,8 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Where there is power, p(angle(p)) = p: the angle is rounded by 2e−16 times a density that
-    /// a narrow piece may raise to 1e6, here by steps of 1e−6 of the whole.
+    /// Where there is power, p(angle(p)) = p but for the 1e−12 that a drawn angle keeps off a knot:
+    /// the angle is rounded by 2e−16 times a density that a narrow piece may raise to 1e6.
     #[test]
     fn angles_drawn_from_a_table_invert_its_cumulative_power(
         (angles, powers) in tables(),
@@ -185,7 +186,7 @@ proptest! {
         let table = profile.table();
         let u: f64 = table.quantile(p);
         let back = table.cumulative_at(u.atan());
-        let tolerance = 1e-14 + 1e-15 * table.peak();
+        let tolerance = 1e-12 + 1e-15 * table.peak();
         prop_assert!((back - p).abs() < tolerance, "{} {}", back, p);
         prop_assert!(table.per_angle(u) > 0.0 || table.peak() > 1e3, "{}", u);
         prop_assert!((table.between(-1e30, 1e30) - 1.0).abs() < 1e-14, "the whole");

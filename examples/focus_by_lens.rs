@@ -1,0 +1,63 @@
+//! Where does a lens focus a laser beam, and how small is the focus?
+//!
+//! Not where geometrical optics says: the waist stays near the lens's focal plane however close the
+//! beam's own waist comes, and its size has a maximum instead of a pole (Self 1983). Compares the
+//! closed form with the ABCD law for an ideal lens and for a real, thick one.
+
+#![expect(clippy::print_stdout, reason = "an example prints its answer")]
+
+mod plot;
+
+use std::error::Error;
+
+use kuva::prelude::{LinePlot, Plot};
+use tem00::beam::{AbcdMatrix, BeamError, GaussianBeam, LocatedBeam, ThickLens};
+
+const FOCAL_LENGTH: f64 = 0.1;
+
+/// A beam whose Rayleigh range is `rayleigh_range`, its waist `distance` before the lens.
+fn before_lens(rayleigh_range: f64, distance: f64) -> Result<LocatedBeam, BeamError> {
+    let waist_radius = (650e-9 * rayleigh_range / core::f64::consts::PI).sqrt();
+    LocatedBeam::new(GaussianBeam::from_waist(650e-9, waist_radius)?, -distance)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let ideal = AbcdMatrix::thin_lens(FOCAL_LENGTH)?;
+    // An equiconvex lens of BK7, 4 mm thick, with nearly the same focal length.
+    let real = AbcdMatrix::thick_lens(&ThickLens {
+        index: 1.5143,
+        front_curvature: 9.785,
+        back_curvature: -9.785,
+        thickness: 4e-3,
+    })?;
+
+    println!("A beam of 0.2 mm waist radius 300 mm before a lens of f = 100 mm");
+    println!("                     | waist behind lens / mm | waist radius / µm");
+    let beam = LocatedBeam::new(GaussianBeam::from_waist(650e-9, 0.2e-3)?, -0.3)?;
+    for (name, focus) in [
+        ("closed form (Self)", beam.through_lens(FOCAL_LENGTH)?),
+        ("ABCD, thin lens", ideal.transform(&beam)?),
+        ("ABCD, thick lens", real.transform(&beam)?),
+    ] {
+        let distance = focus.waist_distance() * 1e3;
+        let radius = focus.beam().waist_radius() * 1e6;
+        println!("{name:<20} | {distance:>22.3} | {radius:>17.3}");
+    }
+
+    let mut plots: Vec<Plot> = Vec::new();
+    for (relative, colour) in [(0.05, "crimson"), (0.25, "darkorange"), (1.0, "steelblue")] {
+        let focus = (-200..=400).map(|i| {
+            let s = f64::from(i) / 100.0;
+            let beam = before_lens(relative * FOCAL_LENGTH, s * FOCAL_LENGTH)?;
+            let behind = beam.through_lens(FOCAL_LENGTH)?.waist_distance();
+            Ok((s, behind / FOCAL_LENGTH))
+        });
+        let focus = focus.collect::<Result<Vec<_>, BeamError>>()?;
+        let curve = LinePlot::new().with_data(focus).with_color(colour);
+        plots.push(curve.with_legend(format!("z_R = {relative} f")).into());
+    }
+    let axes = ["waist before the lens / f", "waist behind the lens / f"];
+    let path = plot::write("focus_by_lens", "Focus of a Gaussian beam", axes, plots)?;
+    println!("{}", path.display());
+    Ok(())
+}

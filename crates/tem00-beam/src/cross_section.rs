@@ -142,7 +142,7 @@ impl CrossSection {
     /// in metres.
     ///
     /// The circle may lie off the axis and be smaller or larger than the beam by any factor. The
-    /// value comes from an adaptive quadrature to 1e−13 of itself, in some ten microseconds.
+    /// value comes from an adaptive quadrature over the chords of the circle.
     ///
     /// # Examples
     ///

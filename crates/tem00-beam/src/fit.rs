@@ -70,7 +70,7 @@ pub enum FitError {
     },
     /// All positions are the same.
     EqualPositions,
-    /// The power does not change along the trace, so that it has no edge.
+    /// The power does not change along the trace, or only a beam of negative power would fit it.
     NoEdge,
     /// The data leave a parameter open: no divergence is to be seen, or no waist, or an edge falls
     /// between two positions.
@@ -106,7 +106,10 @@ impl fmt::Display for FitError {
                 "power {index} must be finite and within ±1e30, got {value:e}"
             ),
             Self::EqualPositions => write!(f, "positions must differ, but all are the same"),
-            Self::NoEdge => write!(f, "the power does not change along the trace"),
+            Self::NoEdge => write!(
+                f,
+                "the power does not change along the trace as it would across a beam"
+            ),
             Self::Undetermined => write!(f, "the data do not determine all parameters"),
             Self::NotConverged => write!(f, "the search for the best fit did not converge"),
         }

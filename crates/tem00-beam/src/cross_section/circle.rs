@@ -31,7 +31,6 @@ struct Decentred {
 /// The fraction of the power within the circle of radius `r` about `centre`.
 pub(super) fn power_in_circle([w_x, w_y]: [f64; 2], centre: [f64; 2], r: f64) -> f64 {
     let [x, y] = centre.map(f64::abs);
-    let r = r.min(f64::MAX);
     let circle = if y >= x {
         Decentred { x, y, w_x, w_y, r }
     } else {

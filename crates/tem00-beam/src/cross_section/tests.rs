@@ -401,6 +401,15 @@ fn radii_of_beams_at_absurd_distances_yield_fractions() {
 }
 
 #[test]
+fn slim_axis_too_slim_for_the_wide_one_still_holds_its_power() {
+    // One radius is 1e−330 of the other, which no number can be; ±w hold erf √2 of the power.
+    for radii in [[1e-30, 1e300], [1e300, 1e-30]] {
+        let power = CrossSection::of_radii(radii).power_in_circle(1e300);
+        assert!((power - libm::erf(SQRT_2)).abs() < 1e-13, "{power}");
+    }
+}
+
+#[test]
 fn apertures_of_negative_size_hold_nothing() {
     let spot = spot(1.0, 2.0);
     let powers = [

@@ -108,12 +108,12 @@ impl CausticFit {
         if !is_length(wavelength) {
             return Err(FitError::Wavelength(wavelength));
         }
-        let start = data.start()?;
         let count = radii.len();
-        let minimum = minimise(start, count, |p, i| data.residual(p, i))?;
-        if !data.show(&minimum.parameters) {
-            return Err(FitError::Undetermined);
-        }
+        let from_polynomial = data.polynomial().map(|start| data.search(start));
+        let minimum = match from_polynomial {
+            Some(Ok(minimum)) => minimum,
+            _ => data.search(data.guess()?)?,
+        };
         let variance = minimum.sum_of_squares / (count - PARAMETERS) as f64;
         Ok(Self::from_minimum(wavelength, &data, &minimum, variance))
     }
@@ -297,10 +297,19 @@ impl<'a> Caustic<'a> {
         shows(0) && shows(2)
     }
 
-    /// Where the search begins: the hyperbola as a polynomial, `w² = a + b z + c z²`, or a guess
-    /// from the smallest radius where the polynomial has no waist.
-    fn start(&self) -> Result<[f64; PARAMETERS], FitError> {
-        let polynomial = minimise([0.0; 3], self.radii.len(), |p, i| {
+    fn search(&self, start: [f64; PARAMETERS]) -> Result<Minimum<PARAMETERS>, FitError> {
+        let minimum = minimise(start, self.radii.len(), |p, i| self.residual(p, i))?;
+        if self.show(&minimum.parameters) {
+            Ok(minimum)
+        } else {
+            Err(FitError::Undetermined)
+        }
+    }
+
+    /// Where the search begins: the hyperbola as a polynomial, `w² = a + b z + c z²`, unless that
+    /// has no waist.
+    fn polynomial(&self) -> Option<[f64; PARAMETERS]> {
+        let minimum = minimise([0.0; 3], self.radii.len(), |p, i| {
             let (x, square) = (self.axis.coordinates[i], self.radii[i].powi(2));
             let deviation = 2.0 * square * self.relative_deviation(i);
             let slopes = [1.0, x, x * x];
@@ -310,15 +319,14 @@ impl<'a> Caustic<'a> {
                 slopes: slopes.map(|slope| -slope / deviation),
             }
         });
-        let [a, b, c] = polynomial.map_or([0.0; 3], |minimum| minimum.parameters);
+        let [a, b, c] = minimum.ok()?.parameters;
         let waist = a - b * b / (4.0 * c);
-        if c > 0.0 && waist > 0.0 {
-            Ok([0.5 * waist.ln(), -b / (2.0 * c), 0.5 * c.ln()])
-        } else {
-            self.guess()
-        }
+        let start = [0.5 * waist.ln(), -b / (2.0 * c), 0.5 * c.ln()];
+        (c > 0.0 && waist > 0.0).then_some(start)
     }
 
+    /// Where it begins if that fails: the smallest radius as the waist, and the steepest line from
+    /// it as the divergence.
     fn guess(&self) -> Result<[f64; PARAMETERS], FitError> {
         let points = || self.axis.coordinates.iter().zip(&self.radii);
         let (&middle, &waist) = points()

@@ -37,7 +37,6 @@ use crate::gaussian::is_coordinate;
 /// # References
 ///
 /// - J. M. Khosrofian and B. A. Garetz, Applied Optics 22, 3406, 1983, for the method.
-/// - ISO 13694, 2018, for power density distributions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnifeEdgeFit {
     radius: Estimate,

@@ -9,7 +9,6 @@ use super::FitError;
 const MAX_STEPS: usize = 300;
 const FIRST_DAMPING: f64 = 1e-3;
 const MIN_DAMPING: f64 = 1e-10;
-const MAX_DAMPING: f64 = 1e12;
 
 /// The search ends when a full step would lower the sum of squares by less than this fraction,
 /// which moves the parameters by less than 1e−6 of their standard errors, …
@@ -58,9 +57,6 @@ pub(super) fn minimise<const N: usize>(
         let full_step = system.step(0.0);
         if full_step.is_some_and(|step| system.is_negligible(&step)) {
             return system.minimum(point);
-        }
-        if damping > MAX_DAMPING {
-            break;
         }
         let step = system.step(damping).ok_or(FitError::Undetermined)?;
         let trial = core::array::from_fn(|i| point[i] - step[i]);
@@ -251,6 +247,17 @@ mod tests {
         for parameter in minimum.parameters {
             assert!((parameter - 1.0).abs() < 1e-12, "{minimum:?}");
         }
+    }
+
+    #[test]
+    fn steps_that_overshoot_are_taken_back() {
+        // Newton's method for the root of the arc tangent diverges from starts beyond 1.39.
+        let minimum = minimise([20.0], 1, |&[x], _| Residual {
+            value: x.atan(),
+            slopes: [1.0 / (1.0 + x * x)],
+        });
+        let [x] = minimum.unwrap().parameters;
+        assert!(x.abs() < 1e-12, "{x}");
     }
 
     #[test]

@@ -239,6 +239,33 @@ fn wavy(w: &[f64]) -> Vec<f64> {
 }
 
 #[test]
+fn waists_that_the_polynomial_misses_are_found() {
+    let (z, w) = caustic();
+    let (z, w) = (&z[5..], &w[5..]);
+    let noisy = |seed: u64| {
+        let mut noise = noise(seed);
+        let measured: Vec<_> = w.iter().map(|w| w * (0.3 * noise()).exp()).collect();
+        measured
+    };
+    let missed = (0..300).filter(|&seed| {
+        let data = Caustic::new(z, &noisy(seed), RadiusErrors::Relative).unwrap();
+        data.polynomial().is_none()
+    });
+    let found = missed.filter(|&seed| CausticFit::new(WAVELENGTH, z, &noisy(seed)).is_ok());
+    // Most of these data have no waist at all; 11 of them do.
+    assert!(found.count() > 5, "the guess finds too few");
+}
+
+#[test]
+fn two_radii_at_one_place_do_not_spoil_the_guess() {
+    let (z, w) = ([0.0, 0.0, 1.0, 2.0], [1.0, 1.1, 2.0, 3.0]);
+    let guess = Caustic::new(&z, &w, RadiusErrors::Relative)
+        .unwrap()
+        .guess();
+    assert!(guess.unwrap().iter().all(|p| p.is_finite()), "{guess:?}");
+}
+
+#[test]
 fn an_outlier_shows_in_the_residuals_and_breaks_nothing() {
     let (z, mut w) = caustic();
     w[5] *= 10.0;

@@ -128,11 +128,29 @@ fn narrow_edges_in_a_long_trace_are_found() {
     let x: Vec<_> = (0..=2_000).map(|i| 1e-3 * f64::from(i)).collect();
     let powers: Vec<_> = x
         .iter()
-        .map(|x| spot.power_past_knife_edge(x - 0.7771))
+        .map(|x| spot.power_past_knife_edge(x - 1.8771))
         .collect();
     let fit = KnifeEdgeFit::new(&x, &powers).unwrap();
     assert_relative(fit.radius().value, 3e-3, 1e-12, "radius");
-    assert_relative(fit.centre().value, 0.7771, 1e-12, "centre");
+    assert_relative(fit.centre().value, 1.8771, 1e-12, "centre");
+    let powers: Vec<_> = powers.iter().map(|p| p + 1e4).collect();
+    let fit = KnifeEdgeFit::with_background(&x, &powers).unwrap();
+    // The powers are rounded by 1e−12.
+    assert_relative(fit.radius().value, 3e-3, 1e-10, "radius");
+}
+
+#[test]
+fn negative_power_is_no_edge() {
+    let x = [
+        0.184_235_068_799_758_48,
+        -0.783_577_761_237_425_7,
+        -0.812_078_876_118_679,
+        -0.809_237_185_304_745_8,
+        -0.757_683_129_339_363_3,
+    ];
+    let powers = [-0.3, -0.3, -0.5, -0.5, -0.9];
+    let result = KnifeEdgeFit::new(&x, &powers);
+    assert_eq!(result, Err(FitError::NoEdge), "every power is negative");
 }
 
 #[test]

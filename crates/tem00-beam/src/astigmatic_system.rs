@@ -1,7 +1,7 @@
 use glam::{DMat2, DVec2};
 
-use crate::BeamError;
 use crate::gaussian::{is_coordinate, is_length};
+use crate::{AbcdMatrix, BeamError};
 
 /// How far from symplectic, relative to its largest products, a matrix given by its entries may be.
 const SYMPLECTIC_TOLERANCE: f64 = 1e-9;
@@ -104,6 +104,46 @@ impl AstigmaticSystem {
         } else {
             Err(BeamError::NotSymplectic(deviation))
         }
+    }
+
+    /// Creates the system that acts as one of the two matrices in each of its principal axes, the
+    /// first of which lies at the angle `rotation`, in radians, from x towards y.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the determinants of the matrices, which are the ratio of the indices of
+    /// refraction, differ by more than 1e−9; or if `rotation` is not finite.
+    ///
+    /// # Examples
+    ///
+    /// A concave mirror hit at 45° focuses in the plane of incidence first:
+    ///
+    /// ```
+    /// use tem00_beam::{AbcdMatrix, AstigmaticSystem, DVec2};
+    ///
+    /// let planes = AbcdMatrix::tilted_mirror(10.0, 45_f64.to_radians())?;
+    /// let mirror = AstigmaticSystem::from_axes(planes, 0.0)?;
+    /// let [_, slope] = mirror.transform_ray([DVec2::splat(1e-3), DVec2::ZERO]);
+    /// assert!((slope.x + 0.0283).abs() < 1e-4 && (slope.y + 0.0141).abs() < 1e-4);
+    /// # Ok::<(), tem00_beam::BeamError>(())
+    /// ```
+    pub fn from_axes(axes: [AbcdMatrix; 2], rotation: f64) -> Result<Self, BeamError> {
+        let turn = DMat2::from_angle(finite_rotation(rotation)?);
+        let [x, y] = axes.map(|axis| axis.determinant());
+        if (x - y).abs() > SYMPLECTIC_TOLERANCE * x {
+            return Err(BeamError::Determinants { x, y });
+        }
+        let block = |entry: fn(&AbcdMatrix) -> f64| {
+            let [x, y] = &axes;
+            turn * DMat2::from_diagonal(DVec2::new(entry(x), entry(y))) * turn.transpose()
+        };
+        Ok(Self {
+            a: block(AbcdMatrix::a),
+            b: block(AbcdMatrix::b),
+            c: block(AbcdMatrix::c),
+            d: block(AbcdMatrix::d),
+            index_ratio: 0.5 * (x + y),
+        })
     }
 
     /// Creates the system of a straight path of `length`, in metres; a negative one leads back.
@@ -313,6 +353,34 @@ mod tests {
         let want = DVec2::new(-0.5e-3, -1.7e-3);
         assert!((position - want).length() < 1e-18, "{position}");
         assert_eq!(slope, ray[1], "free space bends no ray");
+    }
+
+    #[test]
+    fn a_system_of_two_axes_acts_along_each() {
+        let x = AbcdMatrix::new(0.5, 0.2, -2.0, 1.0).unwrap();
+        let y = AbcdMatrix::new(1.0, 0.3, 1.0, 1.2).unwrap();
+        let system = AstigmaticSystem::from_axes([x, y], 0.4).unwrap();
+        assert!((system.index_ratio() - 0.9).abs() < 1e-15, "{system:?}");
+        assert!(AstigmaticSystem::new(system.blocks()).is_ok(), "{system:?}");
+        for (matrix, angle) in [(x, 0.4), (y, 0.4 + FRAC_PI_2)] {
+            let along = DVec2::from_angle(angle);
+            let [position, slope] = system.transform_ray([1e-3 * along, 2e-3 * along]);
+            let [height, tilt] = matrix.transform_ray([1e-3, 2e-3]);
+            assert!((position - height * along).length() < 1e-17, "{position}");
+            assert!((slope - tilt * along).length() < 1e-17, "{slope}");
+        }
+        let lens = AbcdMatrix::thin_lens(0.2).unwrap();
+        let straight = AbcdMatrix::identity();
+        let cylinder = AstigmaticSystem::from_axes([lens, straight], 0.3).unwrap();
+        let same = AstigmaticSystem::cylinder_lens(0.2, 0.3).unwrap();
+        assert!(distance(&cylinder, &same) < 5e-15, "{cylinder:?}");
+        let glass = AstigmaticSystem::from_axes([x, lens], 0.3);
+        assert!(
+            matches!(glass, Err(BeamError::Determinants { .. })),
+            "{glass:?}"
+        );
+        let turned = AstigmaticSystem::from_axes([x, y], f64::NAN);
+        assert!(matches!(turned, Err(BeamError::Rotation(_))), "{turned:?}");
     }
 
     #[test]

@@ -91,6 +91,13 @@ pub enum BeamError {
     /// The ray matrix of four dimensions is not symplectic, as that of an optical system is; the
     /// number is its relative deviation.
     NotSymplectic(f64),
+    /// The ray matrices of the two axes of a system differ in determinant, the ratio of the indices.
+    Determinants {
+        /// The determinant of the first axis.
+        x: f64,
+        /// The determinant of the second axis.
+        y: f64,
+    },
     /// Half the trace of a round trip is not in the open interval (−1, 1): no beam reproduces
     /// itself.
     HalfTrace(f64),
@@ -231,6 +238,10 @@ impl fmt::Display for BeamError {
                 "ray matrix must be symplectic up to the ratio of the refractive indices, \
                  got a relative deviation of {got:e}"
             ),
+            Self::Determinants { x, y } => write!(
+                f,
+                "determinants of the two axes must be equal, got {x:e} and {y:e}"
+            ),
             Self::HalfTrace(got) => write!(
                 f,
                 "half the trace of a round trip must lie in (-1, 1), got {got:e}"
@@ -357,6 +368,11 @@ mod tests {
             (BeamError::MatrixEntry(f64::INFINITY), "matrix", "inf"),
             (BeamError::Determinant(-1.0), "determinant", "-1e0"),
             (BeamError::NotSymplectic(0.5), "symplectic", "5e-1"),
+            (
+                BeamError::Determinants { x: 1.0, y: 0.75 },
+                "determinants",
+                "7.5e-1",
+            ),
             (BeamError::HalfTrace(-1.25), "half the trace", "-1.25e0"),
             (BeamError::Length(1e31), "length", "1e31"),
             (BeamError::FocalLength(0.0), "focal length", "0e0"),

@@ -253,6 +253,7 @@ proptest! {
             prop_assert!(number.is_finite(), "{beam:?} at {point}: {number}");
         }
         for point in [point, DVec3::MAX, DVec3::MIN] {
+            prop_assert!(beam.irradiance_per_watt(point).is_finite(), "{beam:?} at {point}");
             prop_assert!(beam.flux_per_watt(point).is_finite(), "{beam:?} at {point}");
         }
         for plane in beam.circular_planes().into_iter().flatten() {

@@ -596,6 +596,7 @@ proptest! {
                 prop_assert!(numbers.iter().all(|v| !v.is_nan()), "{beam:?}, {point}: {numbers:?}");
                 prop_assert!(arrays.as_flattened().iter().all(|v| !v.is_nan()), "{beam:?}: {arrays:?}");
                 for point in [point, point.with_x(f64::MAX), DVec3::MIN] {
+                    prop_assert!(!beam.irradiance_per_watt(point).is_nan(), "{beam:?}: {point}");
                     prop_assert!(!beam.flux_per_watt(point).is_nan(), "{beam:?}: {point}");
                 }
                 prop_assert!(!beam.curvature_tensor_at(z).is_nan(), "{beam:?}: {z}");

@@ -12,20 +12,29 @@
 //!
 //! # Two faces
 //!
-//! - *Physics*, in `f64` and in the frame of the beam: [`GaussianBeam`] with z = 0 at the waist,
-//!   [`LaserLine`] with z = 0 at the lens. Constructors check, so that nothing fails later.
-//! - *Renderer*, in `f32` or `f64` and in world coordinates: [`SpotLight`] and [`LineLight`], plain
-//!   structs prepared from the above by a [`Placement`], queried through the trait [`Emitter`]:
-//!   next-event estimation, ray sampling, densities, radiance and bounds. The text of their
-//!   [closed forms](closed_form) in WGSL and C is for kernels that cannot call a library.
+//! *Physics*, in `f64` and in the frame of the beam. Constructors check, so that nothing fails later.
+//!
+//! - Beams: [`GaussianBeam`] (z = 0 at the waist), [`LocatedBeam`] (at a reference plane),
+//!   [`AstigmaticBeam`] (elliptic), [`GeneralAstigmaticBeam`] (behind a turned cylinder lens).
+//! - Optics: [`AbcdMatrix`] and [`ComplexBeamParameter`] for one axis, [`AstigmaticSystem`] for two.
+//! - Laser lines: [`LaserLine`] (z = 0 at the lens) with a [`LineProfile`].
+//! - Measurement: [`CrossSection`] for widths and apertures, [`CausticFit`] and [`KnifeEdgeFit`] for
+//!   what was measured.
+//!
+//! *Renderer*, in `f32` or `f64` and in world coordinates: [`SpotLight`], [`AstigmaticLight`],
+//! [`LineLight`] and [`TabulatedLineLight`], plain structs prepared from the above by a
+//! [`Placement`], queried through the trait [`Emitter`]: next-event estimation, ray sampling,
+//! densities, radiance, bounds and batches. The text of their [closed forms](closed_form) in WGSL
+//! and C is for kernels that cannot call a library.
 //!
 //! Formulas as printed by Bergmann et al. 2016, each with the size of its error, are in [`paper`].
 //!
 //! # Scope and non-goals
 //!
-//! Paraxial, scalar, circular beams of one wavelength, with M² ≥ 1, in free space and through ideal
-//! lenses, mirrors and interfaces. Not here: elliptic beams, aberrations, beams wider than 0.5 rad,
-//! polarisation, interference between beams, and what a surface does with the light.
+//! Paraxial, scalar beams of one wavelength, with M² ≥ 1, in free space and through ideal lenses,
+//! mirrors and interfaces. Not here: aberrations, beams wider than 0.5 rad, higher modes other than
+//! through M², pulses, polarisation, interference between beams, and what a surface does with the
+//! light. It is no laser-safety tool.
 //!
 //! # Examples
 //!

@@ -27,8 +27,12 @@ use crate::real::Real;
 ///
 /// # Validity
 ///
-/// In `f32` the irradiance carries the rounding of the coordinates: its relative error is about
-/// `4 ε |p| / w`, with ε = 1.2e−7, the coordinates `p` and the beam radius `w`.
+/// In `f32` the irradiance carries the rounding of the coordinates: within two beam radii of the axis
+/// its relative error stays below `4 ε |p| / w`, with ε = 1.2e−7, the larger one `|p|` of the distances
+/// of the point and of the light from the world's origin, and the smaller beam radius `w`.
+///
+/// The batch forms give the bits of single calls, with and without the feature `simd`, which compiles
+/// their loops for the widest vector instructions that the processor turns out to have.
 ///
 /// The trait is sealed. [`SpotLight`](crate::SpotLight), [`LineLight`](crate::LineLight) and
 /// [`AstigmaticLight`](crate::AstigmaticLight) implement it.

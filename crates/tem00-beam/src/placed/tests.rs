@@ -468,6 +468,45 @@ fn a_laser_without_power_is_dark() {
     );
 }
 
+/// Checks the error that `Emitter` states for `f32`, 4 ε |p| / w, at points of an even spread within
+/// two radii `w(z)` of the axis or, in a line, of the fan plane.
+///
+/// The error is that of five roundings of ε/2 each, times the derivative of ln E, 4 x / w². That is
+/// 20 ε |p| / w where all roundings conspire, and a fifth of it in practice.
+fn check_single<T: Emitter<f64>>(light: &T, single: &impl Emitter<f32>, w: impl Fn(f64) -> f64) {
+    for i in 0..20_000 {
+        let fraction = |step: f64| (f64::from(i) * step).fract() - 0.5;
+        let z = 0.25 + 0.5 * fraction(0.732_050_807_6);
+        let rho = 2.0 * (fraction(0.414_213_562_4) + 0.5).sqrt();
+        let (sin, cos) = (6.3 * fraction(0.618_033_988_7)).sin_cos();
+        let mut local = rho * w(z) * DVec3::new(cos, sin, 0.0) + z * DVec3::Z;
+        if light.reach(z).half_width[0] > 0.3 * z {
+            local.x = 0.2 * z * cos;
+        }
+        let p = world(local).map(<f32 as Scalar>::of);
+        let double = p.map(f64::from);
+        let error = f64::from(single.irradiance(p)) / light.irradiance(double) - 1.0;
+        let size = DVec3::from(double).length().max(ORIGIN.length());
+        let bound = 4.0 * f64::from(f32::EPSILON) * size / w(z);
+        assert!(error.abs() <= bound, "{local}: {error:e} > {bound:e}");
+    }
+}
+
+#[test]
+fn single_precision_has_the_stated_error() {
+    let circular = |z: f64| beam().radius_at(z - 0.15);
+    check_single(&spot(), &spot().to_f32().unwrap(), circular);
+    for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
+        let line = LineLight::place(&laser_line(profile), &placement(), POWER).unwrap();
+        check_single(&line, &line.to_f32().unwrap(), circular);
+    }
+    let smaller = |z: f64| elliptic().radii_at(z).into_iter().fold(1.0, f64::min);
+    let spot = SpotLight::place_astigmatic(&elliptic(), &placement(), POWER).unwrap();
+    check_single(&spot, &spot.to_f32().unwrap(), smaller);
+    let light = AstigmaticLight::place(&elliptic().into(), &placement(), POWER).unwrap();
+    check_single(&light, &light.to_f32().unwrap(), smaller);
+}
+
 proptest! {
     /// Rounding moves a point by ε|p| and that changes ln E by 4 x/w² times as much, x ≤ ρ w.
     #[test]

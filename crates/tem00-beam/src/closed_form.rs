@@ -1,8 +1,9 @@
 //! The closed forms of irradiance and next event, as source text for kernels and for C.
 //!
 //! A kernel on a GPU and a just-in-time compiled renderer cannot call this crate. They copy a
-//! prepared [`SpotLight`](crate::SpotLight) or [`LineLight`](crate::LineLight) in `f32` and evaluate
-//! it themselves: the structs have the same layout on both sides.
+//! prepared [`SpotLight`](crate::SpotLight), [`AstigmaticLight`](crate::AstigmaticLight) or
+//! [`LineLight`](crate::LineLight) in `f32` and evaluate it themselves: the structs have the same
+//! layout on both sides.
 //!
 //! # Examples
 //!
@@ -19,12 +20,12 @@
 //! assert!(module.contains("fn tem00_spot_next_event("));
 //! ```
 
-/// Irradiance and next event of spots and lines in WGSL: functions and structs without bindings.
+/// Irradiance and next event of all lights in WGSL: functions and structs without bindings.
 ///
 /// Its front page says what they take and return.
 pub const WGSL: &str = include_str!("../shaders/tem00_beam.wgsl");
 
-/// Irradiance and next event of spots and lines in C99, for `float` and for `double`.
+/// Irradiance and next event of all lights in C99, for `float` and for `double`.
 ///
 /// The text of the header `tem00_beam.h`, which includes itself by that name: save it under it.
 pub const C_HEADER: &str = include_str!("../include/tem00_beam.h");

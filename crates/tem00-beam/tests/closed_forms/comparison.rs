@@ -87,7 +87,7 @@ impl<'a, L: Emitter<f64>> Judge<'a, L> {
         } = self;
         let name = &self.sample.name;
         let counts = format!("{name}: {lit} lit, {dark} dark, {on_the_edge} on the edge");
-        assert!(lit >= 1000 && dark >= 200 && on_the_edge <= 100, "{counts}");
+        assert!(lit >= 500 && dark >= 100 && on_the_edge <= 50, "{counts}");
     }
 
     fn tolerance(&self, p: [f64; 3], expected: &Answer, nearby: &[Answer; 6]) -> Answer {

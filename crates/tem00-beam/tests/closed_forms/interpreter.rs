@@ -93,8 +93,8 @@ struct Frame<'a> {
     function: &'a Function,
     arguments: &'a [Value],
     locals: HashMap<Handle<LocalVariable>, Value>,
-    /// What has been emitted, and the results of calls.
-    values: HashMap<Handle<Expression>, Value>,
+    /// What has been emitted, and the results of calls, by expression.
+    values: Vec<Option<Value>>,
 }
 
 impl<'a> Frame<'a> {
@@ -105,7 +105,7 @@ impl<'a> Frame<'a> {
             function,
             arguments,
             locals: HashMap::new(),
-            values: HashMap::new(),
+            values: vec![None; function.expressions.len()],
         };
         for (handle, local) in function.local_variables.iter() {
             let value = match local.init {
@@ -148,7 +148,7 @@ impl<'a> Frame<'a> {
                 let arguments: Vec<_> = arguments.iter().map(|a| self.value(*a)).collect();
                 let callee = &self.module.functions[*function];
                 let value = Frame::new(self.module, callee, &arguments).run(&callee.body);
-                self.values.insert(*result, value.expect("a result"));
+                self.values[result.index()] = value;
             }
             other => panic!("unknown statement {other:?}"),
         }
@@ -160,7 +160,7 @@ impl<'a> Frame<'a> {
             // Pointers are followed when they are loaded or stored to.
             if !self.is_pointer(handle) {
                 let value = self.evaluate(handle);
-                self.values.insert(handle, value);
+                self.values[handle.index()] = Some(value);
             }
         }
     }
@@ -187,7 +187,7 @@ impl<'a> Frame<'a> {
 
     /// Returns a value that has been emitted, or need not be.
     fn value(&mut self, handle: Handle<Expression>) -> Value {
-        match self.values.get(&handle) {
+        match &self.values[handle.index()] {
             Some(value) => value.clone(),
             None => self.evaluate(handle),
         }

@@ -1,9 +1,10 @@
 /* Reads a light and points from standard input, and prints the light's answers.
  *
- * The first word is `spot` or `line`, then come the numbers of the light in the order of memory,
- * then points up to the end. Each point gives one line: the irradiance, then the members of the
- * next event. The word `layout` alone prints the offset of every member and the size of every
- * struct.
+ * The first word is `spot`, `astigmatic` or `line`, then come the numbers of the light in the order
+ * of memory, then points up to the end. Each point gives one line: the irradiance, then the members
+ * of the next event. The word `layout` alone prints the offset of every member and the size of
+ * every struct.
+ *
  * With SINGLE defined everything is in float, else in double.
  */
 #include "tem00_beam.h"
@@ -23,9 +24,10 @@ typedef double Real;
 #define FN(name) tem00_##name##_f64
 #endif
 
-/* One of the two, filled number by number. */
+/* One of the three, filled number by number. */
 typedef union {
     TYPE(SpotLight) spot;
+    TYPE(AstigmaticLight) astigmatic;
     TYPE(LineLight) line;
     Real numbers[28];
 } Light;
@@ -50,19 +52,27 @@ static void print_answer(Real irradiance, TYPE(NextEvent) event) {
     }
 }
 
-static int answer(int is_spot) {
+/* Answers the points with the light that is in the member `kind` of the union. */
+#define ANSWER(kind)                                                                      \
+    do {                                                                                  \
+        if (!read_reals(light.numbers, sizeof light.kind / sizeof(Real))) {               \
+            return 1;                                                                     \
+        }                                                                                 \
+        while (read_reals(p, 3)) {                                                        \
+            print_answer(FN(kind##_irradiance)(&light.kind, p),                           \
+                         FN(kind##_next_event)(&light.kind, p));                          \
+        }                                                                                 \
+    } while (0)
+
+static int answer(const char *kind) {
     Light light;
     Real p[3];
-    const size_t size = is_spot ? sizeof light.spot : sizeof light.line;
-    if (!read_reals(light.numbers, size / sizeof(Real))) {
-        return 1;
-    }
-    while (read_reals(p, 3)) {
-        if (is_spot) {
-            print_answer(FN(spot_irradiance)(&light.spot, p), FN(spot_next_event)(&light.spot, p));
-        } else {
-            print_answer(FN(line_irradiance)(&light.line, p), FN(line_next_event)(&light.line, p));
-        }
+    if (strcmp(kind, "spot") == 0) {
+        ANSWER(spot);
+    } else if (strcmp(kind, "astigmatic") == 0) {
+        ANSWER(astigmatic);
+    } else {
+        ANSWER(line);
     }
     return 0;
 }
@@ -80,6 +90,14 @@ static void print_layout(void) {
     MEMBER(NextEvent, point), MEMBER(NextEvent, distance), MEMBER(NextEvent, wi);
     MEMBER(NextEvent, e_perp);
     SIZE(NextEvent);
+    MEMBER(Ellipse, xx), MEMBER(Ellipse, xy), MEMBER(Ellipse, yy), MEMBER(Ellipse, pad);
+    SIZE(Ellipse);
+    MEMBER(AstigmaticLight, origin), MEMBER(AstigmaticLight, power), MEMBER(AstigmaticLight, ex);
+    MEMBER(AstigmaticLight, cutoff), MEMBER(AstigmaticLight, ey), MEMBER(AstigmaticLight, pad_ey);
+    MEMBER(AstigmaticLight, ez), MEMBER(AstigmaticLight, pad_ez);
+    MEMBER(AstigmaticLight, position), MEMBER(AstigmaticLight, slope);
+    MEMBER(AstigmaticLight, position_per_slope);
+    SIZE(AstigmaticLight);
     MEMBER(LineLight, origin), MEMBER(LineLight, power), MEMBER(LineLight, ex);
     MEMBER(LineLight, cutoff), MEMBER(LineLight, ey), MEMBER(LineLight, apex_offset);
     MEMBER(LineLight, ez), MEMBER(LineLight, source_radius), MEMBER(LineLight, y);
@@ -98,5 +116,5 @@ int main(void) {
         print_layout();
         return 0;
     }
-    return answer(strcmp(word, "spot") == 0);
+    return answer(word);
 }

@@ -8,7 +8,7 @@ use tem00_beam::{Emitter, LineLight};
 use super::comparison::{Answer, Judge};
 use super::interpreter::{Value, call, load, type_of};
 use super::layouts::{Layout, layouts};
-use super::lights::{Sample, lines, single_precision, spots};
+use super::lights::{Sample, astigmatic_beams, lines, single_precision, spots};
 
 fn module() -> Module {
     naga::front::wgsl::parse_str(WGSL)
@@ -84,6 +84,11 @@ fn spots_agree_with_the_light_in_double_precision() {
 }
 
 #[test]
+fn astigmatic_beams_agree_with_the_light_in_double_precision() {
+    agree("astigmatic", "Tem00AstigmaticLight", &astigmatic_beams());
+}
+
+#[test]
 fn lines_agree_with_the_light_in_double_precision() {
     agree("line", "Tem00LineLight", &lines());
 }
@@ -100,6 +105,33 @@ fn a_line_whose_profile_is_a_table_is_dark() {
         let answer = evaluate(&module, "line", &light, single_precision(*p));
         assert!(answer.iter().all(|x| x.abs() <= 0.0), "{p:?}: {answer:?}");
     }
+}
+
+/// Evaluates points in the same directions as the sample's, up to 1e9 m away.
+fn stays_finite<L: Emitter<f64>>(kind: &str, name: &str, samples: &[Sample<L>]) {
+    let module = module();
+    for sample in samples {
+        let light = load(&module, type_of(&module, name), &sample.fields);
+        let origin: [f64; 3] = core::array::from_fn(|i| f64::from(sample.fields[i]));
+        let mut lit = 0;
+        for p in &sample.points[..200] {
+            for scale in [1e3, 1e6, 1e9] {
+                let far = core::array::from_fn(|i| origin[i] + scale * (p[i] - origin[i]));
+                let answer = evaluate(&module, kind, &light, single_precision(far));
+                let finite = answer.iter().all(|x| x.is_finite());
+                assert!(finite, "{} at {far:?}: {answer:?}", sample.name);
+                lit += usize::from(answer[0] > 0.0);
+            }
+        }
+        assert!(lit >= 100, "{}: {lit} points were lit", sample.name);
+    }
+}
+
+#[test]
+fn far_points_have_finite_answers() {
+    stays_finite("spot", "Tem00SpotLight", &spots());
+    stays_finite("astigmatic", "Tem00AstigmaticLight", &astigmatic_beams());
+    stays_finite("line", "Tem00LineLight", &lines());
 }
 
 #[test]

@@ -1,14 +1,14 @@
 use glam::DVec3;
 use tem00_beam::{
-    BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile, Placement,
-    SpotLight, paper,
+    BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile, NextEvent,
+    Placement, SpotLight, TabulatedLineLight, paper,
 };
 use tem00_decorrelation::{DecorrelationError, Wavefront};
 
 use crate::TracerError;
 
 /// What determines a [`Laser`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LaserDescription {
     /// The vacuum wavelength, in metres.
     pub wavelength: f64,
@@ -25,7 +25,7 @@ pub struct LaserDescription {
 }
 
 /// The shape of a laser's beam.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum BeamShape {
     /// A round Gaussian beam.
     Spot {
@@ -50,19 +50,20 @@ pub enum BeamShape {
 }
 
 /// A laser in the scene: a spot or a line, placed, with its power.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Laser {
     description: LaserDescription,
     source: Source,
 }
 
 /// The beam and the light prepared from it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Source {
     Spot {
         beam: GaussianBeam,
         light: SpotLight<f64>,
     },
+    /// The table of a tabulated profile stays in the line.
     Line {
         line: LaserLine,
         light: LineLight<f64>,
@@ -83,8 +84,8 @@ impl Laser {
             fan_axis: description.line_direction,
         };
         let (wavelength, power) = (description.wavelength, description.power);
-        let source = match description.shape {
-            BeamShape::Spot {
+        let source = match &description.shape {
+            &BeamShape::Spot {
                 waist_radius,
                 waist_distance,
                 m_squared,
@@ -101,12 +102,10 @@ impl Laser {
                 fan,
                 profile,
             } => {
-                let line =
-                    LaserLine::new(beam(wavelength, waist_radius, m_squared)?, fan, profile)?;
-                Source::Line {
-                    line,
-                    light: LineLight::place(&line, &placement, power)?,
-                }
+                let focus = beam(wavelength, *waist_radius, *m_squared)?;
+                let line = LaserLine::new(focus, *fan, profile.clone())?;
+                let light = line_light(&line, &placement, power)?;
+                Source::Line { line, light }
             }
         };
         Ok(Self {
@@ -134,7 +133,7 @@ impl Laser {
     pub(crate) fn illuminate(&self, point: DVec3) -> Option<Illumination> {
         let event = match &self.source {
             Source::Spot { light, .. } => light.next_event(point.to_array()),
-            Source::Line { light, .. } => light.next_event(point.to_array()),
+            Source::Line { line, light } => line_event(line, light, point.to_array()),
         }?;
         Some(Illumination {
             source: DVec3::from_array(event.point),
@@ -181,9 +180,8 @@ impl Laser {
             Source::Line { line, light } => {
                 let depth = along(light.ez) + line.fan().apex_offset;
                 let slant = along(light.ex).hypot(depth);
-                let across = line
-                    .focus()
-                    .curvature_at(slant - line.waist_slant_distance());
+                let waist = line.waist_slant_distance_at(along(light.ex) / depth);
+                let across = line.focus().curvature_at(slant - waist);
                 let normal = DVec3::from_array(light.ey);
                 Wavefront::astigmatic(direction, normal, across, 1.0 / slant)
             }
@@ -200,6 +198,30 @@ fn beam(wavelength: f64, waist_radius: f64, m_squared: f64) -> Result<GaussianBe
     GaussianBeam::from_waist(wavelength, waist_radius)?.with_m_squared(m_squared)
 }
 
+/// Places a line; the table of a tabulated profile is left to [`line_event`].
+fn line_light(
+    line: &LaserLine,
+    placement: &Placement,
+    power: f64,
+) -> Result<LineLight<f64>, BeamError> {
+    match line.profile() {
+        LineProfile::Tabulated(_) => {
+            TabulatedLineLight::place(line, placement, power).map(|light| light.line)
+        }
+        _ => LineLight::place(line, placement, power),
+    }
+}
+
+fn line_event(line: &LaserLine, light: &LineLight<f64>, point: [f64; 3]) -> Option<NextEvent<f64>> {
+    match line.profile() {
+        LineProfile::Tabulated(profile) => {
+            let (line, knots) = (*light, profile.knots());
+            TabulatedLineLight { line, knots }.next_event(point)
+        }
+        _ => light.next_event(point),
+    }
+}
+
 /// How a laser lights a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Illumination {
@@ -209,4 +231,76 @@ pub(crate) struct Illumination {
     pub direction: DVec3,
     /// The irradiance on a plane across that direction, in W/m².
     pub irradiance: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use tem00_beam::{AngularProfile, FocusCurve};
+
+    use super::*;
+
+    /// A line of 60° in focus at 0.3 m, from the origin along z.
+    fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {
+        let shape = BeamShape::Line {
+            waist_radius: 0.1e-3,
+            m_squared: 1.0,
+            fan: FanGeometry {
+                fan_angle: 60_f64.to_radians(),
+                apex_offset: 2e-3,
+                focus_distance: 0.3,
+                focus_curve,
+            },
+            profile,
+        };
+        Laser::new(LaserDescription {
+            wavelength: 650e-9,
+            power: 5e-3,
+            position: DVec3::ZERO,
+            look_at: DVec3::Z,
+            line_direction: DVec3::X,
+            shape,
+        })
+        .unwrap()
+    }
+
+    #[test]
+    fn the_wavefront_across_a_line_is_flat_where_its_focus_curve_says() {
+        let slope = 0.4_f64;
+        let on_plane = DVec3::new(0.302 * slope, 0.0, 0.3);
+        let cos = slope.atan().cos();
+        let on_circle = DVec3::new(0.302 * slope * cos, 0.0, 0.302 * cos - 2e-3);
+        let cases = [
+            (FocusCurve::EqualPlane, on_plane, on_circle),
+            (FocusCurve::EqualDistance, on_circle, on_plane),
+        ];
+        for (focus_curve, flat, curved) in cases {
+            let laser = line(LineProfile::GaussianTan, focus_curve);
+            let across = [flat, curved].map(|point| {
+                let direction = laser.illuminate(point).unwrap().direction;
+                let curvature = laser.wavefront_at(point, direction).unwrap().curvature();
+                DVec3::Y.dot(curvature * DVec3::Y)
+            });
+            assert!(across[0].abs() < 1e-9, "{focus_curve:?}: {across:?}");
+            assert!(across[1].abs() > 1.0, "{focus_curve:?}: {across:?}");
+        }
+    }
+
+    #[test]
+    fn a_tabulated_line_lights_what_its_table_says() {
+        let table = AngularProfile::from_pairs(&[(-0.2, 1.0), (0.0, 2.0), (0.4, 0.0)]).unwrap();
+        let laser = line(LineProfile::Tabulated(table), FocusCurve::EqualPlane);
+        let at = |theta: f64| {
+            let point = DVec3::new(0.302 * theta.tan(), 0.0, 0.3);
+            let light = laser.illuminate(point);
+            light.map_or(0.0, |light| light.irradiance)
+        };
+        // E = P f(θ) / r · √(2/π) / w₀ on the plane of focus, and ∫ f = 0.3 + 0.4.
+        for (theta, f) in [(0.0, 2.0), (-0.1, 1.5), (0.2, 1.0)] {
+            let r = 0.302 / f64::cos(theta);
+            let expected = 5e-3 * (f / 0.7) / r * core::f64::consts::FRAC_2_PI.sqrt() / 0.1e-3;
+            let error = at(theta) / expected - 1.0;
+            assert!(error.abs() < 1e-12, "{theta}: {error:e}");
+        }
+        assert!(at(-0.21) <= 0.0 && at(0.41) <= 0.0, "outside the table");
+    }
 }

@@ -2,7 +2,7 @@ use core::f64::consts::PI;
 use core::ops::Bound;
 
 use glam::DVec3;
-use tem00_beam::{FanGeometry, GaussianBeam, LineProfile};
+use tem00_beam::{AngularProfile, BeamError, FanGeometry, FocusCurve, GaussianBeam, LineProfile};
 
 use super::error::Problem;
 use super::placement::{Placement, across, rejected};
@@ -25,6 +25,7 @@ const LINE_KEYS: &[&str] = &[
     "fan_angle",
     "thickness",
     "focus_distance",
+    "focus_curve",
     "apex_offset",
     "profile",
     "edge",
@@ -33,7 +34,17 @@ const LINE_KEYS: &[&str] = &[
 pub(super) const SHAPES: &[Choice] = &[("spot", SPOT_KEYS), ("line", LINE_KEYS)];
 const PROFILES: &[(&str, LineProfile)] = &[
     ("gaussian", LineProfile::GaussianTan),
+    ("gaussian_angle", LineProfile::GaussianAngle),
+    ("gaussian_sin", LineProfile::GaussianSin),
+    ("uniform", LineProfile::UniformTan),
+    ("uniform_angle", LineProfile::UniformAngle),
     ("powell", LineProfile::Powell { edge: 0.05 }),
+];
+
+const TABLE_KEYS: &[&str] = &["angles", "powers"];
+const FOCUS_CURVES: &[(&str, FocusCurve)] = &[
+    ("distance", FocusCurve::EqualDistance),
+    ("plane", FocusCurve::EqualPlane),
 ];
 
 pub(super) fn read(root: &Section<'_>) -> Result<Vec<Laser>, Problem> {
@@ -107,6 +118,9 @@ fn line(section: &Section<'_>, distance: f64, wavelength: f64) -> Result<BeamSha
             fan_angle,
             apex_offset: section.or("apex_offset", apex_offset, |value| value.positive(&LENGTH))?,
             focus_distance,
+            focus_curve: section.or("focus_curve", FocusCurve::default(), |value| {
+                value.one_of(FOCUS_CURVES)
+            })?,
         },
         profile: profile(section)?,
     })
@@ -118,7 +132,11 @@ fn m_squared(value: &Value<'_>) -> Result<f64, Problem> {
 
 fn profile(section: &Section<'_>) -> Result<LineProfile, Problem> {
     let profile = section.or("profile", LineProfile::GaussianTan, |value| {
-        value.one_of(PROFILES)
+        if value.is_table() {
+            table(section).map(LineProfile::Tabulated)
+        } else {
+            value.one_of(PROFILES)
+        }
     })?;
     match (profile, section.optional("edge")) {
         (profile, None) => Ok(profile),
@@ -129,4 +147,30 @@ fn profile(section: &Section<'_>) -> Result<LineProfile, Problem> {
             .at(edge.span())
             .with_help("write `profile = \"powell\"` as well")),
     }
+}
+
+/// Reads the power per angle of a data sheet.
+fn table(section: &Section<'_>) -> Result<AngularProfile, Problem> {
+    let Some(table) = section.table("profile", TABLE_KEYS)? else {
+        return Err(section.problem("the profile needs a table"));
+    };
+    let angles = table.required("angles", "[\"-30 deg\", 0, \"30 deg\"]")?;
+    let powers = table.required("powers", "[0.8, 1, 0.8]")?;
+    let angles = angles.list("a list of angles")?;
+    let powers = powers.list("a list of numbers")?;
+    let radians: Result<Vec<f64>, Problem> =
+        angles.iter().map(|angle| angle.quantity(&ANGLE)).collect();
+    let relative: Result<Vec<f64>, Problem> =
+        powers.iter().map(|power| power.quantity(&NUMBER)).collect();
+    AngularProfile::new(&radians?, &relative?).map_err(|error| {
+        let culprit = match error {
+            BeamError::ProfileAngle { index, .. } => angles.get(index),
+            BeamError::ProfilePower { index, .. } => powers.get(index),
+            _ => None,
+        };
+        match culprit {
+            Some(value) => Problem::new(error.to_string()).at(value.span()),
+            None => table.problem(error),
+        }
+    })
 }

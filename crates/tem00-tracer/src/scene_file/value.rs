@@ -140,10 +140,10 @@ impl<'a> Value<'a> {
     }
 
     /// Returns what the string names among `choices`.
-    pub(super) fn one_of<T: Copy>(&self, choices: &[(&'static str, T)]) -> Result<T, Problem> {
+    pub(super) fn one_of<T: Clone>(&self, choices: &[(&'static str, T)]) -> Result<T, Problem> {
         let text = self.string()?;
         if let Some((_, chosen)) = choices.iter().find(|(name, _)| *name == text) {
-            return Ok(*chosen);
+            return Ok(chosen.clone());
         }
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
         let problem = self.must_be(format_args!("one of \"{}\"", names.join("\", \"")));
@@ -153,20 +153,27 @@ impl<'a> Value<'a> {
         })
     }
 
+    /// Returns whether the value is a table.
+    pub(super) fn is_table(&self) -> bool {
+        self.item.get_ref().is_table()
+    }
+
     /// Returns the elements of an array of exactly `N`.
     pub(super) fn elements<const N: usize>(&self, allowed: &str) -> Result<[Self; N], Problem> {
-        let array = self.item.get_ref().as_array();
-        let elements: Vec<Self> = array
-            .into_iter()
-            .flat_map(|array| array.iter())
-            .enumerate()
-            .map(|(index, item)| Self {
-                name: format!("element {} of {}", index + 1, self.name),
-                item,
-                source: self.source,
-            })
-            .collect();
+        let elements = self.list(allowed)?;
         elements.try_into().map_err(|_| self.must_be(allowed))
+    }
+
+    /// Returns the elements of an array of any length.
+    pub(super) fn list(&self, allowed: &str) -> Result<Vec<Self>, Problem> {
+        let array = self.item.get_ref().as_array();
+        let items = array.ok_or_else(|| self.must_be(allowed))?.iter();
+        let element = |(index, item)| Self {
+            name: format!("element {} of {}", index + 1, self.name),
+            item,
+            source: self.source,
+        };
+        Ok(items.enumerate().map(element).collect())
     }
 
     /// Returns a vector of three lengths, in metres.

@@ -1,6 +1,6 @@
 use approx::assert_relative_eq;
 use glam::DVec3;
-use tem00_beam::LineProfile;
+use tem00_beam::{AngularProfile, FocusCurve, LineProfile};
 
 use super::{CAMERA, LASER, SURFACE, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
 use crate::{BeamShape, Lamp, Material, Metal, RenderSettings, Shape, SpeckleSettings};
@@ -58,14 +58,15 @@ fn a_line_fans_out_from_where_its_round_beam_would_be_a_point() {
     let BeamShape::Line {
         waist_radius,
         fan,
-        profile,
+        ref profile,
         ..
     } = scene.lasers[0].description().shape
     else {
         panic!("not a line");
     };
     assert_relative_eq!(waist_radius, 0.1e-3);
-    assert_eq!(profile, LineProfile::Powell { edge: 0.05 }, "profile");
+    assert_eq!(*profile, LineProfile::Powell { edge: 0.05 }, "profile");
+    assert_eq!(fan.focus_curve, FocusCurve::EqualDistance, "focus curve");
     // w(z) = w₀ √(1 + (z/z_R)²) = 0.473 mm at the lens, over tan 15° = 0.268.
     let z_r = core::f64::consts::PI * 1e-8 / 650e-9;
     let width = 1e-4 * (1.0 + 0.05 / (z_r * z_r)).sqrt();
@@ -74,6 +75,35 @@ fn a_line_fans_out_from_where_its_round_beam_would_be_a_point() {
         width / 15_f64.to_radians().tan(),
         max_relative = 1e-12
     );
+}
+
+#[test]
+fn lines_have_named_and_tabulated_profiles() {
+    let table = [(-10_f64, 0.8), (0.0, 1.0), (12.0, 0.0)]
+        .map(|(d, p)| (d * core::f64::consts::PI / 180.0, p));
+    let cases = [
+        ("\"gaussian\"", LineProfile::GaussianTan),
+        ("\"gaussian_angle\"", LineProfile::GaussianAngle),
+        ("\"gaussian_sin\"", LineProfile::GaussianSin),
+        ("\"uniform\"", LineProfile::UniformTan),
+        ("\"uniform_angle\"", LineProfile::UniformAngle),
+        (
+            "{ angles = [\"-10 deg\", 0, \"12 deg\"], powers = [0.8, 1, 0] }",
+            LineProfile::Tabulated(AngularProfile::from_pairs(&table).unwrap()),
+        ),
+    ];
+    for (text, expected) in cases {
+        let line = "line = { fan_angle = \"20 deg\", thickness = \"0.2 mm\", profile = ";
+        let scene = parse(&with(
+            "spot.waist_radius = \"0.5 mm\"",
+            &format!("{line}{text} }}"),
+        ));
+        let scene = scene.unwrap();
+        let BeamShape::Line { ref profile, .. } = scene.lasers[0].description().shape else {
+            panic!("not a line");
+        };
+        assert_eq!(*profile, expected, "{text}");
+    }
 }
 
 #[test]
@@ -144,6 +174,7 @@ fn every_key_reaches_the_scene() {
         fan_angle = "20 deg"
         thickness = "0.3 mm"
         focus_distance = "250 mm"
+        focus_curve = "plane"
         apex_offset = "4 mm"
         profile = "powell"
         edge = 0.1
@@ -193,7 +224,7 @@ fn every_key_reaches_the_scene() {
     let BeamShape::Line {
         fan,
         m_squared,
-        profile,
+        ref profile,
         ..
     } = laser.shape
     else {
@@ -203,7 +234,8 @@ fn every_key_reaches_the_scene() {
     assert_relative_eq!(fan.focus_distance, 0.25);
     assert_relative_eq!(fan.apex_offset, 4e-3);
     assert_relative_eq!(m_squared, 1.2);
-    assert_eq!(profile, LineProfile::Powell { edge: 0.1 }, "profile");
+    assert_eq!(*profile, LineProfile::Powell { edge: 0.1 }, "profile");
+    assert_eq!(fan.focus_curve, FocusCurve::EqualPlane, "focus curve");
     let ball = &scene.surfaces[0];
     assert_eq!(ball.name, "ball", "name");
     assert_eq!(ball.displacement_per_frame, 0.25e-3 * DVec3::X, "motion");

@@ -247,6 +247,62 @@ fn names_of_metals_and_profiles_must_be_known() {
     let line = line.replace("profile = \"gauss\"", "edge = 0.1");
     let edge = with("spot.waist_radius = \"0.5 mm\"", &line);
     assert_refused(&edge, 7, &["`edge`", "powell"]);
+    let curve = line.replace("edge = 0.1", "focus_curve = \"circle\"");
+    let curve = with("spot.waist_radius = \"0.5 mm\"", &curve);
+    assert_refused(&curve, 7, &["`focus_curve`", "\"distance\", \"plane\""]);
+}
+
+#[test]
+fn tables_of_a_profile_must_be_tables_of_power() {
+    let with_profile = |profile: &str| {
+        let line = "line = { fan_angle = 1, thickness = \"1 mm\", profile = ";
+        with(
+            "spot.waist_radius = \"0.5 mm\"",
+            &format!("{line}{profile} }}"),
+        )
+    };
+    let cases: [(&str, &[&str]); 8] = [
+        ("{ angles = [0, 1] }", &["needs the key `powers`"]),
+        ("{ powers = [0, 1] }", &["needs the key `angles`"]),
+        (
+            "{ angles = 1, powers = [0, 1] }",
+            &["`angles`", "a list of angles", "got 1"],
+        ),
+        (
+            "{ angles = [0, 1], powers = [\"x\", 1] }",
+            &["element 1 of `powers`"],
+        ),
+        (
+            "{ angles = [0, 1], powers = [1] }",
+            &["2 angles and 1 powers"],
+        ),
+        (
+            "{ angles = [0, 1, 0.5], powers = [1, 1, 1] }",
+            &["angles", "at index 2"],
+        ),
+        (
+            "{ angles = [0, 1], powers = [1, -1] }",
+            &["powers", "at index 1"],
+        ),
+        (
+            "{ angles = [0, 1], power = [1, 1] }",
+            &["unknown key `power`", "`powers`"],
+        ),
+    ];
+    for (profile, words) in cases {
+        assert_refused(&with_profile(profile), 7, words);
+    }
+    let error = parse(&with_profile(
+        "{ angles = [0, 1, 0.5], powers = [1, 1, 1] }",
+    ))
+    .unwrap_err();
+    let text = with_profile("{ angles = [0, 1, 0.5], powers = [1, 1, 1] }");
+    let column = text.lines().nth(6).and_then(|line| line.find("0.5]"));
+    assert_eq!(
+        error.line_column(),
+        column.map(|column| (7, column + 1)),
+        "{error}"
+    );
 }
 
 #[test]

@@ -61,6 +61,7 @@ use crate::real::Real;
 /// ```
 pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// Returns the irradiance, in W/m², of a plane through `p` at right angles to the axis.
+    #[inline]
     fn irradiance(&self, p: [T; 3]) -> T {
         irradiance_at(self, p)
     }
@@ -85,6 +86,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// A surface of normal `n` receives the irradiance `e_perp · |n·wi|`, and reflects
     /// `f · |n·wi| · V · e_perp`. Returns `None` outside the cut-off and behind the aperture, where
     /// no shadow ray is needed.
+    #[inline]
     fn next_event(&self, p: [T; 3]) -> Option<NextEvent<T>> {
         Some(event_at(self, p)).filter(|event| event.e_perp > T::ZERO)
     }
@@ -94,6 +96,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// The estimate of the reflected radiance is `f · |n·wi| · V · value`: `value` has been divided
     /// by the density already. The mean over `u` is that of [`next_event`](Self::next_event).
     /// Returns `None` outside the cut-off and behind the aperture.
+    #[inline]
     fn next_event_sampled(&self, p: [T; 3], u: [T; 2]) -> Option<SampledEvent<T>> {
         let frame = self.frame();
         let local = frame.local_from_world_point(p);
@@ -116,6 +119,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// ```text
     /// radiance · cos / (pdf_position · pdf_direction) = power
     /// ```
+    #[inline]
     fn sample_ray(&self, u: [T; 4]) -> RaySample<T> {
         let frame = self.frame();
         let (position, slope) = self.draw(u);

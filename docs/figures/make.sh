@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pictures of this folder again: one small render of every scene.
+# Makes the pictures of this folder again: one small render of every scene, and the diagrams of the
+# examples.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 work="$(mktemp -d)"
@@ -10,3 +11,7 @@ done
 cargo run --locked --release -- render scenes/spot.toml --spp "${1:-64}" --no-speckle -o "$work/without"
 cp "$work"/*.png docs/figures/
 cp "$work/without/spot.png" docs/figures/spot_without_speckle.png
+for example in beam_caustic focus_by_lens knife_edge line_profile phase_space; do
+    cargo run --locked --release --example "$example"
+    cp "out/$example.svg" docs/figures/
+done

@@ -11,7 +11,7 @@ use crate::{
 
 const POWER: f64 = 5e-3;
 const APEX_OFFSET: f64 = 2e-3;
-const TABLE: [(f64, f64); 4] = [(-0.6, 0.5), (-0.1, 1.0), (0.2, 0.7), (0.5, 0.0)];
+const TABLE: [(f64, f64); 4] = [(-0.6, 0.5), (-0.1, 1.0), (0.2, 0.7), (0.5, 0.4)];
 
 fn placement() -> Placement {
     Placement {
@@ -191,6 +191,44 @@ fn bounds_hold_all_that_is_lit() {
                 assert!(angle <= bounds.half_angle, "{line:?}: {local}, {angle}");
             }
             assert!(lit > 200, "the test must meet the light: {lit}");
+        }
+    }
+}
+
+/// The direction density of the rays that `light` draws with the outermost variates.
+fn outermost<T: Real>(light: &impl Emitter<T>) -> [f64; 2] {
+    [0.0, 1.0 - 2.0 * T::HALF_SPACING].map(|u| {
+        let [half, u] = [0.5, u].map(T::of);
+        light.sample_ray([half, half, u, half]).pdf_direction.wide()
+    })
+}
+
+#[test]
+fn rounding_carries_no_drawn_ray_over_the_ends_of_a_profile() {
+    for i in 0..100 {
+        let end = 0.1 + 0.01 * f64::from(i);
+        // The ends hold so much power that the outermost variates come within a rounding of them.
+        let table = [
+            (-end, 1.0),
+            (0.02 - end, 0.0),
+            (end - 0.02, 0.0),
+            (end, 1.0),
+        ];
+        let profile = AngularProfile::from_pairs(&table).unwrap();
+        let knots = profile.to_f32().unwrap();
+        let line = laser(LineProfile::Tabulated(profile), FocusCurve::EqualPlane, 0.9);
+        let light = TabulatedLineLight::place(&line, &placement(), POWER).unwrap();
+        let single = light.to_f32(&knots).unwrap();
+        for pdf in outermost(&light).into_iter().chain(outermost(&single)) {
+            assert!(pdf > 0.0, "the table ends at {end}");
+        }
+        for profile in [LineProfile::UniformTan, LineProfile::UniformAngle] {
+            let line = laser(profile, FocusCurve::EqualPlane, 2.0 * end);
+            let light = LineLight::place(&line, &placement(), POWER).unwrap();
+            let single = light.to_f32().unwrap();
+            for pdf in outermost(&light).into_iter().chain(outermost(&single)) {
+                assert!(pdf > 0.0, "the top hat ends at {end}");
+            }
         }
     }
 }

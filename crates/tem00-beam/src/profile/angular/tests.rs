@@ -78,10 +78,16 @@ fn a_triangle_has_its_eighths_at_half_the_height() {
 
 #[test]
 fn no_angle_is_drawn_where_a_gap_begins_or_ends() {
-    let table = [(-0.4, 1.0), (-0.2, 0.0), (0.2, 0.0), (0.4, 1.0)];
-    let profile = AngularProfile::from_pairs(&table).unwrap();
-    let u: f64 = profile.table().quantile(0.5);
-    assert!(profile.table().per_angle(u) > 0.0, "{u}");
+    for i in 1..48 {
+        // In binary fractions the gap begins at one half of the power to the last digit.
+        let gap = f64::from(i) / 64.0;
+        let table = [(-2.0 * gap, 1.0), (-gap, 0.0), (gap, 0.0), (2.0 * gap, 1.0)];
+        let profile = AngularProfile::from_pairs(&table).unwrap();
+        let u: f64 = profile.table().quantile(0.5);
+        assert!(profile.table().per_angle(u) > 0.0, "{gap}: {u}");
+        // The angle past which lie 1e−12 of the power: 1e−6 of the piece.
+        assert!((u.atan() / gap - 1.0).abs() < 2e-6, "{gap}: {u}");
+    }
 }
 
 #[test]

@@ -274,6 +274,19 @@ fn bounds_are_finite_in_single_precision() {
     );
 }
 
+#[test]
+fn a_ray_that_overflows_passes_the_light() {
+    let line = laser(LineProfile::GaussianTan, FocusCurve::EqualDistance, 0.9);
+    let upright = Placement {
+        origin: DVec3::ZERO,
+        direction: DVec3::Z,
+        fan_axis: DVec3::X,
+    };
+    let light = LineLight::place(&line, &upright, POWER).unwrap();
+    let pdf = light.ray_pdf([0.0, 0.0, 4e306], [-1.0, 0.0, 5e-9]);
+    assert_eq!(pdf.position.to_bits(), 0, "{pdf:?}");
+}
+
 fn config() -> ProptestConfig {
     ProptestConfig {
         cases: 256,

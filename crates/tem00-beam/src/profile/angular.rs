@@ -1,7 +1,7 @@
 use core::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use super::density::{SlopeProfile, Variable, edge_rounding};
+use super::density::{SlopeProfile, Variable};
 use crate::BeamError;
 use crate::normal::interior;
 use crate::real::Real;
@@ -223,7 +223,8 @@ impl<'a, T: Real> AngularTable<'a, T> {
     fn off_the_ends(self, angle: f64) -> f64 {
         let [first, last] =
             [self.0.first(), self.0.last()].map(|knot| knot.map_or(0.0, |knot| knot.angle.wide()));
-        let margin = edge_rounding::<T>() * first.abs().max(last.abs());
+        // Four units in the last place: two for the slope, two for its arc tangent.
+        let margin = 16.0 * T::HALF_SPACING * first.abs().max(last.abs());
         angle.max(first + margin).min(last - margin)
     }
 

@@ -166,12 +166,7 @@ impl<T: Real> SlopeProfile<T> for SlopeDensity<T> {
     fn quantile(&self, p: T) -> T {
         let mass = self.mass.wide();
         let p = mass * interior(p) + 0.5 * (1.0 - mass);
-        let slope = self.variable().slope(self.wide().quantile_in_variable(p));
-        if self.sigma > T::ZERO {
-            T::of(slope)
-        } else {
-            T::of(slope * (1.0 - edge_rounding::<T>()))
-        }
+        T::of(self.variable().slope(self.wide().quantile_in_variable(p)))
     }
 
     fn between(&self, a: T, b: T) -> T {
@@ -283,12 +278,6 @@ impl SlopeDensity<f64> {
         let (inner, outer) = ((v + self.flat) / self.sigma, (v - self.flat) / self.sigma);
         0.5 * self.sigma / self.flat * (integral(inner) - integral(outer))
     }
-}
-
-/// The relative width in which the rounding of a slope may carry it over an abrupt edge, where the
-/// density is 0: two units in the last place there and back.
-pub(super) fn edge_rounding<T: Real>() -> f64 {
-    16.0 * T::HALF_SPACING
 }
 
 /// Returns `√(1 + u²)`, the secant of the angle whose slope is `u`.

@@ -162,6 +162,21 @@ fn samples_invert_the_cumulative_density() {
 }
 
 #[test]
+fn the_power_between_slopes_is_the_integral_of_the_density() {
+    for density in densities() {
+        for (p, q) in [(0.01, 0.2), (0.1, 0.7), (0.6, 0.98)] {
+            let [a, b] = [p, q].map(|p| density.quantile(p));
+            let power = density.between(a, b);
+            assert!((power - (q - p)).abs() < 1e-12, "{density:?}: {power}");
+            let integral = integrate(density, a, b);
+            assert!((power - integral).abs() < 1e-8, "{density:?}: {integral}");
+        }
+        let total = density.between(f64::NEG_INFINITY, f64::INFINITY);
+        assert!((total - 1.0).abs() < 1e-15, "{density:?}: {total}");
+    }
+}
+
+#[test]
 fn samples_grow_with_the_uniform_variate() {
     for density in densities() {
         let samples = (0..1000).map(|i| density.quantile(f64::from(i) / 1000.0));

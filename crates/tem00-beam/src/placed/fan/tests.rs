@@ -11,7 +11,7 @@ use crate::{
 
 const POWER: f64 = 5e-3;
 const APEX_OFFSET: f64 = 2e-3;
-const TABLE: [(f64, f64); 4] = [(-0.6, 0.5), (-0.1, 1.0), (0.2, 0.7), (0.5, 0.0)];
+const TABLE: [(f64, f64); 4] = [(-0.6, 0.5), (-0.1, 1.0), (0.2, 0.7), (0.5, 0.4)];
 
 fn placement() -> Placement {
     Placement {
@@ -195,6 +195,44 @@ fn bounds_hold_all_that_is_lit() {
     }
 }
 
+/// The direction density of the rays that `light` draws with the outermost variates.
+fn outermost<T: Real>(light: &impl Emitter<T>) -> [f64; 2] {
+    [0.0, 1.0 - 2.0 * T::HALF_SPACING].map(|u| {
+        let [half, u] = [0.5, u].map(T::of);
+        light.sample_ray([half, half, u, half]).pdf_direction.wide()
+    })
+}
+
+#[test]
+fn rounding_carries_no_drawn_ray_over_the_ends_of_a_profile() {
+    for i in 0..100 {
+        let end = 0.1 + 0.01 * f64::from(i);
+        // The ends hold so much power that the outermost variates come within a rounding of them.
+        let table = [
+            (-end, 1.0),
+            (0.02 - end, 0.0),
+            (end - 0.02, 0.0),
+            (end, 1.0),
+        ];
+        let profile = AngularProfile::from_pairs(&table).unwrap();
+        let knots = profile.to_f32().unwrap();
+        let line = laser(LineProfile::Tabulated(profile), FocusCurve::EqualPlane, 0.9);
+        let light = TabulatedLineLight::place(&line, &placement(), POWER).unwrap();
+        let single = light.to_f32(&knots).unwrap();
+        for pdf in outermost(&light).into_iter().chain(outermost(&single)) {
+            assert!(pdf > 0.0, "the table ends at {end}");
+        }
+        for profile in [LineProfile::UniformTan, LineProfile::UniformAngle] {
+            let line = laser(profile, FocusCurve::EqualPlane, 2.0 * end);
+            let light = LineLight::place(&line, &placement(), POWER).unwrap();
+            let single = light.to_f32().unwrap();
+            for pdf in outermost(&light).into_iter().chain(outermost(&single)) {
+                assert!(pdf > 0.0, "the top hat ends at {end}");
+            }
+        }
+    }
+}
+
 /// The thickest point of a line is at an end of the fan at the farthest distance or at the lens.
 #[test]
 fn the_thickest_point_lies_on_the_bounds() {
@@ -234,6 +272,19 @@ fn bounds_are_finite_in_single_precision() {
         (bounds.half_angle - core::f32::consts::FRAC_PI_2).abs() < 1e-6,
         "{bounds:?}"
     );
+}
+
+#[test]
+fn a_ray_that_overflows_passes_the_light() {
+    let line = laser(LineProfile::GaussianTan, FocusCurve::EqualDistance, 0.9);
+    let upright = Placement {
+        origin: DVec3::ZERO,
+        direction: DVec3::Z,
+        fan_axis: DVec3::X,
+    };
+    let light = LineLight::place(&line, &upright, POWER).unwrap();
+    let pdf = light.ray_pdf([0.0, 0.0, 4e306], [-1.0, 0.0, 5e-9]);
+    assert_eq!(pdf.position.to_bits(), 0, "{pdf:?}");
 }
 
 fn config() -> ProptestConfig {

@@ -77,8 +77,22 @@ fn a_triangle_has_its_eighths_at_half_the_height() {
 }
 
 #[test]
+fn no_angle_is_drawn_where_a_gap_begins_or_ends() {
+    for i in 1..48 {
+        // In binary fractions the gap begins at one half of the power to the last digit.
+        let gap = f64::from(i) / 64.0;
+        let table = [(-2.0 * gap, 1.0), (-gap, 0.0), (gap, 0.0), (2.0 * gap, 1.0)];
+        let profile = AngularProfile::from_pairs(&table).unwrap();
+        let u: f64 = profile.table().quantile(0.5);
+        assert!(profile.table().per_angle(u) > 0.0, "{gap}: {u}");
+        // The angle past which lie 1e−12 of the power: 1e−6 of the piece.
+        assert!((u.atan() / gap - 1.0).abs() < 2e-6, "{gap}: {u}");
+    }
+}
+
+#[test]
 fn the_unit_of_the_powers_is_of_no_account() {
-    for unit in [1e-300, 1e-3, 1e300] {
+    for unit in [1e-300, 1e-3, 5e307] {
         let scaled = AngularProfile::new(&ANGLES, &POWERS.map(|power| power * unit)).unwrap();
         for (a, b) in scaled.knots().iter().zip(profile().knots()) {
             assert!((a.density - b.density).abs() < 1e-14, "{unit:e}: {a:?}");

@@ -50,6 +50,7 @@ mod first_order;
 mod hypothesis;
 mod moments;
 mod pixel;
+mod quadrature;
 mod second_order;
 mod speckle_size;
 #[cfg(test)]

@@ -50,6 +50,7 @@ mod first_order;
 mod hypothesis;
 mod moments;
 mod pixel;
+mod polarisation;
 mod quadrature;
 mod second_order;
 mod speckle_size;
@@ -66,6 +67,7 @@ pub use first_order::{
 pub use hypothesis::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean};
 pub use moments::{Contrast, Moments, pearson_correlation};
 pub use pixel::pixel_contrast;
+pub use polarisation::PartiallyPolarised;
 pub use second_order::{
     AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, COHERENCE_AREA, airy_autocovariance, airy_power_spectrum,
     contrast_squared_spread,

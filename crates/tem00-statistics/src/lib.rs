@@ -49,11 +49,13 @@ mod error;
 mod first_order;
 mod hypothesis;
 mod moments;
+mod passage;
 mod pixel;
 mod polarisation;
 mod quadrature;
 mod second_order;
 mod speckle_size;
+mod sums;
 #[cfg(test)]
 mod synthetic;
 
@@ -73,3 +75,4 @@ pub use second_order::{
     contrast_squared_spread,
 };
 pub use speckle_size::{Axis, SpeckleSize};
+pub use sums::WeightedSum;

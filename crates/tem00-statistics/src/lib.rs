@@ -45,9 +45,11 @@
 //! ```
 
 mod autocovariance;
+mod bessel;
 mod error;
 mod first_order;
 mod hypothesis;
+mod joint;
 mod moments;
 mod passage;
 mod pixel;
@@ -67,6 +69,7 @@ pub use first_order::{
     GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,
 };
 pub use hypothesis::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean};
+pub use joint::JointIntensity;
 pub use moments::{Contrast, Moments, pearson_correlation};
 pub use pixel::pixel_contrast;
 pub use polarisation::PartiallyPolarised;

@@ -45,6 +45,7 @@
 //! ```
 
 mod autocovariance;
+mod background;
 mod bessel;
 mod error;
 mod first_order;
@@ -64,6 +65,7 @@ mod synthetic;
 pub use autocovariance::{
     Boundary, Ring, autocovariance, decorrelated_samples, power_spectrum, radial_average,
 };
+pub use background::CoherentBackground;
 pub use error::StatisticsError;
 pub use first_order::{
     GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,

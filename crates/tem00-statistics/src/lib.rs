@@ -53,6 +53,7 @@ mod hypothesis;
 mod joint;
 mod moments;
 mod passage;
+mod phasor_sum;
 mod pixel;
 mod polarisation;
 mod quadrature;
@@ -73,6 +74,7 @@ pub use first_order::{
 pub use hypothesis::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean};
 pub use joint::JointIntensity;
 pub use moments::{Contrast, Moments, pearson_correlation};
+pub use phasor_sum::{PhasorSum, moment_of_phasor_sum};
 pub use pixel::pixel_contrast;
 pub use polarisation::PartiallyPolarised;
 pub use second_order::{

@@ -46,6 +46,7 @@
 
 mod autocovariance;
 mod background;
+mod bandwidth;
 mod bessel;
 mod error;
 mod first_order;
@@ -67,6 +68,7 @@ pub use autocovariance::{
     Boundary, Ring, autocovariance, decorrelated_samples, power_spectrum, radial_average,
 };
 pub use background::CoherentBackground;
+pub use bandwidth::{GaussianSpectrum, path_spread_of_reflection};
 pub use error::StatisticsError;
 pub use first_order::{
     GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,

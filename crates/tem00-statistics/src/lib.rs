@@ -49,6 +49,7 @@ mod background;
 mod bandwidth;
 mod bessel;
 mod error;
+mod exposure;
 mod first_order;
 mod hypothesis;
 mod joint;
@@ -70,6 +71,7 @@ pub use autocovariance::{
 pub use background::CoherentBackground;
 pub use bandwidth::{GaussianSpectrum, path_spread_of_reflection};
 pub use error::StatisticsError;
+pub use exposure::{boiling_contrast, contrast_of_exposure, translation_contrast};
 pub use first_order::{
     GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,
 };

@@ -59,6 +59,7 @@ mod phasor_sum;
 mod pixel;
 mod polarisation;
 mod quadrature;
+mod rectangular_pixel;
 mod second_order;
 mod speckle_size;
 mod sums;
@@ -81,6 +82,7 @@ pub use moments::{Contrast, Moments, pearson_correlation};
 pub use phasor_sum::{PhasorSum, moment_of_phasor_sum};
 pub use pixel::pixel_contrast;
 pub use polarisation::PartiallyPolarised;
+pub use rectangular_pixel::{gaussian_filter_contrast, rectangular_pixel_contrast};
 pub use second_order::{
     AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, COHERENCE_AREA, airy_autocovariance, airy_power_spectrum,
     contrast_squared_spread,

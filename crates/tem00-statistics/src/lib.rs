@@ -61,6 +61,7 @@ mod polarisation;
 mod quadrature;
 mod rectangular_pixel;
 mod second_order;
+mod spatial;
 mod speckle_size;
 mod sums;
 #[cfg(test)]
@@ -86,6 +87,9 @@ pub use rectangular_pixel::{gaussian_filter_contrast, rectangular_pixel_contrast
 pub use second_order::{
     AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, COHERENCE_AREA, airy_autocovariance, airy_power_spectrum,
     contrast_squared_spread,
+};
+pub use spatial::{
+    MEAN_SQUARE_SLOPE, SPECKLE_DENSITY, VORTEX_DENSITY, area_fraction_above, level_crossings,
 };
 pub use speckle_size::{Axis, SpeckleSize};
 pub use sums::WeightedSum;

@@ -54,6 +54,7 @@ mod first_order;
 mod hypothesis;
 mod joint;
 mod moments;
+mod objective;
 mod passage;
 mod phasor_sum;
 mod pixel;
@@ -80,6 +81,7 @@ pub use first_order::{
 pub use hypothesis::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean};
 pub use joint::JointIntensity;
 pub use moments::{Contrast, Moments, pearson_correlation};
+pub use objective::{LitArea, ObjectiveSpeckle};
 pub use phasor_sum::{PhasorSum, moment_of_phasor_sum};
 pub use pixel::pixel_contrast;
 pub use polarisation::PartiallyPolarised;

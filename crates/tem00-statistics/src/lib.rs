@@ -16,18 +16,24 @@
 //!
 //! # Main items
 //!
-//! - First order: [`exponential_density`], [`exponential_cumulative`], [`GammaIntensity`],
-//!   [`contrast_of_phasor_sum`].
-//! - Second order: [`airy_autocovariance`], [`airy_power_spectrum`], [`pixel_contrast`],
-//!   [`contrast_squared_spread`].
-//! - Estimators: [`Moments`], [`Contrast`], [`pearson_correlation`], [`autocovariance`],
-//!   [`power_spectrum`], [`radial_average`], [`SpeckleSize`], [`decorrelated_samples`].
+//! - Laws of the intensity: [`exponential_density`], [`exponential_cumulative`],
+//!   [`GammaIntensity`], [`PartiallyPolarised`], [`WeightedSum`], [`CoherentBackground`],
+//!   [`PhasorSum`], [`JointIntensity`].
+//! - Contrast: [`pixel_contrast`], [`rectangular_pixel_contrast`], [`gaussian_filter_contrast`],
+//!   [`contrast_of_exposure`], [`boiling_contrast`], [`translation_contrast`],
+//!   [`GaussianSpectrum`], [`contrast_of_phasor_sum`], [`contrast_squared_spread`].
+//! - In space: [`airy_autocovariance`], [`airy_power_spectrum`], [`ObjectiveSpeckle`],
+//!   [`COHERENCE_AREA`], [`VORTEX_DENSITY`], [`level_crossings`], [`area_fraction_above`].
+//! - Estimators: [`Moments`], [`Contrast`], [`local_contrast`], [`GammaFit`],
+//!   [`pearson_correlation`], [`autocovariance`], [`power_spectrum`], [`radial_average`],
+//!   [`SpeckleSize`], [`phase_singularities`], [`VortexDensity`], [`decorrelated_samples`].
 //! - Hypothesis tests: [`kolmogorov_smirnov`], [`chi_squared`], [`t_test_mean`].
 //!
 //! # Scope and non-goals
 //!
-//! Fully developed, fully polarised speckle behind a circular pupil. No plotting, no general
-//! statistics: the distributions behind the tests come from `statrs`.
+//! First- and second-order statistics of the intensity. What has a speckle size is behind a circular
+//! pupil, unless it says otherwise. No plotting, no general statistics: the distributions behind the
+//! tests come from `statrs`.
 //!
 //! # Example
 //!
@@ -51,6 +57,7 @@ mod bessel;
 mod error;
 mod exposure;
 mod first_order;
+mod gamma_fit;
 mod hypothesis;
 mod joint;
 mod moments;
@@ -78,6 +85,7 @@ pub use exposure::{boiling_contrast, contrast_of_exposure, translation_contrast}
 pub use first_order::{
     GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,
 };
+pub use gamma_fit::GammaFit;
 pub use hypothesis::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean};
 pub use joint::JointIntensity;
 pub use moments::{Contrast, Moments, pearson_correlation};

@@ -60,6 +60,7 @@ mod first_order;
 mod gamma_fit;
 mod hypothesis;
 mod joint;
+mod local_contrast;
 mod moments;
 mod objective;
 mod passage;
@@ -88,6 +89,7 @@ pub use first_order::{
 pub use gamma_fit::GammaFit;
 pub use hypothesis::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean};
 pub use joint::JointIntensity;
+pub use local_contrast::local_contrast;
 pub use moments::{Contrast, Moments, pearson_correlation};
 pub use objective::{LitArea, ObjectiveSpeckle};
 pub use phasor_sum::{PhasorSum, moment_of_phasor_sum};

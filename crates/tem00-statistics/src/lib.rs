@@ -70,6 +70,7 @@ mod polarisation;
 mod quadrature;
 mod rectangular_pixel;
 mod second_order;
+mod singularities;
 mod spatial;
 mod speckle_size;
 mod sums;
@@ -100,6 +101,7 @@ pub use second_order::{
     AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, COHERENCE_AREA, airy_autocovariance, airy_power_spectrum,
     contrast_squared_spread,
 };
+pub use singularities::{Singularity, VortexDensity, phase_singularities};
 pub use spatial::{
     MEAN_SQUARE_SLOPE, SPECKLE_DENSITY, VORTEX_DENSITY, area_fraction_above, level_crossings,
 };

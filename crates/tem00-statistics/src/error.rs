@@ -12,6 +12,52 @@ pub enum StatisticsError {
     Shape(f64),
     /// The contrast of a Gamma law lies outside the supported range.
     Contrast(f64),
+    /// The degree of polarisation does not lie in [0, 1].
+    Degree(f64),
+    /// The correlation of two amplitudes does not lie in [0, 1).
+    AmplitudeCorrelation(f64),
+    /// The ratio of a coherent background to the speckle is negative or not finite.
+    BeamRatio(f64),
+    /// The mean intensity of a pattern in a sum is negative or not finite.
+    Weight {
+        /// The position of the pattern.
+        index: usize,
+        /// Its mean intensity.
+        value: f64,
+    },
+    /// None of this many patterns in a sum has an intensity.
+    NoWeight(usize),
+    /// The number of phasors in a sum lies outside the supported range.
+    Phasors(usize),
+    /// The wavelength, in metres, is not positive and finite.
+    Wavelength(f64),
+    /// The linewidth is not small against the wavelength. Often the two were swapped.
+    Linewidth {
+        /// The rejected linewidth, in metres.
+        linewidth: f64,
+        /// The largest linewidth the model accepts at this wavelength, in metres.
+        maximum: f64,
+    },
+    /// The distance from a lit area, in metres, is not positive and finite.
+    Distance(f64),
+    /// The size of a lit area, in metres, is not positive and finite.
+    LitSize(f64),
+    /// The level of a confidence interval does not lie in (0, 1).
+    Level(f64),
+    /// A sample is not positive.
+    NotPositive {
+        /// The position of the sample.
+        index: usize,
+        /// The value of the sample.
+        value: f64,
+    },
+    /// A window is smaller than two pixels or larger than the image.
+    Window {
+        /// The width and height of the window, in pixels.
+        window: usize,
+        /// Width and height of the image.
+        image: (usize, usize),
+    },
     /// There are too few samples.
     Samples {
         /// The number of samples that were given.
@@ -98,6 +144,53 @@ impl fmt::Display for StatisticsError {
         match *self {
             Self::Shape(got) => write!(f, "shape must lie between 1 and 1e6, got {got:e}"),
             Self::Contrast(got) => write!(f, "contrast must lie between 0.001 and 1, got {got:e}"),
+            Self::Degree(got) => write!(
+                f,
+                "degree of polarisation must lie between 0 and 1, got {got:e}"
+            ),
+            Self::AmplitudeCorrelation(got) => write!(
+                f,
+                "amplitude correlation must be at least 0 and below 1, got {got}"
+            ),
+            Self::BeamRatio(got) => {
+                write!(f, "beam ratio must be finite and not negative, got {got:e}")
+            }
+            Self::Weight { index, value } => write!(
+                f,
+                "weights must be finite and not negative, got {value:e} at position {index}"
+            ),
+            Self::NoWeight(count) => {
+                write!(f, "weights must not all be zero, got {count} of them")
+            }
+            Self::Phasors(got) => write!(
+                f,
+                "phasors must number between 8 and 1000000 for their law, got {got}"
+            ),
+            Self::Wavelength(got) => {
+                write!(f, "wavelength must be positive and finite, got {got:e} m")
+            }
+            Self::Linewidth { linewidth, maximum } => write!(
+                f,
+                "linewidth must be positive and at most {maximum:e} m, got {linewidth:e} m"
+            ),
+            Self::Distance(got) => {
+                write!(f, "distance must be positive and finite, got {got:e} m")
+            }
+            Self::LitSize(got) => write!(
+                f,
+                "size of the lit area must be positive and finite, got {got:e} m"
+            ),
+            Self::Level(got) => write!(f, "level must lie between 0 and 1, got {got:e}"),
+            Self::NotPositive { index, value } => write!(
+                f,
+                "samples must be positive, got {value:e} at position {index}"
+            ),
+            Self::Window { window, image } => write!(
+                f,
+                "window must be at least 2 pixels wide and fit into the image of {} × {}, got \
+                 {window}",
+                image.0, image.1
+            ),
             Self::Samples { given, needed } => {
                 write!(f, "samples must number at least {needed}, got {given}")
             }
@@ -188,6 +281,75 @@ mod tests {
         }
         .to_string();
         assert_eq!(message, "samples must number at least 2, got 1");
+        let rows = [
+            (
+                StatisticsError::Degree(1.5),
+                "degree of polarisation must lie between 0 and 1, got 1.5e0",
+            ),
+            (
+                StatisticsError::AmplitudeCorrelation(1.0),
+                "amplitude correlation must be at least 0 and below 1, got 1",
+            ),
+            (
+                StatisticsError::BeamRatio(-1.0),
+                "beam ratio must be finite and not negative, got -1e0",
+            ),
+            (
+                StatisticsError::Weight {
+                    index: 2,
+                    value: -3.0,
+                },
+                "weights must be finite and not negative, got -3e0 at position 2",
+            ),
+            (
+                StatisticsError::NoWeight(2),
+                "weights must not all be zero, got 2 of them",
+            ),
+            (
+                StatisticsError::Phasors(3),
+                "phasors must number between 8 and 1000000 for their law, got 3",
+            ),
+            (
+                StatisticsError::Wavelength(0.0),
+                "wavelength must be positive and finite, got 0e0 m",
+            ),
+            (
+                StatisticsError::Linewidth {
+                    linewidth: 5e-7,
+                    maximum: 6.5e-8,
+                },
+                "linewidth must be positive and at most 6.5e-8 m, got 5e-7 m",
+            ),
+            (
+                StatisticsError::Distance(-1.0),
+                "distance must be positive and finite, got -1e0 m",
+            ),
+            (
+                StatisticsError::LitSize(-1.0),
+                "size of the lit area must be positive and finite, got -1e0 m",
+            ),
+            (
+                StatisticsError::Level(95.0),
+                "level must lie between 0 and 1, got 9.5e1",
+            ),
+            (
+                StatisticsError::NotPositive {
+                    index: 7,
+                    value: 0.0,
+                },
+                "samples must be positive, got 0e0 at position 7",
+            ),
+            (
+                StatisticsError::Window {
+                    window: 9,
+                    image: (8, 16),
+                },
+                "window must be at least 2 pixels wide and fit into the image of 8 × 16, got 9",
+            ),
+        ];
+        for (error, message) in rows {
+            assert_eq!(error.to_string(), message);
+        }
     }
 
     #[test]

@@ -16,18 +16,24 @@
 //!
 //! # Main items
 //!
-//! - First order: [`exponential_density`], [`exponential_cumulative`], [`GammaIntensity`],
-//!   [`contrast_of_phasor_sum`].
-//! - Second order: [`airy_autocovariance`], [`airy_power_spectrum`], [`pixel_contrast`],
-//!   [`contrast_squared_spread`].
-//! - Estimators: [`Moments`], [`Contrast`], [`pearson_correlation`], [`autocovariance`],
-//!   [`power_spectrum`], [`radial_average`], [`SpeckleSize`], [`decorrelated_samples`].
+//! - Laws of the intensity: [`exponential_density`], [`exponential_cumulative`],
+//!   [`GammaIntensity`], [`PartiallyPolarised`], [`WeightedSum`], [`CoherentBackground`],
+//!   [`PhasorSum`], [`JointIntensity`].
+//! - Contrast: [`pixel_contrast`], [`rectangular_pixel_contrast`], [`gaussian_filter_contrast`],
+//!   [`contrast_of_exposure`], [`boiling_contrast`], [`translation_contrast`],
+//!   [`GaussianSpectrum`], [`contrast_of_phasor_sum`], [`contrast_squared_spread`].
+//! - In space: [`airy_autocovariance`], [`airy_power_spectrum`], [`ObjectiveSpeckle`],
+//!   [`COHERENCE_AREA`], [`VORTEX_DENSITY`], [`level_crossings`], [`area_fraction_above`].
+//! - Estimators: [`Moments`], [`Contrast`], [`local_contrast`], [`GammaFit`],
+//!   [`pearson_correlation`], [`autocovariance`], [`power_spectrum`], [`radial_average`],
+//!   [`SpeckleSize`], [`phase_singularities`], [`VortexDensity`], [`decorrelated_samples`].
 //! - Hypothesis tests: [`kolmogorov_smirnov`], [`chi_squared`], [`t_test_mean`].
 //!
 //! # Scope and non-goals
 //!
-//! Fully developed, fully polarised speckle behind a circular pupil. No plotting, no general
-//! statistics: the distributions behind the tests come from `statrs`.
+//! First- and second-order statistics of the intensity. What has a speckle size is behind a circular
+//! pupil, unless it says otherwise. No plotting, no general statistics: the distributions behind the
+//! tests come from `statrs`.
 //!
 //! # Example
 //!
@@ -45,28 +51,59 @@
 //! ```
 
 mod autocovariance;
+mod background;
+mod bandwidth;
+mod bessel;
 mod error;
+mod exposure;
 mod first_order;
+mod gamma_fit;
 mod hypothesis;
+mod joint;
+mod local_contrast;
 mod moments;
+mod objective;
+mod passage;
+mod phasor_sum;
 mod pixel;
+mod polarisation;
+mod quadrature;
+mod rectangular_pixel;
 mod second_order;
+mod singularities;
+mod spatial;
 mod speckle_size;
+mod sums;
 #[cfg(test)]
 mod synthetic;
 
 pub use autocovariance::{
     Boundary, Ring, autocovariance, decorrelated_samples, power_spectrum, radial_average,
 };
+pub use background::CoherentBackground;
+pub use bandwidth::{GaussianSpectrum, path_spread_of_reflection};
 pub use error::StatisticsError;
+pub use exposure::{boiling_contrast, contrast_of_exposure, translation_contrast};
 pub use first_order::{
     GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,
 };
+pub use gamma_fit::GammaFit;
 pub use hypothesis::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean};
+pub use joint::JointIntensity;
+pub use local_contrast::local_contrast;
 pub use moments::{Contrast, Moments, pearson_correlation};
+pub use objective::{LitArea, ObjectiveSpeckle};
+pub use phasor_sum::{PhasorSum, moment_of_phasor_sum};
 pub use pixel::pixel_contrast;
+pub use polarisation::PartiallyPolarised;
+pub use rectangular_pixel::{gaussian_filter_contrast, rectangular_pixel_contrast};
 pub use second_order::{
     AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, COHERENCE_AREA, airy_autocovariance, airy_power_spectrum,
     contrast_squared_spread,
 };
+pub use singularities::{Singularity, VortexDensity, phase_singularities};
+pub use spatial::{
+    MEAN_SQUARE_SLOPE, SPECKLE_DENSITY, VORTEX_DENSITY, area_fraction_above, level_crossings,
+};
 pub use speckle_size::{Axis, SpeckleSize};
+pub use sums::WeightedSum;

@@ -1,6 +1,6 @@
 use core::f64::consts::{FRAC_PI_4, PI, SQRT_2};
 
-use crate::airy_autocovariance;
+use crate::{airy_autocovariance, quadrature::integrate};
 
 /// Returns the contrast of fully developed speckle seen by square pixels that integrate over
 /// their whole area, `pixel_size` being their side in units of the speckle size h.
@@ -54,7 +54,9 @@ fn squared_by_quadrature(q: f64) -> f64 {
         let density = 2.0 * sec * (4.0 * tan - tan * tan - 3.0 + PI - 4.0 * theta);
         density * airy_autocovariance(q * sec) * sec * tan
     };
-    integrate(near, 1.0, q) + integrate(far, FRAC_PI_4, q)
+    // J₁(πqr)² has the period 1/q.
+    let period = q.recip();
+    integrate(near, [0.0, 1.0], period) + integrate(far, [0.0, FRAC_PI_4], 0.5 * period)
 }
 
 /// The contrast without the oscillating terms of C², which fall as q^(−9/2):
@@ -84,27 +86,6 @@ fn corner_integral() -> f64 {
     let sin = 1.0 - half_root;
     let angle_sin = half_root * (1.0 - FRAC_PI_4);
     2.0 * (4.0 * sin_tan - sin_tan_squared + (PI - 3.0) * sin - 4.0 * angle_sin)
-}
-
-/// Returns ∫ f over [0, `end`] for an f that oscillates like J₁(πqr)², by the five-point rule of
-/// Gauss and Legendre on panels of at most a quarter period.
-fn integrate(f: impl Fn(f64) -> f64, end: f64, q: f64) -> f64 {
-    let panels = (6.0 * q * end).ceil() + 8.0;
-    let half = 0.5 * end / panels;
-    let inner = (5.0 - 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0 * half;
-    let outer = (5.0 + 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0 * half;
-    let inner_weight = (322.0 + 13.0 * 70.0_f64.sqrt()) / 900.0;
-    let outer_weight = (322.0 - 13.0 * 70.0_f64.sqrt()) / 900.0;
-    let mut sum = 0.0;
-    let mut panel = 0.0;
-    while panel < panels {
-        let centre = (2.0 * panel + 1.0) * half;
-        sum += 128.0 / 225.0 * f(centre)
-            + inner_weight * (f(centre - inner) + f(centre + inner))
-            + outer_weight * (f(centre - outer) + f(centre + outer));
-        panel += 1.0;
-    }
-    sum * half
 }
 
 #[cfg(test)]

@@ -10,6 +10,23 @@ use tem00_numerics::{Fft2, Grid};
 ///
 /// The speckle size is `size / diameter` pixels. `diameter` is even.
 pub(crate) fn speckle_tile(size: usize, diameter: usize, seed: u64) -> (Grid<f32>, usize) {
+    let (aperture, count) = phasor_disc(diameter, seed);
+    let side = aperture.width();
+    let transform = Fft2::with_aperture(size, size, side, side).unwrap();
+    let scale = f32::from(count).recip();
+    let tile = transform.forward(&aperture, |_, _, field| field.norm_sqr() * scale);
+    (tile, usize::from(count))
+}
+
+/// Returns the complex field of such a pattern, but for a phase that is linear in x and y.
+pub(crate) fn field_tile(size: usize, diameter: usize, seed: u64) -> Grid<Complex<f32>> {
+    let (aperture, _) = phasor_disc(diameter, seed);
+    let side = aperture.width();
+    let transform = Fft2::with_aperture(size, size, side, side).unwrap();
+    transform.forward(&aperture, |_, _, field| field)
+}
+
+fn phasor_disc(diameter: usize, seed: u64) -> (Grid<Complex<f32>>, u16) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let side = diameter + 1;
     let radius = (diameter / 2) as f64;
@@ -24,8 +41,5 @@ pub(crate) fn speckle_tile(size: usize, diameter: usize, seed: u64) -> (Grid<f32
             }
         }
     }
-    let transform = Fft2::with_aperture(size, size, side, side).unwrap();
-    let scale = f32::from(count).recip();
-    let tile = transform.forward(&aperture, |_, _, field| field.norm_sqr() * scale);
-    (tile, usize::from(count))
+    (aperture, count)
 }

@@ -207,3 +207,35 @@ proptest! {
         prop_assert_eq!(Contrast::of(&samples), Contrast::of(&scaled));
     }
 }
+
+#[test]
+fn confidence_intervals_hold_the_contrast_as_often_as_stated() {
+    const TRIALS: u32 = 1_500;
+    let mut rng = ChaCha8Rng::seed_from_u64(21);
+    for (length, stated) in [(100, 0.90), (1_000, 0.94)] {
+        let held = (0..TRIALS).filter(|_| {
+            let contrast = Contrast::of(&exponential_samples(length, &mut rng)).unwrap();
+            let [low, high] = contrast.confidence_interval(0.95).unwrap();
+            low <= 1.0 && 1.0 <= high
+        });
+        let share = held.count() as f64 / f64::from(TRIALS);
+        // Binomial, 3.3 σ = 0.026, and half of the last digit.
+        assert_abs_diff_eq!(share, stated, epsilon = 0.026 + 0.005);
+    }
+}
+
+#[test]
+fn confidence_intervals_are_those_of_the_logarithm() {
+    let contrast = Contrast::of(&[1.0, 2.0, 4.0, 9.0]).unwrap();
+    let [low, high] = contrast.confidence_interval(0.682_689_492_137_086).unwrap();
+    // One standard error.
+    let share = contrast.standard_error() / contrast.value();
+    assert_relative_eq!(high, contrast.value() * share.exp(), max_relative = 1e-12);
+    assert_relative_eq!(low, contrast.value() / share.exp(), max_relative = 1e-12);
+    let none = Contrast::of(&[2.0, 2.0]).unwrap().confidence_interval(0.9);
+    assert_eq!(none, Ok([0.0, 0.0]));
+    for level in [0.0, 1.0, 95.0, -0.1, f64::NAN] {
+        let refused = contrast.confidence_interval(level);
+        assert!(matches!(refused, Err(StatisticsError::Level(_))), "{level}");
+    }
+}

@@ -1,0 +1,238 @@
+use core::f64::consts::SQRT_2;
+
+use crate::{
+    StatisticsError,
+    bessel::{rician_cumulative, scaled_bessel_i0},
+};
+
+/// The law of the intensity of speckle on a coherent background: partially developed speckle.
+///
+/// ```text
+/// p(I) = (1 + r) exp(−(1 + r) I − r) I₀(2√(r (1 + r) I))     I in units of its mean
+/// F(I) = 1 − Q₁(√(2r), √(2 (1 + r) I))                       Q₁ Marcum's function
+/// C    = √(1 + 2r) / (1 + r)
+/// r    = I_s / ⟨I_n⟩                                         beam ratio
+/// ```
+///
+/// `I_s` is the uniform intensity of the background, `⟨I_n⟩` the mean of the speckle: the specular
+/// reflection of a surface that is not quite rough, or the reference wave of a hologram. The
+/// amplitude has Rice's law. r = 0 is the exponential law.
+///
+/// # Validity
+///
+/// The background has one phase and one intensity over the area considered, and the polarisation
+/// and coherence of the speckle, which is fully developed by itself. A surface whose phase varies by
+/// less than some radians adds a part that is not circular, which is left out.
+///
+/// # Examples
+///
+/// Background and speckle of equal power:
+///
+/// ```
+/// use tem00_statistics::CoherentBackground;
+///
+/// let law = CoherentBackground::new(1.0)?;
+/// assert!((law.contrast() - 3.0_f64.sqrt() / 2.0).abs() < 1e-15);
+/// # Ok::<(), tem00_statistics::StatisticsError>(())
+/// ```
+///
+/// # References
+///
+/// - S. O. Rice, *Mathematical analysis of random noise*, 1945, §3.10.
+/// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 3 (a known phasor plus a random
+///   phasor sum).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoherentBackground {
+    beam_ratio: f64,
+}
+
+impl CoherentBackground {
+    /// Creates the law from the beam ratio r, background over mean of the speckle.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless `beam_ratio` is finite and not negative.
+    pub fn new(beam_ratio: f64) -> Result<Self, StatisticsError> {
+        if beam_ratio >= 0.0 && beam_ratio.is_finite() {
+            Ok(Self { beam_ratio })
+        } else {
+            Err(StatisticsError::BeamRatio(beam_ratio))
+        }
+    }
+
+    /// Creates the law that has the contrast C: `r = s (1 + s) / C²` with `s = √(1 − C²)`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless `0.001 ≤ contrast ≤ 1`.
+    pub fn from_contrast(contrast: f64) -> Result<Self, StatisticsError> {
+        if !(1e-3..=1.0).contains(&contrast) {
+            return Err(StatisticsError::Contrast(contrast));
+        }
+        let root = ((1.0 - contrast) * (1.0 + contrast)).sqrt();
+        Ok(Self {
+            beam_ratio: root * (1.0 + root) / (contrast * contrast),
+        })
+    }
+
+    /// Returns the beam ratio r, background over mean of the speckle.
+    pub const fn beam_ratio(&self) -> f64 {
+        self.beam_ratio
+    }
+
+    /// Returns the contrast, standard deviation over mean: `√(1 + 2r) / (1 + r)`.
+    pub fn contrast(&self) -> f64 {
+        let share = (1.0 + self.beam_ratio).recip();
+        // r / (1 + r) is 1 − share, and overflows nowhere.
+        ((2.0 - share) * share).sqrt()
+    }
+
+    /// Returns the probability density of the intensity, in units of the mean intensity.
+    pub fn density(&self, intensity: f64) -> f64 {
+        if intensity < 0.0 || intensity.is_infinite() {
+            return 0.0;
+        }
+        let scale = 1.0 + self.beam_ratio;
+        let (background, amplitude) = (self.beam_ratio.sqrt(), scale.sqrt() * intensity.sqrt());
+        let distance = amplitude - background;
+        let tail = (-distance * distance).exp();
+        scale * tail * scaled_bessel_i0(2.0 * background * amplitude)
+    }
+
+    /// Returns the probability that the intensity is at most `intensity`, in units of the mean.
+    ///
+    /// The result is exact to 10⁻¹⁴, not relative to itself.
+    pub fn cumulative(&self, intensity: f64) -> f64 {
+        if intensity <= 0.0 {
+            return 0.0;
+        }
+        let amplitude = (1.0 + self.beam_ratio).sqrt() * intensity.sqrt();
+        rician_cumulative(SQRT_2 * self.beam_ratio.sqrt(), SQRT_2 * amplitude)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+    use core::f64::consts::TAU;
+    use proptest::{prelude::*, test_runner::RngSeed};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::{
+        exponential_cumulative, exponential_density, kolmogorov_smirnov, quadrature::integrate,
+    };
+
+    #[test]
+    fn density_has_mean_one_and_the_stated_contrast() {
+        for ratio in [0.0, 0.3, 1.0, 5.0, 300.0] {
+            let law = CoherentBackground::new(ratio).unwrap();
+            // Beyond 40/(1 + r) and 12 standard deviations there is less than 1e−15.
+            let end = 1.0 + 45.0 / (1.0 + ratio) + 12.0 * law.contrast();
+            let moment = |k| {
+                integrate(
+                    |x| law.density(x) * x.powi(k),
+                    [0.0, end],
+                    0.2 * law.contrast(),
+                )
+            };
+            assert_relative_eq!(moment(0), 1.0, epsilon = 1e-12);
+            assert_relative_eq!(moment(1), 1.0, epsilon = 1e-12);
+            let contrast = (moment(2) - 1.0).sqrt();
+            assert_relative_eq!(contrast, law.contrast(), epsilon = 1e-11);
+        }
+    }
+
+    #[test]
+    fn distribution_is_the_integral_of_the_density() {
+        for ratio in [0.0, 1e-6, 0.5, 20.0] {
+            let law = CoherentBackground::new(ratio).unwrap();
+            for x in [0.01, 0.5, 1.0, 1.7] {
+                let area = integrate(|x| law.density(x), [0.0, x], 0.05);
+                assert_relative_eq!(law.cumulative(x), area, epsilon = 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn no_background_is_the_exponential_law() {
+        let law = CoherentBackground::from_contrast(1.0).unwrap();
+        for x in [-1.0, 0.0, 0.3, 2.0, 30.0] {
+            assert_relative_eq!(law.density(x), exponential_density(x), epsilon = 1e-15);
+            assert_relative_eq!(
+                law.cumulative(x),
+                exponential_cumulative(x),
+                epsilon = 1e-14
+            );
+        }
+    }
+
+    #[test]
+    fn a_constant_with_gaussian_noise_follows_the_law() {
+        let ratio = 2.5_f64;
+        let law = CoherentBackground::new(ratio).unwrap();
+        let mut rng = ChaCha8Rng::seed_from_u64(9);
+        let mut intensity = || {
+            // Box and Muller: the noise has the mean intensity 1.
+            let radius = (-(1.0 - rng.random::<f64>()).ln()).sqrt();
+            let (sin, cos) = (TAU * rng.random::<f64>()).sin_cos();
+            (ratio.sqrt() + radius * cos).hypot(radius * sin).powi(2) / (1.0 + ratio)
+        };
+        let samples: Vec<f64> = (0..4_000).map(|_| intensity()).collect();
+        let outcome = kolmogorov_smirnov(&samples, |x| law.cumulative(x)).unwrap();
+        // α = 0.001.
+        assert!(outcome.p_value > 1e-3, "p = {}", outcome.p_value);
+    }
+
+    #[test]
+    fn contrast_and_beam_ratio_are_inverse() {
+        for contrast in [0.001, 0.1, 0.866, 0.999_999, 1.0] {
+            let law = CoherentBackground::from_contrast(contrast).unwrap();
+            assert_relative_eq!(law.contrast(), contrast, max_relative = 1e-12);
+        }
+    }
+
+    #[test]
+    fn ratios_that_are_none_are_refused() {
+        for bad in [-1e-9, f64::NAN, f64::INFINITY] {
+            let refused = CoherentBackground::new(bad);
+            assert!(
+                matches!(refused, Err(StatisticsError::BeamRatio(_))),
+                "{bad}"
+            );
+        }
+        for bad in [0.0, 1.1, f64::NAN] {
+            let refused = CoherentBackground::from_contrast(bad);
+            assert!(
+                matches!(refused, Err(StatisticsError::Contrast(_))),
+                "{bad}"
+            );
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 256,
+            failure_persistence: None,
+            rng_seed: RngSeed::Fixed(1),
+            ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn law_is_finite_and_a_probability(
+            ratio in prop_oneof![
+                (-300.0_f64..300.0).prop_map(|e| 10.0_f64.powf(e)),
+                Just(f64::MAX),
+            ],
+            intensity in 0.0_f64..f64::MAX,
+        ) {
+            let law = CoherentBackground::new(ratio).unwrap();
+            prop_assert!((0.0..=1.0).contains(&law.contrast()), "{}", law.contrast());
+            for x in [intensity, intensity.ln().abs(), intensity.recip(), 0.0, 1.0] {
+                prop_assert!(law.density(x).is_finite() && law.density(x) >= 0.0, "{x}");
+                prop_assert!((0.0..=1.0).contains(&law.cumulative(x)), "{x}");
+            }
+        }
+    }
+}

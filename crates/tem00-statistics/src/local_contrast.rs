@@ -1,0 +1,175 @@
+use tem00_numerics::Grid;
+
+use crate::{
+    StatisticsError,
+    autocovariance::single,
+    moments::{Scaled, check_finite},
+};
+
+/// Returns the contrast of an image within a square window about every pixel: the map of laser
+/// speckle contrast imaging, where speckle that moves during the exposure shows as a low contrast.
+///
+/// ```text
+/// K = s / m         over window × window pixels, s² with the divisor n − 1
+/// ```
+///
+/// The value at `(x, y)` belongs to the window whose first pixel is there; only windows inside the
+/// image count, so that the map is `window − 1` pixels smaller along either axis.
+///
+/// # Bias
+///
+/// A window of few speckles does not see the whole contrast, because its own mean follows the
+/// pattern. The expectation of s² is
+///
+/// ```text
+/// σ² (1 − c̄) n / (n − 1)         c̄ the mean autocovariance of two pixels of the window, n = window²
+/// ```
+///
+/// where for pixels much smaller than a speckle c̄ is the squared
+/// [`pixel_contrast`](crate::pixel_contrast) of the window. K itself is lower still,
+/// because it is not the root of that expectation. Nothing is corrected.
+///
+/// # Independence
+///
+/// None is assumed of the pixels. Windows that overlap share their pixels.
+///
+/// # Errors
+///
+/// Returns an error if the window is smaller than two pixels or larger than the image, a pixel is
+/// not finite, or the mean over a window is not positive.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_numerics::Grid;
+/// use tem00_statistics::local_contrast;
+///
+/// let image = Grid::from_fn(4, 3, |x, _| [1.0, 1.0, 3.0, 3.0][x]);
+/// let map = local_contrast(&image, 2)?;
+/// assert_eq!((map.width(), map.height()), (3, 2));
+/// assert_eq!(map[(0, 0)], 0.0);
+/// assert!((map[(1, 0)] - 3.0_f32.sqrt().recip()).abs() < 1e-6); // s² = 4/3, m = 2
+/// # Ok::<(), tem00_statistics::StatisticsError>(())
+/// ```
+///
+/// # References
+///
+/// - J. D. Briers and S. Webster, *Laser speckle contrast analysis (LASCA)*, 1996.
+pub fn local_contrast(image: &Grid<f32>, window: usize) -> Result<Grid<f32>, StatisticsError> {
+    let size = (image.width(), image.height());
+    if window < 2 || window > size.0.min(size.1) {
+        return Err(StatisticsError::Window {
+            window,
+            image: size,
+        });
+    }
+    check_finite(image.values())?;
+    let (width, height) = (size.0 - window + 1, size.1 - window + 1);
+    let mut contrasts = Vec::with_capacity(width * height);
+    let mut pixels = Vec::with_capacity(window * window);
+    for y in 0..height {
+        for x in 0..width {
+            pixels.clear();
+            for row in y..y + window {
+                pixels.extend_from_slice(&image.row(row)[x..x + window]);
+            }
+            contrasts.push(contrast_of(&pixels)?);
+        }
+    }
+    let at = |x: usize, y: usize| contrasts[y * width + x];
+    Ok(Grid::from_fn(width, height, at))
+}
+
+fn contrast_of(pixels: &[f32]) -> Result<f32, StatisticsError> {
+    let scaled = Scaled::new(pixels)?;
+    if scaled.mean <= f64::EPSILON {
+        return Err(StatisticsError::Mean(scaled.mean * scaled.unit));
+    }
+    Ok(single(scaled.standard_deviation / scaled.mean))
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::{Contrast, Moments, airy_autocovariance, pixel_contrast, synthetic::speckle_tile};
+
+    #[test]
+    fn each_value_is_the_contrast_of_its_window() {
+        let (tile, _) = speckle_tile(32, 8, 4);
+        let image = Grid::from_fn(20, 13, |x, y| tile[(x, y)]);
+        let map = local_contrast(&image, 5).unwrap();
+        assert_eq!((map.width(), map.height()), (16, 9));
+        for (x, y) in [(0, 0), (15, 0), (3, 8), (15, 8)] {
+            let window = Grid::from_fn(5, 5, |i, j| image[(x + i, y + j)]);
+            let contrast = Contrast::of(window.values()).unwrap().value();
+            assert_relative_eq!(f64::from(map[(x, y)]), contrast, max_relative = 1e-7);
+        }
+    }
+
+    /// c̄ over all pairs of pixels of a window.
+    fn mean_covariance(window: u32, speckle_size: f64) -> f64 {
+        let mut sum = 0.0;
+        for x in 0..window {
+            for y in 0..window {
+                let pairs = |lag: u32| f64::from(window - lag) * if lag > 0 { 2.0 } else { 1.0 };
+                let lag = f64::from(x).hypot(f64::from(y)) / speckle_size;
+                sum += pairs(x) * pairs(y) * airy_autocovariance(lag);
+            }
+        }
+        sum / f64::from(window).powi(4)
+    }
+
+    #[test]
+    fn windows_miss_the_share_of_the_variance_that_is_stated() {
+        const TILES: u64 = 6;
+        let (size, diameter, window) = (128, 32, 7_u8);
+        let mut variances = Vec::new();
+        for seed in 0..TILES {
+            let (tile, _) = speckle_tile(size, diameter, seed);
+            let contrasts = local_contrast(&tile, usize::from(window)).unwrap();
+            // Windows apart by more than a speckle count as independent; K m is the deviation.
+            for y in (0..contrasts.height()).step_by(12) {
+                for x in (0..contrasts.width()).step_by(12) {
+                    let corner = Grid::from_fn(7, 7, |i, j| tile[(x + i, y + j)]);
+                    let mean = Moments::of(corner.values()).unwrap().mean();
+                    variances.push((f64::from(contrasts[(x, y)]) * mean).powi(2));
+                }
+            }
+        }
+        let measured = Moments::of(&variances).unwrap();
+        let n = f64::from(window).powi(2);
+        let law = (1.0 - mean_covariance(u32::from(window), 4.0)) * n / (n - 1.0);
+        // 3.3 σ, and 1/N of the 800 phasors.
+        let tolerance = 3.3 * measured.standard_error() + 1.0 / 800.0;
+        assert_relative_eq!(measured.mean(), law, epsilon = tolerance);
+        assert!(law < 0.78 && tolerance < 0.15, "{law} ± {tolerance}");
+        // Small pixels: the window is a pixel of its own.
+        let fine = mean_covariance(200, 100.0).sqrt();
+        assert_relative_eq!(fine, pixel_contrast(2.0), max_relative = 2e-4);
+    }
+
+    #[test]
+    fn windows_without_a_contrast_are_refused() {
+        let image = Grid::filled(4, 6, 1.0);
+        for window in [0, 1, 5] {
+            assert_eq!(
+                local_contrast(&image, window),
+                Err(StatisticsError::Window {
+                    window,
+                    image: (4, 6)
+                })
+            );
+        }
+        let map = local_contrast(&image, 4).unwrap();
+        assert_eq!((map.width(), map.height()), (1, 3));
+        let dark = local_contrast(&Grid::filled(4, 6, 0.0), 2);
+        assert_eq!(dark, Err(StatisticsError::Mean(0.0)));
+        let hole = local_contrast(&Grid::filled(4, 6, f32::NAN), 2);
+        assert!(
+            matches!(hole, Err(StatisticsError::NotFinite { .. })),
+            "{hole:?}"
+        );
+    }
+}

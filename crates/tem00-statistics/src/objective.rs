@@ -1,0 +1,274 @@
+use core::f64::consts::PI;
+
+use tem00_numerics::{jinc, sinc};
+
+use crate::StatisticsError;
+
+/// The area of a rough surface that is lit, with lengths in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LitArea {
+    /// A uniformly lit disc.
+    Disc {
+        /// Its diameter.
+        diameter: f64,
+    },
+    /// A uniformly lit rectangle.
+    Rectangle {
+        /// Its width, along x.
+        width: f64,
+        /// Its height, along y.
+        height: f64,
+    },
+    /// A Gaussian spot.
+    GaussianSpot {
+        /// The radius at which the irradiance has fallen to 1/e².
+        radius: f64,
+    },
+}
+
+/// Speckle without a lens: the pattern that a lit area of a rough surface makes in a distant plane.
+///
+/// ```text
+/// disc        c(r) = [2 J₁(πr/h) / (πr/h)]²,          h = λ z / D
+/// rectangle   c(x, y) = sinc²(πx/h_x) sinc²(πy/h_y),  h_x = λ z / W_x, h_y = λ z / W_y
+/// Gaussian    c(r) = exp(−(π w r / λz)²)
+/// ```
+///
+/// The field in the plane is correlated as the Fourier transform of the irradiance on the surface
+/// (van Cittert and Zernike), and c is the square of that. Uniformly lit, the area has the part that
+/// the pupil has for the speckle in an image; z is the distance.
+///
+/// # Validity
+///
+/// Fully developed speckle close to the axis; a plane parallel to the surface that is many
+/// wavelengths and several sizes of the lit area away, while the correlation of the light on the
+/// surface is as short as the wavelength.
+///
+/// # Examples
+///
+/// A red laser spot of 1 mm diameter on a wall makes speckles of 1.3 mm at 2 m:
+///
+/// ```
+/// use tem00_statistics::{LitArea, ObjectiveSpeckle};
+///
+/// let spot = LitArea::Disc { diameter: 1e-3 };
+/// let speckle = ObjectiveSpeckle::new(650e-9, 2.0, spot)?;
+/// assert!((speckle.size()[0] - 1.3e-3).abs() < 1e-12);
+/// # Ok::<(), tem00_statistics::StatisticsError>(())
+/// ```
+///
+/// # References
+///
+/// - J. W. Goodman, *Statistical properties of laser speckle patterns*, 1975, §2.4.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObjectiveSpeckle {
+    /// λ z.
+    scale: f64,
+    area: LitArea,
+}
+
+impl ObjectiveSpeckle {
+    /// Creates the speckle from the wavelength λ and the distance z of the plane, in metres, and the
+    /// lit area.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless the wavelength, the distance and all lengths of the area are positive
+    /// and finite.
+    pub fn new(wavelength: f64, distance: f64, area: LitArea) -> Result<Self, StatisticsError> {
+        let is_length = |x: f64| x > 0.0 && x.is_finite();
+        if !is_length(wavelength) {
+            return Err(StatisticsError::Wavelength(wavelength));
+        }
+        if !is_length(distance) {
+            return Err(StatisticsError::Distance(distance));
+        }
+        let lengths = match area {
+            LitArea::Disc { diameter } => [diameter; 2],
+            LitArea::Rectangle { width, height } => [width, height],
+            LitArea::GaussianSpot { radius } => [radius; 2],
+        };
+        match lengths.into_iter().find(|&length| !is_length(length)) {
+            Some(bad) => Err(StatisticsError::LitSize(bad)),
+            None => Ok(Self {
+                scale: wavelength * distance,
+                area,
+            }),
+        }
+    }
+
+    /// Returns the speckle size along x and y, in metres: λz over the diameter or the sides of the
+    /// lit area, the period of the finest fringes.
+    ///
+    /// A Gaussian spot has no finest fringes. Its size is that of the uniform disc that makes the
+    /// same coherence area: of the diameter 2w.
+    pub fn size(&self) -> [f64; 2] {
+        match self.area {
+            LitArea::Disc { diameter } => [self.scale / diameter; 2],
+            LitArea::Rectangle { width, height } => [self.scale / width, self.scale / height],
+            LitArea::GaussianSpot { radius } => [self.scale / (2.0 * radius); 2],
+        }
+    }
+
+    /// Returns the normalised autocovariance of the intensity at a `lag` along x and y, in metres.
+    pub fn autocovariance(&self, lag: [f64; 2]) -> f64 {
+        let size = self.size();
+        let [x, y] = [lag[0] / size[0], lag[1] / size[1]];
+        match self.area {
+            LitArea::Disc { .. } => jinc(PI * x.hypot(y)).powi(2),
+            LitArea::Rectangle { .. } => (sinc(PI * x) * sinc(PI * y)).powi(2),
+            LitArea::GaussianSpot { .. } => (-(0.5 * PI * x.hypot(y)).powi(2)).exp(),
+        }
+    }
+
+    /// Returns the coherence area, in m²: the integral of the autocovariance over the plane.
+    ///
+    /// ```text
+    /// (λz)² ∫ E² dA / (∫ E dA)²          E the irradiance
+    /// = (4/π) h²,  h_x h_y,  (4/π) h²    disc, rectangle, Gaussian spot
+    /// ```
+    pub fn coherence_area(&self) -> f64 {
+        let [x, y] = self.size();
+        match self.area {
+            LitArea::Rectangle { .. } => x * y,
+            LitArea::Disc { .. } | LitArea::GaussianSpot { .. } => 4.0 / PI * x * y,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::quadrature::{integrate, integrate_from_root};
+
+    const WAVELENGTH: f64 = 633e-9;
+    const DISTANCE: f64 = 0.8;
+
+    fn speckle(area: LitArea) -> ObjectiveSpeckle {
+        ObjectiveSpeckle::new(WAVELENGTH, DISTANCE, area).unwrap()
+    }
+
+    /// |∫ E(x) exp(2πi x lag / λz) dx / ∫ E dx|², where E is even in x.
+    fn by_transform(profile: impl Fn(f64) -> f64, half: f64, lag: f64) -> f64 {
+        let scale = 2.0 * PI * lag / (WAVELENGTH * DISTANCE);
+        // From the edge inwards: the profile may have a root there.
+        let wave = |depth: f64| profile(half - depth) * (scale * (half - depth)).cos();
+        let power = |depth: f64| profile(half - depth);
+        let range = [0.0, half];
+        let ratio =
+            integrate_from_root(wave, range, 0.02) / integrate_from_root(power, range, 0.02);
+        ratio * ratio
+    }
+
+    #[test]
+    fn autocovariance_is_the_squared_transform_of_the_irradiance() {
+        let disc = speckle(LitArea::Disc { diameter: 3e-3 });
+        let box_ = speckle(LitArea::Rectangle {
+            width: 3e-3,
+            height: 0.5e-3,
+        });
+        let spot = speckle(LitArea::GaussianSpot { radius: 1e-3 });
+        for lag in [0.0, 40e-6, 150e-6, 210e-6, 700e-6] {
+            // Summed over y, the disc is a half circle and the Gaussian a Gaussian.
+            let chord = |x: f64| (1.5e-3 * 1.5e-3 - x * x).max(0.0).sqrt();
+            let law = by_transform(chord, 1.5e-3, lag);
+            assert_relative_eq!(
+                disc.autocovariance([0.6 * lag, -0.8 * lag]),
+                law,
+                epsilon = 1e-12
+            );
+            let law = by_transform(|_| 1.0, 1.5e-3, lag);
+            assert_relative_eq!(box_.autocovariance([lag, 0.0]), law, epsilon = 1e-12);
+            let law = by_transform(|_| 1.0, 0.25e-3, lag);
+            assert_relative_eq!(box_.autocovariance([0.0, lag]), law, epsilon = 1e-12);
+            let gauss = |x: f64| (-2.0 * (x / 1e-3).powi(2)).exp();
+            let law = by_transform(gauss, 4.5e-3, lag);
+            assert_relative_eq!(spot.autocovariance([0.0, lag]), law, epsilon = 1e-12);
+        }
+    }
+
+    #[test]
+    fn coherence_area_is_that_of_the_irradiance() {
+        let squared_scale = (WAVELENGTH * DISTANCE).powi(2);
+        let disc = speckle(LitArea::Disc { diameter: 3e-3 }).coherence_area();
+        let lit = PI * 1.5e-3 * 1.5e-3;
+        assert_relative_eq!(
+            disc,
+            squared_scale / lit,
+            max_relative = 1e-14,
+            epsilon = 0.0
+        );
+        let area = LitArea::Rectangle {
+            width: 3e-3,
+            height: 0.5e-3,
+        };
+        let rectangle = speckle(area).coherence_area();
+        assert_relative_eq!(
+            rectangle,
+            squared_scale / 1.5e-6,
+            max_relative = 1e-14,
+            epsilon = 0.0
+        );
+        // ∫ E² over (∫ E)², radially.
+        let spot = speckle(LitArea::GaussianSpot { radius: 1e-3 });
+        let radial = |power: f64| {
+            let ring = |r: f64| (-2.0 * power * (r / 1e-3).powi(2)).exp() * 2.0 * PI * r;
+            integrate(ring, [0.0, 5e-3], 2e-4)
+        };
+        let exact = squared_scale * radial(2.0) / radial(1.0).powi(2);
+        assert_relative_eq!(
+            spot.coherence_area(),
+            exact,
+            max_relative = 1e-12,
+            epsilon = 0.0
+        );
+        // And the integral of its autocovariance.
+        let h = spot.size()[0];
+        let ring = |r: f64| spot.autocovariance([r * h, 0.0]) * 2.0 * PI * r;
+        let integral = h * h * integrate(ring, [0.0, 5.0], 0.2);
+        assert_relative_eq!(
+            spot.coherence_area(),
+            integral,
+            max_relative = 1e-12,
+            epsilon = 0.0
+        );
+    }
+
+    #[test]
+    fn lengths_that_are_none_are_refused() {
+        let disc = LitArea::Disc { diameter: 1e-3 };
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let refused = ObjectiveSpeckle::new(bad, 1.0, disc);
+            assert!(
+                matches!(refused, Err(StatisticsError::Wavelength(_))),
+                "{bad}"
+            );
+            let refused = ObjectiveSpeckle::new(1e-6, bad, disc);
+            assert!(
+                matches!(refused, Err(StatisticsError::Distance(_))),
+                "{bad}"
+            );
+            let areas = [
+                LitArea::Disc { diameter: bad },
+                LitArea::Rectangle {
+                    width: 1.0,
+                    height: bad,
+                },
+                LitArea::Rectangle {
+                    width: bad,
+                    height: 1.0,
+                },
+                LitArea::GaussianSpot { radius: bad },
+            ];
+            for area in areas {
+                let refused = ObjectiveSpeckle::new(1e-6, 1.0, area);
+                assert!(
+                    matches!(refused, Err(StatisticsError::LitSize(_))),
+                    "{area:?}"
+                );
+            }
+        }
+    }
+}

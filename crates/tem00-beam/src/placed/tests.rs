@@ -388,7 +388,7 @@ fn batches_of_next_events_of_unequal_length_panic() {
 
 #[test]
 fn invalid_numbers_are_rejected() {
-    for power in [-1e-3, f64::NAN, f64::INFINITY] {
+    for power in [-1e-3, 1e101, f64::NAN, f64::INFINITY] {
         let result = SpotLight::place(&beam(), 0.1, &placement(), power);
         assert!(matches!(result, Err(BeamError::Power(_))), "{power}");
         let laser = laser_line(LineProfile::GaussianTan);
@@ -466,6 +466,16 @@ fn a_laser_without_power_is_dark() {
         light.sample_ray([0.5; 4]).flux.abs() < f64::MIN_POSITIVE,
         "no flux"
     );
+}
+
+#[test]
+fn the_strongest_light_of_the_smallest_waist_is_finite() {
+    let smallest = GaussianBeam::from_waist(1e-30, 1e-30).unwrap();
+    let light = SpotLight::place(&smallest, 0.0, &placement(), 1e100).unwrap();
+    let p = ORIGIN.to_array();
+    let flux = light.flux(p);
+    assert!(light.irradiance(p) > 1e159, "{flux:?}");
+    assert!(flux.iter().all(|f| f.is_finite()), "{flux:?}");
 }
 
 /// Checks the error that `Emitter` states for `f32`, 4 ε |p| / w, at points of an even spread within

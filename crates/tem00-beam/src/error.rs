@@ -123,9 +123,9 @@ pub enum BeamError {
     /// The complex curvature, in m⁻¹, is not finite, not symmetric or has an imaginary part that is
     /// not negative definite.
     ComplexCurvature([[Complex64; 2]; 2]),
-    /// The power, in watts, is negative or not finite.
+    /// The power does not lie between 0 and 1e100 W.
     Power(f64),
-    /// The origin of a placement has a coordinate, in metres, that is not finite.
+    /// The origin of a placement has a coordinate, in metres, that is not finite or beyond 1e30 m.
     Origin(DVec3),
     /// The direction of a placement has no length, or is not finite.
     Direction(DVec3),
@@ -285,9 +285,11 @@ impl fmt::Display for BeamError {
                  part, got [[{xx}, {xy}], [{yx}, {yy}]] m⁻¹"
             ),
             Self::Power(got) => {
-                write!(f, "power must be finite and not negative, got {got:e} W")
+                write!(f, "power must lie between 0 and 1e100 W, got {got:e} W")
             }
-            Self::Origin(got) => write!(f, "origin must be finite, got {got} m"),
+            Self::Origin(got) => {
+                write!(f, "origin must be finite and within ±1e30 m, got {got} m")
+            }
             Self::Direction(got) => {
                 write!(f, "direction must be finite and have a length, got {got}")
             }

@@ -128,9 +128,9 @@ fn check_digits<const N: usize>(quantities: [f64; N]) -> Result<(), BeamError> {
     Ok(())
 }
 
-/// Returns the power, if it is one.
+/// Returns the power, if it is one and so small that no light concentrates it beyond all numbers.
 fn checked_power(power: f64) -> Result<f64, BeamError> {
-    if power >= 0.0 && power.is_finite() {
+    if (0.0..=1e100).contains(&power) {
         Ok(power)
     } else {
         Err(BeamError::Power(power))

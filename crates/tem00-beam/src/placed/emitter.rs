@@ -27,15 +27,17 @@ use crate::real::Real;
 ///
 /// # Validity
 ///
-/// In `f32` the irradiance carries the rounding of the coordinates: within two beam radii of the axis
-/// its relative error stays below `4 ε |p| / w`, with ε = 1.2e−7, the larger one `|p|` of the distances
-/// of the point and of the light from the world's origin, and the smaller beam radius `w`.
+/// In `f32` the irradiance carries the rounding of the coordinates. Within two beam radii of the axis
+/// its relative error is usually below `4 ε (1 + |p| / w)` and below five times that wherever the
+/// light stands, with ε = 1.2e−7, the larger one `|p|` of the distances of the point and of the light
+/// from the world's origin, and the smaller beam radius `w`. In a line the half-length of the fan and
+/// the width of its roll-off count as radii too; at an abrupt end nothing can be said.
 ///
 /// The batch forms give the bits of single calls, with and without the feature `simd`, which compiles
 /// their loops for the widest vector instructions that the processor turns out to have.
 ///
-/// The trait is sealed. [`SpotLight`](crate::SpotLight), [`LineLight`](crate::LineLight) and
-/// [`AstigmaticLight`](crate::AstigmaticLight) implement it.
+/// The trait is sealed. [`SpotLight`](crate::SpotLight), [`AstigmaticLight`](crate::AstigmaticLight),
+/// [`LineLight`](crate::LineLight) and [`TabulatedLineLight`](crate::TabulatedLineLight) implement it.
 ///
 /// # Examples
 ///

@@ -119,8 +119,8 @@ impl LineLight<f64> {
     ///
     /// # Errors
     ///
-    /// Returns an error if the placement's origin is not finite or beyond 1e30 m, if `power` is
-    /// negative or not finite, if the placement's axes are not finite, have no length, or are
+    /// Returns an error if the placement's origin is not finite or beyond 1e30 m, if `power` does not
+    /// lie between 0 and 1e100 W, if the placement's axes are not finite, have no length, or are
     /// parallel, or if the profile of the line is tabulated: a
     /// [`TabulatedLineLight`](crate::TabulatedLineLight) places that.
     pub fn place(line: &LaserLine, placement: &Placement, power: f64) -> Result<Self, BeamError> {

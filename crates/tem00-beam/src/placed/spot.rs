@@ -80,8 +80,8 @@ impl SpotLight<f64> {
     /// # Errors
     ///
     /// Returns an error if `waist_distance` or the placement's origin is not finite or beyond
-    /// 1e30 m, if `power` is negative or not finite, or if the placement's axes are not finite,
-    /// have no length, or are parallel.
+    /// 1e30 m, if `power` does not lie between 0 and 1e100 W, or if the placement's axes are not
+    /// finite, have no length, or are parallel.
     pub fn place(
         beam: &GaussianBeam,
         waist_distance: f64,
@@ -100,8 +100,8 @@ impl SpotLight<f64> {
     ///
     /// # Errors
     ///
-    /// Returns an error if the placement's origin is not finite or beyond 1e30 m, if `power` is
-    /// negative or not finite, or if the placement's axes are not finite, have no length, or are
+    /// Returns an error if the placement's origin is not finite or beyond 1e30 m, if `power` does not
+    /// lie between 0 and 1e100 W, or if the placement's axes are not finite, have no length, or are
     /// parallel.
     pub fn place_astigmatic(
         beam: &AstigmaticBeam,

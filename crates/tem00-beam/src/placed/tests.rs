@@ -2,6 +2,8 @@ use core::mem::{align_of, offset_of, size_of};
 
 use glam::DVec3;
 use proptest::prelude::*;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 use super::fan::Fan;
 use super::phase_space::PhaseSpace;
@@ -388,7 +390,7 @@ fn batches_of_next_events_of_unequal_length_panic() {
 
 #[test]
 fn invalid_numbers_are_rejected() {
-    for power in [-1e-3, f64::NAN, f64::INFINITY] {
+    for power in [-1e-3, 1e101, f64::NAN, f64::INFINITY] {
         let result = SpotLight::place(&beam(), 0.1, &placement(), power);
         assert!(matches!(result, Err(BeamError::Power(_))), "{power}");
         let laser = laser_line(LineProfile::GaussianTan);
@@ -468,8 +470,18 @@ fn a_laser_without_power_is_dark() {
     );
 }
 
-/// Checks the error that `Emitter` states for `f32`, 4 ε |p| / w, at points of an even spread within
-/// two radii `w(z)` of the axis or, in a line, of the fan plane.
+#[test]
+fn the_strongest_light_of_the_smallest_waist_is_finite() {
+    let smallest = GaussianBeam::from_waist(1e-30, 1e-30).unwrap();
+    let light = SpotLight::place(&smallest, 0.0, &placement(), 1e100).unwrap();
+    let p = ORIGIN.to_array();
+    let flux = light.flux(p);
+    assert!(light.irradiance(p) > 1e159, "{flux:?}");
+    assert!(flux.iter().all(|f| f.is_finite()), "{flux:?}");
+}
+
+/// Checks the usual error that `Emitter` states for `f32`, 4 ε |p| / w, at points of an even spread
+/// within two radii `w(z)` of the axis or, in a line, of the fan plane.
 ///
 /// The error is that of five roundings of ε/2 each, times the derivative of ln E, 4 x / w². That is
 /// 20 ε |p| / w where all roundings conspire, and a fifth of it in practice.
@@ -505,6 +517,58 @@ fn single_precision_has_the_stated_error() {
     check_single(&spot, &spot.to_f32().unwrap(), smaller);
     let light = AstigmaticLight::place(&elliptic().into(), &placement(), POWER).unwrap();
     check_single(&light, &light.to_f32().unwrap(), smaller);
+}
+
+/// The largest error of `f32` at 20 000 points within two lengths `w` of the axis of lights placed at
+/// random, in units of ε (1 + |p| / w).
+fn largest_error<L: Emitter<f64>, S: Emitter<f32>>(
+    placed: impl Fn(&Placement) -> (L, S),
+    length_at: impl Fn(f64) -> f64,
+) -> f64 {
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut within = |limit: f64| rng.random_range(-limit..limit);
+    let mut largest: f64 = 0.0;
+    for _ in 0..20_000 {
+        let mut vector = || DVec3::new(within(1.0), within(1.0), within(1.0));
+        let placement = Placement {
+            origin: vector(),
+            direction: vector(),
+            fan_axis: vector(),
+        };
+        let (double, single) = placed(&placement);
+        let frame = double.frame();
+        let z = 0.25 + within(0.2);
+        let (rho, (sin, cos)) = (within(2.0), within(3.2).sin_cos());
+        let w = length_at(z);
+        let offset = frame.world_from_local_vector([rho * w * cos, rho * w * sin, z]);
+        let p = (placement.origin + DVec3::from(offset)).to_array();
+        let rounded = p.map(<f32 as Scalar>::of);
+        let e64 = double.irradiance(rounded.map(f64::from));
+        let error = f64::from(single.irradiance(rounded)) / e64 - 1.0;
+        let size = DVec3::from(p).length().max(placement.origin.length());
+        largest = largest.max(error.abs() / (f64::from(f32::EPSILON) * (1.0 + size / w)));
+    }
+    largest
+}
+
+#[test]
+fn single_precision_has_the_stated_error_wherever_the_light_stands() {
+    let wide = GaussianBeam::from_waist(650e-9, 1e-3).unwrap();
+    for beam in [beam(), wide] {
+        let spot = |placement: &Placement| {
+            let light = SpotLight::place(&beam, 0.15, placement, POWER).unwrap();
+            (light, light.to_f32().unwrap())
+        };
+        let error = largest_error(spot, |z| beam.radius_at(z - 0.15));
+        assert!((3.0..20.0).contains(&error), "{beam:?}: {error}");
+    }
+    let gaussian = laser_line(LineProfile::GaussianTan);
+    let line = |placement: &Placement| {
+        let light = LineLight::place(&gaussian, placement, POWER).unwrap();
+        (light, light.to_f32().unwrap())
+    };
+    let error = largest_error(line, |z| gaussian.half_thickness_at(z));
+    assert!((3.0..20.0).contains(&error), "line: {error}");
 }
 
 proptest! {

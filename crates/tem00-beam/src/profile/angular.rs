@@ -113,14 +113,16 @@ impl AngularProfile {
     ///
     /// # Errors
     ///
-    /// Returns an error if two neighbouring angles are one in single precision.
+    /// Returns an error if two neighbouring angles are one in single precision, or if the whole table
+    /// is hardly wider than the rounding of an angle.
     pub fn to_f32(&self) -> Result<Vec<AngularKnot<f32>>, BeamError> {
         let knots: Vec<_> = self.knots.iter().map(AngularKnot::rounded).collect();
-        match knots
-            .windows(2)
-            .position(|pair| pair[0].angle >= pair[1].angle)
-        {
+        let table = AngularTable(&knots);
+        let [first, last] = table.ends();
+        let same = |pair: &[AngularKnot<f32>]| pair[0].angle >= pair[1].angle;
+        match knots.windows(2).position(same) {
             Some(index) => Err(BeamError::SinglePrecision(self.knots[index].angle)),
+            None if last - first <= 4.0 * table.margin() => Err(BeamError::SinglePrecision(first)),
             None => Ok(knots),
         }
     }
@@ -221,11 +223,21 @@ impl<'a, T: Real> AngularTable<'a, T> {
 
     /// Moves an angle away from the ends of the table by the rounding of its slope.
     fn off_the_ends(self, angle: f64) -> f64 {
-        let [first, last] =
-            [self.0.first(), self.0.last()].map(|knot| knot.map_or(0.0, |knot| knot.angle.wide()));
-        // Four units in the last place: two for the slope, two for its arc tangent.
-        let margin = 16.0 * T::HALF_SPACING * first.abs().max(last.abs());
+        let [first, last] = self.ends();
+        let margin = self.margin();
         angle.max(first + margin).min(last - margin)
+    }
+
+    /// Returns the first and the last angle.
+    fn ends(self) -> [f64; 2] {
+        [self.0.first(), self.0.last()].map(|knot| knot.map_or(0.0, |knot| knot.angle.wide()))
+    }
+
+    /// Returns the distance from the ends within which the rounding of a slope may leave the table.
+    fn margin(self) -> f64 {
+        let [first, last] = self.ends();
+        // Four units in the last place: two for the slope, two for its arc tangent.
+        16.0 * T::HALF_SPACING * first.abs().max(last.abs())
     }
 
     /// Returns the largest density per radian.

@@ -143,6 +143,14 @@ fn single_precision_keeps_angles_apart_or_says_so() {
     let step = AngularProfile::new(&[0.0, 0.3, 0.3 + 1e-10, 0.5], &[1.0, 1.0, 0.0, 0.0]).unwrap();
     let error = step.to_f32().unwrap_err();
     assert_eq!(error, BeamError::SinglePrecision(0.3), "one angle in f32");
+    // Two or three units of 1.2e−7: the margin at either end would leave nothing to draw from.
+    let thread = AngularProfile::new(&[1.0, 1.0 + 2.75e-7], &[1.0, 1.0]).unwrap();
+    let error = thread.to_f32().unwrap_err();
+    assert_eq!(
+        error,
+        BeamError::SinglePrecision(1.0),
+        "a table of one angle"
+    );
 }
 
 #[test]

@@ -13,17 +13,18 @@
 mod plot;
 mod table;
 
-use std::{env, error::Error};
+use std::env;
 
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use tem00::beam::{CausticFit, Estimate, GaussianBeam};
+use table::Failure;
+use tem00::beam::{BeamError, CausticFit, Estimate, GaussianBeam};
 
 const WAVELENGTH: f64 = 650e-9;
 
 /// Radii, in mm, of a beam with a waist of 40 µm at 50 mm.
-fn made_up() -> Result<[Vec<f64>; 2], Box<dyn Error>> {
+fn made_up() -> Result<[Vec<f64>; 2], BeamError> {
     let beam = GaussianBeam::from_waist(WAVELENGTH, 40e-6)?.with_m_squared(1.3)?;
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let positions = [
@@ -41,10 +42,21 @@ fn show(name: &str, estimate: Estimate, scale: f64, unit: &str) {
     println!("{name:<22} {value:>9.3} ± {error:.3} {unit}");
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+/// A wavelength in metres, from the command line.
+fn wavelength_of(text: &str) -> Result<f64, String> {
+    text.parse()
+        .map_err(|_| format!("the wavelength must be in metres, as in 1064e-9, got {text:?}"))
+}
+
+/// Whether the fit contradicts physics by more than its own error.
+fn is_better_than_light(m_squared: Estimate) -> bool {
+    m_squared.value + 3.0 * m_squared.standard_error < 1.0
+}
+
+fn main() -> Result<(), Failure> {
     let mut arguments = env::args().skip(1);
     let ([positions, radii], wavelength) = match (arguments.next(), arguments.next()) {
-        (Some(path), Some(wavelength)) => (table::read(&path)?, wavelength.parse()?),
+        (Some(path), Some(wavelength)) => (table::read(&path)?, wavelength_of(&wavelength)?),
         (Some(_), None) => return Err("after the file, give the wavelength in metres".into()),
         (None, _) => (made_up()?, WAVELENGTH),
     };
@@ -57,18 +69,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     show("Rayleigh range", fit.rayleigh_range(), 1e3, "mm");
     show("divergence, half-angle", fit.divergence(), 1e3, "mrad");
     show("M²", fit.m_squared(), 1.0, "");
+    if is_better_than_light(fit.m_squared()) {
+        println!("M² is below 1: the wavelength, or a unit of the table, must be wrong");
+    }
     println!(
         "scatter of the radii   {:>9.2} %",
         100.0 * fit.residual_deviation()
     );
 
-    let range = |values: &[f64]| {
-        let ends = (f64::INFINITY, f64::NEG_INFINITY);
-        values
-            .iter()
-            .fold(ends, |(low, high), &x| (low.min(x), high.max(x)))
-    };
-    let (first, last) = range(&positions);
+    let [first, last] = table::range(&positions);
     let curve = (0..=300).map(|i| {
         let z = first + (last - first) * f64::from(i) / 300.0;
         (z, 1e3 * fit.radius_at(z * 1e-3))

@@ -1,8 +1,8 @@
 //! Where does a lens focus a laser beam, and how small is the focus?
 //!
-//! Not where geometrical optics says: the waist stays near the lens's focal plane however close the
-//! beam's own waist comes, and its size has a maximum instead of a pole (Self 1983). Compares the
-//! closed form with the ABCD law for an ideal lens and for a real, thick one.
+//! Not where geometrical optics says: a waist in the front focal plane has its image in the back one,
+//! not at infinity, and no image is farther away than `f + f² / (2 z_R)`. Compares the closed form of
+//! Self 1983 with the ABCD law for an ideal lens and for a real, thick one.
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 
@@ -21,6 +21,15 @@ fn before_lens(rayleigh_range: f64, distance: f64) -> Result<LocatedBeam, BeamEr
     LocatedBeam::new(GaussianBeam::from_waist(650e-9, waist_radius)?, -distance)
 }
 
+/// The distance from a thin lens to the new waist, and the radius there, as Self gives them.
+fn self_1983(beam: &LocatedBeam) -> [f64; 2] {
+    let before = -beam.waist_distance() / FOCAL_LENGTH - 1.0;
+    let depth = beam.beam().rayleigh_range() / FOCAL_LENGTH;
+    let denominator = before * before + depth * depth;
+    let distance = FOCAL_LENGTH * (1.0 + before / denominator);
+    [distance, beam.beam().waist_radius() / denominator.sqrt()]
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let ideal = AbcdMatrix::thin_lens(FOCAL_LENGTH)?;
     // An equiconvex lens of BK7, 4 mm thick, with nearly the same focal length.
@@ -34,13 +43,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("A beam of 0.2 mm waist radius 300 mm before a lens of f = 100 mm");
     println!("                     | waist behind lens / mm | waist radius / µm");
     let beam = LocatedBeam::new(GaussianBeam::from_waist(650e-9, 0.2e-3)?, -0.3)?;
-    for (name, focus) in [
-        ("closed form (Self)", beam.through_lens(FOCAL_LENGTH)?),
-        ("ABCD, thin lens", ideal.transform(&beam)?),
-        ("ABCD, thick lens", real.transform(&beam)?),
+    let of = |focus: LocatedBeam| [focus.waist_distance(), focus.beam().waist_radius()];
+    for (name, [distance, radius]) in [
+        ("closed form (Self)", self_1983(&beam)),
+        ("ABCD, thin lens", of(ideal.transform(&beam)?)),
+        ("ABCD, thick lens", of(real.transform(&beam)?)),
     ] {
-        let distance = focus.waist_distance() * 1e3;
-        let radius = focus.beam().waist_radius() * 1e6;
+        let [distance, radius] = [distance * 1e3, radius * 1e6];
         println!("{name:<20} | {distance:>22.3} | {radius:>17.3}");
     }
 

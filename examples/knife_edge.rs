@@ -12,15 +12,16 @@
 mod plot;
 mod table;
 
-use std::{env, error::Error};
+use std::env;
 
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use tem00::beam::{CrossSection, KnifeEdgeFit};
+use table::Failure;
+use tem00::beam::{BeamError, CrossSection, KnifeEdgeFit};
 
 /// A trace of a 1 mW beam with w = 0.5 mm around 3 mm, with an error of ±5 µW.
-fn made_up() -> Result<[Vec<f64>; 2], Box<dyn Error>> {
+fn made_up() -> Result<[Vec<f64>; 2], BeamError> {
     let spot = CrossSection::new([0.5e-3; 2])?;
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let positions: Vec<_> = (0..=60).map(|i| 1.5 + 0.05 * f64::from(i)).collect();
@@ -32,7 +33,7 @@ fn made_up() -> Result<[Vec<f64>; 2], Box<dyn Error>> {
     Ok([positions, powers])
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Failure> {
     let [millimetres, powers] = match env::args().nth(1) {
         Some(path) => table::read(&path)?,
         None => made_up()?,
@@ -59,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         fit.residual_deviation() / fit.power().value
     });
 
-    let (first, last) = (positions[0], positions[positions.len() - 1]);
+    let [first, last] = table::range(&positions);
     let curve = (0..=300).map(|i| {
         let x = first + (last - first) * f64::from(i) / 300.0;
         (in_mm(x), fit.power_at(x))

@@ -129,10 +129,8 @@ impl AstigmaticSystem {
     /// ```
     pub fn from_axes(axes: [AbcdMatrix; 2], rotation: f64) -> Result<Self, BeamError> {
         let turn = DMat2::from_angle(finite_rotation(rotation)?);
+        check_determinants(&axes)?;
         let [x, y] = axes.map(|axis| axis.determinant());
-        if (x - y).abs() > SYMPLECTIC_TOLERANCE * x {
-            return Err(BeamError::Determinants { x, y });
-        }
         let block = |entry: fn(&AbcdMatrix) -> f64| {
             let [x, y] = &axes;
             turn * DMat2::from_diagonal(DVec2::new(entry(x), entry(y))) * turn.transpose()
@@ -255,6 +253,15 @@ impl AstigmaticSystem {
             index_ratio: 1.0,
         }
     }
+}
+
+/// Checks that light leaves both axes of a system into one medium.
+pub(crate) fn check_determinants(axes: &[AbcdMatrix; 2]) -> Result<(), BeamError> {
+    let [x, y] = axes.map(|axis| axis.determinant());
+    if (x - y).abs() > SYMPLECTIC_TOLERANCE * x {
+        return Err(BeamError::Determinants { x, y });
+    }
+    Ok(())
 }
 
 fn finite_rotation(rotation: f64) -> Result<f64, BeamError> {

@@ -159,7 +159,8 @@ impl fmt::Display for BeamError {
                 minimum,
             } => write!(
                 f,
-                "waist radius {waist_radius:e} m is below the paraxial limit of {minimum:e} m"
+                "waist radius must be at least 2 M² λ / π = {minimum:e} m to be paraxial, \
+                 got {waist_radius:e} m"
             ),
             Self::Growth(got) => {
                 write!(f, "growth must be finite and greater than 1, got {got:e}")
@@ -314,6 +315,16 @@ impl error::Error for BeamError {}
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_tight_waist_shows_the_limit_that_the_wavelength_sets() {
+        // A wavelength in nanometres: it, and not the radius, is what looks wrong.
+        let text = crate::GaussianBeam::from_waist(650.0, 1e-3)
+            .unwrap_err()
+            .to_string();
+        assert!(text.contains("2 M² λ / π = 4.138"), "{text:?}");
+        assert!(text.contains("got 1e-3 m"), "{text:?}");
+    }
 
     #[test]
     fn messages_name_the_parameter_and_its_value() {

@@ -75,7 +75,8 @@ pub enum FitError {
     /// The data leave a parameter open: no divergence is to be seen, or no waist, or an edge falls
     /// between two positions.
     Undetermined,
-    /// The search for the best parameters did not come to an end.
+    /// The search for the best parameters did not come to an end, as for radii on a straight line,
+    /// which fit the better the smaller the waist.
     NotConverged,
 }
 
@@ -111,7 +112,11 @@ impl fmt::Display for FitError {
                 "the power does not change along the trace as it would across a beam"
             ),
             Self::Undetermined => write!(f, "the data do not determine all parameters"),
-            Self::NotConverged => write!(f, "the search for the best fit did not converge"),
+            Self::NotConverged => write!(
+                f,
+                "the search for the best fit did not converge: \
+                 the data may not determine all parameters"
+            ),
         }
     }
 }
@@ -215,7 +220,7 @@ mod tests {
             (FitError::EqualPositions, "positions", "same"),
             (FitError::NoEdge, "power", "change"),
             (FitError::Undetermined, "data", "parameters"),
-            (FitError::NotConverged, "search", "converge"),
+            (FitError::NotConverged, "converge", "data may not"),
         ];
         for (error, name, detail) in cases {
             let text = error.to_string();

@@ -101,6 +101,10 @@ impl GaussianBeam {
     /// w₀ = λ / (π δ)
     /// ```
     ///
+    /// Where a data sheet gives the divergence *and* an M², ask for the divergence `δ / M²` and then
+    /// for the M², which brings it back to `δ`: [`with_m_squared`](Self::with_m_squared) keeps the
+    /// waist.
+    ///
     /// # Errors
     ///
     /// Returns an error if `wavelength` is not a length from 1e−30 m to 1e30 m, if `divergence` is
@@ -113,6 +117,10 @@ impl GaussianBeam {
     ///
     /// let pointer = GaussianBeam::from_divergence(650e-9, 0.5e-3)?;
     /// assert!((pointer.waist_radius() - 0.414e-3).abs() < 0.001e-3);
+    ///
+    /// let worse = GaussianBeam::from_divergence(650e-9, 0.5e-3 / 1.5)?.with_m_squared(1.5)?;
+    /// assert!((worse.divergence() - 0.5e-3).abs() < 1e-15);
+    /// assert!((worse.waist_radius() - 0.621e-3).abs() < 0.001e-3);
     /// # Ok::<(), tem00_beam::BeamError>(())
     /// ```
     pub fn from_divergence(wavelength: f64, divergence: f64) -> Result<Self, BeamError> {

@@ -31,6 +31,10 @@ struct Decentred {
 /// The fraction of the power within the circle of radius `r` about `centre`.
 pub(super) fn power_in_circle([w_x, w_y]: [f64; 2], centre: [f64; 2], r: f64) -> f64 {
     let [x, y] = centre.map(f64::abs);
+    // The comparisons below would take it for a circle that holds all, or nothing.
+    if x.is_nan() || y.is_nan() || r.is_nan() {
+        return f64::NAN;
+    }
     let circle = if y >= x {
         Decentred { x, y, w_x, w_y, r }
     } else {

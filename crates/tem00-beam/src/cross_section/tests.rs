@@ -388,6 +388,16 @@ fn everything_passes_an_aperture_without_an_edge() {
 }
 
 #[test]
+fn a_circle_that_is_nowhere_holds_no_known_power() {
+    for spot in [spot(1.0, 1.0), spot(1.0, 2.0)] {
+        for centre in [[f64::NAN, 0.0], [0.0, f64::NAN]] {
+            let power = spot.power_in_circle_at(centre, 1.0);
+            assert!(power.is_nan(), "{spot:?}, {centre:?}: {power}");
+        }
+    }
+}
+
+#[test]
 fn radii_of_beams_at_absurd_distances_yield_fractions() {
     for radii in [[1e300, 1e-30], [1e-30, f64::MAX], [f64::MAX, f64::MAX]] {
         let spot = CrossSection::of_radii(radii);

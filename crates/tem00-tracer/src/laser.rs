@@ -1,7 +1,7 @@
 use glam::DVec3;
 use tem00_beam::{
-    BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile, NextEvent,
-    Placement, SpotLight, TabulatedLineLight, paper,
+    AstigmaticBeam, BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight,
+    LineProfile, LocatedBeam, NextEvent, Placement, SpotLight, TabulatedLineLight, paper,
 };
 use tem00_decorrelation::{DecorrelationError, Wavefront};
 
@@ -18,7 +18,8 @@ pub struct LaserDescription {
     pub position: DVec3,
     /// A point on the axis in front of the aperture, in metres.
     pub look_at: DVec3,
-    /// Across the axis: the direction in which a line opens. Its part along the axis is ignored.
+    /// Across the axis: the direction in which a line opens, and the first axis of an elliptic spot.
+    /// Its part along the axis is ignored.
     pub line_direction: DVec3,
     /// The shape of the beam.
     pub shape: BeamShape,
@@ -27,14 +28,14 @@ pub struct LaserDescription {
 /// The shape of a laser's beam.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BeamShape {
-    /// A round Gaussian beam.
+    /// A Gaussian beam, round or elliptic: each value along the line direction and across it.
     Spot {
-        /// The waist radius, in metres.
-        waist_radius: f64,
-        /// The distance of the waist from the aperture, in metres; negative behind it.
-        waist_distance: f64,
-        /// The beam quality factor M².
-        m_squared: f64,
+        /// The waist radii, in metres.
+        waist_radius: [f64; 2],
+        /// The distances of the waists from the aperture, in metres; negative behind it.
+        waist_distance: [f64; 2],
+        /// The beam quality factors M².
+        m_squared: [f64; 2],
     },
     /// A laser line.
     Line {
@@ -60,7 +61,7 @@ pub struct Laser {
 #[derive(Clone, Debug, PartialEq)]
 enum Source {
     Spot {
-        beam: GaussianBeam,
+        beam: AstigmaticBeam,
         light: SpotLight<f64>,
     },
     /// The table of a tabulated profile stays in the line.
@@ -90,11 +91,13 @@ impl Laser {
                 waist_distance,
                 m_squared,
             } => {
-                let beam = beam(wavelength, waist_radius, m_squared)?;
-                Source::Spot {
-                    beam,
-                    light: SpotLight::place(&beam, waist_distance, &placement, power)?,
-                }
+                let axis = |i: usize| {
+                    let beam = beam(wavelength, waist_radius[i], m_squared[i])?;
+                    LocatedBeam::new(beam, waist_distance[i])
+                };
+                let beam = AstigmaticBeam::new(axis(0)?, axis(1)?)?;
+                let light = SpotLight::place_astigmatic(&beam, &placement, power)?;
+                Source::Spot { beam, light }
             }
             BeamShape::Line {
                 waist_radius,
@@ -163,8 +166,9 @@ impl Laser {
 
     /// Returns the wavefront at `point`, whose unit direction to the source is `direction`.
     ///
-    /// A spot's wavefront has the curvature 1/R(z) of its beam in both directions. A line's has, in
-    /// the fan, that of a wave from the apex and, across the fan, that of the focused beam.
+    /// A spot's wavefront has the curvatures 1/R(z) of its beam along the line direction and across
+    /// it. A line's has, in the fan, that of a wave from the apex and, across the fan, that of the
+    /// focused beam.
     pub(crate) fn wavefront_at(
         &self,
         point: DVec3,
@@ -174,8 +178,8 @@ impl Laser {
         let along = |axis: [f64; 3]| offset.dot(DVec3::from_array(axis));
         match &self.source {
             Source::Spot { beam, light } => {
-                let from_waist = along(light.ez) - light.x.z0;
-                Wavefront::spherical(direction, beam.curvature_at(from_waist))
+                let [first, second] = beam.curvatures_at(along(light.ez));
+                Wavefront::astigmatic(direction, DVec3::from_array(light.ex), first, second)
             }
             Source::Line { line, light } => {
                 let depth = along(light.ez) + line.fan().apex_offset;

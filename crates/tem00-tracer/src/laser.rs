@@ -1,7 +1,7 @@
 use glam::DVec3;
 use tem00_beam::{
-    BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight, LineProfile, NextEvent,
-    Placement, SpotLight, TabulatedLineLight, paper,
+    AstigmaticBeam, BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight,
+    LineProfile, LocatedBeam, NextEvent, Placement, SpotLight, TabulatedLineLight, paper,
 };
 use tem00_decorrelation::{DecorrelationError, Wavefront};
 
@@ -18,7 +18,8 @@ pub struct LaserDescription {
     pub position: DVec3,
     /// A point on the axis in front of the aperture, in metres.
     pub look_at: DVec3,
-    /// Across the axis: the direction in which a line opens. Its part along the axis is ignored.
+    /// Across the axis: the direction in which a line opens, and the first axis of an elliptic spot.
+    /// Its part along the axis is ignored.
     pub line_direction: DVec3,
     /// The shape of the beam.
     pub shape: BeamShape,
@@ -27,14 +28,14 @@ pub struct LaserDescription {
 /// The shape of a laser's beam.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BeamShape {
-    /// A round Gaussian beam.
+    /// A Gaussian beam, round or elliptic: each value along the line direction and across it.
     Spot {
-        /// The waist radius, in metres.
-        waist_radius: f64,
-        /// The distance of the waist from the aperture, in metres; negative behind it.
-        waist_distance: f64,
-        /// The beam quality factor M².
-        m_squared: f64,
+        /// The waist radii, in metres.
+        waist_radius: [f64; 2],
+        /// The distances of the waists from the aperture, in metres; negative behind it.
+        waist_distance: [f64; 2],
+        /// The beam quality factors M².
+        m_squared: [f64; 2],
     },
     /// A laser line.
     Line {
@@ -60,7 +61,7 @@ pub struct Laser {
 #[derive(Clone, Debug, PartialEq)]
 enum Source {
     Spot {
-        beam: GaussianBeam,
+        beam: AstigmaticBeam,
         light: SpotLight<f64>,
     },
     /// The table of a tabulated profile stays in the line.
@@ -90,11 +91,13 @@ impl Laser {
                 waist_distance,
                 m_squared,
             } => {
-                let beam = beam(wavelength, waist_radius, m_squared)?;
-                Source::Spot {
-                    beam,
-                    light: SpotLight::place(&beam, waist_distance, &placement, power)?,
-                }
+                let axis = |i: usize| {
+                    let beam = beam(wavelength, waist_radius[i], m_squared[i])?;
+                    LocatedBeam::new(beam, waist_distance[i])
+                };
+                let beam = AstigmaticBeam::new(axis(0)?, axis(1)?)?;
+                let light = SpotLight::place_astigmatic(&beam, &placement, power)?;
+                Source::Spot { beam, light }
             }
             BeamShape::Line {
                 waist_radius,
@@ -163,8 +166,9 @@ impl Laser {
 
     /// Returns the wavefront at `point`, whose unit direction to the source is `direction`.
     ///
-    /// A spot's wavefront has the curvature 1/R(z) of its beam in both directions. A line's has, in
-    /// the fan, that of a wave from the apex and, across the fan, that of the focused beam.
+    /// A spot's wavefront has the curvatures 1/R(z) of its beam along the line direction and across
+    /// it. A line's has, in the fan, that of a wave from the apex and, across the fan, that of the
+    /// focused beam.
     pub(crate) fn wavefront_at(
         &self,
         point: DVec3,
@@ -174,8 +178,8 @@ impl Laser {
         let along = |axis: [f64; 3]| offset.dot(DVec3::from_array(axis));
         match &self.source {
             Source::Spot { beam, light } => {
-                let from_waist = along(light.ez) - light.x.z0;
-                Wavefront::spherical(direction, beam.curvature_at(from_waist))
+                let [first, second] = beam.curvatures_at(along(light.ez));
+                Wavefront::astigmatic(direction, DVec3::from_array(light.ex), first, second)
             }
             Source::Line { line, light } => {
                 let depth = along(light.ez) + line.fan().apex_offset;
@@ -234,73 +238,4 @@ pub(crate) struct Illumination {
 }
 
 #[cfg(test)]
-mod tests {
-    use tem00_beam::{AngularProfile, FocusCurve};
-
-    use super::*;
-
-    /// A line of 60° in focus at 0.3 m, from the origin along z.
-    fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {
-        let shape = BeamShape::Line {
-            waist_radius: 0.1e-3,
-            m_squared: 1.0,
-            fan: FanGeometry {
-                fan_angle: 60_f64.to_radians(),
-                apex_offset: 2e-3,
-                focus_distance: 0.3,
-                focus_curve,
-            },
-            profile,
-        };
-        Laser::new(LaserDescription {
-            wavelength: 650e-9,
-            power: 5e-3,
-            position: DVec3::ZERO,
-            look_at: DVec3::Z,
-            line_direction: DVec3::X,
-            shape,
-        })
-        .unwrap()
-    }
-
-    #[test]
-    fn the_wavefront_across_a_line_is_flat_where_its_focus_curve_says() {
-        let slope = 0.4_f64;
-        let on_plane = DVec3::new(0.302 * slope, 0.0, 0.3);
-        let cos = slope.atan().cos();
-        let on_circle = DVec3::new(0.302 * slope * cos, 0.0, 0.302 * cos - 2e-3);
-        let cases = [
-            (FocusCurve::EqualPlane, on_plane, on_circle),
-            (FocusCurve::EqualDistance, on_circle, on_plane),
-        ];
-        for (focus_curve, flat, curved) in cases {
-            let laser = line(LineProfile::GaussianTan, focus_curve);
-            let across = [flat, curved].map(|point| {
-                let direction = laser.illuminate(point).unwrap().direction;
-                let curvature = laser.wavefront_at(point, direction).unwrap().curvature();
-                DVec3::Y.dot(curvature * DVec3::Y)
-            });
-            assert!(across[0].abs() < 1e-9, "{focus_curve:?}: {across:?}");
-            assert!(across[1].abs() > 1.0, "{focus_curve:?}: {across:?}");
-        }
-    }
-
-    #[test]
-    fn a_tabulated_line_lights_what_its_table_says() {
-        let table = AngularProfile::from_pairs(&[(-0.2, 1.0), (0.0, 2.0), (0.4, 0.0)]).unwrap();
-        let laser = line(LineProfile::Tabulated(table), FocusCurve::EqualPlane);
-        let at = |theta: f64| {
-            let point = DVec3::new(0.302 * theta.tan(), 0.0, 0.3);
-            let light = laser.illuminate(point);
-            light.map_or(0.0, |light| light.irradiance)
-        };
-        // E = P f(θ) / r · √(2/π) / w₀ on the plane of focus, and ∫ f = 0.3 + 0.4.
-        for (theta, f) in [(0.0, 2.0), (-0.1, 1.5), (0.2, 1.0)] {
-            let r = 0.302 / f64::cos(theta);
-            let expected = 5e-3 * (f / 0.7) / r * core::f64::consts::FRAC_2_PI.sqrt() / 0.1e-3;
-            let error = at(theta) / expected - 1.0;
-            assert!(error.abs() < 1e-12, "{theta}: {error:e}");
-        }
-        assert!(at(-0.21) <= 0.0 && at(0.41) <= 0.0, "outside the table");
-    }
-}
+mod tests;

@@ -80,15 +80,33 @@ fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
     Laser::new(description).map_err(|error| rejected(&error, &[&beam, section]))
 }
 
-/// Reads a round beam whose waist is, unless it is given, at `distance`.
+/// Reads a beam, round or elliptic, whose waists are, unless they are given, at `distance`.
 fn spot(section: &Section<'_>, distance: f64) -> Result<BeamShape, Problem> {
     Ok(BeamShape::Spot {
-        waist_radius: section
-            .required("waist_radius", "\"0.5 mm\"")?
-            .positive(&LENGTH)?,
-        waist_distance: section.or("waist_distance", distance, |value| value.quantity(&LENGTH))?,
-        m_squared: section.or("m_squared", 1.0, m_squared)?,
+        waist_radius: along_and_across(
+            &section.required("waist_radius", "\"0.5 mm\"")?,
+            |value| value.positive(&LENGTH),
+        )?,
+        waist_distance: section.or("waist_distance", [distance; 2], |value| {
+            along_and_across(value, |value| value.quantity(&LENGTH))
+        })?,
+        m_squared: section.or("m_squared", [1.0; 2], |value| {
+            along_and_across(value, m_squared)
+        })?,
     })
+}
+
+/// Reads one value for both axes of a spot, or a list of one for each.
+fn along_and_across<'a>(
+    value: &Value<'a>,
+    read: impl Fn(&Value<'a>) -> Result<f64, Problem>,
+) -> Result<[f64; 2], Problem> {
+    if value.is_list() {
+        let [along, across] = value.elements("one value, or a list [along, across] of two")?;
+        Ok([read(&along)?, read(&across)?])
+    } else {
+        read(value).map(|both| [both; 2])
+    }
 }
 
 /// Reads a laser line that is, unless it is given, in focus at `distance`.

@@ -158,6 +158,11 @@ impl<'a> Value<'a> {
         self.item.get_ref().is_table()
     }
 
+    /// Returns whether the value is an array.
+    pub(super) fn is_list(&self) -> bool {
+        self.item.get_ref().is_array()
+    }
+
     /// Returns the elements of an array of exactly `N`.
     pub(super) fn elements<const N: usize>(&self, allowed: &str) -> Result<[Self; N], Problem> {
         let elements = self.list(allowed)?;

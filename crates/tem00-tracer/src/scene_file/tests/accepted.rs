@@ -35,20 +35,48 @@ fn a_scene_needs_a_camera_a_laser_and_a_surface_and_no_more() {
     }
 }
 
-#[test]
-fn a_spot_is_in_focus_where_the_laser_looks() {
-    let scene = parse(&minimal()).unwrap();
+/// Returns the waist radii, the waist distances and the factors M² of the minimal scene's spot with
+/// other keys.
+fn spot(keys: &str) -> [[f64; 2]; 3] {
+    let spot = format!("spot = {{ {keys} }}");
+    let scene = parse(&with("spot.waist_radius = \"0.5 mm\"", &spot)).unwrap();
     let BeamShape::Spot {
         waist_radius,
         waist_distance,
-        ..
+        m_squared,
     } = scene.lasers[0].description().shape
     else {
         panic!("not a spot");
     };
-    assert_relative_eq!(waist_radius, 0.5e-3);
+    [waist_radius, waist_distance, m_squared]
+}
+
+#[test]
+fn a_spot_is_round_and_in_focus_where_the_laser_looks() {
     // The laser stands at (0.1, 0, 0.2) and looks at the origin.
-    assert_relative_eq!(waist_distance, 0.05_f64.sqrt(), max_relative = 1e-15);
+    let distance = DVec3::new(0.1, 0.0, 0.2).length();
+    assert_eq!(
+        spot("waist_radius = \"0.5 mm\""),
+        [[0.5e-3; 2], [distance; 2], [1.0; 2]],
+        "defaults"
+    );
+}
+
+#[test]
+fn a_spot_has_one_value_for_both_axes_or_one_for_each() {
+    let keys =
+        "waist_radius = [\"0.5 mm\", 2e-3], waist_distance = \"0.1 m\", m_squared = [1.5, 3]";
+    assert_eq!(
+        spot(keys),
+        [[0.5e-3, 2e-3], [0.1; 2], [1.5, 3.0]],
+        "waists at one place"
+    );
+    let keys = "waist_radius = \"0.5 mm\", waist_distance = [\"-10 um\", 0], m_squared = 2";
+    assert_eq!(
+        spot(keys),
+        [[0.5e-3; 2], [-10e-6, 0.0], [2.0; 2]],
+        "waists of one radius"
+    );
 }
 
 #[test]

@@ -82,7 +82,6 @@ fn units_must_be_those_of_the_quantity() {
         ("\"0.5 mm\"", "\"half a millimetre\"", "a length in"),
         ("\"0.5 mm\"", "\"0.5\"", "a length in"),
         ("\"0.5 mm\"", "true", "a length in"),
-        ("\"0.5 mm\"", "[1]", "a length in"),
     ];
     for (good, bad, allowed) in cases {
         assert_refused(&with(good, bad), 7, &["`waist_radius`", allowed, bad]);
@@ -96,6 +95,48 @@ fn units_must_be_those_of_the_quantity() {
     );
     let element = with("300 mm", "300 nm 2");
     assert_refused(&element, 2, &["element 3 of `position`", "\"300 nm 2\""]);
+}
+
+#[test]
+fn spots_take_one_value_or_one_for_each_of_two_axes() {
+    for bad in ["[1]", "[]", "[1, 1, 1]"] {
+        let words = ["`waist_radius`", "one value", "[along, across]", bad];
+        assert_refused(&with("\"0.5 mm\"", bad), 7, &words);
+    }
+    let cases: [(&str, &[&str]); 6] = [
+        (
+            "waist_radius = [\"1 mm\", \"2 deg\"]",
+            &["element 2 of `waist_radius`", "a length in"],
+        ),
+        (
+            "waist_radius = [0, 1]",
+            &["element 1 of `waist_radius`", "positive"],
+        ),
+        (
+            "waist_radius = [[1, 1], 1]",
+            &["element 1 of `waist_radius`", "a length in"],
+        ),
+        // 100 nm is below the paraxial limit of 2λ/π = 414 nm.
+        (
+            "waist_radius = [\"1 mm\", \"100 nm\"]",
+            &["waist radius", "paraxial"],
+        ),
+        (
+            "waist_radius = \"1 mm\", waist_distance = [0, inf]",
+            &["element 2 of `waist_distance`", "finite"],
+        ),
+        (
+            "waist_radius = \"1 mm\", m_squared = [1.5, 0.9]",
+            &["element 2 of `m_squared`", "1 or greater"],
+        ),
+    ];
+    for (keys, words) in cases {
+        let spot = format!("spot = {{ {keys} }}");
+        assert_refused(&with("spot.waist_radius = \"0.5 mm\"", &spot), 7, words);
+    }
+    let line = "line = { fan_angle = 1, thickness = \"1 mm\", m_squared = [1, 2] }";
+    let line = with("spot.waist_radius = \"0.5 mm\"", line);
+    assert_refused(&line, 7, &["`m_squared`", "a number"]);
 }
 
 #[test]

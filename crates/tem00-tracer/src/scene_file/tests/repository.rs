@@ -2,7 +2,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::super::{camera, laser, light, material, settings, surface};
-use super::parse;
+use super::{parse, with};
 use crate::read_scene;
 
 fn repository() -> PathBuf {
@@ -36,6 +36,15 @@ fn the_minimal_scene_of_the_documentation_is_read() {
     let (_, rest) = text.split_once("```toml\n").unwrap();
     let (example, _) = rest.split_once("```").unwrap();
     let scene = parse(example).map_err(|error| error.to_string());
+    assert!(scene.is_ok(), "{scene:?}");
+}
+
+#[test]
+fn the_elliptic_spot_of_the_documentation_is_read() {
+    let text = documentation();
+    let spot = text.lines().find(|line| line.starts_with("spot = "));
+    let scene = parse(&with("spot.waist_radius = \"0.5 mm\"", spot.unwrap()));
+    let scene = scene.map_err(|error| error.to_string());
     assert!(scene.is_ok(), "{scene:?}");
 }
 

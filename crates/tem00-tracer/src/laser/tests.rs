@@ -1,0 +1,175 @@
+use tem00_beam::{AngularProfile, FocusCurve};
+
+use super::*;
+
+/// A line of 60° in focus at 0.3 m, from the origin along z.
+fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {
+    let shape = BeamShape::Line {
+        waist_radius: 0.1e-3,
+        m_squared: 1.0,
+        fan: FanGeometry {
+            fan_angle: 60_f64.to_radians(),
+            apex_offset: 2e-3,
+            focus_distance: 0.3,
+            focus_curve,
+        },
+        profile,
+    };
+    Laser::new(LaserDescription {
+        wavelength: 650e-9,
+        power: 5e-3,
+        position: DVec3::ZERO,
+        look_at: DVec3::Z,
+        line_direction: DVec3::X,
+        shape,
+    })
+    .unwrap()
+}
+
+#[test]
+fn the_wavefront_across_a_line_is_flat_where_its_focus_curve_says() {
+    let slope = 0.4_f64;
+    let on_plane = DVec3::new(0.302 * slope, 0.0, 0.3);
+    let cos = slope.atan().cos();
+    let on_circle = DVec3::new(0.302 * slope * cos, 0.0, 0.302 * cos - 2e-3);
+    let cases = [
+        (FocusCurve::EqualPlane, on_plane, on_circle),
+        (FocusCurve::EqualDistance, on_circle, on_plane),
+    ];
+    for (focus_curve, flat, curved) in cases {
+        let laser = line(LineProfile::GaussianTan, focus_curve);
+        let across = [flat, curved].map(|point| {
+            let direction = laser.illuminate(point).unwrap().direction;
+            let curvature = laser.wavefront_at(point, direction).unwrap().curvature();
+            DVec3::Y.dot(curvature * DVec3::Y)
+        });
+        assert!(across[0].abs() < 1e-9, "{focus_curve:?}: {across:?}");
+        assert!(across[1].abs() > 1.0, "{focus_curve:?}: {across:?}");
+    }
+}
+
+#[test]
+fn a_tabulated_line_lights_what_its_table_says() {
+    let table = AngularProfile::from_pairs(&[(-0.2, 1.0), (0.0, 2.0), (0.4, 0.0)]).unwrap();
+    let laser = line(LineProfile::Tabulated(table), FocusCurve::EqualPlane);
+    let at = |theta: f64| {
+        let point = DVec3::new(0.302 * theta.tan(), 0.0, 0.3);
+        let light = laser.illuminate(point);
+        light.map_or(0.0, |light| light.irradiance)
+    };
+    // E = P f(θ) / r · √(2/π) / w₀ on the plane of focus, and ∫ f = 0.3 + 0.4.
+    for (theta, f) in [(0.0, 2.0), (-0.1, 1.5), (0.2, 1.0)] {
+        let r = 0.302 / f64::cos(theta);
+        let expected = 5e-3 * (f / 0.7) / r * core::f64::consts::FRAC_2_PI.sqrt() / 0.1e-3;
+        let error = at(theta) / expected - 1.0;
+        assert!(error.abs() < 1e-12, "{theta}: {error:e}");
+    }
+    assert!(at(-0.21) <= 0.0 && at(0.41) <= 0.0, "outside the table");
+}
+
+/// An elliptic spot with its waists apart, from an oblique place, whose line direction is not across
+/// the axis; its beam; and the three axes.
+fn elliptic_spot() -> (Laser, AstigmaticBeam, [DVec3; 3]) {
+    let position = DVec3::new(0.03, -0.02, 0.05);
+    let axis = DVec3::new(2.0, 1.0, -2.0) / 3.0;
+    let line_direction = DVec3::new(0.3, 0.8, 0.1);
+    let laser = Laser::new(LaserDescription {
+        wavelength: 650e-9,
+        power: 5e-3,
+        position,
+        look_at: position + 0.2 * axis,
+        line_direction,
+        shape: BeamShape::Spot {
+            waist_radius: [20e-6, 60e-6],
+            waist_distance: [0.1, 0.14],
+            m_squared: [1.0, 1.4],
+        },
+    })
+    .unwrap();
+    let [first, second] = [(20e-6, 0.1, 1.0), (60e-6, 0.14, 1.4)].map(|(radius, distance, m2)| {
+        let beam = GaussianBeam::from_waist(650e-9, radius).unwrap();
+        LocatedBeam::new(beam.with_m_squared(m2).unwrap(), distance).unwrap()
+    });
+    let across = axis.cross(line_direction).normalize();
+    let axes = [across.cross(axis), across, axis];
+    (laser, AstigmaticBeam::new(first, second).unwrap(), axes)
+}
+
+#[test]
+fn the_first_values_of_a_spot_hold_along_the_line_direction() {
+    let (laser, beam, [along, across, axis]) = elliptic_spot();
+    let centre = laser.description().position + 0.2 * axis;
+    let peak = laser.illuminate(centre).unwrap().irradiance;
+    for (direction, radius) in [along, across].into_iter().zip(beam.radii_at(0.2)) {
+        let light = laser.illuminate(centre + radius * direction).unwrap();
+        // On a plane across the axis, the irradiance is down to e⁻² of the peak at the beam radius.
+        let across_axis = light.irradiance * -light.direction.dot(axis);
+        let error = across_axis / peak * 2_f64.exp() - 1.0;
+        // The radius is a difference of points 0.2 m from the origin: 4 ε 0.2 m / 0.2 mm = 1e-12.
+        assert!(error.abs() < 1e-12, "{direction}: {error:e}");
+    }
+}
+
+#[test]
+fn a_tilted_plane_receives_the_power_of_an_elliptic_spot() {
+    let (laser, _, [along, across, axis]) = elliptic_spot();
+    let centre = laser.description().position + 0.2 * axis;
+    for (towards_along, towards_across) in [(0.0, 0.0), (1.5, 0.5), (-0.3, 1.7)] {
+        let normal = (towards_along * along + towards_across * across - axis).normalize();
+        let (u, v) = normal.any_orthonormal_pair();
+        // The radii are 1.0 mm and 0.3 mm across the axis and at most twice that on the plane, where
+        // they grow by a tenth. A sum in steps of h is off by exp(−π² w²/2 h²) < 1e-25, and 10 mm hold
+        // all but exp(−2 · 4²) = 1e-14, where the light is cut off.
+        let step = 0.08e-3;
+        let place = |i: i32| f64::from(i) * step;
+        let power: f64 = (-125..=125)
+            .flat_map(|i| (-125..=125).map(move |j| (i, j)))
+            .filter_map(|(i, j)| laser.illuminate(centre + place(i) * u + place(j) * v))
+            .map(|light| light.irradiance * light.direction.dot(normal) * step * step)
+            .sum();
+        let error = power / 5e-3 - 1.0;
+        assert!(error.abs() < 1e-12, "{normal}: {error:e}");
+    }
+}
+
+#[test]
+fn the_wavefront_of_an_elliptic_spot_is_curved_as_its_beam_along_each_axis() {
+    let (laser, beam, [along, across, axis]) = elliptic_spot();
+    for z in [0.05, 0.1, 0.12, 0.14, 0.3] {
+        let point = laser.description().position + z * axis;
+        let curvature = laser.wavefront_at(point, -axis).unwrap().curvature();
+        let [first, second] = beam.curvatures_at(z);
+        // 1/R grows by up to 1/z_R² = 2.7e5 m⁻² in the first waist, and points round by 1e-16 m.
+        let tolerance = 1e-10;
+        assert!(
+            (along.dot(curvature * along) - first).abs() < tolerance,
+            "z = {z}"
+        );
+        assert!(
+            (across.dot(curvature * across) - second).abs() < tolerance,
+            "z = {z}"
+        );
+        assert!(along.dot(curvature * across).abs() < tolerance, "z = {z}");
+    }
+}
+
+#[test]
+fn the_wavefront_of_an_elliptic_spot_tells_how_its_light_turns() {
+    let (laser, beam, [along, across, axis]) = elliptic_spot();
+    let [w1, w2] = beam.radii_at(0.2);
+    let point = laser.description().position + 0.2 * axis + 0.8 * w1 * along - 0.6 * w2 * across;
+    let direction = |p: DVec3| laser.illuminate(p).unwrap().direction;
+    let towards = direction(point);
+    let curvature = laser.wavefront_at(point, towards).unwrap().curvature();
+    let [c1, c2] = beam.curvatures_at(0.2);
+    // The slopes of the light are s = w/R ≤ 0.01: the tensor leaves out terms of order s².
+    let slope_squared = (0.8 * w1 * c1).powi(2) + (0.6 * w2 * c2).powi(2);
+    let tolerance = 4.0 * slope_squared * c1.max(c2);
+    for sideways in [along, across, along + across] {
+        let step = 1e-6 * sideways.reject_from(towards);
+        let turned = (direction(point + step) - direction(point - step)) / 2e-6;
+        let expected = -(curvature * step) / 1e-6;
+        let error = turned.distance(expected);
+        assert!(error < tolerance, "{turned} | {expected}: {error:e}");
+    }
+}

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::astigmatic_system::check_determinants;
 use crate::gaussian::is_coordinate;
-use crate::{AbcdMatrix, BeamError, GaussianBeam, LocatedBeam};
+use crate::{AbcdMatrix, BeamError, CrossSection, GaussianBeam, LocatedBeam};
 
 /// An elliptic Gaussian beam with simple astigmatism: two principal axes at right angles, each with
 /// its own waist, place of the waist and M².
@@ -193,6 +193,12 @@ impl AstigmaticBeam {
     /// reference plane.
     pub fn radii_at(&self, z: f64) -> [f64; 2] {
         self.axes.map(|axis| axis.radius_at(z))
+    }
+
+    /// Returns the distribution of the irradiance over the plane at the distance `z`, in metres, from
+    /// the reference plane, along the principal axes.
+    pub fn cross_section_at(&self, z: f64) -> CrossSection {
+        CrossSection::of_radii(self.radii_at(z))
     }
 
     /// Returns the wavefront curvatures `1/R` along the principal axes, in m⁻¹, at the distance `z`

@@ -4,7 +4,7 @@ use glam::{DMat2, DVec2, DVec3};
 use num_complex::Complex64;
 
 use crate::gaussian::{PARAXIAL_LIMIT, is_length};
-use crate::{AstigmaticBeam, AstigmaticSystem, BeamError};
+use crate::{AstigmaticBeam, AstigmaticSystem, BeamError, CrossSection};
 
 use generator::{Ellipse, Generator, combine, covariance};
 
@@ -309,6 +309,12 @@ impl GeneralAstigmaticBeam {
         self.ellipse_at(z)
             .deviations()
             .map(|deviation| 2.0 * deviation)
+    }
+
+    /// Returns the distribution of the irradiance over the plane at the distance `z`, in metres, from
+    /// the reference plane, along its principal axes, the larger one first.
+    pub fn cross_section_at(&self, z: f64) -> CrossSection {
+        CrossSection::of_radii(self.radii_at(z))
     }
 
     /// Returns the angle from x to the major axis of the irradiance, in radians and in the interval

@@ -14,8 +14,9 @@ use lines::{REACH, profiles, slopes};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use tem00_beam::{
-    DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight, Placement,
-    SpotLight, TabulatedLineLight,
+    AstigmaticBeam, AstigmaticLight, AstigmaticSystem, DVec3, Emitter, FanGeometry, FocusCurve,
+    GaussianBeam, GeneralAstigmaticBeam, LaserLine, LineLight, LocatedBeam, Placement, SpotLight,
+    TabulatedLineLight,
 };
 
 const WAVELENGTH: f64 = 650e-9;
@@ -68,20 +69,25 @@ fn leave(o: DVec3, d: DVec3, radius: f64) -> (f64, DVec3) {
 }
 
 /// The nodes of the trapezoidal rule on [−half, half], and their weight.
-fn trapezoid(half: f64, intervals: u32) -> (impl Iterator<Item = f64> + Clone, f64) {
-    let h = 2.0 * half / f64::from(intervals);
-    ((0..=intervals).map(move |i| f64::from(i) * h - half), h)
+fn trapezoid(half: f64, intervals: f64) -> (impl Iterator<Item = f64> + Clone, f64) {
+    let h = 2.0 * half / intervals;
+    let nodes = (0_u32..)
+        .map(f64::from)
+        .take_while(move |&i| i <= intervals);
+    (nodes.map(move |i| i * h - half), h)
 }
 
 /// The power of a beam through a surface, which is covered by x and y.
-fn power_of_beam(flux: &Flux<'_>, beam: &LocatedWaist, surface: &Surface) -> f64 {
+fn power_of_beam(flux: &Flux<'_>, beam: &GeneralAstigmaticBeam, surface: &Surface) -> f64 {
     let hit = |x: f64, y: f64| surface.exit(DVec3::new(x, y, 0.0), DVec3::Z);
     let (z, n) = hit(0.0, 0.0);
     // A point at x from the axis is x tan τ further on, and w grows by δ at most.
     let steepness = (n.x.hypot(n.y) / n.z).abs();
-    let w = beam.radius_at(z);
-    let half = 1.1 * REACH * w / (1.0 - REACH * beam.beam.divergence() * steepness);
-    let (steps, h) = trapezoid(half, 160);
+    let [long, short] = beam.radii_at(z);
+    let [divergence, _] = beam.divergences();
+    let half = 1.1 * REACH * long / (1.0 - REACH * divergence * steepness);
+    let intervals = (16.0 * half / short).ceil().clamp(160.0, 1_200.0);
+    let (steps, h) = trapezoid(half, intervals);
     let mut power = 0.0;
     for x in steps.clone() {
         for y in steps.clone() {
@@ -94,15 +100,9 @@ fn power_of_beam(flux: &Flux<'_>, beam: &LocatedWaist, surface: &Surface) -> f64
     power
 }
 
-struct LocatedWaist {
-    beam: GaussianBeam,
-    waist_distance: f64,
-}
-
-impl LocatedWaist {
-    fn radius_at(&self, z: f64) -> f64 {
-        self.beam.radius_at(z - self.waist_distance)
-    }
+fn round(beam: GaussianBeam, waist_distance: f64) -> GeneralAstigmaticBeam {
+    let located = LocatedBeam::new(beam, waist_distance).expect("a valid distance");
+    AstigmaticBeam::stigmatic(located).into()
 }
 
 /// The power of a line through a surface, which is covered by the slope u = x / Z and by y.
@@ -121,7 +121,7 @@ fn power_of_line(flux: &Flux<'_>, line: &LaserLine, surface: &Surface) -> f64 {
         // The slant distance, and with it w, changes with y along the surface.
         let change = divergence * sec * (n.y / n.dot(along)).abs();
         assert!(REACH * change < 1.0, "the fan must hit the surface");
-        let (ys, dy) = trapezoid(1.1 * REACH * w / (1.0 - REACH * change), 80);
+        let (ys, dy) = trapezoid(1.1 * REACH * w / (1.0 - REACH * change), 80.0);
         for y in ys {
             let (z, n) = surface.exit(apex(y), along);
             let tilt = n.dot(along);
@@ -226,6 +226,22 @@ fn placements() -> impl Strategy<Value = Placement> {
     })
 }
 
+/// Elliptic beams with two waists that stand up to 0.1 m apart, turned by any angle.
+fn elliptic_beams() -> impl Strategy<Value = AstigmaticBeam> {
+    let axis = || (0.2e-3..0.6e-3_f64, 1.0..1.5_f64, -0.05..0.05_f64);
+    (axis(), axis(), 0.0..3.0_f64).prop_map(|(x, y, rotation)| {
+        let [x, y] = [x, y].map(|(waist, m_squared, waist_distance)| {
+            let beam = GaussianBeam::from_waist(WAVELENGTH, waist)
+                .and_then(|beam| beam.with_m_squared(m_squared))
+                .expect("a valid beam");
+            LocatedBeam::new(beam, waist_distance).expect("a valid distance")
+        });
+        AstigmaticBeam::new(x, y)
+            .and_then(|beam| beam.with_rotation(rotation))
+            .expect("a valid beam")
+    })
+}
+
 fn config() -> ProptestConfig {
     ProptestConfig {
         cases: 48,
@@ -251,7 +267,7 @@ proptest! {
             .and_then(|beam| beam.with_m_squared(m_squared))
             .expect("a valid beam");
         let flux = |p: DVec3| beam.flux_per_watt(p - DVec3::Z * waist_distance);
-        let beam = LocatedWaist { beam, waist_distance };
+        let beam = round(beam, waist_distance);
         let power = power_of_beam(&flux, &beam, &plane(distance, tilted(tilt, azimuth)));
         prop_assert!((power - 1.0).abs() < 1e-6, "{power}");
     }
@@ -265,9 +281,35 @@ proptest! {
     ) {
         let beam = GaussianBeam::from_waist(WAVELENGTH, waist).expect("a valid beam");
         let light = SpotLight::place(&beam, waist_distance, &placement, 1.0).expect("a valid light");
-        let beam = LocatedWaist { beam, waist_distance };
+        let beam = round(beam, waist_distance);
         let power = power_of_beam(&local_flux(&light, &placement), &beam, &surface);
         prop_assert!((power - 1.0).abs() < 1e-6, "{surface:?}: {power}");
+    }
+
+    #[test]
+    fn any_surface_receives_the_power_of_a_placed_astigmatic_beam(
+        beam in elliptic_beams(),
+        lens in (0.1..0.5_f64, 0.0..3.0_f64),
+        plane in (0.15..0.4_f64, 0.0..60.0_f64, 0.0..360.0_f64),
+        round_surface in round_surfaces(),
+        placement in placements(),
+    ) {
+        let (focal_length, angle) = lens;
+        let lens = AstigmaticSystem::cylinder_lens(focal_length, angle).expect("a valid lens");
+        let general = GeneralAstigmaticBeam::from(beam).through(&lens).expect("a valid beam");
+        let spot = SpotLight::place_astigmatic(&beam, &placement, 1.0).expect("a valid light");
+        let turning = AstigmaticLight::place(&general, &placement, 1.0).expect("a valid light");
+        let (distance, tilt, azimuth) = plane;
+        let flat = Surface::Plane {
+            point: DVec3::new(0.0, 0.0, distance),
+            normal: tilted(tilt, azimuth),
+        };
+        for surface in [flat, round_surface] {
+            let power = power_of_beam(&local_flux(&spot, &placement), &beam.into(), &surface);
+            prop_assert!((power - 1.0).abs() < 1e-6, "{surface:?}: {power}");
+            let power = power_of_beam(&local_flux(&turning, &placement), &general, &surface);
+            prop_assert!((power - 1.0).abs() < 1e-6, "turning, {surface:?}: {power}");
+        }
     }
 
     /// A fan of up to 5° is cut as a whole by any plane of up to 75°.

@@ -124,7 +124,7 @@ fn autocovariance_is_that_of_the_pupil() {
     for (index, [x, y]) in lags.into_iter().enumerate() {
         let mean = sums[index] / PATTERNS as f64;
         let variance = squares[index] / PATTERNS as f64 - mean * mean;
-        let expected = field.amplitude_correlation([x as f64, y as f64]).powi(2);
+        let expected = field.amplitude_correlation([x as f64, y as f64]).norm_sqr();
         // Four standard errors, and the 1/N ≈ 1.2e−3 by which a sample mean lowers all lags.
         let tolerance = 4.0 * (variance / PATTERNS as f64).sqrt() + 2e-3;
         assert!(

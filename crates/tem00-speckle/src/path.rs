@@ -4,7 +4,8 @@ use tem00_numerics::{circular_path_overlap, circular_path_overlap_inverse, disc_
 
 use crate::{
     Pupil, PupilField, SpeckleError,
-    mask::{to_f64, to_i64},
+    lattice::{Lattice, to_i64},
+    mask::{from_i64, to_f64},
 };
 
 /// The way the pupil takes over the lattice from slice to slice of a stack.
@@ -24,8 +25,9 @@ pub enum SlicePath {
         /// Half the number of slices, M.
         half_period: usize,
     },
-    /// A straight line along x, once around the torus, in steps of Q/(2M) lattice points. Slices
-    /// are uncorrelated from `2 M C / Q` slices on, which is M at C = Q/2.
+    /// A straight line along x over a lattice that closes after Q points, in steps of Q/(2M) points,
+    /// with the width Q of the pattern. Slices are uncorrelated from `2 M C / Q` slices on, which is
+    /// M at C = Q/2.
     Straight {
         /// Half the number of slices, M.
         half_period: usize,
@@ -46,18 +48,18 @@ impl SlicePath {
         }
     }
 
-    /// Returns the bytes of a stack of `size` × `size` samples along this path: 8 per sample.
+    /// Returns the bytes of a stack of W × H samples along this path: 8 per sample.
     ///
     /// # Examples
     ///
     /// ```
     /// use tem00_speckle::SlicePath;
     ///
-    /// let bytes = SlicePath::Circle { half_period: 16 }.memory_bytes(1024);
+    /// let bytes = SlicePath::Circle { half_period: 16 }.memory_bytes([1024, 1024]);
     /// assert_eq!(bytes, 32 * 1024 * 1024 * 8); // 256 MiB
     /// ```
-    pub const fn memory_bytes(self, size: usize) -> u64 {
-        let samples = (size as u64).saturating_mul(size as u64);
+    pub const fn memory_bytes(self, size: [usize; 2]) -> u64 {
+        let samples = (size[0] as u64).saturating_mul(size[1] as u64);
         samples
             .saturating_mul(8)
             .saturating_mul(self.slice_count() as u64)
@@ -74,6 +76,23 @@ impl SlicePath {
         }
     }
 
+    /// The pupil's centre for slice `index`, in its diameters.
+    pub(crate) fn offset(self, index: usize, field: &PupilField) -> [f64; 2] {
+        let centre = self.centre(index, field);
+        [0, 1].map(|axis| from_i64(centre[axis]) / field.diameter()[axis])
+    }
+
+    /// The field on the lattice that the path closes on.
+    pub(crate) fn close(self, field: &PupilField) -> PupilField {
+        match self {
+            Self::Still | Self::Circle { .. } => field.clone(),
+            Self::Straight { .. } => {
+                let period = [to_i64(field.size()[0]), Lattice::SIDE];
+                field.clone().closed(period)
+            }
+        }
+    }
+
     /// The pupil's centre for slice `index`, rounded to the lattice so that all pupils hold the
     /// same points.
     pub(crate) fn centre(self, index: usize, field: &PupilField) -> [i64; 2] {
@@ -81,12 +100,12 @@ impl SlicePath {
             Self::Still => [0, 0],
             Self::Circle { half_period } => {
                 let angle = PI * to_f64(index) / to_f64(half_period);
-                let radius = 0.5 * to_f64(field.diameter());
-                [round(radius * angle.cos()), round(radius * angle.sin())]
+                let [x, y] = field.diameter().map(|diameter| 0.5 * diameter);
+                [round(x * angle.cos()), round(y * angle.sin())]
             }
             Self::Straight { half_period } => {
                 // i Q / (2M), rounded to the nearest integer.
-                let (size, slices) = (to_i64(field.size()), to_i64(2 * half_period));
+                let (size, slices) = (to_i64(field.size()[0]), to_i64(2 * half_period));
                 [(2 * to_i64(index) * size + slices) / (2 * slices), 0]
             }
         }
@@ -99,7 +118,7 @@ fn round(x: f64) -> i64 {
 }
 
 /// The correlation along a path in closed form, for the continuous pupil.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PathLaw {
     pub(crate) path: SlicePath,
     pub(crate) pupil: Pupil,
@@ -109,7 +128,7 @@ pub(crate) struct PathLaw {
 
 impl PathLaw {
     /// The amplitude correlation of the coordinates 0 and `u`.
-    pub(crate) fn overlap_at(self, u: f64) -> f64 {
+    pub(crate) fn overlap_at(&self, u: f64) -> f64 {
         match self.path {
             SlicePath::Still => 1.0,
             SlicePath::Circle { half_period } => {
@@ -131,8 +150,8 @@ impl PathLaw {
     }
 
     /// The smallest u ≥ 0 at which the overlap has fallen to `overlap`.
-    pub(crate) fn coordinate_of(self, overlap: f64) -> f64 {
-        match (self.path, self.pupil) {
+    pub(crate) fn coordinate_of(&self, overlap: f64) -> f64 {
+        match (self.path, &self.pupil) {
             (SlicePath::Still, _) => 0.0,
             (SlicePath::Circle { half_period }, Pupil::Circle) => {
                 to_f64(half_period) * circular_path_overlap_inverse(overlap)
@@ -147,7 +166,7 @@ impl PathLaw {
     }
 
     /// Scan and bisection, for pupils whose overlap has no closed inverse or is not monotonic.
-    fn first_crossing(self, overlap: f64, half_period: f64) -> f64 {
+    fn first_crossing(&self, overlap: f64, half_period: f64) -> f64 {
         const STEPS: u32 = 256;
         if overlap >= 1.0 {
             return 0.0;

@@ -194,7 +194,7 @@ impl PatternPlan {
 
     /// Returns the memory that the slices take, in bytes.
     pub const fn memory_bytes(&self) -> u64 {
-        self.path.memory_bytes(self.size)
+        self.path.memory_bytes([self.size; 2])
     }
 
     /// Returns the largest shift that the slices hold, in pupil diameters: the way round the lattice

@@ -367,7 +367,7 @@ mod tests {
             Pupil::Rectangle { height: 0.5 },
         ] {
             for seed in 0..8 {
-                for row in rows(pupil, seed) {
+                for row in rows(pupil.clone(), seed) {
                     assert!(agrees(&row), "{pupil:?}, seed {seed}: {row:?}");
                 }
             }

@@ -179,7 +179,8 @@ impl PupilField {
         speckle_size: f64,
     ) -> Result<Self, SpeckleError> {
         let layout = Layout::new(size, speckle_size)?;
-        let source = Source::Measured(Arc::new(brightest_one(samples)?));
+        check_samples(&samples)?;
+        let source = Source::Measured(Arc::new(samples));
         Self::build(Lattice::endless(source), layout, Pupil::Circle)
     }
 
@@ -306,6 +307,14 @@ impl PupilField {
         }
     }
 
+    /// Returns the samples from outside, or `None` for random phasors.
+    pub fn samples(&self) -> Option<&Grid<Complex<f32>>> {
+        match &self.lattice.source {
+            Source::Seeded(_) => None,
+            Source::Measured(samples) => Some(samples),
+        }
+    }
+
     /// Returns the number N of lattice points inside the undisplaced pupil.
     pub const fn phasor_count(&self) -> usize {
         self.mask.count()
@@ -413,32 +422,15 @@ const fn seeded(seed: u64) -> Lattice {
     }))
 }
 
-/// Divides the samples by their largest magnitude, so that no sum of squares overflows or vanishes.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "amplitudes are stored as f32"
-)]
-fn brightest_one(mut samples: Grid<Complex<f32>>) -> Result<Grid<Complex<f32>>, SpeckleError> {
-    let width = samples.width();
+fn check_samples(samples: &Grid<Complex<f32>>) -> Result<(), SpeckleError> {
     let finite = |z: &Complex<f32>| z.re.is_finite() && z.im.is_finite();
-    if let Some(bad) = samples.values().iter().position(|z| !finite(z)) {
-        return Err(SpeckleError::Sample {
-            x: bad % width,
-            y: bad / width,
-        });
+    match samples.values().iter().position(|z| !finite(z)) {
+        None => Ok(()),
+        Some(bad) => Err(SpeckleError::Sample {
+            x: bad % samples.width(),
+            y: bad / samples.width(),
+        }),
     }
-    let part = |x: f32| f64::from(x.abs());
-    let largest = samples.values().iter();
-    let largest = largest
-        .map(|z| part(z.re).max(part(z.im)))
-        .fold(0.0, f64::max);
-    if largest > 0.0 {
-        for z in samples.values_mut() {
-            let scaled = |x: f32| (f64::from(x) / largest) as f32;
-            *z = Complex::new(scaled(z.re), scaled(z.im));
-        }
-    }
-    Ok(samples)
 }
 
 #[expect(

@@ -101,6 +101,11 @@ impl PupilField {
         );
     }
 
+    /// Returns the complex amplitude behind the undisplaced pupil in focus.
+    pub fn field(&self) -> SpeckleField {
+        self.speckle([0.0; 2], 0.0)
+    }
+
     /// Returns the complex amplitude behind the pupil displaced by `offset` diameters and out of
     /// focus by `defocus`: the exact field, by one Fourier transform.
     ///

@@ -46,6 +46,11 @@ pub enum SpeckleError {
     ///
     /// [`SlicePath::MAX_HALF_PERIOD`]: crate::SlicePath::MAX_HALF_PERIOD
     HalfPeriod(usize),
+    /// The length of a straight path, in pupil diameters, is below 2 or above
+    /// [`SlicePath::MAX_LENGTH`].
+    ///
+    /// [`SlicePath::MAX_LENGTH`]: crate::SlicePath::MAX_LENGTH
+    PathLength(usize),
     /// The machine refused the memory of a stack.
     Memory {
         /// The bytes that were asked for.
@@ -107,6 +112,11 @@ impl fmt::Display for SpeckleError {
                 f,
                 "half period must be 1 to {} slices, got {got}",
                 crate::SlicePath::MAX_HALF_PERIOD
+            ),
+            Self::PathLength(got) => write!(
+                f,
+                "path length must be 2 to {} pupil diameters, got {got}",
+                crate::SlicePath::MAX_LENGTH
             ),
             Self::Memory { bytes } => write!(f, "memory for the stack refused: {bytes} bytes"),
         }

@@ -25,24 +25,28 @@ pub enum SlicePath {
         /// Half the number of slices, M.
         half_period: usize,
     },
-    /// A straight line along x over a lattice that closes after Q points, in steps of Q/(2M) points,
-    /// with the width Q of the pattern. Slices are uncorrelated from `2 M C / Q` slices on, which is
-    /// M at C = Q/2.
+    /// A straight line along x over a lattice that closes after `length` pupil diameters. Slices
+    /// are uncorrelated from `2M / length` slices on, which is M for a length of 2, until `length` − 1
+    /// diameters: a motion over so many diameters never returns to speckle it has left.
     Straight {
         /// Half the number of slices, M.
         half_period: usize,
+        /// The length of the path in pupil diameters, at least 2.
+        length: usize,
     },
 }
 
 impl SlicePath {
     /// The largest half period M.
     pub const MAX_HALF_PERIOD: usize = 1 << 15;
+    /// The greatest length of a straight path, in pupil diameters.
+    pub const MAX_LENGTH: usize = 1 << 15;
 
     /// Returns the number of slices: 1, or 2M.
     pub const fn slice_count(self) -> usize {
         match self {
             Self::Still => 1,
-            Self::Circle { half_period } | Self::Straight { half_period } => {
+            Self::Circle { half_period } | Self::Straight { half_period, .. } => {
                 half_period.saturating_mul(2)
             }
         }
@@ -67,10 +71,13 @@ impl SlicePath {
 
     pub(crate) const fn check(self) -> Result<(), SpeckleError> {
         match self {
-            Self::Circle { half_period } | Self::Straight { half_period }
+            Self::Circle { half_period } | Self::Straight { half_period, .. }
                 if half_period == 0 || half_period > Self::MAX_HALF_PERIOD =>
             {
                 Err(SpeckleError::HalfPeriod(half_period))
+            }
+            Self::Straight { length, .. } if length < 2 || length > Self::MAX_LENGTH => {
+                Err(SpeckleError::PathLength(length))
             }
             _ => Ok(()),
         }
@@ -86,8 +93,8 @@ impl SlicePath {
     pub(crate) fn close(self, field: &PupilField) -> PupilField {
         match self {
             Self::Still | Self::Circle { .. } => field.clone(),
-            Self::Straight { .. } => {
-                let period = [to_i64(field.size()[0]), Lattice::SIDE];
+            Self::Straight { length, .. } => {
+                let period = [points_along(length, field), Lattice::SIDE];
                 field.clone().closed(period)
             }
         }
@@ -103,13 +110,21 @@ impl SlicePath {
                 let [x, y] = field.diameter().map(|diameter| 0.5 * diameter);
                 [round(x * angle.cos()), round(y * angle.sin())]
             }
-            Self::Straight { half_period } => {
-                // i Q / (2M), rounded to the nearest integer.
-                let (size, slices) = (to_i64(field.size()[0]), to_i64(2 * half_period));
-                [(2 * to_i64(index) * size + slices) / (2 * slices), 0]
+            Self::Straight {
+                half_period,
+                length,
+            } => {
+                // i P / (2M), rounded to the nearest integer, on a lattice that closes after P.
+                let (period, slices) = (points_along(length, field), to_i64(2 * half_period));
+                [(2 * to_i64(index) * period + slices) / (2 * slices), 0]
             }
         }
     }
+}
+
+/// The lattice points along a path of `length` diameters.
+fn points_along(length: usize, field: &PupilField) -> i64 {
+    round(to_f64(length) * field.diameter()[0])
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "lattice points are small")]
@@ -122,8 +137,6 @@ fn round(x: f64) -> i64 {
 pub(crate) struct PathLaw {
     pub(crate) path: SlicePath,
     pub(crate) pupil: Pupil,
-    /// Q / C.
-    pub(crate) speckle_size: f64,
 }
 
 impl PathLaw {
@@ -139,12 +152,14 @@ impl PathLaw {
                 let (sin, cos) = (PI * half_turns.rem_euclid(2.0)).sin_cos();
                 self.pupil.overlap([0.5 * (1.0 - cos), 0.5 * sin])
             }
-            SlicePath::Straight { half_period } => {
+            SlicePath::Straight {
+                half_period,
+                length,
+            } => {
                 let period = to_f64(2 * half_period);
                 let steps = u.rem_euclid(period);
                 let steps = steps.min(period - steps);
-                self.pupil
-                    .overlap([steps * self.speckle_size / period, 0.0])
+                self.pupil.overlap([steps * to_f64(length) / period, 0.0])
             }
         }
     }
@@ -156,10 +171,14 @@ impl PathLaw {
             (SlicePath::Circle { half_period }, Pupil::Circle) => {
                 to_f64(half_period) * circular_path_overlap_inverse(overlap)
             }
-            (SlicePath::Straight { half_period }, Pupil::Circle) => {
-                to_f64(2 * half_period) / self.speckle_size * disc_overlap_inverse(overlap)
-            }
-            (SlicePath::Circle { half_period } | SlicePath::Straight { half_period }, _) => {
+            (
+                SlicePath::Straight {
+                    half_period,
+                    length,
+                },
+                Pupil::Circle,
+            ) => to_f64(2 * half_period) / to_f64(length) * disc_overlap_inverse(overlap),
+            (SlicePath::Circle { half_period } | SlicePath::Straight { half_period, .. }, _) => {
                 self.first_crossing(overlap, to_f64(half_period))
             }
         }

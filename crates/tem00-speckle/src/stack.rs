@@ -17,7 +17,7 @@ use crate::{
 ///
 /// ```text
 /// circle:    γ(Δu) = [1 − s − sin(π s)/π]²    s = Δu / M
-/// straight:  γ(Δu) = chat(Δu Q / (2 M C))²
+/// straight:  γ(Δu) = chat(Δu length / (2 M))²
 /// ```
 ///
 /// # Interpolation
@@ -112,7 +112,6 @@ impl SpeckleStack {
             law: PathLaw {
                 path,
                 pupil: field.pupil().clone(),
-                speckle_size: field.speckle_size(),
             },
             variance: Variance::new(&field.mask, field.size()),
             field,
@@ -120,8 +119,8 @@ impl SpeckleStack {
         })
     }
 
-    /// Returns the field the slices were cut from. That of a straight path closes on itself after Q
-    /// lattice points.
+    /// Returns the field the slices were cut from. That of a straight path closes on itself after the
+    /// length of the path.
     pub const fn field(&self) -> &PupilField {
         &self.field
     }
@@ -219,7 +218,7 @@ impl SpeckleStack {
     /// `correlation`: the inverse of [`correlation_at`](Self::correlation_at).
     ///
     /// A correlation of 1 or more needs no distance. One of 0 or less, and NaN, gives the first
-    /// coordinate of no correlation: M on the circle, `2 M C / Q` on the straight path. For a still
+    /// coordinate of no correlation: M on the circle, `2 M / length` on the straight path. For a still
     /// stack the distance is always 0. Where the law is not monotonic (an annulus), it is the
     /// smallest distance.
     pub fn coordinate_of(&self, correlation: f64) -> f64 {

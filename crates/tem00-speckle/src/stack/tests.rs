@@ -15,7 +15,10 @@ fn circle(half_period: usize) -> SlicePath {
 }
 
 fn straight(half_period: usize) -> SlicePath {
-    SlicePath::Straight { half_period }
+    SlicePath::Straight {
+        half_period,
+        length: 2,
+    }
 }
 
 /// The field of the pupil at `centre`, in the frame of the lattice, at any r, in `f64`.
@@ -55,7 +58,11 @@ fn moments(stack: &SpeckleStack, [fx, fy]: [f64; 2], u: f64) -> (f64, f64) {
 
 #[test]
 fn whole_coordinates_give_the_patterns_of_the_slices() {
-    for path in [SlicePath::Still, circle(3), straight(2)] {
+    let longer = SlicePath::Straight {
+        half_period: 4,
+        length: 5,
+    };
+    for path in [SlicePath::Still, circle(3), straight(2), longer] {
         let stack = stack(64, 16, path);
         for (index, u) in (0..stack.slice_count()).zip(0_u32..) {
             let pattern = stack.field().pattern_at(stack.offset(index), 0.0);
@@ -118,6 +125,10 @@ fn fractional_coordinates_give_the_field_of_the_lattice() {
 fn the_mean_is_one_between_samples_and_slices() {
     for (size, limit) in [(64, 7e-4), (128, 5e-5)] {
         let mut worst = 0.0_f64;
+        let straight = |half_period| SlicePath::Straight {
+            half_period,
+            length: size / 32,
+        };
         for path in [circle(3), circle(8), straight(3), straight(8)] {
             let stack = stack(size, 32, path);
             for fractions in [[0.5, 0.5], [0.5, 0.0], [0.25, 0.75], [0.0, 0.0]] {
@@ -158,7 +169,6 @@ fn blending_rounds_the_cusp_of_the_law_as_documented() {
         let law = PathLaw {
             path: circle(half_period),
             pupil: Pupil::Circle,
-            speckle_size: 2.0,
         };
         let mut worst = 0.0_f64;
         for start in 0..16_u32 {
@@ -237,7 +247,6 @@ fn neighbours_are_correlated_by_the_closed_form() {
         let law = PathLaw {
             path,
             pupil: Pupil::Circle,
-            speckle_size: to_f64(size) / to_f64(diameter),
         };
         let field = path.close(&PupilField::new(size, diameter, 0).unwrap());
         let count = path.slice_count();
@@ -357,15 +366,14 @@ proptest! {
 
     #[test]
     fn the_coordinate_of_a_correlation_has_it(
-        gamma in 0.001_f64..1.0, path in 0_usize..2, pupil in 0_usize..3, diameter in 14_usize..33,
+        gamma in 0.001_f64..1.0, path in 0_usize..2, pupil in 0_usize..3, length in 2_usize..5,
     ) {
         let pupil = [
             Pupil::Circle, Pupil::Annulus { inner: 0.3 }, Pupil::Rectangle { height: 0.7 },
         ][pupil].clone();
         let law = PathLaw {
-            path: [circle(6), straight(6)][path],
+            path: [circle(6), SlicePath::Straight { half_period: 6, length }][path],
             pupil,
-            speckle_size: 64.0 / to_f64(diameter),
         };
         let u = law.coordinate_of(gamma.sqrt());
         prop_assert!((0.0..=6.0).contains(&u), "u = {u}");
@@ -388,9 +396,14 @@ fn coordinate_and_correlation_are_inverse_to_each_other() {
 
 #[test]
 fn correlations_without_a_coordinate_go_to_the_ends() {
+    let longer = SlicePath::Straight {
+        half_period: 6,
+        length: 4,
+    };
     for (path, end) in [
         (circle(6), 6.0),
-        (straight(6), 3.0),
+        (straight(6), 6.0),
+        (longer, 3.0),
         (SlicePath::Still, 0.0),
     ] {
         let stack = stack(64, 16, path);
@@ -414,6 +427,16 @@ fn paths_without_slices_are_refused() {
             SpeckleStack::generate(&field, straight(half_period)),
             refused
         );
+    }
+    for length in [0, 1, 1 << 16, usize::MAX] {
+        let path = SlicePath::Straight {
+            half_period: 2,
+            length,
+        };
+        let refused = SpeckleStack::generate(&field, path);
+        assert_eq!(refused, Err(SpeckleError::PathLength(length)));
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains(&length.to_string()), "{message}");
     }
 }
 

@@ -11,7 +11,8 @@
 
 use proptest::{prelude::*, test_runner::RngSeed};
 use tem00::{
-    speckle::{Phasors, Pupil, PupilField},
+    numerics::Grid,
+    speckle::{Complex, Phasors, Pupil, PupilField, Transmission},
     statistics::{
         AIRY_FIRST_ZERO, Boundary, Contrast, autocovariance, contrast_of_phasor_sum,
         contrast_squared_spread, decorrelated_samples, exponential_cumulative, kolmogorov_smirnov,
@@ -25,9 +26,24 @@ use tem00::{
     clippy::cast_sign_loss,
     reason = "a stride is a few pixels"
 )]
-fn independent_samples(field: &PupilField) -> Vec<f64> {
-    let stride = (AIRY_FIRST_ZERO * field.speckle_size()).ceil() as usize;
-    decorrelated_samples(field.pattern().values(), stride).expect("a finite pattern")
+fn independent_samples(field: &PupilField, offset: [f64; 2], defocus: f64) -> Vec<f64> {
+    // An apodised pupil acts like one two thirds as wide.
+    let width = match field.pupil() {
+        Pupil::Gaussian { .. } | Pupil::Sampled(_) => 1.5,
+        _ => 1.0,
+    };
+    let stride = (width * AIRY_FIRST_ZERO * field.speckle_size()).ceil() as usize;
+    let pattern = field.pattern_at(offset, defocus);
+    decorrelated_samples(pattern.values(), stride).expect("a finite pattern")
+}
+
+/// A pupil without symmetry, with aberrations.
+fn aberrated(phase: f32) -> Pupil {
+    let grid = Grid::from_fn(31, 33, |x, y| {
+        let place = (x + y * y) as f32;
+        Complex::from_polar(1.0 / (1.0 + 0.001 * place), phase * place)
+    });
+    Pupil::Sampled(Transmission::from_complex(grid).expect("a transmission below 1"))
 }
 
 fn pupils() -> impl Strategy<Value = Pupil> {
@@ -35,6 +51,8 @@ fn pupils() -> impl Strategy<Value = Pupil> {
         Just(Pupil::Circle),
         (0.1_f64..0.6).prop_map(|inner| Pupil::Annulus { inner }),
         (0.6_f64..1.0).prop_map(|height| Pupil::Rectangle { height }),
+        (0.4_f64..2.0).prop_map(|radius| Pupil::Gaussian { radius }),
+        (0.0_f32..1.0).prop_map(aberrated),
     ]
 }
 
@@ -44,17 +62,19 @@ proptest! {
     #[test]
     fn intensity_is_negative_exponential(
         seed in any::<u64>(),
-        diameter in 96_usize..160,
-        speckle_size in 2_usize..5,
+        size in [300_usize..500, 300_usize..500],
+        speckle_size in 2.0_f64..4.0,
         pupil in pupils(),
+        offset in [-1e3_f64..1e3, -1e3_f64..1e3],
+        defocus in -5.0_f64..5.0,
     ) {
-        let field = PupilField::new(diameter * speckle_size, diameter, seed)
+        let field = PupilField::from_speckle_size(size, speckle_size, seed)
             .and_then(|field| field.with_pupil(pupil))
             .expect("a valid field");
-        let samples = independent_samples(&field);
+        let samples = independent_samples(&field, offset, defocus);
         let test = kolmogorov_smirnov(&samples, exponential_cumulative).expect("enough samples");
         // 24 cases: a correct generator fails one of them with a probability of 2.4e−6.
-        prop_assert!(test.p_value > 1e-7, "p = {:e} for {pupil:?}", test.p_value);
+        prop_assert!(test.p_value > 1e-7, "p = {:e} for {:?}", test.p_value, field.pupil());
     }
 
     #[test]
@@ -124,7 +144,7 @@ fn autocovariance_is_that_of_the_pupil() {
     for (index, [x, y]) in lags.into_iter().enumerate() {
         let mean = sums[index] / PATTERNS as f64;
         let variance = squares[index] / PATTERNS as f64 - mean * mean;
-        let expected = field.amplitude_correlation([x as f64, y as f64]).powi(2);
+        let expected = field.amplitude_correlation([x as f64, y as f64]).norm_sqr();
         // Four standard errors, and the 1/N ≈ 1.2e−3 by which a sample mean lowers all lags.
         let tolerance = 4.0 * (variance / PATTERNS as f64).sqrt() + 2e-3;
         assert!(

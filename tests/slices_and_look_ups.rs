@@ -48,6 +48,7 @@ fn slices_decorrelate_by_the_closed_form() {
         },
         SlicePath::Straight {
             half_period: HALF_PERIOD,
+            length: 2,
         },
     ] {
         for distance in 1..=HALF_PERIOD {
@@ -81,6 +82,7 @@ fn opposite_slices_are_uncorrelated() {
         },
         SlicePath::Straight {
             half_period: HALF_PERIOD,
+            length: 2,
         },
     ] {
         let stack = stack(7, path);

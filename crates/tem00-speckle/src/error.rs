@@ -6,8 +6,16 @@ use crate::PupilField;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SpeckleError {
-    /// The pattern size, in samples, is above [`PupilField::MAX_SIZE`].
+    /// A side of the pattern, in samples, is above [`PupilField::MAX_SIZE`].
     Size(usize),
+    /// The speckle size, in samples, is below 2 or leaves the pupil less than
+    /// [`PupilField::MIN_DIAMETER`] lattice points.
+    SpeckleSize {
+        /// The rejected speckle size, in samples.
+        speckle_size: f64,
+        /// The largest speckle size of a pattern of that size, in samples.
+        largest: f64,
+    },
     /// The pupil diameter, in lattice points, is below [`PupilField::MIN_DIAMETER`] or above half
     /// the pattern size.
     Diameter {
@@ -20,12 +28,29 @@ pub enum SpeckleError {
     InnerDiameter(f64),
     /// The height of a rectangle, in units of its width, is not inside (0, 1].
     Height(f64),
-    /// The pupil holds fewer phasors than [`PupilField::MIN_PHASORS`].
+    /// The radius of a Gaussian pupil, in units of its diameter, is not a positive finite number.
+    GaussianRadius(f64),
+    /// An amplitude transmission is not inside [0, 1].
+    Transmission(f32),
+    /// A sample of a field from outside is not finite.
+    Sample {
+        /// The column of the sample.
+        x: usize,
+        /// The row of the sample.
+        y: usize,
+    },
+    /// The pupil holds fewer phasors, or as many of unlike weight, than
+    /// [`PupilField::MIN_PHASORS`] of equal weight.
     PhasorCount(usize),
     /// Half the number of slices is zero or above [`SlicePath::MAX_HALF_PERIOD`].
     ///
     /// [`SlicePath::MAX_HALF_PERIOD`]: crate::SlicePath::MAX_HALF_PERIOD
     HalfPeriod(usize),
+    /// The length of a straight path, in pupil diameters, is below 2 or above
+    /// [`SlicePath::MAX_LENGTH`].
+    ///
+    /// [`SlicePath::MAX_LENGTH`]: crate::SlicePath::MAX_LENGTH
+    PathLength(usize),
     /// The machine refused the memory of a stack.
     Memory {
         /// The bytes that were asked for.
@@ -40,6 +65,14 @@ impl fmt::Display for SpeckleError {
                 f,
                 "size must be at most {} samples, got {got}",
                 PupilField::MAX_SIZE
+            ),
+            Self::SpeckleSize {
+                speckle_size,
+                largest,
+            } => write!(
+                f,
+                "speckle size must be 2 to {largest} samples in a pattern of that size, got \
+                 {speckle_size}"
             ),
             Self::Diameter { diameter, size } => write!(
                 f,
@@ -56,6 +89,19 @@ impl fmt::Display for SpeckleError {
                 f,
                 "height must be positive and at most 1 of the width, got {got}"
             ),
+            Self::GaussianRadius(got) => write!(
+                f,
+                "Gaussian radius must be positive and finite, in units of the diameter, got {got}"
+            ),
+            Self::Transmission(got) => {
+                write!(f, "transmission must lie between 0 and 1, got {got}")
+            }
+            Self::Sample { x, y } => {
+                write!(
+                    f,
+                    "samples must be finite, got another at column {x} of row {y}"
+                )
+            }
             Self::PhasorCount(got) => write!(
                 f,
                 "phasor count must be at least {}, got {got}: enlarge the diameter or open the \
@@ -66,6 +112,11 @@ impl fmt::Display for SpeckleError {
                 f,
                 "half period must be 1 to {} slices, got {got}",
                 crate::SlicePath::MAX_HALF_PERIOD
+            ),
+            Self::PathLength(got) => write!(
+                f,
+                "path length must be 2 to {} pupil diameters, got {got}",
+                crate::SlicePath::MAX_LENGTH
             ),
             Self::Memory { bytes } => write!(f, "memory for the stack refused: {bytes} bytes"),
         }

@@ -1,34 +1,52 @@
 use core::f64::consts::PI;
+use std::sync::Arc;
 
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Fft2Scratch, Grid};
+use tem00_numerics::{Fft2, Grid};
 
 use crate::{
-    Phasors, Pupil, SpeckleError, SpeckleField, SpecklePattern,
-    lattice::{Lattice, wrap_to},
-    mask::{Mask, to_f64, to_i64},
-    rows::for_each_row,
+    Phasors, Pupil, SpeckleError,
+    lattice::{Lattice, Seeded, Source},
+    mask::{Mask, to_f64},
 };
 
-/// A random field on the lattice of pupil points, seen through the pupil.
+/// A field on the lattice of pupil points, random or measured, seen through the pupil.
 ///
-/// The lattice is a torus of Q × Q points; the phasor `P(k)` at a point depends only on the seed and
-/// on k modulo Q. The pupil selects the N points within its diameter C, and its Fourier transform
-/// is the speckle field on Q × Q samples:
+/// The lattice has no end: a pupil may move over it as far as it likes and never meets the same
+/// phasors again. The phasor `P(k)` at a point depends on the seed and on k alone. A pupil of C
+/// lattice points in diameter, displaced by `offset` diameters, selects the points about
+/// `c = offset · C`, and their Fourier transform is the speckle field on Q × Q samples:
 ///
 /// ```text
-/// U(r) = 1/√N Σ P(k + offset) exp(−2πi k·r / Q)        |k|² ≤ C²/4
+/// U(r) = Σ t(p) P(k + c₀) exp(iπ a |2p|²) exp(−2πi k·r / Q) / √(Σ |t|²)      p = (k + c₀ − c) / C
 /// I(r) = |U(r)|²
 /// ```
 ///
-/// The sum runs over points about k = 0, wherever the pupil stands on the lattice, so that U is
+/// with the transmission t of the [`Pupil`], the defocus a, and the lattice point c₀ nearest to c. The
+/// sum runs over points about k = 0, wherever the pupil stands on the lattice, so that U is
 /// band-limited about zero frequency and can be interpolated.
+///
+/// Patterns need not be square: on W × H samples of speckles h wide the pupil has the diameters W/h
+/// and H/h in lattice points, and p is taken along each axis in its own.
+///
+/// # Defocus
+///
+/// The defocus a adds half a turn of phase per unit from the centre of the pupil to its rim. Speckle
+/// in focus and out of it correlate by `γ = sinc²(a/2)`, whose first zero is at a = 2. A surface that
+/// moves by `d` along the line of sight, at the distance L from a pupil of diameter D, is out of focus
+/// by `a = d D² / (4 λ L²)`.
+///
+/// Displacement and defocus together also move the pattern: against the pattern in focus of the pupil
+/// at rest, in the frame of the lattice, by `−2 a · offset` speckle sizes.
 ///
 /// # Validity
 ///
 /// The intensity holds spatial frequencies up to C/Q, twice those of the amplitude: C ≤ Q/2 keeps
-/// it free of aliasing, and keeps a pupil displaced by its own diameter from meeting itself on the
-/// torus. C ≥ 8 gives 49 phasors or more, so that the contrast is within 1 % of one.
+/// it free of aliasing. C ≥ 8 gives 49 phasors or more, so that the contrast is within 1 % of one.
+/// Random phasors repeat after 2³² lattice points along each axis, which is a million diameters of a
+/// pupil of 4096.
+///
+/// Any size works; those without prime factors above 5 are transformed fastest.
 ///
 /// # Examples
 ///
@@ -48,26 +66,37 @@ use crate::{
 /// # References
 ///
 /// - D. D. Duncan and S. J. Kirkpatrick, *Algorithms for simulation of speckle*, 2008.
+/// - D. W. Li and F. P. Chiang, *Decorrelation functions in laser speckle photography*, 1986.
 /// - S. Bergmann et al., *A Phenomenological Approach to Integrating Gaussian Beam Properties and
 ///   Speckle into a Physically-Based Renderer*, 2016, §5.
 #[derive(Clone, Debug)]
 pub struct PupilField {
-    lattice: Lattice,
-    diameter: usize,
+    pub(crate) lattice: Lattice,
+    size: [usize; 2],
+    diameter: [f64; 2],
+    speckle_size: f64,
     pupil: Pupil,
-    mask: Mask,
-    transform: Fft2,
+    pub(crate) mask: Mask,
+    pub(crate) transform: Fft2,
+}
+
+/// What a pattern is made for: samples, and lattice points across the pupil.
+#[derive(Clone, Copy, Debug)]
+struct Layout {
+    size: [usize; 2],
+    diameter: [f64; 2],
+    speckle_size: f64,
 }
 
 impl PupilField {
-    /// The largest pattern size Q, in samples: 8 GiB for one complex field.
+    /// The largest side of a pattern, in samples: 8 GiB for one square complex field.
     pub const MAX_SIZE: usize = 1 << 15;
     /// The smallest pupil diameter C, in lattice points.
     pub const MIN_DIAMETER: usize = 8;
     /// The smallest number of phasors N, that of a circle of the smallest diameter.
     pub const MIN_PHASORS: usize = 49;
 
-    /// Creates a field of unit phasors behind a circular pupil.
+    /// Creates a square field of unit phasors behind a circular pupil.
     ///
     /// `size` is the pattern size Q in samples, `diameter` the pupil diameter C in lattice points.
     /// A speckle is Q/C samples wide, and the pattern repeats after Q samples or C speckles.
@@ -91,12 +120,68 @@ impl PupilField {
         if diameter < Self::MIN_DIAMETER || diameter > size / 2 {
             return Err(SpeckleError::Diameter { diameter, size });
         }
-        let lattice = Lattice {
-            seed,
-            size,
-            phasors: Phasors::Unit,
+        let layout = Layout {
+            size: [size; 2],
+            diameter: [to_f64(diameter); 2],
+            speckle_size: to_f64(size) / to_f64(diameter),
         };
-        Self::build(lattice, diameter, Pupil::Circle)
+        Self::build(seeded(seed), layout, Pupil::Circle)
+    }
+
+    /// Creates a field of unit phasors behind a circular pupil, for patterns of `size` = [W, H]
+    /// samples whose speckles are `speckle_size` samples wide, in both directions.
+    ///
+    /// The speckle size h is the period of the intensity's cut-off frequency. The pupil is an ellipse
+    /// of W/h by H/h lattice points.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless both sides are at most `MAX_SIZE` and
+    /// `2 ≤ speckle_size ≤ min(W, H) / 8`.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_speckle::PupilField;
+    ///
+    /// let field = PupilField::from_speckle_size([640, 480], 3.2, 7)?;
+    /// assert_eq!(field.diameter(), [200.0, 150.0]);
+    /// assert_eq!(field.pattern().values().height(), 480);
+    /// # Ok::<(), tem00_speckle::SpeckleError>(())
+    /// ```
+    pub fn from_speckle_size(
+        size: [usize; 2],
+        speckle_size: f64,
+        seed: u64,
+    ) -> Result<Self, SpeckleError> {
+        let layout = Layout::new(size, speckle_size)?;
+        Self::build(seeded(seed), layout, Pupil::Circle)
+    }
+
+    /// Creates a field of samples from outside behind a circular pupil: a measured or computed complex
+    /// amplitude in the pupil plane.
+    ///
+    /// One sample is one lattice point, and the sample (⌊width/2⌋, ⌊height/2⌋) the origin, about
+    /// which the undisplaced pupil stands. The field is zero beyond the samples. `size` and
+    /// `speckle_size` are those of [`from_speckle_size`](Self::from_speckle_size): for a pupil of C
+    /// samples in diameter, ask for patterns of Q × Q samples and speckles of Q/C.
+    ///
+    /// Only the shape of the field matters: each pattern is divided by the power that its pupil
+    /// sees, so that its mean is 1 wherever the pupil stands. Where it sees none, the pattern is 0.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless all samples are finite, both sides are at most `MAX_SIZE` and
+    /// `2 ≤ speckle_size ≤ min(W, H) / 8`.
+    pub fn from_samples(
+        samples: Grid<Complex<f32>>,
+        size: [usize; 2],
+        speckle_size: f64,
+    ) -> Result<Self, SpeckleError> {
+        let layout = Layout::new(size, speckle_size)?;
+        check_samples(&samples)?;
+        let source = Source::Measured(Arc::new(samples));
+        Self::build(Lattice::endless(source), layout, Pupil::Circle)
     }
 
     /// Returns the same field behind a pupil of another shape.
@@ -107,81 +192,89 @@ impl PupilField {
     /// [`MIN_PHASORS`](Self::MIN_PHASORS) lattice points.
     pub fn with_pupil(self, pupil: Pupil) -> Result<Self, SpeckleError> {
         pupil.check()?;
-        Self::build(self.lattice, self.diameter, pupil)
+        let layout = self.layout();
+        Self::build(self.lattice, layout, pupil)
     }
 
-    /// Returns the same pupil with another law of phasors.
+    /// Returns the same field behind a pupil of another diameter, for speckles `speckle_size` samples
+    /// wide. Samples from outside are shared, not copied.
+    ///
+    /// # Errors
+    ///
+    /// As [`from_speckle_size`](Self::from_speckle_size) and [`with_pupil`](Self::with_pupil).
+    pub fn with_speckle_size(self, speckle_size: f64) -> Result<Self, SpeckleError> {
+        let layout = Layout::new(self.size, speckle_size)?;
+        Self::build(self.lattice, layout, self.pupil)
+    }
+
+    /// Returns the same pupil with another law of phasors. Samples from outside stay as they are.
     #[must_use]
     pub const fn with_phasors(mut self, phasors: Phasors) -> Self {
-        self.lattice.phasors = phasors;
+        if let Source::Seeded(seeded) = &mut self.lattice.source {
+            seeded.phasors = phasors;
+        }
         self
     }
 
-    /// Returns the same pupil with another, independent set of phasors.
+    /// Returns the same pupil with another, independent set of phasors. Samples from outside stay as
+    /// they are.
     #[must_use]
     pub const fn with_seed(mut self, seed: u64) -> Self {
-        self.lattice.seed = seed;
+        if let Source::Seeded(seeded) = &mut self.lattice.source {
+            seeded.seed = seed;
+        }
         self
     }
 
-    fn build(lattice: Lattice, diameter: usize, pupil: Pupil) -> Result<Self, SpeckleError> {
-        let mask = Mask::new(pupil, diameter);
-        if mask.count() < Self::MIN_PHASORS {
-            return Err(SpeckleError::PhasorCount(mask.count()));
+    /// Returns the same field on a lattice that closes after `period` points along each axis.
+    pub(crate) const fn closed(mut self, period: [i64; 2]) -> Self {
+        self.lattice.period = period;
+        self
+    }
+
+    /// Returns the displacement between two lattice points, the shorter way round.
+    pub(crate) fn shift(&self, from: [i64; 2], to: [i64; 2]) -> [i64; 2] {
+        self.lattice.nearest([to[0] - from[0], to[1] - from[1]])
+    }
+
+    fn build(lattice: Lattice, layout: Layout, pupil: Pupil) -> Result<Self, SpeckleError> {
+        let Layout { size, diameter, .. } = layout;
+        let mask = Mask::new(&pupil, diameter, [0.0; 2]);
+        // (Σ|t|²)² / Σ|t|⁴ is a whole number of equal phasors but for its rounding.
+        let effective = mask.effective_count() * (1.0 + 1e-12);
+        if effective < to_f64(Self::MIN_PHASORS) {
+            return Err(SpeckleError::PhasorCount(whole(effective)));
         }
-        let [half_width, half_height] = mask.half_extent();
-        let transform = Fft2::with_aperture(
-            lattice.size,
-            lattice.size,
-            2 * half_width + 1,
-            2 * half_height + 1,
-        )
-        .map_err(|_| SpeckleError::Size(lattice.size))?;
+        let [columns, rows] = mask.extent();
+        let transform = Fft2::with_aperture(size[0], size[1], columns, rows)
+            .map_err(|_| SpeckleError::Size(size[0].max(size[1])))?;
         Ok(Self {
             lattice,
+            size,
             diameter,
+            speckle_size: layout.speckle_size,
             pupil,
             mask,
             transform,
         })
     }
 
-    /// Returns the pattern size Q, in samples.
-    pub const fn size(&self) -> usize {
-        self.lattice.size
+    const fn layout(&self) -> Layout {
+        Layout {
+            size: self.size,
+            diameter: self.diameter,
+            speckle_size: self.speckle_size,
+        }
     }
 
-    /// Returns the nominal pupil diameter C, in lattice points.
-    pub const fn diameter(&self) -> usize {
+    /// Returns the width and the height of the pattern, in samples.
+    pub const fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// Returns the nominal pupil diameter along each axis, in lattice points.
+    pub const fn diameter(&self) -> [f64; 2] {
         self.diameter
-    }
-
-    /// Returns the seed.
-    pub const fn seed(&self) -> u64 {
-        self.lattice.seed
-    }
-
-    /// Returns the shape of the pupil.
-    pub const fn pupil(&self) -> Pupil {
-        self.pupil
-    }
-
-    /// Returns the law of the phasors.
-    pub const fn phasors(&self) -> Phasors {
-        self.lattice.phasors
-    }
-
-    /// Returns the number N of lattice points inside the pupil.
-    pub const fn phasor_count(&self) -> usize {
-        self.mask.count()
-    }
-
-    /// Returns the diameter `2√(N/π)` of the disc whose area is the pupil's N lattice cells.
-    ///
-    /// With it the Airy autocovariance of a circular pupil holds within 1.3e−3 in every direction at
-    /// C = 32, and within 3e−4 at C = 128. With the nominal C these are 4.1e−3 and 6e−4.
-    pub fn effective_diameter(&self) -> f64 {
-        2.0 * (to_f64(self.phasor_count()) / PI).sqrt()
     }
 
     /// Returns the speckle size `Q / C`, in samples.
@@ -189,145 +282,106 @@ impl PupilField {
     /// This is the period of the intensity's cut-off frequency, `λ d / D` on the sensor. The first
     /// zero of a circular pupil's autocovariance lies at 1.22 speckle sizes, its full width at half
     /// maximum is 1.03.
-    pub fn speckle_size(&self) -> f64 {
-        to_f64(self.size()) / to_f64(self.diameter)
+    pub const fn speckle_size(&self) -> f64 {
+        self.speckle_size
+    }
+
+    /// Returns the shape of the pupil.
+    pub const fn pupil(&self) -> &Pupil {
+        &self.pupil
+    }
+
+    /// Returns the seed, or `None` for samples from outside.
+    pub const fn seed(&self) -> Option<u64> {
+        match &self.lattice.source {
+            Source::Seeded(seeded) => Some(seeded.seed),
+            Source::Measured(_) => None,
+        }
+    }
+
+    /// Returns the law of the phasors, or `None` for samples from outside.
+    pub const fn phasors(&self) -> Option<Phasors> {
+        match &self.lattice.source {
+            Source::Seeded(seeded) => Some(seeded.phasors),
+            Source::Measured(_) => None,
+        }
+    }
+
+    /// Returns the samples from outside, or `None` for random phasors.
+    pub fn samples(&self) -> Option<&Grid<Complex<f32>>> {
+        match &self.lattice.source {
+            Source::Seeded(_) => None,
+            Source::Measured(samples) => Some(samples),
+        }
+    }
+
+    /// Returns the number N of lattice points inside the undisplaced pupil.
+    pub const fn phasor_count(&self) -> usize {
+        self.mask.count()
+    }
+
+    /// Returns the number of phasors of equal weight that fluctuate as the pupil's do.
+    ///
+    /// ```text
+    /// N = (Σ |t|²)² / Σ |t|⁴
+    /// ```
+    ///
+    /// It is the count itself unless the pupil is apodised. The squared contrast of unit phasors is
+    /// `1 − 1/N`.
+    pub fn effective_phasor_count(&self) -> f64 {
+        self.mask.effective_count()
+    }
+
+    /// Returns the diameter `2√(N/π)` of the disc whose area is the pupil's N lattice cells.
+    ///
+    /// With it the Airy autocovariance of a circular pupil holds within 1.3e−3 in every direction at
+    /// C = 32, and within 3e−4 at C = 128. With the nominal C these are 4.1e−3 and 6e−4. For a pattern
+    /// that is not square it is the geometric mean over both axes.
+    pub fn effective_diameter(&self) -> f64 {
+        2.0 * (to_f64(self.phasor_count()) / PI).sqrt()
     }
 
     /// Returns the exact amplitude correlation μ of two samples that are `lag` samples apart.
     ///
     /// ```text
-    /// μ(lag) = 1/N Σ exp(−2πi k·lag / Q)
+    /// μ(lag) = Σ |t|² exp(−2πi k·lag / Q) / Σ |t|²
     /// ```
     ///
-    /// It is real, 1 at zero lag, and has the period Q. The autocovariance of the intensity is
-    /// `μ²` for Gaussian phasors and `μ² − 1/N` for unit phasors.
+    /// It is 1 at zero lag, has the period of the pattern, and is real for pupils with a centre of
+    /// symmetry. The autocovariance of the intensity is `|μ|²` for Gaussian phasors and `|μ|² − 1/N` for
+    /// unit phasors, with the [effective](Self::effective_phasor_count) number N.
     ///
     /// # Panics
     ///
     /// Panics unless both lags are finite.
-    pub fn amplitude_correlation(&self, lag: [f64; 2]) -> f64 {
+    pub fn amplitude_correlation(&self, lag: [f64; 2]) -> Complex<f64> {
         assert!(
             lag.iter().all(|l| l.is_finite()),
             "the lag {lag:?} is not finite"
         );
-        self.mask.correlation(lag, self.size())
+        self.mask.correlation(lag, self.size)
     }
 
-    /// Returns the fraction of the pupil's lattice points it shares with itself, displaced.
+    /// Returns the amplitude correlation of the fields of the pupil and of the same pupil displaced by
+    /// `shift` lattice points.
     ///
-    /// `shift` is in lattice points, on the torus. The value is counted, not approximated, and is
-    /// the amplitude correlation of the fields at two offsets that differ by `shift`.
-    pub fn overlap(&self, shift: [i64; 2]) -> f64 {
-        to_f64(self.mask.overlap_count(shift, self.size())) / to_f64(self.phasor_count())
-    }
-
-    /// Returns the intensity behind the undisplaced pupil.
-    pub fn pattern(&self) -> SpecklePattern {
-        self.pattern_at([0, 0])
-    }
-
-    /// Returns the intensity behind the pupil displaced by `offset` lattice points.
-    pub fn pattern_at(&self, offset: [i64; 2]) -> SpecklePattern {
-        let scale = self.intensity_scale();
-        let values = self
-            .transform
-            .forward(&self.aperture(offset, None), |_, _, value| {
-                scale * value.norm_sqr()
-            });
-        SpecklePattern::new(values, self.speckle_size())
-    }
-
-    /// Returns the complex amplitude behind the undisplaced pupil.
-    pub fn field(&self) -> SpeckleField {
-        self.field_at([0, 0])
-    }
-
-    /// Returns the complex amplitude behind the pupil displaced by `offset` lattice points.
-    pub fn field_at(&self, offset: [i64; 2]) -> SpeckleField {
-        let zero = Complex::new(0.0, 0.0);
-        let mut values = Grid::filled(self.size(), self.size(), zero);
-        self.amplitude_into(&mut values, offset, None, &mut Fft2Scratch::default());
-        SpeckleField::new(values, self.speckle_size())
-    }
-
-    /// The amplitude, centred on zero frequency; `filter` weighs the pupil points of each axis.
-    pub(crate) fn amplitude_into(
-        &self,
-        values: &mut Grid<Complex<f32>>,
-        offset: [i64; 2],
-        filter: Option<&[Vec<f32>; 2]>,
-        scratch: &mut Fft2Scratch,
-    ) {
-        let [half_width, half_height] = self.mask.half_extent();
-        let centre_x = self.centring_phase(half_width);
-        let centre_y = self.centring_phase(half_height);
-        let aperture = self.aperture(offset, filter);
-        self.transform
-            .forward_into(&aperture, values, scratch, |x, y, value| {
-                value * centre_x[x] * centre_y[y]
-            });
-    }
-
-    pub(crate) const fn mask(&self) -> &Mask {
-        &self.mask
-    }
-
-    /// The phasors inside the pupil, its bounding box at the corner of the transform's array.
-    fn aperture(&self, offset: [i64; 2], filter: Option<&[Vec<f32>; 2]>) -> Grid<Complex<f32>> {
-        let [half_width, half_height] = self.mask.half_extent();
-        let zero = Complex::new(0.0, 0.0);
-        let mut aperture = Grid::filled(2 * half_width + 1, 2 * half_height + 1, zero);
-        for_each_row(&mut aperture, |y, values| {
-            let row = self.mask.row(y.abs_diff(half_height));
-            let ky = offset[1] + to_i64(y) - to_i64(half_height);
-            let start = half_width - row.outer;
-            let kx = offset[0] - to_i64(row.outer);
-            self.lattice
-                .fill_row([kx, ky], &mut values[start..=half_width + row.outer]);
-            if let Some(hole) = row.hole {
-                values[half_width - hole..=half_width + hole].fill(zero);
+    /// ```text
+    /// Σ t(k) t*(k − shift) / Σ |t|²
+    /// ```
+    ///
+    /// Without apodisation it is the fraction of the lattice points that both share: counted, not
+    /// approximated. [`Pupil::overlap`] is its limit for a fine lattice.
+    pub fn overlap(&self, shift: [i64; 2]) -> Complex<f64> {
+        let [x, y] = self.lattice.nearest(shift);
+        let [period_x, period_y] = self.lattice.period;
+        // On a lattice that closes early a displaced pupil may be met from both sides.
+        let mut sum = Complex::new(0.0, 0.0);
+        for x in [x - period_x, x, x + period_x] {
+            for y in [y - period_y, y, y + period_y] {
+                sum += self.mask.overlap([x, y]);
             }
-            if let Some([filter_x, filter_y]) = filter {
-                for (value, weight) in values.iter_mut().zip(filter_x) {
-                    *value *= weight * filter_y[y];
-                }
-            }
-        });
-        aperture
-    }
-
-    /// exp(2πi half x / Q) N^(−1/4): moves the pupil's centre from the index `half` to zero
-    /// frequency. The normalisation 1/√N is shared by the two axes.
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "amplitudes are stored as f32"
-    )]
-    fn centring_phase(&self, half: usize) -> Vec<Complex<f32>> {
-        let size = self.size();
-        let scale = to_f64(self.phasor_count()).powf(-0.25);
-        (0..size)
-            .map(|x| {
-                let turns = to_f64(half * x % size) / to_f64(size);
-                let phase = Complex::from_polar(scale, 2.0 * PI * turns);
-                Complex::new(phase.re as f32, phase.im as f32)
-            })
-            .collect()
-    }
-
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "intensities are stored as f32"
-    )]
-    fn intensity_scale(&self) -> f32 {
-        (1.0 / to_f64(self.phasor_count())) as f32
-    }
-
-    /// The phasor at a lattice point.
-    #[cfg(test)]
-    pub(crate) fn phasor(&self, k: [i64; 2]) -> Complex<f32> {
-        let mut value = [Complex::new(0.0, 0.0)];
-        self.lattice.fill_row(k, &mut value);
-        value[0]
+        }
+        sum / self.mask.power()
     }
 }
 
@@ -335,15 +389,57 @@ impl PartialEq for PupilField {
     fn eq(&self, other: &Self) -> bool {
         // The mask and the plan follow from these.
         self.lattice == other.lattice
+            && self.size == other.size
             && self.diameter == other.diameter
             && self.pupil == other.pupil
     }
 }
 
-/// The displacement of the torus nearest to `to − from`.
-pub(crate) fn nearest_shift(from: [i64; 2], to: [i64; 2], size: usize) -> [i64; 2] {
-    let along = |axis: usize| crate::mask::signed(wrap_to(to[axis] - from[axis], size), size);
-    [along(0), along(1)]
+impl Layout {
+    fn new(size: [usize; 2], speckle_size: f64) -> Result<Self, SpeckleError> {
+        if let Some(&side) = size.iter().find(|&&side| side > PupilField::MAX_SIZE) {
+            return Err(SpeckleError::Size(side));
+        }
+        let largest = to_f64(size[0].min(size[1])) / to_f64(PupilField::MIN_DIAMETER);
+        if !(speckle_size >= 2.0 && speckle_size <= largest) {
+            return Err(SpeckleError::SpeckleSize {
+                speckle_size,
+                largest,
+            });
+        }
+        Ok(Self {
+            size,
+            diameter: size.map(|side| to_f64(side) / speckle_size),
+            speckle_size,
+        })
+    }
+}
+
+const fn seeded(seed: u64) -> Lattice {
+    Lattice::endless(Source::Seeded(Seeded {
+        seed,
+        phasors: Phasors::Unit,
+    }))
+}
+
+fn check_samples(samples: &Grid<Complex<f32>>) -> Result<(), SpeckleError> {
+    let finite = |z: &Complex<f32>| z.re.is_finite() && z.im.is_finite();
+    match samples.values().iter().position(|z| !finite(z)) {
+        None => Ok(()),
+        Some(bad) => Err(SpeckleError::Sample {
+            x: bad % samples.width(),
+            y: bad / samples.width(),
+        }),
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a small number of phasors, rounded down"
+)]
+fn whole(x: f64) -> usize {
+    x as usize
 }
 
 #[cfg(test)]

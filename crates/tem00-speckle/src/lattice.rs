@@ -1,21 +1,40 @@
-//! The random phasors of the pupil lattice, addressed by seed and position.
+//! What lies on the pupil lattice: random phasors addressed by seed and position, or samples.
 
 use core::f32::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 use num_complex::Complex;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
+use tem00_numerics::Grid;
 
 use crate::Phasors;
 
-/// Phasors on a torus of `size` × `size` lattice points.
+/// A field on the points of a torus, of so many points along each axis.
 ///
-/// The phasor at (kx, ky) is made of word kx of the `ChaCha8` stream ky, so that any part of the
-/// lattice can be generated alone, in any order and by any thread.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// On a torus of P points the point k shows what lies at the representative of k in [−P/2, P/2), so
+/// that the surroundings of the origin are the same for every P.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Lattice {
+    pub(crate) source: Source,
+    pub(crate) period: [i64; 2],
+}
+
+/// Where the values at the lattice points come from.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Source {
+    Seeded(Seeded),
+    /// Samples about the origin, which is the point (⌊w/2⌋, ⌊h/2⌋); zero beyond them.
+    Measured(Arc<Grid<Complex<f32>>>),
+}
+
+/// Random phasors.
+///
+/// The phasor at (kx, ky) is made of word kx of the `ChaCha8` stream ky, both modulo 2³², so that any
+/// part of the lattice can be generated alone, in any order and by any thread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Seeded {
     pub(crate) seed: u64,
-    pub(crate) size: usize,
     pub(crate) phasors: Phasors,
 }
 
@@ -29,32 +48,91 @@ const MAGNITUDES: u64 = 1 << 32;
 const CHUNK: usize = 256;
 
 impl Lattice {
-    /// Fills `row` with the phasors at (kx, ky), (kx + 1, ky), …, all modulo the size.
-    pub(crate) fn fill_row(&self, [kx, ky]: [i64; 2], row: &mut [Complex<f32>]) {
-        let (start, ky) = (self.wrap(kx), self.wrap(ky));
-        let (head, tail) = row.split_at_mut(row.len().min(self.size - start));
-        self.fill_run(start, ky, head);
-        self.fill_run(0, ky, tail);
+    /// The points along an axis after which random phasors repeat.
+    pub(crate) const SIDE: i64 = 1 << 32;
+
+    /// A lattice that does not close before its phasors do.
+    pub(crate) const fn endless(source: Source) -> Self {
+        Self {
+            source,
+            period: [Self::SIDE; 2],
+        }
     }
 
-    fn fill_run(&self, start: usize, ky: usize, run: &mut [Complex<f32>]) {
+    /// Fills `row` with the values at (kx, ky), (kx + 1, ky), …
+    pub(crate) fn fill_row(&self, [kx, ky]: [i64; 2], row: &mut [Complex<f32>]) {
+        let [kx, ky] = self.nearest([kx, ky]);
+        let end = (self.period[0] + 1) / 2;
+        let (mut start, mut rest) = (kx, row);
+        while !rest.is_empty() {
+            // Words run on from −1 to 2³², not to 0: a run ends there.
+            let stop = if start < 0 { 0 } else { end };
+            let length = usize::try_from(stop - start).unwrap_or(usize::MAX);
+            let (run, tail) = rest.split_at_mut(length.min(rest.len()));
+            match &self.source {
+                Source::Seeded(seeded) => seeded.fill_run([start, ky], run),
+                Source::Measured(samples) => copy_run(samples, [start, ky], run),
+            }
+            start = if start < 0 { 0 } else { end - self.period[0] };
+            rest = tail;
+        }
+    }
+
+    /// Returns the representative of `k` nearest to the origin.
+    pub(crate) fn nearest(&self, [kx, ky]: [i64; 2]) -> [i64; 2] {
+        [nearest(kx, self.period[0]), nearest(ky, self.period[1])]
+    }
+}
+
+/// The representative of k modulo `period` in [−period/2, period/2).
+fn nearest(k: i64, period: i64) -> i64 {
+    let k = k.rem_euclid(period);
+    if k < period - k { k } else { k - period }
+}
+
+/// Copies the samples at (kx, ky), (kx + 1, ky), …, and zeros where there are none.
+fn copy_run(samples: &Grid<Complex<f32>>, [kx, ky]: [i64; 2], run: &mut [Complex<f32>]) {
+    let [width, height] = [samples.width(), samples.height()].map(to_i64);
+    run.fill(Complex::new(0.0, 0.0));
+    let (x, y) = (kx + width / 2, ky + height / 2);
+    if !(0..height).contains(&y) {
+        return;
+    }
+    let row = samples.row(to_index(y));
+    // The part of the run that meets the row.
+    let (first, last) = (x.max(0), (x + to_i64(run.len())).min(width));
+    if first < last {
+        run[to_index(first - x)..to_index(last - x)]
+            .copy_from_slice(&row[to_index(first)..to_index(last)]);
+    }
+}
+
+impl Seeded {
+    /// Fills a run of phasors that does not pass from negative kx to others.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "positions are meant modulo 2³²"
+    )]
+    fn fill_run(self, [kx, ky]: [i64; 2], run: &mut [Complex<f32>]) {
         if run.is_empty() {
             return;
         }
-        self.for_each_word(ky as u64, start, run, |value, word| {
+        let (word, stream) = (kx as u32, u64::from(ky as u32));
+        self.for_each_word(stream, word, run, |value, word| {
             *value = unit_phasor(word);
         });
         if self.phasors == Phasors::Gaussian {
-            self.for_each_word(MAGNITUDES + ky as u64, start, run, |value, word| {
+            self.for_each_word(MAGNITUDES + stream, word, run, |value, word| {
                 *value *= rayleigh_magnitude(word);
             });
         }
     }
 
     fn for_each_word(
-        &self,
+        self,
         stream: u64,
-        start: usize,
+        start: u32,
         run: &mut [Complex<f32>],
         each: impl Fn(&mut Complex<f32>, u32),
     ) {
@@ -70,29 +148,28 @@ impl Lattice {
         }
     }
 
-    fn generator(&self, stream: u64, word: usize) -> ChaCha8Rng {
+    fn generator(self, stream: u64, word: u32) -> ChaCha8Rng {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&self.seed.to_le_bytes());
         key[8..].copy_from_slice(KEY);
         let mut generator = ChaCha8Rng::from_seed(key);
         generator.set_stream(stream);
-        generator.set_word_pos(word as u128);
+        generator.set_word_pos(u128::from(word));
         generator
-    }
-
-    fn wrap(&self, k: i64) -> usize {
-        wrap_to(k, self.size)
     }
 }
 
-/// Returns `k mod size` in [0, size).
 #[expect(
-    clippy::cast_possible_truncation,
     clippy::cast_possible_wrap,
-    reason = "sizes are at most 2¹⁵ and the result lies in [0, size)"
+    reason = "lattice sizes and counts are far below 2⁶³"
 )]
-pub(crate) fn wrap_to(k: i64, size: usize) -> usize {
-    k.rem_euclid(size as i64) as usize
+pub(crate) const fn to_i64(n: usize) -> i64 {
+    n as i64
+}
+
+/// An index that is not negative, as its place in the program shows.
+fn to_index(n: i64) -> usize {
+    usize::try_from(n).unwrap_or(0)
 }
 
 /// Returns `exp(2πi · word / 2³²)`.
@@ -211,14 +288,20 @@ mod tests {
     }
 
     fn lattice(seed: u64) -> Lattice {
-        Lattice {
+        Lattice::endless(Source::Seeded(Seeded {
             seed,
-            size: 1_000,
             phasors: Phasors::Unit,
+        }))
+    }
+
+    fn torus(seed: u64, period: [i64; 2]) -> Lattice {
+        Lattice {
+            period,
+            ..lattice(seed)
         }
     }
 
-    fn row(lattice: Lattice, start: [i64; 2], length: usize) -> Vec<Complex<f32>> {
+    fn row(lattice: &Lattice, start: [i64; 2], length: usize) -> Vec<Complex<f32>> {
         let mut row = vec![Complex::new(0.0, 0.0); length];
         lattice.fill_row(start, &mut row);
         row
@@ -226,29 +309,45 @@ mod tests {
 
     #[test]
     fn phasors_are_the_words_of_chacha8() {
-        for (kx, ky) in [(0, 0), (1, 0), (15, 3), (16, 3), (777, 999)] {
-            let expected = unit_phasor(chacha8_word(42, ky, kx));
-            let k = [i64::try_from(kx).unwrap(), i64::try_from(ky).unwrap()];
-            assert_eq!(row(lattice(42), k, 1)[0], expected, "at ({kx}, {ky})");
+        for [kx, ky] in [
+            [0, 0],
+            [1, 0],
+            [15, 3],
+            [16, 3],
+            [777, 999],
+            [-1, 2],
+            [5, -1],
+            [-1_000_000_007, 2_000_000_011],
+        ] {
+            let modulo = |k: i64| u64::try_from(k.rem_euclid(1 << 32)).unwrap();
+            let expected = unit_phasor(chacha8_word(42, modulo(ky), modulo(kx)));
+            assert_eq!(
+                row(&lattice(42), [kx, ky], 1)[0],
+                expected,
+                "at ({kx}, {ky})"
+            );
         }
     }
 
     #[test]
     fn magnitudes_are_the_words_of_streams_of_their_own() {
-        let gaussian = Lattice {
+        let gaussian = Lattice::endless(Source::Seeded(Seeded {
+            seed: 42,
             phasors: Phasors::Gaussian,
-            ..lattice(42)
-        };
-        let magnitude = rayleigh_magnitude(chacha8_word(42, (1 << 32) + 5, 9));
-        let expected = unit_phasor(chacha8_word(42, 5, 9)) * magnitude;
-        assert_eq!(row(gaussian, [9, 5], 1)[0], expected);
+        }));
+        for [kx, ky] in [[9_u32, 5_u32], [9, u32::MAX]] {
+            let (word, stream) = (u64::from(kx), u64::from(ky));
+            let magnitude = rayleigh_magnitude(chacha8_word(42, (1 << 32) + stream, word));
+            let expected = unit_phasor(chacha8_word(42, stream, word)) * magnitude;
+            assert_eq!(row(&gaussian, [kx.into(), ky.into()], 1)[0], expected);
+        }
     }
 
     /// Recorded once. Stable on every platform: `ChaCha8` is integer arithmetic, and the phasor is
     /// made of `f32` operations that IEEE 754 rounds alike everywhere.
     #[test]
     fn a_seed_means_the_same_bits_for_ever() {
-        let bits: Vec<_> = row(lattice(2_016), [3, 7], 3)
+        let bits: Vec<_> = row(&lattice(2_016), [3, 7], 3)
             .iter()
             .map(|p| (p.re.to_bits(), p.im.to_bits()))
             .collect();
@@ -263,20 +362,59 @@ mod tests {
     }
 
     #[test]
-    fn the_lattice_is_a_torus() {
-        let lattice = lattice(1);
-        let across = row(lattice, [990, -1], 20);
-        assert_eq!(across[..10], row(lattice, [-10, 999], 10));
-        assert_eq!(across[10..], row(lattice, [1_000, 1_999], 10));
+    fn a_lattice_repeats_after_its_period_and_not_before() {
+        let closed = torus(1, [1_000, 70]);
+        let across = row(&closed, [990, -1], 20);
+        assert_eq!(across[..10], row(&closed, [-10, 69], 10));
+        assert_eq!(across[10..], row(&closed, [1_000, 139], 10));
+        let endless = lattice(1);
+        for far in [1_000, 1 << 20, 1 << 31] {
+            let (here, there) = (row(&endless, [-3, -3], 6), row(&endless, [far - 3, -3], 6));
+            assert!(here.iter().zip(&there).all(|(a, b)| a != b), "{far}");
+        }
+        let round = [(1 << 32) - 3, -3 - (1 << 32)];
+        assert_eq!(row(&endless, [-3, -3], 6), row(&endless, round, 6));
+    }
+
+    #[test]
+    fn the_surroundings_of_the_origin_do_not_depend_on_the_period() {
+        for period in [16, 17, 1 << 20] {
+            let closed = row(&torus(3, [period; 2]), [-8, -8], 16);
+            assert_eq!(closed, row(&lattice(3), [-8, -8], 16), "period {period}");
+        }
     }
 
     #[test]
     fn a_row_is_the_same_in_parts() {
-        let lattice = lattice(9);
-        let whole = row(lattice, [0, 4], 1_000);
-        for (start, length) in [(0, 1), (255, 2), (256, 300), (17, 983)] {
-            let part = row(lattice, [i64::try_from(start).unwrap(), 4], length);
+        let lattice = torus(9, [701, 8]);
+        let whole = row(&lattice, [-800, 4], 1_800);
+        for (start, length) in [(0, 1), (255, 2), (256, 300), (17, 1_783), (799, 3)] {
+            let part = row(&lattice, [to_i64(start) - 800, 4], length);
             assert_eq!(part, whole[start..start + length], "from {start}");
+        }
+    }
+
+    #[test]
+    fn samples_lie_about_the_origin_with_nothing_around_them() {
+        #[expect(clippy::cast_precision_loss, reason = "small integers")]
+        let sample = |x: usize, y: usize| Complex::new(1.0 + x as f32, 1.0 + y as f32);
+        for (width, height) in [(4, 3), (5, 4)] {
+            let samples = Arc::new(Grid::from_fn(width, height, sample));
+            let lattice = Lattice::endless(Source::Measured(samples));
+            for ky in -5..6 {
+                for start in [-6, -2, 1] {
+                    for (k, value) in (start..).zip(row(&lattice, [start, ky], 7)) {
+                        let inside = |k: i64, n: usize| {
+                            usize::try_from(k + to_i64(n / 2)).ok().filter(|&i| i < n)
+                        };
+                        let expected = match (inside(k, width), inside(ky, height)) {
+                            (Some(x), Some(y)) => sample(x, y),
+                            _ => Complex::new(0.0, 0.0),
+                        };
+                        assert_eq!(value, expected, "at ({k}, {ky}) of {width} × {height}");
+                    }
+                }
+            }
         }
     }
 

@@ -13,6 +13,7 @@
 //! # Conventions
 //!
 //! - **Intensity** is dimensionless with mean 1.
+//! - **Displacements** of the pupil are in its diameters, `a_P / D`, along the axes of the pattern.
 //! - **Lengths** are in samples in the plane (period Q) and in lattice points in the pupil (diameter
 //!   C). A speckle is `h_p = Q/C` samples wide: look up at `h_p / h` times a length on the sensor,
 //!   where `h = λ d / D` is the speckle size there.
@@ -28,8 +29,9 @@
 //!
 //! # Scope and non-goals
 //!
-//! Fully developed, fully polarised, monochromatic speckle of a pupil in focus. The geometry that
-//! moves and decorrelates it belongs to the crate above; so does the light that it modulates.
+//! Fully developed, fully polarised, monochromatic speckle, behind pupils of any shape that may be
+//! out of focus, or of a field measured in the pupil. The geometry that moves and decorrelates it
+//! belongs to the crate above; so does the light that it modulates.
 //!
 //! # Example
 //!
@@ -58,6 +60,8 @@ mod pupil;
 mod rows;
 mod spline;
 mod stack;
+mod transmission;
+mod view;
 
 pub use error::SpeckleError;
 pub use field::PupilField;
@@ -67,3 +71,5 @@ pub use path::SlicePath;
 pub use pattern::{SpeckleField, SpecklePattern};
 pub use pupil::{Phasors, Pupil};
 pub use stack::SpeckleStack;
+pub use transmission::Transmission;
+pub use view::SpeckleScratch;

@@ -2,150 +2,255 @@
 
 use core::f64::consts::PI;
 
-use crate::{Pupil, lattice::wrap_to};
+use num_complex::Complex;
+use tem00_numerics::Grid;
 
-/// The lattice points of a pupil about its centre.
-///
-/// Every pupil is mirror symmetric in both axes, so the rows ky ≥ 0 and their half-widths say it
-/// all.
-#[derive(Clone, Debug, PartialEq, Eq)]
+use crate::{Pupil, lattice::to_i64, transmission::to_c64};
+
+/// The lattice points of a pupil about a point of the lattice, and what they transmit.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Mask {
+    /// The first column and row of the box around the points.
+    corner: [i64; 2],
+    /// The number of columns and rows of the box.
+    extent: [usize; 2],
     rows: Vec<Row>,
-    count: usize,
+    /// Transmission over the box, unless it is 1 wherever a row says so.
+    weights: Option<Grid<Complex<f32>>>,
+    sums: Sums,
 }
 
-/// The points |kx| ≤ `outer` of a row, without |kx| ≤ `hole`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The columns of a row of the box that belong to the pupil, without a hole in their midst.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Row {
-    pub(crate) outer: usize,
-    pub(crate) hole: Option<usize>,
+    pub(crate) outer: Span,
+    pub(crate) hole: Span,
+}
+
+/// The columns from `start` up to, but without, `end`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Span {
+    pub(crate) start: usize,
+    pub(crate) end: usize,
+}
+
+/// The points that transmit, and the sums of |t|² and |t|⁴ over them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Sums {
+    count: usize,
+    square: f64,
+    fourth: f64,
+}
+
+impl Span {
+    pub(crate) const fn range(self) -> core::ops::Range<usize> {
+        self.start..self.end
+    }
+
+    const fn count(self) -> usize {
+        self.end - self.start
+    }
 }
 
 impl Row {
-    fn count(self) -> usize {
-        2 * self.outer + 1 - self.hole.map_or(0, |hole| 2 * hole + 1)
+    fn new(inside: impl Iterator<Item = bool> + Clone) -> Self {
+        let mut columns = inside.clone().zip(0..).filter(|(inside, _)| *inside);
+        let Some((_, start)) = columns.next() else {
+            return Self::default();
+        };
+        let end = columns.last().map_or(start, |(_, last)| last) + 1;
+        let within = inside.zip(0..).skip(start).take(end - start);
+        let mut hole = within
+            .filter(|(inside, _)| !inside)
+            .map(|(_, column)| column);
+        let hole = hole.next().map_or_else(Span::default, |first| Span {
+            start: first,
+            end: hole.last().unwrap_or(first) + 1,
+        });
+        Self {
+            outer: Span { start, end },
+            hole,
+        }
+    }
+
+    fn columns(self) -> impl Iterator<Item = usize> {
+        let hole = self.hole.range();
+        self.outer.range().filter(move |x| !hole.contains(x))
     }
 }
 
 impl Mask {
-    pub(crate) fn new(pupil: Pupil, diameter: usize) -> Self {
-        let half_height = match pupil {
-            Pupil::Circle | Pupil::Annulus { .. } => diameter / 2,
-            Pupil::Rectangle { height } => floor_index(0.5 * height * to_f64(diameter)),
+    /// The points k of a pupil with a diameter of `diameter` points along each axis and its centre
+    /// at `fraction`.
+    pub(crate) fn new(pupil: &Pupil, diameter: [f64; 2], fraction: [f64; 2]) -> Self {
+        let extent = Self::extent_of(pupil, diameter);
+        let reach = pupil.reach();
+        let along = |axis: usize| {
+            let first = fraction[axis] - 0.5 * reach[axis] * diameter[axis] * Pupil::RIM;
+            first_point(first)
         };
-        let row = |ky| match pupil {
-            Pupil::Circle => Row {
-                outer: disc_half_width(diameter, ky),
-                hole: None,
-            },
-            Pupil::Annulus { inner } => Row {
-                outer: disc_half_width(diameter, ky),
-                hole: hole_half_width(inner * to_f64(diameter), ky),
-            },
-            Pupil::Rectangle { .. } => Row {
-                outer: diameter / 2,
-                hole: None,
-            },
+        let corner = [along(0), along(1)];
+        let position = |axis: usize| -> Vec<f64> {
+            (0..extent[axis])
+                .map(|i| (from_i64(corner[axis] + to_i64(i)) - fraction[axis]) / diameter[axis])
+                .collect()
         };
-        let rows: Vec<Row> = (0..=half_height).map(row).collect();
-        let mirrored: usize = rows.iter().skip(1).map(|row| row.count()).sum();
-        let count = rows[0].count() + 2 * mirrored;
-        Self { rows, count }
+        let (x, y) = (position(0), position(1));
+        let row = |&y: &f64| Row::new(x.iter().map(move |&x| pupil.contains([x, y])));
+        let mut mask = Self {
+            corner,
+            extent,
+            rows: y.iter().map(row).collect(),
+            weights: pupil.is_weighted().then(|| {
+                Grid::from_fn(extent[0], extent[1], |i, j| {
+                    pupil.transmission([x[i], y[j]])
+                })
+            }),
+            sums: Sums::default(),
+        };
+        mask.sums = mask.sum_up();
+        mask
     }
 
-    /// The number of lattice points N.
+    /// The largest box that the points can need, wherever the centre lies.
+    pub(crate) fn extent_of(pupil: &Pupil, diameter: [f64; 2]) -> [usize; 2] {
+        let reach = pupil.reach();
+        [0, 1].map(|axis| whole(reach[axis] * diameter[axis] * Pupil::RIM) + 1)
+    }
+
+    fn sum_up(&self) -> Sums {
+        let mut sums = Sums::default();
+        for y in 0..self.rows.len() {
+            for (_, power) in self.powers(y) {
+                sums.count += usize::from(power > 0.0);
+                sums.square += power;
+                sums.fourth += power * power;
+            }
+        }
+        sums
+    }
+
+    /// The number of lattice points that transmit, N.
     pub(crate) const fn count(&self) -> usize {
-        self.count
+        self.sums.count
     }
 
-    /// The largest |kx| and |ky| inside.
-    pub(crate) fn half_extent(&self) -> [usize; 2] {
-        let width = self.rows.iter().map(|row| row.outer).max();
-        [width.unwrap_or(0), self.rows.len() - 1]
+    /// Σ |t|².
+    pub(crate) const fn power(&self) -> f64 {
+        self.sums.square
     }
 
-    pub(crate) fn row(&self, ky: usize) -> Row {
-        self.rows[ky]
+    /// The number of equal points with the same fluctuations, (Σ |t|²)² / Σ |t|⁴.
+    pub(crate) fn effective_count(&self) -> f64 {
+        if self.sums.fourth > 0.0 {
+            self.sums.square * self.sums.square / self.sums.fourth
+        } else {
+            0.0
+        }
     }
 
-    /// Σ over the mask of `exp(−2πi k·lag/size)`, divided by N; real by symmetry.
-    pub(crate) fn correlation(&self, [x, y]: [f64; 2], size: usize) -> f64 {
-        let period = to_f64(size);
-        let x = nearest(x, period) * PI / period;
-        let y = nearest(y, period) * 2.0 * PI / period;
-        let sum: f64 = self
-            .signed_rows()
-            .map(|(ky, row)| {
-                let hole = row.hole.map_or(0.0, |hole| dirichlet(hole, x));
-                (f64::from(ky) * y).cos() * (dirichlet(row.outer, x) - hole)
-            })
-            .sum();
-        sum / to_f64(self.count)
+    pub(crate) const fn corner(&self) -> [i64; 2] {
+        self.corner
     }
 
-    /// The number of points shared with the mask shifted on a torus of `size` points.
-    pub(crate) fn overlap_count(&self, [shift_x, shift_y]: [i64; 2], size: usize) -> usize {
-        let shift_x = signed(wrap_to(shift_x, size), size);
-        let shared = |(ky, row): (i32, Row)| {
-            let other = signed(wrap_to(i64::from(ky) - shift_y, size), size);
-            let other = usize::try_from(other.unsigned_abs()).unwrap_or(usize::MAX);
-            self.rows
-                .get(other)
-                .map_or(0, |other| shared_points(row, *other, shift_x, size))
+    pub(crate) const fn extent(&self) -> [usize; 2] {
+        self.extent
+    }
+
+    pub(crate) fn row(&self, y: usize) -> Row {
+        self.rows[y]
+    }
+
+    /// The transmission along row `y` of the box, if it is not just 1.
+    pub(crate) fn weights(&self, y: usize) -> Option<&[Complex<f32>]> {
+        self.weights.as_ref().map(|weights| weights.row(y))
+    }
+
+    /// The columns of row `y` of the box that belong to the pupil, each with its |t|².
+    pub(crate) fn powers(&self, y: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let weights = self.weights(y);
+        let power = move |x: usize| weights.map_or(1.0, |w| to_c64(w[x]).norm_sqr());
+        self.rows[y].columns().map(move |x| (x, power(x)))
+    }
+
+    /// Σ |t|² `exp(−2πi k·lag/size)` over Σ |t|².
+    pub(crate) fn correlation(&self, lag: [f64; 2], size: [usize; 2]) -> Complex<f64> {
+        let turns = |axis: usize| nearest(lag[axis], to_f64(size[axis])) / to_f64(size[axis]);
+        let (x, y) = (PI * turns(0), -2.0 * PI * turns(1));
+        let sum: Complex<f64> = match &self.weights {
+            None => self.sum_rows(y, |_, row| {
+                self.span_sum(row.outer, x) - self.span_sum(row.hole, x)
+            }),
+            Some(_) => {
+                let wave = |i| Complex::cis(-2.0 * x * from_i64(self.corner[0] + to_i64(i)));
+                let waves: Vec<_> = (0..self.extent[0]).map(wave).collect();
+                self.sum_rows(y, |j, _| {
+                    self.powers(j).map(|(i, power)| waves[i] * power).sum()
+                })
+            }
         };
-        self.signed_rows().map(shared).sum()
+        sum / self.power()
     }
 
-    fn signed_rows(&self) -> impl Iterator<Item = (i32, Row)> + '_ {
-        let upper = self.rows.iter().copied();
-        let lower = self.rows.iter().copied().skip(1);
-        (0..).zip(upper).chain((1..).map(|ky: i32| -ky).zip(lower))
+    /// Σ over the rows of `sum(y, row)` `exp(i angle ky)`.
+    fn sum_rows(&self, angle: f64, sum: impl Fn(usize, Row) -> Complex<f64>) -> Complex<f64> {
+        let rows = self.rows.iter().enumerate();
+        rows.map(|(y, row)| {
+            let ky = from_i64(self.corner[1] + to_i64(y));
+            sum(y, *row) * Complex::cis(angle * ky)
+        })
+        .sum()
+    }
+
+    /// Σ over the span of exp(−2i kx theta).
+    fn span_sum(&self, span: Span, theta: f64) -> Complex<f64> {
+        // First and last point lie as far to either side of half their sum.
+        let twice_middle = 2 * self.corner[0] + to_i64(span.start + span.end) - 1;
+        Complex::cis(-theta * from_i64(twice_middle)) * dirichlet(span.count(), theta)
+    }
+
+    /// Σ t(k) t*(k − shift), complex.
+    pub(crate) fn overlap(&self, [dx, dy]: [i64; 2]) -> Complex<f64> {
+        let mut sum = Complex::new(0.0, 0.0);
+        for (y, row) in self.rows.iter().enumerate() {
+            let other = usize::try_from(to_i64(y).saturating_sub(dy));
+            let Some((other, there)) = other.ok().and_then(|o| Some((o, self.rows.get(o)?))) else {
+                continue;
+            };
+            sum += match (self.weights(y), self.weights(other)) {
+                (Some(a), Some(b)) => shared_weights(a, b, dx),
+                _ => Complex::new(to_f64(shared_points(*row, *there, dx)), 0.0),
+            };
+        }
+        sum
     }
 }
 
-/// The largest kx with kx² + ky² ≤ (diameter / 2)², in integers.
-fn disc_half_width(diameter: usize, ky: usize) -> usize {
-    (diameter * diameter - 4 * ky * ky).isqrt() / 2
-}
-
-/// The largest kx with kx² + ky² < (diameter / 2)², if there is one.
-fn hole_half_width(diameter: f64, ky: usize) -> Option<usize> {
-    let inside = |kx: usize| to_f64(kx * kx + ky * ky) < 0.25 * diameter * diameter;
-    inside(0).then(|| {
-        let room = 0.25 * diameter * diameter - to_f64(ky * ky);
-        let guess = floor_index(room.sqrt());
-        // The square root is rounded; the strict inequality decides.
-        (guess.saturating_sub(1)..=guess + 1)
-            .rev()
-            .find(|&kx| inside(kx))
-            .unwrap_or(0)
-    })
-}
-
-/// Points shared by two rows of which the second is shifted by `shift` on the torus.
-fn shared_points(a: Row, b: Row, shift: i64, size: usize) -> usize {
-    let arcs = |a: Option<usize>, b: Option<usize>| match (a, b) {
-        (Some(a), Some(b)) => shared_arc(a, b, shift, size),
-        _ => 0,
+/// Points shared by two rows of which the second is shifted by `shift`.
+fn shared_points(a: Row, b: Row, shift: i64) -> usize {
+    let shared = |a: Span, b: Span| {
+        let start = to_i64(a.start).max(to_i64(b.start).saturating_add(shift));
+        let end = to_i64(a.end).min(to_i64(b.end).saturating_add(shift));
+        usize::try_from(end.saturating_sub(start)).unwrap_or(0)
     };
     // |A∖a ∩ B∖b| = |AB| − |Ab| − |aB| + |ab|; the subtractions never pass below zero in this order.
-    let (outer_a, outer_b) = (Some(a.outer), Some(b.outer));
-    arcs(outer_a, outer_b) + arcs(a.hole, b.hole) - arcs(outer_a, b.hole) - arcs(a.hole, outer_b)
+    shared(a.outer, b.outer) + shared(a.hole, b.hole)
+        - shared(a.outer, b.hole)
+        - shared(a.hole, b.outer)
 }
 
-/// Points shared by [−a, a] and [shift − b, shift + b], all modulo `size`.
-fn shared_arc(a: usize, b: usize, shift: i64, size: usize) -> usize {
-    let (a, b, size) = (to_i64(a), to_i64(b), to_i64(size));
-    let shared: i64 = [shift - size, shift, shift + size]
-        .iter()
-        .map(|s| (a.min(s + b) - (-a).max(s - b) + 1).max(0))
-        .sum();
-    usize::try_from(shared).unwrap_or(0)
+fn shared_weights(a: &[Complex<f32>], b: &[Complex<f32>], shift: i64) -> Complex<f64> {
+    let at = |x: usize| usize::try_from(to_i64(x).saturating_sub(shift)).ok();
+    let shared = a.iter().enumerate().filter_map(|(x, a)| {
+        let b = b.get(at(x)?)?;
+        Some(to_c64(*a) * to_c64(*b).conj())
+    });
+    shared.sum()
 }
 
-/// Σ from −n to n of exp(2ikθ).
-fn dirichlet(n: usize, theta: f64) -> f64 {
-    let points = to_f64(2 * n + 1);
+/// The sum of exp(2ikθ) over `count` points in unit steps, symmetric about k = 0.
+fn dirichlet(count: usize, theta: f64) -> f64 {
+    let points = to_f64(count);
     let sin = theta.sin();
     if sin.abs() < f64::MIN_POSITIVE {
         return points;
@@ -158,15 +263,6 @@ fn nearest(x: f64, period: f64) -> f64 {
     x - period * (x / period).round()
 }
 
-/// The representative of `k` in [0, size) nearest to zero.
-pub(crate) fn signed(k: usize, size: usize) -> i64 {
-    if 2 * k > size {
-        to_i64(k) - to_i64(size)
-    } else {
-        to_i64(k)
-    }
-}
-
 #[expect(
     clippy::cast_precision_loss,
     reason = "lattice sizes and counts are far below 2⁵³"
@@ -176,11 +272,20 @@ pub(crate) const fn to_f64(n: usize) -> f64 {
 }
 
 #[expect(
-    clippy::cast_possible_wrap,
-    reason = "lattice sizes and counts are far below 2⁶³"
+    clippy::cast_precision_loss,
+    reason = "lattice points of a pupil about its centre are far below 2⁵³"
 )]
-pub(crate) const fn to_i64(n: usize) -> i64 {
-    n as i64
+pub(crate) const fn from_i64(n: i64) -> f64 {
+    n as f64
+}
+
+/// The first lattice point at or after `x`.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a place within one pupil of the origin"
+)]
+fn first_point(x: f64) -> i64 {
+    x.ceil() as i64
 }
 
 #[expect(
@@ -188,105 +293,9 @@ pub(crate) const fn to_i64(n: usize) -> i64 {
     clippy::cast_sign_loss,
     reason = "a non-negative number of lattice points, rounded down on purpose"
 )]
-fn floor_index(x: f64) -> usize {
+fn whole(x: f64) -> usize {
     x as usize
 }
 
 #[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    fn pupils() -> [Pupil; 4] {
-        [
-            Pupil::Circle,
-            Pupil::Annulus { inner: 0.37 },
-            Pupil::Annulus { inner: 0.5 },
-            Pupil::Rectangle { height: 0.6 },
-        ]
-    }
-
-    /// The definition of the pupils, point by point.
-    fn inside(pupil: Pupil, diameter: usize, [x, y]: [i64; 2]) -> bool {
-        #[expect(clippy::cast_precision_loss, reason = "small integers")]
-        let (x, y) = (x as f64, y as f64);
-        let c = to_f64(diameter);
-        let r2 = 4.0 * (x * x + y * y);
-        match pupil {
-            Pupil::Circle => r2 <= c * c,
-            Pupil::Annulus { inner } => r2 <= c * c && r2 >= (inner * c).powi(2),
-            Pupil::Rectangle { height } => 2.0 * x.abs() <= c && 2.0 * y.abs() <= height * c,
-        }
-    }
-
-    fn points(pupil: Pupil, diameter: usize) -> Vec<[i64; 2]> {
-        let c = to_i64(diameter);
-        (-c..=c)
-            .flat_map(|y| (-c..=c).map(move |x| [x, y]))
-            .filter(|&k| inside(pupil, diameter, k))
-            .collect()
-    }
-
-    #[test]
-    fn the_mask_holds_the_points_of_the_definition() {
-        for pupil in pupils() {
-            for diameter in [8, 9, 13, 32, 33] {
-                let mask = Mask::new(pupil, diameter);
-                let expected = points(pupil, diameter).len();
-                assert_eq!(mask.count(), expected, "{pupil:?}, diameter {diameter}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_number_of_points_of_a_disc_is_that_of_the_gauss_circle_problem() {
-        // Lattice points with |k| ≤ 4, 5, 10: OEIS A000328.
-        for (diameter, count) in [(8, 49), (10, 81), (20, 317)] {
-            assert_eq!(Mask::new(Pupil::Circle, diameter).count(), count);
-        }
-    }
-
-    #[test]
-    fn the_overlap_is_the_number_of_shared_points_on_the_torus() {
-        for (diameter, size) in [(8, 16), (9, 19), (10, 20)] {
-            let (c, q) = (to_i64(diameter), to_i64(size));
-            for pupil in pupils() {
-                let mask = Mask::new(pupil, diameter);
-                let points = points(pupil, diameter);
-                let on_torus = |[x, y]: [i64; 2]| [x.rem_euclid(q), y.rem_euclid(q)];
-                for shift in [[0, 0], [1, 0], [-3, 5], [c, 0], [0, c], [q - 2, 3 * q + 4]] {
-                    // Every pair of points that meet; rim points of C = Q/2 meet twice.
-                    let shared = points
-                        .iter()
-                        .flat_map(|k| points.iter().map(move |l| (k, l)))
-                        .filter(|(k, l)| {
-                            on_torus(**k) == on_torus([l[0] + shift[0], l[1] + shift[1]])
-                        })
-                        .count();
-                    let counted = mask.overlap_count(shift, size);
-                    assert_eq!(counted, shared, "{pupil:?} at {shift:?}, Q = {size}");
-                }
-            }
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn the_correlation_is_the_sum_over_the_mask(
-            x in -40.0_f64..40.0, y in -40.0_f64..40.0, index in 0_usize..4
-        ) {
-            let pupil = pupils()[index];
-            let (diameter, size) = (11, 25);
-            let points = points(pupil, diameter);
-            #[expect(clippy::cast_precision_loss, reason = "small integers")]
-            let term = |k: &[i64; 2]| {
-                (2.0 * PI * (k[0] as f64 * x + k[1] as f64 * y) / to_f64(size)).cos()
-            };
-            let sum: f64 = points.iter().map(term).sum();
-            let correlation = Mask::new(pupil, diameter).correlation([x, y], size);
-            // Sums of up to 97 terms of rounding 2⁻⁵³ and of phases up to 18 · 2⁻⁵³.
-            prop_assert!((correlation - sum / to_f64(points.len())).abs() < 1e-13);
-        }
-    }
-}
+mod tests;

@@ -10,7 +10,7 @@
 
 use tem00_numerics::Grid;
 
-use crate::{Phasors, PupilField, SlicePath, SpeckleError, field::nearest_shift, mask::to_f64};
+use crate::{Phasors, PupilField, SlicePath, SpeckleError};
 
 /// A stack of intensity slices on the circular path, interpolated as printed.
 ///
@@ -33,7 +33,10 @@ impl BilinearStack {
     pub fn generate(field: &PupilField, half_period: usize) -> Result<Self, SpeckleError> {
         let path = SlicePath::Circle { half_period };
         path.check()?;
-        let slice = |index| field.pattern_at(path.centre(index, field)).into_values();
+        let slice = |index| {
+            let offset = path.offset(index, field);
+            field.pattern_at(offset, 0.0).into_values()
+        };
         Ok(Self {
             slices: (0..path.slice_count()).map(slice).collect(),
             field: field.clone(),
@@ -46,8 +49,8 @@ impl BilinearStack {
         self.slices.len()
     }
 
-    /// Returns the number of samples Q along each axis; as printed, the period is Q − 1.
-    pub const fn size(&self) -> usize {
+    /// Returns the number of samples along each axis; as printed, the period is one less.
+    pub const fn size(&self) -> [usize; 2] {
         self.field.size()
     }
 
@@ -74,7 +77,7 @@ impl BilinearStack {
     ///
     /// The term 1/N belongs to unit phasors; ρ₁₁ is the mean over both diagonals.
     pub fn contrast_between_samples(&self, fx: f64, fy: f64) -> f64 {
-        let rho = |x, y| self.field.amplitude_correlation([x, y]).powi(2);
+        let rho = |x, y| self.field.amplitude_correlation([x, y]).norm_sqr();
         let (ax, bx) = square_and_cross(fx);
         let (ay, by) = square_and_cross(fy);
         let diagonal = 0.5 * (rho(1.0, 1.0) + rho(1.0, -1.0));
@@ -102,8 +105,8 @@ impl BilinearStack {
             self.slices.len()
         );
         let centre = |i: usize| self.path.centre(i % self.slices.len(), &self.field);
-        let step = nearest_shift(centre(index), centre(index + 1), self.size());
-        let rho = self.field.overlap(step);
+        let step = self.field.shift(centre(index), centre(index + 1));
+        let rho = self.field.overlap(step).re;
         let (a, b) = square_and_cross(f);
         (a + b * rho * rho - self.fixed_mean() * (a + b * rho))
             .max(0.0)
@@ -113,8 +116,8 @@ impl BilinearStack {
     /// The variance that a pattern lacks because its mean is fixed.
     fn fixed_mean(&self) -> f64 {
         match self.field.phasors() {
-            Phasors::Unit => 1.0 / to_f64(self.field.phasor_count()),
-            Phasors::Gaussian => 0.0,
+            Some(Phasors::Gaussian) => 0.0,
+            Some(Phasors::Unit) | None => self.field.effective_phasor_count().recip(),
         }
     }
 }
@@ -219,7 +222,7 @@ mod tests {
         let pattern = |index: usize| {
             let field = &printed.field;
             field
-                .pattern_at(printed.path.centre(index, field))
+                .pattern_at(printed.path.offset(index, field), 0.0)
                 .into_values()
         };
         let first = pattern(0);

@@ -1,7 +1,7 @@
 use num_complex::Complex;
 use tem00_numerics::Grid;
 
-/// A speckle pattern: intensity with mean 1 on Q × Q samples, periodic in both axes.
+/// A speckle pattern: intensity with mean 1 on W × H samples, periodic in both axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpecklePattern {
     values: Grid<f32>,
@@ -26,9 +26,9 @@ impl SpecklePattern {
         self.values
     }
 
-    /// Returns the period Q, in samples.
-    pub const fn size(&self) -> usize {
-        self.values.width()
+    /// Returns the width and the height, which are the periods, in samples.
+    pub const fn size(&self) -> [usize; 2] {
+        [self.values.width(), self.values.height()]
     }
 
     /// Returns the speckle size `Q / C`, in samples.
@@ -37,10 +37,10 @@ impl SpecklePattern {
     }
 }
 
-/// The complex amplitude of a speckle field on Q × Q samples, periodic in both axes.
+/// The complex amplitude of a speckle field on W × H samples, periodic in both axes.
 ///
-/// Its band is centred on zero frequency and its expected mean square is 1. Over the diameter C of
-/// the pupil the band is at most half the sampling frequency wide.
+/// Its band is centred on zero frequency, within half a lattice point, and its expected mean square
+/// is 1. Over the diameter C of the pupil the band is at most half the sampling frequency wide.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeckleField {
     values: Grid<Complex<f32>>,
@@ -60,9 +60,9 @@ impl SpeckleField {
         &self.values
     }
 
-    /// Returns the period Q, in samples.
-    pub const fn size(&self) -> usize {
-        self.values.width()
+    /// Returns the width and the height, which are the periods, in samples.
+    pub const fn size(&self) -> [usize; 2] {
+        [self.values.width(), self.values.height()]
     }
 
     /// Returns the speckle size `Q / C`, in samples.

@@ -7,7 +7,8 @@ use tem00_numerics::{Grid, wrap_coordinate};
 
 use crate::{
     field::PupilField,
-    mask::{Mask, to_f64},
+    lattice::to_i64,
+    mask::{Mask, from_i64, to_f64},
 };
 
 /// The four taps that reach the fraction `f` between the second and the third sample.
@@ -23,11 +24,15 @@ pub(crate) fn weights(f: f32) -> [f32; 4] {
     ]
 }
 
-/// The reciprocal of the kernel's Fourier transform, `sinc⁻⁴(π k / Q)`, for k = 0, 1, …, `half`.
-fn prefilter(half: usize, size: usize) -> Vec<f64> {
-    (0..=half)
-        .map(|k| tem00_numerics::sinc(PI * to_f64(k) / to_f64(size)).powi(-4))
-        .collect()
+/// The reciprocal of the kernel's Fourier transform, `sinc⁻⁴(π k / Q)`.
+fn prefilter(k: i64, size: usize) -> f64 {
+    tem00_numerics::sinc(PI * from_i64(k) / to_f64(size)).powi(-4)
+}
+
+/// The lattice points along one axis of the mask's box.
+fn points(mask: &Mask, axis: usize) -> impl Iterator<Item = i64> {
+    let corner = mask.corner()[axis];
+    (0..mask.extent()[axis]).map(move |index| corner + to_i64(index))
 }
 
 /// The prefilter over the bounding box of the pupil, for each axis.
@@ -36,10 +41,9 @@ fn prefilter(half: usize, size: usize) -> Vec<f64> {
     reason = "amplitudes are stored as f32"
 )]
 pub(crate) fn prefilters(field: &PupilField) -> [Vec<f32>; 2] {
-    field.mask().half_extent().map(|half| {
-        let filter = prefilter(half, field.size());
-        (0..=2 * half)
-            .map(|index| filter[index.abs_diff(half)] as f32)
+    [0, 1].map(|axis| {
+        points(&field.mask, axis)
+            .map(|k| prefilter(k, field.size()[axis]) as f32)
             .collect()
     })
 }
@@ -48,10 +52,11 @@ pub(crate) fn prefilters(field: &PupilField) -> [Vec<f32>; 2] {
 ///
 /// ```text
 /// v(fx, fy) = Σ R(lx, ly) a(lx; fx) a(ly; fy)      a(l; f) = Σ w(t; f) w(t + l; f)
-/// R(lx, ly) = 1/N Σ cos(2π kx lx/Q) cos(2π ky ly/Q) sinc⁻⁸(π kx/Q) sinc⁻⁸(π ky/Q)
+/// R(lx, ly) = Σ |t|² cos(2π kx lx/Q) cos(2π ky ly/Q) sinc⁻⁸(π kx/Q) sinc⁻⁸(π ky/Q) / Σ |t|²
 /// ```
 ///
-/// R is the autocorrelation of the spline coefficients at the lags that four taps can reach.
+/// R is the autocorrelation of the spline coefficients at the lags that four taps can reach, the mean
+/// over both signs of each lag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Variance {
     /// `table[ly][lx]`, with lags of both signs gathered in one entry.
@@ -60,25 +65,26 @@ pub(crate) struct Variance {
 
 impl Variance {
     #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
-    pub(crate) fn new(mask: &Mask, size: usize) -> Self {
-        let [half_width, half_height] = mask.half_extent();
-        let columns = prefix_sums(half_width, size);
-        let rows = weighted_cosines(half_height, size);
+    pub(crate) fn new(mask: &Mask, size: [usize; 2]) -> Self {
+        let columns = weighted_cosines(mask, 0, size[0]);
+        let rows = weighted_cosines(mask, 1, size[1]);
         let mut table = [[0.0_f64; 4]; 4];
-        for (ky, row_weights) in rows.iter().enumerate() {
-            let row = mask.row(ky);
-            let both_signs = if ky == 0 { 1.0 } else { 2.0 };
+        for (y, row_weights) in rows.iter().enumerate() {
+            let mut sums = [0.0; 4];
+            for (x, power) in mask.powers(y) {
+                for (sum, term) in sums.iter_mut().zip(columns[x]) {
+                    *sum += power * term;
+                }
+            }
             for (lags, row_weight) in table.iter_mut().zip(row_weights) {
-                for (lx, sum) in lags.iter_mut().enumerate() {
-                    let hole = row.hole.map_or(0.0, |hole| columns[hole][lx]);
-                    *sum += both_signs * row_weight * (columns[row.outer][lx] - hole);
+                for (entry, sum) in lags.iter_mut().zip(sums) {
+                    *entry += row_weight * sum;
                 }
             }
         }
-        let count = to_f64(mask.count());
         let multiplicity = |lag: usize| if lag == 0 { 1.0 } else { 2.0 };
         let entry = |ly: usize, lx: usize| {
-            (table[ly][lx] * multiplicity(lx) * multiplicity(ly) / count) as f32
+            (table[ly][lx] * multiplicity(lx) * multiplicity(ly) / mask.power()) as f32
         };
         Self {
             table: core::array::from_fn(|ly| core::array::from_fn(|lx| entry(ly, lx))),
@@ -96,34 +102,14 @@ impl Variance {
     }
 }
 
-/// `cos(2π k l / Q) sinc⁻⁸(π k / Q)` for k = 0, 1, …, `half` and l = 0 to 3.
-fn weighted_cosines(half: usize, size: usize) -> Vec<[f64; 4]> {
-    let weighted = |(k, filter): (usize, f64)| {
-        let angle = 2.0 * PI * to_f64(k) / to_f64(size);
-        [0.0, 1.0, 2.0, 3.0].map(|lag: f64| (lag * angle).cos() * filter * filter)
+/// `cos(2π k l / Q) sinc⁻⁸(π k / Q)` for l = 0 to 3, for each lattice point k along an axis.
+fn weighted_cosines(mask: &Mask, axis: usize, size: usize) -> Vec<[f64; 4]> {
+    let weighted = |k: i64| {
+        let angle = 2.0 * PI * from_i64(k) / to_f64(size);
+        let filter = prefilter(k, size).powi(2);
+        [0.0, 1.0, 2.0, 3.0].map(|lag: f64| (lag * angle).cos() * filter)
     };
-    prefilter(half, size)
-        .into_iter()
-        .enumerate()
-        .map(weighted)
-        .collect()
-}
-
-/// The sums of [`weighted_cosines`] over −n ≤ k ≤ n, for n = 0, 1, …, `half`.
-fn prefix_sums(half: usize, size: usize) -> Vec<[f64; 4]> {
-    let mut sum = [0.0; 4];
-    let running = |(k, terms): (usize, [f64; 4])| {
-        let both_signs = if k == 0 { 1.0 } else { 2.0 };
-        for (sum, term) in sum.iter_mut().zip(terms) {
-            *sum += both_signs * term;
-        }
-        sum
-    };
-    weighted_cosines(half, size)
-        .into_iter()
-        .enumerate()
-        .map(running)
-        .collect()
+    points(mask, axis).map(weighted).collect()
 }
 
 fn autocorrelation(w: &[f32; 4]) -> [f32; 4] {
@@ -149,13 +135,13 @@ pub(crate) struct Taps {
 
 impl Taps {
     #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
-    pub(crate) fn new(x: f64, y: f64, size: usize, variance: &Variance) -> Self {
-        let (column, fx) = wrap_coordinate(x, size);
-        let (row, fy) = wrap_coordinate(y, size);
+    pub(crate) fn new(x: f64, y: f64, size: [usize; 2], variance: &Variance) -> Self {
+        let (column, fx) = wrap_coordinate(x, size[0]);
+        let (row, fy) = wrap_coordinate(y, size[1]);
         let (x, y) = (weights(fx as f32), weights(fy as f32));
         Self {
-            columns: neighbours(column, size),
-            rows: neighbours(row, size),
+            columns: neighbours(column, size[0]),
+            rows: neighbours(row, size[1]),
             x,
             y,
             variance: variance.at(&x, &y),
@@ -220,37 +206,36 @@ mod tests {
             .sum()
     }
 
-    fn points(mask: &Mask) -> Vec<[f64; 2]> {
-        let [half_width, half_height] = mask.half_extent().map(|h| i32::try_from(h).unwrap());
-        let inside = |x: i32, y: i32| {
-            let row = mask.row(y.unsigned_abs() as usize);
-            let x = x.unsigned_abs() as usize;
-            x <= row.outer && row.hole.is_none_or(|hole| x > hole)
-        };
-        (-half_height..=half_height)
-            .flat_map(|y| (-half_width..=half_width).map(move |x| (x, y)))
-            .filter(|&(x, y)| inside(x, y))
-            .map(|(x, y)| [f64::from(x), f64::from(y)])
+    fn points(mask: &Mask) -> Vec<([f64; 2], f64)> {
+        let [x0, y0] = mask.corner();
+        (0..mask.extent()[1])
+            .flat_map(|y| mask.powers(y).map(move |(x, power)| (x, y, power)))
+            .map(|(x, y, power)| {
+                let k = [from_i64(x0 + to_i64(x)), from_i64(y0 + to_i64(y))];
+                (k, power)
+            })
             .collect()
     }
 
-    fn mask(size: usize, diameter: usize, pupil: crate::Pupil) -> Mask {
-        let field = PupilField::new(size, diameter, 0).unwrap();
-        field.with_pupil(pupil).unwrap().mask().clone()
+    fn mask(size: [usize; 2], speckle_size: f64, pupil: crate::Pupil) -> Mask {
+        let field = PupilField::from_speckle_size(size, speckle_size, 0).unwrap();
+        field.with_pupil(pupil).unwrap().mask
     }
 
     /// The mean over the mask of `term(gain at f)`.
     fn mean(
         mask: &Mask,
-        size: usize,
+        size: [usize; 2],
         f: [f64; 2],
         term: impl Fn([f64; 2], Complex<f64>) -> f64,
     ) -> f64 {
         let sum: f64 = points(mask)
             .iter()
-            .map(|&[x, y]| term([x, y], gain(x, f[0], size) * gain(y, f[1], size)))
+            .map(|&([x, y], power)| {
+                power * term([x, y], gain(x, f[0], size[0]) * gain(y, f[1], size[1]))
+            })
             .sum();
-        sum / to_f64(mask.count())
+        sum / mask.power()
     }
 
     const FRACTIONS: [[f64; 2]; 5] = [
@@ -274,15 +259,28 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::cast_possible_truncation, reason = "exact fractions")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_precision_loss,
+        reason = "exact fractions and small integers"
+    )]
     fn the_closed_variance_is_the_mean_square_gain() {
-        for (size, diameter) in [(20, 10), (32, 16), (33, 16), (64, 9)] {
+        let slanted = Grid::from_fn(9, 9, |x, y| (40 + x + x * y) as f32 / 112.0);
+        let slanted = crate::Transmission::new(&slanted).unwrap();
+        for (size, speckle_size) in [
+            ([20, 20], 2.0),
+            ([33, 33], 2.0625),
+            ([64, 64], 5.3),
+            ([36, 26], 2.5),
+        ] {
             for pupil in [
                 crate::Pupil::Circle,
                 crate::Pupil::Annulus { inner: 0.4 },
                 crate::Pupil::Rectangle { height: 0.8 },
+                crate::Pupil::Gaussian { radius: 0.6 },
+                crate::Pupil::Sampled(slanted.clone()),
             ] {
-                let mask = mask(size, diameter, pupil);
+                let mask = mask(size, speckle_size, pupil.clone());
                 let variance = Variance::new(&mask, size);
                 for [fx, fy] in FRACTIONS {
                     let expected = mean(&mask, size, [fx, fy], |_, g| g.norm_sqr());
@@ -291,7 +289,7 @@ mod tests {
                     // Sums of 16 terms of at most 4 in f32.
                     assert!(
                         error.abs() < 1e-6,
-                        "{pupil:?}, {size}, ({fx}, {fy}): {error:e}"
+                        "{pupil:?}, {size:?}, ({fx}, {fy}): {error:e}"
                     );
                 }
             }
@@ -301,7 +299,8 @@ mod tests {
     #[test]
     fn the_error_of_the_spline_is_as_documented() {
         for (size, rms_limit, covariance_limit) in [(64, 4.5e-3, 3.2e-3), (128, 2.1e-4, 1.2e-4)] {
-            let mask = mask(size, 32, crate::Pupil::Circle);
+            let mask = mask([size; 2], to_f64(size) / 32.0, crate::Pupil::Circle);
+            let size = [size; 2];
             let (mut rms, mut deviation) = (0.0_f64, 0.0_f64);
             for here in FRACTIONS {
                 let square = mean(&mask, size, here, |_, g| (g - 1.0).norm_sqr());
@@ -311,13 +310,13 @@ mod tests {
                 for (there, cell) in FRACTIONS.iter().flat_map(|f| cells.map(|c| (f, c))) {
                     let lag = [there[0] - here[0] + cell[0], there[1] - here[1] + cell[1]];
                     let covariance = mean(&mask, size, here, |[x, y], g| {
-                        let angle = 2.0 * PI * (x * lag[0] + y * lag[1]) / to_f64(size);
-                        let other = gain(x, there[0], size) * gain(y, there[1], size);
+                        let angle = 2.0 * PI * (x * lag[0] + y * lag[1]) / to_f64(size[0]);
+                        let other = gain(x, there[0], size[0]) * gain(y, there[1], size[1]);
                         (g * other.conj() * Complex::from_polar(1.0, angle)).re
                     });
                     let other = mean(&mask, size, *there, |_, g| g.norm_sqr());
                     let gamma = covariance * covariance / (normal * other);
-                    let exact = mask.correlation(lag, size).powi(2);
+                    let exact = mask.correlation(lag, size).norm_sqr();
                     deviation = deviation.max((gamma - exact).abs());
                 }
             }

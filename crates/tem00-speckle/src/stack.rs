@@ -1,11 +1,10 @@
 use num_complex::Complex;
-use tem00_numerics::{Fft2Scratch, Grid, wrap_coordinate};
+use tem00_numerics::{Grid, wrap_coordinate};
 
 use crate::{
-    PupilField, SlicePath, SpeckleError,
-    field::nearest_shift,
+    PupilField, SlicePath, SpeckleError, SpeckleScratch,
     lattice::unit_phasor,
-    mask::to_f64,
+    mask::{from_i64, to_f64},
     path::PathLaw,
     spline::{Taps, Variance, prefilters},
 };
@@ -18,7 +17,7 @@ use crate::{
 ///
 /// ```text
 /// circle:    γ(Δu) = [1 − s − sin(π s)/π]²    s = Δu / M
-/// straight:  γ(Δu) = chat(Δu Q / (2 M C))²
+/// straight:  γ(Δu) = chat(Δu length / (2 M))²
 /// ```
 ///
 /// # Interpolation
@@ -91,35 +90,37 @@ impl SpeckleStack {
     /// [`SlicePath::memory_bytes`] is refused.
     pub fn generate(field: &PupilField, path: SlicePath) -> Result<Self, SpeckleError> {
         path.check()?;
-        let filters = prefilters(field);
-        let mut scratch = Fft2Scratch::default();
+        let field = path.close(field);
+        let filters = prefilters(&field);
+        let mut scratch = SpeckleScratch::default();
         let mut slices = Vec::new();
         for (index, mut coefficients) in reserve(path, field.size())?.into_iter().enumerate() {
-            let centre = path.centre(index, field);
-            let next = path.centre((index + 1) % path.slice_count(), field);
-            let step = nearest_shift(centre, next, field.size());
-            field.amplitude_into(&mut coefficients, centre, Some(&filters), &mut scratch);
+            let centre = path.centre(index, &field);
+            let next = path.centre((index + 1) % path.slice_count(), &field);
+            let step = field.shift(centre, next);
+            let view = field.view_of_point(centre);
+            field.amplitude_into(&view, Some(&filters), &mut coefficients, &mut scratch);
             slices.push(Slice {
                 coefficients,
                 centre,
-                #[expect(clippy::cast_precision_loss, reason = "lattice points are small")]
-                step: step.map(|s| s as f64),
-                overlap: field.overlap(step),
+                step: step.map(from_i64),
+                // The real part is what the blend adds to the mean square.
+                overlap: field.overlap(step).re,
             });
         }
         Ok(Self {
             law: PathLaw {
                 path,
-                pupil: field.pupil(),
-                speckle_size: field.speckle_size(),
+                pupil: field.pupil().clone(),
             },
-            variance: Variance::new(field.mask(), field.size()),
-            field: field.clone(),
+            variance: Variance::new(&field.mask, field.size()),
+            field,
             slices,
         })
     }
 
-    /// Returns the field the slices were cut from.
+    /// Returns the field the slices were cut from. That of a straight path closes on itself after the
+    /// length of the path.
     pub const fn field(&self) -> &PupilField {
         &self.field
     }
@@ -129,13 +130,13 @@ impl SpeckleStack {
         self.law.path
     }
 
-    /// Returns the period Q in the plane, in samples.
-    pub const fn size(&self) -> usize {
+    /// Returns the periods in the plane, in samples: the width and the height.
+    pub const fn size(&self) -> [usize; 2] {
         self.field.size()
     }
 
     /// Returns the speckle size `Q / C`, in samples.
-    pub fn speckle_size(&self) -> f64 {
+    pub const fn speckle_size(&self) -> f64 {
         self.field.speckle_size()
     }
 
@@ -149,15 +150,20 @@ impl SpeckleStack {
         self.law.path.memory_bytes(self.field.size())
     }
 
-    /// Returns where the pupil of slice `index` stands on the lattice.
+    /// Returns where the pupil of slice `index` stands, in its diameters.
     ///
-    /// At integer u the stack is [`PupilField::pattern_at`] this offset.
+    /// At integer u the stack is the field's [`PupilField::pattern_at`] this offset.
     ///
     /// # Panics
     ///
     /// Panics unless `index < slice_count`.
-    pub fn offset(&self, index: usize) -> [i64; 2] {
-        self.slices[index].centre
+    pub fn offset(&self, index: usize) -> [f64; 2] {
+        assert!(
+            index < self.slices.len(),
+            "slice {index} of a stack of {}",
+            self.slices.len()
+        );
+        self.law.path.offset(index, &self.field)
     }
 
     /// Returns the intensity, with mean 1, at (x, y) in samples and u in slices.
@@ -186,8 +192,10 @@ impl SpeckleStack {
     ///
     /// Panics unless both indices are below `slice_count`.
     pub fn correlation_between(&self, i: usize, j: usize) -> f64 {
-        let shift = nearest_shift(self.offset(i), self.offset(j), self.size());
-        self.field.overlap(shift).powi(2)
+        let shift = self
+            .field
+            .shift(self.slices[i].centre, self.slices[j].centre);
+        self.field.overlap(shift).norm_sqr()
     }
 
     /// Returns the correlation γ of the intensities at u = 0 and u = `distance`, in closed form.
@@ -210,7 +218,7 @@ impl SpeckleStack {
     /// `correlation`: the inverse of [`correlation_at`](Self::correlation_at).
     ///
     /// A correlation of 1 or more needs no distance. One of 0 or less, and NaN, gives the first
-    /// coordinate of no correlation: M on the circle, `2 M C / Q` on the straight path. For a still
+    /// coordinate of no correlation: M on the circle, `2 M / length` on the straight path. For a still
     /// stack the distance is always 0. Where the law is not monotonic (an annulus), it is the
     /// smallest distance.
     pub fn coordinate_of(&self, correlation: f64) -> f64 {
@@ -224,20 +232,22 @@ impl SpeckleStack {
 }
 
 /// Empty slices along `path`, or an error if there is no room for all of them.
-fn reserve(path: SlicePath, size: usize) -> Result<Vec<Grid<Complex<f32>>>, SpeckleError> {
+fn reserve(path: SlicePath, size: [usize; 2]) -> Result<Vec<Grid<Complex<f32>>>, SpeckleError> {
+    let [width, height] = size;
+    let samples = width.saturating_mul(height);
     let refused = SpeckleError::Memory {
         bytes: path.memory_bytes(size),
     };
     // All the room first: it is only used, and taken from the machine, from the next loop on.
     let room = |_| {
         let mut values = Vec::new();
-        values.try_reserve_exact(size * size).map(|()| values)
+        values.try_reserve_exact(samples).map(|()| values)
     };
     let rooms: Result<Vec<_>, _> = (0..path.slice_count()).map(room).collect();
     let zero = Complex::new(0.0, 0.0);
     let slice = |mut values: Vec<_>| {
-        values.resize(size * size, zero);
-        Grid::from_vec(size, size, values).map_err(|_| refused)
+        values.resize(samples, zero);
+        Grid::from_vec(width, height, values).map_err(|_| refused)
     };
     rooms.map_err(|_| refused)?.into_iter().map(slice).collect()
 }
@@ -249,9 +259,9 @@ impl Slice {
         clippy::cast_sign_loss,
         reason = "a fraction of a turn in units of 2⁻³²"
     )]
-    fn phase_to_next(&self, [x, y]: [f64; 2], size: usize) -> Complex<f32> {
+    fn phase_to_next(&self, [x, y]: [f64; 2], size: [usize; 2]) -> Complex<f32> {
         // Steps are whole numbers, so that whole periods of x and y only add whole turns.
-        let turns = -(self.step[0] * x + self.step[1] * y) / to_f64(size);
+        let turns = -(self.step[0] * x / to_f64(size[0]) + self.step[1] * y / to_f64(size[1]));
         unit_phasor(((turns - turns.floor()) * 4_294_967_296.0) as u32)
     }
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::{SpecklePattern, lattice::to_i64, mask::from_i64};
 
 fn fields(size: usize, diameter: usize, seeds: u64) -> Vec<PupilField> {
     (0..seeds)
@@ -13,58 +14,12 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 
 /// Mean of (I(r) − 1)(I(r + lag) − 1) over the tile.
 fn autocovariance(pattern: &SpecklePattern, [x, y]: [i64; 2]) -> f64 {
-    let (size, values) = (pattern.size(), pattern.values());
-    mean((0..size * size).map(|index| {
-        let (column, row) = (index % size, index / size);
+    let ([width, height], values) = (pattern.size(), pattern.values());
+    mean((0..width * height).map(|index| {
+        let (column, row) = (index % width, index / width);
         let there = values.wrapped(to_i64(column) + x, to_i64(row) + y);
         (f64::from(values[(column, row)]) - 1.0) * (f64::from(*there) - 1.0)
     }))
-}
-
-/// U(r) by its definition, in `f64`.
-fn amplitude_by_definition(field: &PupilField, offset: [i64; 2], r: [f64; 2]) -> Complex<f64> {
-    let half = to_i64(field.diameter() / 2);
-    let mut sum = Complex::new(0.0, 0.0);
-    for ky in -half..=half {
-        for kx in -half..=half {
-            if 4 * (kx * kx + ky * ky) > to_i64(field.diameter().pow(2)) {
-                continue;
-            }
-            let p = field.phasor([kx + offset[0], ky + offset[1]]);
-            #[expect(clippy::cast_precision_loss, reason = "small integers")]
-            let turns = (kx as f64 * r[0] + ky as f64 * r[1]) / to_f64(field.size());
-            let wave = Complex::from_polar(1.0, -2.0 * PI * turns);
-            sum += Complex::new(f64::from(p.re), f64::from(p.im)) * wave;
-        }
-    }
-    sum / to_f64(field.phasor_count()).sqrt()
-}
-
-#[test]
-fn the_field_is_the_sum_over_the_pupil() {
-    for (size, diameter) in [(17, 8), (24, 12), (25, 11), (36, 9)] {
-        let field = PupilField::new(size, diameter, 5).unwrap();
-        for offset in [[0, 0], [-3, 7], [to_i64(size) - 1, 2]] {
-            let amplitude = field.field_at(offset);
-            let pattern = field.pattern_at(offset);
-            for (x, y) in [(0, 0), (1, 0), (0, 1), (5, 11), (size - 1, size - 2)] {
-                let expected = amplitude_by_definition(&field, offset, [to_f64(x), to_f64(y)]);
-                let got = amplitude.values()[(x, y)];
-                let error =
-                    (f64::from(got.re) - expected.re).hypot(f64::from(got.im) - expected.im);
-                // An f32 transform of 600 points: a few 2⁻²⁴ of the norm 1.
-                assert!(
-                    error < 2e-6,
-                    "Q = {size}, {offset:?}, ({x}, {y}): {error:e}"
-                );
-                let intensity = f64::from(pattern.values()[(x, y)]);
-                assert!(
-                    (intensity - expected.norm_sqr()).abs() < 1e-5,
-                    "{intensity}"
-                );
-            }
-        }
-    }
 }
 
 #[test]
@@ -96,32 +51,48 @@ fn squared_contrast_is_one_less_one_over_the_phasor_count() {
 }
 
 #[test]
-fn autocovariance_is_the_squared_mask_transform() {
-    const TILES: u32 = 24;
-    let unit = fields(64, 16, u64::from(TILES));
-    for phasors in [Phasors::Unit, Phasors::Gaussian] {
-        let fixed_mean = match phasors {
-            Phasors::Unit => 1.0 / to_f64(unit[0].phasor_count()),
-            Phasors::Gaussian => 0.0,
-        };
-        let patterns: Vec<_> = unit
-            .iter()
-            .map(|field| field.clone().with_phasors(phasors).pattern())
+fn autocovariance_is_the_squared_mask_transform_at_every_lag() {
+    const TILES: u32 = 48;
+    let size = [28, 24];
+    let slanted = Grid::from_fn(10, 10, |x, y| if x > y { 1.0 } else { 0.3 });
+    let slanted = Pupil::Sampled(crate::Transmission::new(&slanted).unwrap());
+    for (pupil, phasors) in [
+        (Pupil::Circle, Phasors::Unit),
+        (Pupil::Circle, Phasors::Gaussian),
+        (Pupil::Gaussian { radius: 0.45 }, Phasors::Unit),
+        (slanted, Phasors::Unit),
+    ] {
+        let field = PupilField::from_speckle_size(size, 2.4, 0).unwrap();
+        let field = field.with_pupil(pupil).unwrap().with_phasors(phasors);
+        let seeds = 0..u64::from(TILES);
+        let patterns: Vec<_> = seeds
+            .map(|s| field.clone().with_seed(s).pattern())
             .collect();
-        for lag in [[0, 0], [1, 0], [0, 1], [2, 2], [-3, 1], [5, 0], [20, 9]] {
-            let covariance = mean(patterns.iter().map(|p| autocovariance(p, lag)));
-            #[expect(clippy::cast_precision_loss, reason = "small integers")]
-            let mu = unit[0].amplitude_correlation(lag.map(|l| l as f64));
-            let expected = mu * mu - fixed_mean;
-            // The deviation of a covariance is at most that of the squared contrast, 1.53/C;
-            // Gaussian phasors add 2/√N ≈ 2.26/C of a fluctuating mean. α = 6e−5.
-            let deviation = if phasors == Phasors::Unit { 1.53 } else { 2.73 };
-            let tolerance = 4.0 * deviation / 16.0 / f64::from(TILES).sqrt();
-            let difference = covariance - expected;
-            assert!(
-                difference.abs() < tolerance,
-                "{phasors:?} at {lag:?}: {difference}"
-            );
+        // The deviation of a covariance is at most that of the squared contrast, 1.53/C, or
+        // 1.53 √(π/4N); Gaussian phasors add 2/√N of a fluctuating mean. For 672 lags and five
+        // deviations α = 4e−4.
+        let per_tile = match phasors {
+            Phasors::Unit => 1.36,
+            Phasors::Gaussian => 1.36_f64.hypot(2.0),
+        };
+        let count = field.effective_phasor_count();
+        let tolerance = 5.0 * per_tile / (count * f64::from(TILES)).sqrt();
+        let fixed_mean = if phasors == Phasors::Unit {
+            count.recip()
+        } else {
+            0.0
+        };
+        for y in 0..24 {
+            for x in 0..28 {
+                let covariance = mean(patterns.iter().map(|p| autocovariance(p, [x, y])));
+                let mu = field.amplitude_correlation([from_i64(x), from_i64(y)]);
+                let difference = covariance - (mu.norm_sqr() - fixed_mean);
+                assert!(
+                    difference.abs() < tolerance,
+                    "{:?}, {phasors:?} at ({x}, {y}): {difference}",
+                    field.pupil()
+                );
+            }
         }
     }
 }
@@ -132,7 +103,7 @@ fn airy_pattern_is_the_correlation_with_the_effective_diameter() {
     for lag in [1.0, 2.5, 4.0, 8.0, 11.0, 16.0] {
         let argument = PI * lag * field.effective_diameter() / 256.0;
         let airy = tem00_numerics::jinc(argument).powi(2);
-        let exact = field.amplitude_correlation([lag, 0.0]).powi(2);
+        let exact = field.amplitude_correlation([lag, 0.0]).norm_sqr();
         // The lattice disc is not quite round: at most 1.2e−3 along the axes at C = 32.
         assert!(
             (exact - airy).abs() < 1.3e-3,
@@ -142,52 +113,50 @@ fn airy_pattern_is_the_correlation_with_the_effective_diameter() {
 }
 
 #[test]
-fn intensity_has_no_spectrum_beyond_the_pupil_diameter() {
-    let (size, diameter) = (80, 17);
-    let pattern = PupilField::new(size, diameter, 3).unwrap().pattern();
-    let intensity = pattern.values().map(|&i| Complex::new(i, 0.0));
-    let spectrum = Fft2::new(size, size)
-        .unwrap()
-        .forward(&intensity, |x, y, value| {
-            let along = |k| crate::mask::signed(k, size);
-            (along(x).pow(2) + along(y).pow(2), value.norm() / 6_400.0)
-        });
-    let (mut inside, mut outside) = (0.0_f32, 0.0_f32);
-    for &(k2, magnitude) in spectrum.values() {
-        if k2 > to_i64(diameter * diameter) {
-            outside = outside.max(magnitude);
-        } else if k2 > 0 {
-            inside = inside.max(magnitude);
+fn speckles_of_a_pattern_that_is_not_square_are_round() {
+    let field = PupilField::from_speckle_size([300, 200], 3.2, 0).unwrap();
+    for lag in [0.5, 1.0, 2.0, 3.0, 5.0, 8.0] {
+        let along = |lag| field.amplitude_correlation(lag).re;
+        let round = tem00_numerics::jinc(PI * lag / 3.2);
+        for (x, y) in [(1.0, 0.0), (0.0, 1.0), (0.6, 0.8), (-0.8, 0.6)] {
+            let exact = along([x * lag, y * lag]);
+            // The lattice disc is not quite round: 2e−3 of amplitude at C = 63.
+            assert!(
+                (exact - round).abs() < 4e-3,
+                "{lag} along ({x}, {y}): {exact} | {round}"
+            );
         }
     }
-    // Rounding of 6400 values of 1e−7 each, averaged.
-    assert!(outside < 1e-6, "spectrum {outside:e} beyond the support");
-    assert!(inside > 0.01, "no spectrum inside the support: {inside}");
 }
 
 #[test]
 fn displaced_pupils_share_the_phasors_of_their_overlap() {
-    let field = PupilField::new(48, 20, 11).unwrap();
-    let here = field.field();
-    for shift in [[3, 0], [-4, 9], [20, 0], [45, 50]] {
-        let there = field.field_at(shift);
-        let mut sum = Complex::new(0.0, 0.0);
-        for y in 0..48_u32 {
-            for x in 0..48_u32 {
-                #[expect(clippy::cast_precision_loss, reason = "small integers")]
-                let turns =
-                    (shift[0] as f64 * f64::from(x) + shift[1] as f64 * f64::from(y)) / 48.0;
-                let frame = Complex::from_polar(1.0, -2.0 * PI * turns);
-                let index = (x as usize, y as usize);
-                let (a, b) = (here.values()[index], there.values()[index]);
-                let product = a * b.conj();
-                sum += Complex::new(f64::from(product.re), f64::from(product.im)) * frame.conj();
+    let slanted = Grid::from_fn(10, 10, |x, y| {
+        Complex::from_polar(1.0 / (1.0 + 0.1 * y as f32), 0.2 * x as f32)
+    });
+    let slanted = crate::Transmission::from_complex(slanted).unwrap();
+    for pupil in [Pupil::Circle, Pupil::Sampled(slanted)] {
+        let field = PupilField::new(48, 20, 11).unwrap();
+        let field = field.with_pupil(pupil).unwrap();
+        let here = field.speckle([0.0; 2], 0.0);
+        for shift in [[3, 0], [-4, 9], [20, 0], [24, -11]] {
+            let there = field.speckle(shift.map(|s| from_i64(s) / 20.0), 0.0);
+            let mut sum = Complex::new(0.0, 0.0);
+            for y in 0..48 {
+                for x in 0..48 {
+                    let turns = from_i64(shift[0] * to_i64(x) + shift[1] * to_i64(y)) / 48.0;
+                    let frame = Complex::cis(-2.0 * PI * turns);
+                    let (a, b) = (here.values()[(x, y)], there.values()[(x, y)]);
+                    let product = a * b.conj();
+                    sum +=
+                        Complex::new(f64::from(product.re), f64::from(product.im)) * frame.conj();
+                }
             }
+            // Parseval: the mean of U₁ U₂* in the common frame is the sum over shared phasors.
+            let correlation = sum / 2_304.0;
+            let error = (correlation - field.overlap(shift)).norm();
+            assert!(error < 1e-6, "{shift:?}: {correlation}");
         }
-        // Parseval: the mean of U₁ U₂* in the common frame is the number of shared phasors.
-        let correlation = sum / 2_304.0;
-        let error = (correlation - field.overlap(shift)).norm();
-        assert!(error < 1e-6, "{shift:?}: {correlation}");
     }
 }
 
@@ -206,6 +175,31 @@ fn gaussian_phasors_let_the_mean_of_a_tile_fluctuate() {
 }
 
 #[test]
+fn apodised_phasors_have_the_contrast_of_their_effective_number() {
+    const TILES: u32 = 48;
+    let field = PupilField::new(64, 24, 0).unwrap();
+    let field = field.with_pupil(Pupil::Gaussian { radius: 0.3 }).unwrap();
+    let count = field.effective_phasor_count();
+    // π R² C² = 163 for a Gaussian; the rim cuts its tail.
+    assert!((count - 163.0).abs() < 8.0, "{count} effective phasors");
+    let seeds = 0..u64::from(TILES);
+    let squared = mean(
+        seeds
+            .map(|s| autocovariance(&field.clone().with_seed(s).pattern(), [0, 0]))
+            .collect::<Vec<_>>()
+            .into_iter(),
+    );
+    // One tile deviates by 2 √(Σ A²) / A(0)² with the autocorrelation A of |t|², of which the
+    // integral is 2 √(∬ exp(−2s²/R²)) / (√π R C) = √2/C · √π R / (√π R²) … = 1.41/√N.
+    let tolerance = 4.0 * 1.41 / (count * f64::from(TILES)).sqrt();
+    let expected = 1.0 - 1.0 / count;
+    assert!(
+        (squared - expected).abs() < tolerance,
+        "{squared} | {expected}"
+    );
+}
+
+#[test]
 fn sizes_without_a_pattern_are_refused() {
     let diameter = |diameter, size| Err(SpeckleError::Diameter { diameter, size });
     assert_eq!(PupilField::new(256, 129, 0), diameter(129, 256));
@@ -215,6 +209,24 @@ fn sizes_without_a_pattern_are_refused() {
     assert_eq!(
         PupilField::new(1_000_000, 500_000, 0),
         Err(SpeckleError::Size(1_000_000))
+    );
+    for (size, speckle_size, largest) in [
+        ([256, 128], 1.99, 16.0),
+        ([256, 128], 16.1, 16.0),
+        ([64, 64], f64::NAN, 8.0),
+        ([64, 64], f64::INFINITY, 8.0),
+        ([0, 64], 2.0, 0.0),
+    ] {
+        let refused = PupilField::from_speckle_size(size, speckle_size, 0);
+        match refused {
+            Err(SpeckleError::SpeckleSize { largest: got, .. })
+                if (got - largest).abs() < 1e-12 => {}
+            other => panic!("{size:?}, {speckle_size}: {other:?}"),
+        }
+    }
+    assert_eq!(
+        PupilField::from_speckle_size([64, 1 << 16], 2.0, 0),
+        Err(SpeckleError::Size(1 << 16))
     );
     let message = PupilField::new(256, 129, 0).unwrap_err().to_string();
     assert!(
@@ -231,13 +243,12 @@ fn fields_cross_threads() {
     check::<crate::paper::BilinearStack>();
 }
 
-#[cfg(feature = "parallel")]
 #[test]
-fn patterns_are_the_same_bits_for_any_number_of_threads() {
-    let field = PupilField::new(96, 40, 8).unwrap();
-    let with_threads = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.unwrap().install(|| field.pattern_at([5, 6]))
-    };
-    assert_eq!(with_threads(1), with_threads(3));
+fn samples_that_are_no_field_are_refused() {
+    let mut samples = Grid::filled(5, 4, Complex::new(1.0_f32, 0.0));
+    samples[(3, 2)].im = f32::NAN;
+    let refused = PupilField::from_samples(samples, [64; 2], 4.0);
+    assert_eq!(refused, Err(SpeckleError::Sample { x: 3, y: 2 }));
+    let message = refused.unwrap_err().to_string();
+    assert!(message.contains("column 3 of row 2"), "{message}");
 }

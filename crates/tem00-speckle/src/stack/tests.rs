@@ -15,21 +15,23 @@ fn circle(half_period: usize) -> SlicePath {
 }
 
 fn straight(half_period: usize) -> SlicePath {
-    SlicePath::Straight { half_period }
+    SlicePath::Straight {
+        half_period,
+        length: 2,
+    }
 }
 
 /// The field of the pupil at `centre`, in the frame of the lattice, at any r, in `f64`.
 fn amplitude_by_definition(field: &PupilField, centre: [i64; 2], r: [f64; 2]) -> Complex<f64> {
-    let reach = i64::try_from(field.diameter()).unwrap() / 2;
-    let rim = 4 * i64::try_from(field.diameter()).unwrap().pow(2);
+    let [cx, cy] = field.diameter();
     let mut sum = Complex::new(0.0, 0.0);
-    for ky in -reach..=reach {
-        for kx in -reach..=reach {
-            if 16 * (kx * kx + ky * ky) <= rim {
+    for ky in -64..=64 {
+        for kx in -64..=64 {
+            if (from_i64(kx) / cx).hypot(from_i64(ky) / cy) <= 0.5 + 1e-9 {
                 let k = [kx + centre[0], ky + centre[1]];
                 let p = field.phasor(k);
-                #[expect(clippy::cast_precision_loss, reason = "small integers")]
-                let turns = (k[0] as f64 * r[0] + k[1] as f64 * r[1]) / to_f64(field.size());
+                let turns = [0, 1].map(|i| from_i64(k[i]) * r[i] / to_f64(field.size()[i]));
+                let turns = turns[0] + turns[1];
                 sum += Complex::new(f64::from(p.re), f64::from(p.im))
                     * Complex::from_polar(1.0, -2.0 * PI * turns);
             }
@@ -40,26 +42,30 @@ fn amplitude_by_definition(field: &PupilField, centre: [i64; 2], r: [f64; 2]) ->
 
 /// Mean and squared contrast of the look-up over all cells, at one fraction of each.
 fn moments(stack: &SpeckleStack, [fx, fy]: [f64; 2], u: f64) -> (f64, f64) {
-    let size = u32::try_from(stack.size()).unwrap();
+    let [width, height] = stack.size().map(|side| u32::try_from(side).unwrap());
     let (mut sum, mut square) = (0.0, 0.0);
-    for y in 0..size {
-        for x in 0..size {
+    for y in 0..height {
+        for x in 0..width {
             let intensity = stack.intensity_at(f64::from(x) + fx, f64::from(y) + fy, u);
             sum += intensity;
             square += intensity * intensity;
         }
     }
-    let cells = f64::from(size * size);
+    let cells = f64::from(width * height);
     let mean = sum / cells;
     (mean, square / cells / (mean * mean) - 1.0)
 }
 
 #[test]
 fn whole_coordinates_give_the_patterns_of_the_slices() {
-    for path in [SlicePath::Still, circle(3), straight(2)] {
+    let longer = SlicePath::Straight {
+        half_period: 4,
+        length: 5,
+    };
+    for path in [SlicePath::Still, circle(3), straight(2), longer] {
         let stack = stack(64, 16, path);
         for (index, u) in (0..stack.slice_count()).zip(0_u32..) {
-            let pattern = stack.field().pattern_at(stack.offset(index));
+            let pattern = stack.field().pattern_at(stack.offset(index), 0.0);
             let (mut sum, mut worst) = (0.0, 0.0_f64);
             for (y, row) in (0_u32..).zip(pattern.values().rows()) {
                 for (x, &expected) in (0_u32..).zip(row) {
@@ -91,11 +97,13 @@ fn fractional_coordinates_give_the_field_of_the_lattice() {
             (12.6, 12.0, 7.9),
         ] {
             let (index, f) = wrap_coordinate(u, count);
-            let here = stack.offset(index);
-            let step = nearest_shift(here, stack.offset((index + 1) % count), 64);
+            let here = stack.slices[index].centre;
+            let step = stack
+                .field()
+                .shift(here, stack.slices[(index + 1) % count].centre);
             let next = [here[0] + step[0], here[1] + step[1]];
             let f = if count == 1 { 0.0 } else { f };
-            let rho = stack.field().overlap(step);
+            let rho = stack.field().overlap(step).re;
             let field = amplitude_by_definition(stack.field(), here, [x, y]) * (1.0 - f)
                 + amplitude_by_definition(stack.field(), next, [x, y]) * f;
             let variance = (1.0 - f).powi(2) + f * f + 2.0 * f * (1.0 - f) * rho;
@@ -117,6 +125,10 @@ fn fractional_coordinates_give_the_field_of_the_lattice() {
 fn the_mean_is_one_between_samples_and_slices() {
     for (size, limit) in [(64, 7e-4), (128, 5e-5)] {
         let mut worst = 0.0_f64;
+        let straight = |half_period| SlicePath::Straight {
+            half_period,
+            length: size / 32,
+        };
         for path in [circle(3), circle(8), straight(3), straight(8)] {
             let stack = stack(size, 32, path);
             for fractions in [[0.5, 0.5], [0.5, 0.0], [0.25, 0.75], [0.0, 0.0]] {
@@ -135,7 +147,7 @@ fn the_mean_is_one_between_samples_and_slices() {
 }
 
 /// Amplitude correlation of two coordinates of a stack, blends included, from the overlaps.
-fn blended_overlap(law: PathLaw, u0: f64, u1: f64) -> f64 {
+fn blended_overlap(law: &PathLaw, u0: f64, u1: f64) -> f64 {
     let taps = |u: f64| {
         [
             (u.floor(), 1.0 - u + u.floor()),
@@ -157,13 +169,12 @@ fn blending_rounds_the_cusp_of_the_law_as_documented() {
         let law = PathLaw {
             path: circle(half_period),
             pupil: Pupil::Circle,
-            speckle_size: 2.0,
         };
         let mut worst = 0.0_f64;
         for start in 0..16_u32 {
             for distance in 0..32_u32 {
                 let (u, du) = (f64::from(start) / 16.0, f64::from(distance) / 16.0);
-                let gamma = blended_overlap(law, u, u + du).powi(2);
+                let gamma = blended_overlap(&law, u, u + du).powi(2);
                 worst = worst.max((gamma - law.overlap_at(du).powi(2)).abs());
             }
         }
@@ -181,8 +192,8 @@ fn the_mean_is_one_between_samples_of_a_slice() {
         Pupil::Annulus { inner: 0.5 },
         Pupil::Rectangle { height: 0.5 },
     ] {
-        let field = PupilField::new(32, 16, 3).unwrap();
-        let field = field.with_pupil(pupil).unwrap();
+        let field = PupilField::from_speckle_size([32, 40], 2.0, 3).unwrap();
+        let field = field.with_pupil(pupil.clone()).unwrap();
         let stack = SpeckleStack::generate(&field, SlicePath::Still).unwrap();
         for fractions in [[0.0, 0.0], [0.5, 0.5], [0.3, 0.9]] {
             let (mean, _) = moments(&stack, fractions, 0.0);
@@ -236,15 +247,14 @@ fn neighbours_are_correlated_by_the_closed_form() {
         let law = PathLaw {
             path,
             pupil: Pupil::Circle,
-            speckle_size: to_f64(size) / to_f64(diameter),
         };
-        let field = PupilField::new(size, diameter, 0).unwrap();
+        let field = path.close(&PupilField::new(size, diameter, 0).unwrap());
         let count = path.slice_count();
         for i in [0, 3, 7] {
             for (distance, u) in (0..count).zip(0_u32..) {
                 let j = (i + distance) % count;
-                let shift = nearest_shift(path.centre(i, &field), path.centre(j, &field), size);
-                let exact = field.overlap(shift).powi(2);
+                let shift = field.shift(path.centre(i, &field), path.centre(j, &field));
+                let exact = field.overlap(shift).norm_sqr();
                 let closed = law.overlap_at(u.into()).powi(2);
                 assert!(
                     (exact - closed).abs() < tolerance(to_f64(diameter)),
@@ -356,15 +366,14 @@ proptest! {
 
     #[test]
     fn the_coordinate_of_a_correlation_has_it(
-        gamma in 0.001_f64..1.0, path in 0_usize..2, pupil in 0_usize..3, diameter in 14_usize..33,
+        gamma in 0.001_f64..1.0, path in 0_usize..2, pupil in 0_usize..3, length in 2_usize..5,
     ) {
         let pupil = [
             Pupil::Circle, Pupil::Annulus { inner: 0.3 }, Pupil::Rectangle { height: 0.7 },
-        ][pupil];
+        ][pupil].clone();
         let law = PathLaw {
-            path: [circle(6), straight(6)][path],
+            path: [circle(6), SlicePath::Straight { half_period: 6, length }][path],
             pupil,
-            speckle_size: 64.0 / to_f64(diameter),
         };
         let u = law.coordinate_of(gamma.sqrt());
         prop_assert!((0.0..=6.0).contains(&u), "u = {u}");
@@ -387,9 +396,14 @@ fn coordinate_and_correlation_are_inverse_to_each_other() {
 
 #[test]
 fn correlations_without_a_coordinate_go_to_the_ends() {
+    let longer = SlicePath::Straight {
+        half_period: 6,
+        length: 4,
+    };
     for (path, end) in [
         (circle(6), 6.0),
-        (straight(6), 3.0),
+        (straight(6), 6.0),
+        (longer, 3.0),
         (SlicePath::Still, 0.0),
     ] {
         let stack = stack(64, 16, path);
@@ -414,14 +428,24 @@ fn paths_without_slices_are_refused() {
             refused
         );
     }
+    for length in [0, 1, 1 << 16, usize::MAX] {
+        let path = SlicePath::Straight {
+            half_period: 2,
+            length,
+        };
+        let refused = SpeckleStack::generate(&field, path);
+        assert_eq!(refused, Err(SpeckleError::PathLength(length)));
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains(&length.to_string()), "{message}");
+    }
 }
 
 #[test]
 fn memory_that_no_machine_has_is_refused() {
     let path = circle(SlicePath::MAX_HALF_PERIOD);
     // 512 TiB, more than an address has bits for.
-    let bytes = path.memory_bytes(PupilField::MAX_SIZE);
-    let refused = reserve(path, PupilField::MAX_SIZE);
+    let bytes = path.memory_bytes([PupilField::MAX_SIZE; 2]);
+    let refused = reserve(path, [PupilField::MAX_SIZE; 2]);
     assert_eq!(refused, Err(SpeckleError::Memory { bytes }));
 }
 
@@ -435,5 +459,5 @@ fn the_memory_is_known_before_it_is_taken() {
         .sum();
     assert_eq!(stack.memory_bytes(), bytes as u64);
     // No overflow, whatever is asked for.
-    assert_eq!(circle(usize::MAX).memory_bytes(usize::MAX), u64::MAX);
+    assert_eq!(circle(usize::MAX).memory_bytes([usize::MAX; 2]), u64::MAX);
 }

@@ -26,7 +26,8 @@ struct Pattern {
 #[derive(Clone, Debug)]
 enum Stack {
     Derived(SpeckleStack),
-    AsPrinted(BilinearStack, PupilField),
+    /// With the speckle size, in samples.
+    AsPrinted(BilinearStack, f64),
 }
 
 /// A surface point that a camera sample has hit.
@@ -96,7 +97,7 @@ impl SpeckleModel {
                 );
                 stack.intensity_at(c.x, c.y, shift * pattern.slices_per_diameter)
             }
-            Stack::AsPrinted(stack, field) => {
+            Stack::AsPrinted(stack, speckle_size) => {
                 let (displacement, u) = if still {
                     (DVec2::ZERO, 0.0)
                 } else {
@@ -106,7 +107,7 @@ impl SpeckleModel {
                     &pattern.geometry,
                     upright(point.pixel),
                     displacement,
-                    field.speckle_size(),
+                    *speckle_size,
                 );
                 stack.intensity_at(c.x, c.y, u)
             }
@@ -118,7 +119,8 @@ impl Pattern {
     fn generate(geometry: ImagingGeometry, plan: &PatternPlan) -> Result<Self, TracerError> {
         let field = PupilField::new(plan.size(), plan.diameter(), plan.seed())?;
         let stack = if plan.is_as_printed() {
-            Stack::AsPrinted(BilinearStack::generate(&field, plan.half_period())?, field)
+            let stack = BilinearStack::generate(&field, plan.half_period())?;
+            Stack::AsPrinted(stack, field.speckle_size())
         } else {
             Stack::Derived(SpeckleStack::generate(&field, plan.path())?)
         };

@@ -11,6 +11,9 @@ use crate::{Formulas, Laser, Scene, SpeckleSettings, TracerError};
 /// diameter, 0.11 with 16, 0.2 with 8 and 0.4 with 4.
 const SLICES_PER_DIAMETER: [usize; 4] = [32, 16, 8, 4];
 
+/// The longest path that is tried, in pupil diameters: with the most slices it has the largest period.
+const LONGEST_PATH: usize = 2 * SlicePath::MAX_HALF_PERIOD / SLICES_PER_DIAMETER[0];
+
 /// The smallest pupil field that is chosen without being asked: about 800 phasors.
 const SMALLEST_DIAMETER: usize = 32;
 
@@ -31,6 +34,8 @@ pub struct PatternPlan {
     largest_shift: f64,
     size: usize,
     diameter: usize,
+    /// Pupil diameters along the path of the slices.
+    length: usize,
     path: SlicePath,
     frames: u32,
     as_printed: bool,
@@ -42,8 +47,9 @@ impl SpecklePlan {
     /// Chooses the patterns for a scene.
     ///
     /// The diameter C of the pupil field is at least the image side in speckles, so that nothing
-    /// repeats in the image; the size Q is twice that, or more if several frames carry the pupil by
-    /// more than its diameter; the number of slices is the largest of a few that fits the memory.
+    /// repeats in the image; the size Q is twice that; the path of the slices is as long as the way
+    /// by which several frames carry the pupil; their number is the largest of a few that fits the
+    /// memory.
     /// What the scene file sets is kept. What the motion asks for beyond the memory is left out, and
     /// said so.
     ///
@@ -100,6 +106,7 @@ impl PatternPlan {
             largest_shift: survey.shift,
             size: 0,
             diameter: 0,
+            length: 2,
             path: SlicePath::Still,
             frames: scene.render.frames,
             as_printed: formulas == Formulas::AsPrinted,
@@ -108,12 +115,15 @@ impl PatternPlan {
         };
         let candidates = plan.sizes(&scene.speckle, &survey);
         let mut smallest = u64::MAX;
-        for &(diameter, size) in &candidates {
-            (plan.diameter, plan.size) = (diameter, size);
+        for &(diameter, length) in &candidates {
+            (plan.diameter, plan.length) = (diameter, length);
+            plan.size = scene.speckle.size.unwrap_or(diameter.saturating_mul(2));
             for path in plan.paths(scene) {
                 plan.path = path;
                 smallest = smallest.min(plan.memory_bytes());
-                if plan.memory_bytes() <= memory && PupilField::new(size, diameter, seed).is_ok() {
+                if plan.memory_bytes() <= memory
+                    && PupilField::new(plan.size, diameter, seed).is_ok()
+                {
                     return Ok(plan);
                 }
             }
@@ -126,26 +136,22 @@ impl PatternPlan {
         })
     }
 
-    /// Returns the pairs of C and Q that are tried, the best first.
+    /// Returns the pairs of C and the length of the path that are tried, the best first.
     fn sizes(&self, settings: &SpeckleSettings, survey: &Survey) -> Vec<(usize, usize)> {
         // Two frames need no third place on the lattice: whatever is new is new to the first.
-        let diameters = if self.as_printed || self.frames <= 2 {
+        let length = if self.as_printed || self.frames <= 2 {
             2
         } else {
-            diameters_for(survey.shift)
+            length_for(survey.shift)
         };
         let asked = settings.diameter.or(settings.size.map(|size| size / 2));
         let whole = diameter_for(survey.extent / self.speckle_size_in_pixels);
         let image = diameter_for(survey.side / self.speckle_size_in_pixels);
-        let halved = core::iter::successors(Some(diameters), |&d| (d > 2).then(|| (d / 2).max(2)));
-        halved
-            .map(|diameters| (whole, diameters))
-            .chain([(image, 2)])
-            .map(|(diameter, diameters)| {
-                let diameter = asked.unwrap_or(diameter);
-                let size = diameter.saturating_mul(diameters);
-                (diameter, settings.size.unwrap_or(size))
-            })
+        let halved = core::iter::successors(Some(length), |&l| (l > 2).then(|| (l / 2).max(2)));
+        [whole, image]
+            .into_iter()
+            .flat_map(|diameter| halved.clone().map(move |length| (diameter, length)))
+            .map(|(diameter, length)| (asked.unwrap_or(diameter), length))
             .collect()
     }
 
@@ -153,13 +159,16 @@ impl PatternPlan {
     fn paths(&self, scene: &Scene) -> Vec<SlicePath> {
         let path = |half_period| match self.as_printed {
             true => SlicePath::Circle { half_period },
-            false => SlicePath::Straight { half_period },
+            false => SlicePath::Straight {
+                half_period,
+                length: self.length,
+            },
         };
         match (scene.speckle.half_period, scene.moves()) {
             (Some(half_period), _) => vec![path(half_period)],
             (None, true) => SLICES_PER_DIAMETER
                 .iter()
-                .map(|slices| path(slices * self.size / (2 * self.diameter)))
+                .map(|slices| path(slices.saturating_mul(self.length) / 2))
                 .collect(),
             (None, false) if self.as_printed => vec![path(1)],
             (None, false) => vec![SlicePath::Still],
@@ -194,14 +203,14 @@ impl PatternPlan {
 
     /// Returns the memory that the slices take, in bytes.
     pub const fn memory_bytes(&self) -> u64 {
-        self.path.memory_bytes(self.size)
+        self.path.memory_bytes([self.size; 2])
     }
 
-    /// Returns the largest shift that the slices hold, in pupil diameters: the way round the lattice
+    /// Returns the largest shift that the slices hold, in pupil diameters: the length of their path
     /// less the diameter of the pupil itself.
-    #[expect(clippy::cast_precision_loss, reason = "sizes are far below 2⁵³")]
-    pub(super) fn reach(&self) -> f64 {
-        self.size as f64 / self.diameter as f64 - 1.0
+    #[expect(clippy::cast_precision_loss, reason = "lengths are far below 2⁵³")]
+    pub(super) const fn reach(&self) -> f64 {
+        (self.length - 1) as f64
     }
 
     /// Whether some of the later frames have moved beyond the reach, and so share their speckle.
@@ -220,7 +229,9 @@ impl PatternPlan {
     pub(super) const fn half_period(&self) -> usize {
         match self.path {
             SlicePath::Still => 1,
-            SlicePath::Circle { half_period } | SlicePath::Straight { half_period } => half_period,
+            SlicePath::Circle { half_period } | SlicePath::Straight { half_period, .. } => {
+                half_period
+            }
         }
     }
 
@@ -228,9 +239,10 @@ impl PatternPlan {
     #[expect(clippy::cast_precision_loss, reason = "sizes are far below 2⁵³")]
     pub(super) fn slices_per_diameter(&self) -> f64 {
         match self.path {
-            SlicePath::Straight { half_period } => {
-                (2 * half_period * self.diameter) as f64 / self.size as f64
-            }
+            SlicePath::Straight {
+                half_period,
+                length,
+            } => (2 * half_period) as f64 / length as f64,
             SlicePath::Still | SlicePath::Circle { .. } => self.half_period() as f64,
         }
     }
@@ -309,15 +321,15 @@ fn is_smooth(mut number: usize) -> bool {
     number == 1
 }
 
-/// The size of the torus, in pupil diameters, on which a straight path of `shift` diameters ends
-/// clear of its start.
+/// The length of a straight path, in pupil diameters, that ends clear of its start after a motion of
+/// `shift` diameters.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "the cast saturates, and what is too large is rejected by the pupil field"
+    reason = "the cast saturates"
 )]
-fn diameters_for(shift: f64) -> usize {
-    ((1.0 + shift).ceil() as usize).max(2)
+fn length_for(shift: f64) -> usize {
+    ((1.0 + shift).ceil() as usize).clamp(2, LONGEST_PATH)
 }
 
 #[cfg(test)]

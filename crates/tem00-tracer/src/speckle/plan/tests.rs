@@ -55,10 +55,13 @@ fn sizes_have_small_prime_factors() {
 fn motion_of_several_frames_widens_the_pattern_and_asks_for_slices() {
     let plan = plan(3, "[\"2 mm\", 0, 0]", "").unwrap();
     // 4 mm are 105.4 pixels: 405.4 pixels hold 246.6 speckles. The pupil of 3.125 mm is left behind,
-    // so that the way round the lattice is three diameters long.
-    assert_eq!((plan.diameter(), plan.size()), (256, 768), "{plan}");
+    // so that the path of the slices is three diameters long.
+    assert_eq!((plan.diameter(), plan.size()), (256, 512), "{plan}");
     assert!((plan.largest_shift() - 4.0 / 3.125).abs() < 1e-2, "{plan}");
-    let path = SlicePath::Straight { half_period: 48 };
+    let path = SlicePath::Straight {
+        half_period: 48,
+        length: 3,
+    };
     assert_eq!(plan.path(), path, "{plan}");
     assert!((plan.slices_per_diameter() - 32.0).abs() < 1e-12, "{plan}");
     assert!((plan.reach() - 2.0).abs() < 1e-12, "{plan}");
@@ -103,8 +106,12 @@ fn memory_bounds_the_number_of_slices() {
 #[test]
 fn a_motion_that_does_not_fit_the_memory_is_cut_and_said() {
     let motion = "[\"20 mm\", 0, 0]";
-    let plan = plan(4, motion, "[speckle]\nmemory = \"64 MiB\"").unwrap();
-    assert!(plan.memory_bytes() <= 64 << 20, "{plan}");
+    // 12.8 diameters take a path of 14, of 56 slices of 9/8 MiB with four to a diameter.
+    let whole = plan(4, motion, "[speckle]\nmemory = \"63 MiB\"").unwrap();
+    assert_eq!(whole.path().slice_count(), 56, "{whole}");
+    assert!(!whole.to_string().contains("MORE"), "{whole}");
+    let plan = plan(4, motion, "[speckle]\nmemory = \"62 MiB\"").unwrap();
+    assert!(plan.memory_bytes() <= 62 << 20, "{plan}");
     assert!(
         plan.to_string().contains("MORE than the slices hold"),
         "{plan}"

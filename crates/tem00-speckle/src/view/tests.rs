@@ -1,0 +1,415 @@
+use proptest::{prelude::*, test_runner::RngSeed};
+
+use super::*;
+use crate::{Phasors, Pupil, Transmission};
+
+fn pupils() -> impl Strategy<Value = Pupil> {
+    prop_oneof![
+        Just(Pupil::Circle),
+        (0.1_f64..0.6).prop_map(|inner| Pupil::Annulus { inner }),
+        (0.6_f64..1.0).prop_map(|height| Pupil::Rectangle { height }),
+        (0.4_f64..2.0).prop_map(|radius| Pupil::Gaussian { radius }),
+        (0.1_f32..3.0).prop_map(drawn),
+    ]
+}
+
+/// A pupil without symmetry, with aberrations.
+fn drawn(phase: f32) -> Pupil {
+    let grid = Grid::from_fn(7, 9, |x, y| {
+        let place = (2 * x + y * y) as f32;
+        Complex::from_polar(1.0 / (1.0 + 0.02 * place), phase * place)
+    });
+    Pupil::Sampled(Transmission::from_complex(grid).unwrap())
+}
+
+fn to_c64(z: Complex<f32>) -> Complex<f64> {
+    Complex::new(f64::from(z.re), f64::from(z.im))
+}
+
+/// U(r) by its definition, in `f64`, over a wide square of the lattice.
+fn amplitude_by_definition(
+    field: &PupilField,
+    offset: [f64; 2],
+    defocus: f64,
+    r: [usize; 2],
+) -> Complex<f64> {
+    let centre = [0, 1].map(|i| offset[i] * field.diameter()[i]);
+    #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
+    let nearest = centre.map(|c| c.round() as i64);
+    let (mut sum, mut power) = (Complex::new(0.0, 0.0), 0.0);
+    for ky in -20..=20 {
+        for kx in -20..=20 {
+            let k = [kx, ky];
+            let at = [0, 1].map(|i| nearest[i] + k[i]);
+            let p = [0, 1].map(|i| (from_i64(at[i]) - centre[i]) / field.diameter()[i]);
+            let t = to_c64(field.pupil().transmission(p));
+            let turns = [0, 1].map(|i| from_i64(k[i]) * to_f64(r[i]) / to_f64(field.size()[i]));
+            let rho2 = 4.0 * (p[0] * p[0] + p[1] * p[1]);
+            let half_turns = defocus * rho2 - 2.0 * (turns[0] + turns[1]);
+            sum += t * to_c64(field.phasor(at)) * Complex::cis(PI * half_turns);
+            power += t.norm_sqr();
+        }
+    }
+    sum / power.sqrt()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_field_is_the_sum_over_the_pupil(
+        seed: u64, width in 26_usize..60, height in 26_usize..60, speckle_size in 2.0_f64..3.0,
+        x in -40.0_f64..40.0, y in -40.0_f64..40.0, defocus in -5.0_f64..5.0,
+        pupil in pupils(), gaussian: bool,
+    ) {
+        let field = PupilField::from_speckle_size([width, height], speckle_size, seed).unwrap();
+        let phasors = if gaussian { Phasors::Gaussian } else { Phasors::Unit };
+        let field = field.with_pupil(pupil).unwrap().with_phasors(phasors);
+        for (offset, defocus) in [([x, y], defocus), ([x, y], 0.0), ([0.0; 2], defocus)] {
+            let amplitude = field.speckle(offset, defocus);
+            let pattern = field.pattern_at(offset, defocus);
+            for r in [[0, 0], [1, 0], [0, 1], [5, 11], [width - 1, height - 2]] {
+                let expected = amplitude_by_definition(&field, offset, defocus, r);
+                let error = (to_c64(amplitude.values()[(r[0], r[1])]) - expected).norm();
+                // An f32 transform of a few thousand points of norm 1, and three f32 factors.
+                prop_assert!(error < 3e-6, "{r:?}: {error:e}");
+                let intensity = f64::from(pattern.values()[(r[0], r[1])]);
+                prop_assert!((intensity - expected.norm_sqr()).abs() < 2e-5, "{intensity}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_mean_of_every_tile_is_one(
+        seed: u64, width in 16_usize..90, height in 16_usize..90, share in 0.0_f64..1.0,
+        x in -1e6_f64..1e6, y in -1e6_f64..1e6, defocus in -50.0_f64..50.0, pupil in pupils(),
+    ) {
+        let largest = to_f64(width.min(height)) / 8.0;
+        let speckle_size = 2.0 + share * (largest - 2.0);
+        let field = PupilField::from_speckle_size([width, height], speckle_size, seed).unwrap();
+        // A small pupil may hold too few phasors for some shapes.
+        let Ok(field) = field.with_pupil(pupil) else { return Ok(()); };
+        for offset in [[0.0; 2], [x, y]] {
+            let pattern = field.pattern_at(offset, defocus);
+            let mean = mean(pattern.values().values());
+            // Parseval; phasors, factors and the transform are rounded to f32.
+            prop_assert!((mean - 1.0).abs() < 1e-6, "mean {mean}");
+        }
+    }
+
+    #[test]
+    fn intensity_has_no_spectrum_beyond_the_pupil_diameter(
+        seed: u64, x in -9.0_f64..9.0, y in -9.0_f64..9.0, defocus in -4.0_f64..4.0,
+        speckle_size in 2.2_f64..6.0, index in 0_usize..2,
+    ) {
+        let [width, height] = [80, 64];
+        let field = PupilField::from_speckle_size([width, height], speckle_size, seed).unwrap();
+        let pupil = [Pupil::Circle, Pupil::Gaussian { radius: 0.5 }][index].clone();
+        let field = field.with_pupil(pupil).unwrap();
+        let pattern = field.pattern_at([x, y], defocus);
+        let intensity = pattern.values().map(|&i| Complex::new(i, 0.0));
+        let plan = tem00_numerics::Fft2::new(width, height).unwrap();
+        let spectrum = plan.forward(&intensity, |kx, ky, value| {
+            let along = |k: usize, axis: usize| {
+                let size = field.size()[axis];
+                to_f64(k.min(size - k)) / field.diameter()[axis]
+            };
+            (along(kx, 0).hypot(along(ky, 1)), value.norm() / 5_120.0)
+        });
+        let largest = |beyond: bool| {
+            let values = spectrum.values().iter().skip(1);
+            values.filter(|(f, _)| (*f > 1.0) == beyond).map(|v| v.1).fold(0.0, f32::max)
+        };
+        // Rounding of 5120 values of 1e−7 each, averaged.
+        prop_assert!(largest(true) < 1e-6, "spectrum {:e} beyond the support", largest(true));
+        prop_assert!(largest(false) > 0.01, "no spectrum inside the support");
+    }
+
+    #[test]
+    fn samples_of_the_phasors_give_the_pattern_of_the_phasors(
+        seed: u64, x in -0.7_f64..0.7, y in -0.7_f64..0.7, defocus in -4.0_f64..4.0,
+        exponent in -30_i32..30, pupil in pupils(),
+    ) {
+        let synthetic = PupilField::from_speckle_size([40, 50], 2.5, seed).unwrap();
+        let brightness = 10.0_f32.powi(exponent);
+        // Wide enough for every displacement: 14 + 10 points to either side.
+        let samples = Grid::from_fn(51, 60, |i, j| {
+            synthetic.phasor([to_i64(i) - 25, to_i64(j) - 30]) * brightness
+        });
+        let measured = PupilField::from_samples(samples, [40, 50], 2.5).unwrap();
+        let [synthetic, measured] =
+            [synthetic, measured].map(|field| field.with_pupil(pupil.clone()).unwrap());
+        for (offset, defocus) in [([0.0; 2], 0.0), ([x, y], defocus)] {
+            let expected = synthetic.speckle(offset, defocus);
+            let got = measured.speckle(offset, defocus);
+            for (a, b) in expected.values().values().iter().zip(got.values().values()) {
+                // Samples are scaled three times, in f32 at the end of each.
+                prop_assert!((a - b).norm() < 3e-6, "{a} | {b}");
+            }
+            let mean = mean(measured.pattern_at(offset, defocus).values().values());
+            prop_assert!((mean - 1.0).abs() < 1e-6, "mean {mean}");
+        }
+    }
+}
+
+fn mean(values: &[f32]) -> f64 {
+    values.iter().map(|&i| f64::from(i)).sum::<f64>() / to_f64(values.len())
+}
+
+/// Mean of (a(r) − 1)(b(r + lag) − 1) over the tile.
+fn covariance(a: &SpecklePattern, b: &SpecklePattern, [x, y]: [i64; 2]) -> f64 {
+    let [width, height] = a.size();
+    let mut sum = 0.0;
+    for j in 0..height {
+        for i in 0..width {
+            let there = b.values().wrapped(to_i64(i) + x, to_i64(j) + y);
+            sum += (f64::from(a.values()[(i, j)]) - 1.0) * (f64::from(*there) - 1.0);
+        }
+    }
+    sum / to_f64(width * height)
+}
+
+/// |∫ over the lens of two unit discs, 2s apart, of exp(iπ a |p|²)|² / π², p about its middle: the
+/// correlation of displacement and defocus at the lag where it is largest.
+fn tracked_correlation(s: f64, a: f64) -> f64 {
+    const STEPS: usize = 200_000;
+    let end = (1.0 - s * s).sqrt();
+    let sum: Complex<f64> = (0..STEPS)
+        .map(|i| {
+            let rho = (to_f64(i) + 0.5) / to_f64(STEPS) * end;
+            let share = if rho <= 1.0 - s {
+                1.0
+            } else {
+                2.0 / PI
+                    * ((1.0 - s * s - rho * rho) / (2.0 * s * rho))
+                        .clamp(-1.0, 1.0)
+                        .asin()
+            };
+            2.0 * rho * share * Complex::cis(PI * a * rho * rho)
+        })
+        .sum();
+    (sum * end / to_f64(STEPS)).norm_sqr()
+}
+
+#[test]
+fn defocus_decorrelates_as_the_overlap_integral_says() {
+    const TILES: u32 = 24;
+    let field = PupilField::new(128, 32, 0).unwrap();
+    for (s, a) in [
+        (0.0, 0.5),
+        (0.0, 1.0),
+        (0.0, 2.0),
+        (0.25, 1.0),
+        (0.25, -2.0),
+        (0.5, 0.5),
+    ] {
+        // 2 a s speckle sizes of 4 samples: whole numbers.
+        #[expect(clippy::cast_possible_truncation, reason = "a few samples")]
+        let lag = (-2.0 * a * s * field.speckle_size()).round() as i64;
+        let (mut tracked, mut opposite) = (0.0, 0.0);
+        for seed in 0..TILES {
+            let field = field.clone().with_seed(seed.into());
+            let (here, there) = (field.pattern(), field.pattern_at([0.0, s], a));
+            tracked += covariance(&here, &there, [0, lag]) / f64::from(TILES);
+            opposite += covariance(&here, &there, [0, -lag]) / f64::from(TILES);
+        }
+        let expected = tracked_correlation(s, a);
+        if s == 0.0 {
+            // sinc²(a/2): the closed form of Li and Chiang. Midpoints err by their spacing squared.
+            let closed = tem00_numerics::sinc(0.5 * PI * a).powi(2);
+            assert!((expected - closed).abs() < 1e-8, "{expected} | {closed}");
+        }
+        // A tile's covariance deviates by at most 1.53/C; unit phasors lower it by up to 1/N.
+        let tolerance = 4.0 * 1.53 / 32.0 / f64::from(TILES).sqrt() + 1.0 / 797.0;
+        assert!(
+            (tracked - expected).abs() < tolerance,
+            "({s}, {a}): {tracked} | {expected}"
+        );
+        if lag != 0 && expected > 0.2 {
+            // The pattern has moved, and to this side.
+            assert!(
+                opposite < tracked - 2.0 * tolerance,
+                "({s}, {a}): {opposite} | {tracked}"
+            );
+        }
+    }
+}
+
+/// By Parseval the correlation of the amplitudes holds no noise.
+#[test]
+fn the_correlation_of_displaced_fields_is_the_lens_of_their_pupils() {
+    let field = PupilField::from_speckle_size([256, 192], 2.0, 5).unwrap();
+    let here = field.speckle([0.0; 2], 0.0);
+    for offset in [
+        [0.25, 0.0],
+        [0.1234, -0.0567],
+        [0.0, 0.5],
+        [-0.61, 0.3],
+        [0.003, 0.0],
+    ] {
+        let there = field.speckle(offset, 0.0);
+        let c0 = [0, 1].map(|i| (offset[i] * field.diameter()[i]).round());
+        let mut sum = Complex::new(0.0, 0.0);
+        for y in 0..192 {
+            for x in 0..256 {
+                let turns = c0[0] * to_f64(x) / 256.0 + c0[1] * to_f64(y) / 192.0;
+                let common = to_c64(there.values()[(x, y)]) * Complex::cis(-2.0 * PI * turns);
+                sum += to_c64(here.values()[(x, y)]) * common.conj();
+            }
+        }
+        let correlation = sum / (256.0 * 192.0);
+        let expected = Pupil::Circle.overlap(offset);
+        // Points on the rims of two lattice ellipses of some 110 points: 1e−3, at random.
+        let error = (correlation - expected).norm();
+        assert!(error < 3e-3, "{offset:?}: {correlation} | {expected}");
+    }
+}
+
+#[test]
+fn a_pupil_that_has_moved_far_meets_new_phasors() {
+    let field = PupilField::new(64, 32, 1).unwrap();
+    let here = field.pattern();
+    // Two diameters are the size of the pattern; more than all are its multiples.
+    for diameters in [1.25, 2.0, 4.0, 1_024.0, -2.0, 65_536.0, 1e6] {
+        for offset in [[diameters, 0.0], [0.0, diameters], [diameters, diameters]] {
+            let gamma = covariance(&here, &field.pattern_at(offset, 0.0), [0, 0]);
+            // √(Σ_m A(m)²)/N² = 0.77/C for independent tiles; α = 6e−5 for each of 21.
+            assert!(gamma.abs() < 4.0 * 0.77 / 32.0, "{offset:?}: {gamma}");
+        }
+    }
+}
+
+#[test]
+fn offsets_of_whole_lattice_points_are_on_the_lattice() {
+    for diameter in [49.0, 50.0, 64.0, 57.6, 333.25] {
+        for point in (-3_000..3_000).chain([1 << 35, (1 << 35) + 1]) {
+            let offset = from_i64(point) / diameter;
+            assert_eq!(
+                lattice_point(offset, diameter),
+                (point, 0.0),
+                "C = {diameter}"
+            );
+        }
+        let (point, fraction) = lattice_point(17.25 / diameter, diameter);
+        assert!(
+            point == 17 && (fraction - 0.25).abs() < 1e-14,
+            "{point} + {fraction}"
+        );
+    }
+}
+
+#[test]
+fn no_finite_view_fails() {
+    let field = PupilField::new(32, 16, 1).unwrap();
+    for x in [
+        1e-300,
+        1e-30,
+        1e15,
+        -1e30,
+        1e300,
+        f64::MAX,
+        f64::MIN_POSITIVE,
+    ] {
+        for (offset, defocus) in [
+            ([x, 0.0], 0.0),
+            ([0.3, -x], 0.0),
+            ([0.0; 2], x),
+            ([x; 2], x),
+        ] {
+            let mean = mean(field.pattern_at(offset, defocus).values().values());
+            assert!((mean - 1.0).abs() < 1e-6, "{offset:?}, {defocus:e}: {mean}");
+        }
+    }
+}
+
+#[test]
+fn a_pupil_without_light_sees_nothing() {
+    let samples = Grid::from_fn(40, 40, |x, _| {
+        Complex::new(if x < 20 { 1e-30 } else { 0.0 }, 0.0)
+    });
+    let field = PupilField::from_samples(samples, [64; 2], 4.0).unwrap();
+    for (offset, expected) in [
+        ([0.0, 0.0], 1.0),
+        ([-1.2, 0.0], 1.0),
+        ([0.6, 0.0], 0.0),
+        ([9.0, 9.0], 0.0),
+    ] {
+        let mean = mean(field.pattern_at(offset, 0.5).values().values());
+        assert!((mean - expected).abs() < 1e-6, "{offset:?}: {mean}");
+    }
+    let dark = PupilField::from_samples(Grid::filled(3, 3, ZERO), [64; 2], 4.0).unwrap();
+    assert!(
+        mean(dark.pattern().values().values()) <= 0.0,
+        "light from nowhere"
+    );
+}
+
+#[test]
+fn reused_memory_changes_no_bit() {
+    let mut scratch = SpeckleScratch::default();
+    let fields = [
+        PupilField::new(64, 20, 1).unwrap(),
+        PupilField::from_speckle_size([64, 64], 2.1, 2).unwrap(),
+        PupilField::new(64, 20, 3)
+            .unwrap()
+            .with_pupil(Pupil::Annulus { inner: 0.4 })
+            .unwrap(),
+        PupilField::new(64, 20, 4)
+            .unwrap()
+            .with_pupil(drawn(0.3))
+            .unwrap(),
+        PupilField::new(64, 20, 1).unwrap(),
+    ];
+    let mut intensity = Grid::filled(64, 64, f32::NAN);
+    let mut amplitude = Grid::filled(64, 64, Complex::new(f32::NAN, 0.0));
+    for field in &fields {
+        for (offset, defocus) in [([0.1, -0.77], 0.4), ([3.0, 0.2], 0.0)] {
+            field.pattern_into(offset, defocus, &mut intensity, &mut scratch);
+            field.speckle_into(offset, defocus, &mut amplitude, &mut scratch);
+            assert_eq!(&intensity, field.pattern_at(offset, defocus).values());
+            assert_eq!(&amplitude, field.speckle(offset, defocus).values());
+        }
+    }
+}
+
+#[test]
+#[should_panic(expected = "is not finite")]
+fn an_offset_that_is_no_number_panics() {
+    let _ = PupilField::new(32, 16, 1)
+        .unwrap()
+        .pattern_at([f64::NAN, 0.0], 0.0);
+}
+
+#[test]
+#[should_panic(expected = "the output has not the size of the array")]
+fn a_grid_of_another_size_panics() {
+    let mut grid = Grid::filled(32, 31, 0.0);
+    let field = PupilField::new(32, 16, 1).unwrap();
+    field.pattern_into([0.0; 2], 0.0, &mut grid, &mut SpeckleScratch::default());
+}
+
+#[cfg(feature = "parallel")]
+#[test]
+fn patterns_are_the_same_bits_for_any_number_of_threads() {
+    let fields = [
+        PupilField::new(96, 40, 8).unwrap(),
+        PupilField::from_speckle_size([90, 128], 2.3, 8)
+            .unwrap()
+            .with_pupil(drawn(0.5))
+            .unwrap(),
+    ];
+    for field in fields {
+        let with_threads = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.unwrap().install(|| {
+                (
+                    field.pattern_at([5.3, 6.0], 0.7),
+                    field.speckle([0.2, 0.0], 0.0),
+                )
+            })
+        };
+        let one = with_threads(1);
+        assert_eq!(one, with_threads(2));
+        assert_eq!(one, with_threads(7));
+    }
+}

@@ -14,7 +14,10 @@ use std::{hint::black_box, sync::Arc};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
-use tem00::speckle::{PupilField, SlicePath, SpeckleStack};
+use tem00::{
+    numerics::Grid,
+    speckle::{PupilField, SlicePath, SpeckleScratch, SpeckleStack},
+};
 
 /// A Weyl sequence: an even spread without a generator.
 fn weyl(i: u32) -> f32 {
@@ -87,6 +90,14 @@ fn patterns(criterion: &mut Criterion) {
         let field = PupilField::new(size, size / 2, 1).expect("a valid size");
         group.bench_function(BenchmarkId::new("tem00", size), |bencher| {
             bencher.iter(|| black_box(field.pattern()));
+        });
+        let mut intensity = Grid::filled(size, size, 0.0);
+        let mut scratch = SpeckleScratch::default();
+        group.bench_function(BenchmarkId::new("tem00, memory reused", size), |bencher| {
+            bencher.iter(|| {
+                field.pattern_into([0.0; 2], 0.0, &mut intensity, &mut scratch);
+                black_box(&intensity);
+            });
         });
         let dense = Dense::new(size, size / 2);
         group.bench_function(BenchmarkId::new("dense rustfft", size), |bencher| {

@@ -1,0 +1,9 @@
+#!/bin/sh
+# Ours and theirs in one run, in turns: prints milliseconds and their ratios.
+#
+#     benches/peers/setup.sh                # once
+#     benches/peers/compare.sh [ROUNDS]
+set -eu
+cd "$(dirname "$0")/../.."
+cargo build --quiet --release --no-default-features --features parallel --example pattern_server
+exec target/peers/bin/python benches/peers/fft_peers.py target/release/examples/pattern_server "$@"

@@ -1,0 +1,134 @@
+"""One speckle pattern by tem00, scipy, pyFFTW and pyspeckle, in turns.
+
+    fft_peers.py SERVER [ROUNDS]
+
+SERVER is the example `pattern_server`, which makes a pattern for every line it reads and answers
+with the milliseconds that took: from the seed, so that its phasors are included. scipy and pyFFTW
+get their phasors for free, in the corner of an array of zeros; pyFFTW measures its plan first and
+has all of its memory. pyspeckle makes its own, from an array of twice the size in double precision.
+
+The medians are printed, and the median over the rounds of the ratio to ours of the same round.
+"""
+
+import os
+import statistics
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pyfftw
+import pyspeckle
+import scipy.fft
+
+THREADS = 2
+
+
+def server(path, threads):
+    """Returns a function that lets tem00 do a task and returns its milliseconds."""
+    environment = {**os.environ, "RAYON_NUM_THREADS": str(threads)}
+    process = subprocess.Popen(
+        [path], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
+    )
+
+    def milliseconds(task, size):
+        process.stdin.write(f"{task} {size}\n")
+        process.stdin.flush()
+        return float(process.stdout.readline())
+
+    return milliseconds
+
+
+def timed(work):
+    """Returns a function that works and returns its milliseconds."""
+
+    def milliseconds():
+        start = time.perf_counter()
+        work()
+        return 1e3 * (time.perf_counter() - start)
+
+    return milliseconds
+
+
+def phasors(size):
+    """Returns the phasors of a disc of diameter size / 2 in an array of zeros."""
+    array = pyfftw.zeros_aligned((size, size), "complex64")
+    axis = np.arange(size // 2 + 1) - size // 4
+    inside = axis[:, None] ** 2 + axis**2 <= (size // 4) ** 2
+    turns = np.random.default_rng(1).random(inside.shape)
+    array[: len(axis), : len(axis)] = inside * np.exp(2j * np.pi * turns)
+    return array
+
+
+def with_scipy(aperture, workers):
+    def work():
+        field = scipy.fft.fft2(aperture, workers=workers)
+        return field.real**2 + field.imag**2
+
+    return timed(work)
+
+
+def with_pyfftw(aperture, threads):
+    source, field = (pyfftw.empty_aligned(aperture.shape, "complex64") for _ in range(2))
+    intensity = np.empty(aperture.shape, "float32")
+    plan = pyfftw.FFTW(
+        source, field, axes=(0, 1), threads=threads, flags=("FFTW_MEASURE",)
+    )
+    source[:] = aperture
+
+    def work():
+        plan()
+        np.abs(field, out=intensity)
+        np.multiply(intensity, intensity, out=intensity)
+
+    return timed(work)
+
+
+def contenders(ours, size):
+    """Returns what takes part at a pattern size, by name; the first is what the others are divided by."""
+    aperture = phasors(size)
+    two, one = ours
+    found = {
+        "tem00": lambda: two("pattern", size),
+        "tem00, one thread": lambda: one("pattern", size),
+        "tem00, fresh memory": lambda: two("fresh", size),
+        "tem00, complex field": lambda: two("field", size),
+        "scipy + |.|^2": with_scipy(aperture, THREADS),
+        "pyFFTW + |.|^2": with_pyfftw(aperture, THREADS),
+        "scipy + |.|^2, one thread": with_scipy(aperture, 1),
+        "pyFFTW + |.|^2, one thread": with_pyfftw(aperture, 1),
+    }
+    if size <= 1024:
+        found["pyspeckle"] = timed(lambda: pyspeckle.create_Exponential(size, 2))
+        found["tem00, 32 transforms"] = lambda: two("stack", size)
+    return found
+
+
+def compare(ours, size, rounds):
+    entries = contenders(ours, size)
+    for entry in entries.values():
+        entry()
+    times = {name: [] for name in entries}
+    for _ in range(rounds):
+        for name, entry in entries.items():
+            times[name].append(entry())
+    reference = times["tem00"]
+    print(f"\n{size} x {size}, {rounds} rounds")
+    for name, values in times.items():
+        ratio = statistics.median(t / r for t, r in zip(values, reference))
+        print(
+            f"  {name:34} median {statistics.median(values):8.2f} ms"
+            f"   least {min(values):8.2f} ms   ratio {ratio:6.2f}"
+        )
+
+
+def main():
+    path, rounds = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 21
+    modules = (np, scipy, pyfftw, pyspeckle)
+    print(*(f"{m.__name__} {m.__version__}" for m in modules), f"{THREADS} threads", sep=", ")
+    ours = server(path, THREADS), server(path, 1)
+    for size, share in ((1024, 1), (2048, 2), (4096, 4)):
+        compare(ours, size, max(3, rounds // share))
+
+
+main()

@@ -4,6 +4,8 @@ mod curves;
 mod findings;
 mod goodness;
 mod grey_levels;
+#[cfg(feature = "plot")]
+mod page;
 mod pixels;
 
 use std::{io::Write, path::Path};
@@ -36,15 +38,18 @@ struct Measurement {
     curves: Curves,
 }
 
-/// Measures an image and prints the table, or JSON.
+/// Measures an image, prints the table, or JSON, and draws the page asked for.
 ///
 /// # Errors
 ///
-/// Returns a failure if the image cannot be read or holds no speckle to measure.
+/// Returns a failure if the image cannot be read or holds no speckle to measure, or if the page
+/// cannot be written.
 pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure> {
     let cannot = |error: &dyn core::fmt::Display, help: &str| {
         Failure::input(format!("{}: {error}", args.image.display()), help)
     };
+    #[cfg(feature = "plot")]
+    let plot = args.plot.as_deref().map(plot_file).transpose()?;
     let image = read_image(&args.image, args.channel.as_deref(), args.transfer)
         .map_err(|error| cannot(&error, "give a .png, .exr or .npy image of light"))?;
     let (width, height) = (image.values.width(), image.values.height());
@@ -55,7 +60,42 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
     }
     let measurement = measure(&args.image, &image)
         .map_err(|error| cannot(&error, "give an image that light and speckle fill"))?;
+    #[cfg(feature = "plot")]
+    if let Some((path, format)) = plot {
+        draw(&measurement, path, format)?;
+    }
     print(&measurement, args.json, out)
+}
+
+/// Returns the file of the page and its format, if it can be written.
+#[cfg(feature = "plot")]
+fn plot_file(path: &Path) -> Result<(&Path, page::PageFormat), Failure> {
+    let format = page::PageFormat::of_path(path).ok_or_else(|| {
+        Failure::input(
+            format!("{} names no known format of a page", path.display()),
+            "end the name in .svg or .png",
+        )
+    })?;
+    crate::atomic::probe_writable(path).map_err(|error| {
+        Failure::input(
+            format!("cannot write {}: {error}", path.display()),
+            "name a file in a folder that exists and may be written",
+        )
+    })?;
+    Ok((path, format))
+}
+
+#[cfg(feature = "plot")]
+fn draw(measurement: &Measurement, path: &Path, format: page::PageFormat) -> Result<(), Failure> {
+    let page = page::Page {
+        title: &measurement.image,
+        curves: &measurement.curves,
+    };
+    let bytes = page
+        .render(format)
+        .map_err(|error| Failure::writing(path, error))?;
+    crate::atomic::write_atomically(path, |file| file.write_all(&bytes))
+        .map_err(|error| Failure::writing(path, error))
 }
 
 fn print(measurement: &Measurement, json: bool, out: &mut impl Write) -> Result<(), Failure> {

@@ -142,6 +142,31 @@ fn a_pattern_in_every_format_has_the_same_statistics() {
     );
 }
 
+#[cfg(feature = "plot")]
+#[test]
+fn a_page_of_plots_is_drawn_where_it_was_asked_for() {
+    let folder = folder();
+    assert_code(&run(folder.path(), "pattern -o a.npy --size 64"), 0);
+    for (name, start) in [("page.svg", "<svg"), ("page.png", "\u{fffd}PNG")] {
+        let output = run(folder.path(), &format!("stats a.npy --plot {name}"));
+        assert_code(&output, 0);
+        assert!(
+            text(&output.stdout).starts_with("quantity"),
+            "the table is the data"
+        );
+        let page = fs::read(folder.path().join(name)).expect("a page");
+        assert!(text(&page).starts_with(start), "{name}");
+    }
+    for name in ["page.pdf", "no/page.svg"] {
+        let output = run(folder.path(), &format!("stats a.npy --plot {name}"));
+        assert_code(&output, 2);
+        assert!(message(&output).contains(name), "{}", message(&output));
+    }
+    let output = run(folder.path(), "stats missing.npy --plot none.svg");
+    assert_code(&output, 2);
+    assert_eq!(files(folder.path()), ["a.npy", "page.png", "page.svg"]);
+}
+
 #[test]
 fn json_holds_the_curves() {
     let folder = folder();

@@ -119,8 +119,7 @@ fn print(measurement: &Measurement, json: bool, out: &mut impl Write) -> Result<
 
 fn measure(path: &Path, image: &LoadedImage) -> Result<Measurement, StatisticsError> {
     let values = &image.values;
-    let clipped = image.saturated.is_some_and(|share| share > 0.0);
-    let levels = GreyLevels::of(values.values(), clipped);
+    let levels = GreyLevels::of(values.values());
     let mut found = Findings {
         values,
         levels: levels.as_ref(),
@@ -262,6 +261,26 @@ mod tests {
                 "{contrast} at {mean} levels"
             );
         }
+    }
+
+    #[test]
+    fn few_grey_levels_allow_no_fit() {
+        let found = measured(window(8).map(|value| (value / 7.0 * 3.0).round()));
+        let quantities = found.rows.iter().map(|row| &row.quantity);
+        let mut fitted =
+            quantities.filter(|name| name.contains("Gamma") || name.starts_with("contrast, if"));
+        assert_eq!(fitted.next(), None, "three levels");
+    }
+
+    #[test]
+    fn a_sensor_that_saturates_below_its_file_is_noticed() {
+        let share = |limit: f32| {
+            let light = window(13).map(|value| (value * 100.0).round().min(limit));
+            row(&measured(light), "saturated share of pixels").measured
+        };
+        // The light above 4095 of a mean of 700 is exp(−5.85) = 0.0029, to 30 % in 7500 speckles.
+        assert!((0.002..0.004).contains(&share(4_095.0)), "12 bits");
+        assert!(share(60_000.0) < 1e-4, "nothing is cut");
     }
 
     #[test]

@@ -97,7 +97,7 @@ mod tests {
         let rounded: Vec<f64> = samples.iter().map(|sample| sample.round()).collect();
         #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
         let values: Vec<f32> = rounded.iter().map(|&value| value as f32).collect();
-        let levels = GreyLevels::of(&values, false).expect("few levels");
+        let levels = GreyLevels::of(&values).expect("few levels");
         (rounded, levels)
     }
 
@@ -142,7 +142,7 @@ mod tests {
             .flat_map(|&(level, count)| core::iter::repeat_n(level, count))
             .collect();
         let (_, levels) = rounded(&samples);
-        let placed = Placed::new(&samples, Some(&levels), |light| light / 2.5);
+        let placed = Placed::new(&samples, Some(&levels), |light| (light / 2.5).min(1.0));
         // At 0.5 the law has 0.2 and the samples 0.1, at 1.5 they have 0.6 and 0.4. The places are
         // those of continuous samples, whose distance is up to 1/2n larger.
         let distance = placed.kolmogorov_smirnov().expect("valid").statistic;

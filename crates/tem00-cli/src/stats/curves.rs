@@ -83,7 +83,7 @@ impl Measured<'_> {
     }
 
     /// Counts the pixels in bins of a fifth of the standard deviation, up to 15 of them above the
-    /// mean.
+    /// mean; the standard deviation counts as the mean if it is larger.
     fn histogram(&self) -> Vec<Bin> {
         let edges = self.histogram_edges();
         let mut counts = vec![0_usize; edges.len() + 1];
@@ -108,10 +108,12 @@ impl Measured<'_> {
     /// Returns the edges of the bins, in units of the mean; those of a rounded image lie between
     /// its levels.
     fn histogram_edges(&self) -> Vec<f64> {
-        let width = 0.2 * self.contrast;
-        let start = (1.0 - 15.0 * self.contrast).max(0.0);
+        // A hot pixel alone can make the contrast exceed 1 by far.
+        let deviation = self.contrast.min(1.0);
+        let width = 0.2 * deviation;
+        let start = (1.0 - 15.0 * deviation).max(0.0);
         let largest = self.values.values().iter().copied().fold(0.0, f32::max);
-        let end = (f64::from(largest) / self.mean).min(1.0 + 15.0 * self.contrast);
+        let end = (f64::from(largest) / self.mean).min(1.0 + 15.0 * deviation);
         let bins = (0_u32..=151).map(|bin| start + f64::from(bin) * width);
         let within = bins.take_while(|&edge| edge < end + width);
         let snapped = within.map(|edge| match self.levels {
@@ -231,6 +233,23 @@ mod tests {
             let apart = |&level: &f32| (f64::from(level) - 10.0 * bin.from).abs() > 0.499;
             assert!(rounded.values().iter().all(apart), "{bin:?} cuts a level");
         }
+    }
+
+    #[test]
+    fn a_hot_pixel_does_not_coarsen_the_histogram() {
+        let mut values = image();
+        values[(3, 3)] = 1e6;
+        let measured = Measured {
+            values: &values,
+            levels: None,
+            mean: 10.0,
+            contrast: 250.0,
+            size: None,
+            gamma: None,
+        };
+        let bins = measured.histogram();
+        assert!((bins[0].to - 0.2).abs() < 1e-12, "{:?}", bins[0]);
+        assert_eq!(bins.len(), 80, "up to 16 times the mean");
     }
 
     #[test]

@@ -115,8 +115,11 @@ impl Findings<'_> {
         let theory = self
             .levels
             .map_or(1.0, |levels| levels.exponential_contrast(self.mean));
-        let near = |value| Expectation::Near { value, tolerance };
-        self.row("contrast", value, near(theory));
+        let near = Expectation::Near {
+            value: theory,
+            tolerance,
+        };
+        self.row("contrast", value, near);
         let [low, high] = contrast.confidence_interval(CONFIDENCE)?;
         self.row("contrast, from (95 %)", low, Expectation::Open);
         self.row("contrast, to (95 %)", high, Expectation::Open);
@@ -125,11 +128,26 @@ impl Findings<'_> {
              pattern, seen through pixels much smaller than a speckle",
         );
         let size = size.filter(|_| !self.is_coarse());
-        if let Some(size) = size.and_then(|size| size_before_pixels(size.mean())) {
-            let theory = pixel_contrast(size.recip());
-            self.row("contrast, if pixels have no gaps", value, near(theory));
+        if let Some([theory, uncertainty]) = size.and_then(|size| self.gapless_contrast(size)) {
+            let near = Expectation::Near {
+                value: theory,
+                tolerance: tolerance + uncertainty,
+            };
+            self.row("contrast, if pixels have no gaps", value, near);
         }
         Ok(())
+    }
+
+    /// Returns the contrast behind pixels without gaps, and how much the error of the measured size
+    /// may change it.
+    fn gapless_contrast(&self, size: SpeckleSize) -> Option<[f64; 2]> {
+        let area = count(self.values.values().len());
+        // From image to image the size spreads by the share 0.62 / n in n × n speckles.
+        let spread = 0.62 * size.mean() / area.sqrt();
+        let wider = size.mean() * (1.0 + SIGMAS * spread);
+        let [theory, bound] = [size.mean(), wider]
+            .map(|size| Some(pixel_contrast(size_before_pixels(size)?.recip())));
+        Some([theory?, bound? - theory?])
     }
 
     pub(super) fn size_rows(&mut self, size: Option<SpeckleSize>) {

@@ -58,5 +58,6 @@ mod tests {
     fn speckles_smaller_than_a_pixel_have_no_size() {
         assert_eq!(size_before_pixels(1.0), None);
         assert_eq!(size_before_pixels(1.3), None);
+        assert_eq!(size_before_pixels(1.34), None);
     }
 }

@@ -64,6 +64,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "ctrlc",
             "exr",
             "indicatif",
+            "kuva",
             "miette",
             "npyz",
             "num-complex",

@@ -144,14 +144,20 @@ pub(crate) struct StatsArgs {
     #[arg(long, value_name = "CURVE")]
     pub(crate) transfer: Option<Transfer>,
 
-    /// Print JSON instead of a table.
+    /// Print JSON instead of a table, with the curves of the page.
     #[arg(long)]
     pub(crate) json: bool,
+
+    /// Draw one page: histogram, autocovariance and power spectrum beside the theory.
+    #[cfg(feature = "plot")]
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) plot: Option<PathBuf>,
 }
 
 const STATS_EXAMPLES: &str = "\
 Examples:
   tem00 stats photo.png
+  tem00 stats photo.png --plot page.svg
   tem00 stats photo.png --channel R --transfer srgb
   tem00 stats out/spot/spot.exr --channel speckle --json";
 

@@ -1,26 +1,30 @@
 //! `tem00 stats`: the speckle in an image of any origin.
 
+mod curves;
+mod findings;
+mod goodness;
+mod grey_levels;
+#[cfg(feature = "plot")]
+mod page;
+mod pixels;
+
 use std::{io::Write, path::Path};
 
 use serde::Serialize;
-use tem00_numerics::Grid;
-use tem00_statistics::{
-    AIRY_FIRST_ZERO, Boundary, Contrast, GammaIntensity, Moments, SpeckleSize, StatisticsError,
-    TestOutcome, decorrelated_samples, exponential_cumulative, kolmogorov_smirnov,
-};
+use tem00_statistics::{Boundary, Contrast, Moments, StatisticsError, autocovariance};
 
 use crate::{
     args::StatsArgs,
     failure::Failure,
     image::{LoadedImage, read_image},
-    table::{Expectation, Row, write_table},
+    table::{Row, write_table},
 };
+use curves::{Curves, Measured};
+use findings::Findings;
+use grey_levels::GreyLevels;
 
-/// How many standard errors the tolerance of the contrast allows.
-const SIGMAS: f64 = 4.0;
-
-/// The fewest independent samples that say something about a distribution.
-const FEWEST_SAMPLES: usize = 20;
+/// The fewest pixels along an axis that hold a speckle and its surroundings.
+const FEWEST_PIXELS: usize = 8;
 
 /// What was found in an image.
 #[derive(Debug, Serialize)]
@@ -31,22 +35,67 @@ struct Measurement {
     interpretation: String,
     rows: Vec<Row>,
     assumptions: Vec<String>,
+    curves: Curves,
 }
 
-/// Measures an image and prints the table, or JSON.
+/// Measures an image, prints the table, or JSON, and draws the page asked for.
 ///
 /// # Errors
 ///
-/// Returns a failure if the image cannot be read or holds no speckle to measure.
+/// Returns a failure if the image cannot be read or holds no speckle to measure, or if the page
+/// cannot be written.
 pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure> {
     let cannot = |error: &dyn core::fmt::Display, help: &str| {
         Failure::input(format!("{}: {error}", args.image.display()), help)
     };
+    #[cfg(feature = "plot")]
+    let plot = args.plot.as_deref().map(plot_file).transpose()?;
     let image = read_image(&args.image, args.channel.as_deref(), args.transfer)
         .map_err(|error| cannot(&error, "give a .png, .exr or .npy image of light"))?;
+    let (width, height) = (image.values.width(), image.values.height());
+    if width.min(height) < FEWEST_PIXELS {
+        let error = format!("the image has {width} × {height} pixels");
+        let help = format!("speckle needs at least {FEWEST_PIXELS} pixels along either axis");
+        return Err(cannot(&error, &help));
+    }
     let measurement = measure(&args.image, &image)
         .map_err(|error| cannot(&error, "give an image that light and speckle fill"))?;
+    #[cfg(feature = "plot")]
+    if let Some((path, format)) = plot {
+        draw(&measurement, path, format)?;
+    }
     print(&measurement, args.json, out)
+}
+
+/// Returns the file of the page and its format, if it can be written.
+#[cfg(feature = "plot")]
+fn plot_file(path: &Path) -> Result<(&Path, page::PageFormat), Failure> {
+    let format = page::PageFormat::of_path(path).ok_or_else(|| {
+        Failure::input(
+            format!("{} names no known format of a page", path.display()),
+            "end the name in .svg or .png",
+        )
+    })?;
+    crate::atomic::probe_writable(path).map_err(|error| {
+        Failure::input(
+            format!("cannot write {}: {error}", path.display()),
+            "name a file in a folder that exists and may be written",
+        )
+    })?;
+    Ok((path, format))
+}
+
+#[cfg(feature = "plot")]
+fn draw(measurement: &Measurement, path: &Path, format: page::PageFormat) -> Result<(), Failure> {
+    let page = page::Page {
+        title: &measurement.image,
+        curves: &measurement.curves,
+    };
+    let bytes = page
+        .render(format)
+        .map_err(|error| Failure::writing(path, error))?;
+    crate::atomic::write_atomically(path, |file| file.write_all(&bytes))
+        .map_err(|error| Failure::writing(path, error))
 }
 
 fn print(measurement: &Measurement, json: bool, out: &mut impl Write) -> Result<(), Failure> {
@@ -70,148 +119,47 @@ fn print(measurement: &Measurement, json: bool, out: &mut impl Write) -> Result<
 
 fn measure(path: &Path, image: &LoadedImage) -> Result<Measurement, StatisticsError> {
     let values = &image.values;
-    let moments = Moments::of(values.values())?;
-    let contrast = Contrast::of(values.values())?;
-    let mut rows = vec![Row::new("mean", moments.mean(), Expectation::Open)];
-    let mut assumptions = vec![
-        "the light is taken as even over the image: its own shape would count as contrast".into(),
-        "contrast 1 and the exponential law are those of one fully developed, polarised pattern, \
-         seen through pixels much smaller than a speckle"
-            .into(),
-    ];
-    if let Some(share) = image.saturated {
-        rows.push(Row::new(
-            "saturated share of pixels",
-            share,
-            Expectation::AtMost { at_most: 1e-3 },
-        ));
-    }
-    let size = match SpeckleSize::of(values, Boundary::Finite) {
-        Ok(size) => Some(size),
-        Err(StatisticsError::Unresolved { .. }) => {
-            assumptions.push("the speckles are smaller than a pixel: their size is not known and all pixels are taken as independent".into());
-            None
-        }
-        Err(error) => return Err(error),
-    };
-    rows.push(contrast_row(contrast, size)?);
-    if let Some(size) = size {
-        assumptions.push(
-            "the speckle size is that of a circular pupil, λ d / D, as seen by the pixels, which \
-             widen it"
-                .into(),
-        );
-        rows.push(Row::new(
-            "speckle size x (pixels)",
-            size.x(),
-            Expectation::Open,
-        ));
-        rows.push(Row::new(
-            "speckle size y (pixels)",
-            size.y(),
-            Expectation::Open,
-        ));
-    }
-    let stride = size.map_or(1, |size| first_zero(size.x().max(size.y())));
-    rows.extend(distribution_rows(
+    let levels = GreyLevels::of(values.values());
+    let mut found = Findings {
         values,
-        stride,
-        moments.mean(),
-        contrast.value(),
-        &mut assumptions,
-    )?);
+        levels: levels.as_ref(),
+        mean: Moments::of(values.values())?.mean(),
+        contrast: Contrast::of(values.values())?,
+        rows: Vec::new(),
+        assumptions: Vec::new(),
+    };
+    found.brightness(image.saturated);
+    let lags = autocovariance(values, Boundary::Finite)?;
+    let size = found.size(&lags)?;
+    found.contrast(size)?;
+    found.size_rows(size);
+    let fit = found.distribution(size)?;
+    let measured = Measured {
+        values,
+        levels: levels.as_ref(),
+        mean: found.mean,
+        contrast: found.contrast.value(),
+        size,
+        gamma: fit.and_then(|fit| fit.law().ok()),
+    };
     Ok(Measurement {
         image: path.display().to_string(),
         width: values.width(),
         height: values.height(),
         interpretation: image.interpretation.clone(),
-        rows,
-        assumptions,
+        curves: measured.curves(&lags)?,
+        rows: found.rows,
+        assumptions: found.assumptions,
     })
-}
-
-fn contrast_row(contrast: Contrast, size: Option<SpeckleSize>) -> Result<Row, StatisticsError> {
-    let contrast = match size {
-        Some(size) => contrast.with_speckle_size(size.mean())?,
-        None => contrast,
-    };
-    let theory = Expectation::Near {
-        value: 1.0,
-        tolerance: SIGMAS * contrast.standard_error(),
-    };
-    Ok(Row::new("contrast", contrast.value(), theory))
-}
-
-/// Compares independent samples with the exponential law and with the Gamma law of the same
-/// contrast.
-fn distribution_rows(
-    values: &Grid<f32>,
-    stride: usize,
-    mean: f64,
-    contrast: f64,
-    assumptions: &mut Vec<String>,
-) -> Result<Vec<Row>, StatisticsError> {
-    let mut samples = decorrelated_samples(values, stride)?;
-    if samples.len() < FEWEST_SAMPLES {
-        assumptions.push(format!(
-            "the image holds only {} independent samples: its distribution is not tested",
-            samples.len()
-        ));
-        return Ok(Vec::new());
-    }
-    samples.iter_mut().for_each(|sample| *sample /= mean);
-    let mut rows = vec![Row::new(
-        "independent samples",
-        count(samples.len()),
-        Expectation::Open,
-    )];
-    let exponential = kolmogorov_smirnov(&samples, exponential_cumulative)?;
-    rows.extend(test_rows("exponential", exponential));
-    if let Ok(law) = GammaIntensity::from_contrast(contrast) {
-        rows.push(Row::new("shape 1/C²", law.shape(), Expectation::Open));
-        let gamma = kolmogorov_smirnov(&samples, |intensity| law.cumulative(intensity))?;
-        rows.extend(test_rows("Gamma of shape 1/C²", gamma));
-        assumptions
-            .push("mean and shape were fitted to the image: p-values are on the high side".into());
-    }
-    Ok(rows)
-}
-
-fn test_rows(law: &str, outcome: TestOutcome) -> [Row; 2] {
-    [
-        Row::new(
-            format!("KS distance to {law}"),
-            outcome.statistic,
-            Expectation::Open,
-        ),
-        Row::new(
-            format!("KS p-value of {law}"),
-            outcome.p_value,
-            Expectation::AtLeast { at_least: 1e-3 },
-        ),
-    ]
-}
-
-/// Returns the first zero of the autocovariance of speckles of a size in pixels, rounded up.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "speckle sizes are positive and below the size of the image"
-)]
-fn first_zero(speckle_size: f64) -> usize {
-    (AIRY_FIRST_ZERO * speckle_size).ceil() as usize
-}
-
-#[expect(clippy::cast_precision_loss, reason = "there are at most 2²⁸ samples")]
-fn count(samples: usize) -> f64 {
-    samples as f64
 }
 
 #[cfg(test)]
 mod tests {
+    use tem00_numerics::Grid;
     use tem00_speckle::PupilField;
 
     use super::*;
+    use crate::table::Expectation;
 
     fn measured(values: Grid<f32>) -> Measurement {
         let image = LoadedImage {
@@ -268,12 +216,13 @@ mod tests {
             "{found:?}"
         );
         assert!(
-            row(&found, "KS p-value of Gamma of shape 1/C²").measured > 1e-3,
+            row(&found, "KS p-value of Gamma").measured > 1e-3,
             "{found:?}"
         );
-        // C² spreads by 1.53/n, n about 85, times 1/2 of a sum of two: 4 σ of the shape 2.
+        // The shape is 2 to the error that is stated, and some 3/n of bias.
+        let error = row(&found, "its standard error").measured;
         assert!(
-            (row(&found, "shape 1/C²").measured - 2.0).abs() < 0.3,
+            (row(&found, "shape of Gamma").measured - 2.0).abs() < 4.0 * error + 1e-3,
             "{found:?}"
         );
     }
@@ -292,6 +241,91 @@ mod tests {
             row(&found, "KS p-value of exponential").measured > 1e-3,
             "{found:?}"
         );
+    }
+
+    #[test]
+    fn rounding_to_few_grey_levels_is_no_deviation() {
+        for (seed, mean) in [(7, 0.5), (8, 3.0), (9, 30.0)] {
+            let light = window(seed).map(|value| (value / 7.0 * mean).round());
+            let found = measured(light);
+            for test in ["KS", "χ²"] {
+                let p_value = row(&found, &format!("{test} p-value of exponential")).measured;
+                assert!(p_value > 1e-3, "{test} at {mean} levels: {found:?}");
+            }
+            let Expectation::Near { value, tolerance } = row(&found, "contrast").theory else {
+                panic!("the contrast has a theory");
+            };
+            let contrast = row(&found, "contrast").measured;
+            assert!(
+                (contrast - value).abs() < tolerance,
+                "{contrast} at {mean} levels"
+            );
+        }
+    }
+
+    #[test]
+    fn black_pixels_of_a_rounded_image_are_light_below_half_a_level() {
+        let found = measured(window(9).map(|value| (value / 7.0 * 30.0).round()));
+        let (shape, error) = ("shape of Gamma", "its standard error");
+        let [shape, error] = [shape, error].map(|quantity| row(&found, quantity).measured);
+        assert!((shape - 1.0).abs() < 4.0 * error, "{shape} ± {error}");
+        let none = |note: &String| !note.contains("some samples are 0");
+        assert!(found.assumptions.iter().all(none), "{found:?}");
+    }
+
+    #[test]
+    fn few_grey_levels_allow_no_fit() {
+        let found = measured(window(8).map(|value| (value / 7.0 * 3.0).round()));
+        let quantities = found.rows.iter().map(|row| &row.quantity);
+        let mut fitted =
+            quantities.filter(|name| name.contains("Gamma") || name.starts_with("contrast, if"));
+        assert_eq!(fitted.next(), None, "three levels");
+    }
+
+    #[test]
+    fn a_sensor_that_saturates_below_its_file_is_noticed() {
+        let share = |limit: f32| {
+            let light = window(13).map(|value| (value * 100.0).round().min(limit));
+            row(&measured(light), "saturated share of pixels").measured
+        };
+        // The light above 4095 of a mean of 700 is exp(−5.85) = 0.0029, to 30 % in 7500 speckles.
+        assert!((0.002..0.004).contains(&share(4_095.0)), "12 bits");
+        assert!(share(60_000.0) < 1e-4, "nothing is cut");
+    }
+
+    #[test]
+    fn pixels_without_gaps_see_the_contrast_of_their_size() {
+        let pattern = PupilField::new(1024, 128, 10).expect("valid").pattern();
+        // Speckles of 8 samples, on pixels of 6 × 6 samples.
+        let sum = |x: usize, y: usize| {
+            let samples = (0..36).map(|i| pattern.values()[(6 * x + i % 6, 6 * y + i / 6)]);
+            samples.sum::<f32>()
+        };
+        let found = measured(Grid::from_fn(170, 170, sum));
+        let deviation = |quantity: &str| match row(&found, quantity).theory {
+            Expectation::Near { value, tolerance } => {
+                (row(&found, quantity).measured - value).abs() / tolerance
+            }
+            _ => panic!("{quantity} has a theory"),
+        };
+        assert!(
+            deviation("contrast, if pixels have no gaps") < 1.0,
+            "{found:?}"
+        );
+        assert!(deviation("contrast") > 2.0, "{found:?}");
+    }
+
+    #[test]
+    fn an_interval_holds_the_contrast() {
+        let found = measured(window(11));
+        let contrast = row(&found, "contrast").measured;
+        let [low, high] =
+            ["from", "to"].map(|end| row(&found, &format!("contrast, {end} (95 %)")).measured);
+        assert!(low < contrast && contrast < high, "{low} {contrast} {high}");
+        // ± 1.96 · 0.765 / n in the logarithm, for n = √(400 · 300) / 4 = 87; the error is estimated
+        // from the samples.
+        let width = (high / low).ln() / (2.0 * 1.96 * 0.765 / 86.6);
+        assert!((0.8..1.25).contains(&width), "{width}");
     }
 
     #[test]

@@ -142,6 +142,76 @@ fn a_pattern_in_every_format_has_the_same_statistics() {
     );
 }
 
+#[cfg(feature = "plot")]
+#[test]
+fn a_page_of_plots_is_drawn_where_it_was_asked_for() {
+    let folder = folder();
+    assert_code(&run(folder.path(), "pattern -o a.npy --size 64"), 0);
+    for (name, start) in [("page.svg", "<svg"), ("page.png", "\u{fffd}PNG")] {
+        let output = run(folder.path(), &format!("stats a.npy --plot {name}"));
+        assert_code(&output, 0);
+        assert!(
+            text(&output.stdout).starts_with("quantity"),
+            "the table is the data"
+        );
+        let page = fs::read(folder.path().join(name)).expect("a page");
+        assert!(text(&page).starts_with(start), "{name}");
+    }
+    for name in ["page.pdf", "no/page.svg"] {
+        let output = run(folder.path(), &format!("stats a.npy --plot {name}"));
+        assert_code(&output, 2);
+        assert!(message(&output).contains(name), "{}", message(&output));
+    }
+    let output = run(folder.path(), "stats missing.npy --plot none.svg");
+    assert_code(&output, 2);
+    assert_eq!(files(folder.path()), ["a.npy", "page.png", "page.svg"]);
+}
+
+#[test]
+fn json_holds_the_curves() {
+    let folder = folder();
+    assert_code(&run(folder.path(), "pattern -o a.npy --size 64"), 0);
+    let output = run(folder.path(), "stats a.npy --json");
+    let found: Value = serde_json::from_slice(&output.stdout).expect("JSON and nothing else");
+    for curve in ["histogram", "autocovariance", "power_spectrum"] {
+        let points = found["curves"][curve].as_array().expect("a curve");
+        assert!(points.len() > 8, "{curve} has {} points", points.len());
+    }
+}
+
+/// Writes an array of `f4` as NumPy does.
+fn write_npy(path: &Path, width: usize, values: &[f32]) {
+    let height = values.len() / width;
+    let header =
+        format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({height}, {width}), }}");
+    // The header is padded so that the data begin at a multiple of 64 bytes.
+    let mut file = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    file.extend(format!("{header:<117}\n").bytes());
+    file.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    fs::write(path, file).expect("the array is written");
+}
+
+#[test]
+fn images_without_speckle_are_refused_by_their_name() {
+    let folder = folder();
+    let varied: Vec<f32> = (0..400_u16).map(|i| f32::from(i % 7)).collect();
+    let mut hole = varied.clone();
+    hole[23] = f32::NAN;
+    for (name, width, values, part) in [
+        ("tiny.npy", 4, &varied[..16], "4 × 4 pixels"),
+        ("row.npy", 400, &varied[..], "400 × 1 pixels"),
+        ("even.npy", 20, &[2.0; 400][..], "all of them are 2e0"),
+        ("black.npy", 20, &[0.0; 400][..], "0"),
+        ("hole.npy", 20, &hole[..], "(3, 1) is NaN"),
+    ] {
+        write_npy(&folder.path().join(name), width, values);
+        let output = run(folder.path(), &format!("stats {name}"));
+        assert_code(&output, 2);
+        let said = message(&output);
+        assert!(said.contains(name) && said.contains(part), "{name}: {said}");
+    }
+}
+
 #[test]
 fn bad_input_is_one_message_exit_code_2_and_no_file() {
     let folder = folder();

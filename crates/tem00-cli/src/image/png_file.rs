@@ -99,6 +99,7 @@ pub(super) fn read(
     let mut pixels = Pixels {
         values: Vec::with_capacity(area),
         saturated: 0,
+        coloured: false,
     };
     let mut line = vec![0; reader.output_line_size(width).unwrap_or(0)];
     if reader.info().interlaced {
@@ -112,9 +113,19 @@ pub(super) fn read(
     }
     Ok(LoadedImage {
         values: grid(width as usize, height as usize, pixels.values)?,
-        interpretation: format!("{}, {}", selection.description, curve.description()),
+        interpretation: interpretation(&selection, pixels.coloured, &curve),
         saturated: Some(share(pixels.saturated, area)),
     })
+}
+
+fn interpretation(selection: &Selection, coloured: bool, curve: &Curve) -> String {
+    let channels = &selection.description;
+    let differ = if coloured {
+        ", which differ: light of one colour may want one channel"
+    } else {
+        ""
+    };
+    format!("{channels}{differ}, {}", curve.description())
 }
 
 #[expect(clippy::cast_precision_loss, reason = "there are at most 2²⁸ pixels")]
@@ -126,6 +137,8 @@ fn share(part: usize, whole: usize) -> f64 {
 struct Pixels {
     values: Vec<f32>,
     saturated: usize,
+    /// Whether the chosen channels differ anywhere.
+    coloured: bool,
 }
 
 impl Pixels {
@@ -148,6 +161,7 @@ impl Pixels {
                 .map(|value| curve.linear(f64::from(value) / f64::from(full)))
                 .sum();
             let count = u32::try_from(selection.chosen.len()).map_or(1.0, f64::from);
+            self.coloured |= chosen().any(|value| Some(value) != chosen().next());
             self.saturated += usize::from(chosen().any(|value| value == full));
             self.values.push((linear / count) as f32);
         }
@@ -326,6 +340,19 @@ mod tests {
         assert_abs_diff_eq!(back.values[(0, 0)], 0.4, epsilon = 1e-7);
         assert_abs_diff_eq!(back.values[(1, 0)], 1.0 / 3.0, epsilon = 1e-7);
         assert_eq!(back.saturated, Some(0.5));
+    }
+
+    #[test]
+    fn channels_that_differ_are_named() {
+        let said = |blue: f32, channel| {
+            let image = Grid::from_fn(3, 3, |x, _| [0.3, 0.3, if x == 2 { blue } else { 0.3 }]);
+            let mut file = Vec::new();
+            write_rgb_png(&mut file, &image, &[]).expect("written");
+            read_back(file, channel, None).interpretation
+        };
+        assert!(said(0.4, None).contains("differ"), "a blue pixel");
+        assert!(!said(0.3, None).contains("differ"), "grey");
+        assert!(!said(0.4, Some("B")).contains("differ"), "one channel");
     }
 
     #[test]

@@ -1,0 +1,280 @@
+//! The rows of the table, measured beside the theory.
+
+use tem00_numerics::Grid;
+use tem00_statistics::{
+    AIRY_FIRST_ZERO, Contrast, GammaFit, SpeckleSize, StatisticsError, decorrelated_samples,
+    exponential_cumulative, pixel_contrast,
+};
+
+use super::{GreyLevels, goodness::Placed, grey_levels::CLIPPED_SHARE, pixels::size_before_pixels};
+use crate::table::{Expectation, Row};
+
+/// How many standard errors the tolerances allow.
+const SIGMAS: f64 = 4.0;
+
+/// The level of the interval of the contrast.
+const CONFIDENCE: f64 = 0.95;
+
+/// The smallest p-value that passes for chance.
+const SIGNIFICANCE: f64 = 1e-3;
+
+/// The fewest independent samples that say something about a distribution.
+const FEWEST_SAMPLES: usize = 20;
+
+/// The smallest mean, in grey levels, from which on rounding hardly moves the fit of a Gamma law: by
+/// 0.8 %, falling with the square.
+const COARSE: f64 = 5.0;
+
+/// Rounding of a mean of more grey levels than this shows in nothing that is measured here.
+const FINE: f64 = 100.0;
+
+/// What was found so far.
+pub(super) struct Findings<'a> {
+    pub(super) values: &'a Grid<f32>,
+    pub(super) levels: Option<&'a GreyLevels>,
+    pub(super) mean: f64,
+    pub(super) contrast: Contrast,
+    pub(super) rows: Vec<Row>,
+    pub(super) assumptions: Vec<String>,
+}
+
+impl Findings<'_> {
+    fn row(&mut self, quantity: impl Into<String>, measured: f64, theory: Expectation) {
+        self.rows.push(Row::new(quantity, measured, theory));
+    }
+
+    fn assume(&mut self, assumption: impl Into<String>) {
+        self.assumptions.push(assumption.into());
+    }
+
+    pub(super) fn brightness(&mut self, saturated: Option<f64>) {
+        self.row("mean", self.mean, Expectation::Open);
+        if let Some(mean) = self.mean_level() {
+            self.row("mean (grey levels)", mean, Expectation::Open);
+            if mean < FINE {
+                self.assume(
+                    "the image is rounded to few grey levels: each pixel is taken to be rounded \
+                     to the nearest, and laws are compared at the edges between the levels",
+                );
+            }
+        }
+        if let Some(share) = saturated.or_else(|| self.share_of_largest()) {
+            let theory = Expectation::AtMost {
+                at_most: CLIPPED_SHARE,
+            };
+            self.row("saturated share of pixels", share, theory);
+        }
+        self.assume(
+            "the light is taken as even over the image: its own shape would count as contrast",
+        );
+    }
+
+    /// Returns the mean of a rounded image in steps of its levels.
+    fn mean_level(&self) -> Option<f64> {
+        self.levels.map(|levels| self.mean / levels.step())
+    }
+
+    /// Tells whether rounding changes more than the error of what is measured.
+    fn is_coarse(&self) -> bool {
+        self.mean_level().is_some_and(|mean| mean < COARSE)
+    }
+
+    /// Returns the share of the pixels at the largest of many levels, which few pixels reach unless
+    /// the sensor saturates there.
+    fn share_of_largest(&self) -> Option<f64> {
+        let levels = self.levels.filter(|_| !self.is_coarse());
+        levels.map(GreyLevels::share_of_largest)
+    }
+
+    /// Returns the speckle size, unless the pixels are too coarse for it.
+    pub(super) fn size(
+        &mut self,
+        lags: &Grid<f32>,
+    ) -> Result<Option<SpeckleSize>, StatisticsError> {
+        match SpeckleSize::from_autocovariance(lags) {
+            Ok(size) => Ok(Some(size)),
+            Err(StatisticsError::Unresolved { .. }) => {
+                self.assume(
+                    "the speckles are smaller than a pixel: their size is not known and all \
+                     pixels are taken as independent",
+                );
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Compares the contrast with that of point-like pixels and of pixels without gaps.
+    pub(super) fn contrast(&mut self, size: Option<SpeckleSize>) -> Result<(), StatisticsError> {
+        let contrast = match size {
+            Some(size) => self.contrast.with_speckle_size(size.mean())?,
+            None => self.contrast,
+        };
+        let value = contrast.value();
+        let tolerance = SIGMAS * contrast.standard_error();
+        let theory = self
+            .levels
+            .map_or(1.0, |levels| levels.exponential_contrast(self.mean));
+        let near = Expectation::Near {
+            value: theory,
+            tolerance,
+        };
+        self.row("contrast", value, near);
+        let [low, high] = contrast.confidence_interval(CONFIDENCE)?;
+        self.row("contrast, from (95 %)", low, Expectation::Open);
+        self.row("contrast, to (95 %)", high, Expectation::Open);
+        self.assume(
+            "contrast 1 and the exponential law are those of one fully developed, polarised \
+             pattern, seen through pixels much smaller than a speckle",
+        );
+        let size = size.filter(|_| !self.is_coarse());
+        if let Some([theory, uncertainty]) = size.and_then(|size| self.gapless_contrast(size)) {
+            let near = Expectation::Near {
+                value: theory,
+                tolerance: tolerance + uncertainty,
+            };
+            self.row("contrast, if pixels have no gaps", value, near);
+        }
+        Ok(())
+    }
+
+    /// Returns the contrast behind pixels without gaps, and how much the error of the measured size
+    /// may change it.
+    fn gapless_contrast(&self, size: SpeckleSize) -> Option<[f64; 2]> {
+        let area = count(self.values.values().len());
+        // From image to image the size spreads by the share 0.62 / n in n × n speckles.
+        let spread = 0.62 * size.mean() / area.sqrt();
+        let wider = size.mean() * (1.0 + SIGMAS * spread);
+        let [theory, bound] = [size.mean(), wider]
+            .map(|size| Some(pixel_contrast(size_before_pixels(size)?.recip())));
+        Some([theory?, bound? - theory?])
+    }
+
+    pub(super) fn size_rows(&mut self, size: Option<SpeckleSize>) {
+        if let Some(size) = size {
+            self.row("speckle size x (pixels)", size.x(), Expectation::Open);
+            self.row("speckle size y (pixels)", size.y(), Expectation::Open);
+            if let Some(before) = size_before_pixels(size.mean()) {
+                let quantity = "mean size, if pixels have no gaps";
+                self.row(quantity, before, Expectation::Open);
+            }
+            self.assume(
+                "the speckle size is that of a circular pupil, λ d / D, as seen by the pixels: \
+                 those that have no gaps widen it, by 9 % at two pixels and 2 % at four",
+            );
+        }
+    }
+
+    /// Compares independent samples with the exponential law and with the Gamma law fitted to them.
+    pub(super) fn distribution(
+        &mut self,
+        size: Option<SpeckleSize>,
+    ) -> Result<Option<GammaFit>, StatisticsError> {
+        let stride = size.map_or(1, |size| first_zero(size.x().max(size.y())));
+        let samples = decorrelated_samples(self.values, stride)?;
+        if samples.len() < FEWEST_SAMPLES {
+            self.assume(format!(
+                "the image holds only {} independent samples: its distribution is not tested",
+                samples.len()
+            ));
+            return Ok(None);
+        }
+        self.row(
+            "independent samples",
+            count(samples.len()),
+            Expectation::Open,
+        );
+        let mean = match self.levels {
+            Some(levels) => levels.exponential_mean(self.mean),
+            None => self.mean,
+        };
+        let cumulative = |light: f64| exponential_cumulative(light / mean);
+        let exponential = Placed::new(&samples, self.levels, cumulative);
+        self.tests("exponential", &exponential, 2)?;
+        self.assume("what a law was fitted to speaks for it: p-values are on the high side");
+        if self.is_coarse() {
+            self.assume("the grey levels are too few for the fit of a Gamma law");
+            return Ok(None);
+        }
+        self.gamma(&samples)
+    }
+
+    fn gamma(&mut self, samples: &[f64]) -> Result<Option<GammaFit>, StatisticsError> {
+        let fit = match self.levels {
+            Some(levels) => GammaFit::by_likelihood(&levels.spread(samples)),
+            None => GammaFit::by_likelihood(samples),
+        };
+        let fit = match fit {
+            Err(StatisticsError::NotPositive { .. }) => {
+                self.assume(
+                    "some samples are 0, which no Gamma law expects: its shape is 1/C² of the \
+                     samples",
+                );
+                GammaFit::by_moments(samples)?
+            }
+            fit => fit?,
+        };
+        // The fit is too large by a share below 3/n.
+        let bias = 3.0 / count(samples.len());
+        let theory = Expectation::Near {
+            value: 1.0,
+            tolerance: SIGMAS * fit.standard_error() + bias,
+        };
+        self.row("shape of Gamma", fit.shape(), theory);
+        self.row(
+            "its standard error",
+            fit.standard_error(),
+            Expectation::Open,
+        );
+        if let Ok(law) = fit.law() {
+            let cumulative = |light: f64| law.cumulative(light / self.mean);
+            let gamma = Placed::new(samples, self.levels, cumulative);
+            self.tests("Gamma", &gamma, 3)?;
+        } else {
+            self.assume("no sum of patterns has a shape below 1: the Gamma law is not tested");
+        }
+        Ok(Some(fit))
+    }
+
+    /// Tests samples against a law to which `constraints` of their counts in bins were fitted.
+    fn tests(
+        &mut self,
+        law: &str,
+        placed: &Placed,
+        constraints: usize,
+    ) -> Result<(), StatisticsError> {
+        let probable = Expectation::AtLeast {
+            at_least: SIGNIFICANCE,
+        };
+        let distance = placed.kolmogorov_smirnov()?;
+        let name = format!("KS distance to {law}");
+        self.row(name, distance.statistic, Expectation::Open);
+        let name = format!("KS p-value of {law}");
+        self.row(name, distance.p_value, probable);
+        match placed.chi_squared(constraints) {
+            Ok(outcome) => {
+                let name = format!("χ² p-value of {law}");
+                self.row(name, outcome.p_value, probable);
+                Ok(())
+            }
+            // Few levels make few bins.
+            Err(StatisticsError::DegreesOfFreedom { .. }) => Ok(()),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Returns the first zero of the autocovariance of speckles of a size in pixels, rounded up.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "speckle sizes are positive and below the size of the image"
+)]
+fn first_zero(speckle_size: f64) -> usize {
+    (AIRY_FIRST_ZERO * speckle_size).ceil() as usize
+}
+
+#[expect(clippy::cast_precision_loss, reason = "there are at most 2²⁸ samples")]
+fn count(samples: usize) -> f64 {
+    samples as f64
+}

@@ -1,0 +1,266 @@
+//! The rounding of an image to few grey levels, and what it does to statistics.
+
+/// Values nearer than this share of the largest one are the same level: averages of colour channels
+/// are rounded to `f32`, 16 bits are 16 times as far apart.
+const SAME: f64 = 1.0 / (1 << 20) as f64;
+
+/// The most steps up to the largest value: averages over three channels of 16 bits.
+const FINEST: f64 = 3.0 * 65_536.0;
+
+/// The share of the pixels at the largest level from which on the image counts as clipped.
+pub(super) const CLIPPED_SHARE: f64 = 1e-3;
+
+/// The values that the pixels of a rounded image take.
+///
+/// Each level stands for the light from half way to the level below up to half way to the level
+/// above.
+#[derive(Debug)]
+pub(super) struct GreyLevels {
+    levels: Vec<f64>,
+    step: f64,
+    /// The share of the pixels at the largest level.
+    largest: f64,
+}
+
+impl GreyLevels {
+    /// Finds the levels of an image, if at least every other pixel shares its value with another
+    /// and the levels are no finer than those of files.
+    ///
+    /// The largest level stands for all light beyond if an unlikely share of the pixels has it.
+    #[expect(clippy::cast_precision_loss, reason = "there are at most 2²⁸ pixels")]
+    pub(super) fn of(values: &[f32]) -> Option<Self> {
+        let mut levels: Vec<f64> = values.iter().map(|&value| value.into()).collect();
+        levels.sort_unstable_by(f64::total_cmp);
+        let maximum = *levels.last()?;
+        let apart = maximum * SAME;
+        let below = levels.partition_point(|level| maximum - level > apart);
+        let largest = (values.len() - below) as f64 / values.len() as f64;
+        levels.dedup_by(|next, level| *next - *level <= apart);
+        let gaps = levels.windows(2).map(|pair| pair[1] - pair[0]);
+        let step = gaps.fold(f64::INFINITY, f64::min);
+        let few = levels.len() >= 2 && 2 * levels.len() <= values.len();
+        (few && maximum <= FINEST * step).then_some(Self {
+            levels,
+            step,
+            largest,
+        })
+    }
+
+    /// Returns the share of the pixels at the largest level.
+    pub(super) const fn share_of_largest(&self) -> f64 {
+        self.largest
+    }
+
+    pub(super) const fn len(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// Returns the position of the level to which `value` belongs.
+    pub(super) fn index(&self, value: f64) -> usize {
+        self.levels
+            .partition_point(|&level| level <= value)
+            .saturating_sub(1)
+    }
+
+    /// Returns the light, from and to, for which the level at `index` stands.
+    pub(super) fn cell(&self, index: usize) -> [f64; 2] {
+        [self.edge(index), self.edge(index + 1)]
+    }
+
+    /// Returns the lower edge of the level at `index`; light is not negative.
+    fn edge(&self, index: usize) -> f64 {
+        let half = 0.5 * self.step;
+        match index {
+            0 => (self.levels[0] - half).max(0.0),
+            _ if index < self.levels.len() => 0.5 * (self.levels[index - 1] + self.levels[index]),
+            _ if self.largest > CLIPPED_SHARE => f64::INFINITY,
+            _ => self.levels[self.levels.len() - 1] + half,
+        }
+    }
+
+    /// Returns the edge of a level that is nearest to `value`.
+    pub(super) fn nearest_edge(&self, value: f64) -> f64 {
+        let [low, high] = self.cell(self.index(value));
+        if value - low < high - value {
+            low
+        } else {
+            high
+        }
+    }
+
+    /// Returns the smallest difference of two levels.
+    pub(super) const fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Tells whether all levels are whole multiples of the step, as those of a linear sensor are.
+    pub(super) fn are_multiples(&self) -> bool {
+        let off = |level: &f64| {
+            let multiple = level / self.step;
+            (multiple - multiple.round()).abs() > 0.01
+        };
+        !self.levels.iter().any(off)
+    }
+
+    /// Returns the mean of the exponential law whose values, rounded to the levels, have the mean
+    /// `rounded`.
+    ///
+    /// ```text
+    /// rounded = step / 2 sinh(step / 2m)
+    /// ```
+    pub(super) fn exponential_mean(&self, rounded: f64) -> f64 {
+        if !self.are_multiples() {
+            return rounded;
+        }
+        let half = 0.5 * self.step;
+        half / (half / rounded).asinh()
+    }
+
+    /// Returns the contrast of an exponential law whose values, rounded to the levels, have the
+    /// mean `rounded`.
+    ///
+    /// ```text
+    /// C² = 2 cosh(step / 2m) − 1 = 2 √(1 + (step / 2 rounded)²) − 1
+    /// ```
+    pub(super) fn exponential_contrast(&self, rounded: f64) -> f64 {
+        if !self.are_multiples() {
+            return 1.0;
+        }
+        (2.0 * (0.5 * self.step / rounded).hypot(1.0) - 1.0).sqrt()
+    }
+
+    /// Returns the samples with those of each level spread evenly over its cell.
+    pub(super) fn spread(&self, samples: &[f64]) -> Vec<f64> {
+        let within = |[low, high]: [f64; 2], share: f64| {
+            let end = if high.is_finite() { high } else { low };
+            low + share * (end - low)
+        };
+        self.spread_over(samples, |index| self.cell(index), within)
+    }
+
+    /// Returns for each sample a place within the image under `cumulative` of the cell of its
+    /// level, evenly spread.
+    pub(super) fn places(&self, samples: &[f64], cumulative: impl Fn(f64) -> f64) -> Vec<f64> {
+        let cell = |index: usize| self.cell(index).map(&cumulative);
+        let within = |[low, high]: [f64; 2], share: f64| low + share * (high - low);
+        self.spread_over(samples, cell, within)
+    }
+
+    /// Places the j-th of n samples of a level at the share (j + ½)/n of its cell.
+    #[expect(clippy::cast_precision_loss, reason = "there are at most 2²⁸ samples")]
+    fn spread_over(
+        &self,
+        samples: &[f64],
+        cell: impl Fn(usize) -> [f64; 2],
+        within: impl Fn([f64; 2], f64) -> f64,
+    ) -> Vec<f64> {
+        let mut counts = vec![0_usize; self.len()];
+        samples
+            .iter()
+            .for_each(|&sample| counts[self.index(sample)] += 1);
+        let occupied = counts.iter().enumerate().filter(|&(_, &count)| count > 0);
+        let spread = occupied.flat_map(|(index, &count)| {
+            let cell = cell(index);
+            let within = &within;
+            (0..count).map(move |j| within(cell, (j as f64 + 0.5) / count as f64))
+        });
+        spread.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+
+    /// Whole numbers from 0 to `last`: many times each, but for the last one.
+    fn levels(last: u16, times: usize) -> GreyLevels {
+        let mut values: Vec<f32> = (0..last)
+            .flat_map(|level| core::iter::repeat_n(f32::from(level), 400))
+            .collect();
+        values.extend(core::iter::repeat_n(f32::from(last), times));
+        GreyLevels::of(&values).expect("the values are few")
+    }
+
+    #[test]
+    fn cells_reach_half_way_to_the_neighbours() {
+        let levels = levels(3, 1);
+        let cells: Vec<_> = (0..4).map(|index| levels.cell(index)).collect();
+        assert_eq!(cells, [[0.0, 0.5], [0.5, 1.5], [1.5, 2.5], [2.5, 3.5]]);
+        let uneven = GreyLevels::of(&[2.0, 2.0, 3.0, 3.0, 7.0, 7.0]).expect("few values");
+        let cells: Vec<_> = (0..3).map(|index| uneven.cell(index)).collect();
+        assert_eq!(cells, [[1.5, 2.5], [2.5, 5.0], [5.0, f64::INFINITY]]);
+        assert_eq!([2.0, 6.9, 7.0].map(|value| uneven.index(value)), [0, 1, 2]);
+        for (value, edge) in [(1.8, 1.5), (4.0, 5.0), (100.0, 5.0)] {
+            assert_relative_eq!(uneven.nearest_edge(value), edge);
+        }
+    }
+
+    #[test]
+    fn values_that_hardly_repeat_are_no_levels() {
+        let distinct: Vec<f32> = (0..100_u16).map(f32::from).collect();
+        assert!(GreyLevels::of(&distinct).is_none(), "all differ");
+        assert!(GreyLevels::of(&[2.0; 9]).is_none(), "one value");
+        assert!(GreyLevels::of(&[]).is_none(), "no value");
+    }
+
+    #[test]
+    fn values_finer_than_those_of_files_are_no_levels() {
+        // Pairs of neighbours, as many as in a picture of single precision.
+        let fine = |steps: u16| -> Vec<f32> {
+            let near_one = (0..200_u16).map(|i| 1.0 - f32::from(i / 2) * f32::from(steps) * 2e-6);
+            near_one.collect()
+        };
+        assert!(GreyLevels::of(&fine(1)).is_none(), "2e-6 of the largest");
+        assert!(GreyLevels::of(&fine(4)).is_some(), "8e-6 of the largest");
+    }
+
+    #[test]
+    fn rounding_of_an_average_of_channels_splits_no_level() {
+        let third = 1.0_f32 / 3.0;
+        let values = [third, third.next_up(), third, 1.0, 1.0, 1.0_f32.next_down()];
+        let levels = GreyLevels::of(&values).expect("two levels");
+        assert_eq!(levels.len(), 2);
+        assert_eq!(
+            values.map(|value| levels.index(value.into())),
+            [0, 0, 0, 1, 1, 1]
+        );
+    }
+
+    #[test]
+    fn the_exponential_law_behind_its_rounding_is_found() {
+        let levels = levels(255, 1);
+        for mean in [0.3_f64, 1.0, 3.0, 20.0] {
+            // ⟨K⟩ and ⟨K²⟩ of K = round(I), term by term; what is left out is below exp(−50).
+            let (mut first, mut second) = (0.0, 0.0);
+            for k in 1..1_000_u32 {
+                let k = f64::from(k);
+                let share = (-(k - 0.5) / mean).exp() - (-(k + 0.5) / mean).exp();
+                first += k * share;
+                second += k * k * share;
+            }
+            let contrast = (second / (first * first) - 1.0).sqrt();
+            // Some hundred additions, each rounded.
+            assert_relative_eq!(levels.exponential_mean(first), mean, max_relative = 1e-13);
+            let found = levels.exponential_contrast(first);
+            assert_relative_eq!(found, contrast, max_relative = 1e-12);
+        }
+    }
+
+    #[test]
+    fn levels_that_are_no_multiples_leave_the_law_alone() {
+        let values = [0.0, 0.0, 1.0, 1.0, 2.5, 2.5];
+        let levels = GreyLevels::of(&values).expect("three levels");
+        assert!(!levels.are_multiples(), "2.5 is no multiple of 1");
+        assert_relative_eq!(levels.exponential_mean(0.7), 0.7, max_relative = 1e-15);
+        assert_relative_eq!(levels.exponential_contrast(0.7), 1.0, max_relative = 1e-15);
+    }
+
+    #[test]
+    fn samples_are_spread_evenly_over_their_cells() {
+        let spread = levels(3, 2).spread(&[1.0, 3.0, 1.0, 0.0]);
+        // The clipped level has no upper end: its samples stay at its lower one.
+        assert_eq!(spread, [0.25, 0.75, 1.25, 2.5]);
+    }
+}

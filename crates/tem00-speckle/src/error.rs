@@ -51,6 +51,15 @@ pub enum SpeckleError {
     ///
     /// [`SlicePath::MAX_LENGTH`]: crate::SlicePath::MAX_LENGTH
     PathLength(usize),
+    /// A stack takes more memory than [`StackOptions::memory_limit`] allows.
+    ///
+    /// [`StackOptions::memory_limit`]: crate::StackOptions::memory_limit
+    MemoryLimit {
+        /// The bytes that the stack takes.
+        needed: u64,
+        /// The bytes that it may take.
+        limit: u64,
+    },
     /// The machine refused the memory of a stack.
     Memory {
         /// The bytes that were asked for.
@@ -117,6 +126,11 @@ impl fmt::Display for SpeckleError {
                 f,
                 "path length must be 2 to {} pupil diameters, got {got}",
                 crate::SlicePath::MAX_LENGTH
+            ),
+            Self::MemoryLimit { needed, limit } => write!(
+                f,
+                "memory for the stack must be at most {limit} bytes, got {needed}: take fewer \
+                 slices or a smaller pattern"
             ),
             Self::Memory { bytes } => write!(f, "memory for the stack refused: {bytes} bytes"),
         }

@@ -51,12 +51,15 @@
 
 mod error;
 mod field;
+mod interpolation;
 mod lattice;
+mod look_up;
 mod mask;
 pub mod paper;
 mod path;
 mod pattern;
 mod pupil;
+mod quadrature;
 mod rows;
 mod spline;
 mod stack;
@@ -65,11 +68,12 @@ mod view;
 
 pub use error::SpeckleError;
 pub use field::PupilField;
+pub use interpolation::Interpolation;
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use path::SlicePath;
 pub use pattern::{SpeckleField, SpecklePattern};
 pub use pupil::{Phasors, Pupil};
-pub use stack::SpeckleStack;
+pub use stack::{SpeckleStack, StackOptions};
 pub use transmission::Transmission;
 pub use view::SpeckleScratch;

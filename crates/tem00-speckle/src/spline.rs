@@ -1,4 +1,4 @@
-//! Cubic B-spline interpolation of a band-limited random field, and the variance it leaves.
+//! Interpolation of a band-limited random field, and the variance it leaves.
 
 use core::f64::consts::PI;
 
@@ -6,12 +6,14 @@ use num_complex::Complex;
 use tem00_numerics::{Grid, wrap_coordinate};
 
 use crate::{
+    Interpolation,
     field::PupilField,
     lattice::to_i64,
     mask::{Mask, from_i64, to_f64},
+    transmission::to_c64,
 };
 
-/// The four taps that reach the fraction `f` between the second and the third sample.
+/// The four taps of the cubic B-spline that reach the fraction `f` between the second and the third.
 pub(crate) fn weights(f: f32) -> [f32; 4] {
     let g = 1.0 - f;
     let (f3, g3) = (f * f * f, g * g * g);
@@ -24,9 +26,15 @@ pub(crate) fn weights(f: f32) -> [f32; 4] {
     ]
 }
 
-/// The reciprocal of the kernel's Fourier transform, `sinc⁻⁴(π k / Q)`.
-fn prefilter(k: i64, size: usize) -> f64 {
-    tem00_numerics::sinc(PI * from_i64(k) / to_f64(size)).powi(-4)
+/// What the pupil point k is multiplied with: the reciprocal of the spline's Fourier transform,
+/// `sinc⁻⁴(π k / Q)`. The other interpolations go through the samples themselves.
+fn prefilter(k: i64, size: usize, interpolation: Interpolation) -> f64 {
+    match interpolation {
+        Interpolation::CubicSpline => {
+            tem00_numerics::sinc(PI * from_i64(k) / to_f64(size)).powi(-4)
+        }
+        Interpolation::Bilinear | Interpolation::Nearest => 1.0,
+    }
 }
 
 /// The lattice points along one axis of the mask's box.
@@ -40,10 +48,10 @@ fn points(mask: &Mask, axis: usize) -> impl Iterator<Item = i64> {
     clippy::cast_possible_truncation,
     reason = "amplitudes are stored as f32"
 )]
-pub(crate) fn prefilters(field: &PupilField) -> [Vec<f32>; 2] {
+pub(crate) fn prefilters(field: &PupilField, interpolation: Interpolation) -> [Vec<f32>; 2] {
     [0, 1].map(|axis| {
         points(&field.mask, axis)
-            .map(|k| prefilter(k, field.size()[axis]) as f32)
+            .map(|k| prefilter(k, field.size()[axis], interpolation) as f32)
             .collect()
     })
 }
@@ -52,26 +60,48 @@ pub(crate) fn prefilters(field: &PupilField) -> [Vec<f32>; 2] {
 ///
 /// ```text
 /// v(fx, fy) = Σ R(lx, ly) a(lx; fx) a(ly; fy)      a(l; f) = Σ w(t; f) w(t + l; f)
-/// R(lx, ly) = Σ |t|² cos(2π kx lx/Q) cos(2π ky ly/Q) sinc⁻⁸(π kx/Q) sinc⁻⁸(π ky/Q) / Σ |t|²
+/// R(lx, ly) = Σ p cos(2π kx lx/Q) cos(2π ky ly/Q) b(kx)² b(ky)² / Σ p
 /// ```
 ///
-/// R is the autocorrelation of the spline coefficients at the lags that four taps can reach, the mean
-/// over both signs of each lag.
+/// R is the autocorrelation of the coefficients at the lags that four taps can reach, the mean over
+/// both signs of each lag, with the prefilter b and the power p of the pupil points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Variance {
     /// `table[ly][lx]`, with lags of both signs gathered in one entry.
-    table: [[f32; 4]; 4],
+    pub(crate) table: [[f32; 4]; 4],
 }
 
 impl Variance {
-    #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
-    pub(crate) fn new(mask: &Mask, size: [usize; 2]) -> Self {
-        let columns = weighted_cosines(mask, 0, size[0]);
-        let rows = weighted_cosines(mask, 1, size[1]);
+    /// The expected variance over random phasors.
+    pub(crate) fn expected(field: &PupilField, interpolation: Interpolation) -> Self {
+        Self::new(field, interpolation, |y| field.mask.powers(y))
+    }
+
+    /// The variance of what the pupil sees of a field from outside, given over the mask's box.
+    pub(crate) fn of(
+        seen: &Grid<Complex<f32>>,
+        field: &PupilField,
+        interpolation: Interpolation,
+    ) -> Self {
+        Self::new(field, interpolation, |y| {
+            let square = |z: &Complex<f32>| to_c64(*z).norm_sqr();
+            seen.row(y).iter().map(square).enumerate()
+        })
+    }
+
+    fn new<P: Iterator<Item = (usize, f64)>>(
+        field: &PupilField,
+        interpolation: Interpolation,
+        powers: impl Fn(usize) -> P,
+    ) -> Self {
+        let columns = weighted_cosines(field, 0, interpolation);
+        let rows = weighted_cosines(field, 1, interpolation);
+        let mut total = 0.0;
         let mut table = [[0.0_f64; 4]; 4];
         for (y, row_weights) in rows.iter().enumerate() {
             let mut sums = [0.0; 4];
-            for (x, power) in mask.powers(y) {
+            for (x, power) in powers(y) {
+                total += power;
                 for (sum, term) in sums.iter_mut().zip(columns[x]) {
                     *sum += power * term;
                 }
@@ -82,17 +112,32 @@ impl Variance {
                 }
             }
         }
+        Self::normalised(table, total)
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
+    fn normalised(table: [[f64; 4]; 4], total: f64) -> Self {
         let multiplicity = |lag: usize| if lag == 0 { 1.0 } else { 2.0 };
         let entry = |ly: usize, lx: usize| {
-            (table[ly][lx] * multiplicity(lx) * multiplicity(ly) / mask.power()) as f32
+            if total > 0.0 {
+                (table[ly][lx] * multiplicity(lx) * multiplicity(ly) / total) as f32
+            } else {
+                // Without light any variance will do; this one is 1 at every fraction.
+                if ly + lx == 0 {
+                    1.0
+                } else {
+                    multiplicity(lx) as f32 * multiplicity(ly) as f32
+                }
+            }
         };
         Self {
             table: core::array::from_fn(|ly| core::array::from_fn(|lx| entry(ly, lx))),
         }
     }
 
-    fn at(&self, x: &[f32; 4], y: &[f32; 4]) -> f32 {
-        let (x, y) = (autocorrelation(x), autocorrelation(y));
+    #[inline]
+    pub(crate) fn at<const N: usize>(&self, x: &Axis<N>, y: &Axis<N>) -> f32 {
+        let (x, y) = (autocorrelation(&x.weights), autocorrelation(&y.weights));
         let along = |row: &[f32; 4]| -> f32 { row.iter().zip(&x).map(|(r, a)| r * a).sum() };
         self.table
             .iter()
@@ -102,229 +147,120 @@ impl Variance {
     }
 }
 
-/// `cos(2π k l / Q) sinc⁻⁸(π k / Q)` for l = 0 to 3, for each lattice point k along an axis.
-fn weighted_cosines(mask: &Mask, axis: usize, size: usize) -> Vec<[f64; 4]> {
+/// `cos(2π k l / Q) b(k)²` for l = 0 to 3, for each lattice point k along an axis.
+fn weighted_cosines(
+    field: &PupilField,
+    axis: usize,
+    interpolation: Interpolation,
+) -> Vec<[f64; 4]> {
+    let size = field.size()[axis];
     let weighted = |k: i64| {
         let angle = 2.0 * PI * from_i64(k) / to_f64(size);
-        let filter = prefilter(k, size).powi(2);
+        let filter = prefilter(k, size, interpolation).powi(2);
         [0.0, 1.0, 2.0, 3.0].map(|lag: f64| (lag * angle).cos() * filter)
     };
-    points(mask, axis).map(weighted).collect()
+    points(&field.mask, axis).map(weighted).collect()
 }
 
-fn autocorrelation(w: &[f32; 4]) -> [f32; 4] {
-    [
-        w[0] * w[0] + w[1] * w[1] + w[2] * w[2] + w[3] * w[3],
-        w[0] * w[1] + w[1] * w[2] + w[2] * w[3],
-        w[0] * w[2] + w[1] * w[3],
-        w[0] * w[3],
-    ]
+/// Σ w(t) w(t + l) for each lag l.
+#[inline]
+fn autocorrelation<const N: usize>(w: &[f32; N]) -> [f32; N] {
+    core::array::from_fn(|lag| w[lag..].iter().zip(w).map(|(a, b)| a * b).sum())
 }
 
-/// The sixteen taps around a point of a periodic grid, and the variance they leave.
+/// The taps around a coordinate along one axis of a periodic grid.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Taps {
-    columns: [usize; 4],
-    rows: [usize; 4],
-    x: [f32; 4],
-    y: [f32; 4],
-    pub(crate) variance: f32,
-    /// The point, reduced to one period.
-    pub(crate) point: [f64; 2],
+pub(crate) struct Axis<const N: usize> {
+    cells: [usize; N],
+    weights: [f32; N],
+    /// The coordinate that the taps stand for, in one period.
+    pub(crate) place: f64,
 }
 
-impl Taps {
+/// Interpolation along one axis.
+pub(crate) trait Along: Copy {
+    /// The taps around `x` on a grid with the period `size`.
+    fn along(x: f64, size: usize) -> Self;
+}
+
+impl Along for Axis<4> {
+    #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
-    pub(crate) fn new(x: f64, y: f64, size: [usize; 2], variance: &Variance) -> Self {
-        let (column, fx) = wrap_coordinate(x, size[0]);
-        let (row, fy) = wrap_coordinate(y, size[1]);
-        let (x, y) = (weights(fx as f32), weights(fy as f32));
+    fn along(x: f64, size: usize) -> Self {
+        let (cell, f) = wrap_coordinate(x, size);
         Self {
-            columns: neighbours(column, size[0]),
-            rows: neighbours(row, size[1]),
-            x,
-            y,
-            variance: variance.at(&x, &y),
-            point: [to_f64(column) + fx, to_f64(row) + fy],
-        }
-    }
-
-    #[inline]
-    pub(crate) fn amplitude(&self, coefficients: &Grid<Complex<f32>>) -> Complex<f32> {
-        let mut columns = [Complex::new(0.0, 0.0); 4];
-        for (&row, weight) in self.rows.iter().zip(self.y) {
-            let values = self.gather(coefficients.row(row));
-            for (column, value) in columns.iter_mut().zip(values) {
-                *column += value * weight;
-            }
-        }
-        columns
-            .iter()
-            .zip(self.x)
-            .map(|(c, weight)| c * weight)
-            .sum()
-    }
-
-    /// The four values of a row; in one piece unless the taps straddle its ends.
-    #[inline]
-    fn gather(&self, row: &[Complex<f32>]) -> [Complex<f32>; 4] {
-        match row[self.columns[0]..].first_chunk() {
-            Some(values) => *values,
-            None => self.columns.map(|column| row[column]),
+            cells: [
+                wrap(cell + size - 1, size),
+                cell,
+                wrap(cell + 1, size),
+                wrap(cell + 2, size),
+            ],
+            weights: weights(f as f32),
+            place: to_f64(cell) + f,
         }
     }
 }
 
-/// One sample before `cell` and two after it, on the torus.
-fn neighbours(cell: usize, size: usize) -> [usize; 4] {
-    let wrap = |index: usize| if index < size { index } else { index - size };
-    [wrap(cell + size - 1), cell, wrap(cell + 1), wrap(cell + 2)]
+impl Along for Axis<2> {
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
+    fn along(x: f64, size: usize) -> Self {
+        let (cell, f) = wrap_coordinate(x, size);
+        Self {
+            cells: [cell, wrap(cell + 1, size)],
+            weights: [1.0 - f as f32, f as f32],
+            place: to_f64(cell) + f,
+        }
+    }
+}
+
+impl Along for Axis<1> {
+    #[inline]
+    fn along(x: f64, size: usize) -> Self {
+        let (cell, f) = wrap_coordinate(x, size);
+        let nearest = if f < 0.5 { cell } else { wrap(cell + 1, size) };
+        Self {
+            cells: [nearest],
+            weights: [1.0],
+            place: to_f64(nearest),
+        }
+    }
+}
+
+/// An index below two periods, on the torus.
+const fn wrap(index: usize, size: usize) -> usize {
+    if index < size { index } else { index - size }
+}
+
+/// The interpolated amplitude.
+#[inline]
+pub(crate) fn amplitude<const N: usize>(
+    coefficients: &Grid<Complex<f32>>,
+    x: &Axis<N>,
+    y: &Axis<N>,
+) -> Complex<f32> {
+    let mut columns = [Complex::new(0.0, 0.0); N];
+    for (&row, weight) in y.cells.iter().zip(y.weights) {
+        let values = gather(coefficients.row(row), &x.cells);
+        for (column, value) in columns.iter_mut().zip(values) {
+            *column += value * weight;
+        }
+    }
+    columns
+        .iter()
+        .zip(x.weights)
+        .map(|(c, weight)| c * weight)
+        .sum()
+}
+
+/// The values of a row; in one piece unless the taps straddle its ends.
+#[inline]
+fn gather<const N: usize>(row: &[Complex<f32>], cells: &[usize; N]) -> [Complex<f32>; N] {
+    match row[cells[0]..].first_chunk() {
+        Some(values) => *values,
+        None => cells.map(|cell| row[cell]),
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The cubic B-spline by its definition (Unser 1999, eq. 5).
-    fn kernel(x: f64) -> f64 {
-        let x = x.abs();
-        if x < 1.0 {
-            2.0 / 3.0 - x * x + 0.5 * x * x * x
-        } else {
-            (2.0 - x.min(2.0)).powi(3) / 6.0
-        }
-    }
-
-    /// What interpolation at the fraction `f` makes of the wave `exp(−2πi k x / Q)`, over the wave.
-    fn gain(k: f64, f: f64, size: usize) -> Complex<f64> {
-        let angle = 2.0 * PI * k / to_f64(size);
-        let filter = (0.5 * angle / (0.5 * angle).sin()).powi(4);
-        let filter = if filter.is_nan() { 1.0 } else { filter };
-        [-1.0, 0.0, 1.0, 2.0]
-            .iter()
-            .map(|t| Complex::from_polar(filter * kernel(t - f), -angle * (t - f)))
-            .sum()
-    }
-
-    fn points(mask: &Mask) -> Vec<([f64; 2], f64)> {
-        let [x0, y0] = mask.corner();
-        (0..mask.extent()[1])
-            .flat_map(|y| mask.powers(y).map(move |(x, power)| (x, y, power)))
-            .map(|(x, y, power)| {
-                let k = [from_i64(x0 + to_i64(x)), from_i64(y0 + to_i64(y))];
-                (k, power)
-            })
-            .collect()
-    }
-
-    fn mask(size: [usize; 2], speckle_size: f64, pupil: crate::Pupil) -> Mask {
-        let field = PupilField::from_speckle_size(size, speckle_size, 0).unwrap();
-        field.with_pupil(pupil).unwrap().mask
-    }
-
-    /// The mean over the mask of `term(gain at f)`.
-    fn mean(
-        mask: &Mask,
-        size: [usize; 2],
-        f: [f64; 2],
-        term: impl Fn([f64; 2], Complex<f64>) -> f64,
-    ) -> f64 {
-        let sum: f64 = points(mask)
-            .iter()
-            .map(|&([x, y], power)| {
-                power * term([x, y], gain(x, f[0], size[0]) * gain(y, f[1], size[1]))
-            })
-            .sum();
-        sum / mask.power()
-    }
-
-    const FRACTIONS: [[f64; 2]; 5] = [
-        [0.0, 0.0],
-        [0.5, 0.0],
-        [0.0, 0.25],
-        [0.5, 0.5],
-        [0.875, 0.125],
-    ];
-
-    #[test]
-    #[expect(clippy::cast_possible_truncation, reason = "exact fractions")]
-    fn weights_are_the_kernel_at_the_four_samples() {
-        for f in [0.0, 0.125, 0.25, 0.5, 0.75, 0.999_023_437_5] {
-            let weights = weights(f as f32);
-            for (t, weight) in [-1.0, 0.0, 1.0, 2.0].iter().zip(weights) {
-                let error = f64::from(weight) - kernel(t - f);
-                assert!(error.abs() < 1e-7, "tap {t} at {f}: {error:e}");
-            }
-        }
-    }
-
-    #[test]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_precision_loss,
-        reason = "exact fractions and small integers"
-    )]
-    fn the_closed_variance_is_the_mean_square_gain() {
-        let slanted = Grid::from_fn(9, 9, |x, y| (40 + x + x * y) as f32 / 112.0);
-        let slanted = crate::Transmission::new(&slanted).unwrap();
-        for (size, speckle_size) in [
-            ([20, 20], 2.0),
-            ([33, 33], 2.0625),
-            ([64, 64], 5.3),
-            ([36, 26], 2.5),
-        ] {
-            for pupil in [
-                crate::Pupil::Circle,
-                crate::Pupil::Annulus { inner: 0.4 },
-                crate::Pupil::Rectangle { height: 0.8 },
-                crate::Pupil::Gaussian { radius: 0.6 },
-                crate::Pupil::Sampled(slanted.clone()),
-            ] {
-                let mask = mask(size, speckle_size, pupil.clone());
-                let variance = Variance::new(&mask, size);
-                for [fx, fy] in FRACTIONS {
-                    let expected = mean(&mask, size, [fx, fy], |_, g| g.norm_sqr());
-                    let got = variance.at(&weights(fx as f32), &weights(fy as f32));
-                    let error = f64::from(got) - expected;
-                    // Sums of 16 terms of at most 4 in f32.
-                    assert!(
-                        error.abs() < 1e-6,
-                        "{pupil:?}, {size:?}, ({fx}, {fy}): {error:e}"
-                    );
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn the_error_of_the_spline_is_as_documented() {
-        for (size, rms_limit, covariance_limit) in [(64, 4.5e-3, 3.2e-3), (128, 2.1e-4, 1.2e-4)] {
-            let mask = mask([size; 2], to_f64(size) / 32.0, crate::Pupil::Circle);
-            let size = [size; 2];
-            let (mut rms, mut deviation) = (0.0_f64, 0.0_f64);
-            for here in FRACTIONS {
-                let square = mean(&mask, size, here, |_, g| (g - 1.0).norm_sqr());
-                rms = rms.max(square.sqrt());
-                let normal = mean(&mask, size, here, |_, g| g.norm_sqr());
-                let cells = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 0.0], [0.0, 2.0]];
-                for (there, cell) in FRACTIONS.iter().flat_map(|f| cells.map(|c| (f, c))) {
-                    let lag = [there[0] - here[0] + cell[0], there[1] - here[1] + cell[1]];
-                    let covariance = mean(&mask, size, here, |[x, y], g| {
-                        let angle = 2.0 * PI * (x * lag[0] + y * lag[1]) / to_f64(size[0]);
-                        let other = gain(x, there[0], size[0]) * gain(y, there[1], size[1]);
-                        (g * other.conj() * Complex::from_polar(1.0, angle)).re
-                    });
-                    let other = mean(&mask, size, *there, |_, g| g.norm_sqr());
-                    let gamma = covariance * covariance / (normal * other);
-                    let exact = mask.correlation(lag, size).norm_sqr();
-                    deviation = deviation.max((gamma - exact).abs());
-                }
-            }
-            assert!(
-                rms < rms_limit && rms > 0.5 * rms_limit,
-                "rms error {rms:e}"
-            );
-            assert!(deviation < covariance_limit, "deviation {deviation:e}");
-        }
-    }
-}
+mod tests;

@@ -1,12 +1,14 @@
 use num_complex::Complex;
-use tem00_numerics::{Grid, wrap_coordinate};
+use tem00_numerics::Grid;
 
 use crate::{
-    PupilField, SlicePath, SpeckleError, SpeckleScratch,
-    lattice::unit_phasor,
-    mask::{from_i64, to_f64},
+    Interpolation, PupilField, SlicePath, SpeckleError,
+    lattice::to_i64,
+    mask::from_i64,
     path::PathLaw,
-    spline::{Taps, Variance, prefilters},
+    rows::map_with_scratch,
+    spline::{Variance, prefilters},
+    transmission::to_c64,
 };
 
 /// Speckle that moves and decorrelates: slices of one random field behind a wandering pupil.
@@ -24,23 +26,24 @@ use crate::{
 ///
 /// Slices hold complex amplitudes, not intensities: interpolated amplitudes of a Gaussian random
 /// process are Gaussian again, so that the intensity keeps its exponential law at every coordinate
-/// once it is divided by the variance that the interpolation leaves. In the plane that is a cubic
-/// B-spline, prefiltered in the pupil (16 taps), with the variance in closed form. Between slices
-/// it is a linear blend in the common frame of the lattice:
+/// once it is divided by the variance that the interpolation leaves. In the plane that is the
+/// [`Interpolation`] of one's choice, a cubic B-spline by default, with the variance in closed form.
+/// Between slices it is a linear blend in the common frame of the lattice:
 ///
 /// ```text
 /// U = (1 − f) U_i + f U_{i+1} exp(−2πi (c_{i+1} − c_i)·r / Q)
 /// I = |U|² / (v(r) [(1 − f)² + f² + 2 f (1 − f) ρ_i])
 /// ```
 ///
-/// with the pupil centres c and the overlap `ρ_i` of the two pupils, counted on the lattice.
+/// with the pupil centres c and the overlap `ρ_i` of the two pupils, counted on the lattice. For a
+/// field from outside, v and ρ are those of the light that the pupils see, slice by slice.
 ///
 /// # Validity
 ///
 /// - Pupil centres are rounded to the lattice, which changes the overlap of two slices by up to
 ///   about 1/C against the closed form. [`correlation_between`](Self::correlation_between) is exact.
 /// - The spline's rms error of the field is 4.3e−3 at a speckle size of 2 samples and 2e−4 at 4.
-///   It changes the autocovariance by up to 3.2e−3 and 1.2e−4, but neither mean nor contrast.
+///   It changes the autocovariance by up to 3.8e−3 and 1.3e−4, but neither mean nor contrast.
 /// - At fractional u the cross term between two slices is taken as `ρ_i v(r)`. From M = 2 on, the
 ///   mean is off by up to 7e−4 for that at a speckle size of 2, and by up to 5e−5 at 4.
 /// - Between two slices the correlation is that of the blend. It exceeds the closed form near its
@@ -65,58 +68,137 @@ use crate::{
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeckleStack {
-    field: PupilField,
-    law: PathLaw,
-    variance: Variance,
-    slices: Vec<Slice>,
+    pub(crate) field: PupilField,
+    pub(crate) law: PathLaw,
+    pub(crate) interpolation: Interpolation,
+    pub(crate) slices: Vec<Slice>,
+    /// One for all slices, or one for each.
+    pub(crate) variances: Vec<Variance>,
 }
 
-/// The spline coefficients of one slice, and how it joins the next.
+/// The interpolation's coefficients of one slice, and how it joins the next.
 #[derive(Clone, Debug, PartialEq)]
-struct Slice {
-    coefficients: Grid<Complex<f32>>,
-    centre: [i64; 2],
-    /// Displacement of the next slice's pupil and its overlap with this one's.
-    step: [f64; 2],
-    overlap: f64,
+pub(crate) struct Slice {
+    pub(crate) coefficients: Grid<Complex<f32>>,
+    pub(crate) centre: [i64; 2],
+    pub(crate) join: Join,
+}
+
+/// The way from one slice to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Join {
+    /// Displacement of the next slice's pupil.
+    pub(crate) step: [f64; 2],
+    /// Overlap of both pupils: what the blend adds to the mean square.
+    pub(crate) overlap: f64,
+}
+
+/// How a [`SpeckleStack`] is built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StackOptions {
+    /// How look-ups interpolate in the plane.
+    pub interpolation: Interpolation,
+    /// The bytes that the slices may take, [`u64::MAX`] by default.
+    ///
+    /// Many systems grant any memory that is asked for and end the program when it is used: only a
+    /// limit keeps a stack that is too large from that.
+    pub memory_limit: u64,
+}
+
+impl Default for StackOptions {
+    fn default() -> Self {
+        Self {
+            interpolation: Interpolation::default(),
+            memory_limit: u64::MAX,
+        }
+    }
 }
 
 impl SpeckleStack {
+    /// Generates the slices of `field` along `path`, for look-ups by cubic splines.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the half period of `path` is zero or too large, if its length is, or if
+    /// the memory for [`SlicePath::memory_bytes`] is refused.
+    pub fn generate(field: &PupilField, path: SlicePath) -> Result<Self, SpeckleError> {
+        Self::generate_with(field, path, StackOptions::default())
+    }
+
     /// Generates the slices of `field` along `path`.
     ///
     /// # Errors
     ///
-    /// Returns an error if the half period of `path` is zero or too large, or if the memory for
-    /// [`SlicePath::memory_bytes`] is refused.
-    pub fn generate(field: &PupilField, path: SlicePath) -> Result<Self, SpeckleError> {
+    /// As [`generate`](Self::generate), and if the slices take more than the memory limit.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_speckle::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackOptions};
+    ///
+    /// let field = PupilField::new(64, 16, 7)?;
+    /// let path = SlicePath::Circle { half_period: 4 };
+    /// let frugal = StackOptions { memory_limit: 200_000, ..StackOptions::default() };
+    ///
+    /// let refused = SpeckleStack::generate_with(&field, path, frugal);
+    /// let needed = 8 * 64 * 64 * 8; // slices of 64 × 64 samples of 8 bytes
+    /// assert_eq!(refused, Err(SpeckleError::MemoryLimit { needed, limit: 200_000 }));
+    /// # Ok::<(), tem00_speckle::SpeckleError>(())
+    /// ```
+    pub fn generate_with(
+        field: &PupilField,
+        path: SlicePath,
+        options: StackOptions,
+    ) -> Result<Self, SpeckleError> {
         path.check()?;
+        check_limit(path.memory_bytes(field.size()), options.memory_limit)?;
         let field = path.close(field);
-        let filters = prefilters(&field);
-        let mut scratch = SpeckleScratch::default();
-        let mut slices = Vec::new();
-        for (index, mut coefficients) in reserve(path, field.size())?.into_iter().enumerate() {
-            let centre = path.centre(index, &field);
-            let next = path.centre((index + 1) % path.slice_count(), &field);
-            let step = field.shift(centre, next);
-            let view = field.view_of_point(centre);
-            field.amplitude_into(&view, Some(&filters), &mut coefficients, &mut scratch);
-            slices.push(Slice {
+        let filters = prefilters(&field, options.interpolation);
+        let [width, height] = field.size();
+        let slices = map_with_scratch(reserve(path, field.size())?, |index, room, scratch| {
+            let mut slice = zeros(room, width, height)?;
+            let view = field.view_of_point(path.centre(index, &field));
+            field.amplitude_into(&view, Some(&filters), &mut slice, scratch);
+            Ok(slice)
+        });
+        let slices = slices.into_iter().collect::<Result<_, _>>()?;
+        Ok(Self::assemble(field, path, options.interpolation, slices))
+    }
+
+    /// Joins the coefficients of the slices of `field`, a field that the path has closed.
+    pub(crate) fn assemble(
+        field: PupilField,
+        path: SlicePath,
+        interpolation: Interpolation,
+        coefficients: Vec<Grid<Complex<f32>>>,
+    ) -> Self {
+        let count = coefficients.len();
+        let centre = |index: usize| path.centre(index % count, &field);
+        let joined = map_with_scratch(coefficients, |index, coefficients, _| {
+            let (centre, next) = (centre(index), centre(index + 1));
+            let (join, variance) = join(&field, centre, next, interpolation);
+            let slice = Slice {
                 coefficients,
                 centre,
-                step: step.map(from_i64),
-                // The real part is what the blend adds to the mean square.
-                overlap: field.overlap(step).re,
-            });
+                join,
+            };
+            (slice, variance)
+        });
+        let (slices, variances): (Vec<_>, Vec<_>) = joined.into_iter().unzip();
+        let mut variances: Vec<_> = variances.into_iter().flatten().collect();
+        if variances.is_empty() {
+            variances.push(Variance::expected(&field, interpolation));
         }
-        Ok(Self {
+        Self {
             law: PathLaw {
                 path,
                 pupil: field.pupil().clone(),
             },
-            variance: Variance::new(&field.mask, field.size()),
-            field,
+            interpolation,
             slices,
-        })
+            variances,
+            field,
+        }
     }
 
     /// Returns the field the slices were cut from. That of a straight path closes on itself after the
@@ -128,6 +210,21 @@ impl SpeckleStack {
     /// Returns the path of the pupil.
     pub const fn path(&self) -> SlicePath {
         self.law.path
+    }
+
+    /// Returns how look-ups interpolate in the plane.
+    pub const fn interpolation(&self) -> Interpolation {
+        self.interpolation
+    }
+
+    /// Returns the coefficients of slice `index` that the look-up interpolates: the samples of its
+    /// amplitude, or those of the prefiltered spline.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `index < slice_count`.
+    pub fn coefficients(&self, index: usize) -> &Grid<Complex<f32>> {
+        &self.slices[index].coefficients
     }
 
     /// Returns the periods in the plane, in samples: the width and the height.
@@ -164,25 +261,6 @@ impl SpeckleStack {
             self.slices.len()
         );
         self.law.path.offset(index, &self.field)
-    }
-
-    /// Returns the intensity, with mean 1, at (x, y) in samples and u in slices.
-    ///
-    /// # Panics
-    ///
-    /// Panics unless `x`, `y` and `u` are finite.
-    pub fn intensity_at(&self, x: f64, y: f64, u: f64) -> f64 {
-        let taps = Taps::new(x, y, self.size(), &self.variance);
-        let (index, fraction) = wrap_coordinate(u, self.slices.len());
-        let slice = &self.slices[index];
-        let amplitude = taps.amplitude(&slice.coefficients);
-        if fraction <= 0.0 || self.slices.len() == 1 {
-            return f64::from(amplitude.norm_sqr() / taps.variance);
-        }
-        let next = &self.slices[(index + 1) % self.slices.len()];
-        let common_frame = slice.phase_to_next(taps.point, self.size());
-        let next = taps.amplitude(&next.coefficients) * common_frame;
-        slice.blend(amplitude, next, fraction) / f64::from(taps.variance)
     }
 
     /// Returns the correlation γ of the intensities of two slices, exactly: the square of the
@@ -231,46 +309,66 @@ impl SpeckleStack {
     }
 }
 
-/// Empty slices along `path`, or an error if there is no room for all of them.
-fn reserve(path: SlicePath, size: [usize; 2]) -> Result<Vec<Grid<Complex<f32>>>, SpeckleError> {
-    let [width, height] = size;
-    let samples = width.saturating_mul(height);
-    let refused = SpeckleError::Memory {
-        bytes: path.memory_bytes(size),
-    };
-    // All the room first: it is only used, and taken from the machine, from the next loop on.
+pub(crate) const fn check_limit(needed: u64, limit: u64) -> Result<(), SpeckleError> {
+    if needed > limit {
+        return Err(SpeckleError::MemoryLimit { needed, limit });
+    }
+    Ok(())
+}
+
+/// Room for the slices along `path`, or an error if there is none for all of them.
+///
+/// It is only used, and taken from the machine, when the slices are filled in.
+fn reserve(path: SlicePath, size: [usize; 2]) -> Result<Vec<Vec<Complex<f32>>>, SpeckleError> {
+    let samples = size[0].saturating_mul(size[1]);
     let room = |_| {
         let mut values = Vec::new();
         values.try_reserve_exact(samples).map(|()| values)
     };
-    let rooms: Result<Vec<_>, _> = (0..path.slice_count()).map(room).collect();
-    let zero = Complex::new(0.0, 0.0);
-    let slice = |mut values: Vec<_>| {
-        values.resize(samples, zero);
-        Grid::from_vec(width, height, values).map_err(|_| refused)
-    };
-    rooms.map_err(|_| refused)?.into_iter().map(slice).collect()
+    let rooms: Result<_, _> = (0..path.slice_count()).map(room).collect();
+    rooms.map_err(|_| SpeckleError::Memory {
+        bytes: path.memory_bytes(size),
+    })
 }
 
-impl Slice {
-    /// exp(−2πi step·r / Q): from the next slice's own frame to this one's, at r in one period.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a fraction of a turn in units of 2⁻³²"
-    )]
-    fn phase_to_next(&self, [x, y]: [f64; 2], size: [usize; 2]) -> Complex<f32> {
-        // Steps are whole numbers, so that whole periods of x and y only add whole turns.
-        let turns = -(self.step[0] * x / to_f64(size[0]) + self.step[1] * y / to_f64(size[1]));
-        unit_phasor(((turns - turns.floor()) * 4_294_967_296.0) as u32)
-    }
+/// A grid of zeros in `room`.
+fn zeros(
+    mut room: Vec<Complex<f32>>,
+    width: usize,
+    height: usize,
+) -> Result<Grid<Complex<f32>>, SpeckleError> {
+    room.resize(width * height, Complex::new(0.0, 0.0));
+    Grid::from_vec(width, height, room).map_err(|_| SpeckleError::Size(width.min(height)))
+}
 
-    #[expect(clippy::cast_possible_truncation, reason = "amplitudes are f32")]
-    fn blend(&self, here: Complex<f32>, next: Complex<f32>, f: f64) -> f64 {
-        let g = 1.0 - f;
-        let variance = g * g + f * f + 2.0 * f * g * self.overlap;
-        f64::from((here * g as f32 + next * f as f32).norm_sqr()) / variance
+/// How the slice of the pupil at `centre` joins that at `next`, and its variance if that is its own.
+fn join(
+    field: &PupilField,
+    centre: [i64; 2],
+    next: [i64; 2],
+    interpolation: Interpolation,
+) -> (Join, Option<Variance>) {
+    let shift = field.shift(centre, next);
+    let step = shift.map(from_i64);
+    if field.samples().is_none() {
+        let overlap = field.overlap(shift).re;
+        return (Join { step, overlap }, None);
     }
+    let (here, next) = (field.seen(centre), field.seen(next));
+    let overlap = shared(&here, &next, shift);
+    let variance = Variance::of(&here, field, interpolation);
+    (Join { step, overlap }, Some(variance))
+}
+
+/// Re Σ a(k) b*(k − shift).
+fn shared(a: &Grid<Complex<f32>>, b: &Grid<Complex<f32>>, [dx, dy]: [i64; 2]) -> f64 {
+    let (width, height) = (to_i64(a.width()), to_i64(a.height()));
+    let both = |shift: i64, size: i64| shift.clamp(0, size)..(size + shift).clamp(0, size);
+    let at = |grid: &Grid<_>, x, y| to_c64(*grid.wrapped(x, y));
+    both(dy, height)
+        .flat_map(|y| both(dx, width).map(move |x| (x, y)))
+        .map(|(x, y)| (at(a, x, y) * at(b, x - dx, y - dy).conj()).re)
+        .sum()
 }
 
 #[cfg(test)]

@@ -203,6 +203,14 @@ impl PupilField {
         }
     }
 
+    /// What the pupil sees of a field about a lattice point, over the box of its mask. The squares
+    /// of a field from outside sum to 1, or to 0 where there is no light.
+    pub(crate) fn seen(&self, centre: [i64; 2]) -> Grid<Complex<f32>> {
+        let mut aperture = None;
+        self.fill(&self.view_of_point(centre), None, &mut aperture)
+            .clone()
+    }
+
     /// The expected sum of squares in the aperture. That of samples is made 1 as they are filled in.
     fn power(&self, view: &View<'_>) -> f64 {
         match self.lattice.source {

@@ -1,9 +1,10 @@
 use core::f64::consts::PI;
 
 use proptest::prelude::*;
+use tem00_numerics::wrap_coordinate;
 
 use super::*;
-use crate::{Phasors, Pupil};
+use crate::{Phasors, Pupil, mask::to_f64};
 
 fn stack(size: usize, diameter: usize, path: SlicePath) -> SpeckleStack {
     let field = PupilField::new(size, diameter, 17).unwrap();

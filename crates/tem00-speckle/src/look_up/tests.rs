@@ -1,0 +1,278 @@
+use proptest::{prelude::*, test_runner::RngSeed};
+use tem00_numerics::Grid;
+use tem00_statistics::{exponential_cumulative, kolmogorov_smirnov, rectangular_pixel_contrast};
+
+use super::*;
+use crate::{Phasors, PupilField, SlicePath, StackOptions};
+
+const ALL: [Interpolation; 3] = [
+    Interpolation::CubicSpline,
+    Interpolation::Bilinear,
+    Interpolation::Nearest,
+];
+
+fn options(interpolation: Interpolation) -> StackOptions {
+    StackOptions {
+        interpolation,
+        ..StackOptions::default()
+    }
+}
+
+fn circle(half_period: usize) -> SlicePath {
+    SlicePath::Circle { half_period }
+}
+
+fn stack(field: &PupilField, path: SlicePath, interpolation: Interpolation) -> SpeckleStack {
+    SpeckleStack::generate_with(field, path, options(interpolation)).unwrap()
+}
+
+/// Light from outside: phasors under an envelope that falls to one side, so that no two pupils
+/// see the same.
+fn measured(size: [usize; 2], speckle_size: f64) -> PupilField {
+    let samples = Grid::from_fn(48, 48, |x, y| {
+        let word = u32::try_from(x * 48 + y)
+            .unwrap()
+            .wrapping_mul(2_654_435_769);
+        #[expect(clippy::cast_precision_loss, reason = "small integers")]
+        let envelope = (x + 4) as f32 / 52.0;
+        unit_phasor(word.rotate_left(13).wrapping_mul(0x9E37_79B1)) * envelope
+    });
+    PupilField::from_samples(samples, size, speckle_size).unwrap()
+}
+
+/// The mean over all cells, at one fraction of each.
+fn mean(stack: &SpeckleStack, [fx, fy]: [f64; 2], u: f64) -> f64 {
+    let [width, height] = stack.size().map(|side| u32::try_from(side).unwrap());
+    let cells = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let sum: f64 = cells
+        .map(|(x, y)| stack.intensity_at(f64::from(x) + fx, f64::from(y) + fy, u))
+        .sum();
+    sum / f64::from(width * height)
+}
+
+#[test]
+fn samples_are_those_of_the_pattern_without_a_spline() {
+    for field in [
+        PupilField::from_speckle_size([40, 28], 2.5, 3).unwrap(),
+        measured([48, 48], 3.0),
+    ] {
+        for interpolation in [Interpolation::Bilinear, Interpolation::Nearest] {
+            let stack = stack(&field, circle(3), interpolation);
+            for (index, u) in (0..6).zip(0_u32..) {
+                let pattern = stack.field().pattern_at(stack.offset(index), 0.0);
+                for (y, row) in (0_u32..).zip(pattern.values().rows()) {
+                    for (x, &expected) in (0_u32..).zip(row) {
+                        let got = stack.intensity_at(x.into(), y.into(), u.into());
+                        let error = (got - f64::from(expected)).abs() / (1.0 + got);
+                        // Two transforms in f32 and the phases that centre one of them: 16 ε each.
+                        assert!(
+                            error < 4e-6,
+                            "{interpolation:?} at ({x}, {y}, {u}): {error:e}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_nearest_sample_is_the_nearest() {
+    let field = PupilField::new(32, 8, 5).unwrap();
+    let stack = stack(&field, circle(2), Interpolation::Nearest);
+    for (x, sample) in [
+        (3.49, 3.0),
+        (3.5, 4.0),
+        (31.6, 0.0),
+        (-0.4, 0.0),
+        (-0.6, 31.0),
+    ] {
+        for u in [0.0, 1.25] {
+            let (got, expected) = (
+                stack.intensity_at(x, 7.0, u),
+                stack.intensity_at(sample, 7.0, u),
+            );
+            assert!((got - expected).abs() < 1e-12, "{got} | {expected} at {x}");
+        }
+    }
+}
+
+#[test]
+fn light_from_outside_has_the_mean_of_one_between_samples() {
+    for interpolation in ALL {
+        let stack = stack(&measured([48, 40], 2.5), circle(2), interpolation);
+        for fractions in [[0.0, 0.0], [0.5, 0.5], [0.3, 0.8]] {
+            for u in [0.0, 1.0, 2.0] {
+                let mean = mean(&stack, fractions, u);
+                // By Parseval, but for the rounding of f32.
+                assert!(
+                    (mean - 1.0).abs() < 3e-6,
+                    "{interpolation:?}, {fractions:?}, {u}: {mean}"
+                );
+            }
+        }
+        // At a sample only the overlap of the slices counts, which is that of the light.
+        for u in [0.5, 1.5, 3.25] {
+            let mean = mean(&stack, [0.0, 0.0], u);
+            let tolerance = match interpolation {
+                Interpolation::CubicSpline => 7e-4,
+                Interpolation::Bilinear | Interpolation::Nearest => 3e-6,
+            };
+            assert!(
+                (mean - 1.0).abs() < tolerance,
+                "{interpolation:?} at u = {u}: {mean}"
+            );
+        }
+    }
+}
+
+#[test]
+fn where_no_light_falls_the_look_up_is_dark() {
+    let dark = Grid::filled(8, 8, Complex::new(0.0, 0.0));
+    let field = PupilField::from_samples(dark, [32, 32], 4.0).unwrap();
+    for interpolation in ALL {
+        let stack = stack(&field, circle(2), interpolation);
+        for (x, u) in [(0.0, 0.0), (3.3, 0.5), (-7.7, 2.9)] {
+            let dark = stack.intensity_at(x, x, u);
+            assert!(dark.abs() <= 0.0, "{interpolation:?}: {dark}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 24, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
+    })]
+
+    /// Ensembles of Gaussian phasors, so that the law is exact; one look-up per 4 × 4 samples, which is
+    /// 2 speckles.
+    #[test]
+    fn intensities_are_exponential_at_any_fraction(
+        seed: u32, fx in 0.0_f64..1.0, fy in 0.0_f64..1.0, u in 0.0_f64..12.0,
+        kind in 0_usize..3, straight: bool,
+    ) {
+        let path = if straight {
+            SlicePath::Straight { half_period: 6, length: 3 }
+        } else {
+            circle(6)
+        };
+        let mut samples = Vec::new();
+        for tile in 0..4_u64 {
+            let field = PupilField::new(64, 32, u64::from(seed) * 4 + tile).unwrap();
+            let field = field.with_phasors(Phasors::Gaussian);
+            let stack = stack(&field, path, ALL[kind]);
+            for i in 0..256_u32 {
+                let (x, y) = (f64::from(i % 16), f64::from(i / 16));
+                samples.push(stack.intensity_at(4.0 * x + fx, 4.0 * y + fy, u));
+            }
+        }
+        let outcome = kolmogorov_smirnov(&samples, exponential_cumulative).unwrap();
+        // 24 cases at α = 1e-5: a correct look-up fails one in 4000 times.
+        prop_assert!(outcome.p_value > 1e-5, "{:?}: {outcome:?}", ALL[kind]);
+    }
+
+    #[test]
+    fn batches_are_the_bits_of_single_look_ups(
+        points in prop::collection::vec((-1e3_f64..1e3, -1e9_f64..1e9, -50.0_f64..50.0), 0..40),
+        kind in 0_usize..3,
+    ) {
+        let field = PupilField::from_speckle_size([20, 24], 2.5, 9).unwrap();
+        let stack = stack(&field, circle(2), ALL[kind]);
+        let x: Vec<_> = points.iter().map(|p| p.0).collect();
+        let y: Vec<_> = points.iter().map(|p| p.1).collect();
+        let u: Vec<_> = points.iter().map(|p| p.2).collect();
+        let mut batch = vec![f64::NAN; points.len()];
+        stack.intensity_batch(&x, &y, &u, &mut batch);
+        for (got, (x, y, u)) in batch.iter().zip(points) {
+            prop_assert_eq!(got.to_bits(), stack.intensity_at(x, y, u).to_bits());
+        }
+    }
+
+    #[test]
+    fn look_ups_of_any_finite_coordinate_are_finite(
+        x in prop::num::f64::NORMAL, y in prop::num::f64::NORMAL, u in prop::num::f64::NORMAL,
+        width in prop::num::f64::NORMAL, kind in 0_usize..3,
+    ) {
+        let field = PupilField::from_speckle_size([20, 16], 2.0, 9).unwrap();
+        let stack = stack(&field, circle(3), ALL[kind]);
+        let intensity = stack.intensity_at(x, y, u);
+        prop_assert!(intensity.is_finite() && intensity >= 0.0, "{intensity}");
+        let average = stack.average_over([x, y], [width.abs(), 1.0], u);
+        prop_assert!(average.is_finite() && average >= 0.0, "{average}");
+    }
+
+    #[test]
+    fn averages_are_those_of_many_points(
+        x in -100.0_f64..100.0, y in -100.0_f64..100.0, u in 0.0_f64..4.0,
+        width in 0.0_f64..70.0, height in 0.0_f64..9.0, kind in 0_usize..2,
+    ) {
+        let field = PupilField::from_speckle_size([32, 48], 2.5, 11).unwrap();
+        // Of the two that are continuous; the oracle is the midpoint rule over 160 × 40 points.
+        let stack = stack(&field, circle(2), ALL[kind]);
+        let mut sum = 0.0;
+        for i in 0..160_u32 {
+            for j in 0..40_u32 {
+                let at = |i: u32, n: u32, size: f64| ((f64::from(i) + 0.5) / f64::from(n) - 0.5) * size;
+                sum += stack.intensity_at(x + at(i, 160, width), y + at(j, 40, height), u);
+            }
+        }
+        let got = stack.average_over([x, y], [width, height], u);
+        // The midpoint rule errs by (π q / n)² / 6 of a wave: 5e-2 at q = 70/2.5 over 160 points, where
+        // the wave itself averages to 1/(π q) = 1e-2 at most. The kinks of bilinear amplitudes are
+        // those of parabolas 0.3 high, which either rule cuts to a twentieth.
+        let tolerance = if kind == 0 { 5e-4 } else { 1.5e-2 };
+        prop_assert!((got - sum / 6_400.0).abs() < tolerance, "{got} | {}", sum / 6_400.0);
+    }
+}
+
+#[test]
+fn averages_over_pixels_have_the_contrast_of_pixels() {
+    const TILES: u32 = 12;
+    for size in [[0.5, 0.5], [1.0, 1.0], [2.0, 0.5], [3.0, 3.0]] {
+        let (mut sum, mut square, mut count) = (0.0, 0.0, 0.0);
+        for seed in 0..TILES {
+            let field = PupilField::new(64, 32, u64::from(seed) + 100).unwrap();
+            let field = field.with_phasors(Phasors::Gaussian);
+            let stack = stack(&field, SlicePath::Still, Interpolation::default());
+            for i in 0..32 * 32_u32 {
+                let centre = [f64::from(i % 32) * 2.0, f64::from(i / 32) * 2.0];
+                let pixel = stack.average_over(centre, size.map(|s| 2.0 * s), 0.0);
+                sum += pixel;
+                square += pixel * pixel;
+                count += 1.0;
+            }
+        }
+        let mean = sum / count;
+        let contrast = (square / count - mean * mean).sqrt();
+        let expected = rectangular_pixel_contrast(size);
+        // The spread of a tile's squared contrast is 1.53/C, that of larger pixels smaller, and its
+        // mean spreads by 1/√N = 0.035; the Airy form fits C = 32 within 4e-3. α = 6e-5.
+        let tolerance = 4.0 * 1.53 / 32.0 / f64::from(TILES).sqrt() / 2.0 / expected.sqrt() + 4e-3;
+        assert!(
+            (contrast - expected).abs() < tolerance,
+            "{size:?} speckles: {contrast} | {expected}"
+        );
+    }
+}
+
+#[test]
+#[should_panic(expected = "a box of the size")]
+fn boxes_of_negative_size_are_refused() {
+    let stack = stack(
+        &PupilField::new(16, 8, 0).unwrap(),
+        SlicePath::Still,
+        ALL[0],
+    );
+    stack.average_over([0.0; 2], [-1.0, 1.0], 0.0);
+}
+
+#[test]
+#[should_panic(expected = "coordinates of lengths")]
+fn batches_of_unlike_lengths_are_refused() {
+    let stack = stack(
+        &PupilField::new(16, 8, 0).unwrap(),
+        SlicePath::Still,
+        ALL[0],
+    );
+    stack.intensity_batch(&[0.0], &[0.0, 1.0], &[0.0], &mut [0.0]);
+}

@@ -81,11 +81,11 @@ pub struct PupilField {
 }
 
 /// What a pattern is made for: samples, and lattice points across the pupil.
-#[derive(Clone, Copy, Debug)]
-struct Layout {
-    size: [usize; 2],
-    diameter: [f64; 2],
-    speckle_size: f64,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Layout {
+    pub(crate) size: [usize; 2],
+    pub(crate) diameter: [f64; 2],
+    pub(crate) speckle_size: f64,
 }
 
 impl PupilField {
@@ -237,6 +237,28 @@ impl PupilField {
         self.lattice.nearest([to[0] - from[0], to[1] - from[1]])
     }
 
+    /// Makes a field again of what it was made of.
+    pub(crate) fn restore(
+        lattice: Lattice,
+        layout: Layout,
+        pupil: Pupil,
+    ) -> Result<Self, SpeckleError> {
+        pupil.check()?;
+        if let Source::Measured(samples) = &lattice.source {
+            check_samples(samples)?;
+        }
+        let [x, y] = Layout::new(layout.size, layout.speckle_size)?.diameter;
+        // The constructors round the one or the other.
+        let agrees = |a: f64, b: f64| (a - b).abs() < 1e-12 * a;
+        if !(agrees(x, layout.diameter[0]) && agrees(y, layout.diameter[1])) {
+            return Err(SpeckleError::SpeckleSize {
+                speckle_size: layout.speckle_size,
+                largest: to_f64(layout.size[0]) / layout.diameter[0],
+            });
+        }
+        Self::build(lattice, layout, pupil)
+    }
+
     fn build(lattice: Lattice, layout: Layout, pupil: Pupil) -> Result<Self, SpeckleError> {
         let Layout { size, diameter, .. } = layout;
         let mask = Mask::new(&pupil, diameter, [0.0; 2]);
@@ -259,7 +281,7 @@ impl PupilField {
         })
     }
 
-    const fn layout(&self) -> Layout {
+    pub(crate) const fn layout(&self) -> Layout {
         Layout {
             size: self.size,
             diameter: self.diameter,

@@ -63,6 +63,7 @@ mod quadrature;
 mod rows;
 mod spline;
 mod stack;
+mod stack_file;
 mod transmission;
 mod view;
 
@@ -75,5 +76,6 @@ pub use path::SlicePath;
 pub use pattern::{SpeckleField, SpecklePattern};
 pub use pupil::{Phasors, Pupil};
 pub use stack::{SpeckleStack, StackOptions};
+pub use stack_file::StackFileError;
 pub use transmission::Transmission;
 pub use view::SpeckleScratch;

@@ -1,0 +1,136 @@
+//! Stacks as files: written once, read back with the same bits, or mapped into memory.
+
+use std::io::{self, Read, Write};
+
+use num_complex::Complex;
+use tem00_numerics::Grid;
+
+use crate::{PupilField, SpeckleError, SpeckleStack, stack::check_limit};
+
+mod checksum;
+mod error;
+mod fields;
+mod header;
+
+use checksum::Checksum;
+pub use error::StackFileError;
+use header::{Fixed, Header};
+
+/// Bytes that are read or written at a time.
+const CHUNK: usize = 1 << 16;
+
+impl SpeckleStack {
+    /// Writes the stack as a file, little-endian, in the layout of `docs/stack_file.md`.
+    ///
+    /// After a header come the coefficients of all slices, row by row, from a multiple of 64 bytes on: a
+    /// renderer may map the file into its memory and look up there.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the writer does.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_speckle::{PupilField, SlicePath, SpeckleStack};
+    ///
+    /// let field = PupilField::new(64, 16, 7)?;
+    /// let stack = SpeckleStack::generate(&field, SlicePath::Circle { half_period: 2 })?;
+    ///
+    /// let mut file = Vec::new();
+    /// stack.write_to(&mut file)?;
+    ///
+    /// let same = SpeckleStack::read_from(file.as_slice(), 1 << 20)?;
+    /// assert_eq!(same, stack);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn write_to(&self, mut writer: impl Write) -> io::Result<()> {
+        writer.write_all(&Header::bytes_of(self))?;
+        let mut bytes = Vec::with_capacity(CHUNK);
+        for slice in &self.slices {
+            for values in slice.coefficients.values().chunks(CHUNK / 8) {
+                bytes.clear();
+                bytes.extend(values.iter().flat_map(to_bytes));
+                writer.write_all(&bytes)?;
+            }
+        }
+        writer.flush()
+    }
+
+    /// Reads a stack that [`write_to`](Self::write_to) has written and that takes no more than
+    /// `memory_limit` bytes.
+    ///
+    /// Memory is only asked for as the file fills it, whatever its header claims. Reading ends with
+    /// the last coefficient; what follows is left to the caller.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the reader does, if the file is something else, of a newer version,
+    /// damaged or cut short, or if the memory is over the limit or refused.
+    pub fn read_from(mut reader: impl Read, memory_limit: u64) -> Result<Self, StackFileError> {
+        let fixed = Fixed::read(&mut reader)?;
+        check_limit(fixed.memory_bytes(), memory_limit)?;
+        let header = Header::read(fixed, &mut reader)?;
+        let field = header.field()?;
+        let path = header.path();
+        let mut checksum = Checksum::default();
+        let slices: Result<Vec<_>, _> = (0..path.slice_count())
+            .map(|_| read_grid(&mut reader, &field, &mut checksum))
+            .collect();
+        let slices = slices?;
+        if checksum.value() != header.data_checksum() {
+            return Err(StackFileError::Damaged);
+        }
+        Ok(Self::assemble(field, path, header.interpolation(), slices))
+    }
+}
+
+/// Reads one slice; its memory grows with what has been read.
+fn read_grid(
+    reader: &mut impl Read,
+    field: &PupilField,
+    checksum: &mut Checksum,
+) -> Result<Grid<Complex<f32>>, StackFileError> {
+    let [width, height] = field.size();
+    let samples = width * height;
+    let mut values: Vec<Complex<f32>> = Vec::new();
+    let mut bytes = [0; CHUNK];
+    while values.len() < samples {
+        let count = (samples - values.len()).min(CHUNK / 8);
+        let bytes = &mut bytes[..8 * count];
+        reader.read_exact(bytes)?;
+        if values.capacity() < values.len() + count {
+            let wanted = (2 * values.len()).clamp(values.len() + count, samples);
+            let more = values.try_reserve_exact(wanted - values.len());
+            more.map_err(|_| SpeckleError::Memory {
+                bytes: 8 * wanted as u64,
+            })?;
+        }
+        let (words, _) = bytes.as_chunks();
+        values.extend(words.iter().map(|word| {
+            checksum.add(u64::from_le_bytes(*word));
+            from_bytes(*word)
+        }));
+    }
+    Grid::from_vec(width, height, values).map_err(|_| StackFileError::Damaged)
+}
+
+/// Real part first, each little-endian.
+fn to_bytes(z: &Complex<f32>) -> [u8; 8] {
+    word(z).to_le_bytes()
+}
+
+fn word(z: &Complex<f32>) -> u64 {
+    u64::from(z.re.to_bits()) | u64::from(z.im.to_bits()) << 32
+}
+
+fn from_bytes(bytes: [u8; 8]) -> Complex<f32> {
+    let [a, b, c, d, e, f, g, h] = bytes;
+    Complex::new(
+        f32::from_le_bytes([a, b, c, d]),
+        f32::from_le_bytes([e, f, g, h]),
+    )
+}
+
+#[cfg(test)]
+mod tests;

@@ -154,9 +154,9 @@ impl SpeckleStack {
         check_limit(path.memory_bytes(field.size()), options.memory_limit)?;
         let field = path.close(field);
         let filters = prefilters(&field, options.interpolation);
-        let [width, height] = field.size();
+        let dark = Complex::new(0.0, 0.0);
         let slices = map_with_scratch(reserve(path, field.size())?, |index, room, scratch| {
-            let mut slice = zeros(room, width, height)?;
+            let mut slice = filled(room, field.size(), dark)?;
             let view = field.view_of_point(path.centre(index, &field));
             field.amplitude_into(&view, Some(&filters), &mut slice, scratch);
             Ok(slice)
@@ -319,7 +319,7 @@ pub(crate) const fn check_limit(needed: u64, limit: u64) -> Result<(), SpeckleEr
 /// Room for the slices along `path`, or an error if there is none for all of them.
 ///
 /// It is only used, and taken from the machine, when the slices are filled in.
-fn reserve(path: SlicePath, size: [usize; 2]) -> Result<Vec<Vec<Complex<f32>>>, SpeckleError> {
+pub(crate) fn reserve<T>(path: SlicePath, size: [usize; 2]) -> Result<Vec<Vec<T>>, SpeckleError> {
     let samples = size[0].saturating_mul(size[1]);
     let room = |_| {
         let mut values = Vec::new();
@@ -327,17 +327,17 @@ fn reserve(path: SlicePath, size: [usize; 2]) -> Result<Vec<Vec<Complex<f32>>>, 
     };
     let rooms: Result<_, _> = (0..path.slice_count()).map(room).collect();
     rooms.map_err(|_| SpeckleError::Memory {
-        bytes: path.memory_bytes(size),
+        bytes: path.memory_bytes(size) / 8 * size_of::<T>() as u64,
     })
 }
 
-/// A grid of zeros in `room`.
-fn zeros(
-    mut room: Vec<Complex<f32>>,
-    width: usize,
-    height: usize,
-) -> Result<Grid<Complex<f32>>, SpeckleError> {
-    room.resize(width * height, Complex::new(0.0, 0.0));
+/// A grid of one value in `room`.
+pub(crate) fn filled<T: Clone>(
+    mut room: Vec<T>,
+    [width, height]: [usize; 2],
+    value: T,
+) -> Result<Grid<T>, SpeckleError> {
+    room.resize(width * height, value);
     Grid::from_vec(width, height, room).map_err(|_| SpeckleError::Size(width.min(height)))
 }
 

@@ -147,6 +147,35 @@ fn the_mean_is_one_between_samples_and_slices() {
     }
 }
 
+#[test]
+fn cheaper_interpolations_keep_the_mean_as_documented() {
+    let worst = |size: usize, interpolation: Interpolation| {
+        let field = PupilField::new(size, 24, 17).unwrap();
+        let options = StackOptions {
+            interpolation,
+            ..StackOptions::default()
+        };
+        let stack = SpeckleStack::generate_with(&field, circle(8), options).unwrap();
+        let mut worst = 0.0_f64;
+        for fractions in [[0.5, 0.5], [0.25, 0.75], [0.0, 0.0]] {
+            for u in [0.0, 1.5, 3.25, 6.5] {
+                worst = worst.max((moments(&stack, fractions, u).0 - 1.0).abs());
+            }
+        }
+        worst
+    };
+    for (size, stated) in [(48, 0.021), (96, 5.5e-3), (192, 1.4e-3)] {
+        let bilinear = worst(size, Interpolation::Bilinear);
+        assert!(
+            bilinear < stated && bilinear > 0.8 * stated,
+            "Q = {size}: mean off by {bilinear:e}"
+        );
+        let nearest = worst(size, Interpolation::Nearest);
+        // Exact but for the rounding of f32.
+        assert!(nearest < 3e-6, "Q = {size}: mean off by {nearest:e}");
+    }
+}
+
 /// Amplitude correlation of two coordinates of a stack, blends included, from the overlaps.
 fn blended_overlap(law: &PathLaw, u0: f64, u1: f64) -> f64 {
     let taps = |u: f64| {
@@ -297,11 +326,14 @@ fn opposite_slices_are_uncorrelated() {
 #[test]
 fn look_ups_decorrelate_as_the_slices_do() {
     const TILES: u32 = 8;
-    for distance in [1.0, 2.0, 4.0] {
+    for (path, distance) in [circle(4), straight(4)]
+        .into_iter()
+        .flat_map(|path| [1.0, 2.0, 4.0].map(|distance| (path, distance)))
+    {
         let (mut covariance, mut expected) = (0.0, 0.0);
         for seed in 0..TILES {
             let field = PupilField::new(64, 32, seed.into()).unwrap();
-            let stack = SpeckleStack::generate(&field, circle(4)).unwrap();
+            let stack = SpeckleStack::generate(&field, path).unwrap();
             for i in 0..64 * 64_u32 {
                 let (x, y) = (f64::from(i % 64) + 0.5, f64::from(i / 64) + 0.25);
                 let product = (stack.intensity_at(x, y, 0.0) - 1.0)
@@ -315,7 +347,7 @@ fn look_ups_decorrelate_as_the_slices_do() {
         let tolerance = 4.0 * 1.53 / 32.0 / f64::from(TILES).sqrt() + 1.8 / 32.0;
         assert!(
             (covariance - expected).abs() < tolerance,
-            "{distance}: {covariance}"
+            "{path:?}, {distance}: {covariance}"
         );
     }
 }
@@ -446,7 +478,7 @@ fn memory_that_no_machine_has_is_refused() {
     let path = circle(SlicePath::MAX_HALF_PERIOD);
     // 512 TiB, more than an address has bits for.
     let bytes = path.memory_bytes([PupilField::MAX_SIZE; 2]);
-    let refused = reserve(path, [PupilField::MAX_SIZE; 2]);
+    let refused = reserve::<Complex<f32>>(path, [PupilField::MAX_SIZE; 2]);
     assert_eq!(refused, Err(SpeckleError::Memory { bytes }));
 }
 
@@ -461,4 +493,43 @@ fn the_memory_is_known_before_it_is_taken() {
     assert_eq!(stack.memory_bytes(), bytes as u64);
     // No overflow, whatever is asked for.
     assert_eq!(circle(usize::MAX).memory_bytes([usize::MAX; 2]), u64::MAX);
+}
+
+#[test]
+fn a_limit_is_the_most_that_a_stack_may_take() {
+    let field = PupilField::new(32, 8, 0).unwrap();
+    let path = circle(3);
+    let needed = path.memory_bytes(field.size());
+    let with = |memory_limit| {
+        let options = StackOptions {
+            memory_limit,
+            ..StackOptions::default()
+        };
+        SpeckleStack::generate_with(&field, path, options)
+    };
+    assert_eq!(with(needed).unwrap().memory_bytes(), needed);
+    let limit = needed - 1;
+    let refused = with(limit).unwrap_err();
+    assert_eq!(refused, SpeckleError::MemoryLimit { needed, limit });
+    let message = refused.to_string();
+    assert!(
+        message.contains(&format!("{limit} bytes, got {needed}")),
+        "{message}"
+    );
+}
+
+#[cfg(feature = "parallel")]
+#[test]
+fn stacks_are_the_same_bits_for_any_number_of_threads() {
+    let field = PupilField::from_speckle_size([90, 64], 2.3, 8).unwrap();
+    for path in [SlicePath::Still, circle(5), straight(2)] {
+        let with_threads = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.unwrap()
+                .install(|| SpeckleStack::generate(&field, path).unwrap())
+        };
+        let one = with_threads(1);
+        assert_eq!(one, with_threads(2), "{path:?} by 2 threads");
+        assert_eq!(one, with_threads(7), "{path:?} by 7 threads");
+    }
 }

@@ -1,6 +1,6 @@
 use core::{error, fmt};
 
-use crate::PupilField;
+use crate::{CoherentBackground, PupilField};
 
 /// Why a pupil field or a stack could not be constructed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +65,11 @@ pub enum SpeckleError {
         /// The bytes that were asked for.
         bytes: u64,
     },
+    /// The beam ratio of a coherent background is not inside
+    /// [0, [`CoherentBackground::MAX_BEAM_RATIO`]].
+    BeamRatio(f64),
+    /// The phase of a coherent background, in radians, is not finite.
+    Phase(f64),
 }
 
 impl fmt::Display for SpeckleError {
@@ -133,6 +138,12 @@ impl fmt::Display for SpeckleError {
                  slices or a smaller pattern"
             ),
             Self::Memory { bytes } => write!(f, "memory for the stack refused: {bytes} bytes"),
+            Self::BeamRatio(got) => write!(
+                f,
+                "beam ratio must be 0 to {:e}, got {got}",
+                CoherentBackground::MAX_BEAM_RATIO
+            ),
+            Self::Phase(got) => write!(f, "phase must be finite, got {got} rad"),
         }
     }
 }

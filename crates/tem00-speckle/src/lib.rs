@@ -54,6 +54,7 @@ mod field;
 mod interpolation;
 mod lattice;
 mod look_up;
+mod light;
 mod mask;
 pub mod paper;
 mod path;
@@ -70,6 +71,7 @@ mod view;
 pub use error::SpeckleError;
 pub use field::PupilField;
 pub use interpolation::Interpolation;
+pub use light::{CoherentBackground};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use path::SlicePath;

@@ -1,6 +1,6 @@
 use core::{error, fmt};
 
-use crate::{CoherentBackground, PupilField};
+use crate::{CoherentBackground, Exposure, PupilField};
 
 /// Why a pupil field or a stack could not be constructed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,6 +70,10 @@ pub enum SpeckleError {
     BeamRatio(f64),
     /// The phase of a coherent background, in radians, is not finite.
     Phase(f64),
+    /// The drift over the sensor, in speckle sizes, exceeds [`Exposure::MAX_IMAGE_DRIFT`].
+    ImageDrift(f64),
+    /// The drift over the pupil, in its diameters, exceeds [`Exposure::MAX_PUPIL_DRIFT`].
+    PupilDrift(f64),
 }
 
 impl fmt::Display for SpeckleError {
@@ -144,6 +148,16 @@ impl fmt::Display for SpeckleError {
                 CoherentBackground::MAX_BEAM_RATIO
             ),
             Self::Phase(got) => write!(f, "phase must be finite, got {got} rad"),
+            Self::ImageDrift(got) => write!(
+                f,
+                "image drift must be within ±{:e} speckle sizes, got {got}",
+                Exposure::MAX_IMAGE_DRIFT
+            ),
+            Self::PupilDrift(got) => write!(
+                f,
+                "pupil drift must be within ±{} diameters, got {got}",
+                Exposure::MAX_PUPIL_DRIFT
+            ),
         }
     }
 }

@@ -72,6 +72,7 @@ pub use error::SpeckleError;
 pub use field::PupilField;
 pub use interpolation::Interpolation;
 pub use light::{CoherentBackground};
+pub use light::{CoherentBackground, Exposure};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use path::SlicePath;

@@ -1,5 +1,8 @@
 //! Light that is more than one wave, and what a sensor makes of it.
 
 mod background;
+mod exposure;
+mod transform;
 
 pub use background::CoherentBackground;
+pub use exposure::Exposure;

@@ -1,0 +1,47 @@
+//! Intensities in the frequency domain.
+
+use num_complex::Complex;
+use tem00_numerics::{Fft2, Grid};
+
+use crate::{lattice::to_i64, mask::from_i64};
+
+/// Plans the transform of a pattern, or of part of one.
+pub(super) fn plan([width, height]: [usize; 2]) -> Fft2 {
+    Fft2::new(width, height).unwrap_or_else(|_| unreachable!("a pattern has samples"))
+}
+
+/// The frequency at `index` in a spectrum of `size` points, in periods per pattern.
+pub(super) fn frequency(index: usize, size: usize) -> f64 {
+    let (index, size) = (to_i64(index), to_i64(size));
+    from_i64(if 2 * index > size {
+        index - size
+    } else {
+        index
+    })
+}
+
+/// A real grid as a complex one.
+pub(super) fn to_complex(values: &Grid<f32>) -> Grid<Complex<f32>> {
+    values.map(|&value| Complex::new(value, 0.0))
+}
+
+/// exp(2πi turns)
+pub(super) fn wave(turns: f64) -> Complex<f64> {
+    Complex::cis(core::f64::consts::TAU * (turns - turns.round()))
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "patterns and their spectra are stored as f32"
+)]
+pub(super) fn to_c32(z: Complex<f64>) -> Complex<f32> {
+    Complex::new(z.re as f32, z.im as f32)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "patterns and their spectra are stored as f32"
+)]
+pub(super) const fn to_f32(x: f64) -> f32 {
+    x as f32
+}

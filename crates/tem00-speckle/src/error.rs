@@ -1,6 +1,6 @@
 use core::{error, fmt};
 
-use crate::{CoherentBackground, Exposure, PupilField};
+use crate::{CoherentBackground, Exposure, PixelArray, PupilField};
 
 /// Why a pupil field or a stack could not be constructed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +74,15 @@ pub enum SpeckleError {
     ImageDrift(f64),
     /// The drift over the pupil, in its diameters, exceeds [`Exposure::MAX_PUPIL_DRIFT`].
     PupilDrift(f64),
+    /// The number of pixels along an axis is zero or above [`PixelArray::MAX_COUNT`].
+    PixelCount(usize),
+    /// The pixel pitch, in samples, is not positive, or all pixels together exceed
+    /// [`PixelArray::MAX_LENGTH`].
+    PixelPitch(f64),
+    /// The pixel size, in samples, is not inside [0, [`PixelArray::MAX_LENGTH`]].
+    PixelSize(f64),
+    /// The place of the first pixel, in samples, exceeds [`PixelArray::MAX_LENGTH`].
+    PixelOrigin(f64),
 }
 
 impl fmt::Display for SpeckleError {
@@ -157,6 +166,26 @@ impl fmt::Display for SpeckleError {
                 f,
                 "pupil drift must be within ±{} diameters, got {got}",
                 Exposure::MAX_PUPIL_DRIFT
+            ),
+            Self::PixelCount(got) => write!(
+                f,
+                "pixel count must be 1 to {}, got {got}",
+                PixelArray::MAX_COUNT
+            ),
+            Self::PixelPitch(got) => write!(
+                f,
+                "pixel pitch must be positive, all pixels together at most {:e} samples, got {got}",
+                PixelArray::MAX_LENGTH
+            ),
+            Self::PixelSize(got) => write!(
+                f,
+                "pixel size must be 0 to {:e} samples, got {got}",
+                PixelArray::MAX_LENGTH
+            ),
+            Self::PixelOrigin(got) => write!(
+                f,
+                "pixel origin must be within ±{:e} samples, got {got}",
+                PixelArray::MAX_LENGTH
             ),
         }
     }

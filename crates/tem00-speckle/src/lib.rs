@@ -73,6 +73,7 @@ pub use field::PupilField;
 pub use interpolation::Interpolation;
 pub use light::{CoherentBackground};
 pub use light::{CoherentBackground, Exposure};
+pub use light::{CoherentBackground, Exposure, PixelArray};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use path::SlicePath;

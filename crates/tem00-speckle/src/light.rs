@@ -2,7 +2,9 @@
 
 mod background;
 mod exposure;
+mod pixels;
 mod transform;
 
 pub use background::CoherentBackground;
 pub use exposure::Exposure;
+pub use pixels::PixelArray;

@@ -65,6 +65,8 @@ pub enum SpeckleError {
         /// The bytes that were asked for.
         bytes: u64,
     },
+    /// The wavelength, in metres, is not a positive finite number.
+    Wavelength(f64),
     /// The beam ratio of a coherent background is not inside
     /// [0, [`CoherentBackground::MAX_BEAM_RATIO`]].
     BeamRatio(f64),
@@ -83,6 +85,12 @@ pub enum SpeckleError {
     PixelSize(f64),
     /// The place of the first pixel, in samples, exceeds [`PixelArray::MAX_LENGTH`].
     PixelOrigin(f64),
+    /// The distance of the screen, in metres, is not a positive finite number.
+    Distance(f64),
+    /// A length of the lit area, in metres, is not a positive finite number.
+    LitSize(f64),
+    /// The pitch of the samples on the screen, in metres, is not a positive finite number.
+    SamplePitch(f64),
 }
 
 impl fmt::Display for SpeckleError {
@@ -151,6 +159,7 @@ impl fmt::Display for SpeckleError {
                  slices or a smaller pattern"
             ),
             Self::Memory { bytes } => write!(f, "memory for the stack refused: {bytes} bytes"),
+            Self::Wavelength(got) => write_length(f, "wavelength", *got),
             Self::BeamRatio(got) => write!(
                 f,
                 "beam ratio must be 0 to {:e}, got {got}",
@@ -187,8 +196,15 @@ impl fmt::Display for SpeckleError {
                 "pixel origin must be within ±{:e} samples, got {got}",
                 PixelArray::MAX_LENGTH
             ),
+            Self::Distance(got) => write_length(f, "distance", *got),
+            Self::LitSize(got) => write_length(f, "length of the lit area", *got),
+            Self::SamplePitch(got) => write_length(f, "sample pitch", *got),
         }
     }
+}
+
+fn write_length(f: &mut fmt::Formatter<'_>, name: &str, got: f64) -> fmt::Result {
+    write!(f, "{name} must be positive and finite, got {got:e} m")
 }
 
 impl error::Error for SpeckleError {}

@@ -74,6 +74,7 @@ pub use interpolation::Interpolation;
 pub use light::{CoherentBackground};
 pub use light::{CoherentBackground, Exposure};
 pub use light::{CoherentBackground, Exposure, PixelArray};
+pub use light::{CoherentBackground, Exposure, LitArea, ObjectiveSpeckle, PixelArray};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use path::SlicePath;

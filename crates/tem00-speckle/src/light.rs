@@ -2,9 +2,11 @@
 
 mod background;
 mod exposure;
+mod objective;
 mod pixels;
 mod transform;
 
 pub use background::CoherentBackground;
 pub use exposure::Exposure;
+pub use objective::{LitArea, ObjectiveSpeckle};
 pub use pixels::PixelArray;

@@ -85,6 +85,13 @@ pub enum SpeckleError {
     PixelSize(f64),
     /// The place of the first pixel, in samples, exceeds [`PixelArray::MAX_LENGTH`].
     PixelOrigin(f64),
+    /// The number of scatterers is zero or exceeds the number of lattice points in the pupil.
+    ScattererCount {
+        /// The rejected number.
+        count: usize,
+        /// The number of lattice points in the pupil.
+        largest: usize,
+    },
     /// The distance of the screen, in metres, is not a positive finite number.
     Distance(f64),
     /// A length of the lit area, in metres, is not a positive finite number.
@@ -196,6 +203,9 @@ impl fmt::Display for SpeckleError {
                 "pixel origin must be within ±{:e} samples, got {got}",
                 PixelArray::MAX_LENGTH
             ),
+            Self::ScattererCount { count, largest } => {
+                write!(f, "scatterer count must be 1 to {largest}, got {count}")
+            }
             Self::Distance(got) => write_length(f, "distance", *got),
             Self::LitSize(got) => write_length(f, "length of the lit area", *got),
             Self::SamplePitch(got) => write_length(f, "sample pitch", *got),

@@ -4,6 +4,7 @@ mod background;
 mod exposure;
 mod objective;
 mod pixels;
+mod scatterers;
 mod transform;
 
 pub use background::CoherentBackground;

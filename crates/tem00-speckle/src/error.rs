@@ -1,6 +1,6 @@
 use core::{error, fmt};
 
-use crate::{CoherentBackground, Exposure, PixelArray, PupilField};
+use crate::{CoherentBackground, Exposure, IncoherentSum, PixelArray, PupilField};
 
 /// Why a pupil field or a stack could not be constructed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,8 +65,30 @@ pub enum SpeckleError {
         /// The bytes that were asked for.
         bytes: u64,
     },
+    /// The number of patterns in a sum is zero or above [`IncoherentSum::MAX_PATTERNS`].
+    PatternCount(usize),
+    /// A weight of a sum is negative or not finite.
+    Weight {
+        /// Which of the weights it is.
+        index: usize,
+        /// The rejected weight.
+        weight: f64,
+    },
+    /// Independent patterns were asked of a field without a seed, made of samples.
+    NoSeed,
+    /// The degree of polarisation is not inside [0, 1].
+    Polarisation(f64),
     /// The wavelength, in metres, is not a positive finite number.
     Wavelength(f64),
+    /// The linewidth is negative or broader than a tenth of the wavelength.
+    Linewidth {
+        /// The rejected linewidth, in metres.
+        linewidth: f64,
+        /// The largest linewidth at that wavelength, in metres.
+        maximum: f64,
+    },
+    /// The standard deviation of the optical path, in metres, is negative or not finite.
+    PathSpread(f64),
     /// The beam ratio of a coherent background is not inside
     /// [0, [`CoherentBackground::MAX_BEAM_RATIO`]].
     BeamRatio(f64),
@@ -166,7 +188,36 @@ impl fmt::Display for SpeckleError {
                  slices or a smaller pattern"
             ),
             Self::Memory { bytes } => write!(f, "memory for the stack refused: {bytes} bytes"),
+            Self::PatternCount(got) => write!(
+                f,
+                "pattern count must be 1 to {}, got {got}",
+                IncoherentSum::MAX_PATTERNS
+            ),
+            Self::Weight { index, weight } => write!(
+                f,
+                "weights must be finite and not negative, got {weight} at index {index}"
+            ),
+            Self::NoSeed => write!(
+                f,
+                "field must have a seed for independent patterns, got one of samples"
+            ),
+            Self::Polarisation(got) => write!(
+                f,
+                "degree of polarisation must lie between 0 and 1, got {got}"
+            ),
             Self::Wavelength(got) => write_length(f, "wavelength", *got),
+            Self::Linewidth { linewidth, maximum } => {
+                write!(
+                    f,
+                    "linewidth must be 0 to {maximum:e} m, got {linewidth:e} m"
+                )
+            }
+            Self::PathSpread(got) => {
+                write!(
+                    f,
+                    "path spread must be finite and not negative, got {got:e} m"
+                )
+            }
             Self::BeamRatio(got) => write!(
                 f,
                 "beam ratio must be 0 to {:e}, got {got}",
@@ -218,3 +269,89 @@ fn write_length(f: &mut fmt::Formatter<'_>, name: &str, got: f64) -> fmt::Result
 }
 
 impl error::Error for SpeckleError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_name_the_parameter_the_value_and_what_is_allowed() {
+        let linewidth = SpeckleError::Linewidth {
+            linewidth: 2e-7,
+            maximum: 6.5e-8,
+        };
+        let scatterers = SpeckleError::ScattererCount {
+            count: 0,
+            largest: 49,
+        };
+        let weight = SpeckleError::Weight {
+            index: 3,
+            weight: -1.5,
+        };
+        for (error, parts) in [
+            (
+                SpeckleError::PatternCount(0),
+                ["pattern count", "1024", "0"],
+            ),
+            (weight, ["weights", "not negative", "-1.5 at index 3"]),
+            (SpeckleError::NoSeed, ["seed", "independent", "samples"]),
+            (
+                SpeckleError::Polarisation(1.5),
+                ["polarisation", "0 and 1", "1.5"],
+            ),
+            (
+                SpeckleError::Wavelength(-1e-7),
+                ["wavelength", "positive", "-1e-7 m"],
+            ),
+            (linewidth, ["linewidth", "6.5e-8 m", "2e-7 m"]),
+            (
+                SpeckleError::PathSpread(-2.0),
+                ["path spread", "not negative", "-2e0 m"],
+            ),
+            (SpeckleError::BeamRatio(-3.0), ["beam ratio", "1e12", "-3"]),
+            (
+                SpeckleError::Phase(f64::INFINITY),
+                ["phase", "finite", "inf rad"],
+            ),
+            (
+                SpeckleError::ImageDrift(2e6),
+                ["image drift", "1e6", "2000000"],
+            ),
+            (
+                SpeckleError::PupilDrift(129.0),
+                ["pupil drift", "128", "129"],
+            ),
+            (
+                SpeckleError::PixelCount(0),
+                ["pixel count", "32768", "got 0"],
+            ),
+            (
+                SpeckleError::PixelPitch(-1.0),
+                ["pixel pitch", "positive", "-1"],
+            ),
+            (SpeckleError::PixelSize(-1.0), ["pixel size", "1e12", "-1"]),
+            (
+                SpeckleError::PixelOrigin(2e12),
+                ["pixel origin", "1e12", "2000000000000"],
+            ),
+            (scatterers, ["scatterer count", "49", "got 0"]),
+            (
+                SpeckleError::Distance(0.0),
+                ["distance", "positive", "0e0 m"],
+            ),
+            (
+                SpeckleError::LitSize(0.0),
+                ["lit area", "positive", "0e0 m"],
+            ),
+            (
+                SpeckleError::SamplePitch(0.0),
+                ["sample pitch", "positive", "0e0 m"],
+            ),
+        ] {
+            let message = error.to_string();
+            for part in parts {
+                assert!(message.contains(part), "no '{part}' in '{message}'");
+            }
+        }
+    }
+}

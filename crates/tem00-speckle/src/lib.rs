@@ -10,6 +10,17 @@
 //!            └─▶ SpeckleStack        patterns that move and decorrelate: I(x, y, u)
 //! ```
 //!
+//! Light that is more than one wave, and the sensor that sees it, work on these:
+//!
+//! ```text
+//! IncoherentSum          several lasers, partial polarisation, a broad spectrum
+//! CoherentBackground     a mirror's share, a reference wave
+//! Exposure               a pattern that moves or boils while it is exposed
+//! PixelArray             boxes of any size at any pitch
+//! ObjectiveSpeckle       a lit area instead of a pupil: speckle without a lens
+//! PupilField::from_scatterers    a few point sources: speckle not fully developed
+//! ```
+//!
 //! # Conventions
 //!
 //! - **Intensity** is dimensionless with mean 1.
@@ -29,9 +40,11 @@
 //!
 //! # Scope and non-goals
 //!
-//! Fully developed, fully polarised, monochromatic speckle, behind pupils of any shape that may be
-//! out of focus, or of a field measured in the pupil. The geometry that moves and decorrelates it
-//! belongs to the crate above; so does the light that it modulates.
+//! Speckle behind pupils of any shape that may be out of focus, or of a field measured in the pupil:
+//! fully developed, polarised and monochromatic by itself, and in sums, on backgrounds and over
+//! pixels what light and sensor make of that. The geometry that moves and decorrelates it belongs to
+//! the crate above; so does the light that it modulates. A stack has the speckle of one wave: its
+//! look-ups are summed as [`IncoherentSum`] says.
 //!
 //! # Example
 //!
@@ -75,6 +88,9 @@ pub use light::{CoherentBackground};
 pub use light::{CoherentBackground, Exposure};
 pub use light::{CoherentBackground, Exposure, PixelArray};
 pub use light::{CoherentBackground, Exposure, LitArea, ObjectiveSpeckle, PixelArray};
+pub use light::{
+    Bandwidth, CoherentBackground, Exposure, IncoherentSum, LitArea, ObjectiveSpeckle, PixelArray,
+};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use path::SlicePath;

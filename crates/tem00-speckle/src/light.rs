@@ -5,9 +5,11 @@ mod exposure;
 mod objective;
 mod pixels;
 mod scatterers;
+mod sum;
 mod transform;
 
 pub use background::CoherentBackground;
 pub use exposure::Exposure;
 pub use objective::{LitArea, ObjectiveSpeckle};
 pub use pixels::PixelArray;
+pub use sum::{Bandwidth, IncoherentSum};

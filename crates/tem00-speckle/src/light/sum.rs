@@ -1,0 +1,345 @@
+use core::f64::consts::{LN_2, PI};
+
+use super::transform::to_f32;
+use crate::{PupilField, SpeckleError, SpecklePattern, mask::to_f64};
+
+/// Independent speckle patterns whose intensities add, each with its share of the light.
+///
+/// ```text
+/// I = Σ wⱼ Iⱼ          Σ wⱼ = 1, Iⱼ independent patterns of mean 1
+/// C = √(Σ wⱼ²)         contrast, for fully developed patterns
+/// ```
+///
+/// Several lasers, both polarisations and the parts of a broad spectrum are all of this form. With
+/// [`and`](Self::and) they combine. The mean is exactly 1 where that of every pattern is.
+///
+/// # Patterns and stacks
+///
+/// [`pattern`](Self::pattern) adds whole patterns: pass [`PupilField::pattern`], or a closure that
+/// displaces the pupil or exposes. For look-ups, build one stack per [field](Self::fields) and weigh
+/// what they return with [`intensity`](Self::intensity). Coordinates and correlations stay those of
+/// one stack: equal motion leaves every part of the sum with the same correlation.
+///
+/// # Examples
+///
+/// Unpolarised light of two lasers, one of them twice as strong:
+///
+/// ```
+/// use tem00_speckle::{IncoherentSum, PupilField, SlicePath, SpeckleStack};
+///
+/// let lasers = IncoherentSum::weighted(&[2.0, 1.0])?;
+/// let light = lasers.and(&IncoherentSum::partially_polarised(0.0)?)?;
+/// assert!((light.contrast() - (5.0_f64 / 9.0 / 2.0).sqrt()).abs() < 1e-12);
+///
+/// let field = PupilField::new(64, 16, 1)?;
+/// let pattern = light.pattern(&field, PupilField::pattern)?;
+///
+/// // The same light by look-ups: four stacks.
+/// let stacks = light
+///     .fields(&field)?
+///     .iter()
+///     .map(|part| SpeckleStack::generate(part, SlicePath::Still))
+///     .collect::<Result<Vec<_>, _>>()?;
+/// let intensity = light.intensity(|part| stacks[part].intensity_at(5.0, 7.0, 0.0));
+/// assert!((intensity - f64::from(pattern.values()[(5, 7)])).abs() < 0.02);
+/// # Ok::<(), tem00_speckle::SpeckleError>(())
+/// ```
+///
+/// # References
+///
+/// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 3 (sums of speckle patterns).
+#[derive(Clone, Debug, PartialEq)]
+pub struct IncoherentSum {
+    shares: Vec<f64>,
+}
+
+/// A narrow Gaussian spectrum on a surface that spreads the optical path. Lengths are in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bandwidth {
+    /// The central wavelength λ.
+    pub wavelength: f64,
+    /// The linewidth Δλ, full width at half maximum of the power per wavelength.
+    pub linewidth: f64,
+    /// The standard deviation `σ_L` of the optical path over the light that meets in one point of
+    /// the image: twice that of the height, for a rough surface lit and seen along its normal.
+    pub path_spread: f64,
+}
+
+/// The share of the light that the last parts of a spectrum may hold, to be left out.
+const NEGLIGIBLE_SHARE: f64 = 1e-4;
+
+impl IncoherentSum {
+    /// The largest number of patterns in a sum.
+    pub const MAX_PATTERNS: usize = 1024;
+
+    /// Creates the sum of `count` patterns of equal mean: contrast `1/√count`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless `1 ≤ count ≤ MAX_PATTERNS`.
+    pub fn equal(count: usize) -> Result<Self, SpeckleError> {
+        if !(1..=Self::MAX_PATTERNS).contains(&count) {
+            return Err(SpeckleError::PatternCount(count));
+        }
+        Ok(Self {
+            shares: vec![to_f64(count).recip(); count],
+        })
+    }
+
+    /// Creates the sum of patterns from their mean intensities, in any unit.
+    ///
+    /// Patterns without light are left out.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a weight is negative or not finite, or unless between 1 and `MAX_PATTERNS`
+    /// of them are positive.
+    pub fn weighted(weights: &[f64]) -> Result<Self, SpeckleError> {
+        let bad = |&weight: &f64| !(weight >= 0.0 && weight.is_finite());
+        if let Some(index) = weights.iter().position(bad) {
+            return Err(SpeckleError::Weight {
+                index,
+                weight: weights[index],
+            });
+        }
+        // The largest first: the sum of the weights may exceed all numbers.
+        let largest = weights.iter().fold(0.0_f64, |a, &b| a.max(b));
+        let scaled = || {
+            let scaled = weights.iter().map(|weight| weight / largest);
+            scaled.filter(|&weight| weight > 0.0)
+        };
+        let (count, total) = (scaled().count(), scaled().sum::<f64>());
+        if !(1..=Self::MAX_PATTERNS).contains(&count) {
+            return Err(SpeckleError::PatternCount(count));
+        }
+        Ok(Self {
+            shares: scaled().map(|weight| weight / total).collect(),
+        })
+    }
+
+    /// Creates partially polarised light of the degree of polarisation P.
+    ///
+    /// ```text
+    /// w = (1 ± P) / 2,     C = √((1 + P²) / 2)
+    /// ```
+    ///
+    /// The degree is that of the light that reaches the sensor: 1 behind a polariser, near 0 for
+    /// laser light off white paper without one.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless `0 ≤ degree ≤ 1`.
+    pub fn partially_polarised(degree: f64) -> Result<Self, SpeckleError> {
+        if !(0.0..=1.0).contains(&degree) {
+            return Err(SpeckleError::Polarisation(degree));
+        }
+        Self::weighted(&[0.5 * (1.0 + degree), 0.5 * (1.0 - degree)])
+    }
+
+    /// Creates light of a Gaussian spectrum.
+    ///
+    /// ```text
+    /// C² = 1 / √(1 + x²)       x = √(4π) σ_L / l_c = 2 σ_k σ_L,   l_c = √(2 ln 2 / π) λ² / Δλ
+    /// wⱼ = (1 − t) tʲ          t = (1 − C²) / (1 + C²)
+    /// ```
+    ///
+    /// The fields of two wave numbers k and k' correlate by `exp(−(k − k')² σ_L²/2)`. The parts are
+    /// the coherent modes of that spectrum, uncorrelated with each other, whose shares of the power
+    /// are the eigenvalues of a Gaussian kernel under a Gaussian weight. A narrow line is one pattern.
+    ///
+    /// # Validity
+    ///
+    /// The law of the intensity is exact but for the last modes, of together 10⁻⁴ of the light, that
+    /// are left out; the contrast is up to 10⁻⁴ of itself too high for that. Path spreads are
+    /// large against the wavelength, so that each wavelength makes fully developed speckle. That a
+    /// pattern also grows with its wavelength is left out.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless all lengths are finite, `wavelength > 0`, `0 ≤ linewidth ≤ 0.1
+    /// wavelength` and `path_spread ≥ 0`, or if the contrast is below some 0.07, for which
+    /// `MAX_PATTERNS` are too few. [`equal`](Self::equal) with 1/C² patterns then has the same
+    /// contrast, and nearly the same law.
+    ///
+    /// # Examples
+    ///
+    /// An LED of 20 nm on paper with a roughness of 5 µm:
+    ///
+    /// ```
+    /// use tem00_speckle::{Bandwidth, IncoherentSum};
+    ///
+    /// let led = Bandwidth { wavelength: 650e-9, linewidth: 20e-9, path_spread: 10e-6 };
+    /// let light = IncoherentSum::polychromatic(led)?;
+    /// assert!((light.contrast() - 0.607).abs() < 1e-3);
+    /// # Ok::<(), tem00_speckle::SpeckleError>(())
+    /// ```
+    ///
+    /// # References
+    ///
+    /// - A. Starikov and E. Wolf, *Coherent-mode representation of Gaussian Schell-model sources and
+    ///   of their radiation fields*, 1982.
+    /// - G. Parry, *Speckle patterns in partially coherent light*, in *Laser Speckle and Related
+    ///   Phenomena*, ed. J. C. Dainty, 1975.
+    pub fn polychromatic(bandwidth: Bandwidth) -> Result<Self, SpeckleError> {
+        let ratio = bandwidth.mode_ratio()?;
+        // tᴶ is the share of all modes from J on.
+        let modes = match ratio > NEGLIGIBLE_SHARE {
+            true => (NEGLIGIBLE_SHARE.ln() / ratio.ln()).ceil(),
+            false => 1.0,
+        };
+        if modes > to_f64(Self::MAX_PATTERNS) {
+            return Err(SpeckleError::PatternCount(whole(modes)));
+        }
+        let powers = core::iter::successors(Some(1.0), |power| Some(power * ratio));
+        let weights: Vec<f64> = powers.take(whole(modes)).collect();
+        Self::weighted(&weights)
+    }
+
+    /// Returns the light that is both: every pattern of this sum is split as `other` is.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the product of both counts exceeds `MAX_PATTERNS`.
+    pub fn and(&self, other: &Self) -> Result<Self, SpeckleError> {
+        let count = self.shares.len() * other.shares.len();
+        if count > Self::MAX_PATTERNS {
+            return Err(SpeckleError::PatternCount(count));
+        }
+        let products = |share| other.shares.iter().map(move |part| share * part);
+        let weights: Vec<f64> = self.shares.iter().flat_map(products).collect();
+        Self::weighted(&weights)
+    }
+
+    /// Returns the shares of the patterns, which sum to 1.
+    pub fn shares(&self) -> &[f64] {
+        &self.shares
+    }
+
+    /// Returns the contrast `√(Σ w²)` of the sum of fully developed patterns.
+    pub fn contrast(&self) -> f64 {
+        let squares = self.shares.iter().map(|share| share * share);
+        squares.sum::<f64>().sqrt()
+    }
+
+    /// Returns one field for each pattern: `field` itself, then the same with seeds made from its
+    /// own.
+    ///
+    /// Two patterns of sums of other seeds are the same with a probability of 2⁻⁶⁴ only.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if `field` was made from samples and there is more than one pattern: samples
+    /// are no source of independent ones.
+    pub fn fields(&self, field: &PupilField) -> Result<Vec<PupilField>, SpeckleError> {
+        match field.seed() {
+            None if self.shares.len() > 1 => Err(SpeckleError::NoSeed),
+            None => Ok(vec![field.clone()]),
+            Some(seed) => Ok((0..self.shares.len())
+                .map(|index| field.clone().with_seed(part_seed(seed, index)))
+                .collect()),
+        }
+    }
+
+    /// Returns the sum of what `part` makes of each of the [fields](Self::fields), in their shares.
+    ///
+    /// # Errors
+    ///
+    /// As [`fields`](Self::fields).
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `part` returns patterns of one size.
+    pub fn pattern(
+        &self,
+        field: &PupilField,
+        part: impl Fn(&PupilField) -> SpecklePattern,
+    ) -> Result<SpecklePattern, SpeckleError> {
+        let fields = self.fields(field)?;
+        let speckle_size = field.speckle_size();
+        let mut sum = part(&fields[0]).into_values();
+        let first = to_f32(self.shares[0]);
+        sum.values_mut()
+            .iter_mut()
+            .for_each(|value| *value *= first);
+        for (field, &share) in fields.iter().zip(&self.shares).skip(1) {
+            let share = to_f32(share);
+            let values = part(field).into_values();
+            assert!(
+                values.width() == sum.width() && values.height() == sum.height(),
+                "the patterns of a sum differ in size"
+            );
+            let pairs = sum.values_mut().iter_mut().zip(values.values());
+            pairs.for_each(|(sum, value)| *sum += share * value);
+        }
+        Ok(SpecklePattern::new(sum, speckle_size))
+    }
+
+    /// Returns the sum of the intensities that `part` gives for the patterns 0, 1, …, in their
+    /// shares.
+    pub fn intensity(&self, part: impl FnMut(usize) -> f64) -> f64 {
+        let parts = (0..self.shares.len()).map(part);
+        parts
+            .zip(&self.shares)
+            .map(|(value, share)| share * value)
+            .sum()
+    }
+}
+
+impl Bandwidth {
+    /// The ratio t of the powers of successive modes.
+    fn mode_ratio(self) -> Result<f64, SpeckleError> {
+        let Self {
+            wavelength,
+            linewidth,
+            path_spread,
+        } = self;
+        if !(wavelength > 0.0 && wavelength.is_finite()) {
+            return Err(SpeckleError::Wavelength(wavelength));
+        }
+        let maximum = 0.1 * wavelength;
+        if !(linewidth >= 0.0 && linewidth <= maximum) {
+            return Err(SpeckleError::Linewidth { linewidth, maximum });
+        }
+        if !(path_spread >= 0.0 && path_spread.is_finite()) {
+            return Err(SpeckleError::PathSpread(path_spread));
+        }
+        let relative_width = linewidth / wavelength;
+        // √(4π) / √(2 ln 2 / π)
+        let factor = PI * (2.0 / LN_2).sqrt();
+        let x = (factor * relative_width * (path_spread / wavelength)).min(1e150);
+        // With R = 1/C² = √(1 + x²), t is (R − 1) / (R + 1).
+        let root = x / (1.0 + 1.0_f64.hypot(x));
+        Ok(root * root)
+    }
+}
+
+/// The seed of pattern `index` of a sum: its own for the first, scattered over all seeds for the
+/// others.
+///
+/// Were it `seed + index`, the second pattern of one seed would be the first of the next.
+const fn part_seed(seed: u64, index: usize) -> u64 {
+    match index {
+        0 => seed,
+        _ => scatter(scatter(seed) ^ scatter(index as u64)),
+    }
+}
+
+/// Steele, Lea and Flood (2014), the output function of `SplitMix64`.
+const fn scatter(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    x ^ (x >> 31)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a whole number of patterns, saturated if it is huge"
+)]
+fn whole(x: f64) -> usize {
+    x as usize
+}
+
+#[cfg(test)]
+mod tests;

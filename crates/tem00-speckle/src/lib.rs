@@ -66,8 +66,8 @@ mod error;
 mod field;
 mod interpolation;
 mod lattice;
-mod look_up;
 mod light;
+mod look_up;
 mod mask;
 pub mod paper;
 mod path;
@@ -84,10 +84,6 @@ mod view;
 pub use error::SpeckleError;
 pub use field::PupilField;
 pub use interpolation::Interpolation;
-pub use light::{CoherentBackground};
-pub use light::{CoherentBackground, Exposure};
-pub use light::{CoherentBackground, Exposure, PixelArray};
-pub use light::{CoherentBackground, Exposure, LitArea, ObjectiveSpeckle, PixelArray};
 pub use light::{
     Bandwidth, CoherentBackground, Exposure, IncoherentSum, LitArea, ObjectiveSpeckle, PixelArray,
 };

@@ -276,3 +276,59 @@ fn batches_of_unlike_lengths_are_refused() {
     );
     stack.intensity_batch(&[0.0], &[0.0, 1.0], &[0.0], &mut [0.0]);
 }
+
+/// The look-up between two slices of light from outside against fields, variances and an overlap that
+/// are measured over the whole tile.
+#[test]
+fn slices_of_unlike_light_are_blended_by_their_own_variances() {
+    let field = measured([40, 48], 2.5);
+    let stack = stack(&field, circle(2), Interpolation::Bilinear);
+    let size = stack.size();
+    let (index, f, fractions) = (1, 0.375, [0.5, 0.25]);
+    let [a, b] = [index, index + 1].map(|i| stack.field().speckle(stack.offset(i), 0.0));
+    let step = stack.slices[index].join.step;
+    let frame = |x: usize, y: usize, [fx, fy]: [f64; 2]| {
+        let turns = step[0] * (to_f64(x) + fx) / to_f64(size[0])
+            + step[1] * (to_f64(y) + fy) / to_f64(size[1]);
+        Complex::cis(-2.0 * core::f64::consts::PI * turns)
+    };
+    let between = |field: &crate::SpeckleField, x: usize, y: usize| {
+        let [fx, fy] = fractions;
+        let at = |dx, dy| {
+            let z = field.values()[((x + dx) % size[0], (y + dy) % size[1])];
+            Complex::new(f64::from(z.re), f64::from(z.im))
+        };
+        (at(0, 0) * (1.0 - fx) + at(1, 0) * fx) * (1.0 - fy)
+            + (at(0, 1) * (1.0 - fx) + at(1, 1) * fx) * fy
+    };
+    let cells = || (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    let count = to_f64(size[0] * size[1]);
+    let variance = |field| {
+        cells()
+            .map(|(x, y)| between(field, x, y).norm_sqr())
+            .sum::<f64>()
+            / count
+    };
+    let [v, w] = [variance(&a), variance(&b)];
+    assert!(
+        (v / w - 1.0).abs() > 1e-3,
+        "light that is not unlike: {v}, {w}"
+    );
+    let products = cells().map(|(x, y)| {
+        let [a, b] = [&a, &b].map(|field| field.values()[(x, y)]);
+        let product = a * b.conj();
+        let product = Complex::new(f64::from(product.re), f64::from(product.im));
+        (product * frame(x, y, [0.0; 2]).conj()).re
+    });
+    let overlap = products.sum::<f64>() / count;
+    for (x, y) in cells().step_by(7) {
+        let next = between(&b, x, y) * frame(x, y, fractions) / w.sqrt();
+        let blend = between(&a, x, y) / v.sqrt() * (1.0 - f) + next * f;
+        let square = (1.0 - f).powi(2) + f * f + 2.0 * f * (1.0 - f) * overlap;
+        let expected = blend.norm_sqr() / square;
+        let got = stack.intensity_at(to_f64(x) + 0.5, to_f64(y) + 0.25, to_f64(index) + f);
+        // Rounding of f32 in some ten operations.
+        let error = (got - expected).abs() / (1.0 + expected);
+        assert!(error < 1e-5, "({x}, {y}): {got} | {expected}");
+    }
+}

@@ -203,17 +203,17 @@ impl Between<'_> {
     #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "amplitudes are f32")]
     fn intensity<const N: usize>(&self, x: &Axis<N>, y: &Axis<N>, size: [usize; 2]) -> f64 {
-        let amplitude = amplitude(&self.here.slice.coefficients, x, y);
         let variance = self.here.variance.at(x, y);
+        let here = self.here.amplitude(x, y);
         let Some((next, f)) = self.next else {
-            return f64::from(amplitude.norm_sqr() / variance);
+            return f64::from(here.norm_sqr() / variance);
         };
         let join = &self.here.slice.join;
         let mut other = next.amplitude(x, y) * join.phase_to_next([x.place, y.place], size);
         if !self.alike {
             other *= (variance / next.variance.at(x, y)).sqrt();
         }
-        let blend = amplitude * (1.0 - f) as f32 + other * f as f32;
+        let blend = here * (1.0 - f) as f32 + other * f as f32;
         f64::from(blend.norm_sqr()) / join.variance(f) / f64::from(variance)
     }
 }

@@ -218,7 +218,8 @@ impl Along for Axis<1> {
     #[inline]
     fn along(x: f64, size: usize) -> Self {
         let (cell, f) = wrap_coordinate(x, size);
-        let nearest = if f < 0.5 { cell } else { wrap(cell + 1, size) };
+        // No branch: which of two samples is nearer, no processor can foresee.
+        let nearest = wrap(cell + usize::from(f >= 0.5), size);
         Self {
             cells: [nearest],
             weights: [1.0],

@@ -10,6 +10,13 @@ pub(crate) fn normal_density<T: Real>(x: T, sigma: T) -> T {
     T::of(INV_SQRT_TAU) / sigma * (T::of(-0.5) * t * t).exp()
 }
 
+/// The density of two independent normal variates of mean 0.
+pub(crate) fn joint_normal_density<T: Real>(x: [T; 2], sigma: [T; 2]) -> T {
+    const INV_TAU: f64 = 0.159_154_943_091_895_35;
+    let t = [x[0] / sigma[0], x[1] / sigma[1]];
+    T::of(INV_TAU) / sigma[0] / sigma[1] * (T::of(-0.5) * (t[0] * t[0] + t[1] * t[1])).exp()
+}
+
 /// The standard normal variate below which the fraction `u` in [0, 1) lies.
 pub(crate) fn standard_normal<T: Real>(u: T) -> T {
     T::of(normal_quantile(interior(u)))
@@ -39,9 +46,13 @@ fn normal_quantile(p: f64) -> f64 {
     magnitude.copysign(q)
 }
 
-/// Evaluates a polynomial with ascending coefficients by Horner's rule.
-fn polynomial(coefficients: &[f64; 8], x: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+/// Evaluates a polynomial with ascending coefficients by Estrin's rule: in pairs, which do not wait
+/// for one another.
+fn polynomial(c: &[f64; 8], x: f64) -> f64 {
+    let (x2, x4) = (x * x, x * x * (x * x));
+    let low = (c[0] + c[1] * x) + (c[2] + c[3] * x) * x2;
+    let high = (c[4] + c[5] * x) + (c[6] + c[7] * x) * x2;
+    low + high * x4
 }
 
 type Rational = ([f64; 8], [f64; 8]);

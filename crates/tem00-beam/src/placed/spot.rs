@@ -7,7 +7,7 @@ use super::record::RayPdf;
 use super::{
     Axis, DEFAULT_CUTOFF, Placement, check_digits, checked_power, first_three, row, to_single,
 };
-use crate::normal::{normal_density, standard_normal};
+use crate::normal::{joint_normal_density, standard_normal};
 use crate::real::Real;
 use crate::{AstigmaticBeam, BeamError, GaussianBeam, LocatedBeam};
 
@@ -210,7 +210,7 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
         ];
         let slope = [mean_x + deviation[0], mean_y + deviation[1]];
         let sec = secant(slope);
-        let density = normal_density(deviation[0], sigma_x) * normal_density(deviation[1], sigma_y);
+        let density = joint_normal_density(deviation, [sigma_x, sigma_y]);
         SlopeSample {
             slope,
             pdf: density * sec * sec * sec,
@@ -231,21 +231,16 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
     }
 
     fn densities(&self, position: [T; 2], slope: [T; 2]) -> RayPdf<T> {
-        let along = |axis: &Axis<T>, position: T, slope: T| {
-            let (sigma_position, sigma_slope) = axis.deviations();
-            let waist = position + slope * axis.z0;
-            (
-                normal_density(waist, sigma_position),
-                normal_density(slope, sigma_slope),
-            )
-        };
-        let (position_x, slope_x) = along(&self.x, position[0], slope[0]);
-        let (position_y, slope_y) = along(&self.y, position[1], slope[1]);
+        let waist = [
+            position[0] + slope[0] * self.x.z0,
+            position[1] + slope[1] * self.y.z0,
+        ];
+        let ((waist_x, slope_x), (waist_y, slope_y)) = (self.x.deviations(), self.y.deviations());
         // dω = cos³ ds_x ds_y
         let sec = secant(slope);
         RayPdf {
-            position: position_x * position_y,
-            direction: slope_x * slope_y * sec * sec * sec,
+            position: joint_normal_density(waist, [waist_x, waist_y]),
+            direction: joint_normal_density(slope, [slope_x, slope_y]) * sec * sec * sec,
         }
     }
 

@@ -6,7 +6,6 @@ mod goodness;
 mod grey_levels;
 #[cfg(feature = "plot")]
 mod page;
-mod pixels;
 
 use std::{io::Write, path::Path};
 

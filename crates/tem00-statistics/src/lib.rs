@@ -66,6 +66,7 @@ mod objective;
 mod passage;
 mod phasor_sum;
 mod pixel;
+mod pixel_widening;
 mod polarisation;
 mod quadrature;
 mod rectangular_pixel;
@@ -95,6 +96,7 @@ pub use moments::{Contrast, Moments, pearson_correlation};
 pub use objective::{LitArea, ObjectiveSpeckle};
 pub use phasor_sum::{PhasorSum, moment_of_phasor_sum};
 pub use pixel::pixel_contrast;
+pub use pixel_widening::size_before_pixels;
 pub use polarisation::PartiallyPolarised;
 pub use rectangular_pixel::{gaussian_filter_contrast, rectangular_pixel_contrast};
 pub use second_order::{

@@ -3,10 +3,10 @@
 use tem00_numerics::Grid;
 use tem00_statistics::{
     AIRY_FIRST_ZERO, Contrast, GammaFit, SpeckleSize, StatisticsError, decorrelated_samples,
-    exponential_cumulative, pixel_contrast,
+    exponential_cumulative, pixel_contrast, size_before_pixels,
 };
 
-use super::{GreyLevels, goodness::Placed, grey_levels::CLIPPED_SHARE, pixels::size_before_pixels};
+use super::{GreyLevels, goodness::Placed, grey_levels::CLIPPED_SHARE};
 use crate::table::{Expectation, Row};
 
 /// How many standard errors the tolerances allow.

@@ -1,15 +1,26 @@
-//! What pixels without gaps between them do to speckle.
-
-/// Returns the speckle size before square pixels widened it to `measured`, in pixels, if it was 0.95
-/// pixels or more.
+/// Returns the speckle size before square pixels without gaps widened it to `measured`, both in
+/// pixels; `None` if it was below 0.95 pixels, where the pixels hide it.
 ///
 /// ```text
 /// measured² = h² + 0.64 + 0.30 / h²
 /// ```
 ///
+/// # Validity
+///
 /// Fitted to the autocovariance of a circular pupil behind such pixels, as sampled by them: h is
 /// off by 1 % at most.
-pub(super) fn size_before_pixels(measured: f64) -> Option<f64> {
+///
+/// # Examples
+///
+/// ```
+/// use tem00_statistics::size_before_pixels;
+///
+/// // Speckles of two pixels look 9 % wider.
+/// let size = size_before_pixels(2.172).expect("wider than a pixel");
+/// assert!((size - 2.0).abs() < 0.01);
+/// assert_eq!(size_before_pixels(1.0), None);
+/// ```
+pub fn size_before_pixels(measured: f64) -> Option<f64> {
     let excess = measured * measured - 0.64;
     let root = (excess * excess - 4.0 * 0.30).sqrt();
     let size = (0.5 * (excess + root)).sqrt();
@@ -20,9 +31,9 @@ pub(super) fn size_before_pixels(measured: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use tem00_numerics::Grid;
-    use tem00_statistics::{SpeckleSize, airy_autocovariance};
 
     use super::*;
+    use crate::{SpeckleSize, airy_autocovariance};
 
     /// The Airy autocovariance of speckles of `size` pixels behind square pixels, by the midpoint
     /// rule over the differences of two points in them.

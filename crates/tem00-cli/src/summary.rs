@@ -36,8 +36,9 @@ pub(crate) struct LaserSummary {
 #[derive(Debug, Serialize)]
 struct PatternSummary {
     speckle_size_pixels: f64,
-    size_q: usize,
-    diameter_c: usize,
+    /// Along the width and along the height.
+    size_q: [usize; 2],
+    diameter_c: [usize; 2],
     slices: usize,
     memory_bytes: u64,
     why: String,
@@ -127,10 +128,10 @@ impl PatternSummary {
     fn new(plan: &PatternPlan) -> Self {
         Self {
             speckle_size_pixels: plan.speckle_size_in_pixels(),
-            size_q: plan.size(),
-            diameter_c: plan.diameter(),
-            slices: plan.path().slice_count(),
-            memory_bytes: plan.memory_bytes(),
+            size_q: plan.stack().size(),
+            diameter_c: plan.stack().diameter(),
+            slices: plan.stack().path().slice_count(),
+            memory_bytes: plan.stack().memory_bytes(),
             why: plan.to_string(),
         }
     }

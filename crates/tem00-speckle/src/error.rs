@@ -65,6 +65,14 @@ pub enum SpeckleError {
         /// The bytes that were asked for.
         bytes: u64,
     },
+    /// A side of the image for which a stack is planned, in pixels, is not a positive finite number.
+    Image(f64),
+    /// A side of the region in which a stack is looked up, in pixels, is not a positive finite number.
+    Region(f64),
+    /// The speckle size on the sensor, in pixels, is not a positive finite number.
+    SpeckleSizeInPixels(f64),
+    /// The largest motion of the pupil, in its diameters, is negative or not finite.
+    Motion(f64),
     /// The number of patterns in a sum is zero or above [`IncoherentSum::MAX_PATTERNS`].
     PatternCount(usize),
     /// A weight of a sum is negative or not finite.
@@ -188,6 +196,22 @@ impl fmt::Display for SpeckleError {
                  slices or a smaller pattern"
             ),
             Self::Memory { bytes } => write!(f, "memory for the stack refused: {bytes} bytes"),
+            Self::Image(side) => write!(
+                f,
+                "a side of the image must be a positive finite number of pixels, got {side}"
+            ),
+            Self::Region(side) => write!(
+                f,
+                "a side of the region must be a positive finite number of pixels, got {side}"
+            ),
+            Self::SpeckleSizeInPixels(speckle_size) => write!(
+                f,
+                "speckle size must be a positive finite number of pixels, got {speckle_size}"
+            ),
+            Self::Motion(motion) => write!(
+                f,
+                "motion must be a finite number of pupil diameters, at least 0, got {motion}"
+            ),
             Self::PatternCount(got) => write!(
                 f,
                 "pattern count must be 1 to {}, got {got}",
@@ -334,6 +358,13 @@ mod tests {
                 SpeckleError::PixelOrigin(2e12),
                 ["pixel origin", "1e12", "2000000000000"],
             ),
+            (SpeckleError::Image(0.0), ["image", "positive", "got 0"]),
+            (SpeckleError::Region(-1.0), ["region", "positive", "-1"]),
+            (
+                SpeckleError::SpeckleSizeInPixels(-2.0),
+                ["speckle size", "pixels", "-2"],
+            ),
+            (SpeckleError::Motion(-3.0), ["motion", "at least 0", "-3"]),
             (scatterers, ["scatterer count", "49", "got 0"]),
             (
                 SpeckleError::Distance(0.0),

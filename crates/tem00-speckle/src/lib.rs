@@ -72,6 +72,7 @@ mod mask;
 pub mod paper;
 mod path;
 mod pattern;
+mod plan;
 mod pupil;
 mod quadrature;
 mod rows;
@@ -91,6 +92,7 @@ pub use light::{
 pub use num_complex::Complex;
 pub use path::SlicePath;
 pub use pattern::{SpeckleField, SpecklePattern};
+pub use plan::{StackNeeds, StackPlan};
 pub use pupil::{Phasors, Pupil};
 pub use stack::{SpeckleStack, StackOptions};
 pub use stack_file::StackFileError;

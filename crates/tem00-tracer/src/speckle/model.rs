@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3};
 use tem00_decorrelation::{CameraFrame, DecorrelationError, ImagingGeometry, paper as printed};
-use tem00_speckle::{PupilField, SpeckleStack, paper::BilinearStack};
+use tem00_speckle::{SpeckleStack, paper::BilinearStack};
 
 use super::{MovedPoint, PatternPlan, SpecklePlan, upright};
 use crate::{Laser, Scene, TracerError};
@@ -117,18 +117,18 @@ impl SpeckleModel {
 
 impl Pattern {
     fn generate(geometry: ImagingGeometry, plan: &PatternPlan) -> Result<Self, TracerError> {
-        let field = PupilField::new(plan.size(), plan.diameter(), plan.seed())?;
+        let field = plan.stack().field(plan.seed())?;
         let stack = if plan.is_as_printed() {
             let stack = BilinearStack::generate(&field, plan.half_period())?;
             Stack::AsPrinted(stack, field.speckle_size())
         } else {
-            Stack::Derived(SpeckleStack::generate(&field, plan.path())?)
+            Stack::Derived(SpeckleStack::generate(&field, plan.stack().path())?)
         };
         Ok(Self {
             geometry,
-            slices_per_diameter: plan.slices_per_diameter(),
+            slices_per_diameter: plan.stack().slices_per_diameter(),
             half_period: plan.half_period(),
-            reach: plan.reach(),
+            reach: plan.stack().reach(),
             stack,
         })
     }

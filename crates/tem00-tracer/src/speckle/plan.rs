@@ -1,21 +1,9 @@
 use core::fmt;
 
-use tem00_speckle::{PupilField, SlicePath};
+use tem00_speckle::{SlicePath, SpeckleError, StackNeeds, StackPlan};
 
 use super::survey::Survey;
 use crate::{Formulas, Laser, Scene, SpeckleSettings, TracerError};
-
-/// Slices per pupil diameter that are tried, the best first.
-///
-/// Blending between slices deviates from the correlation law by less than 0.06 with 32 slices per
-/// diameter, 0.11 with 16, 0.2 with 8 and 0.4 with 4.
-const SLICES_PER_DIAMETER: [usize; 4] = [32, 16, 8, 4];
-
-/// The longest path that is tried, in pupil diameters: with the most slices it has the largest period.
-const LONGEST_PATH: usize = 2 * SlicePath::MAX_HALF_PERIOD / SLICES_PER_DIAMETER[0];
-
-/// The smallest pupil field that is chosen without being asked: about 800 phasors.
-const SMALLEST_DIAMETER: usize = 32;
 
 /// The speckle patterns that a scene needs, chosen from its camera, image and motion.
 ///
@@ -29,15 +17,9 @@ pub struct SpecklePlan {
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatternPlan {
     wavelength: f64,
-    speckle_size_in_pixels: f64,
-    extent: f64,
-    largest_shift: f64,
-    size: usize,
-    diameter: usize,
-    /// Pupil diameters along the path of the slices.
-    length: usize,
-    path: SlicePath,
-    frames: u32,
+    /// What the image and the motion ask for, whether it fits or not.
+    needs: StackNeeds,
+    stack: StackPlan,
     as_printed: bool,
     chosen: bool,
     seed: u64,
@@ -46,12 +28,9 @@ pub struct PatternPlan {
 impl SpecklePlan {
     /// Chooses the patterns for a scene.
     ///
-    /// The diameter C of the pupil field is at least the image side in speckles, so that nothing
-    /// repeats in the image; the size Q is twice that; the path of the slices is as long as the way
-    /// by which several frames carry the pupil; their number is the largest of a few that fits the
-    /// memory.
-    /// What the scene file sets is kept. What the motion asks for beyond the memory is left out, and
-    /// said so.
+    /// Each is the [`StackPlan`] for the image, the part of the scene that moves into it, and the
+    /// longest way by which the frames carry the pupil. What the scene file sets is kept. What the
+    /// motion asks for beyond the memory is left out, and said so.
     ///
     /// # Errors
     ///
@@ -99,123 +78,50 @@ impl PatternPlan {
     ) -> Result<Self, TracerError> {
         let geometry = scene.camera.imaging_geometry(laser.wavelength())?;
         let survey = Survey::new(scene, laser, &geometry)?;
-        let mut plan = Self {
-            wavelength: laser.wavelength(),
-            speckle_size_in_pixels: geometry.speckle_size_in_pixels(),
-            extent: survey.extent,
-            largest_shift: survey.shift,
-            size: 0,
-            diameter: 0,
-            length: 2,
-            path: SlicePath::Still,
+        let needs = StackNeeds {
+            image: survey.image.to_array(),
+            region: survey.region.to_array(),
+            speckle_size: geometry.speckle_size_in_pixels(),
+            motion: scene.moves().then_some(survey.shift),
             frames: scene.render.frames,
-            as_printed: formulas == Formulas::AsPrinted,
+            memory_limit: memory,
+        };
+        let as_printed = formulas == Formulas::AsPrinted;
+        let asked = StackPlan::candidates(&needs)?.into_iter().map(|plan| {
+            let plan = as_asked(plan, &scene.speckle);
+            if as_printed { plan.on_circle() } else { plan }
+        });
+        let stack = StackPlan::first_within(asked, memory).map_err(|error| match error {
+            SpeckleError::MemoryLimit { needed, limit } => TracerError::PatternMemory {
+                needed,
+                allowed: limit,
+            },
+            other => other.into(),
+        })?;
+        Ok(Self {
+            wavelength: laser.wavelength(),
+            needs,
+            stack,
+            as_printed,
             chosen: scene.speckle.size.is_none() && scene.speckle.diameter.is_none(),
             seed,
-        };
-        let candidates = plan.sizes(&scene.speckle, &survey);
-        let mut smallest = u64::MAX;
-        for &(diameter, length) in &candidates {
-            (plan.diameter, plan.length) = (diameter, length);
-            plan.size = scene.speckle.size.unwrap_or(diameter.saturating_mul(2));
-            for path in plan.paths(scene) {
-                plan.path = path;
-                smallest = smallest.min(plan.memory_bytes());
-                if plan.memory_bytes() <= memory
-                    && PupilField::new(plan.size, diameter, seed).is_ok()
-                {
-                    return Ok(plan);
-                }
-            }
-        }
-        // C ≤ Q/2 and the bounds of both are the pupil field's to check.
-        PupilField::new(plan.size, plan.diameter, seed)?;
-        Err(TracerError::PatternMemory {
-            needed: smallest,
-            allowed: memory,
         })
     }
 
-    /// Returns the pairs of C and the length of the path that are tried, the best first.
-    fn sizes(&self, settings: &SpeckleSettings, survey: &Survey) -> Vec<(usize, usize)> {
-        // Two frames need no third place on the lattice: whatever is new is new to the first.
-        let length = if self.as_printed || self.frames <= 2 {
-            2
-        } else {
-            length_for(survey.shift)
-        };
-        let asked = settings.diameter.or(settings.size.map(|size| size / 2));
-        let whole = diameter_for(survey.extent / self.speckle_size_in_pixels);
-        let image = diameter_for(survey.side / self.speckle_size_in_pixels);
-        let halved = core::iter::successors(Some(length), |&l| (l > 2).then(|| (l / 2).max(2)));
-        [whole, image]
-            .into_iter()
-            .flat_map(|diameter| halved.clone().map(move |length| (diameter, length)))
-            .map(|(diameter, length)| (asked.unwrap_or(diameter), length))
-            .collect()
-    }
-
-    /// Returns the paths that are tried at the chosen C and Q, the best first.
-    fn paths(&self, scene: &Scene) -> Vec<SlicePath> {
-        let path = |half_period| match self.as_printed {
-            true => SlicePath::Circle { half_period },
-            false => SlicePath::Straight {
-                half_period,
-                length: self.length,
-            },
-        };
-        match (scene.speckle.half_period, scene.moves()) {
-            (Some(half_period), _) => vec![path(half_period)],
-            (None, true) => SLICES_PER_DIAMETER
-                .iter()
-                .map(|slices| path(slices.saturating_mul(self.length) / 2))
-                .collect(),
-            (None, false) if self.as_printed => vec![path(1)],
-            (None, false) => vec![SlicePath::Still],
-        }
-    }
-
-    /// Returns the size Q of the pattern, in samples.
-    pub const fn size(&self) -> usize {
-        self.size
-    }
-
-    /// Returns the diameter C of the pupil field, in samples.
-    pub const fn diameter(&self) -> usize {
-        self.diameter
-    }
-
-    /// Returns the path of the slices.
-    pub const fn path(&self) -> SlicePath {
-        self.path
+    /// Returns the sizes of the stack.
+    pub const fn stack(&self) -> &StackPlan {
+        &self.stack
     }
 
     /// Returns the speckle size in the image, in pixels.
     pub const fn speckle_size_in_pixels(&self) -> f64 {
-        self.speckle_size_in_pixels
+        self.needs.speckle_size
     }
 
     /// Returns the largest motion of the pupil over the speckle that the scene asks for, in pupil
     /// diameters.
-    pub const fn largest_shift(&self) -> f64 {
-        self.largest_shift
-    }
-
-    /// Returns the memory that the slices take, in bytes.
-    pub const fn memory_bytes(&self) -> u64 {
-        self.path.memory_bytes([self.size; 2])
-    }
-
-    /// Returns the largest shift that the slices hold, in pupil diameters: the length of their path
-    /// less the diameter of the pupil itself.
-    #[expect(clippy::cast_precision_loss, reason = "lengths are far below 2⁵³")]
-    pub(super) const fn reach(&self) -> f64 {
-        (self.length - 1) as f64
-    }
-
-    /// Whether some of the later frames have moved beyond the reach, and so share their speckle.
-    fn later_frames_share(&self) -> bool {
-        self.frames > 2 && self.largest_shift > self.reach()
+    pub fn largest_shift(&self) -> f64 {
+        self.needs.motion.unwrap_or(0.0)
     }
 
     pub(super) const fn seed(&self) -> u64 {
@@ -227,109 +133,84 @@ impl PatternPlan {
     }
 
     pub(super) const fn half_period(&self) -> usize {
-        match self.path {
+        match self.stack.path() {
             SlicePath::Still => 1,
             SlicePath::Circle { half_period } | SlicePath::Straight { half_period, .. } => {
                 half_period
             }
         }
     }
+}
 
-    /// Returns the number of slices that a motion of the pupil by its diameter passes.
-    #[expect(clippy::cast_precision_loss, reason = "sizes are far below 2⁵³")]
-    pub(super) fn slices_per_diameter(&self) -> f64 {
-        match self.path {
-            SlicePath::Straight {
-                half_period,
-                length,
-            } => (2 * half_period) as f64 / length as f64,
-            SlicePath::Still | SlicePath::Circle { .. } => self.half_period() as f64,
-        }
+/// The plan with what the scene file sets.
+fn as_asked(plan: StackPlan, settings: &SpeckleSettings) -> StackPlan {
+    let plan = match (settings.size, settings.diameter) {
+        (None, None) => plan,
+        (Some(size), None) => plan.with_square(size, size / 2),
+        (None, Some(diameter)) => plan.with_square(diameter.saturating_mul(2), diameter),
+        (Some(size), Some(diameter)) => plan.with_square(size, diameter),
+    };
+    match settings.half_period {
+        Some(half_period) => plan.with_half_period(half_period),
+        None => plan,
     }
 }
 
 impl fmt::Display for PatternPlan {
     #[expect(clippy::cast_precision_loss, reason = "shown to three digits")]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { size, diameter, .. } = self;
-        let speckles = self.extent / self.speckle_size_in_pixels;
+        let Self { stack, needs, .. } = self;
+        let [width, height] = needs.region;
         write!(
             f,
-            "speckles of {:.3} pixels at {:.1} nm; ",
-            self.speckle_size_in_pixels,
-            self.wavelength * 1e9
-        )?;
-        let relation = if *diameter as f64 >= speckles {
-            "at least"
-        } else {
-            "LESS than"
-        };
-        write!(
-            f,
-            "C = {diameter}, {relation} the {speckles:.1} speckles ({:.0} pixels) of the image{}; Q = {size}; ",
-            self.extent,
+            "speckles of {:.3} pixels at {:.1} nm; C = {}, {} the {:.1} × {:.1} speckles ({width:.0} \
+             × {height:.0} pixels) of the image{}; Q = {}; ",
+            needs.speckle_size,
+            self.wavelength * 1e9,
+            Sides(stack.diameter()),
+            if stack.holds_region(needs) {
+                "at least"
+            } else {
+                "LESS than"
+            },
+            width / needs.speckle_size,
+            height / needs.speckle_size,
             if self.chosen {
                 ""
             } else {
                 ", as the scene asks"
-            }
+            },
+            Sides(stack.size()),
         )?;
-        match self.path {
-            SlicePath::Still => write!(f, "one slice, since nothing moves; ")?,
-            _ => write!(
+        match needs.motion {
+            None => write!(f, "one slice, since nothing moves; ")?,
+            Some(motion) => write!(
                 f,
-                "{} slices for a motion of up to {:.2} pupil diameters{}; ",
-                self.path.slice_count(),
-                self.largest_shift,
-                if self.later_frames_share() {
-                    ", MORE than the slices hold: frames beyond share their speckle"
-                } else {
+                "{} slices for a motion of up to {motion:.2} pupil diameters{}; ",
+                stack.path().slice_count(),
+                if stack.holds_motion(needs) {
                     ""
+                } else {
+                    ", MORE than the slices hold: frames beyond share their speckle"
                 }
             )?,
         }
-        write!(
-            f,
-            "{:.1} MiB",
-            self.memory_bytes() as f64 / f64::from(1 << 20)
-        )
+        let mebibytes = stack.memory_bytes() as f64 / f64::from(1 << 20);
+        write!(f, "{mebibytes:.1} MiB")
     }
 }
 
-/// The smallest multiple of 8 without prime factors above 5 that covers `speckles` speckles: a size
-/// that Fourier transforms like.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the cast saturates, and what is too large is rejected by the pupil field"
-)]
-fn diameter_for(speckles: f64) -> usize {
-    let smallest = (speckles.ceil() as usize).max(SMALLEST_DIAMETER);
-    let multiples = smallest.div_ceil(8)..=PupilField::MAX_SIZE / 8;
-    multiples
-        .map(|multiple| 8 * multiple)
-        .find(|&diameter| is_smooth(diameter))
-        .unwrap_or(smallest)
-}
+/// One number for a square, two for other patterns.
+struct Sides([usize; 2]);
 
-fn is_smooth(mut number: usize) -> bool {
-    for prime in [2, 3, 5] {
-        while number.is_multiple_of(prime) {
-            number /= prime;
+impl fmt::Display for Sides {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [width, height] = self.0;
+        match width == height {
+            true => write!(f, "{width}"),
+            false => write!(f, "{width} × {height}"),
         }
     }
-    number == 1
-}
-
-/// The length of a straight path, in pupil diameters, that ends clear of its start after a motion of
-/// `shift` diameters.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the cast saturates"
-)]
-fn length_for(shift: f64) -> usize {
-    ((1.0 + shift).ceil() as usize).clamp(2, LONGEST_PATH)
 }
 
 #[cfg(test)]

@@ -13,11 +13,11 @@ const FRAMES: u32 = 8;
 /// What the image and the motion in a scene ask of a pattern.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Survey {
-    /// The longer side of the image, in pixels.
-    pub side: f64,
-    /// The longer side of the region of the first frame's image from which speckle is looked up, in
+    /// Width and height of the image, in pixels.
+    pub image: DVec2,
+    /// Width and height of the region of the first frame's image from which speckle is looked up, in
     /// pixels: the image itself and where lit points of later frames would have been seen.
-    pub extent: f64,
+    pub region: DVec2,
     /// The largest motion of the pupil over the speckle, in pupil diameters.
     pub shift: f64,
 }
@@ -48,8 +48,8 @@ impl Survey {
             }
         }
         Ok(Self {
-            side: size.max_element(),
-            extent: (high - low).max_element(),
+            image: size,
+            region: high - low,
             shift,
         })
     }

@@ -1,0 +1,336 @@
+use crate::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackOptions, mask::to_f64};
+
+/// What a stack is to be looked up for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StackNeeds {
+    /// Width and height of the image, in pixels.
+    pub image: [f64; 2],
+    /// Width and height of all that is looked up in any frame, in pixels: the image, and what lies
+    /// beyond its edges if motion brings it in.
+    pub region: [f64; 2],
+    /// The speckle size `h = λ d / D` on the sensor, in pixels.
+    pub speckle_size: f64,
+    /// The largest motion of the pupil over the speckle, in its diameters, or `None` if the speckle
+    /// never changes.
+    pub motion: Option<f64>,
+    /// The number of frames among which the speckle is compared.
+    pub frames: u32,
+    /// The bytes that the slices may take.
+    pub memory_limit: u64,
+}
+
+/// Sizes of a stack that repeats nothing where it is looked up and takes no more memory than that
+/// needs.
+///
+/// - The diameter of the pupil field is at least the region in speckles, along each axis, for the
+///   pattern repeats after so many: `C ≥ region / speckle_size`. It is rounded up to the next multiple
+///   of 8 without prime factors above 5, and is at least 32. If that takes too much memory, the
+///   image alone repeats nothing.
+/// - The pattern has twice that size, `Q = 2 C`: the intensity's Nyquist limit.
+/// - The slices lie on a straight path. For two frames it is two diameters long: what has left the
+///   pupil is new, wherever it is looked up. More frames ask for a path that ends clear of its start.
+/// - Their number is the largest of 32, 16, 8 or 4 per diameter that fits the memory. The blend
+///   between them exceeds the correlation law by up to 0.06, 0.11, 0.2 or 0.4.
+///
+/// What does not fit so is shortened: a path that is too short for the motion gives speckle of some
+/// late frames to others, which [`holds_motion`](Self::holds_motion) tells.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_speckle::{StackNeeds, StackPlan};
+///
+/// // A camera of 640 × 480 pixels with speckles of 2.5 pixels; a surface that moves the pupil by a
+/// // third of its diameter in 10 frames.
+/// let plan = StackPlan::new(&StackNeeds {
+///     image: [640.0, 480.0],
+///     region: [640.0, 480.0],
+///     speckle_size: 2.5,
+///     motion: Some(0.33),
+///     frames: 10,
+///     memory_limit: 256 << 20,
+/// })?;
+///
+/// assert_eq!(plan.diameter(), [256, 192]);
+/// assert_eq!(plan.size(), [512, 384]);
+/// assert_eq!(plan.path().slice_count(), 64);
+/// assert_eq!(plan.memory_bytes(), 96 << 20);
+/// # Ok::<(), tem00_speckle::SpeckleError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StackPlan {
+    diameter: [usize; 2],
+    size: [usize; 2],
+    path: SlicePath,
+}
+
+/// Slices per pupil diameter that are tried, the best first.
+const SLICES_PER_DIAMETER: [usize; 4] = [32, 16, 8, 4];
+
+/// The longest path that is tried, in pupil diameters: with the most slices it has the largest period.
+const LONGEST_PATH: usize = 2 * SlicePath::MAX_HALF_PERIOD / SLICES_PER_DIAMETER[0];
+
+/// The smallest pupil field that is chosen: about 800 phasors.
+const SMALLEST_DIAMETER: usize = 32;
+
+impl StackPlan {
+    /// Chooses the sizes of a stack: the first of the [candidates](Self::candidates) that fits the
+    /// memory.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a side or the speckle size of `needs` is not positive and finite, or its motion negative
+    /// or not finite, if the region holds more speckles than the largest pattern, or if not even the
+    /// smallest stack fits the memory.
+    pub fn new(needs: &StackNeeds) -> Result<Self, SpeckleError> {
+        Self::first_within(Self::candidates(needs)?, needs.memory_limit)
+    }
+
+    /// Returns the plans for `needs` in the order of their worth, whatever memory they take: all that
+    /// is asked for with fewer and fewer slices, then for the image alone, then on a shorter path.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new), the memory aside.
+    pub fn candidates(needs: &StackNeeds) -> Result<Vec<Self>, SpeckleError> {
+        needs.check()?;
+        let sizes = needs.sizes();
+        let Some(motion) = needs.motion else {
+            return Ok(sizes.to_vec());
+        };
+        let length = if needs.frames <= 2 {
+            2
+        } else {
+            length_for(motion)
+        };
+        let halved = core::iter::successors(Some(length), |&l| (l > 2).then(|| (l / 2).max(2)));
+        let path = |length: usize, slices: usize| SlicePath::Straight {
+            half_period: slices * length / 2,
+            length,
+        };
+        let of_length = |length: usize| {
+            sizes.into_iter().flat_map(move |size| {
+                SLICES_PER_DIAMETER.map(|slices| Self {
+                    path: path(length, slices),
+                    ..size
+                })
+            })
+        };
+        Ok(halved.flat_map(of_length).collect())
+    }
+
+    /// Returns the first of `plans` that takes at most `memory_limit` bytes.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if none does, or if the first that does has sizes that no pattern can have.
+    pub fn first_within(
+        plans: impl IntoIterator<Item = Self>,
+        memory_limit: u64,
+    ) -> Result<Self, SpeckleError> {
+        let mut smallest = u64::MAX;
+        for plan in plans {
+            let needed = plan.memory_bytes();
+            if needed <= memory_limit {
+                plan.field(0)?;
+                return Ok(plan);
+            }
+            smallest = smallest.min(needed);
+        }
+        Err(SpeckleError::MemoryLimit {
+            needed: smallest,
+            limit: memory_limit,
+        })
+    }
+
+    /// Returns the plan with a square pattern of `size` samples and a pupil of `diameter` lattice
+    /// points.
+    #[must_use]
+    pub const fn with_square(mut self, size: usize, diameter: usize) -> Self {
+        self.size = [size; 2];
+        self.diameter = [diameter; 2];
+        self
+    }
+
+    /// Returns the plan with `2 half_period` slices on its path.
+    #[must_use]
+    pub const fn with_half_period(mut self, half_period: usize) -> Self {
+        self.path = match self.path {
+            SlicePath::Circle { .. } => SlicePath::Circle { half_period },
+            SlicePath::Straight { length, .. } => SlicePath::Straight {
+                half_period,
+                length,
+            },
+            SlicePath::Still => SlicePath::Straight {
+                half_period,
+                length: 2,
+            },
+        };
+        self
+    }
+
+    /// Returns the plan with its slices on the circle of Bergmann et al. 2016, M of them per
+    /// diameter.
+    #[must_use]
+    pub const fn on_circle(mut self) -> Self {
+        let half_period = match self.path {
+            SlicePath::Still => 1,
+            SlicePath::Circle { half_period } => half_period,
+            SlicePath::Straight {
+                half_period,
+                length,
+            } => 2 * half_period / length,
+        };
+        self.path = SlicePath::Circle { half_period };
+        self
+    }
+
+    /// Returns the width and the height of the pattern, in samples.
+    pub const fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// Returns the diameter of the pupil along each axis, in lattice points: the speckles after which
+    /// the pattern repeats.
+    pub const fn diameter(&self) -> [usize; 2] {
+        self.diameter
+    }
+
+    /// Returns the path of the slices.
+    pub const fn path(&self) -> SlicePath {
+        self.path
+    }
+
+    /// Returns the bytes that the slices take.
+    pub const fn memory_bytes(&self) -> u64 {
+        self.path.memory_bytes(self.size)
+    }
+
+    /// Returns the slices that a motion of the pupil by its diameter passes.
+    pub fn slices_per_diameter(&self) -> f64 {
+        match self.path {
+            SlicePath::Still => 1.0,
+            SlicePath::Circle { half_period } => to_f64(half_period),
+            SlicePath::Straight {
+                half_period,
+                length,
+            } => 2.0 * to_f64(half_period) / to_f64(length),
+        }
+    }
+
+    /// Returns the largest motion of the pupil that the slices tell apart from every smaller one, in
+    /// its diameters: the length of their path less the diameter of the pupil itself.
+    pub fn reach(&self) -> f64 {
+        match self.path {
+            SlicePath::Still => 0.0,
+            SlicePath::Circle { .. } => 1.0,
+            SlicePath::Straight { length, .. } => to_f64(length) - 1.0,
+        }
+    }
+
+    /// Whether the pattern repeats nothing within the region.
+    pub fn holds_region(&self, needs: &StackNeeds) -> bool {
+        (0..2).all(|axis| to_f64(self.diameter[axis]) >= needs.region[axis] / needs.speckle_size)
+    }
+
+    /// Whether each frame has the speckle of its own motion. With two frames it always has: what is
+    /// beyond the reach is new.
+    pub fn holds_motion(&self, needs: &StackNeeds) -> bool {
+        needs.frames <= 2 || needs.motion.is_none_or(|motion| motion <= self.reach())
+    }
+
+    /// Returns the pupil field of this plan, with the phasors of `seed`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if its sizes are out of range; those that [`new`](Self::new) chooses never
+    /// are.
+    pub fn field(&self, seed: u64) -> Result<PupilField, SpeckleError> {
+        if self.size[0] == self.size[1] {
+            return PupilField::new(self.size[0], self.diameter[0], seed);
+        }
+        let speckle_size = to_f64(self.size[0]) / to_f64(self.diameter[0]);
+        PupilField::from_speckle_size(self.size, speckle_size, seed)
+    }
+
+    /// Generates the stack of this plan from the phasors of `seed`.
+    ///
+    /// # Errors
+    ///
+    /// As [`field`](Self::field) and [`SpeckleStack::generate_with`].
+    pub fn stack(&self, seed: u64, options: StackOptions) -> Result<SpeckleStack, SpeckleError> {
+        SpeckleStack::generate_with(&self.field(seed)?, self.path, options)
+    }
+}
+
+impl StackNeeds {
+    fn check(&self) -> Result<(), SpeckleError> {
+        let positive = |x: &f64| x.is_finite() && *x > 0.0;
+        if let Some(side) = self.image.iter().find(|side| !positive(side)) {
+            return Err(SpeckleError::Image(*side));
+        }
+        if let Some(side) = self.region.iter().find(|side| !positive(side)) {
+            return Err(SpeckleError::Region(*side));
+        }
+        if !positive(&self.speckle_size) {
+            return Err(SpeckleError::SpeckleSizeInPixels(self.speckle_size));
+        }
+        match self.motion {
+            Some(motion) if !(motion >= 0.0 && motion.is_finite()) => {
+                Err(SpeckleError::Motion(motion))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// One slice for the region, and one for the image.
+    fn sizes(&self) -> [StackPlan; 2] {
+        [self.region, self.image].map(|sides| {
+            let diameter = sides.map(|side| diameter_for(side / self.speckle_size));
+            StackPlan {
+                diameter,
+                size: diameter.map(|diameter| diameter.saturating_mul(2)),
+                path: SlicePath::Still,
+            }
+        })
+    }
+}
+
+/// The smallest multiple of 8 without prime factors above 5 that covers `speckles` speckles: a size
+/// that Fourier transforms like.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the cast saturates, and what is too large is rejected by the pupil field"
+)]
+fn diameter_for(speckles: f64) -> usize {
+    let smallest = (speckles.ceil() as usize).max(SMALLEST_DIAMETER);
+    let multiples = smallest.div_ceil(8)..=PupilField::MAX_SIZE / 8;
+    multiples
+        .map(|multiple| 8 * multiple)
+        .find(|&diameter| is_smooth(diameter))
+        .unwrap_or(smallest)
+}
+
+fn is_smooth(mut number: usize) -> bool {
+    for prime in [2, 3, 5] {
+        while number.is_multiple_of(prime) {
+            number /= prime;
+        }
+    }
+    number == 1
+}
+
+/// The length of a straight path, in pupil diameters, that ends clear of its start after a motion of
+/// `motion` diameters.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the cast saturates"
+)]
+fn length_for(motion: f64) -> usize {
+    ((1.0 + motion).ceil() as usize).clamp(2, LONGEST_PATH)
+}
+
+#[cfg(test)]
+mod tests;

@@ -11,6 +11,7 @@
 
 mod first_order;
 mod lattice;
+mod paper;
 mod second_order;
 mod slices;
 mod spectrum;

@@ -119,7 +119,7 @@ proptest! {
     })]
 
     #[test]
-    fn unit_phasors_have_the_mean_of_one_and_others_fluctuate_about_it(case in cases(40..200, 5.0)) {
+    fn unit_phasors_have_the_mean_of_one_and_gaussian_ones_nearly(case in cases(40..200, 5.0)) {
         let field = case.field();
         let pattern = field.pattern_at(case.offset, case.defocus);
         let values = pattern.values().values();

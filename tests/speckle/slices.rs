@@ -177,6 +177,29 @@ proptest! {
     }
 
     #[test]
+    fn slices_stand_on_their_path_within_half_a_lattice_point(
+        case in cases(20..90, 5.0), path in paths(),
+    ) {
+        let stack = stack(&case.field(), path, Interpolation::Nearest);
+        let diameter = stack.field().diameter();
+        for index in 0..stack.slice_count() {
+            let offset = stack.offset(index);
+            let turns = index as f64 / stack.slice_count() as f64;
+            let place = match path {
+                SlicePath::Straight { .. } => [turns * period(&stack) as f64 / diameter[0], 0.0],
+                _ => [0.5 * (TAU * turns).cos(), 0.5 * (TAU * turns).sin()],
+            };
+            for axis in [0, 1] {
+                let points = (offset[axis] - place[axis]) * diameter[axis];
+                prop_assert!(points.abs() < 0.5 + 1e-9, "slice {index}: {points} points beside");
+            }
+            if let SlicePath::Straight { .. } = path {
+                prop_assert!(offset[1].abs() <= 0.0, "slice {index}: {offset:?}");
+            }
+        }
+    }
+
+    #[test]
     fn correlations_follow_the_law_of_the_path(
         case in cases(90..200, 3.0), path in paths(), first in 0_usize..12,
     ) {

@@ -74,7 +74,7 @@ impl Case {
         self.build().expect("a field of enough phasors")
     }
 
-    /// The number of the fixed mean: N for unit phasors, none for others.
+    /// Whether the mean of every tile is fixed.
     pub(crate) fn is_unit(&self) -> bool {
         self.phasors == Phasors::Unit
     }
@@ -279,8 +279,8 @@ pub(crate) fn centred(index: usize, size: usize) -> f64 {
     }
 }
 
-/// 2 √(Σ |μ|⁴ / samples) and its like at other lags: the standard deviation, from pattern to pattern,
-/// of the mean of (I(x) − 1)(I(x + lag) − 1) over a tile.
+/// The standard deviation, from pattern to pattern, of the mean of (I(x) − 1)(I(x + lag) − 1) over a
+/// tile. At zero lag, for the squared contrast, it is 2 √(mean |μ|⁴).
 ///
 /// With the field U a Gaussian process, the part of the product that varies is the Wick product
 /// :|U(x)|² |U(x + lag)|²:, whose covariance at the distance d is |μ(d)² + μ(d + lag) μ(d − lag)|².

@@ -88,8 +88,8 @@ fn correlation_in_the_lattice(stack: &SpeckleStack, i: usize, j: usize) -> Compl
     sum / (size[0] * size[1]) as f64
 }
 
-/// Whether two pupils so far apart share points as they stand, but none a period of the pattern
-/// further: over the tile, points a period apart have the same wave.
+/// Whether no point of one pupil lies a period of the pattern away from where a point of the other
+/// does: the two would have the same wave on the tile, and their product would add to the mean.
 fn is_alone(stack: &SpeckleStack, step: [i64; 2]) -> bool {
     let (size, diameter) = (stack.size(), stack.field().diameter());
     let reach = |axis: usize| step[axis].unsigned_abs() as f64 + diameter[axis];

@@ -1,0 +1,280 @@
+//! Slices of stacks: their fields, their correlation, and the look-up between them.
+
+use core::f64::consts::{PI, TAU};
+
+use proptest::{prelude::*, test_runner::RngSeed};
+use tem00::{
+    numerics::Grid,
+    speckle::{Complex, Interpolation, Phasors, PupilField, SlicePath, SpeckleStack, StackOptions},
+    statistics::{exponential_cumulative, kolmogorov_smirnov, pearson_correlation},
+};
+
+use crate::lattice::{Case, Lattice, Shape, cases, covariance_spread, signed};
+
+fn paths() -> impl Strategy<Value = SlicePath> {
+    prop_oneof![
+        (1_usize..6).prop_map(|half_period| SlicePath::Circle { half_period }),
+        (1_usize..6, 2_usize..5).prop_map(|(half_period, length)| SlicePath::Straight {
+            half_period,
+            length
+        }),
+    ]
+}
+
+fn interpolations() -> impl Strategy<Value = Interpolation> {
+    prop_oneof![
+        Just(Interpolation::CubicSpline),
+        Just(Interpolation::Bilinear),
+        Just(Interpolation::Nearest),
+    ]
+}
+
+fn stack(field: &PupilField, path: SlicePath, interpolation: Interpolation) -> SpeckleStack {
+    let options = StackOptions {
+        interpolation,
+        ..StackOptions::default()
+    };
+    SpeckleStack::generate_with(field, path, options).expect("a small stack")
+}
+
+/// The centre of a slice's pupil, in lattice points.
+#[expect(clippy::cast_possible_truncation, reason = "a few lattice points")]
+fn centre(stack: &SpeckleStack, index: usize) -> [i64; 2] {
+    let (offset, diameter) = (stack.offset(index), stack.field().diameter());
+    [0, 1].map(|axis| (offset[axis] * diameter[axis]).round() as i64)
+}
+
+/// The points after which the lattice of a path closes along x, or so many that it never does.
+#[expect(clippy::cast_possible_truncation, reason = "a few lattice points")]
+fn period(stack: &SpeckleStack) -> i64 {
+    match stack.path() {
+        SlicePath::Straight { length, .. } => {
+            (length as f64 * stack.field().diameter()[0]).round() as i64
+        }
+        SlicePath::Circle { .. } | SlicePath::Still => 1 << 32,
+    }
+}
+
+fn shift(stack: &SpeckleStack, from: usize, to: usize) -> [i64; 2] {
+    let (a, b, period) = (centre(stack, from), centre(stack, to), period(stack));
+    let x = (b[0] - a[0]).rem_euclid(period);
+    [if 2 * x < period { x } else { x - period }, b[1] - a[1]]
+}
+
+/// What two slices share by counting; on a lattice that has closed, from both sides.
+fn counted_overlap(lattice: &Lattice, [x, y]: [i64; 2], period: i64) -> Complex<f64> {
+    [x - period, x, x + period]
+        .map(|x| lattice.overlap([x, y]))
+        .iter()
+        .sum()
+}
+
+/// The mean over the tile of one amplitude times the conjugate of the other, in the frame of the lattice.
+/// For unit phasors it holds no noise.
+fn correlation_in_the_lattice(stack: &SpeckleStack, i: usize, j: usize) -> Complex<f64> {
+    let step = shift(stack, i, j);
+    let size = stack.size();
+    let (a, b) = (stack.coefficients(i), stack.coefficients(j));
+    let mut sum = Complex::new(0.0, 0.0);
+    for (y, (row, other)) in a.rows().zip(b.rows()).enumerate() {
+        for (x, (here, there)) in row.iter().zip(other).enumerate() {
+            let turns = (step[0] * signed(x)) as f64 / size[0] as f64
+                + (step[1] * signed(y)) as f64 / size[1] as f64;
+            let product = here * there.conj();
+            sum += Complex::new(f64::from(product.re), f64::from(product.im))
+                * Complex::cis(TAU * turns);
+        }
+    }
+    sum / (size[0] * size[1]) as f64
+}
+
+/// Whether no point of one pupil lies a period of the pattern away from where a point of the other
+/// does: the two would have the same wave on the tile, and their product would add to the mean.
+fn is_alone(stack: &SpeckleStack, step: [i64; 2]) -> bool {
+    let (size, diameter) = (stack.size(), stack.field().diameter());
+    let reach = |axis: usize| step[axis].unsigned_abs() as f64 + diameter[axis];
+    [0, 1].iter().all(|&axis| reach(axis) < size[axis] as f64)
+}
+
+fn intensity(stack: &SpeckleStack, index: usize) -> Grid<f32> {
+    stack.coefficients(index).map(Complex::norm_sqr)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 24, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn slices_are_the_fields_on_demand(case in cases(20..90, 5.0), path in paths()) {
+        let field = case.field();
+        let stack = stack(&field, path, Interpolation::Bilinear);
+        let reach = period(&stack) as f64 / stack.field().diameter()[0] / 2.0 - 0.51;
+        for index in 0..stack.slice_count() {
+            let offset = stack.offset(index);
+            let demanded = stack.field().speckle(offset, 0.0);
+            prop_assert_eq!(demanded.values(), stack.coefficients(index));
+            // The lattice that closes shows what the endless one has about the origin.
+            if offset[0] < reach {
+                prop_assert_eq!(field.speckle(offset, 0.0), demanded);
+            }
+        }
+    }
+
+    #[test]
+    fn splines_pass_through_the_field_on_demand(case in cases(20..90, 5.0), path in paths()) {
+        let stack = stack(&case.field(), path, Interpolation::CubicSpline);
+        for (index, u) in (0..stack.slice_count()).zip(0_u32..) {
+            let pattern = stack.field().pattern_at(stack.offset(index), 0.0);
+            let mut square = 0.0;
+            for (y, row) in pattern.values().rows().enumerate() {
+                for (x, &expected) in row.iter().enumerate() {
+                    let got = stack.intensity_at(x as f64, y as f64, u.into());
+                    square += (got - f64::from(expected)).powi(2);
+                }
+            }
+            let rms = (square / pattern.values().values().len() as f64).sqrt();
+            // The stated 4.3e−3 of the field at a speckle size of 2 falls with its fourth power;
+            // |U|² doubles it.
+            let stated = 2.0 * 4.3e-3 * (2.0 / stack.speckle_size()).powi(4) + 1e-6;
+            prop_assert!(rms < stated, "slice {index}: {rms:e}, stated {stated:e}");
+        }
+    }
+
+    #[test]
+    fn slices_correlate_as_their_pupils_overlap(
+        case in cases(40..90, 3.0), path in paths(), first in 0_usize..12,
+    ) {
+        let case = Case { phasors: Phasors::Unit, ..case };
+        let stack = stack(&case.field(), path, Interpolation::Nearest);
+        let lattice = Lattice::of(stack.field(), [0.0; 2]);
+        let (count, correlations) = (lattice.phasors(), lattice.correlations());
+        let first = first % stack.slice_count();
+        for second in 0..stack.slice_count() {
+            let step = shift(&stack, first, second);
+            let overlap = counted_overlap(&lattice, step, period(&stack));
+            if is_alone(&stack, step) {
+                let measured = correlation_in_the_lattice(&stack, first, second);
+                // By Parseval, but for the rounding of f32.
+                prop_assert!((measured - overlap).norm() < 2e-6, "{measured} | {overlap}");
+            }
+            let gamma = stack.correlation_between(first, second);
+            prop_assert!((gamma - overlap.norm_sqr()).abs() < 1e-6, "γ = {gamma} | {overlap}");
+            if first == second {
+                continue;
+            }
+            let (a, b) = (intensity(&stack, first), intensity(&stack, second));
+            let pearson = pearson_correlation(&a, &b).expect("bright patterns");
+            // The spread of a covariance is at most that of a squared contrast, by Schwarz; over
+            // that contrast, which spreads as much. Fixed means make a difference of 1/N. 200 pairs
+            // at 5 standard deviations: α = 1e−4.
+            let spread = covariance_spread(&correlations, [0, 0], None) * (1.0 + gamma);
+            prop_assert!(
+                (pearson - gamma).abs() < 5.0 * spread + 1.0 / count,
+                "γ({first}, {second}) = {gamma}: {pearson}, spread {spread}"
+            );
+        }
+    }
+
+    #[test]
+    fn slices_stand_on_their_path_within_half_a_lattice_point(
+        case in cases(20..90, 5.0), path in paths(),
+    ) {
+        let stack = stack(&case.field(), path, Interpolation::Nearest);
+        let diameter = stack.field().diameter();
+        for index in 0..stack.slice_count() {
+            let offset = stack.offset(index);
+            let turns = index as f64 / stack.slice_count() as f64;
+            let place = match path {
+                SlicePath::Straight { .. } => [turns * period(&stack) as f64 / diameter[0], 0.0],
+                _ => [0.5 * (TAU * turns).cos(), 0.5 * (TAU * turns).sin()],
+            };
+            for axis in [0, 1] {
+                let points = (offset[axis] - place[axis]) * diameter[axis];
+                prop_assert!(points.abs() < 0.5 + 1e-9, "slice {index}: {points} points beside");
+            }
+            if let SlicePath::Straight { .. } = path {
+                prop_assert!(offset[1].abs() <= 0.0, "slice {index}: {offset:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn correlations_follow_the_law_of_the_path(
+        case in cases(90..200, 3.0), path in paths(), first in 0_usize..12,
+    ) {
+        // Behind other pupils the circle's law depends on the direction.
+        let round = matches!(case.shape, Shape::Circle | Shape::Annulus(_) | Shape::Gaussian(_));
+        prop_assume!(round);
+        let stack = stack(&case.field(), path, Interpolation::Nearest);
+        let diameter = stack.field().diameter();
+        let first = first % stack.slice_count();
+        for second in 0..stack.slice_count() {
+            let distance = second as f64 - first as f64;
+            let (law, exact) =
+                (stack.correlation_at(distance), stack.correlation_between(first, second));
+            // Rounded centres move the distance by up to √2 points; the overlap falls by 4/π per
+            // diameter, by 1/(1 − ε) of that behind an annulus. γ is its square.
+            let slope = match case.shape {
+                Shape::Annulus(inner) => 4.0 / PI / (1.0 - inner),
+                _ => 4.0 / PI,
+            };
+            let error = slope * 2.0_f64.sqrt() / diameter[0].min(diameter[1]);
+            let tolerance = error * (2.0 * law.sqrt() + error);
+            prop_assert!(
+                (exact - law).abs() < tolerance,
+                "γ({first}, {second}) = {exact}, law {law}, tolerance {tolerance}"
+            );
+        }
+    }
+
+    #[test]
+    fn look_ups_are_exponential_at_any_fraction(
+        case in cases(70..110, 3.0), path in paths(), interpolation in interpolations(),
+        fractions in [0.0_f64..1.0, 0.0_f64..1.0], u in 0.0_f64..12.0,
+    ) {
+        const TILES: u64 = 4;
+        let field = case.field();
+        let stride = Lattice::of(&field, [0.0; 2]).stride([0, 0]);
+        let mut samples = Vec::new();
+        for tile in 0..TILES {
+            let stack = stack(&field.clone().with_seed(case.seed ^ tile), path, interpolation);
+            let [columns, rows] = stack.size().map(|side| side / stride);
+            for y in 0..rows {
+                for x in 0..columns {
+                    let at = |i: usize, f: f64| (i * stride) as f64 + f;
+                    samples.push(stack.intensity_at(at(x, fractions[0]), at(y, fractions[1]), u));
+                }
+            }
+        }
+        let test = kolmogorov_smirnov(&samples, exponential_cumulative).expect("samples");
+        // 24 cases: a correct look-up fails one of them with a probability of 2e−5. N phasors are
+        // off by 0.12/N, the bilinear mean by 2 % at most, of the 1.4/√n that the test sees.
+        prop_assert!(test.p_value > 1e-6, "p = {:e} of {}", test.p_value, samples.len());
+    }
+
+    #[test]
+    fn the_mean_of_look_ups_is_one_at_any_fraction(
+        case in cases(40..70, 5.0), path in paths(), interpolation in interpolations(),
+        fractions in [0.0_f64..1.0, 0.0_f64..1.0], u in 0.0_f64..12.0,
+    ) {
+        let case = Case { phasors: Phasors::Unit, ..case };
+        let stack = stack(&case.field(), path, interpolation);
+        let [width, height] = stack.size();
+        let mut sum = 0.0;
+        for y in 0..height {
+            for x in 0..width {
+                sum += stack.intensity_at(x as f64 + fractions[0], y as f64 + fractions[1], u);
+            }
+        }
+        let mean = sum / (width * height) as f64;
+        // By Parseval the mean holds no noise, only what is stated of the renormalisation.
+        let fine = 2.0 / stack.speckle_size();
+        let stated = match interpolation {
+            Interpolation::CubicSpline => 7e-4 * fine.powi(4),
+            Interpolation::Bilinear => 0.021 * fine.powi(2),
+            Interpolation::Nearest => 0.0,
+        };
+        prop_assert!((mean - 1.0).abs() < stated + 3e-6, "mean {mean}, stated {stated:e}");
+    }
+}

@@ -1,0 +1,98 @@
+//! Autocovariance and power spectrum of the intensity.
+
+use proptest::{prelude::*, test_runner::RngSeed};
+use tem00::{numerics::Grid, speckle::PupilField, statistics::power_spectrum};
+
+use crate::lattice::{Lattice, Shape, cases, centred, covariance_spread, signed};
+
+/// The mean of (I(x) − 1)(I(x + lag) − 1) over a tile.
+fn covariance(pattern: &Grid<f32>, [x, y]: [i64; 2]) -> f64 {
+    let mut sum = 0.0;
+    for (row, values) in pattern.rows().enumerate() {
+        for (column, &value) in values.iter().enumerate() {
+            let there = *pattern.wrapped(signed(column) + x, signed(row) + y);
+            sum += (f64::from(value) - 1.0) * (f64::from(there) - 1.0);
+        }
+    }
+    sum / pattern.values().len() as f64
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 20, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn autocovariance_is_the_squared_transform_of_the_pupil(
+        case in cases(28..56, 3.0),
+        lags in prop::collection::vec([-9_i64..9, -9_i64..9], 4),
+    ) {
+        const TILES: u64 = 60;
+        let field = case.field();
+        let patterns: Vec<_> = (0..TILES)
+            .map(|tile| field.clone().with_seed(case.seed.wrapping_add(tile)))
+            .map(|field| field.pattern_at(case.offset, case.defocus))
+            .collect();
+        let lattice = Lattice::of(&field, case.offset);
+        let (correlations, count) = (lattice.correlations(), lattice.phasors());
+        let (fixed_mean, fluctuating) =
+            if case.is_unit() { (1.0 / count, None) } else { (0.0, Some(count)) };
+        for lag in lags.into_iter().chain([[0, 0], [1, 0], [0, 1]]) {
+            let sum: f64 = patterns.iter().map(|p| covariance(p.values(), lag)).sum();
+            let expected = lattice.correlation(lag).norm_sqr() - fixed_mean;
+            let difference = sum / TILES as f64 - expected;
+            let spread = covariance_spread(&correlations, lag, fluctuating) / (TILES as f64).sqrt();
+            // 140 lags at 5.5 standard deviations: α = 5e−6 for a normal law. That of so many
+            // speckles is skewed by 10/√(0.85 · 60 N), 0.2 at most, which makes it some 5e−5.
+            prop_assert!(
+                difference.abs() < 5.5 * spread,
+                "lag {lag:?}: {difference} of {expected}, spread {spread}"
+            );
+        }
+    }
+}
+
+/// The frequencies that the light of a pupil can make by interference, in its diameters.
+fn within_reach(shape: Shape, [x, y]: [f64; 2]) -> bool {
+    let edge = 1.0 + 1e-9;
+    match shape {
+        Shape::Rectangle(height) => x.abs() <= edge && y.abs() <= height * edge,
+        Shape::Aberrated(_) => x.abs() <= edge && y.abs() <= edge,
+        _ => x.hypot(y) <= edge,
+    }
+}
+
+fn in_diameters(field: &PupilField, [x, y]: [usize; 2]) -> [f64; 2] {
+    let ([width, height], diameter) = (field.size(), field.diameter());
+    [
+        centred(x, width) / diameter[0],
+        centred(y, height) / diameter[1],
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 60, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn there_are_no_fringes_finer_than_the_pupil_allows(case in cases(24..130, 6.0)) {
+        let field = case.field();
+        let pattern = field.pattern_at(case.offset, case.defocus);
+        let spectrum = power_spectrum(pattern.values()).expect("a bright pattern");
+        let (mut beyond, mut inside) = (0.0_f32, 0.0_f64);
+        for (y, row) in spectrum.rows().enumerate() {
+            for (x, &power) in row.iter().enumerate() {
+                if within_reach(case.shape, in_diameters(&field, [x, y])) {
+                    inside += f64::from(power);
+                } else {
+                    beyond = beyond.max(power);
+                }
+            }
+        }
+        // Intensities are rounded by some 1e−7 of 1, at random: 1e−14 of their variance, at the
+        // worst of 1e4 frequencies ten times that, and a few such steps on the way.
+        prop_assert!(beyond < 1e-11, "{beyond:e} beyond the cut-off");
+        prop_assert!((inside / spectrum.values().len() as f64 - 1.0).abs() < 1e-4, "{inside}");
+    }
+}

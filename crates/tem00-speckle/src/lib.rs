@@ -69,6 +69,7 @@ mod lattice;
 mod light;
 mod look_up;
 mod mask;
+mod npy;
 pub mod paper;
 mod path;
 mod pattern;
@@ -87,6 +88,7 @@ pub use interpolation::Interpolation;
 pub use light::{
     Bandwidth, CoherentBackground, Exposure, IncoherentSum, LitArea, ObjectiveSpeckle, PixelArray,
 };
+pub use npy::{NpyError, NpyReader, write_npy};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use path::SlicePath;

@@ -21,6 +21,10 @@
 //! PupilField::from_scatterers    a few point sources: speckle not fully developed
 //! ```
 //!
+//! Files: [`SpeckleStack::write_to`] keeps a stack with its bits, to be read again or mapped into
+//! memory; [`NpyReader`], [`write_npy`] and the methods of that name exchange fields, patterns and
+//! stacks with NumPy.
+//!
 //! # Conventions
 //!
 //! - **Intensity** is dimensionless with mean 1.

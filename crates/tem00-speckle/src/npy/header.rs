@@ -25,9 +25,9 @@ pub(super) struct Header {
 
 impl Header {
     pub(super) fn read(reader: &mut impl Read) -> Result<Self, NpyError> {
-        let mut magic = [0; MAGIC.len()];
-        reader.read_exact(&mut magic)?;
-        if magic != *MAGIC {
+        let mut magic = Vec::new();
+        reader.take(MAGIC.len() as u64).read_to_end(&mut magic)?;
+        if !MAGIC.starts_with(&magic) {
             return Err(NpyError::Foreign);
         }
         let mut version = [0; 2];

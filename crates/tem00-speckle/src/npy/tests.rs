@@ -213,9 +213,24 @@ fn what_is_no_field_says_what_it_is() {
 }
 
 #[test]
+fn every_shorter_file_is_truncated() {
+    let file = array("<c8", "(1, 2)", &[0; 16]);
+    for length in 0..file.len() {
+        let cut = complex(&file[..length]);
+        assert!(
+            matches!(cut, Err(NpyError::Truncated)),
+            "{length} bytes: {cut:?}"
+        );
+    }
+    assert!(complex(&file).is_ok(), "all of it");
+    let short = complex(b"P5");
+    assert!(matches!(short, Err(NpyError::Foreign)), "{short:?}");
+}
+
+#[test]
 fn memory_is_only_asked_for_as_the_file_fills_it() {
-    // A terabyte is claimed, a few bytes are there, and no limit is set.
-    let file = array("<c8", "(500000, 250000)", &[0; 800]);
+    // A petabyte is claimed, a few bytes are there, and no limit is set.
+    let file = array("<c8", "(500000000, 250000)", &[0; 800]);
     let cut = NpyReader::new(file.as_slice()).and_then(|array| array.into_complex(u64::MAX));
     assert!(matches!(cut, Err(NpyError::Truncated)), "{cut:?}");
     // What the limit counts: once the values, twice if they are turned.

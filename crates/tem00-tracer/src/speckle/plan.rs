@@ -11,8 +11,9 @@ use crate::{Formulas, Laser, Scene, SpeckleSettings, TracerError};
 /// diameter, 0.11 with 16, 0.2 with 8 and 0.4 with 4.
 const SLICES_PER_DIAMETER: [usize; 4] = [32, 16, 8, 4];
 
-/// The longest path that is tried, in pupil diameters: with the most slices it has the largest period.
-const LONGEST_PATH: usize = 2 * SlicePath::MAX_HALF_PERIOD / SLICES_PER_DIAMETER[0];
+/// The longest path that is tried, in pupil diameters: with the fewest slices it has the largest
+/// period.
+const LONGEST_PATH: usize = 2 * SlicePath::MAX_HALF_PERIOD / SLICES_PER_DIAMETER[3];
 
 /// The smallest pupil field that is chosen without being asked: about 800 phasors.
 const SMALLEST_DIAMETER: usize = 32;
@@ -137,6 +138,9 @@ impl PatternPlan {
     }
 
     /// Returns the pairs of C and the length of the path that are tried, the best first.
+    ///
+    /// A field that covers only the image lets places share their speckle in different frames; a path
+    /// that is too short lets whole frames do so, and is the last resort.
     fn sizes(&self, settings: &SpeckleSettings, survey: &Survey) -> Vec<(usize, usize)> {
         // Two frames need no third place on the lattice: whatever is new is new to the first.
         let length = if self.as_printed || self.frames <= 2 {
@@ -148,9 +152,8 @@ impl PatternPlan {
         let whole = diameter_for(survey.extent / self.speckle_size_in_pixels);
         let image = diameter_for(survey.side / self.speckle_size_in_pixels);
         let halved = core::iter::successors(Some(length), |&l| (l > 2).then(|| (l / 2).max(2)));
-        [whole, image]
-            .into_iter()
-            .flat_map(|diameter| halved.clone().map(move |length| (diameter, length)))
+        halved
+            .flat_map(|length| [(whole, length), (image, length)])
             .map(|(diameter, length)| (asked.unwrap_or(diameter), length))
             .collect()
     }
@@ -168,7 +171,9 @@ impl PatternPlan {
             (Some(half_period), _) => vec![path(half_period)],
             (None, true) => SLICES_PER_DIAMETER
                 .iter()
-                .map(|slices| path(slices.saturating_mul(self.length) / 2))
+                .map(|slices| slices.saturating_mul(self.length) / 2)
+                .filter(|&half_period| half_period <= SlicePath::MAX_HALF_PERIOD)
+                .map(path)
                 .collect(),
             (None, false) if self.as_printed => vec![path(1)],
             (None, false) => vec![SlicePath::Still],
@@ -213,9 +218,10 @@ impl PatternPlan {
         (self.length - 1) as f64
     }
 
-    /// Whether some of the later frames have moved beyond the reach, and so share their speckle.
+    /// Whether some of the later frames have moved beyond the reach, and so share their speckle. The
+    /// circle of the printed formulas has no reach, whatever the memory.
     fn later_frames_share(&self) -> bool {
-        self.frames > 2 && self.largest_shift > self.reach()
+        self.frames > 2 && !self.as_printed && self.largest_shift > self.reach()
     }
 
     pub(super) const fn seed(&self) -> u64 {

@@ -119,6 +119,44 @@ fn a_motion_that_does_not_fit_the_memory_is_cut_and_said() {
 }
 
 #[test]
+fn frames_share_no_speckle_while_a_smaller_field_fits_the_memory() {
+    // 1.28 diameters take a path of 3, of 12 slices or more: 24 MiB of 512² samples for the image and
+    // where it came from, 13.5 MiB of 384² for the image alone.
+    let plan = |memory: &str| {
+        let more = format!("[speckle]\nmemory = \"{memory}\"");
+        plan(3, "[\"2 mm\", 0, 0]", &more).unwrap()
+    };
+    for (memory, diameter, slices, shares) in [
+        ("24 MiB", 256, 12, false),
+        ("23 MiB", 192, 12, false),
+        ("13.5 MiB", 192, 12, false),
+        ("13 MiB", 192, 8, true),
+    ] {
+        let plan = plan(memory);
+        assert_eq!(plan.diameter(), diameter, "{memory}: {plan}");
+        assert_eq!(plan.path().slice_count(), slices, "{memory}: {plan}");
+        assert_eq!(plan.to_string().contains("MORE"), shares, "{plan}");
+    }
+}
+
+#[test]
+fn long_paths_have_as_many_slices_as_a_stack_may() {
+    let scene = scene(3, "[\"2 mm\", 0, 0]", "");
+    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let mut plan = plan.patterns()[0].clone();
+    plan.length = length_for(5_000.0);
+    // 16 and 32 slices per diameter would exceed 2 · 32768.
+    let slices: Vec<_> = plan
+        .paths(&scene)
+        .iter()
+        .map(|path| path.slice_count())
+        .collect();
+    assert_eq!(slices, [8 * 5_001, 4 * 5_001]);
+    plan.length = length_for(1e30);
+    assert_eq!(plan.paths(&scene).len(), 1, "the longest path of all");
+}
+
+#[test]
 fn points_without_light_ask_for_nothing() {
     // The plate behind the laser passes the apex of its beam, but no light meets it.
     let more = "[[surface]]\ndisplacement_per_frame = [0, \"50 mm\", 0]\n\
@@ -145,6 +183,11 @@ fn printed_formulas_get_the_circle_of_the_paper() {
     let plan = SpecklePlan::new(&scene, Formulas::AsPrinted, 0).unwrap();
     let path = plan.patterns()[0].path();
     assert_eq!(path, SlicePath::Circle { half_period: 32 }, "{plan}");
+    // No memory gives the circle more than one diameter.
+    let scene = self::scene(3, "[\"2 mm\", 0, 0]", "");
+    let plan = SpecklePlan::new(&scene, Formulas::AsPrinted, 0).unwrap();
+    assert!(plan.patterns()[0].largest_shift() > 1.0, "{plan}");
+    assert!(!plan.to_string().contains("MORE"), "{plan}");
 }
 
 #[test]

@@ -66,7 +66,6 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "indicatif",
             "kuva",
             "miette",
-            "npyz",
             "num-complex",
             "png",
             "rayon",

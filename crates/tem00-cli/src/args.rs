@@ -86,8 +86,9 @@ Files:
 /// Generate a speckle pattern and compare it with the theory.
 ///
 /// The pattern has Q × Q samples, is periodic, and has the mean 1. A random field of the diameter C
-/// in the pupil makes speckles of Q / C samples. The table on standard output lists what was
-/// measured beside what the theory says and how far the two may differ.
+/// in the pupil makes speckles of Q / C samples; so does a field from outside, that --field takes
+/// from a file. The table on standard output lists what was measured beside what the theory says and
+/// how far the two may differ.
 #[derive(Args, Debug)]
 #[command(after_help = PATTERN_EXAMPLES)]
 pub(crate) struct PatternArgs {
@@ -95,17 +96,23 @@ pub(crate) struct PatternArgs {
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
 
-    /// The size Q of the pattern, in samples.
-    #[arg(long, value_name = "Q", default_value_t = 512)]
-    pub(crate) size: usize,
+    /// The size Q of the pattern, in samples [default: 512, or 4 C with --field].
+    #[arg(long, value_name = "Q")]
+    pub(crate) size: Option<usize>,
 
-    /// The diameter C of the pupil, in samples: 8 to Q / 2 [default: Q / 4, speckles of 4 samples].
+    /// The diameter C of the pupil, in samples: 8 to Q / 2 [default: Q / 4, speckles of 4 samples;
+    /// with --field its shorter side].
     #[arg(long, value_name = "C")]
     pub(crate) diameter: Option<usize>,
 
     /// The seed of the random phases.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
+
+    /// The complex field in the pupil, measured or computed, instead of a random one: a NumPy array
+    /// of complex64 or complex128, height × width. The pupil stands about its middle.
+    #[arg(long, value_name = "FILE.npy", conflicts_with = "seed")]
+    pub(crate) field: Option<PathBuf>,
 
     /// The shape of the pupil; annulus:0.3 sets the inner diameter, rectangle:0.5 the height, both
     /// in units of C [annulus alone: 0.5; rectangle alone: 1].
@@ -122,7 +129,9 @@ const PATTERN_EXAMPLES: &str = "\
 Examples:
   tem00 pattern -o speckle.png
   tem00 pattern -o fine.npy --size 2048 --diameter 1024 --seed 7
-  tem00 pattern -o telescope.exr --pupil annulus:0.4";
+  tem00 pattern -o telescope.exr --pupil annulus:0.4
+  tem00 pattern -o measured.npy --field pupil.npy     speckle behind a field from outside
+  tem00 pattern -o stopped.npy --field pupil.npy --diameter 300 --size 2048";
 
 /// Measure the speckle in an image, and compare it with the theory.
 ///

@@ -11,7 +11,6 @@ use tem00_numerics::Grid;
 use thiserror::Error;
 
 pub(crate) use exr_file::{Layer, write_exr};
-pub(crate) use npy_file::{write_npy_complex, write_npy_f32};
 pub(crate) use png_file::{write_grey_png, write_rgb_png};
 
 /// The most pixels that are read from a file: 2²⁸, which is 1 GiB of `f32`.
@@ -70,8 +69,8 @@ pub(crate) enum ImageError {
     PngEncoding(#[from] png::EncodingError),
     #[error("OpenEXR: {0}")]
     Exr(#[from] exr::error::Error),
-    #[error("not a readable NPY file: {0}")]
-    Npy(std::io::Error),
+    #[error("{0}")]
+    Npy(#[from] tem00_speckle::NpyError),
     #[error("{0} is not supported: use .png, .exr or .npy")]
     Format(String),
     #[error("the image has {width} × {height} pixels; between 1 and {MAXIMUM_PIXELS} are allowed")]

@@ -2,15 +2,13 @@
 
 mod curves;
 mod findings;
-mod goodness;
-mod grey_levels;
 #[cfg(feature = "plot")]
 mod page;
 
 use std::{io::Write, path::Path};
 
 use serde::Serialize;
-use tem00_statistics::{Boundary, Contrast, Moments, StatisticsError, autocovariance};
+use tem00_statistics::{Boundary, Contrast, GreyLevels, Moments, StatisticsError, autocovariance};
 
 use crate::{
     args::StatsArgs,
@@ -20,7 +18,6 @@ use crate::{
 };
 use curves::{Curves, Measured};
 use findings::Findings;
-use grey_levels::GreyLevels;
 
 /// The fewest pixels along an axis that hold a speckle and its surroundings.
 const FEWEST_PIXELS: usize = 8;

@@ -159,7 +159,7 @@ impl PupilField {
     }
 
     /// Creates a field of samples from outside behind a circular pupil: a measured or computed complex
-    /// amplitude in the pupil plane.
+    /// amplitude in the pupil plane. [`NpyReader`](crate::NpyReader) reads one from a file of NumPy.
     ///
     /// One sample is one lattice point, and the sample (⌊width/2⌋, ⌊height/2⌋) the origin, about
     /// which the undisplaced pupil stands. The field is zero beyond the samples. `size` and

@@ -21,6 +21,10 @@
 //! PupilField::from_scatterers    a few point sources: speckle not fully developed
 //! ```
 //!
+//! Files: [`SpeckleStack::write_to`] keeps a stack with its bits, to be read again or mapped into
+//! memory; [`NpyReader`], [`write_npy`] and the methods of that name exchange fields, patterns and
+//! stacks with NumPy.
+//!
 //! # Conventions
 //!
 //! - **Intensity** is dimensionless with mean 1.
@@ -69,6 +73,7 @@ mod lattice;
 mod light;
 mod look_up;
 mod mask;
+mod npy;
 pub mod paper;
 mod path;
 mod pattern;
@@ -88,6 +93,7 @@ pub use interpolation::Interpolation;
 pub use light::{
     Bandwidth, CoherentBackground, Exposure, IncoherentSum, LitArea, ObjectiveSpeckle, PixelArray,
 };
+pub use npy::{NpyError, NpyReader, write_npy};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use path::SlicePath;

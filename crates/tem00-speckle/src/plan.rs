@@ -67,8 +67,9 @@ pub struct StackPlan {
 /// Slices per pupil diameter that are tried, the best first.
 const SLICES_PER_DIAMETER: [usize; 4] = [32, 16, 8, 4];
 
-/// The longest path that is tried, in pupil diameters: with the most slices it has the largest period.
-const LONGEST_PATH: usize = 2 * SlicePath::MAX_HALF_PERIOD / SLICES_PER_DIAMETER[0];
+/// The longest path that is tried, in pupil diameters: with the fewest slices it has the largest
+/// period.
+const LONGEST_PATH: usize = 2 * SlicePath::MAX_HALF_PERIOD / SLICES_PER_DIAMETER[3];
 
 /// The smallest pupil field that is chosen: about 800 phasors.
 const SMALLEST_DIAMETER: usize = 32;
@@ -104,17 +105,18 @@ impl StackPlan {
             length_for(motion)
         };
         let halved = core::iter::successors(Some(length), |&l| (l > 2).then(|| (l / 2).max(2)));
-        let path = |length: usize, slices: usize| SlicePath::Straight {
-            half_period: slices * length / 2,
-            length,
-        };
         let of_length = |length: usize| {
-            sizes.into_iter().flat_map(move |size| {
-                SLICES_PER_DIAMETER.map(|slices| Self {
-                    path: path(length, slices),
-                    ..size
-                })
-            })
+            let paths = SLICES_PER_DIAMETER
+                .map(|slices| slices * length / 2)
+                .into_iter()
+                .filter(|&half_period| half_period <= SlicePath::MAX_HALF_PERIOD)
+                .map(move |half_period| SlicePath::Straight {
+                    half_period,
+                    length,
+                });
+            sizes
+                .into_iter()
+                .flat_map(move |size| paths.clone().map(move |path| Self { path, ..size }))
         };
         Ok(halved.flat_map(of_length).collect())
     }

@@ -28,7 +28,7 @@ pub(crate) fn weights(f: f32) -> [f32; 4] {
 
 /// What the pupil point k is multiplied with: the reciprocal of the spline's Fourier transform,
 /// `sinc⁻⁴(π k / Q)`. The other interpolations go through the samples themselves.
-fn prefilter(k: i64, size: usize, interpolation: Interpolation) -> f64 {
+pub(crate) fn prefilter(k: i64, size: usize, interpolation: Interpolation) -> f64 {
     match interpolation {
         Interpolation::CubicSpline => {
             tem00_numerics::sinc(PI * from_i64(k) / to_f64(size)).powi(-4)

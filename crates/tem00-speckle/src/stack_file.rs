@@ -8,13 +8,16 @@ use tem00_numerics::Grid;
 use crate::{PupilField, SpeckleError, SpeckleStack, stack::check_limit};
 
 mod checksum;
+mod codes;
 mod error;
 mod fields;
+mod fixed;
 mod header;
 
 use checksum::Checksum;
 pub use error::StackFileError;
-use header::{Fixed, Header};
+use fixed::Fixed;
+use header::Header;
 
 /// Bytes that are read or written at a time.
 const CHUNK: usize = 1 << 16;

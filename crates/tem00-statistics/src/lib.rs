@@ -27,7 +27,8 @@
 //! - Estimators: [`Moments`], [`Contrast`], [`local_contrast`], [`GammaFit`],
 //!   [`pearson_correlation`], [`autocovariance`], [`power_spectrum`], [`radial_average`],
 //!   [`SpeckleSize`], [`phase_singularities`], [`VortexDensity`], [`decorrelated_samples`].
-//! - Hypothesis tests: [`kolmogorov_smirnov`], [`chi_squared`], [`t_test_mean`].
+//! - Hypothesis tests: [`kolmogorov_smirnov`], [`chi_squared`], [`t_test_mean`], and for images that
+//!   are rounded to few [`GreyLevels`]: [`GoodnessOfFit`].
 //!
 //! # Scope and non-goals
 //!
@@ -58,6 +59,8 @@ mod error;
 mod exposure;
 mod first_order;
 mod gamma_fit;
+mod goodness;
+mod grey_levels;
 mod hypothesis;
 mod joint;
 mod local_contrast;
@@ -89,6 +92,8 @@ pub use first_order::{
     GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,
 };
 pub use gamma_fit::GammaFit;
+pub use goodness::GoodnessOfFit;
+pub use grey_levels::GreyLevels;
 pub use hypothesis::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean};
 pub use joint::JointIntensity;
 pub use local_contrast::local_contrast;

@@ -5,11 +5,9 @@ use core::f64::consts::TAU;
 use serde::Serialize;
 use tem00_numerics::Grid;
 use tem00_statistics::{
-    GammaIntensity, SpeckleSize, StatisticsError, airy_autocovariance, airy_power_spectrum,
-    exponential_cumulative, power_spectrum, radial_average,
+    GammaIntensity, GreyLevels, SpeckleSize, StatisticsError, airy_autocovariance,
+    airy_power_spectrum, exponential_cumulative, power_spectrum, radial_average,
 };
-
-use super::GreyLevels;
 
 /// What the diagrams show.
 #[derive(Debug, Serialize)]

@@ -2,11 +2,10 @@
 
 use tem00_numerics::Grid;
 use tem00_statistics::{
-    AIRY_FIRST_ZERO, Contrast, GammaFit, SpeckleSize, StatisticsError, decorrelated_samples,
-    exponential_cumulative, pixel_contrast, size_before_pixels,
+    AIRY_FIRST_ZERO, Contrast, GammaFit, GoodnessOfFit, GreyLevels, SpeckleSize, StatisticsError,
+    decorrelated_samples, exponential_cumulative, pixel_contrast, size_before_pixels,
 };
 
-use super::{GreyLevels, goodness::Placed, grey_levels::CLIPPED_SHARE};
 use crate::table::{Expectation, Row};
 
 /// How many standard errors the tolerances allow.
@@ -60,7 +59,7 @@ impl Findings<'_> {
         }
         if let Some(share) = saturated.or_else(|| self.share_of_largest()) {
             let theory = Expectation::AtMost {
-                at_most: CLIPPED_SHARE,
+                at_most: GreyLevels::CLIPPED_SHARE,
             };
             self.row("saturated share of pixels", share, theory);
         }
@@ -189,7 +188,7 @@ impl Findings<'_> {
             None => self.mean,
         };
         let cumulative = |light: f64| exponential_cumulative(light / mean);
-        let exponential = Placed::new(&samples, self.levels, cumulative);
+        let exponential = self.goodness(&samples, cumulative)?;
         self.tests("exponential", &exponential, 2)?;
         self.assume("what a law was fitted to speaks for it: p-values are on the high side");
         if self.is_coarse() {
@@ -228,7 +227,7 @@ impl Findings<'_> {
         );
         if let Ok(law) = fit.law() {
             let cumulative = |light: f64| law.cumulative(light / self.mean);
-            let gamma = Placed::new(samples, self.levels, cumulative);
+            let gamma = self.goodness(samples, cumulative)?;
             self.tests("Gamma", &gamma, 3)?;
         } else {
             self.assume("no sum of patterns has a shape below 1: the Gamma law is not tested");
@@ -236,22 +235,33 @@ impl Findings<'_> {
         Ok(Some(fit))
     }
 
+    fn goodness(
+        &self,
+        samples: &[f64],
+        cumulative: impl Fn(f64) -> f64,
+    ) -> Result<GoodnessOfFit, StatisticsError> {
+        match self.levels {
+            Some(levels) => GoodnessOfFit::of_rounded(samples, levels, cumulative),
+            None => GoodnessOfFit::new(samples, cumulative),
+        }
+    }
+
     /// Tests samples against a law to which `constraints` of their counts in bins were fitted.
     fn tests(
         &mut self,
         law: &str,
-        placed: &Placed,
+        fit: &GoodnessOfFit,
         constraints: usize,
     ) -> Result<(), StatisticsError> {
         let probable = Expectation::AtLeast {
             at_least: SIGNIFICANCE,
         };
-        let distance = placed.kolmogorov_smirnov()?;
+        let distance = fit.kolmogorov_smirnov()?;
         let name = format!("KS distance to {law}");
         self.row(name, distance.statistic, Expectation::Open);
         let name = format!("KS p-value of {law}");
         self.row(name, distance.p_value, probable);
-        match placed.chi_squared(constraints) {
+        match fit.chi_squared(constraints) {
             Ok(outcome) => {
                 let name = format!("χ² p-value of {law}");
                 self.row(name, outcome.p_value, probable);

@@ -149,6 +149,23 @@ fn less_memory_takes_slices_first_and_then_the_path() {
 }
 
 #[test]
+fn long_paths_have_as_many_slices_as_a_stack_may() {
+    let counts = |motion: f64| {
+        let needs = StackNeeds {
+            motion: Some(motion),
+            frames: 9,
+            ..needs()
+        };
+        let plans = StackPlan::candidates(&needs).unwrap();
+        let counts = plans.iter().map(|plan| plan.path().slice_count());
+        counts.take(2).collect::<Vec<_>>()
+    };
+    // 16 and 32 slices per diameter would exceed 2 · 32768.
+    assert_eq!(counts(5_000.0), [8 * 5_001, 4 * 5_001]);
+    assert_eq!(counts(1e30)[0], 1 << 16, "the longest path of all");
+}
+
+#[test]
 fn printed_plans_lie_on_the_circle() {
     let straight = StackPlan::new(&StackNeeds {
         motion: Some(4.0),

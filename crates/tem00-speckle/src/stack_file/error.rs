@@ -38,7 +38,7 @@ impl fmt::Display for StackFileError {
             Self::Newer { version } => write!(
                 f,
                 "file version must be at most {}, got {version}: written by a newer library",
-                super::header::VERSION
+                super::fixed::VERSION
             ),
             Self::Truncated => write!(f, "file must hold all of the stack, got a part of it"),
             Self::Damaged => write!(f, "file must be as it was written, got other bytes"),

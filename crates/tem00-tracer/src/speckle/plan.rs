@@ -188,7 +188,8 @@ impl fmt::Display for PatternPlan {
                 f,
                 "{} slices for a motion of up to {motion:.2} pupil diameters{}; ",
                 stack.path().slice_count(),
-                if stack.holds_motion(needs) {
+                // No memory gives the circle of the printed formulas more than one diameter.
+                if self.as_printed || stack.holds_motion(needs) {
                     ""
                 } else {
                     ", MORE than the slices hold: frames beyond share their speckle"

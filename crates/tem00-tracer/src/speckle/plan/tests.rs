@@ -115,6 +115,31 @@ fn a_motion_that_does_not_fit_the_memory_is_cut_and_said() {
 }
 
 #[test]
+fn frames_share_no_speckle_while_a_smaller_field_fits_the_memory() {
+    // 1.28 diameters take a path of 3, of 12 slices or more: 12 MiB of 512 × 256 samples for the image
+    // and where it came from, 9 MiB of 384 × 256 for the image alone.
+    let plan = |memory: &str| {
+        let more = format!("[speckle]\nmemory = \"{memory}\"");
+        plan(3, "[\"2 mm\", 0, 0]", &more).unwrap()
+    };
+    for (memory, width, slices, shares) in [
+        ("12 MiB", 512, 12, false),
+        ("11 MiB", 384, 12, false),
+        ("9 MiB", 384, 12, false),
+        ("8 MiB", 512, 8, true),
+    ] {
+        let plan = plan(memory);
+        assert_eq!(plan.stack().size(), [width, 256], "{memory}: {plan}");
+        assert_eq!(
+            plan.stack().path().slice_count(),
+            slices,
+            "{memory}: {plan}"
+        );
+        assert_eq!(plan.to_string().contains("MORE"), shares, "{plan}");
+    }
+}
+
+#[test]
 fn points_without_light_ask_for_nothing() {
     // The plate behind the laser passes the apex of its beam, but no light meets it.
     let more = "[[surface]]\ndisplacement_per_frame = [0, \"50 mm\", 0]\n\
@@ -142,6 +167,11 @@ fn printed_formulas_get_the_circle_of_the_paper() {
     let plan = SpecklePlan::new(&scene, Formulas::AsPrinted, 0).unwrap();
     let path = plan.patterns()[0].stack().path();
     assert_eq!(path, SlicePath::Circle { half_period: 32 }, "{plan}");
+    // No memory gives the circle more than one diameter.
+    let scene = self::scene(3, "[\"2 mm\", 0, 0]", "");
+    let plan = SpecklePlan::new(&scene, Formulas::AsPrinted, 0).unwrap();
+    assert!(plan.patterns()[0].largest_shift() > 1.0, "{plan}");
+    assert!(!plan.to_string().contains("MORE"), "{plan}");
 }
 
 #[test]

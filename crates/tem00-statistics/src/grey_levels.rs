@@ -1,5 +1,3 @@
-//! The rounding of an image to few grey levels, and what it does to statistics.
-
 /// Values nearer than this share of the largest one are the same level: averages of colour channels
 /// are rounded to `f32`, 16 bits are 16 times as far apart.
 const SAME: f64 = 1.0 / (1 << 20) as f64;
@@ -7,15 +5,32 @@ const SAME: f64 = 1.0 / (1 << 20) as f64;
 /// The most steps up to the largest value: averages over three channels of 16 bits.
 const FINEST: f64 = 3.0 * 65_536.0;
 
-/// The share of the pixels at the largest level from which on the image counts as clipped.
-pub(super) const CLIPPED_SHARE: f64 = 1e-3;
-
 /// The values that the pixels of a rounded image take.
 ///
 /// Each level stands for the light from half way to the level below up to half way to the level
-/// above.
-#[derive(Debug)]
-pub(super) struct GreyLevels {
+/// above: its cell. The lowest begins at half a step below, but not below zero; the highest ends at
+/// half a step above, or never if so many pixels have it that the sensor must have clipped.
+///
+/// # Examples
+///
+/// Speckle of a mean of half a grey level, rounded to whole ones:
+///
+/// ```
+/// use tem00_statistics::GreyLevels;
+///
+/// let quantile = |i| -0.5 * (1.0 - (f64::from(i) + 0.5) / 10_000.0_f64).ln();
+/// let rounded: Vec<f64> = (0..10_000).map(|i| quantile(i).round()).collect();
+/// let levels = GreyLevels::of(&rounded).expect("a few whole numbers");
+/// assert_eq!(levels.cell(1), [0.5, 1.5]);
+///
+/// // Rounding lowers the mean from 0.5 to 1 / 2 sinh(1) = 0.4255, and raises the contrast.
+/// let mean = rounded.iter().sum::<f64>() / 10_000.0;
+/// assert!((mean - 0.4255).abs() < 1e-3);
+/// assert!((levels.exponential_mean(mean) - 0.5).abs() < 1e-3);
+/// assert!((levels.exponential_contrast(mean) - 1.4446).abs() < 1e-3);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct GreyLevels {
     levels: Vec<f64>,
     step: f64,
     /// The share of the pixels at the largest level.
@@ -23,13 +38,23 @@ pub(super) struct GreyLevels {
 }
 
 impl GreyLevels {
+    /// The share of the pixels at the largest level from which on an image counts as clipped.
+    pub const CLIPPED_SHARE: f64 = 1e-3;
+
     /// Finds the levels of an image, if at least every other pixel shares its value with another
-    /// and the levels are no finer than those of files.
+    /// and the levels are no finer than those of files, 3 · 2¹⁶ steps.
     ///
-    /// The largest level stands for all light beyond if an unlikely share of the pixels has it.
-    #[expect(clippy::cast_precision_loss, reason = "there are at most 2²⁸ pixels")]
-    pub(super) fn of(values: &[f32]) -> Option<Self> {
+    /// Values that differ by less than 10⁻⁶ of the largest are one level. Returns `None` for an
+    /// image that is not rounded, is all of one value, or is none of light: with a value that is
+    /// negative or not finite.
+    pub fn of<T: Copy + Into<f64>>(values: &[T]) -> Option<Self> {
         let mut levels: Vec<f64> = values.iter().map(|&value| value.into()).collect();
+        if !levels
+            .iter()
+            .all(|level| level.is_finite() && *level >= 0.0)
+        {
+            return None;
+        }
         levels.sort_unstable_by(f64::total_cmp);
         let maximum = *levels.last()?;
         let apart = maximum * SAME;
@@ -47,23 +72,29 @@ impl GreyLevels {
     }
 
     /// Returns the share of the pixels at the largest level.
-    pub(super) const fn share_of_largest(&self) -> f64 {
+    pub const fn share_of_largest(&self) -> f64 {
         self.largest
     }
 
-    pub(super) const fn len(&self) -> usize {
+    /// Returns the number of levels, which is at least two.
+    pub const fn count(&self) -> usize {
         self.levels.len()
     }
 
-    /// Returns the position of the level to which `value` belongs.
-    pub(super) fn index(&self, value: f64) -> usize {
+    /// Returns the position of the largest level that is not above `value`, or 0.
+    pub fn index(&self, value: f64) -> usize {
         self.levels
             .partition_point(|&level| level <= value)
             .saturating_sub(1)
     }
 
     /// Returns the light, from and to, for which the level at `index` stands.
-    pub(super) fn cell(&self, index: usize) -> [f64; 2] {
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `index` is below [`count`](Self::count).
+    pub fn cell(&self, index: usize) -> [f64; 2] {
+        assert!(index < self.count(), "level {index} of {}", self.count());
         [self.edge(index), self.edge(index + 1)]
     }
 
@@ -73,13 +104,13 @@ impl GreyLevels {
         match index {
             0 => (self.levels[0] - half).max(0.0),
             _ if index < self.levels.len() => 0.5 * (self.levels[index - 1] + self.levels[index]),
-            _ if self.largest > CLIPPED_SHARE => f64::INFINITY,
+            _ if self.largest > Self::CLIPPED_SHARE => f64::INFINITY,
             _ => self.levels[self.levels.len() - 1] + half,
         }
     }
 
     /// Returns the edge of a level that is nearest to `value`.
-    pub(super) fn nearest_edge(&self, value: f64) -> f64 {
+    pub fn nearest_edge(&self, value: f64) -> f64 {
         let [low, high] = self.cell(self.index(value));
         if value - low < high - value {
             low
@@ -89,12 +120,12 @@ impl GreyLevels {
     }
 
     /// Returns the smallest difference of two levels.
-    pub(super) const fn step(&self) -> f64 {
+    pub const fn step(&self) -> f64 {
         self.step
     }
 
     /// Tells whether all levels are whole multiples of the step, as those of a linear sensor are.
-    pub(super) fn are_multiples(&self) -> bool {
+    pub fn are_multiples(&self) -> bool {
         let off = |level: &f64| {
             let multiple = level / self.step;
             (multiple - multiple.round()).abs() > 0.01
@@ -108,7 +139,9 @@ impl GreyLevels {
     /// ```text
     /// rounded = step / 2 sinh(step / 2m)
     /// ```
-    pub(super) fn exponential_mean(&self, rounded: f64) -> f64 {
+    ///
+    /// Without levels that are multiples of the step it is `rounded` itself.
+    pub fn exponential_mean(&self, rounded: f64) -> f64 {
         if !self.are_multiples() {
             return rounded;
         }
@@ -122,15 +155,20 @@ impl GreyLevels {
     /// ```text
     /// C² = 2 cosh(step / 2m) − 1 = 2 √(1 + (step / 2 rounded)²) − 1
     /// ```
-    pub(super) fn exponential_contrast(&self, rounded: f64) -> f64 {
+    ///
+    /// Without levels that are multiples of the step it is 1.
+    pub fn exponential_contrast(&self, rounded: f64) -> f64 {
         if !self.are_multiples() {
             return 1.0;
         }
         (2.0 * (0.5 * self.step / rounded).hypot(1.0) - 1.0).sqrt()
     }
 
-    /// Returns the samples with those of each level spread evenly over its cell.
-    pub(super) fn spread(&self, samples: &[f64]) -> Vec<f64> {
+    /// Returns the samples in ascending order, those of each level spread evenly over its cell: over
+    /// none where the cell has no end.
+    ///
+    /// Fits of a continuous law want samples that differ.
+    pub fn spread(&self, samples: &[f64]) -> Vec<f64> {
         let within = |[low, high]: [f64; 2], share: f64| {
             let end = if high.is_finite() { high } else { low };
             low + share * (end - low)
@@ -140,21 +178,20 @@ impl GreyLevels {
 
     /// Returns for each sample a place within the image under `cumulative` of the cell of its
     /// level, evenly spread.
-    pub(super) fn places(&self, samples: &[f64], cumulative: impl Fn(f64) -> f64) -> Vec<f64> {
+    pub(crate) fn places(&self, samples: &[f64], cumulative: impl Fn(f64) -> f64) -> Vec<f64> {
         let cell = |index: usize| self.cell(index).map(&cumulative);
         let within = |[low, high]: [f64; 2], share: f64| low + share * (high - low);
         self.spread_over(samples, cell, within)
     }
 
     /// Places the j-th of n samples of a level at the share (j + ½)/n of its cell.
-    #[expect(clippy::cast_precision_loss, reason = "there are at most 2²⁸ samples")]
     fn spread_over(
         &self,
         samples: &[f64],
         cell: impl Fn(usize) -> [f64; 2],
         within: impl Fn([f64; 2], f64) -> f64,
     ) -> Vec<f64> {
-        let mut counts = vec![0_usize; self.len()];
+        let mut counts = vec![0_usize; self.count()];
         samples
             .iter()
             .for_each(|&sample| counts[self.index(sample)] += 1);
@@ -202,7 +239,11 @@ mod tests {
         let distinct: Vec<f32> = (0..100_u16).map(f32::from).collect();
         assert!(GreyLevels::of(&distinct).is_none(), "all differ");
         assert!(GreyLevels::of(&[2.0; 9]).is_none(), "one value");
-        assert!(GreyLevels::of(&[]).is_none(), "no value");
+        assert!(GreyLevels::of::<f32>(&[]).is_none(), "no value");
+        for bad in [-1.0, f64::NAN, f64::INFINITY] {
+            let values = [bad, bad, 1.0, 1.0, 2.0, 2.0];
+            assert!(GreyLevels::of(&values).is_none(), "{bad} is no light");
+        }
     }
 
     #[test]
@@ -221,7 +262,7 @@ mod tests {
         let third = 1.0_f32 / 3.0;
         let values = [third, third.next_up(), third, 1.0, 1.0, 1.0_f32.next_down()];
         let levels = GreyLevels::of(&values).expect("two levels");
-        assert_eq!(levels.len(), 2);
+        assert_eq!(levels.count(), 2);
         assert_eq!(
             values.map(|value| levels.index(value.into())),
             [0, 0, 0, 1, 1, 1]

@@ -1,0 +1,289 @@
+//! Grids and stacks as NumPy files.
+
+use std::io::{self, Read, Write};
+
+use num_complex::Complex;
+use tem00_numerics::Grid;
+
+use crate::{SpeckleField, SpecklePattern};
+
+mod element;
+mod error;
+mod header;
+mod literal;
+mod spline;
+mod stack;
+
+use element::{Element, ElementType};
+pub use error::NpyError;
+use header::Header;
+
+/// Bytes that are read at a time.
+const CHUNK: usize = 1 << 16;
+
+/// A NumPy file (NPY) whose header has been read and whose values follow.
+///
+/// Versions 1 to 3 of the format are understood, both orders of the values (C and Fortran) and both
+/// orders of their bytes. Real values are `float32`, `float64`, `uint8` or `uint16`, complex ones
+/// `complex64` or `complex128`; all are kept in single precision. An array of the shape
+/// (height, width) becomes a grid of height rows.
+///
+/// Memory is only asked for as the file fills it, whatever its header claims.
+///
+/// # Examples
+///
+/// A field in the pupil that was measured or computed elsewhere takes the place of a random one:
+///
+/// ```
+/// use tem00_numerics::Grid;
+/// use tem00_speckle::{Complex, NpyReader, PupilField, write_npy};
+///
+/// // What `np.save` writes for an array of 40 × 40 complex numbers.
+/// let lens = Grid::from_fn(40, 40, |x, y| {
+///     let (x, y) = (x as f32 - 20.0, y as f32 - 20.0);
+///     Complex::from_polar(1.0, 0.2 * (x * x + y * y))
+/// });
+/// let mut file = Vec::new();
+/// write_npy(&lens, &mut file)?;
+///
+/// let array = NpyReader::new(file.as_slice())?;
+/// assert_eq!(array.shape(), [40, 40]);
+/// let samples = array.into_complex(1 << 20)?;
+/// assert_eq!(samples, lens);
+/// let field = PupilField::from_samples(samples, [160, 160], 4.0)?;
+/// assert_eq!(field.diameter(), [40.0, 40.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # References
+///
+/// - NumPy Enhancement Proposal 1, *A simple file format for NumPy arrays*, 2007.
+#[derive(Debug)]
+pub struct NpyReader<R> {
+    reader: R,
+    header: Header,
+}
+
+impl<R: Read> NpyReader<R> {
+    /// Reads the header of a file.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the reader does, or if the file is none of NumPy's, of an unknown version
+    /// or cut short.
+    pub fn new(mut reader: R) -> Result<Self, NpyError> {
+        let header = Header::read(&mut reader)?;
+        Ok(Self { reader, header })
+    }
+
+    /// Returns the shape of the array, outermost first: (height, width) for a grid.
+    pub fn shape(&self) -> &[u64] {
+        &self.header.shape
+    }
+
+    /// Returns the type of the values as the file names it, such as `<c8` for `complex64`.
+    pub fn element_type(&self) -> &str {
+        &self.header.element_type
+    }
+
+    /// Tells whether the values are complex.
+    pub fn is_complex(&self) -> bool {
+        matches!(
+            ElementType::of(&self.header.element_type),
+            Some(ElementType::Complex(..))
+        )
+    }
+
+    /// Reads a two-dimensional array of real values that takes no more than `memory_limit` bytes.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the reader does, if the array has not two dimensions or no values, if
+    /// they are not real, if the file ends too early or if the memory is over the limit or refused.
+    pub fn into_real(self, memory_limit: u64) -> Result<Grid<f32>, NpyError> {
+        self.into_grid(memory_limit)
+    }
+
+    /// Reads a two-dimensional array of complex numbers that takes no more than `memory_limit` bytes.
+    ///
+    /// # Errors
+    ///
+    /// As [`into_real`](Self::into_real), for values that are not complex, and if one is not finite
+    /// or beyond single precision.
+    pub fn into_complex(self, memory_limit: u64) -> Result<Grid<Complex<f32>>, NpyError> {
+        let grid = self.into_grid(memory_limit)?;
+        check_finite(&grid, None)?;
+        Ok(grid)
+    }
+
+    fn into_grid<T: Element>(mut self, memory_limit: u64) -> Result<Grid<T>, NpyError> {
+        let &[height, width] = self.shape() else {
+            return Err(NpyError::Dimensions {
+                shape: self.header.shape,
+                needed: 2,
+            });
+        };
+        let (bytes_each, decode) = self.decoder()?;
+        self.check_memory::<T>(memory_limit)?;
+        let (width, height) = (to_usize(width), to_usize(height));
+        let mut buffer = vec![0; CHUNK];
+        let values = self.values(width * height, bytes_each, &decode, &mut buffer)?;
+        if self.header.columns_first {
+            let columns = grid(height, width, values)?;
+            return Ok(Grid::from_fn(width, height, |x, y| columns[(y, x)]));
+        }
+        grid(width, height, values)
+    }
+
+    /// The bytes of a value, and how they are understood.
+    fn decoder<T: Element>(&self) -> Result<(usize, impl Fn(&[u8]) -> T + use<T, R>), NpyError> {
+        ElementType::of(&self.header.element_type)
+            .and_then(T::decoder)
+            .ok_or_else(|| NpyError::ElementType {
+                found: self.header.element_type.clone(),
+                allowed: T::READABLE,
+            })
+    }
+
+    fn check_memory<T>(&self, limit: u64) -> Result<(), NpyError> {
+        let shape = &self.header.shape;
+        if shape.contains(&0) {
+            let shape = shape.clone();
+            return Err(NpyError::Empty { shape });
+        }
+        let count = shape.iter().fold(1, |n: u64, side| n.saturating_mul(*side));
+        // A transposed copy is made before the first is given up.
+        let copies = 1 + u64::from(self.header.columns_first);
+        let needed = count.saturating_mul(copies * size_of::<T>() as u64);
+        if needed > limit || usize::try_from(count).is_err() {
+            return Err(NpyError::MemoryLimit { needed, limit });
+        }
+        Ok(())
+    }
+
+    /// The next `count` values in the order of the file.
+    fn values<T>(
+        &mut self,
+        count: usize,
+        bytes_each: usize,
+        decode: &impl Fn(&[u8]) -> T,
+        buffer: &mut [u8],
+    ) -> Result<Vec<T>, NpyError> {
+        let mut values = Vec::new();
+        while values.len() < count {
+            let more = (count - values.len()).min(buffer.len() / bytes_each);
+            let bytes = &mut buffer[..more * bytes_each];
+            self.reader.read_exact(bytes)?;
+            reserve(&mut values, more, count)?;
+            values.extend(bytes.chunks_exact(bytes_each).map(decode));
+        }
+        Ok(values)
+    }
+}
+
+/// Writes complex numbers as a NumPy file (NPY) of `complex64`, of the shape (height, width).
+///
+/// The file is what `np.save` writes for the same array; [`NpyReader`] reads it back.
+///
+/// # Errors
+///
+/// Returns an error if the writer does.
+pub fn write_npy(grid: &Grid<Complex<f32>>, writer: impl Write) -> io::Result<()> {
+    write_grid(grid, writer)
+}
+
+impl SpecklePattern {
+    /// Writes the intensity as a NumPy file (NPY) of `float32`, of the shape (height, width).
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the writer does.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_speckle::{NpyReader, PupilField};
+    ///
+    /// let pattern = PupilField::new(64, 16, 7)?.pattern();
+    /// let mut file = Vec::new();
+    /// pattern.write_npy(&mut file)?;
+    /// assert_eq!(file.len(), 128 + 64 * 64 * 4);
+    ///
+    /// let array = NpyReader::new(file.as_slice())?;
+    /// assert_eq!(array.element_type(), "<f4");
+    /// assert_eq!(&array.into_real(1 << 20)?, pattern.values());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn write_npy(&self, writer: impl Write) -> io::Result<()> {
+        write_grid(self.values(), writer)
+    }
+}
+
+impl SpeckleField {
+    /// Writes the amplitude as a NumPy file (NPY) of `complex64`, of the shape (height, width).
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the writer does.
+    pub fn write_npy(&self, writer: impl Write) -> io::Result<()> {
+        write_grid(self.values(), writer)
+    }
+}
+
+fn write_grid<T: Element>(grid: &Grid<T>, mut writer: impl Write) -> io::Result<()> {
+    let shape = [grid.height(), grid.width()];
+    writer.write_all(&Header::bytes_of(T::WRITTEN, &shape))?;
+    write_values(grid, &mut writer)?;
+    writer.flush()
+}
+
+fn write_values<T: Element>(grid: &Grid<T>, writer: &mut impl Write) -> io::Result<()> {
+    let mut bytes = Vec::with_capacity(CHUNK);
+    for values in grid.values().chunks(CHUNK / size_of::<T>()) {
+        bytes.clear();
+        values.iter().for_each(|value| value.encode(&mut bytes));
+        writer.write_all(&bytes)?;
+    }
+    Ok(())
+}
+
+/// Makes room for `more` values, doubling what is there, but never for more than `count`.
+fn reserve<T>(values: &mut Vec<T>, more: usize, count: usize) -> Result<(), NpyError> {
+    let needed = values.len() + more;
+    if values.capacity() >= needed {
+        return Ok(());
+    }
+    let wanted = (2 * values.len()).clamp(needed, count);
+    let refused = |_| NpyError::Memory {
+        bytes: (wanted as u64).saturating_mul(size_of::<T>() as u64),
+    };
+    values
+        .try_reserve_exact(wanted - values.len())
+        .map_err(refused)
+}
+
+fn grid<T>(width: usize, height: usize, values: Vec<T>) -> Result<Grid<T>, NpyError> {
+    Grid::from_vec(width, height, values).map_err(|_| NpyError::Empty {
+        shape: vec![height as u64, width as u64],
+    })
+}
+
+fn check_finite(grid: &Grid<Complex<f32>>, slice: Option<usize>) -> Result<(), NpyError> {
+    let finite = |z: &Complex<f32>| z.re.is_finite() && z.im.is_finite();
+    match grid.values().iter().position(|z| !finite(z)) {
+        None => Ok(()),
+        Some(bad) => {
+            let (y, x) = (bad / grid.width(), bad % grid.width());
+            let index = slice.into_iter().chain([y, x]).collect();
+            Err(NpyError::NotFinite { index })
+        }
+    }
+}
+
+/// A number of values that fits the memory.
+fn to_usize(n: u64) -> usize {
+    usize::try_from(n).unwrap_or(usize::MAX)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,421 @@
+use proptest::{prelude::*, test_runner::RngSeed};
+
+use super::*;
+use crate::{Interpolation, Pupil, PupilField, SlicePath, SpeckleStack, StackOptions};
+
+const LIMIT: u64 = 1 << 20;
+
+/// What stands before the values, byte by byte as the format says, without a line of the library.
+fn header(version: u8, text: &str) -> Vec<u8> {
+    let length = u32::try_from(text.len()).unwrap().to_le_bytes();
+    let mut file = b"\x93NUMPY".to_vec();
+    file.extend([version, 0]);
+    file.extend(&length[..if version == 1 { 2 } else { 4 }]);
+    file.extend(text.as_bytes());
+    file
+}
+
+fn array(descr: &str, shape: &str, values: &[u8]) -> Vec<u8> {
+    let text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}\n");
+    [&header(1, &text), values].concat()
+}
+
+fn complex(file: &[u8]) -> Result<Grid<Complex<f32>>, NpyError> {
+    NpyReader::new(file)?.into_complex(LIMIT)
+}
+
+fn real(file: &[u8]) -> Result<Grid<f32>, NpyError> {
+    NpyReader::new(file)?.into_real(LIMIT)
+}
+
+fn wave(width: usize, height: usize) -> Grid<Complex<f32>> {
+    Grid::from_fn(width, height, |x, y| {
+        Complex::new(x as f32 - 0.25 * y as f32, 1.0 / (1.0 + y as f32))
+    })
+}
+
+#[test]
+fn files_are_those_of_numpy() {
+    let mut file = Vec::new();
+    write_npy(&wave(3, 2), &mut file).unwrap();
+    // np.save of an array of the shape (2, 3): 128 bytes of header, blanks up to the line's end.
+    let text = "{'descr': '<c8', 'fortran_order': False, 'shape': (2, 3), }";
+    assert_eq!(
+        file[..128],
+        header(1, &format!("{text:<117}\n")),
+        "the header"
+    );
+    let values: Vec<u8> = [0.0_f32, 1.0, 1.0, 1.0, 2.0, 1.0]
+        .into_iter()
+        .chain([-0.25, 0.5, 0.75, 0.5, 1.75, 0.5])
+        .flat_map(f32::to_le_bytes)
+        .collect();
+    assert_eq!(file[128..], values, "the values");
+}
+
+#[test]
+fn another_library_reads_what_is_written() {
+    let pattern = PupilField::from_speckle_size([40, 32], 2.0, 3).unwrap();
+    let (intensity, amplitude) = (pattern.pattern(), pattern.field());
+    let (mut real, mut complex) = (Vec::new(), Vec::new());
+    intensity.write_npy(&mut real).unwrap();
+    amplitude.write_npy(&mut complex).unwrap();
+    let real = npyz::NpyFile::new(real.as_slice()).unwrap();
+    assert_eq!(real.shape(), [32, 40]);
+    assert_eq!(real.into_vec::<f32>().unwrap(), intensity.values().values());
+    let complex = npyz::NpyFile::new(complex.as_slice()).unwrap();
+    assert_eq!(complex.shape(), [32, 40]);
+    let values: Vec<Complex<f32>> = complex.into_vec().unwrap();
+    assert_eq!(values, amplitude.values().values());
+}
+
+#[test]
+fn every_type_and_order_of_bytes_is_understood() {
+    let bytes = |values: &[[u8; 4]]| values.concat();
+    let little = bytes(&[1.5_f32, -2.0].map(f32::to_le_bytes));
+    let big = bytes(&[1.5_f32, -2.0].map(f32::to_be_bytes));
+    let doubles = |to: fn(f64) -> [u8; 8]| [1.5, -2.0].map(to).concat();
+    for (descr, values) in [
+        ("<f4", little.clone()),
+        (">f4", big.clone()),
+        ("<f8", doubles(f64::to_le_bytes)),
+        (">f8", doubles(f64::to_be_bytes)),
+    ] {
+        let grid = real(&array(descr, "(1, 2)", &values)).unwrap();
+        assert_eq!(grid.values(), [1.5, -2.0], "{descr}");
+        let descr = descr.replace('f', "c").replace('8', "16").replace('4', "8");
+        let grid = complex(&array(&descr, "(1, 1)", &values)).unwrap();
+        assert_eq!(grid.values(), [Complex::new(1.5, -2.0)], "{descr}");
+    }
+    for (descr, values, expected) in [
+        ("|u1", vec![0, 255], [0.0, 255.0]),
+        ("<u2", vec![1, 2, 255, 255], [513.0, 65_535.0]),
+        (">u2", vec![1, 2, 0, 9], [258.0, 9.0]),
+    ] {
+        let grid = real(&array(descr, "(2, 1)", &values)).unwrap();
+        assert_eq!(grid.values(), expected, "{descr}");
+        assert_eq!((grid.width(), grid.height()), (1, 2), "{descr}");
+    }
+}
+
+#[test]
+fn columns_may_come_first() {
+    let text = "{'descr': '|u1', 'fortran_order': True, 'shape': (2, 3)}";
+    let grid = real(&[&header(1, text)[..], &[1, 4, 2, 5, 3, 6]].concat()).unwrap();
+    assert_eq!(grid.values(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    assert_eq!((grid.width(), grid.height()), (3, 2));
+}
+
+#[test]
+fn headers_of_other_writers_are_understood() {
+    for text in [
+        "{'descr': '|u1', 'fortran_order': False, 'shape': (1, 2), }",
+        r#"{"shape":(1,2),"fortran_order":False,"descr":"|u1"}"#,
+        " { 'fortran_order' : False , 'shape' : ( 1L , 2L , ) , 'descr' : '|u1' } \n",
+        "{'descr': '|u1', 'fortran_order': False, 'shape': [1, 2]}",
+    ] {
+        for version in 1..=3 {
+            let file = [&header(version, text)[..], &[7, 8]].concat();
+            let values = real(&file).map(Grid::into_values);
+            assert_eq!(values.ok(), Some(vec![7.0, 8.0]), "{text}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_field_says_what_it_is() {
+    let header_of = |text: &str| header(1, text);
+    let with = |entry: &str| header_of(&format!("{{'fortran_order': False, {entry}}}"));
+    let nested = with(&format!("'shape': {}", "(".repeat(60_000)));
+    let record = with("'descr': [('a', '<f4'), ('b', '<f4', (2,))], 'shape': (2, 2)");
+    let beyond = [0.0, 0.0, 0.0, 1e39].map(f64::to_le_bytes).concat();
+    let files: &[(&str, Vec<u8>, &str)] = &[
+        ("text", b"P5 640 480 255".to_vec(), "something else"),
+        ("version", header(4, "{}"), "got 4.0"),
+        ("no dictionary", header_of("[1]"), "dictionary"),
+        ("nothing in it", header_of("{}"), "descr"),
+        (
+            "unknown entry",
+            with("'size': 3"),
+            "descr, fortran_order and shape",
+        ),
+        ("no value", with("'shape'"), "no value"),
+        ("no comma", with("'shape': (1, 2) 'descr': '<c8'"), "commas"),
+        ("more", header_of("{} {}"), "nothing must follow"),
+        ("a word", with("'shape': twelve"), "literal"),
+        ("open", with("'shape': (1, 2"), "not closed"),
+        ("nested", nested, "not closed"),
+        (
+            "negative",
+            with("'descr': '<c8', 'shape': (-1, 2)"),
+            "whole numbers",
+        ),
+        (
+            "huge",
+            with("'descr': '<c8', 'shape': (99999999999999999999, 1)"),
+            "whole numbers",
+        ),
+        (
+            "a line",
+            array("<c8", "(4,)", &[0; 32]),
+            "2 dimensions, got the shape [4]",
+        ),
+        ("a scalar", array("<c8", "()", &[0; 8]), "got the shape []"),
+        ("a cube", array("<c8", "(1, 1, 1)", &[0; 8]), "[1, 1, 1]"),
+        ("empty", array("<c8", "(0, 4)", &[]), "got the shape [0, 4]"),
+        (
+            "real",
+            array("<f8", "(1, 2)", &[0; 16]),
+            "complex128, got the type <f8",
+        ),
+        (
+            "whole",
+            array("<i8", "(1, 2)", &[0; 16]),
+            "got the type <i8",
+        ),
+        (
+            "half an order",
+            array("=c8", "(1, 2)", &[0; 16]),
+            "got the type =c8",
+        ),
+        ("record", record, "[('a', '<f4'), ('b', '<f4', (2,))]"),
+        ("cut", array("<c8", "(1, 2)", &[0; 15]), "a part of it"),
+        (
+            "a hole",
+            array("<c8", "(1, 1)", &[0, 0, 0, 0, 0, 0, 192, 127]),
+            "index [0, 0]",
+        ),
+        (
+            "too large",
+            array("<c16", "(2, 1)", &beyond),
+            "index [1, 0]",
+        ),
+        (
+            "many",
+            array("<c8", "(1000000, 1000000)", &[]),
+            "at most 1048576 bytes",
+        ),
+        (
+            "overflow",
+            array("<c8", "(9999999999, 9999999999)", &[]),
+            "1048576 bytes",
+        ),
+    ];
+    for (name, file, part) in files {
+        let error = complex(file).unwrap_err().to_string();
+        assert!(error.contains(part), "{name}: {error}");
+    }
+    let error = real(&array("<c8", "(1, 1)", &[0; 8])).unwrap_err();
+    assert!(error.to_string().contains("float32"), "{error}");
+    let endless = [&b"\x93NUMPY\x02\x00\xff\xff\xff\xff"[..], &[b' '; 99]].concat();
+    let error = NpyReader::new(endless.as_slice()).unwrap_err().to_string();
+    assert!(error.contains("65536"), "{error}");
+}
+
+#[test]
+fn every_shorter_file_is_truncated() {
+    let file = array("<c8", "(1, 2)", &[0; 16]);
+    for length in 0..file.len() {
+        let cut = complex(&file[..length]);
+        assert!(
+            matches!(cut, Err(NpyError::Truncated)),
+            "{length} bytes: {cut:?}"
+        );
+    }
+    assert!(complex(&file).is_ok(), "all of it");
+    let short = complex(b"P5");
+    assert!(matches!(short, Err(NpyError::Foreign)), "{short:?}");
+}
+
+#[test]
+fn memory_is_only_asked_for_as_the_file_fills_it() {
+    // A petabyte is claimed, a few bytes are there, and no limit is set.
+    let file = array("<c8", "(500000000, 250000)", &[0; 800]);
+    let cut = NpyReader::new(file.as_slice()).and_then(|array| array.into_complex(u64::MAX));
+    assert!(matches!(cut, Err(NpyError::Truncated)), "{cut:?}");
+    // What the limit counts: once the values, twice if they are turned.
+    let file = array("<c16", "(4, 4)", &[0; 256]);
+    let within = |file: &[u8], limit| {
+        let array = NpyReader::new(file).and_then(|array| array.into_complex(limit));
+        array.is_ok()
+    };
+    assert!(within(&file, 128) && !within(&file, 127), "C order");
+    let text = "{'descr': '<c16', 'fortran_order': True, 'shape': (4, 4)}";
+    let file = [&header(1, text)[..], &[0; 256]].concat();
+    assert!(within(&file, 256) && !within(&file, 255), "Fortran order");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 256, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn no_bytes_make_the_reader_panic(
+        at in 0_usize..140, new in proptest::collection::vec(any::<u8>(), 0..24), cut in 0_usize..200,
+    ) {
+        let mut file = Vec::new();
+        write_npy(&wave(3, 3), &mut file).unwrap();
+        let end = (at + new.len()).min(file.len());
+        file.splice(at..end, new);
+        file.truncate(file.len().saturating_sub(cut.saturating_sub(100)));
+        // Whatever it is, it comes to an end without much memory.
+        let _ = (complex(&file), real(&file));
+    }
+
+    #[test]
+    fn no_text_makes_the_reader_panic(text in "[{}()\\[\\]'\":, a-eTrueFalsdcohp0-9_\\-]{0,60}") {
+        let _ = NpyReader::new(header(1, &text).as_slice()).map(|array| array.shape().to_vec());
+        let text = format!("{{'descr': {text}, 'fortran_order': False, 'shape': (1, 1)}}");
+        let _ = complex(&header(2, &text));
+    }
+
+    #[test]
+    fn fields_come_back_with_the_same_bits(width in 1_usize..50, height in 1_usize..50) {
+        let mut file = Vec::new();
+        write_npy(&wave(width, height), &mut file).unwrap();
+        prop_assert_eq!(complex(&file).unwrap(), wave(width, height));
+    }
+}
+
+fn paths() -> [SlicePath; 3] {
+    [
+        SlicePath::Still,
+        SlicePath::Circle { half_period: 2 },
+        SlicePath::Straight {
+            half_period: 2,
+            length: 3,
+        },
+    ]
+}
+
+fn stack_file(stack: &SpeckleStack) -> Vec<u8> {
+    let mut file = Vec::new();
+    stack.write_npy(&mut file).unwrap();
+    file
+}
+
+fn with(interpolation: Interpolation) -> StackOptions {
+    StackOptions {
+        interpolation,
+        ..StackOptions::default()
+    }
+}
+
+#[test]
+fn stacks_of_samples_come_back_with_the_same_bits() {
+    let field = PupilField::from_speckle_size([26, 20], 2.0, 5).unwrap();
+    let field = field.with_pupil(Pupil::Rectangle { height: 0.9 }).unwrap();
+    for path in paths() {
+        for interpolation in [Interpolation::Bilinear, Interpolation::Nearest] {
+            let options = with(interpolation);
+            let stack = SpeckleStack::generate_with(&field, path, options).unwrap();
+            let file = stack_file(&stack);
+            let same = SpeckleStack::read_npy(file.as_slice(), &field, path, options).unwrap();
+            assert_eq!(same, stack, "{path:?}, {interpolation:?}");
+        }
+    }
+}
+
+#[test]
+fn stacks_hold_the_amplitude_that_their_pupils_see() {
+    let field = PupilField::from_speckle_size([26, 20], 2.0, 5).unwrap();
+    for path in paths() {
+        let stack = SpeckleStack::generate(&field, path).unwrap();
+        let file = stack_file(&stack);
+        let read = npyz::NpyFile::new(file.as_slice()).unwrap();
+        assert_eq!(read.shape(), [stack.slice_count() as u64, 20, 26]);
+        let values: Vec<Complex<f32>> = read.into_vec().unwrap();
+        for (index, slice) in values.chunks(26 * 20).enumerate() {
+            let exact = stack.field().speckle(stack.offset(index), 0.0);
+            for (a, b) in slice.iter().zip(exact.values().values()) {
+                // Three transforms of f32, each of log₂(520) = 9 steps that round |U| ≈ 1 by ε/4, rms: 8 σ.
+                let bound = 8.0 * 27.0_f32.sqrt() * 0.25 * f32::EPSILON;
+                assert!((a - b).norm() < bound, "{path:?}, slice {index}: {a} | {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn splines_come_back_within_the_rounding_of_transforms() {
+    let field = PupilField::from_speckle_size([26, 20], 2.0, 5).unwrap();
+    for path in paths() {
+        let stack = SpeckleStack::generate(&field, path).unwrap();
+        let file = stack_file(&stack);
+        let options = StackOptions::default();
+        let read = SpeckleStack::read_npy(file.as_slice(), &field, path, options).unwrap();
+        for index in 0..stack.slice_count() {
+            let (a, b) = (read.coefficients(index), stack.coefficients(index));
+            // Four transforms of f32, each of log₂(520) = 9 steps that round coefficients of 1.5 by
+            // ε/4, rms; what rounds beyond the band grows by (π/2)⁸ = 37 at most.
+            let bound = 37.0 * 36.0_f32.sqrt() * 0.25 * 1.5 * f32::EPSILON;
+            for (a, b) in a.values().iter().zip(b.values()) {
+                assert!(
+                    (a - b).norm() <= bound,
+                    "slice {index}: {a} | {b} | {bound:e}"
+                );
+            }
+        }
+        assert_eq!(read.field(), stack.field(), "{path:?}");
+    }
+}
+
+#[test]
+fn slices_of_another_shape_or_brightness_are_refused() {
+    let field = PupilField::from_speckle_size([26, 20], 2.0, 5).unwrap();
+    let path = SlicePath::Circle { half_period: 1 };
+    let stack = SpeckleStack::generate(&field, path).unwrap();
+    let file = stack_file(&stack);
+    let read = |file: &[u8], path, options| {
+        SpeckleStack::read_npy(file, &field, path, options)
+            .unwrap_err()
+            .to_string()
+    };
+    let options = StackOptions::default();
+    let said = read(&file, SlicePath::Circle { half_period: 2 }, options);
+    assert!(
+        said.contains("[4, 20, 26] (slices, height, width), got [2, 20, 26]"),
+        "{said}"
+    );
+    let said = read(&file, SlicePath::Circle { half_period: 0 }, options);
+    assert!(said.contains("half period must be 1"), "{said}");
+    let small = StackOptions {
+        memory_limit: 2 * 20 * 26 * 8 - 1,
+        ..options
+    };
+    let said = read(&file, path, small);
+    assert!(said.contains("at most 8319 bytes, got 8320"), "{said}");
+    let said = read(&file[..file.len() - 1], path, options);
+    assert!(said.contains("a part of it"), "{said}");
+    // Slice 1 begins after 128 bytes and 20 × 26 values; its first value becomes too bright.
+    let mut bright = file.clone();
+    let at = 128 + 20 * 26 * 8;
+    bright[at..at + 4].copy_from_slice(&1e30_f32.to_le_bytes());
+    let said = read(&bright, path, options);
+    assert!(said.contains("in slice 1"), "{said}");
+    bright[at..at + 4].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    let said = read(&bright, path, options);
+    assert!(said.contains("index [1, 0, 0]"), "{said}");
+}
+
+#[test]
+fn slices_with_columns_first_are_turned() {
+    let field = PupilField::from_speckle_size([26, 20], 2.0, 5).unwrap();
+    let (path, options) = (
+        SlicePath::Circle { half_period: 1 },
+        with(Interpolation::Nearest),
+    );
+    let stack = SpeckleStack::generate_with(&field, path, options).unwrap();
+    let text = "{'descr': '<c8', 'fortran_order': True, 'shape': (2, 20, 26)}";
+    let mut file = header(1, text);
+    for x in 0..26 {
+        for y in 0..20 {
+            for slice in 0..2 {
+                stack.coefficients(slice)[(x, y)].encode(&mut file);
+            }
+        }
+    }
+    let read = SpeckleStack::read_npy(file.as_slice(), &field, path, options).unwrap();
+    assert_eq!(read, stack);
+}

@@ -1,0 +1,271 @@
+use crate::{
+    GreyLevels, StatisticsError, TestOutcome, chi_squared, kolmogorov_smirnov,
+    moments::check_finite,
+};
+
+/// The number of bins of the χ² test.
+const BINS: u32 = 20;
+
+/// How well samples agree with a law, whether they were rounded or not.
+///
+/// Samples are compared on the scale of the law's distribution function, where they are even in
+/// [0, 1] if they follow it. Rounded samples lie evenly within the cell of their level, which law and
+/// samples therefore fill alike: what is compared are the shares of the samples up to the edges of
+/// the levels. Compared as they are, few grey levels would be a deviation from any continuous law.
+///
+/// # Independence
+///
+/// The samples are independent: take [`decorrelated_samples`](crate::decorrelated_samples).
+///
+/// # Validity
+///
+/// For rounded samples the p-values are on the high side: a step of the law between two edges goes
+/// unseen.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_statistics::{
+///     GoodnessOfFit, GreyLevels, exponential_cumulative, kolmogorov_smirnov,
+/// };
+///
+/// // Speckle of a mean of three grey levels.
+/// let law = |light: f64| exponential_cumulative(light / 3.0);
+/// let quantile = |i| -3.0 * (1.0 - (f64::from(i) + 0.5) / 2_000.0_f64).ln();
+/// let rounded: Vec<f64> = (0..2_000).map(|i| quantile(i).round()).collect();
+/// assert!(kolmogorov_smirnov(&rounded, law)?.p_value < 1e-6);
+///
+/// let levels = GreyLevels::of(&rounded).expect("a few whole numbers");
+/// let fit = GoodnessOfFit::of_rounded(&rounded, &levels, law)?;
+/// assert!(fit.kolmogorov_smirnov()?.p_value > 0.999);
+/// assert!(fit.chi_squared(1)?.p_value > 0.999);
+/// # Ok::<(), tem00_statistics::StatisticsError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct GoodnessOfFit {
+    /// The samples on the scale of the distribution function.
+    places: Vec<f64>,
+    /// Where bins may begin, in ascending order.
+    edges: Vec<f64>,
+}
+
+impl GoodnessOfFit {
+    /// Compares samples that were not rounded with the law of the distribution function
+    /// `cumulative`.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if there is no sample, one is not finite, or `cumulative` returns a value
+    /// outside [0, 1].
+    pub fn new(samples: &[f64], cumulative: impl Fn(f64) -> f64) -> Result<Self, StatisticsError> {
+        check_samples(samples)?;
+        let probability = |&sample: &f64| checked(sample, cumulative(sample));
+        Ok(Self {
+            places: samples.iter().map(probability).collect::<Result<_, _>>()?,
+            edges: (1..BINS).map(quantile).collect(),
+        })
+    }
+
+    /// Compares samples that were rounded to `levels` with the law of the distribution function
+    /// `cumulative`. It is asked for the edges of the levels, the last of which may be infinite.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn of_rounded(
+        samples: &[f64],
+        levels: &GreyLevels,
+        cumulative: impl Fn(f64) -> f64,
+    ) -> Result<Self, StatisticsError> {
+        check_samples(samples)?;
+        let cells = (0..levels.count()).flat_map(|index| levels.cell(index));
+        for edge in cells {
+            checked(edge, cumulative(edge))?;
+        }
+        let edge = |index| cumulative(levels.cell(index)[0]);
+        Ok(Self {
+            places: levels.places(samples, &cumulative),
+            edges: (1..levels.count()).map(edge).collect(),
+        })
+    }
+
+    /// Tests after Kolmogorov and Smirnov, as [`kolmogorov_smirnov`](crate::kolmogorov_smirnov).
+    ///
+    /// The distance of rounded samples is that at the edges of the levels, or larger by up to half of
+    /// one sample's share of its cell.
+    ///
+    /// # Errors
+    ///
+    /// As [`kolmogorov_smirnov`](crate::kolmogorov_smirnov).
+    pub fn kolmogorov_smirnov(&self) -> Result<TestOutcome, StatisticsError> {
+        kolmogorov_smirnov(&self.places, |place| place)
+    }
+
+    /// Tests after Pearson, as [`chi_squared`](crate::chi_squared), in up to 20 bins of about the same
+    /// probability. `constraints` counts 1 for the total and 1 for each parameter of the law that
+    /// was fitted.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the bins do not outnumber the constraints, as those of few levels or
+    /// samples.
+    pub fn chi_squared(&self, constraints: usize) -> Result<TestOutcome, StatisticsError> {
+        let edges = self.bin_edges();
+        let mut observed = vec![0_u64; edges.len() + 1];
+        for &place in &self.places {
+            observed[edges.partition_point(|&edge| edge <= place)] += 1;
+        }
+        let starts = core::iter::once(&0.0).chain(&edges);
+        let ends = edges.iter().chain(core::iter::once(&1.0));
+        let total = self.places.len() as f64;
+        let expected: Vec<_> = starts
+            .zip(ends)
+            .map(|(start, end)| (end - start) * total)
+            .collect();
+        chi_squared(&observed, &expected, constraints)
+    }
+
+    /// Returns the edges nearest to the quantiles.
+    fn bin_edges(&self) -> Vec<f64> {
+        let nearest = |target: f64| {
+            let distance = |edge: &&f64| (**edge - target).abs();
+            let closer = |a: &&f64, b: &&f64| distance(a).total_cmp(&distance(b));
+            self.edges.iter().min_by(closer).copied()
+        };
+        let mut edges: Vec<f64> = (1..BINS).map(quantile).filter_map(nearest).collect();
+        edges.dedup_by(|next, edge| *next <= *edge);
+        edges
+    }
+}
+
+fn check_samples(samples: &[f64]) -> Result<(), StatisticsError> {
+    if samples.is_empty() {
+        return Err(StatisticsError::Samples {
+            given: 0,
+            needed: 1,
+        });
+    }
+    check_finite(samples)
+}
+
+/// The probability that a distribution function gave at a sample.
+fn checked(sample: f64, value: f64) -> Result<f64, StatisticsError> {
+    if (0.0..=1.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err(StatisticsError::Probability { sample, value })
+    }
+}
+
+fn quantile(bin: u32) -> f64 {
+    f64::from(bin) / f64::from(BINS)
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::{GammaIntensity, exponential_cumulative};
+
+    const MEAN: f64 = 3.0;
+
+    /// Quantiles of the exponential law of the mean 3.
+    fn quantiles(count: u32) -> Vec<f64> {
+        let at = |i: u32| -MEAN * (1.0 - (f64::from(i) + 0.5) / f64::from(count)).ln();
+        (0..count).map(at).collect()
+    }
+
+    fn rounded(samples: &[f64]) -> (Vec<f64>, GreyLevels) {
+        let rounded: Vec<f64> = samples.iter().map(|sample| sample.round()).collect();
+        #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
+        let values: Vec<f32> = rounded.iter().map(|&value| value as f32).collect();
+        let levels = GreyLevels::of(&values).expect("few levels");
+        (rounded, levels)
+    }
+
+    fn exponential(light: f64) -> f64 {
+        exponential_cumulative(light / MEAN)
+    }
+
+    #[test]
+    fn rounded_samples_agree_with_the_law_that_they_were_rounded_from() {
+        let (samples, levels) = rounded(&quantiles(2_000));
+        let raw = GoodnessOfFit::new(&samples, exponential).expect("valid");
+        let p_value = |placed: &GoodnessOfFit| placed.kolmogorov_smirnov().expect("valid").p_value;
+        assert!(p_value(&raw) < 1e-6, "the steps are deviations");
+        let placed = GoodnessOfFit::of_rounded(&samples, &levels, exponential).expect("valid");
+        assert!(p_value(&placed) > 0.999, "their edges are none");
+        assert!(
+            placed.chi_squared(1).expect("valid").p_value > 0.999,
+            "{placed:?}"
+        );
+    }
+
+    #[test]
+    fn rounded_samples_of_another_law_are_told_apart() {
+        let (samples, levels) = rounded(&quantiles(2_000));
+        let law = GammaIntensity::new(1.5).expect("valid");
+        let cumulative = |light: f64| law.cumulative(light / MEAN);
+        let placed = GoodnessOfFit::of_rounded(&samples, &levels, cumulative).expect("valid");
+        assert!(
+            placed.kolmogorov_smirnov().expect("valid").p_value < 1e-6,
+            "KS"
+        );
+        assert!(placed.chi_squared(1).expect("valid").p_value < 1e-6, "χ²");
+    }
+
+    #[test]
+    fn distance_of_rounded_samples_is_that_at_the_edges() {
+        // Ten samples of 0, thirty of 1 and sixty of 2, against an even law on [0, 2.5].
+        let counts = [(0.0, 10), (1.0, 30), (2.0, 60)];
+        let samples: Vec<f64> = counts
+            .iter()
+            .flat_map(|&(level, count)| core::iter::repeat_n(level, count))
+            .collect();
+        let (_, levels) = rounded(&samples);
+        let even = |light: f64| (light / 2.5).min(1.0);
+        let placed = GoodnessOfFit::of_rounded(&samples, &levels, even).expect("valid");
+        // At 0.5 the law has 0.2 and the samples 0.1, at 1.5 they have 0.6 and 0.4. The places are
+        // those of continuous samples, whose distance is up to 1/2n larger.
+        let distance = placed.kolmogorov_smirnov().expect("valid").statistic;
+        assert!((0.2..=0.205).contains(&distance), "{distance}");
+        // Bins of 0.2, 0.4 and 0.4: (10 − 20)²/20 + (30 − 40)²/40 + (60 − 40)²/40.
+        let statistic = placed.chi_squared(1).expect("valid").statistic;
+        assert_relative_eq!(statistic, 17.5, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn samples_that_were_not_rounded_fill_twenty_bins() {
+        let samples = quantiles(2_000);
+        let placed = GoodnessOfFit::new(&samples, exponential).expect("valid");
+        assert_eq!(placed.bin_edges().len(), 19);
+        // Each bin holds its hundred quantiles.
+        assert!(
+            placed.chi_squared(2).expect("valid").statistic < 1e-9,
+            "{placed:?}"
+        );
+    }
+
+    #[test]
+    fn what_is_no_probability_is_an_error() {
+        let (samples, levels) = rounded(&quantiles(100));
+        for bad in [-0.1, 1.5, f64::NAN] {
+            let of_rounded = GoodnessOfFit::of_rounded(&samples, &levels, |_| bad);
+            for fit in [GoodnessOfFit::new(&samples, |_| bad), of_rounded] {
+                let refused = matches!(fit, Err(StatisticsError::Probability { .. }));
+                assert!(refused, "{bad}: {fit:?}");
+            }
+        }
+        let empty = GoodnessOfFit::of_rounded(&[], &levels, exponential);
+        assert!(
+            matches!(empty, Err(StatisticsError::Samples { .. })),
+            "{empty:?}"
+        );
+        let hole = GoodnessOfFit::new(&[1.0, f64::NAN], exponential);
+        assert!(
+            matches!(hole, Err(StatisticsError::NotFinite { index: 1, .. })),
+            "{hole:?}"
+        );
+    }
+}

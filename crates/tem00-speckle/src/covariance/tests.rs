@@ -1,4 +1,5 @@
 use core::f64::consts::PI;
+use std::collections::BTreeMap;
 
 use super::*;
 use crate::{
@@ -66,32 +67,67 @@ struct Place {
     f: f64,
 }
 
-/// E|(1 − f) U + f U' exp(−2πi shift·r / Q)|²: the sum over the lattice points of both pupils of the
-/// square of all that a point does.
-fn mean_square_by_points(field: &PupilField, place: &Place) -> f64 {
+/// exp(−2πi k·r / Q).
+fn wave(field: &PupilField, k: [i64; 2], r: [f64; 2]) -> Complex<f64> {
     let size = field.size().map(to_f64);
-    let along = |k: i64, axis: usize| {
-        looked_up(
-            place.interpolation,
-            from_i64(k),
-            place.fractions[axis],
-            size[axis],
-        )
-    };
-    let stand = |axis: usize| match place.interpolation {
-        Interpolation::Nearest => (place.fractions[axis] + 0.5).floor(),
-        _ => place.fractions[axis],
-    };
-    let turns = [0, 1].map(|i| from_i64(place.shift[i]) * stand(i) / size[i]);
-    let frame = Complex::cis(-2.0 * PI * (turns[0] + turns[1]));
-    let mut sums = std::collections::BTreeMap::new();
+    let turns = from_i64(k[0]) * r[0] / size[0] + from_i64(k[1]) * r[1] / size[1];
+    Complex::cis(-2.0 * PI * turns)
+}
+
+/// All that each lattice point does to the blend of two slices, of which one shows it as `value` and
+/// the other in the frame turned by `frame`.
+fn blended(
+    field: &PupilField,
+    place: &Place,
+    frame: Complex<f64>,
+    value: impl Fn([i64; 2]) -> Complex<f64>,
+) -> Vec<Complex<f64>> {
+    let mut sums = BTreeMap::new();
     for (k, t) in points(field) {
-        let value = t * along(k[0], 0) * along(k[1], 1);
+        let value = t * value(k);
         *sums.entry(k).or_insert(Complex::new(0.0, 0.0)) += value * (1.0 - place.f);
         let k = [k[0] + place.shift[0], k[1] + place.shift[1]];
         *sums.entry(k).or_insert(Complex::new(0.0, 0.0)) += value * frame * place.f;
     }
-    sums.values().map(Complex::norm_sqr).sum::<f64>() / field.mask.power()
+    sums.into_values().collect()
+}
+
+/// The blend of the interpolated amplitudes at r = `cell` + fractions.
+fn interpolated(field: &PupilField, place: &Place, cell: [f64; 2]) -> Vec<Complex<f64>> {
+    let stand = place.fractions.map(|f| match place.interpolation {
+        Interpolation::Nearest => (f + 0.5).floor(),
+        _ => f,
+    });
+    let frame = wave(field, place.shift, stand) * wave(field, place.shift, cell);
+    blended(field, place, frame, |k| {
+        let along = |axis: usize| {
+            let size = to_f64(field.size()[axis]);
+            looked_up(
+                place.interpolation,
+                from_i64(k[axis]),
+                place.fractions[axis],
+                size,
+            )
+        };
+        along(0) * along(1) * wave(field, k, cell)
+    })
+}
+
+/// The blend of the fields themselves at r.
+fn exact(field: &PupilField, place: &Place, r: [f64; 2]) -> Vec<Complex<f64>> {
+    blended(field, place, wave(field, place.shift, r), |k| {
+        wave(field, k, r)
+    })
+}
+
+fn square(values: &[Complex<f64>]) -> f64 {
+    values.iter().map(Complex::norm_sqr).sum()
+}
+
+/// |⟨u v*⟩|² of two amplitudes of the same light, each of mean square 1.
+fn correlation(u: &[Complex<f64>], v: &[Complex<f64>]) -> f64 {
+    let products = u.iter().zip(v).map(|(u, v)| u.conj() * v);
+    products.sum::<Complex<f64>>().norm_sqr() / (square(u) * square(v))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
@@ -119,7 +155,7 @@ fn fields() -> Vec<PupilField> {
         Complex::cis(4.0 * (3.0 * (x * x + y * y) - 2.0) * (x + 0.5 * y))
     });
     let mut fields = Vec::new();
-    for (size, speckle_size) in [([40, 40], 2.0), ([80, 56], 2.5), ([96, 96], 4.0)] {
+    for (size, speckle_size) in [([32, 32], 2.0), ([80, 56], 2.5)] {
         for pupil in [
             Pupil::Circle,
             Pupil::Annulus { inner: 0.4 },
@@ -148,7 +184,7 @@ fn the_mean_square_between_slices_is_the_sum_over_the_points_of_both_pupils() {
     let mut worst = 0.0_f64;
     for field in fields() {
         for interpolation in ALL {
-            for shift in [[0, 0], [3, 0], [-5, 6], [9, 4], [2, -14], [40, 3]] {
+            for shift in [[0, 0], [-5, 6], [9, 4], [2, -14]] {
                 for fractions in FRACTIONS {
                     for f in [0.5, 0.25] {
                         let place = Place {
@@ -157,7 +193,8 @@ fn the_mean_square_between_slices_is_the_sum_over_the_points_of_both_pupils() {
                             fractions,
                             f,
                         };
-                        let expected = mean_square_by_points(&field, &place);
+                        let points = interpolated(&field, &place, [0.0; 2]);
+                        let expected = square(&points) / field.mask.power();
                         let got = mean_square_of_look_ups(&field, &place);
                         worst = worst.max((got - expected).abs());
                         // Sums of some ten terms in f32 (1e−6), the polynomials (1e−6) and the odd
@@ -197,4 +234,55 @@ fn light_from_outside_has_the_covariance_of_what_its_pupils_see() {
         let ([a], [b]) = (phasors.at(&[x], &[y]), light.at(&[x], &[y]));
         assert!((a - b).abs() < 1e-6, "({x}, {y}): {a} | {b}");
     }
+}
+
+/// Against the fields of both slices, blended without any interpolation in the plane.
+#[test]
+fn between_slices_correlations_deviate_as_documented() {
+    for (interpolation, stated) in [
+        (Interpolation::CubicSpline, [3.8e-3, 1.3e-4, 7e-6]),
+        (Interpolation::Bilinear, [0.07, 0.018, 4.3e-3]),
+        (Interpolation::Nearest, [0.81, 0.52, 0.25]),
+    ] {
+        for ((size, lag), stated) in [(48, 2.0), (96, 3.0), (192, 5.0)].into_iter().zip(stated) {
+            let field = PupilField::from_speckle_size([size; 2], to_f64(size) / 24.0, 0).unwrap();
+            // Neighbours of 4 and 32 slices.
+            let worst = [[12, 12], [1, 0]]
+                .map(|shift| deviation(&field, interpolation, shift, lag))
+                .into_iter()
+                .fold(0.0, f64::max);
+            assert!(
+                worst < stated && worst > 0.8 * stated,
+                "{interpolation:?}, Q/C = {}: {worst:e}",
+                size / 24
+            );
+        }
+    }
+}
+
+/// The largest deviation half-way between two slices, over fractions and over lags that include the
+/// steepest.
+fn deviation(field: &PupilField, interpolation: Interpolation, shift: [i64; 2], lag: f64) -> f64 {
+    const STEPS: [f64; 4] = [0.0, 0.25, 0.499_99, 0.75];
+    let place = |fractions| Place {
+        interpolation,
+        shift,
+        fractions,
+        f: 0.5,
+    };
+    let fractions = || STEPS.iter().flat_map(|&x| [[x, 0.0], [x, x]]);
+    let origin = exact(field, &place([0.0; 2]), [0.0; 2]);
+    let mut worst = 0.0_f64;
+    for a in fractions() {
+        let here = interpolated(field, &place(a), [0.0; 2]);
+        for cell in [[0.0, 0.0], [lag, 0.0], [lag - 1.0, 0.0]] {
+            for b in fractions() {
+                let there = interpolated(field, &place(b), cell);
+                let apart = [cell[0] + b[0] - a[0], cell[1] + b[1] - a[1]];
+                let law = correlation(&origin, &exact(field, &place([0.0; 2]), apart));
+                worst = worst.max((correlation(&here, &there) - law).abs());
+            }
+        }
+    }
+    worst
 }

@@ -29,7 +29,9 @@ impl SpeckleStack {
     /// Writes the intensities at many points into `intensity`, the same bits as
     /// [`intensity_at`](Self::intensity_at) one by one.
     ///
-    /// Points that lie close to each other, one after the other, are looked up fastest.
+    /// Points between the same two slices, one after the other, are looked up together, and those that
+    /// also lie close to each other fastest. The feature `simd` takes the widest vector instructions of the
+    /// processor, for the same bits.
     ///
     /// # Panics
     ///

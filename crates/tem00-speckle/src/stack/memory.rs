@@ -4,7 +4,7 @@ use tem00_numerics::Grid;
 
 use crate::{Interpolation, SlicePath, SpeckleError};
 
-/// How a [`SpeckleStack`] is built.
+/// How a [`SpeckleStack`](crate::SpeckleStack) is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StackOptions {
     /// How look-ups interpolate in the plane.

@@ -1,4 +1,5 @@
-//! Patterns per second against a dense transform, and look-ups per second.
+//! Patterns per second against a dense transform, stacks, and look-ups per second beside what memory
+//! allows.
 //!
 //! The peer is what one writes first with `rustfft`: all rows, a transposition, all rows again and
 //! `|·|²`, from phasors that are already there. Ours includes their generation.
@@ -107,7 +108,41 @@ fn patterns(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Positions all over the pattern, and along one row of pixels.
+/// 32 slices, beside as many patterns into memory that is used again.
+fn stacks(criterion: &mut Criterion) {
+    const SIZE: usize = 1_024;
+    const SLICES: usize = 32;
+    let mut group = criterion.benchmark_group("stack");
+    group.sample_size(10);
+    group.throughput(Throughput::Elements((SLICES * SIZE * SIZE) as u64));
+    let field = PupilField::new(SIZE, SIZE / 2, 1).expect("a valid size");
+    let path = SlicePath::Circle {
+        half_period: SLICES / 2,
+    };
+    group.bench_function(BenchmarkId::new("slices", SLICES), |bencher| {
+        bencher.iter_with_large_drop(|| SpeckleStack::generate(&field, path));
+    });
+    let mut intensity = Grid::filled(SIZE, SIZE, 0.0);
+    let mut scratch = SpeckleScratch::default();
+    group.bench_function(BenchmarkId::new("patterns", SLICES), |bencher| {
+        bencher.iter(|| {
+            for _ in 0..SLICES {
+                field.pattern_into([0.0; 2], 0.0, &mut intensity, &mut scratch);
+                black_box(&intensity);
+            }
+        });
+    });
+    group.bench_function(
+        BenchmarkId::new("patterns in fresh memory", SLICES),
+        |bencher| {
+            bencher
+                .iter_with_large_drop(|| (0..SLICES).map(|_| field.pattern()).collect::<Vec<_>>());
+        },
+    );
+    group.finish();
+}
+
+/// Positions all over the pattern, and along rows of pixels.
 fn scattered(i: u32) -> (f64, f64) {
     let size = 1_024.0;
     (
@@ -117,26 +152,45 @@ fn scattered(i: u32) -> (f64, f64) {
 }
 
 fn coherent(i: u32) -> (f64, f64) {
-    (0.8 * f64::from(i), 17.3)
+    (
+        0.8 * f64::from(i % 1_280),
+        17.3 + 0.8 * f64::from(i / 1_280),
+    )
 }
 
-fn look_ups(criterion: &mut Criterion) {
-    const COUNT: u32 = 4_096;
+fn stack() -> SpeckleStack {
     let field = PupilField::new(1_024, 512, 1).expect("a valid size");
     let path = SlicePath::Circle { half_period: 4 };
-    let stack = SpeckleStack::generate(&field, path).expect("64 MiB of slices");
+    SpeckleStack::generate(&field, path).expect("64 MiB of slices")
+}
+
+/// One by one and in batches: a few rows of pixels, and as many points as fill all cache lines.
+fn look_ups(criterion: &mut Criterion) {
+    let stack = stack();
     let mut group = criterion.benchmark_group("look-up");
-    group.throughput(Throughput::Elements(COUNT.into()));
     for (slices, u) in [("still", 2.0), ("blended", 2.4)] {
-        for (order, position) in [
-            ("scattered", scattered as fn(u32) -> (f64, f64)),
-            ("coherent", coherent),
+        for (order, position, count) in [
+            ("scattered", scattered as fn(u32) -> (f64, f64), 4_096),
+            ("coherent", coherent, 4_096),
+            ("scattered everywhere", scattered, 1 << 20),
+            ("coherent everywhere", coherent, 1 << 20),
         ] {
-            let positions: Vec<_> = (0..COUNT).map(position).collect();
+            let (x, y): (Vec<_>, Vec<_>) = (0..count).map(position).unzip();
+            let u = vec![u; x.len()];
+            let mut intensity = vec![0.0; x.len()];
+            group.throughput(Throughput::Elements(count.into()));
             group.bench_function(BenchmarkId::new(order, slices), |bencher| {
                 bencher.iter(|| -> f64 {
-                    let intensity = |&(x, y): &(f64, f64)| stack.intensity_at(x, y, black_box(u));
-                    positions.iter().map(intensity).sum()
+                    let points = x.iter().zip(&y).zip(black_box(&u));
+                    let look_up = |((&x, &y), &u)| stack.intensity_at(x, y, u);
+                    points.map(look_up).sum()
+                });
+            });
+            let batch = format!("{order}, batch");
+            group.bench_function(BenchmarkId::new(batch, slices), |bencher| {
+                bencher.iter(|| {
+                    stack.intensity_batch(&x, &y, black_box(&u), &mut intensity);
+                    black_box(&intensity);
                 });
             });
         }
@@ -144,5 +198,34 @@ fn look_ups(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, patterns, look_ups);
+/// Reading coefficients one after the other: of one slice, which the last cache may hold, and of all.
+fn bandwidth(criterion: &mut Criterion) {
+    let stack = stack();
+    let mut group = criterion.benchmark_group("bandwidth");
+    for slices in [1, stack.slice_count()] {
+        let bytes = stack.memory_bytes() / stack.slice_count() as u64 * slices as u64;
+        group.throughput(Throughput::Bytes(bytes));
+        group.bench_function(BenchmarkId::new("slices", slices), |bencher| {
+            bencher.iter(|| {
+                let sums = (0..slices).map(|i| sum(stack.coefficients(i).values()));
+                sums.sum::<f32>()
+            });
+        });
+    }
+    group.finish();
+}
+
+/// The sum of all parts, in as many pieces as keep the vector units busy.
+fn sum(values: &[Complex<f32>]) -> f32 {
+    let mut sums = [0.0; 64];
+    for part in values.as_chunks::<32>().0 {
+        for (sums, value) in sums.as_chunks_mut::<2>().0.iter_mut().zip(part) {
+            sums[0] += value.re;
+            sums[1] += value.im;
+        }
+    }
+    sums.iter().sum()
+}
+
+criterion_group!(benches, patterns, stacks, look_ups, bandwidth);
 criterion_main!(benches);

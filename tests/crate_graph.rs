@@ -29,7 +29,13 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     (
         "tem00-speckle",
         &["tem00-numerics"],
-        &["num-complex", "rand_chacha", "rand_core", "rayon"],
+        &[
+            "fearless_simd",
+            "num-complex",
+            "rand_chacha",
+            "rand_core",
+            "rayon",
+        ],
     ),
     ("tem00-decorrelation", &["tem00-numerics"], &["glam"]),
     (

@@ -10,9 +10,8 @@
 /// | [`Bilinear`](Self::Bilinear) | 0.07 | 0.018 | 4.3e−3 | 4 |
 /// | [`Nearest`](Self::Nearest) | 0.75 | 0.48 | 0.25 | 1 |
 ///
-/// Between two slices the mean of the bilinear form is off by up to 0.021, 5.5e−3 and 1.4e−3, since it
-/// damps the light that the two pupils share more, or less, than the rest; for the spline these are 7e−4,
-/// 5e−5 and less. The nearest sample keeps it.
+/// Between two slices, against the blend of their exact fields, it is at most the same; for the nearest
+/// sample 0.81, 0.52 and 0.25.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
     /// Cubic B-spline over 4 × 4 coefficients, prefiltered in the pupil, which costs nothing.

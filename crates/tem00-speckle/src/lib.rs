@@ -66,6 +66,7 @@
 //! # Ok::<(), tem00_speckle::SpeckleError>(())
 //! ```
 
+mod covariance;
 mod error;
 mod field;
 mod interpolation;
@@ -84,6 +85,7 @@ mod rows;
 mod spline;
 mod stack;
 mod stack_file;
+mod taps;
 mod transmission;
 mod view;
 

@@ -1,32 +1,16 @@
 //! The look-up of a stack: at a point, at many, and as the mean over a box.
 
-use num_complex::Complex;
-use tem00_numerics::wrap_coordinate;
-
 use crate::{
     Interpolation, SpeckleStack,
-    lattice::unit_phasor,
     mask::to_f64,
     quadrature::{Node, mean_nodes},
-    spline::{Along, Axis, Variance, amplitude},
-    stack::{Join, Slice},
+    taps::{Kernel, Taps},
 };
 
-/// The slices on either side of a coordinate u.
-#[derive(Clone, Copy)]
-struct Between<'a> {
-    here: Side<'a>,
-    /// The next slice and the fraction of the way to it, unless u lies on a slice.
-    next: Option<(Side<'a>, f64)>,
-    /// Whether both sides have the same variance.
-    alike: bool,
-}
+mod layer;
 
-#[derive(Clone, Copy)]
-struct Side<'a> {
-    slice: &'a Slice,
-    variance: &'a Variance,
-}
+/// Points of a batch that are looked up together.
+const LANES: usize = 16;
 
 impl SpeckleStack {
     /// Returns the intensity, with mean 1, at (x, y) in samples and u in slices.
@@ -45,7 +29,9 @@ impl SpeckleStack {
     /// Writes the intensities at many points into `intensity`, the same bits as
     /// [`intensity_at`](Self::intensity_at) one by one.
     ///
-    /// Points that lie close to each other, one after the other, are looked up fastest.
+    /// Points between the same two slices, one after the other, are looked up together, and those that
+    /// also lie close to each other fastest. The feature `simd` takes the widest vector instructions of the
+    /// processor, for the same bits.
     ///
     /// # Panics
     ///
@@ -113,32 +99,83 @@ impl SpeckleStack {
             centre.iter().all(|c| c.is_finite()) && size.iter().all(|s| s.is_finite() && *s >= 0.0),
             "a box of the size {size:?} about {centre:?}"
         );
-        let between = self.between(u);
+        let places = self.places(&[u]);
+        let layer = self.layer(places.slices[0], places.between[0]);
         let nodes = [0, 1].map(|axis| {
             let period = to_f64(self.size()[axis]);
-            let finest = between.finest(axis, period, self.speckle_size());
+            let finest = layer.finest(axis, period, self.speckle_size());
             mean_nodes(centre[axis], size[axis], period, finest)
         });
         match self.interpolation {
-            Interpolation::CubicSpline => self.weighted::<4>(&nodes, &between),
-            Interpolation::Bilinear => self.weighted::<2>(&nodes, &between),
-            Interpolation::Nearest => self.weighted::<1>(&nodes, &between),
+            Interpolation::CubicSpline => self.weighted::<4>(&nodes, u),
+            Interpolation::Bilinear => self.weighted::<2>(&nodes, u),
+            Interpolation::Nearest => self.weighted::<1>(&nodes, u),
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn intensity<const N: usize>(&self, x: f64, y: f64, u: f64) -> f64
     where
-        Axis<N>: Along,
+        Taps<N, 1>: Kernel<1>,
     {
-        let [width, height] = self.size();
-        let (x, y) = (Axis::along(x, width), Axis::along(y, height));
-        self.between(u).intensity(&x, &y, self.size())
+        let places = self.places(&[u]);
+        let layer = self.layer(places.slices[0], places.between[0]);
+        let [along_x, along_y, _] = &self.periods;
+        let (x, y) = (Taps::around(&[x], along_x), Taps::around(&[y], along_y));
+        let [intensity] = layer.intensities::<N, 1>(&x, &y, &places.fractions);
+        intensity
     }
 
     fn batch<const N: usize>(&self, [x, y, u]: [&[f64]; 3], intensity: &mut [f64])
     where
-        Axis<N>: Along,
+        Taps<N, 1>: Kernel<1>,
+        Taps<N, LANES>: Kernel<LANES>,
+    {
+        let (x, x_rest) = x.as_chunks();
+        let (y, y_rest) = y.as_chunks();
+        let (u, u_rest) = u.as_chunks();
+        let (blocks, rest) = intensity.as_chunks_mut();
+        vectorised(
+            #[inline(always)]
+            || {
+                for (i, block) in blocks.iter_mut().enumerate() {
+                    self.block::<N>([&x[i], &y[i], &u[i]], block);
+                }
+            },
+        );
+        self.one_by_one::<N>([x_rest, y_rest, u_rest], rest);
+    }
+
+    /// Points of one layer are looked up together.
+    #[inline(always)]
+    fn block<const N: usize>(&self, [x, y, u]: [&[f64; LANES]; 3], intensity: &mut [f64; LANES])
+    where
+        Taps<N, 1>: Kernel<1>,
+        Taps<N, LANES>: Kernel<LANES>,
+    {
+        let places = self.places(u);
+        let (slice, between) = (places.slices[0], places.between[0]);
+        let alike = places
+            .slices
+            .iter()
+            .fold(true, |alike, s| alike & (*s == slice));
+        let alike = places
+            .between
+            .iter()
+            .fold(alike, |alike, b| alike & (*b == between));
+        if !alike {
+            self.one_by_one::<N>([x, y, u], intensity);
+            return;
+        }
+        let [along_x, along_y, _] = &self.periods;
+        let (x, y) = (Taps::around(x, along_x), Taps::around(y, along_y));
+        let layer = self.layer(slice, between);
+        *intensity = layer.intensities::<N, LANES>(&x, &y, &places.fractions);
+    }
+
+    fn one_by_one<const N: usize>(&self, [x, y, u]: [&[f64]; 3], intensity: &mut [f64])
+    where
+        Taps<N, 1>: Kernel<1>,
     {
         let points = x.iter().zip(y).zip(u);
         for (intensity, ((&x, &y), &u)) in intensity.iter_mut().zip(points) {
@@ -147,104 +184,43 @@ impl SpeckleStack {
     }
 
     /// Σ over the nodes of both axes of weight · intensity.
-    fn weighted<const N: usize>(
-        &self,
-        [columns, rows]: &[Vec<Node>; 2],
-        between: &Between<'_>,
-    ) -> f64
+    fn weighted<const N: usize>(&self, [columns, rows]: &[Vec<Node>; 2], u: f64) -> f64
     where
-        Axis<N>: Along,
+        Taps<N, 1>: Kernel<1>,
     {
-        let [width, height] = self.size();
-        let columns: Vec<(Axis<N>, f64)> = columns
+        let places = self.places(&[u]);
+        let layer = self.layer(places.slices[0], places.between[0]);
+        let [along_x, along_y, _] = &self.periods;
+        let columns: Vec<(Taps<N, 1>, f64)> = columns
             .iter()
-            .map(|node| (Axis::along(node.place, width), node.weight))
+            .map(|node| (Taps::around(&[node.place], along_x), node.weight))
             .collect();
-        let along = |y: &Axis<N>| -> f64 {
+        let along = |y: &Taps<N, 1>| -> f64 {
             let terms = columns.iter();
             terms
-                .map(|(x, weight)| weight * between.intensity(x, y, self.size()))
+                .map(|(x, weight)| weight * layer.intensities(x, y, &places.fractions)[0])
                 .sum()
         };
         rows.iter()
-            .map(|node| node.weight * along(&Axis::along(node.place, height)))
+            .map(|node| node.weight * along(&Taps::around(&[node.place], along_y)))
             .sum()
     }
-
-    #[inline]
-    fn between(&self, u: f64) -> Between<'_> {
-        let count = self.slices.len();
-        let (index, fraction) = wrap_coordinate(u, count);
-        let on_a_slice = fraction <= 0.0 || count == 1;
-        Between {
-            here: self.side(index),
-            next: (!on_a_slice).then(|| (self.side((index + 1) % count), fraction)),
-            alike: self.variances.len() == 1,
-        }
-    }
-
-    #[inline]
-    fn side(&self, index: usize) -> Side<'_> {
-        Side {
-            slice: &self.slices[index],
-            variance: self.variances.get(index).unwrap_or(&self.variances[0]),
-        }
-    }
 }
 
-impl Between<'_> {
-    /// The period of the finest fringes along an axis. Between two slices these are finer than a
-    /// speckle: the pupils together are wider than one.
-    fn finest(&self, axis: usize, period: f64, speckle_size: f64) -> f64 {
-        let step = self.next.map_or(0.0, |_| self.here.slice.join.step[axis]);
-        period / (period / speckle_size + step.abs())
-    }
-
-    #[inline]
-    #[expect(clippy::cast_possible_truncation, reason = "amplitudes are f32")]
-    fn intensity<const N: usize>(&self, x: &Axis<N>, y: &Axis<N>, size: [usize; 2]) -> f64 {
-        let variance = self.here.variance.at(x, y);
-        let here = self.here.amplitude(x, y);
-        let Some((next, f)) = self.next else {
-            return f64::from(here.norm_sqr() / variance);
-        };
-        let join = &self.here.slice.join;
-        let mut other = next.amplitude(x, y) * join.phase_to_next([x.place, y.place], size);
-        if !self.alike {
-            other *= (variance / next.variance.at(x, y)).sqrt();
-        }
-        let blend = here * (1.0 - f) as f32 + other * f as f32;
-        f64::from(blend.norm_sqr()) / join.variance(f) / f64::from(variance)
-    }
+/// Runs a loop with the widest vector instructions of the processor.
+///
+/// No step of it is contracted or reordered, so its bits do not depend on their width.
+#[cfg(feature = "simd")]
+#[inline(always)]
+fn vectorised(body: impl FnOnce()) {
+    fearless_simd::dispatch!(fearless_simd::Level::new(), _ => body());
 }
 
-impl Side<'_> {
-    #[inline]
-    fn amplitude<const N: usize>(&self, x: &Axis<N>, y: &Axis<N>) -> Complex<f32> {
-        amplitude(&self.slice.coefficients, x, y)
-    }
-}
-
-impl Join {
-    /// exp(−2πi step·r / Q): from the next slice's own frame to this one's, at r in one period.
-    #[inline]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a fraction of a turn in units of 2⁻³²"
-    )]
-    fn phase_to_next(&self, [x, y]: [f64; 2], size: [usize; 2]) -> Complex<f32> {
-        // Steps are whole numbers, so that whole periods of x and y only add whole turns.
-        let turns = -(self.step[0] * x / to_f64(size[0]) + self.step[1] * y / to_f64(size[1]));
-        unit_phasor(((turns - turns.floor()) * 4_294_967_296.0) as u32)
-    }
-
-    /// The mean square of the blend of two amplitudes of mean square 1.
-    #[inline]
-    fn variance(&self, f: f64) -> f64 {
-        let g = 1.0 - f;
-        g * g + f * f + 2.0 * f * g * self.overlap
-    }
+/// Runs a loop with the vector instructions that every processor of the target has.
+#[cfg(not(feature = "simd"))]
+#[inline(always)]
+fn vectorised(body: impl FnOnce()) {
+    body();
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use num_complex::Complex;
-use tem00_numerics::{Grid, wrap_coordinate};
+use tem00_numerics::Grid;
 
 use crate::{
     Interpolation,
@@ -12,19 +12,6 @@ use crate::{
     mask::{Mask, from_i64, to_f64},
     transmission::to_c64,
 };
-
-/// The four taps of the cubic B-spline that reach the fraction `f` between the second and the third.
-pub(crate) fn weights(f: f32) -> [f32; 4] {
-    let g = 1.0 - f;
-    let (f3, g3) = (f * f * f, g * g * g);
-    let sixth = 1.0 / 6.0;
-    [
-        sixth * g3,
-        sixth * (4.0 - 3.0 * f * f * (2.0 - f)),
-        sixth * (4.0 - 3.0 * g * g * (2.0 - g)),
-        sixth * f3,
-    ]
-}
 
 /// What the pupil point k is multiplied with: the reciprocal of the spline's Fourier transform,
 /// `sinc⁻⁴(π k / Q)`. The other interpolations go through the samples themselves.
@@ -134,17 +121,6 @@ impl Variance {
             table: core::array::from_fn(|ly| core::array::from_fn(|lx| entry(ly, lx))),
         }
     }
-
-    #[inline]
-    pub(crate) fn at<const N: usize>(&self, x: &Axis<N>, y: &Axis<N>) -> f32 {
-        let (x, y) = (autocorrelation(&x.weights), autocorrelation(&y.weights));
-        let along = |row: &[f32; 4]| -> f32 { row.iter().zip(&x).map(|(r, a)| r * a).sum() };
-        self.table
-            .iter()
-            .zip(&y)
-            .map(|(row, a)| along(row) * a)
-            .sum()
-    }
 }
 
 /// `cos(2π k l / Q) b(k)²` for l = 0 to 3, for each lattice point k along an axis.
@@ -162,105 +138,47 @@ fn weighted_cosines(
     points(&field.mask, axis).map(weighted).collect()
 }
 
-/// Σ w(t) w(t + l) for each lag l.
-#[inline]
-fn autocorrelation<const N: usize>(w: &[f32; N]) -> [f32; N] {
-    core::array::from_fn(|lag| w[lag..].iter().zip(w).map(|(a, b)| a * b).sum())
-}
-
-/// The taps around a coordinate along one axis of a periodic grid.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Axis<const N: usize> {
-    cells: [usize; N],
-    weights: [f32; N],
-    /// The coordinate that the taps stand for, in one period.
-    pub(crate) place: f64,
-}
-
-/// Interpolation along one axis.
-pub(crate) trait Along: Copy {
-    /// The taps around `x` on a grid with the period `size`.
-    fn along(x: f64, size: usize) -> Self;
-}
-
-impl Along for Axis<4> {
-    #[inline]
-    #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
-    fn along(x: f64, size: usize) -> Self {
-        let (cell, f) = wrap_coordinate(x, size);
-        Self {
-            cells: [
-                wrap(cell + size - 1, size),
-                cell,
-                wrap(cell + 1, size),
-                wrap(cell + 2, size),
-            ],
-            weights: weights(f as f32),
-            place: to_f64(cell) + f,
-        }
+/// The weights of the taps −1, 0, 1 and 2 at the fraction `f` of the way from 0 to 1.
+fn weights(interpolation: Interpolation, f: f64) -> [f64; 4] {
+    match interpolation {
+        Interpolation::CubicSpline => [-1.0, 0.0, 1.0, 2.0].map(|tap: f64| kernel((tap - f).abs())),
+        Interpolation::Bilinear => [0.0, 1.0 - f, f, 0.0],
+        Interpolation::Nearest => [0.0, 1.0, 0.0, 0.0],
     }
 }
 
-impl Along for Axis<2> {
-    #[inline]
-    #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
-    fn along(x: f64, size: usize) -> Self {
-        let (cell, f) = wrap_coordinate(x, size);
-        Self {
-            cells: [cell, wrap(cell + 1, size)],
-            weights: [1.0 - f as f32, f as f32],
-            place: to_f64(cell) + f,
-        }
-    }
+/// The cubic B-spline at the distance x from its middle.
+fn kernel(x: f64) -> f64 {
+    let tail = (2.0 - x).max(0.0).powi(3);
+    let head = (1.0 - x).max(0.0).powi(3);
+    (tail - 4.0 * head) / 6.0
 }
 
-impl Along for Axis<1> {
-    #[inline]
-    fn along(x: f64, size: usize) -> Self {
-        let (cell, f) = wrap_coordinate(x, size);
-        // No branch: which of two samples is nearer, no processor can foresee.
-        let nearest = wrap(cell + usize::from(f >= 0.5), size);
-        Self {
-            cells: [nearest],
-            weights: [1.0],
-            place: to_f64(nearest),
-        }
-    }
+/// Σ w(t) w(t + l) for the lags l = 0 to 3.
+pub(crate) fn lag_products(interpolation: Interpolation, f: f64) -> [f64; 4] {
+    let w = weights(interpolation, f);
+    core::array::from_fn(|lag| w[lag..].iter().zip(&w).map(|(a, b)| a * b).sum())
 }
 
-/// An index below two periods, on the torus.
-const fn wrap(index: usize, size: usize) -> usize {
-    if index < size { index } else { index - size }
-}
-
-/// The interpolated amplitude.
-#[inline]
-pub(crate) fn amplitude<const N: usize>(
-    coefficients: &Grid<Complex<f32>>,
-    x: &Axis<N>,
-    y: &Axis<N>,
-) -> Complex<f32> {
-    let mut columns = [Complex::new(0.0, 0.0); N];
-    for (&row, weight) in y.cells.iter().zip(y.weights) {
-        let values = gather(coefficients.row(row), &x.cells);
-        for (column, value) in columns.iter_mut().zip(values) {
-            *column += value * weight;
-        }
+/// What interpolation at the fraction `f` makes of the wave of the pupil point k, over that wave.
+///
+/// ```text
+/// g(k; f) = b(k) Σ w(t) exp(−2πi k (t − f) / Q)
+/// ```
+///
+/// A nearest sample stands for itself, so that its response is 1.
+pub(crate) fn response(interpolation: Interpolation, k: i64, f: f64, size: usize) -> Complex<f64> {
+    if interpolation == Interpolation::Nearest {
+        return Complex::new(1.0, 0.0);
     }
-    columns
-        .iter()
-        .zip(x.weights)
-        .map(|(c, weight)| c * weight)
-        .sum()
-}
-
-/// The values of a row; in one piece unless the taps straddle its ends.
-#[inline]
-fn gather<const N: usize>(row: &[Complex<f32>], cells: &[usize; N]) -> [Complex<f32>; N] {
-    match row[cells[0]..].first_chunk() {
-        Some(values) => *values,
-        None => cells.map(|cell| row[cell]),
-    }
+    let angle = 2.0 * PI * from_i64(k) / to_f64(size);
+    let taps = weights(interpolation, f)
+        .into_iter()
+        .zip([-1.0, 0.0, 1.0, 2.0]);
+    let sum: Complex<f64> = taps
+        .map(|(weight, tap)| Complex::from_polar(weight, -angle * (tap - f)))
+        .sum();
+    sum * prefilter(k, size, interpolation)
 }
 
 #[cfg(test)]

@@ -1,14 +1,24 @@
+use num_complex::Complex;
 use proptest::{prelude::*, test_runner::RngSeed};
 use tem00_numerics::Grid;
 use tem00_statistics::{exponential_cumulative, kolmogorov_smirnov, rectangular_pixel_contrast};
 
 use super::*;
-use crate::{Phasors, PupilField, SlicePath, StackOptions};
+use crate::{Phasors, PupilField, SlicePath, StackOptions, lattice::unit_phasor, mask::from_i64};
 
 const ALL: [Interpolation; 3] = [
     Interpolation::CubicSpline,
     Interpolation::Bilinear,
     Interpolation::Nearest,
+];
+
+const PATHS: [SlicePath; 3] = [
+    SlicePath::Still,
+    SlicePath::Circle { half_period: 3 },
+    SlicePath::Straight {
+        half_period: 2,
+        length: 3,
+    },
 ];
 
 fn options(interpolation: Interpolation) -> StackOptions {
@@ -102,7 +112,7 @@ fn light_from_outside_has_the_mean_of_one_between_samples() {
     for interpolation in ALL {
         let stack = stack(&measured([48, 40], 2.5), circle(2), interpolation);
         for fractions in [[0.0, 0.0], [0.5, 0.5], [0.3, 0.8]] {
-            for u in [0.0, 1.0, 2.0] {
+            for u in [0.0, 1.0, 2.0, 0.5, 1.5, 3.25] {
                 let mean = mean(&stack, fractions, u);
                 // By Parseval, but for the rounding of f32.
                 assert!(
@@ -110,18 +120,6 @@ fn light_from_outside_has_the_mean_of_one_between_samples() {
                     "{interpolation:?}, {fractions:?}, {u}: {mean}"
                 );
             }
-        }
-        // At a sample only the overlap of the slices counts, which is that of the light.
-        for u in [0.5, 1.5, 3.25] {
-            let mean = mean(&stack, [0.0, 0.0], u);
-            let tolerance = match interpolation {
-                Interpolation::CubicSpline => 7e-4,
-                Interpolation::Bilinear | Interpolation::Nearest => 3e-6,
-            };
-            assert!(
-                (mean - 1.0).abs() < tolerance,
-                "{interpolation:?} at u = {u}: {mean}"
-            );
         }
     }
 }
@@ -171,34 +169,57 @@ proptest! {
         prop_assert!(outcome.p_value > 1e-5, "{:?}: {outcome:?}", ALL[kind]);
     }
 
+    /// Runs of points at one u, between the same slices and all over the stack.
     #[test]
     fn batches_are_the_bits_of_single_look_ups(
-        points in prop::collection::vec((-1e3_f64..1e3, -1e9_f64..1e9, -50.0_f64..50.0), 0..40),
-        kind in 0_usize..3,
+        points in prop::collection::vec((-1e3_f64..1e3, -1e9_f64..1e9, -50.0_f64..50.0), 0..70),
+        spread in prop::sample::select(vec![0.0, 1e-3, 1.0]), whole: bool,
+        (width, height) in (16_usize..40, 16_usize..40), kind in 0_usize..3, path in 0_usize..3,
     ) {
-        let field = PupilField::from_speckle_size([20, 24], 2.5, 9).unwrap();
-        let stack = stack(&field, circle(2), ALL[kind]);
+        let field = PupilField::from_speckle_size([width, height], 2.0, 9).unwrap();
+        let stack = stack(&field, PATHS[path], ALL[kind]);
         let x: Vec<_> = points.iter().map(|p| p.0).collect();
         let y: Vec<_> = points.iter().map(|p| p.1).collect();
-        let u: Vec<_> = points.iter().map(|p| p.2).collect();
+        let u = |p: &(f64, f64, f64)| spread * p.2 + if whole { 1.0 } else { 0.7 };
+        let u: Vec<_> = points.iter().map(u).collect();
         let mut batch = vec![f64::NAN; points.len()];
         stack.intensity_batch(&x, &y, &u, &mut batch);
-        for (got, (x, y, u)) in batch.iter().zip(points) {
-            prop_assert_eq!(got.to_bits(), stack.intensity_at(x, y, u).to_bits());
+        for (i, got) in batch.iter().enumerate() {
+            prop_assert_eq!(got.to_bits(), stack.intensity_at(x[i], y[i], u[i]).to_bits());
         }
+    }
+
+    /// Coordinates are whole numbers of 2⁻²⁰, so that those whole periods away are numbers of f64 too.
+    #[test]
+    fn look_ups_whole_periods_apart_are_the_same_bits(
+        x in -(1_i64 << 33)..1 << 33, y in -(1_i64 << 33)..1 << 33, u in -(1_i64 << 33)..1 << 33,
+        turns in prop::array::uniform3(-(1_i64 << 23)..1 << 23),
+        (width, height) in (16_usize..260, 16_usize..260),
+        kind in 0_usize..3, path in 0_usize..3,
+    ) {
+        let field = PupilField::from_speckle_size([width, height], 2.0, 9).unwrap();
+        let stack = stack(&field, PATHS[path], ALL[kind]);
+        let periods = [width, height, stack.slice_count()];
+        let [x, y, u] = [x, y, u].map(|n| from_i64(n) / 1_048_576.0);
+        let [nx, ny, nu] = [0, 1, 2].map(|i| from_i64(turns[i]) * to_f64(periods[i]));
+        let (here, there) = (stack.intensity_at(x, y, u), stack.intensity_at(x + nx, y + ny, u + nu));
+        prop_assert_eq!(here.to_bits(), there.to_bits(), "{} and {}", here, there);
     }
 
     #[test]
     fn look_ups_of_any_finite_coordinate_are_finite(
-        x in prop::num::f64::NORMAL, y in prop::num::f64::NORMAL, u in prop::num::f64::NORMAL,
-        width in prop::num::f64::NORMAL, kind in 0_usize..3,
+        x in prop::num::f64::NORMAL, y in -1e15_f64..1e15, u in prop::num::f64::NORMAL,
+        near in -1e15_f64..1e15, width in prop::num::f64::NORMAL,
+        (columns, rows) in (16_usize..50, 16_usize..50), kind in 0_usize..3, path in 0_usize..3,
     ) {
-        let field = PupilField::from_speckle_size([20, 16], 2.0, 9).unwrap();
-        let stack = stack(&field, circle(3), ALL[kind]);
-        let intensity = stack.intensity_at(x, y, u);
-        prop_assert!(intensity.is_finite() && intensity >= 0.0, "{intensity}");
-        let average = stack.average_over([x, y], [width.abs(), 1.0], u);
-        prop_assert!(average.is_finite() && average >= 0.0, "{average}");
+        let field = PupilField::from_speckle_size([columns, rows], 2.0, 9).unwrap();
+        let stack = stack(&field, PATHS[path], ALL[kind]);
+        for (x, y, u) in [(x, y, u), (y, x, near)] {
+            let intensity = stack.intensity_at(x, y, u);
+            prop_assert!(intensity.is_finite() && intensity >= 0.0, "{intensity}");
+            let average = stack.average_over([x, y], [width.abs(), 1.0], u);
+            prop_assert!(average.is_finite() && average >= 0.0, "{average}");
+        }
     }
 
     #[test]
@@ -277,19 +298,19 @@ fn batches_of_unlike_lengths_are_refused() {
     stack.intensity_batch(&[0.0], &[0.0, 1.0], &[0.0], &mut [0.0]);
 }
 
-/// The look-up between two slices of light from outside against fields, variances and an overlap that
-/// are measured over the whole tile.
+/// The look-up between two slices of light from outside against fields from single transforms, and their
+/// mean square over the whole tile.
 #[test]
-fn slices_of_unlike_light_are_blended_by_their_own_variances() {
+fn slices_of_unlike_light_are_blended_in_one_frame() {
     let field = measured([40, 48], 2.5);
     let stack = stack(&field, circle(2), Interpolation::Bilinear);
     let size = stack.size();
-    let (index, f, fractions) = (1, 0.375, [0.5, 0.25]);
+    let (index, f, fractions) = (1, 0.375_f64, [0.5, 0.25]);
     let [a, b] = [index, index + 1].map(|i| stack.field().speckle(stack.offset(i), 0.0));
     let step = stack.slices[index].join.step;
-    let frame = |x: usize, y: usize, [fx, fy]: [f64; 2]| {
-        let turns = step[0] * (to_f64(x) + fx) / to_f64(size[0])
-            + step[1] * (to_f64(y) + fy) / to_f64(size[1]);
+    let frame = |x: usize, y: usize| {
+        let turns = step[0] * (to_f64(x) + fractions[0]) / to_f64(size[0])
+            + step[1] * (to_f64(y) + fractions[1]) / to_f64(size[1]);
         Complex::cis(-2.0 * core::f64::consts::PI * turns)
     };
     let between = |field: &crate::SpeckleField, x: usize, y: usize| {
@@ -301,31 +322,13 @@ fn slices_of_unlike_light_are_blended_by_their_own_variances() {
         (at(0, 0) * (1.0 - fx) + at(1, 0) * fx) * (1.0 - fy)
             + (at(0, 1) * (1.0 - fx) + at(1, 1) * fx) * fy
     };
-    let cells = || (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
-    let count = to_f64(size[0] * size[1]);
-    let variance = |field| {
-        cells()
-            .map(|(x, y)| between(field, x, y).norm_sqr())
-            .sum::<f64>()
-            / count
+    let blend = |x: usize, y: usize| {
+        (between(&a, x, y) * (1.0 - f) + between(&b, x, y) * frame(x, y) * f).norm_sqr()
     };
-    let [v, w] = [variance(&a), variance(&b)];
-    assert!(
-        (v / w - 1.0).abs() > 1e-3,
-        "light that is not unlike: {v}, {w}"
-    );
-    let products = cells().map(|(x, y)| {
-        let [a, b] = [&a, &b].map(|field| field.values()[(x, y)]);
-        let product = a * b.conj();
-        let product = Complex::new(f64::from(product.re), f64::from(product.im));
-        (product * frame(x, y, [0.0; 2]).conj()).re
-    });
-    let overlap = products.sum::<f64>() / count;
+    let cells = || (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    let mean_square = cells().map(|(x, y)| blend(x, y)).sum::<f64>() / to_f64(size[0] * size[1]);
     for (x, y) in cells().step_by(7) {
-        let next = between(&b, x, y) * frame(x, y, fractions) / w.sqrt();
-        let blend = between(&a, x, y) / v.sqrt() * (1.0 - f) + next * f;
-        let square = (1.0 - f).powi(2) + f * f + 2.0 * f * (1.0 - f) * overlap;
-        let expected = blend.norm_sqr() / square;
+        let expected = blend(x, y) / mean_square;
         let got = stack.intensity_at(to_f64(x) + 0.5, to_f64(y) + 0.25, to_f64(index) + f);
         // Rounding of f32 in some ten operations.
         let error = (got - expected).abs() / (1.0 + expected);

@@ -1,0 +1,119 @@
+//! The slices of a stack, and how each joins the next.
+
+use num_complex::Complex;
+use tem00_numerics::Grid;
+
+use crate::{
+    Interpolation, PupilField, SlicePath,
+    covariance::{Covariance, Even, Responses, mean_square},
+    lattice::to_i64,
+    mask::{from_i64, to_f64},
+    rows::map_with_scratch,
+    spline::Variance,
+    transmission::to_c64,
+};
+
+/// The interpolation's coefficients of one slice, and how it joins the next.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Slice {
+    pub(crate) coefficients: Grid<Complex<f32>>,
+    pub(crate) centre: [i64; 2],
+    /// The mean square of the interpolated amplitude.
+    pub(crate) mean_square: Even,
+    pub(crate) join: Join,
+}
+
+/// The way from one slice to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Join {
+    /// Displacement of the next slice's pupil.
+    pub(crate) step: [f64; 2],
+    /// Turns of phase per sample, from the next slice's own frame to this one's: −step / Q.
+    pub(crate) turns: [f64; 2],
+    /// Overlap of both pupils.
+    pub(crate) overlap: f64,
+    /// The covariance of the interpolated amplitudes: the overlap, but for what interpolation does.
+    pub(crate) covariance: Covariance,
+}
+
+/// What slices of one stack have in common.
+struct Joiner<'a> {
+    field: &'a PupilField,
+    interpolation: Interpolation,
+    responses: Responses,
+    /// The variance of all slices of random phasors.
+    expected: Variance,
+}
+
+/// Joins the coefficients of the slices of `field`, and returns the variances: one for all slices of
+/// random phasors, one for each of light from outside.
+pub(super) fn join_all(
+    field: &PupilField,
+    path: SlicePath,
+    interpolation: Interpolation,
+    coefficients: Vec<Grid<Complex<f32>>>,
+) -> (Vec<Slice>, Vec<Variance>) {
+    let count = coefficients.len();
+    let joiner = Joiner {
+        field,
+        interpolation,
+        responses: Responses::new(field, interpolation),
+        expected: Variance::expected(field, interpolation),
+    };
+    let centre = |index: usize| path.centre(index % count, field);
+    let joined = map_with_scratch(coefficients, |index, coefficients, _| {
+        let (centre, next) = (centre(index), centre(index + 1));
+        let (join, variance) = joiner.join(centre, next);
+        let slice = Slice {
+            coefficients,
+            centre,
+            mean_square: mean_square(&variance, interpolation),
+            join,
+        };
+        (slice, variance)
+    });
+    let (slices, mut variances): (Vec<_>, Vec<_>) = joined.into_iter().unzip();
+    if field.samples().is_none() {
+        variances.truncate(1);
+    }
+    (slices, variances)
+}
+
+impl Joiner<'_> {
+    /// How the slice of the pupil at `centre` joins that at `next`, and its variance.
+    fn join(&self, centre: [i64; 2], next: [i64; 2]) -> (Join, Variance) {
+        let shift = self.field.shift(centre, next);
+        if self.field.samples().is_none() {
+            let overlap = self.field.overlap(shift).re;
+            let covariance = self.responses.of_phasors(self.field, shift);
+            return (self.with(shift, overlap, covariance), self.expected);
+        }
+        let (here, next) = (self.field.seen(centre), self.field.seen(next));
+        let overlap = shared(&here, &next, shift);
+        let covariance = self.responses.of_light(&here, &next, shift);
+        let variance = Variance::of(&here, self.field, self.interpolation);
+        (self.with(shift, overlap, covariance), variance)
+    }
+
+    fn with(&self, shift: [i64; 2], overlap: f64, covariance: Covariance) -> Join {
+        let step = shift.map(from_i64);
+        let size = self.field.size();
+        Join {
+            step,
+            turns: [0, 1].map(|axis| -step[axis] / to_f64(size[axis])),
+            overlap,
+            covariance,
+        }
+    }
+}
+
+/// Re Σ a(k) b*(k − shift).
+fn shared(a: &Grid<Complex<f32>>, b: &Grid<Complex<f32>>, [dx, dy]: [i64; 2]) -> f64 {
+    let (width, height) = (to_i64(a.width()), to_i64(a.height()));
+    let both = |shift: i64, size: i64| shift.clamp(0, size)..(size + shift).clamp(0, size);
+    let at = |grid: &Grid<_>, x, y| to_c64(*grid.wrapped(x, y));
+    both(dy, height)
+        .flat_map(|y| both(dx, width).map(move |x| (x, y)))
+        .map(|(x, y)| (at(a, x, y) * at(b, x - dx, y - dy).conj()).re)
+        .sum()
+}

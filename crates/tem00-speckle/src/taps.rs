@@ -1,0 +1,288 @@
+//! The taps of a look-up on the torus, and the amplitude that they add up to.
+
+use num_complex::Complex;
+use tem00_numerics::Grid;
+
+use crate::mask::to_f64;
+
+/// The period of a stack along one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Period {
+    cells: usize,
+    length: f64,
+    reciprocal: f64,
+}
+
+/// Adding it, and taking it off again, rounds to a whole number.
+const ROUNDING: f64 = 1.5 * (1_u64 << 52) as f64;
+
+/// Below this, whole periods are taken off by multiplication.
+const NEAR: f64 = (1_u64 << 50) as f64;
+
+impl Period {
+    pub(crate) fn new(cells: usize) -> Self {
+        let length = to_f64(cells);
+        Self {
+            cells,
+            length,
+            reciprocal: 1.0 / length,
+        }
+    }
+
+    /// Splits coordinates into the cell, below the period, and the fraction in [0, 1] of the way to
+    /// the next.
+    ///
+    /// No step rounds what a `f64` can hold: the number of periods and its product are whole numbers below
+    /// 2⁵³, and the difference is a multiple of the last bit of x and smaller. So the period is
+    /// exact. Only what lies within rounding below zero comes out as the end of the last cell.
+    #[inline(always)]
+    pub(crate) fn split<const L: usize>(&self, x: &[f64; L]) -> ([usize; L], [f64; L]) {
+        let mut x = *x;
+        // Without a branch for each.
+        let near = x.iter().fold(true, |near, x| near & (x.abs() < NEAR));
+        if !near {
+            x = x.map(|x| self.brought_near(x));
+        }
+        let last = self.length - 1.0;
+        let (mut cells, mut fractions) = ([0; L], [0.0; L]);
+        for (x, (cell, fraction)) in x.iter().zip(cells.iter_mut().zip(&mut fractions)) {
+            let rest = x - round(x * self.reciprocal) * self.length;
+            let place = rest + if rest < 0.0 { self.length } else { 0.0 };
+            let nearest = round(place);
+            let floor = nearest - if nearest > place { 1.0 } else { 0.0 };
+            let floor = if floor < last { floor } else { last };
+            *cell = whole(floor);
+            *fraction = place - floor;
+        }
+        (cells, fractions)
+    }
+
+    #[cold]
+    fn brought_near(&self, x: f64) -> f64 {
+        assert!(x.is_finite(), "the coordinate {x} is not finite");
+        x % self.length
+    }
+
+    /// Returns an index below two periods, on the torus.
+    #[inline(always)]
+    pub(crate) const fn wrap(&self, index: usize) -> usize {
+        if index < self.cells {
+            index
+        } else {
+            index - self.cells
+        }
+    }
+}
+
+/// Rounds to the nearest whole number, without the function that plain processors have to call.
+#[inline(always)]
+fn round(x: f64) -> f64 {
+    x + ROUNDING - ROUNDING
+}
+
+/// A whole number below 2³², from the last bits of its sum with a large one.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
+fn whole(x: f64) -> usize {
+    (x + ROUNDING).to_bits() as u32 as usize
+}
+
+/// The taps around L coordinates along one axis of a periodic grid.
+///
+/// The points of a batch lie side by side, so that one vector instruction serves several.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Taps<const N: usize, const L: usize> {
+    /// The first of the N cells, one after the other on the torus.
+    first: [usize; L],
+    weights: [[f32; L]; N],
+    /// The fractions that the weights belong to.
+    pub(crate) fractions: [f32; L],
+    /// The coordinates that the taps stand for, in one period.
+    pub(crate) places: [f64; L],
+}
+
+/// Interpolation by N taps along an axis.
+pub(crate) trait Kernel<const L: usize>: Copy {
+    /// The taps around `x`.
+    fn around(x: &[f64; L], period: &Period) -> Self;
+}
+
+impl<const L: usize> Kernel<L> for Taps<4, L> {
+    #[inline(always)]
+    fn around(x: &[f64; L], period: &Period) -> Self {
+        let (cells, f) = period.split(x);
+        let fractions = single(&f);
+        let mut weights = [[0.0; L]; 4];
+        let mut first = cells;
+        for i in 0..L {
+            let [a, b, c, d] = cubic_weights(fractions[i]);
+            weights[0][i] = a;
+            weights[1][i] = b;
+            weights[2][i] = c;
+            weights[3][i] = d;
+            first[i] = period.wrap(cells[i] + period.cells - 1);
+        }
+        Self {
+            first,
+            weights,
+            fractions,
+            places: places(&cells, &f),
+        }
+    }
+}
+
+impl<const L: usize> Kernel<L> for Taps<2, L> {
+    #[inline(always)]
+    fn around(x: &[f64; L], period: &Period) -> Self {
+        let (cells, f) = period.split(x);
+        let fractions = single(&f);
+        Self {
+            first: cells,
+            weights: [fractions.map(|f| 1.0 - f), fractions],
+            fractions,
+            places: places(&cells, &f),
+        }
+    }
+}
+
+impl<const L: usize> Kernel<L> for Taps<1, L> {
+    #[inline(always)]
+    fn around(x: &[f64; L], period: &Period) -> Self {
+        let (mut cells, f) = period.split(x);
+        for (cell, f) in cells.iter_mut().zip(f) {
+            // No branch: which of two samples is nearer, no processor can foresee.
+            *cell = period.wrap(*cell + usize::from(f >= 0.5));
+        }
+        Self {
+            first: cells,
+            weights: [[1.0; L]],
+            fractions: [0.0; L],
+            places: cells.map(to_f64),
+        }
+    }
+}
+
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
+fn single<const L: usize>(x: &[f64; L]) -> [f32; L] {
+    let mut single = [0.0; L];
+    for (single, x) in single.iter_mut().zip(x) {
+        *single = *x as f32;
+    }
+    single
+}
+
+#[inline(always)]
+fn places<const L: usize>(cells: &[usize; L], fractions: &[f64; L]) -> [f64; L] {
+    let mut places = [0.0; L];
+    for (place, (cell, f)) in places.iter_mut().zip(cells.iter().zip(fractions)) {
+        *place = to_f64(*cell) + f;
+    }
+    places
+}
+
+/// The four taps of the cubic B-spline that reach the fraction `f` between the second and the third.
+#[inline(always)]
+pub(crate) fn cubic_weights(f: f32) -> [f32; 4] {
+    let g = 1.0 - f;
+    let sixth = 1.0 / 6.0;
+    let (ff, gg) = (f * f, g * g);
+    [
+        sixth * g * gg,
+        2.0 / 3.0 - 0.5 * ff * (2.0 - f),
+        2.0 / 3.0 - 0.5 * gg * (2.0 - g),
+        sixth * f * ff,
+    ]
+}
+
+/// The interpolated amplitudes, real and imaginary parts.
+#[inline(always)]
+pub(crate) fn amplitudes<const N: usize, const L: usize>(
+    coefficients: &Grid<Complex<f32>>,
+    x: &Taps<N, L>,
+    y: &Taps<N, L>,
+) -> [[f32; L]; 2] {
+    let (width, height) = (coefficients.width(), coefficients.height());
+    let mut halves = [[0.0; 4]; L];
+    for (i, halves) in halves.iter_mut().enumerate() {
+        let (column, row) = (x.first[i], y.first[i]);
+        let mut sums = Sums::default();
+        if column + N <= width && row + N <= height {
+            let from = row * width + column;
+            let window = &coefficients.values()[from..from + (N - 1) * width + N];
+            for (t, weights) in y.weights.iter().enumerate() {
+                sums.add(&window[t * width..t * width + N], weights[i]);
+            }
+        } else {
+            sums = across_a_seam(coefficients, [column, row], y, i);
+        }
+        *halves = sums.weighted(x, i);
+    }
+    let mut parts = [[0.0; L]; 2];
+    for (i, half) in halves.iter().enumerate() {
+        parts[0][i] = half[0] + half[2];
+        parts[1][i] = half[1] + half[3];
+    }
+    parts
+}
+
+/// The sums over the rows where the taps lie on both sides of a seam.
+#[cold]
+#[inline(never)]
+fn across_a_seam<const N: usize, const L: usize>(
+    coefficients: &Grid<Complex<f32>>,
+    [column, row]: [usize; 2],
+    y: &Taps<N, L>,
+    i: usize,
+) -> Sums {
+    let mut sums = Sums::default();
+    for (t, weights) in y.weights.iter().enumerate() {
+        let values = coefficients.row((row + t) % coefficients.height());
+        let taps: [_; N] = core::array::from_fn(|x| values[(column + x) % values.len()]);
+        sums.add(&taps, weights[i]);
+    }
+    sums
+}
+
+/// Σ over the rows of up to four columns: real and imaginary parts of two columns side by side, as
+/// vector instructions take them.
+#[derive(Clone, Copy, Default)]
+struct Sums([[f32; 4]; 2]);
+
+impl Sums {
+    #[inline(always)]
+    fn add(&mut self, taps: &[Complex<f32>], weight: f32) {
+        for (sums, pair) in self.0.iter_mut().zip(taps.chunks(2)) {
+            let values = match pair {
+                [a, b] => [a.re, a.im, b.re, b.im],
+                [a, ..] => [a.re, a.im, 0.0, 0.0],
+                [] => [0.0; 4],
+            };
+            for (sum, value) in sums.iter_mut().zip(values) {
+                *sum += value * weight;
+            }
+        }
+    }
+
+    /// Σ over every other column.
+    #[inline(always)]
+    fn weighted<const N: usize, const L: usize>(&self, x: &Taps<N, L>, i: usize) -> [f32; 4] {
+        let mut total = [0.0; 4];
+        for (t, sums) in self.0.iter().enumerate().take(N.div_ceil(2)) {
+            let a = x.weights[2 * t][i];
+            let b = if 2 * t + 1 < N {
+                x.weights[2 * t + 1][i]
+            } else {
+                0.0
+            };
+            let weights = [a, a, b, b];
+            for (total, (sum, weight)) in total.iter_mut().zip(sums.iter().zip(weights)) {
+                *total += sum * weight;
+            }
+        }
+        total
+    }
+}
+
+#[cfg(test)]
+mod tests;

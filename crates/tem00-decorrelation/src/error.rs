@@ -65,6 +65,8 @@ pub enum DecorrelationError {
     DirectionToSource(DVec3),
     /// The curvature of the wavefront, in 1/m, is not finite.
     Curvature(f64),
+    /// The curvature tensor of the wavefront, in 1/m, is not finite or not symmetric.
+    CurvatureTensor(DMat3),
     /// The principal axis of the wavefront is zero, not finite, or parallel to the direction to the
     /// source.
     PrincipalAxis(DVec3),
@@ -146,6 +148,10 @@ impl fmt::Display for DecorrelationError {
                     "wavefront curvature (1/R) must be finite, got {got:e} 1/m"
                 )
             }
+            Self::CurvatureTensor(got) => write!(
+                f,
+                "curvature tensor must be finite and symmetric within 1e-6, got columns {got} 1/m"
+            ),
             Self::PrincipalAxis(got) => write!(
                 f,
                 "principal axis must be finite, not zero and not along the direction to the \
@@ -220,6 +226,11 @@ mod tests {
                 "-3.75",
             ),
             (E::Curvature(f64::INFINITY), "curvature", "inf 1/m"),
+            (
+                E::CurvatureTensor(DMat3::IDENTITY * 2.5),
+                "curvature tensor",
+                "2.5",
+            ),
             (E::PrincipalAxis(vector), "principal axis", "-3.75"),
             (E::Normal(vector), "surface normal", "-3.75"),
         ];

@@ -3,7 +3,7 @@ use glam::{DMat2, DMat3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::{CameraFrame, LensData};
+use crate::{CameraFrame, Focus, LensData, ThickLensData};
 
 fn geometry() -> ImagingGeometry {
     ImagingGeometry::from_lens(LensData {
@@ -60,6 +60,44 @@ fn motion_of_the_surface_shows_the_right_way_round() {
     assert!((screen - expected).length() < 1e-18, "screen {screen}");
     let sensor = point.image_displacement(&geometry(), &motion, ImageOrientation::SensorInverted);
     assert!((sensor + expected).length() < 1e-18, "sensor {sensor}");
+}
+
+#[test]
+fn a_thick_lens_moves_the_image_by_its_magnification() {
+    let thick = ImagingGeometry::from_thick_lens(ThickLensData {
+        wavelength: 650e-9,
+        focal_length: 50e-3,
+        f_number: 4.0,
+        pupil_magnification: 0.8,
+        focus: Focus::Magnification(0.5),
+        pixel_pitch: 3.45e-6,
+    })
+    .unwrap();
+    // In focus at L = f (1/m + 1/m_p) = 162.5 mm, and 10 % nearer, where the image is blurred and as
+    // much larger.
+    for (depth, magnification) in [(162.5e-3, 0.5), (146.25e-3, 0.5 / 0.9)] {
+        let eye = DVec3::new(0.0, 0.0, depth);
+        let camera = CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y).unwrap();
+        let sight = LineOfSight::new(&camera, eye).unwrap();
+        let point = SurfacePoint::new(sight, DVec3::Z, collimated()).unwrap();
+        let motion = Motion {
+            surface: DVec3::new(1e-3, 0.0, 0.0),
+            ..Motion::default()
+        };
+        let upright = ImageOrientation::ScreenUpright;
+        let moved = SpeckleMotion::new(&thick, &point, &motion, upright);
+        let expected = magnification * 1e-3;
+        assert_relative_eq!(
+            moved.image_displacement.x,
+            expected,
+            max_relative = 1e-13,
+            epsilon = 0.0
+        );
+        // In collimated light the speckle out of focus moves as in focus: it is the moved surface's
+        // own field that is seen, at the distance of focus.
+        let speckle = moved.speckle_displacement().x;
+        assert_relative_eq!(speckle, 0.5e-3, max_relative = 1e-13, epsilon = 0.0);
+    }
 }
 
 #[test]
@@ -193,6 +231,12 @@ prop_compose! {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    })]
+
     #[test]
     fn moving_everything_together_changes_nothing(
         point in points(),
@@ -245,5 +289,40 @@ proptest! {
         prop_assert!((0.0..=1.0).contains(&moved.correlation), "{:?}", moved);
         prop_assert!(moved.speckle_displacement().is_finite(), "{:?}", moved);
         prop_assert!(moved.pupil_displacement.is_none_or(DVec2::is_finite), "{:?}", moved);
+    }
+
+    #[test]
+    fn no_scene_yields_anything_but_numbers(
+        exponents in [-30.0_f64..30.0, -30.0..30.0, -30.0..30.0, -30.0..30.0, -30.0..30.0, -30.0..30.0],
+        directions in [directions(), directions(), directions(), directions()],
+        f_number in 0.5_f64..1e3,
+    ) {
+        let [size, distance, along, across, focal_length, focus] = exponents.map(|x| 10.0_f64.powf(x));
+        let [sight, normal, to_source, motion] = directions;
+        let camera = CameraFrame::look_at(sight * distance, DVec3::ZERO, DVec3::Y);
+        let geometry = ImagingGeometry::from_lens(LensData {
+            wavelength: 1e-30,
+            focal_length,
+            f_number,
+            surface_to_pupil: focal_length + focus,
+            pixel_pitch: 1e-6,
+        });
+        let axis = to_source.any_orthogonal_vector();
+        let wave = Wavefront::astigmatic(to_source, axis, along, -across).unwrap();
+        let (Ok(camera), Ok(geometry)) = (camera, geometry) else {
+            return Ok(());
+        };
+        let to_pupil = (sight + normal * 0.3) * distance;
+        let Ok(sight) = LineOfSight::new(&camera, to_pupil) else {
+            return Ok(());
+        };
+        let point = SurfacePoint::new(sight, normal * size, wave).unwrap();
+        let motion = Motion { surface: motion * size, camera: normal * along, source: axis * across };
+        for orientation in [ImageOrientation::ScreenUpright, ImageOrientation::SensorInverted] {
+            let moved = SpeckleMotion::new(&geometry, &point, &motion, orientation);
+            prop_assert!((0.0..=1.0).contains(&moved.correlation), "{:?}", moved);
+            prop_assert!(moved.speckle_displacement().is_finite(), "{:?}", moved);
+            prop_assert!(moved.pupil_displacement.is_none_or(DVec2::is_finite), "{:?}", moved);
+        }
     }
 }

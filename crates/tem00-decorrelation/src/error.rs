@@ -47,6 +47,10 @@ pub enum DecorrelationError {
     PrincipalAxis(DVec3),
     /// The surface normal is zero or not finite.
     Normal(DVec3),
+    /// The centre of the pupil, in metres, is not finite.
+    PupilCentre(DVec3),
+    /// The speckle size of the pattern, in samples, is not a positive finite number.
+    PatternSpeckleSize(f64),
 }
 
 impl fmt::Display for DecorrelationError {
@@ -106,6 +110,12 @@ impl fmt::Display for DecorrelationError {
                  source, got {got}"
             ),
             Self::Normal(got) => write!(f, "surface normal {DIRECTION} {got}"),
+            Self::PupilCentre(got) => {
+                write!(f, "centre of the pupil must be finite, got {got} m")
+            }
+            Self::PatternSpeckleSize(got) => {
+                write!(f, "speckle size of the pattern {POSITIVE} {got} samples")
+            }
         }
     }
 }
@@ -153,6 +163,12 @@ mod tests {
             (E::Curvature(f64::INFINITY), "curvature", "inf 1/m"),
             (E::PrincipalAxis(vector), "principal axis", "-3.75"),
             (E::Normal(vector), "surface normal", "-3.75"),
+            (E::PupilCentre(vector), "centre of the pupil", "-3.75"),
+            (
+                E::PatternSpeckleSize(-1.25),
+                "speckle size",
+                "-1.25 samples",
+            ),
         ];
         for (error, name, value) in cases {
             let message = error.to_string();

@@ -79,6 +79,7 @@
 
 mod correlation;
 mod error;
+mod field;
 mod frame;
 mod geometry;
 mod motion;
@@ -90,6 +91,7 @@ pub use correlation::{
     motion_multiple, pupil_overlap_correlation, slice_coordinate,
 };
 pub use error::DecorrelationError;
+pub use field::{FieldLight, FieldPoints, FieldSetup, FieldSlices, MotionField};
 pub use frame::{CameraFrame, LineOfSight};
 pub use geometry::{ImagingGeometry, LensData};
 pub use glam::{DMat3, DVec2, DVec3};

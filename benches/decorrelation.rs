@@ -113,7 +113,7 @@ fn vector(columns: &[&[f64]; 3], i: usize) -> DVec3 {
 fn output(out: &mut [Vec<f64>; 8]) -> FieldSlices<'_> {
     let [a, b, c, d, e, f, g, h] = out;
     FieldSlices {
-        image_displacement: [a, b],
+        speckle_displacement: [a, b],
         pupil_displacement: [c, d],
         correlation: e,
         pattern_coordinate: [f, g],
@@ -172,7 +172,9 @@ fn plain_loop(setup: &FieldSetup, points: &FieldPoints<'_>, out: &mut [Vec<f64>;
         let seen = a - to_pupil * (a.dot(b3) / depth);
         let [x, y] = [seen.dot(b1), seen.dot(b2)];
         let magnification = geometry.pupil_to_image() / depth;
-        let [image_x, image_y] = [x * magnification, y * magnification];
+        let defocus = 1.0 / depth - 1.0 / geometry.surface_to_pupil();
+        let beside = -geometry.pupil_to_image() * defocus;
+        let speckle = [x, y].map(|x| x * magnification + x * beside);
         let s = x.hypot(y) / geometry.pupil_diameter();
         let overlap = if s < 1.0 {
             FRAC_2_PI * (s.acos() - s * (1.0 - s * s).sqrt())
@@ -185,15 +187,15 @@ fn plain_loop(setup: &FieldSetup, points: &FieldPoints<'_>, out: &mut [Vec<f64>;
         let amplitude = overlap * sinc.abs();
         let slice = setup.half_period as f64 * circular_path_overlap_inverse(amplitude);
         let pattern =
-            |pixel: f64, image| pixel * h_p / geometry.speckle_size_in_pixels() - image * h_p / h;
+            |pixel: f64, moved| pixel * h_p / geometry.speckle_size_in_pixels() - moved * h_p / h;
         let results = [
-            image_x,
-            image_y,
+            speckle[0],
+            speckle[1],
             x,
             y,
             amplitude * amplitude,
-            pattern(points.pixel[0][i], image_x),
-            pattern(points.pixel[1][i], image_y),
+            pattern(points.pixel[0][i], speckle[0]),
+            pattern(points.pixel[1][i], speckle[1]),
             slice,
         ];
         for (column, result) in out.iter_mut().zip(results) {

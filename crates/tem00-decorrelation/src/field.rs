@@ -34,13 +34,23 @@ pub struct FieldSetup {
 /// than arithmetic and square roots. The results of a point do not depend, to the last bit, on the
 /// points around it. They differ from those of [`SpeckleMotion`](crate::SpeckleMotion) by rounding.
 ///
+/// A point out of focus adds to the motion of its image what the pupil displacement does there:
+///
+/// ```text
+/// ± [(c / Z) Π (a − c_P) − c (1/Z − 1/L) a_P]        + screen upright, − sensor inverted
+/// ```
+///
+/// with the depth Z of the point, the motion `c_P` of the pupil, and c = m L.
+///
 /// A point that the camera cannot see, one that it sees edge-on under a curved wave, and one whose
 /// numbers overflow are decorrelated: their correlation is 0, their pupil displacement infinite in
-/// both components and, if they are out of sight, their image displacement 0.
+/// both components, and their speckle moves with the image of the surface or, out of sight, not at
+/// all.
 ///
 /// # Validity
 ///
-/// That of [`SpeckleMotion`](crate::SpeckleMotion): first order, and in focus.
+/// That of [`SpeckleMotion`](crate::SpeckleMotion): first order in the motion. The correlation is
+/// the product law, whose error [`correlation`](crate::correlation) states.
 ///
 /// # Examples
 ///
@@ -77,9 +87,9 @@ pub struct FieldSetup {
 ///     light: FieldLight::Collimated,
 /// };
 /// let mut out = [[0.0; 2]; 8];
-/// let [image_x, image_y, pupil_x, pupil_y, correlation, pattern_x, pattern_y, slice] = &mut out;
+/// let [speckle_x, speckle_y, pupil_x, pupil_y, correlation, pattern_x, pattern_y, slice] = &mut out;
 /// field.evaluate(&points, FieldSlices {
-///     image_displacement: [image_x, image_y],
+///     speckle_displacement: [speckle_x, speckle_y],
 ///     pupil_displacement: [pupil_x, pupil_y],
 ///     correlation,
 ///     pattern_coordinate: [pattern_x, pattern_y],
@@ -87,7 +97,7 @@ pub struct FieldSetup {
 /// });
 ///
 /// assert_eq!([correlation[0], slice[0]], [1.0, 0.0]);
-/// assert!((image_x[1] / 3.45e-6 - 6.588).abs() < 1e-3);
+/// assert!((speckle_x[1] / 3.45e-6 - 6.588).abs() < 1e-3);
 /// assert!((correlation[1] - 0.807).abs() < 1e-3);
 /// assert!((slice[1] - 0.408).abs() < 1e-3);
 /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
@@ -95,8 +105,10 @@ pub struct FieldSetup {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionField {
     setup: FieldSetup,
-    /// `d_PI`, in metres, positive if the image is upright.
-    signed_pupil_to_image: f64,
+    /// The length c of the image of a unit tangent, in metres, positive if the image is upright.
+    signed_principal_distance: f64,
+    /// 1/L, in 1/m.
+    per_surface_to_pupil: f64,
     /// 1/D, in 1/m.
     per_pupil_diameter: f64,
     /// The axial decorrelation length at a depth of 1 m, inverted: 1/(8 λ (1 m/D)²), in 1/m.
@@ -134,7 +146,9 @@ impl MotionField {
         };
         Ok(Self {
             setup,
-            signed_pupil_to_image: sign * geometry.pupil_to_image(),
+            signed_principal_distance: sign
+                * (geometry.magnification() * geometry.surface_to_pupil()),
+            per_surface_to_pupil: 1.0 / geometry.surface_to_pupil(),
             per_pupil_diameter: 1.0 / geometry.pupil_diameter(),
             per_axial_length: 1.0 / geometry.axial_decorrelation_length_at(1.0),
             samples_per_pixel: pattern_speckle_size / geometry.speckle_size_in_pixels(),

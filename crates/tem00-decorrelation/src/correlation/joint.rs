@@ -66,7 +66,9 @@ pub enum CorrelationLaw {
     /// The correlation at the displacement of the projected surface point, with the reference state
     /// (or the moved one) in focus.
     AtImageDisplacement,
-    /// The correlation where it is largest, at Δr from the displacement of the projected point.
+    /// The correlation at Δr from the displacement of the projected point, where it is largest as
+    /// long as it is large: around the first zero the field of correlation breaks up, and there is
+    /// no one peak to follow.
     ///
     /// It is also the correlation at the displacement of the projected point itself if the focus
     /// lies midway, so that reference and moved state are out of focus by ∓x/2.

@@ -59,7 +59,7 @@ impl Point {
 
 /// What becomes of the speckle at a point.
 struct Outcome {
-    image_displacement: DVec2,
+    speckle_displacement: DVec2,
     pupil_displacement: DVec2,
     correlation: f64,
     pattern_coordinate: DVec2,
@@ -69,9 +69,18 @@ struct Outcome {
 impl Outcome {
     #[inline(always)]
     fn put(&self, block: &mut Block<OUTPUTS>, i: usize) {
-        let [image_x, image_y, pupil_x, pupil_y, correlation, x, y, slice] = block;
-        image_x[i] = self.image_displacement.x;
-        image_y[i] = self.image_displacement.y;
+        let [
+            speckle_x,
+            speckle_y,
+            pupil_x,
+            pupil_y,
+            correlation,
+            x,
+            y,
+            slice,
+        ] = block;
+        speckle_x[i] = self.speckle_displacement.x;
+        speckle_y[i] = self.speckle_displacement.y;
         pupil_x[i] = self.pupil_displacement.x;
         pupil_y[i] = self.pupil_displacement.y;
         correlation[i] = self.correlation;
@@ -141,7 +150,7 @@ impl MotionField {
         let sight = Sight::new(self.in_camera(to_pupil));
         let motion = self.in_camera(point.motion + self.seen);
         let seen = sight.project(motion);
-        let image = seen * (self.signed_pupil_to_image * sight.per_depth);
+        let image = seen * (self.signed_principal_distance * sight.per_depth);
         let visible = (sight.depth > GRAZING_COSINE * distance_squared.sqrt()) & is_finite(image);
 
         let (mut pupil, mut known) = (seen, visible);
@@ -154,21 +163,21 @@ impl MotionField {
             pupil += sight.project(self.in_camera(turned * distance_squared.sqrt()));
             known &= in_surface | (facing * facing > grazing * point.normal.length_squared());
         }
-        known &= is_finite(pupil);
+        let defocus = sight.per_depth - self.per_surface_to_pupil;
+        let beside = pupil * (-self.signed_principal_distance * defocus);
+        known &= is_finite(pupil) & is_finite(image + beside);
 
         let shift = pupil.length_squared().sqrt() * self.per_pupil_diameter;
         let axial = motion.z * (sight.per_depth * sight.per_depth) * self.per_axial_length;
         let left = select(known, correlation(shift, axial), 0.0);
-        let image = DVec2::new(select(visible, image.x, 0.0), select(visible, image.y, 0.0));
+        let image = either(visible, image, DVec2::ZERO);
+        let speckle = image + either(known, beside, DVec2::ZERO);
         Outcome {
-            image_displacement: image,
-            pupil_displacement: DVec2::new(
-                select(known, pupil.x, f64::INFINITY),
-                select(known, pupil.y, f64::INFINITY),
-            ),
+            speckle_displacement: speckle,
+            pupil_displacement: either(known, pupil, DVec2::INFINITY),
             correlation: left,
             pattern_coordinate: point.pixel * self.samples_per_pixel
-                - image * self.samples_per_metre,
+                - speckle * self.samples_per_metre,
             slice_coordinate: slice_coordinate(left, self.setup.half_period),
         }
     }
@@ -216,6 +225,14 @@ impl Sight {
 #[inline(always)]
 fn select(condition: bool, yes: f64, no: f64) -> f64 {
     if condition { yes } else { no }
+}
+
+#[inline(always)]
+fn either(condition: bool, yes: DVec2, no: DVec2) -> DVec2 {
+    DVec2::new(
+        select(condition, yes.x, no.x),
+        select(condition, yes.y, no.y),
+    )
 }
 
 #[inline(always)]

@@ -34,8 +34,9 @@ pub enum FieldLight<'a> {
 /// Where the results of a [`MotionField`](crate::MotionField) go, all slices of equal length.
 #[derive(Debug, PartialEq)]
 pub struct FieldSlices<'a> {
-    /// Motion of the speckle in the image along b1 and b2, in metres on the sensor.
-    pub image_displacement: [&'a mut [f64]; 2],
+    /// Motion of the speckle in the image along b1 and b2, in metres on the sensor: that of the image
+    /// of the surface and, out of focus, what the pupil displacement adds.
+    pub speckle_displacement: [&'a mut [f64]; 2],
     /// Motion of the speckle field across the pupil along b1 and b2, in metres; infinite where the
     /// pattern counts as decorrelated because the speckle left the pupil.
     pub pupil_displacement: [&'a mut [f64]; 2],
@@ -83,12 +84,12 @@ impl<'a> FieldPoints<'a> {
 impl<'a> FieldSlices<'a> {
     /// Returns the slices in order.
     pub(super) fn into_columns(self) -> [&'a mut [f64]; OUTPUTS] {
-        let [image_x, image_y] = self.image_displacement;
+        let [speckle_x, speckle_y] = self.speckle_displacement;
         let [pupil_x, pupil_y] = self.pupil_displacement;
         let [pattern_x, pattern_y] = self.pattern_coordinate;
         [
-            image_x,
-            image_y,
+            speckle_x,
+            speckle_y,
             pupil_x,
             pupil_y,
             self.correlation,

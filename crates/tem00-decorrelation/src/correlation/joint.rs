@@ -79,9 +79,10 @@ impl CorrelationLaw {
     /// Returns the intensity correlation γ in [0, 1] left after a displacement across the pupil, in
     /// pupil diameters, and along the axis, in axial decorrelation lengths.
     ///
-    /// It is even in both. The integrals are exact to 1e−8: Gauss–Legendre quadrature up to an axial
-    /// displacement of 3200 lengths, in a time that grows in proportion from there on downwards to a
-    /// microsecond; and the product beyond, where all three laws are below 4/β² = 1e−8.
+    /// It is even in both. The integrals are exact to 1e−8. Up to an axial displacement of 3200
+    /// lengths they are found by Gauss–Legendre quadrature: in half a microsecond to one at first,
+    /// and in a time proportional to the displacement beyond a few lengths. Farther out the product
+    /// is returned, since all three laws are below 4/β² = 1e−8 there.
     pub fn correlation(self, pupil_shift: f64, axial_shift: f64) -> f64 {
         let s = pupil_shift.abs();
         let x = axial_shift.abs();

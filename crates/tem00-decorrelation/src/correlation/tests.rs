@@ -225,6 +225,7 @@ fn correlations_out_of_range_map_to_the_ends() {
 
 #[test]
 fn motion_that_leaves_the_pattern_has_no_multiple() {
+    assert_eq!(motion_multiple(1.0, 0.3, 0.2), Some(0.0), "nothing to lose");
     assert_eq!(motion_multiple(0.5, 0.0, 0.0), None, "no motion");
     assert_eq!(motion_multiple(0.5, 0.0, 1e-310), None, "an overflow");
     assert!(

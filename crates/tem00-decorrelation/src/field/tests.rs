@@ -266,6 +266,10 @@ fn points_seen_edge_on_in_curved_light_are_decorrelated() {
             let gone = result[2] == f64::INFINITY && result[3] == f64::INFINITY;
             assert!(gone && result[4] == 0.0, "{light:?}, {normal}: {result:?}");
             assert!(result[0] > 0.0, "the image still moves: {result:?}");
+            let mut still = row;
+            still[6..9].fill(0.0);
+            let left = evaluate(&field, light, &[still])[0][4];
+            assert!(1.0 - left == 0.0, "nothing moved, and {left} is left");
         }
         // In collimated light the tilt of the surface does not matter.
         let result = evaluate(&field, Light::Collimated, &[row])[0];

@@ -56,8 +56,8 @@ use super::correlation;
 /// - S. Bergmann et al. 2016, §6.4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CorrelationLaw {
-    /// The product of both laws, [`correlation`](crate::correlation): two orders of magnitude
-    /// faster than the integrals, at most 0.048 from `AtImageDisplacement` and 0.121 from `AtPeak`.
+    /// The product of both laws, [`correlation`](crate::correlation): some fifty times as fast as
+    /// the integrals, at most 0.048 from `AtImageDisplacement` and 0.121 from `AtPeak`.
     ///
     /// The largest errors lie at s = 0.10, x = 0.62 and at s = 0.26, x = 0.66; there the product is
     /// too small.

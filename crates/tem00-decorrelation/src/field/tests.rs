@@ -128,8 +128,8 @@ fn by_calls(setup: &FieldSetup, light: Light, shared: &Motion, row: &Row) -> Res
 }
 
 /// Where a ray through the pupil point 1 meets the sensor beside one through the centre, by the lens
-/// equation: the point at `depth` has its image at d_i, and the ray leads from 1 in the pupil to 0
-/// there. The sensor lies at d, and its axes are those of the pupil if the image is inverted.
+/// equation: it leads from 1 in the pupil to 0 at the image of the point, before or behind the
+/// sensor. The axes of the sensor are those of the pupil if the image is inverted.
 fn beside(geometry: &ImagingGeometry, depth: f64, orientation: ImageOrientation) -> f64 {
     let image_distance = 1.0 / (1.0 / geometry.focal_length() - 1.0 / depth);
     let on_sensor = 1.0 - geometry.pupil_to_image() / image_distance;

@@ -31,7 +31,11 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &["tem00-numerics"],
         &["num-complex", "rand_chacha", "rand_core", "rayon"],
     ),
-    ("tem00-decorrelation", &["tem00-numerics"], &["glam"]),
+    (
+        "tem00-decorrelation",
+        &["tem00-numerics"],
+        &["fearless_simd", "glam"],
+    ),
     (
         "tem00-tracer",
         &[

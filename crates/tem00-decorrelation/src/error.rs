@@ -87,6 +87,10 @@ pub enum DecorrelationError {
     Pivot(DVec3),
     /// The translation, in metres, is not finite.
     Translation(DVec3),
+    /// The centre of the pupil, in metres, is not finite.
+    PupilCentre(DVec3),
+    /// The speckle size of the pattern, in samples, is not a positive finite number.
+    PatternSpeckleSize(f64),
 }
 
 impl fmt::Display for DecorrelationError {
@@ -187,6 +191,12 @@ impl fmt::Display for DecorrelationError {
             Self::Pivot(got) => write!(f, "pivot {FINITE} {got} m"),
             Self::Translation(got) => write!(f, "translation {FINITE} {got} m"),
             Self::Normal(got) => write!(f, "surface normal {DIRECTION} {got}"),
+            Self::PupilCentre(got) => {
+                write!(f, "centre of the pupil must be finite, got {got} m")
+            }
+            Self::PatternSpeckleSize(got) => {
+                write!(f, "speckle size of the pattern {POSITIVE} {got} samples")
+            }
         }
     }
 }
@@ -273,6 +283,12 @@ mod tests {
             ),
             (E::Pivot(vector), "pivot", "-3.75"),
             (E::Translation(vector), "translation", "-3.75"),
+            (E::PupilCentre(vector), "centre of the pupil", "-3.75"),
+            (
+                E::PatternSpeckleSize(-1.25),
+                "speckle size",
+                "-1.25 samples",
+            ),
         ];
         for (error, name, value) in cases {
             let message = error.to_string();

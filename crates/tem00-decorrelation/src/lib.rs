@@ -102,6 +102,7 @@
 mod configuration;
 mod correlation;
 mod error;
+mod field;
 mod finite;
 mod frame;
 mod geometry;
@@ -114,10 +115,11 @@ mod wavefront;
 
 pub use configuration::{Configuration, ConfigurationData};
 pub use correlation::{
-    axial_correlation, correlation, equivalent_pupil_shift, pupil_overlap_correlation,
-    slice_coordinate,
+    CorrelationLaw, axial_correlation, correlation, equivalent_axial_shift, equivalent_pupil_shift,
+    motion_multiple, pupil_overlap_correlation, slice_coordinate,
 };
 pub use error::DecorrelationError;
+pub use field::{FieldLight, FieldPoints, FieldSetup, FieldSlices, MotionField};
 pub use frame::{CameraFrame, LineOfSight};
 pub use geometry::ImagingGeometry;
 pub use glam::{DMat3, DVec2, DVec3};

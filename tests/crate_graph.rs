@@ -33,6 +33,11 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     ),
     ("tem00-decorrelation", &["tem00-numerics"], &["glam"]),
     (
+        "tem00-wave",
+        &["tem00-numerics"],
+        &["glam", "num-complex", "rand_chacha", "rand_core", "rayon"],
+    ),
+    (
         "tem00-tracer",
         &[
             "tem00-beam",
@@ -79,7 +84,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
 ];
 
 /// Crates of the workspace that judge the others, and so may appear in the tests of any of them.
-const JUDGES: &[&str] = &["tem00-statistics", "tem00-numerics"];
+const JUDGES: &[&str] = &["tem00-statistics", "tem00-numerics", "tem00-wave"];
 
 /// Physics crates, which a renderer links: what they need beyond plain arithmetic is a choice.
 const PHYSICS: &[&str] = &[
@@ -87,6 +92,7 @@ const PHYSICS: &[&str] = &[
     "tem00-beam",
     "tem00-speckle",
     "tem00-decorrelation",
+    "tem00-wave",
 ];
 
 fn manifest(name: &str) -> String {

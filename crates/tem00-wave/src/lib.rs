@@ -1,0 +1,60 @@
+//! First-principles scalar wave optics of a rough surface.
+//!
+//! Many point scatterers, lit by a coherent wave, send out spherical waves; their sum is the speckle
+//! on a plane, and an ideal lens makes an image of it. Distances are exact, motions are finite, and
+//! nothing is assumed about speckle. The crate is slow and simple on purpose: it is the judge of
+//! models that are neither.
+//!
+//! # Conventions
+//!
+//! - SI units and radians; amplitudes vary in time as `exp(−iωt)`, so that a diverging wave is
+//!   `exp(+ikr)/r`.
+//! - Lengths lie between 1 pm and 10 km and wavelengths between 0.1 nm and 1 m, so that every phase
+//!   means something in `f64`.
+//!
+//! # Main types
+//!
+//! | what | type |
+//! |---|---|
+//! | scatterers with random phases or random heights | [`RoughSurface`] |
+//! | plane wave, point source, Gaussian beam, laser line | [`Illumination`] |
+//! | both together, ready to be summed | [`LitSurface`] |
+//! | points at which the field is asked for | [`SamplePlane`] |
+//! | a field, and its intensity | [`Field`] |
+//! | motion of surface, light or camera | [`RigidMotion`] |
+//!
+//! # Scope and non-goals
+//!
+//! One scattering per light path, one polarisation, no shadowing, no diffraction by the edges of the
+//! scene, no aberrations. The brightness of a surface is on a scale of its own: there is no
+//! reflectance model.
+//!
+//! # References
+//!
+//! - J. W. Goodman, *Introduction to Fourier Optics*, 1968, ch. 3 and 5.
+//! - A. E. Siegman, *Lasers*, 1986, ch. 16 and 17.
+
+mod error;
+mod field;
+mod heights;
+mod illumination;
+mod length;
+mod lit;
+mod motion;
+mod phasor;
+mod plane;
+mod random;
+mod rows;
+mod sum;
+mod surface;
+
+pub use error::WaveError;
+pub use field::Field;
+pub use glam::{DMat3, DVec2, DVec3};
+pub use illumination::{BeamDescription, FanDescription, Illumination};
+pub use lit::{LitSurface, Progress};
+pub use motion::RigidMotion;
+pub use num_complex::Complex;
+pub use plane::SamplePlane;
+pub use surface::{Amplitudes, Arrangement, PatchDescription, RoughSurface, Roughness, Scatterer};
+pub use tem00_numerics::Grid;

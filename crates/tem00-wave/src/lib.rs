@@ -11,6 +11,8 @@
 //!   `exp(+ikr)/r`.
 //! - Lengths lie between 1 pm and 10 km and wavelengths between 0.1 nm and 1 m, so that every phase
 //!   means something in `f64`.
+//! - Image coordinates are those of the upright picture: to the right and upwards, in metres on the
+//!   sensor. Columns and rows of a [`Grid`] count in the same directions.
 //!
 //! # Main types
 //!
@@ -20,6 +22,7 @@
 //! | plane wave, point source, Gaussian beam, laser line | [`Illumination`] |
 //! | both together, ready to be summed | [`LitSurface`] |
 //! | points at which the field is asked for | [`SamplePlane`] |
+//! | pupil, lens and picture | [`Camera`], [`ImageWindow`] |
 //! | a field, and its intensity | [`Field`] |
 //! | motion of surface, light or camera | [`RigidMotion`] |
 //!
@@ -34,10 +37,12 @@
 //! - J. W. Goodman, *Introduction to Fourier Optics*, 1968, ch. 3 and 5.
 //! - A. E. Siegman, *Lasers*, 1986, ch. 16 and 17.
 
+mod camera;
 mod error;
 mod field;
 mod heights;
 mod illumination;
+mod image;
 mod length;
 mod lit;
 mod motion;
@@ -48,10 +53,12 @@ mod rows;
 mod sum;
 mod surface;
 
+pub use camera::{Camera, Lens};
 pub use error::WaveError;
 pub use field::Field;
 pub use glam::{DMat3, DVec2, DVec3};
 pub use illumination::{BeamDescription, FanDescription, Illumination};
+pub use image::{ImageSampling, ImageWindow};
 pub use lit::{LitSurface, Progress};
 pub use motion::RigidMotion;
 pub use num_complex::Complex;

@@ -37,6 +37,11 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &["fearless_simd", "glam"],
     ),
     (
+        "tem00-wave",
+        &["tem00-numerics"],
+        &["glam", "num-complex", "rand_chacha", "rand_core", "rayon"],
+    ),
+    (
         "tem00-tracer",
         &[
             "tem00-beam",
@@ -83,7 +88,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
 ];
 
 /// Crates of the workspace that judge the others, and so may appear in the tests of any of them.
-const JUDGES: &[&str] = &["tem00-statistics", "tem00-numerics"];
+const JUDGES: &[&str] = &["tem00-statistics", "tem00-numerics", "tem00-wave"];
 
 /// Physics crates, which a renderer links: what they need beyond plain arithmetic is a choice.
 const PHYSICS: &[&str] = &[
@@ -91,6 +96,7 @@ const PHYSICS: &[&str] = &[
     "tem00-beam",
     "tem00-speckle",
     "tem00-decorrelation",
+    "tem00-wave",
 ];
 
 fn manifest(name: &str) -> String {

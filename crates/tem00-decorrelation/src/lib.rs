@@ -24,6 +24,7 @@
 //! | What moved a little? | [`Motion`] |
 //! | What moved or turned a lot, or has other light? | [`Configuration`], [`RigidMotions`], [`Illumination`] |
 //! | What happens to the speckle? | [`SpeckleMotion`] |
+//! | What happens at many points at once? | [`MotionField`] |
 //! | Where do I look in the pattern? | [`ImagingGeometry::pattern_coordinate`], [`slice_coordinate`] |
 //!
 //! The module [`paper`] holds the formulas as Bergmann et al. 2016 print them, each with the size

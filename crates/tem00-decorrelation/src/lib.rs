@@ -81,6 +81,7 @@ mod correlation;
 mod error;
 mod frame;
 mod geometry;
+mod lens;
 mod motion;
 pub mod paper;
 mod wavefront;
@@ -91,8 +92,9 @@ pub use correlation::{
 };
 pub use error::DecorrelationError;
 pub use frame::{CameraFrame, LineOfSight};
-pub use geometry::{ImagingGeometry, LensData};
+pub use geometry::ImagingGeometry;
 pub use glam::{DMat3, DVec2, DVec3};
+pub use lens::{Focus, LensData, PupilDistances, ThickLensData};
 pub use motion::{ImageOrientation, Motion, SpeckleMotion, SurfacePoint};
 pub use wavefront::Wavefront;
 

@@ -110,10 +110,11 @@ impl SurfacePoint {
     /// In focus the speckle moves with the image of the surface:
     ///
     /// ```text
-    /// a_I = ± (d_PI / Z) Π (a − c)        + screen upright, − sensor inverted
+    /// a_I = ± (C / Z) Π (a − c)        + screen upright, − sensor inverted
     /// ```
     ///
-    /// Π is [`LineOfSight::project`] and Z the [depth](LineOfSight::depth) of the point. On the
+    /// Π is [`LineOfSight::project`], Z the [depth](LineOfSight::depth) of the point and C the
+    /// [principal distance](ImagingGeometry::principal_distance) of the camera. On the
     /// optical axis, this is eq. (5) of Bergmann et al. 2016 with its sign corrected: see
     /// [`paper::image_displacement`](crate::paper::image_displacement).
     pub fn image_displacement(
@@ -122,7 +123,7 @@ impl SurfacePoint {
         motion: &Motion,
         orientation: ImageOrientation,
     ) -> DVec2 {
-        let magnification = geometry.pupil_to_image() / self.sight.depth();
+        let magnification = geometry.principal_distance() / self.sight.depth();
         let upright = self.sight.project(motion.surface_seen_by_camera()) * magnification;
         match orientation {
             ImageOrientation::ScreenUpright => upright,

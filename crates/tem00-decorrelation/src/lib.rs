@@ -87,8 +87,8 @@ pub mod paper;
 mod wavefront;
 
 pub use correlation::{
-    axial_correlation, correlation, equivalent_pupil_shift, pupil_overlap_correlation,
-    slice_coordinate,
+    CorrelationLaw, axial_correlation, correlation, equivalent_axial_shift, equivalent_pupil_shift,
+    motion_multiple, pupil_overlap_correlation, slice_coordinate,
 };
 pub use error::DecorrelationError;
 pub use frame::{CameraFrame, LineOfSight};

@@ -203,8 +203,13 @@ impl Illumination {
     }
 
     /// Returns the complex amplitude at a point, in metres.
+    ///
+    /// It is zero at points so far away that the square of their distance overflows.
     pub fn amplitude_at(&self, point: DVec3) -> Complex<f64> {
         let local = self.axes.transpose() * (point - self.origin);
+        if !local.length_squared().is_finite() {
+            return Complex::new(0.0, 0.0);
+        }
         match self.wave {
             Wave::Plane => phasor(local.z / self.wavelength),
             Wave::Point => {
@@ -249,8 +254,8 @@ impl Illumination {
     fn mode(&self, r2: f64, z: f64, rayleigh_range: f64) -> Mode {
         let length2 = z * z + rayleigh_range * rayleigh_range;
         // 1/q = (z + i z_R) / (z² + z_R²).
-        let decay = (-PI * r2 * rayleigh_range / (self.wavelength * length2)).exp();
-        let turns = 0.5 * r2 * z / (self.wavelength * length2);
+        let decay = (-PI / self.wavelength * r2 * (rayleigh_range / length2)).exp();
+        let turns = 0.5 / self.wavelength * r2 * (z / length2);
         Mode {
             relative_amplitude: rayleigh_range / length2.sqrt(),
             gouy_phase: z.atan2(rayleigh_range),
@@ -286,3 +291,6 @@ fn axes_about(z: DVec3) -> DMat3 {
     let (x, y) = z.any_orthonormal_pair();
     DMat3::from_cols(x, y, z)
 }
+
+#[cfg(test)]
+mod tests;

@@ -131,3 +131,6 @@ impl LitSurface {
         Field::new(amplitude)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -108,13 +108,17 @@ pub enum Roughness {
 
 /// Random amplitudes of independent scatterers, and the bias that comes with a finite number.
 ///
-/// With N scatterers in a resolution cell, the fluctuation of intensity and every correlation of it
-/// are off by about 1/N:
+/// With N scatterers in a resolution cell, the squared contrast of the speckle, and with it every
+/// correlation of intensities, is off by
 ///
-/// | amplitudes | [`Lattice`](Arrangement::Lattice), [`Stratified`](Arrangement::Stratified) | [`Random`](Arrangement::Random) |
+/// | amplitudes | [`Lattice`](Arrangement::Lattice) | [`Random`](Arrangement::Random) |
 /// |---|---|---|
-/// | `ComplexGaussian` | 0 | 0 for given positions |
-/// | `Unit` | −1/N | −1/N for given positions; +1/N where the numbers in moving cells fluctuate |
+/// | `ComplexGaussian` | 0 | +2/N |
+/// | `Unit` | −1/N | +1/N |
+///
+/// and for [`Stratified`](Arrangement::Stratified) positions by nearly the same as on a lattice. N
+/// counts by the amplitude `h` of a point's image: `1/N = ∫|h|⁴ / (n (∫|h|²)²)` with n scatterers
+/// per area.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Amplitudes {
     /// Complex Gaussian numbers: the field is exactly Gaussian, for any number of scatterers.
@@ -291,3 +295,6 @@ fn randomise(scatterers: &mut [Scatterer], amplitudes: Amplitudes, seed: u64) {
         };
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -70,13 +70,29 @@ pub enum DecorrelationError {
     /// The principal axis of the wavefront is zero, not finite, or parallel to the direction to the
     /// source.
     PrincipalAxis(DVec3),
+    /// The position of the light source or of its wavefront, in metres, is not finite.
+    LightPosition(DVec3),
+    /// The surface point, in metres, lies in a focus or at the light source, where light has no
+    /// direction.
+    LitPoint(DVec3),
     /// The surface normal is zero or not finite.
     Normal(DVec3),
+    /// The columns of the rotation matrix are not right-handed orthonormal axes within 10⁻⁶.
+    Rotation(DMat3),
+    /// The axis of a rotation is zero or not finite.
+    RotationAxis(DVec3),
+    /// The angle of a rotation, in radians, is not finite.
+    RotationAngle(f64),
+    /// The pivot of a rotation, in metres, is not finite.
+    Pivot(DVec3),
+    /// The translation, in metres, is not finite.
+    Translation(DVec3),
 }
 
 impl fmt::Display for DecorrelationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const POSITIVE: &str = "must be positive and finite, got";
+        const FINITE: &str = "must be finite, got";
         const DIRECTION: &str = "must be finite and not zero, got";
         match self {
             Self::Wavelength(got) => write!(f, "wavelength {POSITIVE} {got:e} m"),
@@ -157,6 +173,19 @@ impl fmt::Display for DecorrelationError {
                 "principal axis must be finite, not zero and not along the direction to the \
                  source, got {got}"
             ),
+            Self::LightPosition(got) => write!(f, "position of the light {FINITE} {got} m"),
+            Self::LitPoint(got) => write!(
+                f,
+                "surface point must not lie at the source or in a focus, got {got} m"
+            ),
+            Self::Rotation(got) => write!(
+                f,
+                "rotation matrix must be right-handed and orthonormal within 1e-6, got columns {got}"
+            ),
+            Self::RotationAxis(got) => write!(f, "axis of rotation {DIRECTION} {got}"),
+            Self::RotationAngle(got) => write!(f, "angle of rotation {FINITE} {got:e} rad"),
+            Self::Pivot(got) => write!(f, "pivot {FINITE} {got} m"),
+            Self::Translation(got) => write!(f, "translation {FINITE} {got} m"),
             Self::Normal(got) => write!(f, "surface normal {DIRECTION} {got}"),
         }
     }
@@ -232,7 +261,18 @@ mod tests {
                 "2.5",
             ),
             (E::PrincipalAxis(vector), "principal axis", "-3.75"),
+            (E::LightPosition(vector), "position of the light", "-3.75"),
+            (E::LitPoint(vector), "surface point", "-3.75"),
             (E::Normal(vector), "surface normal", "-3.75"),
+            (E::Rotation(DMat3::IDENTITY * 2.5), "rotation matrix", "2.5"),
+            (E::RotationAxis(vector), "axis of rotation", "-3.75"),
+            (
+                E::RotationAngle(f64::INFINITY),
+                "angle of rotation",
+                "inf rad",
+            ),
+            (E::Pivot(vector), "pivot", "-3.75"),
+            (E::Translation(vector), "translation", "-3.75"),
         ];
         for (error, name, value) in cases {
             let message = error.to_string();

@@ -77,15 +77,20 @@
 //! - S. Bergmann et al., *A Phenomenological Approach to Integrating Gaussian Beam Properties and
 //!   Speckle into a Physically-Based Renderer*, 2016, §6.3 and §6.4.
 
+mod configuration;
 mod correlation;
 mod error;
+mod finite;
 mod frame;
 mod geometry;
+mod illumination;
 mod lens;
 mod motion;
 pub mod paper;
+mod rigid;
 mod wavefront;
 
+pub use configuration::{Configuration, ConfigurationData};
 pub use correlation::{
     CorrelationLaw, axial_correlation, correlation, equivalent_axial_shift, equivalent_pupil_shift,
     motion_multiple, pupil_overlap_correlation, slice_coordinate,
@@ -94,8 +99,10 @@ pub use error::DecorrelationError;
 pub use frame::{CameraFrame, LineOfSight};
 pub use geometry::ImagingGeometry;
 pub use glam::{DMat3, DVec2, DVec3};
+pub use illumination::Illumination;
 pub use lens::{Focus, LensData, PupilDistances, ThickLensData};
 pub use motion::{ImageOrientation, Motion, SpeckleMotion, SurfacePoint};
+pub use rigid::{RigidMotion, RigidMotions};
 pub use wavefront::Wavefront;
 
 /// The smallest cosine between two directions that still counts as different from zero, `2⁻²⁶`.

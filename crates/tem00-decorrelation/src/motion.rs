@@ -2,6 +2,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     DecorrelationError, GRAZING_COSINE, ImagingGeometry, LineOfSight, Wavefront, correlation,
+    finite::defocus_displacement,
 };
 
 /// Small translations since the reference state, in world coordinates and metres.
@@ -57,6 +58,15 @@ pub enum ImageOrientation {
     /// The picture on the sensor behind the lens, upside down and mirrored, as in eq. (5) of
     /// Bergmann et al. 2016.
     SensorInverted,
+}
+
+impl ImageOrientation {
+    pub(crate) fn of_upright(self, displacement: DVec2) -> DVec2 {
+        match self {
+            Self::ScreenUpright => displacement,
+            Self::SensorInverted => -displacement,
+        }
+    }
 }
 
 /// A point of a rough surface, as the camera sees it and as the laser lights it.
@@ -124,11 +134,7 @@ impl SurfacePoint {
         orientation: ImageOrientation,
     ) -> DVec2 {
         let magnification = geometry.principal_distance() / self.sight.depth();
-        let upright = self.sight.project(motion.surface_seen_by_camera()) * magnification;
-        match orientation {
-            ImageOrientation::ScreenUpright => upright,
-            ImageOrientation::SensorInverted => -upright,
-        }
+        orientation.of_upright(self.sight.project(motion.surface_seen_by_camera()) * magnification)
     }
 
     /// Returns how far the speckle field moves across the pupil, along b1 and b2, in metres.
@@ -193,9 +199,22 @@ impl SurfacePoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SpeckleMotion {
-    /// Motion of the speckle in the image, along b1 and b2, in metres on the sensor:
+    /// Motion of the image of the surface, along b1 and b2, in metres on the sensor:
     /// [`SurfacePoint::image_displacement`].
+    ///
+    /// In focus the speckle moves with it.
     pub image_displacement: DVec2,
+    /// What the speckle of a point out of focus moves in addition, along b1 and b2, in metres on the
+    /// sensor.
+    ///
+    /// ```text
+    /// ∓ C W a_P,    W = 1/Z − 1/L        − screen upright, + sensor inverted
+    /// ```
+    ///
+    /// A ray through the pupil point p meets the sensor `C W p` beside the image of the point. The
+    /// speckle field that has moved across the pupil by `a_P` is therefore found that much farther
+    /// in the image. Zero for a point in focus, and where the pattern is decorrelated.
+    pub defocus_displacement: DVec2,
     /// Motion of the speckle field across the pupil, along b1 and b2, in metres, or `None` if it
     /// left the pupil in a grazing view: [`SurfacePoint::pupil_displacement`].
     pub pupil_displacement: Option<DVec2>,
@@ -207,6 +226,13 @@ pub struct SpeckleMotion {
 }
 
 impl SpeckleMotion {
+    /// Returns the motion of the speckle pattern in the image, along b1 and b2, in metres on the
+    /// sensor: the sum of [`image_displacement`](Self::image_displacement) and
+    /// [`defocus_displacement`](Self::defocus_displacement).
+    pub fn speckle_displacement(&self) -> DVec2 {
+        self.image_displacement + self.defocus_displacement
+    }
+
     /// Computes the motion of the speckle at `point` since the reference state.
     ///
     /// `geometry` is that of the camera, for the distance in focus; the point may lie nearer or
@@ -214,8 +240,8 @@ impl SpeckleMotion {
     ///
     /// # Validity
     ///
-    /// In focus and at first order. A point out of focus adds a motion in the image proportional to
-    /// its defocus and its pupil displacement, which is left out.
+    /// At first order. The defocus is that of the reference state: its change by the motion matters
+    /// at second order, which [`between`](Self::between) takes in.
     pub fn new(
         geometry: &ImagingGeometry,
         point: &SurfacePoint,
@@ -234,8 +260,11 @@ impl SpeckleMotion {
                 axial_shift,
             )
         });
+        let defocus = geometry.defocus_at(sight.depth());
+        let defocus = defocus_displacement(geometry, defocus, pupil_displacement);
         Self {
             image_displacement: point.image_displacement(geometry, motion, orientation),
+            defocus_displacement: orientation.of_upright(defocus),
             pupil_displacement,
             axial_displacement,
             correlation,

@@ -26,8 +26,7 @@ pub struct Shift {
 ///
 /// The error on patterns that differ by a displacement alone is below 10⁻⁴ samples if a feature is
 /// wider than two samples and the common part many features wide. Partly decorrelated patterns have a
-/// statistical error on top. The answer for unrelated patterns is arbitrary, with a correlation near
-/// zero.
+/// statistical error on top. The answer for unrelated patterns is arbitrary.
 ///
 /// # Panics
 ///

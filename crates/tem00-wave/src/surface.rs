@@ -116,9 +116,9 @@ pub enum Roughness {
 /// | `ComplexGaussian` | 0 | +2/N |
 /// | `Unit` | −1/N | +1/N |
 ///
-/// and for [`Stratified`](Arrangement::Stratified) positions by nearly the same as on a lattice. N
-/// counts by the amplitude `h` of a point's image: `1/N = ∫|h|⁴ / (n (∫|h|²)²)` with n scatterers
-/// per area.
+/// For [`Stratified`](Arrangement::Stratified) positions the random offsets add to the values of the
+/// lattice what falls as 1/N². N counts by the amplitude `h` of a point's image, with n scatterers
+/// per area: `1/N = ∫|h|⁴ / (n (∫|h|²)²)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Amplitudes {
     /// Complex Gaussian numbers: the field is exactly Gaussian, for any number of scatterers.

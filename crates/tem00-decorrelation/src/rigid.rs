@@ -82,6 +82,7 @@ impl RigidMotion {
     }
 
     /// Returns this motion followed by another.
+    #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         Self {
             rotation: next.rotation * self.rotation,
@@ -90,6 +91,7 @@ impl RigidMotion {
     }
 
     /// Returns the motion back.
+    #[must_use]
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.transpose();
         Self {

@@ -2,7 +2,10 @@
 
 use tem00::{
     beam::GaussianBeam,
-    decorrelation::{CameraFrame, LineOfSight, Motion, SurfacePoint, Wavefront},
+    decorrelation::{
+        self, CameraFrame, Configuration, ConfigurationData, LineOfSight, Motion, RigidMotions,
+        SurfacePoint, Wavefront,
+    },
     wave::{
         Amplitudes, Arrangement, BeamDescription, Camera, DVec2, DVec3, FanDescription,
         Illumination, Lens, LitSurface, PatchDescription, RigidMotion, RoughSurface, Roughness,
@@ -19,9 +22,19 @@ pub(crate) struct Light {
     pub(crate) wavefront: Wavefront,
 }
 
+impl Light {
+    fn near_origin(&self) -> decorrelation::Illumination {
+        decorrelation::Illumination::near(DVec3::ZERO, self.wavefront).expect("light")
+    }
+}
+
 pub(crate) fn plane(to_source: DVec3) -> Light {
+    plane_of(WAVELENGTH, to_source)
+}
+
+pub(crate) fn plane_of(wavelength: f64, to_source: DVec3) -> Light {
     Light {
-        wave: Illumination::plane(WAVELENGTH, -to_source).expect("a plane wave"),
+        wave: Illumination::plane(wavelength, -to_source).expect("a plane wave"),
         wavefront: Wavefront::plane(to_source).expect("a plane wave"),
     }
 }
@@ -110,10 +123,11 @@ pub(crate) struct Scene {
 }
 
 /// Scatterers along each side of a patch.
-const SCATTERERS: usize = 48;
+const SCATTERERS: usize = 32;
 
-/// Samples along each side of the square of the pupil plane that is looked at.
-const SAMPLES: usize = 96;
+/// Samples along each side of the square of the pupil plane that is looked at: odd, so that it lies
+/// about its centre.
+const SAMPLES: usize = 81;
 
 impl Scene {
     pub(crate) fn surface(&self, seed: u64) -> RoughSurface {
@@ -154,60 +168,144 @@ impl Scene {
         WAVELENGTH * self.eye.length() / self.size[0].max(self.size[1])
     }
 
+    /// The scene in its first state, as the finite law describes it.
+    pub(crate) fn configuration(&self) -> Configuration {
+        Configuration::new(ConfigurationData {
+            wavelength: self.light.wave.wavelength(),
+            point: DVec3::ZERO,
+            normal: self.normal,
+            illumination: self.light.near_origin(),
+            camera: self.frame(),
+            pupil: self.eye,
+        })
+        .expect("a configuration")
+    }
+
     /// How far the speckle moves across the pupil between two states, by cross-correlation, on the
     /// mean over some surfaces.
     pub(crate) fn measured(&self, states: &States, seeds: u64) -> Option<DVec2> {
-        let step = 0.4 * self.pupil_speckle();
-        let before = self.camera();
-        let after = before.moved(&states.camera);
-        let light = states.light.unwrap_or(self.light.wave).moved(&states.source);
         let mut sum = DVec2::ZERO;
         for seed in 1..=seeds {
-            let surface = self.surface(seed);
-            let on_pupil = |lit: &LitSurface, camera: &Camera| {
-                let plane = camera.pupil_plane(step, SAMPLES).expect("a plane");
-                lit.field_on(&plane).intensity()
-            };
-            let first = on_pupil(&surface.lit_by(&self.light.wave), &before);
-            let second = on_pupil(&surface.moved(&states.surface).lit_by(&light), &after);
-            let shift = displacement_between(&first, &second)?;
-            sum += shift.offset * step;
+            // The pattern also stretches by motion over distance. Once the second window has
+            // followed it, both see the same part of it, and the stretch adds nothing to the mean.
+            let rough = self.measured_from(states, seed, states.window)?;
+            sum += self.measured_from(states, seed, rough)?;
         }
         #[expect(clippy::cast_precision_loss, reason = "a few surfaces")]
         let count = seeds as f64;
         Some(sum / count)
     }
+
+    /// The same, with the second window displaced on the pupil.
+    fn measured_from(&self, states: &States, seed: u64, window: DVec2) -> Option<DVec2> {
+        let step = 0.4 * self.pupil_speckle();
+        let on_pupil = |camera: &Camera, lit: &LitSurface| {
+            let plane = camera.pupil_plane(step, SAMPLES).expect("a plane");
+            lit.field_on(&plane).intensity()
+        };
+        let surface = self.surface(seed);
+        let before = on_pupil(&self.camera(), &surface.lit_by(&self.light.wave));
+
+        let camera = self.camera().moved(&states.camera.judge());
+        let aside = RigidMotion::translation(camera.axes() * window.extend(0.0));
+        let camera = camera.moved(&aside.expect("a translation"));
+        let light = states.light.unwrap_or(self.light).wave;
+        let light = light.moved(&states.source.judge());
+        let surface = surface.moved(&states.surface.judge());
+        let after = on_pupil(&camera, &surface.lit_by(&light));
+
+        let shift = displacement_between(&before, &after)?;
+        Some(shift.offset * step + window)
+    }
 }
 
 /// What the second state differs in from the first.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct States {
-    pub(crate) surface: RigidMotion,
-    pub(crate) camera: RigidMotion,
-    pub(crate) source: RigidMotion,
-    /// Another light in the second state.
-    pub(crate) light: Option<Illumination>,
-}
-
-impl Default for States {
-    fn default() -> Self {
-        Self {
-            surface: RigidMotion::IDENTITY,
-            camera: RigidMotion::IDENTITY,
-            source: RigidMotion::IDENTITY,
-            light: None,
-        }
-    }
+    pub(crate) surface: Body,
+    pub(crate) camera: Body,
+    pub(crate) source: Body,
+    /// Another light, before its source moves.
+    pub(crate) light: Option<Light>,
+    /// Where on the pupil the speckle of the second state is looked for at first, in metres.
+    pub(crate) window: DVec2,
 }
 
 impl From<Motion> for States {
     fn from(motion: Motion) -> Self {
-        let along = |v| RigidMotion::translation(v).expect("a translation");
         Self {
-            surface: along(motion.surface),
-            camera: along(motion.camera),
-            source: along(motion.source),
-            light: None,
+            surface: Body::along(motion.surface),
+            camera: Body::along(motion.camera),
+            source: Body::along(motion.source),
+            ..Self::default()
         }
+    }
+}
+
+impl States {
+    /// The second state, as the finite law describes it.
+    pub(crate) fn after(&self, before: &Configuration) -> Configuration {
+        let lit = self.light.map_or(Ok(*before), |light| {
+            let changed = before.with_wavelength(light.wave.wavelength())?;
+            changed.with_illumination(light.near_origin())
+        });
+        let motions = RigidMotions {
+            surface: self.surface.judged(),
+            camera: self.camera.judged(),
+            source: self.source.judged(),
+        };
+        lit.and_then(|lit| lit.moved(&motions))
+            .expect("a configuration")
+    }
+}
+
+/// A rotation and then a translation of a rigid body.
+#[derive(Clone, Copy)]
+pub(crate) struct Body {
+    pub(crate) pivot: DVec3,
+    pub(crate) axis: DVec3,
+    /// In radians.
+    pub(crate) angle: f64,
+    pub(crate) translation: DVec3,
+}
+
+impl Default for Body {
+    fn default() -> Self {
+        Self {
+            pivot: DVec3::ZERO,
+            axis: DVec3::Z,
+            angle: 0.0,
+            translation: DVec3::ZERO,
+        }
+    }
+}
+
+impl Body {
+    pub(crate) fn along(translation: DVec3) -> Self {
+        Self {
+            translation,
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn about(pivot: DVec3, axis: DVec3, angle: f64) -> Self {
+        Self {
+            pivot,
+            axis,
+            angle,
+            translation: DVec3::ZERO,
+        }
+    }
+
+    pub(crate) fn judge(&self) -> RigidMotion {
+        let turn = RigidMotion::rotation(self.axis, self.angle, self.pivot).expect("a rotation");
+        turn.then(&RigidMotion::translation(self.translation).expect("a translation"))
+    }
+
+    fn judged(&self) -> decorrelation::RigidMotion {
+        let turn = decorrelation::RigidMotion::about(self.pivot, self.axis, self.angle);
+        let along = decorrelation::RigidMotion::along(self.translation);
+        turn.expect("a rotation")
+            .then(&along.expect("a translation"))
     }
 }

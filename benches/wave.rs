@@ -25,7 +25,7 @@ fn surface() -> RoughSurface {
         along: DVec3::X,
         size: [2e-3, 2e-3],
         scatterers: [100, 100],
-        arrangement: Arrangement::Stratified,
+        arrangement: Arrangement::Lattice,
         roughness: Roughness::FullyDeveloped(Amplitudes::ComplexGaussian),
         seed: 1,
     })
@@ -69,7 +69,12 @@ fn displacements(criterion: &mut Criterion) {
     // Every fourth sample of a coarse field, spread by linear interpolation: its details do not count.
     let coarse = Grid::from_fn(64, 64, |x, y| {
         let point = DVec3::new(x as f64 * 50e-6, y as f64 * 50e-6, 0.3);
-        lit.field_at(point).norm_sqr() as f32
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "patterns are stored as f32"
+        )]
+        let intensity = lit.field_at(point).norm_sqr() as f32;
+        intensity
     });
     let pattern = |shift: usize| {
         Grid::from_fn(SIZE, SIZE, |x, y| {

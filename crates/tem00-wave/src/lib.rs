@@ -50,7 +50,7 @@
 //!     along: DVec3::X,
 //!     size: [1e-3, 1e-3],
 //!     scatterers: [40, 40],
-//!     arrangement: Arrangement::Stratified,
+//!     arrangement: Arrangement::Lattice,
 //!     roughness: Roughness::FullyDeveloped(Amplitudes::ComplexGaussian),
 //!     seed: 1,
 //! })?;

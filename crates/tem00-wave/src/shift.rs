@@ -28,6 +28,9 @@ pub struct Shift {
 /// wider than two samples and the common part many features wide. Partly decorrelated patterns have a
 /// statistical error on top. The answer for unrelated patterns is arbitrary.
 ///
+/// Whatever is in the patterns counts: a bright patch on a dark ground is correlated with itself.
+/// The correlation of speckle alone is that of parts cut out from where the light is even.
+///
 /// # Panics
 ///
 /// Panics unless both patterns have the same size, of at least 16 × 16 samples.

@@ -24,9 +24,10 @@ pub struct Scatterer {
 ///
 /// # Validity
 ///
-/// A resolution cell of the camera should hold at least 50 scatterers, and their spacing `d` must
-/// not let the patch act as a grating: within the pupil, the pattern of a regular lattice would
-/// repeat with the period λL/d. The random offsets of [`Arrangement::Stratified`] remove that period.
+/// A resolution cell of the camera should hold many scatterers: [`Amplitudes`] says what too few do.
+/// A lattice with the spacing `d` repeats its speckle after λ/d in the sine of the angle, at the
+/// distance L after λL/d. That must be more than the pupil and all motion of the speckle across it;
+/// the random offsets of [`Arrangement::Stratified`] break the repetition.
 ///
 /// # Examples
 ///
@@ -41,7 +42,7 @@ pub struct Scatterer {
 ///     along: DVec3::X,
 ///     size: [2e-3, 1e-3],
 ///     scatterers: [200, 100],
-///     arrangement: Arrangement::Stratified,
+///     arrangement: Arrangement::Lattice,
 ///     roughness: Roughness::FullyDeveloped(Amplitudes::ComplexGaussian),
 ///     seed: 1,
 /// })?;
@@ -77,11 +78,11 @@ pub struct PatchDescription {
 /// Where scatterers lie on a patch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Arrangement {
-    /// One at random in each cell of a lattice.
-    #[default]
-    Stratified,
     /// In the centre of each cell of a lattice.
+    #[default]
     Lattice,
+    /// One at random in each cell of a lattice.
+    Stratified,
     /// Anywhere, independent of each other.
     Random,
 }
@@ -116,8 +117,8 @@ pub enum Roughness {
 /// | `ComplexGaussian` | 0 | +2/N |
 /// | `Unit` | −1/N | +1/N |
 ///
-/// For [`Stratified`](Arrangement::Stratified) positions the random offsets add to the values of the
-/// lattice what falls as 1/N². N counts by the amplitude `h` of a point's image, with n scatterers
+/// For [`Stratified`](Arrangement::Stratified) positions the random offsets add some 2/N² to the
+/// values of the lattice. N counts by the amplitude `h` of a point's image, with n scatterers
 /// per area: `1/N = ∫|h|⁴ / (n (∫|h|²)²)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Amplitudes {

@@ -132,6 +132,27 @@ fn the_fan_has_two_curvatures() {
 }
 
 #[test]
+fn the_fan_solves_the_paraxial_wave_equation_across_the_line() {
+    let fan = fan(50e-6);
+    let envelope = |y: f64, z: f64| {
+        let amplitude = fan.amplitude_at(DVec3::new(0.0, y, z));
+        amplitude * phasor(-z / WAVELENGTH) * z.sqrt()
+    };
+    let (h, hz) = (0.5e-6, 5e-6);
+    for (y, z) in [(0.0, 0.2), (30e-6, 0.21), (-60e-6, 0.18)] {
+        let across = (envelope(y + h, z) + envelope(y - h, z) - 2.0 * envelope(y, z)) / (h * h);
+        let along = (envelope(y, z + hz) - envelope(y, z - hz)) / (2.0 * hz);
+        let residual = across + Complex::new(0.0, 2.0 * K) * along;
+        // The terms are of order 2/w² = 8e8 m⁻². Differences lose a few (h/w)² = 1e−4 of them; the
+        // rounding of the phase, 3e−10 rad, leaves 4 · 3e−10/h² = 5000 m⁻².
+        assert!(
+            residual.norm() < 3e-4 * 8e8,
+            "residual {residual} of {across} at {y:e}, {z}"
+        );
+    }
+}
+
+#[test]
 fn every_slice_of_the_fan_carries_the_same_power() {
     let fan = fan(50e-6);
     // ρ ∫ |U|² dy in the direction θ, by the trapezoidal rule over ± 8 radii.

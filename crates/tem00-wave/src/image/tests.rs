@@ -247,7 +247,10 @@ fn a_dark_surface_has_a_dark_image() {
         .expect("a window")
         .image(&lit);
     let dark = Complex::new(0.0, 0.0);
-    assert!(image.amplitude().values().iter().all(|&u| u == dark), "light");
+    assert!(
+        image.amplitude().values().iter().all(|&u| u == dark),
+        "light"
+    );
 }
 
 #[test]

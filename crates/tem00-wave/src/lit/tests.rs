@@ -145,6 +145,20 @@ fn progress_counts_every_term_once() {
 }
 
 #[test]
+fn progress_includes_the_row_it_reports() {
+    let lit = patch(100, Amplitudes::Unit, 1).lit_by(&plane_wave());
+    let steps = [DVec3::X * 1e-4, DVec3::Y * 1e-4];
+    let plane = SamplePlane::new(DVec3::Z, steps, [30, 4]).expect("a plane");
+    let done = Mutex::new(Vec::new());
+    let _ = lit.field_with_progress(&plane, |progress| {
+        done.lock().expect("no panic").push(progress.done);
+    });
+    let mut done = done.into_inner().expect("no panic");
+    done.sort_unstable();
+    assert_eq!(done, [3_000, 6_000, 9_000, 12_000]);
+}
+
+#[test]
 fn no_time_is_known_before_the_first_term() {
     let start = Progress { done: 0, total: 10 };
     assert_eq!(start.remaining(Duration::from_secs(1)), None);

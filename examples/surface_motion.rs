@@ -120,6 +120,11 @@ fn law([along, turn]: [DVec3; 2]) -> Result<DVec2, Box<dyn Error>> {
     Ok(moved.ok_or("the speckle has left the pupil plane")?)
 }
 
+/// Rounds to what is printed, and minus zero to zero.
+fn tenths(value: f64) -> f64 {
+    (10.0 * value).round() / 10.0 + 0.0
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let pupil = Pupil::new()?;
     let mut plots: Vec<Plot> = Vec::new();
@@ -133,10 +138,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!(
                 "{name:22} | {:>6.2} | {:>7.1} {:>8.1} | {:>7.1} {:>7.1}",
                 part * most,
-                by_waves.x,
-                by_waves.y,
-                by_law.x,
-                by_law.y
+                tenths(by_waves.x),
+                tenths(by_waves.y),
+                tenths(by_law.x),
+                tenths(by_law.y)
             );
             measured.push((part * most, by_waves.length()));
             theory.push((part * most, by_law.length()));

@@ -9,9 +9,11 @@ use super::correlation;
 /// Defocus moves a displaced pattern. Relative to the image of the surface it shifts by
 ///
 /// ```text
-/// Δr = 4 s x h        along the pupil displacement, reference state in focus
+/// Δr = 4 s |x| h      reference state in focus, upright image
 /// ```
 ///
+/// against the pupil displacement where the surface has come nearer, along it where it has gone
+/// farther away,
 /// with the pupil displacement s in pupil diameters, the axial displacement x in axial
 /// decorrelation lengths and the speckle size h. Whether that shift is followed decides what is
 /// left: a renderer that looks the pattern up at the projected displacement of the surface point

@@ -9,6 +9,7 @@
 //! | [`beam`] | `tem00-beam` | Gaussian beams and laser lines as lights to evaluate and sample |
 //! | [`speckle`] | `tem00-speckle` | pupil field → pattern → stack → look-up |
 //! | [`decorrelation`] | `tem00-decorrelation` | imaging geometry → displacement → correlation |
+//! | [`wave`] | `tem00-wave` | scalar wave optics of rough surfaces, the judge of the others |
 //! | [`statistics`] | `tem00-statistics` | closed forms, estimators, hypothesis tests |
 //! | [`numerics`] | `tem00-numerics` | grids, pruned Fourier transform, pupil functions |
 #![cfg_attr(
@@ -23,6 +24,7 @@ pub use tem00_speckle as speckle;
 pub use tem00_statistics as statistics;
 #[cfg(feature = "tracer")]
 pub use tem00_tracer as tracer;
+pub use tem00_wave as wave;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

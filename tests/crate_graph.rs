@@ -37,7 +37,16 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "rayon",
         ],
     ),
-    ("tem00-decorrelation", &["tem00-numerics"], &["glam"]),
+    (
+        "tem00-decorrelation",
+        &["tem00-numerics"],
+        &["fearless_simd", "glam"],
+    ),
+    (
+        "tem00-wave",
+        &["tem00-numerics"],
+        &["glam", "num-complex", "rand_chacha", "rand_core", "rayon"],
+    ),
     (
         "tem00-tracer",
         &[
@@ -84,7 +93,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
 ];
 
 /// Crates of the workspace that judge the others, and so may appear in the tests of any of them.
-const JUDGES: &[&str] = &["tem00-statistics", "tem00-numerics"];
+const JUDGES: &[&str] = &["tem00-statistics", "tem00-numerics", "tem00-wave"];
 
 /// Physics crates, which a renderer links: what they need beyond plain arithmetic is a choice.
 const PHYSICS: &[&str] = &[
@@ -92,6 +101,7 @@ const PHYSICS: &[&str] = &[
     "tem00-beam",
     "tem00-speckle",
     "tem00-decorrelation",
+    "tem00-wave",
 ];
 
 fn manifest(name: &str) -> String {

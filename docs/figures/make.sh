@@ -12,7 +12,7 @@ cargo run --locked --release -- render scenes/spot.toml --spp "${1:-64}" --no-sp
 cp "$work"/*.png docs/figures/
 cp "$work/without/spot.png" docs/figures/spot_without_speckle.png
 for example in beam_caustic correlated_slices focus_by_lens interpolation_matters knife_edge \
-    line_profile phase_space; do
+    line_profile phase_space surface_motion thin_line; do
     cargo run --locked --release --example "$example"
     cp "out/$example.svg" docs/figures/
 done

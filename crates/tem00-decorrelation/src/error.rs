@@ -14,20 +14,43 @@ pub enum DecorrelationError {
     FNumber(f64),
     /// The pixel pitch, in metres, is not a positive finite number.
     PixelPitch(f64),
-    /// The distance from surface to pupil is not a finite number above the focal length, so that no
-    /// real image forms.
+    /// The distance from surface to pupil is not finite, or so short that no real image forms.
     SurfaceToPupil {
         /// The rejected distance, in metres.
         surface_to_pupil: f64,
+        /// The distance it must exceed, in metres: the focal length over the pupil magnification.
+        minimum: f64,
+    },
+    /// The distance from the surface to the front principal plane is not a finite number above the
+    /// focal length, so that no real image forms.
+    SurfaceToPrincipalPlane {
+        /// The rejected distance, in metres.
+        surface_to_principal_plane: f64,
         /// The focal length it must exceed, in metres.
         focal_length: f64,
     },
-    /// The pupil that follows from focal length and f-number is smaller than the wavelength.
+    /// The distance from pupil to sensor, in metres, is not a positive finite number.
+    PupilToImage(f64),
+    /// The magnification is not a positive finite number, or the distances that follow from it are
+    /// not.
+    Magnification(f64),
+    /// The pupil magnification is not a positive finite number.
+    PupilMagnification(f64),
+    /// The pupil, given or as it follows from focal length and f-number, is not finite or not larger
+    /// than the wavelength.
     PupilDiameter {
-        /// The pupil diameter that follows, in metres.
+        /// The pupil diameter, in metres.
         pupil_diameter: f64,
         /// The wavelength, in metres.
         wavelength: f64,
+    },
+    /// The pupil is wider than twice its distance to the surface or, in units of the entrance pupil,
+    /// to the sensor, which would be a numerical aperture above one.
+    PupilTooWide {
+        /// The diameter of the entrance pupil, in metres.
+        pupil_diameter: f64,
+        /// The shorter of both distances, in metres.
+        distance: f64,
     },
     /// The columns of the matrix are not right-handed orthonormal axes within 10⁻⁶.
     Axes(DMat3),
@@ -42,16 +65,38 @@ pub enum DecorrelationError {
     DirectionToSource(DVec3),
     /// The curvature of the wavefront, in 1/m, is not finite.
     Curvature(f64),
+    /// The curvature tensor of the wavefront, in 1/m, is not finite or not symmetric.
+    CurvatureTensor(DMat3),
     /// The principal axis of the wavefront is zero, not finite, or parallel to the direction to the
     /// source.
     PrincipalAxis(DVec3),
+    /// The position of the light source or of its wavefront, in metres, is not finite.
+    LightPosition(DVec3),
+    /// The surface point, in metres, lies in a focus or at the light source, where light has no
+    /// direction.
+    LitPoint(DVec3),
     /// The surface normal is zero or not finite.
     Normal(DVec3),
+    /// The columns of the rotation matrix are not right-handed orthonormal axes within 10⁻⁶.
+    Rotation(DMat3),
+    /// The axis of a rotation is zero or not finite.
+    RotationAxis(DVec3),
+    /// The angle of a rotation, in radians, is not finite.
+    RotationAngle(f64),
+    /// The pivot of a rotation, in metres, is not finite.
+    Pivot(DVec3),
+    /// The translation, in metres, is not finite.
+    Translation(DVec3),
+    /// The centre of the pupil, in metres, is not finite.
+    PupilCentre(DVec3),
+    /// The speckle size of the pattern, in samples, is not a positive finite number.
+    PatternSpeckleSize(f64),
 }
 
 impl fmt::Display for DecorrelationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const POSITIVE: &str = "must be positive and finite, got";
+        const FINITE: &str = "must be finite, got";
         const DIRECTION: &str = "must be finite and not zero, got";
         match self {
             Self::Wavelength(got) => write!(f, "wavelength {POSITIVE} {got:e} m"),
@@ -60,19 +105,42 @@ impl fmt::Display for DecorrelationError {
             Self::PixelPitch(got) => write!(f, "pixel pitch {POSITIVE} {got:e} m"),
             Self::SurfaceToPupil {
                 surface_to_pupil,
+                minimum,
+            } => write!(
+                f,
+                "surface-to-pupil distance must be finite and exceed {minimum:e} m, got \
+                 {surface_to_pupil:e} m"
+            ),
+            Self::SurfaceToPrincipalPlane {
+                surface_to_principal_plane,
                 focal_length,
             } => write!(
                 f,
-                "surface-to-pupil distance must be finite and exceed the focal length of \
-                 {focal_length:e} m, got {surface_to_pupil:e} m"
+                "distance from surface to principal plane must be finite and exceed the focal \
+                 length of {focal_length:e} m, got {surface_to_principal_plane:e} m"
             ),
+            Self::PupilToImage(got) => write!(f, "pupil-to-image distance {POSITIVE} {got:e} m"),
+            Self::Magnification(got) => write!(
+                f,
+                "magnification and the distances that follow from it must be positive and finite, \
+                 got {got:e}"
+            ),
+            Self::PupilMagnification(got) => write!(f, "pupil magnification {POSITIVE} {got:e}"),
             Self::PupilDiameter {
                 pupil_diameter,
                 wavelength,
             } => write!(
                 f,
-                "pupil diameter (focal length / f-number) must exceed the wavelength of \
-                 {wavelength:e} m, got {pupil_diameter:e} m"
+                "pupil diameter must be finite and exceed the wavelength of {wavelength:e} m, got \
+                 {pupil_diameter:e} m"
+            ),
+            Self::PupilTooWide {
+                pupil_diameter,
+                distance,
+            } => write!(
+                f,
+                "pupil diameter must not exceed twice the distance of {distance:e} m to surface or \
+                 sensor, got {pupil_diameter:e} m"
             ),
             Self::Axes(got) => write!(
                 f,
@@ -100,12 +168,35 @@ impl fmt::Display for DecorrelationError {
                     "wavefront curvature (1/R) must be finite, got {got:e} 1/m"
                 )
             }
+            Self::CurvatureTensor(got) => write!(
+                f,
+                "curvature tensor must be finite and symmetric within 1e-6, got columns {got} 1/m"
+            ),
             Self::PrincipalAxis(got) => write!(
                 f,
                 "principal axis must be finite, not zero and not along the direction to the \
                  source, got {got}"
             ),
+            Self::LightPosition(got) => write!(f, "position of the light {FINITE} {got} m"),
+            Self::LitPoint(got) => write!(
+                f,
+                "surface point must not lie at the source or in a focus, got {got} m"
+            ),
+            Self::Rotation(got) => write!(
+                f,
+                "rotation matrix must be right-handed and orthonormal within 1e-6, got columns {got}"
+            ),
+            Self::RotationAxis(got) => write!(f, "axis of rotation {DIRECTION} {got}"),
+            Self::RotationAngle(got) => write!(f, "angle of rotation {FINITE} {got:e} rad"),
+            Self::Pivot(got) => write!(f, "pivot {FINITE} {got} m"),
+            Self::Translation(got) => write!(f, "translation {FINITE} {got} m"),
             Self::Normal(got) => write!(f, "surface normal {DIRECTION} {got}"),
+            Self::PupilCentre(got) => {
+                write!(f, "centre of the pupil must be finite, got {got} m")
+            }
+            Self::PatternSpeckleSize(got) => {
+                write!(f, "speckle size of the pattern {POSITIVE} {got} samples")
+            }
         }
     }
 }
@@ -128,10 +219,33 @@ mod tests {
             (
                 E::SurfaceToPupil {
                     surface_to_pupil: 0.02,
+                    minimum: 0.025,
+                },
+                "2.5e-2",
+                "2e-2 m",
+            ),
+            (
+                E::SurfaceToPrincipalPlane {
+                    surface_to_principal_plane: 0.02,
                     focal_length: 0.025,
                 },
                 "2.5e-2",
                 "2e-2 m",
+            ),
+            (E::PupilToImage(-1.25), "pupil-to-image", "-1.25e0 m"),
+            (E::Magnification(-1.25), "magnification", "-1.25e0"),
+            (
+                E::PupilMagnification(-1.25),
+                "pupil magnification",
+                "-1.25e0",
+            ),
+            (
+                E::PupilTooWide {
+                    pupil_diameter: 0.3,
+                    distance: 0.125,
+                },
+                "1.25e-1 m",
+                "3e-1 m",
             ),
             (
                 E::PupilDiameter {
@@ -151,8 +265,30 @@ mod tests {
                 "-3.75",
             ),
             (E::Curvature(f64::INFINITY), "curvature", "inf 1/m"),
+            (
+                E::CurvatureTensor(DMat3::IDENTITY * 2.5),
+                "curvature tensor",
+                "2.5",
+            ),
             (E::PrincipalAxis(vector), "principal axis", "-3.75"),
+            (E::LightPosition(vector), "position of the light", "-3.75"),
+            (E::LitPoint(vector), "surface point", "-3.75"),
             (E::Normal(vector), "surface normal", "-3.75"),
+            (E::Rotation(DMat3::IDENTITY * 2.5), "rotation matrix", "2.5"),
+            (E::RotationAxis(vector), "axis of rotation", "-3.75"),
+            (
+                E::RotationAngle(f64::INFINITY),
+                "angle of rotation",
+                "inf rad",
+            ),
+            (E::Pivot(vector), "pivot", "-3.75"),
+            (E::Translation(vector), "translation", "-3.75"),
+            (E::PupilCentre(vector), "centre of the pupil", "-3.75"),
+            (
+                E::PatternSpeckleSize(-1.25),
+                "speckle size",
+                "-1.25 samples",
+            ),
         ];
         for (error, name, value) in cases {
             let message = error.to_string();

@@ -38,19 +38,9 @@ impl CameraFrame {
     ///
     /// Returns an error if the columns are not orthonormal within 10⁻⁶ or not right-handed.
     pub fn from_axes(axes: DMat3) -> Result<Self, DecorrelationError> {
-        const TOLERANCE: f64 = 1e-6;
-        let deviation = axes.transpose() * axes - DMat3::IDENTITY;
-        let largest = deviation
-            .to_cols_array()
-            .iter()
-            .fold(0.0_f64, |a, b| a.max(b.abs()));
-        // A maximum drops NaN, but no NaN has a positive determinant.
-        if !(largest <= TOLERANCE && axes.determinant() > 0.0) {
-            return Err(DecorrelationError::Axes(axes));
-        }
-        let towards_camera = axes.z_axis.normalize();
-        let right = axes.y_axis.cross(towards_camera).normalize();
-        Ok(Self::from_right(right, towards_camera))
+        orthonormal(axes)
+            .map(|axes| Self { axes })
+            .ok_or(DecorrelationError::Axes(axes))
     }
 
     /// Creates the frame of a camera at `position` that looks at `target`, both in metres, with b2
@@ -74,10 +64,19 @@ impl CameraFrame {
     }
 
     fn from_right(right: DVec3, towards_camera: DVec3) -> Self {
-        let up = towards_camera.cross(right);
         Self {
-            axes: DMat3::from_cols(right, up, towards_camera),
+            axes: from_right(right, towards_camera),
         }
+    }
+
+    /// The axes turned by a rotation.
+    pub(crate) fn turned(&self, rotation: DMat3) -> Self {
+        let axes = rotation * self.axes;
+        let towards_camera = axes.z_axis.normalize();
+        Self::from_right(
+            axes.y_axis.cross(towards_camera).normalize(),
+            towards_camera,
+        )
     }
 
     /// Returns b1, the axis of the pupil plane to the right in the image.
@@ -94,6 +93,27 @@ impl CameraFrame {
     pub const fn towards_camera(&self) -> DVec3 {
         self.axes.z_axis
     }
+}
+
+/// Returns the rotation next to a matrix whose columns are right-handed orthonormal axes within
+/// 10⁻⁶.
+pub(crate) fn orthonormal(axes: DMat3) -> Option<DMat3> {
+    const TOLERANCE: f64 = 1e-6;
+    let deviation = axes.transpose() * axes - DMat3::IDENTITY;
+    let largest = deviation
+        .to_cols_array()
+        .iter()
+        .fold(0.0_f64, |a, b| a.max(b.abs()));
+    // A maximum drops NaN, but no NaN has a positive determinant.
+    if !(largest <= TOLERANCE && axes.determinant() > 0.0) {
+        return None;
+    }
+    let z_axis = axes.z_axis.normalize();
+    Some(from_right(axes.y_axis.cross(z_axis).normalize(), z_axis))
+}
+
+fn from_right(x_axis: DVec3, z_axis: DVec3) -> DMat3 {
+    DMat3::from_cols(x_axis, z_axis.cross(x_axis), z_axis)
 }
 
 /// The line from a surface point to the centre of the pupil, in the frame of the camera.

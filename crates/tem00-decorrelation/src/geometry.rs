@@ -1,41 +1,38 @@
 use glam::DVec2;
 
-use crate::DecorrelationError;
+use crate::{
+    DecorrelationError, LensData, PupilDistances, ThickLensData,
+    lens::{check_f_number, check_positive},
+};
 
-/// Camera data from which an [`ImagingGeometry`] is made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LensData {
-    /// Vacuum wavelength `λ` of the light, in metres.
-    pub wavelength: f64,
-    /// Focal length `f` of the lens, in metres.
-    pub focal_length: f64,
-    /// F-number `F = f / D` as engraved on the lens, for focus at infinity.
-    pub f_number: f64,
-    /// Distance `L` from the surface in focus to the pupil along the optical axis, in metres.
-    pub surface_to_pupil: f64,
-    /// Distance between the centres of neighbouring pixels on the sensor, in metres.
-    pub pixel_pitch: f64,
-}
-
-/// A camera focused on a surface: a thin lens, its pupil and the sensor behind it.
+/// A camera focused on a surface: a lens, its pupils and the sensor behind it.
 ///
 /// ```text
-///   surface                 pupil D          sensor
-///      │◀───────── L ─────────▶┃◀──── d_PI ────▶│
+///   surface       entrance pupil D   exit pupil m_p D      sensor
+///      │◀──────── L ───────▶┃              ┃◀───── d_PI ─────▶│
 ///
-/// d_PI = f L / (L − f)          pupil to image
-/// m    = d_PI / L               magnification
-/// D    = f / F                  pupil diameter
-/// h    = λ d_PI / D             speckle size on the sensor
+/// m   = c / L                  magnification
+/// c   = m L = d_PI / m_p       principal distance
+/// F_w = c / D                  working f-number
+/// h   = λ F_w                  speckle size on the sensor
 /// ```
+///
+/// The scene is seen in perspective from the centre of the entrance pupil, as by a pinhole camera
+/// with the sensor at the principal distance `c`. In a thin lens both pupils coincide with the lens:
+/// `m_p` = 1 and `c = d_PI`.
 ///
 /// The speckle size `h` is the period of the finest intensity fringes that the pupil lets through.
 /// The intensity correlation first vanishes at 1.22 h and its full width at half maximum is 1.03 h.
 ///
+/// | what is known of the camera | constructor |
+/// |---|---|
+/// | focal length, f-number, distance to the surface | [`from_lens`](Self::from_lens) |
+/// | the same with the magnification or with separate pupils | [`from_thick_lens`](Self::from_thick_lens) |
+/// | the distances on both sides and the pupil | [`from_distances`](Self::from_distances) |
+///
 /// # Validity
 ///
-/// A thin lens in air: entrance and exit pupil coincide with the lens, so that the same `D` limits
-/// the light on both sides. Distances are paraxial, along the optical axis.
+/// Distances are paraxial, along the optical axis, and the lens is free of aberrations.
 ///
 /// # Examples
 ///
@@ -53,6 +50,7 @@ pub struct LensData {
 /// })?;
 ///
 /// assert!((geometry.pupil_diameter() - 3.125e-3).abs() < 1e-12);
+/// assert!((geometry.working_f_number() - 8.727).abs() < 1e-3);
 /// assert!((geometry.speckle_size() - 5.673e-6).abs() < 1e-9);
 /// assert!((geometry.speckle_size_in_pixels() - 1.644).abs() < 1e-3);
 /// assert!((geometry.axial_decorrelation_length() - 47.92e-3).abs() < 0.01e-3);
@@ -65,11 +63,21 @@ pub struct LensData {
 /// - S. Bergmann et al. 2016, §6.2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImagingGeometry {
-    lens: LensData,
+    wavelength: f64,
+    focal_length: f64,
+    pupil_diameter: f64,
+    pupil_magnification: f64,
+    surface_to_pupil: f64,
+    principal_distance: f64,
+    pixel_pitch: f64,
 }
 
 impl ImagingGeometry {
     /// Creates the geometry of a thin lens that images a surface at a given distance sharply.
+    ///
+    /// ```text
+    /// d_PI = f L / (L − f),    D = f / F
+    /// ```
     ///
     /// # Errors
     ///
@@ -101,72 +109,246 @@ impl ImagingGeometry {
             surface_to_pupil,
             pixel_pitch,
         } = lens;
-        check_positive(wavelength, DecorrelationError::Wavelength)?;
         check_positive(focal_length, DecorrelationError::FocalLength)?;
-        check_positive(pixel_pitch, DecorrelationError::PixelPitch)?;
-        if !(f_number >= 0.5 && f_number.is_finite()) {
-            return Err(DecorrelationError::FNumber(f_number));
-        }
+        check_f_number(f_number)?;
         if !(surface_to_pupil > focal_length && surface_to_pupil.is_finite()) {
             return Err(DecorrelationError::SurfaceToPupil {
                 surface_to_pupil,
-                focal_length,
+                minimum: focal_length,
             });
         }
-        let pupil_diameter = focal_length / f_number;
-        if pupil_diameter <= wavelength {
+        let beyond_focus = surface_to_pupil - focal_length;
+        Self {
+            wavelength,
+            focal_length,
+            pupil_diameter: focal_length / f_number,
+            pupil_magnification: 1.0,
+            surface_to_pupil,
+            principal_distance: focal_length * (surface_to_pupil / beyond_focus),
+            pixel_pitch,
+        }
+        .checked()
+    }
+
+    /// Creates the geometry of a lens of many elements from its focal length, f-number and pupil
+    /// magnification, and from where it is in focus.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a length, the magnification or the pupil magnification is not positive
+    /// and finite, if the f-number is below 0.5, if the surface lies so near that no real image
+    /// forms or that the pupil is wider than twice its distance, or if the pupil is smaller than the
+    /// wavelength.
+    ///
+    /// # Examples
+    ///
+    /// A 50 mm lens at f/4 images at half size. As the exit pupil is smaller than the entrance
+    /// pupil, the light that arrives is that of f/6.5 and not of f/6:
+    ///
+    /// ```
+    /// use tem00_decorrelation::{Focus, ImagingGeometry, ThickLensData};
+    ///
+    /// let geometry = ImagingGeometry::from_thick_lens(ThickLensData {
+    ///     wavelength: 650e-9,
+    ///     focal_length: 50e-3,
+    ///     f_number: 4.0,
+    ///     pupil_magnification: 0.8,
+    ///     focus: Focus::Magnification(0.5),
+    ///     pixel_pitch: 3.45e-6,
+    /// })?;
+    ///
+    /// assert!((geometry.working_f_number() - 6.5).abs() < 1e-12);
+    /// assert!((geometry.surface_to_pupil() - 162.5e-3).abs() < 1e-12);
+    /// assert!((geometry.pupil_to_image() - 65e-3).abs() < 1e-12);
+    /// assert!((geometry.exit_pupil_diameter() - 10e-3).abs() < 1e-12);
+    /// assert!((geometry.speckle_size() - 4.225e-6).abs() < 1e-12);
+    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// ```
+    pub fn from_thick_lens(lens: ThickLensData) -> Result<Self, DecorrelationError> {
+        let ThickLensData {
+            wavelength,
+            focal_length,
+            f_number,
+            pupil_magnification,
+            focus,
+            pixel_pitch,
+        } = lens;
+        check_positive(focal_length, DecorrelationError::FocalLength)?;
+        check_f_number(f_number)?;
+        check_positive(pupil_magnification, DecorrelationError::PupilMagnification)?;
+        let (magnification, surface_to_pupil) = focus.resolve(focal_length, pupil_magnification)?;
+        let principal_distance = focal_length + focal_length * magnification / pupil_magnification;
+        check_positive(principal_distance, |_| {
+            DecorrelationError::Magnification(magnification)
+        })?;
+        Self {
+            wavelength,
+            focal_length,
+            pupil_diameter: focal_length / f_number,
+            pupil_magnification,
+            surface_to_pupil,
+            principal_distance,
+            pixel_pitch,
+        }
+        .checked()
+    }
+
+    /// Creates the geometry of a camera whose pupil and distances are known.
+    ///
+    /// ```text
+    /// 1/f = 1/L + 1/d_PI,    F = f / D
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a length is not positive and finite, if the pupil is wider than twice its
+    /// distance to surface or sensor, or if it is smaller than the wavelength.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_decorrelation::{ImagingGeometry, PupilDistances};
+    ///
+    /// let geometry = ImagingGeometry::from_distances(PupilDistances {
+    ///     wavelength: 632.8e-9,
+    ///     surface_to_pupil: 0.3,
+    ///     pupil_to_image: 75e-3,
+    ///     pupil_diameter: 10e-3,
+    ///     pixel_pitch: 3.45e-6,
+    /// })?;
+    ///
+    /// assert!((geometry.focal_length() - 60e-3).abs() < 1e-15);
+    /// assert!((geometry.magnification() - 0.25).abs() < 1e-15);
+    /// assert!((geometry.speckle_size() - 4.746e-6).abs() < 1e-12);
+    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// ```
+    pub fn from_distances(distances: PupilDistances) -> Result<Self, DecorrelationError> {
+        let PupilDistances {
+            wavelength,
+            surface_to_pupil,
+            pupil_to_image,
+            pupil_diameter,
+            pixel_pitch,
+        } = distances;
+        check_positive(surface_to_pupil, |surface_to_pupil| {
+            DecorrelationError::SurfaceToPupil {
+                surface_to_pupil,
+                minimum: 0.0,
+            }
+        })?;
+        check_positive(pupil_to_image, DecorrelationError::PupilToImage)?;
+        let focal_length = 1.0 / (1.0 / surface_to_pupil + 1.0 / pupil_to_image);
+        check_positive(focal_length, DecorrelationError::FocalLength)?;
+        Self {
+            wavelength,
+            focal_length,
+            pupil_diameter,
+            pupil_magnification: 1.0,
+            surface_to_pupil,
+            principal_distance: pupil_to_image,
+            pixel_pitch,
+        }
+        .checked()
+    }
+
+    /// Returns the geometry of the same camera in light of another wavelength, in metres.
+    ///
+    /// Lens and distances stay as they are: the lens is free of chromatic aberration.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the wavelength is not positive and finite or exceeds the pupil.
+    pub fn with_wavelength(self, wavelength: f64) -> Result<Self, DecorrelationError> {
+        Self { wavelength, ..self }.checked()
+    }
+
+    fn checked(self) -> Result<Self, DecorrelationError> {
+        check_positive(self.wavelength, DecorrelationError::Wavelength)?;
+        check_positive(self.pixel_pitch, DecorrelationError::PixelPitch)?;
+        if !(self.pupil_diameter > self.wavelength && self.pupil_diameter.is_finite()) {
             return Err(DecorrelationError::PupilDiameter {
-                pupil_diameter,
-                wavelength,
+                pupil_diameter: self.pupil_diameter,
+                wavelength: self.wavelength,
             });
         }
-        Ok(Self { lens })
+        // Half the reciprocal is a numerical aperture, which no lens in air has above one.
+        let distance = self.surface_to_pupil.min(self.principal_distance);
+        if distance < 0.5 * self.pupil_diameter {
+            return Err(DecorrelationError::PupilTooWide {
+                pupil_diameter: self.pupil_diameter,
+                distance,
+            });
+        }
+        Ok(self)
     }
 
     /// Returns the vacuum wavelength `λ`, in metres.
     pub const fn wavelength(&self) -> f64 {
-        self.lens.wavelength
+        self.wavelength
     }
 
     /// Returns the focal length `f`, in metres.
     pub const fn focal_length(&self) -> f64 {
-        self.lens.focal_length
+        self.focal_length
     }
 
-    /// Returns the f-number `F = f / D`.
+    /// Returns the f-number `F = f / D`, that of focus at infinity.
     pub const fn f_number(&self) -> f64 {
-        self.lens.f_number
+        self.focal_length / self.pupil_diameter
     }
 
-    /// Returns the distance `L` from the surface in focus to the pupil, in metres.
+    /// Returns the f-number of the light on the sensor, `F_w = F (1 + m / m_p)`.
+    pub const fn working_f_number(&self) -> f64 {
+        self.principal_distance / self.pupil_diameter
+    }
+
+    /// Returns the distance `L` from the surface in focus to the entrance pupil, in metres.
     pub const fn surface_to_pupil(&self) -> f64 {
-        self.lens.surface_to_pupil
+        self.surface_to_pupil
     }
 
     /// Returns the pixel pitch of the sensor, in metres.
     pub const fn pixel_pitch(&self) -> f64 {
-        self.lens.pixel_pitch
+        self.pixel_pitch
     }
 
-    /// Returns the distance `d_PI = f L / (L − f)` from the pupil to the sensor, in metres.
-    pub fn pupil_to_image(&self) -> f64 {
-        let beyond_focus = self.surface_to_pupil() - self.focal_length();
-        self.focal_length() * (self.surface_to_pupil() / beyond_focus)
+    /// Returns the principal distance `c = m L`, in metres.
+    ///
+    /// It takes the tangent of a viewing angle to a length on the sensor: the image of a point at
+    /// the depth Z is c/Z times as large as the point, in focus or not. Photogrammetry knows it as
+    /// the camera constant.
+    pub const fn principal_distance(&self) -> f64 {
+        self.principal_distance
     }
 
-    /// Returns the magnification `m = d_PI / L` at the surface in focus, without a sign.
-    pub fn magnification(&self) -> f64 {
-        self.focal_length() / (self.surface_to_pupil() - self.focal_length())
+    /// Returns the distance `d_PI = m_p c` from the exit pupil to the sensor, in metres.
+    pub const fn pupil_to_image(&self) -> f64 {
+        self.pupil_magnification * self.principal_distance
     }
 
-    /// Returns the pupil diameter `D = f / F`, in metres.
-    pub fn pupil_diameter(&self) -> f64 {
-        self.focal_length() / self.f_number()
+    /// Returns the magnification `m = c / L` at the surface in focus, without a sign.
+    pub const fn magnification(&self) -> f64 {
+        self.principal_distance / self.surface_to_pupil
     }
 
-    /// Returns the speckle size on the sensor `h = λ d_PI / D`, in metres.
+    /// Returns the pupil magnification `m_p`, 1 for a thin lens.
+    pub const fn pupil_magnification(&self) -> f64 {
+        self.pupil_magnification
+    }
+
+    /// Returns the diameter `D = f / F` of the entrance pupil, in metres.
+    pub const fn pupil_diameter(&self) -> f64 {
+        self.pupil_diameter
+    }
+
+    /// Returns the diameter `m_p D` of the exit pupil, in metres.
+    pub const fn exit_pupil_diameter(&self) -> f64 {
+        self.pupil_magnification * self.pupil_diameter
+    }
+
+    /// Returns the speckle size on the sensor `h = λ c / D`, in metres.
     pub fn speckle_size(&self) -> f64 {
-        self.wavelength() * (self.pupil_to_image() / self.pupil_diameter())
+        self.wavelength() * self.working_f_number()
     }
 
     /// Returns the speckle size on the sensor in pixels, `h_I = h / w`, with the pixel pitch `w`.
@@ -202,6 +384,63 @@ impl ImagingGeometry {
         8.0 * self.wavelength() * aperture_ratio * aperture_ratio
     }
 
+    /// Returns the depth of focus of the speckle at the surface, in metres: how far the surface may
+    /// move either way along the axis before only `(2/π)²` = 40.5 % of the pattern are left.
+    ///
+    /// ```text
+    /// 4 λ (L / D)²
+    /// ```
+    ///
+    /// There the edge of the pupil is half a wave out of phase with its centre. It is half the
+    /// [axial decorrelation length](Self::axial_decorrelation_length). At a quarter of that length,
+    /// Rayleigh's criterion, 81 % are left.
+    ///
+    /// # Examples
+    ///
+    /// A macro lens at f/2.8 and m = 1/2:
+    ///
+    /// ```
+    /// use tem00_decorrelation::{Focus, ImagingGeometry, ThickLensData};
+    ///
+    /// let geometry = ImagingGeometry::from_thick_lens(ThickLensData {
+    ///     wavelength: 632.8e-9,
+    ///     focal_length: 50e-3,
+    ///     f_number: 2.8,
+    ///     pupil_magnification: 1.0,
+    ///     focus: Focus::Magnification(0.5),
+    ///     pixel_pitch: 3.45e-6,
+    /// })?;
+    /// // L/D = (1 + 1/m) F = 8.4 and F_w = (1 + m) F = 4.2.
+    /// assert!((geometry.depth_of_focus() - 178.6e-6).abs() < 0.1e-6);
+    /// assert!((geometry.sensor_depth_of_focus() - 44.65e-6).abs() < 0.01e-6);
+    /// assert!((geometry.object_speckle_size() - 5.316e-6).abs() < 1e-9);
+    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// ```
+    pub fn depth_of_focus(&self) -> f64 {
+        0.5 * self.axial_decorrelation_length()
+    }
+
+    /// Returns the depth of focus of the speckle at the sensor, in metres: how far the sensor may
+    /// move either way before 40.5 % of the pattern are left.
+    ///
+    /// ```text
+    /// 4 λ F_w²
+    /// ```
+    ///
+    /// A speckle on the sensor is this long, and [`speckle_size`](Self::speckle_size) wide.
+    pub fn sensor_depth_of_focus(&self) -> f64 {
+        4.0 * self.wavelength() * self.working_f_number().powi(2)
+    }
+
+    /// Returns the defocus `W = 1/Z − 1/L` of a point at `depth` Z, in metres, before the entrance
+    /// pupil, in 1/m.
+    ///
+    /// It is positive before the surface in focus and negative behind. The path of the light through
+    /// the pupil point p is `W p²/2` longer than to a point in focus.
+    pub fn defocus_at(&self, depth: f64) -> f64 {
+        depth.recip() - self.surface_to_pupil.recip()
+    }
+
     /// Returns the coordinate in a speckle pattern, in pattern samples, that belongs to a pixel of
     /// the image.
     ///
@@ -228,155 +467,5 @@ impl ImagingGeometry {
     }
 }
 
-fn check_positive(x: f64, error: fn(f64) -> DecorrelationError) -> Result<(), DecorrelationError> {
-    if x > 0.0 && x.is_finite() {
-        Ok(())
-    } else {
-        Err(error(x))
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-    use proptest::prelude::*;
-
-    use super::*;
-
-    const LENS: LensData = LensData {
-        wavelength: 632.8e-9,
-        focal_length: 60e-3,
-        f_number: 6.0,
-        surface_to_pupil: 0.3,
-        pixel_pitch: 3.45e-6,
-    };
-
-    #[test]
-    fn a_quarter_magnification_lens_has_the_textbook_distances() {
-        let geometry = ImagingGeometry::from_lens(LENS).unwrap();
-        // L = (1 + 1/m) f and d_PI = (1 + m) f at m = 1/4; rounding only.
-        assert_relative_eq!(geometry.magnification(), 0.25, max_relative = 1e-14);
-        assert_relative_eq!(geometry.pupil_to_image(), 75e-3, max_relative = 1e-14);
-        assert_relative_eq!(geometry.pupil_diameter(), 10e-3, max_relative = 1e-14);
-        // h = λ (1 + m) F.
-        let speckle_size = 632.8e-9 * 7.5;
-        assert_relative_eq!(geometry.speckle_size(), speckle_size, max_relative = 1e-14);
-        let in_pixels = speckle_size / 3.45e-6;
-        assert_relative_eq!(
-            geometry.speckle_size_in_pixels(),
-            in_pixels,
-            max_relative = 1e-14
-        );
-        // 8 λ (1 + 1/m)² F² = 8 · 632.8 nm · 900.
-        assert_relative_eq!(
-            geometry.axial_decorrelation_length(),
-            4.556_16e-3,
-            max_relative = 1e-14
-        );
-    }
-
-    #[test]
-    fn pattern_follows_the_image_displacement() {
-        let geometry = ImagingGeometry::from_lens(LENS).unwrap();
-        let shift = DVec2::new(17.0, -5.0);
-        let pixel = DVec2::new(101.0, 33.0);
-        let moved = geometry.pattern_coordinate(pixel + shift, shift * geometry.pixel_pitch(), 4.0);
-        let before = geometry.pattern_coordinate(pixel, DVec2::ZERO, 4.0);
-        // What was at `pixel` is now at `pixel + shift`; rounding of coordinates near 400.
-        assert!(
-            (moved - before).length() < 1e-12,
-            "{moved} instead of {before}"
-        );
-        // One speckle of the image, h_I pixels, is one speckle of the pattern, h_p samples.
-        let speckle = DVec2::new(geometry.speckle_size_in_pixels(), 0.0);
-        let span = geometry.pattern_coordinate(pixel + speckle, DVec2::ZERO, 4.0) - before;
-        assert!(
-            (span - DVec2::new(4.0, 0.0)).length() < 1e-12,
-            "span {span}"
-        );
-    }
-
-    #[test]
-    fn every_invalid_parameter_is_named() {
-        use DecorrelationError as E;
-        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let reject = |lens| ImagingGeometry::from_lens(lens).unwrap_err();
-            let message = reject(LensData {
-                wavelength: bad,
-                ..LENS
-            });
-            assert!(matches!(message, E::Wavelength(_)), "{message}");
-            let message = reject(LensData {
-                focal_length: bad,
-                ..LENS
-            });
-            assert!(matches!(message, E::FocalLength(_)), "{message}");
-            let message = reject(LensData {
-                f_number: bad,
-                ..LENS
-            });
-            assert!(matches!(message, E::FNumber(_)), "{message}");
-            let message = reject(LensData {
-                surface_to_pupil: bad,
-                ..LENS
-            });
-            assert!(matches!(message, E::SurfaceToPupil { .. }), "{message}");
-            let message = reject(LensData {
-                pixel_pitch: bad,
-                ..LENS
-            });
-            assert!(matches!(message, E::PixelPitch(_)), "{message}");
-        }
-    }
-
-    #[test]
-    fn impossible_lenses_are_rejected() {
-        let in_focus = LensData {
-            surface_to_pupil: LENS.focal_length,
-            ..LENS
-        };
-        assert!(
-            matches!(
-                ImagingGeometry::from_lens(in_focus),
-                Err(DecorrelationError::SurfaceToPupil { .. })
-            ),
-            "a surface in the focal plane has its image at infinity"
-        );
-        let pinhole = LensData {
-            f_number: 1e6,
-            ..LENS
-        };
-        assert!(
-            matches!(
-                ImagingGeometry::from_lens(pinhole),
-                Err(DecorrelationError::PupilDiameter { .. })
-            ),
-            "a pupil of 60 nm is below the wavelength"
-        );
-    }
-
-    proptest! {
-        #[test]
-        fn image_obeys_the_lens_equation(
-            focal_length in 1e-3_f64..1.0,
-            ratio in 1.000_001_f64..1e6,
-            f_number in 0.5_f64..100.0,
-        ) {
-            let lens = LensData {
-                focal_length,
-                f_number,
-                surface_to_pupil: focal_length * ratio,
-                ..LENS
-            };
-            let geometry = ImagingGeometry::from_lens(lens).unwrap();
-            let (object, image) = (geometry.surface_to_pupil(), geometry.pupil_to_image());
-            // Each reciprocal is at most 1/f and rounds by a few ε; L − f is exact near L = f.
-            let residual = (1.0 / object + 1.0 / image - 1.0 / focal_length) * focal_length;
-            prop_assert!(residual.abs() < 1e-14);
-            // L/D = (1 + 1/m) F, and 1 + 1/m rounds as 1/m does.
-            let (m, f) = (geometry.magnification(), geometry.f_number());
-            let ratio = (1.0 + 1.0 / m) * f * geometry.pupil_diameter() / object;
-            prop_assert!((ratio - 1.0).abs() < 1e-14);
-        }
-    }
-}
+mod tests;

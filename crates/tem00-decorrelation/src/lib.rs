@@ -21,18 +21,41 @@
 //! | How large are the speckles of this camera? | [`ImagingGeometry`] |
 //! | Which way is the camera turned, where does it see the point? | [`CameraFrame`], [`LineOfSight`] |
 //! | How is the point lit? | [`Wavefront`], [`SurfacePoint`] |
-//! | What moved? | [`Motion`] |
+//! | What moved a little? | [`Motion`] |
+//! | What moved or turned a lot, or has other light? | [`Configuration`], [`RigidMotions`], [`Illumination`] |
 //! | What happens to the speckle? | [`SpeckleMotion`] |
+//! | What happens at many points at once? | [`MotionField`] |
 //! | Where do I look in the pattern? | [`ImagingGeometry::pattern_coordinate`], [`slice_coordinate`] |
 //!
 //! The module [`paper`] holds the formulas as Bergmann et al. 2016 print them, each with the size
 //! of its error.
 //!
+//! # Two laws of motion
+//!
+//! | | [`SpeckleMotion::new`] | [`SpeckleMotion::between`] |
+//! |---|---|---|
+//! | input | a [`SurfacePoint`] and a [`Motion`] | two [`Configuration`]s of one point |
+//! | surface, camera, source | translate | translate and turn |
+//! | wavelength, direction of the light | stay | may change |
+//! | size of the motion | small beside distances and radii of curvature | any |
+//! | cost | a few products | some square roots more |
+//!
+//! For small translations the second becomes the first.
+//!
 //! # Scope and non-goals
 //!
-//! First-order theory of small translations: a thin lens in focus, an unaberrated circular pupil,
-//! fully developed speckle, an illuminated patch much wider than a resolution cell. Rotations,
-//! large motions, thick lenses and changes of wavelength are not covered.
+//! A circular pupil free of aberrations, fully developed speckle, and a lit patch much wider than a
+//! resolution cell and much smaller than its distances to pupil and source. Beyond that:
+//!
+//! - *Large turns and changes of the light* also stretch the field across the pupil. Displacements
+//!   are those of the pupil centre; the correlation leaves the stretch out.
+//! - *Another wavelength or direction of illumination* sees the heights of the surface in another
+//!   phase. That loss depends on the roughness and not on the geometry, and is not part of any
+//!   correlation here: see [`Configuration::height_phase_change`].
+//! - *Spots or lines thinner than a speckle* have no pattern that moves; a wave-optical simulation
+//!   does.
+//! - Not covered: surfaces that deform, volume scattering, lenses telecentric towards the surface,
+//!   annular and other pupils.
 //!
 //! # Example
 //!
@@ -77,23 +100,34 @@
 //! - S. Bergmann et al., *A Phenomenological Approach to Integrating Gaussian Beam Properties and
 //!   Speckle into a Physically-Based Renderer*, 2016, §6.3 and §6.4.
 
+mod configuration;
 mod correlation;
 mod error;
+mod field;
+mod finite;
 mod frame;
 mod geometry;
+mod illumination;
+mod lens;
 mod motion;
 pub mod paper;
+mod rigid;
 mod wavefront;
 
+pub use configuration::{Configuration, ConfigurationData};
 pub use correlation::{
-    axial_correlation, correlation, equivalent_pupil_shift, pupil_overlap_correlation,
-    slice_coordinate,
+    CorrelationLaw, axial_correlation, correlation, equivalent_axial_shift, equivalent_pupil_shift,
+    motion_multiple, pupil_overlap_correlation, slice_coordinate,
 };
 pub use error::DecorrelationError;
+pub use field::{FieldLight, FieldPoints, FieldSetup, FieldSlices, MotionField};
 pub use frame::{CameraFrame, LineOfSight};
-pub use geometry::{ImagingGeometry, LensData};
+pub use geometry::ImagingGeometry;
 pub use glam::{DMat3, DVec2, DVec3};
+pub use illumination::Illumination;
+pub use lens::{Focus, LensData, PupilDistances, ThickLensData};
 pub use motion::{ImageOrientation, Motion, SpeckleMotion, SurfacePoint};
+pub use rigid::{RigidMotion, RigidMotions};
 pub use wavefront::Wavefront;
 
 /// The smallest cosine between two directions that still counts as different from zero, `2⁻²⁶`.

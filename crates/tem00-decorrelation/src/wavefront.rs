@@ -18,6 +18,13 @@ use crate::{DecorrelationError, GRAZING_COSINE};
 /// beam, and negative where the wave converges. They are those of the *wavefront*: for a Gaussian
 /// beam 1/R(z), not the reciprocal distance to the emitter.
 ///
+/// # Off the axis of a beam
+///
+/// A beam with its curvatures `κ_x` and `κ_y` at the distance z lights a point x, y beside its axis
+/// from the direction `−(x κ_x, y κ_y, 1)`, in coordinates with z along the beam. That is the direction
+/// to give to the constructors. To take that of the axis instead is wrong by the angle x κ, which is
+/// at most the divergence of a spot and half the angle of a fan.
+///
 /// # Examples
 ///
 /// A laser line 200 mm from the apex of its fan, with the fan along x and its waist on the surface:
@@ -28,6 +35,28 @@ use crate::{DecorrelationError, GRAZING_COSINE};
 /// let line = Wavefront::astigmatic(DVec3::Z, DVec3::X, 1.0 / 0.2, 0.0)?;
 /// let turned = line.curvature() * DVec3::new(1e-3, 1e-3, 1e-3);
 /// assert!((turned - DVec3::new(5e-3, 0.0, 0.0)).length() < 1e-15);
+/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// ```
+///
+/// A helium–neon laser with a waist of 100 µm, that is a Rayleigh range of 49.65 mm. Seen from
+/// 200 mm, a motion a of the surface moves the speckle across the pupil by (1 + d/R) a: by three
+/// times the motion 50 mm behind the waist, by as much as the motion at the waist, and the other way
+/// 80 mm before it:
+///
+/// ```
+/// use tem00_decorrelation::{CameraFrame, DVec3, LineOfSight, Motion, SurfacePoint, Wavefront};
+///
+/// let eye = DVec3::new(0.0, 0.0, 0.2);
+/// let sight = LineOfSight::new(&CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y)?, eye)?;
+/// let motion = Motion { surface: DVec3::new(1e-3, 0.0, 0.0), ..Motion::default() };
+///
+/// for (z, ratio) in [(50e-3, 3.014), (0.0, 1.0), (-80e-3, -0.805)] {
+///     let curvature = z / (z * z + 49.65e-3_f64.powi(2));
+///     let beam = Wavefront::spherical(DVec3::Z, curvature)?;
+///     let point = SurfacePoint::new(sight, DVec3::Z, beam)?;
+///     let displacement = point.pupil_displacement(&motion).unwrap();
+///     assert!((displacement.x / 1e-3 - ratio).abs() < 1e-3);
+/// }
 /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,6 +126,80 @@ impl Wavefront {
         })
     }
 
+    /// Creates a wave from the direction to its source, of any length, and its curvature tensor K,
+    /// in 1/m, as it comes from the second derivatives of a measured or computed phase.
+    ///
+    /// ```text
+    /// K = ∂²φ/∂x∂x / k
+    /// ```
+    ///
+    /// The phase φ grows with the path of the light, and k is 2π/λ. Only the part of K across the
+    /// direction to the source counts.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the direction is zero or not finite, if the tensor is not finite, or if
+    /// it is not symmetric within 10⁻⁶ of its largest entry.
+    pub fn from_tensor(
+        direction_to_source: DVec3,
+        curvature: DMat3,
+    ) -> Result<Self, DecorrelationError> {
+        let direction = unit_direction(direction_to_source)?;
+        let largest = largest_entry(curvature);
+        let skew = largest_entry(curvature - curvature.transpose());
+        // A maximum drops NaN.
+        if !(curvature.is_finite() && skew <= 1e-6 * largest) {
+            return Err(DecorrelationError::CurvatureTensor(curvature));
+        }
+        let across = DMat3::IDENTITY - outer(direction);
+        let symmetric = curvature * 0.5 + curvature.transpose() * 0.5;
+        Ok(Self {
+            direction_to_source: direction,
+            curvature: across * symmetric * across,
+        })
+    }
+
+    /// Returns the unit vector to the source as it is seen at the distance `offset`, in metres, from
+    /// the point that the wave is described for, or `None` in a focus, where there is no direction.
+    ///
+    /// ```text
+    /// l_S' ∝ l_S − K (I − ζ K)⁻¹ a,    ζ = l_S·a
+    /// ```
+    ///
+    /// # Validity
+    ///
+    /// Rays are straight, so that a spherical and a cylindrical wave are followed exactly, however
+    /// far. Other waves change their curvatures from place to place: there the error is about the
+    /// square of the offset in units of the radii or, in a Gaussian beam, of the Rayleigh range.
+    /// Past that, describe the wave anew.
+    ///
+    /// # Examples
+    ///
+    /// A point source at 0.3 m, from where it is seen 0.4 m to the side:
+    ///
+    /// ```
+    /// use tem00_decorrelation::{DVec3, Wavefront};
+    ///
+    /// let wave = Wavefront::spherical(DVec3::Z, 1.0 / 0.3)?;
+    /// let direction = wave.direction_from(DVec3::new(0.4, 0.0, 0.0)).unwrap();
+    /// assert!((direction - DVec3::new(-0.8, 0.0, 0.6)).length() < 1e-15);
+    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// ```
+    pub fn direction_from(&self, offset: DVec3) -> Option<DVec3> {
+        let along = self.direction_to_source.dot(offset);
+        let to_reference = (DMat3::IDENTITY - self.curvature * along).try_inverse()?;
+        let slope = self.curvature * (to_reference * offset);
+        (self.direction_to_source - slope).try_normalize()
+    }
+
+    /// The same wave turned by a rotation.
+    pub(crate) fn turned(&self, rotation: DMat3) -> Self {
+        Self {
+            direction_to_source: (rotation * self.direction_to_source).normalize(),
+            curvature: rotation * self.curvature * rotation.transpose(),
+        }
+    }
+
     /// Returns the unit vector `l_S` from the surface to the source.
     pub const fn direction_to_source(&self) -> DVec3 {
         self.direction_to_source
@@ -120,6 +223,11 @@ fn checked_curvature(curvature: f64) -> Result<f64, DecorrelationError> {
     } else {
         Err(DecorrelationError::Curvature(curvature))
     }
+}
+
+fn largest_entry(matrix: DMat3) -> f64 {
+    let entries = matrix.to_cols_array();
+    entries.iter().fold(0.0, |a, b| a.max(b.abs()))
 }
 
 /// v vᵀ.
@@ -177,6 +285,62 @@ mod tests {
         assert!(difference < 1e-14, "difference {difference:e}");
     }
 
+    #[test]
+    fn tensors_that_are_no_curvature_are_rejected() {
+        let skew = DMat3::from_cols(DVec3::X, DVec3::new(1e-5, 1.0, 0.0), DVec3::ZERO);
+        let nan = DMat3::from_diagonal(DVec3::new(1.0, f64::NAN, 0.0));
+        for bad in [skew, nan, DMat3::IDENTITY * f64::INFINITY] {
+            let result = Wavefront::from_tensor(DVec3::Z, bad);
+            assert!(
+                matches!(result, Err(DecorrelationError::CurvatureTensor(_))),
+                "{result:?}"
+            );
+        }
+        let result = Wavefront::from_tensor(DVec3::ZERO, DMat3::IDENTITY);
+        assert!(
+            matches!(result, Err(DecorrelationError::DirectionToSource(_))),
+            "{result:?}"
+        );
+    }
+
+    #[test]
+    fn tensor_of_a_phase_is_that_of_its_wave() {
+        // The path of a point source at 0.25 m, by central differences over h.
+        let source = DVec3::new(0.09, -0.12, 0.2);
+        let path = |x: DVec3| (x - source).length();
+        let h = 1e-4;
+        let second = |a: DVec3, b: DVec3| {
+            let (a, b) = (a * h, b * h);
+            (path(a + b) - path(a - b) - path(b - a) + path(-a - b)) / (4.0 * h * h)
+        };
+        let column = |a| {
+            DVec3::new(
+                second(DVec3::X, a),
+                second(DVec3::Y, a),
+                second(DVec3::Z, a),
+            )
+        };
+        let tensor = DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z));
+        let measured = Wavefront::from_tensor(source, tensor).unwrap();
+        let sphere = Wavefront::spherical(source, 4.0).unwrap();
+        // (h/R)² R⁻¹ of truncation and ε R / h² of rounding.
+        let difference = norm(measured.curvature() - sphere.curvature());
+        assert!(difference < 1e-5, "difference {difference:e}");
+    }
+
+    #[test]
+    fn a_focus_is_seen_from_no_direction() {
+        let wave = Wavefront::astigmatic(DVec3::Z, DVec3::X, 4.0, -8.0).unwrap();
+        // The apex of the fan is 0.25 m up, its line focus 0.125 m down.
+        for focus in [DVec3::new(0.1, 0.0, 0.25), DVec3::new(0.0, 0.2, -0.125)] {
+            assert_eq!(wave.direction_from(focus), None, "at {focus}");
+        }
+        // Past the line focus the light still comes from above, and has crossed over.
+        let past = wave.direction_from(DVec3::new(0.0, 0.1, -0.25)).unwrap();
+        let expected = DVec3::new(0.0, -0.8, 1.0).normalize();
+        assert!((past - expected).length() < 1e-15, "{past}");
+    }
+
     prop_compose! {
         fn directions()(x in -1.0_f64..1.0, y in -1.0_f64..1.0, z in 0.1_f64..1.0) -> DVec3 {
             DVec3::new(x, y, z)
@@ -184,6 +348,42 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig {
+            failure_persistence: None,
+            rng_seed: proptest::test_runner::RngSeed::Fixed(1),
+            ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn a_point_source_stays_where_it_is(
+            source in directions(),
+            distance in 0.05_f64..5.0,
+            offset in directions(),
+            size in -0.9_f64..0.9,
+        ) {
+            let source = source.normalize() * distance;
+            let offset = offset.normalize() * (size * distance);
+            let wave = Wavefront::spherical(source, 1.0 / distance).unwrap();
+            let direction = wave.direction_from(offset).unwrap();
+            // A tenth of the distance is left at least, and amplifies rounding squared.
+            prop_assert!((direction - (source - offset).normalize()).length() < 1e-13);
+        }
+
+        #[test]
+        fn waves_of_any_size_have_a_direction_or_none(
+            direction in directions(),
+            axis in directions(),
+            offset in directions(),
+            exponents in [-30.0_f64..30.0, -30.0..30.0, -30.0..30.0],
+        ) {
+            let [along, across, size] = exponents.map(|x| 10.0_f64.powf(x));
+            if let Ok(wave) = Wavefront::astigmatic(direction, axis, along, -across)
+                && let Some(seen) = wave.direction_from(offset * size)
+            {
+                prop_assert!((seen.length() - 1.0).abs() < 1e-14, "{}", seen);
+            }
+        }
+
         #[test]
         fn equal_curvatures_make_a_sphere(
             direction in directions(),

@@ -247,6 +247,38 @@ fn pupil_displacement_is_that_of_the_exact_paths() {
 }
 
 #[test]
+fn waves_are_followed_sideways_to_second_order() {
+    let steps = [
+        DVec3::X,
+        DVec3::new(-0.4, 0.7, 0.3),
+        DVec3::new(0.2, -0.1, -0.9),
+    ];
+    for (name, source) in sources() {
+        let wave = source.wavefront();
+        // Rays of a torus go astray, those of a sphere and a plane do not.
+        let torus = name.contains("fan");
+        for step in steps {
+            let error = |size: f64| {
+                let seen = wave.direction_from(step * size).unwrap();
+                (seen - source.direction_from(step * size)).length()
+            };
+            let (coarse, fine) = (error(2e-3), error(1e-3));
+            if torus {
+                // (2 mm/0.18 m)² with a factor for radii of either sign, and at most a quarter of it
+                // up to the third order, plus what the directions round.
+                assert!(coarse < 5e-4, "{name}, {step}: {coarse:e}");
+                assert!(
+                    fine < 0.26 * coarse + 1e-15,
+                    "{name}, {step}: {fine:e} of {coarse:e}"
+                );
+            } else {
+                assert!(coarse < 1e-15, "{name}, {step}: {coarse:e}");
+            }
+        }
+    }
+}
+
+#[test]
 fn image_displacement_is_that_of_the_exact_projection() {
     let geometry = ImagingGeometry::from_lens(LensData {
         wavelength: 650e-9,

@@ -1,0 +1,140 @@
+use core::f64::consts::PI;
+
+use tem00_numerics::{disc_overlap_inverse, sinc_inverse};
+
+use super::{correlation as product_law, series};
+
+/// Returns the distance between two slices of a circular speckle stack that have a given intensity
+/// correlation γ.
+///
+/// ```text
+/// u = M x    with    1 − x − sin(π x)/π = √γ
+/// ```
+///
+/// `half_period` is M, the number of slices to the first uncorrelated one; the stack has 2M. The
+/// result runs from 0 for γ ≥ 1 to M for γ ≤ 0. It is the exact inverse of the stack's own law, so
+/// that two slices this far apart have the correlation asked for.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_decorrelation::slice_coordinate;
+///
+/// // Neighbours in a stack of 16 slices.
+/// let gamma = 0.567_292_284_154_527;
+/// assert!((slice_coordinate(gamma, 8) - 1.0).abs() < 1e-12);
+/// assert_eq!(slice_coordinate(0.0, 8), 8.0);
+/// ```
+#[inline]
+pub fn slice_coordinate(correlation: f64, half_period: usize) -> f64 {
+    half_period as f64 * series::circular_path_distance(amplitude(correlation))
+}
+
+/// Returns the pupil displacement, in units of the pupil diameter, that alone would leave a given
+/// intensity correlation γ.
+///
+/// ```text
+/// s = chat⁻¹(√γ)
+/// ```
+///
+/// It places any kind of decorrelation on a stack whose pupil moves along a straight line. The
+/// result runs from 0 for γ ≥ 1 to 1 for γ ≤ 0.
+///
+/// # Examples
+///
+/// In collimated light the speckle moves across the pupil as far as the surface does. How far may
+/// a surface move in its plane before a camera with a pupil of 3.125 mm loses half the correlation?
+///
+/// ```
+/// use tem00_decorrelation::{equivalent_pupil_shift, pupil_overlap_correlation};
+///
+/// let shift = equivalent_pupil_shift(0.5);
+/// assert!((shift - 0.2321).abs() < 5e-5);
+/// assert!((shift * 3.125e-3 - 0.7254e-3).abs() < 1e-7);
+/// assert!((pupil_overlap_correlation(shift) - 0.5).abs() < 1e-12);
+/// ```
+pub fn equivalent_pupil_shift(correlation: f64) -> f64 {
+    disc_overlap_inverse(amplitude(correlation))
+}
+
+/// Returns the axial displacement, in units of
+/// [`axial_decorrelation_length`](crate::ImagingGeometry::axial_decorrelation_length), that alone
+/// would leave a given intensity correlation γ, on the branch before the first zero.
+///
+/// ```text
+/// x = sinc⁻¹(√γ) / π
+/// ```
+///
+/// The result runs from 0 for γ ≥ 1 to 1 for γ ≤ 0. Beyond x = 1 the correlation revives to 4.7 %
+/// and falls again.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_decorrelation::{axial_correlation, equivalent_axial_shift};
+///
+/// let shift = equivalent_axial_shift(0.5);
+/// assert!((shift - 0.4429).abs() < 5e-5);
+/// assert!((axial_correlation(shift) - 0.5).abs() < 1e-12);
+/// ```
+pub fn equivalent_axial_shift(correlation: f64) -> f64 {
+    sinc_inverse(amplitude(correlation)) / PI
+}
+
+/// Returns the multiple of a motion at which the product law first leaves a given intensity
+/// correlation γ.
+///
+/// ```text
+/// chat²(q s) sinc²(π q x) = γ,    q ≥ 0 on the branch before the first zero
+/// ```
+///
+/// `pupil_shift` s and `axial_shift` x are those of the motion, in the units of
+/// [`correlation`](crate::correlation). At first order they grow in proportion to it, so that the
+/// motion may be any: a unit vector, or what happened between two frames. γ ≥ 1 takes q = 0, and
+/// γ ≤ 0 the first zero, where q s = 1 or q x = 1.
+///
+/// Returns `None` if the motion leaves the pattern as it is, or so nearly that the multiple
+/// overflows.
+///
+/// # Examples
+///
+/// A motion slides the speckle by 2 % of the pupil and 1 % of the axial length per frame. For how
+/// many frames is half the correlation left?
+///
+/// ```
+/// use tem00_decorrelation::{correlation, motion_multiple};
+///
+/// let frames = motion_multiple(0.5, 0.02, 0.01).unwrap();
+/// assert!((frames - 11.03).abs() < 0.005);
+/// assert!((correlation(0.02 * frames, 0.01 * frames) - 0.5).abs() < 1e-12);
+/// ```
+pub fn motion_multiple(correlation: f64, pupil_shift: f64, axial_shift: f64) -> Option<f64> {
+    let (s, x) = (pupil_shift.abs(), axial_shift.abs());
+    let larger = s.max(x);
+    // Along the direction scaled so that its larger part is 1 the product falls from 1 at 0 to 0 at 1.
+    let (mut low, mut high) = (0.0, 1.0);
+    if correlation > 0.0 {
+        let left = |q: f64| product_law(q * (s / larger), q * (x / larger));
+        while let Some(middle) = between(low, high) {
+            if left(middle) > correlation {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+    }
+    let end = if correlation < 1.0 { high } else { 0.0 };
+    Some(end / larger).filter(|multiple| multiple.is_finite())
+}
+
+/// Returns the middle of an interval, or `None` if it cannot be divided further.
+fn between(low: f64, high: f64) -> Option<f64> {
+    let middle = 0.5 * (low + high);
+    (low < middle && middle < high && high - low > f64::EPSILON * high).then_some(middle)
+}
+
+/// √γ, with rounding noise below zero taken for zero.
+#[inline(always)]
+fn amplitude(correlation: f64) -> f64 {
+    correlation.max(0.0).sqrt()
+}

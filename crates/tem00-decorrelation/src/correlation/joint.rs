@@ -1,0 +1,159 @@
+use core::f64::consts::{PI, TAU};
+
+use tem00_numerics::sinc;
+
+use super::correlation;
+
+/// What is meant by the correlation after a pupil displacement and an axial displacement together.
+///
+/// Defocus moves a displaced pattern. Relative to the image of the surface it shifts by
+///
+/// ```text
+/// Δr = 4 s |x| h      reference state in focus, upright image
+/// ```
+///
+/// with the pupil displacement s in pupil diameters, the axial displacement x in axial
+/// decorrelation lengths and the speckle size h: against the pupil displacement where the surface
+/// has come nearer, along it where it has gone away. Whether that shift is followed decides what is
+/// left: a renderer that looks the pattern up at the projected displacement of the surface point
+/// needs [`AtImageDisplacement`](Self::AtImageDisplacement), one that adds Δr needs
+/// [`AtPeak`](Self::AtPeak). Without defocus, or without pupil displacement, all three are the same.
+///
+/// Both integrals run over the lens ℓ that two discs of radius 1, with centres at ±s, share:
+///
+/// ```text
+/// γ = |μ|²,   μ = (1/π) ∫_ℓ exp(iβ |p − c|²) d²p,   β = 2π x
+/// ```
+///
+/// By the theorem of Stokes they are line integrals along its two arcs, of a smooth function:
+///
+/// ```text
+/// μ = (1/π) Σ_k ∫₀^acos(s) (1 − k cos t) E(β (1 + k² − 2k cos t)) dt,   E(z) = (exp(iz) − 1)/(iz)
+/// ```
+///
+/// with k = s for both arcs if c is the middle of the lens, k = 0 and 2s if it is the centre of a disc.
+///
+/// # Validity
+///
+/// A circular pupil without aberrations. The sign of μ, negative in the first revival of a pattern
+/// out of focus, is lost in γ.
+///
+/// # Examples
+///
+/// A tenth of the pupil, and 0.625 axial decorrelation lengths:
+///
+/// ```
+/// use tem00_decorrelation::CorrelationLaw;
+///
+/// let left = |law: CorrelationLaw| law.correlation(0.1, 0.625);
+/// assert!((left(CorrelationLaw::Product) - 0.1687).abs() < 5e-5);
+/// assert!((left(CorrelationLaw::AtImageDisplacement) - 0.2166).abs() < 5e-5);
+/// assert!((left(CorrelationLaw::AtPeak) - 0.2484).abs() < 5e-5);
+/// ```
+///
+/// # References
+///
+/// - D. W. Li and F. P. Chiang, *Decorrelation functions in laser speckle photography*, 1986.
+/// - S. Bergmann et al. 2016, §6.4.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CorrelationLaw {
+    /// The product of both laws, [`correlation`](crate::correlation): some fifty times as fast as
+    /// the integrals, at most 0.048 from `AtImageDisplacement` and 0.121 from `AtPeak`.
+    ///
+    /// The largest errors lie at s = 0.10, x = 0.62 and at s = 0.26, x = 0.66; there the product is
+    /// too small.
+    #[default]
+    Product,
+    /// The correlation at the displacement of the projected surface point, with the reference state
+    /// (or the moved one) in focus.
+    AtImageDisplacement,
+    /// The correlation at Δr from the displacement of the projected point, where it is largest as
+    /// long as it is large: around the first zero the field of correlation breaks up, and there is
+    /// no one peak to follow.
+    ///
+    /// It is also the correlation at the displacement of the projected point itself if the focus
+    /// lies midway, so that reference and moved state are out of focus by ∓x/2.
+    AtPeak,
+}
+
+impl CorrelationLaw {
+    /// Returns the intensity correlation γ in [0, 1] left after a displacement across the pupil, in
+    /// pupil diameters, and along the axis, in axial decorrelation lengths.
+    ///
+    /// It is even in both. The integrals are exact to 1e−8. Up to an axial displacement of 3200
+    /// lengths they are found by Gauss–Legendre quadrature: in half a microsecond to one at first,
+    /// and in a time proportional to the displacement beyond a few lengths. Farther out the product
+    /// is returned, since all three laws are below 4/β² = 1e−8 there.
+    pub fn correlation(self, pupil_shift: f64, axial_shift: f64) -> f64 {
+        let s = pupil_shift.abs();
+        let x = axial_shift.abs();
+        if self == Self::Product || x >= LARGEST_AXIAL_SHIFT {
+            return correlation(s, x);
+        }
+        if s >= 1.0 {
+            return 0.0;
+        }
+        let beta = TAU * x;
+        let [re, im] = match self {
+            Self::AtImageDisplacement => sum(arc(s, beta, 0.0), arc(s, beta, 2.0 * s)),
+            Self::AtPeak | Self::Product => arc(s, beta, s).map(|part| 2.0 * part),
+        };
+        // Rounding may end a unit above 1.
+        (re * re + im * im).min(1.0)
+    }
+}
+
+/// From here on γ ≤ (2/β)² < 1e−8: |E(z)| ≤ 2/z, and the arcs are seen from c under 2π at most.
+const LARGEST_AXIAL_SHIFT: f64 = 3_200.0;
+
+/// Returns the part of μ, as [re, im], from the arc whose own centre lies `k` from that of the
+/// defocus.
+fn arc(s: f64, beta: f64, k: f64) -> [f64; 2] {
+    let end = s.acos();
+    // The phase changes along the arc at most at the rate of its end or, short of it, a right angle.
+    let phase = beta * 2.0 * k * end.sin() * end;
+    let panels = (phase / PHASE_PER_PANEL).ceil().max(1.0);
+    let half_width = 0.5 * end / panels;
+    let mut total = [0.0; 2];
+    let mut panel = 0.0;
+    while panel < panels {
+        let middle = (2.0 * panel + 1.0) * half_width;
+        for (node, weight) in GAUSS_LEGENDRE {
+            for t in [middle - half_width * node, middle + half_width * node] {
+                let cosine = t.cos();
+                let factor = weight * (1.0 - k * cosine);
+                let [re, im] = mean_phasor(beta * (1.0 + k * k - 2.0 * k * cosine));
+                total = sum(total, [factor * re, factor * im]);
+            }
+        }
+        panel += 1.0;
+    }
+    total.map(|part| part * half_width / PI)
+}
+
+/// E(z) = (exp(iz) − 1)/(iz) = exp(iz/2) sinc(z/2), the mean of the phasors from 0 to z.
+fn mean_phasor(z: f64) -> [f64; 2] {
+    let (sin, cos) = (0.5 * z).sin_cos();
+    let length = sinc(0.5 * z);
+    [length * cos, length * sin]
+}
+
+fn sum(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+/// Sixteen nodes integrate exp(iωt) over [−1, 1] to 2e−16 up to ω = 8.
+const PHASE_PER_PANEL: f64 = 16.0;
+
+/// The nodes in (0, 1) of the 16-point Gauss–Legendre rule and their weights (M. Abramowitz and
+/// I. A. Stegun, *Handbook of Mathematical Functions*, 1964, table 25.4).
+const GAUSS_LEGENDRE: [(f64, f64); 8] = [
+    (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
+    (0.281_603_550_779_258_9, 0.182_603_415_044_923_6),
+    (0.458_016_777_657_227_4, 0.169_156_519_395_002_54),
+    (0.617_876_244_402_643_7, 0.149_595_988_816_576_73),
+    (0.755_404_408_355_003, 0.124_628_971_255_533_87),
+    (0.865_631_202_387_831_7, 0.095_158_511_682_492_78),
+    (0.944_575_023_073_232_6, 0.062_253_523_938_647_89),
+    (0.989_400_934_991_649_9, 0.027_152_459_411_754_095),
+];

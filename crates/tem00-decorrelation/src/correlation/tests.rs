@@ -1,0 +1,308 @@
+use core::f64::consts::{FRAC_PI_2, PI};
+
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use tem00_numerics::circular_path_overlap;
+
+use super::*;
+
+/// The correlation of a pupil displaced by `s` diameters and defocused by the path difference
+/// `beta` r² over the unit disc, by quadrature over the area of the lens.
+///
+/// `reference` is the centre of the defocus: 0.5 puts it in the middle of the lens, which is where
+/// the cross-correlation peaks; 0 at the centre of the undisplaced pupil, which is the displacement
+/// of the projected point with the reference in focus.
+fn area_integral(s: f64, beta: f64, reference: f64) -> f64 {
+    let (mut re, mut im) = (0.0, 0.0);
+    // The left and the right half of the lens each on its own: there is a corner between them.
+    for side in [-1.0, 1.0] {
+        for (position, weight_x) in double_exponential() {
+            let x = 0.5 * (1.0 - s) * (1.0 + position);
+            let height = (1.0 - (x + s).powi(2)).max(0.0).sqrt();
+            let along = (side * x + (1.0 - 2.0 * reference) * s).powi(2);
+            let weight_x = 0.5 * (1.0 - s) * weight_x * height / PI;
+            for (position, weight) in double_exponential() {
+                let y = height * position;
+                let (sin, cos) = (beta * (along + y * y)).sin_cos();
+                re += cos * weight_x * weight;
+                im += sin * weight_x * weight;
+            }
+        }
+    }
+    re * re + im * im
+}
+
+/// Nodes and weights on [−1, 1] of the double-exponential rule, which roots at the ends do not
+/// disturb: x = tanh(π/2 · sinh t). At |t| = 3.2 what is left of the interval is 1e−16.
+fn double_exponential() -> impl Iterator<Item = (f64, f64)> {
+    const STEP: f64 = 1.0 / 32.0;
+    (-102..=102).map(|i| {
+        let t = STEP * f64::from(i);
+        let u = FRAC_PI_2 * t.sinh();
+        (u.tanh(), STEP * FRAC_PI_2 * t.cosh() / u.cosh().powi(2))
+    })
+}
+
+/// The laws by integral, with the centre of their defocus.
+const INTEGRALS: [(CorrelationLaw, f64); 2] = [
+    (CorrelationLaw::AtImageDisplacement, 0.0),
+    (CorrelationLaw::AtPeak, 0.5),
+];
+
+/// The largest deviation of the product from the law, with the shifts where it occurs.
+fn largest_product_error(law: CorrelationLaw) -> (f64, f64, f64) {
+    let mut worst = (0.0, 0.0, 0.0);
+    for i in 0..=100_u32 {
+        for j in 0..=150_u32 {
+            let (s, x) = (f64::from(i) * 0.01, f64::from(j) * 0.02);
+            let error = law.correlation(s, x) - correlation(s, x);
+            if error.abs() > f64::abs(worst.0) {
+                worst = (error, s, x);
+            }
+        }
+    }
+    worst
+}
+
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    }
+}
+
+#[test]
+fn overlap_correlation_has_the_reference_values() {
+    // Squares of chat(s) to 15 digits, computed in extended precision.
+    let reference = [
+        (0.1, 0.872_888_571_569_538_f64),
+        (0.25, 0.685_037_642_474_293),
+        (0.5, 0.391_002_218_955_771),
+        (0.75, 0.144_293_612_814_387),
+    ];
+    for (s, chat) in reference {
+        let gamma = pupil_overlap_correlation(s);
+        assert!((gamma - chat * chat).abs() < 2e-15, "γ({s}) = {gamma}");
+    }
+}
+
+#[test]
+fn axial_correlation_has_the_reference_values() {
+    // sinc²(π a_O/2) at a_O = 0.5, 1, 1.5, computed in extended precision.
+    let reference = [
+        (0.25, 0.810_569_469_138_7),
+        (0.5, 0.405_284_734_569_4),
+        (0.75, 0.090_063_274_348_7),
+    ];
+    for (x, expected) in reference {
+        let gamma = axial_correlation(x);
+        assert!((gamma - expected).abs() < 1e-13, "γ({x}) = {gamma}");
+    }
+    assert!(axial_correlation(1.0) == 0.0, "not a zero");
+    assert!(axial_correlation(f64::NEG_INFINITY) == 0.0, "the limit");
+    assert!(axial_correlation(f64::MAX) == 0.0, "an overflow");
+    // The revival, at a_O = 2.86.
+    let lobe = axial_correlation(1.43);
+    assert!((lobe - 0.0472).abs() < 5e-5, "the first side lobe: {lobe}");
+}
+
+#[test]
+fn integrals_are_those_over_the_area_of_the_lens() {
+    for (law, reference) in INTEGRALS {
+        for (s, x) in [
+            (0.0, 0.3),
+            (0.001, 2.3),
+            (0.1, 0.625),
+            (0.26, 0.66),
+            (0.5, 1.7),
+            (0.7, 4.4),
+            (0.95, 3.0),
+        ] {
+            let (exact, area) = (
+                law.correlation(s, x),
+                area_integral(s, 2.0 * PI * x, reference),
+            );
+            assert!(
+                (exact - area).abs() < 1e-12,
+                "{law:?} at {s}, {x}: {exact}, {area}"
+            );
+        }
+    }
+}
+
+#[test]
+fn one_displacement_alone_leaves_the_integrals_to_the_closed_forms() {
+    // Over many panels too: 3000 lengths turn the phase by 19 000 radians, which rounds by 4e−12.
+    for (law, _) in INTEGRALS {
+        for value in [0.0, 0.1, 0.4, 0.9, 0.999_999, 1.0, 1.43, 2.0, 77.7, 3_000.3] {
+            let (shifted, closed) = (
+                law.correlation(value, 0.0),
+                pupil_overlap_correlation(value),
+            );
+            assert!(
+                (shifted - closed).abs() < 1e-13,
+                "{law:?}, s = {value}: {shifted}"
+            );
+            let (defocused, closed) = (law.correlation(0.0, value), axial_correlation(value));
+            assert!(
+                (defocused - closed).abs() < 1e-13,
+                "{law:?}, x = {value}: {defocused}"
+            );
+        }
+    }
+}
+
+#[test]
+fn integrals_are_steady_where_the_product_takes_over() {
+    for (law, _) in INTEGRALS {
+        for s in [0.0, 1e-6, 0.03, 0.4, 0.5, 0.7, 0.97] {
+            for x in [
+                3_199.5,
+                3_199.999_999,
+                3_200.0,
+                3_200.5,
+                1e6,
+                1e30,
+                f64::MAX,
+            ] {
+                let gamma = law.correlation(s, x);
+                assert!(
+                    (0.0..1e-8).contains(&gamma),
+                    "{law:?} at {s}, {x}: {gamma:e}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn product_stays_within_the_stated_error() {
+    let (error, s, x) = largest_product_error(CorrelationLaw::AtImageDisplacement);
+    assert!((0.0475..0.0480).contains(&error), "{error} at {s}, {x}");
+    assert!(
+        (s - 0.10).abs() < 0.011 && (x - 0.62).abs() < 0.021,
+        "{s}, {x}"
+    );
+    let (error, s, x) = largest_product_error(CorrelationLaw::AtPeak);
+    assert!((0.1200..0.1206).contains(&error), "{error} at {s}, {x}");
+    assert!(
+        (s - 0.26).abs() < 0.011 && (x - 0.66).abs() < 0.021,
+        "{s}, {x}"
+    );
+}
+
+#[test]
+fn slice_coordinate_inverts_the_law_of_the_stack() {
+    // γ between neighbouring slices, from 1 − 1/M − sin(π/M)/π to 15 digits.
+    let reference = [
+        (4, 0.275_541_973_262_254),
+        (8, 0.567_292_284_154_527),
+        (16, 0.766_326_598_814_221),
+    ];
+    for (half_period, gamma) in reference {
+        let u = slice_coordinate(gamma, half_period);
+        assert!((u - 1.0).abs() < 1e-12, "M = {half_period}: u = {u}");
+    }
+}
+
+#[test]
+fn correlations_out_of_range_map_to_the_ends() {
+    for (gamma, end) in [(1.0, 0.0), (1.5, 0.0), (0.0, 1.0), (-1e-17, 1.0)] {
+        let inverses = [
+            slice_coordinate(gamma, 8) / 8.0,
+            equivalent_pupil_shift(gamma),
+            equivalent_axial_shift(gamma),
+            motion_multiple(gamma, 1.0, 0.2).unwrap(),
+            motion_multiple(gamma, 0.2, 1.0).unwrap(),
+        ];
+        for (i, inverse) in inverses.into_iter().enumerate() {
+            assert!((inverse - end).abs() < 1e-15, "{i} of {gamma}: {inverse}");
+        }
+    }
+}
+
+#[test]
+fn motion_that_leaves_the_pattern_has_no_multiple() {
+    assert_eq!(motion_multiple(1.0, 0.3, 0.2), Some(0.0), "nothing to lose");
+    assert_eq!(motion_multiple(0.5, 0.0, 0.0), None, "no motion");
+    assert_eq!(motion_multiple(0.5, 0.0, 1e-310), None, "an overflow");
+    assert!(
+        motion_multiple(0.5, 1e-300, 0.0).is_some(),
+        "a small motion"
+    );
+}
+
+proptest! {
+    #![proptest_config(config(256))]
+
+    #[test]
+    fn slices_that_far_apart_have_the_correlation_asked_for(
+        gamma in 0.0_f64..1.0,
+        half_period in 1_usize..100,
+    ) {
+        let u = slice_coordinate(gamma, half_period);
+        let stack = circular_path_overlap(u / half_period as f64).powi(2);
+        // Rounding of u by ε changes the overlap by 2ε and γ by twice that.
+        prop_assert!((stack - gamma).abs() < 1e-14);
+        let straight = pupil_overlap_correlation(equivalent_pupil_shift(gamma));
+        prop_assert!((straight - gamma).abs() < 1e-14);
+        let axial = axial_correlation(equivalent_axial_shift(gamma));
+        prop_assert!((axial - gamma).abs() < 1e-14);
+    }
+
+    #[test]
+    fn motion_that_many_times_over_leaves_the_correlation_asked_for(
+        gamma in 0.0_f64..1.0,
+        s in -1e3_f64..1e3,
+        x in -1e3_f64..1e3,
+    ) {
+        let q = motion_multiple(gamma, s, x).unwrap();
+        // The slopes are 4 at most at q = 1: rounding of q, s and x.
+        prop_assert!((correlation(q * s, q * x) - gamma).abs() < 1e-14);
+        // On the first branch.
+        prop_assert!(q >= 0.0 && (q * s).abs() <= 1.0 && (q * x).abs() <= 1.0);
+    }
+
+    #[test]
+    fn every_law_is_even_and_between_none_and_all(
+        s in -1.2_f64..1.2,
+        x in -20.0_f64..20.0,
+    ) {
+        use CorrelationLaw::{AtImageDisplacement, AtPeak, Product};
+        for law in [Product, AtImageDisplacement, AtPeak] {
+            let gamma = law.correlation(s, x);
+            prop_assert!((0.0..=1.0).contains(&gamma));
+            for mirrored in [law.correlation(-s, x), law.correlation(s, -x)] {
+                prop_assert_eq!(gamma.to_bits(), mirrored.to_bits());
+            }
+            // Phasors over the lens add up to its area at most.
+            prop_assert!(gamma <= pupil_overlap_correlation(s) + 1e-14);
+        }
+        prop_assert_eq!(correlation(s, x).to_bits(), Product.correlation(s, x).to_bits());
+    }
+
+    #[test]
+    fn integrals_are_continuous(s in 0.0_f64..1.0, x in 0.0_f64..20.0, step in -1e-6_f64..1e-6) {
+        for (law, _) in INTEGRALS {
+            let change = law.correlation(s + step, x + step) - law.correlation(s, x);
+            // |∂μ/∂s| ≤ 4/π and |∂μ/∂x| ≤ π, so |Δγ| ≤ 2 (4/π + π) |step|.
+            prop_assert!(change.abs() <= 9.0 * step.abs() + 1e-13);
+        }
+    }
+
+    #[test]
+    fn any_finite_input_has_a_correlation(s in proptest::num::f64::NORMAL, x in proptest::num::f64::NORMAL) {
+        for (law, _) in INTEGRALS {
+            prop_assert!((0.0..=1.0).contains(&law.correlation(s, x)));
+        }
+        for gamma in [0.3, s, x] {
+            if let Some(multiple) = motion_multiple(gamma, s, x) {
+                prop_assert!(multiple.is_finite() && multiple >= 0.0);
+            }
+            prop_assert!((0.0..=1.0).contains(&equivalent_axial_shift(gamma)));
+            prop_assert!((0.0..=8.0).contains(&slice_coordinate(gamma, 8)));
+        }
+    }
+}

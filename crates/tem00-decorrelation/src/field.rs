@@ -1,0 +1,210 @@
+mod kernel;
+mod slices;
+#[cfg(test)]
+mod tests;
+
+use glam::DVec3;
+
+use crate::{CameraFrame, DecorrelationError, ImageOrientation, ImagingGeometry, Motion};
+
+pub use slices::{FieldLight, FieldPoints, FieldSlices};
+
+/// What all points of a [`MotionField`] share: the camera and the pattern it looks up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldSetup {
+    /// The lens, its pupil and the sensor.
+    pub geometry: ImagingGeometry,
+    /// The axes of the camera.
+    pub camera: CameraFrame,
+    /// Centre of the pupil in world coordinates, in metres.
+    pub pupil_centre: DVec3,
+    /// Which way up image displacements are counted.
+    pub orientation: ImageOrientation,
+    /// Speckle size `h_p` of the pattern, in pattern samples.
+    pub pattern_speckle_size: f64,
+    /// Number M of slices of the stack to the first uncorrelated one; the stack has 2M.
+    pub half_period: usize,
+}
+
+/// What motions do to the speckle at many surface points, such as those behind the pixels of an
+/// image.
+///
+/// It is [`SpeckleMotion`](crate::SpeckleMotion) for slices, with the coordinates of the look-up
+/// added: everything that the points share is worked out once, and the loop over them needs no more
+/// than arithmetic and square roots. The results of a point do not depend, to the last bit, on the
+/// points around it. They differ from those of [`SpeckleMotion`](crate::SpeckleMotion) by rounding.
+///
+/// A point out of focus adds to the motion of its image what the pupil displacement does there:
+///
+/// ```text
+/// ± [(c / Z) Π (a − c_P) − c (1/Z − 1/L) a_P]        + screen upright, − sensor inverted
+/// ```
+///
+/// with the depth Z of the point, the motion `c_P` of the pupil, and c = m L.
+///
+/// A point that the camera cannot see, one that it sees edge-on under a curved wave, and one whose
+/// numbers overflow are decorrelated: their correlation is 0, their pupil displacement infinite in
+/// both components, and their speckle moves with the image of the surface or, out of sight, not at
+/// all.
+///
+/// # Validity
+///
+/// That of [`SpeckleMotion`](crate::SpeckleMotion): first order in the motion. The correlation is
+/// the product law, whose error [`correlation`](crate::correlation) states.
+///
+/// # Examples
+///
+/// Two points in collimated light, one of which moves sideways by a quarter of a millimetre:
+///
+/// ```
+/// use tem00_decorrelation::{
+///     CameraFrame, DVec3, FieldLight, FieldPoints, FieldSetup, FieldSlices, ImageOrientation,
+///     ImagingGeometry, LensData, MotionField,
+/// };
+///
+/// let eye = DVec3::new(0.0, 0.0, 0.3);
+/// let field = MotionField::new(FieldSetup {
+///     geometry: ImagingGeometry::from_lens(LensData {
+///         wavelength: 650e-9,
+///         focal_length: 25e-3,
+///         f_number: 8.0,
+///         surface_to_pupil: 0.3,
+///         pixel_pitch: 3.45e-6,
+///     })?,
+///     camera: CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y)?,
+///     pupil_centre: eye,
+///     orientation: ImageOrientation::ScreenUpright,
+///     pattern_speckle_size: 4.0,
+///     half_period: 8,
+/// })?;
+///
+/// let (zero, one) = ([0.0; 2], [1.0; 2]);
+/// let points = FieldPoints {
+///     position: [&[0.0, 1e-3], &zero, &zero],
+///     normal: [&zero, &zero, &one],
+///     motion: [&[0.0, 0.25e-3], &zero, &zero],
+///     pixel: [&[0.0, 26.35], &zero],
+///     light: FieldLight::Collimated,
+/// };
+/// let mut out = [[0.0; 2]; 8];
+/// let [speckle_x, speckle_y, pupil_x, pupil_y, correlation, pattern_x, pattern_y, slice] = &mut out;
+/// field.evaluate(&points, FieldSlices {
+///     speckle_displacement: [speckle_x, speckle_y],
+///     pupil_displacement: [pupil_x, pupil_y],
+///     correlation,
+///     pattern_coordinate: [pattern_x, pattern_y],
+///     slice_coordinate: slice,
+/// });
+///
+/// assert_eq!([correlation[0], slice[0]], [1.0, 0.0]);
+/// assert!((speckle_x[1] / 3.45e-6 - 6.588).abs() < 1e-3);
+/// assert!((correlation[1] - 0.807).abs() < 1e-3);
+/// assert!((slice[1] - 0.408).abs() < 1e-3);
+/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionField {
+    setup: FieldSetup,
+    /// The length c of the image of a unit tangent, in metres, positive if the image is upright.
+    signed_principal_distance: f64,
+    /// 1/L, in 1/m.
+    per_surface_to_pupil: f64,
+    /// 1/D, in 1/m.
+    per_pupil_diameter: f64,
+    /// The axial decorrelation length at a depth of 1 m, inverted: 1/(8 λ (1 m/D)²), in 1/m.
+    per_axial_length: f64,
+    samples_per_pixel: f64,
+    samples_per_metre: f64,
+    /// What `motion` of the points is to be increased by to give `a − c` and `a − s`.
+    seen: DVec3,
+    within_illumination: DVec3,
+}
+
+impl MotionField {
+    /// Creates a field in which the surface moves alone.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the centre of the pupil is not finite or the speckle size of the pattern
+    /// not positive and finite.
+    pub fn new(setup: FieldSetup) -> Result<Self, DecorrelationError> {
+        let FieldSetup {
+            geometry,
+            pupil_centre,
+            pattern_speckle_size,
+            ..
+        } = setup;
+        if !pupil_centre.is_finite() {
+            return Err(DecorrelationError::PupilCentre(pupil_centre));
+        }
+        if !(pattern_speckle_size > 0.0 && pattern_speckle_size.is_finite()) {
+            return Err(DecorrelationError::PatternSpeckleSize(pattern_speckle_size));
+        }
+        let sign = match setup.orientation {
+            ImageOrientation::ScreenUpright => 1.0,
+            ImageOrientation::SensorInverted => -1.0,
+        };
+        Ok(Self {
+            setup,
+            signed_principal_distance: sign
+                * (geometry.magnification() * geometry.surface_to_pupil()),
+            per_surface_to_pupil: 1.0 / geometry.surface_to_pupil(),
+            per_pupil_diameter: 1.0 / geometry.pupil_diameter(),
+            per_axial_length: 1.0 / geometry.axial_decorrelation_length_at(1.0),
+            samples_per_pixel: pattern_speckle_size / geometry.speckle_size_in_pixels(),
+            samples_per_metre: pattern_speckle_size / geometry.speckle_size(),
+            seen: DVec3::ZERO,
+            within_illumination: DVec3::ZERO,
+        })
+    }
+
+    /// Returns the field with a motion of camera, source and all surfaces added to those of the
+    /// points.
+    #[must_use]
+    pub fn with_shared_motion(self, motion: &Motion) -> Self {
+        Self {
+            seen: motion.surface_seen_by_camera(),
+            within_illumination: motion.surface_within_illumination(),
+            ..self
+        }
+    }
+
+    /// Returns what all points share.
+    pub const fn setup(&self) -> &FieldSetup {
+        &self.setup
+    }
+
+    /// Works out displacements, correlation and coordinates at many points.
+    ///
+    /// Few points at a time waste time: they are taken in blocks of 32.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless all slices of `points` and `out` are of equal length.
+    pub fn evaluate(&self, points: &FieldPoints<'_>, out: FieldSlices<'_>) {
+        let columns = points.columns();
+        let columns = &columns[..points.column_count()];
+        let out = out.into_columns();
+        let len = out[0].len();
+        assert!(
+            columns.iter().all(|column| column.len() == len)
+                && out.iter().all(|column| column.len() == len),
+            "all slices must be of equal length, got {:?} and {:?}",
+            columns
+                .iter()
+                .map(|column| column.len())
+                .collect::<Vec<_>>(),
+            out.each_ref().map(|column| column.len()),
+        );
+        kernel::vectorised(
+            #[inline(always)]
+            || match points.light {
+                FieldLight::Collimated => self.run(columns, out, kernel::collimated),
+                FieldLight::PointSource(source) => {
+                    self.run(columns, out, |point, a| kernel::spherical(source, point, a));
+                }
+                FieldLight::Curvature(_) => self.run(columns, out, kernel::curved),
+            },
+        );
+    }
+}

@@ -1,0 +1,141 @@
+use crate::DecorrelationError;
+
+/// A thin lens at a known distance from the surface, from which an
+/// [`ImagingGeometry`](crate::ImagingGeometry) is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LensData {
+    /// Vacuum wavelength `λ` of the light, in metres.
+    pub wavelength: f64,
+    /// Focal length `f` of the lens, in metres.
+    pub focal_length: f64,
+    /// F-number `F = f / D` as engraved on the lens, for focus at infinity.
+    pub f_number: f64,
+    /// Distance `L` from the surface in focus to the pupil along the optical axis, in metres.
+    pub surface_to_pupil: f64,
+    /// Distance between the centres of neighbouring pixels on the sensor, in metres.
+    pub pixel_pitch: f64,
+}
+
+/// A lens of many elements, from which an [`ImagingGeometry`](crate::ImagingGeometry) is made.
+///
+/// Its pupils lie away from its principal planes, and differ in size:
+///
+/// ```text
+/// m   = f / (s − f)            magnification, s from the surface to the front principal plane
+/// m_p = D_exit / D             pupil magnification, D the diameter of the entrance pupil
+/// D   = f / F
+/// L   = f (1/m + 1/m_p)        surface to entrance pupil
+/// d   = f (m + m_p)            exit pupil to sensor
+/// ```
+///
+/// They follow from Newton's form of the lens equation. A magnification M, negative for an inverted
+/// image, is that of an object at the distance −f/M before the front focus, with its image −M f
+/// behind the rear focus: the surface with M = −m, and the entrance pupil, whose image is the exit
+/// pupil, with M = `m_p`.
+///
+/// `s` and `L` differ by `f (1/m_p − 1)`, the distance from the front principal plane to the
+/// entrance pupil towards the image. A retrofocus lens has `m_p` above 1, a telephoto lens below.
+///
+/// # Validity
+///
+/// A lens in air. A lens telecentric on the side of the surface has its entrance pupil at infinity
+/// and is not covered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThickLensData {
+    /// Vacuum wavelength `λ` of the light, in metres.
+    pub wavelength: f64,
+    /// Focal length `f` of the lens, in metres.
+    pub focal_length: f64,
+    /// F-number `F = f / D` as engraved on the lens, for focus at infinity.
+    pub f_number: f64,
+    /// Pupil magnification `m_p`, the diameter of the exit pupil over that of the entrance pupil.
+    pub pupil_magnification: f64,
+    /// Where the surface in focus lies.
+    pub focus: Focus,
+    /// Distance between the centres of neighbouring pixels on the sensor, in metres.
+    pub pixel_pitch: f64,
+}
+
+/// Where the surface in focus lies before a [thick lens](ThickLensData).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Focus {
+    /// At the distance that is imaged with this magnification `m`, counted positive.
+    Magnification(f64),
+    /// At this distance `s` from the front principal plane, in metres: the object distance of the
+    /// lens equation.
+    SurfaceToPrincipalPlane(f64),
+    /// At this distance `L` from the entrance pupil, in metres: the centre of perspective, from
+    /// which a renderer sees the scene.
+    SurfaceToPupil(f64),
+}
+
+impl Focus {
+    /// Returns `m` and `L`, in metres, for the focal length `f`, in metres, and `m_p`.
+    pub(crate) fn resolve(self, f: f64, m_p: f64) -> Result<(f64, f64), DecorrelationError> {
+        use DecorrelationError as E;
+        let (m, surface_to_pupil) = match self {
+            Self::Magnification(m) => (m, f / m + f / m_p),
+            Self::SurfaceToPrincipalPlane(s) => {
+                if !(s > f && s.is_finite()) {
+                    return Err(E::SurfaceToPrincipalPlane {
+                        surface_to_principal_plane: s,
+                        focal_length: f,
+                    });
+                }
+                (f / (s - f), (s - f) + f / m_p)
+            }
+            Self::SurfaceToPupil(surface_to_pupil) => {
+                let minimum = f / m_p;
+                if !(surface_to_pupil > minimum && surface_to_pupil.is_finite()) {
+                    return Err(E::SurfaceToPupil {
+                        surface_to_pupil,
+                        minimum,
+                    });
+                }
+                (f / (surface_to_pupil - minimum), surface_to_pupil)
+            }
+        };
+        check_positive(m, E::Magnification)?;
+        // Finite numbers near the ends of their range have a sum or quotient that is not.
+        check_positive(surface_to_pupil, |_| E::Magnification(m))?;
+        Ok((m, surface_to_pupil))
+    }
+}
+
+/// The distances and the pupil of a camera as such, from which an
+/// [`ImagingGeometry`](crate::ImagingGeometry) is made.
+///
+/// They are those of Bergmann et al. 2016. Entrance and exit pupil are one, at the lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PupilDistances {
+    /// Vacuum wavelength `λ` of the light, in metres.
+    pub wavelength: f64,
+    /// Distance `L` from the surface in focus to the pupil along the optical axis, in metres.
+    pub surface_to_pupil: f64,
+    /// Distance `d_PI` from the pupil to the sensor, in metres.
+    pub pupil_to_image: f64,
+    /// Diameter `D` of the pupil, in metres.
+    pub pupil_diameter: f64,
+    /// Distance between the centres of neighbouring pixels on the sensor, in metres.
+    pub pixel_pitch: f64,
+}
+
+pub(crate) fn check_positive(
+    x: f64,
+    error: impl FnOnce(f64) -> DecorrelationError,
+) -> Result<(), DecorrelationError> {
+    if x > 0.0 && x.is_finite() {
+        Ok(())
+    } else {
+        Err(error(x))
+    }
+}
+
+pub(crate) fn check_f_number(f_number: f64) -> Result<(), DecorrelationError> {
+    if f_number >= 0.5 && f_number.is_finite() {
+        Ok(())
+    } else {
+        Err(DecorrelationError::FNumber(f_number))
+    }
+}

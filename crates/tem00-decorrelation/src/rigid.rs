@@ -1,0 +1,221 @@
+use glam::{DMat3, DVec3};
+
+use crate::{DecorrelationError, frame::orthonormal};
+
+/// A rotation and a translation of a rigid body, in world coordinates.
+///
+/// ```text
+/// x' = R x + t
+/// ```
+///
+/// # Examples
+///
+/// A turntable that turns by 90° about a vertical axis through x = 1 m:
+///
+/// ```
+/// use tem00_decorrelation::{DVec3, RigidMotion};
+///
+/// let turn = RigidMotion::about(DVec3::X, DVec3::Y, 90_f64.to_radians())?;
+/// let moved = turn.point(DVec3::new(1.0, 0.0, 0.2));
+/// assert!((moved - DVec3::new(1.2, 0.0, 0.0)).length() < 1e-15);
+/// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidMotion {
+    rotation: DMat3,
+    translation: DVec3,
+}
+
+impl RigidMotion {
+    /// The motion of a body that stands still.
+    pub const IDENTITY: Self = Self {
+        rotation: DMat3::IDENTITY,
+        translation: DVec3::ZERO,
+    };
+
+    /// Creates the motion `x' = R x + t` from a rotation matrix and a translation, in metres.
+    ///
+    /// The matrix is made orthonormal to rounding, so that matrices in single precision do.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the columns of the matrix are not orthonormal within 10⁻⁶ or not
+    /// right-handed, or if the translation is not finite.
+    pub fn new(rotation: DMat3, translation: DVec3) -> Result<Self, DecorrelationError> {
+        let rotation = orthonormal(rotation).ok_or(DecorrelationError::Rotation(rotation))?;
+        if !translation.is_finite() {
+            return Err(DecorrelationError::Translation(translation));
+        }
+        Ok(Self {
+            rotation,
+            translation,
+        })
+    }
+
+    /// Creates a translation, in metres.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the translation is not finite.
+    pub fn along(translation: DVec3) -> Result<Self, DecorrelationError> {
+        Self::new(DMat3::IDENTITY, translation)
+    }
+
+    /// Creates a rotation about an axis of any length through `pivot`, in metres, by `angle`, in
+    /// radians, right-handed.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the axis is zero, or if an argument is not finite.
+    pub fn about(pivot: DVec3, axis: DVec3, angle: f64) -> Result<Self, DecorrelationError> {
+        let axis = axis
+            .try_normalize()
+            .ok_or(DecorrelationError::RotationAxis(axis))?;
+        if !angle.is_finite() {
+            return Err(DecorrelationError::RotationAngle(angle));
+        }
+        if !pivot.is_finite() {
+            return Err(DecorrelationError::Pivot(pivot));
+        }
+        let rotation = DMat3::from_axis_angle(axis, angle);
+        Self::new(rotation, pivot - rotation * pivot)
+    }
+
+    /// Returns this motion followed by another.
+    #[must_use]
+    pub fn then(&self, next: &Self) -> Self {
+        Self {
+            rotation: next.rotation * self.rotation,
+            translation: next.point(self.translation),
+        }
+    }
+
+    /// Returns the motion back.
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.transpose();
+        Self {
+            rotation,
+            translation: -(rotation * self.translation),
+        }
+    }
+
+    /// Returns the rotation matrix R.
+    pub const fn rotation(&self) -> DMat3 {
+        self.rotation
+    }
+
+    /// Returns the translation t, in metres.
+    pub const fn translation(&self) -> DVec3 {
+        self.translation
+    }
+
+    /// Returns where the motion takes a point, in metres.
+    pub fn point(&self, point: DVec3) -> DVec3 {
+        self.rotation * point + self.translation
+    }
+
+    /// Returns where the motion turns a direction.
+    pub fn direction(&self, direction: DVec3) -> DVec3 {
+        self.rotation * direction
+    }
+}
+
+impl Default for RigidMotion {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+/// How surface, camera and light source have moved since the reference state, each as a rigid body.
+///
+/// It is the counterpart of [`Motion`](crate::Motion) for motions that are large or turn a body.
+/// Only differences count: if all three move as one, nothing changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigidMotions {
+    /// Motion of the surface.
+    pub surface: RigidMotion,
+    /// Motion of the camera.
+    pub camera: RigidMotion,
+    /// Motion of the light source and its wave.
+    pub source: RigidMotion,
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::{prelude::*, test_runner::RngSeed};
+
+    use super::*;
+
+    #[test]
+    fn invalid_motions_are_rejected() {
+        use DecorrelationError as E;
+        let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
+        let result = RigidMotion::new(mirror, DVec3::ZERO);
+        assert!(matches!(result, Err(E::Rotation(_))), "{result:?}");
+        for bad in [DVec3::NAN, DVec3::INFINITY] {
+            let result = RigidMotion::along(bad);
+            assert!(matches!(result, Err(E::Translation(_))), "{result:?}");
+            let result = RigidMotion::about(bad, DVec3::X, 1.0);
+            assert!(matches!(result, Err(E::Pivot(_))), "{result:?}");
+        }
+        for bad in [DVec3::ZERO, DVec3::NAN] {
+            let result = RigidMotion::about(DVec3::ZERO, bad, 1.0);
+            assert!(matches!(result, Err(E::RotationAxis(_))), "{result:?}");
+        }
+        for bad in [f64::NAN, f64::INFINITY] {
+            let result = RigidMotion::about(DVec3::ZERO, DVec3::X, bad);
+            assert!(matches!(result, Err(E::RotationAngle(_))), "{result:?}");
+        }
+    }
+
+    fn vectors(size: f64) -> impl Strategy<Value = DVec3> {
+        [-size..size, -size..size, -size..size].prop_map(DVec3::from_array)
+    }
+
+    prop_compose! {
+        fn motions()(
+            pivot in vectors(2.0),
+            axis in vectors(1.0).prop_filter("an axis", |v| v.length() > 1e-3),
+            angle in -10.0_f64..10.0,
+            translation in vectors(2.0),
+        ) -> RigidMotion {
+            let turn = RigidMotion::about(pivot, axis, angle).unwrap();
+            turn.then(&RigidMotion::along(translation).unwrap())
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            failure_persistence: None,
+            rng_seed: RngSeed::Fixed(1),
+            ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn points_on_the_axis_stay(
+            pivot in vectors(2.0),
+            axis in vectors(1.0).prop_filter("an axis", |v| v.length() > 1e-3),
+            angle in -10.0_f64..10.0,
+            along in -2.0_f64..2.0,
+        ) {
+            let turn = RigidMotion::about(pivot, axis, angle).unwrap();
+            let point = pivot + axis.normalize() * along;
+            // Rounding of lengths of a few metres.
+            prop_assert!((turn.point(point) - point).length() < 1e-14);
+        }
+
+        #[test]
+        fn motions_in_turn_and_back_are_as_one_at_a_time(
+            one in motions(),
+            two in motions(),
+            point in vectors(2.0),
+        ) {
+            let in_turn = two.point(one.point(point));
+            prop_assert!((one.then(&two).point(point) - in_turn).length() < 1e-13);
+            prop_assert!((one.inverse().point(one.point(point)) - point).length() < 1e-13);
+            let tip = one.point(point + DVec3::Y) - one.point(point);
+            prop_assert!((one.direction(DVec3::Y) - tip).length() < 1e-13);
+        }
+    }
+}

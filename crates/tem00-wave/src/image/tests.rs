@@ -1,0 +1,354 @@
+use core::f64::consts::PI;
+
+use super::*;
+use proptest::{prelude::*, test_runner::RngSeed};
+
+use crate::{DMat3, Illumination, Lens, RigidMotion, RoughSurface, Scatterer};
+
+const WAVELENGTH: f64 = 650e-9;
+const LENS: Lens = Lens {
+    pupil_diameter: 5e-3,
+    focus_distance: 0.3,
+    pupil_to_image: 0.06,
+};
+/// h = λ · `pupil_to_image` / D.
+const SPECKLE: f64 = 7.8e-6;
+
+fn points(positions: &[DVec3]) -> LitSurface {
+    let scatterer = |&position: &DVec3| Scatterer {
+        position,
+        amplitude: Complex::new(1.0, 0.0),
+    };
+    let light = Illumination::plane(WAVELENGTH, DVec3::NEG_Z).expect("a plane wave");
+    RoughSurface::from_scatterers(positions.iter().map(scatterer).collect())
+        .expect("points")
+        .lit_by(&light)
+}
+
+/// A camera at the origin that looks against z, into the half-space z < 0.
+fn camera() -> Camera {
+    Camera::new(DVec3::ZERO, DMat3::IDENTITY, LENS).expect("a camera")
+}
+
+fn sampling(samples: usize) -> ImageSampling {
+    ImageSampling {
+        wavelength: WAVELENGTH,
+        centre: DVec2::ZERO,
+        step: SPECKLE / 4.0,
+        samples,
+    }
+}
+
+/// J₁ by its integral over half a turn, which the trapezoidal rule does exactly.
+fn bessel_j1(x: f64) -> f64 {
+    const STEPS: u32 = 64;
+    let term = |i: u32| {
+        let t = PI * (f64::from(i) + 0.5) / f64::from(STEPS);
+        (t - x * t.sin()).cos()
+    };
+    (0..STEPS).map(term).sum::<f64>() / f64::from(STEPS)
+}
+
+#[test]
+fn a_point_in_focus_is_an_airy_pattern() {
+    let window = ImageWindow::new(&camera(), &sampling(512)).expect("a window");
+    let image = window.image(&points(&[DVec3::new(0.0, 0.0, -0.3)]));
+    let peak = image.amplitude()[(256, 256)];
+    // exp(ik · 0) from the removed sphere over the distance; 0.3 m is whole in no way.
+    assert!((peak.norm() * 0.3 - 1.0).abs() < 1e-4, "{peak}");
+    for x in 256..300_usize {
+        for y in [256, 256 + (x - 256) / 2] {
+            let radius = ((x - 256) as f64).hypot((y - 256) as f64) / 4.0;
+            let argument = PI * radius.max(1e-6);
+            let airy = 2.0 * bessel_j1(argument) / argument;
+            let error = (image.amplitude()[(x, y)] / peak - airy).norm();
+            // The part of a rim cell inside the pupil is off by some 0.1; there are 400 of them
+            // among 12 900 cells: 0.1 √400 / 12 900 = 1.6e−4, and twice that.
+            assert!(error < 3.2e-4, "{error:e} at {radius} h");
+        }
+    }
+}
+
+/// `Σ w U exp(−ik |p − X|) / Σ w` over a square lattice of the pupil: the perfect image of `X`.
+fn image_of_point(lit: &LitSurface, focus_point: DVec3) -> Complex<f64> {
+    const ACROSS: i32 = 160;
+    let step = LENS.pupil_diameter / f64::from(ACROSS);
+    let (mut sum, mut weights) = (Complex::new(0.0, 0.0), 0.0);
+    for y in -ACROSS / 2 - 1..=ACROSS / 2 + 1 {
+        for x in -ACROSS / 2 - 1..=ACROSS / 2 + 1 {
+            let p = DVec3::new(f64::from(x) * step, f64::from(y) * step, 0.0);
+            let weight = ((0.5 * LENS.pupil_diameter - p.length()) / step + 0.5).clamp(0.0, 1.0);
+            if weight > 0.0 {
+                let lens = phasor(-p.distance(focus_point) / WAVELENGTH);
+                sum += weight * lens * lit.field_at(p);
+                weights += weight;
+            }
+        }
+    }
+    sum / weights
+}
+
+#[test]
+fn a_window_off_the_axis_is_the_perfect_image_of_every_point() {
+    let camera = camera();
+    for centre in [
+        DVec2::ZERO,
+        DVec2::new(0.024, -0.012),
+        DVec2::new(-0.05, 0.03),
+    ] {
+        let sampling = ImageSampling {
+            centre,
+            // Off the axis a point's image is up to (1 + τ²)^1.5 = 2.5 times as large.
+            step: SPECKLE / 3.0,
+            ..sampling(96)
+        };
+        let window = ImageWindow::new(&camera, &sampling).expect("a window");
+        let step = sampling.step;
+        let sources = [[0.0, 0.0], [11.3, -4.6], [-9.1, -7.7]]
+            .map(|at| camera.focus_point(centre + DVec2::from_array(at) * step));
+        let lit = points(&sources);
+        let image = window.image(&lit);
+        let largest = largest_magnitude(image.amplitude().values());
+        for (x, y) in [
+            (48, 48),
+            (59, 43),
+            (60, 44),
+            (39, 40),
+            (50, 46),
+            (45, 52),
+            (66, 48),
+        ] {
+            let at = DVec2::new(x as f64 - 48.0, y as f64 - 48.0) * step;
+            let expected = image_of_point(&lit, camera.focus_point(centre + at)).norm();
+            let found = image.amplitude()[(x, y)].norm();
+            // Two lattices differ at the rim of the pupil, here of 32 samples: 100 cells of 800, off by
+            // 0.1 each, are 1.2e−3 for each point.
+            let tolerance = 3e-3;
+            assert!(
+                (found - expected).abs() < tolerance * largest,
+                "{found} at ({x}, {y}) about {centre}, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_point_out_of_focus_fades_as_the_pupil_integral_says() {
+    let window = ImageWindow::new(&camera(), &sampling(512)).expect("a window");
+    let edge = 0.5 * LENS.pupil_diameter;
+    for i in -8..=8 {
+        // The waves differ by i/4 wavelengths at the edge of the pupil, four for the first zero of
+        // the sinc. To first order that is 8 λ (L/D)² along the axis.
+        let turns = f64::from(i) / 4.0;
+        let depth = 1.0 / (1.0 / 0.3 + turns * 2.0 * WAVELENGTH / (edge * edge));
+        let image = window.image(&points(&[DVec3::new(0.0, 0.0, -depth)]));
+        let found = image.amplitude()[(256, 256)].norm();
+        // Simpson's rule over the area of the pupil, with exact distances.
+        const INTERVALS: u32 = 400;
+        let integrand = |j: u32| {
+            let p2 = edge * edge * f64::from(j) / f64::from(INTERVALS);
+            let (r, lens) = ((p2 + depth * depth).sqrt(), (p2 + 0.09).sqrt());
+            phasor((r - lens) / WAVELENGTH) / r
+        };
+        let simpson = (0..=INTERVALS).map(|j| match j {
+            0 | INTERVALS => integrand(j),
+            j if j % 2 == 1 => integrand(j) * 4.0,
+            _ => integrand(j) * 2.0,
+        });
+        let expected = simpson.sum::<Complex<f64>>().norm() / (3.0 * f64::from(INTERVALS));
+        // The rim of the lattice pupil, as for the Airy pattern, whose cells now hold up to 0.4 rad.
+        assert!(
+            (found - expected).abs() < 1e-3 / depth,
+            "{found} at {depth}, not {expected}"
+        );
+        // The law for a path that is linear in the area; the next term, (p/L)⁴ L/8 = 2e−4 wavelengths
+        // at the edge, is smaller still.
+        let sinc = if i == 0 {
+            1.0
+        } else {
+            (PI * turns).sin() / (PI * turns)
+        };
+        assert!(
+            (found * depth - sinc.abs()).abs() < 2e-3,
+            "{found} at {turns}, not {sinc}"
+        );
+    }
+}
+
+#[test]
+fn a_pattern_moves_with_the_point_it_images() {
+    // To the right and upwards in the scene is to the right and upwards in the picture.
+    let camera = camera();
+    let window = ImageWindow::new(&camera, &sampling(128)).expect("a window");
+    let point = DVec3::new(31e-6, 62e-6, -0.3);
+    let image = window.image(&points(&[point])).intensity();
+    let brightest = image
+        .values()
+        .iter()
+        .enumerate()
+        .max_by(|(_, a), (_, b)| a.total_cmp(b))
+        .map(|(i, _)| DVec2::new((i % 128) as f64, (i / 128) as f64));
+    let expected = camera.project(point).expect("in front") / sampling(128).step + 64.0;
+    assert!(
+        brightest.is_some_and(|at| (at - expected).abs().max_element() <= 0.5),
+        "{brightest:?}, not {expected}"
+    );
+}
+
+#[test]
+fn an_image_does_not_change_when_everything_moves_together() {
+    let camera = camera();
+    let motion = RigidMotion::rotation(DVec3::new(1.0, -2.0, 0.3), 1.1, DVec3::Y)
+        .expect("a rotation")
+        .then(&RigidMotion::translation(DVec3::new(0.1, 0.2, -0.3)).expect("a translation"));
+    let sampling = ImageSampling {
+        centre: DVec2::new(0.01, -0.005),
+        ..sampling(64)
+    };
+    let near = camera.focus_point(sampling.centre);
+    let surface = [
+        DVec3::ZERO,
+        DVec3::new(40e-6, 10e-6, -1e-3),
+        DVec3::new(-30e-6, 60e-6, 0.0),
+    ]
+    .map(|offset| Scatterer {
+        position: near + offset,
+        amplitude: Complex::new(1.0, 0.0),
+    });
+    let surface = RoughSurface::from_scatterers(surface.to_vec()).expect("points");
+    let light = Illumination::point(WAVELENGTH, DVec3::new(0.2, 0.0, 0.1)).expect("a source");
+    let window = |camera: &Camera| ImageWindow::new(camera, &sampling).expect("a window");
+    let still = window(&camera).image(&surface.lit_by(&light));
+    let moved =
+        window(&camera.moved(&motion)).image(&surface.moved(&motion).lit_by(&light.moved(&motion)));
+    let largest = largest_magnitude(still.amplitude().values());
+    for (a, b) in still
+        .amplitude()
+        .values()
+        .iter()
+        .zip(moved.amplitude().values())
+    {
+        // Phases of 1e−9 rad, and the f32 of the transform.
+        assert!((a - b).norm() < 1e-6 * largest, "{a} {b}");
+    }
+}
+
+#[test]
+fn a_dark_surface_has_a_dark_image() {
+    let dark = Scatterer {
+        position: DVec3::new(0.0, 0.0, -0.3),
+        amplitude: Complex::new(0.0, 0.0),
+    };
+    let light = Illumination::plane(WAVELENGTH, DVec3::NEG_Z).expect("a plane wave");
+    let lit = RoughSurface::from_scatterers(vec![dark])
+        .expect("a point")
+        .lit_by(&light);
+    let image = ImageWindow::new(&camera(), &sampling(16))
+        .expect("a window")
+        .image(&lit);
+    let dark = Complex::new(0.0, 0.0);
+    assert!(
+        image.amplitude().values().iter().all(|&u| u == dark),
+        "light"
+    );
+}
+
+#[test]
+#[should_panic(expected = "the field has not the samples of the pupil")]
+fn a_field_from_elsewhere_does_not_fit() {
+    let window = ImageWindow::new(&camera(), &sampling(64)).expect("a window");
+    let field = Field::new(Grid::filled(3, 3, Complex::new(1.0, 0.0)));
+    let _ = window.image_through(&field);
+}
+
+#[test]
+fn constructors_name_what_they_reject() {
+    let good = sampling(64);
+    for (sampling, name) in [
+        (
+            ImageSampling {
+                wavelength: 0.0,
+                ..good
+            },
+            "wavelength",
+        ),
+        (
+            ImageSampling {
+                centre: DVec2::NAN,
+                ..good
+            },
+            "centre",
+        ),
+        (
+            ImageSampling {
+                centre: DVec2::X * 0.7,
+                ..good
+            },
+            "centre",
+        ),
+        (
+            ImageSampling {
+                step: 1.1 * SPECKLE,
+                ..good
+            },
+            "image step",
+        ),
+        (
+            ImageSampling {
+                step: 1e-30,
+                ..good
+            },
+            "image step",
+        ),
+        (
+            ImageSampling {
+                step: f64::NAN,
+                ..good
+            },
+            "image step",
+        ),
+        (ImageSampling { samples: 1, ..good }, "samples along"),
+        (
+            ImageSampling {
+                samples: 1 << 14,
+                ..good
+            },
+            "samples along",
+        ),
+    ] {
+        let message = ImageWindow::new(&camera(), &sampling)
+            .expect_err("an error")
+            .to_string();
+        assert!(message.contains(name), "{name}: {message}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 300, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn a_window_is_rejected_or_has_a_finite_image(
+        wavelength in -10..1_i32, step in -12..5_i32, diameter in -12..5_i32, focus in -12..5_i32,
+        image in -12..5_i32, off in 0.0..10.0_f64, samples in 2..40_usize
+    ) {
+        let power = |exponent: i32| 10.0_f64.powi(exponent);
+        let lens = Lens {
+            pupil_diameter: power(diameter),
+            focus_distance: power(focus),
+            pupil_to_image: power(image),
+        };
+        let camera = Camera::new(DVec3::ZERO, DMat3::IDENTITY, lens).expect("a camera");
+        let sampling = ImageSampling {
+            wavelength: power(wavelength),
+            centre: DVec2::new(0.6, 0.8) * off * power(image),
+            step: power(step),
+            samples,
+        };
+        if let Ok(window) = ImageWindow::new(&camera, &sampling) {
+            let image = window.image(&points(&[DVec3::new(1e-5, 0.0, -0.3), DVec3::Z]));
+            prop_assert!(image.amplitude().values().iter().all(|u| u.is_finite()), "{:?}", sampling);
+        }
+    }
+}

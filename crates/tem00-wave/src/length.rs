@@ -1,0 +1,62 @@
+//! The range of lengths in which a phase in `f64` means something.
+
+use core::ops::RangeInclusive;
+
+use glam::{DMat3, DVec3};
+
+use crate::WaveError;
+
+/// Lengths from 1 pm to 10 km.
+pub(crate) const LENGTHS: RangeInclusive<f64> = 1e-12..=1e4;
+
+/// Wavelengths from 0.1 nm to 1 m.
+pub(crate) const WAVELENGTHS: RangeInclusive<f64> = 1e-10..=1.0;
+
+pub(crate) fn checked_length(
+    length: f64,
+    error: impl FnOnce(f64) -> WaveError,
+) -> Result<f64, WaveError> {
+    if LENGTHS.contains(&length) {
+        Ok(length)
+    } else {
+        Err(error(length))
+    }
+}
+
+pub(crate) fn checked_wavelength(wavelength: f64) -> Result<f64, WaveError> {
+    if WAVELENGTHS.contains(&wavelength) {
+        Ok(wavelength)
+    } else {
+        Err(WaveError::Wavelength(wavelength))
+    }
+}
+
+pub(crate) fn checked_position(
+    position: DVec3,
+    error: impl FnOnce(DVec3) -> WaveError,
+) -> Result<DVec3, WaveError> {
+    // A comparison with NaN is false.
+    if position.abs().cmple(DVec3::splat(*LENGTHS.end())).all() {
+        Ok(position)
+    } else {
+        Err(error(position))
+    }
+}
+
+pub(crate) fn checked_direction(
+    direction: DVec3,
+    error: impl FnOnce(DVec3) -> WaveError,
+) -> Result<DVec3, WaveError> {
+    direction.try_normalize().ok_or_else(|| error(direction))
+}
+
+/// Returns right-handed axes whose third column is `third` and whose first is `first` without its
+/// part along the third, or `None` if the two are parallel.
+pub(crate) fn axes_from(first: DVec3, third: DVec3) -> Option<DMat3> {
+    /// The square root of the rounding unit: below it, the part across is mostly rounding.
+    const PARALLEL: f64 = 1.0 / 67_108_864.0;
+    let third = third.try_normalize()?;
+    let second = third.cross(first.try_normalize()?);
+    let second = (second.length() > PARALLEL).then(|| second.normalize())?;
+    Some(DMat3::from_cols(second.cross(third), second, third))
+}

@@ -1,0 +1,211 @@
+use std::sync::Mutex;
+
+use super::*;
+use crate::{Amplitudes, Arrangement, PatchDescription, Roughness, Scatterer};
+
+const WAVELENGTH: f64 = 650e-9;
+
+fn points(positions: &[DVec3]) -> RoughSurface {
+    let scatterer = |&position: &DVec3| Scatterer {
+        position,
+        amplitude: Complex::new(1.0, 0.0),
+    };
+    RoughSurface::from_scatterers(positions.iter().map(scatterer).collect()).expect("points")
+}
+
+fn plane_wave() -> Illumination {
+    Illumination::plane(WAVELENGTH, DVec3::NEG_Z).expect("a plane wave")
+}
+
+fn patch(scatterers: usize, amplitudes: Amplitudes, seed: u64) -> RoughSurface {
+    RoughSurface::patch(&PatchDescription {
+        centre: DVec3::ZERO,
+        normal: DVec3::Z,
+        along: DVec3::X,
+        size: [1e-3, 1e-3],
+        scatterers: [scatterers, 1],
+        arrangement: Arrangement::Stratified,
+        roughness: Roughness::FullyDeveloped(amplitudes),
+        seed,
+    })
+    .expect("a patch")
+}
+
+#[test]
+fn two_points_make_fringes_where_their_paths_differ_by_whole_wavelengths() {
+    let slits = [DVec3::X * -0.1e-3, DVec3::X * 0.1e-3];
+    let lit = points(&slits).lit_by(&plane_wave());
+    for i in 0..500_u32 {
+        let p = DVec3::new(f64::from(i) * 13e-6 - 3e-3, 1e-3, 0.3);
+        let [r1, r2] = slits.map(|slit| slit.distance(p));
+        let phase = core::f64::consts::TAU * (r1 - r2) / WAVELENGTH;
+        let expected = 1.0 / (r1 * r1) + 1.0 / (r2 * r2) + 2.0 * phase.cos() / (r1 * r2);
+        let intensity = lit.field_at(p).norm_sqr();
+        // The phase is rounded to 2π · 4.6e5 · 2⁻⁵² = 6e−10 for each path.
+        assert!(
+            (intensity - expected).abs() < 4.0 * 2e-9 / (0.3 * 0.3),
+            "{intensity} at {p}, not {expected}"
+        );
+    }
+}
+
+#[test]
+fn fringes_of_two_points_are_as_far_apart_as_in_young_s_experiment() {
+    let lit = points(&[DVec3::X * -0.1e-3, DVec3::X * 0.1e-3]).lit_by(&plane_wave());
+    let at = |x: f64| lit.field_at(DVec3::new(x, 0.0, 0.5)).norm_sqr();
+    let spacing = 0.5 * WAVELENGTH / 0.2e-3; // 1.625 mm
+    // Bright on the axis, dark half a fringe away: the next term of the path is (x/L)²/2 = 1e−6.
+    assert!((at(0.0) / (4.0 / 0.25) - 1.0).abs() < 1e-6, "{}", at(0.0));
+    assert!(at(0.5 * spacing) / at(0.0) < 1e-8, "{}", at(0.5 * spacing));
+    assert!(
+        (at(spacing) / at(0.0) - 1.0).abs() < 2e-5,
+        "{}",
+        at(spacing)
+    );
+}
+
+#[test]
+fn light_from_one_point_falls_off_with_the_square_of_distance() {
+    let lit = points(&[DVec3::ZERO]).lit_by(&plane_wave());
+    let at = |r: f64| lit.field_at(DVec3::new(0.6, 0.0, 0.8) * r).norm_sqr();
+    for r in [1e-3, 0.1, 2.0, 50.0] {
+        // The rounding of the phase at 100 m, 1e−7 rad, does not touch the magnitude; the series of
+        // sine and cosine leave 1e−11.
+        assert!((at(r) / at(2.0 * r) - 4.0).abs() < 1e-9, "at {r}");
+    }
+}
+
+#[test]
+fn source_and_receiver_may_be_exchanged() {
+    let surface = patch(500, Amplitudes::ComplexGaussian, 3);
+    let (a, b) = (DVec3::new(0.1, -0.05, 0.4), DVec3::new(-0.2, 0.1, 0.25));
+    let through = |source: DVec3, receiver: DVec3| {
+        let light = Illumination::point(WAVELENGTH, source).expect("a point source");
+        surface.lit_by(&light).field_at(receiver)
+    };
+    let (there, back) = (through(a, b), through(b, a));
+    // Two phases of 1e−9 rad and the series (7e−12) for each of 500 terms.
+    assert!(
+        (there - back).norm() < 1e-8 * there.norm(),
+        "{there} {back}"
+    );
+}
+
+/// Squared contrast of a single speckle field over many surfaces.
+fn contrast_squared(scatterers: usize, amplitudes: Amplitudes) -> f64 {
+    const SURFACES: u64 = 20_000;
+    let (mut mean, mut square) = (0.0, 0.0);
+    for seed in 0..SURFACES {
+        let lit = patch(scatterers, amplitudes, seed).lit_by(&plane_wave());
+        let intensity = lit.field_at(DVec3::new(0.01, 0.02, 0.3)).norm_sqr();
+        mean += intensity / SURFACES as f64;
+        square += intensity * intensity / SURFACES as f64;
+    }
+    square / (mean * mean) - 1.0
+}
+
+#[test]
+fn unit_scatterers_lower_the_squared_contrast_by_one_over_their_number() {
+    for (scatterers, amplitudes, expected) in [
+        (2, Amplitudes::Unit, 0.5),
+        (5, Amplitudes::Unit, 0.8),
+        (20, Amplitudes::Unit, 0.95),
+        (2, Amplitudes::ComplexGaussian, 1.0),
+        (20, Amplitudes::ComplexGaussian, 1.0),
+    ] {
+        let measured = contrast_squared(scatterers, amplitudes);
+        // Of exponential intensity, the squared contrast of n samples scatters by √(8/n) = 0.020;
+        // of fewer phasors by less. Four of them.
+        assert!(
+            (measured - expected).abs() < 0.08,
+            "{measured} for {scatterers} {amplitudes:?}, not {expected}"
+        );
+    }
+}
+
+#[test]
+fn progress_counts_every_term_once() {
+    let lit = patch(100, Amplitudes::Unit, 1).lit_by(&plane_wave());
+    let steps = [DVec3::X * 1e-4, DVec3::Y * 1e-4];
+    let plane = SamplePlane::new(DVec3::Z, steps, [20, 20])
+        .and_then(|plane| plane.within(0.8e-3))
+        .expect("a plane");
+    let reports = Mutex::new(Vec::new());
+    let field = lit.field_with_progress(&plane, |progress| {
+        reports.lock().expect("no panic").push(progress);
+    });
+    assert_eq!(field, lit.field_on(&plane));
+    let reports = reports.into_inner().expect("no panic");
+    assert_eq!(reports.len(), 20);
+    let total = 100 * plane.open_samples() as u64;
+    assert_eq!(lit.terms_on(&plane), total);
+    assert!(reports.iter().all(|report| report.total == total), "total");
+    let most = reports.iter().map(|report| report.done).max();
+    assert_eq!(most, Some(total));
+}
+
+#[test]
+fn progress_includes_the_row_it_reports() {
+    let lit = patch(100, Amplitudes::Unit, 1).lit_by(&plane_wave());
+    let steps = [DVec3::X * 1e-4, DVec3::Y * 1e-4];
+    let plane = SamplePlane::new(DVec3::Z, steps, [30, 4]).expect("a plane");
+    let done = Mutex::new(Vec::new());
+    let _ = lit.field_with_progress(&plane, |progress| {
+        done.lock().expect("no panic").push(progress.done);
+    });
+    let mut done = done.into_inner().expect("no panic");
+    done.sort_unstable();
+    assert_eq!(done, [3_000, 6_000, 9_000, 12_000]);
+}
+
+#[test]
+fn no_time_is_known_before_the_first_term() {
+    let start = Progress { done: 0, total: 10 };
+    assert_eq!(start.remaining(Duration::from_secs(1)), None);
+    assert_eq!(start.remaining(Duration::ZERO), None);
+    let end = Progress {
+        done: 10,
+        total: 10,
+    };
+    assert_eq!(end.remaining(Duration::from_secs(1)), Some(Duration::ZERO));
+}
+
+#[test]
+fn a_plane_holds_the_field_at_its_points() {
+    let lit = patch(50, Amplitudes::ComplexGaussian, 1).lit_by(&plane_wave());
+    let steps = [DVec3::new(1e-3, 0.0, 2e-4), DVec3::Y * 2e-3];
+    let plane = SamplePlane::new(DVec3::Z, steps, [6, 5])
+        .and_then(|plane| plane.within(4.1e-3))
+        .expect("a plane");
+    let field = lit.field_on(&plane);
+    for y in 0..5 {
+        for x in 0..6 {
+            let inside = plane.point(x, y).distance(DVec3::Z) <= 4.1e-3;
+            let expected = if inside {
+                lit.field_at(plane.point(x, y))
+            } else {
+                Complex::default()
+            };
+            assert_eq!(field.amplitude()[(x, y)], expected, "({x}, {y})");
+        }
+    }
+}
+
+#[test]
+fn the_field_is_finite_everywhere() {
+    let surface = points(&[DVec3::ZERO, DVec3::splat(1e4), DVec3::new(0.0, 1e-12, 0.0)]);
+    for light in [
+        plane_wave(),
+        Illumination::point(1e-10, DVec3::ZERO).expect("a point source"),
+    ] {
+        let lit = surface.lit_by(&light);
+        for point in [
+            DVec3::ZERO,
+            DVec3::splat(1e-300),
+            DVec3::splat(1e30),
+            DVec3::new(-1e300, 1.0, 0.0),
+        ] {
+            assert!(lit.field_at(point).is_finite(), "at {point}");
+        }
+    }
+}

@@ -1,0 +1,324 @@
+use proptest::{prelude::*, test_runner::RngSeed};
+
+use super::*;
+use crate::DVec2;
+
+fn patch(arrangement: Arrangement, roughness: Roughness) -> PatchDescription {
+    PatchDescription {
+        centre: DVec3::new(0.1, -0.2, 0.3),
+        normal: DVec3::new(0.0, -1.0, 2.0),
+        along: DVec3::new(1.0, 1.0, 0.5),
+        size: [3e-3, 2e-3],
+        scatterers: [60, 40],
+        arrangement,
+        roughness,
+        seed: 5,
+    }
+}
+
+const GAUSSIAN: Roughness = Roughness::FullyDeveloped(Amplitudes::ComplexGaussian);
+
+/// Coordinates of a scatterer along the sides and the normal, from the centre.
+fn local(patch: &PatchDescription, scatterer: &Scatterer) -> DVec3 {
+    let normal = patch.normal.normalize();
+    let second = normal.cross(patch.along).normalize();
+    let from_centre = scatterer.position - patch.centre;
+    DVec3::new(
+        from_centre.dot(second.cross(normal)),
+        from_centre.dot(second),
+        from_centre.dot(normal),
+    )
+}
+
+#[test]
+fn a_stratified_patch_has_one_scatterer_in_each_cell() {
+    for (arrangement, expected) in [
+        (Arrangement::Stratified, true),
+        (Arrangement::Lattice, true),
+        (Arrangement::Random, false),
+    ] {
+        let patch = patch(arrangement, GAUSSIAN);
+        let surface = RoughSurface::patch(&patch).expect("a patch");
+        let mut cells = vec![0; 60 * 40];
+        for scatterer in surface.scatterers() {
+            let at = local(&patch, scatterer);
+            // Rounding of a position of 0.4 m.
+            assert!(at.z.abs() < 1e-15, "{at} off the plane");
+            let cell = (at.truncate() + DVec2::new(1.5e-3, 1e-3)) / 50e-6;
+            assert!(
+                cell.min_element() >= 0.0 && cell.x < 60.0 && cell.y < 40.0,
+                "{cell}"
+            );
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a cell of the patch"
+            )]
+            let index = cell.y as usize * 60 + cell.x as usize;
+            cells[index] += 1;
+        }
+        let one_each = cells.iter().all(|&count| count == 1);
+        assert_eq!(one_each, expected, "{arrangement:?}");
+    }
+}
+
+#[test]
+fn a_surface_scatters_its_area_per_steradian() {
+    let patch = patch(Arrangement::Lattice, GAUSSIAN);
+    let surface = RoughSurface::patch(&patch).expect("a patch");
+    let sum: f64 = surface
+        .scatterers()
+        .iter()
+        .map(|s| s.amplitude.norm_sqr())
+        .sum();
+    // The mean of 2400 exponential numbers scatters by 2 %.
+    assert!((sum / 6e-6 - 1.0).abs() < 0.08, "{sum}");
+    let unit = Roughness::FullyDeveloped(Amplitudes::Unit);
+    let surface = RoughSurface::patch(&PatchDescription {
+        roughness: unit,
+        ..patch
+    })
+    .expect("a patch");
+    let sum: f64 = surface
+        .scatterers()
+        .iter()
+        .map(|s| s.amplitude.norm_sqr())
+        .sum();
+    assert!((sum / 6e-6 - 1.0).abs() < 1e-12, "{sum}");
+}
+
+#[test]
+fn a_seed_is_a_surface() {
+    for arrangement in [Arrangement::Stratified, Arrangement::Random] {
+        let patch = patch(arrangement, GAUSSIAN);
+        let surface =
+            |seed| RoughSurface::patch(&PatchDescription { seed, ..patch }).expect("a patch");
+        assert_eq!(surface(1), surface(1));
+        let (one, other) = (surface(1), surface(2));
+        let pairs = one.scatterers().iter().zip(other.scatterers());
+        for (a, b) in pairs {
+            assert!(
+                a.position != b.position && a.amplitude != b.amplitude,
+                "shared"
+            );
+        }
+    }
+}
+
+/// Mean products of heights over many surfaces: at one place, and at neighbours `lag` columns apart.
+fn height_products(correlation_length: f64, lag: usize) -> (f64, f64, f64) {
+    const SURFACES: u64 = 400;
+    let (mut square, mut product, mut fourth) = (0.0, 0.0, 0.0);
+    for seed in 0..SURFACES {
+        let roughness = Roughness::Heights {
+            rms: 2e-6,
+            correlation_length,
+        };
+        let patch = PatchDescription {
+            seed,
+            scatterers: [30, 2],
+            size: [300e-6, 20e-6],
+            ..patch(Arrangement::Lattice, roughness)
+        };
+        let surface = RoughSurface::patch(&patch).expect("a patch");
+        let height = |column: usize| local(&patch, &surface.scatterers()[column]).z / 2e-6;
+        let (a, b) = (height(4), height(4 + lag));
+        square += a * a / SURFACES as f64;
+        fourth += a.powi(4) / SURFACES as f64;
+        product += a * b / SURFACES as f64;
+    }
+    (square, product, fourth)
+}
+
+#[test]
+fn heights_have_their_variance_and_correlation() {
+    // Scatterers are 10 µm apart; a correlation length below 5 µm makes them independent.
+    for (length, lag) in [
+        (20e-6, 1),
+        (20e-6, 2),
+        (20e-6, 3),
+        (57e-6, 3),
+        (5e-6, 1),
+        (4e-6, 1),
+        (0.0, 1),
+    ] {
+        let (square, product, fourth) = height_products(length, lag);
+        // Means of 400 scatter by √(2/400) = 0.071, √((1 + ρ²)/400) ≤ 0.071 and √(96/400) = 0.49;
+        // four of them are exceeded with probability 6e−5.
+        assert!((square - 1.0).abs() < 0.29, "⟨h²⟩ = {square} at {length:e}");
+        assert!((fourth - 3.0).abs() < 2.0, "⟨h⁴⟩ = {fourth} at {length:e}");
+        let expected = if length == 0.0 {
+            0.0
+        } else {
+            (-(lag as f64 * 10e-6 / length).powi(2)).exp()
+        };
+        assert!(
+            (product - expected).abs() < 0.29,
+            "⟨h h'⟩ = {product}, not {expected}, at {length:e} and {lag}"
+        );
+    }
+}
+
+#[test]
+fn heights_of_one_large_surface_have_the_right_correlation_at_all_lags() {
+    // 200 × 200 scatterers 10 µm apart, correlation length 20 µm: π (ℓ² / 2) / 100 µm² = 6.3
+    // scatterers per independent height, 6400 of those.
+    let roughness = Roughness::Heights {
+        rms: 2e-6,
+        correlation_length: 20e-6,
+    };
+    let patch = PatchDescription {
+        scatterers: [200, 200],
+        size: [2e-3, 2e-3],
+        ..patch(Arrangement::Lattice, roughness)
+    };
+    let surface = RoughSurface::patch(&patch).expect("a patch");
+    let heights: Vec<f64> = surface
+        .scatterers()
+        .iter()
+        .map(|scatterer| local(&patch, scatterer).z / 2e-6)
+        .collect();
+    for [dx, dy] in [[0, 0], [1, 0], [0, 1], [2, 1], [3, 0], [2, 3], [8, 0]] {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for y in 0..200 - dy {
+            for x in 0..200 - dx {
+                sum += heights[y * 200 + x] * heights[(y + dy) * 200 + x + dx];
+                count += 1.0;
+            }
+        }
+        let lag2 = (dx * dx + dy * dy) as f64 * 100e-12;
+        let expected = (-lag2 / 400e-12).exp();
+        // √(2/6400) = 1.8 % for the variance, less elsewhere; four of them.
+        assert!(
+            (sum / count - expected).abs() < 0.07,
+            "{} at ({dx}, {dy}), not {expected}",
+            sum / count
+        );
+    }
+}
+
+#[test]
+fn heights_keep_scatterers_over_their_places() {
+    let roughness = Roughness::Heights {
+        rms: 2e-6,
+        correlation_length: 100e-6,
+    };
+    let rough = patch(Arrangement::Stratified, roughness);
+    let flat = PatchDescription {
+        roughness: GAUSSIAN,
+        ..rough
+    };
+    let [rough_surface, flat_surface] =
+        [rough, flat].map(|p| RoughSurface::patch(&p).expect("a patch"));
+    for (a, b) in rough_surface
+        .scatterers()
+        .iter()
+        .zip(flat_surface.scatterers())
+    {
+        let (a, b) = (local(&rough, a), local(&flat, b));
+        assert!((a - b).truncate().length() < 1e-15, "{a} over {b}");
+    }
+}
+
+#[test]
+fn constructors_name_what_they_reject() {
+    let good = patch(Arrangement::Stratified, GAUSSIAN);
+    let heights = |rms, correlation_length| PatchDescription {
+        roughness: Roughness::Heights {
+            rms,
+            correlation_length,
+        },
+        ..good
+    };
+    for (patch, name) in [
+        (
+            PatchDescription {
+                centre: DVec3::X * 1e30,
+                ..good
+            },
+            "centre",
+        ),
+        (
+            PatchDescription {
+                normal: DVec3::ZERO,
+                ..good
+            },
+            "normal",
+        ),
+        (
+            PatchDescription {
+                along: good.normal,
+                ..good
+            },
+            "along the patch",
+        ),
+        (
+            PatchDescription {
+                size: [1e-3, -1.0],
+                ..good
+            },
+            "sides",
+        ),
+        (
+            PatchDescription {
+                scatterers: [0, 3],
+                ..good
+            },
+            "scatterers",
+        ),
+        (
+            PatchDescription {
+                scatterers: [usize::MAX, 3],
+                ..good
+            },
+            "scatterers",
+        ),
+        (heights(-1e-6, 0.0), "rms height"),
+        (heights(f64::NAN, 0.0), "rms height"),
+        (heights(1e-6, -1.0), "correlation length"),
+        (heights(1e-6, f64::INFINITY), "correlation length"),
+    ] {
+        let message = RoughSurface::patch(&patch)
+            .expect_err("an error")
+            .to_string();
+        assert!(message.contains(name), "{name}: {message}");
+    }
+    assert_eq!(
+        RoughSurface::from_scatterers(Vec::new()),
+        Err(WaveError::Scatterers([0, 0]))
+    );
+    let scatterer = |position, re| Scatterer {
+        position,
+        amplitude: Complex::new(re, 0.0),
+    };
+    let far = scatterer(DVec3::Y * 1e30, 1.0);
+    let bright = scatterer(DVec3::Y, f64::NAN);
+    assert!(RoughSurface::from_scatterers(vec![far]).is_err(), "far");
+    assert!(RoughSurface::from_scatterers(vec![bright]).is_err(), "NaN");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 300, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn a_patch_is_rejected_or_finite(
+        centre in -20..8_i32, side in -20..8_i32, ratio in -3..3_i32,
+        rms in -20..8_i32, length in -20..8_i32, columns in 1..20_usize
+    ) {
+        let power = |exponent: i32| 10.0_f64.powi(exponent);
+        let patch = PatchDescription {
+            centre: DVec3::splat(power(centre)),
+            size: [power(side), power(side + ratio)],
+            scatterers: [columns, 7],
+            ..patch(
+                Arrangement::Random,
+                Roughness::Heights { rms: power(rms), correlation_length: power(length) },
+            )
+        };
+        if let Ok(surface) = RoughSurface::patch(&patch) {
+            prop_assert!(surface.scatterers().iter().all(|s| s.position.is_finite()), "{:?}", patch);
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Displacement of the speckle in the image, in focus and out of it.
+
+use tem00::{
+    decorrelation::{
+        ImageOrientation, ImagingGeometry, Motion, PupilDistances, SpeckleMotion, paper,
+    },
+    wave::{
+        Amplitudes, Arrangement, Camera, DVec2, DVec3, Field, Grid, ImageSampling, ImageWindow,
+        Lens, PatchDescription, RoughSurface, Roughness, displacement_between,
+    },
+};
+
+use crate::{
+    geometries::{frontal, mm, seen, tilted, v},
+    scene::{Scene, States, WAVELENGTH, plane, point_source},
+};
+
+const PUPIL_DIAMETER: f64 = 6e-3;
+const PUPIL_TO_IMAGE: f64 = 60e-3;
+const SAMPLES: usize = 96;
+const MIDDLE: usize = 56;
+
+const UPRIGHT: ImageOrientation = ImageOrientation::ScreenUpright;
+
+const SPECKLE: f64 = WAVELENGTH * PUPIL_TO_IMAGE / PUPIL_DIAMETER;
+const STEP: f64 = 0.5 * SPECKLE;
+
+struct Case {
+    name: &'static str,
+    scene: Scene,
+    motion: Motion,
+    /// Depth in focus, in metres.
+    focus: f64,
+}
+
+impl Case {
+    fn geometry(&self) -> ImagingGeometry {
+        ImagingGeometry::from_distances(PupilDistances {
+            wavelength: WAVELENGTH,
+            surface_to_pupil: self.focus,
+            pupil_to_image: PUPIL_TO_IMAGE,
+            pupil_diameter: PUPIL_DIAMETER,
+            pixel_pitch: STEP,
+        })
+        .expect("a camera")
+    }
+
+    fn finite_law(&self) -> SpeckleMotion {
+        let before = self.scene.configuration();
+        let after = States::from(self.motion).after(&before);
+        SpeckleMotion::between(&self.geometry(), &before, &after, UPRIGHT)
+    }
+
+    fn first_order_law(&self) -> SpeckleMotion {
+        SpeckleMotion::new(&self.geometry(), &self.scene.point(), &self.motion, UPRIGHT)
+    }
+
+    /// Equation (5) as Bergmann et al. 2016 print it, upright.
+    fn printed_law(&self) -> DVec2 {
+        let angles = paper::EulerAngles::between(&self.scene.frame(), self.scene.normal);
+        let (axes, angles) = angles.expect("angles");
+        let motion = axes.transpose() * self.motion.surface;
+        -paper::image_displacement(self.geometry().magnification(), angles, motion)
+    }
+
+    /// Measures the displacement in the image, in metres, on the mean over some surfaces.
+    fn measured(&self, seeds: u64) -> DVec2 {
+        let lens = Lens {
+            pupil_diameter: PUPIL_DIAMETER,
+            focus_distance: self.focus,
+            pupil_to_image: PUPIL_TO_IMAGE,
+        };
+        let camera = self.scene.camera();
+        let camera = Camera::new(camera.pupil_centre(), camera.axes(), lens).expect("a camera");
+        let sampling = ImageSampling {
+            wavelength: WAVELENGTH,
+            centre: camera.project(DVec3::ZERO).expect("in front of the camera"),
+            step: STEP,
+            samples: SAMPLES,
+        };
+        let states = States::from(self.motion);
+        let window = |camera: &Camera| ImageWindow::new(camera, &sampling).expect("a window");
+        let windows = [
+            window(&camera),
+            window(&camera.moved(&states.camera.judge())),
+        ];
+        let light = self.scene.light.wave.moved(&states.source.judge());
+        let shift = |seed| {
+            let surface = self.surface(seed);
+            let before = windows[0].image(&surface.lit_by(&self.scene.light.wave));
+            let surface = surface.moved(&states.surface.judge());
+            let after = windows[1].image(&surface.lit_by(&light));
+            let shift = displacement_between(&middle(&before), &middle(&after));
+            shift.expect("a maximum").offset * STEP
+        };
+        #[expect(clippy::cast_precision_loss, reason = "a few surfaces")]
+        let count = seeds as f64;
+        (1..=seeds).map(shift).sum::<DVec2>() / count
+    }
+
+    /// A patch whose image fills most of the window; the rest is for motion and blur.
+    fn surface(&self, seed: u64) -> RoughSurface {
+        let side = 0.78 * SAMPLES as f64 * STEP * self.scene.eye.length() / PUPIL_TO_IMAGE;
+        RoughSurface::patch(&PatchDescription {
+            centre: DVec3::ZERO,
+            normal: self.scene.normal,
+            along: DVec3::X,
+            size: [side; 2],
+            scatterers: [64; 2],
+            arrangement: Arrangement::Stratified,
+            roughness: Roughness::FullyDeveloped(Amplitudes::ComplexGaussian),
+            seed,
+        })
+        .expect("a patch")
+    }
+}
+
+/// The middle of the image, where no edge of the patch is seen: an edge that moves otherwise than the
+/// speckle would draw the maximum towards itself.
+fn middle(image: &Field) -> Grid<f32> {
+    let intensity = image.intensity();
+    let first = (SAMPLES - MIDDLE) / 2;
+    Grid::from_fn(MIDDLE, MIDDLE, |x, y| intensity[(first + x, first + y)])
+}
+
+fn surface(motion: DVec3) -> Motion {
+    Motion {
+        surface: motion,
+        ..Motion::default()
+    }
+}
+
+fn cases() -> Vec<Case> {
+    let collimated = plane(v(0.5, 0.2, 1.0));
+    let near = point_source(v(-0.12, 0.05, 0.2));
+    let off_axis = |scene| seen(scene, v(0.04, 0.05, 0.3), v(-0.03, 0.02, 0.0));
+    let case = |name, scene, motion| Case {
+        name,
+        scene,
+        motion,
+        focus: 0.3,
+    };
+    let both = Motion {
+        surface: mm(0.6, 0.3, 0.0),
+        camera: mm(0.6, 0.3, 0.0),
+        ..Motion::default()
+    };
+    vec![
+        case(
+            "in focus, sideways",
+            frontal(DVec3::Z, collimated),
+            surface(mm(0.2, -0.1, 0.0)),
+        ),
+        case(
+            "in focus, tilted",
+            frontal(tilted(30.0, 10.0), collimated),
+            surface(mm(0.15, 0.1, 0.1)),
+        ),
+        case(
+            "off the axis",
+            off_axis(frontal(DVec3::Z, collimated)),
+            surface(mm(0.1, 0.15, 0.2)),
+        ),
+        case(
+            "off the axis, source near",
+            off_axis(frontal(tilted(20.0, 0.0), near)),
+            surface(mm(-0.1, 0.1, 0.2)),
+        ),
+        case(
+            "camera moves",
+            off_axis(frontal(DVec3::Z, collimated)),
+            Motion {
+                camera: mm(0.15, -0.1, 0.3),
+                ..Motion::default()
+            },
+        ),
+        Case {
+            focus: 0.31,
+            ..case(
+                "before the focus",
+                frontal(DVec3::Z, near),
+                surface(mm(0.2, 0.1, 0.0)),
+            )
+        },
+        Case {
+            focus: 0.29,
+            ..case(
+                "behind the focus",
+                frontal(DVec3::Z, near),
+                surface(mm(0.2, 0.1, 0.0)),
+            )
+        },
+        Case {
+            focus: 0.31,
+            ..case(
+                "before the focus, with the camera",
+                frontal(DVec3::Z, near),
+                both,
+            )
+        },
+        Case {
+            focus: 0.29,
+            ..case(
+                "behind the focus, with the camera",
+                frontal(DVec3::Z, near),
+                both,
+            )
+        },
+    ]
+}
+
+#[test]
+fn speckle_moves_in_the_image_as_the_laws_say() {
+    for case in cases() {
+        let measured = case.measured(3);
+        // Four times the error of the cross-correlation of 28 × 28 speckles; at first order also
+        // motion over distance, 0.1 % of up to 8 speckles, and the change of a defocus.
+        for (law, limit) in [(case.finite_law(), 0.02), (case.first_order_law(), 0.04)] {
+            let expected = law.image_displacement + law.defocus_displacement;
+            let error = (measured - expected).length() / SPECKLE;
+            let (name, far) = (case.name, expected.length() / SPECKLE);
+            assert!(error < limit, "{name}: {error:.4} of {far:.2} speckles");
+        }
+    }
+}
+
+#[test]
+fn a_surface_that_approaches_an_oblique_camera_does_not_move_as_equation_5_is_printed() {
+    let level = frontal(DVec3::Z, plane(v(-0.3, 0.0, 1.0)));
+    let case = Case {
+        name: "seen at 30°, along its normal",
+        scene: seen(level, v(0.15, 0.0, 0.2598), DVec3::ZERO),
+        motion: surface(mm(0.0, 0.0, 0.3)),
+        focus: 0.3,
+    };
+    let measured = case.measured(2);
+    let ours = case.first_order_law();
+    let ours = ours.image_displacement + ours.defocus_displacement;
+    assert!(
+        ours.length() > 4.0 * SPECKLE,
+        "{ours} is not far enough to tell"
+    );
+    assert!(
+        (measured - ours).length() < 0.04 * SPECKLE,
+        "{measured}, not {ours}"
+    );
+    // It goes the other way.
+    let printed = case.printed_law();
+    assert!(
+        (measured + printed).length() < 0.04 * SPECKLE,
+        "{measured}, not −{printed}"
+    );
+}

@@ -1,0 +1,17 @@
+//! Motion and decorrelation of speckle, judged by wave optics from first principles.
+//!
+//! The judge sums the waves of thousands of scatterers with exact distances, moves surface, camera
+//! and source as rigid bodies, and measures what happened to the pattern. It knows nothing of
+//! wavefront curvatures, stationary phases, pupil overlaps or lines of sight.
+
+#![expect(
+    clippy::expect_used,
+    reason = "a scene that cannot be made fails its test"
+)]
+
+mod correlation;
+mod finite;
+mod geometries;
+mod image;
+mod pupil;
+mod scene;

@@ -20,13 +20,19 @@ mod flat;
 mod hologram;
 mod plot;
 
-use std::{env, error::Error, fs::File, io::BufReader};
+use std::{
+    env,
+    error::Error,
+    fs::File,
+    io::{self, BufReader},
+    path::PathBuf,
+};
 
 use hologram::{DISTANCE, PITCH, SIDE, WAVELENGTH};
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 use tem00::{
     numerics::{Grid, disc_overlap},
-    speckle::{NpyReader, PupilField},
+    speckle::{Complex, NpyReader, PupilField},
     statistics::{
         AIRY_HALF_WIDTH, Boundary, Contrast, SpeckleSize, StatisticsError, pearson_correlation,
     },
@@ -73,14 +79,61 @@ fn mean(
     Ok(sum? / PATCHES.len() as f64)
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let samples = match env::args().nth(1) {
+/// The field on the sensor: of a file, or of a hologram that is made up.
+fn samples(path: Option<&str>) -> Result<Grid<Complex<f32>>, Box<dyn Error>> {
+    match path {
         Some(path) if path.ends_with(".npy") => {
-            NpyReader::new(BufReader::new(File::open(path)?))?.into_complex(MEMORY_LIMIT)?
+            reconstructed(path).map_err(|error| format!("{path}: {error}").into())
         }
-        Some(path) => hologram::object_field(&hologram::read(&path)?)?,
-        None => hologram::object_field(&hologram::make(1)?)?,
-    };
+        Some(path) => Ok(hologram::object_field(&hologram::read(path)?)?),
+        None => Ok(hologram::object_field(&hologram::make(1)?)?),
+    }
+}
+
+fn reconstructed(path: &str) -> Result<Grid<Complex<f32>>, Box<dyn Error>> {
+    let array = NpyReader::new(BufReader::new(File::open(path)?))?;
+    // The pitch, the distance and the patches are those of the hologram.
+    if array.shape() != [SIDE as u64; 2] {
+        return Err(format!("{SIDE} × {SIDE} pixels are needed, not {:?}", array.shape()).into());
+    }
+    Ok(array.into_complex(MEMORY_LIMIT)?)
+}
+
+/// The mean contrast of the patches, and their mean speckle size in samples.
+fn measure(patches: &[Grid<f32>]) -> Result<[f64; 2], StatisticsError> {
+    let contrast_of = |patch: &Grid<f32>| Ok(Contrast::of(patch.values())?.value());
+    let size_of = |patch| Ok(SpeckleSize::of(patch, Boundary::Finite)?.mean());
+    Ok([
+        mean(patches.iter().map(contrast_of))?,
+        mean(patches.iter().map(size_of))?,
+    ])
+}
+
+/// The measured correlations after each displacement, and the law of the round pupil.
+fn draw(measured: Vec<(f64, f64)>) -> io::Result<PathBuf> {
+    let shifts = (0..=125).map(|i| f64::from(i) / 100.0);
+    let law = shifts.map(|shift| (shift, disc_overlap(shift).powi(2)));
+    let plots: Vec<Plot> = vec![
+        LinePlot::new()
+            .with_data(law)
+            .with_legend("squared overlap")
+            .into(),
+        ScatterPlot::new()
+            .with_data(measured)
+            .with_color("crimson")
+            .with_legend("measured")
+            .into(),
+    ];
+    let axes = [
+        "displacement / diameter of the pupil",
+        "correlation of the intensities",
+    ];
+    let title = "Speckle behind a pupil that moves over a measured field";
+    plot::write("measured_pupil", title, axes, plots)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let samples = samples(env::args().nth(1).as_deref())?;
     let size = FINENESS * SIDE;
     let speckle_size = |diameter: f64| size as f64 * PITCH / diameter;
     let mut field = PupilField::from_samples(samples, [size; 2], speckle_size(5e-3))?;
@@ -91,11 +144,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("aperture | contrast | theory | half width / µm | theory");
     for diameter in [5e-3, 4e-3, 3e-3, 2e-3] {
         field = field.with_speckle_size(speckle_size(diameter))?;
-        let patches = even(patches(&field, 0.0), &light);
-        let contrast_of = |patch: &Grid<f32>| Contrast::of(patch.values());
-        let contrast = mean(patches.iter().map(|patch| Ok(contrast_of(patch)?.value())))?;
-        let size_of = |patch| SpeckleSize::of(patch, Boundary::Finite);
-        let h = mean(patches.iter().map(|patch| Ok(size_of(patch)?.mean())))?;
+        let [contrast, h] = measure(&even(patches(&field, 0.0), &light))?;
         let [h, theory] = [h, field.speckle_size()].map(|h| AIRY_HALF_WIDTH * h * micrometres);
         let name = 1e3 * diameter;
         println!("{name:>5.0} mm | {contrast:>8.3} |      1 | {h:>15.1} | {theory:.1}");
@@ -112,25 +161,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{shift:>31.3} | {measured:>11.3} | {theory:.3}");
         points.push((shift, measured));
     }
-    let shifts = (0..=125).map(|i| f64::from(i) / 100.0);
-    let law = shifts.map(|shift| (shift, disc_overlap(shift).powi(2)));
-    let plots: Vec<Plot> = vec![
-        LinePlot::new()
-            .with_data(law)
-            .with_legend("squared overlap")
-            .into(),
-        ScatterPlot::new()
-            .with_data(points)
-            .with_color("crimson")
-            .with_legend("measured")
-            .into(),
-    ];
-    let axes = [
-        "displacement / diameter of the pupil",
-        "correlation of the intensities",
-    ];
-    let title = "Speckle behind a pupil that moves over a measured field";
-    let path = plot::write("measured_pupil", title, axes, plots)?;
-    println!("{}", path.display());
+    println!("{}", draw(points)?.display());
     Ok(())
 }

@@ -84,7 +84,7 @@ pub(crate) enum ImageError {
         wanted: String,
         available: Vec<String>,
     },
-    #[error("the pixel ({x}, {y}) is {value}; images of light hold finite numbers, none negative")]
+    #[error("the pixel ({x}, {y}) is {value}; images of light hold numbers of 0 to 3.4e38")]
     Value { x: usize, y: usize, value: f32 },
 }
 

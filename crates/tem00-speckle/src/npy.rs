@@ -124,10 +124,10 @@ impl<R: Read> NpyReader<R> {
             });
         };
         let (bytes_each, decode) = self.decoder()?;
-        self.check_memory::<T>(memory_limit)?;
+        let count = self.count_within::<T>(memory_limit)?;
         let (width, height) = (to_usize(width), to_usize(height));
         let mut buffer = vec![0; CHUNK];
-        let values = self.values(width * height, bytes_each, &decode, &mut buffer)?;
+        let values = self.values(count, bytes_each, &decode, &mut buffer)?;
         if self.header.columns_first {
             let columns = grid(height, width, values)?;
             return Ok(Grid::from_fn(width, height, |x, y| columns[(y, x)]));
@@ -145,20 +145,24 @@ impl<R: Read> NpyReader<R> {
             })
     }
 
-    fn check_memory<T>(&self, limit: u64) -> Result<(), NpyError> {
+    /// The number of values, if they take no more than `limit` bytes while they are read.
+    fn count_within<T>(&self, limit: u64) -> Result<usize, NpyError> {
         let shape = &self.header.shape;
         if shape.contains(&0) {
             let shape = shape.clone();
             return Err(NpyError::Empty { shape });
         }
-        let count = shape.iter().fold(1, |n: u64, side| n.saturating_mul(*side));
+        let count = shape
+            .iter()
+            .try_fold(1, |n: u64, side| n.checked_mul(*side));
         // A transposed copy is made before the first is given up.
-        let copies = 1 + u64::from(self.header.columns_first);
-        let needed = count.saturating_mul(copies * size_of::<T>() as u64);
-        if needed > limit || usize::try_from(count).is_err() {
+        let bytes_each = (1 + u64::from(self.header.columns_first)) * size_of::<T>() as u64;
+        let needed = count.map_or(u64::MAX, |count| count.saturating_mul(bytes_each));
+        if needed > limit {
             return Err(NpyError::MemoryLimit { needed, limit });
         }
-        Ok(())
+        let count = count.and_then(|count| usize::try_from(count).ok());
+        count.ok_or(NpyError::Memory { bytes: needed })
     }
 
     /// The next `count` values in the order of the file.

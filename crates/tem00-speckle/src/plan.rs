@@ -24,8 +24,8 @@ pub struct StackNeeds {
 ///
 /// - The diameter of the pupil field is at least the region in speckles, along each axis, for the
 ///   pattern repeats after so many: `C ≥ region / speckle_size`. It is rounded up to the next multiple
-///   of 8 without prime factors above 5, and is at least 32. If that takes too much memory, the
-///   image alone repeats nothing.
+///   of 8 without prime factors above 5, and is at least 32. If that takes too much memory, or more
+///   than a pattern can hold, the image alone repeats nothing.
 /// - The pattern has twice that size, `Q = 2 C`: the intensity's Nyquist limit.
 /// - The slices lie on a straight path. For two frames it is two diameters long: what has left the
 ///   pupil is new, wherever it is looked up. More frames ask for a path that ends clear of its start.
@@ -80,9 +80,9 @@ impl StackPlan {
     ///
     /// # Errors
     ///
-    /// Returns an error if a side or the speckle size of `needs` is not positive and finite, or its motion negative
-    /// or not finite, if the region holds more speckles than the largest pattern, or if not even the
-    /// smallest stack fits the memory.
+    /// Returns an error if a side or the speckle size of `needs` is not positive and finite, or its
+    /// motion negative or not finite, if the image holds more speckles than the largest pattern, or
+    /// if not even the smallest stack fits the memory.
     pub fn new(needs: &StackNeeds) -> Result<Self, SpeckleError> {
         Self::first_within(Self::candidates(needs)?, needs.memory_limit)
     }
@@ -121,28 +121,32 @@ impl StackPlan {
         Ok(halved.flat_map(of_length).collect())
     }
 
-    /// Returns the first of `plans` that takes at most `memory_limit` bytes.
+    /// Returns the first of `plans` that takes at most `memory_limit` bytes and has sizes that a
+    /// pattern can have.
     ///
     /// # Errors
     ///
-    /// Returns an error if none does, or if the first that does has sizes that no pattern can have.
+    /// Returns an error if there is none: that of the sizes, if a plan fits the memory.
     pub fn first_within(
         plans: impl IntoIterator<Item = Self>,
         memory_limit: u64,
     ) -> Result<Self, SpeckleError> {
-        let mut smallest = u64::MAX;
+        let (mut smallest, mut impossible) = (u64::MAX, None);
         for plan in plans {
             let needed = plan.memory_bytes();
-            if needed <= memory_limit {
-                plan.field(0)?;
-                return Ok(plan);
+            if needed > memory_limit {
+                smallest = smallest.min(needed);
+                continue;
             }
-            smallest = smallest.min(needed);
+            match plan.field(0) {
+                Ok(_) => return Ok(plan),
+                Err(error) => impossible = impossible.or(Some(error)),
+            }
         }
-        Err(SpeckleError::MemoryLimit {
+        Err(impossible.unwrap_or(SpeckleError::MemoryLimit {
             needed: smallest,
             limit: memory_limit,
-        })
+        }))
     }
 
     /// Returns the plan with a square pattern of `size` samples and a pupil of `diameter` lattice

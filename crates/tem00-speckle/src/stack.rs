@@ -53,7 +53,8 @@ pub(crate) use memory::{check_limit, filled, reserve};
 /// - The spline's rms error of the field is 4.3e−3 at a speckle size of 2 samples and 2e−4 at 4.
 ///   It changes the autocovariance by up to 3.8e−3 and 1.3e−4, but neither mean nor contrast.
 /// - The mean is 1 at every coordinate but for 3e−6, the rounding of `f32`. The one exception is M = 1,
-///   where both pupils may meet a point of the rim from opposite sides: its share is 1/N.
+///   where both pupils may meet the same points of the rim from opposite sides: their share is 1/N
+///   for a disc and up to 1/C for a rectangle.
 /// - Between two slices the correlation is that of the blend. It exceeds the closed form near its
 ///   cusp: by up to 0.2 for 2M = 16 slices and 0.06 for 64.
 ///

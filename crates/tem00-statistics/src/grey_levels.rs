@@ -1,5 +1,5 @@
-/// Values nearer than this share of the largest one are the same level: averages of colour channels
-/// are rounded to `f32`, 16 bits are 16 times as far apart.
+/// Values nearer than this share of the greater are the same level: averages of colour channels are
+/// rounded to `f32`, 16 bits are 16 times as far apart.
 const SAME: f64 = 1.0 / (1 << 20) as f64;
 
 /// The most steps up to the largest value: averages over three channels of 16 bits.
@@ -44,7 +44,7 @@ impl GreyLevels {
     /// Finds the levels of an image, if at least every other pixel shares its value with another
     /// and the levels are no finer than those of files, 3 · 2¹⁶ steps.
     ///
-    /// Values that differ by less than 10⁻⁶ of the largest are one level. Returns `None` for an
+    /// Values that differ by less than 10⁻⁶ of the greater are one level. Returns `None` for an
     /// image that is not rounded, is all of one value, or is none of light: with a value that is
     /// negative or not finite.
     pub fn of<T: Copy + Into<f64>>(values: &[T]) -> Option<Self> {
@@ -57,10 +57,9 @@ impl GreyLevels {
         }
         levels.sort_unstable_by(f64::total_cmp);
         let maximum = *levels.last()?;
-        let apart = maximum * SAME;
-        let below = levels.partition_point(|level| maximum - level > apart);
+        let below = levels.partition_point(|&level| !are_same(level, maximum));
         let largest = (values.len() - below) as f64 / values.len() as f64;
-        levels.dedup_by(|next, level| *next - *level <= apart);
+        levels.dedup_by(|next, level| are_same(*level, *next));
         let gaps = levels.windows(2).map(|pair| pair[1] - pair[0]);
         let step = gaps.fold(f64::INFINITY, f64::min);
         let few = levels.len() >= 2 && 2 * levels.len() <= values.len();
@@ -205,6 +204,11 @@ impl GreyLevels {
     }
 }
 
+/// Whether a value and a greater one differ by rounding only.
+fn are_same(low: f64, high: f64) -> bool {
+    high - low <= high * SAME
+}
+
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
@@ -255,6 +259,14 @@ mod tests {
         };
         assert!(GreyLevels::of(&fine(1)).is_none(), "2e-6 of the largest");
         assert!(GreyLevels::of(&fine(4)).is_some(), "8e-6 of the largest");
+    }
+
+    #[test]
+    fn one_pixel_brighter_by_far_makes_no_levels_of_the_others() {
+        // All others lie within 1e-6 of it from zero.
+        let mut values: Vec<f32> = (0..100_u16).map(|i| 1.0 + f32::from(i) / 99.0).collect();
+        values.push(1e7);
+        assert_eq!(GreyLevels::of(&values), None, "a hundred values");
     }
 
     #[test]

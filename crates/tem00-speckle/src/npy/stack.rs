@@ -119,7 +119,7 @@ impl<R: Read> NpyReader<R> {
         memory_limit: u64,
     ) -> Result<Vec<Grid<Complex<f32>>>, NpyError> {
         let (bytes_each, decode) = self.decoder()?;
-        self.check_memory::<Complex<f32>>(memory_limit)?;
+        let count = self.count_within::<Complex<f32>>(memory_limit)?;
         let area = height.saturating_mul(width);
         let mut buffer = vec![0; CHUNK];
         if !self.header.columns_first {
@@ -129,12 +129,7 @@ impl<R: Read> NpyReader<R> {
             };
             return (0..slices).map(&mut slice).collect();
         }
-        let values = self.values(
-            slices.saturating_mul(area),
-            bytes_each,
-            &decode,
-            &mut buffer,
-        )?;
+        let values = self.values(count, bytes_each, &decode, &mut buffer)?;
         let slice =
             |i: usize| Grid::from_fn(width, height, |x, y| values[i + slices * (y + height * x)]);
         Ok((0..slices).map(slice).collect())

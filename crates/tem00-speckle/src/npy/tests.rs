@@ -233,6 +233,11 @@ fn memory_is_only_asked_for_as_the_file_fills_it() {
     let file = array("<c8", "(500000000, 250000)", &[0; 800]);
     let cut = NpyReader::new(file.as_slice()).and_then(|array| array.into_complex(u64::MAX));
     assert!(matches!(cut, Err(NpyError::Truncated)), "{cut:?}");
+    // More values than there are addresses.
+    let endless = array("<c8", "(9999999999, 9999999999)", &[0; 800]);
+    let cut = NpyReader::new(endless.as_slice()).and_then(|array| array.into_complex(u64::MAX));
+    assert!(matches!(cut, Err(NpyError::Memory { .. })), "{cut:?}");
+
     // What the limit counts: once the values, twice if they are turned.
     let file = array("<c16", "(4, 4)", &[0; 256]);
     let within = |file: &[u8], limit| {

@@ -128,6 +128,18 @@ fn what_motion_brings_in_repeats_before_frames_share_their_speckle() {
 }
 
 #[test]
+fn a_region_beyond_every_pattern_leaves_the_image() {
+    let needs = StackNeeds {
+        region: [300.0, 1e6],
+        memory_limit: u64::MAX,
+        ..needs()
+    };
+    let plan = StackPlan::new(&needs).unwrap();
+    assert_eq!(plan.diameter(), [200, 144], "that of the image");
+    assert!(!plan.holds_region(&needs), "and known to be less");
+}
+
+#[test]
 fn less_memory_takes_slices_first_and_then_the_path() {
     let paths = |memory_limit: u64| {
         let needs = StackNeeds {

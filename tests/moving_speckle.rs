@@ -205,11 +205,13 @@ fn speckle_out_of_focus_moves_as_if_it_lay_in_the_plane_of_focus() {
     // In collimated light the whole field in front of the lens moves with the surface. So does the
     // part of it in the plane of focus, which is what the sensor sees: by m a, wherever the surface
     // stands, while the image of the surface moves by L/Z times as much.
-    for (focus, image_moves_by, seed) in [(0.6, [40, 30], 4), (0.2, [60, 0], 5)] {
-        let speckle_moves_by = image_moves_by.map(|p| (p as f64 * 0.3 / focus).round() as usize);
+    for (focus, speckle_moves_by, image_moves_by, seed) in
+        [(0.6, [20, 15], [40, 30], 4), (0.2, [90, 0], [60, 0], 5)]
+    {
         let focal_length = FINE.focal_length;
         let per_magnification = (focus - focal_length) / focal_length;
-        let [dx, dy] = speckle_moves_by.map(|p| p as f64 * FINE.pixel_pitch * per_magnification);
+        let [dx, dy] =
+            speckle_moves_by.map(|p: usize| p as f64 * FINE.pixel_pitch * per_magnification);
         let surface = DVec3::new(dx, dy, 0.0);
         let lens = LensData {
             surface_to_pupil: focus,

@@ -107,6 +107,7 @@ fn frames(
         position = [0, 0, 0.3]
         look_at = [0, 0, 0]
         focal_length = {focal_length}
+        focus_distance = {focus_distance}
         f_number = {f_number}
         pixel_pitch = {pixel_pitch}
         resolution = [{SIDE}, {SIDE}]
@@ -124,6 +125,7 @@ fn frames(
         rectangle = {{ centre = [0, 0, 0], normal = [0, 0, 1], size = [0.04, 0.04] }}
         "#,
         focal_length = lens.focal_length,
+        focus_distance = lens.surface_to_pupil,
         f_number = lens.f_number,
         pixel_pitch = lens.pixel_pitch,
     );
@@ -194,6 +196,39 @@ fn rendered_speckle_moves_with_the_surface_and_decorrelates() {
         assert!(
             still.abs() < tolerance(lens),
             "{pixels:?}: {still} without following the motion"
+        );
+    }
+}
+
+#[test]
+fn speckle_out_of_focus_moves_as_if_it_lay_in_the_plane_of_focus() {
+    // In collimated light the whole field in front of the lens moves with the surface. So does the
+    // part of it in the plane of focus, which is what the sensor sees: by m a, wherever the surface
+    // stands, while the image of the surface moves by L/Z times as much.
+    for (focus, speckle_moves_by, image_moves_by, seed) in
+        [(0.6, [20, 15], [40, 30], 4), (0.2, [90, 0], [60, 0], 5)]
+    {
+        let focal_length = FINE.focal_length;
+        let per_magnification = (focus - focal_length) / focal_length;
+        let [dx, dy] =
+            speckle_moves_by.map(|p: usize| p as f64 * FINE.pixel_pitch * per_magnification);
+        let surface = DVec3::new(dx, dy, 0.0);
+        let lens = LensData {
+            surface_to_pupil: focus,
+            ..lens_on_a_slice(surface.length(), 4.0)
+        };
+        let motion = [surface, DVec3::ZERO];
+        let frames = frames(lens, Formulas::Derived, motion, 2, seed);
+        let measured = correlation(&frames[0], &frames[1], speckle_moves_by);
+        let expected = pupil_overlap_correlation(4.0 / 32.0);
+        assert!(
+            (measured - expected).abs() < tolerance(lens),
+            "focus at {focus} m: {measured} | {expected}"
+        );
+        let with_the_image = correlation(&frames[0], &frames[1], image_moves_by);
+        assert!(
+            with_the_image.abs() < tolerance(lens),
+            "focus at {focus} m: {with_the_image} at the image of the surface"
         );
     }
 }

@@ -56,7 +56,7 @@ impl Noise {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "positive, and at most four nodes per scatterer of the patch"
+            reason = "positive, and at most four nodes per scatterer along a side"
         )]
         let [width, height] = size.map(|side| (side / spacing).ceil() as usize + 2 * REACH + 2);
         let mut nodes = Grid::filled(width, height, 0.0);

@@ -29,7 +29,13 @@ pub struct Shift {
 /// statistical error on top. The answer for unrelated patterns is arbitrary.
 ///
 /// Whatever is in the patterns counts: a bright patch on a dark ground is correlated with itself.
-/// The correlation of speckle alone is that of parts cut out from where the light is even.
+/// The edge of a lit patch that does not move with the speckle pulls the displacement by some per
+/// cent and raises the correlation. Those of speckle alone are found in parts cut out from where the
+/// light is even.
+///
+/// A pattern that stretches has no one displacement. What is found is that in the middle of the
+/// common part, off by the stretch times the distance from there to the point in question. Moving
+/// the window of the second pattern to where the first went, and measuring again, takes that away.
 ///
 /// # Panics
 ///

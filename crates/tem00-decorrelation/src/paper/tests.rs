@@ -111,6 +111,22 @@ fn printed_slice_coordinate_has_the_stated_errors() {
 }
 
 #[test]
+fn printed_slice_coordinates_bring_an_old_pattern_back() {
+    let geometry = geometry();
+    let left = |s: f64, x: f64| {
+        let shift = DVec2::new(s * geometry.pupil_diameter(), 0.0);
+        let dz = x * axial_decorrelation_length(&geometry);
+        stack_correlation(slice_coordinate(&geometry, shift, dz, 8) / 8.0)
+    };
+    // One displacement undoes the other; two pupil diameters are once round the stack. At least one
+    // alone has left 15 % or nothing of the pattern. Rounding of u, 1e−15, counts four times.
+    for (s, x) in [(0.5, -0.5), (1.0, -1.0), (2.0, 0.0)] {
+        assert!((left(s, x) - 1.0).abs() < 1e-14, "s = {s}, x = {x}");
+        assert!(pupil_overlap_correlation(s) < 0.16, "s = {s}");
+    }
+}
+
+#[test]
 fn printed_signs_run_backwards() {
     let geometry = geometry();
     let (pixel, shift) = (DVec2::new(10.0, 20.0), DVec2::new(1e-5, -2e-5));

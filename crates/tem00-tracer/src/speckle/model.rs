@@ -2,7 +2,7 @@ use glam::{DVec2, DVec3};
 use tem00_decorrelation::{CameraFrame, DecorrelationError, ImagingGeometry, paper as printed};
 use tem00_speckle::{SpeckleStack, paper::BilinearStack};
 
-use super::{MovedPoint, PatternPlan, SpecklePlan, upright};
+use super::{Origin, PatternPlan, SpecklePlan, upright};
 use crate::{Laser, Scene, TracerError};
 
 /// The speckle patterns of a scene, ready to be looked up.
@@ -133,8 +133,8 @@ impl Pattern {
         })
     }
 
-    /// Returns where the surface point stood in the image of the first frame, in pixels, and how
-    /// far the pupil has moved over its speckle since, in diameters.
+    /// Returns where the speckle of a surface point stood in the image of the first frame, in pixels,
+    /// and how far the pupil has moved over it since, in diameters.
     fn reference(
         &self,
         scene: &Scene,
@@ -142,11 +142,10 @@ impl Pattern {
         point: &SpecklePoint,
         frame: u32,
     ) -> (DVec2, f64) {
-        // A point that started behind the camera has no place in its image: any will do.
-        let pixel = point.reference(scene, frame).unwrap_or(point.pixel);
-        let shift = MovedPoint::shift_of(scene, laser, point, frame, &self.geometry);
-        // Beyond the reach the speckle is new to the first frame, wherever the pupil stands.
-        (pixel, shift.min(self.reach))
+        let Origin { pixel, shift } = Origin::of(scene, laser, point, frame, &self.geometry);
+        // A point that started behind the camera has no place in its image: any will do. Beyond the
+        // reach the speckle is new to the first frame, wherever the pupil stands.
+        (pixel.unwrap_or(point.pixel), shift.min(self.reach))
     }
 
     /// Returns the displacement in the image and the slice coordinate by the printed formulas.

@@ -1,7 +1,7 @@
 use glam::DVec2;
 use tem00_decorrelation::ImagingGeometry;
 
-use super::{MovedPoint, SpecklePoint};
+use super::{Origin, SpecklePoint};
 use crate::{Camera, Intersector, Laser, Scene, TracerError};
 
 /// Rays per image side with which a frame is surveyed.
@@ -39,11 +39,12 @@ impl Survey {
                     let Some(point) = lit_point(&camera, &intersector, laser, pixel) else {
                         continue;
                     };
-                    if let Some(reference) = point.reference(scene, frame) {
-                        low = low.min(reference);
-                        high = high.max(reference);
+                    let origin = Origin::of(scene, laser, &point, frame, geometry);
+                    if let Some(pixel) = origin.pixel {
+                        low = low.min(pixel);
+                        high = high.max(pixel);
                     }
-                    shift = shift.max(MovedPoint::shift_of(scene, laser, &point, frame, geometry));
+                    shift = shift.max(origin.shift);
                 }
             }
         }

@@ -7,8 +7,10 @@ with the milliseconds that took: from the seed, so that its phasors are included
 get their phasors for free, in the corner of an array of zeros; pyFFTW measures its plan first and
 has all of its memory. pyspeckle makes its own, from an array of twice the size in double precision.
 
-The medians are printed, and the median over the rounds of the ratio to ours of the same round; for a
-stack also the memory that a process takes for it, less the slices.
+A turn is a call that does not count, which brings its threads and memory back into the caches, and
+three that do: the median of these is the turn's time. The medians of the turns are printed, the median
+of the calls that did not count, and the median over the rounds of the ratio to ours of the same round;
+for a stack also the memory that a process takes for it, less the slices.
 """
 
 import os
@@ -113,16 +115,18 @@ def compare(ours, size, rounds):
     for entry in entries.values():
         entry()
     times = {name: [] for name in entries}
+    first = {name: [] for name in entries}
     for _ in range(rounds):
         for name, entry in entries.items():
-            times[name].append(entry())
+            first[name].append(entry())
+            times[name].append(statistics.median(entry() for _ in range(3)))
     reference = times["tem00, seed to intensity"]
     print(f"\n{size} x {size}, {rounds} rounds")
     for name, values in times.items():
         ratio = statistics.median(t / r for t, r in zip(values, reference))
         print(
             f"  {name:34} median {statistics.median(values):8.2f} ms"
-            f"   least {min(values):8.2f} ms   ratio {ratio:6.2f}"
+            f"   ratio {ratio:6.2f}   first call {statistics.median(first[name]):8.2f} ms"
         )
 
 

@@ -265,12 +265,12 @@ impl Fft2 {
         let (height, length) = (self.column.aperture(), self.column.length());
         let lines = worker.lines(&self.column, columns.len(), COLUMNS);
         fill_columns(columns, height, fill, lines.inputs);
-        let mut inputs = lines.inputs.chunks_exact(stride(height));
+        let mut inputs = lines.inputs.chunks_exact_mut(stride(height));
         for block in blocks.chunks_exact_mut(COLUMNS * length) {
             let spectra = lines.spectra.chunks_exact_mut(stride(length));
             for (spectrum, input) in spectra.zip(inputs.by_ref()) {
                 self.column
-                    .transform(&input[..height], &mut spectrum[..length], lines.scratch);
+                    .transform(&mut input[..height], &mut spectrum[..length], lines.scratch);
             }
             let (block, _) = block.as_chunks_mut();
             spread_columns(lines.spectra, self.column.parts(), block);
@@ -291,11 +291,12 @@ impl Fft2 {
         let height = self.column.length();
         let lines = worker.lines(&self.row, ROWS, 1);
         gather_rows(spectra, height, start..start + count, lines.inputs, width);
-        let inputs = lines.inputs.chunks_exact(stride(width));
+        let inputs = lines.inputs.chunks_exact_mut(stride(width));
         let outputs = rows.chunks_exact_mut(self.row.length());
         let spectrum = &mut lines.spectra[..self.row.length()];
         for (y, (input, output)) in (start..).zip(inputs.zip(outputs)) {
-            self.row.transform(&input[..width], spectrum, lines.scratch);
+            self.row
+                .transform(&mut input[..width], spectrum, lines.scratch);
             interleave(spectrum, self.row.parts(), output, |x, value| {
                 finish(x, y, value)
             });

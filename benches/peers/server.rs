@@ -1,12 +1,13 @@
 //! Makes a speckle pattern for every line of the input and answers with the milliseconds it took.
 //!
-//! A line is a task and a pattern size Q; the pupil's diameter is Q/2, the memory is used again:
+//! A line is a task and a pattern size Q; the pupil's diameter is Q/2:
 //!
 //! ```text
-//! pattern 1024      the intensity, from the seed
+//! pattern 1024      the intensity, from the seed, into memory that is used again
 //! fresh 1024        the same into new memory
-//! field 1024        the complex amplitude
-//! stack 1024        32 complex transforms of phasors at hand, each by one thread
+//! field 1024        the complex amplitude, into memory that is used again
+//! stack 1024        a stack of 32 slices, in new memory
+//! peak 1024         no time: the most memory the process has had, in MiB (Linux)
 //! ```
 
 #![expect(clippy::print_stdout, reason = "the answers")]
@@ -14,19 +15,18 @@
 use std::{
     collections::{HashMap, hash_map::Entry},
     error::Error,
+    fs::read_to_string,
     hint::black_box,
     io::stdin,
     time::Instant,
 };
 
-use rayon::prelude::*;
 use tem00::{
-    numerics::{Fft2, Fft2Scratch, Grid},
-    speckle::{Complex, PupilField, SpeckleScratch},
+    numerics::Grid,
+    speckle::{Complex, PupilField, SlicePath, SpeckleScratch, SpeckleStack},
 };
 
-const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
-const SLICES: usize = 32;
+const SLICES: SlicePath = SlicePath::Circle { half_period: 16 };
 
 /// A field, and the memory that everything of its size is made in.
 struct Workplace {
@@ -34,23 +34,15 @@ struct Workplace {
     scratch: SpeckleScratch,
     intensity: Grid<f32>,
     amplitude: Grid<Complex<f32>>,
-    transform: Fft2,
-    aperture: Grid<Complex<f32>>,
-    slices: Vec<Grid<Complex<f32>>>,
 }
 
 impl Workplace {
     fn new(size: usize) -> Result<Self, Box<dyn Error>> {
-        let extent = size / 2 + 1;
-        let transform = Fft2::with_aperture(size, size, extent, extent)?;
         Ok(Self {
             field: PupilField::new(size, size / 2, 1)?,
             scratch: SpeckleScratch::default(),
             intensity: Grid::filled(size, size, 0.0),
-            amplitude: Grid::filled(size, size, ZERO),
-            transform: transform.on_one_thread(),
-            aperture: Grid::filled(extent, extent, Complex::new(1.0, 0.5)),
-            slices: Vec::new(),
+            amplitude: Grid::filled(size, size, Complex::new(0.0, 0.0)),
         })
     }
 
@@ -64,21 +56,19 @@ impl Workplace {
                 .field
                 .speckle_into(centre, 0.0, &mut self.amplitude, scratch),
             "fresh" => drop(black_box(self.field.pattern())),
-            "stack" => self.transform_slices(),
+            "stack" => drop(black_box(SpeckleStack::generate(&self.field, SLICES)?)),
             _ => return Err(format!("unknown task {task}").into()),
         }
         Ok(())
     }
+}
 
-    fn transform_slices(&mut self) {
-        self.slices.resize(SLICES, self.amplitude.clone());
-        let (transform, aperture) = (&self.transform, &self.aperture);
-        self.slices
-            .par_iter_mut()
-            .for_each_init(Fft2Scratch::default, |scratch, slice| {
-                transform.forward_into(aperture, slice, scratch, |_, _, value| value);
-            });
-    }
+/// The most memory this process has had, in MiB.
+fn peak() -> Result<f64, Box<dyn Error>> {
+    let status = read_to_string("/proc/self/status")?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kibibytes = line.and_then(|line| line.split_whitespace().next());
+    Ok(kibibytes.ok_or("no VmHWM")?.parse::<f64>()? / 1_024.0)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -91,6 +81,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => new.insert(Workplace::new(size)?),
         };
+        if task == "peak" {
+            println!("{}", peak()?);
+            continue;
+        }
         let start = Instant::now();
         workplace.perform(task)?;
         println!("{}", 1e3 * start.elapsed().as_secs_f64());

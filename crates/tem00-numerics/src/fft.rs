@@ -1,4 +1,4 @@
-use core::{array, error, fmt};
+use core::{error, fmt, ops::Range};
 
 use num_complex::Complex;
 use rustfft::FftPlanner;
@@ -10,7 +10,7 @@ mod blocks;
 mod chunks;
 
 use axis::Axis;
-use blocks::{COLUMNS, PADDING, gather_columns, gather_rows, spread_columns};
+use blocks::{COLUMNS, PANEL, aligned, fill_columns, gather_rows, spread_columns, stride};
 use chunks::for_each_chunk;
 
 /// A two-dimensional Fourier transform of a small aperture in a larger array of zeros.
@@ -36,8 +36,9 @@ use chunks::for_each_chunk;
 /// Nothing that is zero by construction is transformed: with an aperture of `w × h` in an array of
 /// `W × H` there are `w` transforms of length H and `H` of length W, each made of short ones no longer
 /// than the aperture needs. Any size works; products of small primes are fastest, and powers of two
-/// most of all. The array never exists as a whole: the memory is `8 w H` bytes, reused with
-/// [`forward_into`](Self::forward_into), and the output.
+/// most of all. The array never exists as a whole: the memory is `8 w H` bytes and a few dozen lines
+/// for each thread, reused with [`forward_into`](Self::forward_into), and the output. Nor need the
+/// aperture: [`forward_from`](Self::forward_from) takes it piece by piece.
 ///
 /// # Threads
 ///
@@ -70,7 +71,6 @@ pub struct Fft2 {
 
 /// Output rows finished together in the second pass: it reads that many cache lines in a row.
 const ROWS: usize = 16;
-const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 
 /// Working memory of a transform, kept between calls of [`Fft2::forward_into`].
 ///
@@ -79,6 +79,8 @@ const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 pub struct Fft2Scratch {
     /// For each block of [`COLUMNS`] columns its spectrum: `[block][ky][column]`.
     blocks: Vec<Complex<f32>>,
+    /// For each thread that has helped, what it needs to transform lines.
+    workers: Vec<Worker>,
 }
 
 impl fmt::Debug for Fft2 {
@@ -174,56 +176,104 @@ impl Fft2 {
             aperture.width() == self.row.aperture() && aperture.height() == self.column.aperture(),
             "the aperture has not the planned size"
         );
+        let copy = |columns: Range<usize>, y, values: &mut [_]| {
+            values.copy_from_slice(&aperture.row(y)[columns]);
+        };
+        self.forward_from(copy, output, scratch, finish);
+    }
+
+    /// Like [`forward_into`](Self::forward_into), of an aperture that is made on the way and never
+    /// exists as a whole.
+    ///
+    /// `fill(columns, y, values)` writes what these columns hold in row y. It covers each place of
+    /// the aperture once, in any order and by any thread, in pieces of up to 64 values that begin
+    /// at a multiple of 8.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use num_complex::Complex;
+    /// use tem00_numerics::{Fft2, Fft2Scratch, Grid};
+    ///
+    /// // Two slits of one column each, 4 apart, interfere with the period 64 / 4.
+    /// let transform = Fft2::with_aperture(64, 8, 5, 8)?;
+    /// let slits = |columns: core::ops::Range<usize>, _, values: &mut [_]| {
+    ///     for (x, value) in columns.zip(values) {
+    ///         *value = Complex::new(if x % 4 == 0 { 1.0 } else { 0.0 }, 0.0);
+    ///     }
+    /// };
+    /// let mut intensity = Grid::filled(64, 8, 0.0);
+    /// let mut scratch = Fft2Scratch::default();
+    /// transform.forward_from(slits, &mut intensity, &mut scratch, |_, _, value| value.norm_sqr());
+    ///
+    /// assert!((intensity[(16, 0)] - 256.0).abs() < 1e-3);
+    /// assert!(intensity[(8, 0)] < 1e-3);
+    /// # Ok::<(), tem00_numerics::Fft2Error>(())
+    /// ```
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `output` has the size of the array.
+    pub fn forward_from<O: Send>(
+        &self,
+        fill: impl Fn(Range<usize>, usize, &mut [Complex<f32>]) + Sync,
+        output: &mut Grid<O>,
+        scratch: &mut Fft2Scratch,
+        finish: impl Fn(usize, usize, Complex<f32>) -> O + Sync,
+    ) {
         assert!(
             output.width() == self.row.length() && output.height() == self.column.length(),
             "the output has not the size of the array"
         );
         let block = COLUMNS * self.column.length();
         let blocks = self.row.aperture().div_ceil(COLUMNS);
-        if scratch.blocks.len() < blocks * block {
-            scratch.blocks.resize(blocks * block, ZERO);
-        }
-        let spectra = &mut scratch.blocks[..blocks * block];
+        let spectra = aligned(&mut scratch.blocks, blocks * block);
+        let panel = self.panel_width();
         for_each_chunk(
             self.threads,
             spectra,
-            block,
-            || Lines::new(&self.column, COLUMNS, COLUMNS),
-            |lines, index, block| self.transform_columns(aperture, index, lines, block),
+            panel / COLUMNS * block,
+            &mut scratch.workers,
+            |worker, index, blocks| {
+                let columns = index * panel..self.row.aperture().min((index + 1) * panel);
+                self.transform_columns(columns, &fill, worker, blocks);
+            },
         );
         for_each_chunk(
             self.threads,
             output.values_mut(),
             ROWS * self.row.length(),
-            || Lines::new(&self.row, ROWS, 1),
-            |lines, index, rows| self.finish_rows(spectra, index, lines, rows, &finish),
+            &mut scratch.workers,
+            |worker, index, rows| self.finish_rows(spectra, index, worker, rows, &finish),
         );
     }
 
-    /// First pass: the columns of one block, down the array.
+    /// Columns that one thread transforms in a go: few enough that all threads have some.
+    fn panel_width(&self) -> usize {
+        let share = self.row.aperture() / (2 * chunks::thread_count(self.threads));
+        share.clamp(1, PANEL).next_multiple_of(COLUMNS)
+    }
+
+    /// First pass: neighbouring columns, down the array.
     fn transform_columns(
         &self,
-        aperture: &Grid<Complex<f32>>,
-        index: usize,
-        lines: &mut Lines,
-        block: &mut [Complex<f32>],
+        columns: Range<usize>,
+        fill: &impl Fn(Range<usize>, usize, &mut [Complex<f32>]),
+        worker: &mut Worker,
+        blocks: &mut [Complex<f32>],
     ) {
-        let start = index * COLUMNS;
-        gather_columns(aperture, start, &mut lines.input);
         let (height, length) = (self.column.aperture(), self.column.length());
-        let inputs = lines.input.chunks_exact(height);
-        let spectra = lines.spectra.chunks_exact_mut(length + PADDING);
-        for (input, spectrum) in inputs.zip(spectra).take(aperture.width() - start) {
-            self.column
-                .transform(input, &mut spectrum[..length], &mut lines.scratch);
-        }
-        let parts = self.column.parts();
-        let short = length / parts;
-        let (block, _) = block.as_chunks_mut();
-        for s in 0..parts {
-            let part = |column: usize| &lines.spectra[column * (length + PADDING) + s * short..];
-            let spectra = array::from_fn(|column| &part(column)[..short]);
-            spread_columns(spectra, block, s, parts);
+        let lines = worker.lines(&self.column, columns.len(), COLUMNS);
+        fill_columns(columns, height, fill, lines.inputs);
+        let mut inputs = lines.inputs.chunks_exact_mut(stride(height));
+        for block in blocks.chunks_exact_mut(COLUMNS * length) {
+            let spectra = lines.spectra.chunks_exact_mut(stride(length));
+            for (spectrum, input) in spectra.zip(inputs.by_ref()) {
+                self.column
+                    .transform(&mut input[..height], &mut spectrum[..length], lines.scratch);
+            }
+            let (block, _) = block.as_chunks_mut();
+            spread_columns(lines.spectra, self.column.parts(), block);
         }
     }
 
@@ -232,25 +282,21 @@ impl Fft2 {
         &self,
         spectra: &[Complex<f32>],
         index: usize,
-        lines: &mut Lines,
+        worker: &mut Worker,
         rows: &mut [O],
         finish: &impl Fn(usize, usize, Complex<f32>) -> O,
     ) {
         let (start, width) = (index * ROWS, self.row.aperture());
         let count = rows.len() / self.row.length();
         let height = self.column.length();
-        gather_rows(
-            spectra,
-            height,
-            start..start + count,
-            &mut lines.input,
-            width,
-        );
-        let inputs = lines.input.chunks_exact(width);
+        let lines = worker.lines(&self.row, ROWS, 1);
+        gather_rows(spectra, height, start..start + count, lines.inputs, width);
+        let inputs = lines.inputs.chunks_exact_mut(stride(width));
         let outputs = rows.chunks_exact_mut(self.row.length());
         let spectrum = &mut lines.spectra[..self.row.length()];
         for (y, (input, output)) in (start..).zip(inputs.zip(outputs)) {
-            self.row.transform(input, spectrum, &mut lines.scratch);
+            self.row
+                .transform(&mut input[..width], spectrum, lines.scratch);
             interleave(spectrum, self.row.parts(), output, |x, value| {
                 finish(x, y, value)
             });
@@ -282,21 +328,29 @@ fn interleave<O>(
     }
 }
 
-/// What one thread needs to transform lines of one axis.
-struct Lines {
-    /// Gathered lines of the aperture, one after the other.
-    input: Vec<Complex<f32>>,
-    /// One after the other as well, [`PADDING`] values apart.
+/// What one thread needs to transform lines.
+#[derive(Clone, Debug, Default)]
+struct Worker {
+    inputs: Vec<Complex<f32>>,
     spectra: Vec<Complex<f32>>,
     scratch: Vec<Complex<f32>>,
 }
 
-impl Lines {
-    fn new(axis: &Axis, inputs: usize, spectra: usize) -> Self {
-        Self {
-            input: vec![ZERO; inputs * axis.aperture()],
-            spectra: vec![ZERO; spectra * (axis.length() + PADDING)],
-            scratch: vec![ZERO; axis.scratch_length()],
+/// Working memory for lines of one axis.
+struct Lines<'a> {
+    /// Lines of the aperture, one [`stride`] apart.
+    inputs: &'a mut [Complex<f32>],
+    /// Their spectra, one [`stride`] apart as well.
+    spectra: &'a mut [Complex<f32>],
+    scratch: &'a mut [Complex<f32>],
+}
+
+impl Worker {
+    fn lines(&mut self, axis: &Axis, inputs: usize, spectra: usize) -> Lines<'_> {
+        Lines {
+            inputs: aligned(&mut self.inputs, inputs * stride(axis.aperture())),
+            spectra: aligned(&mut self.spectra, spectra * stride(axis.length())),
+            scratch: aligned(&mut self.scratch, axis.scratch_length()),
         }
     }
 }

@@ -45,7 +45,7 @@ const KEY: &[u8; 24] = b"tem00 speckle phasors v1";
 const MAGNITUDES: u64 = 1 << 32;
 
 /// Words drawn at a time.
-const CHUNK: usize = 256;
+const CHUNK: usize = 64;
 
 impl Lattice {
     /// The points along an axis after which random phasors repeat.

@@ -1,6 +1,6 @@
 //! Patterns and fields behind a pupil that stands anywhere and is out of focus.
 
-use core::f64::consts::PI;
+use core::{f64::consts::PI, ops::Range};
 use std::borrow::Cow;
 
 use num_complex::Complex;
@@ -9,7 +9,7 @@ use tem00_numerics::{Fft2Scratch, Grid};
 use crate::{
     PupilField, SpeckleField, SpecklePattern,
     lattice::{Lattice, Source, to_i64},
-    mask::{Mask, from_i64, to_f64},
+    mask::{Mask, Span, from_i64, to_f64},
     rows::for_each_row,
 };
 
@@ -21,7 +21,6 @@ const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 /// It fits any field and grows to the largest.
 #[derive(Clone, Debug, Default)]
 pub struct SpeckleScratch {
-    aperture: Option<Grid<Complex<f32>>>,
     transform: Fft2Scratch,
 }
 
@@ -33,6 +32,15 @@ pub(crate) struct View<'a> {
     fraction: [f64; 2],
     mask: Cow<'a, Mask>,
     defocus: f64,
+}
+
+/// What a pupil selects from the lattice, over the box of its mask.
+struct Selection<'a> {
+    lattice: &'a Lattice,
+    view: &'a View<'a>,
+    factors: Option<Separable>,
+    /// Of samples from outside: what makes the sum of their squares 1.
+    gain: Option<f64>,
 }
 
 /// A factor for each column and each row of the aperture.
@@ -92,9 +100,9 @@ impl PupilField {
     ) {
         let view = self.view(offset, defocus);
         let scale = to_f32(1.0 / self.power(&view));
-        let aperture = self.fill(&view, None, &mut scratch.aperture);
-        self.transform.forward_into(
-            aperture,
+        let selection = self.selection(&view, None);
+        self.transform.forward_from(
+            |columns, y, values| selection.fill(columns, y, values),
             intensity,
             &mut scratch.transform,
             |_, _, value| scale * value.norm_sqr(),
@@ -164,9 +172,9 @@ impl PupilField {
         // The normalisation is shared by the two axes.
         let scale = self.power(view).powf(-0.25);
         let [x, y] = [0, 1].map(|axis| self.centring_phase(view, axis, scale));
-        let aperture = self.fill(view, filter, &mut scratch.aperture);
-        self.transform.forward_into(
-            aperture,
+        let selection = self.selection(view, filter);
+        self.transform.forward_from(
+            |columns, y, values| selection.fill(columns, y, values),
             amplitude,
             &mut scratch.transform,
             |i, j, value| value * x[i] * y[j],
@@ -206,9 +214,12 @@ impl PupilField {
     /// What the pupil sees of a field about a lattice point, over the box of its mask. The squares
     /// of a field from outside sum to 1, or to 0 where there is no light.
     pub(crate) fn seen(&self, centre: [i64; 2]) -> Grid<Complex<f32>> {
-        let mut aperture = None;
-        self.fill(&self.view_of_point(centre), None, &mut aperture)
-            .clone()
+        let view = self.view_of_point(centre);
+        let selection = self.selection(&view, None);
+        let [width, height] = view.mask.extent();
+        let mut seen = Grid::filled(width, height, ZERO);
+        for_each_row(&mut seen, |y, values| selection.fill(0..width, y, values));
+        seen
     }
 
     /// The expected sum of squares in the aperture. That of samples is made 1 as they are filled in.
@@ -219,73 +230,24 @@ impl PupilField {
         }
     }
 
-    /// Fills the aperture with what the pupil selects, its box at the corner of the transform's array.
-    fn fill<'s>(
-        &self,
-        view: &View<'_>,
+    /// What the pupil selects, its box at the corner of the transform's array.
+    fn selection<'a>(
+        &'a self,
+        view: &'a View<'a>,
         filter: Option<&[Vec<f32>; 2]>,
-        aperture: &'s mut Option<Grid<Complex<f32>>>,
-    ) -> &'s Grid<Complex<f32>> {
-        let [width, height] = view.mask.extent();
-        let fits = |grid: &Grid<_>| grid.width() == width && grid.height() == height;
-        if !aperture.as_ref().is_some_and(fits) {
-            *aperture = None;
-        }
-        let aperture = aperture.get_or_insert_with(|| Grid::filled(width, height, ZERO));
-        let factors = self.factors(view, filter);
-        let gain = self.gain(view);
-        for_each_row(aperture, |y, values| {
-            self.fill_row(view, y, values);
-            if let Some(gain) = gain {
-                values
-                    .iter_mut()
-                    .for_each(|value| *value = scaled(*value, gain));
-            }
-            if let Some([x, by_row]) = &factors {
-                for (value, factor) in values.iter_mut().zip(x) {
-                    *value *= factor * by_row[y];
-                }
-            }
-        });
-        aperture
-    }
-
-    fn fill_row(&self, view: &View<'_>, y: usize, values: &mut [Complex<f32>]) {
-        let row = view.mask.row(y);
-        let corner = view.mask.corner();
-        let kx = view.centre[0] + corner[0] + to_i64(row.outer.start);
-        let ky = view.centre[1] + corner[1] + to_i64(y);
-        values[..row.outer.start].fill(ZERO);
-        values[row.outer.end..].fill(ZERO);
-        self.lattice
-            .fill_row([kx, ky], &mut values[row.outer.range()]);
-        values[row.hole.range()].fill(ZERO);
-        if let Some(weights) = view.mask.weights(y) {
-            for (value, weight) in values.iter_mut().zip(weights) {
-                *value *= weight;
-            }
-        }
-    }
-
-    /// What makes the sum of squares of samples from outside 1, or `None` for phasors. Without any
-    /// light it is 0.
-    fn gain(&self, view: &View<'_>) -> Option<f64> {
-        let Source::Measured(_) = self.lattice.source else {
-            return None;
+    ) -> Selection<'a> {
+        let mut selection = Selection {
+            lattice: &self.lattice,
+            view,
+            factors: None,
+            gain: None,
         };
-        let [width, height] = view.mask.extent();
-        let mut row = vec![ZERO; width];
-        let mut power = 0.0;
-        for y in 0..height {
-            self.fill_row(view, y, &mut row);
-            let square = |z: &Complex<f32>| f64::from(z.re).powi(2) + f64::from(z.im).powi(2);
-            power += row.iter().map(square).sum::<f64>();
-        }
-        Some(if power > 0.0 {
-            power.sqrt().recip()
-        } else {
-            0.0
-        })
+        selection.gain = match self.lattice.source {
+            Source::Seeded(_) => None,
+            Source::Measured(_) => Some(selection.gain()),
+        };
+        selection.factors = self.factors(view, filter);
+        selection
     }
 
     /// The factors of defocus and of `filter`, if there are any.
@@ -335,6 +297,63 @@ impl PupilField {
         let mut value = [ZERO];
         self.lattice.fill_row(k, &mut value);
         value[0]
+    }
+}
+
+impl Selection<'_> {
+    /// Fills in the values at these columns of row `y` of the mask's box.
+    fn fill(&self, columns: Range<usize>, y: usize, values: &mut [Complex<f32>]) {
+        self.fill_points(columns.clone(), y, values);
+        if let Some(gain) = self.gain {
+            values
+                .iter_mut()
+                .for_each(|value| *value = scaled(*value, gain));
+        }
+        if let Some([by_column, by_row]) = &self.factors {
+            for (value, factor) in values.iter_mut().zip(&by_column[columns]) {
+                *value *= factor * by_row[y];
+            }
+        }
+    }
+
+    /// The same without gain and factors.
+    fn fill_points(&self, columns: Range<usize>, y: usize, values: &mut [Complex<f32>]) {
+        let View { centre, mask, .. } = self.view;
+        let row = mask.row(y);
+        // Where a span lies among the columns.
+        let part = |span: Span| {
+            let place = |x: usize| x.clamp(columns.start, columns.end) - columns.start;
+            place(span.start)..place(span.end)
+        };
+        let inside = part(row.outer);
+        values[..inside.start].fill(ZERO);
+        values[inside.end..].fill(ZERO);
+        let kx = centre[0] + mask.corner()[0] + to_i64(columns.start + inside.start);
+        let ky = centre[1] + mask.corner()[1] + to_i64(y);
+        self.lattice.fill_row([kx, ky], &mut values[inside]);
+        values[part(row.hole)].fill(ZERO);
+        if let Some(weights) = mask.weights(y) {
+            for (value, weight) in values.iter_mut().zip(&weights[columns]) {
+                *value *= weight;
+            }
+        }
+    }
+
+    /// What makes the sum of squares of samples from outside 1. Without any light it is 0.
+    fn gain(&self) -> f64 {
+        let [width, height] = self.view.mask.extent();
+        let mut row = vec![ZERO; width];
+        let mut power = 0.0;
+        for y in 0..height {
+            self.fill_points(0..width, y, &mut row);
+            let square = |z: &Complex<f32>| f64::from(z.re).powi(2) + f64::from(z.im).powi(2);
+            power += row.iter().map(square).sum::<f64>();
+        }
+        if power > 0.0 {
+            power.sqrt().recip()
+        } else {
+            0.0
+        }
     }
 }
 

@@ -58,38 +58,57 @@ impl Axis {
     }
 
     pub(super) fn scratch_length(&self) -> usize {
-        self.short.get_inplace_scratch_len()
+        let short = &self.short;
+        let outside = short.get_outofplace_scratch_len();
+        short.get_inplace_scratch_len().max(outside)
     }
 
-    /// Transforms the line `input`; `X(parts · j + s)` comes to lie at `output[s · D + j]`.
+    /// Transforms the line `input`; `X(parts · j + s)` comes to lie at `output[s · D + j]`. Nothing is
+    /// left of `input`.
     pub(super) fn transform(
         &self,
-        input: &[Complex<f32>],
+        input: &mut [Complex<f32>],
         output: &mut [Complex<f32>],
         scratch: &mut [Complex<f32>],
     ) {
         let short = self.short.len();
-        let (head, folded) = input.split_at(short.min(input.len()));
-        for (s, part) in output.chunks_exact_mut(short).enumerate() {
-            let (used, zeros) = part.split_at_mut(head.len());
-            zeros.fill(Complex::new(0.0, 0.0));
-            if s == 0 {
-                used.copy_from_slice(head);
-                for (sum, value) in used.iter_mut().zip(folded) {
-                    *sum += value;
-                }
-                continue;
-            }
-            let twiddles = &self.twiddles[(s - 1) * self.aperture..s * self.aperture];
-            let (head_twiddles, folded_twiddles) = twiddles.split_at(head.len());
-            for ((to, value), twiddle) in used.iter_mut().zip(head).zip(head_twiddles) {
-                *to = value * twiddle;
-            }
-            for ((sum, value), twiddle) in used.iter_mut().zip(folded).zip(folded_twiddles) {
-                *sum += value * twiddle;
-            }
+        let (head, folded) = input.split_at_mut(short.min(input.len()));
+        let (first, others) = output.split_at_mut(short);
+        let turned = self.twiddles.chunks_exact(self.aperture);
+        for (part, twiddles) in others.chunks_exact_mut(short).zip(turned) {
+            turn(head, folded, twiddles, part);
         }
-        self.short.process_with_scratch(output, scratch);
+        self.short.process_with_scratch(others, scratch);
+        for (sum, value) in head.iter_mut().zip(folded) {
+            *sum += *value;
+        }
+        if head.len() == short {
+            self.short
+                .process_outofplace_with_scratch(head, first, scratch);
+        } else {
+            let (used, zeros) = first.split_at_mut(head.len());
+            used.copy_from_slice(head);
+            zeros.fill(Complex::new(0.0, 0.0));
+            self.short.process_with_scratch(first, scratch);
+        }
+    }
+}
+
+/// Writes `y_s` into `part`: the values times their twiddles, what is beyond the part folded back.
+fn turn(
+    head: &[Complex<f32>],
+    folded: &[Complex<f32>],
+    twiddles: &[Complex<f32>],
+    part: &mut [Complex<f32>],
+) {
+    let (used, zeros) = part.split_at_mut(head.len());
+    zeros.fill(Complex::new(0.0, 0.0));
+    let (head_twiddles, folded_twiddles) = twiddles.split_at(head.len());
+    for ((to, value), twiddle) in used.iter_mut().zip(head).zip(head_twiddles) {
+        *to = value * twiddle;
+    }
+    for ((sum, value), twiddle) in used.iter_mut().zip(folded).zip(folded_twiddles) {
+        *sum += value * twiddle;
     }
 }
 

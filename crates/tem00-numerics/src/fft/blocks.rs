@@ -7,53 +7,80 @@ use core::{array, ops::Range};
 
 use num_complex::Complex;
 
-use crate::Grid;
-
 /// Columns in a block: 64 bytes, a line of the cache.
 pub(super) const COLUMNS: usize = 8;
 
-/// What a line of the spectrum is longer than its values.
+/// The most columns that are filled together.
+pub(super) const PANEL: usize = 64;
+
+/// Rows of each part of a spectrum that are spread together.
+const TILE: usize = 32;
+
+/// The way from one line of `length` values to the next: whole lines of the cache.
 ///
 /// Lines a multiple of 4 KiB apart would share one set of the nearest cache.
-pub(super) const PADDING: usize = COLUMNS;
+pub(super) const fn stride(length: usize) -> usize {
+    length.next_multiple_of(COLUMNS) + COLUMNS
+}
 
-/// Copies a block's columns, from `start` on, into one line of `lines` each.
-pub(super) fn gather_columns(
-    aperture: &Grid<Complex<f32>>,
-    start: usize,
+/// Returns `length` values that begin with a line of the cache. They hold anything.
+pub(super) fn aligned(values: &mut Vec<Complex<f32>>, length: usize) -> &mut [Complex<f32>] {
+    let needed = length + COLUMNS;
+    if values.len() < needed {
+        values.resize(needed, Complex::new(0.0, 0.0));
+    }
+    // Elsewhere than on a line everything works as well, only slower.
+    let skipped = values.as_ptr().align_offset(64).min(COLUMNS);
+    &mut values[skipped..skipped + length]
+}
+
+/// Writes columns of an aperture into lines one [`stride`] apart; `fill(columns, y, values)` makes
+/// what they hold in row y.
+pub(super) fn fill_columns(
+    columns: Range<usize>,
+    height: usize,
+    fill: &impl Fn(Range<usize>, usize, &mut [Complex<f32>]),
     lines: &mut [Complex<f32>],
 ) {
-    let (width, height) = (aperture.width(), aperture.height());
-    if width - start < COLUMNS {
-        for (line, x) in lines.chunks_exact_mut(height).zip(start..width) {
-            for (to, row) in line.iter_mut().zip(aperture.rows()) {
-                *to = row[x];
+    // A few rows at a time stay in the nearest cache, and leave it as whole lines of it.
+    let mut rows = [[Complex::new(0.0, 0.0); PANEL]; COLUMNS];
+    for y in (0..height).step_by(rows.len()) {
+        for (y, row) in (y..height).zip(&mut rows) {
+            fill(columns.clone(), y, &mut row[..columns.len()]);
+        }
+        for (x, line) in lines.chunks_exact_mut(stride(height)).enumerate() {
+            let line = &mut line[y..height];
+            // A copy of known length is no loop.
+            if let Some(whole) = line.first_chunk_mut() {
+                *whole = rows.each_ref().map(|row| row[x]);
+            } else {
+                let values = rows.iter().map(|row| row[x]);
+                line.iter_mut().zip(values).for_each(|(to, x)| *to = x);
             }
-        }
-        return;
-    }
-    let mut lines = lines.chunks_exact_mut(height);
-    let mut lines: [_; COLUMNS] =
-        array::from_fn(|_| lines.next().unwrap_or_default().as_chunks_mut::<2>());
-    let mut rows = aperture.values().chunks_exact(2 * width);
-    // Two rows at a time, so that the values move in pairs.
-    for (y, pair) in rows.by_ref().enumerate() {
-        let (upper, lower) = pair.split_at(width);
-        let values = upper[start..].iter().zip(&lower[start..]);
-        for ((line, _), (upper, lower)) in lines.iter_mut().zip(values) {
-            line[y] = [*upper, *lower];
-        }
-    }
-    if !rows.remainder().is_empty() {
-        let last = &rows.remainder()[start..];
-        for ((_, line), value) in lines.into_iter().zip(last) {
-            line.fill(*value);
         }
     }
 }
 
-/// Writes one part of the columns' spectra into every `parts`-th row of a block, from `first` on.
+/// Writes the spectra of a block's columns, one [`stride`] apart and each in `parts` parts, into the
+/// rows of the block.
 pub(super) fn spread_columns(
+    spectra: &[Complex<f32>],
+    parts: usize,
+    block: &mut [[Complex<f32>; COLUMNS]],
+) {
+    let (length, short) = (block.len(), block.len() / parts);
+    // A few rows at a time stay in the nearest cache until all parts have come.
+    for (start, rows) in (0..).step_by(TILE).zip(block.chunks_mut(TILE * parts)) {
+        for s in 0..parts {
+            let piece = |column: usize| &spectra[column * stride(length) + s * short + start..];
+            let pieces = array::from_fn(|column| &piece(column)[..rows.len() / parts]);
+            spread_part(pieces, rows, s, parts);
+        }
+    }
+}
+
+/// Writes one part of the columns' spectra into every `parts`-th row, from `first` on.
+fn spread_part(
     spectra: [&[Complex<f32>]; COLUMNS],
     block: &mut [[Complex<f32>; COLUMNS]],
     first: usize,
@@ -76,7 +103,8 @@ pub(super) fn spread_columns(
     }
 }
 
-/// Copies the rows `rows` of all blocks of `height` rows into one line of `lines` each.
+/// Copies the rows `rows` of all blocks of `height` rows into one line of `lines` each, one
+/// [`stride`] apart.
 pub(super) fn gather_rows(
     blocks: &[Complex<f32>],
     height: usize,
@@ -87,7 +115,7 @@ pub(super) fn gather_rows(
     let blocks = blocks.chunks_exact(COLUMNS * height);
     for (block, start) in blocks.zip((0..width).step_by(COLUMNS)) {
         let (block, _) = block.as_chunks::<COLUMNS>();
-        let lines = lines.chunks_exact_mut(width);
+        let lines = lines.chunks_exact_mut(stride(width));
         for (values, line) in block[rows.clone()].iter().zip(lines) {
             let line = &mut line[start..];
             // A copy of known length is no call.
@@ -106,6 +134,30 @@ mod tests {
 
     const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 
+    #[expect(clippy::cast_precision_loss, reason = "small integers")]
+    fn place(x: usize, y: usize) -> Complex<f32> {
+        Complex::new(x as f32, y as f32)
+    }
+
+    #[test]
+    fn every_value_goes_into_its_column() {
+        for (columns, height) in [(0..1, 1), (0..64, 17), (64..69, 16), (8..16, 5)] {
+            let mut lines = vec![ZERO; columns.len() * stride(height)];
+            let fill = |columns: Range<usize>, y, values: &mut [_]| {
+                assert_eq!(columns.len(), values.len(), "a value for each column");
+                for (value, x) in values.iter_mut().zip(columns) {
+                    *value = place(x, y);
+                }
+            };
+            fill_columns(columns.clone(), height, &fill, &mut lines);
+            for (x, line) in columns.zip(lines.chunks_exact(stride(height))) {
+                for (y, value) in line[..height].iter().enumerate() {
+                    assert_eq!(*value, place(x, y), "column {x} of {height} rows");
+                }
+            }
+        }
+    }
+
     #[test]
     fn every_value_goes_into_a_block_and_comes_back_in_its_row() {
         for (width, short, parts) in [
@@ -115,32 +167,41 @@ mod tests {
             (17, 7, 2),
             (23, 4, 3),
             (9, 1, 4),
+            // More rows than are spread together.
+            (9, 2 * TILE + 3, 2),
         ] {
             let height = parts * short;
-            #[expect(clippy::cast_precision_loss, reason = "small integers")]
-            let aperture = Grid::from_fn(width, height, |x, y| Complex::new(x as f32, y as f32));
             let mut blocks = Vec::new();
             for start in (0..width).step_by(COLUMNS) {
-                let mut lines = vec![ZERO; COLUMNS * height];
-                gather_columns(&aperture, start, &mut lines);
-                let mut block = vec![[ZERO; COLUMNS]; height];
-                for s in 0..parts {
-                    let part = |column: usize| &lines[column * height + s * short..][..short];
-                    spread_columns(array::from_fn(part), &mut block, s, parts);
+                let mut lines = vec![ZERO; COLUMNS * stride(height)];
+                for (x, line) in (start..).zip(lines.chunks_exact_mut(stride(height))) {
+                    for (y, value) in line[..height].iter_mut().enumerate() {
+                        *value = place(x, y);
+                    }
                 }
+                let mut block = vec![[ZERO; COLUMNS]; height];
+                spread_columns(&lines, parts, &mut block);
                 blocks.extend(block.into_iter().flatten());
             }
-            let mut lines = vec![ZERO; width * height];
+            let mut lines = vec![ZERO; height * stride(width)];
             gather_rows(&blocks, height, 0..height, &mut lines, width);
-            // Row `parts · j + s` holds the values j of part s.
-            let expected = Grid::from_fn(width, height, |x, y| {
-                aperture[(x, y % parts * short + y / parts)]
-            });
-            assert_eq!(
-                lines,
-                expected.values(),
-                "{width} × {height} in {parts} parts"
-            );
+            for (y, line) in lines.chunks_exact(stride(width)).enumerate() {
+                for (x, value) in line[..width].iter().enumerate() {
+                    // Row `parts · j + s` holds the values j of part s.
+                    let expected = place(x, y % parts * short + y / parts);
+                    assert_eq!(*value, expected, "{width} × {height} in {parts} parts");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn values_begin_with_a_line_of_the_cache() {
+        let mut values = Vec::new();
+        for length in [1, 1_000, 10] {
+            let aligned = aligned(&mut values, length);
+            assert_eq!(aligned.len(), length);
+            assert_eq!(aligned.as_ptr().align_offset(64), 0, "{length} values");
         }
     }
 }

@@ -1,29 +1,53 @@
 //! Work on the pieces of an array, by all threads where the feature `parallel` allows it.
 
+#[cfg(feature = "parallel")]
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 /// Calls `each(state, index, chunk)` for every piece of `chunk` values; the last may be shorter.
 ///
-/// Pieces never depend on each other. `state` is scratch memory, made once per thread. Unless
-/// `threads`, the calling thread does it all.
-pub(super) fn for_each_chunk<T: Send, S>(
+/// Pieces never depend on each other. Whoever works on one takes a state from `states`, or a new one,
+/// and leaves it there for the next. Unless `threads`, the calling thread does it all.
+pub(super) fn for_each_chunk<T: Send, S: Default + Send>(
     threads: bool,
     values: &mut [T],
     chunk: usize,
-    state: impl Fn() -> S + Sync + Send,
-    each: impl Fn(&mut S, usize, &mut [T]) + Sync + Send,
+    states: &mut Vec<S>,
+    each: impl Fn(&mut S, usize, &mut [T]) + Sync,
 ) {
     #[cfg(feature = "parallel")]
     if threads {
         use rayon::prelude::*;
-        values
-            .par_chunks_mut(chunk)
-            .enumerate()
-            .for_each_init(state, |state, (index, chunk)| each(state, index, chunk));
+        let states = Mutex::new(states);
+        let chunks = values.par_chunks_mut(chunk).enumerate();
+        chunks.for_each(|(index, chunk)| {
+            let mut state = lock(&states).pop().unwrap_or_default();
+            each(&mut state, index, chunk);
+            lock(&states).push(state);
+        });
         return;
     }
     #[cfg(not(feature = "parallel"))]
     let _ = threads;
-    let mut state = state();
+    let mut state = states.pop().unwrap_or_default();
     for (index, chunk) in values.chunks_mut(chunk).enumerate() {
         each(&mut state, index, chunk);
     }
+    states.push(state);
+}
+
+/// The number of threads that [`for_each_chunk`] works with.
+pub(super) fn thread_count(threads: bool) -> usize {
+    #[cfg(feature = "parallel")]
+    if threads {
+        return rayon::current_num_threads();
+    }
+    #[cfg(not(feature = "parallel"))]
+    let _ = threads;
+    1
+}
+
+/// A list of states is whole between two calls, whatever became of a thread.
+#[cfg(feature = "parallel")]
+fn lock<T>(states: &Mutex<T>) -> MutexGuard<'_, T> {
+    states.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -344,6 +344,41 @@ fn a_pupil_without_light_sees_nothing() {
     );
 }
 
+/// Threads fill the aperture in pieces as wide as there are threads.
+#[test]
+fn an_aperture_is_the_same_in_pieces() {
+    let samples = Grid::from_fn(40, 33, |x, y| Complex::new(x as f32 - 9.5, y as f32));
+    let seeded = PupilField::new(64, 30, 1).unwrap();
+    let fields = [
+        seeded
+            .clone()
+            .with_pupil(Pupil::Annulus { inner: 0.4 })
+            .unwrap(),
+        seeded.clone().with_pupil(drawn(0.3)).unwrap(),
+        PupilField::from_samples(samples, [64; 2], 2.1).unwrap(),
+        seeded,
+    ];
+    for field in &fields {
+        for (offset, defocus) in [([0.0; 2], 0.0), ([0.1, -0.77], 0.4)] {
+            let view = field.view(offset, defocus);
+            let selection = field.selection(&view, None);
+            let [width, height] = view.mask.extent();
+            for y in 0..height {
+                let mut whole = vec![ZERO; width];
+                selection.fill(0..width, y, &mut whole);
+                for piece in [1, 7, 8, 64] {
+                    let mut pieces = vec![Complex::new(f32::NAN, 0.0); width];
+                    for (index, values) in pieces.chunks_mut(piece).enumerate() {
+                        let start = index * piece;
+                        selection.fill(start..start + values.len(), y, values);
+                    }
+                    assert_eq!(pieces, whole, "row {y} in pieces of {piece}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn reused_memory_changes_no_bit() {
     let mut scratch = SpeckleScratch::default();

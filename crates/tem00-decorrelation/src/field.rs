@@ -4,6 +4,7 @@ mod slices;
 mod tests;
 
 use glam::DVec3;
+use tem00_numerics::vectorised;
 
 use crate::{CameraFrame, DecorrelationError, ImageOrientation, ImagingGeometry, Motion};
 
@@ -196,7 +197,7 @@ impl MotionField {
                 .collect::<Vec<_>>(),
             out.each_ref().map(|column| column.len()),
         );
-        kernel::vectorised(
+        vectorised(
             #[inline(always)]
             || match points.light {
                 FieldLight::Collimated => self.run(columns, out, kernel::collimated),

@@ -3,7 +3,7 @@ use core::{error, fmt, ops::Range};
 use num_complex::Complex;
 use rustfft::FftPlanner;
 
-use crate::Grid;
+use crate::{Grid, vectorised};
 
 mod axis;
 mod blocks;
@@ -236,7 +236,10 @@ impl Fft2 {
             &mut scratch.workers,
             |worker, index, blocks| {
                 let columns = index * panel..self.row.aperture().min((index + 1) * panel);
-                self.transform_columns(columns, &fill, worker, blocks);
+                vectorised(
+                    #[inline(always)]
+                    || self.transform_columns(columns, &fill, worker, blocks),
+                );
             },
         );
         for_each_chunk(
@@ -244,7 +247,12 @@ impl Fft2 {
             output.values_mut(),
             ROWS * self.row.length(),
             &mut scratch.workers,
-            |worker, index, rows| self.finish_rows(spectra, index, worker, rows, &finish),
+            |worker, index, rows| {
+                vectorised(
+                    #[inline(always)]
+                    || self.finish_rows(spectra, index, worker, rows, &finish),
+                );
+            },
         );
     }
 
@@ -255,6 +263,7 @@ impl Fft2 {
     }
 
     /// First pass: neighbouring columns, down the array.
+    #[inline(always)]
     fn transform_columns(
         &self,
         columns: Range<usize>,
@@ -278,6 +287,7 @@ impl Fft2 {
     }
 
     /// Second pass: a few whole rows, and what the caller makes of them.
+    #[inline(always)]
     fn finish_rows<O>(
         &self,
         spectra: &[Complex<f32>],
@@ -305,6 +315,7 @@ impl Fft2 {
 }
 
 /// Writes `finish(x, X(x))` in order of x from a spectrum that lies in `parts` parts.
+#[inline(always)]
 fn interleave<O>(
     spectrum: &[Complex<f32>],
     parts: usize,

@@ -27,6 +27,7 @@
 mod fft;
 mod grid;
 mod pupil;
+mod vectorised;
 
 #[cfg(feature = "fft")]
 pub use fft::{Fft2, Fft2Error, Fft2Scratch};
@@ -35,3 +36,4 @@ pub use pupil::{
     circular_path_overlap, circular_path_overlap_inverse, disc_overlap, disc_overlap_inverse, jinc,
     sinc, sinc_inverse,
 };
+pub use vectorised::vectorised;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use num_complex::Complex;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, vectorised};
 
 use crate::Phasors;
 
@@ -142,9 +142,14 @@ impl Seeded {
             let bytes = &mut bytes[..4 * part.len()];
             generator.fill_bytes(bytes);
             let (words, _) = bytes.as_chunks();
-            for (value, word) in part.iter_mut().zip(words) {
-                each(value, u32::from_le_bytes(*word));
-            }
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (value, word) in part.iter_mut().zip(words) {
+                        each(value, u32::from_le_bytes(*word));
+                    }
+                },
+            );
         }
     }
 
@@ -176,7 +181,7 @@ fn to_index(n: i64) -> usize {
 ///
 /// Only `f32` additions and multiplications, which every platform rounds alike; the library sine
 /// and cosine are not. The error is below 1.2e−7.
-#[inline]
+#[inline(always)]
 #[expect(
     clippy::cast_possible_wrap,
     clippy::cast_precision_loss,
@@ -196,7 +201,7 @@ pub(crate) fn unit_phasor(word: u32) -> Complex<f32> {
 }
 
 /// Taylor series on [−π/4, π/4]: the first terms left out are 2e−9 (sine) and 2.5e−8 (cosine).
-#[inline]
+#[inline(always)]
 fn sin_cos_octant(a: f32) -> (f32, f32) {
     let a2 = a * a;
     let sin = 1.0 / 5_040.0 - a2 * (1.0 / 362_880.0);

@@ -1,5 +1,7 @@
 //! The look-up of a stack: at a point, at many, and as the mean over a box.
 
+use tem00_numerics::vectorised;
+
 use crate::{
     Interpolation, SpeckleStack,
     mask::to_f64,
@@ -205,22 +207,6 @@ impl SpeckleStack {
             .map(|node| node.weight * along(&Taps::around(&[node.place], along_y)))
             .sum()
     }
-}
-
-/// Runs a loop with the widest vector instructions of the processor.
-///
-/// No step of it is contracted or reordered, so its bits do not depend on their width.
-#[cfg(feature = "simd")]
-#[inline(always)]
-fn vectorised(body: impl FnOnce()) {
-    fearless_simd::dispatch!(fearless_simd::Level::new(), _ => body());
-}
-
-/// Runs a loop with the vector instructions that every processor of the target has.
-#[cfg(not(feature = "simd"))]
-#[inline(always)]
-fn vectorised(body: impl FnOnce()) {
-    body();
 }
 
 #[cfg(test)]

@@ -257,19 +257,3 @@ fn store(target: &mut [f64], column: &[f64; BLOCK]) {
         None => target.copy_from_slice(&column[..target.len()]),
     }
 }
-
-/// Runs a loop with the widest vector instructions of the processor.
-///
-/// No step of it is contracted or reordered, so its bits do not depend on their width.
-#[cfg(feature = "simd")]
-#[inline(always)]
-pub(super) fn vectorised(body: impl FnOnce()) {
-    fearless_simd::dispatch!(fearless_simd::Level::new(), _ => body());
-}
-
-/// Runs a loop with the vector instructions that every processor of the target has.
-#[cfg(not(feature = "simd"))]
-#[inline(always)]
-pub(super) fn vectorised(body: impl FnOnce()) {
-    body();
-}

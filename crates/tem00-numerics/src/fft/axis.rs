@@ -65,6 +65,7 @@ impl Axis {
 
     /// Transforms the line `input`; `X(parts · j + s)` comes to lie at `output[s · D + j]`. Nothing is
     /// left of `input`.
+    #[inline(always)]
     pub(super) fn transform(
         &self,
         input: &mut [Complex<f32>],
@@ -95,6 +96,7 @@ impl Axis {
 }
 
 /// Writes `y_s` into `part`: the values times their twiddles, what is beyond the part folded back.
+#[inline(always)]
 fn turn(
     head: &[Complex<f32>],
     folded: &[Complex<f32>],

@@ -36,6 +36,7 @@ pub(super) fn aligned(values: &mut Vec<Complex<f32>>, length: usize) -> &mut [Co
 
 /// Writes columns of an aperture into lines one [`stride`] apart; `fill(columns, y, values)` makes
 /// what they hold in row y.
+#[inline(always)]
 pub(super) fn fill_columns(
     columns: Range<usize>,
     height: usize,
@@ -63,6 +64,7 @@ pub(super) fn fill_columns(
 
 /// Writes the spectra of a block's columns, one [`stride`] apart and each in `parts` parts, into the
 /// rows of the block.
+#[inline(always)]
 pub(super) fn spread_columns(
     spectra: &[Complex<f32>],
     parts: usize,
@@ -80,6 +82,7 @@ pub(super) fn spread_columns(
 }
 
 /// Writes one part of the columns' spectra into every `parts`-th row, from `first` on.
+#[inline(always)]
 fn spread_part(
     spectra: [&[Complex<f32>]; COLUMNS],
     block: &mut [[Complex<f32>; COLUMNS]],
@@ -105,6 +108,7 @@ fn spread_part(
 
 /// Copies the rows `rows` of all blocks of `height` rows into one line of `lines` each, one
 /// [`stride`] apart.
+#[inline(always)]
 pub(super) fn gather_rows(
     blocks: &[Complex<f32>],
     height: usize,

@@ -61,6 +61,8 @@ pub enum SpeckleError {
         limit: u64,
     },
     /// The machine refused the memory of a stack.
+    ///
+    /// On Linux so is what exceeds the memory that the system has available.
     Memory {
         /// The bytes that were asked for.
         bytes: u64,
@@ -195,7 +197,10 @@ impl fmt::Display for SpeckleError {
                 "memory for the stack must be at most {limit} bytes, got {needed}: take fewer \
                  slices or a smaller pattern"
             ),
-            Self::Memory { bytes } => write!(f, "memory for the stack refused: {bytes} bytes"),
+            Self::Memory { bytes } => write!(
+                f,
+                "memory for the stack refused: {bytes} bytes are more than the machine has to give"
+            ),
             Self::Image(side) => write!(
                 f,
                 "a side of the image must be a positive finite number of pixels, got {side}"

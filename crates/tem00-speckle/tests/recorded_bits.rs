@@ -1,9 +1,12 @@
 //! The same bits with and without the feature `parallel`, and for any number of threads: either build
 //! is held to the same recorded checksums.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a test stops at what it does not expect"
+#![cfg_attr(
+    feature = "parallel",
+    expect(
+        clippy::expect_used,
+        reason = "a test stops at what it does not expect"
+    )
 )]
 
 use tem00_speckle::{Complex, Phasors, Pupil, PupilField, SlicePath, SpeckleError, SpeckleStack};

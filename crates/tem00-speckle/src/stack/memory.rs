@@ -1,5 +1,7 @@
 //! The memory of a stack: asked for before it is used.
 
+use std::fs;
+
 use tem00_numerics::Grid;
 
 use crate::{Interpolation, SlicePath, SpeckleError};
@@ -11,8 +13,9 @@ pub struct StackOptions {
     pub interpolation: Interpolation,
     /// The bytes that the slices may take, [`u64::MAX`] by default.
     ///
-    /// Many systems grant any memory that is asked for and end the program when it is used: only a
-    /// limit keeps a stack that is too large from that.
+    /// Many systems grant any memory that is asked for and end the program when it is used. Where the
+    /// system says what it has available (Linux), more is an error without a limit too; elsewhere, and
+    /// in a container that may have less, only a limit keeps a stack that is too large from that.
     pub memory_limit: u64,
 }
 
@@ -36,15 +39,36 @@ pub(crate) const fn check_limit(needed: u64, limit: u64) -> Result<(), SpeckleEr
 ///
 /// It is only used, and taken from the machine, when the slices are filled in.
 pub(crate) fn reserve<T>(path: SlicePath, size: [usize; 2]) -> Result<Vec<Vec<T>>, SpeckleError> {
+    let described = fs::read_to_string("/proc/meminfo").unwrap_or_default();
+    reserve_of(path, size, available(&described))
+}
+
+/// The same on a machine with so many bytes `available`, if it says so.
+fn reserve_of<T>(
+    path: SlicePath,
+    size: [usize; 2],
+    available: Option<u64>,
+) -> Result<Vec<Vec<T>>, SpeckleError> {
+    let bytes = path.memory_bytes(size) / 8 * size_of::<T>() as u64;
+    if available.is_some_and(|available| bytes > available) {
+        return Err(SpeckleError::Memory { bytes });
+    }
     let samples = size[0].saturating_mul(size[1]);
     let room = |_| {
         let mut values = Vec::new();
         values.try_reserve_exact(samples).map(|()| values)
     };
     let rooms: Result<_, _> = (0..path.slice_count()).map(room).collect();
-    rooms.map_err(|_| SpeckleError::Memory {
-        bytes: path.memory_bytes(size) / 8 * size_of::<T>() as u64,
-    })
+    rooms.map_err(|_| SpeckleError::Memory { bytes })
+}
+
+/// The bytes that a Linux system can give without swapping, from its description of its memory.
+fn available(described: &str) -> Option<u64> {
+    let line = described
+        .lines()
+        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kibibytes = line.trim().strip_suffix("kB")?.trim_end();
+    kibibytes.parse::<u64>().ok()?.checked_mul(1024)
 }
 
 /// A grid of one value in `room`.
@@ -55,4 +79,36 @@ pub(crate) fn filled<T: Clone>(
 ) -> Result<Grid<T>, SpeckleError> {
     room.resize(width * height, value);
     Grid::from_vec(width, height, room).map_err(|_| SpeckleError::Size(width.min(height)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_available_memory_is_read_where_it_is_told() {
+        let described = "MemTotal:       24000000 kB\nMemAvailable:   20000001 kB\nBuffers: 5 kB\n";
+        assert_eq!(available(described), Some(20_000_001 * 1024));
+        for other in [
+            "",
+            "MemTotal: 5 kB",
+            "MemAvailable: many kB",
+            "MemAvailable: 5 MB",
+            "MemAvailable: 18446744073709551615 kB",
+        ] {
+            assert_eq!(available(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn more_than_the_machine_has_is_refused_before_it_is_used() {
+        let path = SlicePath::Circle { half_period: 2 };
+        let bytes = 4 * 16 * 8 * 8;
+        let room = |available| reserve_of::<u64>(path, [16, 8], available);
+        assert_eq!(room(Some(bytes - 1)), Err(SpeckleError::Memory { bytes }));
+        for enough in [Some(bytes), None] {
+            let room = room(enough).map(|rooms| rooms.len());
+            assert_eq!(room, Ok(4), "with {enough:?} bytes");
+        }
+    }
 }

@@ -35,7 +35,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     (
         "tem00-wave",
         &["tem00-numerics"],
-        &["glam", "num-complex", "rand_chacha", "rand_core", "rayon"],
+        &["glam", "num-complex", "rand_chacha", "rand_core"],
     ),
     (
         "tem00-tracer",

@@ -95,6 +95,35 @@ impl<T> Grid<T> {
         self.values.chunks_exact(self.width)
     }
 
+    /// Calls `each(y, row)` for every row, by all threads of the current rayon pool where the feature
+    /// `parallel` allows it.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_numerics::Grid;
+    ///
+    /// let mut grid = Grid::filled(2, 3, 0);
+    /// grid.for_each_row_mut(|y, row| row.fill(y + 1));
+    /// assert_eq!(grid.values(), [1, 1, 2, 2, 3, 3]);
+    /// ```
+    pub fn for_each_row_mut(&mut self, each: impl Fn(usize, &mut [T]) + Sync)
+    where
+        T: Send,
+    {
+        let width = self.width();
+        #[cfg(feature = "parallel")]
+        {
+            use rayon::prelude::*;
+            let rows = self.values_mut().par_chunks_mut(width).enumerate();
+            rows.for_each(|(y, row)| each(y, row));
+        }
+        #[cfg(not(feature = "parallel"))]
+        for (y, row) in self.values_mut().chunks_mut(width).enumerate() {
+            each(y, row);
+        }
+    }
+
     /// Returns row `y`.
     ///
     /// # Panics

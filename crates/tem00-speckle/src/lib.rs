@@ -81,13 +81,13 @@ mod pattern;
 mod plan;
 mod pupil;
 mod quadrature;
-mod rows;
 mod spline;
 mod stack;
 mod stack_file;
 mod taps;
 mod transmission;
 mod view;
+mod workers;
 
 pub use error::SpeckleError;
 pub use field::PupilField;

@@ -4,9 +4,9 @@ use tem00_numerics::Grid;
 use crate::{
     Interpolation, PupilField, SlicePath, SpeckleError,
     path::PathLaw,
-    rows::map_with_scratch,
     spline::{Variance, prefilters},
     taps::Period,
+    workers::map_with_scratch,
 };
 
 mod join;

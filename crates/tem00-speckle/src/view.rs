@@ -10,7 +10,6 @@ use crate::{
     PupilField, SpeckleField, SpecklePattern,
     lattice::{Lattice, Source, to_i64},
     mask::{Mask, Span, from_i64, to_f64},
-    rows::for_each_row,
 };
 
 const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
@@ -218,7 +217,7 @@ impl PupilField {
         let selection = self.selection(&view, None);
         let [width, height] = view.mask.extent();
         let mut seen = Grid::filled(width, height, ZERO);
-        for_each_row(&mut seen, |y, values| selection.fill(0..width, y, values));
+        seen.for_each_row_mut(|y, values| selection.fill(0..width, y, values));
         seen
     }
 

@@ -87,7 +87,6 @@ mod motion;
 mod phasor;
 mod plane;
 mod random;
-mod rows;
 mod shift;
 mod sum;
 mod surface;

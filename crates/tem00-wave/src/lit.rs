@@ -5,7 +5,7 @@ use glam::DVec3;
 use num_complex::Complex;
 use tem00_numerics::Grid;
 
-use crate::{Field, Illumination, RoughSurface, SamplePlane, rows::for_each_row, sum::Sources};
+use crate::{Field, Illumination, RoughSurface, SamplePlane, sum::Sources};
 
 /// A surface under a light: scatterers that send out spherical waves.
 ///
@@ -119,7 +119,7 @@ impl LitSurface {
         let [width, height] = plane.samples();
         let mut amplitude = Grid::filled(width, height, Complex::new(0.0, 0.0));
         let (done, total) = (AtomicU64::new(0), self.terms_on(plane));
-        for_each_row(&mut amplitude, |y, row| {
+        amplitude.for_each_row_mut(|y, row| {
             let open = plane.open_in_row(y);
             for x in open.clone() {
                 row[x] = self.field_at(plane.point(x, y));

@@ -4,7 +4,7 @@ use num_complex::Complex;
 use tem00_numerics::{Fft2Scratch, Grid, sinc};
 
 use super::transform::{frequency, plan, to_c32, to_f32, wave};
-use crate::{SpeckleError, SpecklePattern, mask::to_f64, rows::for_each_row};
+use crate::{SpeckleError, SpecklePattern, mask::to_f64};
 
 /// The pixels of a sensor on a pattern: boxes of any size at any pitch.
 ///
@@ -117,7 +117,7 @@ impl PixelArray {
         let size = pattern.size();
         let [x, y] = [self.weights(0, size[0]), self.weights(1, size[1])];
         let mut image = Grid::filled(self.count[0], self.count[1], 0.0);
-        for_each_row(&mut image, |j, pixels| {
+        image.for_each_row_mut(|j, pixels| {
             let mut line = vec![0.0; size[0]];
             for (&weight, samples) in y.row(j).iter().zip(pattern.values().rows()) {
                 let weight = f64::from(weight);

@@ -8,9 +8,9 @@ use crate::{
     covariance::{Covariance, Even, Responses, mean_square},
     lattice::to_i64,
     mask::{from_i64, to_f64},
-    rows::map_with_scratch,
     spline::Variance,
     transmission::to_c64,
+    workers::map_with_scratch,
 };
 
 /// The interpolation's coefficients of one slice, and how it joins the next.

@@ -73,13 +73,12 @@ impl<'a> Render<'a> {
             .clone()
             .unwrap_or_else(|| Path::new("out").join(&name));
         let options = RenderOptions {
-            samples_per_pixel: scene.render.samples_per_pixel,
-            seed: scene.render.seed,
             formulas: if args.paper {
                 Formulas::AsPrinted
             } else {
                 Formulas::Derived
             },
+            ..RenderOptions::from(&scene.render)
         };
         let plan = if args.no_speckle {
             None

@@ -5,7 +5,7 @@ use tem00_beam::{
 };
 use tem00_decorrelation::{DecorrelationError, Wavefront};
 
-use crate::TracerError;
+use crate::{TracerError, Trajectory};
 
 /// What determines a [`Laser`].
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +55,7 @@ pub enum BeamShape {
 pub struct Laser {
     description: LaserDescription,
     source: Source,
+    trajectory: Trajectory,
 }
 
 /// The beam and the light prepared from it.
@@ -114,7 +115,20 @@ impl Laser {
         Ok(Self {
             description,
             source,
+            trajectory: Trajectory::default(),
         })
+    }
+
+    /// Returns the laser with a motion from frame to frame.
+    #[must_use]
+    pub fn with_trajectory(mut self, trajectory: Trajectory) -> Self {
+        self.trajectory = trajectory;
+        self
+    }
+
+    /// Returns how the laser moves from frame to frame.
+    pub const fn trajectory(&self) -> &Trajectory {
+        &self.trajectory
     }
 
     /// Returns what the laser was created from.

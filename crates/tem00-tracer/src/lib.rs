@@ -80,6 +80,7 @@ mod scene;
 mod scene_file;
 mod shape;
 mod speckle;
+mod trajectory;
 
 pub use camera::{Camera, CameraDescription, MAXIMUM_PIXELS};
 pub use error::TracerError;
@@ -92,11 +93,15 @@ pub use mesh::{MeshError, TriangleMesh};
 pub use mesh_file::read_mesh;
 pub use metal::Metal;
 pub use ray::{Frame as LocalFrame, Ray};
-pub use render::{Formulas, RenderError, RenderOptions, render_frame};
-pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface};
+pub use render::{Crop, Formulas, LaserEvents, Method, RenderError, RenderOptions, render_frame};
+pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 pub use scene_file::{SceneError, parse_scene, read_scene};
 pub use shape::{Hit, Rectangle, Shape, Sphere};
 pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
+pub use trajectory::Trajectory;
+
+/// The motion of rigid bodies.
+pub use tem00_decorrelation::RigidMotion;
 
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};

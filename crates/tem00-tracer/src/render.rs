@@ -7,7 +7,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::{
-    Camera, Frame, Intersector, Lamp, Scene, Shape, SpeckleModel, TracerError,
+    Camera, Frame, Intersector, Lamp, RenderSettings, Scene, Shape, SpeckleModel, TracerError,
     film::{self, Pixel, Row},
     integrator::Integrator,
     sampler::{Sampler, Strata},
@@ -23,8 +23,41 @@ pub enum Formulas {
     AsPrinted,
 }
 
-/// How a frame is rendered.
+/// How light is followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// From the camera; and from the lasers through mirrors and glass, where the scene has them.
+    #[default]
+    Path,
+    /// From the lasers to the camera.
+    Light,
+}
+
+/// How the light of a laser at a surface is sampled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LaserEvents {
+    /// From the one direction of the mean energy flow.
+    #[default]
+    Beam,
+    /// From a direction drawn from the beam's phase-space density.
+    Sampled,
+}
+
+/// A rectangle of pixels: the part of an image that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// The first column.
+    pub x: usize,
+    /// The first row.
+    pub y: usize,
+    /// The number of columns, at least 1.
+    pub width: usize,
+    /// The number of rows, at least 1.
+    pub height: usize,
+}
+
+/// How a frame is rendered.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderOptions {
     /// The number of camera samples per pixel, at least 1.
     pub samples_per_pixel: u32,
@@ -32,15 +65,36 @@ pub struct RenderOptions {
     pub seed: u64,
     /// The formulas.
     pub formulas: Formulas,
+    /// The most surfaces that light may meet between source and camera; `None` for no limit.
+    pub max_depth: Option<u32>,
+    /// How light is followed.
+    pub method: Method,
+    /// How the lasers are sampled from a surface.
+    pub laser_events: LaserEvents,
+    /// The part of the image that is rendered; `None` for all.
+    pub crop: Option<Crop>,
+    /// The relative standard error of a pixel at which it gets no more samples.
+    pub target_error: Option<f64>,
+}
+
+impl From<&RenderSettings> for RenderOptions {
+    fn from(settings: &RenderSettings) -> Self {
+        Self {
+            samples_per_pixel: settings.samples_per_pixel,
+            seed: settings.seed,
+            formulas: Formulas::Derived,
+            max_depth: settings.max_depth,
+            method: settings.method,
+            laser_events: settings.laser_events,
+            crop: settings.crop,
+            target_error: settings.target_error,
+        }
+    }
 }
 
 impl Default for RenderOptions {
     fn default() -> Self {
-        Self {
-            samples_per_pixel: 16,
-            seed: 0,
-            formulas: Formulas::Derived,
-        }
+        Self::from(&RenderSettings::default())
     }
 }
 
@@ -82,7 +136,7 @@ impl Scene {
     /// Returns the camera as it stands in `frame`.
     pub fn camera_at(&self, frame: u32) -> Camera {
         self.camera
-            .translated(f64::from(frame) * self.camera_displacement_per_frame)
+            .translated(self.camera_trajectory.pose_at(frame).translation())
     }
 
     /// Returns the shapes as they stand in `frame`: the surfaces, then the area lamps.
@@ -90,7 +144,7 @@ impl Scene {
         let surfaces = self.surfaces.iter().map(|surface| {
             surface
                 .shape
-                .translated(f64::from(frame) * surface.displacement_per_frame)
+                .translated(surface.trajectory.pose_at(frame).translation())
         });
         let lamps = self.lamps.iter().filter_map(|lamp| match lamp {
             Lamp::Area { rectangle, .. } => Some(Shape::Rectangle(*rectangle)),

@@ -62,7 +62,7 @@ impl MovedPoint {
         let axes = CameraFrame::from_axes(camera.axes())?;
         let motion = Motion {
             surface: scene.surface_displacement(hit.surface, frame),
-            camera: f64::from(frame) * scene.camera_displacement_per_frame,
+            camera: scene.camera_trajectory.pose_at(frame).translation(),
             source: DVec3::ZERO,
         };
         // Seen half-way between both frames, where the defocus is the mean of both.
@@ -117,7 +117,7 @@ impl Scene {
     /// Returns how far a surface has moved from the first frame to `frame`, in metres.
     pub(crate) fn surface_displacement(&self, surface: usize, frame: u32) -> DVec3 {
         self.surfaces.get(surface).map_or(DVec3::ZERO, |surface| {
-            f64::from(frame) * surface.displacement_per_frame
+            surface.trajectory.pose_at(frame).translation()
         })
     }
 
@@ -125,10 +125,10 @@ impl Scene {
     pub(crate) fn moves(&self) -> bool {
         let surfaces = self.surfaces.iter();
         self.render.frames > 1
-            && (self.camera_displacement_per_frame != DVec3::ZERO
+            && (!self.camera_trajectory.is_still()
                 || surfaces
                     .clone()
-                    .any(|surface| surface.displacement_per_frame != DVec3::ZERO))
+                    .any(|surface| !surface.trajectory.is_still()))
     }
 }
 

@@ -1,11 +1,9 @@
-use glam::DVec3;
-
 use super::error::Problem;
-use super::placement::{Placement, across, rejected};
+use super::placement::{Placement, across, rejected, trajectory};
 use super::quantity::{LENGTH, NUMBER};
 use super::section::Section;
 use super::value::Value;
-use crate::{Camera, CameraDescription};
+use crate::{Camera, CameraDescription, Trajectory};
 
 pub(super) const KEYS: &[&str] = &[
     "position",
@@ -20,10 +18,10 @@ pub(super) const KEYS: &[&str] = &[
 ];
 
 /// The camera of a scene and how it moves.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct MovingCamera {
     pub(super) camera: Camera,
-    pub(super) displacement_per_frame: DVec3,
+    pub(super) trajectory: Trajectory,
 }
 
 pub(super) fn read(root: &Section<'_>) -> Result<MovingCamera, Problem> {
@@ -34,11 +32,7 @@ pub(super) fn read(root: &Section<'_>) -> Result<MovingCamera, Problem> {
     let camera = Camera::new(description).map_err(|error| rejected(&error, &[&section]))?;
     Ok(MovingCamera {
         camera,
-        displacement_per_frame: section.or(
-            "displacement_per_frame",
-            DVec3::ZERO,
-            Value::lengths,
-        )?,
+        trajectory: trajectory(&section)?,
     })
 }
 
@@ -49,7 +43,11 @@ fn description(section: &Section<'_>) -> Result<CameraDescription, Problem> {
     Ok(CameraDescription {
         position: placement.position,
         look_at: placement.look_at,
-        up: section.or("up", across(axis, DVec3::Y, DVec3::Z), Value::direction)?,
+        up: section.or(
+            "up",
+            across(axis, glam::DVec3::Y, glam::DVec3::Z),
+            Value::direction,
+        )?,
         focal_length: section.or("focal_length", 25e-3, length)?,
         f_number: section.or("f_number", 8.0, |value| value.positive(&NUMBER))?,
         focus_distance: section.or("focus_distance", axis.length(), length)?,

@@ -106,7 +106,7 @@ fn scene(text: &str, base_directory: &Path) -> Result<Scene, Problem> {
     let lasers = laser::read(&root)?;
     Ok(Scene {
         camera: camera.camera,
-        camera_displacement_per_frame: camera.displacement_per_frame,
+        camera_trajectory: camera.trajectory,
         surfaces: surface::read(&root, base_directory, &lasers)?,
         lasers,
         lamps: light::read(&root)?,

@@ -19,6 +19,7 @@ pub(super) fn render(root: &Section<'_>) -> Result<RenderSettings, Problem> {
         samples_per_pixel: section.or("samples_per_pixel", default.samples_per_pixel, count)?,
         seed: section.or("seed", default.seed, |value| value.integer(0..=u64::MAX))?,
         frames: section.or("frames", default.frames, count)?,
+        ..default
     })
 }
 

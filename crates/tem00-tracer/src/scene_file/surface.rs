@@ -4,11 +4,11 @@ use glam::{DQuat, DVec3};
 
 use super::error::Problem;
 use super::material;
-use super::placement::{across, rejected};
+use super::placement::{across, rejected, trajectory};
 use super::quantity::{ANGLE, LENGTH, NUMBER};
 use super::section::{Choice, Section};
 use super::value::Value;
-use crate::{Laser, Rectangle, Shape, Sphere, Surface, TriangleMesh, read_mesh};
+use crate::{Laser, Rectangle, Shape, Sphere, Surface, SurfaceSpeckle, TriangleMesh, read_mesh};
 
 pub(super) const KEYS: &[&str] = &[
     "name",
@@ -53,11 +53,9 @@ pub(super) fn read(
                 name,
                 shape: shape(section, base_directory)?,
                 material,
-                displacement_per_frame: section.or(
-                    "displacement_per_frame",
-                    DVec3::ZERO,
-                    Value::lengths,
-                )?,
+                trajectory: trajectory(section)?,
+                speckle: SurfaceSpeckle::default(),
+                rms_height: None,
             })
         })
         .collect()

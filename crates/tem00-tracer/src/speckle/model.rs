@@ -180,7 +180,7 @@ impl Pattern {
             distance: to_emitter.length(),
         };
         let surface = scene.surface_displacement(point.surface, frame);
-        let moved = f64::from(frame) * scene.camera_displacement_per_frame;
+        let moved = scene.camera_trajectory.pose_at(frame).translation();
         let in_image = printed::image_displacement(
             self.geometry.magnification(),
             angles,

@@ -3,6 +3,7 @@ mod conductor;
 mod dielectric;
 mod diffuse;
 mod ggx;
+mod optical_roughness;
 mod oren_nayar;
 mod plastic;
 
@@ -13,6 +14,7 @@ use core::{
 
 use glam::DVec3;
 
+pub use self::optical_roughness::{OpticalRoughness, OpticalRoughnessQuery};
 use self::{
     conductor::Conductor,
     dielectric::Dielectric,

@@ -81,7 +81,10 @@ mod scene_file;
 mod shape;
 mod speckle;
 
-pub use camera::{Camera, CameraDescription, MAXIMUM_PIXELS};
+pub use camera::{
+    Camera, CameraConnection, CameraDescription, CameraRay, MAXIMUM_PIXELS, RadialDistortion,
+    SensorTilt,
+};
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use intersector::Intersector;
@@ -100,3 +103,5 @@ pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
 
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};
+/// How a camera moves.
+pub use tem00_decorrelation::RigidMotion;

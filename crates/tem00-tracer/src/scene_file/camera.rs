@@ -5,7 +5,7 @@ use super::placement::{Placement, across, rejected};
 use super::quantity::{LENGTH, NUMBER};
 use super::section::Section;
 use super::value::Value;
-use crate::{Camera, CameraDescription};
+use crate::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 
 pub(super) const KEYS: &[&str] = &[
     "position",
@@ -55,6 +55,10 @@ fn description(section: &Section<'_>) -> Result<CameraDescription, Problem> {
         focus_distance: section.or("focus_distance", axis.length(), length)?,
         pixel_pitch: section.or("pixel_pitch", 3.45e-6, length)?,
         resolution: section.or("resolution", [320, 240], resolution)?,
+        principal_point: None,
+        tilt: SensorTilt::default(),
+        distortion: RadialDistortion::default(),
+        depth_of_field: true,
     })
 }
 

@@ -69,6 +69,7 @@ mod integrator;
 mod intersector;
 mod lamp;
 mod laser;
+mod light_tracer;
 mod material;
 mod mesh;
 mod mesh_file;
@@ -108,6 +109,3 @@ pub use tem00_decorrelation::RigidMotion;
 
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};
-
-/// How rigid bodies move.
-pub use tem00_decorrelation::RigidMotion;

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use tem00_numerics::Grid;
 
 use self::{splats::SplatFilm, walk::Walk};
-use crate::{Camera, Crop, Intersector, RenderError, Scene, SpeckleModel};
+use crate::{Camera, Crop, Intersector, LaserLayers, RenderError, Scene, SpeckleModel};
 
 /// Follows light from the lasers to the camera, in one frame.
 #[derive(Clone, Copy, Debug)]
@@ -98,7 +98,8 @@ impl Groups {
 
     /// Returns the number of paths in group `index`; groups differ by one path at most.
     fn size(self, index: u64) -> u64 {
-        let start = |group: u64| u128::from(group) * u128::from(self.paths) / u128::from(self.count);
+        let start =
+            |group: u64| u128::from(group) * u128::from(self.paths) / u128::from(self.count);
         u64::try_from(start(index + 1) - start(index)).unwrap_or(u64::MAX)
     }
 }
@@ -142,6 +143,22 @@ impl LightTracer<'_> {
             }
         }
         Ok(film.layers(groups.count, groups.paths))
+    }
+}
+
+impl LightLayers {
+    /// Adds the light to the layers of its laser.
+    pub(crate) fn add_to(&self, layers: &mut LaserLayers) {
+        let pairs = [
+            (&mut layers.coherent_before, &self.coherent_before),
+            (&mut layers.coherent_after, &self.coherent_after),
+            (&mut layers.incoherent, &self.incoherent),
+        ];
+        for (sum, light) in pairs {
+            let values = sum.values_mut().iter_mut().zip(light.values());
+            values.for_each(|(sum, light)| *sum += light);
+        }
+        layers.power_on_target += self.power_on_target;
     }
 }
 

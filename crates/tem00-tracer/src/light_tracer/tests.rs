@@ -181,7 +181,10 @@ fn the_stated_variance_is_that_from_seed_to_seed() {
     // Some 60 pixels and 200 seeds give a standard error of √(2 / 12 000) = 1.3 %, and what pixels
     // share of their paths raises it. Four times that, with as much again to spare.
     let ratio = stated / seen;
-    assert!((ratio - 1.0).abs() < 0.1, "stated {stated:e}, seen {seen:e}");
+    assert!(
+        (ratio - 1.0).abs() < 0.1,
+        "stated {stated:e}, seen {seen:e}"
+    );
 }
 
 #[test]

@@ -5,9 +5,7 @@ use super::{
     draws::{DrawKey, Draws},
     splats::{Splat, Splats},
 };
-use crate::{
-    Crop, Hit, Laser, LocalFrame, Material, Ray, Segment, speckle::SpecklePoint,
-};
+use crate::{Crop, Hit, Laser, LocalFrame, Material, Ray, Segment, speckle::SpecklePoint};
 
 /// Surfaces that a light path always leaves again before it may end by chance.
 const CERTAIN_BOUNCES: u32 = 2;

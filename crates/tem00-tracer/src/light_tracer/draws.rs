@@ -3,18 +3,23 @@ use rand_core::{Rng, SeedableRng};
 
 /// The random numbers of a group of light paths.
 ///
-/// The four numbers with which each path starts are spread evenly over the group: points of the
-/// lattice sequence of Roberts, from a random first point, which makes every one of them uniform.
-/// Groups start independently of each other. All later numbers are independent.
+/// The four numbers with which each path starts are spread evenly over the group: Sobol's sequence
+/// with random digits added to all its points, which makes every one of them uniform. Groups start
+/// independently of each other. All later numbers are independent.
 ///
 /// # References
 ///
-/// - M. Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
+/// - I. M. Sobol', *On the Distribution of Points in a Cube and the Approximate Evaluation of
+///   Integrals*, 1967.
+/// - S. Joe and F. Y. Kuo, *Constructing Sobol Sequences with Better Two-Dimensional Projections*,
+///   2008.
 #[derive(Clone, Debug)]
 pub(super) struct Draws {
     generator: ChaCha8Rng,
     /// The next start, in units of 2⁻⁶⁴.
     start: [u64; 4],
+    /// The number of starts drawn.
+    started: u32,
 }
 
 /// What the random numbers belong to.
@@ -26,14 +31,6 @@ pub(super) struct DrawKey {
     pub group: u64,
 }
 
-/// The steps of the sequence, g⁻¹ to g⁻⁴ in units of 2⁻⁶⁴, where g = 1.1673… solves g⁵ = g + 1.
-const STEPS: [u64; 4] = [
-    0xdb4f_0b91_75ae_2165,
-    0xbbe0_5633_03a4_615f,
-    0xa0f2_ec75_a1fe_1576,
-    0x89e1_8285_7d9e_d689,
-];
-
 impl Draws {
     pub(super) fn new(key: DrawKey) -> Self {
         let mut bytes = [0; 32];
@@ -43,14 +40,21 @@ impl Draws {
         let mut generator = ChaCha8Rng::from_seed(bytes);
         generator.set_stream(key.group);
         let start = core::array::from_fn(|_| generator.next_u64());
-        Self { generator, start }
+        Self {
+            generator,
+            start,
+            started: 0,
+        }
     }
 
     /// Returns the four numbers in [0, 1) with which the next path starts.
     pub(super) fn start(&mut self) -> [f64; 4] {
         let point = self.start.map(unit);
-        for (start, step) in self.start.iter_mut().zip(STEPS) {
-            *start = start.wrapping_add(step);
+        self.started = self.started.wrapping_add(1);
+        // In the order of Gray's code, neighbours of the sequence differ by one direction number.
+        let bit = (self.started.trailing_zeros() as usize).min(BITS - 1);
+        for (start, directions) in self.start.iter_mut().zip(&DIRECTIONS) {
+            *start ^= directions[bit];
         }
         point
     }
@@ -73,4 +77,41 @@ impl Draws {
 )]
 fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 * (0.5 * f64::EPSILON)
+}
+
+/// The sequence repeats after 2 to this power.
+const BITS: usize = 32;
+
+/// The direction numbers of four axes, in units of 2⁻⁶⁴, by the table of Joe and Kuo.
+const DIRECTIONS: [[u64; BITS]; 4] = [
+    directions(0, 0, [1, 1, 1]),
+    directions(1, 0, [1, 1, 1]),
+    directions(2, 1, [1, 3, 1]),
+    directions(3, 1, [1, 3, 1]),
+];
+
+/// Returns the direction numbers of the primitive polynomial of a `degree` whose inner coefficients
+/// are the bits of `inner`, from the `first` odd numbers; those of van der Corput for degree 0.
+const fn directions(degree: usize, inner: u64, first: [u64; 3]) -> [u64; BITS] {
+    let mut numbers = [0; BITS];
+    let mut k = 0;
+    while k < BITS {
+        numbers[k] = if degree == 0 {
+            1 << (63 - k)
+        } else if k < degree {
+            first[k] << (63 - k)
+        } else {
+            let mut number = numbers[k - degree] ^ (numbers[k - degree] >> degree);
+            let mut back = 1;
+            while back < degree {
+                if inner >> (degree - 1 - back) & 1 == 1 {
+                    number ^= numbers[k - back];
+                }
+                back += 1;
+            }
+            number
+        };
+        k += 1;
+    }
+    numbers
 }

@@ -98,7 +98,7 @@ pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle}
 pub use scene_file::{SceneError, parse_scene, read_scene};
 pub use shape::{Hit, Rectangle, Shape, Sphere};
 pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
-pub use trajectory::Trajectory;
+pub use trajectory::{Keyframe, Rotation, Trajectory};
 
 /// The motion of rigid bodies.
 pub use tem00_decorrelation::RigidMotion;

@@ -87,7 +87,7 @@ pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use intersector::{Intersector, Segment};
 pub use lamp::Lamp;
-pub use laser::{BeamShape, Laser, LaserDescription};
+pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
 pub use material::{BsdfSample, Material};
 pub use mesh::{MeshError, TriangleMesh};
 pub use mesh_file::read_mesh;

@@ -7,7 +7,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::{
-    Camera, Frame, Intersector, Lamp, RenderSettings, Scene, Shape, SpeckleModel, TracerError,
+    Frame, Intersector, RenderSettings, Scene, SpeckleModel, TracerError,
     film::{self, Pixel, Row},
     integrator::Integrator,
     sampler::{Sampler, Strata},
@@ -133,26 +133,6 @@ enum Pass {
 }
 
 impl Scene {
-    /// Returns the camera as it stands in `frame`.
-    pub fn camera_at(&self, frame: u32) -> Camera {
-        self.camera
-            .translated(self.camera_trajectory.pose_at(frame).translation())
-    }
-
-    /// Returns the shapes as they stand in `frame`: the surfaces, then the area lamps.
-    pub fn shapes_at(&self, frame: u32) -> Vec<Shape> {
-        let surfaces = self.surfaces.iter().map(|surface| {
-            surface
-                .shape
-                .translated(surface.trajectory.pose_at(frame).translation())
-        });
-        let lamps = self.lamps.iter().filter_map(|lamp| match lamp {
-            Lamp::Area { rectangle, .. } => Some(Shape::Rectangle(*rectangle)),
-            Lamp::Point { .. } => None,
-        });
-        surfaces.chain(lamps).collect()
-    }
-
     /// Returns the number of camera samples that one frame takes, over all its sources of light.
     pub fn samples_per_frame(&self, samples_per_pixel: u32) -> u64 {
         (self.camera.width() * self.camera.height()) as u64
@@ -212,7 +192,7 @@ pub fn render_frame(
         scene,
         camera: scene.camera_at(frame),
         intersector: &intersector,
-        speckle,
+        speckle: speckle.map(|model| model.in_frame(scene, frame)),
         formulas: options.formulas,
         frame,
     };

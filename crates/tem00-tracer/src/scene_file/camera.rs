@@ -3,7 +3,7 @@ use super::placement::{Placement, across, rejected, trajectory};
 use super::quantity::{LENGTH, NUMBER};
 use super::section::Section;
 use super::value::Value;
-use crate::{Camera, CameraDescription, Trajectory};
+use crate::{Camera, CameraDescription, RadialDistortion, SensorTilt, Trajectory};
 
 pub(super) const KEYS: &[&str] = &[
     "position",
@@ -53,6 +53,10 @@ fn description(section: &Section<'_>) -> Result<CameraDescription, Problem> {
         focus_distance: section.or("focus_distance", axis.length(), length)?,
         pixel_pitch: section.or("pixel_pitch", 3.45e-6, length)?,
         resolution: section.or("resolution", [320, 240], resolution)?,
+        principal_point: None,
+        tilt: SensorTilt::default(),
+        distortion: RadialDistortion::default(),
+        depth_of_field: true,
     })
 }
 

@@ -1,8 +1,10 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
-    Camera, Formulas, Intersector, Lamp, Laser, LocalFrame, Material, Ray, Scene, SpeckleModel,
-    film::Pixel, sampler::Sampler, speckle::SpecklePoint,
+    Camera, Formulas, Intersector, Lamp, Laser, LocalFrame, Material, Ray, Scene,
+    film::Pixel,
+    sampler::Sampler,
+    speckle::{SpeckleFrame, SpecklePoint},
 };
 
 /// The wavelength at which materials are evaluated for lamps, in metres: lamps are white and
@@ -18,7 +20,7 @@ pub(crate) struct Integrator<'a> {
     pub scene: &'a Scene,
     pub camera: Camera,
     pub intersector: &'a Intersector,
-    pub speckle: Option<&'a SpeckleModel>,
+    pub speckle: Option<SpeckleFrame<'a>>,
     pub formulas: Formulas,
     pub frame: u32,
 }
@@ -213,9 +215,8 @@ impl Integrator<'_> {
     }
 
     fn speckle_factor(&self, laser: usize, pixel: DVec2, vertex: &Vertex<'_>) -> f64 {
-        self.speckle.map_or(1.0, |model| {
-            model.factor(
-                self.scene,
+        self.speckle.as_ref().map_or(1.0, |speckle| {
+            speckle.factor(
                 laser,
                 &SpecklePoint {
                     pixel,
@@ -223,7 +224,6 @@ impl Integrator<'_> {
                     normal: vertex.axes.normal(),
                     surface: vertex.surface,
                 },
-                self.frame,
             )
         })
     }

@@ -1,4 +1,5 @@
 mod emission;
+mod wave;
 
 use glam::DVec3;
 use tem00_beam::{

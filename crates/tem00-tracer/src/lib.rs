@@ -69,6 +69,7 @@ mod integrator;
 mod intersector;
 mod lamp;
 mod laser;
+mod light_tracer;
 mod material;
 mod mesh;
 mod mesh_file;
@@ -96,14 +97,12 @@ pub use mesh::{MeshError, TriangleMesh};
 pub use mesh_file::read_mesh;
 pub use metal::Metal;
 pub use ray::{Frame as LocalFrame, Ray};
-pub use render::{
-    Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, render_frame,
-};
+pub use render::{Crop, Formulas, LaserEvents, Method, RenderError, RenderOptions, render_frame};
 pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 pub use scene_file::{SceneError, parse_scene, read_scene};
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
 pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
-pub use trajectory::Trajectory;
+pub use trajectory::{Keyframe, Rotation, Trajectory};
 
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};

@@ -7,11 +7,9 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::{
-    Camera, Frame, Intersector, Lamp, LaserLayers, RenderSettings, Scene, Shape, SpeckleModel,
-    TracerError,
+    Frame, Intersector, RenderSettings, Scene, SpeckleModel, TracerError,
     film::{self, Pixel, Row},
     integrator::Integrator,
-    light_tracer::{LightJob, LightShare, LightTracer},
     sampler::{Sampler, Strata},
 };
 
@@ -135,26 +133,6 @@ enum Pass {
 }
 
 impl Scene {
-    /// Returns the camera as it stands in `frame`.
-    pub fn camera_at(&self, frame: u32) -> Camera {
-        self.camera
-            .translated(self.camera_trajectory.pose_at(frame).translation())
-    }
-
-    /// Returns the shapes as they stand in `frame`: the surfaces, then the area lamps.
-    pub fn shapes_at(&self, frame: u32) -> Vec<Shape> {
-        let surfaces = self.surfaces.iter().map(|surface| {
-            surface
-                .shape
-                .translated(surface.trajectory.pose_at(frame).translation())
-        });
-        let lamps = self.lamps.iter().filter_map(|lamp| match lamp {
-            Lamp::Area { rectangle, .. } => Some(Shape::Rectangle(*rectangle)),
-            Lamp::Point { .. } => None,
-        });
-        surfaces.chain(lamps).collect()
-    }
-
     /// Returns the number of camera samples that one frame takes, over all its sources of light.
     pub fn samples_per_frame(&self, samples_per_pixel: u32) -> u64 {
         (self.camera.width() * self.camera.height()) as u64
@@ -214,7 +192,7 @@ pub fn render_frame(
         scene,
         camera: scene.camera_at(frame),
         intersector: &intersector,
-        speckle,
+        speckle: speckle.map(|model| model.in_frame(scene, frame)),
         formulas: options.formulas,
         frame,
     };
@@ -236,65 +214,11 @@ pub fn render_frame(
             Pass::Lamps => lamps = Some(film::lamp_layer(&rows)),
         }
     }
-    add_light_traced(&integrator, options, &progress, cancel, &mut lasers)?;
     let dark = || tem00_numerics::Grid::filled(scene.camera.width(), scene.camera.height(), 0.0);
     Ok(Frame {
         lasers,
         lamps: lamps.unwrap_or_else(dark),
     })
-}
-
-/// Adds the light that is followed from the lasers.
-fn add_light_traced(
-    integrator: &Integrator<'_>,
-    options: &RenderOptions,
-    progress: &(impl Fn(u64) + Sync),
-    cancel: &AtomicBool,
-    layers: &mut [LaserLayers],
-) -> Result<(), RenderError> {
-    let scene = integrator.scene;
-    let share = match options.method {
-        Method::Light => LightShare::All,
-        Method::Path if scene.has_specular_surfaces() => LightShare::SpecularFirst,
-        Method::Path => return Ok(()),
-    };
-    let camera = &integrator.camera;
-    let tracer = LightTracer {
-        scene,
-        camera,
-        intersector: integrator.intersector,
-        speckle: integrator.speckle,
-        frame: integrator.frame,
-        max_depth: options.max_depth,
-        share,
-        area: Crop {
-            x: 0,
-            y: 0,
-            width: camera.width(),
-            height: camera.height(),
-        },
-    };
-    let paths = (camera.width() * camera.height()) as u64 * u64::from(options.samples_per_pixel);
-    for (laser, layers) in layers.iter_mut().enumerate() {
-        let job = LightJob {
-            laser,
-            paths,
-            seed: options.seed,
-        };
-        let light = tracer.trace(&job, progress, cancel)?;
-        if options.method == Method::Light {
-            for layer in [
-                &mut layers.coherent_before,
-                &mut layers.coherent_after,
-                &mut layers.incoherent,
-            ] {
-                layer.values_mut().fill(0.0);
-            }
-            layers.power_on_target = 0.0;
-        }
-        light.add_to(layers);
-    }
-    Ok(())
 }
 
 /// One pass over the image.

@@ -97,7 +97,9 @@ pub use mesh::{MeshError, TriangleMesh};
 pub use mesh_file::read_mesh;
 pub use metal::Metal;
 pub use ray::{Frame as LocalFrame, Ray};
-pub use render::{Crop, Formulas, LaserEvents, Method, RenderError, RenderOptions, render_frame};
+pub use render::{
+    Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, render_frame,
+};
 pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 pub use scene_file::{SceneError, parse_scene, read_scene};
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};

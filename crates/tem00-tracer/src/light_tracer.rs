@@ -153,6 +153,7 @@ impl LightLayers {
             (&mut layers.coherent_before, &self.coherent_before),
             (&mut layers.coherent_after, &self.coherent_after),
             (&mut layers.incoherent, &self.incoherent),
+            (&mut layers.variance, &self.variance),
         ];
         for (sum, light) in pairs {
             let values = sum.values_mut().iter_mut().zip(light.values());

@@ -202,7 +202,7 @@ impl Integrator<'_> {
         };
         let areas = self.scene.lamps.iter().filter_map(|lamp| match lamp {
             Lamp::Area { radiance, .. } => Some(*radiance),
-            Lamp::Point { .. } => None,
+            Lamp::Point { .. } | Lamp::Environment(_) => None,
         });
         let lit_side = hit.normal.dot(ray.direction) < 0.0;
         hit.surface
@@ -264,5 +264,6 @@ fn sample_lamp(lamp: &Lamp, receiver: DVec3, u: [f64; 2]) -> (DVec3, f64) {
             };
             (point, factor)
         }
+        Lamp::Environment(_) => (receiver, 0.0),
     }
 }

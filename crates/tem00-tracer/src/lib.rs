@@ -63,6 +63,7 @@
 //! ```
 
 mod camera;
+mod environment;
 mod error;
 mod film;
 mod integrator;
@@ -85,10 +86,11 @@ pub use camera::{
     Camera, CameraConnection, CameraDescription, CameraRay, MAXIMUM_PIXELS, RadialDistortion,
     SensorTilt,
 };
+pub use environment::Environment;
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use intersector::Intersector;
-pub use lamp::Lamp;
+pub use lamp::{Lamp, LampSample};
 pub use laser::{BeamShape, Laser, LaserDescription};
 pub use material::{BsdfSample, Material};
 pub use mesh::{MeshError, TriangleMesh};

@@ -94,7 +94,7 @@ impl Scene {
         });
         let lamps = self.lamps.iter().filter_map(|lamp| match lamp {
             Lamp::Area { rectangle, .. } => Some(Shape::Rectangle(*rectangle)),
-            Lamp::Point { .. } => None,
+            Lamp::Point { .. } | Lamp::Environment(_) => None,
         });
         surfaces.chain(lamps).collect()
     }

@@ -1,7 +1,6 @@
 //! From camera samples to radiance: paths, all samples of a few pixels together, stage by stage.
 
 mod batch;
-mod lamp_shim;
 mod lamps;
 mod lasers;
 mod rules;
@@ -34,6 +33,8 @@ pub(crate) struct Integrator<'a> {
     spectrum: Spectrum,
     /// The lamps that rays can meet, in the order of their shapes behind the surfaces.
     lamp_shapes: Vec<usize>,
+    /// The lamps that rays meet where they meet nothing else.
+    environments: Vec<usize>,
 }
 
 impl<'a> Integrator<'a> {

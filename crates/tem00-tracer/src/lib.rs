@@ -63,6 +63,7 @@
 //! ```
 
 mod camera;
+mod environment;
 mod error;
 mod film;
 mod integrator;
@@ -87,10 +88,11 @@ pub use camera::{
     Camera, CameraConnection, CameraDescription, CameraRay, MAXIMUM_PIXELS, RadialDistortion,
     SensorTilt,
 };
+pub use environment::Environment;
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use intersector::{Intersector, Segment};
-pub use lamp::Lamp;
+pub use lamp::{Lamp, LampSample};
 pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use mesh::{MeshError, TriangleMesh};

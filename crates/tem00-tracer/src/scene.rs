@@ -144,7 +144,7 @@ impl Scene {
             .map(|surface| surface.shape.moved(&surface.trajectory.pose_at(frame)));
         let lamps = self.lamps.iter().filter_map(|lamp| match lamp {
             Lamp::Area { rectangle, .. } => Some(Shape::Rectangle(*rectangle)),
-            Lamp::Point { .. } => None,
+            Lamp::Point { .. } | Lamp::Environment(_) => None,
         });
         surfaces.chain(lamps).collect()
     }

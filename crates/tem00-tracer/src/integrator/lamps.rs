@@ -29,7 +29,7 @@ impl<'a> Integrator<'a> {
     /// Connects to the lamps that no ray can meet.
     fn connect_to_points(&self, batch: &mut Batch<'a>) {
         for (index, lamp) in self.scene.lamps.iter().enumerate() {
-            if !lamp.can_be_met() {
+            if !can_be_met(lamp) {
                 self.connect_all(index, lamp, batch);
             }
         }
@@ -89,40 +89,43 @@ impl<'a> Integrator<'a> {
         hit: Option<&Hit>,
         batch: &mut Batch<'a>,
     ) {
-        let Some(index) = self.lamp_met(hit) else {
-            return;
+        let met = match hit {
+            Some(hit) => self.lamp_at(hit),
+            None => self.environments.as_slice(),
         };
-        let lamp = &self.scene.lamps[index];
-        let radiance = lamp.radiance(ray.direction, hit);
-        // Weigh the chance against the connection to the lamp.
-        let weight = match (path.scattering_pdf, self.rules.lamp_events) {
-            (None, _) | (_, LampEvents::Scattering) => 1.0,
-            (Some(_), LampEvents::NextEvent) => 0.0,
-            (Some(pdf), LampEvents::Both) => share(pdf, lamp.pdf(ray.origin, ray.direction, hit)),
-        };
-        let throughput = self.lamp_throughput(path, batch);
-        batch.samples[path.sample].lamps += weight * throughput * radiance;
+        for &index in met {
+            let lamp = &self.scene.lamps[index];
+            // Weigh the chance against the connection to the lamp.
+            let weight = match (path.scattering_pdf, self.rules.lamp_events) {
+                (None, _) | (_, LampEvents::Scattering) => 1.0,
+                (Some(_), LampEvents::NextEvent) => 0.0,
+                (Some(pdf), LampEvents::Both) => share(pdf, lamp.pdf(ray.origin, ray.direction)),
+            };
+            let radiance = self.lamp_throughput(path, batch) * lamp.radiance_along(ray.direction);
+            batch.samples[path.sample].lamps += weight * radiance;
+        }
     }
 
-    /// Returns the index of the lamp that is met there.
-    fn lamp_met(&self, hit: Option<&Hit>) -> Option<usize> {
-        match hit {
-            Some(hit) => {
-                let shape = hit.surface.checked_sub(self.scene.surfaces.len())?;
-                self.lamp_shapes.get(shape).copied()
-            }
-            None => None,
-        }
+    /// Returns the index of the lamp to which the shape belongs, if it is one.
+    fn lamp_at(&self, hit: &Hit) -> &[usize] {
+        let shape = hit.surface.checked_sub(self.scene.surfaces.len());
+        let lamp = shape.and_then(|shape| self.lamp_shapes.get(shape..=shape));
+        lamp.unwrap_or_default()
     }
 
     /// Tells whether a ray can find lamps that connections do not, behind a mirror or not.
     pub(super) fn rays_meet_lamps(&self, specular: bool) -> bool {
         let is_needed = specular || self.rules.lamp_events != LampEvents::NextEvent;
-        is_needed && self.scene.lamps.iter().any(Lamp::can_be_met)
+        is_needed && self.scene.lamps.iter().any(can_be_met)
     }
 
     fn lamp_throughput(&self, path: &Path, batch: &Batch<'_>) -> f64 {
         let first = path.sample * self.spectrum.wavelengths.len();
         batch.throughput[first + self.spectrum.of_lamps]
     }
+}
+
+/// Tells whether a ray can meet the lamp.
+const fn can_be_met(lamp: &Lamp) -> bool {
+    !matches!(lamp, Lamp::Point { .. })
 }

@@ -88,7 +88,13 @@ impl<'a> Integrator<'a> {
         intersector: &'a Intersector,
         options: &RenderOptions,
     ) -> Self {
-        let lamp_shapes = scene.lamps.iter().enumerate();
+        let lamps = |is_meant: fn(&Lamp) -> bool| {
+            let lamps = scene.lamps.iter().enumerate();
+            lamps
+                .filter(|(_, lamp)| is_meant(lamp))
+                .map(|(index, _)| index)
+                .collect()
+        };
         Self {
             scene,
             camera: scene.camera_at(frame),
@@ -98,10 +104,8 @@ impl<'a> Integrator<'a> {
             rules: options.into(),
             sequence: Sequence::new(options.samples_per_pixel),
             spectrum: Spectrum::of(&scene.lasers, &scene.lamps),
-            lamp_shapes: lamp_shapes
-                .filter(|(_, lamp)| matches!(lamp, Lamp::Area { .. }))
-                .map(|(index, _)| index)
-                .collect(),
+            lamp_shapes: lamps(|lamp| matches!(lamp, Lamp::Area { .. })),
+            environments: lamps(|lamp| matches!(lamp, Lamp::Environment(_))),
         }
     }
 

@@ -98,7 +98,9 @@ fn groups(scene: &Scene) -> Vec<usize> {
     let surfaces = scene.surfaces.iter();
     surfaces
         .map(|surface| {
-            let known = motions.iter().position(|&motion| *motion == surface.trajectory);
+            let known = motions
+                .iter()
+                .position(|&motion| *motion == surface.trajectory);
             known.unwrap_or_else(|| {
                 motions.push(&surface.trajectory);
                 motions.len() - 1

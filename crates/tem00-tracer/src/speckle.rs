@@ -3,6 +3,7 @@
 mod allotment;
 mod change;
 mod model;
+mod perspective;
 mod plan;
 mod printed;
 mod survey;

@@ -57,7 +57,7 @@ mod tests {
         wavelength = "650 nm"
         power = "1 mW"
         position = [-0.1, 0.02, 0.3]
-        line = { waist_radius = "0.05 mm", fan_angle = "40 deg", focus_distance = "0.2 m" }
+        line = { thickness = "0.1 mm", fan_angle = "40 deg", focus_distance = "0.2 m" }
     "#;
 
     #[test]
@@ -67,7 +67,7 @@ mod tests {
             let mut lit = 0;
             for i in 0..400_u32 {
                 let (x, y) = (f64::from(i % 20) - 9.5, f64::from(i / 20) - 9.5);
-                let point = DVec3::new(2e-3 * x, 0.1e-3 * y, 1e-3 * x);
+                let point = DVec3::new(3e-3 * x, 0.2e-3 * y, 1e-3 * x);
                 let wave = laser.wave_direction_at(point).unwrap();
                 assert!((wave.length() - 1.0).abs() < 1e-15, "{wave}");
                 if let Some(light) = laser.illuminate(point) {
@@ -77,7 +77,7 @@ mod tests {
                     assert!(error < 1e-14, "{point}: {error:e}");
                 }
             }
-            assert!((20..400).contains(&lit), "{lit} of 400 points are lit");
+            assert!((10..400).contains(&lit), "{lit} of 400 points are lit");
         }
     }
 }

@@ -4,7 +4,7 @@ use tem00_decorrelation::{
     RigidMotion, RigidMotions, SpeckleMotion, equivalent_pupil_shift,
 };
 
-use super::{SpecklePoint, upright};
+use super::{SpecklePoint, perspective::Perspective, upright};
 use crate::{Camera, Laser, Scene};
 
 /// What has moved between the reference frame and another.
@@ -14,6 +14,7 @@ pub(super) struct Change {
     frames: f64,
     /// The camera in the reference frame and now.
     cameras: [Camera; 2],
+    perspective: Perspective,
     camera: BodyChange,
     lasers: Vec<LaserChange>,
     surfaces: Vec<BodyChange>,
@@ -38,7 +39,7 @@ struct LaserChange {
 /// What has become of the speckle of a point since the reference frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Drift {
-    /// How far it has moved in the image, in pixels with y down.
+    /// How far it has moved in the image in perspective, in pixels with y down.
     pub displacement: DVec2,
     /// How far the pupil has moved over it, in pupil diameters, never negative.
     pub shift: f64,
@@ -76,6 +77,7 @@ impl Change {
         Self {
             frames: f64::from(frame) - f64::from(reference),
             cameras: [scene.camera_at(reference), scene.camera_at(frame)],
+            perspective: Perspective::of(scene.camera_at(frame)),
             camera: body(&scene.camera_trajectory),
             lasers: scene.lasers.iter().enumerate().map(laser).collect(),
             surfaces: scene.surfaces.iter().map(|s| body(&s.trajectory)).collect(),
@@ -85,6 +87,11 @@ impl Change {
     /// Returns the camera now.
     pub(super) const fn camera(&self) -> &Camera {
         &self.cameras[1]
+    }
+
+    /// Returns the image of the camera in perspective.
+    pub(super) const fn perspective(&self) -> &Perspective {
+        &self.perspective
     }
 
     /// Returns laser `index` now.
@@ -127,8 +134,11 @@ impl Change {
     fn law(&self, laser: usize, geometry: &ImagingGeometry, point: &SpecklePoint) -> Option<Drift> {
         let [before, now] = self.states(laser, point)?;
         let screen = ImageOrientation::ScreenUpright;
+        let pixels_per_tangent = geometry.principal_distance() / geometry.pixel_pitch();
+        let geometry = &self.perspective.geometry(geometry, point.pixel);
         let speckle = SpeckleMotion::between(geometry, &before, &now, screen);
-        let displacement = upright(speckle.speckle_displacement()) / geometry.pixel_pitch();
+        let tangents = speckle.speckle_displacement() / geometry.principal_distance();
+        let displacement = upright(tangents * pixels_per_tangent);
         let shift = match speckle.pupil_displacement {
             Some(pupil) => {
                 let lateral = pupil.length() / geometry.pupil_diameter();

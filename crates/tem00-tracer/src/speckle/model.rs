@@ -214,8 +214,8 @@ impl SpeckleFrame<'_> {
         };
         for (i, point) in points.iter().enumerate() {
             let drift = self.change.drift(laser, geometry, point);
-            let pixel = upright(point.pixel - drift.displacement);
-            let c = geometry.pattern_coordinate(pixel, DVec2::ZERO, speckle_size);
+            let pixel = self.change.perspective().point(point.pixel) - drift.displacement;
+            let c = geometry.pattern_coordinate(upright(pixel), DVec2::ZERO, speckle_size);
             // Beyond the reach the speckle is new to the reference frame, wherever the pupil stands.
             block.u[i] = sign * drift.shift.min(reach) * pattern.slices_per_diameter;
             [block.x[i], block.y[i]] = c.to_array();

@@ -4,7 +4,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 use tem00_decorrelation::ImagingGeometry;
 
-use super::{SpecklePoint, change::Change};
+use super::{SpecklePoint, change::Change, perspective::Perspective};
 use crate::{Camera, Intersector, Scene, TracerError};
 
 /// Rays per image side with which a frame is surveyed.
@@ -33,11 +33,11 @@ pub(super) struct Survey {
 
 impl Survey {
     fn of_image(camera: &Camera) -> Self {
-        let image = image_size(camera);
+        let [low, high] = Perspective::of(*camera).image();
         Self {
-            image,
-            low: DVec2::ZERO,
-            high: image,
+            image: high - low,
+            low,
+            high,
             shifts: [0.0; 2],
         }
     }
@@ -127,7 +127,7 @@ fn of_frame(
                 continue;
             }
             let drift = change.drift(laser, geometry, &point);
-            let origin = pixel - drift.displacement;
+            let origin = change.perspective().point(pixel) - drift.displacement;
             let survey = &mut surveys[laser][group];
             survey.low = survey.low.min(origin);
             survey.high = survey.high.max(origin);

@@ -1,5 +1,9 @@
+#[cfg(test)]
+mod independent;
 mod strata;
 
+#[cfg(test)]
+pub(crate) use self::independent::Sampler;
 pub(crate) use self::strata::Strata;
 
 /// The most points that a pixel's samples share before they start afresh.

@@ -66,6 +66,7 @@ mod camera;
 mod environment;
 mod error;
 mod film;
+mod filter;
 mod integrator;
 mod intersector;
 mod lamp;
@@ -89,6 +90,7 @@ pub use camera::{
 pub use environment::Environment;
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
+pub use filter::{Filter, FilterSample, FilterSampler};
 pub use intersector::Intersector;
 pub use lamp::{Lamp, LampSample};
 pub use laser::{BeamShape, Laser, LaserDescription};

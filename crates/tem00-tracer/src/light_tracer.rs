@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use tem00_numerics::Grid;
 
 use self::{splats::SplatFilm, walk::Walk};
-use crate::{Camera, Crop, Intersector, LaserLayers, RenderError, Scene, SpeckleModel};
+use crate::{Camera, Crop, Intersector, LaserLayers, RenderError, Scene, speckle::SpeckleFrame};
 
 /// Follows light from the lasers to the camera, in one frame.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,7 @@ pub(crate) struct LightTracer<'a> {
     pub camera: &'a Camera,
     /// The surfaces as they stand in the frame, and the lamps behind them.
     pub intersector: &'a Intersector,
-    pub speckle: Option<&'a SpeckleModel>,
+    pub speckle: Option<&'a SpeckleFrame<'a>>,
     pub frame: u32,
     /// The most surfaces that light may meet between laser and camera; `None` for no limit.
     pub max_depth: Option<u32>,
@@ -153,6 +153,7 @@ impl LightLayers {
             (&mut layers.coherent_before, &self.coherent_before),
             (&mut layers.coherent_after, &self.coherent_after),
             (&mut layers.incoherent, &self.incoherent),
+            (&mut layers.variance, &self.variance),
         ];
         for (sum, light) in pairs {
             let values = sum.values_mut().iter_mut().zip(light.values());

@@ -216,9 +216,9 @@ impl<'a> Walk<'a> {
             },
             surface: hit.surface,
         };
-        tracer.speckle.map_or(1.0, |model| {
-            model.factor(tracer.scene, self.job.laser, &point, tracer.frame)
-        })
+        tracer
+            .speckle
+            .map_or(1.0, |speckle| speckle.factor(self.job.laser, &point))
     }
 
     /// Sends light on in a direction drawn from the material, or ends its path.

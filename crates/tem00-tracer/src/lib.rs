@@ -95,7 +95,7 @@ pub use metal::Metal;
 pub use ray::{Frame as LocalFrame, Ray};
 pub use render::{Crop, Formulas, LaserEvents, Method, RenderError, RenderOptions, render_frame};
 pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
-pub use scene_file::{SceneError, parse_scene, read_scene};
+pub use scene_file::{SceneError, SceneFile, parse_scene, read_scene};
 pub use shape::{Hit, Rectangle, Shape, Sphere};
 pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
 pub use trajectory::Trajectory;

@@ -1,3 +1,4 @@
+use super::document::Document;
 use super::error::Problem;
 use super::placement::{Placement, across, rejected, trajectory};
 use super::quantity::{LENGTH, NUMBER};
@@ -24,7 +25,7 @@ pub(super) struct MovingCamera {
     pub(super) trajectory: Trajectory,
 }
 
-pub(super) fn read(root: &Section<'_>) -> Result<MovingCamera, Problem> {
+pub(super) fn read(root: &Document<'_>) -> Result<MovingCamera, Problem> {
     let section = root
         .table("camera", KEYS)?
         .ok_or_else(|| Problem::new("the scene needs a camera: a section [camera]"))?;

@@ -4,6 +4,7 @@ use core::ops::Bound;
 use glam::DVec3;
 use tem00_beam::{AngularProfile, BeamError, FanGeometry, FocusCurve, GaussianBeam, LineProfile};
 
+use super::document::Document;
 use super::error::Problem;
 use super::placement::{Placement, across, rejected};
 use super::quantity::{ANGLE, LENGTH, NUMBER, POWER};
@@ -47,7 +48,7 @@ const FOCUS_CURVES: &[(&str, FocusCurve)] = &[
     ("plane", FocusCurve::EqualPlane),
 ];
 
-pub(super) fn read(root: &Section<'_>) -> Result<Vec<Laser>, Problem> {
+pub(super) fn read(root: &Document<'_>) -> Result<Vec<Laser>, Problem> {
     let sections = root.tables("laser", KEYS)?;
     if sections.is_empty() {
         return Err(Problem::new("the scene needs a laser: a section [[laser]]"));
@@ -124,7 +125,7 @@ fn line(section: &Section<'_>, distance: f64, wavelength: f64) -> Result<BeamSha
         .and_then(|beam| beam.with_m_squared(m_squared))
         .map_err(|error| {
             Problem::new(error.to_string())
-                .at(thickness.span())
+                .at(thickness.place())
                 .with_help("the waist radius of a line is half its thickness")
         })?;
     // A lens that receives a round beam fans it out from a point where it would be this wide.
@@ -162,7 +163,7 @@ fn profile(section: &Section<'_>) -> Result<LineProfile, Problem> {
             edge: edge.within(&NUMBER, 1e-6..=1.0, "from 1e-6 to 1")?,
         }),
         (_, Some(edge)) => Err(Problem::new("`edge` belongs to the profile \"powell\"")
-            .at(edge.span())
+            .at(edge.place())
             .with_help("write `profile = \"powell\"` as well")),
     }
 }
@@ -187,7 +188,7 @@ fn table(section: &Section<'_>) -> Result<AngularProfile, Problem> {
             _ => None,
         };
         match culprit {
-            Some(value) => Problem::new(error.to_string()).at(value.span()),
+            Some(value) => Problem::new(error.to_string()).at(value.place()),
             None => table.problem(error),
         }
     })

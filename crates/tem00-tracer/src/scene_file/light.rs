@@ -1,3 +1,4 @@
+use super::document::Document;
 use super::error::Problem;
 use super::placement::rejected;
 use super::quantity::{POWER, RADIANCE};
@@ -11,7 +12,7 @@ pub(super) const SHAPES: &[Choice] = &[
     ("rectangle", &["centre", "normal", "up", "size", "radiance"]),
 ];
 
-pub(super) fn read(root: &Section<'_>) -> Result<Vec<Lamp>, Problem> {
+pub(super) fn read(root: &Document<'_>) -> Result<Vec<Lamp>, Problem> {
     root.tables("lamp", KEYS)?.iter().map(lamp).collect()
 }
 

@@ -1,7 +1,7 @@
-use std::path::Path;
-
 use glam::{DQuat, DVec3};
 
+use super::assets::Assets;
+use super::document::Document;
 use super::error::Problem;
 use super::material;
 use super::placement::{across, rejected, trajectory};
@@ -30,8 +30,8 @@ pub(super) const SHAPES: &[Choice] = &[
 const ROTATION_KEYS: &[&str] = &["axis", "angle"];
 
 pub(super) fn read(
-    root: &Section<'_>,
-    base_directory: &Path,
+    root: &Document<'_>,
+    assets: &mut Assets,
     lasers: &[Laser],
 ) -> Result<Vec<Surface>, Problem> {
     let sections = root.tables("surface", KEYS)?;
@@ -51,7 +51,7 @@ pub(super) fn read(
             };
             Ok(Surface {
                 name,
-                shape: shape(section, base_directory)?,
+                shape: shape(section, assets)?,
                 material,
                 trajectory: trajectory(section)?,
                 speckle: SurfaceSpeckle::default(),
@@ -61,11 +61,11 @@ pub(super) fn read(
         .collect()
 }
 
-fn shape(section: &Section<'_>, base_directory: &Path) -> Result<Shape, Problem> {
+fn shape(section: &Section<'_>, assets: &mut Assets) -> Result<Shape, Problem> {
     Ok(match section.one_of("shape", SHAPES)? {
         ("rectangle", shape) => Shape::Rectangle(rectangle(&shape)?),
         ("sphere", shape) => Shape::Sphere(sphere(&shape)?),
-        (_, shape) => Shape::Mesh(mesh(&shape, base_directory)?),
+        (_, shape) => Shape::Mesh(mesh(&shape, assets)?),
     })
 }
 
@@ -100,7 +100,7 @@ fn sphere(section: &Section<'_>) -> Result<Sphere, Problem> {
 
 /// Reads a mesh file and puts it in its place: scaled, then rotated, then moved by `position` or
 /// until the middle of its box is at `centre`.
-fn mesh(section: &Section<'_>, base_directory: &Path) -> Result<TriangleMesh, Problem> {
+fn mesh(section: &Section<'_>, assets: &mut Assets) -> Result<TriangleMesh, Problem> {
     let file = section.required("file", "\"part.ply\"")?;
     let unit = section.or("unit", 1e-3, |value| value.unit_of_length())?;
     let scale = section.or("scale", 1.0, |value| value.positive(&NUMBER))?;
@@ -109,11 +109,12 @@ fn mesh(section: &Section<'_>, base_directory: &Path) -> Result<TriangleMesh, Pr
     let centre = section.optional("centre");
     if let (Some(centre), true) = (&centre, section.has("position")) {
         let message = "`centre` and `position` both place the mesh: give one of the two";
-        return Err(Problem::new(message).at(centre.span()));
+        return Err(Problem::new(message).at(centre.place()));
     }
-    let path = base_directory.join(file.string()?);
-    let failed = |error| Problem::new(format!("`file` must be a mesh: {error}")).at(file.span());
+    let path = section.beside(file.string()?);
+    let failed = |error| Problem::new(format!("`file` must be a mesh: {error}")).at(file.place());
     let mesh = read_mesh(&path, unit * scale).map_err(failed)?;
+    assets.note(&path);
     let vertices = mesh.vertices().iter().map(|v| rotation * *v + position);
     let mesh = TriangleMesh::new(vertices.collect(), mesh.triangles().to_vec()).map_err(failed)?;
     let Some(centre) = centre else {

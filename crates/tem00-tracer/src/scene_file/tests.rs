@@ -1,5 +1,6 @@
 mod accepted;
 mod any_text;
+mod includes;
 mod refused;
 mod repository;
 

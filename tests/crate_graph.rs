@@ -47,6 +47,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         ],
         &[
             "glam",
+            "libm",
             "obvhs",
             "ply-rs-bw",
             "rand_chacha",

@@ -1,10 +1,13 @@
+mod emission;
+
 use glam::DVec3;
 use tem00_beam::{
     AstigmaticBeam, BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight,
     LineProfile, LocatedBeam, NextEvent, Placement, SpotLight, TabulatedLineLight, paper,
 };
-use tem00_decorrelation::{DecorrelationError, Wavefront};
+use tem00_decorrelation::{DecorrelationError, RigidMotion, Wavefront};
 
+pub use self::emission::{EmittedRay, SampledIllumination};
 use crate::{TracerError, Trajectory};
 
 /// What determines a [`Laser`].
@@ -131,6 +134,31 @@ impl Laser {
         &self.trajectory
     }
 
+    /// Returns the laser as it stands in `frame`.
+    #[must_use]
+    pub fn at(&self, frame: u32) -> Self {
+        self.moved(&self.trajectory.pose_at(frame))
+    }
+
+    /// Returns the laser carried along by a rigid motion: its aperture, its axis and the direction
+    /// of its line.
+    ///
+    /// The laser in its new place stands still.
+    #[must_use]
+    pub fn moved(&self, motion: &RigidMotion) -> Self {
+        let description = &self.description;
+        Self {
+            description: LaserDescription {
+                position: motion.point(description.position),
+                look_at: motion.point(description.look_at),
+                line_direction: motion.direction(description.line_direction),
+                ..description.clone()
+            },
+            source: self.source.moved(motion),
+            trajectory: Trajectory::default(),
+        }
+    }
+
     /// Returns what the laser was created from.
     pub const fn description(&self) -> &LaserDescription {
         &self.description
@@ -209,6 +237,35 @@ impl Laser {
     /// Returns the unit direction from `point` to the middle of the aperture.
     pub(crate) fn direction_from(&self, point: DVec3) -> Option<DVec3> {
         (self.description.position - point).try_normalize()
+    }
+}
+
+impl Source {
+    fn moved(&self, motion: &RigidMotion) -> Self {
+        let point = |p: [f64; 3]| motion.point(p.into()).to_array();
+        let axis = |v: [f64; 3]| motion.direction(v.into()).to_array();
+        match self {
+            Self::Spot { beam, light } => Self::Spot {
+                beam: *beam,
+                light: SpotLight {
+                    origin: point(light.origin),
+                    ex: axis(light.ex),
+                    ey: axis(light.ey),
+                    ez: axis(light.ez),
+                    ..*light
+                },
+            },
+            Self::Line { line, light } => Self::Line {
+                line: line.clone(),
+                light: LineLight {
+                    origin: point(light.origin),
+                    ex: axis(light.ex),
+                    ey: axis(light.ey),
+                    ez: axis(light.ez),
+                    ..*light
+                },
+            },
+        }
     }
 }
 

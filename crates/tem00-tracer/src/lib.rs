@@ -85,9 +85,9 @@ mod trajectory;
 pub use camera::{Camera, CameraDescription, MAXIMUM_PIXELS};
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
-pub use intersector::Intersector;
+pub use intersector::{Intersector, Segment};
 pub use lamp::Lamp;
-pub use laser::{BeamShape, Laser, LaserDescription};
+pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
 pub use material::{BsdfSample, Material};
 pub use mesh::{MeshError, TriangleMesh};
 pub use mesh_file::read_mesh;
@@ -96,12 +96,15 @@ pub use ray::{Frame as LocalFrame, Ray};
 pub use render::{Crop, Formulas, LaserEvents, Method, RenderError, RenderOptions, render_frame};
 pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 pub use scene_file::{SceneError, SceneFile, parse_scene, read_scene};
-pub use shape::{Hit, Rectangle, Shape, Sphere};
+pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
 pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
-pub use trajectory::Trajectory;
+pub use trajectory::{Keyframe, Rotation, Trajectory};
 
 /// The motion of rigid bodies.
 pub use tem00_decorrelation::RigidMotion;
 
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};
+
+/// How rigid bodies move.
+pub use tem00_decorrelation::RigidMotion;

@@ -1,6 +1,7 @@
 use tem00_beam::{AngularProfile, FocusCurve};
 
 use super::*;
+use crate::Ray;
 
 /// A line of 60° in focus at 0.3 m, from the origin along z.
 fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {
@@ -171,5 +172,121 @@ fn the_wavefront_of_an_elliptic_spot_tells_how_its_light_turns() {
         let expected = -(curvature * step) / 1e-6;
         let error = turned.distance(expected);
         assert!(error < tolerance, "{turned} | {expected}: {error:e}");
+    }
+}
+
+/// Lines of three profiles, one of them a table, and the elliptic spot.
+fn lasers() -> Vec<Laser> {
+    let table = AngularProfile::from_pairs(&[(-0.2, 1.0), (0.0, 2.0), (0.4, 0.5)]).unwrap();
+    let profiles = [
+        LineProfile::GaussianTan,
+        LineProfile::Powell { edge: 0.1 },
+        LineProfile::Tabulated(table),
+    ];
+    let lines = profiles.map(|profile| line(profile, FocusCurve::EqualPlane));
+    lines.into_iter().chain([elliptic_spot().0]).collect()
+}
+
+/// A point in the beam of a laser, 0.2 m along the axis from the aperture.
+fn lit_point(laser: &Laser) -> DVec3 {
+    let LaserDescription {
+        position, look_at, ..
+    } = *laser.description();
+    let axis = (look_at - position).normalize();
+    position + 0.2 * axis + 20e-6 * axis.any_orthonormal_vector()
+}
+
+#[test]
+fn drawn_events_have_the_density_and_the_radiance_that_the_laser_states() {
+    for laser in lasers() {
+        let point = lit_point(&laser);
+        for i in 0..100_u32 {
+            let u = [0.5, 0.3].map(|step| (step + f64::from(i) * 0.618 * step).fract());
+            let event = laser.sampled_event(point, u).unwrap();
+            let pdf = laser.event_pdf(point, event.direction);
+            // Rounding of world coordinates, 1e−17 m, beside a source of some 1e−7 m.
+            assert!(
+                (pdf / event.pdf - 1.0).abs() < 1e-8,
+                "{event:?} | pdf {pdf}"
+            );
+            let radiance = laser.radiance(point, event.direction);
+            let error = event.value * event.pdf / radiance - 1.0;
+            assert!(error.abs() < 1e-8, "{event:?} | radiance {radiance}");
+            let distance = laser.aperture_distance(point, event.direction).unwrap();
+            let crossing = point + distance * event.direction;
+            assert!(crossing.distance(event.source) < 1e-15, "{event:?}");
+        }
+    }
+}
+
+#[test]
+fn the_laser_is_dark_from_behind() {
+    for laser in lasers() {
+        let LaserDescription {
+            position, look_at, ..
+        } = *laser.description();
+        let axis = (look_at - position).normalize();
+        assert!(laser.radiance(position + 0.1 * axis, -axis) > 0.0, "front");
+        assert!(laser.radiance(position - 0.1 * axis, -axis) <= 0.0, "back");
+        assert!(laser.radiance(position + 0.1 * axis, axis) <= 0.0, "away");
+        assert_eq!(laser.aperture_distance(look_at, axis), None, "away");
+    }
+}
+
+#[test]
+fn a_moved_laser_lights_moved_points_as_before() {
+    let turn = RigidMotion::about(DVec3::new(0.1, 0.2, -0.1), DVec3::new(1.0, -2.0, 0.5), 1.1);
+    let shift = RigidMotion::along(DVec3::new(0.05, -0.02, 0.3));
+    let motion = turn.unwrap().then(&shift.unwrap());
+    for laser in lasers() {
+        let moved = laser.moved(&motion);
+        let point = lit_point(&laser);
+        let (before, after) = (
+            laser.illuminate(point).unwrap(),
+            moved.illuminate(motion.point(point)).unwrap(),
+        );
+        // Points round by 1e−16 m, beside beam radii of at least 0.1 mm and slopes below 1.
+        let ratio = after.irradiance / before.irradiance;
+        assert!((ratio - 1.0).abs() < 1e-10, "{laser:?}: {ratio}");
+        let turned = after.direction.distance(motion.direction(before.direction));
+        assert!(turned < 1e-12, "{laser:?}: {turned:e}");
+        let carried = after.source.distance(motion.point(before.source));
+        assert!(carried < 1e-12, "{laser:?}: {carried:e}");
+        // The description says the same: a laser created from it is the moved one.
+        let created = Laser::new(moved.description().clone()).unwrap();
+        let created = created.illuminate(motion.point(point)).unwrap();
+        let ratio = created.irradiance / after.irradiance;
+        assert!((ratio - 1.0).abs() < 1e-10, "{laser:?}: {ratio}");
+    }
+}
+
+#[test]
+fn a_laser_stands_where_its_trajectory_says() {
+    let step = DVec3::new(1e-3, 2e-3, -3e-3);
+    let laser = elliptic_spot().0;
+    let moving = laser
+        .clone()
+        .with_trajectory(Trajectory::steady(step).unwrap());
+    let there = moving.at(3).description().position;
+    let expected = laser.description().position + 3.0 * step;
+    assert!(there.distance(expected) < 1e-16, "{there} | {expected}");
+    assert!(moving.at(3).trajectory().is_still(), "it has been moved");
+}
+
+#[test]
+fn rays_leave_the_aperture_with_the_power_of_the_laser() {
+    for laser in lasers() {
+        let LaserDescription {
+            position, power, ..
+        } = *laser.description();
+        for u in [[0.1, 0.7, 0.3, 0.9], [0.0; 4], [0.99, 0.2, 0.5, 0.4]] {
+            let emitted = laser.sample_ray(u);
+            assert!((emitted.flux - power).abs() <= 0.0, "{emitted:?}");
+            let Ray { origin, direction } = emitted.ray;
+            assert!((direction.length() - 1.0).abs() < 1e-15, "{emitted:?}");
+            let back = laser.aperture_distance(origin + 0.1 * direction, -direction);
+            assert!((back.unwrap() - 0.1).abs() < 1e-15, "{emitted:?}");
+            assert!(origin.distance(position) < 0.02, "{emitted:?}");
+        }
     }
 }

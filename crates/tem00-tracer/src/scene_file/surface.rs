@@ -65,7 +65,7 @@ fn shape(section: &Section<'_>, assets: &mut Assets) -> Result<Shape, Problem> {
     Ok(match section.one_of("shape", SHAPES)? {
         ("rectangle", shape) => Shape::Rectangle(rectangle(&shape)?),
         ("sphere", shape) => Shape::Sphere(sphere(&shape)?),
-        (_, shape) => Shape::Mesh(mesh(&shape, assets)?),
+        (_, shape) => Shape::from(mesh(&shape, assets)?),
     })
 }
 

@@ -105,6 +105,3 @@ pub use tem00_decorrelation::RigidMotion;
 
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};
-
-/// How rigid bodies move.
-pub use tem00_decorrelation::RigidMotion;

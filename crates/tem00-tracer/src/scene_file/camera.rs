@@ -1,6 +1,7 @@
 use super::document::Document;
 use super::error::Problem;
-use super::placement::{Placement, across, rejected, trajectory};
+use super::motion::{pivot, trajectory};
+use super::placement::{Placement, across, rejected};
 use super::quantity::{LENGTH, NUMBER};
 use super::section::Section;
 use super::value::Value;
@@ -16,6 +17,9 @@ pub(super) const KEYS: &[&str] = &[
     "resolution",
     "focus_distance",
     "displacement_per_frame",
+    "rotation_per_frame",
+    "pivot",
+    "keyframe",
 ];
 
 /// The camera of a scene and how it moves.
@@ -32,8 +36,8 @@ pub(super) fn read(root: &Document<'_>) -> Result<MovingCamera, Problem> {
     let description = description(&section)?;
     let camera = Camera::new(description).map_err(|error| rejected(&error, &[&section]))?;
     Ok(MovingCamera {
+        trajectory: trajectory(&section, pivot(&section, camera.position())?)?,
         camera,
-        trajectory: trajectory(&section)?,
     })
 }
 

@@ -6,6 +6,7 @@ use tem00_beam::{AngularProfile, BeamError, FanGeometry, FocusCurve, GaussianBea
 
 use super::document::Document;
 use super::error::Problem;
+use super::motion::{pivot, trajectory};
 use super::placement::{Placement, across, rejected};
 use super::quantity::{ANGLE, LENGTH, NUMBER, POWER};
 use super::section::{Choice, Section};
@@ -18,10 +19,14 @@ pub(super) const KEYS: &[&str] = &[
     "position",
     "look_at",
     "line_direction",
+    "displacement_per_frame",
+    "rotation_per_frame",
+    "pivot",
+    "keyframe",
     "spot",
     "line",
 ];
-const SPOT_KEYS: &[&str] = &["waist_radius", "waist_distance", "m_squared"];
+pub(super) const SPOT_KEYS: &[&str] = &["waist_radius", "waist_distance", "m_squared"];
 const LINE_KEYS: &[&str] = &[
     "fan_angle",
     "thickness",
@@ -42,7 +47,7 @@ const PROFILES: &[(&str, LineProfile)] = &[
     ("powell", LineProfile::Powell { edge: 0.05 }),
 ];
 
-const TABLE_KEYS: &[&str] = &["angles", "powers"];
+pub(super) const TABLE_KEYS: &[&str] = &["angles", "powers"];
 const FOCUS_CURVES: &[(&str, FocusCurve)] = &[
     ("distance", FocusCurve::EqualDistance),
     ("plane", FocusCurve::EqualPlane),
@@ -78,7 +83,9 @@ fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
         line_direction: section.or("line_direction", sideways, Value::direction)?,
         shape,
     };
-    Laser::new(description).map_err(|error| rejected(&error, &[&beam, section]))
+    let laser = Laser::new(description).map_err(|error| rejected(&error, &[&beam, section]))?;
+    let pivot = pivot(section, placement.position)?;
+    Ok(laser.with_trajectory(trajectory(section, pivot)?))
 }
 
 /// Reads a beam, round or elliptic, whose waists are, unless they are given, at `distance`.

@@ -3,7 +3,7 @@ use super::error::Problem;
 use super::placement::rejected;
 use super::quantity::{POWER, RADIANCE};
 use super::section::{Choice, Section};
-use super::surface::rectangle;
+use super::shape::rectangle;
 use crate::Lamp;
 
 pub(super) const KEYS: &[&str] = &["point", "rectangle"];

@@ -10,12 +10,19 @@ pub(super) const MATERIALS: &[Choice] = &[
 ];
 
 /// The names of the metals, as files have them.
-const METALS: &[(&str, Metal)] = &[
+pub(super) const METALS: &[(&str, Metal)] = &[
     ("aluminium", Metal::Aluminium),
     ("silver", Metal::Silver),
     ("gold", Metal::Gold),
     ("copper", Metal::Copper),
     ("iron", Metal::Iron),
+    ("chromium", Metal::Chromium),
+    ("nickel", Metal::Nickel),
+    ("titanium", Metal::Titanium),
+    ("tungsten", Metal::Tungsten),
+    ("platinum", Metal::Platinum),
+    ("brass", Metal::Brass),
+    ("stainless_steel", Metal::StainlessSteel),
 ];
 
 const REFLECTANCE: f64 = 0.8;

@@ -7,10 +7,12 @@ mod error;
 mod laser;
 mod light;
 mod material;
+mod motion;
 mod placement;
 mod quantity;
 mod section;
 mod settings;
+mod shape;
 mod source;
 mod surface;
 #[cfg(test)]

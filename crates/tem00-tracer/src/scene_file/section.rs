@@ -92,7 +92,7 @@ impl<'a> Section<'a> {
         let Some(value) = self.optional(key) else {
             return Ok(Vec::new());
         };
-        let header = format!("[[{key}]]");
+        let header = format!("[[{}]]", self.path_to(key));
         let wrong = |place: &Value<'a>| {
             place.must_be(format_args!("written `{header}`, with its keys below"))
         };

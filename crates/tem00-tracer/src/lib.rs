@@ -88,7 +88,7 @@ pub use film::{Frame, LaserLayers};
 pub use intersector::{Intersector, Segment};
 pub use lamp::Lamp;
 pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
-pub use material::{BsdfSample, Material};
+pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use mesh::{MeshError, TriangleMesh};
 pub use mesh_file::read_mesh;
 pub use metal::Metal;

@@ -61,7 +61,7 @@ impl Ggx {
         let upward = view.cross(across);
         // Draw a point of the hemisphere's projection: a half disc beside a half ellipse.
         let radius = u.sqrt();
-        let (sin, cos) = (TAU * v).sin_cos();
+        let (sin, cos) = libm::sincos(TAU * v);
         let x = radius * cos;
         let lift = 0.5 * (1.0 + view.z);
         let half_disc = ((1.0 - x) * (1.0 + x)).sqrt();
@@ -81,6 +81,17 @@ impl Ggx {
     /// Returns `r(w) = √(cos²θ + α² sin²θ)`.
     fn reach(self, w: DVec3) -> f64 {
         let sine_square = w.x * w.x + w.y * w.y;
-        w.z.hypot(self.alpha * sine_square.sqrt())
+        (w.z * w.z + self.alpha * self.alpha * sine_square).sqrt()
     }
+}
+
+/// Returns the unit vector half-way between two directions above the surface.
+pub(super) fn half_vector(wo: DVec3, wi: DVec3) -> DVec3 {
+    let sum = wo + wi;
+    let square = sum.length_squared();
+    if square > 1e-200 {
+        return sum / square.sqrt();
+    }
+    // Opposite directions along the surface: only their height above it is left.
+    (sum * 2.0_f64.powi(600)).normalize()
 }

@@ -1,4 +1,4 @@
-use core::f64::consts::PI;
+use core::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
 use tem00_statistics::chi_squared;
@@ -159,7 +159,7 @@ proptest! {
         let wo = direction(cosine, azimuth) * if below { -1.0 } else { 1.0 };
         for material in [iron(roughness), Material::lambertian(0.5).unwrap()] {
             let Some(sample) = material.sample(wo, [u, v], RED) else { continue };
-            let BsdfSample { wi, weight, pdf } = sample;
+            let BsdfSample { wi, weight, pdf, .. } = sample;
             prop_assert!((wi.length() - 1.0).abs() < 1e-13, "|wi| = {}", wi.length());
             prop_assert!(wi.z * wo.z > 0.0, "wi = {wi}");
             prop_assert!(weight > 0.0 && weight <= 1.0, "weight = {weight}");

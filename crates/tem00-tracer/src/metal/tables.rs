@@ -121,6 +121,7 @@ pub(super) const IRON: [Row; 19] = [
 ];
 
 /// Johnson and Christy 1974: evaporated films at room temperature.
+#[expect(clippy::approx_constant, reason = "the k of chromium at 451 nm, not π")]
 pub(super) const CHROMIUM: [Row; 19] = [
     (368.0, 1.87, 2.69),
     (381.0, 1.92, 2.74),

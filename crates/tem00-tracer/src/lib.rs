@@ -82,7 +82,10 @@ mod shape;
 mod speckle;
 mod trajectory;
 
-pub use camera::{Camera, CameraDescription, MAXIMUM_PIXELS};
+pub use camera::{
+    Camera, CameraConnection, CameraDescription, CameraRay, MAXIMUM_PIXELS, RadialDistortion,
+    SensorTilt,
+};
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use intersector::{Intersector, Segment};

@@ -24,7 +24,12 @@ pub(super) const KEYS: &[&str] = &[
     "cylinder",
     "mesh",
     "lambertian",
+    "oren_nayar",
     "conductor",
+    "plastic",
+    "mirror",
+    "dielectric",
+    "one_sided",
     "rms_height",
     "speckle",
 ];

@@ -1,7 +1,9 @@
 mod accepted;
+mod accepted_parts;
 mod any_text;
 mod includes;
 mod refused;
+mod refused_parts;
 mod repository;
 mod schema;
 

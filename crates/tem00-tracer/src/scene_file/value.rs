@@ -132,6 +132,12 @@ impl<'a> Value<'a> {
         })
     }
 
+    /// Returns whether the value is true or false.
+    pub(super) fn boolean(&self) -> Result<bool, Problem> {
+        let value = self.item.get_ref().as_bool();
+        value.ok_or_else(|| self.must_be("true or false"))
+    }
+
     /// Returns a string.
     pub(super) fn string(&self) -> Result<&'a str, Problem> {
         self.item

@@ -75,8 +75,8 @@ fn every_key_is_documented() {
     let text = documentation();
     for (table, keys) in tables() {
         for key in keys {
-            let documented =
-                text.contains(&format!("`{key}`")) || text.contains(&format!("{key}]"));
+            let spellings = [format!("`{key}`"), format!("{key}]"), format!("{key} = ")];
+            let documented = spellings.iter().any(|spelling| text.contains(spelling));
             assert!(
                 documented,
                 "{key} of {table:?} is not in docs/scene_file.md"

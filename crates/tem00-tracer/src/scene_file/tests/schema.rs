@@ -39,6 +39,7 @@ pub(super) fn tables() -> BTreeMap<&'static str, &'static [&'static str]> {
     let own = [
         ("", section::ROOT_KEYS),
         ("camera", camera::KEYS),
+        ("tilt", camera::TILT_KEYS),
         ("laser", laser::KEYS),
         ("profile_table", laser::TABLE_KEYS),
         ("surface", surface::KEYS),

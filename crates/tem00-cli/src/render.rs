@@ -203,7 +203,7 @@ impl<'a> Render<'a> {
     }
 
     fn samples_per_frame(&self) -> u64 {
-        self.scene.samples_per_frame(self.options.samples_per_pixel)
+        self.scene.samples_per_frame(&self.options)
     }
 
     const fn formulas(&self) -> &'static str {

@@ -1,11 +1,12 @@
 mod emission;
+mod wave;
 
 use glam::DVec3;
 use tem00_beam::{
     AstigmaticBeam, BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight,
     LineProfile, LocatedBeam, NextEvent, Placement, SpotLight, TabulatedLineLight, paper,
 };
-use tem00_decorrelation::{DecorrelationError, RigidMotion, Wavefront};
+use tem00_decorrelation::RigidMotion;
 
 pub use self::emission::{EmittedRay, SampledIllumination};
 use crate::{TracerError, Trajectory};
@@ -204,34 +205,6 @@ impl Laser {
             direction: DVec3::from_array(event.wi),
             irradiance: event.radiance,
         })
-    }
-
-    /// Returns the wavefront at `point`, whose unit direction to the source is `direction`.
-    ///
-    /// A spot's wavefront has the curvatures 1/R(z) of its beam along the line direction and across
-    /// it. A line's has, in the fan, that of a wave from the apex and, across the fan, that of the
-    /// focused beam.
-    pub(crate) fn wavefront_at(
-        &self,
-        point: DVec3,
-        direction: DVec3,
-    ) -> Result<Wavefront, DecorrelationError> {
-        let offset = point - self.description.position;
-        let along = |axis: [f64; 3]| offset.dot(DVec3::from_array(axis));
-        match &self.source {
-            Source::Spot { beam, light } => {
-                let [first, second] = beam.curvatures_at(along(light.ez));
-                Wavefront::astigmatic(direction, DVec3::from_array(light.ex), first, second)
-            }
-            Source::Line { line, light } => {
-                let depth = along(light.ez) + line.fan().apex_offset;
-                let slant = along(light.ex).hypot(depth);
-                let waist = line.waist_slant_distance_at(along(light.ex) / depth);
-                let across = line.focus().curvature_at(slant - waist);
-                let normal = DVec3::from_array(light.ey);
-                Wavefront::astigmatic(direction, normal, across, 1.0 / slant)
-            }
-        }
     }
 
     /// Returns the unit direction from `point` to the middle of the aperture.

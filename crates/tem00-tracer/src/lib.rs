@@ -63,12 +63,14 @@
 //! ```
 
 mod camera;
+mod environment;
 mod error;
 mod film;
 mod integrator;
 mod intersector;
 mod lamp;
 mod laser;
+mod light_tracer;
 mod material;
 mod mesh;
 mod mesh_file;
@@ -86,25 +88,28 @@ pub use camera::{
     Camera, CameraConnection, CameraDescription, CameraRay, MAXIMUM_PIXELS, RadialDistortion,
     SensorTilt,
 };
+pub use environment::Environment;
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use intersector::{Intersector, Segment};
-pub use lamp::Lamp;
+pub use lamp::{Lamp, LampSample};
 pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use mesh::{MeshError, TriangleMesh};
 pub use mesh_file::read_mesh;
 pub use metal::Metal;
 pub use ray::{Frame as LocalFrame, Ray};
-pub use render::{Crop, Formulas, LaserEvents, Method, RenderError, RenderOptions, render_frame};
+pub use render::{
+    Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, render_frame,
+};
 pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 pub use scene_file::{SceneError, SceneFile, parse_scene, read_scene};
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
 pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
 pub use trajectory::{Keyframe, Rotation, Trajectory};
 
-/// The motion of rigid bodies.
-pub use tem00_decorrelation::RigidMotion;
-
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};
+
+/// How rigid bodies move.
+pub use tem00_decorrelation::RigidMotion;

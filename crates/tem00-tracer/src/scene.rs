@@ -119,3 +119,42 @@ pub struct Scene {
     /// Choices about the image.
     pub render: RenderSettings,
 }
+
+impl Scene {
+    /// Returns the camera as it stands in `frame`.
+    pub fn camera_at(&self, frame: u32) -> Camera {
+        self.camera.moved(&self.camera_trajectory.pose_at(frame))
+    }
+
+    /// Returns laser `index` as it stands in `frame`.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `index < lasers.len()`.
+    pub fn laser_at(&self, index: usize, frame: u32) -> Laser {
+        self.lasers[index].at(frame)
+    }
+
+    /// Returns the shapes as they stand in `frame`: the surfaces, then the area lamps, which stand
+    /// still.
+    pub fn shapes_at(&self, frame: u32) -> Vec<Shape> {
+        let surfaces = self
+            .surfaces
+            .iter()
+            .map(|surface| surface.shape.moved(&surface.trajectory.pose_at(frame)));
+        let lamps = self.lamps.iter().filter_map(|lamp| match lamp {
+            Lamp::Area { rectangle, .. } => Some(Shape::Rectangle(*rectangle)),
+            Lamp::Point { .. } | Lamp::Environment(_) => None,
+        });
+        surfaces.chain(lamps).collect()
+    }
+
+    /// Returns whether the speckle of laser `laser` on surface `surface` may differ between two
+    /// frames: whether surface, camera or laser move.
+    pub(crate) fn speckle_moves(&self, laser: usize, surface: usize) -> bool {
+        self.render.frames > 1
+            && !(self.camera_trajectory.is_still()
+                && self.lasers[laser].trajectory().is_still()
+                && self.surfaces[surface].trajectory.is_still())
+    }
+}

@@ -152,3 +152,40 @@ fn bisected(k: RadialDistortion, mut low: f64, mut high: f64) -> f64 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_grow_up_to_the_turning_point_and_shrink_behind_it() {
+        for (k1, k2, k3) in [
+            (-10.0, 0.0, 0.0),
+            (0.0, -30.0, 0.0),
+            (0.0, 0.0, -80.0),
+            (2.0, -30.0, 5.0),
+            (-1.0, 3.0, -40.0),
+            // Grows again farther out.
+            (-1000.0, 4e5, 1.0),
+        ] {
+            let distortion = Distortion::new(RadialDistortion { k1, k2, k3 });
+            let image = |r: f64| r * (1.0 + k1 * r.powi(2) + k2 * r.powi(4) + k3 * r.powi(6));
+            let limit = distortion.limit;
+            for step in 0..1000 {
+                let (r, next) = (f64::from(step) * 1e-3, f64::from(step + 1) * 1e-3);
+                // Near the turning point the last steps gain 1e−6 of it, more than rounding.
+                assert!(
+                    image(limit * r) < image(limit * next),
+                    "{k1}, {k2}, {k3}: {r}"
+                );
+            }
+            assert!(image(1.001 * limit) < image(limit), "{k1}, {k2}, {k3}");
+            let reach = distortion.reach();
+            assert!((reach / image(limit) - 1.0).abs() < 1e-14, "{reach}");
+        }
+        for (k1, k2, k3) in [(1.0, 0.0, 0.0), (-1.0, 1.0, 0.0), (0.0, -1.0, 10.0)] {
+            let distortion = Distortion::new(RadialDistortion { k1, k2, k3 });
+            assert!(distortion.limit.is_infinite(), "{k1}, {k2}, {k3}");
+        }
+    }
+}

@@ -88,7 +88,7 @@ fn scattered_rays() -> Vec<Ray> {
 }
 
 fn intersections(criterion: &mut Criterion) {
-    let shapes = [Shape::Mesh(displaced_sphere())];
+    let shapes = [Shape::from(displaced_sphere())];
     let intersector = Intersector::build(&shapes).expect("a valid scene");
     let mut group = criterion.benchmark_group("rays, one thread");
     for (name, rays) in [

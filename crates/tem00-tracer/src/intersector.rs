@@ -1,4 +1,5 @@
 mod primitive;
+mod segment;
 
 use glam::{DVec3, Vec3A};
 use obvhs::{
@@ -11,7 +12,8 @@ use obvhs::{
 };
 
 use self::primitive::{Primitive, ShearedRay};
-use crate::{Hit, Ray, Shape, TracerError};
+pub use self::segment::Segment;
+use crate::{Hit, MeshInstance, Ray, Shape, TracerError, mesh};
 
 /// Finds where rays meet shapes.
 ///
@@ -46,6 +48,8 @@ pub struct Intersector {
     primitives: Vec<Primitive>,
     /// The shape to which each primitive belongs.
     surfaces: Vec<usize>,
+    /// The first primitive of each mesh, and the mesh.
+    meshes: Vec<(usize, MeshInstance)>,
     /// The centre of a sphere around everything, in metres.
     centre: DVec3,
     /// The radius of that sphere, in metres: the unit of the boxes.
@@ -98,6 +102,7 @@ impl Intersector {
             boxes: CwBvh::default(),
             primitives,
             surfaces,
+            meshes: Vec::new(),
             centre: 0.5 * (low + high),
             radius,
             clearance: clearance(reach),
@@ -107,6 +112,14 @@ impl Intersector {
             .map(|(index, primitive)| intersector.padded_box(primitive, index))
             .collect();
         intersector.boxes = build_hierarchy(&boxes)?;
+        for (surface, shape) in shapes.iter().enumerate() {
+            if let Shape::Mesh(instance) = shape {
+                let first = intersector
+                    .surfaces
+                    .partition_point(|&other| other < surface);
+                intersector.meshes.push((first, instance.clone()));
+            }
+        }
         Ok(intersector)
     }
 
@@ -138,8 +151,54 @@ impl Intersector {
             distance,
             position,
             normal,
+            shading_normal: self.shading_normal(&sheared, index, normal),
             surface: self.surfaces[index],
         })
+    }
+
+    /// Finds for each ray what [`intersect`](Self::intersect) finds.
+    ///
+    /// Rays that run side by side are found fastest where they are neighbours in the list.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `hits.len() == rays.len()`.
+    pub fn intersect_batch(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        assert_eq!(hits.len(), rays.len(), "one hit for each ray");
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.intersect(ray);
+        }
+    }
+
+    /// Finds for each segment what [`visible`](Self::visible) tells of its ends.
+    ///
+    /// Segments that run side by side are found fastest where they are neighbours in the list.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `visible.len() == segments.len()`.
+    pub fn visible_batch(&self, segments: &[Segment], visible: &mut [bool]) {
+        assert_eq!(visible.len(), segments.len(), "one answer for each segment");
+        for (segment, visible) in segments.iter().zip(visible) {
+            *visible = self.visible(segment.from, segment.from_normal, segment.to);
+        }
+    }
+
+    fn shading_normal(&self, ray: &ShearedRay, index: usize, normal: DVec3) -> DVec3 {
+        let Primitive::Triangle(corners) = &self.primitives[index] else {
+            return normal;
+        };
+        let after = self.meshes.partition_point(|&(first, _)| first <= index);
+        let Some((first, instance)) = after.checked_sub(1).map(|mesh| &self.meshes[mesh]) else {
+            return normal;
+        };
+        let interpolated = ray.triangle(corners).and_then(|(_, weights)| {
+            let normal = instance
+                .mesh()
+                .interpolated_normal(index - first, weights)?;
+            instance.direction(normal).try_normalize()
+        });
+        mesh::shading_normal(normal, interpolated)
     }
 
     /// Tells whether nothing stands between a surface point and another point.
@@ -317,7 +376,14 @@ fn collect(shapes: &[Shape]) -> (Vec<Primitive>, Vec<usize>) {
         match shape {
             Shape::Rectangle(rectangle) => primitives.push(Primitive::Rectangle(*rectangle)),
             Shape::Sphere(sphere) => primitives.push(Primitive::Sphere(*sphere)),
-            Shape::Mesh(mesh) => primitives.extend(mesh.corners().map(Primitive::Triangle)),
+            Shape::Cylinder(cylinder) => primitives.push(Primitive::Cylinder(*cylinder)),
+            Shape::Mesh(instance) => {
+                let mesh = instance.mesh();
+                primitives.extend((0..mesh.triangles().len()).map(|triangle| {
+                    let corners = mesh.corners(triangle);
+                    Primitive::Triangle(corners.map(|corner| instance.point(corner)))
+                }));
+            }
         }
         surfaces.resize(primitives.len(), surface);
     }

@@ -84,7 +84,7 @@ mod speckle;
 pub use camera::{Camera, CameraDescription, MAXIMUM_PIXELS};
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
-pub use intersector::Intersector;
+pub use intersector::{Intersector, Segment};
 pub use lamp::Lamp;
 pub use laser::{BeamShape, Laser, LaserDescription};
 pub use material::{BsdfSample, Material};
@@ -95,8 +95,11 @@ pub use ray::{Frame as LocalFrame, Ray};
 pub use render::{Formulas, RenderError, RenderOptions, render_frame};
 pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface};
 pub use scene_file::{SceneError, parse_scene, read_scene};
-pub use shape::{Hit, Rectangle, Shape, Sphere};
+pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
 pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
 
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};
+
+/// How rigid bodies move.
+pub use tem00_decorrelation::RigidMotion;

@@ -1,12 +1,14 @@
-use core::{error, fmt};
-use std::path::PathBuf;
+mod error;
 
 use glam::DVec3;
 
+pub use self::error::MeshError;
+
 /// A surface made of flat triangles.
 ///
-/// Corners run counter-clockwise seen from the side to which the normal points. Every triangle is
-/// flat and is shaded with its geometric normal; vertex normals are not used.
+/// Corners run counter-clockwise seen from the side to which the normal points. Light meets the
+/// flat triangles; where the mesh has vertex normals, it is scattered as by the curved surface that
+/// they belong to (see [`Hit::shading_normal`](crate::Hit::shading_normal)).
 ///
 /// # Examples
 ///
@@ -24,6 +26,7 @@ use glam::DVec3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriangleMesh {
     vertices: Vec<DVec3>,
+    normals: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     dropped: usize,
     bounds: (DVec3, DVec3),
@@ -40,21 +43,40 @@ impl TriangleMesh {
     ///
     /// Returns an error that names the first vertex that is not finite or the first triangle with
     /// an index beyond the vertices, or if no triangle with an area is left.
-    pub fn new(vertices: Vec<DVec3>, mut triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
-        if let Some(index) = vertices.iter().position(|vertex| !vertex.is_finite()) {
-            let value = vertices[index];
-            return Err(MeshError::Vertex { index, value });
-        }
-        for (triangle, corners) in triangles.iter().enumerate() {
-            for &index in corners {
-                if index as usize >= vertices.len() {
-                    return Err(MeshError::Index {
-                        triangle,
-                        index,
-                        vertices: vertices.len(),
-                    });
-                }
-            }
+    pub fn new(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        Self::with_normals(vertices, Vec::new(), triangles)
+    }
+
+    /// Creates a mesh with a normal for each vertex, or with none if `normals` is empty.
+    ///
+    /// The normals may be of any length. A vertex with a normal of length zero takes no part in the
+    /// interpolation.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error as [`new`](Self::new) does, or if there are not as many normals as vertices,
+    /// or one is not finite.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use tem00_tracer::{MeshError, TriangleMesh};
+    ///
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// let result = TriangleMesh::with_normals(corners, vec![DVec3::Z], vec![[0, 1, 2]]);
+    /// assert_eq!(result, Err(MeshError::Normals { normals: 1, vertices: 3 }));
+    /// ```
+    pub fn with_normals(
+        vertices: Vec<DVec3>,
+        mut normals: Vec<DVec3>,
+        mut triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, MeshError> {
+        check_vertices(&vertices)?;
+        check_normals(&normals, vertices.len())?;
+        check_indices(&triangles, vertices.len())?;
+        for normal in &mut normals {
+            *normal = unit(*normal).unwrap_or(DVec3::ZERO);
         }
         let given = triangles.len();
         triangles.retain(|corners| normal(&corners.map(|i| vertices[i as usize])).is_some());
@@ -65,6 +87,7 @@ impl TriangleMesh {
             bounds: bounds(&vertices, &triangles),
             dropped: given - triangles.len(),
             vertices,
+            normals,
             triangles,
         })
     }
@@ -72,6 +95,11 @@ impl TriangleMesh {
     /// Returns the vertices, in metres.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
+    }
+
+    /// Returns the normals of the vertices, of unit length or zero; empty if there are none.
+    pub fn normals(&self) -> &[DVec3] {
+        &self.normals
     }
 
     /// Returns the vertex indices of the triangles.
@@ -96,16 +124,24 @@ impl TriangleMesh {
         let (low, high) = self.bounds;
         Self {
             vertices: self.vertices.iter().map(|v| v + displacement).collect(),
-            triangles: self.triangles.clone(),
-            dropped: self.dropped,
             bounds: (low + displacement, high + displacement),
+            ..self.clone()
         }
     }
 
-    /// Returns the corners of the triangles, in metres.
-    pub(crate) fn corners(&self) -> impl Iterator<Item = [DVec3; 3]> {
-        let triangles = self.triangles.iter();
-        triangles.map(|corners| corners.map(|index| self.vertices[index as usize]))
+    /// Returns the corners of a triangle, in metres.
+    pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|index| self.vertices[index as usize])
+    }
+
+    /// Returns the sum of the normals of a triangle's corners, each times its weight, or `None` if
+    /// the mesh has no normals.
+    pub(crate) fn interpolated_normal(&self, triangle: usize, weights: DVec3) -> Option<DVec3> {
+        if self.normals.is_empty() {
+            return None;
+        }
+        let [a, b, c] = self.triangles[triangle].map(|index| self.normals[index as usize]);
+        Some(weights.x * a + weights.y * b + weights.z * c)
     }
 }
 
@@ -117,6 +153,63 @@ pub(crate) fn normal([a, b, c]: &[DVec3; 3]) -> Option<DVec3> {
     (u / scale).cross(v / scale).try_normalize()
 }
 
+/// Returns the normal with which a triangle scatters light: the interpolated one on the side of the
+/// triangle's own.
+pub(crate) fn shading_normal(normal: DVec3, interpolated: Option<DVec3>) -> DVec3 {
+    let interpolated = interpolated.unwrap_or(normal);
+    let cosine = interpolated.dot(normal);
+    if cosine == 0.0 {
+        return normal;
+    }
+    interpolated * 1.0_f64.copysign(cosine)
+}
+
+/// Returns `vector` at unit length, or `None` if it has no direction, whatever its size.
+fn unit(vector: DVec3) -> Option<DVec3> {
+    (vector / vector.abs().max_element()).try_normalize()
+}
+
+fn check_vertices(vertices: &[DVec3]) -> Result<(), MeshError> {
+    match vertices.iter().position(|vertex| !vertex.is_finite()) {
+        Some(index) => Err(MeshError::Vertex {
+            index,
+            value: vertices[index],
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_normals(normals: &[DVec3], vertices: usize) -> Result<(), MeshError> {
+    if !normals.is_empty() && normals.len() != vertices {
+        return Err(MeshError::Normals {
+            normals: normals.len(),
+            vertices,
+        });
+    }
+    match normals.iter().position(|normal| !normal.is_finite()) {
+        Some(index) => Err(MeshError::Normal {
+            index,
+            value: normals[index],
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_indices(triangles: &[[u32; 3]], vertices: usize) -> Result<(), MeshError> {
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for &index in corners {
+            if index as usize >= vertices {
+                return Err(MeshError::Index {
+                    triangle,
+                    index,
+                    vertices,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
 fn bounds(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (DVec3, DVec3) {
     let used = triangles.iter().flatten().map(|&i| vertices[i as usize]);
     used.fold(
@@ -124,96 +217,6 @@ fn bounds(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (DVec3, DVec3) {
         |(low, high), vertex| (low.min(vertex), high.max(vertex)),
     )
 }
-
-/// Why a mesh could not be constructed or read.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum MeshError {
-    /// No triangle with an area is there.
-    Empty {
-        /// The number of triangles without area.
-        degenerate: usize,
-    },
-    /// A vertex is not finite.
-    Vertex {
-        /// The index of the vertex, from 0.
-        index: usize,
-        /// The rejected position, in metres.
-        value: DVec3,
-    },
-    /// A triangle refers to a vertex that is not there.
-    Index {
-        /// The index of the triangle, from 0.
-        triangle: usize,
-        /// The rejected vertex index, from 0.
-        index: u32,
-        /// The number of vertices.
-        vertices: usize,
-    },
-    /// The scale, in metres per unit of the file, is not positive and finite.
-    Scale(f64),
-    /// The extension of the file name is that of no mesh format known here.
-    Extension(String),
-    /// The file could not be opened or read; the text is the system's.
-    Read(String),
-    /// The file does not follow its format.
-    Format {
-        /// The line of the file, from 1, where the format has lines.
-        line: Option<usize>,
-        /// What is wrong.
-        message: String,
-    },
-    /// Any of the above, about a file.
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: Box<Self>,
-    },
-}
-
-impl fmt::Display for MeshError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty { degenerate: 0 } => write!(f, "the mesh has no triangles"),
-            Self::Empty { degenerate } => {
-                write!(f, "none of the mesh's {degenerate} triangles has an area")
-            }
-            Self::Vertex { index, value } => {
-                write!(f, "vertex {index} (from 0) must be finite, got {value}")
-            }
-            Self::Index {
-                triangle,
-                index,
-                vertices,
-            } => write!(
-                f,
-                "triangle {triangle} (from 0) refers to vertex {index}, but the mesh has {vertices}"
-            ),
-            Self::Scale(got) => {
-                write!(
-                    f,
-                    "scale must be positive and finite, in metres per unit, got {got}"
-                )
-            }
-            Self::Extension(got) => {
-                write!(f, "mesh format must be .obj, .ply or .stl, got {got:?}")
-            }
-            Self::Read(message) => write!(f, "{message}"),
-            Self::Format {
-                line: Some(line),
-                message,
-            } => write!(f, "line {line}: {message}"),
-            Self::Format {
-                line: None,
-                message,
-            } => write!(f, "{message}"),
-            Self::File { path, source } => write!(f, "{}: {source}", path.display()),
-        }
-    }
-}
-
-impl error::Error for MeshError {}
 
 #[cfg(test)]
 mod tests {
@@ -280,5 +283,35 @@ mod tests {
             let normal = normal(&[DVec3::ZERO, size * DVec3::X, size * DVec3::Y]);
             assert_eq!(normal, Some(DVec3::Z), "size {size:e}");
         }
+    }
+
+    #[test]
+    fn bad_vertex_normals_are_refused() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let normals = vec![DVec3::Z, DVec3::Z, DVec3::INFINITY];
+        let error = TriangleMesh::with_normals(corners.clone(), normals, vec![[0, 1, 2]]);
+        assert_eq!(
+            error.unwrap_err().to_string(),
+            "normal of vertex 2 (from 0) must be finite, got [inf, inf, inf]",
+            "not finite"
+        );
+        let error = TriangleMesh::with_normals(corners, vec![DVec3::Z], vec![[0, 1, 2]]);
+        assert_eq!(
+            error.unwrap_err().to_string(),
+            "there must be a normal for each of the 3 vertices, got 1",
+            "too few"
+        );
+    }
+
+    #[test]
+    fn vertex_normals_are_brought_to_unit_length() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let normals = vec![3e-200 * DVec3::Z, 1e200 * DVec3::X, DVec3::ZERO];
+        let mesh = TriangleMesh::with_normals(corners, normals, vec![[0, 1, 2]]).unwrap();
+        assert_eq!(
+            mesh.normals(),
+            [DVec3::Z, DVec3::X, DVec3::ZERO],
+            "unit or zero"
+        );
     }
 }

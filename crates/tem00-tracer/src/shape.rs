@@ -1,149 +1,12 @@
+mod cylinder;
+mod instance;
+mod rectangle;
+mod sphere;
+
 use glam::DVec3;
 
-use crate::{TracerError, TriangleMesh};
-
-/// A flat rectangle.
-///
-/// It is given by its centre and the two vectors from there to the middles of two neighbouring
-/// edges. Its normal is `half_u × half_v`, normalised.
-///
-/// # Examples
-///
-/// A sheet of A4 paper that faces up:
-///
-/// ```
-/// use glam::DVec3;
-/// use tem00_tracer::Rectangle;
-///
-/// let sheet = Rectangle::new(DVec3::ZERO, 0.105 * DVec3::X, 0.1485 * DVec3::Y)?;
-/// assert_eq!(sheet.normal(), DVec3::Z);
-/// assert!((sheet.area() - 0.0624).abs() < 0.0001); // m²
-/// # Ok::<(), tem00_tracer::TracerError>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rectangle {
-    centre: DVec3,
-    half_u: DVec3,
-    half_v: DVec3,
-    normal: DVec3,
-}
-
-impl Rectangle {
-    /// Creates a rectangle from its centre and its half edges, in metres.
-    ///
-    /// Half edges within 1e−6 of a right angle pass, so that their components may be written with
-    /// seven digits; `half_v` is then made perpendicular to `half_u`.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the centre is not finite, or the half edges are not finite, not longer
-    /// than zero or not perpendicular.
-    pub fn new(centre: DVec3, half_u: DVec3, half_v: DVec3) -> Result<Self, TracerError> {
-        const RIGHT_ANGLE_TOLERANCE: f64 = 1e-6;
-        check_point("centre", centre)?;
-        let u = unit("half_u", half_u)?;
-        let v = unit("half_v", half_v)?;
-        if u.dot(v).abs() > RIGHT_ANGLE_TOLERANCE {
-            return Err(TracerError::Direction {
-                parameter: "half_v",
-                allowed: "perpendicular to half_u",
-            });
-        }
-        Ok(Self {
-            centre,
-            half_u,
-            half_v: half_v - half_v.dot(u) * u,
-            normal: u.cross(v).normalize(),
-        })
-    }
-
-    /// Returns the centre, in metres.
-    pub const fn centre(&self) -> DVec3 {
-        self.centre
-    }
-
-    /// Returns the vector from the centre to the middle of one edge, in metres.
-    pub const fn half_u(&self) -> DVec3 {
-        self.half_u
-    }
-
-    /// Returns the vector from the centre to the middle of the next edge, in metres.
-    pub const fn half_v(&self) -> DVec3 {
-        self.half_v
-    }
-
-    /// Returns the unit normal, along `half_u × half_v`.
-    pub const fn normal(&self) -> DVec3 {
-        self.normal
-    }
-
-    /// Returns the area, in m².
-    pub fn area(&self) -> f64 {
-        4.0 * self.half_u.length() * self.half_v.length()
-    }
-
-    /// Returns the point at the fractions `u` and `v`, in [0, 1), of the two edges.
-    ///
-    /// Uniform fractions give points that are uniform over the area.
-    pub fn point(&self, u: f64, v: f64) -> DVec3 {
-        self.centre + (2.0 * u - 1.0) * self.half_u + (2.0 * v - 1.0) * self.half_v
-    }
-
-    pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
-        let reach = self.half_u.abs() + self.half_v.abs();
-        (self.centre - reach, self.centre + reach)
-    }
-}
-
-/// A sphere.
-///
-/// # Examples
-///
-/// ```
-/// use glam::DVec3;
-/// use tem00_tracer::{Sphere, TracerError};
-///
-/// let flat = Sphere::new(DVec3::ZERO, 0.0);
-/// assert!(matches!(flat, Err(TracerError::OutOfRange { parameter: "radius", .. })));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sphere {
-    centre: DVec3,
-    radius: f64,
-}
-
-impl Sphere {
-    /// Creates a sphere from its centre and radius, both in metres.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the centre is not finite or the radius not positive and finite.
-    pub fn new(centre: DVec3, radius: f64) -> Result<Self, TracerError> {
-        check_point("centre", centre)?;
-        if !(radius > 0.0 && radius.is_finite()) {
-            return Err(TracerError::OutOfRange {
-                parameter: "radius",
-                value: radius,
-                allowed: "positive and finite, in metres",
-            });
-        }
-        Ok(Self { centre, radius })
-    }
-
-    /// Returns the centre, in metres.
-    pub const fn centre(&self) -> DVec3 {
-        self.centre
-    }
-
-    /// Returns the radius, in metres.
-    pub const fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
-        (self.centre - self.radius, self.centre + self.radius)
-    }
-}
+pub use self::{cylinder::Cylinder, instance::MeshInstance, rectangle::Rectangle, sphere::Sphere};
+use crate::{RigidMotion, TracerError, TriangleMesh};
 
 /// A shape that light can meet.
 #[derive(Clone, Debug, PartialEq)]
@@ -152,35 +15,56 @@ pub enum Shape {
     Rectangle(Rectangle),
     /// A sphere.
     Sphere(Sphere),
-    /// A mesh of flat triangles.
-    Mesh(TriangleMesh),
+    /// An open tube.
+    Cylinder(Cylinder),
+    /// A mesh of flat triangles in its place.
+    Mesh(MeshInstance),
 }
 
 impl Shape {
-    /// Returns the shape moved by `displacement`, in metres.
+    /// Returns the shape as a motion takes it; a mesh is shared, not copied.
     #[must_use]
-    pub fn translated(&self, displacement: DVec3) -> Self {
+    pub fn moved(&self, motion: &RigidMotion) -> Self {
         match self {
-            Self::Rectangle(rectangle) => Self::Rectangle(Rectangle {
-                centre: rectangle.centre + displacement,
-                ..*rectangle
-            }),
-            Self::Sphere(sphere) => Self::Sphere(Sphere {
-                centre: sphere.centre + displacement,
-                ..*sphere
-            }),
-            Self::Mesh(mesh) => Self::Mesh(mesh.translated(displacement)),
+            Self::Rectangle(rectangle) => Self::Rectangle(rectangle.moved(motion)),
+            Self::Sphere(sphere) => Self::Sphere(sphere.moved(motion)),
+            Self::Cylinder(cylinder) => Self::Cylinder(cylinder.moved(motion)),
+            Self::Mesh(instance) => Self::Mesh(instance.moved(motion)),
         }
     }
 
-    /// Returns the lowest and the highest corner of the axis-parallel box around the shape, in
+    /// Returns the shape moved by `displacement`, in metres.
+    #[must_use]
+    pub fn translated(&self, displacement: DVec3) -> Self {
+        let mut shape = self.clone();
+        *match &mut shape {
+            Self::Rectangle(rectangle) => &mut rectangle.centre,
+            Self::Sphere(sphere) => &mut sphere.centre,
+            Self::Cylinder(cylinder) => &mut cylinder.centre,
+            Self::Mesh(instance) => &mut instance.translation,
+        } += displacement;
+        shape
+    }
+
+    /// Returns the lowest and the highest corner of an axis-parallel box around the shape, in
     /// metres.
+    ///
+    /// The box is tight, except around a mesh that is turned: that one holds the turned box of the
+    /// mesh.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         match self {
             Self::Rectangle(rectangle) => rectangle.bounds(),
             Self::Sphere(sphere) => sphere.bounds(),
-            Self::Mesh(mesh) => mesh.bounds(),
+            Self::Cylinder(cylinder) => cylinder.bounds(),
+            Self::Mesh(instance) => instance.bounds(),
         }
+    }
+}
+
+impl From<TriangleMesh> for Shape {
+    /// Puts a mesh where its vertices say.
+    fn from(mesh: TriangleMesh) -> Self {
+        Self::Mesh(mesh.into())
     }
 }
 
@@ -193,9 +77,16 @@ pub struct Hit {
     pub position: DVec3,
     /// The unit normal of the surface there.
     ///
-    /// It points out of a sphere, along `half_u × half_v` of a rectangle and to the side from which
-    /// the corners of a triangle run counter-clockwise; never flipped to face the ray.
+    /// It points out of a sphere and a cylinder, along `half_u × half_v` of a rectangle and to the
+    /// side from which the corners of a triangle run counter-clockwise; never flipped to face the
+    /// ray.
     pub normal: DVec3,
+    /// The unit normal with which light is scattered there.
+    ///
+    /// On a mesh with vertex normals it is interpolated between them, and turned around where it
+    /// would point to the other side of the triangle than [`normal`](Self::normal). Everywhere else,
+    /// and where the vertex normals cancel or lie in the triangle, it is the normal itself.
+    pub shading_normal: DVec3,
     /// The index of the shape among those given to [`Intersector::build`](crate::Intersector::build).
     pub surface: usize,
 }
@@ -210,8 +101,9 @@ fn check_point(parameter: &'static str, point: DVec3) -> Result<(), TracerError>
     })
 }
 
-fn unit(parameter: &'static str, half_edge: DVec3) -> Result<DVec3, TracerError> {
-    half_edge.try_normalize().ok_or(TracerError::Direction {
+/// Returns a vector of unit length along `vector`.
+fn direction(parameter: &'static str, vector: DVec3) -> Result<DVec3, TracerError> {
+    vector.try_normalize().ok_or(TracerError::Direction {
         parameter,
         allowed: "a finite vector longer than zero",
     })
@@ -221,118 +113,44 @@ fn unit(parameter: &'static str, half_edge: DVec3) -> Result<DVec3, TracerError>
 mod tests {
     use super::*;
 
-    fn tilted() -> Rectangle {
-        Rectangle::new(
-            DVec3::new(0.1, 0.2, 0.3),
-            DVec3::new(0.03, 0.04, 0.0),
-            DVec3::new(0.0, 0.0, 0.2),
-        )
-        .unwrap()
-    }
-
-    #[test]
-    fn rectangle_knows_its_area_normal_and_bounds() {
-        let rectangle = tilted();
-        // Half edges of 0.05 m and 0.2 m.
-        assert!((rectangle.area() - 0.04).abs() < 1e-16, "0.1 m × 0.4 m");
-        let normal = DVec3::new(0.8, -0.6, 0.0);
-        assert!(
-            rectangle.normal().abs_diff_eq(normal, 1e-15),
-            "normal = {}",
-            rectangle.normal()
-        );
-        let (low, high) = Shape::Rectangle(rectangle).bounds();
-        assert!(low.abs_diff_eq(DVec3::new(0.07, 0.16, 0.1), 1e-15), "{low}");
-        assert!(
-            high.abs_diff_eq(DVec3::new(0.13, 0.24, 0.5), 1e-15),
-            "{high}"
-        );
-    }
-
-    #[test]
-    fn points_of_a_rectangle_run_from_corner_to_corner() {
-        let r = tilted();
-        let corner = r.centre() - r.half_u() - r.half_v();
-        assert!(r.point(0.0, 0.0).abs_diff_eq(corner, 1e-15), "first corner");
-        assert!(r.point(0.5, 0.5).abs_diff_eq(r.centre(), 1e-15), "centre");
-        let edge = r.centre() + 0.5 * r.half_u();
-        assert!(
-            r.point(0.75, 0.5).abs_diff_eq(edge, 1e-15),
-            "u runs along half_u"
-        );
-    }
-
-    #[test]
-    fn seven_digits_are_enough_for_a_right_angle() {
-        let half_u = DVec3::new(0.939_692_6, 0.342_020_1, 0.0);
-        let half_v = DVec3::new(-0.342_020_2, 0.939_692_6, 0.0);
-        assert!(half_u.dot(half_v).abs() > 1e-8, "the last digits spoil it");
-        let r = Rectangle::new(DVec3::ZERO, half_u, half_v).unwrap();
-        let cosine = r.half_u().dot(r.half_v());
-        assert!(cosine.abs() < 2e-16, "made perpendicular: {cosine:e}");
-    }
-
-    #[test]
-    fn impossible_rectangles_are_refused() {
-        let bad = [
-            (DVec3::NAN, DVec3::X, DVec3::Y, "centre"),
-            (DVec3::ZERO, DVec3::ZERO, DVec3::Y, "half_u"),
-            (DVec3::ZERO, DVec3::X, DVec3::INFINITY, "half_v"),
-            (DVec3::ZERO, DVec3::X, DVec3::new(1e-5, 1.0, 0.0), "half_v"),
-            (DVec3::ZERO, DVec3::X, DVec3::X, "half_v"),
-        ];
-        for (centre, u, v, name) in bad {
-            let result = Rectangle::new(centre, u, v);
-            assert!(
-                matches!(result, Err(TracerError::Direction { parameter, .. }) if parameter == name),
-                "{name}: {result:?}"
-            );
-        }
-    }
-
-    #[test]
-    fn impossible_spheres_are_refused() {
-        for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let result = Sphere::new(DVec3::ZERO, radius);
-            assert!(
-                matches!(
-                    result,
-                    Err(TracerError::OutOfRange {
-                        parameter: "radius",
-                        ..
-                    })
-                ),
-                "radius {radius}: {result:?}"
-            );
-        }
-        let result = Sphere::new(DVec3::new(0.0, f64::INFINITY, 0.0), 1.0);
-        assert!(
-            matches!(
-                result,
-                Err(TracerError::Direction {
-                    parameter: "centre",
-                    ..
-                })
-            ),
-            "{result:?}"
-        );
-    }
-
     #[test]
     fn translation_moves_the_bounds() {
         let mesh = TriangleMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]);
         let shapes = [
-            Shape::Rectangle(tilted()),
+            Shape::Rectangle(Rectangle::new(DVec3::ONE, 0.2 * DVec3::X, 0.1 * DVec3::Z).unwrap()),
             Shape::Sphere(Sphere::new(DVec3::ONE, 0.25).unwrap()),
-            Shape::Mesh(mesh.unwrap()),
+            Shape::Cylinder(Cylinder::new(DVec3::ONE, DVec3::ONE, 0.1, 0.3).unwrap()),
+            Shape::from(mesh.unwrap()),
         ];
         let by = DVec3::new(0.25, -0.5, 0.125);
+        let motion = RigidMotion::along(by).unwrap();
         for shape in shapes {
             let (low, high) = shape.bounds();
-            let (moved_low, moved_high) = shape.translated(by).bounds();
-            // Two roundings of numbers up to 1.
-            assert!(moved_low.abs_diff_eq(low + by, 4e-16), "{shape:?}");
-            assert!(moved_high.abs_diff_eq(high + by, 4e-16), "{shape:?}");
+            let (moved_low, moved_high) = shape.moved(&motion).bounds();
+            // Two roundings of numbers up to 1.5.
+            assert!(moved_low.abs_diff_eq(low + by, 5e-16), "{shape:?}");
+            assert!(moved_high.abs_diff_eq(high + by, 5e-16), "{shape:?}");
+        }
+    }
+
+    #[test]
+    fn a_quarter_turn_swaps_the_sides_of_every_shape() {
+        let corners = vec![DVec3::ZERO, 0.3 * DVec3::X, 0.1 * DVec3::Y];
+        let shapes = [
+            Shape::Rectangle(Rectangle::new(DVec3::ZERO, 0.2 * DVec3::X, 0.1 * DVec3::Y).unwrap()),
+            Shape::Cylinder(Cylinder::new(DVec3::ZERO, DVec3::X, 0.1, 0.5).unwrap()),
+            Shape::from(TriangleMesh::new(corners, vec![[0, 1, 2]]).unwrap()),
+        ];
+        let turn = RigidMotion::about(DVec3::ZERO, DVec3::Z, core::f64::consts::FRAC_PI_2);
+        let turn = turn.unwrap();
+        for shape in shapes {
+            // (x, y) turns to (−y, x).
+            let (low, high) = shape.bounds();
+            let (turned_low, turned_high) = shape.moved(&turn).bounds();
+            let expected_low = DVec3::new(-high.y, low.x, low.z);
+            let expected_high = DVec3::new(-low.y, high.x, high.z);
+            assert!(turned_low.abs_diff_eq(expected_low, 2e-16), "{shape:?}");
+            assert!(turned_high.abs_diff_eq(expected_high, 2e-16), "{shape:?}");
         }
     }
 }

@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use crate::{Ray, Rectangle, Sphere, mesh};
+use crate::{Cylinder, Ray, Rectangle, Sphere, mesh};
 
 /// What a leaf of the hierarchy holds.
 #[derive(Clone, Debug)]
@@ -8,6 +8,7 @@ pub(super) enum Primitive {
     Triangle([DVec3; 3]),
     Rectangle(Rectangle),
     Sphere(Sphere),
+    Cylinder(Cylinder),
 }
 
 /// A ray with the shear that turns it into the third axis.
@@ -39,7 +40,7 @@ impl ShearedRay {
     }
 
     /// Returns the distance to a triangle and the barycentric weights of its corners there.
-    fn triangle(&self, corners: &[DVec3; 3]) -> Option<(f64, DVec3)> {
+    pub(super) fn triangle(&self, corners: &[DVec3; 3]) -> Option<(f64, DVec3)> {
         let [a, b, c] = corners.map(|corner| self.to_local(corner));
         let weights = DVec3::new(
             c.x * b.y - c.y * b.x,
@@ -96,6 +97,40 @@ impl ShearedRay {
         };
         [near, far].into_iter().find(|&distance| distance > 0.0)
     }
+
+    /// Returns the nearest positive distance to a tube, and where along its axis it is met, in
+    /// metres from its middle.
+    fn cylinder(&self, cylinder: &Cylinder) -> Option<(f64, f64)> {
+        let Ray { origin, direction } = self.ray;
+        let (axis, radius) = (cylinder.axis(), cylinder.radius());
+        let along = direction.dot(axis);
+        let across = direction - along * axis;
+        let offset = origin - cylinder.centre();
+        let height = offset.dot(axis);
+        let offset = offset - height * axis;
+        // Seen along the axis: a circle, and a ray of the length `across`. As with the sphere, how
+        // far it passes the centre and the product of both distances keep their digits.
+        let square = across.length_squared();
+        let middle = -offset.dot(across) / square;
+        let miss = (offset + middle * across).length();
+        let half_chord_square = (radius - miss) * (radius + miss) / square;
+        if !(half_chord_square >= 0.0 && half_chord_square.is_finite()) {
+            return None;
+        }
+        let far = middle.abs() + half_chord_square.sqrt();
+        let distance = offset.length();
+        let other = (distance - radius) * (distance + radius) / square / far;
+        let distances = if middle > 0.0 {
+            [other, far]
+        } else {
+            [-far, -other]
+        };
+        let inside = |height: f64| height.abs() <= 0.5 * cylinder.length();
+        distances
+            .into_iter()
+            .map(|distance| (distance, height + distance * along))
+            .find(|&(distance, height)| distance > 0.0 && inside(height))
+    }
 }
 
 impl Primitive {
@@ -105,6 +140,7 @@ impl Primitive {
             Self::Triangle([a, b, c]) => (a.min(*b).min(*c), a.max(*b).max(*c)),
             Self::Rectangle(rectangle) => rectangle.bounds(),
             Self::Sphere(sphere) => sphere.bounds(),
+            Self::Cylinder(cylinder) => cylinder.bounds(),
         }
     }
 
@@ -114,6 +150,7 @@ impl Primitive {
             Self::Triangle(corners) => ray.triangle(corners)?.0,
             Self::Rectangle(rectangle) => ray.rectangle(rectangle)?.0,
             Self::Sphere(sphere) => ray.sphere(sphere)?,
+            Self::Cylinder(cylinder) => ray.cylinder(cylinder)?.0,
         };
         (distance > 0.0).then_some(distance)
     }
@@ -140,6 +177,14 @@ impl Primitive {
                 let offset = sphere.centre() - ray.ray.origin;
                 let normal = (distance * ray.ray.direction - offset).try_normalize()?;
                 Some((sphere.centre() + sphere.radius() * normal, normal))
+            }
+            Self::Cylinder(cylinder) => {
+                let (distance, height) = ray.cylinder(cylinder)?;
+                let on_axis = cylinder.centre() + height * cylinder.axis();
+                let radial = ray.ray.origin - on_axis + distance * ray.ray.direction;
+                let normal = radial.reject_from_normalized(cylinder.axis());
+                let normal = normal.try_normalize()?;
+                Some((on_axis + cylinder.radius() * normal, normal))
             }
         }
     }

@@ -67,7 +67,7 @@ fn shape(section: &Section<'_>, base_directory: &Path) -> Result<Shape, Problem>
     Ok(match section.one_of("shape", SHAPES)? {
         ("rectangle", shape) => Shape::Rectangle(rectangle(&shape)?),
         ("sphere", shape) => Shape::Sphere(sphere(&shape)?),
-        (_, shape) => Shape::Mesh(mesh(&shape, base_directory)?),
+        (_, shape) => Shape::from(mesh(&shape, base_directory)?),
     })
 }
 

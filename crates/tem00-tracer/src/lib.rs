@@ -89,7 +89,7 @@ pub use lamp::Lamp;
 pub use laser::{BeamShape, Laser, LaserDescription};
 pub use material::{BsdfSample, Material};
 pub use mesh::{MeshError, TriangleMesh};
-pub use mesh_file::read_mesh;
+pub use mesh_file::{MeshFormat, read_mesh, read_mesh_bytes};
 pub use metal::Metal;
 pub use ray::{Frame as LocalFrame, Ray};
 pub use render::{Formulas, RenderError, RenderOptions, render_frame};

@@ -46,7 +46,9 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-speckle",
         ],
         &[
+            "base64",
             "glam",
+            "gltf",
             "libm",
             "obvhs",
             "ply-rs-bw",

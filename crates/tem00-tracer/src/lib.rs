@@ -98,7 +98,7 @@ pub use lamp::{Lamp, LampSample};
 pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use mesh::{MeshError, TriangleMesh};
-pub use mesh_file::read_mesh;
+pub use mesh_file::{MeshFormat, read_mesh, read_mesh_bytes};
 pub use metal::Metal;
 pub use ray::{Frame as LocalFrame, Ray};
 pub use render::{

@@ -160,12 +160,8 @@ impl<'a> Walk<'a> {
         let seen = self.tracer.camera.connect(from, lens)?;
         let index = pixel_index(seen.pixel, &self.tracer.area)?;
         let towards = (seen.lens_point - from).try_normalize()?;
-        let wo = vertex.axes.to_local(towards);
-        let scattered = vertex
-            .material
-            .evaluate(wo, vertex.back, self.laser.wavelength());
-        let cosine = wo.z.abs() * vertex.adjoint_factor(towards, wo);
-        let radiance = vertex.photon.flux * scattered * cosine * seen.importance;
+        let scattered = vertex.scattered(towards, self.laser.wavelength());
+        let radiance = vertex.photon.flux * scattered * seen.importance;
         let connection = Connection {
             vertex,
             pixel: seen.pixel,
@@ -230,7 +226,7 @@ impl<'a> Walk<'a> {
         let mut flux = vertex.photon.flux
             * sample.weight
             * sample.eta_squared
-            * vertex.adjoint_factor(direction, sample.wi);
+            * vertex.adjoint_factor(direction, [vertex.back.z, sample.wi.z]);
         // End long paths by chance, without bias.
         if depth >= CERTAIN_BOUNCES {
             let survival = (flux / self.laser.power()).min(0.95);
@@ -254,23 +250,39 @@ impl<'a> Walk<'a> {
 }
 
 impl Vertex<'_> {
-    /// Returns what scattering towards `out`, `wo` in local axes, gains over scattering with the
-    /// normal of the surface itself, so that light carries what a path from the camera would find.
+    /// Returns the share of the flux that goes towards the unit vector `out`, per steradian.
+    fn scattered(&self, out: DVec3, wavelength: f64) -> f64 {
+        // Where the interpolated normal shows its other side, a path from the camera takes the
+        // surface's own.
+        let shows = self.hit.shading_normal.dot(out) * self.hit.normal.dot(out) > 0.0;
+        let axes = if shows {
+            self.axes
+        } else {
+            LocalFrame::from_normal(self.hit.normal)
+        };
+        let [wo, back] = [out, -self.photon.ray.direction].map(|v| axes.to_local(v));
+        let reflected = self.material.evaluate(wo, back, wavelength) * wo.z.abs();
+        reflected * self.adjoint_factor(out, [back.z, wo.z])
+    }
+
+    /// Returns what scattering towards `out` gains over scattering with the normal of the surface
+    /// itself, so that light carries what a path from the camera would find.
     ///
     /// ```text
     /// |i·n_s| |o·n_g| / (|i·n_g| |o·n_s|)     i back along the path, n_s shading, n_g geometric
     /// ```
     ///
-    /// It is 1 without shading normals, and 0 where the two normals disagree about the side.
+    /// `shaded` are i·n_s and o·n_s. The factor is 1 without shading normals, and 0 where the two
+    /// normals disagree about the side.
     ///
     /// # References
     ///
     /// - E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, eq. 5.19.
-    fn adjoint_factor(&self, out: DVec3, wo: DVec3) -> f64 {
+    fn adjoint_factor(&self, out: DVec3, shaded: [f64; 2]) -> f64 {
         let back = -self.photon.ray.direction.dot(self.hit.normal);
         let out = out.dot(self.hit.normal);
-        let ratio = (self.back.z / back) * (out / wo.z);
-        let agree = self.back.z * back > 0.0 && out * wo.z > 0.0;
+        let agree = shaded[0] * back > 0.0 && shaded[1] * out > 0.0;
+        let ratio = (shaded[0] / back) * (out / shaded[1]);
         if agree { ratio } else { 0.0 }
     }
 }

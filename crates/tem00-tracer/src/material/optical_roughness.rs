@@ -4,7 +4,7 @@ use core::{
     ops::RangeInclusive,
 };
 
-use super::{Material, Scattering, check};
+use super::{Material, Scattering, constructors::check};
 use crate::TracerError;
 
 /// The circumstances in which a surface has to be rough for speckle theory to hold.
@@ -195,6 +195,7 @@ impl Material {
         let roughness = match &self.scattering {
             Scattering::Lambertian { .. } | Scattering::OrenNayar(_) => 1.0,
             Scattering::Conductor(metal) => metal.facets.alpha,
+            Scattering::Interreflection(metal) => metal.facets.facets.alpha,
             Scattering::Plastic(plastic) => plastic.roughness(),
             Scattering::Mirror { .. } | Scattering::Polished { .. } | Scattering::Dielectric(_) => {
                 return Ok(None);

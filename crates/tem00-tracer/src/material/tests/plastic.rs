@@ -12,24 +12,6 @@ fn walsh(n: f64) -> f64 {
         + 8.0 * n4 * (n4 + 1.0) / ((n2 + 1.0) * (n4 - 1.0).powi(2)) * n.ln()
 }
 
-/// What the facets of a coat or metal reflect in all: ∫ f cos θi dωi over facets, dωi = 4 (wo·h) dh.
-///
-/// Facets resolve lobes of any width and angle.
-fn albedo_of_facets(material: &Material, wo: DVec3) -> f64 {
-    integrate(
-        |facet| {
-            let cosine = wo.dot(facet);
-            let wi = 2.0 * cosine * facet - wo;
-            if cosine <= 0.0 || wi.z <= 0.0 {
-                return 0.0;
-            }
-            4.0 * cosine * wi.z * material.evaluate(wo, wi, RED)
-        },
-        500,
-        200,
-    )
-}
-
 #[test]
 fn a_black_base_leaves_the_facets_of_a_clear_coat() {
     let coat = Material::plastic(0.0, 1.5, 0.2).unwrap();
@@ -129,25 +111,4 @@ fn the_table_of_a_coat_is_its_albedo() {
             table.mean()
         );
     }
-}
-
-#[test]
-fn a_white_table_is_that_of_a_perfect_metal() {
-    // With α = 1 facets point everywhere alike: the albedo is 1 − μ ln(1 + 1/μ).
-    let table = Albedo::new(Ggx { alpha: 1.0 }, |_| 1.0);
-    for cosine in [0.001_f64, 0.03, 0.3, 0.71, 1.0] {
-        let closed = 1.0 - cosine * cosine.recip().ln_1p();
-        let got = table.at(cosine);
-        assert!(
-            (got - closed).abs() < 3e-4,
-            "cos = {cosine}: {got}, not {closed}"
-        );
-    }
-    // By parts: ∫ 2μ² ln(1 + 1/μ) dμ = ⅔ (ln 2 + ∫ μ²/(1 + μ) dμ) = ⅔ (2 ln 2 − ½).
-    let lost = 2.0 / 3.0 * (2.0 * 2.0_f64.ln() - 0.5);
-    assert!(
-        (table.mean() - (1.0 - lost)).abs() < 3e-4,
-        "{}",
-        table.mean()
-    );
 }

@@ -46,8 +46,10 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-speckle",
         ],
         &[
+            "base64",
             "fearless_simd",
             "glam",
+            "gltf",
             "libm",
             "obvhs",
             "ply-rs-bw",

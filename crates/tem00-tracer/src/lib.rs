@@ -92,21 +92,20 @@ pub use camera::{
 pub use environment::Environment;
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
-pub use intersector::{Intersector, Segment};
 pub use filter::{Filter, FilterSample, FilterSampler};
-pub use intersector::Intersector;
+pub use intersector::{Intersector, Segment};
 pub use lamp::{Lamp, LampSample};
 pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use mesh::{MeshError, TriangleMesh};
-pub use mesh_file::read_mesh;
+pub use mesh_file::{MeshFormat, read_mesh, read_mesh_bytes};
 pub use metal::Metal;
 pub use ray::{Frame as LocalFrame, Ray};
 pub use render::{
     Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, render_frame,
 };
 pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
-pub use scene_file::{SceneError, parse_scene, read_scene};
+pub use scene_file::{SceneError, SceneFile, parse_scene, read_scene};
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
 pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
 pub use trajectory::{Keyframe, Rotation, Trajectory};

@@ -188,7 +188,8 @@ pub(crate) fn fresnel_reflectance(cosine: f64, (n, k): (f64, f64)) -> f64 {
     // Only a metal of index 1 seen along its surface makes the denominator 0.
     let perpendicular = (modulus + c2 - cross) / (modulus + c2 + cross).max(f64::MIN_POSITIVE);
     let ratio = (c2 * modulus + s2 * s2 - cross * s2) / (c2 * modulus + s2 * s2 + cross * s2);
-    0.5 * perpendicular * (1.0 + ratio)
+    // An index of 1 reflects nothing, and rounding may say less.
+    (0.5 * perpendicular * (1.0 + ratio)).max(0.0)
 }
 
 fn interpolate(table: &[Row], nanometres: f64) -> (f64, f64) {

@@ -51,6 +51,12 @@ impl Ggx {
         0.5 * self.density(facet) / (wo.z + self.reach(wo))
     }
 
+    /// Draws a facet that `wo` sees, and returns the direction that it reflects into `wo`.
+    pub(super) fn reflect(self, wo: DVec3, u: [f64; 2]) -> DVec3 {
+        let facet = self.sample_visible(wo, u);
+        2.0 * wo.dot(facet) * facet - wo
+    }
+
     /// Draws the normal of a facet in proportion to its area as `wo` sees it (Heitz 2018).
     pub(super) fn sample_visible(self, wo: DVec3, [u, v]: [f64; 2]) -> DVec3 {
         // Stretch the surface until the facets are those of a hemisphere.

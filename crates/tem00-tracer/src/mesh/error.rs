@@ -101,7 +101,10 @@ impl fmt::Display for MeshError {
                 )
             }
             Self::Extension(got) => {
-                write!(f, "mesh format must be .obj, .ply or .stl, got {got:?}")
+                write!(
+                    f,
+                    "mesh format must be .obj, .ply, .stl, .gltf or .glb, got {got:?}"
+                )
             }
             Self::Read(message) => write!(f, "{message}"),
             Self::Format {

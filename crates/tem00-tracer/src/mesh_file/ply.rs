@@ -3,10 +3,10 @@ use std::io::Cursor;
 use glam::DVec3;
 use ply_rs_bw::{
     parser::{ParseError, Parser, Reader},
-    ply::{Property, PropertyAccess, PropertyAccessResult},
+    ply::{Encoding, Property, PropertyAccess, PropertyAccessResult},
 };
 
-use super::Polygons;
+use super::{Polygons, triangulate};
 use crate::MeshError;
 
 /// Reads the vertices and faces of a PLY file, text or binary.
@@ -16,13 +16,22 @@ pub(super) fn parse(content: &[u8]) -> Result<Polygons, MeshError> {
         .read_header(&mut reader)
         .map_err(|error| format_error(&error))?;
     let mut polygons = Polygons::default();
+    let is_text = header.encoding == Encoding::Ascii;
     for element in header.elements.values() {
+        // What has no properties has no bytes either, however many the header announces.
+        if element.properties.is_empty() && !is_text {
+            continue;
+        }
         match element.name.as_str() {
             "vertex" => {
                 let vertices = Parser::<Vertex>::new()
                     .read_payload_for_element(&mut reader, element, &header)
                     .map_err(|error| format_error(&error))?;
-                polygons.vertices = vertices.into_iter().map(|vertex| vertex.0).collect();
+                polygons.vertices = vertices.iter().map(|vertex| vertex.position).collect();
+                if ["nx", "ny", "nz"].map(|name| element.properties.contains_key(name)) == [true; 3]
+                {
+                    polygons.normals = vertices.iter().map(|vertex| vertex.normal).collect();
+                }
             }
             "face" => {
                 let faces = Parser::<Face>::new()
@@ -49,7 +58,7 @@ fn add_faces(polygons: &mut Polygons, faces: &[Face]) -> Result<(), MeshError> {
                 message: format!("face {index} (from 0) needs three corners, got {got}"),
             });
         }
-        polygons.push(&face.0);
+        triangulate(&face.0, &mut polygons.triangles);
     }
     Ok(())
 }
@@ -71,19 +80,28 @@ fn format_error(error: &ParseError) -> MeshError {
     }
 }
 
-/// A vertex, which stays NaN in each coordinate that the file does not give.
-struct Vertex(DVec3);
+/// A vertex, whose position stays NaN in each coordinate that the file does not give.
+struct Vertex {
+    position: DVec3,
+    normal: DVec3,
+}
 
 impl PropertyAccess for Vertex {
     fn new() -> Self {
-        Self(DVec3::NAN)
+        Self {
+            position: DVec3::NAN,
+            normal: DVec3::ZERO,
+        }
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
         let coordinate = match name {
-            "x" => &mut self.0.x,
-            "y" => &mut self.0.y,
-            "z" => &mut self.0.z,
+            "x" => &mut self.position.x,
+            "y" => &mut self.position.y,
+            "z" => &mut self.position.z,
+            "nx" => &mut self.normal.x,
+            "ny" => &mut self.normal.y,
+            "nz" => &mut self.normal.z,
             _ => return PropertyAccessResult::Ignored,
         };
         *coordinate = match property {

@@ -66,7 +66,7 @@ fn parse_text(text: &str) -> Result<Polygons, MeshError> {
             continue;
         };
         match keyword.to_ascii_lowercase().as_str() {
-            "vertex" => corners.push(parse_point(words, number)?),
+            "vertex" => corners.push(parse_point(words, "vertex", number)?),
             "endfacet" => {
                 let got = corners.len();
                 let triangle = <[DVec3; 3]>::try_from(corners.as_slice()).map_err(|_| {

@@ -4,7 +4,7 @@ use tem00_beam::BeamError;
 use super::error::Problem;
 use super::section::Section;
 use super::value::Value;
-use crate::{TracerError, Trajectory};
+use crate::TracerError;
 
 /// Where something stands and what it looks at, two different points in metres.
 #[derive(Clone, Copy, Debug)]
@@ -37,12 +37,6 @@ impl Placement {
     pub(super) fn axis(&self) -> DVec3 {
         self.look_at - self.position
     }
-}
-
-/// Reads how a thing moves: steadily by `displacement_per_frame`, or not at all.
-pub(super) fn trajectory(section: &Section<'_>) -> Result<Trajectory, Problem> {
-    let displacement = section.or("displacement_per_frame", DVec3::ZERO, Value::lengths)?;
-    Trajectory::steady(displacement).map_err(|error| rejected(&error, &[section]))
 }
 
 /// Returns `preferred`, unless it is parallel to `axis` within a milliradian: then `otherwise`.

@@ -1,0 +1,9 @@
+#!/bin/sh
+# Renders the same scenes with tem00 and with Mitsuba, in turns, and prints times and variances.
+#
+#     benches/peers/setup_mitsuba.sh        # once
+#     benches/peers/render.sh [OPTIONS]     # those of render_peers.py
+set -eu
+cd "$(dirname "$0")/../.."
+cargo build --quiet --release --example render_server
+exec target/peers/bin/python benches/peers/render_peers.py target/release/examples/render_server "$@"

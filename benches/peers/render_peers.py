@@ -1,0 +1,133 @@
+"""The same scenes by tem00 and Mitsuba, in turns.
+
+    render_peers.py SERVER [--rounds N] [--only WORD] [--variants A,B]
+
+SERVER is the example `render_server`. Each scene is loaded by a fresh process of every program; then
+they render in turns, one image that does not count and N that do, each with a seed of its own. The
+table has medians: seconds to load, seconds to render, ours by theirs, samples per second, the variance of
+a pixel between seeds relative to the squared mean, averaged over the image, and ours by theirs of
+time × variance: what equal noise costs. `mean` is the mean of our image by theirs.
+"""
+
+import argparse
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+
+import numpy as np
+
+from render_scenes import ROOT, SAMPLES, write_scenes
+
+
+class Program:
+    """A process that renders."""
+
+    def __init__(self, name, command, environment):
+        self.name = name
+        self.process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env={**os.environ, **environment},
+        )
+        self.seconds, self.images = [], []
+
+    def ask(self, task):
+        self.process.stdin.write(task + "\n")
+        self.process.stdin.flush()
+        return float(self.process.stdout.readline())
+
+    def load(self, task):
+        self.load_seconds = self.ask(task)
+
+    def render(self, seed, counts, raw):
+        seconds = self.ask(f"render {SAMPLES} {seed}")
+        if counts:
+            self.ask(f"write {raw}")
+            self.seconds.append(seconds)
+            self.images.append(np.fromfile(raw, dtype="<f4").astype(float))
+        else:
+            self.first_seconds = seconds
+
+    def finish(self):
+        self.peak = self.ask("peak")
+        self.process.stdin.close()
+        self.process.wait()
+
+    def median(self):
+        return statistics.median(self.seconds)
+
+    def mean_image(self):
+        return np.mean(self.images, axis=0)
+
+    def variance(self):
+        """The variance of a pixel by its squared mean, averaged over the pixels that are lit."""
+        mean = self.mean_image()
+        variance = np.var(self.images, axis=0, ddof=1)
+        lit = mean > 0.1 * mean.mean()
+        return np.mean(variance[lit] / mean[lit] ** 2)
+
+
+def llvm_environment():
+    """Says where the LLVM library is, if setup_mitsuba.sh has found one."""
+    libraries = sorted((ROOT / "target/peers/llvm").rglob("libLLVM*.so*"))
+    return {"DRJIT_LIBLLVM_PATH": str(libraries[0])} if libraries else {}
+
+
+def report(name, ours, theirs):
+    pixels = len(ours.images[0])
+    print(f"{name}")
+    for program in [ours, *theirs]:
+        time, variance = program.median(), program.variance()
+        line = (
+            f"  {program.name:12} load {program.load_seconds:6.3f} s  first {program.first_seconds:6.3f} s"
+            f"  render {time:6.3f} s  {pixels * SAMPLES / time / 1e6:6.2f} Msamples/s"
+            f"  variance {variance:.2e}  peak {program.peak:5.0f} MiB"
+        )
+        if program is not ours:
+            cost = ours.median() * ours.variance() / (time * variance) if variance else float("nan")
+            mean = ours.mean_image().mean() / program.mean_image().mean()
+            line += f"  ours/theirs: time {ours.median() / time:5.2f} cost {cost:5.2f} mean {mean:.4f}"
+        print(line, flush=True)
+
+
+def compare(row, arguments, folder):
+    name, our_file, their_file, lamps_only = row
+    here = pathlib.Path(__file__).parent
+    ours = Program("tem00", [arguments.server], {})
+    theirs = [
+        Program(
+            variant,
+            [sys.executable, here / "mitsuba_server.py", variant],
+            llvm_environment(),
+        )
+        for variant in arguments.variants.split(",")
+    ]
+    ours.load(f"{'lamps' if lamps_only else 'load'} {our_file}")
+    for program in theirs:
+        program.load(f"load {their_file}")
+    for seed in range(arguments.rounds + 1):
+        for program in [ours, *theirs]:
+            program.render(seed, seed > 0, folder / "image.raw")
+    for program in [ours, *theirs]:
+        program.finish()
+    report(name, ours, theirs)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("server")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--variants", default="scalar_rgb,llvm_ad_rgb")
+    arguments = parser.parse_args()
+    folder = ROOT / "target/peers/scenes"
+    for row in write_scenes(folder):
+        if arguments.only in row[0]:
+            compare(row, arguments, folder)
+
+
+main()

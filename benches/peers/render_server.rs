@@ -1,0 +1,97 @@
+//! Does a task of a renderer for every line of the input and answers with the seconds it took.
+//!
+//! ```text
+//! load scene.toml   reads a scene
+//! lamps scene.toml  reads a scene and leaves its lasers out
+//! render 64 1       renders it without speckle: samples per pixel, and seed
+//! write image.raw   writes what was rendered as rows of 32-bit floats: the sum of all light
+//! peak              no time: the most memory the process has had, in MiB (Linux)
+//! ```
+
+#![expect(clippy::print_stdout, reason = "the answers")]
+
+use std::{
+    error::Error,
+    fs::{read_to_string, write},
+    io::stdin,
+    path::Path,
+    sync::atomic::AtomicBool,
+    time::Instant,
+};
+
+use tem00::tracer::{Frame, RenderOptions, Scene, read_scene, render_frame};
+
+#[derive(Default)]
+struct Server {
+    scene: Option<Scene>,
+    frame: Option<Frame>,
+}
+
+impl Server {
+    fn perform(&mut self, task: &str, arguments: &str) -> Result<(), Box<dyn Error>> {
+        match task {
+            "load" => self.scene = Some(read_scene(Path::new(arguments))?),
+            "lamps" => {
+                let mut scene = read_scene(Path::new(arguments))?;
+                scene.lasers.clear();
+                self.scene = Some(scene);
+            }
+            "render" => {
+                let (samples, seed) = arguments.split_once(' ').ok_or("samples and a seed")?;
+                self.frame = Some(self.render(samples.parse()?, seed.parse()?)?);
+            }
+            "write" => write(arguments, self.image()?)?,
+            _ => return Err(format!("unknown task {task}").into()),
+        }
+        Ok(())
+    }
+
+    fn render(&self, samples_per_pixel: u32, seed: u64) -> Result<Frame, Box<dyn Error>> {
+        let scene = self.scene.as_ref().ok_or("no scene")?;
+        let options = RenderOptions {
+            samples_per_pixel,
+            seed,
+            ..RenderOptions::default()
+        };
+        let never = AtomicBool::new(false);
+        Ok(render_frame(scene, None, 0, &options, |_| (), &never)?)
+    }
+
+    /// The radiance of all light, row by row, as bytes.
+    fn image(&self) -> Result<Vec<u8>, Box<dyn Error>> {
+        let frame = self.frame.as_ref().ok_or("no frame")?;
+        let mut sum = frame.lamps.values().to_vec();
+        for laser in &frame.lasers {
+            for layer in [&laser.coherent_after, &laser.incoherent] {
+                for (sum, value) in sum.iter_mut().zip(layer.values()) {
+                    *sum += value;
+                }
+            }
+        }
+        Ok(sum.into_iter().flat_map(f32::to_le_bytes).collect())
+    }
+}
+
+/// The most memory this process has had, in MiB.
+fn peak() -> Result<f64, Box<dyn Error>> {
+    let status = read_to_string("/proc/self/status")?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kibibytes = line.and_then(|line| line.split_whitespace().next());
+    Ok(kibibytes.ok_or("no VmHWM")?.parse::<f64>()? / 1_024.0)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut server = Server::default();
+    for line in stdin().lines() {
+        let line = line?;
+        let (task, arguments) = line.split_once(' ').unwrap_or((&line, ""));
+        if task == "peak" {
+            println!("{}", peak()?);
+            continue;
+        }
+        let start = Instant::now();
+        server.perform(task, arguments)?;
+        println!("{}", start.elapsed().as_secs_f64());
+    }
+    Ok(())
+}

@@ -1,0 +1,191 @@
+use super::*;
+
+/// A roof with a normal of its own for each side, and a gable without normals. One corner of the right
+/// side repeats a pair, and one normal comes after its face.
+const ROOF: &str = "\
+v 0 0 0
+v 1 0 1
+v 2 0 0
+v 0 3 0
+v 1 3 1
+v 2 3 0
+vn -1 0 1
+f 1//1 2//1 5//1 4//1
+f 2//-1 3/7/2 6/7/2
+f 2//2 6//2 5//2
+f 1 3 2
+vn 0.5 0 0.5
+";
+
+/// The position and the normal of each corner, triangle by triangle.
+fn corners(mesh: &TriangleMesh) -> Vec<(DVec3, DVec3)> {
+    let indices = mesh.triangles().as_flattened().iter();
+    indices
+        .map(|&i| (mesh.vertices()[i as usize], mesh.normals()[i as usize]))
+        .collect()
+}
+
+#[test]
+fn each_corner_of_an_obj_file_keeps_its_normal() {
+    let mesh = read_mesh_bytes(ROOF.as_bytes(), MeshFormat::Obj, 1.0).unwrap();
+    let slope = 0.5_f64.sqrt();
+    let (left, right) = (
+        DVec3::new(-slope, 0.0, slope),
+        DVec3::new(slope, 0.0, slope),
+    );
+    let point = |n: usize| {
+        let (column, row) = (n % 3, n / 3);
+        DVec3::new(
+            [0.0, 1.0, 2.0][column],
+            [0.0, 3.0][row],
+            [0.0, 1.0, 0.0][column],
+        )
+    };
+    let expected = [
+        [(0, left), (1, left), (4, left)],
+        [(0, left), (4, left), (3, left)],
+        [(1, left), (2, right), (5, right)],
+        [(1, right), (5, right), (4, right)],
+        [(0, DVec3::ZERO), (2, DVec3::ZERO), (1, DVec3::ZERO)],
+    ];
+    let got = corners(&mesh);
+    for (got, (index, normal)) in got.iter().zip(expected.as_flattened()) {
+        assert_eq!(got.0, point(*index), "vertex {index} of the file");
+        // The normals are made unit vectors: a few roundings.
+        assert!(
+            (got.1 - normal).length() < 4e-16,
+            "{} is not {normal}",
+            got.1
+        );
+    }
+    assert_eq!(got.len(), 15, "five triangles");
+    // The ridge has one vertex for each side; the eaves and the gable share.
+    let ridge = mesh.vertices().iter().filter(|v| v.z > 0.5).count();
+    assert_eq!(
+        ridge, 5,
+        "two sides and the gable at one end, two sides at the other"
+    );
+}
+
+#[test]
+fn an_independent_reader_sees_the_same_normals() {
+    let options = tobj::LoadOptions {
+        triangulate: true,
+        single_index: true,
+        ..tobj::LoadOptions::default()
+    };
+    // tobj wants normals before faces, and all faces of a group alike; and it cuts no quadrilateral
+    // as we do.
+    let plain = ROOF
+        .replace("f 1 3 2\nvn 0.5 0 0.5\n", "")
+        .replace("vn -1 0 1\n", "vn -1 0 1\nvn 0.5 0 0.5\n")
+        .replace("//-1", "//1")
+        .replace("/7/", "//")
+        .replace(
+            "f 1//1 2//1 5//1 4//1\n",
+            "f 1//1 2//1 5//1\nf 1//1 5//1 4//1\n",
+        );
+    let (models, _) = tobj::load_obj_buf(&mut Cursor::new(&plain), &options, |_| {
+        Err(tobj::LoadError::OpenFileFailed)
+    })
+    .unwrap();
+    let tobj = &models[0].mesh;
+    let vector = |values: &[f32], i: u32| {
+        let start = 3 * i as usize;
+        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(values[start + axis]));
+        DVec3::new(x, y, z)
+    };
+    let expected = tobj.indices.iter().map(|&i| {
+        let normal = vector(&tobj.normals, i).normalize();
+        (vector(&tobj.positions, i), normal)
+    });
+    let mesh = read_mesh_bytes(plain.as_bytes(), MeshFormat::Obj, 1.0).unwrap();
+    let got = corners(&mesh);
+    assert_eq!(got.len(), tobj.indices.len(), "as many corners");
+    for (got, expected) in got.into_iter().zip(expected) {
+        assert_eq!(got.0, expected.0, "position");
+        assert!((got.1 - expected.1).length() < 4e-16, "normal");
+    }
+}
+
+#[test]
+fn normals_of_ply_files_are_read() {
+    for format in ["ascii", "binary_big_endian"] {
+        let header = ply_header(format, "float", "uchar int vertex_indices").replace(
+            "property uchar red\n",
+            "property float nx\nproperty float ny\nproperty float nz\n",
+        );
+        let header = header.replace("element edge 1\nproperty int start\n", "");
+        let mut bytes = header.into_bytes();
+        let normal = |i: u8| [f32::from(i), 0.0, -2.0];
+        for (i, vertex) in (0..).zip(VERTICES) {
+            let values = [vertex, normal(i)];
+            let values = values.as_flattened();
+            if format == "ascii" {
+                let words: Vec<String> = values.iter().map(f32::to_string).collect();
+                bytes.extend((words.join(" ") + "\n").bytes());
+            } else {
+                bytes.extend(values.iter().flat_map(|v| v.to_be_bytes()));
+            }
+        }
+        for face in std::iter::once(BASE.as_slice()).chain(SIDES.iter().map(|s| s.as_slice())) {
+            if format == "ascii" {
+                let words: Vec<String> = face.iter().map(u32::to_string).collect();
+                bytes.extend(format!("{} {}\n", face.len(), words.join(" ")).bytes());
+            } else {
+                bytes.push(u8::try_from(face.len()).unwrap());
+                bytes.extend(face.iter().flat_map(|i| i.to_be_bytes()));
+            }
+        }
+        let mesh = read_mesh_bytes(&bytes, MeshFormat::Ply, 1e-3).unwrap();
+        assert_eq!(triangle_corners(&mesh), pyramid(), "{format}");
+        for (i, got) in (0..).zip(mesh.normals()) {
+            let [x, y, z] = normal(i).map(f64::from);
+            let expected = DVec3::new(x, y, z).normalize();
+            assert!((got - expected).length() < 4e-16, "{format}: normal {i}");
+        }
+        assert_eq!(mesh.normals().len(), 5, "{format}: one for each vertex");
+    }
+}
+
+#[test]
+fn files_without_normals_give_none() {
+    let obj = read_mesh_bytes(OBJ.as_bytes(), MeshFormat::Obj, 1.0);
+    let ply = read_mesh_bytes(ascii_ply().as_bytes(), MeshFormat::Ply, 1.0);
+    let stl = read_mesh_bytes(&binary_stl("plain"), MeshFormat::Stl, 1.0);
+    for mesh in [
+        obj.as_ref().map(|_| ()).and(stl.as_ref()),
+        ply.as_ref(),
+        stl.as_ref(),
+    ] {
+        assert!(mesh.unwrap().normals().is_empty(), "flat triangles");
+    }
+}
+
+#[test]
+fn normals_that_point_backwards_are_kept() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 -3\nf 1//1 2//1 3//1\n";
+    let mesh = read_mesh_bytes(text.as_bytes(), MeshFormat::Obj, 1.0).unwrap();
+    assert_eq!(mesh.normals(), [DVec3::NEG_Z; 3], "as in the file");
+}
+
+#[test]
+fn broken_normals_are_explained() {
+    for (content, expected) in [
+        (
+            "v 0 0 0\nvn 0 1\n",
+            "line 2: a normal needs three coordinates",
+        ),
+        (
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//2 3\n",
+            "line 5: the face refers to normal 2, but the file has 1",
+        ),
+        (
+            "v 0 0 0\nf 1//x 1 1\n",
+            "line 2: a corner must end with a normal number, from 1 up or from -1 down to -0, \
+             got \"1//x\"",
+        ),
+    ] {
+        assert_eq!(complaint("broken.obj", content), expected, "{content:?}");
+    }
+}

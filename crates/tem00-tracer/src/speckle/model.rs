@@ -285,7 +285,6 @@ mod tests {
         let text = r#"
             [render]
             frames = 4
-            reference_frame = 1
             [camera]
             position = [0, 0, 0.3]
             focal_length = "25 mm"
@@ -309,6 +308,7 @@ mod tests {
             rectangle = { centre = [0, 0, 1e-3], size = [0.02, 0.02] }
         "#;
         let mut scene = crate::parse_scene(text, Path::new(".")).unwrap();
+        scene.render.reference_frame = 1;
         scene.surfaces[1].speckle = SurfaceSpeckle {
             patterns: 2,
             polarisation: 0.5,

@@ -65,6 +65,7 @@
 
 mod camera;
 mod environment;
+mod environment_file;
 mod error;
 mod film;
 mod filter;
@@ -91,6 +92,7 @@ pub use camera::{
     SensorTilt,
 };
 pub use environment::Environment;
+pub use environment_file::{RadianceMapError, read_radiance_map};
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use intersector::{Intersector, Segment};

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use tem00_tracer::Scene;
+use tem00_tracer::{LaserEvents, Scene};
 
 use crate::{colour::xyz_of_wavelength, progress::si_prefixed, summary::Summary};
 
@@ -20,6 +20,16 @@ pub(super) fn note_invisible_lasers(scene: &Scene) {
                 1e9 * laser.wavelength()
             ));
         }
+    }
+}
+
+/// Tells which light no method finds.
+pub(super) fn note_missing_light(scene: &Scene) {
+    if scene.has_specular_surfaces() && scene.render.laser_events == LaserEvents::Beam {
+        note(
+            "mirrors and glass: laser light that meets them both before and behind a rough surface is \
+             left out; laser_events = \"sampled\" finds it, with more noise",
+        );
     }
 }
 

@@ -102,13 +102,8 @@ fn a_ball_lens_focuses_by_the_q_law() {
         let behind = LocatedBeam::new(beam, -to_lens)
             .and_then(|beam| lens.transform(&beam))
             .expect("a valid beam");
-        let series = Series {
-            method: Method::Path,
-            samples_per_pixel: 5,
-            seeds: 12,
-        };
         let expected = behind.radius_at(height);
-        let measured: Vec<_> = series
+        let measured: Vec<_> = Series::of(Method::Path, 5)
             .render(&scene, None)
             .iter()
             .map(|frame| power_and_radii(&scene, frame))

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec2, DVec3};
 use tem00_decorrelation::{ImagingGeometry, LensData, RigidMotion};
 
 use self::{description::check, distortion::Distortion, sensor::Sensor};
-use crate::{Ray, TracerError};
+use crate::{Ray, TracerError, filter::MAXIMUM_RADIUS};
 
 pub use self::description::{CameraDescription, MAXIMUM_PIXELS, RadialDistortion, SensorTilt};
 pub use self::lens::{CameraConnection, CameraRay};
@@ -17,7 +17,7 @@ const SMALLEST_SINE: f64 = 1e-6;
 
 /// How far beyond the edges of the image its points may be asked for, in pixels: as far as
 /// reconstruction filters reach.
-const MARGIN: f64 = 16.0;
+const MARGIN: f64 = MAXIMUM_RADIUS;
 
 /// A perspective camera with a thin lens and a sensor, from which the speckle size follows.
 ///

@@ -168,6 +168,12 @@ fn every_pair_of_numbers_gives_light() {
             }
         }
     }
+    let dark_start = Grid::from_fn(WIDTH, 1, |x, _| if x < 70 { 0.0 } else { 1.0 });
+    let sky = Environment::from_radiance(dark_start, DVec3::Z, DVec3::X).unwrap();
+    assert!(
+        sky.sample([0.0, 0.5]).is_some(),
+        "the first pixel that shines"
+    );
     let black = Grid::filled(3, 2, 0.0);
     let black = Environment::from_radiance(black, DVec3::Z, DVec3::X).unwrap();
     assert_eq!(black.sample([0.5, 0.5]), None, "black");

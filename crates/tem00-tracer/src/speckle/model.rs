@@ -245,10 +245,8 @@ impl Block {
     /// Moves the coordinates to the place of a part.
     fn shift(&mut self, part: &Part, size: [usize; 2]) {
         let [x0, y0] = part.place_in(size);
-        if part.offset != [0.0; 2] {
-            self.x.iter_mut().for_each(|x| *x += x0);
-            self.y.iter_mut().for_each(|y| *y += y0);
-        }
+        self.x.iter_mut().for_each(|x| *x += x0);
+        self.y.iter_mut().for_each(|y| *y += y0);
     }
 
     /// Adds the intensities at the coordinates, times a share, to `sums`.

@@ -1,8 +1,11 @@
 mod error;
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 
 pub use self::error::MeshError;
+use crate::intersector::MeshHierarchy;
 
 /// A surface made of flat triangles.
 ///
@@ -23,13 +26,24 @@ pub use self::error::MeshError;
 /// assert_eq!(corner.bounds(), (DVec3::ZERO, DVec3::ONE));
 /// # Ok::<(), tem00_tracer::MeshError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct TriangleMesh {
     vertices: Vec<DVec3>,
     normals: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     dropped: usize,
     bounds: (DVec3, DVec3),
+    /// Built when a ray first asks for it.
+    hierarchy: OnceLock<MeshHierarchy>,
+}
+
+impl PartialEq for TriangleMesh {
+    fn eq(&self, other: &Self) -> bool {
+        self.vertices == other.vertices
+            && self.normals == other.normals
+            && self.triangles == other.triangles
+            && self.dropped == other.dropped
+    }
 }
 
 impl TriangleMesh {
@@ -89,6 +103,7 @@ impl TriangleMesh {
             vertices,
             normals,
             triangles,
+            hierarchy: OnceLock::new(),
         })
     }
 
@@ -125,11 +140,18 @@ impl TriangleMesh {
         Self {
             vertices: self.vertices.iter().map(|v| v + displacement).collect(),
             bounds: (low + displacement, high + displacement),
+            hierarchy: OnceLock::new(),
             ..self.clone()
         }
     }
 
+    /// Returns the hierarchy that finds where rays meet the triangles.
+    pub(crate) fn hierarchy(&self) -> &MeshHierarchy {
+        self.hierarchy.get_or_init(|| MeshHierarchy::build(self))
+    }
+
     /// Returns the corners of a triangle, in metres.
+    #[inline(always)]
     pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
         self.triangles[triangle].map(|index| self.vertices[index as usize])
     }

@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use crate::{Cylinder, Ray, Rectangle, Sphere, mesh};
+use crate::{Cylinder, MeshInstance, Ray, Rectangle, Sphere, mesh};
 
 /// What a leaf of the hierarchy holds.
 #[derive(Clone, Debug)]
@@ -33,6 +33,11 @@ impl ShearedRay {
         Self { ray, axes, shear }
     }
 
+    pub(super) const fn ray(&self) -> &Ray {
+        &self.ray
+    }
+
+    #[inline(always)]
     fn to_local(&self, point: DVec3) -> DVec3 {
         let offset = point - self.ray.origin;
         let [x, y, z] = self.axes.map(|axis| offset[axis]);
@@ -40,6 +45,7 @@ impl ShearedRay {
     }
 
     /// Returns the distance to a triangle and the barycentric weights of its corners there.
+    #[inline(always)]
     pub(super) fn triangle(&self, corners: &[DVec3; 3]) -> Option<(f64, DVec3)> {
         let [a, b, c] = corners.map(|corner| self.to_local(corner));
         let weights = DVec3::new(
@@ -134,6 +140,12 @@ impl ShearedRay {
 }
 
 impl Primitive {
+    /// Returns a triangle of a mesh in its place.
+    #[inline(always)]
+    pub(super) fn triangle(instance: &MeshInstance, triangle: u32) -> Self {
+        Self::Triangle(instance.corners(triangle as usize))
+    }
+
     /// Returns the lowest and the highest corner of the axis-parallel box around the primitive.
     pub(super) fn bounds(&self) -> (DVec3, DVec3) {
         match self {
@@ -145,6 +157,7 @@ impl Primitive {
     }
 
     /// Returns the nearest positive distance at which the ray meets the primitive.
+    #[inline(always)]
     pub(super) fn distance(&self, ray: &ShearedRay) -> Option<f64> {
         let distance = match self {
             Self::Triangle(corners) => ray.triangle(corners)?.0,

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use crate::{RigidMotion, TracerError, TriangleMesh};
+use crate::{RigidMotion, TracerError, TriangleMesh, mesh};
 
 /// A mesh in its place: scaled, turned and moved.
 ///
@@ -104,6 +104,21 @@ impl MeshInstance {
     /// Returns the direction in the mesh that points along `direction`; its length stays.
     pub(crate) fn direction_of_mesh(&self, direction: DVec3) -> DVec3 {
         self.rotation.transpose() * direction
+    }
+
+    /// Returns the corners of a triangle, in metres.
+    #[inline(always)]
+    pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.mesh.corners(triangle).map(|corner| self.point(corner))
+    }
+
+    /// Returns the normal with which a triangle scatters light where its corners have `weights`,
+    /// given its own normal.
+    pub(crate) fn shading_normal(&self, triangle: usize, weights: DVec3, normal: DVec3) -> DVec3 {
+        let interpolated = self.mesh.interpolated_normal(triangle, weights);
+        let interpolated =
+            interpolated.and_then(|interpolated| self.direction(interpolated).try_normalize());
+        mesh::shading_normal(normal, interpolated)
     }
 
     /// Returns the factor from lengths of the mesh to metres.

@@ -1,0 +1,142 @@
+use fearless_simd::{Simd, SimdBase, SimdFloat, f32x8, f32x16};
+use glam::DVec3;
+
+use super::{
+    hierarchy::{Hierarchy, LocalRay, WIDTH, load},
+    lanes::{RayLanes, TOLERANCE, TriangleLanes},
+};
+use crate::{MeshInstance, Ray, TriangleMesh};
+
+/// The hierarchy over the triangles of a mesh, in the mesh's own coordinates.
+#[derive(Clone, Debug)]
+pub(crate) struct MeshHierarchy {
+    boxes: Hierarchy,
+    blocks: Vec<Block>,
+}
+
+/// The triangles of a leaf in single precision.
+#[repr(align(64))]
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    corner: [[f32; WIDTH]; 3],
+    edges: [[[f32; WIDTH]; 3]; 2],
+    tolerance: [f32; WIDTH],
+    /// The indices of the triangles in the mesh.
+    triangles: [u32; WIDTH],
+    count: usize,
+}
+
+impl MeshHierarchy {
+    pub(crate) fn build(mesh: &TriangleMesh) -> Self {
+        let corners = |triangle: usize| mesh.corners(triangle);
+        let boxes: Vec<_> = (0..mesh.triangles().len())
+            .map(corners)
+            .map(|[a, b, c]| (a.min(b).min(c), a.max(b).max(c)))
+            .collect();
+        let (boxes, leaves) = Hierarchy::build(&boxes, 8);
+        let blocks = leaves
+            .iter()
+            .map(|triangles| Block::new(mesh, &boxes, triangles))
+            .collect();
+        Self { boxes, blocks }
+    }
+
+    pub(super) fn boxes(&self) -> &Hierarchy {
+        &self.boxes
+    }
+
+    pub(super) fn block(&self, leaf: usize) -> &Block {
+        &self.blocks[leaf]
+    }
+
+    /// Returns a ray of the world in the unit of the hierarchy of an instance.
+    #[inline(always)]
+    pub(super) fn enter(&self, instance: &MeshInstance, ray: &Ray) -> Option<LocalRay> {
+        let local = Ray {
+            origin: instance.point_of_mesh(ray.origin),
+            direction: instance.direction_of_mesh(ray.direction),
+        };
+        self.boxes.enter(&local, instance.scale())
+    }
+}
+
+impl Block {
+    /// The shortest edge to which tolerances shrink: below, products of edges underflow.
+    const SHORTEST: f64 = 1e-15;
+
+    fn new(mesh: &TriangleMesh, boxes: &Hierarchy, triangles: &[u32]) -> Self {
+        // Empty lanes hold a triangle without area, far away, whose tolerance nothing passes.
+        let mut block = Self {
+            corner: [[1e9; WIDTH]; 3],
+            edges: [[[0.0; WIDTH]; 3]; 2],
+            tolerance: [-1.0; WIDTH],
+            triangles: [0; WIDTH],
+            count: triangles.len(),
+        };
+        for (lane, &triangle) in triangles.iter().enumerate() {
+            let corners = mesh.corners(triangle as usize);
+            let [a, b, c] = corners.map(|corner| boxes.to_local(corner));
+            let (e1, e2) = (b - a, c - a);
+            let longer = e1.length().max(e2.length()).max(Self::SHORTEST);
+            for axis in 0..3 {
+                block.corner[axis][lane] = single(a)[axis];
+                block.edges[0][axis][lane] = single(e1)[axis];
+                block.edges[1][axis][lane] = single(e2)[axis];
+            }
+            block.tolerance[lane] = TOLERANCE * single(DVec3::splat(longer))[0].next_up();
+            block.triangles[lane] = triangle;
+        }
+        block
+    }
+
+    pub(super) const fn count(&self) -> usize {
+        self.count
+    }
+
+    pub(super) const fn triangle(&self, lane: usize) -> u32 {
+        self.triangles[lane]
+    }
+
+    /// Returns all triangles, one in each lane.
+    #[inline(always)]
+    pub(super) fn all<S: Simd>(&self, simd: S) -> TriangleLanes<f32x8<S>> {
+        TriangleLanes {
+            corner: load(simd, &self.corner),
+            edges: [load(simd, &self.edges[0]), load(simd, &self.edges[1])],
+            tolerance: f32x8::from_slice(simd, &self.tolerance),
+        }
+    }
+
+    /// Returns one triangle in all lanes.
+    #[inline(always)]
+    pub(super) fn one<S: Simd>(&self, simd: S, lane: usize) -> TriangleLanes<f32x16<S>> {
+        let splat = |values: &[[f32; WIDTH]; 3]| values.map(|axis| f32x16::splat(simd, axis[lane]));
+        TriangleLanes {
+            corner: splat(&self.corner),
+            edges: [splat(&self.edges[0]), splat(&self.edges[1])],
+            tolerance: f32x16::splat(simd, self.tolerance[lane]),
+        }
+    }
+}
+
+fn single(vector: DVec3) -> [f32; 3] {
+    vector.as_vec3().to_array()
+}
+
+impl LocalRay {
+    /// Returns the ray in all lanes, up to a distance.
+    #[inline(always)]
+    pub(super) fn lanes<S: Simd, V: SimdFloat<S, Element = f32>>(
+        &self,
+        simd: S,
+        end: f32,
+    ) -> RayLanes<V> {
+        let splat = |values: [f32; 3]| values.map(|value| V::splat(simd, value));
+        RayLanes {
+            origin: splat(self.origin),
+            direction: splat(self.direction),
+            inverse: splat(self.inverse),
+            end: V::splat(simd, end),
+        }
+    }
+}

@@ -50,6 +50,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "fearless_simd",
             "glam",
             "gltf",
+            "libm",
             "obvhs",
             "ply-rs-bw",
             "rand_chacha",

@@ -636,6 +636,8 @@ fn check_sampled_values(light: &dyn Emitter<f64>, local: DVec3) {
             (event.value * event.pdf / radiance - 1.0).abs() < 1e-8,
             "{event:?}: {radiance}"
         );
+        let pdf = light.next_event_pdf(p, event.wi);
+        assert!((pdf / event.pdf - 1.0).abs() < 1e-8, "{event:?}: {pdf}");
         // The point and the distance describe the same ray.
         let back = DVec3::from(p) + DVec3::from(event.wi) * event.distance;
         let miss = back.distance(DVec3::from(event.point));

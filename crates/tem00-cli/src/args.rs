@@ -1,10 +1,13 @@
 //! The command line.
 
+mod render;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use tem00_speckle::Pupil;
 
+pub(crate) use self::render::{FrameRange, RenderArgs};
 use crate::image::Transfer;
 
 const EXAMPLES: &str = "\
@@ -30,58 +33,6 @@ pub(crate) enum Command {
     Pattern(PatternArgs),
     Stats(StatsArgs),
 }
-
-/// Render a scene: PNG preview, OpenEXR layers and a JSON summary.
-///
-/// A scene file needs a laser, a camera and a surface, and no more. The size of the speckle
-/// patterns is chosen from the camera, the image and the motion, and printed with its reason.
-#[derive(Args, Debug)]
-#[command(after_help = RENDER_EXAMPLES)]
-pub(crate) struct RenderArgs {
-    /// The scene file.
-    #[arg(value_name = "SCENE.toml")]
-    pub(crate) scene: PathBuf,
-
-    /// The folder for the images, made if it is missing [default: out/<name of the scene>].
-    #[arg(short, long, value_name = "DIR")]
-    pub(crate) output: Option<PathBuf>,
-
-    /// Camera samples per pixel, 1 to a million [default: from the scene].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub(crate) spp: Option<u32>,
-
-    /// The seed of everything random [default: from the scene].
-    #[arg(long, value_name = "N")]
-    pub(crate) seed: Option<u64>,
-
-    /// Threads to render with, 1 to 1024; the image does not depend on it [default: all].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
-
-    /// Leave the speckle out.
-    #[arg(long)]
-    pub(crate) no_speckle: bool,
-
-    /// Use the formulas as printed in Bergmann et al. 2016, with their errors, for comparison.
-    #[arg(long)]
-    pub(crate) paper: bool,
-
-    /// The radiance in W/(m² sr) that the preview shows as white [default: from the image].
-    #[arg(long, value_name = "RADIANCE", value_parser = radiance)]
-    pub(crate) white_level: Option<f64>,
-}
-
-const RENDER_EXAMPLES: &str = "\
-Examples:
-  tem00 render scenes/spot.toml                       quick look, into out/spot/
-  tem00 render scenes/spot.toml --spp 256 -o good     slower, with less noise
-  tem00 render scenes/spot.toml --paper -o printed    the formulas as printed, to lay beside
-  tem00 render scenes/spot.toml --no-speckle          the same light without interference
-
-Files:
-  <scene>.png     preview, 16 bits, in the colour of the laser; <scene>_0000.png … for several frames
-  <scene>.exr     layers per laser: coherent_before, speckle, coherent_after, incoherent, in W/(m² sr)
-  <scene>.json    power on the target, speckle size, contrast, exposure, speed";
 
 /// Generate a speckle pattern and compare it with the theory.
 ///
@@ -177,14 +128,6 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Reads a radiance that single precision can hold.
-fn radiance(text: &str) -> Result<f64, String> {
-    match positive(text)? {
-        value if (1e-30..=1e30).contains(&value) => Ok(value),
-        _ => Err("must lie between 1e-30 and 1e30 W/(m² sr)".into()),
-    }
-}
-
 fn pupil(text: &str) -> Result<Pupil, String> {
     let (name, proportion) = match text.split_once(':') {
         Some((name, proportion)) => (name, Some(positive(proportion)?)),
@@ -218,33 +161,6 @@ mod tests {
     }
 
     #[test]
-    fn every_option_of_render_is_understood() {
-        let line = "tem00 render a.toml -o d --spp 3 --seed 4 --threads 2 --no-speckle --paper \
-                    --white-level 1e3";
-        let Ok(Command::Render(args)) = parse(line) else {
-            panic!("the line is valid");
-        };
-        assert_eq!(args.scene, PathBuf::from("a.toml"));
-        assert_eq!(args.output, Some(PathBuf::from("d")));
-        assert_eq!((args.spp, args.seed), (Some(3), Some(4)));
-        assert_eq!(args.threads, Some(2));
-        assert!(args.no_speckle && args.paper, "both switches are on");
-        assert_eq!(args.white_level, Some(1e3));
-    }
-
-    #[test]
-    fn a_scene_is_all_that_render_needs() {
-        let Ok(Command::Render(args)) = parse("tem00 render a.toml") else {
-            panic!("the line is valid");
-        };
-        assert!(
-            args.output.is_none() && args.spp.is_none() && args.seed.is_none(),
-            "{args:?}"
-        );
-        assert!(!args.no_speckle && !args.paper, "{args:?}");
-    }
-
-    #[test]
     fn pupils_carry_their_proportion() {
         let of = |text| pupil(text).ok();
         assert_eq!(of("circle"), Some(Pupil::Circle));
@@ -268,12 +184,6 @@ mod tests {
     #[test]
     fn bad_values_are_usage_errors_that_name_them() {
         for (line, part) in [
-            ("tem00 render a.toml --spp 0", "0"),
-            ("tem00 render a.toml --threads 0", "1..=1024"),
-            ("tem00 render a.toml --threads 1000000", "1..=1024"),
-            ("tem00 render a.toml --white-level -1", "-1"),
-            ("tem00 render a.toml --white-level=nan", "nan"),
-            ("tem00 render a.toml --see 3", "--seed"),
             ("tem00 patern -o a.png", "pattern"),
             ("tem00 pattern", "--output"),
         ] {

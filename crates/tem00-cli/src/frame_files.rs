@@ -20,6 +20,8 @@ pub(crate) struct FramePaths {
     pub(crate) preview: PathBuf,
     /// The layers.
     pub(crate) layers: PathBuf,
+    /// What says that the others are whole. For a single frame it is the summary.
+    pub(crate) record: PathBuf,
 }
 
 impl FramePaths {
@@ -34,7 +36,19 @@ impl FramePaths {
         Self {
             preview: folder.join(format!("{stem}.png")),
             layers: folder.join(format!("{stem}.exr")),
+            record: folder.join(format!("{stem}.json")),
         }
+    }
+
+    /// Returns whether preview and layers are there.
+    pub(crate) fn images_exist(&self) -> bool {
+        self.preview.is_file() && self.layers.is_file()
+    }
+
+    /// Returns the name of a file without its folder.
+    pub(crate) fn name_of(path: &Path) -> String {
+        path.file_name()
+            .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
     }
 }
 

@@ -9,7 +9,7 @@ pub(crate) struct Progress(ProgressBar);
 
 impl Progress {
     /// Starts a bar that is full after `total` samples.
-    pub(crate) fn of_samples(total: u64, message: String) -> Self {
+    pub(crate) fn of_samples(total: u64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
         let template = "{msg} {wide_bar} {percent:>3} %  {rate}  {left} left";
         if let Ok(style) = ProgressStyle::with_template(template) {
@@ -30,8 +30,12 @@ impl Progress {
                     ),
             );
         }
-        bar.set_message(message);
         Self(bar)
+    }
+
+    /// Says what the samples belong to from now on.
+    pub(crate) fn name(&self, message: String) {
+        self.0.set_message(message);
     }
 
     /// Moves the bar to `done` samples.
@@ -79,7 +83,8 @@ mod tests {
 
     #[test]
     fn a_bar_nobody_sees_can_be_moved() {
-        let progress = Progress::of_samples(10, "frame 1 of 1".into());
+        let progress = Progress::of_samples(10);
+        progress.name("frame 1 of 1".into());
         progress.set(3);
         assert_eq!(progress.0.position(), 3);
     }

@@ -1,6 +1,8 @@
 //! What a render found, as JSON.
 
-use serde::Serialize;
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
 use tem00_statistics::{Contrast, StatisticsError, pixel_contrast};
 use tem00_tracer::{LaserLayers, PatternPlan, Scene, SpecklePlan};
 
@@ -9,6 +11,8 @@ use tem00_tracer::{LaserLayers, PatternPlan, Scene, SpecklePlan};
 pub(crate) struct Summary {
     pub(crate) program: &'static str,
     pub(crate) scene: String,
+    /// Tells renders apart.
+    pub(crate) fingerprint: String,
     pub(crate) formulas: &'static str,
     pub(crate) seed: u64,
     pub(crate) samples_per_pixel: u32,
@@ -45,13 +49,13 @@ struct PatternSummary {
 }
 
 /// How radiance became brightness in the previews.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct Exposure {
     /// The radiance shown as white.
     #[serde(rename = "white_level_w_per_m2_sr")]
     pub(crate) white_level: f32,
     /// Who chose it.
-    pub(crate) chosen_by: &'static str,
+    pub(crate) chosen_by: Cow<'static, str>,
 }
 
 impl Exposure {
@@ -61,7 +65,7 @@ impl Exposure {
         Self {
             // What f32 cannot hold is shown as black or white all the same.
             white_level: (level as f32).clamp(f32::MIN_POSITIVE, f32::MAX),
-            chosen_by: "as asked",
+            chosen_by: Cow::Borrowed("as asked"),
         }
     }
 
@@ -69,7 +73,9 @@ impl Exposure {
     pub(crate) const fn for_laser_light(white_level: f32) -> Self {
         Self {
             white_level,
-            chosen_by: "so that 99.5 % of the pixels that laser light reaches in the first frame are darker",
+            chosen_by: Cow::Borrowed(
+                "so that 99.5 % of the pixels that laser light reaches in the first frame are darker",
+            ),
         }
     }
 
@@ -77,21 +83,27 @@ impl Exposure {
     pub(crate) const fn for_all_light(white_level: f32) -> Self {
         Self {
             white_level,
-            chosen_by: "so that 99.5 % of the lit pixels of the first frame are darker",
+            chosen_by: Cow::Borrowed(
+                "so that 99.5 % of the lit pixels of the first frame are darker",
+            ),
         }
     }
 }
 
 /// One frame.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Deserialize, Serialize)]
 pub(crate) struct FrameSummary {
+    pub(crate) number: u32,
     pub(crate) preview: String,
     pub(crate) layers: String,
     pub(crate) lasers: Vec<FrameLaser>,
+    /// The camera samples over all sources of light, and the time that they took.
+    pub(crate) samples: u64,
+    pub(crate) seconds: f64,
 }
 
 /// One laser in one frame.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct FrameLaser {
     /// The power that reaches the surfaces seen in the image.
     pub(crate) power_on_target_w: f64,
@@ -102,7 +114,7 @@ pub(crate) struct FrameLaser {
 }
 
 /// The contrast of speckle, measured and expected.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) struct ContrastSummary {
     pub(crate) measured: f64,
     pub(crate) expected: f64,

@@ -1,53 +1,90 @@
+mod description;
+mod distortion;
+mod lens;
+mod sensor;
+
 use glam::{DMat3, DVec2, DVec3};
-use tem00_decorrelation::{ImagingGeometry, LensData};
+use tem00_decorrelation::{ImagingGeometry, LensData, RigidMotion};
 
-use crate::{Ray, TracerError};
+use self::{description::check, distortion::Distortion, sensor::Sensor};
+use crate::{Ray, TracerError, filter::MAXIMUM_RADIUS};
 
-/// The most pixels an image may have: 2²⁸, which is 16 384 × 16 384.
-pub const MAXIMUM_PIXELS: usize = 1 << 28;
+pub use self::description::{CameraDescription, MAXIMUM_PIXELS, RadialDistortion, SensorTilt};
+pub use self::lens::{CameraConnection, CameraRay};
 
 /// The sine of the smallest accepted angle between `up` and the viewing direction.
 const SMALLEST_SINE: f64 = 1e-6;
 
-/// What determines a [`Camera`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraDescription {
-    /// The centre of the lens, which is its entrance pupil, in metres.
-    pub position: DVec3,
-    /// The point that appears in the middle of the image, in metres.
-    pub look_at: DVec3,
-    /// A direction that points up in the image.
-    pub up: DVec3,
-    /// The focal length of the lens, in metres.
-    pub focal_length: f64,
-    /// The f-number: focal length by diameter of the entrance pupil.
-    pub f_number: f64,
-    /// The distance from the lens, along the axis, to the plane that is in focus, in metres.
-    pub focus_distance: f64,
-    /// The pixel pitch, in metres.
-    pub pixel_pitch: f64,
-    /// The numbers of pixel columns and rows.
-    pub resolution: [usize; 2],
-}
+/// How far beyond the edges of the image its points may be asked for, in pixels: as far as
+/// reconstruction filters reach.
+const MARGIN: f64 = MAXIMUM_RADIUS;
 
 /// A perspective camera with a thin lens and a sensor, from which the speckle size follows.
 ///
-/// Rays start at the centre of the lens: everything is sharp. The lens decides the perspective, by
-/// its image distance, and the speckle, by its pupil.
+/// Rays start at points of the lens, which is the entrance pupil, and those of one image point meet
+/// again in the plane in focus. The lens decides the perspective, by its image distance, the blur
+/// and the speckle, by its diameter.
 ///
 /// ```text
 /// d_PI = f L / (L − f)      image distance for the focus distance L
+/// D    = f / F              diameter of the pupil, F the f-number
 /// ```
 ///
 /// Image points are given in pixels, `(0, 0)` at the upper left corner of the image, x to the right
-/// and y *down*; the centre of the first pixel is `(0.5, 0.5)`. The image is upright.
+/// and y *down*; the centre of the first pixel is `(0.5, 0.5)`. The image is upright. The sensor may
+/// stand off the axis, by a principal point, and may be [tilted](SensorTilt); the lens may
+/// [distort](RadialDistortion) the image. Without either the axis is normal to the sensor.
+///
+/// The value of a pixel is the mean radiance, over its area and over the pupil: a scene of uniform
+/// radiance L has the value L in every pixel. What falls on the sensor is another matter, see
+/// [`irradiance_per_radiance`](Self::irradiance_per_radiance).
+///
+/// # Validity
+///
+/// The lens is ideal but for its distortion: all light of an image point meets in one point, at
+/// the distance along the axis that the lens equation gives for the depth of the image point. There
+/// is no vignetting, and the pupil is a disc across the axis. Image points may lie up to 16 pixels
+/// beyond the edges of the image.
+///
+/// # Examples
+///
+/// A 25 mm lens at f/8 focused on 30 cm images at 1:11:
+///
+/// ```
+/// use glam::{DVec2, DVec3};
+/// use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+///
+/// let camera = Camera::new(CameraDescription {
+///     position: DVec3::new(0.0, 0.0, 0.3),
+///     look_at: DVec3::ZERO,
+///     up: DVec3::Y,
+///     focal_length: 25e-3,
+///     f_number: 8.0,
+///     focus_distance: 0.3,
+///     pixel_pitch: 3.45e-6,
+///     resolution: [640, 480],
+///     principal_point: None,
+///     tilt: SensorTilt::default(),
+///     distortion: RadialDistortion::default(),
+///     depth_of_field: true,
+/// })?;
+/// assert!((camera.image_distance() - 27.27e-3).abs() < 0.01e-3);
+///
+/// // One pixel to the right is 11 pixel pitches to the right in the scene.
+/// let middle = camera.project(DVec3::ZERO);
+/// let right = camera.project(DVec3::new(11.0 * 3.45e-6, 0.0, 0.0));
+/// assert_eq!(middle, Some(DVec2::new(320.0, 240.0)));
+/// assert!(right.is_some_and(|right| right.distance(DVec2::new(321.0, 240.0)) < 1e-9));
+/// # Ok::<(), tem00_tracer::TracerError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     description: CameraDescription,
     right: DVec3,
     up: DVec3,
     view: DVec3,
-    image_distance: f64,
+    sensor: Sensor,
+    distortion: Distortion,
 }
 
 impl Camera {
@@ -57,18 +94,11 @@ impl Camera {
     ///
     /// Returns an error if a length is not positive and finite, if the f-number is below 0.5, if the
     /// focus distance does not exceed the focal length, if the camera looks at itself or along `up`,
-    /// or if the image is empty or has more than [`MAXIMUM_PIXELS`] pixels.
+    /// if the image is empty or has more than [`MAXIMUM_PIXELS`] pixels, if the tilt is so large
+    /// that a part of the pupil sees the back of the sensor or a part of the image lies before the
+    /// lens, or if the distortion folds a part of the image back.
     pub fn new(description: CameraDescription) -> Result<Self, TracerError> {
-        check_lengths(&description)?;
-        let [width, height] = description.resolution;
-        if width == 0
-            || height == 0
-            || width
-                .checked_mul(height)
-                .is_none_or(|pixels| pixels > MAXIMUM_PIXELS)
-        {
-            return Err(TracerError::Resolution { width, height });
-        }
+        description.check()?;
         let view = (description.look_at - description.position)
             .try_normalize()
             .ok_or(TracerError::Direction {
@@ -83,14 +113,16 @@ impl Camera {
                 parameter: "up",
                 allowed: "a direction across the viewing direction",
             })?;
-        let (focal_length, focus_distance) = (description.focal_length, description.focus_distance);
-        Ok(Self {
+        let camera = Self {
             description,
             right,
             up: right.cross(view),
             view,
-            image_distance: focal_length * focus_distance / (focus_distance - focal_length),
-        })
+            sensor: Sensor::new(&description),
+            distortion: Distortion::new(description.distortion),
+        };
+        camera.check_sensor()?;
+        Ok(camera)
     }
 
     /// Returns what the camera was created from.
@@ -113,9 +145,14 @@ impl Camera {
         self.description.position
     }
 
-    /// Returns the distance from the lens to the sensor, in metres.
+    /// Returns the distance from the lens to the sensor along the axis, in metres.
     pub const fn image_distance(&self) -> f64 {
-        self.image_distance
+        self.sensor.distance
+    }
+
+    /// Returns the diameter of the entrance pupil, in metres.
+    pub const fn pupil_diameter(&self) -> f64 {
+        self.description.focal_length / self.description.f_number
     }
 
     /// Returns the camera axes as columns: right, up, and from the scene towards the camera.
@@ -123,59 +160,150 @@ impl Camera {
         DMat3::from_cols(self.right, self.up, -self.view)
     }
 
-    /// Returns the imaging geometry for a wavelength in metres, at the plane in focus.
+    /// Returns the plane that is in focus: where the axis meets it, in metres, and its unit normal
+    /// towards the camera.
+    ///
+    /// It meets the planes of the lens and of the sensor in one line (Scheimpflug's rule). A
+    /// distorting lens bends it where the sensor is tilted.
+    pub fn plane_in_focus(&self) -> (DVec3, DVec3) {
+        let focus_distance = self.description.focus_distance;
+        let DVec3 { x, y, z } = self.sensor.normal;
+        let normal = DVec3::new(x, y, -z * self.sensor.distance / focus_distance);
+        (
+            self.position() + focus_distance * self.view,
+            self.world(normal.normalize()),
+        )
+    }
+
+    /// Returns the imaging geometry for a wavelength in metres, on the axis.
     ///
     /// # Errors
     ///
-    /// Returns an error if the wavelength is not positive and finite.
+    /// Returns an error if the wavelength is not positive and finite or exceeds the pupil.
     pub fn imaging_geometry(&self, wavelength: f64) -> Result<ImagingGeometry, TracerError> {
-        Ok(ImagingGeometry::from_lens(LensData {
-            wavelength,
-            focal_length: self.description.focal_length,
-            f_number: self.description.f_number,
-            surface_to_pupil: self.description.focus_distance,
-            pixel_pitch: self.description.pixel_pitch,
-        })?)
+        self.geometry_for(wavelength, self.description.focus_distance)
     }
 
-    /// Returns the ray that arrives at the image point `pixel`.
+    /// Returns the imaging geometry at an image point, for a wavelength in metres: for a tilted
+    /// sensor, whose distance varies over the image.
+    ///
+    /// ```text
+    /// h = λ s / D      speckle size, s the depth of the image point behind the lens
+    /// ```
+    ///
+    /// # Validity
+    ///
+    /// Distances are those along the axis. On a sensor tilted by τ the speckle is stretched by
+    /// 1/cos τ across the line about which it is tilted; that stretch is not part of the geometry.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the wavelength is not positive and finite or exceeds the pupil, or if
+    /// nothing real is in focus at the image point, as above the horizon of the plane in focus.
+    pub fn imaging_geometry_at(
+        &self,
+        pixel: DVec2,
+        wavelength: f64,
+    ) -> Result<ImagingGeometry, TracerError> {
+        let depth = self.sensor.point(pixel).z;
+        let CameraDescription {
+            focal_length,
+            focus_distance,
+            ..
+        } = self.description;
+        // On the axis the lens equation would give the focus distance but for rounding.
+        let offset = depth - self.sensor.distance;
+        let beyond_focus = self.sensor.distance * focal_length / focus_distance + offset;
+        let in_focus = focus_distance - (focus_distance - focal_length) * offset / beyond_focus;
+        self.geometry_for(wavelength, in_focus)
+    }
+
+    /// Returns the ray that arrives at the image point `pixel` through the centre of the lens.
     pub fn ray(&self, pixel: DVec2) -> Ray {
-        let sensor = self.sensor_point(pixel);
         Ray {
-            origin: self.description.position,
-            direction: (sensor.x * self.right
-                + sensor.y * self.up
-                + self.image_distance * self.view)
-                .normalize(),
+            origin: self.position(),
+            direction: self.world(self.chief(pixel)).normalize(),
         }
     }
 
-    /// Returns the image point of a point in space, or `None` if it lies behind the lens.
+    /// Returns the image point of a point in space, by the ray through the centre of the lens.
+    ///
+    /// It may lie outside of the image. Returns `None` if the point lies behind the lens, where the
+    /// sensor is not met, or where the distortion would fold it back into the image.
     pub fn project(&self, point: DVec3) -> Option<DVec2> {
-        let offset = point - self.description.position;
-        let depth = offset.dot(self.view);
-        if depth <= 0.0 {
+        let offset = self.local(point - self.position());
+        if offset.z <= 0.0 {
             return None;
         }
-        let scale = self.image_distance / (depth * self.description.pixel_pitch);
-        let centre = self.image_centre();
-        Some(DVec2::new(
-            centre.x + scale * offset.dot(self.right),
-            centre.y - scale * offset.dot(self.up),
-        ))
+        let tangent = self.distortion.distorted(offset.truncate() / offset.z)?;
+        self.sensor.pixel(tangent)
     }
 
     /// Returns the solid angle, in steradian, that one pixel at the image point `pixel` sees from
     /// the centre of the lens.
     ///
     /// ```text
-    /// Ω = pitch² cos³θ / d_PI²      θ the angle to the axis
+    /// Ω = pitch² cos³θ / d_PI²                              θ the angle to the axis
+    /// Ω = pitch² cos³θ d_PI cos τ / (s³ det ∂t_image/∂t)    tilted by τ, with distortion
     /// ```
     pub fn solid_angle_per_pixel(&self, pixel: DVec2) -> f64 {
-        let side = self.description.pixel_pitch / self.image_distance;
-        let tangent = self.sensor_point(pixel) / self.image_distance;
+        let Some((depth, tangent)) = self.seen_by(pixel) else {
+            return 0.0;
+        };
         let cosine = 1.0 / (1.0 + tangent.length_squared()).sqrt();
-        side * side * cosine.powi(3)
+        let stretch = self.distortion.jacobian(tangent).determinant();
+        self.sensor.tangents_per_pixel(depth) * cosine.powi(3) / stretch
+    }
+
+    /// Returns the irradiance on the sensor, in W/m², per radiance of what the pixel sees, in
+    /// W/(m² sr).
+    ///
+    /// ```text
+    /// E/L = π D²/4 · cos θ Ω / pitch²                in general: what enters the pupil arrives
+    /// E/L = π/4 (D/d_PI)² cos⁴θ                      the cos⁴ law, without tilt and distortion
+    /// E/L = π D²/4 · cos θ cos θ_sensor / distance²  with tilt, without distortion
+    /// ```
+    ///
+    /// # Validity
+    ///
+    /// The pupil is small against its distance to the sensor: the error is of the order of the
+    /// square of half its diameter by that distance, 0.3 % at f/8. No light is lost in the lens.
+    ///
+    /// # Examples
+    ///
+    /// On the axis, only the working f-number counts: E/L is π / 4 by its square.
+    ///
+    /// ```
+    /// # use glam::{DVec2, DVec3};
+    /// # use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+    /// # let camera = Camera::new(CameraDescription {
+    /// #     position: DVec3::new(0.0, 0.0, 0.3),
+    /// #     look_at: DVec3::ZERO,
+    /// #     up: DVec3::Y,
+    /// #     focal_length: 25e-3,
+    /// #     f_number: 8.0,
+    /// #     focus_distance: 0.3,
+    /// #     pixel_pitch: 3.45e-6,
+    /// #     resolution: [640, 480],
+    /// #     principal_point: None,
+    /// #     tilt: SensorTilt::default(),
+    /// #     distortion: RadialDistortion::default(),
+    /// #     depth_of_field: true,
+    /// # })?;
+    /// let working_f_number = camera.imaging_geometry(650e-9)?.working_f_number();
+    /// assert!((working_f_number - 8.727).abs() < 0.001);
+    ///
+    /// let on_axis = camera.irradiance_per_radiance(DVec2::new(320.0, 240.0));
+    /// assert!((on_axis - 0.010_312).abs() < 0.000_001); // sr
+    /// # Ok::<(), tem00_tracer::TracerError>(())
+    /// ```
+    pub fn irradiance_per_radiance(&self, pixel: DVec2) -> f64 {
+        let radius = 0.5 * self.pupil_diameter();
+        let chief = self.chief(pixel);
+        let cosine = chief.z / chief.length();
+        let pitch = self.description.pixel_pitch;
+        let pupil_area = core::f64::consts::PI * radius * radius;
+        pupil_area * cosine * self.solid_angle_per_pixel(pixel) / (pitch * pitch)
     }
 
     /// Returns the camera moved by `displacement`, in metres, without turning.
@@ -187,172 +315,101 @@ impl Camera {
         moved
     }
 
-    /// The point of the upright image plane in metres, right and up from the axis.
-    fn sensor_point(&self, pixel: DVec2) -> DVec2 {
-        let offset = (pixel - self.image_centre()) * self.description.pixel_pitch;
-        DVec2::new(offset.x, -offset.y)
+    /// Returns the camera moved as a rigid body.
+    #[must_use]
+    pub fn moved(&self, motion: &RigidMotion) -> Self {
+        let mut moved = *self;
+        moved.description.position = motion.point(self.description.position);
+        moved.description.look_at = motion.point(self.description.look_at);
+        moved.description.up = motion.direction(self.description.up);
+        moved.right = motion.direction(self.right);
+        moved.up = motion.direction(self.up);
+        moved.view = motion.direction(self.view);
+        moved
     }
 
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "an image has at most 2²⁸ pixels"
-    )]
-    fn image_centre(&self) -> DVec2 {
-        DVec2::new(self.width() as f64, self.height() as f64) / 2.0
-    }
-}
-
-fn check_lengths(description: &CameraDescription) -> Result<(), TracerError> {
-    let lengths = [
-        ("focal_length", description.focal_length),
-        ("f_number", description.f_number),
-        ("focus_distance", description.focus_distance),
-        ("pixel_pitch", description.pixel_pitch),
-    ];
-    for (parameter, value) in lengths {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(TracerError::OutOfRange {
-                parameter,
-                value,
-                allowed: "positive and finite",
-            });
+    /// Returns the direction of the chief ray in the axes of the camera, of any length.
+    fn chief(&self, pixel: DVec2) -> DVec3 {
+        let place = self.sensor.point(pixel);
+        if self.distortion.is_none() || place.z <= 0.0 {
+            return place;
         }
+        let tangent = self.distortion.undistorted(place.truncate() / place.z);
+        (place.z * tangent).extend(place.z)
     }
-    if description.f_number < 0.5 {
-        return Err(TracerError::OutOfRange {
-            parameter: "f_number",
-            value: description.f_number,
-            allowed: "at least 0.5, the limit of an aplanatic lens",
-        });
+
+    /// Returns the depth of an image point and the tangent of its chief ray, or `None` before the
+    /// lens and where distortion has no ray.
+    fn seen_by(&self, pixel: DVec2) -> Option<(f64, DVec2)> {
+        let place = self.sensor.point(pixel);
+        let image = place.truncate() / place.z;
+        (place.z > 0.0 && image.length() < self.distortion.reach())
+            .then(|| (place.z, self.distortion.undistorted(image)))
     }
-    if description.focus_distance <= description.focal_length {
-        return Err(TracerError::OutOfRange {
-            parameter: "focus_distance",
-            value: description.focus_distance,
-            allowed: "greater than the focal length (in metres)",
-        });
+
+    fn geometry_for(
+        &self,
+        wavelength: f64,
+        surface_to_pupil: f64,
+    ) -> Result<ImagingGeometry, TracerError> {
+        Ok(ImagingGeometry::from_lens(LensData {
+            wavelength,
+            focal_length: self.description.focal_length,
+            f_number: self.description.f_number,
+            surface_to_pupil,
+            pixel_pitch: self.description.pixel_pitch,
+        })?)
     }
-    if !description.position.is_finite() || !description.look_at.is_finite() {
-        return Err(TracerError::Direction {
-            parameter: "look_at",
-            allowed: "a finite point seen from a finite position",
-        });
+
+    /// Checks that each image point stands behind the lens, in front of the sensor, and has one ray.
+    fn check_sensor(&self) -> Result<(), TracerError> {
+        let tilt = self.description.tilt.angle;
+        let steepest = self.sensor.slope().length() * 0.5 * self.pupil_diameter();
+        check(
+            "tilt",
+            tilt,
+            steepest < 1.0,
+            "so small that all of the pupil sees the front of the sensor (in radians)",
+        )?;
+        let size = self.description.size() + MARGIN;
+        let corners = [
+            DVec2::splat(-MARGIN),
+            DVec2::new(size.x, -MARGIN),
+            DVec2::new(-MARGIN, size.y),
+            size,
+        ];
+        for place in corners.map(|corner| self.sensor.point(corner)) {
+            check(
+                "tilt",
+                tilt,
+                place.z > 0.0,
+                "so small that all of the image stands behind the lens (in radians)",
+            )?;
+            let radius = place.truncate().length() / place.z;
+            check(
+                "distortion",
+                self.distortion.reach(),
+                self.distortion.is_none() || radius < self.distortion.reach(),
+                "reaching the corners of the image before it turns back",
+            )?;
+        }
+        Ok(())
     }
-    Ok(())
+
+    /// Returns the world components of a vector in the axes right, up and along the view.
+    fn world(&self, local: DVec3) -> DVec3 {
+        local.x * self.right + local.y * self.up + local.z * self.view
+    }
+
+    /// Returns the components right, up and along the view of a vector in world components.
+    fn local(&self, world: DVec3) -> DVec3 {
+        DVec3::new(
+            world.dot(self.right),
+            world.dot(self.up),
+            world.dot(self.view),
+        )
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-    use proptest::prelude::*;
-
-    use super::*;
-
-    fn description() -> CameraDescription {
-        CameraDescription {
-            position: DVec3::new(0.1, -0.05, 0.3),
-            look_at: DVec3::new(0.01, 0.02, 0.0),
-            up: DVec3::Y,
-            focal_length: 25e-3,
-            f_number: 8.0,
-            focus_distance: 0.3,
-            pixel_pitch: 3.45e-6,
-            resolution: [640, 480],
-        }
-    }
-
-    #[test]
-    fn the_axis_meets_the_middle_of_the_image() {
-        let camera = Camera::new(description()).unwrap();
-        let middle = camera.project(description().look_at).unwrap();
-        assert_relative_eq!(middle.x, 320.0, epsilon = 1e-9);
-        assert_relative_eq!(middle.y, 240.0, epsilon = 1e-9);
-    }
-
-    #[test]
-    fn up_in_the_scene_is_up_in_the_image() {
-        let camera = Camera::new(description()).unwrap();
-        let above = camera
-            .project(description().look_at + 1e-3 * DVec3::Y)
-            .unwrap();
-        assert!(above.y < 240.0, "y grows downwards, got {above}");
-        let axes = camera.axes();
-        assert_relative_eq!(axes.determinant(), 1.0, epsilon = 1e-12);
-    }
-
-    #[test]
-    fn pixels_see_the_solid_angle_of_the_sensor() {
-        let camera = Camera::new(description()).unwrap();
-        // A rectangle of half sides a, b at distance d subtends 4 asin(ab/√((a²+d²)(b²+d²))).
-        let (a, b, d) = (320.0 * 3.45e-6, 240.0 * 3.45e-6, camera.image_distance());
-        let exact = 4.0 * (a * b / ((a * a + d * d) * (b * b + d * d)).sqrt()).asin();
-        let mut sum = 0.0;
-        for y in 0..480_u32 {
-            for x in 0..640_u32 {
-                let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-                sum += camera.solid_angle_per_pixel(centre);
-            }
-        }
-        // The midpoint rule errs by (pitch/d)²/24 · ∂²/∂x² cos³ ≈ 1e−9.
-        assert_relative_eq!(sum, exact, max_relative = 1e-7);
-    }
-
-    #[test]
-    fn impossible_cameras_are_rejected() {
-        let bad = [
-            CameraDescription {
-                f_number: 0.0,
-                ..description()
-            },
-            CameraDescription {
-                pixel_pitch: f64::NAN,
-                ..description()
-            },
-            CameraDescription {
-                focus_distance: 25e-3,
-                ..description()
-            },
-            CameraDescription {
-                resolution: [0, 480],
-                ..description()
-            },
-            CameraDescription {
-                resolution: [1 << 40, 1 << 40],
-                ..description()
-            },
-            CameraDescription {
-                look_at: description().position,
-                ..description()
-            },
-            CameraDescription {
-                up: description().look_at - description().position,
-                ..description()
-            },
-        ];
-        for description in bad {
-            assert!(Camera::new(description).is_err(), "{description:?}");
-        }
-    }
-
-    #[test]
-    fn up_along_the_view_is_rejected_in_spite_of_rounding() {
-        let oblique = CameraDescription {
-            position: DVec3::new(0.1, 0.2, 0.3),
-            look_at: DVec3::new(0.03, 0.0, 0.0),
-            up: DVec3::new(0.7, 2.0, 3.0),
-            ..description()
-        };
-        assert!(Camera::new(oblique).is_err(), "{:?}", Camera::new(oblique));
-    }
-
-    proptest! {
-        #[test]
-        fn projection_inverts_the_ray(x in 0.0_f64..640.0, y in 0.0_f64..480.0, depth in 0.01_f64..10.0) {
-            let camera = Camera::new(description()).unwrap();
-            let ray = camera.ray(DVec2::new(x, y));
-            let image = camera.project(ray.origin + depth * ray.direction).unwrap();
-            // 1e4 pixels of image distance, times a few roundings.
-            prop_assert!(image.distance(DVec2::new(x, y)) < 1e-10, "{image}");
-        }
-    }
-}
+mod tests;

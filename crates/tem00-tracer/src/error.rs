@@ -44,6 +44,13 @@ pub enum TracerError {
         /// The bytes that the scene allows for them.
         allowed: u64,
     },
+    /// The layers of a frame do not fit into the memory that the system has available.
+    FilmMemory {
+        /// The bytes that the layers need.
+        needed: u64,
+        /// The bytes that are available.
+        available: u64,
+    },
     /// The scene has none of something it needs.
     Missing(&'static str),
 }
@@ -68,6 +75,10 @@ impl fmt::Display for TracerError {
             Self::PatternMemory { needed, allowed } => write!(
                 f,
                 "the speckle patterns of a laser need at least {needed} bytes and may take {allowed}"
+            ),
+            Self::FilmMemory { needed, available } => write!(
+                f,
+                "the layers of a frame need {needed} bytes of memory, and {available} are available"
             ),
             Self::Missing(what) => write!(f, "the scene needs {what}"),
         }

@@ -1,14 +1,36 @@
+mod memory;
+mod sums;
+
 use tem00_numerics::Grid;
 
-/// The rendered layers of one frame.
+pub(crate) use self::sums::{LaserSums, Moments, PixelSums};
+use crate::{Crop, TracerError};
+
+/// The rendered layers of one frame, or of the part of it that was cropped.
 ///
-/// All radiances are in W/(m² sr), averaged over the pixel, at the wavelength of their source.
+/// All radiances are in W/(m² sr), averaged over the pixel (by the reconstruction filter), at the
+/// wavelength of their source. The variances are those of a pixel's value from render to render, in
+/// (W/(m² sr))²; they are estimated from the pixel's samples as if these were independent. The
+/// samples are spread more evenly than that, so the variances are upper bounds on average. One sample
+/// alone tells nothing: its variance is infinite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// The layers of each laser, in the order of the scene.
     pub lasers: Vec<LaserLayers>,
-    /// The radiance from incoherent lamps.
+    /// The radiance from incoherent lamps and the environment.
     pub lamps: Grid<f32>,
+    /// The variance of `lamps`.
+    pub lamps_variance: Grid<f32>,
+    /// The distance from the camera to what is seen, along the axis of the camera, in metres: the
+    /// mean over the pixel's first samples that meet something, and 0 where none does.
+    pub depth: Grid<f32>,
+    /// The components x, y and z of the unit normal of what is seen, on the side that is seen and as
+    /// it is shaded: the mean over the pixel's first samples, with 0 for those that meet nothing.
+    pub normal: [Grid<f32>; 3],
+    /// The number of samples that the pixel got.
+    pub samples: Grid<f32>,
+    /// The column and the row of the first pixel in the whole image.
+    pub origin: [usize; 2],
 }
 
 /// The layers of one laser.
@@ -16,77 +38,171 @@ pub struct Frame {
 pub struct LaserLayers {
     /// The vacuum wavelength, in metres.
     pub wavelength: f64,
-    /// Radiance of the first interaction, from laser to surface to camera, before speckle.
+    /// Radiance of the light that has met one rough surface, before speckle.
     pub coherent_before: Grid<f32>,
     /// The speckle factor, averaged over the pixel without regard to the light; 1 where the pixel
-    /// sees no surface.
+    /// sees no rough surface.
     pub speckle: Grid<f32>,
-    /// Radiance of the first interaction after each camera sample was multiplied by its speckle
-    /// factor.
+    /// Radiance of the light that has met one rough surface, each camera sample of it multiplied by
+    /// its speckle factor.
     pub coherent_after: Grid<f32>,
-    /// Radiance that has met more than one surface, which carries no speckle.
+    /// Radiance that has met more than one rough surface, which carries no speckle.
     pub incoherent: Grid<f32>,
+    /// The variance of the sum of `coherent_after` and `incoherent`.
+    pub variance: Grid<f32>,
     /// The power that the laser brings to the surfaces seen in the image, in watts.
     ///
-    /// It is estimated from the camera's samples: the irradiance at each hit times the area that
-    /// the sample covers there. It is the laser's power when the whole footprint is in the image.
+    /// It is estimated from the camera's first samples: the irradiance at each hit times the area
+    /// that the sample covers there. It is the laser's power when the whole footprint is in the image.
+    /// What is seen in a mirror or through glass does not count.
     pub power_on_target: f64,
 }
 
-/// One row of the layers of one source.
-#[derive(Clone, Debug)]
-pub(crate) struct Row {
-    pub pixels: Vec<Pixel>,
+/// The layers while they are rendered.
+#[derive(Debug)]
+pub(crate) struct Film {
+    frame: Frame,
+    /// The power on target by strip and laser, summed at the end in the order of the strips, so that
+    /// the sum has the same bits for any number of threads.
+    power: Vec<f64>,
+    /// The radiance of all sources, kept where the number of samples depends on it.
+    total: Option<[Grid<f32>; 2]>,
 }
 
-/// What one pixel holds of one source: means over its samples.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pixel {
-    pub coherent_before: f64,
-    pub speckle: f64,
-    pub coherent_after: f64,
-    pub incoherent: f64,
-    pub power: f64,
+/// What a film is made for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FilmLayout<'a> {
+    /// The wavelengths of the lasers, in metres.
+    pub wavelengths: &'a [f64],
+    /// The part of the image that is rendered.
+    pub area: Crop,
+    /// The number of strips into which the area is divided.
+    pub strips: usize,
+    /// Whether the number of samples depends on the radiance.
+    pub adaptive: bool,
 }
 
-impl Pixel {
-    /// Adds `other · weight`.
-    pub(crate) fn add(&mut self, other: &Self, weight: f64) {
-        self.coherent_before += weight * other.coherent_before;
-        self.speckle += weight * other.speckle;
-        self.coherent_after += weight * other.coherent_after;
-        self.incoherent += weight * other.incoherent;
-        self.power += weight * other.power;
+impl Film {
+    /// Prepares a dark film.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if there is not enough memory for the layers.
+    pub(crate) fn new(layout: &FilmLayout<'_>) -> Result<Self, TracerError> {
+        let area = layout.area;
+        memory::check(layout)?;
+        let layer = || Grid::filled(area.width, area.height, 0.0_f32);
+        let lasers = layout.wavelengths.iter().map(|&wavelength| LaserLayers {
+            wavelength,
+            coherent_before: layer(),
+            speckle: layer(),
+            coherent_after: layer(),
+            incoherent: layer(),
+            variance: layer(),
+            power_on_target: 0.0,
+        });
+        Ok(Self {
+            frame: Frame {
+                lasers: lasers.collect(),
+                lamps: layer(),
+                lamps_variance: layer(),
+                depth: layer(),
+                normal: [layer(), layer(), layer()],
+                samples: layer(),
+                origin: [area.x, area.y],
+            },
+            power: vec![0.0; layout.strips * layout.wavelengths.len()],
+            total: layout.adaptive.then(|| [layer(), layer()]),
+        })
     }
-}
 
-/// Assembles rows, in order, into the layers of a laser.
-pub(crate) fn laser_layers(wavelength: f64, rows: &[Row]) -> LaserLayers {
-    LaserLayers {
-        wavelength,
-        coherent_before: layer(rows, |pixel| pixel.coherent_before),
-        speckle: layer(rows, |pixel| pixel.speckle),
-        coherent_after: layer(rows, |pixel| pixel.coherent_after),
-        incoherent: layer(rows, |pixel| pixel.incoherent),
-        // Summed in the order of the rows, so that the sum has the same bits for any number of threads.
-        power_on_target: rows
-            .iter()
-            .flat_map(|row| &row.pixels)
-            .map(|pixel| pixel.power)
-            .sum(),
+    /// Writes what the first samples of a pixel of a strip have found.
+    pub(crate) fn write_first(&mut self, strip: usize, [x, y]: [usize; 2], pixel: &PixelSums) {
+        self.write([x, y], pixel);
+        self.frame.depth[(x, y)] = single(pixel.depth());
+        for (layer, component) in self.frame.normal.iter_mut().zip(pixel.normal().to_array()) {
+            layer[(x, y)] = single(component);
+        }
+        let lasers = self.frame.lasers.len();
+        let powers = self.power[strip * lasers..].iter_mut();
+        for (power, laser) in powers.zip(&pixel.lasers) {
+            *power += pixel.mean(laser.power);
+        }
     }
-}
 
-/// Assembles rows, in order, into the layer of the lamps.
-pub(crate) fn lamp_layer(rows: &[Row]) -> Grid<f32> {
-    layer(rows, |pixel| pixel.incoherent)
+    /// Writes the radiances of a pixel.
+    pub(crate) fn write(&mut self, [x, y]: [usize; 2], pixel: &PixelSums) {
+        let at = (x, y);
+        for (layers, laser) in self.frame.lasers.iter_mut().zip(&pixel.lasers) {
+            layers.coherent_before[at] = single(pixel.mean(laser.coherent_before));
+            layers.speckle[at] = single(pixel.mean(laser.speckle));
+            layers.coherent_after[at] = single(pixel.mean(laser.coherent_after));
+            layers.incoherent[at] = single(pixel.mean(laser.incoherent));
+            layers.variance[at] = single(pixel.variance(&laser.radiance));
+        }
+        self.frame.lamps[at] = single(pixel.mean(pixel.lamps.sum));
+        self.frame.lamps_variance[at] = single(pixel.variance(&pixel.lamps));
+        self.frame.samples[at] = single(f64::from(pixel.samples));
+        if let Some([mean, variance]) = &mut self.total {
+            mean[at] = single(pixel.mean(pixel.total.sum));
+            variance[at] = single(pixel.variance(&pixel.total));
+        }
+    }
+
+    /// Returns what the film holds of a pixel, so that more samples can be added.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "numbers of samples are stored exactly up to 2²⁴"
+    )]
+    pub(crate) fn read(&self, [x, y]: [usize; 2]) -> PixelSums {
+        let at = (x, y);
+        let samples = self.frame.samples[at] as u32;
+        let sum = |layer: &Grid<f32>| f64::from(samples) * f64::from(layer[at]);
+        let moments = |mean: f64, variance: &Grid<f32>| {
+            Moments::restored(samples, mean, f64::from(variance[at]))
+        };
+        let lasers = self.frame.lasers.iter().map(|layers| LaserSums {
+            coherent_before: sum(&layers.coherent_before),
+            speckle: sum(&layers.speckle),
+            coherent_after: sum(&layers.coherent_after),
+            incoherent: sum(&layers.incoherent),
+            radiance: moments(
+                f64::from(layers.coherent_after[at]) + f64::from(layers.incoherent[at]),
+                &layers.variance,
+            ),
+            power: 0.0,
+        });
+        let total = self.total.as_ref().map(|[mean, variance]| {
+            let mean = f64::from(mean[at]);
+            moments(mean, variance)
+        });
+        let lamps = moments(f64::from(self.frame.lamps[at]), &self.frame.lamps_variance);
+        PixelSums::restored(samples, lasers.collect(), lamps, total.unwrap_or_default())
+    }
+
+    /// Returns the mean radiance of all sources over the film; 0 unless the film keeps it.
+    pub(crate) fn mean_radiance(&self) -> f64 {
+        self.total.as_ref().map_or(0.0, |[mean, _]| {
+            let values = mean.values();
+            values.iter().map(|&value| f64::from(value)).sum::<f64>() / values.len() as f64
+        })
+    }
+
+    /// Returns the finished frame.
+    pub(crate) fn into_frame(mut self) -> Frame {
+        let lasers = self.frame.lasers.len();
+        for (index, layers) in self.frame.lasers.iter_mut().enumerate() {
+            layers.power_on_target = self.power.iter().skip(index).step_by(lasers).sum();
+        }
+        self.frame
+    }
 }
 
 #[expect(
     clippy::cast_possible_truncation,
     reason = "images are stored in single precision"
 )]
-fn layer(rows: &[Row], value: impl Fn(&Pixel) -> f64) -> Grid<f32> {
-    let width = rows.first().map_or(0, |row| row.pixels.len());
-    Grid::from_fn(width, rows.len(), |x, y| value(&rows[y].pixels[x]) as f32)
+const fn single(value: f64) -> f32 {
+    value as f32
 }

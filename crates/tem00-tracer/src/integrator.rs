@@ -1,268 +1,211 @@
-use glam::{DVec2, DVec3};
+//! From camera samples to radiance: paths, all samples of a few pixels together, stage by stage.
 
+mod batch;
+mod lamps;
+mod lasers;
+mod rules;
+mod vertex;
+
+use self::{batch::Path, rules::Spectrum, vertex::Vertex};
+pub(crate) use self::{
+    batch::{Batch, CameraSample, LaserSample, Seen},
+    rules::PathRules,
+};
 use crate::{
-    Camera, Formulas, Intersector, Lamp, Laser, LocalFrame, Material, Ray, Scene, SpeckleModel,
-    film::Pixel, sampler::Sampler, speckle::SpecklePoint,
+    Camera, Hit, Intersector, Laser, Ray, Scene,
+    sampler::{Sequence, Stream, Use},
+    speckle::{SpeckleFrame, SpecklePoint},
 };
 
-/// The wavelength at which materials are evaluated for lamps, in metres: lamps are white and
-/// materials grey under them.
-const LAMP_WAVELENGTH: f64 = 550e-9;
+/// Vertices from which a path always goes on, before it may end by chance.
+const CERTAIN_BOUNCES: u32 = 1;
 
-/// Bounces that are always followed before a path may end by chance.
-const CERTAIN_BOUNCES: u32 = 2;
-
-/// Everything that one frame needs to turn an image point into radiance.
+/// Everything that one frame needs to turn camera samples into radiance.
 #[derive(Debug)]
 pub(crate) struct Integrator<'a> {
-    pub scene: &'a Scene,
-    pub camera: Camera,
-    pub intersector: &'a Intersector,
-    pub speckle: Option<&'a SpeckleModel>,
-    pub formulas: Formulas,
-    pub frame: u32,
+    scene: &'a Scene,
+    camera: Camera,
+    lasers: Vec<Laser>,
+    intersector: &'a Intersector,
+    speckle: Option<&'a SpeckleFrame<'a>>,
+    rules: PathRules,
+    sequence: Sequence,
+    spectrum: Spectrum,
+    /// The lamps that rays can meet, in the order of their shapes behind the surfaces.
+    lamp_shapes: Vec<usize>,
+    /// The lamps that rays meet where they meet nothing else.
+    environments: Vec<usize>,
 }
 
-/// A point of a surface, seen from one side.
-struct Vertex<'a> {
-    position: DVec3,
-    distance: f64,
-    surface: usize,
-    /// Local axes whose z is the normal on the side that is seen.
-    axes: LocalFrame,
-    /// The direction back along the path, in local axes.
-    wo: DVec3,
-    material: &'a Material,
-}
-
-impl Integrator<'_> {
-    /// Estimates the layers of laser `index` at the image point `pixel`.
-    pub(crate) fn laser_sample(&self, index: usize, pixel: DVec2, sampler: &mut Sampler) -> Pixel {
-        let laser = &self.scene.lasers[index];
-        // Find the surface that the camera sees.
-        let Some(vertex) = self.vertex(&self.camera.ray(pixel)) else {
-            return Pixel {
-                speckle: 1.0,
-                ..Pixel::default()
-            };
-        };
-        // Connect it to the laser: the first interaction, which stays coherent.
-        let irradiance = self.laser_irradiance(laser, &vertex);
-        let coherent = irradiance.map_or(0.0, |(irradiance, wi)| {
-            irradiance * vertex.material.evaluate(vertex.wo, wi, laser.wavelength())
-        });
-        // Look up the speckle of that interaction.
-        let speckle = self.speckle_factor(index, pixel, &vertex);
-        // Follow the light that has met other surfaces before: it carries no speckle.
-        let wavelength = laser.wavelength();
-        let incoherent = self.indirect(&vertex, wavelength, sampler, |vertex, _| {
-            self.laser_irradiance(laser, vertex)
-                .map_or(0.0, |(irradiance, wi)| {
-                    irradiance * vertex.material.evaluate(vertex.wo, wi, wavelength)
-                })
-        });
-        let area = self.camera.solid_angle_per_pixel(pixel) * vertex.distance.powi(2) / vertex.wo.z;
-        Pixel {
-            coherent_before: coherent,
-            speckle,
-            coherent_after: coherent * speckle,
-            incoherent,
-            power: irradiance.map_or(0.0, |(irradiance, _)| irradiance * area),
+impl<'a> Integrator<'a> {
+    /// Traces the paths of all camera samples of a batch.
+    pub(crate) fn trace(&self, batch: &mut Batch<'a>) {
+        self.start(batch);
+        while !batch.paths.is_empty() {
+            // Find the surfaces that the rays meet, and take the light of lamps met by chance.
+            self.arrive(batch);
+            // Look up the speckle of the first rough surface of each path.
+            self.look_up_speckle(batch);
+            // Connect the surfaces to all sources of light.
+            self.connect_to_lasers(batch);
+            self.connect_to_lamps(batch);
+            // Choose where the paths go on.
+            self.scatter(batch);
         }
     }
 
-    /// Estimates the radiance from the lamps at the image point `pixel`.
-    pub(crate) fn lamp_sample(&self, pixel: DVec2, sampler: &mut Sampler) -> Pixel {
-        let ray = self.camera.ray(pixel);
-        let Some(vertex) = self.vertex(&ray) else {
-            return Pixel {
-                incoherent: self.emission(&ray),
-                ..Pixel::default()
-            };
-        };
-        let direct = self.lamp_light(&vertex, sampler);
-        let indirect = self.indirect(&vertex, LAMP_WAVELENGTH, sampler, |vertex, sampler| {
-            self.lamp_light(vertex, sampler)
-        });
-        Pixel {
-            incoherent: direct + indirect,
-            ..Pixel::default()
+    /// Sends a ray from the camera for each sample.
+    fn start(&self, batch: &mut Batch<'a>) {
+        batch.prepare(self.lasers.len(), self.spectrum.wavelengths.len());
+        for (index, sample) in batch.samples.iter().enumerate() {
+            batch.paths.push(Path::of_sample(index));
+            batch
+                .rays
+                .push(self.camera.sample_ray(sample.pixel, sample.lens).ray);
         }
     }
 
-    /// Returns the surface point that a ray meets, or `None` where it meets nothing or a lamp.
-    fn vertex(&self, ray: &Ray) -> Option<Vertex<'_>> {
-        let hit = self.intersector.intersect(ray)?;
-        let surface = self.scene.surfaces.get(hit.surface)?;
-        let seen = if hit.normal.dot(ray.direction) > 0.0 {
-            -hit.normal
-        } else {
-            hit.normal
-        };
-        let axes = LocalFrame::from_normal(seen);
-        let wo = axes.to_local(-ray.direction);
-        // A ray along the surface sees no area of it.
-        (wo.z > 0.0).then_some(Vertex {
-            position: hit.position,
-            distance: hit.distance,
-            surface: hit.surface,
-            axes,
-            wo,
-            material: &surface.material,
-        })
-    }
-
-    /// Returns the laser's irradiance on the surface, in W/m², and its local direction.
-    fn laser_irradiance(&self, laser: &Laser, vertex: &Vertex<'_>) -> Option<(f64, DVec3)> {
-        let light = match self.formulas {
-            Formulas::Derived => laser.illuminate(vertex.position),
-            Formulas::AsPrinted => {
-                laser.illuminate_as_printed(vertex.position, vertex.axes.normal())
+    /// Moves every path to the surface that its ray meets; ends those that meet a lamp or nothing.
+    fn arrive(&self, batch: &mut Batch<'a>) {
+        batch.hits.clear();
+        batch.hits.resize(batch.rays.len(), None);
+        self.intersector
+            .intersect_batch(&batch.rays, &mut batch.hits);
+        batch.vertices.clear();
+        let mut kept = 0;
+        for index in 0..batch.paths.len() {
+            let (mut path, ray, hit) = (batch.paths[index], batch.rays[index], batch.hits[index]);
+            self.take_light(&path, &ray, hit.as_ref(), batch);
+            let Some(vertex) = hit.and_then(|hit| self.vertex(&ray, &hit)) else {
+                self.see_lamp(&path, &ray, hit.as_ref(), batch);
+                continue;
+            };
+            path.depth += 1;
+            if path.depth == 1 {
+                batch.samples[path.sample].seen = Some(self.seen(&vertex));
             }
-        }?;
-        let wi = vertex.axes.to_local(light.direction);
-        if wi.z <= 0.0 || !self.visible(vertex, light.source) {
+            if path.depth <= self.rules.max_depth {
+                batch.vertices.push(vertex);
+                batch.paths[kept] = path;
+                batch.rays[kept] = ray;
+                kept += 1;
+            }
+        }
+        batch.paths.truncate(kept);
+        batch.rays.truncate(kept);
+    }
+
+    /// Takes the light that a ray meets by chance: that of lamps and of sampled lasers.
+    fn take_light(&self, path: &Path, ray: &Ray, hit: Option<&Hit>, batch: &mut Batch<'a>) {
+        self.meet_lamps(path, ray, hit, batch);
+        self.meet_lasers(path, ray, hit, batch);
+    }
+
+    /// Returns the surface point that a ray meets, or `None` where it meets a lamp.
+    fn vertex(&self, ray: &Ray, hit: &Hit) -> Option<Vertex<'a>> {
+        let surface = self.scene.surfaces.get(hit.surface)?;
+        Vertex::new(ray, hit, &surface.material)
+    }
+
+    fn seen(&self, vertex: &Vertex<'_>) -> Seen {
+        let axis = -self.camera.axes().z_axis;
+        Seen {
+            depth: (vertex.position - self.camera.position()).dot(axis),
+            normal: vertex.seen_normal(),
+        }
+    }
+
+    /// A lamp that the camera sees has a place, too.
+    fn see_lamp(&self, path: &Path, ray: &Ray, hit: Option<&Hit>, batch: &mut Batch<'a>) {
+        let Some(hit) = hit.filter(|_| path.depth == 0) else {
+            return;
+        };
+        let axis = -self.camera.axes().z_axis;
+        batch.samples[path.sample].seen = Some(Seen {
+            depth: (hit.position - self.camera.position()).dot(axis),
+            normal: -hit.normal * hit.normal.dot(ray.direction).signum(),
+        });
+    }
+
+    /// Looks up the speckle factors where paths meet their first rough surface.
+    fn look_up_speckle(&self, batch: &mut Batch<'a>) {
+        let Some(speckle) = self.speckle else { return };
+        batch.speckle.clear();
+        for (path, vertex) in batch.paths.iter().zip(&batch.vertices) {
+            if path.rough == 0 && !vertex.is_specular() {
+                let point = SpecklePoint {
+                    pixel: batch.samples[path.sample].pixel,
+                    position: vertex.position,
+                    normal: vertex.seen_normal(),
+                    surface: vertex.surface,
+                };
+                batch.speckle.push(path.sample, point);
+            }
+        }
+        let lasers = self.lasers.len();
+        for laser in 0..lasers {
+            for (sample, factor) in batch.speckle.factors(speckle, laser) {
+                batch.laser_samples[sample * lasers + laser].speckle = factor;
+            }
+        }
+    }
+
+    /// Sends every path on in a direction drawn from its material, or ends it.
+    fn scatter(&self, batch: &mut Batch<'a>) {
+        let wavelengths = self.spectrum.wavelengths.len();
+        let mut kept = 0;
+        for index in 0..batch.paths.len() {
+            let (path, vertex) = (batch.paths[index], &batch.vertices[index]);
+            let stream = batch.samples[path.sample].stream;
+            let throughput = &mut batch.throughput[path.sample * wavelengths..][..wavelengths];
+            if let Some((next, ray)) = self.scattered(path, vertex, stream, throughput) {
+                batch.paths[kept] = next;
+                batch.rays[kept] = ray;
+                kept += 1;
+            }
+        }
+        batch.paths.truncate(kept);
+        batch.rays.truncate(kept);
+    }
+
+    fn scattered(
+        &self,
+        path: Path,
+        vertex: &Vertex<'a>,
+        stream: Stream,
+        throughput: &mut [f64],
+    ) -> Option<(Path, Ray)> {
+        let wavelengths = &self.spectrum.wavelengths;
+        // Choose the direction.
+        let u = self.sequence.pair(stream, Use::Scattering(path.depth));
+        let event = vertex.sample(u, *wavelengths.first()?)?;
+        if path.depth == self.rules.max_depth && !self.meets_light(event.specular) {
             return None;
         }
-        Some((light.irradiance * wi.z, wi))
-    }
-
-    /// Estimates the radiance of the lamps that the vertex reflects directly.
-    fn lamp_light(&self, vertex: &Vertex<'_>, sampler: &mut Sampler) -> f64 {
-        let lamps = self.scene.lamps.iter();
-        lamps
-            .map(|lamp| {
-                let (source, factor) = sample_lamp(lamp, vertex.position, sampler.uniform_2d());
-                let Some(direction) = (source - vertex.position).try_normalize() else {
-                    return 0.0;
-                };
-                let wi = vertex.axes.to_local(direction);
-                if factor <= 0.0 || wi.z <= 0.0 || !self.visible(vertex, source) {
-                    return 0.0;
-                }
-                let reflected = vertex.material.evaluate(vertex.wo, wi, LAMP_WAVELENGTH);
-                factor * reflected * wi.z
-            })
-            .sum()
-    }
-
-    /// Estimates the radiance that arrives at the vertex after other surfaces, reflected by it.
-    fn indirect(
-        &self,
-        first: &Vertex<'_>,
-        wavelength: f64,
-        sampler: &mut Sampler,
-        direct: impl Fn(&Vertex<'_>, &mut Sampler) -> f64,
-    ) -> f64 {
-        let mut radiance = 0.0;
-        let mut throughput = 1.0;
-        let mut next = self.bounce(first, wavelength, sampler, &mut throughput);
-        for bounces in 1_u32.. {
-            let Some(vertex) = next else { break };
-            // Connect the path to the light.
-            radiance += throughput * direct(&vertex, sampler);
-            // End long paths by chance, without bias.
-            if bounces >= CERTAIN_BOUNCES {
-                let survival = throughput.min(0.95);
-                if sampler.uniform() >= survival {
-                    break;
-                }
-                throughput /= survival;
+        // Weight each wavelength.
+        let mut largest = 0.0_f64;
+        for (throughput, &wavelength) in throughput.iter_mut().zip(wavelengths) {
+            *throughput *= vertex.weight(&event, wavelength);
+            largest = largest.max(*throughput);
+        }
+        // End long and dark paths by chance, without bias.
+        if path.depth > CERTAIN_BOUNCES {
+            let survival = largest.min(0.95);
+            if self.sequence.single(stream, Use::Survival(path.depth)) >= survival {
+                return None;
             }
-            // Choose where the path goes on.
-            next = self.bounce(&vertex, wavelength, sampler, &mut throughput);
+            throughput.iter_mut().for_each(|value| *value /= survival);
         }
-        radiance
-    }
-
-    /// Follows a direction drawn from the material to the next surface.
-    fn bounce(
-        &self,
-        vertex: &Vertex<'_>,
-        wavelength: f64,
-        sampler: &mut Sampler,
-        throughput: &mut f64,
-    ) -> Option<Vertex<'_>> {
-        let sample = vertex
-            .material
-            .sample(vertex.wo, sampler.uniform_2d(), wavelength)?;
-        *throughput *= sample.weight;
-        self.vertex(&Ray {
-            origin: self
-                .intersector
-                .leave(vertex.position, vertex.axes.normal()),
-            direction: vertex.axes.to_world(sample.wi),
-        })
-    }
-
-    /// Returns the radiance of the lamp that a ray meets, in W/(m² sr).
-    fn emission(&self, ray: &Ray) -> f64 {
-        let Some(hit) = self.intersector.intersect(ray) else {
-            return 0.0;
+        let next = Path {
+            rough: path.rough + u32::from(!event.specular),
+            scattering_pdf: (!event.specular).then_some(event.pdf),
+            ..path
         };
-        let areas = self.scene.lamps.iter().filter_map(|lamp| match lamp {
-            Lamp::Area { radiance, .. } => Some(*radiance),
-            Lamp::Point { .. } => None,
-        });
-        let lit_side = hit.normal.dot(ray.direction) < 0.0;
-        hit.surface
-            .checked_sub(self.scene.surfaces.len())
-            .filter(|_| lit_side)
-            .and_then(|index| areas.clone().nth(index))
-            .unwrap_or(0.0)
+        Some((next, vertex.leave(self.intersector, event.wi)))
     }
 
-    fn speckle_factor(&self, laser: usize, pixel: DVec2, vertex: &Vertex<'_>) -> f64 {
-        self.speckle.map_or(1.0, |model| {
-            model.factor(
-                self.scene,
-                laser,
-                &SpecklePoint {
-                    pixel,
-                    position: vertex.position,
-                    normal: vertex.axes.normal(),
-                    surface: vertex.surface,
-                },
-                self.frame,
-            )
-        })
-    }
-
-    fn visible(&self, vertex: &Vertex<'_>, source: DVec3) -> bool {
-        self.intersector
-            .visible(vertex.position, vertex.axes.normal(), source)
-    }
-}
-
-/// Draws a point of a lamp; returns it with the factor that turns f cos θ into radiance.
-fn sample_lamp(lamp: &Lamp, receiver: DVec3, u: [f64; 2]) -> (DVec3, f64) {
-    match lamp {
-        Lamp::Point { position, power } => {
-            let squared = position.distance_squared(receiver);
-            let intensity = power / (4.0 * core::f64::consts::PI);
-            (
-                *position,
-                if squared > 0.0 {
-                    intensity / squared
-                } else {
-                    0.0
-                },
-            )
-        }
-        Lamp::Area {
-            rectangle,
-            radiance,
-        } => {
-            let point = rectangle.point(u[0], u[1]);
-            let towards = receiver - point;
-            let squared = towards.length_squared();
-            let cosine = rectangle.normal().dot(towards) / squared.sqrt();
-            let factor = if squared > 0.0 && cosine > 0.0 {
-                radiance * cosine * rectangle.area() / squared
-            } else {
-                0.0
-            };
-            (point, factor)
-        }
+    /// Tells whether a ray from a surface can still find light where no surface may follow.
+    fn meets_light(&self, specular: bool) -> bool {
+        self.rays_meet_lamps(specular) || self.rays_meet_lasers()
     }
 }

@@ -1,8 +1,34 @@
+mod spherical_rectangle;
+
+use core::f64::consts::PI;
+
 use glam::DVec3;
 
-use crate::{Rectangle, TracerError};
+use self::spherical_rectangle::SphericalRectangle;
+use crate::{Environment, Rectangle, TracerError};
+
+/// The solid angle, in steradian, below which rectangles are sampled by area: its rounding error is
+/// 1e−11 of this.
+const SMALL_SOLID_ANGLE: f64 = 1e-4;
 
 /// A source of incoherent light, without colour of its own.
+///
+/// # Examples
+///
+/// A point lamp of 4π W gives 1 W/m² at 1 m, and a quarter of it at 2 m:
+///
+/// ```
+/// use core::f64::consts::PI;
+///
+/// use glam::DVec3;
+/// use tem00_tracer::Lamp;
+///
+/// let lamp = Lamp::point(DVec3::new(0.0, 0.0, 2.0), 4.0 * PI)?;
+/// let light = lamp.sample(DVec3::ZERO, [0.5, 0.5]).expect("light arrives");
+/// assert_eq!((light.direction, light.distance), (DVec3::Z, 2.0));
+/// assert!((light.radiance_over_pdf - 0.25).abs() < 1e-15); // W/m²
+/// # Ok::<(), tem00_tracer::TracerError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Lamp {
     /// A point that shines equally in all directions.
@@ -19,6 +45,23 @@ pub enum Lamp {
         /// The radiance, in W/(m² sr).
         radiance: f64,
     },
+    /// Light from all around, from beyond the scene.
+    Environment(Environment),
+}
+
+/// A direction from which a lamp sends light to a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LampSample {
+    /// The direction to the light, of unit length.
+    pub direction: DVec3,
+    /// The distance to the light, in metres; infinite for an environment.
+    pub distance: f64,
+    /// The radiance divided by the density `pdf`, in W/m²; for a point, the irradiance across the
+    /// direction.
+    pub radiance_over_pdf: f64,
+    /// The density with which the direction is drawn, per steradian; `None` for a point, which has
+    /// no other direction.
+    pub pdf: Option<f64>,
 }
 
 impl Lamp {
@@ -50,6 +93,124 @@ impl Lamp {
             radiance,
         })
     }
+
+    /// Draws a direction in which light comes to the point `from`, in metres, by two uniform
+    /// numbers in [0, 1).
+    ///
+    /// Rectangles are drawn uniformly over the solid angle that they cover, those below 1e−4 sr over
+    /// their area, and environments in proportion to their radiance. Returns `None` where no light
+    /// comes from the lamp. Whether the way is free is left to the caller.
+    pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<LampSample> {
+        match self {
+            Self::Point { position, power } => sample_point(*position - from, *power),
+            Self::Area {
+                rectangle,
+                radiance,
+            } => sample_rectangle(rectangle, *radiance, from, u),
+            Self::Environment(environment) => environment.sample(u),
+        }
+        .filter(|sample| sample.radiance_over_pdf > 0.0)
+    }
+
+    /// Returns the density with which [`sample`](Self::sample) draws `direction`, of unit length, at
+    /// the point `from`, in metres; per steradian.
+    ///
+    /// It is 0 for directions that miss the lamp, and for a point.
+    pub fn pdf(&self, from: DVec3, direction: DVec3) -> f64 {
+        match self {
+            Self::Point { .. } => 0.0,
+            Self::Area {
+                rectangle,
+                radiance,
+            } if *radiance > 0.0 => pdf_of_rectangle(rectangle, from, direction),
+            Self::Area { .. } => 0.0,
+            Self::Environment(environment) => environment.pdf(direction),
+        }
+    }
+
+    /// Returns the radiance, in W/(m² sr), that comes along a ray of this direction, of unit length,
+    /// which meets the lamp or, for an environment, nothing at all.
+    pub fn radiance_along(&self, direction: DVec3) -> f64 {
+        match self {
+            Self::Point { .. } => 0.0,
+            Self::Area {
+                rectangle,
+                radiance,
+            } => {
+                let lit_side = rectangle.normal().dot(direction) < 0.0;
+                if lit_side { *radiance } else { 0.0 }
+            }
+            Self::Environment(environment) => environment.radiance_along(direction),
+        }
+    }
+}
+
+fn sample_point(offset: DVec3, power: f64) -> Option<LampSample> {
+    let squared = offset.length_squared();
+    let direction = offset.try_normalize()?;
+    let irradiance = power / (4.0 * PI) / squared;
+    irradiance.is_finite().then_some(LampSample {
+        direction,
+        distance: squared.sqrt(),
+        radiance_over_pdf: irradiance,
+        pdf: None,
+    })
+}
+
+fn sample_rectangle(
+    rectangle: &Rectangle,
+    radiance: f64,
+    from: DVec3,
+    u: [f64; 2],
+) -> Option<LampSample> {
+    let seen = SphericalRectangle::new(rectangle, from)?;
+    let by_area = seen.solid_angle() < SMALL_SOLID_ANGLE;
+    let offset = if by_area {
+        rectangle.point(u[0], u[1]) - from
+    } else {
+        seen.sample(u)
+    };
+    let distance = offset.length();
+    let direction = offset.try_normalize()?;
+    let pdf = if by_area {
+        pdf_by_area(rectangle, direction, distance)
+    } else {
+        1.0 / seen.solid_angle()
+    };
+    (pdf > 0.0 && pdf.is_finite()).then(|| LampSample {
+        direction,
+        distance,
+        radiance_over_pdf: radiance / pdf,
+        pdf: Some(pdf),
+    })
+}
+
+fn pdf_of_rectangle(rectangle: &Rectangle, from: DVec3, direction: DVec3) -> f64 {
+    let Some(seen) = SphericalRectangle::new(rectangle, from) else {
+        return 0.0;
+    };
+    let towards = -direction.dot(rectangle.normal());
+    if towards <= 0.0 {
+        return 0.0;
+    }
+    let distance = (from - rectangle.centre()).dot(rectangle.normal()) / towards;
+    let on_plane = from + distance * direction - rectangle.centre();
+    let (half_u, half_v) = (rectangle.half_u(), rectangle.half_v());
+    let beside = on_plane.dot(half_u).abs() > half_u.length_squared()
+        || on_plane.dot(half_v).abs() > half_v.length_squared();
+    if beside {
+        0.0
+    } else if seen.solid_angle() < SMALL_SOLID_ANGLE {
+        pdf_by_area(rectangle, direction, distance)
+    } else {
+        1.0 / seen.solid_angle()
+    }
+}
+
+/// r² / (A cos θ), the density per steradian of points that are uniform over the area.
+fn pdf_by_area(rectangle: &Rectangle, direction: DVec3, distance: f64) -> f64 {
+    let cosine = -direction.dot(rectangle.normal());
+    distance * distance / (rectangle.area() * cosine)
 }
 
 fn check(parameter: &'static str, value: f64) -> Result<(), TracerError> {
@@ -62,3 +223,6 @@ fn check(parameter: &'static str, value: f64) -> Result<(), TracerError> {
         allowed: "finite and not negative",
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,11 +1,15 @@
+mod emission;
+mod wave;
+
 use glam::DVec3;
 use tem00_beam::{
     AstigmaticBeam, BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight,
     LineProfile, LocatedBeam, NextEvent, Placement, SpotLight, TabulatedLineLight, paper,
 };
-use tem00_decorrelation::{DecorrelationError, Wavefront};
+use tem00_decorrelation::RigidMotion;
 
-use crate::TracerError;
+pub use self::emission::{EmittedRay, SampledIllumination};
+use crate::{TracerError, Trajectory};
 
 /// What determines a [`Laser`].
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +59,7 @@ pub enum BeamShape {
 pub struct Laser {
     description: LaserDescription,
     source: Source,
+    trajectory: Trajectory,
 }
 
 /// The beam and the light prepared from it.
@@ -114,7 +119,45 @@ impl Laser {
         Ok(Self {
             description,
             source,
+            trajectory: Trajectory::default(),
         })
+    }
+
+    /// Returns the laser with a motion from frame to frame.
+    #[must_use]
+    pub fn with_trajectory(mut self, trajectory: Trajectory) -> Self {
+        self.trajectory = trajectory;
+        self
+    }
+
+    /// Returns how the laser moves from frame to frame.
+    pub const fn trajectory(&self) -> &Trajectory {
+        &self.trajectory
+    }
+
+    /// Returns the laser as it stands in `frame`.
+    #[must_use]
+    pub fn at(&self, frame: u32) -> Self {
+        self.moved(&self.trajectory.pose_at(frame))
+    }
+
+    /// Returns the laser carried along by a rigid motion: its aperture, its axis and the direction
+    /// of its line.
+    ///
+    /// The laser in its new place stands still.
+    #[must_use]
+    pub fn moved(&self, motion: &RigidMotion) -> Self {
+        let description = &self.description;
+        Self {
+            description: LaserDescription {
+                position: motion.point(description.position),
+                look_at: motion.point(description.look_at),
+                line_direction: motion.direction(description.line_direction),
+                ..description.clone()
+            },
+            source: self.source.moved(motion),
+            trajectory: Trajectory::default(),
+        }
     }
 
     /// Returns what the laser was created from.
@@ -164,37 +207,38 @@ impl Laser {
         })
     }
 
-    /// Returns the wavefront at `point`, whose unit direction to the source is `direction`.
-    ///
-    /// A spot's wavefront has the curvatures 1/R(z) of its beam along the line direction and across
-    /// it. A line's has, in the fan, that of a wave from the apex and, across the fan, that of the
-    /// focused beam.
-    pub(crate) fn wavefront_at(
-        &self,
-        point: DVec3,
-        direction: DVec3,
-    ) -> Result<Wavefront, DecorrelationError> {
-        let offset = point - self.description.position;
-        let along = |axis: [f64; 3]| offset.dot(DVec3::from_array(axis));
-        match &self.source {
-            Source::Spot { beam, light } => {
-                let [first, second] = beam.curvatures_at(along(light.ez));
-                Wavefront::astigmatic(direction, DVec3::from_array(light.ex), first, second)
-            }
-            Source::Line { line, light } => {
-                let depth = along(light.ez) + line.fan().apex_offset;
-                let slant = along(light.ex).hypot(depth);
-                let waist = line.waist_slant_distance_at(along(light.ex) / depth);
-                let across = line.focus().curvature_at(slant - waist);
-                let normal = DVec3::from_array(light.ey);
-                Wavefront::astigmatic(direction, normal, across, 1.0 / slant)
-            }
-        }
-    }
-
     /// Returns the unit direction from `point` to the middle of the aperture.
     pub(crate) fn direction_from(&self, point: DVec3) -> Option<DVec3> {
         (self.description.position - point).try_normalize()
+    }
+}
+
+impl Source {
+    fn moved(&self, motion: &RigidMotion) -> Self {
+        let point = |p: [f64; 3]| motion.point(p.into()).to_array();
+        let axis = |v: [f64; 3]| motion.direction(v.into()).to_array();
+        match self {
+            Self::Spot { beam, light } => Self::Spot {
+                beam: *beam,
+                light: SpotLight {
+                    origin: point(light.origin),
+                    ex: axis(light.ex),
+                    ey: axis(light.ey),
+                    ez: axis(light.ez),
+                    ..*light
+                },
+            },
+            Self::Line { line, light } => Self::Line {
+                line: line.clone(),
+                light: LineLight {
+                    origin: point(light.origin),
+                    ex: axis(light.ex),
+                    ey: axis(light.ey),
+                    ez: axis(light.ez),
+                    ..*light
+                },
+            },
+        }
     }
 }
 

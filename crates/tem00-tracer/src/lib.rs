@@ -63,12 +63,15 @@
 //! ```
 
 mod camera;
+mod environment;
 mod error;
 mod film;
+mod filter;
 mod integrator;
 mod intersector;
 mod lamp;
 mod laser;
+mod light_tracer;
 mod material;
 mod mesh;
 mod mesh_file;
@@ -80,23 +83,32 @@ mod scene;
 mod scene_file;
 mod shape;
 mod speckle;
+mod trajectory;
 
-pub use camera::{Camera, CameraDescription, MAXIMUM_PIXELS};
+pub use camera::{
+    Camera, CameraConnection, CameraDescription, CameraRay, MAXIMUM_PIXELS, RadialDistortion,
+    SensorTilt,
+};
+pub use environment::Environment;
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use intersector::{Intersector, Segment};
-pub use lamp::Lamp;
-pub use laser::{BeamShape, Laser, LaserDescription};
-pub use material::{BsdfSample, Material};
+pub use filter::{Filter, FilterSample, FilterSampler};
+pub use lamp::{Lamp, LampSample};
+pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
+pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use mesh::{MeshError, TriangleMesh};
 pub use mesh_file::{MeshFormat, read_mesh, read_mesh_bytes};
 pub use metal::Metal;
 pub use ray::{Frame as LocalFrame, Ray};
-pub use render::{Formulas, RenderError, RenderOptions, render_frame};
-pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface};
-pub use scene_file::{SceneError, parse_scene, read_scene};
+pub use render::{
+    Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, render_frame,
+};
+pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
+pub use scene_file::{SceneError, SceneFile, parse_scene, read_scene};
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
 pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
+pub use trajectory::{Keyframe, Rotation, Trajectory};
 
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};

@@ -1,19 +1,42 @@
+mod albedo;
+mod conductor;
+mod constructors;
+mod dielectric;
+mod diffuse;
 mod ggx;
+mod interreflection;
+mod optical_roughness;
+mod oren_nayar;
+mod plastic;
 
-use core::f64::consts::{FRAC_1_PI, TAU};
+use core::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
-use self::ggx::Ggx;
+pub use self::optical_roughness::{OpticalRoughness, OpticalRoughnessQuery};
+use self::{
+    conductor::Conductor,
+    dielectric::Dielectric,
+    diffuse::{cosine_pdf, sample_cosine},
+    interreflection::Interreflection,
+    oren_nayar::OrenNayar,
+    plastic::Plastic,
+};
 use crate::{Metal, TracerError, metal::fresnel_reflectance};
 
-/// How a surface reflects light.
+/// How a surface scatters light.
 ///
 /// Directions are unit vectors in a [local frame](crate::LocalFrame) whose z axis is the normal, and
-/// point away from the surface: `wo` to where the light goes, `wi` to where it comes from.
-/// Materials are isotropic, opaque and alike on both sides: what holds above the surface holds
-/// mirrored below it, and no light passes from one side to the other. Wavelengths are in metres, in
-/// vacuum.
+/// point away from the surface: `wo` to where the light goes, `wi` to where it comes from. What is
+/// carried from `wi` to `wo` is radiance. Wavelengths are in metres, in vacuum; directions are drawn
+/// alike for every wavelength, only what they carry differs.
+///
+/// Materials are isotropic. All but glass are opaque and alike on both sides: what holds above the
+/// surface holds mirrored below it, unless the material is [`one_sided`](Self::one_sided).
+///
+/// A material is either rough or *specular*: [mirrors](Self::mirror), [polished
+/// metal](Self::polished) and [glass](Self::dielectric) send light into single directions, which
+/// only [`sample`](Self::sample) finds. Their BSDF and density are 0 elsewhere.
 ///
 /// # Examples
 ///
@@ -24,17 +47,30 @@ use crate::{Metal, TracerError, metal::fresnel_reflectance};
 /// let paper = Material::lambertian(0.8)?;
 /// let f = paper.evaluate(DVec3::Z, DVec3::new(0.6, 0.0, 0.8), 650e-9);
 /// assert!((f - 0.8 / core::f64::consts::PI).abs() < 1e-15);
-/// # Ok::<(), tem00_tracer::TracerError>(())
+///
+/// // Window glass reflects 4 % of the light that meets it head-on.
+/// let glass = Material::dielectric(1.5)?;
+/// let reflected = glass.sample(DVec3::Z, [0.0, 0.5], 650e-9).ok_or("nothing to draw")?;
+/// assert_eq!(reflected.wi, DVec3::Z);
+/// assert!((reflected.pdf - 0.04).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    reflection: Reflection,
+    scattering: Scattering,
+    one_sided: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Reflection {
+enum Scattering {
     Lambertian { reflectance: f64 },
-    Conductor { metal: Metal, facets: Ggx },
+    OrenNayar(OrenNayar),
+    Conductor(Conductor),
+    Interreflection(Interreflection),
+    Plastic(Plastic),
+    Mirror { reflectance: f64 },
+    Polished { metal: Metal },
+    Dielectric(Dielectric),
 }
 
 /// A direction drawn from a material, with what an estimator needs of it.
@@ -42,65 +78,48 @@ enum Reflection {
 pub struct BsdfSample {
     /// The drawn direction, of unit length, in the local frame.
     pub wi: DVec3,
-    /// The BRDF times |cos θ| of `wi`, divided by `pdf`.
+    /// The BSDF times |cos θ| of `wi`, divided by `pdf`.
     pub weight: f64,
-    /// The density with which `wi` is drawn, per steradian.
+    /// The density with which `wi` is drawn, per steradian. For specular materials it is the
+    /// probability of the choice between reflection and refraction.
     pub pdf: f64,
+    /// Whether the material sends light into single directions only.
+    pub specular: bool,
+    /// The square of the index on the side of `wi`, relative to that on the side of `wo`; 1 for
+    /// reflection. `weight` is that of radiance carried from `wi` to `wo`; `weight · eta_squared` is
+    /// that of power carried from `wo` to `wi`, for paths that start at a light.
+    pub eta_squared: f64,
+}
+
+impl BsdfSample {
+    fn rough(wi: DVec3, weight: f64, pdf: f64) -> Self {
+        Self {
+            wi,
+            weight,
+            pdf,
+            specular: false,
+            eta_squared: 1.0,
+        }
+    }
+
+    fn mirrored(wo: DVec3, weight: f64, pdf: f64) -> Self {
+        Self {
+            wi: DVec3::new(-wo.x, -wo.y, wo.z),
+            weight,
+            pdf,
+            specular: true,
+            eta_squared: 1.0,
+        }
+    }
 }
 
 impl Material {
-    /// Creates a material that looks equally bright from every side and reflects the fraction
-    /// `reflectance` of the power that falls on it, at every wavelength.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the reflectance is not between 0 and 1.
-    pub fn lambertian(reflectance: f64) -> Result<Self, TracerError> {
-        if !(0.0..=1.0).contains(&reflectance) {
-            return Err(TracerError::OutOfRange {
-                parameter: "reflectance",
-                value: reflectance,
-                allowed: "between 0 and 1",
-            });
-        }
-        Ok(Self {
-            reflection: Reflection::Lambertian { reflectance },
-        })
-    }
-
-    /// Creates a rough metal: microfacets with the GGX distribution of slopes.
-    ///
-    /// `roughness` is the parameter α: facets over half of the surface are inclined by less than
-    /// arctan α. The reflectance of each facet is Fresnel's, without approximation. Light that would
-    /// meet a second facet is lost, as in all single-scattering models.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the roughness is not between 0.01 and 1, or if the index of a custom
-    /// metal is impossible. A smoother surface is a mirror with a lobe of about 1°, too narrow for
-    /// light and camera to meet in it by chance.
-    ///
-    /// # References
-    ///
-    /// - B. Walter et al., *Microfacet Models for Refraction through Rough Surfaces*, 2007, eq. 33.
-    /// - E. Heitz, *Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs*, 2014,
-    ///   eq. 72 and 99.
-    /// - E. Heitz, *Sampling the GGX Distribution of Visible Normals*, 2018.
-    pub fn conductor(metal: Metal, roughness: f64) -> Result<Self, TracerError> {
-        metal.check_index()?;
-        if !(0.01..=1.0).contains(&roughness) {
-            return Err(TracerError::OutOfRange {
-                parameter: "roughness",
-                value: roughness,
-                allowed: "between 0.01 and 1",
-            });
-        }
-        Ok(Self {
-            reflection: Reflection::Conductor {
-                metal,
-                facets: Ggx { alpha: roughness },
-            },
-        })
+    /// Returns whether light goes into single directions only, which [`sample`](Self::sample) finds.
+    pub const fn is_specular(&self) -> bool {
+        matches!(
+            self.scattering,
+            Scattering::Mirror { .. } | Scattering::Polished { .. } | Scattering::Dielectric(_)
+        )
     }
 
     /// Checks that the material is known at a wavelength, in metres.
@@ -112,51 +131,61 @@ impl Material {
     ///
     /// Returns an error if the material is a metal that was not measured at the wavelength.
     pub fn check_wavelength(&self, wavelength: f64) -> Result<(), TracerError> {
-        match self.reflection {
-            Reflection::Lambertian { .. } => Ok(()),
-            Reflection::Conductor { metal, .. } => metal.check_wavelength(wavelength),
+        match self.scattering {
+            Scattering::Conductor(Conductor { metal, .. })
+            | Scattering::Interreflection(Interreflection {
+                facets: Conductor { metal, .. },
+                ..
+            })
+            | Scattering::Polished { metal } => metal.check_wavelength(wavelength),
+            _ => Ok(()),
         }
     }
 
-    /// Returns the bidirectional reflectance distribution function, in 1/sr.
+    /// Returns the bidirectional scattering distribution function, in 1/sr.
     ///
-    /// The cosine of `wi` is not included. The value is 0 where `wo` and `wi` are on different
-    /// sides of the surface.
+    /// The cosine of `wi` is not included. The value is 0 for specular materials, and where `wo` and
+    /// `wi` are on different sides of the surface.
     pub fn evaluate(&self, wo: DVec3, wi: DVec3, wavelength: f64) -> f64 {
-        let Some((wo, wi)) = same_side(wo, wi) else {
+        let Some((wo, wi)) = self.same_side(wo, wi) else {
             return 0.0;
         };
-        match self.reflection {
-            Reflection::Lambertian { reflectance } => reflectance * FRAC_1_PI,
-            Reflection::Conductor { metal, facets } => {
-                let facet = (wo + wi).normalize();
-                let index = metal.nearest_refractive_index(wavelength);
-                let reflectance = fresnel_reflectance(wi.dot(facet).min(1.0), index);
-                reflectance * facets.density(facet) * facets.visibility(wo, wi)
+        match &self.scattering {
+            Scattering::Lambertian { reflectance } => reflectance * FRAC_1_PI,
+            Scattering::OrenNayar(facets) => facets.evaluate(wo, wi),
+            Scattering::Conductor(metal) => metal.evaluate(wo, wi, wavelength),
+            Scattering::Interreflection(metal) => metal.evaluate(wo, wi, wavelength),
+            Scattering::Plastic(plastic) => plastic.evaluate(wo, wi),
+            Scattering::Mirror { .. } | Scattering::Polished { .. } | Scattering::Dielectric(_) => {
+                0.0
             }
         }
     }
 
     /// Draws a direction from two uniform numbers in [0, 1).
     ///
-    /// Lambertian materials draw in proportion to the cosine, conductors from the facets that `wo`
-    /// sees. Returns `None` where the drawn facet reflects to the other side of the surface: such a
-    /// path carries nothing.
+    /// The directions do not depend on the wavelength. Diffuse materials draw in proportion to the
+    /// cosine or nearly so, metals and coats from the facets that `wo` sees, and specular materials
+    /// the directions they have. Returns `None` where the drawn facet reflects to the other side of
+    /// the surface, and for a `wo` along the surface: such a path carries nothing.
     pub fn sample(&self, wo: DVec3, u: [f64; 2], wavelength: f64) -> Option<BsdfSample> {
-        let above = facing_up(wo)?;
-        let mut sample = match self.reflection {
-            Reflection::Lambertian { reflectance } => sample_cosine(reflectance, u),
-            Reflection::Conductor { metal, facets } => {
-                let facet = facets.sample_visible(above, u);
-                let wi = 2.0 * above.dot(facet) * facet - above;
-                same_side(above, wi)?;
-                let index = metal.nearest_refractive_index(wavelength);
-                let reflectance = fresnel_reflectance(wi.dot(facet).clamp(0.0, 1.0), index);
-                BsdfSample {
-                    wi,
-                    weight: reflectance * facets.masking_ratio(above, wi),
-                    pdf: facets.reflected_pdf(above, facet),
-                }
+        let above = self.facing_up(wo)?;
+        let mut sample = match &self.scattering {
+            Scattering::Lambertian { reflectance } => {
+                let wi = sample_cosine(u);
+                BsdfSample::rough(wi, *reflectance, cosine_pdf(wi))
+            }
+            Scattering::OrenNayar(facets) => facets.sample(above, u),
+            Scattering::Conductor(metal) => metal.sample(above, u, wavelength)?,
+            Scattering::Interreflection(metal) => metal.sample(above, u, wavelength)?,
+            Scattering::Plastic(plastic) => plastic.sample(above, u)?,
+            Scattering::Mirror { reflectance } => BsdfSample::mirrored(above, *reflectance, 1.0),
+            Scattering::Polished { metal } => {
+                BsdfSample::mirrored(above, smooth_reflectance(*metal, above.z, wavelength), 1.0)
+            }
+            Scattering::Dielectric(glass) => {
+                let sample = glass.sample(wo, u[0]);
+                return (sample.wi.z > 0.0 || !self.one_sided).then_some(sample);
             }
         };
         if wo.z < 0.0 {
@@ -165,37 +194,62 @@ impl Material {
         Some(sample)
     }
 
-    /// Returns the density with which [`sample`](Self::sample) draws `wi`, per steradian.
+    /// Returns the density with which [`sample`](Self::sample) draws `wi`, per steradian; 0 for
+    /// specular materials.
     pub fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        let Some((wo, wi)) = same_side(wo, wi) else {
+        let Some((wo, wi)) = self.same_side(wo, wi) else {
             return 0.0;
         };
-        match self.reflection {
-            Reflection::Lambertian { .. } => wi.z * FRAC_1_PI,
-            Reflection::Conductor { facets, .. } => facets.reflected_pdf(wo, (wo + wi).normalize()),
+        match &self.scattering {
+            Scattering::Lambertian { .. } => cosine_pdf(wi),
+            Scattering::OrenNayar(facets) => facets.pdf(wo, wi),
+            Scattering::Conductor(metal) => metal.pdf(wo, wi),
+            Scattering::Interreflection(metal) => metal.pdf(wo, wi),
+            Scattering::Plastic(plastic) => plastic.pdf(wo, wi),
+            Scattering::Mirror { .. } | Scattering::Polished { .. } | Scattering::Dielectric(_) => {
+                0.0
+            }
         }
     }
-}
 
-fn sample_cosine(reflectance: f64, [u, v]: [f64; 2]) -> BsdfSample {
-    let radius = u.sqrt();
-    let (sin, cos) = (TAU * v).sin_cos();
-    let cosine = (1.0 - u).sqrt();
-    BsdfSample {
-        wi: DVec3::new(radius * cos, radius * sin, cosine),
-        weight: reflectance,
-        pdf: cosine * FRAC_1_PI,
+    /// Returns the weight that a direction drawn for `wo` has at another `wavelength`.
+    ///
+    /// One path serves all lights of a scene: it is drawn once and weighted for each of them.
+    pub fn reweighted(&self, wo: DVec3, sample: &BsdfSample, wavelength: f64) -> f64 {
+        match &self.scattering {
+            Scattering::Conductor(metal) => {
+                let above = self.same_side(wo, sample.wi);
+                above.map_or(0.0, |(wo, wi)| metal.weight(wo, wi, wavelength))
+            }
+            Scattering::Interreflection(_) => {
+                self.evaluate(wo, sample.wi, wavelength) * sample.wi.z.abs() / sample.pdf
+            }
+            Scattering::Polished { metal } => smooth_reflectance(*metal, wo.z.abs(), wavelength),
+            _ => sample.weight,
+        }
+    }
+
+    /// Returns both directions as if seen from above, or `None` unless they are on one lit side.
+    fn same_side(&self, wo: DVec3, wi: DVec3) -> Option<(DVec3, DVec3)> {
+        if wo.z * wi.z > 0.0 {
+            let above = self.facing_up(wo)?;
+            return Some((above, if wo.z > 0.0 { wi } else { -wi }));
+        }
+        None
+    }
+
+    /// Returns the direction as if seen from above, or `None` for one along the surface or behind a
+    /// one-sided one.
+    fn facing_up(&self, wo: DVec3) -> Option<DVec3> {
+        if wo.z > 0.0 {
+            return Some(wo);
+        }
+        (wo.z < 0.0 && !self.one_sided).then_some(-wo)
     }
 }
 
-/// Returns both directions as if seen from above, or `None` unless they are on one side.
-fn same_side(wo: DVec3, wi: DVec3) -> Option<(DVec3, DVec3)> {
-    (wo.z * wi.z > 0.0).then(|| if wo.z > 0.0 { (wo, wi) } else { (-wo, -wi) })
-}
-
-/// Returns the direction as if seen from above, or `None` for one along the surface.
-fn facing_up(wo: DVec3) -> Option<DVec3> {
-    (wo.z != 0.0).then(|| if wo.z > 0.0 { wo } else { -wo })
+fn smooth_reflectance(metal: Metal, cosine: f64, wavelength: f64) -> f64 {
+    fresnel_reflectance(cosine.min(1.0), metal.nearest_refractive_index(wavelength))
 }
 
 #[cfg(test)]

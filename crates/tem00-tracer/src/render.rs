@@ -1,48 +1,15 @@
-use core::{
-    error, fmt,
-    sync::atomic::{AtomicBool, Ordering},
-};
+mod options;
+mod pass;
 
-use glam::DVec2;
-use rayon::prelude::*;
+use core::{error, fmt, sync::atomic::AtomicBool};
 
+pub use self::options::{Crop, Formulas, LampEvents, LaserEvents, Method, RenderOptions};
+use self::pass::PathPass;
 use crate::{
-    Camera, Frame, Intersector, Lamp, Scene, Shape, SpeckleModel, TracerError,
-    film::{self, Pixel, Row},
+    Frame, Intersector, Scene, SpeckleModel, TracerError,
     integrator::Integrator,
-    sampler::{Sampler, Strata},
+    light_tracer::{LightJob, LightShare, LightTracer},
 };
-
-/// Which formulas a render uses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Formulas {
-    /// The physics as it was derived and checked for this project.
-    #[default]
-    Derived,
-    /// The formulas as printed in Bergmann et al. 2016, with their errors, for comparison.
-    AsPrinted,
-}
-
-/// How a frame is rendered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RenderOptions {
-    /// The number of camera samples per pixel, at least 1.
-    pub samples_per_pixel: u32,
-    /// The seed of the camera samples.
-    pub seed: u64,
-    /// The formulas.
-    pub formulas: Formulas,
-}
-
-impl Default for RenderOptions {
-    fn default() -> Self {
-        Self {
-            samples_per_pixel: 16,
-            seed: 0,
-            formulas: Formulas::Derived,
-        }
-    }
-}
 
 /// Why a frame was not rendered.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,58 +38,34 @@ impl From<TracerError> for RenderError {
     }
 }
 
-/// The light that one pass over the image follows.
-#[derive(Clone, Copy, Debug)]
-enum Pass {
-    Laser(usize),
-    Lamps,
-}
-
 impl Scene {
-    /// Returns the camera as it stands in `frame`.
-    pub fn camera_at(&self, frame: u32) -> Camera {
-        self.camera
-            .translated(f64::from(frame) * self.camera_displacement_per_frame)
-    }
-
-    /// Returns the shapes as they stand in `frame`: the surfaces, then the area lamps.
-    pub fn shapes_at(&self, frame: u32) -> Vec<Shape> {
-        let surfaces = self.surfaces.iter().map(|surface| {
-            surface
-                .shape
-                .translated(f64::from(frame) * surface.displacement_per_frame)
+    /// Returns the number of camera samples and light paths that one frame takes, of which
+    /// [`render_frame`] reports the progress; a target error may take more.
+    pub fn samples_per_frame(&self, options: &RenderOptions) -> u64 {
+        let whole = (self.camera.width() * self.camera.height()) as u64;
+        let cropped = options.crop.map_or(whole, |crop| {
+            (crop.width as u64).saturating_mul(crop.height as u64)
         });
-        let lamps = self.lamps.iter().filter_map(|lamp| match lamp {
-            Lamp::Area { rectangle, .. } => Some(Shape::Rectangle(*rectangle)),
-            Lamp::Point { .. } => None,
-        });
-        surfaces.chain(lamps).collect()
-    }
-
-    /// Returns the number of camera samples that one frame takes, over all its sources of light.
-    pub fn samples_per_frame(&self, samples_per_pixel: u32) -> u64 {
-        (self.camera.width() * self.camera.height()) as u64
-            * u64::from(samples_per_pixel)
-            * self.passes().len() as u64
-    }
-
-    fn passes(&self) -> Vec<Pass> {
-        let lasers = (0..self.lasers.len()).map(Pass::Laser);
-        let lamps = (!self.lamps.is_empty()).then_some(Pass::Lamps);
-        lasers.chain(lamps).collect()
+        let light_paths = match light_traced(self, options) {
+            Some(_) => whole * self.lasers.len() as u64,
+            None => 0,
+        };
+        u64::from(options.samples_per_pixel).saturating_mul(cropped + light_paths)
     }
 }
 
 /// Renders one frame, on the threads of the current rayon pool.
 ///
-/// Without a `speckle` model every speckle factor is 1. `progress` is told, from any thread, the
-/// number of camera samples done since its last call; once `cancel` is set, the render stops at the
-/// next sample. The result has the same bits for any number of threads.
+/// One pass over the image serves all lasers and lamps. Without a `speckle` model every speckle factor
+/// is 1. `progress` is told, from any thread, the number of camera samples done since its last call;
+/// once `cancel` is set, the render stops within a thousand samples per thread. The result has the
+/// same bits for any number of threads.
 ///
 /// # Errors
 ///
-/// Returns [`RenderError::Cancelled`] if `cancel` was set before the end, and an error if there are
-/// no samples or the geometry cannot be built.
+/// Returns [`RenderError::Cancelled`] if `cancel` was set before the end, and an error if an option
+/// is out of its range, if the geometry cannot be built, or if the layers exceed the memory that the
+/// system has available (Linux).
 ///
 /// # Panics
 ///
@@ -136,14 +79,6 @@ pub fn render_frame(
     progress: impl Fn(u64) + Sync,
     cancel: &AtomicBool,
 ) -> Result<Frame, RenderError> {
-    if options.samples_per_pixel == 0 {
-        return Err(TracerError::OutOfRange {
-            parameter: "samples_per_pixel",
-            value: 0.0,
-            allowed: "at least 1",
-        }
-        .into());
-    }
     assert!(
         frame < scene.render.frames,
         "frame {frame} of a scene with {}",
@@ -153,112 +88,68 @@ pub fn render_frame(
         speckle.is_none_or(|model| model.pattern_count() >= scene.lasers.len()),
         "the speckle model belongs to another scene"
     );
+    let area = options.area(&scene.camera)?;
     let intersector = Intersector::build(&scene.shapes_at(frame))?;
-    let integrator = Integrator {
-        scene,
-        camera: scene.camera_at(frame),
-        intersector: &intersector,
-        speckle,
-        formulas: options.formulas,
+    let speckle = speckle.map(|model| model.in_frame(scene, frame));
+    let integrator =
+        Integrator::new(scene, frame, &intersector, options).with_speckle(speckle.as_ref());
+    let pass = PathPass {
+        integrator: &integrator,
+        options,
         frame,
+        area,
+        progress: &progress,
+        cancel,
     };
-    let (mut lasers, mut lamps) = (Vec::new(), None);
-    for pass in scene.passes() {
-        let job = PassJob {
-            integrator: &integrator,
-            pass,
-            strata: Strata::new(options.samples_per_pixel),
-            seed: options.seed,
-            progress: &progress,
-            cancel,
+    let mut rendered = pass.render()?;
+    if let Some(share) = light_traced(scene, options) {
+        let tracer = LightTracer {
+            scene,
+            camera: integrator.camera(),
+            intersector: &intersector,
+            speckle: speckle.as_ref(),
+            frame,
+            max_depth: options.max_depth,
+            share,
+            area,
         };
-        let rows = job.rows()?;
-        match pass {
-            Pass::Laser(index) => {
-                lasers.push(film::laser_layers(scene.lasers[index].wavelength(), &rows));
-            }
-            Pass::Lamps => lamps = Some(film::lamp_layer(&rows)),
-        }
+        add_light_traced(&tracer, options, &mut rendered, &progress, cancel)?;
     }
-    let dark = || tem00_numerics::Grid::filled(scene.camera.width(), scene.camera.height(), 0.0);
-    Ok(Frame {
-        lasers,
-        lamps: lamps.unwrap_or_else(dark),
-    })
+    Ok(rendered)
 }
 
-/// One pass over the image.
-struct PassJob<'a, P> {
-    integrator: &'a Integrator<'a>,
-    pass: Pass,
-    strata: Strata,
-    seed: u64,
-    progress: &'a P,
-    cancel: &'a AtomicBool,
-}
-
-impl<P: Fn(u64) + Sync> PassJob<'_, P> {
-    fn rows(&self) -> Result<Vec<Row>, RenderError> {
-        let camera = &self.integrator.camera;
-        (0..camera.height())
-            .into_par_iter()
-            .map(|y| {
-                let pixels = (0..camera.width()).map(|x| self.pixel(x, y));
-                Ok(Row {
-                    pixels: pixels.collect::<Result<_, _>>()?,
-                })
-            })
-            .collect()
-    }
-
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "an image has at most 2²⁸ pixels"
-    )]
-    fn pixel(&self, x: usize, y: usize) -> Result<Pixel, RenderError> {
-        let mut sampler = Sampler::new(self.seed, self.stream(x, y));
-        let samples = self.strata.samples();
-        let mut mean = Pixel::default();
-        let mut unreported = 0;
-        for index in 0..samples {
-            if self.cancel.load(Ordering::Relaxed) {
-                return Err(RenderError::Cancelled);
-            }
-            let [u, v] = self.strata.position(index, sampler.uniform_2d());
-            let image_point = DVec2::new(x as f64 + u, y as f64 + v);
-            mean.add(
-                &self.sample(image_point, &mut sampler),
-                1.0 / f64::from(samples),
-            );
-            unreported += 1;
-            if unreported == REPORTED_AT_ONCE {
-                (self.progress)(unreported);
-                unreported = 0;
-            }
-        }
-        (self.progress)(unreported);
-        Ok(mean)
-    }
-
-    fn sample(&self, image_point: DVec2, sampler: &mut Sampler) -> Pixel {
-        match self.pass {
-            Pass::Laser(laser) => self.integrator.laser_sample(laser, image_point, sampler),
-            Pass::Lamps => self.integrator.lamp_sample(image_point, sampler),
-        }
-    }
-
-    /// Every pixel of every pass of every frame has a stream of random numbers of its own.
-    fn stream(&self, x: usize, y: usize) -> u64 {
-        let scene = self.integrator.scene;
-        let pass = match self.pass {
-            Pass::Laser(index) => index,
-            Pass::Lamps => scene.lasers.len(),
-        } as u64;
-        let passes = scene.lasers.len() as u64 + 1;
-        let pixel = (y * self.integrator.camera.width() + x) as u64;
-        (u64::from(self.integrator.frame) * passes + pass) << 28 | pixel
+/// Returns which light is followed from the lasers, if any.
+///
+/// Paths from the camera find all but the light that a mirror or glass was the first to meet; where
+/// they look for the beams themselves, they find that, too.
+fn light_traced(scene: &Scene, options: &RenderOptions) -> Option<LightShare> {
+    match (options.method, options.laser_events) {
+        (Method::Light, _) => Some(LightShare::All),
+        (Method::Path, LaserEvents::Beam) => scene
+            .has_specular_surfaces()
+            .then_some(LightShare::SpecularFirst),
+        (Method::Path, LaserEvents::Sampled) => None,
     }
 }
 
-/// The most samples of a pixel that are done before progress is told.
-const REPORTED_AT_ONCE: u64 = 1 << 12;
+/// Adds the light that is followed from the lasers: as many paths for each as the whole image has
+/// camera samples.
+fn add_light_traced(
+    tracer: &LightTracer<'_>,
+    options: &RenderOptions,
+    frame: &mut Frame,
+    progress: &(impl Fn(u64) + Sync),
+    cancel: &AtomicBool,
+) -> Result<(), RenderError> {
+    let pixels = tracer.camera.width() * tracer.camera.height();
+    let paths = pixels as u64 * u64::from(options.samples_per_pixel);
+    for (laser, layers) in frame.lasers.iter_mut().enumerate() {
+        let job = LightJob {
+            laser,
+            paths,
+            seed: options.seed,
+        };
+        tracer.trace(&job, progress, cancel)?.add_to(layers);
+    }
+    Ok(())
+}

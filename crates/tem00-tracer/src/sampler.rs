@@ -1,124 +1,188 @@
-use rand_chacha::ChaCha8Rng;
-use rand_core::{Rng, SeedableRng};
+#[cfg(test)]
+mod independent;
+mod strata;
 
-/// The random numbers of one pixel: the same for any number of threads.
-#[derive(Clone, Debug)]
-pub(crate) struct Sampler {
-    generator: ChaCha8Rng,
-}
+#[cfg(test)]
+pub(crate) use self::independent::Sampler;
+pub(crate) use self::strata::Strata;
 
-impl Sampler {
-    /// Starts the stream `stream` of the seed `seed`.
-    pub(crate) fn new(seed: u64, stream: u64) -> Self {
-        let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        generator.set_stream(stream);
-        Self { generator }
-    }
+/// The most points that a pixel's samples share before they start afresh.
+const MOST_POINTS: u32 = 1 << 12;
 
-    /// Returns a number in [0, 1) with 53 random bits.
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "53 bits are exactly representable"
-    )]
-    pub(crate) fn uniform(&mut self) -> f64 {
-        (self.generator.next_u64() >> 11) as f64 * (0.5 * f64::EPSILON)
-    }
-
-    /// Returns two numbers in [0, 1).
-    pub(crate) fn uniform_2d(&mut self) -> [f64; 2] {
-        [self.uniform(), self.uniform()]
-    }
-}
-
-/// The cells of a pixel in which its samples lie, one in each: equal areas, nearly square.
+/// A set of points that fills the unit square evenly, scrambled anew for every pixel and every use.
 ///
-/// The cells stand in rows, of which some hold one cell more than others and are as much higher.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Strata {
-    samples: u32,
-    rows: u32,
+/// The points are the first two dimensions of Sobol's sequence: of the first 2ᵏ, each rectangle of
+/// area 2⁻ᵏ with sides that are halves of halves holds exactly one. Owen's scrambling keeps that and
+/// makes each point uniform over the square, so that every estimate is unbiased; the points of
+/// different uses are in independent orders.
+///
+/// # References
+///
+/// - I. M. Sobol', *On the Distribution of Points in a Cube and the Approximate Evaluation of
+///   Integrals*, 1967.
+/// - A. B. Owen, *Randomly Permuted (t, m, s)-Nets and (t, s)-Sequences*, 1995.
+/// - B. Burley, *Practical Hash-based Owen Scrambling*, 2020.
+#[derive(Clone, Debug)]
+pub(crate) struct Sequence {
+    /// The coordinates with their bits in reverse, as the scrambling takes them.
+    points: Vec<[u32; 2]>,
 }
 
-impl Strata {
-    /// Divides a pixel into `samples` cells, at least one.
+/// The random numbers of one camera sample: the same for any number of threads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Stream {
+    key: u64,
+    /// The number of the sample among those that share the points.
+    index: u32,
+}
+
+/// What a pair of random numbers is for. Different uses have independent numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Use {
+    /// The place in the pixel.
+    Pixel,
+    /// The place in the pupil.
+    Lens,
+    /// The direction in which a path goes on from its vertex of this number.
+    Scattering(u32),
+    /// Whether a path goes on from its vertex of this number.
+    Survival(u32),
+    /// The place on a lamp: number of the vertex, number of the lamp.
+    Lamp(u32, u32),
+    /// The direction towards a laser: number of the vertex, number of the laser.
+    Laser(u32, u32),
+}
+
+impl Use {
+    const fn code(self) -> u64 {
+        const fn pack(kind: u64, vertex: u32, light: u32) -> u64 {
+            kind << 61 | (vertex as u64) << 29 | light as u64
+        }
+        match self {
+            Self::Pixel => pack(0, 0, 0),
+            Self::Lens => pack(1, 0, 0),
+            Self::Scattering(vertex) => pack(2, vertex, 0),
+            Self::Survival(vertex) => pack(3, vertex, 0),
+            Self::Lamp(vertex, lamp) => pack(4, vertex, lamp),
+            Self::Laser(vertex, laser) => pack(5, vertex, laser),
+        }
+    }
+}
+
+impl Sequence {
+    /// Prepares the points for pixels of `samples` samples.
     pub(crate) fn new(samples: u32) -> Self {
-        let root = samples.isqrt().max(1);
-        // Of the two nearest squares, the nearer one gives the rows.
-        let up = u64::from(samples) > u64::from(root) * (u64::from(root) + 1);
+        let count = samples.clamp(1, MOST_POINTS).next_power_of_two();
+        let points = (0..count).map(|index| [index, sobol_second(index).reverse_bits()]);
         Self {
-            samples,
-            rows: root + u32::from(up),
+            points: points.collect(),
         }
     }
 
-    /// Returns the number of cells.
-    pub(crate) const fn samples(self) -> u32 {
-        self.samples
+    /// Returns the random numbers of sample `index` of the pixel that has the key `pixel`.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "there are at most 2¹² points"
+    )]
+    pub(crate) fn stream(&self, pixel: u64, index: u32) -> Stream {
+        let count = self.points.len() as u32;
+        Stream {
+            key: mixed(pixel ^ mixed(u64::from(index / count))),
+            index: index % count,
+        }
     }
 
-    /// Returns the position in the pixel, in [0, 1)², of a point `u` of cell `index`.
-    pub(crate) fn position(self, index: u32, u: [f64; 2]) -> [f64; 2] {
-        let start = |row: u64| row * u64::from(self.samples) / u64::from(self.rows);
-        // The last row that starts at or before the cell.
-        let row = (u64::from(index) * u64::from(self.rows) + u64::from(self.rows) - 1)
-            / u64::from(self.samples);
-        let row = if start(row) > u64::from(index) {
-            row - 1
-        } else {
-            row
-        };
-        let (first, next) = (start(row), start(row + 1));
-        let cells = (next - first) as f64;
+    /// Returns two numbers in (0, 1).
+    ///
+    /// Those of one use fill the square evenly over the samples of a pixel.
+    pub(crate) fn pair(&self, stream: Stream, purpose: Use) -> [f64; 2] {
+        let [order, first, second] = seeds(stream, purpose);
+        let [x, y] = self.points[self.shuffled(stream.index, order)];
         [
-            ((u64::from(index) - first) as f64 + u[0]) / cells,
-            (first as f64 + cells * u[1]) / f64::from(self.samples),
+            fraction(scrambled(x, first).reverse_bits()),
+            fraction(scrambled(y, second).reverse_bits()),
         ]
     }
+
+    /// Returns one number in (0, 1).
+    pub(crate) fn single(&self, stream: Stream, purpose: Use) -> f64 {
+        self.pair(stream, purpose)[0]
+    }
+
+    /// Puts the points into another order, in which each half of the points still fills the square.
+    fn shuffled(&self, index: u32, seed: u32) -> usize {
+        let mask = self.points.len() - 1;
+        scrambled(index.reverse_bits(), seed).reverse_bits() as usize & mask
+    }
+}
+
+/// Returns two numbers in (0, 1) that are independent from sample to sample.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the words of the number are taken one by one"
+)]
+pub(crate) fn independent_pair(stream: Stream, purpose: Use) -> [f64; 2] {
+    let bits = mixed(mixed(stream.key ^ purpose.code()) ^ u64::from(stream.index));
+    [fraction(bits as u32), fraction((bits >> 32) as u32)]
+}
+
+/// Combines the seed of a render with the numbers of a frame, a pixel and a round of samples.
+pub(crate) fn pixel_key(seed: u64, [frame, pixel, round]: [u64; 3]) -> u64 {
+    let key = mixed(mixed(seed) ^ frame);
+    mixed(mixed(key ^ pixel.rotate_left(16)) ^ round.rotate_left(48))
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the words of the numbers are taken one by one"
+)]
+fn seeds(stream: Stream, purpose: Use) -> [u32; 3] {
+    let one = mixed(stream.key ^ purpose.code());
+    let two = mixed(one);
+    [one as u32, (one >> 32) as u32, two as u32]
+}
+
+/// Returns the middle of one of 2³² equal intervals of (0, 1).
+fn fraction(bits: u32) -> f64 {
+    (f64::from(bits) + 0.5) / (1_u64 << 32) as f64
+}
+
+/// Returns the second coordinate of a point of Sobol's sequence, in units of 2⁻³².
+///
+/// The columns of its generator matrix are those of Pascal's triangle modulo 2.
+fn sobol_second(index: u32) -> u32 {
+    let mut column = 1_u32 << 31;
+    let mut value = 0;
+    for bit in 0..u32::BITS {
+        if index >> bit & 1 == 1 {
+            value ^= column;
+        }
+        column ^= column >> 1;
+    }
+    value
+}
+
+/// Scrambles a number by Owen's method, its bits in reverse: each bit is flipped, or not, by chance
+/// that depends on the bits below it.
+///
+/// The hash is that of S. Laine and T. Karras, *Stratified Sampling for Stochastic Transparency*,
+/// 2011, with the constants of Burley 2020.
+const fn scrambled(reversed: u32, seed: u32) -> u32 {
+    let mut x = reversed.wrapping_add(seed);
+    x ^= x.wrapping_mul(0x6c50_b47c);
+    x ^= x.wrapping_mul(0xb82f_1e52);
+    x ^= x.wrapping_mul(0xc7af_e638);
+    x ^ x.wrapping_mul(0x8d22_f6e6)
+}
+
+/// Spreads neighbouring numbers over all: the generator SplitMix64 of G. L. Steele, D. Lea and
+/// C. H. Flood, *Fast Splittable Pseudorandom Number Generators*, 2014.
+const fn mixed(number: u64) -> u64 {
+    let mut bits = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^ (bits >> 31)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cells_have_equal_areas_and_cover_the_pixel() {
-        for samples in [1, 2, 3, 5, 7, 12, 16, 17, 31, 256, 257] {
-            let strata = Strata::new(samples);
-            let mut area = 0.0;
-            for index in 0..samples {
-                let [left, top] = strata.position(index, [0.0, 0.0]);
-                let [right, bottom] = strata.position(index, [1.0, 1.0]);
-                let (width, height) = (right - left, bottom - top);
-                let cell = width * height * f64::from(samples);
-                assert!(
-                    (cell - 1.0).abs() < 1e-12,
-                    "cell {index} of {samples}: {cell}"
-                );
-                assert!(left >= 0.0 && right < 1.0 + 1e-12, "{left}, {right}");
-                assert!((0.3..3.1).contains(&(width / height)), "{width} × {height}");
-                area += cell / f64::from(samples);
-            }
-            assert!((area - 1.0).abs() < 1e-12, "{samples}");
-            let [_, bottom] = strata.position(samples - 1, [0.0, 1.0]);
-            assert!((bottom - 1.0).abs() < 1e-12, "{samples} end at {bottom}");
-        }
-    }
-
-    #[test]
-    fn squares_make_a_square_grid() {
-        let strata = Strata::new(16);
-        let [x, y] = strata.position(6, [0.5, 0.5]);
-        assert!(
-            (x - 2.5 / 4.0).abs() < 1e-15 && (y - 1.5 / 4.0).abs() < 1e-15,
-            "{x}, {y}"
-        );
-    }
-
-    #[test]
-    fn streams_of_a_seed_differ_and_repeat() {
-        let first = |seed, stream| Sampler::new(seed, stream).uniform().to_bits();
-        assert_eq!(first(1, 2), first(1, 2));
-        assert_ne!(first(1, 2), first(1, 3));
-        assert_ne!(first(1, 2), first(2, 2));
-    }
-}
+mod tests;

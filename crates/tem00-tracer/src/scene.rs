@@ -1,18 +1,38 @@
-use glam::DVec3;
-
-use crate::{Camera, Lamp, Laser, Material, Shape};
+use crate::{Camera, Crop, Lamp, Laser, LaserEvents, Material, Method, Shape, Trajectory};
 
 /// An object: a shape made of a material, perhaps moving from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// The name by which reports call it.
     pub name: String,
-    /// The shape, in world coordinates, in the first frame.
+    /// The shape, in world coordinates, before the trajectory moves it.
     pub shape: Shape,
     /// The material.
     pub material: Material,
-    /// How far it moves from each frame to the next, in metres.
-    pub displacement_per_frame: DVec3,
+    /// How it moves from frame to frame.
+    pub trajectory: Trajectory,
+    /// What its speckle is made of.
+    pub speckle: SurfaceSpeckle,
+    /// The standard deviation of the height of its microscopic relief, in metres, if it is known.
+    pub rms_height: Option<f64>,
+}
+
+/// What the speckle of a surface is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceSpeckle {
+    /// The number of independent patterns of equal power that add up, at least 1.
+    pub patterns: u32,
+    /// The degree of polarisation of the scattered light, from 0 to 1.
+    pub polarisation: f64,
+}
+
+impl Default for SurfaceSpeckle {
+    fn default() -> Self {
+        Self {
+            patterns: 1,
+            polarisation: 1.0,
+        }
+    }
 }
 
 /// Choices about the speckle patterns; what is `None` is chosen from camera, image and motion.
@@ -40,7 +60,7 @@ impl Default for SpeckleSettings {
 }
 
 /// Choices about the image; the command line may overrule them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderSettings {
     /// The number of camera samples per pixel.
     pub samples_per_pixel: u32,
@@ -48,6 +68,18 @@ pub struct RenderSettings {
     pub seed: u64,
     /// The number of frames.
     pub frames: u32,
+    /// The frame whose speckle the others' has moved and changed from.
+    pub reference_frame: u32,
+    /// The most surfaces that light may meet between source and camera; `None` for no limit.
+    pub max_depth: Option<u32>,
+    /// How light is followed.
+    pub method: Method,
+    /// How the lasers are sampled from a surface.
+    pub laser_events: LaserEvents,
+    /// The part of the image that is rendered; `None` for all.
+    pub crop: Option<Crop>,
+    /// The relative standard error of a pixel at which it gets no more samples.
+    pub target_error: Option<f64>,
 }
 
 impl Default for RenderSettings {
@@ -56,20 +88,26 @@ impl Default for RenderSettings {
             samples_per_pixel: 16,
             seed: 0,
             frames: 1,
+            reference_frame: 0,
+            max_depth: None,
+            method: Method::default(),
+            laser_events: LaserEvents::default(),
+            crop: None,
+            target_error: None,
         }
     }
 }
 
 /// Everything that is rendered, validated.
 ///
-/// The first frame is the reference: the speckle of later frames has moved and changed by what has
-/// moved since.
+/// One frame is the reference: the speckle of the others has moved and changed by what has moved
+/// between.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The camera in the first frame.
+    /// The camera, before its trajectory moves it.
     pub camera: Camera,
-    /// How far the camera moves from each frame to the next, in metres.
-    pub camera_displacement_per_frame: DVec3,
+    /// How the camera moves from frame to frame.
+    pub camera_trajectory: Trajectory,
     /// The lasers.
     pub lasers: Vec<Laser>,
     /// The objects.
@@ -80,4 +118,43 @@ pub struct Scene {
     pub speckle: SpeckleSettings,
     /// Choices about the image.
     pub render: RenderSettings,
+}
+
+impl Scene {
+    /// Returns the camera as it stands in `frame`.
+    pub fn camera_at(&self, frame: u32) -> Camera {
+        self.camera.moved(&self.camera_trajectory.pose_at(frame))
+    }
+
+    /// Returns laser `index` as it stands in `frame`.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `index < lasers.len()`.
+    pub fn laser_at(&self, index: usize, frame: u32) -> Laser {
+        self.lasers[index].at(frame)
+    }
+
+    /// Returns the shapes as they stand in `frame`: the surfaces, then the area lamps, which stand
+    /// still.
+    pub fn shapes_at(&self, frame: u32) -> Vec<Shape> {
+        let surfaces = self
+            .surfaces
+            .iter()
+            .map(|surface| surface.shape.moved(&surface.trajectory.pose_at(frame)));
+        let lamps = self.lamps.iter().filter_map(|lamp| match lamp {
+            Lamp::Area { rectangle, .. } => Some(Shape::Rectangle(*rectangle)),
+            Lamp::Point { .. } | Lamp::Environment(_) => None,
+        });
+        surfaces.chain(lamps).collect()
+    }
+
+    /// Returns whether the speckle of laser `laser` on surface `surface` may differ between two
+    /// frames: whether surface, camera or laser move.
+    pub(crate) fn speckle_moves(&self, laser: usize, surface: usize) -> bool {
+        self.render.frames > 1
+            && !(self.camera_trajectory.is_still()
+                && self.lasers[laser].trajectory().is_still()
+                && self.surfaces[surface].trajectory.is_still())
+    }
 }

@@ -268,6 +268,19 @@ impl<T: Real> PhaseSpace<T> for AstigmaticLight<T> {
         }
     }
 
+    fn slope_pdf(&self, local: [T; 3], slope: [T; 2]) -> T {
+        let m = self.position_per_slope_at(local[2]);
+        let (_, determinant) = self.radii_sq(m);
+        let mean = self.flow(local).slope;
+        let deviation = [slope[0] - mean[0], slope[1] - mean[1]];
+        let factors = self.conditional_slope(m, determinant);
+        let radius_sq = factors.norm_sq_inverse(deviation);
+        let sec = secant(slope);
+        let density =
+            T::of(FRAC_2_PI) * factors.root_determinant() * (T::of(-2.0) * radius_sq).exp();
+        density * sec * sec * sec
+    }
+
     fn draw(&self, u: [T; 4]) -> ([T; 2], [T; 2]) {
         let [ux, uy, ux_slope, uy_slope] = u.map(standard_normal);
         let slope = self.slope.factors().spread([ux_slope, uy_slope]);

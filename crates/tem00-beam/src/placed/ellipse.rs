@@ -130,6 +130,12 @@ impl<T: Real> Factors<T> {
         v[0] * v[0] / self.x + across * across / self.y
     }
 
+    /// Returns `vᵀ M v`.
+    pub(super) fn norm_sq_inverse(&self, v: [T; 2]) -> T {
+        let along = v[0] + self.tilt * v[1];
+        self.x * along * along + self.y * v[1] * v[1]
+    }
+
     /// Returns `M⁻¹ v`.
     #[inline(always)]
     pub(super) fn solve(&self, v: [T; 2]) -> [T; 2] {

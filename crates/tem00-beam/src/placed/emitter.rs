@@ -113,6 +113,23 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
         })
     }
 
+    /// Returns the density, per steradian, with which
+    /// [`next_event_sampled`](Self::next_event_sampled) draws the unit vector `wi` towards the light
+    /// at `p`; 0 outside the cut-off, behind the aperture and for a `wi` along the axis.
+    ///
+    /// Multiple importance sampling needs it for a direction that another technique has drawn. The
+    /// product with the `value` of the event in that direction is the radiance along it.
+    #[inline]
+    fn next_event_pdf(&self, p: [T; 3], wi: [T; 3]) -> T {
+        let frame = self.frame();
+        let local = frame.local_from_world_point(p);
+        let slope = slope_of(frame.local_from_world_vector(towards_light(wi)));
+        match (self.lit_flow(local), slope) {
+            (Some(_), Some(slope)) => self.slope_pdf(local, slope),
+            _ => T::ZERO,
+        }
+    }
+
     /// Draws a ray that leaves the aperture.
     ///
     /// Every ray stands for the same power, so straight rays reproduce the irradiance at every

@@ -99,6 +99,30 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         }
     }
 
+    fn slope_pdf(&self, [x, y, z]: [T; 3], slope: [T; 2]) -> T {
+        let line = self.line();
+        let z = z + line.apex_offset;
+        let sec_fan = secant(slope[0]);
+        let s = slope[1] / sec_fan;
+        let sec_elevation = secant(s);
+        // In the fan plane the ray passes the apex at the distance b, and the point lies `along`
+        // behind the foot of the perpendicular.
+        let b = (x - slope[0] * z) / sec_fan;
+        let along = (x * slope[0] + z) / sec_fan;
+        if along <= T::ZERO {
+            return T::ZERO;
+        }
+        let (mean, sigma_s) = line.axis_towards(sec_fan).conditional_slope(y, along);
+        let density =
+            normal_density(b, T::of(0.5) * line.source_radius) * normal_density(s - mean, sigma_s);
+        // A point next to infinity is `along` without bound, where 0 meets infinity.
+        if density > T::ZERO {
+            density * along * sec_elevation * sec_elevation * sec_elevation
+        } else {
+            T::ZERO
+        }
+    }
+
     fn draw(&self, u: [T; 4]) -> ([T; 2], [T; 2]) {
         let line = self.line();
         let (sigma_y, sigma_s) = line.y.deviations();

@@ -19,6 +19,9 @@ pub trait PhaseSpace<T: Real> {
     /// Draws a slope from the conditional density at a point.
     fn sample_slope(&self, local: [T; 3], u: [T; 2]) -> SlopeSample<T>;
 
+    /// Returns the density of [`sample_slope`](Self::sample_slope), per steradian.
+    fn slope_pdf(&self, local: [T; 3], slope: [T; 2]) -> T;
+
     /// Draws a point of the aperture plane and a slope.
     fn draw(&self, u: [T; 4]) -> ([T; 2], [T; 2]);
 

@@ -218,6 +218,14 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
         }
     }
 
+    fn slope_pdf(&self, [x, y, z]: [T; 3], slope: [T; 2]) -> T {
+        let (mean_x, sigma_x) = self.x.conditional_slope(x, z);
+        let (mean_y, sigma_y) = self.y.conditional_slope(y, z);
+        let deviation = [slope[0] - mean_x, slope[1] - mean_y];
+        let sec = secant(slope);
+        joint_normal_density(deviation, [sigma_x, sigma_y]) * sec * sec * sec
+    }
+
     fn draw(&self, u: [T; 4]) -> ([T; 2], [T; 2]) {
         let along = |axis: &Axis<T>, u_position: T, u_slope: T| {
             let (sigma_position, sigma_slope) = axis.deviations();

@@ -1,6 +1,7 @@
 use tem00_beam::{AngularProfile, FocusCurve};
 
 use super::*;
+use crate::Ray;
 
 /// A line of 60° in focus at 0.3 m, from the origin along z.
 fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {
@@ -26,6 +27,14 @@ fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {
     .unwrap()
 }
 
+/// By how much the light of a laser turns along one of two directions per length along the other, in
+/// 1/m: a component of the curvature of its wavefront.
+fn curvature(laser: &Laser, point: DVec3, [along, turned]: [DVec3; 2]) -> f64 {
+    const STEP: f64 = 1e-7;
+    let wave = |part: f64| laser.wave_direction_at(point + part * along).unwrap();
+    (wave(-STEP) - wave(STEP)).dot(turned) / (2.0 * STEP)
+}
+
 #[test]
 fn the_wavefront_across_a_line_is_flat_where_its_focus_curve_says() {
     let slope = 0.4_f64;
@@ -38,11 +47,7 @@ fn the_wavefront_across_a_line_is_flat_where_its_focus_curve_says() {
     ];
     for (focus_curve, flat, curved) in cases {
         let laser = line(LineProfile::GaussianTan, focus_curve);
-        let across = [flat, curved].map(|point| {
-            let direction = laser.illuminate(point).unwrap().direction;
-            let curvature = laser.wavefront_at(point, direction).unwrap().curvature();
-            DVec3::Y.dot(curvature * DVec3::Y)
-        });
+        let across = [flat, curved].map(|point| curvature(&laser, point, [DVec3::Y, DVec3::Y]));
         assert!(across[0].abs() < 1e-9, "{focus_curve:?}: {across:?}");
         assert!(across[1].abs() > 1.0, "{focus_curve:?}: {across:?}");
     }
@@ -137,39 +142,133 @@ fn the_wavefront_of_an_elliptic_spot_is_curved_as_its_beam_along_each_axis() {
     let (laser, beam, [along, across, axis]) = elliptic_spot();
     for z in [0.05, 0.1, 0.12, 0.14, 0.3] {
         let point = laser.description().position + z * axis;
-        let curvature = laser.wavefront_at(point, -axis).unwrap().curvature();
         let [first, second] = beam.curvatures_at(z);
-        // 1/R grows by up to 1/z_R² = 2.7e5 m⁻² in the first waist, and points round by 1e-16 m.
-        let tolerance = 1e-10;
-        assert!(
-            (along.dot(curvature * along) - first).abs() < tolerance,
-            "z = {z}"
-        );
-        assert!(
-            (across.dot(curvature * across) - second).abs() < tolerance,
-            "z = {z}"
-        );
-        assert!(along.dot(curvature * across).abs() < tolerance, "z = {z}");
+        // Rounding of 1e−16 over the step, and c³ times its square.
+        let tolerance = 1e-8;
+        for (one, other, expected) in [
+            (along, along, first),
+            (across, across, second),
+            (along, across, 0.0),
+            (across, along, 0.0),
+        ] {
+            let error = (curvature(&laser, point, [one, other]) - expected).abs();
+            assert!(error < tolerance, "z = {z}, {one} and {other}: {error:e}");
+        }
+    }
+}
+
+/// Lines of three profiles, one of them a table, and the elliptic spot.
+fn lasers() -> Vec<Laser> {
+    let table = AngularProfile::from_pairs(&[(-0.2, 1.0), (0.0, 2.0), (0.4, 0.5)]).unwrap();
+    let profiles = [
+        LineProfile::GaussianTan,
+        LineProfile::Powell { edge: 0.1 },
+        LineProfile::Tabulated(table),
+    ];
+    let lines = profiles.map(|profile| line(profile, FocusCurve::EqualPlane));
+    lines.into_iter().chain([elliptic_spot().0]).collect()
+}
+
+/// A point in the beam of a laser, 0.2 m along the axis from the aperture.
+fn lit_point(laser: &Laser) -> DVec3 {
+    let LaserDescription {
+        position, look_at, ..
+    } = *laser.description();
+    let axis = (look_at - position).normalize();
+    position + 0.2 * axis + 20e-6 * axis.any_orthonormal_vector()
+}
+
+#[test]
+fn drawn_events_have_the_density_and_the_radiance_that_the_laser_states() {
+    for laser in lasers() {
+        let point = lit_point(&laser);
+        for i in 0..100_u32 {
+            let u = [0.5, 0.3].map(|step| (step + f64::from(i) * 0.618 * step).fract());
+            let event = laser.sampled_event(point, u).unwrap();
+            let pdf = laser.event_pdf(point, event.direction);
+            // Rounding of world coordinates, 1e−17 m, beside a source of some 1e−7 m.
+            assert!(
+                (pdf / event.pdf - 1.0).abs() < 1e-8,
+                "{event:?} | pdf {pdf}"
+            );
+            let radiance = laser.radiance(point, event.direction);
+            let error = event.value * event.pdf / radiance - 1.0;
+            assert!(error.abs() < 1e-8, "{event:?} | radiance {radiance}");
+            let distance = laser.aperture_distance(point, event.direction).unwrap();
+            let crossing = point + distance * event.direction;
+            assert!(crossing.distance(event.source) < 1e-15, "{event:?}");
+        }
     }
 }
 
 #[test]
-fn the_wavefront_of_an_elliptic_spot_tells_how_its_light_turns() {
-    let (laser, beam, [along, across, axis]) = elliptic_spot();
-    let [w1, w2] = beam.radii_at(0.2);
-    let point = laser.description().position + 0.2 * axis + 0.8 * w1 * along - 0.6 * w2 * across;
-    let direction = |p: DVec3| laser.illuminate(p).unwrap().direction;
-    let towards = direction(point);
-    let curvature = laser.wavefront_at(point, towards).unwrap().curvature();
-    let [c1, c2] = beam.curvatures_at(0.2);
-    // The slopes of the light are s = w/R ≤ 0.01: the tensor leaves out terms of order s².
-    let slope_squared = (0.8 * w1 * c1).powi(2) + (0.6 * w2 * c2).powi(2);
-    let tolerance = 4.0 * slope_squared * c1.max(c2);
-    for sideways in [along, across, along + across] {
-        let step = 1e-6 * sideways.reject_from(towards);
-        let turned = (direction(point + step) - direction(point - step)) / 2e-6;
-        let expected = -(curvature * step) / 1e-6;
-        let error = turned.distance(expected);
-        assert!(error < tolerance, "{turned} | {expected}: {error:e}");
+fn the_laser_is_dark_from_behind() {
+    for laser in lasers() {
+        let LaserDescription {
+            position, look_at, ..
+        } = *laser.description();
+        let axis = (look_at - position).normalize();
+        assert!(laser.radiance(position + 0.1 * axis, -axis) > 0.0, "front");
+        assert!(laser.radiance(position - 0.1 * axis, -axis) <= 0.0, "back");
+        assert!(laser.radiance(position + 0.1 * axis, axis) <= 0.0, "away");
+        assert_eq!(laser.aperture_distance(look_at, axis), None, "away");
+    }
+}
+
+#[test]
+fn a_moved_laser_lights_moved_points_as_before() {
+    let turn = RigidMotion::about(DVec3::new(0.1, 0.2, -0.1), DVec3::new(1.0, -2.0, 0.5), 1.1);
+    let shift = RigidMotion::along(DVec3::new(0.05, -0.02, 0.3));
+    let motion = turn.unwrap().then(&shift.unwrap());
+    for laser in lasers() {
+        let moved = laser.moved(&motion);
+        let point = lit_point(&laser);
+        let (before, after) = (
+            laser.illuminate(point).unwrap(),
+            moved.illuminate(motion.point(point)).unwrap(),
+        );
+        // Points round by 1e−16 m, beside beam radii of at least 0.1 mm and slopes below 1.
+        let ratio = after.irradiance / before.irradiance;
+        assert!((ratio - 1.0).abs() < 1e-10, "{laser:?}: {ratio}");
+        let turned = after.direction.distance(motion.direction(before.direction));
+        assert!(turned < 1e-12, "{laser:?}: {turned:e}");
+        let carried = after.source.distance(motion.point(before.source));
+        assert!(carried < 1e-12, "{laser:?}: {carried:e}");
+        // The description says the same: a laser created from it is the moved one.
+        let created = Laser::new(moved.description().clone()).unwrap();
+        let created = created.illuminate(motion.point(point)).unwrap();
+        let ratio = created.irradiance / after.irradiance;
+        assert!((ratio - 1.0).abs() < 1e-10, "{laser:?}: {ratio}");
+    }
+}
+
+#[test]
+fn a_laser_stands_where_its_trajectory_says() {
+    let step = DVec3::new(1e-3, 2e-3, -3e-3);
+    let laser = elliptic_spot().0;
+    let moving = laser
+        .clone()
+        .with_trajectory(Trajectory::steady(step).unwrap());
+    let there = moving.at(3).description().position;
+    let expected = laser.description().position + 3.0 * step;
+    assert!(there.distance(expected) < 1e-16, "{there} | {expected}");
+    assert!(moving.at(3).trajectory().is_still(), "it has been moved");
+}
+
+#[test]
+fn rays_leave_the_aperture_with_the_power_of_the_laser() {
+    for laser in lasers() {
+        let LaserDescription {
+            position, power, ..
+        } = *laser.description();
+        for u in [[0.1, 0.7, 0.3, 0.9], [0.0; 4], [0.99, 0.2, 0.5, 0.4]] {
+            let emitted = laser.sample_ray(u);
+            assert!((emitted.flux - power).abs() <= 0.0, "{emitted:?}");
+            let Ray { origin, direction } = emitted.ray;
+            assert!((direction.length() - 1.0).abs() < 1e-15, "{emitted:?}");
+            let back = laser.aperture_distance(origin + 0.1 * direction, -direction);
+            assert!((back.unwrap() - 0.1).abs() < 1e-15, "{emitted:?}");
+            assert!(origin.distance(position) < 0.02, "{emitted:?}");
+        }
     }
 }

@@ -51,6 +51,12 @@ impl Ggx {
         0.5 * self.density(facet) / (wo.z + self.reach(wo))
     }
 
+    /// Draws a facet that `wo` sees, and returns the direction that it reflects into `wo`.
+    pub(super) fn reflect(self, wo: DVec3, u: [f64; 2]) -> DVec3 {
+        let facet = self.sample_visible(wo, u);
+        2.0 * wo.dot(facet) * facet - wo
+    }
+
     /// Draws the normal of a facet in proportion to its area as `wo` sees it (Heitz 2018).
     pub(super) fn sample_visible(self, wo: DVec3, [u, v]: [f64; 2]) -> DVec3 {
         // Stretch the surface until the facets are those of a hemisphere.
@@ -61,7 +67,7 @@ impl Ggx {
         let upward = view.cross(across);
         // Draw a point of the hemisphere's projection: a half disc beside a half ellipse.
         let radius = u.sqrt();
-        let (sin, cos) = (TAU * v).sin_cos();
+        let (sin, cos) = libm::sincos(TAU * v);
         let x = radius * cos;
         let lift = 0.5 * (1.0 + view.z);
         let half_disc = ((1.0 - x) * (1.0 + x)).sqrt();
@@ -81,6 +87,17 @@ impl Ggx {
     /// Returns `r(w) = √(cos²θ + α² sin²θ)`.
     fn reach(self, w: DVec3) -> f64 {
         let sine_square = w.x * w.x + w.y * w.y;
-        w.z.hypot(self.alpha * sine_square.sqrt())
+        (w.z * w.z + self.alpha * self.alpha * sine_square).sqrt()
     }
+}
+
+/// Returns the unit vector half-way between two directions above the surface.
+pub(super) fn half_vector(wo: DVec3, wi: DVec3) -> DVec3 {
+    let sum = wo + wi;
+    let square = sum.length_squared();
+    if square > 1e-200 {
+        return sum / square.sqrt();
+    }
+    // Opposite directions along the surface: only their height above it is left.
+    (sum * 2.0_f64.powi(600)).normalize()
 }

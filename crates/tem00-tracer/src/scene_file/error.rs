@@ -1,7 +1,7 @@
 use core::{error, fmt, ops::Range};
 use std::path::{Path, PathBuf};
 
-/// Why a scene file could not be read, and where it says so.
+/// Why a scene could not be read, and where its file, or one that it includes, says so.
 ///
 /// The message names the key, its value and what is allowed. [`Display`](fmt::Display) puts file,
 /// line and column in front of it, as compilers do:
@@ -28,7 +28,8 @@ impl SceneError {
         }
     }
 
-    /// Returns the path of the scene file, or `None` if the scene did not come from a file.
+    /// Returns the path of the file with the error: the scene file or one that it includes; `None` if
+    /// the text did not come from a file.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
@@ -43,7 +44,7 @@ impl SceneError {
         self.problem.help.as_deref()
     }
 
-    /// Returns the text of the scene file; empty if it could not be read.
+    /// Returns the text of the file with the error; empty if it could not be read.
     pub fn source_text(&self) -> &str {
         &self.source_text
     }
@@ -51,18 +52,23 @@ impl SceneError {
     /// Returns the place of the error as a range of bytes of the source text, or `None` if the
     /// error has no place, such as a section that is not there.
     pub fn span(&self) -> Option<Range<usize>> {
-        self.problem.span.clone()
+        self.problem.place.as_ref().map(|place| place.span.clone())
     }
 
     /// Returns the line and the column, in characters, where the error begins; both count from 1.
     pub fn line_column(&self) -> Option<(usize, usize)> {
-        let start = self.problem.span.as_ref()?.start;
-        let before = self.source_text.get(..start)?;
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        let line = before.matches('\n').count() + 1;
-        let column = before[line_start..].chars().count() + 1;
-        Some((line, column))
+        let place = self.problem.place.as_ref()?;
+        line_column(&self.source_text, place.span.start)
     }
+}
+
+/// Returns the line and the column, in characters, of a byte of `text`; both count from 1.
+pub(super) fn line_column(text: &str, start: usize) -> Option<(usize, usize)> {
+    let before = text.get(..start)?;
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let line = before.matches('\n').count() + 1;
+    let column = before[line_start..].chars().count() + 1;
+    Some((line, column))
 }
 
 impl fmt::Display for SceneError {
@@ -80,11 +86,18 @@ impl fmt::Display for SceneError {
 
 impl error::Error for SceneError {}
 
+/// A range of bytes of one of the texts of a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) source: usize,
+    pub(super) span: Range<usize>,
+}
+
 /// A [`SceneError`] before it knows the file it belongs to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Problem {
     pub(super) message: String,
-    pub(super) span: Option<Range<usize>>,
+    pub(super) place: Option<Place>,
     pub(super) help: Option<String>,
 }
 
@@ -93,14 +106,14 @@ impl Problem {
     pub(super) fn new(message: impl Into<String>) -> Self {
         Self {
             message: message.into(),
-            span: None,
+            place: None,
             help: None,
         }
     }
 
     /// Places the problem.
-    pub(super) fn at(mut self, span: Range<usize>) -> Self {
-        self.span = Some(span);
+    pub(super) fn at(mut self, place: Place) -> Self {
+        self.place = Some(place);
         self
     }
 
@@ -111,22 +124,16 @@ impl Problem {
     }
 }
 
-impl From<toml::de::Error> for Problem {
-    fn from(error: toml::de::Error) -> Self {
-        Self {
-            message: format!("this is not valid TOML: {}", error.message()),
-            span: error.span(),
-            help: None,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn at(span: Range<usize>) -> Problem {
+        Problem::new("no").at(Place { source: 0, span })
+    }
+
     fn error(text: &str, span: Range<usize>) -> SceneError {
-        SceneError::new(Some(Path::new("a.toml")), text, Problem::new("no").at(span))
+        SceneError::new(Some(Path::new("a.toml")), text, at(span))
     }
 
     #[test]
@@ -153,7 +160,7 @@ mod tests {
         assert_eq!(error("x\ny", 2..3).to_string(), "a.toml:2:1: no", "placed");
         let nowhere = SceneError::new(Some(Path::new("a.toml")), "", Problem::new("no"));
         assert_eq!(nowhere.to_string(), "a.toml: no", "without a place");
-        let unnamed = SceneError::new(None, "x", Problem::new("no").at(0..1));
+        let unnamed = SceneError::new(None, "x", at(0..1));
         assert_eq!(unnamed.to_string(), "scene:1:1: no", "without a file");
     }
 }

@@ -4,7 +4,9 @@ use core::ops::Bound;
 use glam::DVec3;
 use tem00_beam::{AngularProfile, BeamError, FanGeometry, FocusCurve, GaussianBeam, LineProfile};
 
+use super::document::Document;
 use super::error::Problem;
+use super::motion::{pivot, trajectory};
 use super::placement::{Placement, across, rejected};
 use super::quantity::{ANGLE, LENGTH, NUMBER, POWER};
 use super::section::{Choice, Section};
@@ -17,10 +19,14 @@ pub(super) const KEYS: &[&str] = &[
     "position",
     "look_at",
     "line_direction",
+    "displacement_per_frame",
+    "rotation_per_frame",
+    "pivot",
+    "keyframe",
     "spot",
     "line",
 ];
-const SPOT_KEYS: &[&str] = &["waist_radius", "waist_distance", "m_squared"];
+pub(super) const SPOT_KEYS: &[&str] = &["waist_radius", "waist_distance", "m_squared"];
 const LINE_KEYS: &[&str] = &[
     "fan_angle",
     "thickness",
@@ -41,13 +47,13 @@ const PROFILES: &[(&str, LineProfile)] = &[
     ("powell", LineProfile::Powell { edge: 0.05 }),
 ];
 
-const TABLE_KEYS: &[&str] = &["angles", "powers"];
+pub(super) const TABLE_KEYS: &[&str] = &["angles", "powers"];
 const FOCUS_CURVES: &[(&str, FocusCurve)] = &[
     ("distance", FocusCurve::EqualDistance),
     ("plane", FocusCurve::EqualPlane),
 ];
 
-pub(super) fn read(root: &Section<'_>) -> Result<Vec<Laser>, Problem> {
+pub(super) fn read(root: &Document<'_>) -> Result<Vec<Laser>, Problem> {
     let sections = root.tables("laser", KEYS)?;
     if sections.is_empty() {
         return Err(Problem::new("the scene needs a laser: a section [[laser]]"));
@@ -77,7 +83,9 @@ fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
         line_direction: section.or("line_direction", sideways, Value::direction)?,
         shape,
     };
-    Laser::new(description).map_err(|error| rejected(&error, &[&beam, section]))
+    let laser = Laser::new(description).map_err(|error| rejected(&error, &[&beam, section]))?;
+    let pivot = pivot(section, placement.position)?;
+    Ok(laser.with_trajectory(trajectory(section, pivot)?))
 }
 
 /// Reads a beam, round or elliptic, whose waists are, unless they are given, at `distance`.
@@ -124,7 +132,7 @@ fn line(section: &Section<'_>, distance: f64, wavelength: f64) -> Result<BeamSha
         .and_then(|beam| beam.with_m_squared(m_squared))
         .map_err(|error| {
             Problem::new(error.to_string())
-                .at(thickness.span())
+                .at(thickness.place())
                 .with_help("the waist radius of a line is half its thickness")
         })?;
     // A lens that receives a round beam fans it out from a point where it would be this wide.
@@ -162,7 +170,7 @@ fn profile(section: &Section<'_>) -> Result<LineProfile, Problem> {
             edge: edge.within(&NUMBER, 1e-6..=1.0, "from 1e-6 to 1")?,
         }),
         (_, Some(edge)) => Err(Problem::new("`edge` belongs to the profile \"powell\"")
-            .at(edge.span())
+            .at(edge.place())
             .with_help("write `profile = \"powell\"` as well")),
     }
 }
@@ -187,7 +195,7 @@ fn table(section: &Section<'_>) -> Result<AngularProfile, Problem> {
             _ => None,
         };
         match culprit {
-            Some(value) => Problem::new(error.to_string()).at(value.span()),
+            Some(value) => Problem::new(error.to_string()).at(value.place()),
             None => table.problem(error),
         }
     })

@@ -1,8 +1,9 @@
+use super::document::Document;
 use super::error::Problem;
 use super::placement::rejected;
 use super::quantity::{POWER, RADIANCE};
 use super::section::{Choice, Section};
-use super::surface::rectangle;
+use super::shape::rectangle;
 use crate::Lamp;
 
 pub(super) const KEYS: &[&str] = &["point", "rectangle"];
@@ -11,7 +12,7 @@ pub(super) const SHAPES: &[Choice] = &[
     ("rectangle", &["centre", "normal", "up", "size", "radiance"]),
 ];
 
-pub(super) fn read(root: &Section<'_>) -> Result<Vec<Lamp>, Problem> {
+pub(super) fn read(root: &Document<'_>) -> Result<Vec<Lamp>, Problem> {
     root.tables("lamp", KEYS)?.iter().map(lamp).collect()
 }
 

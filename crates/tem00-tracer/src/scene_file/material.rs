@@ -1,55 +1,119 @@
 use super::error::Problem;
 use super::placement::rejected;
-use super::quantity::NUMBER;
+use super::quantity::{ANGLE, NUMBER};
 use super::section::{Choice, Section};
-use crate::{Laser, Material, Metal};
+use super::value::Value;
+use crate::{Laser, Material, Metal, TracerError};
 
 pub(super) const MATERIALS: &[Choice] = &[
     ("lambertian", &["reflectance"]),
+    ("oren_nayar", &["reflectance", "roughness"]),
     ("conductor", &["metal", "refractive_index", "roughness"]),
+    ("plastic", &["reflectance", "index", "roughness"]),
+    ("mirror", &["reflectance", "metal", "refractive_index"]),
+    ("dielectric", &["index"]),
 ];
 
 /// The names of the metals, as files have them.
-const METALS: &[(&str, Metal)] = &[
+pub(super) const METALS: &[(&str, Metal)] = &[
     ("aluminium", Metal::Aluminium),
     ("silver", Metal::Silver),
     ("gold", Metal::Gold),
     ("copper", Metal::Copper),
     ("iron", Metal::Iron),
+    ("chromium", Metal::Chromium),
+    ("nickel", Metal::Nickel),
+    ("titanium", Metal::Titanium),
+    ("tungsten", Metal::Tungsten),
+    ("platinum", Metal::Platinum),
+    ("brass", Metal::Brass),
+    ("stainless_steel", Metal::StainlessSteel),
 ];
 
 const REFLECTANCE: f64 = 0.8;
 const ROUGHNESS: f64 = 0.3;
+/// The rms slope of plaster, in radians: 20°.
+const SLOPE: f64 = core::f64::consts::PI / 9.0;
+/// The index of crown glass, and nearly that of lacquers and plastics.
+const INDEX: f64 = 1.5;
+/// The roughness of a satin coat.
+const COAT_ROUGHNESS: f64 = 0.1;
 
 /// Reads the material of a surface, which the lasers must be able to light.
 pub(super) fn read(surface: &Section<'_>, lasers: &[Laser]) -> Result<Material, Problem> {
-    match surface.at_most_one_of("material", MATERIALS)? {
-        None => Material::lambertian(REFLECTANCE).map_err(|error| rejected(&error, &[surface])),
-        Some(("lambertian", section)) => lambertian(&section),
-        Some((_, section)) => conductor(&section, lasers),
-    }
-}
-
-fn lambertian(section: &Section<'_>) -> Result<Material, Problem> {
-    let reflectance = section.or("reflectance", REFLECTANCE, |value| {
-        value.within(&NUMBER, 0.0..=1.0, "from 0 to 1")
-    })?;
-    Material::lambertian(reflectance).map_err(|error| rejected(&error, &[section]))
-}
-
-fn conductor(section: &Section<'_>, lasers: &[Laser]) -> Result<Material, Problem> {
-    let metal = metal(section)?;
-    let roughness = section.or("roughness", ROUGHNESS, |value| {
-        value.within(&NUMBER, 0.01..=1.0, "from 0.01 to 1")
-    })?;
-    let material =
-        Material::conductor(metal, roughness).map_err(|error| rejected(&error, &[section]))?;
+    let given = surface.at_most_one_of("material", MATERIALS)?;
+    let section = given.as_ref().map_or(surface, |(_, section)| section);
+    let kind = given.as_ref().map(|(kind, _)| *kind);
+    let material = match kind {
+        None => Ok(Material::lambertian(REFLECTANCE)),
+        Some(kind) => of_kind(kind, section),
+    }?
+    .map_err(|error| rejected(&error, &[section]))?;
     for laser in lasers {
         material
             .check_wavelength(laser.wavelength())
             .map_err(|error| section.problem_with("metal", error))?;
     }
-    Ok(material)
+    let one_sided = surface.or("one_sided", false, Value::boolean)?;
+    Ok(if one_sided {
+        material.one_sided()
+    } else {
+        material
+    })
+}
+
+/// Reads the material of a section. What its constructor refuses is not placed yet.
+fn of_kind(kind: &str, section: &Section<'_>) -> Result<Result<Material, TracerError>, Problem> {
+    Ok(match kind {
+        "lambertian" => Material::lambertian(reflectance(section, REFLECTANCE)?),
+        "oren_nayar" => Material::oren_nayar(reflectance(section, REFLECTANCE)?, slope(section)?),
+        "conductor" => Material::conductor(metal(section)?, roughness(section, ROUGHNESS)?),
+        "plastic" => Material::plastic(
+            reflectance(section, REFLECTANCE)?,
+            index(section)?,
+            roughness(section, COAT_ROUGHNESS)?,
+        ),
+        "mirror" => mirror(section)?,
+        _ => Material::dielectric(index(section)?),
+    })
+}
+
+/// Reads a mirror: perfect, of a given reflectance, or of smooth metal.
+fn mirror(section: &Section<'_>) -> Result<Result<Material, TracerError>, Problem> {
+    let of_metal = ["metal", "refractive_index"]
+        .into_iter()
+        .find(|key| section.has(key));
+    match (of_metal, section.has("reflectance")) {
+        (Some(key), true) => Err(section.problem_with(
+            "reflectance",
+            format_args!("`reflectance` follows from `{key}`: give one of the two"),
+        )),
+        (Some(_), false) => Ok(Material::polished(metal(section)?)),
+        (None, _) => Ok(Material::mirror(reflectance(section, 1.0)?)),
+    }
+}
+
+fn reflectance(section: &Section<'_>, default: f64) -> Result<f64, Problem> {
+    section.or("reflectance", default, |value| {
+        value.within(&NUMBER, 0.0..=1.0, "from 0 to 1")
+    })
+}
+
+fn roughness(section: &Section<'_>, default: f64) -> Result<f64, Problem> {
+    section.or("roughness", default, |value| {
+        value.within(&NUMBER, 0.01..=1.0, "from 0.01 to 1")
+    })
+}
+
+fn slope(section: &Section<'_>) -> Result<f64, Problem> {
+    section.or("roughness", SLOPE, |value| {
+        let right_angle = core::f64::consts::FRAC_PI_2;
+        value.within(&ANGLE, 0.0..=right_angle, "an angle from 0° to 90°")
+    })
+}
+
+fn index(section: &Section<'_>) -> Result<f64, Problem> {
+    section.or("index", INDEX, |value| value.quantity(&NUMBER))
 }
 
 fn metal(section: &Section<'_>) -> Result<Metal, Problem> {

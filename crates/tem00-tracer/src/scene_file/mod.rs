@@ -1,51 +1,82 @@
 //! Scene files: TOML in, a validated [`Scene`] or one placed message out.
 
+mod assets;
 mod camera;
+mod document;
 mod error;
 mod laser;
 mod light;
 mod material;
+mod motion;
 mod placement;
 mod quantity;
 mod section;
 mod settings;
+mod shape;
+mod source;
 mod surface;
 #[cfg(test)]
 mod tests;
 mod value;
 
-use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use toml::de::DeTable;
-
+use assets::Assets;
+use document::Document;
 use error::Problem;
 pub use error::SceneError;
 use section::Section;
+use source::Sources;
 
 use crate::Scene;
 
-const KEYS: &[&str] = &["camera", "laser", "surface", "lamp", "render", "speckle"];
-
-/// Reads a scene file; meshes are looked for beside it.
+/// Reads a scene file, and with it the files that it includes.
 ///
 /// The format is TOML. Lengths, angles and powers are numbers in SI units, or strings with a unit.
+/// Files are looked for beside the one that names them.
 ///
 /// # Errors
 ///
-/// Returns an error if the file cannot be read, is not valid TOML, or does not describe a scene. It
-/// names key, value and what is allowed, and knows its place in the file.
+/// Returns an error if a file cannot be read, is not valid TOML, or if they do not describe a scene.
+/// It names key, value and what is allowed, and knows its place in its file.
 pub fn read_scene(path: &Path) -> Result<Scene, SceneError> {
-    let text = read_text(path)?;
-    scene(&text, path.parent().unwrap_or(Path::new("")))
-        .map_err(|problem| SceneError::new(Some(path), &text, problem))
+    SceneFile::read(path).map(|file| file.scene)
 }
 
-/// Reads a scene from text in the format of scene files; meshes are looked for in `base_directory`.
+/// A scene and the files that it was read from.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct SceneFile {
+    /// The scene.
+    pub scene: Scene,
+    /// Everything that was read: the scene file, the files that it includes, then meshes and
+    /// environments, each once.
+    pub files: Vec<PathBuf>,
+}
+
+impl SceneFile {
+    /// Reads a scene file, as [`read_scene`] does, and keeps the names of all files that it took.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`read_scene`].
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let sources = Sources::of_file(path)?;
+        let mut files = sources.files();
+        let mut assets = Assets::default();
+        let scene = scene(&sources, &mut assets).map_err(|problem| sources.locate(problem))?;
+        files.extend(assets.into_files());
+        Ok(Self { scene, files })
+    }
+}
+
+/// Reads a scene from text in the format of scene files; other files are looked for in
+/// `base_directory`.
 ///
 /// # Errors
 ///
-/// Returns an error if the text is not valid TOML or does not describe a scene.
+/// Returns an error if the text is not valid TOML, does not describe a scene or names a file that
+/// cannot be read.
 ///
 /// # Examples
 ///
@@ -79,38 +110,28 @@ pub fn read_scene(path: &Path) -> Result<Scene, SceneError> {
 /// # Ok::<(), tem00_tracer::SceneError>(())
 /// ```
 pub fn parse_scene(text: &str, base_directory: &Path) -> Result<Scene, SceneError> {
-    scene(text, base_directory).map_err(|problem| SceneError::new(None, text, problem))
+    let sources = Sources::of_text(text.to_owned(), None, base_directory)?;
+    scene(&sources, &mut Assets::default()).map_err(|problem| sources.locate(problem))
 }
 
-fn read_text(path: &Path) -> Result<String, SceneError> {
-    let unreadable = |why: &dyn core::fmt::Display| {
-        let problem = Problem::new(format!("the scene file cannot be read: {why}"));
-        SceneError::new(Some(path), "", problem)
-    };
-    if path.is_dir() {
-        return Err(unreadable(&"it is a directory"));
-    }
-    let bytes = fs::read(path).map_err(|why| unreadable(&why))?;
-    String::from_utf8(bytes).map_err(|not_utf8| {
-        let valid = not_utf8.utf8_error().valid_up_to();
-        let text = String::from_utf8_lossy(&not_utf8.as_bytes()[..valid]);
-        let problem = Problem::new("the scene file must be text in UTF-8").at(valid..valid);
-        SceneError::new(Some(path), &text, problem)
-    })
-}
-
-fn scene(text: &str, base_directory: &Path) -> Result<Scene, Problem> {
-    let document = DeTable::parse(text)?;
-    let root = Section::root(document.get_ref(), text, KEYS)?;
+fn scene(sources: &Sources, assets: &mut Assets) -> Result<Scene, Problem> {
+    let parsed = sources
+        .in_order()
+        .map(|source| Ok((source, source.parse()?)));
+    let parsed: Vec<_> = parsed.collect::<Result<_, Problem>>()?;
+    let files = parsed
+        .iter()
+        .map(|(source, document)| Section::root(document.get_ref(), source));
+    let root = Document::new(files.collect::<Result<_, _>>()?);
     let camera = camera::read(&root)?;
     let lasers = laser::read(&root)?;
     Ok(Scene {
+        render: settings::render(&root, &camera.camera)?,
         camera: camera.camera,
-        camera_displacement_per_frame: camera.displacement_per_frame,
-        surfaces: surface::read(&root, base_directory, &lasers)?,
+        camera_trajectory: camera.trajectory,
+        surfaces: surface::read(&root, assets, &lasers)?,
         lasers,
         lamps: light::read(&root)?,
         speckle: settings::speckle(&root)?,
-        render: settings::render(&root)?,
     })
 }

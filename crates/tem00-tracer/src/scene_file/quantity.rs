@@ -109,7 +109,17 @@ pub(super) const MEMORY: Dimension = Dimension {
     ],
 };
 
+/// All kinds that have units.
+#[cfg(test)]
+pub(super) const ALL: [&Dimension; 5] = [&LENGTH, &ANGLE, &POWER, &RADIANCE, &MEMORY];
+
 impl Dimension {
+    /// Returns the symbols of all units.
+    #[cfg(test)]
+    pub(super) fn symbols(&self) -> impl Iterator<Item = &'static str> {
+        self.units.iter().map(|unit| unit.symbol)
+    }
+
     /// Returns the value, in SI units, of a string such as "650 nm", or `None` if it is no quantity
     /// of this kind.
     pub(super) fn parse(&self, text: &str) -> Option<f64> {

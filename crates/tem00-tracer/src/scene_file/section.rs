@@ -1,14 +1,20 @@
 use core::fmt::Display;
-use core::ops::Range;
+use std::path::PathBuf;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::Problem;
+use super::error::{Place, Problem};
+use super::source::{INCLUDE, Source};
 use super::value::{Value, nearest};
 
 /// A table that a section may have: its key, and the keys that it may have itself.
 pub(super) type Choice = (&'static str, &'static [&'static str]);
+
+/// The keys of a scene file itself.
+pub(super) const ROOT_KEYS: &[&str] = &[
+    "camera", "laser", "surface", "lamp", "render", "speckle", INCLUDE,
+];
 
 /// One table of the file.
 ///
@@ -19,22 +25,18 @@ pub(super) struct Section<'a> {
     header: String,
     keys: &'static [&'static str],
     table: &'a DeTable<'a>,
-    span: Range<usize>,
-    source: &'a str,
+    place: Place,
+    source: &'a Source,
 }
 
 impl<'a> Section<'a> {
-    /// Opens the document itself.
-    pub(super) fn root(
-        document: &'a DeTable<'a>,
-        source: &'a str,
-        keys: &'static [&'static str],
-    ) -> Result<Self, Problem> {
+    /// Opens a document itself.
+    pub(super) fn root(document: &'a DeTable<'a>, source: &'a Source) -> Result<Self, Problem> {
         Self {
             header: "the scene".to_owned(),
-            keys,
+            keys: ROOT_KEYS,
             table: document,
-            span: 0..0,
+            place: source.place(0..0),
             source,
         }
         .checked(None)
@@ -76,7 +78,7 @@ impl<'a> Section<'a> {
         };
         let header = format!("[{}]", self.path_to(key));
         match self.table.get(key).map(Spanned::get_ref) {
-            Some(DeValue::Table(table)) => self.open(header, table, value.span(), keys).map(Some),
+            Some(DeValue::Table(table)) => self.open(header, table, value.place(), keys).map(Some),
             _ => Err(value.must_be(format_args!("a table: write `{header}` and its keys below"))),
         }
     }
@@ -90,7 +92,7 @@ impl<'a> Section<'a> {
         let Some(value) = self.optional(key) else {
             return Ok(Vec::new());
         };
-        let header = format!("[[{key}]]");
+        let header = format!("[[{}]]", self.path_to(key));
         let wrong = |place: &Value<'a>| {
             place.must_be(format_args!("written `{header}`, with its keys below"))
         };
@@ -100,7 +102,9 @@ impl<'a> Section<'a> {
         items
             .iter()
             .map(|item| match item.get_ref() {
-                DeValue::Table(table) => self.open(header.clone(), table, item.span(), keys),
+                DeValue::Table(table) => {
+                    self.open(header.clone(), table, self.source.place(item.span()), keys)
+                }
                 _ => Err(wrong(&Value::new(key, item, self.source))),
             })
             .collect()
@@ -114,18 +118,18 @@ impl<'a> Section<'a> {
     ) -> Result<Option<(&'static str, Self)>, Problem> {
         let mut given: Vec<_> = choices
             .iter()
-            .filter_map(|&(key, keys)| Some((self.optional(key)?.span(), key, keys)))
+            .filter_map(|&(key, keys)| Some((self.optional(key)?.place(), key, keys)))
             .collect();
-        given.sort_by_key(|(span, ..)| span.start);
+        given.sort_by_key(|(place, ..)| place.span.start);
         match given.as_slice() {
             [] => Ok(None),
             [(_, key, keys)] => Ok(self.table(key, keys)?.map(|section| (*key, section))),
-            [(_, first, _), (span, second, _), ..] => {
+            [(_, first, _), (place, second, _), ..] => {
                 let header = &self.header;
                 let message =
                     format!("{header} must have one {what}, got `{first}` and `{second}`");
                 Err(Problem::new(message)
-                    .at(span.clone())
+                    .at(place.clone())
                     .with_help(format!("start another {header} for the second")))
             }
         }
@@ -147,6 +151,19 @@ impl<'a> Section<'a> {
         })
     }
 
+    /// Returns the path of a file that the section names.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        self.source.beside(name)
+    }
+
+    /// Names the place of a key as compilers do.
+    pub(super) fn describe(&self, key: &'static str) -> String {
+        let place = self
+            .optional(key)
+            .map_or(self.place.clone(), |value| value.place());
+        self.source.describe(&place)
+    }
+
     /// Returns whether the file gives the key.
     pub(super) fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
@@ -154,28 +171,29 @@ impl<'a> Section<'a> {
 
     /// Returns a problem placed at the header of the section.
     pub(super) fn problem(&self, message: impl Display) -> Problem {
-        Problem::new(message.to_string()).at(self.span.clone())
+        Problem::new(message.to_string()).at(self.place.clone())
     }
 
     /// Returns a problem that was found when an object was made of the section, placed at the value
     /// of `key` if the file gives one.
     pub(super) fn problem_with(&self, key: &str, message: impl Display) -> Problem {
-        let span = self.table.get(key).map_or(self.span.clone(), Spanned::span);
-        Problem::new(message.to_string()).at(span)
+        let value = self.table.get(key);
+        let place = value.map_or(self.place.clone(), |value| self.source.place(value.span()));
+        Problem::new(message.to_string()).at(place)
     }
 
     fn open(
         &self,
         header: String,
         table: &'a DeTable<'a>,
-        span: Range<usize>,
+        place: Place,
         keys: &'static [&'static str],
     ) -> Result<Self, Problem> {
         Self {
             header,
             keys,
             table,
-            span,
+            place,
             source: self.source,
         }
         .checked(Some(self))
@@ -198,7 +216,10 @@ impl<'a> Section<'a> {
             .min_by_key(|key| key.span().start);
         match unknown {
             None => Ok(self),
-            Some(key) => Err(self.unknown(key.get_ref(), parent).at(key.span())),
+            Some(key) => {
+                let place = self.source.place(key.span());
+                Err(self.unknown(key.get_ref(), parent).at(place))
+            }
         }
     }
 

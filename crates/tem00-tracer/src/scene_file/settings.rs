@@ -1,25 +1,87 @@
+use super::document::Document;
 use super::error::Problem;
-use super::quantity::MEMORY;
-use super::section::Section;
+use super::quantity::{MEMORY, NUMBER};
 use super::value::Value;
-use crate::{RenderSettings, SpeckleSettings};
+use crate::{Camera, Crop, LaserEvents, Method, RenderSettings, SpeckleSettings};
 
-pub(super) const RENDER_KEYS: &[&str] = &["samples_per_pixel", "seed", "frames"];
+pub(super) const RENDER_KEYS: &[&str] = &[
+    "samples_per_pixel",
+    "seed",
+    "frames",
+    "reference_frame",
+    "max_depth",
+    "method",
+    "laser_events",
+    "crop",
+    "target_error",
+];
 pub(super) const SPECKLE_KEYS: &[&str] = &["size", "diameter", "half_period", "memory"];
+
+const METHODS: &[(&str, Method)] = &[("path", Method::Path), ("light", Method::Light)];
+const LASER_EVENTS: &[(&str, LaserEvents)] = &[
+    ("beam", LaserEvents::Beam),
+    ("sampled", LaserEvents::Sampled),
+];
 
 /// The largest pattern size and number of slices: what a memory of a tebibyte could hold.
 const MOST: u64 = 1 << 15;
 
-pub(super) fn render(root: &Section<'_>) -> Result<RenderSettings, Problem> {
+/// Reads how the image of a camera is rendered.
+pub(super) fn render(root: &Document<'_>, camera: &Camera) -> Result<RenderSettings, Problem> {
     let default = RenderSettings::default();
     let Some(section) = root.table("render", RENDER_KEYS)? else {
         return Ok(default);
     };
+    let frames = section.or("frames", default.frames, count)?;
     Ok(RenderSettings {
         samples_per_pixel: section.or("samples_per_pixel", default.samples_per_pixel, count)?,
         seed: section.or("seed", default.seed, |value| value.integer(0..=u64::MAX))?,
-        frames: section.or("frames", default.frames, count)?,
+        frames,
+        reference_frame: section.or("reference_frame", default.reference_frame, |value| {
+            let frame = value.integer(0..=u64::from(frames - 1))?;
+            Ok(u32::try_from(frame).unwrap_or(frames - 1))
+        })?,
+        max_depth: section.or("max_depth", default.max_depth, |value| {
+            count(value).map(Some)
+        })?,
+        method: section.or("method", default.method, |value| value.one_of(METHODS))?,
+        laser_events: section.or("laser_events", default.laser_events, |value| {
+            value.one_of(LASER_EVENTS)
+        })?,
+        crop: section.or("crop", default.crop, |value| crop(value, camera).map(Some))?,
+        target_error: section.or("target_error", default.target_error, |value| {
+            value
+                .within(&NUMBER, 1e-6..=1.0, "from 1e-6 to 1")
+                .map(Some)
+        })?,
     })
+}
+
+/// Reads a part of the image, `[x, y, width, height]`.
+fn crop(value: &Value<'_>, camera: &Camera) -> Result<Crop, Problem> {
+    let allowed = "four numbers of pixels [x, y, width, height]";
+    let [x, y, width, height] = value.elements(allowed)?;
+    let pixels = |value: &Value<'_>, least| {
+        let pixels = value.integer(least..=u64::from(u32::MAX))?;
+        Ok(usize::try_from(pixels).unwrap_or(usize::MAX))
+    };
+    let crop = Crop {
+        x: pixels(&x, 0)?,
+        y: pixels(&y, 0)?,
+        width: pixels(&width, 1)?,
+        height: pixels(&height, 1)?,
+    };
+    let inside = |start: usize, length: usize, size: usize| {
+        start.checked_add(length).is_some_and(|end| end <= size)
+    };
+    let [columns, rows] = [camera.width(), camera.height()];
+    if inside(crop.x, crop.width, columns) && inside(crop.y, crop.height, rows) {
+        Ok(crop)
+    } else {
+        Err(value.must_be(format_args!(
+            "a part [x, y, width, height] of the image of {columns} × {rows} pixels"
+        )))
+    }
 }
 
 /// A number from 1 to a million.
@@ -29,7 +91,7 @@ fn count(value: &Value<'_>) -> Result<u32, Problem> {
     Ok(u32::try_from(count).unwrap_or(MOST))
 }
 
-pub(super) fn speckle(root: &Section<'_>) -> Result<SpeckleSettings, Problem> {
+pub(super) fn speckle(root: &Document<'_>) -> Result<SpeckleSettings, Problem> {
     let default = SpeckleSettings::default();
     let Some(section) = root.table("speckle", SPECKLE_KEYS)? else {
         return Ok(default);

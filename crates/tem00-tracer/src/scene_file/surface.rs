@@ -1,37 +1,44 @@
-use std::path::Path;
+use glam::DVec3;
 
-use glam::{DQuat, DVec3};
-
+use super::assets::Assets;
+use super::document::Document;
 use super::error::Problem;
 use super::material;
-use super::placement::{across, rejected};
-use super::quantity::{ANGLE, LENGTH, NUMBER};
-use super::section::{Choice, Section};
+use super::motion::{pivot, rotation, trajectory};
+use super::placement::rejected;
+use super::quantity::{LENGTH, NUMBER};
+use super::section::Section;
+use super::shape::{self, PlacedShape};
 use super::value::Value;
-use crate::{Laser, Rectangle, Shape, Sphere, Surface, TriangleMesh, read_mesh};
+use crate::{Laser, RigidMotion, Surface, SurfaceSpeckle};
 
 pub(super) const KEYS: &[&str] = &[
     "name",
     "displacement_per_frame",
+    "rotation_per_frame",
+    "pivot",
+    "keyframe",
+    "instance",
     "rectangle",
     "sphere",
+    "cylinder",
     "mesh",
     "lambertian",
+    "oren_nayar",
     "conductor",
+    "plastic",
+    "mirror",
+    "dielectric",
+    "one_sided",
+    "rms_height",
+    "speckle",
 ];
-pub(super) const SHAPES: &[Choice] = &[
-    ("rectangle", &["centre", "normal", "up", "size"]),
-    ("sphere", &["centre", "radius"]),
-    (
-        "mesh",
-        &["file", "unit", "scale", "rotation", "position", "centre"],
-    ),
-];
-const ROTATION_KEYS: &[&str] = &["axis", "angle"];
+pub(super) const INSTANCE_KEYS: &[&str] = &["displacement", "rotation"];
+pub(super) const SPECKLE_KEYS: &[&str] = &["patterns", "polarisation"];
 
 pub(super) fn read(
-    root: &Section<'_>,
-    base_directory: &Path,
+    root: &Document<'_>,
+    assets: &mut Assets,
     lasers: &[Laser],
 ) -> Result<Vec<Surface>, Problem> {
     let sections = root.tables("surface", KEYS)?;
@@ -40,96 +47,85 @@ pub(super) fn read(
             "the scene needs a surface: a section [[surface]]",
         ));
     }
-    sections
-        .iter()
-        .enumerate()
-        .map(|(index, section)| {
-            let material = material::read(section, lasers)?;
-            let name = match section.optional("name") {
-                Some(name) => name.string()?.to_owned(),
-                None => format!("surface {}", index + 1),
-            };
-            Ok(Surface {
-                name,
-                shape: shape(section, base_directory)?,
-                material,
-                displacement_per_frame: section.or(
-                    "displacement_per_frame",
-                    DVec3::ZERO,
-                    Value::lengths,
-                )?,
-            })
-        })
-        .collect()
+    let surfaces = sections.iter().enumerate().map(|(index, section)| {
+        let name = match section.optional("name") {
+            Some(name) => name.string()?.to_owned(),
+            None => format!("surface {}", index + 1),
+        };
+        instances(section, &surface(section, name, assets, lasers)?)
+    });
+    Ok(surfaces.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
-fn shape(section: &Section<'_>, base_directory: &Path) -> Result<Shape, Problem> {
-    Ok(match section.one_of("shape", SHAPES)? {
-        ("rectangle", shape) => Shape::Rectangle(rectangle(&shape)?),
-        ("sphere", shape) => Shape::Sphere(sphere(&shape)?),
-        (_, shape) => Shape::from(mesh(&shape, base_directory)?),
+/// A surface that stands where its shape does, and the point that it turns about.
+struct PlacedSurface {
+    surface: Surface,
+    pivot: DVec3,
+}
+
+fn surface(
+    section: &Section<'_>,
+    name: String,
+    assets: &mut Assets,
+    lasers: &[Laser],
+) -> Result<PlacedSurface, Problem> {
+    let material = material::read(section, lasers)?;
+    let PlacedShape { shape, place } = shape::read(section, assets)?;
+    let pivot = pivot(section, place)?;
+    let surface = Surface {
+        name,
+        shape,
+        material,
+        trajectory: trajectory(section, pivot)?,
+        speckle: speckle(section)?,
+        rms_height: section.or("rms_height", None, |value| {
+            value.positive(&LENGTH).map(Some)
+        })?,
+    };
+    Ok(PlacedSurface { surface, pivot })
+}
+
+/// Returns the surface, or its instances if the file lists some: each is turned about the pivot, then
+/// displaced, and moves about a pivot that it took along.
+fn instances(
+    section: &Section<'_>,
+    PlacedSurface { surface, pivot }: &PlacedSurface,
+) -> Result<Vec<Surface>, Problem> {
+    let listed = section.tables("instance", INSTANCE_KEYS)?;
+    if listed.is_empty() {
+        return Ok(vec![surface.clone()]);
+    }
+    let instance = |(index, instance): (usize, &Section<'_>)| {
+        let displacement = instance.or("displacement", DVec3::ZERO, Value::lengths)?;
+        let rotation = rotation(instance, "rotation")?;
+        let motion = RigidMotion::about(*pivot, rotation.axis, rotation.angle)
+            .and_then(|turn| Ok(turn.then(&RigidMotion::along(displacement)?)))
+            .map_err(|error| rejected(&error.into(), &[instance]))?;
+        Ok(Surface {
+            name: format!("{} {}", surface.name, index + 1),
+            shape: surface.shape.moved(&motion),
+            trajectory: trajectory(section, *pivot + displacement)?,
+            ..surface.clone()
+        })
+    };
+    listed.iter().enumerate().map(instance).collect()
+}
+
+fn speckle(section: &Section<'_>) -> Result<SurfaceSpeckle, Problem> {
+    let default = SurfaceSpeckle::default();
+    let Some(speckle) = section.table("speckle", SPECKLE_KEYS)? else {
+        return Ok(default);
+    };
+    Ok(SurfaceSpeckle {
+        patterns: speckle.or("patterns", default.patterns, |value| {
+            let patterns = value.integer(1..=MOST_PATTERNS)?;
+            Ok(u32::try_from(patterns).unwrap_or(default.patterns))
+        })?,
+        polarisation: speckle.or("polarisation", default.polarisation, |value| {
+            value.within(&NUMBER, 0.0..=1.0, "from 0 to 1")
+        })?,
     })
 }
 
-/// Reads a rectangle; without any of its keys but `size` it stands upright in the origin and faces
-/// +z.
-pub(super) fn rectangle(section: &Section<'_>) -> Result<Rectangle, Problem> {
-    let centre = section.or("centre", DVec3::ZERO, Value::lengths)?;
-    let normal = section.or("normal", DVec3::Z, Value::direction)?;
-    let upright = across(normal, DVec3::Y, DVec3::Z);
-    let up = section.or("up", upright, Value::direction)?;
-    let size = section.required("size", "[\"40 mm\", \"30 mm\"]")?;
-    let [width, height] = size.elements("two lengths, such as [\"40 mm\", \"30 mm\"]")?;
-    let Some(right) = up.cross(normal).try_normalize() else {
-        let message = "`up` must not be parallel to the normal of the rectangle";
-        return Err(section.problem_with("up", message));
-    };
-    let half_width = 0.5 * width.positive(&LENGTH)?;
-    let half_height = 0.5 * height.positive(&LENGTH)?;
-    Rectangle::new(
-        centre,
-        half_width * right,
-        half_height * normal.cross(right),
-    )
-    .map_err(|error| rejected(&error, &[section]))
-}
-
-fn sphere(section: &Section<'_>) -> Result<Sphere, Problem> {
-    let centre = section.or("centre", DVec3::ZERO, Value::lengths)?;
-    let radius = section.required("radius", "\"10 mm\"")?.positive(&LENGTH)?;
-    Sphere::new(centre, radius).map_err(|error| rejected(&error, &[section]))
-}
-
-/// Reads a mesh file and puts it in its place: scaled, then rotated, then moved by `position` or
-/// until the middle of its box is at `centre`.
-fn mesh(section: &Section<'_>, base_directory: &Path) -> Result<TriangleMesh, Problem> {
-    let file = section.required("file", "\"part.ply\"")?;
-    let unit = section.or("unit", 1e-3, |value| value.unit_of_length())?;
-    let scale = section.or("scale", 1.0, |value| value.positive(&NUMBER))?;
-    let rotation = rotation(section)?;
-    let position = section.or("position", DVec3::ZERO, Value::lengths)?;
-    let centre = section.optional("centre");
-    if let (Some(centre), true) = (&centre, section.has("position")) {
-        let message = "`centre` and `position` both place the mesh: give one of the two";
-        return Err(Problem::new(message).at(centre.span()));
-    }
-    let path = base_directory.join(file.string()?);
-    let failed = |error| Problem::new(format!("`file` must be a mesh: {error}")).at(file.span());
-    let mesh = read_mesh(&path, unit * scale).map_err(failed)?;
-    let vertices = mesh.vertices().iter().map(|v| rotation * *v + position);
-    let mesh = TriangleMesh::new(vertices.collect(), mesh.triangles().to_vec()).map_err(failed)?;
-    let Some(centre) = centre else {
-        return Ok(mesh);
-    };
-    let (low, high) = mesh.bounds();
-    Ok(mesh.translated(centre.lengths()? - 0.5 * (low + high)))
-}
-
-fn rotation(section: &Section<'_>) -> Result<DQuat, Problem> {
-    let Some(rotation) = section.table("rotation", ROTATION_KEYS)? else {
-        return Ok(DQuat::IDENTITY);
-    };
-    let axis = rotation.required("axis", "[0, 0, 1]")?.direction()?;
-    let angle = rotation.required("angle", "\"90 deg\"")?.quantity(&ANGLE)?;
-    Ok(DQuat::from_axis_angle(axis, angle))
-}
+/// More patterns than these leave a contrast below 1/32, which hardly anybody could tell from none.
+const MOST_PATTERNS: u64 = 1 << 10;

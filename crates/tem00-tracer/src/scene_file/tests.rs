@@ -1,7 +1,11 @@
 mod accepted;
+mod accepted_parts;
 mod any_text;
+mod includes;
 mod refused;
+mod refused_parts;
 mod repository;
+mod schema;
 
 use std::fs;
 use std::path::Path;
@@ -19,8 +23,14 @@ fn minimal() -> String {
     [CAMERA, LASER, SURFACE].concat()
 }
 
+/// Reads a scene; what the reader takes, the schema must allow.
+#[track_caller]
 fn parse(text: &str) -> Result<Scene, SceneError> {
-    parse_scene(text, Path::new("."))
+    let scene = parse_scene(text, Path::new("."));
+    if scene.is_ok() {
+        schema::assert_allowed(text);
+    }
+    scene
 }
 
 /// Returns the minimal scene with one line of it replaced.
@@ -40,6 +50,9 @@ fn parse_with_mesh(name: &str, content: &str, keys: &str) -> Result<Scene, Scene
     fs::write(directory.path().join(name), content).unwrap();
     let surface = format!("[[surface]]\n[surface.mesh]\nfile = \"{name}\"\n{keys}\n");
     let text = [CAMERA, LASER, &surface].concat();
+    if parse_scene(&text, directory.path()).is_ok() {
+        schema::assert_allowed(&text);
+    }
     fs::write(directory.path().join("scene.toml"), text).unwrap();
     read_scene(&directory.path().join("scene.toml"))
 }

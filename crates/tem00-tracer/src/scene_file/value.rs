@@ -1,23 +1,24 @@
 use core::fmt::Display;
-use core::ops::{Range, RangeBounds, RangeInclusive};
+use core::ops::{RangeBounds, RangeInclusive};
 
 use glam::DVec3;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::error::Problem;
+use super::error::{Place, Problem};
 use super::quantity::{Dimension, LENGTH, NUMBER};
+use super::source::Source;
 
 /// A value of the file, with what it takes to complain about it: its name, its text and its place.
 #[derive(Clone, Debug)]
 pub(super) struct Value<'a> {
     name: String,
     item: &'a Spanned<DeValue<'a>>,
-    source: &'a str,
+    source: &'a Source,
 }
 
 impl<'a> Value<'a> {
-    pub(super) fn new(key: &str, item: &'a Spanned<DeValue<'a>>, source: &'a str) -> Self {
+    pub(super) fn new(key: &str, item: &'a Spanned<DeValue<'a>>, source: &'a Source) -> Self {
         Self {
             name: format!("`{key}`"),
             item,
@@ -25,21 +26,21 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Returns the place of the value in the file.
-    pub(super) fn span(&self) -> Range<usize> {
-        self.item.span()
+    /// Returns the place of the value.
+    pub(super) fn place(&self) -> Place {
+        self.source.place(self.item.span())
     }
 
     /// Returns the problem that the value is not `allowed`.
     pub(super) fn must_be(&self, allowed: impl Display) -> Problem {
         let (name, got) = (&self.name, self.as_written());
-        Problem::new(format!("{name} must be {allowed}, got {got}")).at(self.span())
+        Problem::new(format!("{name} must be {allowed}, got {got}")).at(self.place())
     }
 
     /// The value as the file has it, on one line and not too long.
     fn as_written(&self) -> String {
         const LONGEST: usize = 60;
-        let text = self.source.get(self.span()).unwrap_or_default();
+        let text = self.source.text().get(self.item.span()).unwrap_or_default();
         let words: Vec<&str> = text.split_whitespace().collect();
         let line = words.join(" ");
         match line.char_indices().nth(LONGEST) {
@@ -129,6 +130,12 @@ impl<'a> Value<'a> {
             let (least, most) = range.into_inner();
             self.must_be(format_args!("a whole number from {least} to {most}"))
         })
+    }
+
+    /// Returns whether the value is true or false.
+    pub(super) fn boolean(&self) -> Result<bool, Problem> {
+        let value = self.item.get_ref().as_bool();
+        value.ok_or_else(|| self.must_be("true or false"))
     }
 
     /// Returns a string.

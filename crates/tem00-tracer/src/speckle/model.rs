@@ -1,26 +1,42 @@
-use glam::{DVec2, DVec3};
-use tem00_decorrelation::{CameraFrame, DecorrelationError, ImagingGeometry, paper as printed};
-use tem00_speckle::{SpeckleStack, paper::BilinearStack};
+use glam::DVec2;
+use tem00_decorrelation::{ImagingGeometry, paper as printed};
+use tem00_speckle::{IncoherentSum, SpeckleStack, paper::BilinearStack};
 
-use super::{Origin, PatternPlan, SpecklePlan, upright};
-use crate::{Laser, Scene, TracerError};
+use super::{
+    PatternPlan, SpecklePlan, SpecklePoint,
+    allotment::{Allotment, Part},
+    change::Change,
+    plan::Place,
+    printed::displacement_and_slice,
+    upright,
+};
+use crate::{Scene, TracerError};
 
 /// The speckle patterns of a scene, ready to be looked up.
 #[derive(Clone, Debug)]
 pub struct SpeckleModel {
-    patterns: Vec<Pattern>,
+    lasers: Vec<LaserPatterns>,
 }
 
-/// The pattern of one laser.
+/// The patterns of one laser.
+#[derive(Clone, Debug)]
+struct LaserPatterns {
+    geometry: ImagingGeometry,
+    patterns: Vec<Pattern>,
+    /// Where each surface finds its speckle.
+    places: Vec<Place>,
+}
+
+/// Independent stacks of one size.
 #[derive(Clone, Debug)]
 struct Pattern {
-    geometry: ImagingGeometry,
     /// Slices per pupil diameter.
     slices_per_diameter: f64,
-    /// The largest shift that the slices hold, in pupil diameters.
-    reach: f64,
+    /// The largest shifts before the reference frame and after it that the slices hold, in pupil
+    /// diameters.
+    reaches: [f64; 2],
     half_period: usize,
-    stack: Stack,
+    stacks: Vec<Stack>,
 }
 
 #[derive(Clone, Debug)]
@@ -30,26 +46,22 @@ enum Stack {
     AsPrinted(BilinearStack, f64),
 }
 
-/// A surface point that a camera sample has hit.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SpecklePoint {
-    /// The image point of the sample, in pixels.
-    pub pixel: DVec2,
-    /// The point of the surface, in metres.
-    pub position: DVec3,
-    /// The unit normal on the side that is seen.
-    pub normal: DVec3,
-    /// The index of the surface in the scene.
-    pub surface: usize,
+/// The speckle of a scene in one frame.
+#[derive(Clone, Debug)]
+pub(crate) struct SpeckleFrame<'a> {
+    model: &'a SpeckleModel,
+    change: Change,
 }
 
-impl SpecklePoint {
-    /// Returns where the point stood in the image of the first frame, in pixels, or `None` if that
-    /// was behind the camera.
-    pub(super) fn reference(&self, scene: &Scene, frame: u32) -> Option<DVec2> {
-        let before = self.position - scene.surface_displacement(self.surface, frame);
-        scene.camera.project(before)
-    }
+/// Points that are looked up together.
+const BLOCK: usize = 64;
+
+/// Coordinates in a stack: x and y in samples, u in slices.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    x: [f64; BLOCK],
+    y: [f64; BLOCK],
+    u: [f64; BLOCK],
 }
 
 impl SpeckleModel {
@@ -59,144 +71,202 @@ impl SpeckleModel {
     ///
     /// Returns an error if the memory for a stack cannot be had.
     pub fn generate(scene: &Scene, plan: &SpecklePlan) -> Result<Self, TracerError> {
-        let patterns = scene.lasers.iter().zip(plan.patterns());
-        let patterns = patterns
-            .map(|(laser, pattern)| {
-                Pattern::generate(scene.camera.imaging_geometry(laser.wavelength())?, pattern)
+        let lasers = scene.lasers.iter().zip(plan.patterns());
+        let lasers = lasers
+            .map(|(laser, plan)| {
+                LaserPatterns::generate(scene.camera.imaging_geometry(laser.wavelength())?, plan)
             })
             .collect::<Result<_, _>>()?;
-        Ok(Self { patterns })
+        Ok(Self { lasers })
     }
 
-    /// Returns the number of patterns: one for each laser of the scene.
-    pub(crate) fn pattern_count(&self) -> usize {
-        self.patterns.len()
+    /// Returns the number of lasers that have patterns.
+    pub(crate) const fn pattern_count(&self) -> usize {
+        self.lasers.len()
     }
 
-    /// Returns the speckle factor of laser `index` at a surface point, in `frame` of the scene.
-    pub(crate) fn factor(
-        &self,
-        scene: &Scene,
-        index: usize,
-        point: &SpecklePoint,
-        frame: u32,
-    ) -> f64 {
-        let pattern = &self.patterns[index];
-        let still = frame == 0 || !scene.moves();
-        match &pattern.stack {
-            Stack::Derived(stack) => {
-                let (pixel, shift) = if still {
-                    (point.pixel, 0.0)
-                } else {
-                    pattern.reference(scene, &scene.lasers[index], point, frame)
-                };
-                let c = pattern.geometry.pattern_coordinate(
-                    upright(pixel),
-                    DVec2::ZERO,
-                    stack.speckle_size(),
-                );
-                stack.intensity_at(c.x, c.y, shift * pattern.slices_per_diameter)
-            }
-            Stack::AsPrinted(stack, speckle_size) => {
-                let (displacement, u) = if still {
-                    (DVec2::ZERO, 0.0)
-                } else {
-                    pattern.reference_as_printed(scene, &scene.lasers[index], point, frame)
-                };
-                let c = printed::pattern_coordinate(
-                    &pattern.geometry,
-                    upright(point.pixel),
-                    displacement,
-                    *speckle_size,
-                );
-                stack.intensity_at(c.x, c.y, u)
-            }
+    /// Returns the speckle in a frame of the scene that the model was generated for.
+    pub(crate) fn in_frame(&self, scene: &Scene, frame: u32) -> SpeckleFrame<'_> {
+        SpeckleFrame {
+            model: self,
+            change: Change::new(scene, frame),
         }
     }
 }
 
-impl Pattern {
+impl LaserPatterns {
     fn generate(geometry: ImagingGeometry, plan: &PatternPlan) -> Result<Self, TracerError> {
-        let field = plan.stack().field(plan.seed())?;
-        let stack = if plan.is_as_printed() {
-            let stack = BilinearStack::generate(&field, plan.half_period())?;
-            Stack::AsPrinted(stack, field.speckle_size())
-        } else {
-            Stack::Derived(SpeckleStack::generate(&field, plan.stack().path())?)
-        };
+        let allotments = plan.allotments().iter().zip(0_u64..);
+        let patterns = allotments
+            .map(|(allotment, number)| Pattern::generate(plan, allotment, plan.seed_of(number)))
+            .collect::<Result<_, _>>()?;
         Ok(Self {
             geometry,
-            slices_per_diameter: plan.stack().slices_per_diameter(),
-            half_period: plan.half_period(),
-            reach: plan.stack().reach(),
-            stack,
+            patterns,
+            places: plan.places().to_vec(),
         })
     }
+}
 
-    /// Returns where the speckle of a surface point stood in the image of the first frame, in pixels,
-    /// and how far the pupil has moved over it since, in diameters.
-    fn reference(
-        &self,
-        scene: &Scene,
-        laser: &Laser,
-        point: &SpecklePoint,
-        frame: u32,
-    ) -> (DVec2, f64) {
-        let Origin { pixel, shift } = Origin::of(scene, laser, point, frame, &self.geometry);
-        // A point that started behind the camera has no place in its image: any will do. Beyond the
-        // reach the speckle is new to the first frame, wherever the pupil stands.
-        (pixel.unwrap_or(point.pixel), shift.min(self.reach))
+impl Pattern {
+    fn generate(plan: &PatternPlan, allotment: &Allotment, seed: u64) -> Result<Self, TracerError> {
+        let first = allotment.stack.field(seed)?;
+        let stacks = IncoherentSum::equal(allotment.count)?
+            .fields(&first)?
+            .into_iter()
+            .map(|field| {
+                if plan.is_as_printed() {
+                    let stack = BilinearStack::generate(&field, allotment.half_period())?;
+                    Ok(Stack::AsPrinted(stack, field.speckle_size()))
+                } else {
+                    let stack = SpeckleStack::generate(&field, allotment.stack.path())?;
+                    Ok(Stack::Derived(stack))
+                }
+            })
+            .collect::<Result<_, TracerError>>()?;
+        Ok(Self {
+            slices_per_diameter: allotment.stack.slices_per_diameter(),
+            reaches: allotment.reaches(),
+            half_period: allotment.half_period(),
+            stacks,
+        })
+    }
+}
+
+impl SpeckleFrame<'_> {
+    /// Returns the speckle factor of laser `laser` at a surface point.
+    pub(crate) fn factor(&self, laser: usize, point: &SpecklePoint) -> f64 {
+        let mut factor = [0.0];
+        self.factors(laser, core::slice::from_ref(point), &mut factor);
+        factor[0]
     }
 
-    /// Returns the displacement in the image and the slice coordinate by the printed formulas.
-    fn reference_as_printed(
-        &self,
-        scene: &Scene,
-        laser: &Laser,
-        point: &SpecklePoint,
-        frame: u32,
-    ) -> (DVec2, f64) {
-        // Where a printed formula has no value, the pattern counts as decorrelated.
-        self.printed_motion(scene, laser, point, frame)
-            .ok()
-            .flatten()
-            .unwrap_or((DVec2::ZERO, self.half_period as f64))
-    }
-
-    fn printed_motion(
-        &self,
-        scene: &Scene,
-        laser: &Laser,
-        point: &SpecklePoint,
-        frame: u32,
-    ) -> Result<Option<(DVec2, f64)>, DecorrelationError> {
-        let camera = scene.camera_at(frame);
-        let axes = CameraFrame::from_axes(camera.axes())?;
-        let (surface_axes, angles) = printed::EulerAngles::between(&axes, point.normal)?;
-        let to_surface = surface_axes.transpose();
-        let to_emitter = laser.description().position - point.position;
-        let emitter = printed::Emitter {
-            direction: to_surface * to_emitter.normalize_or_zero(),
-            distance: to_emitter.length(),
-        };
-        let surface = scene.surface_displacement(point.surface, frame);
-        let moved = f64::from(frame) * scene.camera_displacement_per_frame;
-        let in_image = printed::image_displacement(
-            self.geometry.magnification(),
-            angles,
-            to_surface * (surface - moved),
+    /// Writes the speckle factors of laser `laser` at many surface points into `factors`, the same
+    /// bits as [`factor`](Self::factor) one by one.
+    ///
+    /// Neighbouring points of one surface, one after the other, are looked up fastest.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless both slices have the same length and the model has patterns for the laser.
+    pub(crate) fn factors(&self, laser: usize, points: &[SpecklePoint], factors: &mut [f64]) {
+        assert!(
+            points.len() == factors.len(),
+            "{} points for {} factors",
+            points.len(),
+            factors.len()
         );
-        let distance = camera.position().distance(point.position);
-        let in_pupil = printed::pupil_displacement(angles, emitter, distance, to_surface * surface);
-        Ok(in_pupil.map(|in_pupil| {
-            let of_camera = DVec2::new(moved.dot(axes.right()), moved.dot(axes.up()));
-            let u = printed::slice_coordinate(
-                &self.geometry,
-                printed::relative_pupil_displacement(of_camera, in_pupil),
-                (surface - moved).dot(axes.towards_camera()),
-                self.half_period,
-            );
-            (in_image, u)
-        }))
+        let mut rest = factors;
+        for run in points.chunk_by(|a, b| a.surface == b.surface) {
+            for points in run.chunks(BLOCK) {
+                let (block, others) = rest.split_at_mut(points.len());
+                self.look_up(laser, points, block);
+                rest = others;
+            }
+        }
+    }
+
+    /// Looks up a block of points on one surface.
+    fn look_up(&self, laser: usize, points: &[SpecklePoint], factors: &mut [f64]) {
+        factors.fill(1.0);
+        let patterns = &self.model.lasers[laser];
+        let Some(place) = points.first().and_then(|p| patterns.places.get(p.surface)) else {
+            return;
+        };
+        let pattern = &patterns.patterns[place.allotment];
+        factors.fill(0.0);
+        for part in &place.parts {
+            match &pattern.stacks[part.stack] {
+                Stack::Derived(stack) => {
+                    let mut block = self.coordinates(laser, pattern, stack.speckle_size(), points);
+                    block.shift(part, stack.size());
+                    block.add(stack, part.share, factors);
+                }
+                Stack::AsPrinted(stack, speckle_size) => {
+                    for (factor, point) in factors.iter_mut().zip(points) {
+                        let [x, y, u] = self.as_printed(laser, pattern, *speckle_size, point);
+                        let [x0, y0] = part.place_in(stack.size());
+                        *factor += part.share * stack.intensity_at(x + x0, y + y0, u);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Where the points of a surface are found in its pattern.
+    fn coordinates(
+        &self,
+        laser: usize,
+        pattern: &Pattern,
+        speckle_size: f64,
+        points: &[SpecklePoint],
+    ) -> Block {
+        let geometry = &self.model.lasers[laser].geometry;
+        let before = self.change.is_before();
+        let [reach, sign] = match before {
+            true => [pattern.reaches[0], -1.0],
+            false => [pattern.reaches[1], 1.0],
+        };
+        let mut block = Block {
+            x: [0.0; BLOCK],
+            y: [0.0; BLOCK],
+            u: [0.0; BLOCK],
+        };
+        for (i, point) in points.iter().enumerate() {
+            let drift = self.change.drift(laser, geometry, point);
+            let pixel = self.change.perspective().point(point.pixel) - drift.displacement;
+            let c = geometry.pattern_coordinate(upright(pixel), DVec2::ZERO, speckle_size);
+            // Beyond the reach the speckle is new to the reference frame, wherever the pupil stands.
+            block.u[i] = sign * drift.shift.min(reach) * pattern.slices_per_diameter;
+            [block.x[i], block.y[i]] = c.to_array();
+        }
+        block
+    }
+
+    /// Where a point is found by the formulas of the paper.
+    fn as_printed(
+        &self,
+        laser: usize,
+        pattern: &Pattern,
+        speckle_size: f64,
+        point: &SpecklePoint,
+    ) -> [f64; 3] {
+        let geometry = &self.model.lasers[laser].geometry;
+        let half_period = pattern.half_period;
+        let (displacement, u) =
+            displacement_and_slice(&self.change, laser, geometry, half_period, point);
+        let pixel = upright(point.pixel);
+        let c = printed::pattern_coordinate(geometry, pixel, displacement, speckle_size);
+        [c.x, c.y, u]
+    }
+}
+
+impl Block {
+    /// Moves the coordinates to the place of a part.
+    fn shift(&mut self, part: &Part, size: [usize; 2]) {
+        let [x0, y0] = part.place_in(size);
+        self.x.iter_mut().for_each(|x| *x += x0);
+        self.y.iter_mut().for_each(|y| *y += y0);
+    }
+
+    /// Adds the intensities at the coordinates, times a share, to `sums`.
+    fn add(&self, stack: &SpeckleStack, share: f64, sums: &mut [f64]) {
+        let count = sums.len();
+        let mut intensities = [0.0; BLOCK];
+        stack.intensity_batch(
+            &self.x[..count],
+            &self.y[..count],
+            &self.u[..count],
+            &mut intensities[..count],
+        );
+        let pairs = sums.iter_mut().zip(&intensities);
+        pairs.for_each(|(sum, intensity)| *sum += share * intensity);
+    }
+}
+
+impl Part {
+    /// Returns where the part starts in a stack of so many samples, in samples.
+    fn place_in(&self, size: [usize; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| self.offset[axis] * size[axis] as f64)
     }
 }

@@ -1,28 +1,49 @@
 use core::fmt;
 
-use tem00_speckle::{SlicePath, SpeckleError, StackNeeds, StackPlan};
+use tem00_decorrelation::ImagingGeometry;
+use tem00_speckle::{IncoherentSum, SlicePath, StackNeeds, StackPlan};
 
-use super::survey::Survey;
-use crate::{Formulas, Laser, Scene, SpeckleSettings, TracerError};
+use super::{
+    allotment::{self, Allotment, Part, Request},
+    survey::{Audience, Survey, surveys},
+};
+use crate::{Formulas, Scene, SpeckleSettings, SurfaceSpeckle, TracerError, Trajectory};
 
 /// The speckle patterns that a scene needs, chosen from its camera, image and motion.
 ///
-/// Its `Display` is one line per laser that states the choice and its reason.
+/// Its `Display` has a line per laser, or one for each of its patterns, that states the choice and
+/// its reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpecklePlan {
     patterns: Vec<PatternPlan>,
 }
 
-/// The pattern of one laser: sizes, path of the slices, and why.
+/// The patterns of one laser: sizes, path of the slices, and why.
+///
+/// Surfaces that move alike share a pattern, as one body would. Others have patterns of their own:
+/// what a moving body uncovers shows speckle that has not been seen there before. A surface whose
+/// light is a sum of patterns has several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatternPlan {
     wavelength: f64,
-    /// What the image and the motion ask for, whether it fits or not.
-    needs: StackNeeds,
-    stack: StackPlan,
+    speckle_size: f64,
+    allotments: Vec<Allotment>,
+    /// Where each surface finds its speckle.
+    places: Vec<Place>,
+    /// The names of the surfaces.
+    names: Vec<String>,
     as_printed: bool,
     chosen: bool,
     seed: u64,
+}
+
+/// Where a surface finds its speckle.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Place {
+    /// The patterns, among those of the laser.
+    pub allotment: usize,
+    /// The parts that add up.
+    pub parts: Vec<Part>,
 }
 
 impl SpecklePlan {
@@ -34,17 +55,32 @@ impl SpecklePlan {
     ///
     /// # Errors
     ///
-    /// Returns an error if C exceeds Q/2, if the imaging geometry is not possible, or if the
-    /// patterns do not fit the memory that the scene allows.
+    /// Returns an error if C exceeds Q/2, if the imaging geometry is not possible, if the speckle of
+    /// a surface is no sum of patterns, or if the patterns do not fit the memory that the scene
+    /// allows.
     pub fn new(scene: &Scene, formulas: Formulas, seed: u64) -> Result<Self, TracerError> {
+        let geometries = scene
+            .lasers
+            .iter()
+            .map(|laser| scene.camera.imaging_geometry(laser.wavelength()))
+            .collect::<Result<Vec<_>, _>>()?;
+        let groups = groups(scene);
+        let audience = Audience {
+            geometries: &geometries,
+            groups: &groups,
+        };
         let memory = scene.speckle.memory / scene.lasers.len().max(1) as u64;
-        let patterns = scene.lasers.iter().zip(1_u64..);
-        let patterns = patterns
-            .map(|(laser, number)| {
-                // Weyl steps keep the seeds of the lasers apart from each other and from the
-                // camera's.
-                let seed = seed.wrapping_add(number.wrapping_mul(0x9e37_79b9_7f4a_7c15));
-                PatternPlan::new(scene, laser, formulas, seed, memory)
+        let surveys = surveys(scene, audience)?;
+        let lasers = surveys.iter().zip(&geometries).enumerate();
+        let patterns = lasers
+            .map(|(laser, (surveys, geometry))| {
+                let planner = Planner {
+                    scene,
+                    laser,
+                    formulas,
+                    groups: &groups,
+                };
+                planner.plan(surveys, geometry, seed, memory)
             })
             .collect::<Result<_, _>>()?;
         Ok(Self { patterns })
@@ -56,82 +92,190 @@ impl SpecklePlan {
     }
 }
 
-impl fmt::Display for SpecklePlan {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, pattern) in self.patterns.iter().enumerate() {
-            if index > 0 {
-                writeln!(f)?;
-            }
-            write!(f, "laser {index}: {pattern}")?;
-        }
-        Ok(())
-    }
+/// The group of each surface: those with the same motion have the same.
+fn groups(scene: &Scene) -> Vec<usize> {
+    let mut motions: Vec<&Trajectory> = Vec::new();
+    let surfaces = scene.surfaces.iter();
+    surfaces
+        .map(|surface| {
+            let known = motions
+                .iter()
+                .position(|&motion| *motion == surface.trajectory);
+            known.unwrap_or_else(|| {
+                motions.push(&surface.trajectory);
+                motions.len() - 1
+            })
+        })
+        .collect()
 }
 
-impl PatternPlan {
-    fn new(
-        scene: &Scene,
-        laser: &Laser,
-        formulas: Formulas,
+/// Plans the patterns of one laser.
+#[derive(Clone, Copy, Debug)]
+struct Planner<'a> {
+    scene: &'a Scene,
+    laser: usize,
+    formulas: Formulas,
+    groups: &'a [usize],
+}
+
+impl Planner<'_> {
+    fn plan(
+        &self,
+        surveys: &[Survey],
+        geometry: &ImagingGeometry,
         seed: u64,
         memory: u64,
-    ) -> Result<Self, TracerError> {
-        let geometry = scene.camera.imaging_geometry(laser.wavelength())?;
-        let survey = Survey::new(scene, laser, &geometry)?;
-        let needs = StackNeeds {
-            image: survey.image.to_array(),
-            region: survey.region.to_array(),
-            speckle_size: geometry.speckle_size_in_pixels(),
-            motion: scene.moves().then_some(survey.shift),
-            frames: scene.render.frames,
-            memory_limit: memory,
-        };
-        let as_printed = formulas == Formulas::AsPrinted;
-        let asked = StackPlan::candidates(&needs)?.into_iter().map(|plan| {
-            let plan = as_asked(plan, &scene.speckle);
+    ) -> Result<PatternPlan, TracerError> {
+        let surfaces = self.scene.surfaces.iter();
+        let sums = surfaces
+            .map(|surface| shares(&surface.speckle))
+            .collect::<Result<Vec<_>, _>>()?;
+        let requests = surveys.iter().enumerate();
+        let requests: Vec<_> = requests
+            .map(|(group, survey)| self.request(group, survey, &sums, geometry))
+            .collect();
+        let as_printed = self.formulas == Formulas::AsPrinted;
+        let settings = &self.scene.speckle;
+        let allotments = allotment::allot(&requests, memory, |plan| {
+            let plan = as_asked(plan, settings);
             if as_printed { plan.on_circle() } else { plan }
-        });
-        let stack = StackPlan::first_within(asked, memory).map_err(|error| match error {
-            SpeckleError::MemoryLimit { needed, limit } => TracerError::PatternMemory {
-                needed,
-                allowed: limit,
-            },
-            other => other.into(),
         })?;
-        Ok(Self {
-            wavelength: laser.wavelength(),
-            needs,
-            stack,
+        // Weyl steps keep the seeds of the lasers apart from each other and from the camera's.
+        let number = self.laser as u64 + 1;
+        Ok(PatternPlan {
+            wavelength: geometry.wavelength(),
+            speckle_size: geometry.speckle_size_in_pixels(),
+            places: self.places(&requests, &allotments, &sums),
+            allotments,
+            names: self.scene.surfaces.iter().map(|s| s.name.clone()).collect(),
             as_printed,
-            chosen: scene.speckle.size.is_none() && scene.speckle.diameter.is_none(),
-            seed,
+            chosen: settings.size.is_none() && settings.diameter.is_none(),
+            seed: seed.wrapping_add(number.wrapping_mul(0x9e37_79b9_7f4a_7c15)),
         })
     }
 
-    /// Returns the sizes of the stack.
-    pub const fn stack(&self) -> &StackPlan {
-        &self.stack
+    /// What the surfaces of a group ask for.
+    fn request(
+        &self,
+        group: usize,
+        survey: &Survey,
+        sums: &[Vec<f64>],
+        geometry: &ImagingGeometry,
+    ) -> Request {
+        let of_group = |&surface: &usize| self.groups[surface] == group;
+        let surfaces: Vec<_> = (0..self.groups.len()).filter(of_group).collect();
+        let moves = |&surface: &usize| self.scene.speckle_moves(self.laser, surface);
+        let moves = surfaces.iter().any(moves);
+        let parts = surfaces.iter().map(|&surface| sums[surface].len());
+        Request {
+            needs: StackNeeds {
+                image: survey.image.to_array(),
+                region: survey.region().to_array(),
+                speckle_size: geometry.speckle_size_in_pixels(),
+                motion: moves.then_some(survey.shifts[0] + survey.shifts[1]),
+                frames: self.scene.render.frames,
+                memory_limit: self.scene.speckle.memory,
+            },
+            shifts: survey.shifts,
+            parts: parts.max().unwrap_or(1),
+            surfaces,
+        }
+    }
+
+    /// Where each surface finds the parts of its speckle.
+    fn places(
+        &self,
+        requests: &[Request],
+        allotments: &[Allotment],
+        sums: &[Vec<f64>],
+    ) -> Vec<Place> {
+        let shared = allotments.len() < requests.len() || allotments.iter().any(|a| a.places > 1);
+        let surfaces = self.groups.iter().zip(sums);
+        surfaces
+            .map(|(&group, shares)| {
+                let before = requests[..group].iter().map(|request| request.parts);
+                let first: usize = before.sum();
+                let parts = shares.iter().enumerate();
+                Place {
+                    allotment: if shared { 0 } else { group },
+                    parts: parts
+                        .map(|(number, &share)| match shared {
+                            true => Part {
+                                share,
+                                stack: 0,
+                                offset: allotment::place(first + number),
+                            },
+                            false => Part {
+                                share,
+                                stack: number,
+                                offset: [0.0; 2],
+                            },
+                        })
+                        .collect(),
+                }
+            })
+            .collect()
+    }
+}
+
+/// The shares of the patterns that the speckle of a surface is the sum of.
+fn shares(speckle: &SurfaceSpeckle) -> Result<Vec<f64>, TracerError> {
+    let patterns = IncoherentSum::equal(speckle.patterns as usize)?;
+    let waves = IncoherentSum::partially_polarised(speckle.polarisation)?;
+    Ok(patterns.and(&waves)?.shares().to_vec())
+}
+
+impl PatternPlan {
+    /// Returns the sizes of the stack of the first surface.
+    pub fn stack(&self) -> &StackPlan {
+        &self.first().stack
     }
 
     /// Returns the speckle size in the image, in pixels.
     pub const fn speckle_size_in_pixels(&self) -> f64 {
-        self.needs.speckle_size
+        self.speckle_size
     }
 
     /// Returns the largest motion of the pupil over the speckle that the scene asks for, in pupil
     /// diameters.
     pub fn largest_shift(&self) -> f64 {
-        self.needs.motion.unwrap_or(0.0)
+        let motions = self
+            .allotments
+            .iter()
+            .map(|a| a.needs.motion.unwrap_or(0.0));
+        motions.fold(0.0, f64::max)
     }
 
-    pub(super) const fn seed(&self) -> u64 {
-        self.seed
+    /// Returns the bytes that all patterns of the laser take.
+    pub fn memory_bytes(&self) -> u64 {
+        self.allotments.iter().map(Allotment::memory_bytes).sum()
+    }
+
+    /// The patterns of the first group of surfaces, of which there is always one.
+    fn first(&self) -> &Allotment {
+        &self.allotments[0]
+    }
+
+    pub(super) fn allotments(&self) -> &[Allotment] {
+        &self.allotments
+    }
+
+    pub(super) fn places(&self) -> &[Place] {
+        &self.places
     }
 
     pub(super) const fn is_as_printed(&self) -> bool {
         self.as_printed
     }
 
+    /// Returns the seed of allotment `number`: that of the laser for the first.
+    pub(super) const fn seed_of(&self, number: u64) -> u64 {
+        self.seed
+            .wrapping_add(number.wrapping_mul(0xd1b5_4a32_d192_ed03))
+    }
+}
+
+impl Allotment {
     pub(super) const fn half_period(&self) -> usize {
         match self.stack.path() {
             SlicePath::Still => 1,
@@ -156,10 +300,52 @@ fn as_asked(plan: StackPlan, settings: &SpeckleSettings) -> StackPlan {
     }
 }
 
-impl fmt::Display for PatternPlan {
-    #[expect(clippy::cast_precision_loss, reason = "shown to three digits")]
+impl fmt::Display for SpecklePlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { stack, needs, .. } = self;
+        for (index, pattern) in self.patterns.iter().enumerate() {
+            if index > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "laser {index}: {pattern}")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for PatternPlan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, allotment) in self.allotments.iter().enumerate() {
+            if index > 0 {
+                writeln!(f)?;
+            }
+            if self.allotments.len() > 1 {
+                write!(f, "{}: ", self.surfaces(allotment))?;
+            }
+            self.line(allotment, f)?;
+        }
+        Ok(())
+    }
+}
+
+impl PatternPlan {
+    /// The names of the first surfaces of an allotment, and how many more there are.
+    fn surfaces(&self, allotment: &Allotment) -> String {
+        const SHOWN: usize = 3;
+        let names = allotment
+            .surfaces
+            .iter()
+            .map(|&surface| &self.names[surface]);
+        let shown: Vec<_> = names.take(SHOWN).map(|name| format!("`{name}`")).collect();
+        let shown = shown.join(", ");
+        match allotment.surfaces.len().saturating_sub(SHOWN) {
+            0 => shown,
+            more => format!("{shown} and {more} more"),
+        }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "shown to three digits")]
+    fn line(&self, allotment: &Allotment, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Allotment { stack, needs, .. } = allotment;
         let [width, height] = needs.region;
         write!(
             f,
@@ -196,7 +382,18 @@ impl fmt::Display for PatternPlan {
                 }
             )?,
         }
-        let mebibytes = stack.memory_bytes() as f64 / f64::from(1 << 20);
+        if allotment.count > 1 {
+            write!(f, "{} patterns that add up; ", allotment.count)?;
+        }
+        if allotment.places > 1 {
+            write!(
+                f,
+                "{} places in one pattern, for the memory does NOT hold more: each repeats what \
+                 another shows elsewhere in the image; ",
+                allotment.places
+            )?;
+        }
+        let mebibytes = allotment.memory_bytes() as f64 / f64::from(1 << 20);
         write!(f, "{mebibytes:.1} MiB")
     }
 }

@@ -234,6 +234,8 @@ fn samples_carry_their_own_densities() {
         let radiance = light.radiance(p, event.wi.map(|x| -x));
         let ratio = event.value * event.pdf / radiance;
         assert!((ratio - 1.0).abs() < 1e-8, "{local}: {ratio}");
+        let ratio = light.next_event_pdf(p, event.wi) / event.pdf;
+        assert!((ratio - 1.0).abs() < 1e-8, "{local}: {ratio}");
     }
 }
 

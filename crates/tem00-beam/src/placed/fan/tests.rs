@@ -329,6 +329,7 @@ fn check<T: Real>(
         prop_assert!(valid(event.value) && valid(event.pdf), "{:?}", event);
     }
     prop_assert!(valid(light.radiance(p, d)), "radiance");
+    prop_assert!(valid(light.next_event_pdf(p, d)), "density");
     let pdf = light.ray_pdf(p, d);
     prop_assert!(valid(pdf.position) && valid(pdf.direction), "{:?}", pdf);
     let ray = light.sample_ray(u);

@@ -233,7 +233,7 @@ fn every_key_reaches_the_scene() {
     assert_eq!(scene.speckle.half_period, Some(4), "half period");
     assert_eq!(scene.speckle.memory, 100 << 20, "memory");
     assert_eq!(
-        scene.camera_displacement_per_frame,
+        scene.camera_trajectory.pose_at(1).translation(),
         1e-6 * DVec3::X,
         "motion"
     );
@@ -266,7 +266,11 @@ fn every_key_reaches_the_scene() {
     assert_eq!(fan.focus_curve, FocusCurve::EqualPlane, "focus curve");
     let ball = &scene.surfaces[0];
     assert_eq!(ball.name, "ball", "name");
-    assert_eq!(ball.displacement_per_frame, 0.25e-3 * DVec3::X, "motion");
+    assert_eq!(
+        ball.trajectory.pose_at(1).translation(),
+        0.25e-3 * DVec3::X,
+        "motion"
+    );
     assert_eq!(
         ball.material,
         Material::conductor(Metal::Gold, 0.2).unwrap(),

@@ -7,7 +7,7 @@ use crate::read_scene;
 
 /// Asserts that `text` is refused at `line`, with a message that contains all of `words`.
 #[track_caller]
-fn assert_refused(text: &str, line: usize, words: &[&str]) {
+pub(super) fn assert_refused(text: &str, line: usize, words: &[&str]) {
     let error = match parse(text) {
         Err(error) => error,
         Ok(_) => panic!("this scene should not be read:\n{text}"),

@@ -1,9 +1,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::super::{camera, laser, light, material, settings, surface};
-use super::{parse, with};
-use crate::read_scene;
+use super::schema::{assert_allowed, tables};
+use super::{CAMERA, LASER, SURFACE, TETRAHEDRON};
+use crate::{parse_scene, read_scene};
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -27,48 +27,60 @@ fn the_scenes_of_the_repository_are_read() {
         let path = repository().join(format!("scenes/{name}.toml"));
         let scene = read_scene(&path).map_err(|error| error.to_string());
         assert!(scene.is_ok(), "{scene:?}");
+        assert_allowed(&fs::read_to_string(path).unwrap());
     }
 }
 
-#[test]
-fn the_minimal_scene_of_the_documentation_is_read() {
-    let text = documentation();
-    let (_, rest) = text.split_once("```toml\n").unwrap();
-    let (example, _) = rest.split_once("```").unwrap();
-    let scene = parse(example).map_err(|error| error.to_string());
-    assert!(scene.is_ok(), "{scene:?}");
+/// Returns the snippets of the documentation that are TOML.
+fn snippets(text: &str) -> Vec<&str> {
+    let after = text.split("```toml\n").skip(1);
+    after
+        .filter_map(|rest| Some(rest.split_once("```")?.0))
+        .collect()
 }
 
 #[test]
-fn the_elliptic_spot_of_the_documentation_is_read() {
+fn the_snippets_of_the_documentation_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir_all(folder.path().join("parts")).unwrap();
+    for name in ["lasers.toml", "parts/bracket.toml"] {
+        fs::write(folder.path().join(name), "").unwrap();
+    }
+    for name in ["bracket.obj", "nut.obj"] {
+        fs::write(folder.path().join(name), TETRAHEDRON).unwrap();
+    }
     let text = documentation();
-    let spot = text.lines().find(|line| line.starts_with("spot = "));
-    let scene = parse(&with("spot.waist_radius = \"0.5 mm\"", spot.unwrap()));
-    let scene = scene.map_err(|error| error.to_string());
-    assert!(scene.is_ok(), "{scene:?}");
+    let snippets = snippets(&text);
+    assert!(snippets.len() >= 5, "{} snippets", snippets.len());
+    for snippet in snippets {
+        // What a snippet leaves out is taken from the minimal scene.
+        let mut scene = snippet.to_owned();
+        for (header, section) in [
+            ("[camera]", CAMERA),
+            ("[[laser]]", LASER),
+            ("[[surface]]", SURFACE),
+        ] {
+            if !snippet.contains(header) {
+                scene.push_str(section);
+            }
+        }
+        let read = parse_scene(&scene, folder.path()).map_err(|error| error.to_string());
+        assert!(read.is_ok(), "{read:?}\n{scene}");
+        assert_allowed(&scene);
+    }
 }
 
 #[test]
 fn every_key_is_documented() {
     let text = documentation();
-    let choices = [
-        laser::SHAPES,
-        surface::SHAPES,
-        material::MATERIALS,
-        light::SHAPES,
-    ];
-    let nested = choices.into_iter().flatten().map(|(_, keys)| *keys);
-    let own = [
-        camera::KEYS,
-        laser::KEYS,
-        surface::KEYS,
-        light::KEYS,
-        settings::RENDER_KEYS,
-        settings::SPECKLE_KEYS,
-    ];
-    for key in own.into_iter().chain(nested).flatten() {
-        let documented =
-            text.contains(&format!("| `{key}` |")) || text.contains(&format!(".{key}]"));
-        assert!(documented, "{key} is not in docs/scene_file.md");
+    for (table, keys) in tables() {
+        for key in keys {
+            let spellings = [format!("`{key}`"), format!("{key}]"), format!("{key} = ")];
+            let documented = spellings.iter().any(|spelling| text.contains(spelling));
+            assert!(
+                documented,
+                "{key} of {table:?} is not in docs/scene_file.md"
+            );
+        }
     }
 }

@@ -71,12 +71,149 @@ fn two_frames_need_no_more_than_two_diameters() {
 }
 
 #[test]
-fn opposite_motions_widen_the_pattern_twice() {
-    // Two halves that close in by 10 pixels each bring speckle from 10 pixels beyond both sides.
+fn surfaces_that_move_apart_have_patterns_of_their_own_each_as_wide_as_it_needs() {
+    // Two halves that close in by 10 pixels each bring speckle from 10 pixels beyond their side.
     let more = "[[surface]]\ndisplacement_per_frame = [0.3795e-3, 0, 0]\n\
                 rectangle = { centre = [-0.05, 0, 0.001], size = [0.1, 0.1] }";
     let plan = plan(2, "[-0.3795e-3, 0, 0]", more).unwrap();
-    assert!((plan.needs.region[0] - 320.0).abs() < 3.0, "{plan}");
+    let [one, other] = plan.allotments() else {
+        panic!("two motions have two patterns: {plan}");
+    };
+    for allotment in [one, other] {
+        let width = allotment.needs.region[0];
+        assert!((width - 310.0).abs() < 3.0, "{width} pixels: {plan}");
+    }
+    assert_ne!(plan.seed_of(0), plan.seed_of(1), "{plan}");
+    let places: Vec<_> = plan.places().iter().map(|place| place.allotment).collect();
+    assert_eq!(places, [0, 1], "{plan}");
+    let lines: Vec<_> = plan.to_string().lines().map(str::to_owned).collect();
+    assert_eq!(lines.len(), 2, "{plan}");
+    assert!(lines[1].starts_with("`surface 2`: speckles of"), "{plan}");
+}
+
+/// A plate beside the first one that stands still.
+const REST: &str = "[[surface]]\nrectangle = { centre = [0, 0, -0.01], size = [0.1, 0.1] }\n";
+
+#[test]
+fn what_stands_still_takes_one_slice() {
+    let plan = plan(2, "[0.3795e-3, 0, 0]", REST).unwrap();
+    let slices = plan
+        .allotments()
+        .iter()
+        .map(|a| a.stack.path().slice_count());
+    assert_eq!(slices.collect::<Vec<_>>(), [64, 1], "{plan}");
+    // 384 × 256 samples of 8 bytes, 64 and one.
+    assert_eq!(plan.memory_bytes(), 65 * (3 << 18), "{plan}");
+}
+
+#[test]
+fn a_memory_that_does_not_hold_patterns_for_all_holds_places_for_them() {
+    let planned = |memory: &str| {
+        let more = format!("{REST}[speckle]\nmemory = \"{memory}\"");
+        plan(2, "[0.3795e-3, 0, 0]", &more).unwrap()
+    };
+    // 32 slices of 3/4 MiB and one; less than 16 slices per diameter are not worth it.
+    let own = planned("24.75 MiB");
+    assert_eq!(own.allotments().len(), 2, "{own}");
+    let shared = planned("24.7 MiB");
+    assert_eq!(shared.allotments().len(), 1, "{shared}");
+    assert_eq!(shared.stack().path().slice_count(), 32, "{shared}");
+    assert!(
+        shared.to_string().contains("2 places in one pattern"),
+        "{shared}"
+    );
+    let places: Vec<_> = shared.places().iter().map(|p| p.parts[0].offset).collect();
+    // Far apart on the torus of the pattern.
+    for axis in [0, 1] {
+        let apart = (places[1][axis] - places[0][axis]).abs();
+        assert!((0.2..0.8).contains(&apart), "{places:?}");
+    }
+}
+
+#[test]
+fn many_motions_share_what_memory_there_is() {
+    let mut more = String::new();
+    for i in 1..=100 {
+        more.push_str(&format!(
+            "[[surface]]\ndisplacement_per_frame = [{i}e-6, 0, 0]\n\
+             rectangle = {{ centre = [0, 0, -{i}e-4], size = [0.1, 0.1] }}\n"
+        ));
+    }
+    more.push_str("[speckle]\nmemory = \"64 MiB\"");
+    let plan = plan(2, "[0.3795e-3, 0, 0]", &more).unwrap();
+    assert!(plan.memory_bytes() <= 64 << 20, "{plan}");
+    assert!(plan.to_string().contains("101 places"), "{plan}");
+}
+
+#[test]
+fn sums_of_patterns_take_a_stack_for_each_part() {
+    let mut scene = scene(2, "[0.3795e-3, 0, 0]", "");
+    scene.surfaces[0].speckle = SurfaceSpeckle {
+        patterns: 3,
+        polarisation: 0.5,
+    };
+    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let plan = &plan.patterns()[0];
+    assert_eq!(plan.memory_bytes(), 6 * 64 * (3 << 18), "{plan}");
+    assert!(
+        plan.to_string().contains("6 patterns that add up"),
+        "{plan}"
+    );
+    let parts = &plan.places()[0].parts;
+    for (number, part) in parts.iter().enumerate() {
+        assert_eq!(part.stack, number, "{parts:?}");
+        let share = if number % 2 == 0 { 0.25 } else { 1.0 / 12.0 };
+        assert!((part.share - share).abs() < 1e-15, "{parts:?}");
+    }
+    // Less memory than that for six stacks of 32 slices.
+    scene.speckle.memory = 143 << 20;
+    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let plan = &plan.patterns()[0];
+    assert_eq!(plan.memory_bytes(), 64 * (3 << 18), "{plan}");
+    assert!(plan.to_string().contains("6 places"), "{plan}");
+    for (patterns, polarisation) in [(0, 1.0), (1, 1.5), (1, f64::NAN), (u32::MAX, 1.0)] {
+        scene.surfaces[0].speckle = SurfaceSpeckle {
+            patterns,
+            polarisation,
+        };
+        let plan = SpecklePlan::new(&scene, Formulas::Derived, 0);
+        assert!(matches!(plan, Err(TracerError::Speckle(_))), "{plan:?}");
+    }
+}
+
+#[test]
+fn motions_before_and_after_the_reference_frame_add_up() {
+    // 1 mm a frame behind a pupil of 3.125 mm: 0.64 diameters before, and 0.96 after.
+    let mut scene = scene(6, "[\"1 mm\", 0, 0]", "");
+    scene.render.reference_frame = 2;
+    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let allotment = &plan.patterns()[0].allotments()[0];
+    for (shift, expected) in allotment.shifts.iter().zip([2.0, 3.0]) {
+        assert!((shift - expected / 3.125).abs() < 0.01, "{plan}");
+    }
+    // A path of 1.6 diameters and the pupil's own.
+    assert!((allotment.stack.reach() - 2.0).abs() < 1e-12, "{plan}");
+    let [before, after] = allotment.reaches();
+    assert!(
+        (before + after - 2.0).abs() < 1e-12 && before < after,
+        "{plan}"
+    );
+}
+
+#[test]
+fn a_motion_between_two_surveyed_frames_is_found_by_its_keyframes() {
+    use crate::{Keyframe, Trajectory};
+    use glam::DVec3;
+    let mut scene = scene(1001, "[0, 0, 0]", "");
+    let away = Keyframe {
+        displacement: DVec3::new(2e-3, 0.0, 0.0),
+        ..Keyframe::at(501.0)
+    };
+    let keyframes = [Keyframe::at(500.0), away, Keyframe::at(502.0)];
+    scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
+    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let shift = plan.patterns()[0].largest_shift();
+    assert!((shift - 2.0 / 3.125).abs() < 0.01, "{shift}: {plan}");
 }
 
 #[test]
@@ -188,6 +325,6 @@ fn lasers_have_seeds_of_their_own() {
     let [first, second] = plan.patterns() else {
         panic!("two lasers have two patterns");
     };
-    assert_ne!(first.seed(), second.seed());
+    assert_ne!(first.seed_of(0), second.seed_of(0));
     assert!(second.speckle_size_in_pixels() < first.speckle_size_in_pixels());
 }

@@ -1,0 +1,249 @@
+//! The command line of `tem00 render`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use tem00_tracer::{Crop, Method};
+
+use super::positive;
+
+/// Render a scene: PNG preview, OpenEXR layers and a JSON summary.
+///
+/// A scene file needs a laser, a camera and a surface, and no more. The size of the speckle
+/// patterns is chosen from the camera, the image and the motion, and printed with its reason.
+#[derive(Args, Debug)]
+#[command(after_help = RENDER_EXAMPLES)]
+pub(crate) struct RenderArgs {
+    /// The scene file.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+
+    /// The folder for the images, made if it is missing [default: out/<name of the scene>].
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Camera samples per pixel, 1 to a million [default: from the scene].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) spp: Option<u32>,
+
+    /// The seed of everything random [default: from the scene].
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+
+    /// Only these frames, counted from 0: one, or FIRST..LAST with both ends; frames are the same
+    /// however they are shared out [default: all].
+    #[arg(long, visible_alias = "frame", value_name = "N|FIRST..LAST")]
+    pub(crate) frames: Option<FrameRange>,
+
+    /// Leave out the frames that an earlier run of the same render finished in the folder.
+    #[arg(long)]
+    pub(crate) resume: bool,
+
+    /// Only this part of the image, in pixels from the upper left corner [default: from the scene].
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = crop)]
+    pub(crate) crop: Option<Crop>,
+
+    /// How light is followed [default: from the scene].
+    #[arg(long, value_name = "METHOD")]
+    pub(crate) method: Option<MethodName>,
+
+    /// The most surfaces that light may meet between source and camera [default: from the scene].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) max_depth: Option<u32>,
+
+    /// The relative standard error at which a pixel gets no more samples [default: from the scene].
+    #[arg(long, value_name = "ERROR", value_parser = relative_error)]
+    pub(crate) target_error: Option<f64>,
+
+    /// Threads to render with, 1 to 1024; the image does not depend on it [default: all].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+
+    /// Leave the speckle out.
+    #[arg(long)]
+    pub(crate) no_speckle: bool,
+
+    /// Use the formulas as printed in Bergmann et al. 2016, with their errors, for comparison.
+    #[arg(long)]
+    pub(crate) paper: bool,
+
+    /// The radiance in W/(m² sr) that the preview shows as white [default: from the first frame].
+    #[arg(long, value_name = "RADIANCE", value_parser = radiance)]
+    pub(crate) white_level: Option<f64>,
+}
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  tem00 render scenes/spot.toml                       quick look, into out/spot/
+  tem00 render scenes/spot.toml --spp 256 -o good     slower, with less noise
+  tem00 render scenes/spot.toml --paper -o printed    the formulas as printed, to lay beside
+  tem00 render scenes/spot.toml --no-speckle          the same light without interference
+  tem00 render scenes/moved_surface.toml --resume     go on after an interruption
+  tem00 render scenes/moved_surface.toml --frames 1   one frame, for example of several machines
+
+Files:
+  <scene>.png     preview, 16 bits, in the colour of the laser; <scene>_0000.png … for several frames
+  <scene>.exr     layers per laser: coherent_before, speckle, coherent_after, incoherent, in W/(m² sr)
+  <scene>.json    power on the target, speckle size, contrast, exposure, speed";
+
+/// A range of frames, counted from 0, with both ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FrameRange {
+    pub(crate) first: u32,
+    pub(crate) last: u32,
+}
+
+impl core::str::FromStr for FrameRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (first, last) = text.split_once("..").unwrap_or((text, text));
+        match (first.parse(), last.parse()) {
+            (Ok(first), Ok(last)) if first <= last => Ok(Self { first, last }),
+            (Ok(_), Ok(_)) => Err("the first frame must not be after the last".into()),
+            _ => Err("must be a frame, such as 3, or a range with both ends, such as 3..10".into()),
+        }
+    }
+}
+
+/// How light is followed, by the names that scene files use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodName {
+    /// From the camera.
+    Path,
+    /// From the lasers.
+    Light,
+}
+
+impl From<MethodName> for Method {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Path => Self::Path,
+            MethodName::Light => Self::Light,
+        }
+    }
+}
+
+fn crop(text: &str) -> Result<Crop, String> {
+    let numbers: Option<Vec<usize>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, width, height]) if width > 0 && height > 0 => Ok(Crop {
+            x,
+            y,
+            width,
+            height,
+        }),
+        _ => Err("must be four numbers of pixels, X,Y,WIDTH,HEIGHT, such as 0,0,64,48".into()),
+    }
+}
+
+fn relative_error(text: &str) -> Result<f64, String> {
+    match positive(text)? {
+        value if (1e-6..=1.0).contains(&value) => Ok(value),
+        _ => Err("must lie between 1e-6 and 1".into()),
+    }
+}
+
+/// Reads a radiance that single precision can hold.
+fn radiance(text: &str) -> Result<f64, String> {
+    match positive(text)? {
+        value if (1e-30..=1e30).contains(&value) => Ok(value),
+        _ => Err("must lie between 1e-30 and 1e30 W/(m² sr)".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::args::{Cli, Command};
+
+    fn parse(line: &str) -> Result<RenderArgs, clap::Error> {
+        let cli = Cli::try_parse_from(line.split_whitespace())?;
+        match cli.command {
+            Command::Render(args) => Ok(args),
+            other => panic!("{other:?} is not render"),
+        }
+    }
+
+    #[test]
+    fn every_option_of_render_is_understood() {
+        let line = "tem00 render a.toml -o d --spp 3 --seed 4 --threads 2 --no-speckle --paper \
+                    --white-level 1e3 --frames 2..7 --resume --crop 1,2,30,40 --method light \
+                    --max-depth 5 --target-error 0.01";
+        let args = parse(line).expect("the line is valid");
+        assert_eq!(args.scene, PathBuf::from("a.toml"));
+        assert_eq!(args.output, Some(PathBuf::from("d")));
+        assert_eq!((args.spp, args.seed), (Some(3), Some(4)));
+        assert_eq!(args.threads, Some(2));
+        assert!(args.no_speckle && args.paper && args.resume, "all are on");
+        assert_eq!(args.white_level, Some(1e3));
+        assert_eq!(args.frames, Some(FrameRange { first: 2, last: 7 }));
+        let crop = Crop {
+            x: 1,
+            y: 2,
+            width: 30,
+            height: 40,
+        };
+        assert_eq!(args.crop, Some(crop));
+        assert_eq!(args.method, Some(MethodName::Light));
+        assert_eq!(args.max_depth, Some(5));
+        assert_eq!(args.target_error, Some(0.01));
+    }
+
+    #[test]
+    fn a_scene_is_all_that_render_needs() {
+        let args = parse("tem00 render a.toml").expect("the line is valid");
+        assert!(
+            args.output.is_none() && args.spp.is_none() && args.seed.is_none(),
+            "{args:?}"
+        );
+        assert!(!args.no_speckle && !args.paper && !args.resume, "{args:?}");
+        assert!(args.frames.is_none() && args.crop.is_none(), "{args:?}");
+    }
+
+    #[test]
+    fn frames_are_one_or_a_range() {
+        let range = |text: &str| text.parse::<FrameRange>();
+        assert_eq!(range("4"), Ok(FrameRange { first: 4, last: 4 }));
+        assert_eq!(range("0..9"), Ok(FrameRange { first: 0, last: 9 }));
+        for bad in [
+            "",
+            "..",
+            "3..",
+            "..3",
+            "5..3",
+            "-1",
+            "1.5",
+            "1..2..3",
+            "99999999999",
+        ] {
+            assert!(range(bad).is_err(), "{bad} is no range");
+        }
+        let one = parse("tem00 render a.toml --frame 4").expect("the line is valid");
+        assert_eq!(one.frames, Some(FrameRange { first: 4, last: 4 }));
+    }
+
+    #[test]
+    fn bad_values_are_usage_errors_that_name_them() {
+        for (line, part) in [
+            ("--spp 0", "0"),
+            ("--threads 0", "1..=1024"),
+            ("--threads 1000000", "1..=1024"),
+            ("--white-level -1", "-1"),
+            ("--white-level=nan", "nan"),
+            ("--see 3", "--seed"),
+            ("--frames 7..3", "after the last"),
+            ("--crop 1,2,3", "X,Y,WIDTH,HEIGHT"),
+            ("--crop 0,0,0,5", "0,0,0,5"),
+            ("--method photon", "light"),
+            ("--max-depth 0", "0"),
+            ("--target-error 2", "between 1e-6 and 1"),
+        ] {
+            let error = parse(&format!("tem00 render a.toml {line}")).expect_err("it is wrong");
+            assert_eq!(error.exit_code(), 2, "{line}");
+            assert!(error.to_string().contains(part), "{line}: {error}");
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! What a render tells on standard error.
+
+use std::io::{self, Write};
+
+use tem00_tracer::Scene;
+
+use crate::{colour::xyz_of_wavelength, progress::si_prefixed, summary::Summary};
+
+/// Writes a line to standard error, if there is anybody to read it.
+pub(super) fn note(text: &str) {
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Tells which lasers the eye would not see.
+pub(super) fn note_invisible_lasers(scene: &Scene) {
+    for (index, laser) in scene.lasers.iter().enumerate() {
+        if xyz_of_wavelength(laser.wavelength()).is_none() {
+            note(&format!(
+                "preview: laser {index}: light of {:.1} nm is invisible and shown in grey",
+                1e9 * laser.wavelength()
+            ));
+        }
+    }
+}
+
+/// Where a laser lights nothing in the image, tells where things stand.
+pub(super) fn hint_at_what_is_not_seen(scene: &Scene, summary: &Summary) {
+    let lasers = summary.frames.iter().flat_map(|frame| &frame.lasers);
+    if lasers.clone().all(|laser| laser.power_on_target_w > 0.0) {
+        return;
+    }
+    note("hint: the camera sees no light of a laser; the surfaces stand at");
+    for surface in &scene.surfaces {
+        let (low, high) = surface.shape.bounds();
+        let span = |low: f64, high: f64| format!("{:.1} … {:.1} mm", 1e3 * low, 1e3 * high);
+        note(&format!(
+            "  {}: x {}, y {}, z {}",
+            surface.name,
+            span(low.x, high.x),
+            span(low.y, high.y),
+            span(low.z, high.z)
+        ));
+    }
+}
+
+/// Tells what was found.
+pub(super) fn report(summary: &Summary) {
+    for frame in &summary.frames {
+        for (index, laser) in frame.lasers.iter().enumerate() {
+            let ratio = 100.0 * laser.power_ratio;
+            let watts = laser.power_on_target_w;
+            note(&format!(
+                "{}: laser {index}: {watts:.4e} W on target, {ratio:.2} % of its power",
+                frame.preview
+            ));
+            if let Some(contrast) = laser.contrast {
+                note(&format!(
+                    "{}: laser {index}: speckle contrast {:.3} ± {:.3}, expected {:.3}",
+                    frame.preview, contrast.measured, contrast.standard_error, contrast.expected
+                ));
+            }
+        }
+    }
+    note(&format!(
+        "exposure: white is {:.4e} W/(m² sr), {}",
+        summary.exposure.white_level, summary.exposure.chosen_by
+    ));
+    note(&format!(
+        "{:.2} s on {} threads, {}samples/s",
+        summary.seconds,
+        summary.threads,
+        si_prefixed(summary.samples_per_second)
+    ));
+}

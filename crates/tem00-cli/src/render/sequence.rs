@@ -1,0 +1,244 @@
+//! The frames of a render, one after the other.
+
+use std::{
+    sync::atomic::{AtomicU64, Ordering},
+    time::Instant,
+};
+
+use tem00_tracer::{Frame, RenderError, SpeckleModel, render_frame};
+
+use super::{
+    Render,
+    record::{Found, Record, forget},
+    report::note,
+    tracer_failure,
+};
+use crate::{
+    failure::Failure,
+    frame_files::{FramePaths, automatic_exposure, picture_of, write_layers, write_preview},
+    interrupt,
+    progress::Progress,
+    summary::{Exposure, FrameLaser, FrameSummary},
+};
+
+/// What became of the frames.
+#[derive(Debug)]
+pub(super) struct Sequence {
+    /// The exposure that all frames share.
+    pub(super) exposure: Exposure,
+    /// All frames of the render that are finished, rendered now or before, in order.
+    pub(super) finished: Vec<FrameSummary>,
+}
+
+impl Render<'_> {
+    /// Renders and writes all frames that were asked for and are not finished.
+    ///
+    /// # Errors
+    ///
+    /// Returns a failure if a frame cannot be rendered or written, if the folder holds the frames of
+    /// another render to go on with, or if the user ends it.
+    pub(super) fn sequence(&self) -> Result<Sequence, Failure> {
+        let missing = self.missing()?;
+        let mut exposure = self.known_exposure();
+        if missing.is_empty() {
+            note("nothing to do: all frames are finished");
+        } else {
+            self.render_missing(&missing, &mut exposure)
+                .inspect_err(|failure| self.note_how_to_go_on(failure))?;
+        }
+        Ok(Sequence {
+            exposure: exposure.unwrap_or(Exposure::for_all_light(1.0)),
+            finished: self.finished(),
+        })
+    }
+
+    fn render_missing(
+        &self,
+        missing: &[u32],
+        exposure: &mut Option<Exposure>,
+    ) -> Result<(), Failure> {
+        let model = self.speckle()?;
+        let needs_first = exposure.is_none() && missing.first() != Some(&0);
+        let count = missing.len() as u64 + u64::from(needs_first);
+        let progress = SequenceProgress::new(self, count);
+        if needs_first {
+            note(
+                "exposure: frame 0, which sets that of all, is rendered for it; --white-level saves \
+                 the time",
+            );
+            let frame = self.frame(0, model.as_ref(), &progress)?;
+            *exposure = Some(automatic_exposure(&frame));
+        }
+        for &number in missing {
+            let start = Instant::now();
+            let frame = self.frame(number, model.as_ref(), &progress)?;
+            let seconds = start.elapsed().as_secs_f64();
+            self.write(number, &frame, seconds, exposure)?;
+        }
+        Ok(())
+    }
+
+    /// Returns the frames to render: those that were asked for, without the finished ones if the
+    /// render goes on.
+    fn missing(&self) -> Result<Vec<u32>, Failure> {
+        let asked = self.frames.first..=self.frames.last;
+        if !self.args.resume {
+            return Ok(asked.collect());
+        }
+        let finished = self.finished();
+        if finished.is_empty()
+            && let Some(path) = self.foreign_record()
+        {
+            return Err(Failure::input(
+                format!(
+                    "cannot go on: {} belongs to another render; the scene, a file of it, the options \
+                     or the program have changed",
+                    path.display()
+                ),
+                "leave out --resume to begin anew, or name another folder with -o",
+            ));
+        }
+        let is_finished =
+            |number: &u32| finished.binary_search_by_key(number, |f| f.number).is_ok();
+        Ok(asked.filter(|number| !is_finished(number)).collect())
+    }
+
+    /// Returns the finished frames of this render that the folder holds, in order.
+    fn finished(&self) -> Vec<FrameSummary> {
+        let frame = |number| match self.find(number) {
+            Found::Ours { frame, .. } if self.paths(number).images_exist() => Some(frame),
+            _ => None,
+        };
+        (0..self.scene.render.frames).filter_map(frame).collect()
+    }
+
+    fn foreign_record(&self) -> Option<std::path::PathBuf> {
+        let foreign = |&number: &u32| matches!(self.find(number), Found::Foreign);
+        let number = (0..self.scene.render.frames).find(foreign)?;
+        Some(self.paths(number).record)
+    }
+
+    fn find(&self, number: u32) -> Found {
+        Record::find(&self.paths(number).record, number, &self.fingerprint)
+    }
+
+    /// Returns the exposure that was asked for, or that frame 0 of this render set before.
+    ///
+    /// A frame 0 that is to be rendered sets it anew, to the same.
+    fn known_exposure(&self) -> Option<Exposure> {
+        match (self.args.white_level, self.find(0)) {
+            (Some(level), _) => Some(Exposure::asked(level)),
+            (None, Found::Ours { exposure, .. }) => Some(exposure),
+            _ => None,
+        }
+    }
+
+    fn paths(&self, number: u32) -> FramePaths {
+        FramePaths::new(&self.folder, &self.name, number, self.scene.render.frames)
+    }
+
+    fn frame(
+        &self,
+        number: u32,
+        model: Option<&SpeckleModel>,
+        progress: &SequenceProgress,
+    ) -> Result<Frame, Failure> {
+        progress.begin(&match self.scene.render.frames {
+            1 => self.name.clone(),
+            frames => format!("{} frame {number} of 0..{}", self.name, frames - 1),
+        });
+        let advance = |samples| progress.advance(samples);
+        let flag = interrupt::flag();
+        let frame = render_frame(&self.scene, model, number, &self.options, advance, flag);
+        frame.map_err(|error| match error {
+            RenderError::Cancelled => Failure::Interrupted,
+            RenderError::Scene(error) => tracer_failure(&self.args.scene, &error),
+            other => Failure::running(other.to_string()),
+        })
+    }
+
+    /// Writes the images of a frame, then the record that says that they are whole.
+    fn write(
+        &self,
+        number: u32,
+        frame: &Frame,
+        seconds: f64,
+        exposure: &mut Option<Exposure>,
+    ) -> Result<(), Failure> {
+        let paths = self.paths(number);
+        let picture = picture_of(frame);
+        // The first frame sets the exposure of all, so that they can be compared.
+        let exposure = exposure.get_or_insert_with(|| automatic_exposure(frame));
+        forget(&paths.record)?;
+        let white = exposure.white_level;
+        write_preview(&paths.preview, &picture, white, &self.description())?;
+        write_layers(&paths.layers, frame, &picture).inspect_err(|_| {
+            // Half a result is none; that the preview may be gone already is no matter.
+            let _ = std::fs::remove_file(&paths.preview);
+        })?;
+        let record = Record {
+            fingerprint: self.fingerprint.clone(),
+            exposure: exposure.clone(),
+            frames: vec![self.measure(number, frame, seconds, &paths)],
+        };
+        record.write(&paths.record)
+    }
+
+    fn measure(
+        &self,
+        number: u32,
+        frame: &Frame,
+        seconds: f64,
+        paths: &FramePaths,
+    ) -> FrameSummary {
+        let plans = self.plan.as_ref().map(|plan| plan.patterns());
+        let lasers = frame.lasers.iter().zip(&self.scene.lasers).enumerate();
+        let lasers = lasers.map(|(index, (layers, laser))| {
+            let plan = plans.and_then(|plans| plans.get(index));
+            FrameLaser::measure(layers, laser.power(), plan, self.options.samples_per_pixel)
+        });
+        FrameSummary {
+            number,
+            preview: FramePaths::name_of(&paths.preview),
+            layers: FramePaths::name_of(&paths.layers),
+            lasers: lasers.collect(),
+            samples: self.samples_per_frame(),
+            seconds,
+        }
+    }
+
+    /// After an interruption tells what is kept.
+    fn note_how_to_go_on(&self, failure: &Failure) {
+        let frames = self.scene.render.frames;
+        if frames > 1 && matches!(failure, Failure::Interrupted) {
+            note(&format!(
+                "{} of {frames} frames are finished; the same command with --resume goes on",
+                self.finished().len()
+            ));
+        }
+    }
+}
+
+/// One progress bar over all frames.
+struct SequenceProgress {
+    bar: Progress,
+    done: AtomicU64,
+}
+
+impl SequenceProgress {
+    fn new(render: &Render<'_>, frames: u64) -> Self {
+        Self {
+            bar: Progress::of_samples(frames.saturating_mul(render.samples_per_frame())),
+            done: AtomicU64::new(0),
+        }
+    }
+
+    fn begin(&self, message: &str) {
+        self.bar.name(message.to_owned());
+    }
+
+    fn advance(&self, samples: u64) {
+        let done = self.done.fetch_add(samples, Ordering::Relaxed);
+        self.bar.set(done + samples);
+    }
+}

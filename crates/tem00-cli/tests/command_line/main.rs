@@ -1,0 +1,152 @@
+//! The program as its users meet it: exit codes, what goes where, and which files appear.
+
+#![expect(clippy::expect_used, reason = "a test fails by panicking")]
+
+mod patterns;
+mod render;
+mod sequence;
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+
+/// A spot on a diffuse plane, small enough to be rendered in a moment.
+const SCENE: &str = r#"
+[camera]
+position = ["0 mm", "0 mm", "300 mm"]
+look_at = ["0 mm", "0 mm", "0 mm"]
+focal_length = "25 mm"
+f_number = 8
+pixel_pitch = "3.45 um"
+resolution = [48, 40]
+
+[[laser]]
+wavelength = "650 nm"
+power = "5 mW"
+position = ["100 mm", "0 mm", "300 mm"]
+look_at = ["0 mm", "0 mm", "0 mm"]
+spot = { waist_radius = "0.2 mm" }
+
+[[surface]]
+rectangle = { centre = [0, 0, 0], normal = [0, 0, 1], size = ["20 mm", "20 mm"] }
+
+[render]
+samples_per_pixel = 4
+"#;
+
+fn tem00(folder: &Path, line: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tem00"));
+    command
+        .current_dir(folder)
+        .args(line.split_whitespace())
+        .stdin(Stdio::null());
+    command
+}
+
+fn run(folder: &Path, line: &str) -> Output {
+    tem00(folder, line).output().expect("the program starts")
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+fn scene_folder() -> tempfile::TempDir {
+    let folder = folder();
+    fs::write(folder.path().join("a.toml"), SCENE).expect("the scene is written");
+    folder
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("the folder can be read");
+    let mut names: Vec<_> = entries
+        .map(|entry| entry.expect("the entry can be read").file_name())
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Returns standard error as one line without the frame that long messages are wrapped in.
+fn message(output: &Output) -> String {
+    let words = text(&output.stderr);
+    let words = words.split_whitespace().filter(|word| *word != "│");
+    words.collect::<Vec<_>>().join(" ")
+}
+
+#[track_caller]
+fn assert_code(output: &Output, code: i32) {
+    assert_eq!(output.status.code(), Some(code), "{}", text(&output.stderr));
+}
+
+#[test]
+fn help_teaches_by_examples() {
+    let folder = folder();
+    let output = run(folder.path(), "--help");
+    assert_code(&output, 0);
+    assert!(
+        text(&output.stdout).contains("tem00 pattern -o speckle.png"),
+        "examples are shown"
+    );
+    for command in ["render", "pattern", "stats"] {
+        let output = run(folder.path(), &format!("{command} --help"));
+        assert_code(&output, 0);
+        assert!(
+            text(&output.stdout).contains("Examples:"),
+            "{command} shows examples"
+        );
+    }
+}
+
+#[test]
+fn bad_input_is_one_message_exit_code_2_and_no_file() {
+    let folder = folder();
+    let path = folder.path();
+    fs::write(path.join("text.png"), "no picture").expect("written");
+    fs::write(path.join("a.toml"), SCENE).expect("written");
+    let before = files(path);
+    for (line, part) in [
+        ("pattern -o a.jpg", "a.jpg"),
+        ("pattern -o a.png --diameter 300", "got 300"),
+        ("pattern -o a.png --diameter 4", "got 4"),
+        ("pattern -o a.png --size 1000000", "16384"),
+        ("pattern -o a.png --size 0", "got 0"),
+        ("pattern -o a.png --pupil annulus:1.5", "1.5"),
+        ("pattern -o a.png --pupil square", "square"),
+        ("pattern -o a.png --amplitude", "amplitude"),
+        ("pattern -o no/a.png", "no/a.png"),
+        ("pattern -o a.png --sede 3", "--seed"),
+        ("stats missing.png", "missing.png"),
+        ("stats text.png", "text.png"),
+        ("stats a.toml", "a.toml"),
+        ("render missing.toml", "missing.toml"),
+        ("render a.toml --spp 0", "0"),
+        ("render a.toml --white-level 0", "positive"),
+        ("render a.toml -o text.png/out", "text.png/out"),
+        ("rendr a.toml", "render"),
+    ] {
+        let output = run(path, line);
+        assert_code(&output, 2);
+        assert!(
+            message(&output).contains(part),
+            "{line}: {}",
+            message(&output)
+        );
+        assert!(output.stdout.is_empty(), "{line}: nothing is data");
+        assert_eq!(files(path), before, "{line}");
+    }
+}
+
+/// Sends an interrupt, as Ctrl-C does.
+#[cfg(unix)]
+fn interrupt(child: &std::process::Child) {
+    let interrupt = format!("kill -INT {}", child.id());
+    let sent = Command::new("sh").args(["-c", &interrupt]).status();
+    assert!(sent.expect("a shell").success(), "the signal is sent");
+}

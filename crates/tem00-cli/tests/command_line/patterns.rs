@@ -1,0 +1,253 @@
+//! `tem00 pattern` and `tem00 stats`.
+
+use std::{
+    fs,
+    io::Write,
+    path::Path,
+    process::{Command, Stdio},
+};
+
+use serde_json::Value;
+
+use super::*;
+
+#[test]
+fn a_pattern_in_every_format_has_the_same_statistics() {
+    let folder = folder();
+    for name in ["a.png", "a.exr", "a.npy"] {
+        let output = run(
+            folder.path(),
+            &format!("pattern -o {name} --size 128 --seed 3"),
+        );
+        assert_code(&output, 0);
+        assert!(
+            text(&output.stdout).starts_with("quantity"),
+            "the table is the data"
+        );
+        assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+    }
+    assert_eq!(files(folder.path()), ["a.exr", "a.npy", "a.png"]);
+
+    let contrast = |name: &str| {
+        let output = run(folder.path(), &format!("stats {name} --json"));
+        assert_code(&output, 0);
+        let found: Value = serde_json::from_slice(&output.stdout).expect("JSON and nothing else");
+        let rows = found["rows"].as_array().expect("rows");
+        let row = rows
+            .iter()
+            .find(|row| row["quantity"] == "contrast")
+            .expect("a contrast");
+        row["measured"].as_f64().expect("a number")
+    };
+    let exact = contrast("a.npy");
+    assert!(
+        (contrast("a.exr") - exact).abs() < 1e-12,
+        "EXR holds the same f32"
+    );
+    // 16 bits of about ten times the mean: rounding of 1.5e-4 / √12 of the mean, averaged.
+    assert!(
+        (contrast("a.png") - exact).abs() < 1e-5,
+        "PNG holds 16 bits"
+    );
+}
+
+/// Writes an array of `c8` as NumPy does: a wave that is spread over all of the image.
+fn write_field(path: &Path, width: usize, height: usize) {
+    #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
+    let phase = |i: usize| 0.1 * (i % width).pow(2) as f32 + 0.2 * (i / width).pow(2) as f32;
+    let values: Vec<f32> = (0..width * height)
+        .flat_map(|i| [phase(i).cos(), phase(i).sin()])
+        .collect();
+    write_array(path, "<c8", [height, width], &values);
+}
+
+#[test]
+fn a_field_from_outside_takes_the_place_of_a_random_one() {
+    let folder = folder();
+    write_field(&folder.path().join("field.npy"), 40, 60);
+    let output = run(folder.path(), "pattern -o a.npy --field field.npy");
+    assert_code(&output, 0);
+    assert!(
+        text(&output.stderr).contains("random phases"),
+        "the theory is that of speckle: {}",
+        text(&output.stderr)
+    );
+    // Four times the shorter side; the mean is that of the power in the pupil.
+    let pattern = run(folder.path(), "stats a.npy --json");
+    let found: Value = serde_json::from_slice(&pattern.stdout).expect("JSON and nothing else");
+    assert_eq!(found["width"], 160);
+    let mean = found["rows"][0]["measured"].as_f64().expect("a number");
+    assert!((mean - 1.0).abs() < 1e-5, "{mean}");
+    // What is beyond the field is dark, and said to be.
+    let line = "pattern -o b.exr --field field.npy --diameter 80 --size 200 --amplitude";
+    let output = run(folder.path(), line);
+    assert_code(&output, 0);
+    assert!(
+        text(&output.stderr).contains("beyond the field of 40 × 60"),
+        "{}",
+        text(&output.stderr)
+    );
+    assert_eq!(files(folder.path()), ["a.npy", "b.exr", "field.npy"]);
+}
+
+#[test]
+fn fields_that_are_none_are_refused_by_their_name() {
+    let folder = folder();
+    let path = folder.path();
+    write_field(&path.join("good.npy"), 20, 20);
+    write_array(&path.join("real.npy"), "<f4", [20, 20], &[1.0; 400]);
+    write_array(&path.join("dark.npy"), "<c8", [20, 20], &[0.0; 800]);
+    write_array(&path.join("hole.npy"), "<c8", [20, 20], &[f32::NAN; 800]);
+    write_array(&path.join("cut.npy"), "<c8", [20, 20], &[1.0; 799]);
+    fs::write(path.join("text.npy"), "no array").expect("written");
+    let before = files(path);
+    for (field, part) in [
+        ("real.npy", "got the type <f4"),
+        ("dark.npy", "sees no light"),
+        ("hole.npy", "index [0, 0]"),
+        ("cut.npy", "a part of it"),
+        ("text.npy", "something else"),
+        ("missing.npy", "missing.npy"),
+        ("good.npy --seed 3", "--seed"),
+        ("good.npy --size 30", "got 20"),
+        ("good.npy --diameter 7", "got 7"),
+        ("good.npy --diameter 5000", "20000"),
+    ] {
+        let output = run(path, &format!("pattern -o a.npy --field {field}"));
+        assert_code(&output, 2);
+        let said = message(&output);
+        assert!(said.contains(part), "{field}: {said}");
+        assert_eq!(files(path), before, "{field}");
+    }
+}
+
+#[test]
+fn a_size_that_cannot_be_measured_costs_no_file() {
+    let folder = folder();
+    let output = run(folder.path(), "pattern -o a.npy --pupil rectangle:0.001");
+    assert_code(&output, 0);
+    assert_eq!(files(folder.path()), ["a.npy"]);
+    assert!(text(&output.stdout).contains("speckle size x"), "one axis");
+    assert!(!text(&output.stdout).contains("speckle size y"), "no other");
+    let said = message(&output);
+    assert!(
+        said.contains("size along y could not be measured"),
+        "{said}"
+    );
+}
+
+#[cfg(feature = "plot")]
+#[test]
+fn a_page_of_plots_is_drawn_where_it_was_asked_for() {
+    let folder = folder();
+    assert_code(&run(folder.path(), "pattern -o a.npy --size 64"), 0);
+    for (name, start) in [("page.svg", "<svg"), ("page.png", "\u{fffd}PNG")] {
+        let output = run(folder.path(), &format!("stats a.npy --plot {name}"));
+        assert_code(&output, 0);
+        assert!(
+            text(&output.stdout).starts_with("quantity"),
+            "the table is the data"
+        );
+        let page = fs::read(folder.path().join(name)).expect("a page");
+        assert!(text(&page).starts_with(start), "{name}");
+    }
+    for name in ["page.pdf", "no/page.svg"] {
+        let output = run(folder.path(), &format!("stats a.npy --plot {name}"));
+        assert_code(&output, 2);
+        assert!(message(&output).contains(name), "{}", message(&output));
+    }
+    let output = run(folder.path(), "stats missing.npy --plot none.svg");
+    assert_code(&output, 2);
+    assert_eq!(files(folder.path()), ["a.npy", "page.png", "page.svg"]);
+}
+
+#[test]
+fn json_holds_the_curves() {
+    let folder = folder();
+    assert_code(&run(folder.path(), "pattern -o a.npy --size 64"), 0);
+    let output = run(folder.path(), "stats a.npy --json");
+    let found: Value = serde_json::from_slice(&output.stdout).expect("JSON and nothing else");
+    for curve in ["histogram", "autocovariance", "power_spectrum"] {
+        let points = found["curves"][curve].as_array().expect("a curve");
+        assert!(points.len() > 8, "{curve} has {} points", points.len());
+    }
+}
+
+/// Writes an array as NumPy does.
+fn write_array(path: &Path, element_type: &str, [height, width]: [usize; 2], values: &[f32]) {
+    let header = format!(
+        "{{'descr': '{element_type}', 'fortran_order': False, 'shape': ({height}, {width}), }}"
+    );
+    // The header is padded so that the data begin at a multiple of 64 bytes.
+    let mut file = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    file.extend(format!("{header:<117}\n").bytes());
+    file.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    fs::write(path, file).expect("the array is written");
+}
+
+#[test]
+fn images_without_speckle_are_refused_by_their_name() {
+    let folder = folder();
+    let varied: Vec<f32> = (0..400_u16).map(|i| f32::from(i % 7)).collect();
+    let mut hole = varied.clone();
+    hole[23] = f32::NAN;
+    for (name, width, values, part) in [
+        ("tiny.npy", 4, &varied[..16], "4 × 4 pixels"),
+        ("row.npy", 400, &varied[..], "400 × 1 pixels"),
+        ("even.npy", 20, &[2.0; 400][..], "all of them are 2e0"),
+        ("black.npy", 20, &[0.0; 400][..], "0"),
+        ("hole.npy", 20, &hole[..], "(3, 1) is NaN"),
+    ] {
+        let shape = [values.len() / width, width];
+        write_array(&folder.path().join(name), "<f4", shape, values);
+        let output = run(folder.path(), &format!("stats {name}"));
+        assert_code(&output, 2);
+        let said = message(&output);
+        assert!(said.contains(name) && said.contains(part), "{name}: {said}");
+    }
+}
+
+#[test]
+fn nobody_reading_is_no_failure() {
+    let folder = folder();
+    let mut child = tem00(folder.path(), "pattern -o a.npy --size 64")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("the program ends");
+    assert_code(&output, 0);
+    assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+    assert_eq!(files(folder.path()), ["a.npy"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_pattern_without_a_file() {
+    use std::{thread::sleep, time::Duration};
+
+    let folder = folder();
+    write_field(&folder.path().join("field.npy"), 20, 20);
+    // The program waits for the field of a pipe, so that the signal meets it before any pass.
+    let made = Command::new("mkfifo")
+        .arg(folder.path().join("pipe"))
+        .status();
+    assert!(made.expect("mkfifo").success(), "a pipe is made");
+    let child = tem00(folder.path(), "pattern -o a.npy --field pipe")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut pipe = fs::File::create(folder.path().join("pipe")).expect("the program opens it");
+    interrupt(&child);
+    sleep(Duration::from_millis(200));
+    let field = fs::read(folder.path().join("field.npy")).expect("the field");
+    pipe.write_all(&field).expect("the program reads on");
+    drop(pipe);
+
+    let output = child.wait_with_output().expect("the program ends");
+    assert_code(&output, 130);
+    assert!(output.stdout.is_empty(), "nothing was measured");
+    assert_eq!(files(folder.path()), ["field.npy", "pipe"]);
+}

@@ -1,0 +1,180 @@
+use glam::{DVec2, DVec3};
+
+use crate::TracerError;
+
+/// The most pixels an image may have: 2²⁸, which is 16 384 × 16 384.
+pub const MAXIMUM_PIXELS: usize = 1 << 28;
+
+/// What determines a [`Camera`](crate::Camera).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraDescription {
+    /// The centre of the lens, which is its entrance pupil, in metres.
+    pub position: DVec3,
+    /// A point on the axis of the lens, in metres: it appears at the principal point.
+    pub look_at: DVec3,
+    /// A direction that points up in the image.
+    pub up: DVec3,
+    /// The focal length of the lens, in metres.
+    pub focal_length: f64,
+    /// The f-number: focal length by diameter of the entrance pupil.
+    pub f_number: f64,
+    /// The distance from the lens, along its axis, to what is in focus there, in metres.
+    pub focus_distance: f64,
+    /// The pixel pitch, in metres.
+    pub pixel_pitch: f64,
+    /// The numbers of pixel columns and rows.
+    pub resolution: [usize; 2],
+    /// The image point on the axis of the lens, in pixels; `None` for the middle of the image.
+    pub principal_point: Option<DVec2>,
+    /// How the sensor is tilted.
+    pub tilt: SensorTilt,
+    /// How the lens distorts the image.
+    pub distortion: RadialDistortion,
+    /// Whether what is out of focus is blurred. Without it the camera is sharp everywhere, as if all
+    /// light went through the centre of the lens; the speckle keeps its size.
+    pub depth_of_field: bool,
+}
+
+/// A sensor tilted against the lens (Scheimpflug).
+///
+/// The sensor turns by `angle` about a line in it that goes through the principal point, at
+/// `azimuth` from the right of the image towards its top. The turn is right-handed about that line
+/// in the axes right, up and from the scene towards the camera.
+///
+/// With azimuth 0 and a positive angle, what is higher in the image is in focus farther away, as a
+/// floor is: the plane in focus turns the other way, by τ′ with
+///
+/// ```text
+/// tan τ′ = (L / d_PI) tan τ      L, d_PI: distances of object and image along the axis
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SensorTilt {
+    /// The angle τ between the normal of the sensor and the axis of the lens, in radians.
+    pub angle: f64,
+    /// The direction of the line about which the sensor turns, in radians.
+    pub azimuth: f64,
+}
+
+/// The radial distortion of a lens, in Brown's form with the signs of `OpenCV`.
+///
+/// ```text
+/// t_image = t (1 + k₁ r² + k₂ r⁴ + k₃ r⁶)      r = |t|
+/// ```
+///
+/// `t` is the tangent of the angle to the axis, as a vector: the undistorted image point divided by
+/// the image distance. Negative coefficients make a barrel, positive ones a pincushion.
+///
+/// # References
+///
+/// - D. C. Brown, *Decentering Distortion of Lenses*, 1966.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RadialDistortion {
+    /// The coefficient k₁ of r².
+    pub k1: f64,
+    /// The coefficient k₂ of r⁴.
+    pub k2: f64,
+    /// The coefficient k₃ of r⁶.
+    pub k3: f64,
+}
+
+impl CameraDescription {
+    /// Checks everything that can be checked without the geometry.
+    pub(super) fn check(&self) -> Result<(), TracerError> {
+        self.check_lengths()?;
+        self.check_resolution()?;
+        if !self.position.is_finite() || !self.look_at.is_finite() {
+            return Err(TracerError::Direction {
+                parameter: "look_at",
+                allowed: "a finite point seen from a finite position",
+            });
+        }
+        if self.principal_point.is_some_and(|point| !point.is_finite()) {
+            return Err(TracerError::Direction {
+                parameter: "principal_point",
+                allowed: "a finite image point, in pixels",
+            });
+        }
+        let RadialDistortion { k1, k2, k3 } = self.distortion;
+        [k1, k2, k3]
+            .into_iter()
+            .try_for_each(|k| check("distortion", k, k.is_finite(), "finite"))?;
+        let SensorTilt { angle, azimuth } = self.tilt;
+        check(
+            "tilt",
+            angle,
+            angle.abs() < core::f64::consts::FRAC_PI_2,
+            "below a right angle (in radians)",
+        )?;
+        check("tilt", azimuth, azimuth.is_finite(), "at a finite azimuth")
+    }
+
+    fn check_lengths(&self) -> Result<(), TracerError> {
+        let lengths = [
+            ("focal_length", self.focal_length),
+            ("f_number", self.f_number),
+            ("focus_distance", self.focus_distance),
+            ("pixel_pitch", self.pixel_pitch),
+        ];
+        for (parameter, value) in lengths {
+            let positive = value > 0.0 && value.is_finite();
+            check(parameter, value, positive, "positive and finite")?;
+        }
+        check(
+            "f_number",
+            self.f_number,
+            self.f_number >= 0.5,
+            "at least 0.5, the limit of an aplanatic lens",
+        )?;
+        check(
+            "focus_distance",
+            self.focus_distance,
+            self.focus_distance > self.focal_length,
+            "greater than the focal length (in metres)",
+        )
+    }
+
+    fn check_resolution(&self) -> Result<(), TracerError> {
+        let [width, height] = self.resolution;
+        width
+            .checked_mul(height)
+            .filter(|pixels| (1..=MAXIMUM_PIXELS).contains(pixels))
+            .map(|_| ())
+            .ok_or(TracerError::Resolution { width, height })
+    }
+
+    /// Returns the distance from the lens to the sensor along the axis, in metres.
+    pub(super) fn image_distance(&self) -> f64 {
+        self.focal_length * self.focus_distance / (self.focus_distance - self.focal_length)
+    }
+
+    /// Returns the image point on the axis of the lens, in pixels.
+    pub(super) fn axis_point(&self) -> DVec2 {
+        self.principal_point.unwrap_or(self.size() / 2.0)
+    }
+
+    /// Returns the width and the height of the image, in pixels.
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "an image has at most 2²⁸ pixels"
+    )]
+    pub(super) fn size(&self) -> DVec2 {
+        DVec2::new(self.resolution[0] as f64, self.resolution[1] as f64)
+    }
+}
+
+/// Returns an error about `parameter` unless `holds`.
+pub(super) fn check(
+    parameter: &'static str,
+    value: f64,
+    holds: bool,
+    allowed: &'static str,
+) -> Result<(), TracerError> {
+    if holds {
+        return Ok(());
+    }
+    Err(TracerError::OutOfRange {
+        parameter,
+        value,
+        allowed,
+    })
+}

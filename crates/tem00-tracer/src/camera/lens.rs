@@ -1,0 +1,148 @@
+use core::f64::consts::FRAC_PI_4;
+
+use glam::{DVec2, DVec3};
+
+use super::Camera;
+use crate::Ray;
+
+/// A ray from a point of the lens into the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraRay {
+    /// The ray; it starts on the lens.
+    pub ray: Ray,
+    /// The factor on the radiance that comes along the ray; its mean over the lens is 1.
+    pub weight: f64,
+}
+
+/// How a point of the scene is seen through a point of the lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraConnection {
+    /// The image point, in pixels; it lies in the image.
+    pub pixel: DVec2,
+    /// The point of the lens, in metres.
+    pub lens_point: DVec3,
+    /// What a pixel gains in radiance, in W/(m² sr), per radiant intensity from the point towards
+    /// the lens, in W/sr; in 1/m².
+    pub importance: f64,
+}
+
+impl Camera {
+    /// Returns a ray that arrives at the image point `pixel` through a point of the lens.
+    ///
+    /// `lens` is a pair of numbers in [0, 1); uniform ones give points that are uniform over the
+    /// pupil. All rays of an image point meet where it is in focus. Without depth of field every ray
+    /// is the one through the centre of the lens.
+    ///
+    /// The mean of radiance times weight, over the lens and the pixel, is the value of the pixel. All
+    /// weights are 1: the pupil counts by area, and the cosines that vary a little over it belong
+    /// to the [irradiance](Self::irradiance_per_radiance).
+    ///
+    /// # References
+    ///
+    /// - P. Shirley and K. Chiu, *A Low Distortion Map between Disk and Square*, 1997.
+    pub fn sample_ray(&self, pixel: DVec2, lens: [f64; 2]) -> CameraRay {
+        let ray = if self.description.depth_of_field {
+            let on_lens = self.lens_point(lens);
+            let chief = self.chief(pixel);
+            // (P − ℓ) s / Z, with the point P in focus at the depth Z: 1/Z = 1/f − 1/s. It does not
+            // mind a focus at infinity or beyond.
+            let beyond_focus = chief.z / self.description.focal_length - 1.0;
+            let direction = chief - (beyond_focus * on_lens).extend(0.0);
+            Ray {
+                origin: self.position() + self.world(on_lens.extend(0.0)),
+                direction: self.world(direction).normalize(),
+            }
+        } else {
+            self.ray(pixel)
+        };
+        CameraRay { ray, weight: 1.0 }
+    }
+
+    /// Connects a point of the scene to a point of the lens, chosen as in
+    /// [`sample_ray`](Self::sample_ray), to follow light from its source.
+    ///
+    /// A path that brings the flux Φ to `point` and scatters it with f |cos θ| towards the point of
+    /// the lens adds Φ f |cos θ| times the importance to the value of the pixel that contains the
+    /// image point. Whether the way to the lens is free is left to the caller.
+    ///
+    /// ```text
+    /// importance = 1 / (Ω_ℓ r²)      Ω_ℓ: solid angle per pixel seen from the point ℓ of the lens,
+    ///                                r: distance from there to the point
+    /// ```
+    ///
+    /// Returns `None` for a point that is not in the image.
+    pub fn connect(&self, point: DVec3, lens: [f64; 2]) -> Option<CameraConnection> {
+        let on_lens = if self.description.depth_of_field {
+            self.lens_point(lens)
+        } else {
+            DVec2::ZERO
+        };
+        let lens_point = self.position() + self.world(on_lens.extend(0.0));
+        let local = self.local(point - self.position());
+        if local.z <= 0.0 {
+            return None;
+        }
+        // The chief ray to where the ray through ℓ meets the plane at the focus distance.
+        let vergence = 1.0 / self.description.focus_distance - 1.0 / local.z;
+        let aim = local.truncate() / local.z + vergence * on_lens;
+        let (tangent, image) = self.through_lens(aim, on_lens)?;
+        let pixel = self.sensor.pixel(image)?;
+        let size = self.description.size();
+        if pixel.cmplt(DVec2::ZERO).any() || pixel.cmpge(size).any() {
+            return None;
+        }
+        let stretch = self.distortion.jacobian(tangent);
+        let tangents = self.sensor.tangents_per_pixel(self.sensor.depth(image)?)
+            * (1.0 + self.sensor.slope().dot(stretch * on_lens))
+            / stretch.determinant();
+        let distance = (local - on_lens.extend(0.0)).length();
+        let importance = distance / local.z / (tangents * local.z * local.z);
+        // A point on the lens itself has no direction to it.
+        importance.is_finite().then_some(CameraConnection {
+            pixel,
+            lens_point,
+            importance,
+        })
+    }
+
+    /// Returns the tangent of the chief ray, and its image, whose image point is reached by the
+    /// point ℓ of the lens when its untilted sensor is reached along `aim`.
+    ///
+    /// ```text
+    /// t = aim − ℓ (w·T(t))      T: distortion, w: slope of the sensor
+    /// ```
+    ///
+    /// Newton's iteration for σ = w·T; exact in one step without distortion.
+    fn through_lens(&self, aim: DVec2, on_lens: DVec2) -> Option<(DVec2, DVec2)> {
+        let slope = self.sensor.slope();
+        let mut sigma = 0.0;
+        for _ in 0..16 {
+            let tangent = aim - sigma * on_lens;
+            let image = self.distortion.distorted(tangent)?;
+            let error = sigma - slope.dot(image);
+            // What is left moves the tangent by a few roundings.
+            if error.abs() * on_lens.length() <= 1e-15 * (1.0 + aim.length()) {
+                return Some((tangent, image));
+            }
+            let stretch = self.distortion.jacobian(tangent);
+            sigma -= error / (1.0 + slope.dot(stretch * on_lens));
+        }
+        None
+    }
+
+    /// Returns a point of the pupil, in metres to the right and up: squares of the unit square,
+    /// concentric about its middle, become circles.
+    fn lens_point(&self, [u, v]: [f64; 2]) -> DVec2 {
+        let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
+        let radius = 0.5 * self.pupil_diameter();
+        if x.abs() > y.abs() {
+            let (sin, cos) = libm::sincos(FRAC_PI_4 * (y / x));
+            radius * x * DVec2::new(cos, sin)
+        } else if y != 0.0 {
+            let (sin, cos) = libm::sincos(FRAC_PI_4 * (x / y));
+            radius * y * DVec2::new(sin, cos)
+        } else {
+            DVec2::ZERO
+        }
+    }
+}

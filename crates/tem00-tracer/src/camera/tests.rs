@@ -1,0 +1,140 @@
+use approx::assert_relative_eq;
+use proptest::prelude::*;
+
+use super::*;
+
+mod focus;
+mod light;
+mod optics;
+
+/// 25 mm at f/8, focused on 30 cm.
+fn description() -> CameraDescription {
+    CameraDescription {
+        position: DVec3::new(0.1, -0.05, 0.3),
+        look_at: DVec3::new(0.01, 0.02, 0.0),
+        up: DVec3::Y,
+        focal_length: 25e-3,
+        f_number: 8.0,
+        focus_distance: 0.3,
+        pixel_pitch: 3.45e-6,
+        resolution: [640, 480],
+        principal_point: None,
+        tilt: SensorTilt::default(),
+        distortion: RadialDistortion::default(),
+        depth_of_field: true,
+    }
+}
+
+/// A camera with everything at once: 0.2 rad of tilt, a barrel of 3 % at the corners and the axis
+/// off the middle. The image spans ±0.04 in tangents.
+fn crooked() -> CameraDescription {
+    CameraDescription {
+        principal_point: Some(DVec2::new(300.0, 260.0)),
+        tilt: SensorTilt {
+            angle: 0.2,
+            azimuth: 0.7,
+        },
+        distortion: RadialDistortion {
+            k1: -10.0,
+            k2: -50.0,
+            k3: 1e3,
+        },
+        f_number: 2.0,
+        ..description()
+    }
+}
+
+#[test]
+fn the_axis_meets_the_middle_of_the_image() {
+    let camera = Camera::new(description()).unwrap();
+    let middle = camera.project(description().look_at).unwrap();
+    assert_relative_eq!(middle.x, 320.0, epsilon = 1e-9);
+    assert_relative_eq!(middle.y, 240.0, epsilon = 1e-9);
+}
+
+#[test]
+fn up_in_the_scene_is_up_in_the_image() {
+    let camera = Camera::new(description()).unwrap();
+    let above = camera
+        .project(description().look_at + 1e-3 * DVec3::Y)
+        .unwrap();
+    assert!(above.y < 240.0, "y grows downwards, got {above}");
+    let axes = camera.axes();
+    assert_relative_eq!(axes.determinant(), 1.0, epsilon = 1e-12);
+}
+
+#[test]
+fn pixels_see_the_solid_angle_of_the_sensor() {
+    let camera = Camera::new(description()).unwrap();
+    // A rectangle of half sides a, b at distance d subtends 4 asin(ab/√((a²+d²)(b²+d²))).
+    let (a, b, d) = (320.0 * 3.45e-6, 240.0 * 3.45e-6, camera.image_distance());
+    let exact = 4.0 * (a * b / ((a * a + d * d) * (b * b + d * d)).sqrt()).asin();
+    let mut sum = 0.0;
+    for y in 0..480_u32 {
+        for x in 0..640_u32 {
+            let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            sum += camera.solid_angle_per_pixel(centre);
+        }
+    }
+    // The midpoint rule errs by (pitch/d)²/24 · ∂²/∂x² cos³ ≈ 1e−9.
+    assert_relative_eq!(sum, exact, max_relative = 1e-7);
+}
+
+#[test]
+fn impossible_cameras_are_rejected() {
+    let bad = [
+        CameraDescription {
+            f_number: 0.0,
+            ..description()
+        },
+        CameraDescription {
+            pixel_pitch: f64::NAN,
+            ..description()
+        },
+        CameraDescription {
+            focus_distance: 25e-3,
+            ..description()
+        },
+        CameraDescription {
+            resolution: [0, 480],
+            ..description()
+        },
+        CameraDescription {
+            resolution: [1 << 40, 1 << 40],
+            ..description()
+        },
+        CameraDescription {
+            look_at: description().position,
+            ..description()
+        },
+        CameraDescription {
+            up: description().look_at - description().position,
+            ..description()
+        },
+    ];
+    for description in bad {
+        assert!(Camera::new(description).is_err(), "{description:?}");
+    }
+}
+
+#[test]
+fn up_along_the_view_is_rejected_in_spite_of_rounding() {
+    let oblique = CameraDescription {
+        position: DVec3::new(0.1, 0.2, 0.3),
+        look_at: DVec3::new(0.03, 0.0, 0.0),
+        up: DVec3::new(0.7, 2.0, 3.0),
+        ..description()
+    };
+    assert!(Camera::new(oblique).is_err(), "{:?}", Camera::new(oblique));
+}
+
+proptest! {
+    #[test]
+    fn projection_inverts_the_ray(x in 0.0_f64..640.0, y in 0.0_f64..480.0, depth in 0.01_f64..10.0) {
+        let camera = Camera::new(description()).unwrap();
+        let ray = camera.ray(DVec2::new(x, y));
+        let image = camera.project(ray.origin + depth * ray.direction).unwrap();
+        // 1e4 pixels of image distance, times a few roundings.
+        prop_assert!(image.distance(DVec2::new(x, y)) < 1e-10, "{image}");
+    }
+}

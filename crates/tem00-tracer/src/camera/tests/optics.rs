@@ -1,0 +1,231 @@
+use proptest::test_runner::RngSeed;
+
+use super::*;
+
+fn with_distortion(k1: f64, k2: f64, k3: f64) -> CameraDescription {
+    CameraDescription {
+        distortion: RadialDistortion { k1, k2, k3 },
+        ..description()
+    }
+}
+
+/// The point at a tangent to the right and up, 0.4 m before the camera.
+fn at_tangent(camera: &Camera, tangent: DVec2) -> DVec3 {
+    let axes = camera.axes();
+    let direction = tangent.x * axes.x_axis + tangent.y * axes.y_axis - axes.z_axis;
+    camera.position() + 0.4 * direction
+}
+
+#[test]
+fn distortion_is_that_of_brown() {
+    let camera = Camera::new(with_distortion(-4.0, 300.0, -2e4)).unwrap();
+    let t = DVec2::new(0.03, -0.02);
+    let s = 0.03_f64.powi(2) + 0.02_f64.powi(2);
+    let distorted = t * (1.0 - 4.0 * s + 300.0 * s * s - 2e4 * s * s * s);
+    let to_pixels = 25e-3 * 0.3 / 0.275 / 3.45e-6;
+    let expected = DVec2::new(320.0, 240.0) + to_pixels * distorted * DVec2::new(1.0, -1.0);
+    let got = camera.project(at_tangent(&camera, t)).unwrap();
+    // 1e4 pixels times some roundings.
+    assert!(got.distance(expected) < 1e-10, "{got}, not {expected}");
+}
+
+#[test]
+fn a_barrel_does_not_fold_the_surroundings_into_the_image() {
+    let camera = Camera::new(with_distortion(-10.0, 0.0, 0.0)).unwrap();
+    // 0.3 (1 − 10 · 0.09) = 0.03 would be in the image, which ends at 0.05. The distorted radius
+    // stops growing at 1/√30 = 0.1826.
+    let image = |radius| camera.project(at_tangent(&camera, DVec2::new(radius, 0.0)));
+    assert_eq!(image(0.3), None, "folded");
+    assert_eq!(image(0.1826), None, "just behind the turning point");
+    assert!(image(0.1825).is_some(), "just before the turning point");
+    let lens = camera.connect(at_tangent(&camera, DVec2::new(0.3, 0.0)), [0.5, 0.5]);
+    assert_eq!(lens, None, "folded");
+}
+
+#[test]
+fn distortion_that_folds_inside_the_image_is_refused() {
+    let folding = [
+        with_distortion(-200.0, 0.0, 0.0),
+        with_distortion(0.0, -1e5, 0.0),
+        with_distortion(0.0, 0.0, -1e8),
+        // Shrinks between the radii 0.022 and 0.032 only: (1 − r²/a) (1 − r²/b).
+        with_distortion(-1000.0, 4e5, 0.0),
+        with_distortion(f64::NAN, 0.0, 0.0),
+    ];
+    for description in folding {
+        let camera = Camera::new(description);
+        let refused = matches!(
+            camera,
+            Err(TracerError::OutOfRange {
+                parameter: "distortion",
+                ..
+            })
+        );
+        assert!(refused, "{camera:?}");
+    }
+    for description in [
+        with_distortion(200.0, 0.0, 0.0),
+        with_distortion(-10.0, 1e4, 0.0),
+        with_distortion(1.0, -1.0, 1e6),
+    ] {
+        assert!(Camera::new(description).is_ok(), "{description:?}");
+    }
+}
+
+#[test]
+fn tilts_that_turn_the_sensor_away_are_refused() {
+    let tilted = |angle| CameraDescription {
+        tilt: SensorTilt {
+            angle,
+            azimuth: 0.0,
+        },
+        ..description()
+    };
+    let bad = [
+        tilted(1.6),
+        tilted(f64::NAN),
+        // The rim of the pupil, 1.6 mm off the axis, is behind the sensor: tan τ > 17.5.
+        tilted(1.52),
+        // The image is higher than the lens is far, so that its top reaches through the lens.
+        CameraDescription {
+            focal_length: 2e-3,
+            resolution: [2000, 2000],
+            ..tilted(0.8)
+        },
+    ];
+    for description in bad {
+        let camera = Camera::new(description);
+        let refused = matches!(
+            camera,
+            Err(TracerError::OutOfRange {
+                parameter: "tilt",
+                ..
+            })
+        );
+        assert!(refused, "{camera:?}");
+    }
+    assert!(Camera::new(tilted(1.5)).is_ok(), "tan τ = 14");
+}
+
+#[test]
+fn the_axis_meets_the_principal_point() {
+    let camera = Camera::new(crooked()).unwrap();
+    let image = camera.project(crooked().look_at).unwrap();
+    assert!(image.distance(DVec2::new(300.0, 260.0)) < 1e-9, "{image}");
+    let nowhere = Camera::new(CameraDescription {
+        principal_point: Some(DVec2::new(f64::INFINITY, 0.0)),
+        ..description()
+    });
+    assert!(nowhere.is_err(), "{nowhere:?}");
+}
+
+#[test]
+fn speckle_grows_with_the_depth_of_the_tilted_sensor() {
+    let straight = Camera::new(description()).unwrap();
+    let pixel = DVec2::new(320.0, 40.0);
+    assert_eq!(
+        straight.imaging_geometry_at(pixel, 650e-9).unwrap(),
+        straight.imaging_geometry(650e-9).unwrap(),
+        "alike all over an untilted sensor"
+    );
+    let tilt = SensorTilt {
+        angle: -0.3,
+        azimuth: 0.0,
+    };
+    let camera = Camera::new(CameraDescription {
+        tilt,
+        ..description()
+    })
+    .unwrap();
+    let geometry = camera.imaging_geometry_at(pixel, 650e-9).unwrap();
+    let depth = 25e-3 * 0.3 / 0.275 + 200.0 * 3.45e-6 * 0.3_f64.sin();
+    let expected = 650e-9 * depth / 3.125e-3;
+    assert_relative_eq!(geometry.speckle_size(), expected, max_relative = 1e-13);
+    // The other way round the top of the image is in focus beyond infinity: −1 · 2.3 mm.
+    let horizon = Camera::new(CameraDescription {
+        tilt: SensorTilt {
+            angle: 1.5,
+            azimuth: 0.0,
+        },
+        focus_distance: 3.0,
+        ..description()
+    })
+    .unwrap();
+    let above = horizon.imaging_geometry_at(pixel, 650e-9);
+    assert!(matches!(above, Err(TracerError::Imaging(_))), "{above:?}");
+}
+
+#[test]
+fn what_moves_with_the_camera_stays_in_the_image() {
+    let camera = Camera::new(crooked()).unwrap();
+    let motion = RigidMotion::about(DVec3::new(0.2, 0.1, -0.4), DVec3::new(1.0, 2.0, -0.5), 0.9)
+        .unwrap()
+        .then(&RigidMotion::along(DVec3::new(0.0, 0.3, 1.0)).unwrap());
+    let moved = camera.moved(&motion);
+    let point = DVec3::new(0.011, 0.024, 0.01);
+    let (before, after) = (
+        camera.connect(point, [0.3, 0.8]).unwrap(),
+        moved.connect(motion.point(point), [0.3, 0.8]).unwrap(),
+    );
+    // 1e4 pixels of image distance with roundings of coordinates of 1 m at 0.3 m.
+    assert!(
+        before.pixel.distance(after.pixel) < 1e-10,
+        "{before:?}, {after:?}"
+    );
+    let described = Camera::new(*moved.description()).unwrap();
+    assert!(
+        described.axes().abs_diff_eq(moved.axes(), 1e-14),
+        "{described:?}, {moved:?}"
+    );
+    assert_eq!(camera.moved(&RigidMotion::IDENTITY), camera, "stands still");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn projection_inverts_the_ray_of_any_camera(
+        k in [-15.0_f64..15.0, -1e3_f64..1e3, -1e4_f64..1e4],
+        angle in -0.5_f64..0.5,
+        azimuth in -4.0_f64..4.0,
+        pixel in [-16.0_f64..656.0, -16.0_f64..496.0],
+        depth in 0.01_f64..10.0,
+    ) {
+        let camera = Camera::new(CameraDescription {
+            tilt: SensorTilt { angle, azimuth },
+            ..with_distortion(k[0], k[1], k[2])
+        }).unwrap();
+        let pixel = DVec2::from_array(pixel);
+        let ray = camera.ray(pixel);
+        let image = camera.project(ray.origin + depth * ray.direction).unwrap();
+        // 1e4 pixels of image distance, times a few roundings; undoing the distortion magnifies
+        // them up to ten times.
+        prop_assert!(image.distance(pixel) < 1e-9, "{image} for {pixel}");
+    }
+
+    #[test]
+    fn no_camera_gives_rays_that_are_not_numbers(
+        k in [-1e9_f64..1e9, -1e9_f64..1e9, -1e9_f64..1e9],
+        scale in -12.0_f64..0.0,
+        angle in -1.6_f64..1.6,
+        azimuth in -1e3_f64..1e3,
+        pixel in [-1e6_f64..1e6, -1e6_f64..1e6],
+    ) {
+        let scale = 10.0_f64.powf(scale);
+        let camera = Camera::new(CameraDescription {
+            tilt: SensorTilt { angle, azimuth },
+            ..with_distortion(k[0] * scale, k[1] * scale, k[2] * scale)
+        });
+        if let Ok(camera) = camera {
+            let pixel = DVec2::from_array(pixel);
+            let ray = camera.sample_ray(pixel, [0.2, 0.9]).ray;
+            prop_assert!((ray.direction.length() - 1.0).abs() < 1e-12, "{ray:?}");
+            prop_assert!(camera.solid_angle_per_pixel(pixel) >= 0.0, "{pixel}");
+            prop_assert!(camera.irradiance_per_radiance(pixel) >= 0.0, "{pixel}");
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! The memory of the layers: asked for before it is used.
+
+use std::fs;
+
+use super::FilmLayout;
+use crate::TracerError;
+
+/// The layers of each laser, and those that a frame has once.
+const LAYERS_PER_LASER: u64 = 5;
+const COMMON_LAYERS: u64 = 7;
+
+/// Checks that the layers fit into the memory that the system says is available (Linux).
+///
+/// Many systems grant any memory that is asked for and end the program when it is used.
+pub(super) fn check(layout: &FilmLayout<'_>) -> Result<(), TracerError> {
+    let described = fs::read_to_string("/proc/meminfo").unwrap_or_default();
+    check_against(needed(layout), available(&described))
+}
+
+fn check_against(needed: u64, available: Option<u64>) -> Result<(), TracerError> {
+    match available {
+        Some(available) if needed > available => Err(TracerError::FilmMemory { needed, available }),
+        _ => Ok(()),
+    }
+}
+
+/// The bytes of all layers.
+fn needed(layout: &FilmLayout<'_>) -> u64 {
+    let pixels = (layout.area.width as u64).saturating_mul(layout.area.height as u64);
+    let lasers = layout.wavelengths.len() as u64;
+    let totals = if layout.adaptive { 2 } else { 0 };
+    let layers = LAYERS_PER_LASER * lasers + COMMON_LAYERS + totals;
+    pixels.saturating_mul(layers * size_of::<f32>() as u64)
+}
+
+/// The bytes that a Linux system can give without swapping, from its description of its memory.
+fn available(described: &str) -> Option<u64> {
+    let line = described
+        .lines()
+        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kibibytes = line.trim().strip_suffix("kB")?.trim_end();
+    kibibytes.parse::<u64>().ok()?.checked_mul(1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Crop;
+
+    #[test]
+    fn fifty_lasers_on_a_megapixel_take_a_gigabyte() {
+        let layout = FilmLayout {
+            wavelengths: &[650e-9; 50],
+            area: Crop {
+                x: 0,
+                y: 0,
+                width: 1024,
+                height: 1024,
+            },
+            strips: 1,
+            adaptive: false,
+        };
+        // 50 · 5 + 7 layers of 4 MiB.
+        assert_eq!(needed(&layout), 257 << 22, "bytes");
+    }
+
+    #[test]
+    fn more_than_what_is_available_is_refused() {
+        let described = "MemTotal:       24000 kB\nMemAvailable:   20001 kB\nBuffers: 5 kB\n";
+        let room = available(described);
+        assert_eq!(room, Some(20_001 * 1024), "bytes");
+        assert!(check_against(20_001 * 1024, room).is_ok(), "all of it");
+        let error = check_against(20_001 * 1024 + 1, room).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "the layers of a frame need 20481025 bytes of memory, and 20481024 are available",
+            "one byte more"
+        );
+        for other in ["", "MemAvailable: many kB\n", "MemAvailable: 5 MB\n"] {
+            let room = available(other);
+            assert!(
+                check_against(u64::MAX, room).is_ok(),
+                "{other:?} says nothing"
+            );
+        }
+    }
+}

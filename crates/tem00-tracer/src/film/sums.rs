@@ -1,0 +1,189 @@
+use glam::DVec3;
+
+use crate::integrator::{CameraSample, LaserSample};
+
+/// What the samples of one pixel add up to.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PixelSums {
+    pub samples: u32,
+    /// The sums of each laser.
+    pub lasers: Vec<LaserSums>,
+    /// The radiance from lamps.
+    pub lamps: Moments,
+    /// The radiance from all sources.
+    pub total: Moments,
+    depth: f64,
+    /// The number of samples that meet something.
+    hits: u32,
+    normal: DVec3,
+}
+
+/// What the samples of one pixel add up to for one laser.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LaserSums {
+    pub coherent_before: f64,
+    pub speckle: f64,
+    pub coherent_after: f64,
+    pub incoherent: f64,
+    /// The coherent radiance after speckle, and the incoherent one.
+    pub radiance: Moments,
+    pub power: f64,
+}
+
+/// The sums of values and of their squares.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Moments {
+    pub sum: f64,
+    squares: f64,
+}
+
+impl Moments {
+    fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.squares += value * value;
+    }
+
+    /// Returns the sums of `samples` values with this mean and this variance of the mean.
+    pub(crate) fn restored(samples: u32, mean: f64, variance: f64) -> Self {
+        let n = f64::from(samples);
+        // The square of one sample is known from its value; its variance is infinite.
+        let spread = if samples > 1 {
+            variance * (n - 1.0)
+        } else {
+            0.0
+        };
+        Self {
+            sum: n * mean,
+            squares: n * (mean * mean + spread),
+        }
+    }
+
+    /// Returns the variance of the mean of so many independent values.
+    fn variance_of_mean(&self, samples: u32) -> f64 {
+        if samples < 2 {
+            return f64::INFINITY;
+        }
+        let n = f64::from(samples);
+        let mean = self.sum / n;
+        // Rounding alone can make it negative.
+        (self.squares / n - mean * mean).max(0.0) / (n - 1.0)
+    }
+}
+
+impl PixelSums {
+    /// Starts with no sample.
+    pub(crate) fn new(lasers: usize) -> Self {
+        Self {
+            lasers: vec![LaserSums::default(); lasers],
+            ..Self::default()
+        }
+    }
+
+    /// Goes on from the sums of so many samples.
+    pub(crate) fn restored(
+        samples: u32,
+        lasers: Vec<LaserSums>,
+        lamps: Moments,
+        total: Moments,
+    ) -> Self {
+        Self {
+            samples,
+            lasers,
+            lamps,
+            total,
+            ..Self::default()
+        }
+    }
+
+    /// Adds a camera sample with its values for each laser.
+    pub(crate) fn add(&mut self, sample: &CameraSample, lasers: &[LaserSample]) {
+        let weight = sample.weight;
+        let lamps = weight * sample.lamps;
+        let mut total = lamps;
+        for (sums, laser) in self.lasers.iter_mut().zip(lasers) {
+            let radiance = weight * (laser.coherent_after + laser.incoherent);
+            sums.coherent_before += weight * laser.coherent_before;
+            sums.speckle += weight * laser.speckle;
+            sums.coherent_after += weight * laser.coherent_after;
+            sums.incoherent += weight * laser.incoherent;
+            sums.radiance.add(radiance);
+            sums.power += weight * laser.power;
+            total += radiance;
+        }
+        self.samples += 1;
+        self.lamps.add(lamps);
+        self.total.add(total);
+        if let Some(seen) = sample.seen {
+            self.hits += 1;
+            self.depth += seen.depth;
+            self.normal += seen.normal;
+        }
+    }
+
+    /// Returns the mean over the samples of what adds up to `sum`.
+    pub(crate) fn mean(&self, sum: f64) -> f64 {
+        sum / f64::from(self.samples.max(1))
+    }
+
+    /// Returns the variance of the mean of what has these `moments`.
+    pub(crate) fn variance(&self, moments: &Moments) -> f64 {
+        moments.variance_of_mean(self.samples)
+    }
+
+    /// Returns the mean radiance of all sources.
+    pub(crate) fn radiance(&self) -> f64 {
+        self.mean(self.total.sum)
+    }
+
+    /// Returns the standard error of the mean radiance of all sources.
+    pub(crate) fn error(&self) -> f64 {
+        self.variance(&self.total).sqrt()
+    }
+
+    /// Returns the mean depth of the samples that meet something, in metres, or 0.
+    pub(crate) fn depth(&self) -> f64 {
+        self.depth / f64::from(self.hits.max(1))
+    }
+
+    /// Returns the mean normal.
+    pub(crate) fn normal(&self) -> DVec3 {
+        self.normal / f64::from(self.samples.max(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_give_the_textbook_variance_of_the_mean() {
+        let mut moments = Moments::default();
+        for value in [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0] {
+            moments.add(value);
+        }
+        // Mean 5 and sum of squared deviations 32: 32/7 is the variance of a value, 32/56 of the mean.
+        let variance = moments.variance_of_mean(8);
+        assert!((variance - 32.0 / 56.0).abs() < 1e-15, "{variance}");
+        assert_eq!(moments.variance_of_mean(1), f64::INFINITY, "one sample");
+    }
+
+    #[test]
+    fn restored_moments_go_on_as_if_nothing_had_been_stored() {
+        let mut all = Moments::default();
+        for value in [0.5, 3.0, 1.0, 0.25, 2.0] {
+            all.add(value);
+        }
+        let mut first = Moments::default();
+        for value in [0.5, 3.0, 1.0] {
+            first.add(value);
+        }
+        let mut again = Moments::restored(3, first.sum / 3.0, first.variance_of_mean(3));
+        again.add(0.25);
+        again.add(2.0);
+        let relative = again.variance_of_mean(5) / all.variance_of_mean(5) - 1.0;
+        assert!(relative.abs() < 1e-14, "{relative:e}");
+        let mut one = Moments::restored(1, 0.5, f64::INFINITY);
+        one.add(3.0);
+        assert!((one.variance_of_mean(2) - 1.5625).abs() < 1e-15, "{one:?}");
+    }
+}

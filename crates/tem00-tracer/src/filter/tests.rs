@@ -1,0 +1,210 @@
+use approx::assert_relative_eq;
+
+use super::*;
+
+fn filters() -> Vec<Filter> {
+    let mitchell = |b, c| Filter::MitchellNetravali { radius: 2.0, b, c };
+    let gaussian = |radius, standard_deviation| Filter::Gaussian {
+        radius,
+        standard_deviation,
+    };
+    vec![
+        Filter::default(),
+        Filter::Box { radius: 1.7 },
+        Filter::Tent { radius: 1.0 },
+        gaussian(1.5, 0.5),
+        gaussian(4.0, 0.5),
+        mitchell(1.0 / 3.0, 1.0 / 3.0),
+        mitchell(1.0, 0.0),
+        mitchell(0.0, 1.0),
+        Filter::Lanczos { radius: 3.0 },
+        Filter::Lanczos { radius: 1.0 },
+        Filter::Lanczos { radius: 2.5 },
+    ]
+}
+
+/// ∫ k(x) f(x) dx by Simpson's rule, in steps that end at the joints of the kernels.
+fn integral(filter: Filter, f: impl Fn(f64) -> f64) -> f64 {
+    const STEPS: u32 = 4000;
+    let h = filter.radius() / f64::from(STEPS);
+    let value = |i: u32| {
+        let x = h * f64::from(i);
+        let weight = match i {
+            0 | STEPS => 1.0,
+            i if i % 2 == 1 => 4.0,
+            _ => 2.0,
+        };
+        weight * (filter.kernel(x) * f(x) + filter.kernel(-x) * f(-x))
+    };
+    (0..=STEPS).map(value).sum::<f64>() * h / 3.0
+}
+
+/// The mean of weight times value along one axis, by the midpoint rule over the uniform number.
+fn mean(filter: Filter, f: impl Fn(f64) -> f64) -> f64 {
+    const POINTS: u32 = 1 << 17;
+    let sampler = FilterSampler::new(filter).unwrap();
+    let values = (0..POINTS).map(|i| {
+        let (x, weight) = sampler.sample_axis(2.0 * (f64::from(i) + 0.5) / f64::from(POINTS) - 1.0);
+        weight * f(x)
+    });
+    values.sum::<f64>() / f64::from(POINTS)
+}
+
+#[test]
+fn samples_have_the_moments_and_the_frequency_response_of_the_kernel() {
+    for filter in filters() {
+        let norm = integral(filter, |_| 1.0);
+        // Where the kernel is small, as at the ends of a long tail and beside zeros, a point stands
+        // for a long piece of x: the midpoint rule errs by up to the weight of a point, 2^−17, at
+        // each of up to six such places.
+        let tolerance = 4e-5;
+        assert_relative_eq!(mean(filter, |_| 1.0), 1.0, epsilon = tolerance);
+        for power in 1..=4 {
+            let expected = integral(filter, |x| x.powi(power)) / norm;
+            let got = mean(filter, |x| x.powi(power));
+            let scale = filter.radius().powi(power);
+            assert!(
+                (got - expected).abs() < tolerance * scale,
+                "{filter:?}: moment {power} is {got}, not {expected}"
+            );
+        }
+        for frequency in [0.25, 0.5, 1.0] {
+            let wave = |x: f64| (2.0 * PI * frequency * x).cos();
+            let expected = integral(filter, wave) / norm;
+            let got = mean(filter, wave);
+            assert!(
+                (got - expected).abs() < tolerance,
+                "{filter:?}: {got}, not {expected} at {frequency} per pixel"
+            );
+        }
+    }
+}
+
+#[test]
+fn kernels_are_those_of_their_authors() {
+    // B-spline: (1/6)(3|x|³ − 6x² + 4) and (2 − |x|)³/6. Catmull–Rom: 1 at 0 and 0 at 1.
+    let spline = Filter::MitchellNetravali {
+        radius: 2.0,
+        b: 1.0,
+        c: 0.0,
+    };
+    assert_relative_eq!(spline.kernel(0.5), 2.875 / 6.0, max_relative = 1e-15);
+    assert_relative_eq!(spline.kernel(-1.5), 0.125 / 6.0, max_relative = 1e-14);
+    let catmull_rom = Filter::MitchellNetravali {
+        radius: 2.0,
+        b: 0.0,
+        c: 0.5,
+    };
+    assert_relative_eq!(catmull_rom.kernel(0.0), 1.0, max_relative = 1e-15);
+    assert!(catmull_rom.kernel(1.0).abs() < 1e-15, "interpolates");
+    assert_relative_eq!(catmull_rom.kernel(1.5), -0.0625, max_relative = 1e-14);
+    // Cubic splines of this family sum to 1 over whole pixels.
+    for filter in filters() {
+        if let Filter::MitchellNetravali { .. } = filter {
+            let sum: f64 = (-2..=2).map(|i| filter.kernel(0.3 + f64::from(i))).sum();
+            assert_relative_eq!(sum, 1.0, max_relative = 1e-14);
+        }
+    }
+    let gaussian = Filter::Gaussian {
+        radius: 1.0,
+        standard_deviation: 0.5,
+    };
+    assert_relative_eq!(gaussian.kernel(0.5), (-0.5_f64).exp(), max_relative = 1e-15);
+    let lanczos = Filter::Lanczos { radius: 2.0 };
+    // sinc(½) sinc(¼) = (2/π)(2√2/π).
+    let expected = 4.0 * 2.0_f64.sqrt() / (PI * PI);
+    assert_relative_eq!(lanczos.kernel(0.5), expected, max_relative = 1e-14);
+    for filter in filters() {
+        let beyond = filter.radius() * 1.001;
+        assert!(filter.kernel(beyond).abs() <= 0.0, "{filter:?} ends");
+    }
+}
+
+#[test]
+fn strata_stay_strata() {
+    for filter in filters() {
+        let sampler = FilterSampler::new(filter).unwrap();
+        let mut last = -filter.radius();
+        for i in 0..5000 {
+            let u = (f64::from(i) + 0.5) / 5000.0;
+            let offset = sampler.sample([u, 0.5]).offset.x;
+            assert!(
+                offset >= last && offset <= filter.radius(),
+                "{filter:?} at {u}: {offset} after {last}"
+            );
+            let mirrored = sampler.sample([0.5, 1.0 - u]).offset.y;
+            // The uniform numbers themselves are mirrored to rounding; the slope of the inverse
+            // grows to some 1e6 beside zeros of the density.
+            assert!((mirrored + offset).abs() < 1e-9, "{filter:?} at {u}");
+            last = offset;
+        }
+    }
+}
+
+#[test]
+fn the_box_of_one_pixel_leaves_samples_as_they_are() {
+    let sampler = FilterSampler::new(Filter::default()).unwrap();
+    for u in [0.0, 0.1, 1.0 / 3.0, 0.7, 1.0 - 0.5 * f64::EPSILON] {
+        let sample = sampler.sample([u, 0.25]);
+        assert_eq!(sample.offset, DVec2::new(u - 0.5, -0.25), "at {u}");
+        assert_relative_eq!(sample.weight, 1.0, epsilon = 0.0, max_relative = 0.0);
+    }
+}
+
+#[test]
+fn weights_are_signed_and_nearly_equal() {
+    for filter in filters() {
+        let sampler = FilterSampler::new(filter).unwrap();
+        let magnitude = integral(filter, |x| filter.kernel(x).signum()) / integral(filter, |_| 1.0);
+        for i in 0..1000 {
+            let (x, weight) = sampler.sample_axis(f64::from(2 * i + 1) / 1000.0 - 1.0);
+            assert!(weight * filter.kernel(x) >= 0.0, "{filter:?}: sign at {x}");
+            // A straight piece misses a curved kernel by (radius/256)² k″/8: 1 % where the kernel
+            // has come down to a tenth of a percent.
+            if filter.kernel(x).abs() > 1e-3 {
+                let relative = weight.abs() / magnitude - 1.0;
+                assert!(relative.abs() < 1e-2, "{filter:?}: {weight} at {x}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_number_gives_a_sample() {
+    for filter in filters() {
+        let sampler = FilterSampler::new(filter).unwrap();
+        let table = sampler.table.iter().flat_map(|table| {
+            let mut ends = vec![0.0, 1.0 - f64::EPSILON, 1.0];
+            ends.extend((0..100).map(|i| table.sample(f64::from(i) / 100.0).0));
+            ends
+        });
+        for signed in table {
+            let (x, weight) = sampler.sample_axis(-signed.min(1.0));
+            assert!(x.abs() <= filter.radius(), "{filter:?}: {x}");
+            assert!(weight.is_finite(), "{filter:?}: {weight}");
+        }
+    }
+}
+
+#[test]
+fn impossible_filters_are_refused() {
+    let mitchell = |b, c| Filter::MitchellNetravali { radius: 2.0, b, c };
+    for filter in [
+        Filter::Box { radius: 0.0 },
+        Filter::Tent { radius: f64::NAN },
+        Filter::Tent { radius: 17.0 },
+        Filter::Lanczos { radius: 0.9 },
+        Filter::Gaussian {
+            radius: 1.0,
+            standard_deviation: 0.1,
+        },
+        Filter::Gaussian {
+            radius: 1.0,
+            standard_deviation: f64::INFINITY,
+        },
+        mitchell(-0.1, 0.5),
+        mitchell(0.5, 1.1),
+    ] {
+        assert!(FilterSampler::new(filter).is_err(), "{filter:?}");
+    }
+}

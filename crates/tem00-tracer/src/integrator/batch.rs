@@ -1,0 +1,239 @@
+use glam::{DVec2, DVec3};
+
+use super::Vertex;
+use crate::{
+    Hit, Intersector, Ray, Segment,
+    sampler::Stream,
+    speckle::{SpeckleFrame, SpecklePoint},
+};
+
+/// Camera samples that are traced together, and the state of their paths.
+///
+/// What one sample finds does not depend on the others of its batch. The memory is kept from batch to
+/// batch.
+#[derive(Debug, Default)]
+pub(crate) struct Batch<'a> {
+    pub samples: Vec<CameraSample>,
+    /// For each sample, its values for each laser.
+    pub(super) laser_samples: Vec<LaserSample>,
+    /// The paths that go on, with the ray and the surface point of each.
+    pub(super) paths: Vec<Path>,
+    pub(super) rays: Vec<Ray>,
+    pub(super) hits: Vec<Option<Hit>>,
+    pub(super) vertices: Vec<Vertex<'a>>,
+    /// For each sample, what is left of radiance at the end of its path, by wavelength.
+    pub(super) throughput: Vec<f64>,
+    pub(super) connections: Connections,
+    pub(super) speckle: SpeckleLookUps,
+}
+
+/// A place in the image and in the pupil, and what is found there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CameraSample {
+    /// The number of the pixel, among those that are sampled together.
+    pub slot: usize,
+    /// The image point, in pixels.
+    pub pixel: DVec2,
+    /// The place in the pupil, as a pair of numbers in [0, 1).
+    pub lens: [f64; 2],
+    pub stream: Stream,
+    /// The weight of the sample in its pixel, of mean 1.
+    pub weight: f64,
+    /// The radiance from lamps.
+    pub lamps: f64,
+    /// What is seen there, if anything.
+    pub seen: Option<Seen>,
+}
+
+/// The surface that a camera sample sees.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    /// The distance along the axis of the camera, in metres.
+    pub depth: f64,
+    /// The unit normal of the side that is seen.
+    pub normal: DVec3,
+}
+
+/// What a camera sample finds of one laser.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LaserSample {
+    pub coherent_before: f64,
+    pub speckle: f64,
+    pub coherent_after: f64,
+    pub incoherent: f64,
+    pub power: f64,
+}
+
+impl LaserSample {
+    const DARK: Self = Self {
+        coherent_before: 0.0,
+        speckle: 1.0,
+        coherent_after: 0.0,
+        incoherent: 0.0,
+        power: 0.0,
+    };
+
+    /// Adds radiance that has met one rough surface, or more.
+    pub(super) fn add(&mut self, radiance: f64, coherent: bool) {
+        if coherent {
+            self.coherent_before += radiance;
+            self.coherent_after += radiance * self.speckle;
+        } else {
+            self.incoherent += radiance;
+        }
+    }
+}
+
+/// A path on its way from the camera.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Path {
+    /// The index of the camera sample in the batch.
+    pub sample: usize,
+    /// The number of surfaces met.
+    pub depth: u32,
+    /// How many of the surfaces left behind were rough.
+    pub rough: u32,
+    /// The density with which the ray's direction was drawn, per steradian; `None` at the camera and
+    /// behind a mirror or glass.
+    pub scattering_pdf: Option<f64>,
+}
+
+impl Path {
+    pub(super) const fn of_sample(sample: usize) -> Self {
+        Self {
+            sample,
+            depth: 0,
+            rough: 0,
+            scattering_pdf: None,
+        }
+    }
+}
+
+impl Batch<'_> {
+    /// Forgets all samples.
+    pub(crate) fn clear(&mut self) {
+        self.samples.clear();
+    }
+
+    /// Returns the samples, each with its values for each laser.
+    pub(crate) fn results(
+        &self,
+        lasers: usize,
+    ) -> impl Iterator<Item = (&CameraSample, &[LaserSample])> {
+        let values = move |index: usize| &self.laser_samples[index * lasers..][..lasers];
+        let samples = self.samples.iter().enumerate();
+        samples.map(move |(index, sample)| (sample, values(index)))
+    }
+
+    /// Makes room for the results of the samples.
+    pub(super) fn prepare(&mut self, lasers: usize, wavelengths: usize) {
+        let samples = self.samples.len();
+        self.paths.clear();
+        self.rays.clear();
+        self.laser_samples.clear();
+        self.laser_samples
+            .resize(samples * lasers, LaserSample::DARK);
+        self.throughput.clear();
+        self.throughput.resize(samples * wavelengths, 1.0);
+    }
+}
+
+/// Ways from surface points to light that may be hidden, with what arrives if it is not.
+#[derive(Debug, Default)]
+pub(super) struct Connections {
+    segments: Vec<Segment>,
+    arrivals: Vec<Arrival>,
+    visible: Vec<bool>,
+}
+
+/// What arrives at the camera over a connection.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Arrival {
+    /// Light of a laser.
+    Laser {
+        /// Where the laser's values of the sample are.
+        slot: usize,
+        radiance: f64,
+        /// The power on the area that the sample covers.
+        power: f64,
+        coherent: bool,
+    },
+    /// Light of a lamp.
+    Lamp { sample: usize, radiance: f64 },
+}
+
+impl Connections {
+    /// The most ways that wait to be tested.
+    const CAPACITY: usize = 4096;
+
+    pub(super) fn push(&mut self, segment: Segment, arrival: Arrival) {
+        self.segments.push(segment);
+        self.arrivals.push(arrival);
+    }
+
+    pub(super) const fn is_full(&self) -> bool {
+        self.segments.len() >= Self::CAPACITY
+    }
+}
+
+impl Batch<'_> {
+    /// Adds what arrives over the connections that nothing hides, and forgets them all.
+    pub(super) fn resolve_connections(&mut self, intersector: &Intersector) {
+        let connections = &mut self.connections;
+        connections.visible.clear();
+        connections
+            .visible
+            .resize(connections.segments.len(), false);
+        intersector.visible_batch(&connections.segments, &mut connections.visible);
+        let arrivals = connections.arrivals.iter().zip(&connections.visible);
+        for (arrival, _) in arrivals.filter(|(_, visible)| **visible) {
+            match *arrival {
+                Arrival::Laser {
+                    slot,
+                    radiance,
+                    power,
+                    coherent,
+                } => {
+                    let laser = &mut self.laser_samples[slot];
+                    laser.add(radiance, coherent);
+                    laser.power += power;
+                }
+                Arrival::Lamp { sample, radiance } => self.samples[sample].lamps += radiance,
+            }
+        }
+        connections.segments.clear();
+        connections.arrivals.clear();
+    }
+}
+
+/// The points where speckle is looked up, with the sample of each.
+#[derive(Debug, Default)]
+pub(super) struct SpeckleLookUps {
+    samples: Vec<usize>,
+    points: Vec<SpecklePoint>,
+    factors: Vec<f64>,
+}
+
+impl SpeckleLookUps {
+    pub(super) fn clear(&mut self) {
+        self.samples.clear();
+        self.points.clear();
+    }
+
+    pub(super) fn push(&mut self, sample: usize, point: SpecklePoint) {
+        self.samples.push(sample);
+        self.points.push(point);
+    }
+
+    /// Returns the samples, each with its speckle factor for a laser.
+    pub(super) fn factors(
+        &mut self,
+        speckle: &SpeckleFrame<'_>,
+        laser: usize,
+    ) -> impl Iterator<Item = (usize, f64)> {
+        self.factors.resize(self.points.len(), 0.0);
+        speckle.factors(laser, &self.points, &mut self.factors);
+        let factors = self.factors.iter().copied();
+        self.samples.iter().copied().zip(factors)
+    }
+}

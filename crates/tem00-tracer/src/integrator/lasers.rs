@@ -1,0 +1,153 @@
+use super::{
+    CameraSample, Integrator,
+    batch::{Arrival, Batch, Path},
+    lamps::share,
+    vertex::Vertex,
+};
+use crate::{Formulas, Hit, LaserEvents, Ray, laser::Illumination, sampler::Use};
+
+impl<'a> Integrator<'a> {
+    /// Connects every rough surface point to every laser.
+    pub(super) fn connect_to_lasers(&self, batch: &mut Batch<'a>) {
+        if !self.rules.finds_lasers {
+            return;
+        }
+        for laser in 0..self.lasers.len() {
+            for index in 0..batch.paths.len() {
+                if !batch.vertices[index].is_specular() {
+                    self.connect_to_laser(laser, index, batch);
+                }
+                if batch.connections.is_full() {
+                    batch.resolve_connections(self.intersector);
+                }
+            }
+        }
+        batch.resolve_connections(self.intersector);
+    }
+
+    fn connect_to_laser(&self, laser: usize, index: usize, batch: &mut Batch<'a>) {
+        let (path, vertex) = (batch.paths[index], &batch.vertices[index]);
+        let sample = &batch.samples[path.sample];
+        let Some((light, pdf)) = self.illuminate(laser, &path, vertex, sample) else {
+            return;
+        };
+        let Some(wi) = vertex.towards(light.direction) else {
+            return;
+        };
+        // Weigh the connection against the chance to meet the beam by itself.
+        let weight = pdf.map_or(1.0, |pdf| share(pdf, vertex.pdf(wi)));
+        let reflected = vertex.reflected(wi, self.lasers[laser].wavelength());
+        let throughput = self.laser_throughput(laser, &path, batch);
+        let radiance = weight * throughput * light.irradiance * reflected;
+        let power = if path.depth == 1 && vertex.is_seen_side(wi) {
+            let on_surface = light.irradiance * vertex.normal.dot(light.direction).abs();
+            on_surface * self.footprint(sample, vertex)
+        } else {
+            0.0
+        };
+        if radiance > 0.0 || power > 0.0 {
+            let arrival = Arrival::Laser {
+                slot: path.sample * self.lasers.len() + laser,
+                radiance,
+                power,
+                coherent: path.rough == 0,
+            };
+            let segment = vertex.segment_to(light.source);
+            batch.connections.push(segment, arrival);
+        }
+    }
+
+    /// Returns how a laser lights a surface point, and the density of a drawn direction.
+    fn illuminate(
+        &self,
+        laser: usize,
+        path: &Path,
+        vertex: &Vertex<'_>,
+        sample: &CameraSample,
+    ) -> Option<(Illumination, Option<f64>)> {
+        let source = &self.lasers[laser];
+        match (self.rules.formulas, self.rules.laser_events) {
+            (Formulas::AsPrinted, _) => {
+                let normal = vertex.seen_normal();
+                let light = source.illuminate_as_printed(vertex.position, normal)?;
+                Some((light, None))
+            }
+            (Formulas::Derived, LaserEvents::Beam) => {
+                Some((source.illuminate(vertex.position)?, None))
+            }
+            (Formulas::Derived, LaserEvents::Sampled) => {
+                let u = self
+                    .sequence
+                    .pair(sample.stream, Use::Laser(path.depth, number(laser)));
+                let event = source.sampled_event(vertex.position, u)?;
+                let light = Illumination {
+                    source: event.source,
+                    direction: event.direction,
+                    irradiance: event.value,
+                };
+                Some((light, Some(event.pdf)))
+            }
+        }
+    }
+
+    /// Takes the light of the sampled lasers whose beams a ray from a rough surface runs back.
+    pub(super) fn meet_lasers(
+        &self,
+        path: &Path,
+        ray: &Ray,
+        hit: Option<&Hit>,
+        batch: &mut Batch<'a>,
+    ) {
+        if !self.rays_meet_lasers() || path.rough == 0 || path.depth > self.rules.max_depth {
+            return;
+        }
+        let free = hit.map_or(f64::INFINITY, |hit| hit.distance);
+        for (index, laser) in self.lasers.iter().enumerate() {
+            let aperture = laser.aperture_distance(ray.origin, ray.direction);
+            if aperture.is_none_or(|distance| distance > free) {
+                continue;
+            }
+            let radiance = laser.radiance(ray.origin, ray.direction);
+            if radiance <= 0.0 {
+                continue;
+            }
+            let weight = path.scattering_pdf.map_or(1.0, |pdf| {
+                share(pdf, laser.event_pdf(ray.origin, ray.direction))
+            });
+            let throughput = self.laser_throughput(index, path, batch);
+            let slot = path.sample * self.lasers.len() + index;
+            batch.laser_samples[slot].add(weight * throughput * radiance, path.rough == 1);
+        }
+    }
+
+    /// Tells whether rays can find lasers by chance.
+    pub(super) fn rays_meet_lasers(&self) -> bool {
+        self.rules.finds_lasers
+            && self.rules.laser_events == LaserEvents::Sampled
+            && self.rules.formulas == Formulas::Derived
+            && !self.lasers.is_empty()
+    }
+
+    fn laser_throughput(&self, laser: usize, path: &Path, batch: &Batch<'_>) -> f64 {
+        let first = path.sample * self.spectrum.wavelengths.len();
+        batch.throughput[first + self.spectrum.of_laser[laser]]
+    }
+
+    /// Returns the area of the surface that the camera sample stands for, in m².
+    fn footprint(&self, sample: &CameraSample, vertex: &Vertex<'_>) -> f64 {
+        if self.camera.description().depth_of_field {
+            let seen = self.camera.connect(vertex.position, sample.lens);
+            return seen.map_or(0.0, |seen| 1.0 / (seen.importance * vertex.cosine.abs()));
+        }
+        let solid_angle = self.camera.solid_angle_per_pixel(sample.pixel);
+        solid_angle * vertex.distance.powi(2) / vertex.cosine.abs()
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "it only chooses random numbers"
+)]
+pub(super) const fn number(index: usize) -> u32 {
+    index as u32
+}

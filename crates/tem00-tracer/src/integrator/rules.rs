@@ -1,0 +1,137 @@
+use crate::{
+    Camera, Formulas, Intersector, Lamp, LampEvents, Laser, LaserEvents, Method, RenderOptions,
+    Scene, sampler::Sequence, speckle::SpeckleFrame,
+};
+
+use super::Integrator;
+
+/// The wavelength at which materials are evaluated for lamps, in metres: lamps are white and
+/// materials grey under them.
+const LAMP_WAVELENGTH: f64 = 550e-9;
+
+/// Which paths are followed, and how they find light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PathRules {
+    pub formulas: Formulas,
+    /// The most surfaces between source and camera.
+    pub max_depth: u32,
+    /// Whether the lasers' light is found from the camera at all.
+    pub finds_lasers: bool,
+    pub laser_events: LaserEvents,
+    pub lamp_events: LampEvents,
+}
+
+impl From<&RenderOptions> for PathRules {
+    fn from(options: &RenderOptions) -> Self {
+        Self {
+            formulas: options.formulas,
+            max_depth: options.max_depth.unwrap_or(u32::MAX),
+            finds_lasers: options.method == Method::Path,
+            laser_events: options.laser_events,
+            lamp_events: options.lamp_events,
+        }
+    }
+}
+
+/// The distinct wavelengths of all light, in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Spectrum {
+    pub wavelengths: Vec<f64>,
+    /// For each laser, which of them is its own.
+    pub of_laser: Vec<usize>,
+    /// Which of them stands for the lamps; 0 if there are none.
+    pub of_lamps: usize,
+}
+
+impl Spectrum {
+    fn of(lasers: &[Laser], lamps: &[Lamp]) -> Self {
+        let mut wavelengths = Vec::new();
+        let of_laser = lasers
+            .iter()
+            .map(|laser| place(&mut wavelengths, laser.wavelength()))
+            .collect();
+        let of_lamps = if lamps.is_empty() {
+            0
+        } else {
+            place(&mut wavelengths, LAMP_WAVELENGTH)
+        };
+        Self {
+            wavelengths,
+            of_laser,
+            of_lamps,
+        }
+    }
+}
+
+impl Spectrum {
+    /// Returns the wavelength that stands for the lamps, in metres.
+    pub(super) fn lamp_wavelength(&self) -> f64 {
+        LAMP_WAVELENGTH
+    }
+}
+
+/// Returns the place of a wavelength in the list, where it is put if it is not there.
+fn place(wavelengths: &mut Vec<f64>, wavelength: f64) -> usize {
+    let bits = wavelength.to_bits();
+    let found = wavelengths.iter().position(|other| other.to_bits() == bits);
+    found.unwrap_or_else(|| {
+        wavelengths.push(wavelength);
+        wavelengths.len() - 1
+    })
+}
+
+impl<'a> Integrator<'a> {
+    /// Prepares a frame of a scene.
+    pub(crate) fn new(
+        scene: &'a Scene,
+        frame: u32,
+        intersector: &'a Intersector,
+        options: &RenderOptions,
+    ) -> Self {
+        let lamps = |is_meant: fn(&Lamp) -> bool| {
+            let lamps = scene.lamps.iter().enumerate();
+            lamps
+                .filter(|(_, lamp)| is_meant(lamp))
+                .map(|(index, _)| index)
+                .collect()
+        };
+        Self {
+            scene,
+            camera: scene.camera_at(frame),
+            lasers: scene.lasers.iter().map(|laser| laser.at(frame)).collect(),
+            intersector,
+            speckle: None,
+            rules: options.into(),
+            sequence: Sequence::new(options.samples_per_pixel),
+            spectrum: Spectrum::of(&scene.lasers, &scene.lamps),
+            lamp_shapes: lamps(|lamp| matches!(lamp, Lamp::Area { .. })),
+            environments: lamps(|lamp| matches!(lamp, Lamp::Environment(_))),
+        }
+    }
+
+    /// Multiplies coherent light by the speckle of the frame.
+    pub(crate) fn with_speckle(mut self, speckle: Option<&'a SpeckleFrame<'a>>) -> Self {
+        self.speckle = speckle;
+        self
+    }
+
+    /// Returns the camera of the frame.
+    pub(crate) fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// Returns the random numbers of the render.
+    pub(crate) fn sequence(&self) -> &Sequence {
+        &self.sequence
+    }
+
+    /// Returns the wavelengths of the lasers, in metres.
+    pub(crate) fn laser_wavelengths(&self) -> impl Iterator<Item = f64> {
+        self.lasers.iter().map(Laser::wavelength)
+    }
+
+    /// Returns the number of lasers.
+    pub(crate) fn laser_count(&self) -> usize {
+        self.lasers.len()
+    }
+}

@@ -1,0 +1,139 @@
+//! A laser as a source of rays: the phase-space density of its beam, drawn from and evaluated.
+
+use glam::DVec3;
+use tem00_beam::{Emitter, LineProfile, TabulatedLineLight};
+
+use super::{Laser, Source};
+use crate::Ray;
+
+/// A ray that a laser sends out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EmittedRay {
+    /// The ray, from the plane of the aperture.
+    pub ray: Ray,
+    /// The power that the ray stands for, in watts: that of the laser, to be divided by the number
+    /// of rays.
+    pub flux: f64,
+}
+
+/// How a laser lights a point, along a direction drawn at random.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampledIllumination {
+    /// The point of the plane of the aperture from which the light comes, in metres.
+    pub source: DVec3,
+    /// The unit direction towards the light.
+    pub direction: DVec3,
+    /// The radiance along the direction divided by `pdf`, in W/m².
+    pub value: f64,
+    /// The density with which the direction was drawn, per steradian.
+    pub pdf: f64,
+}
+
+impl Laser {
+    /// Draws a ray from four uniform numbers in [0, 1).
+    ///
+    /// Every ray stands for the same power, so rays that follow mirrors and lenses carry the beam
+    /// through them: straight rays drawn from the phase-space density of a Gaussian beam obey the
+    /// complex q law behind every paraxial system.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use tem00_tracer::{BeamShape, Laser, LaserDescription};
+    ///
+    /// let laser = Laser::new(LaserDescription {
+    ///     wavelength: 650e-9,
+    ///     power: 5e-3,
+    ///     position: DVec3::new(0.0, 0.0, 0.3),
+    ///     look_at: DVec3::ZERO,
+    ///     line_direction: DVec3::X,
+    ///     shape: BeamShape::Spot {
+    ///         waist_radius: [0.1e-3; 2],
+    ///         waist_distance: [0.3; 2],
+    ///         m_squared: [1.0; 2],
+    ///     },
+    /// })?;
+    /// let emitted = laser.sample_ray([0.5; 4]);
+    /// assert_eq!(emitted.ray.direction, -DVec3::Z);
+    /// assert_eq!(emitted.flux, 5e-3);
+    ///
+    /// // On the axis of the waist the radiance is 4P / λ².
+    /// let radiance = laser.radiance(DVec3::ZERO, DVec3::Z);
+    /// assert!((radiance / (4.0 * 5e-3 / 650e-9_f64.powi(2)) - 1.0).abs() < 1e-12);
+    /// # Ok::<(), tem00_tracer::TracerError>(())
+    /// ```
+    pub fn sample_ray(&self, u: [f64; 4]) -> EmittedRay {
+        let sample = self.with_emitter(|light| light.sample_ray(u));
+        EmittedRay {
+            ray: Ray {
+                origin: DVec3::from_array(sample.origin),
+                direction: DVec3::from_array(sample.direction),
+            },
+            flux: sample.flux,
+        }
+    }
+
+    /// Draws a direction from which the laser lights `point`, from two uniform numbers in [0, 1), or
+    /// returns `None` where it sends no light.
+    ///
+    /// The estimate of the reflected radiance is `f · |n·direction| · value`, where the source is
+    /// visible. No light is counted beyond four radii of the beam; [`event_pdf`](Self::event_pdf) is
+    /// 0 there.
+    pub fn sampled_event(&self, point: DVec3, u: [f64; 2]) -> Option<SampledIllumination> {
+        let event = self.with_emitter(|light| light.next_event_sampled(point.to_array(), u))?;
+        Some(SampledIllumination {
+            source: DVec3::from_array(event.point),
+            direction: DVec3::from_array(event.wi),
+            value: event.value,
+            pdf: event.pdf,
+        })
+    }
+
+    /// Returns the density, per steradian, with which [`sampled_event`](Self::sampled_event) draws
+    /// the unit `direction` at `point`.
+    pub fn event_pdf(&self, point: DVec3, direction: DVec3) -> f64 {
+        self.with_emitter(|light| light.next_event_pdf(point.to_array(), direction.to_array()))
+    }
+
+    /// Returns the radiance, in W/(m² sr), that arrives at `origin` from the unit `direction`; 0
+    /// behind the aperture.
+    ///
+    /// It is the radiance of free space: whether something stands between `origin` and the aperture,
+    /// at [`aperture_distance`](Self::aperture_distance), is the caller's to find out.
+    pub fn radiance(&self, origin: DVec3, direction: DVec3) -> f64 {
+        if self.aperture_distance(origin, direction).is_none() {
+            return 0.0;
+        }
+        let travel = -direction;
+        self.with_emitter(|light| light.radiance(origin.to_array(), travel.to_array()))
+    }
+
+    /// Returns the distance, in metres, at which the ray from `origin` along the unit `direction`
+    /// crosses the plane of the aperture from the lit side, or `None` if it does not.
+    pub fn aperture_distance(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let (aperture, axis) = match &self.source {
+            Source::Spot { light, .. } => (light.origin, light.ez),
+            Source::Line { light, .. } => (light.origin, light.ez),
+        };
+        let axis = DVec3::from_array(axis);
+        let height = (origin - DVec3::from_array(aperture)).dot(axis);
+        let descent = -direction.dot(axis);
+        let distance = height / descent;
+        (height >= 0.0 && descent > 0.0 && distance.is_finite()).then_some(distance)
+    }
+
+    /// Calls `query` with the light, whatever its kind.
+    fn with_emitter<R>(&self, query: impl FnOnce(&dyn Emitter<f64>) -> R) -> R {
+        match &self.source {
+            Source::Spot { light, .. } => query(light),
+            Source::Line { line, light } => match line.profile() {
+                LineProfile::Tabulated(profile) => query(&TabulatedLineLight {
+                    line: *light,
+                    knots: profile.knots(),
+                }),
+                _ => query(light),
+            },
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Light followed from the lasers to the camera.
+//!
+//! The path tracer connects what the camera sees straight to the lasers, so it knows no light that a
+//! mirror or a lens has turned on its way to a surface. Here rays drawn from the phase space of a
+//! beam carry its power. Mirrors and glass send them on; at every rough surface they are connected
+//! to the camera.
+//!
+//! What the camera sees in a mirror or through glass cannot be connected to it. Light that meets
+//! specular surfaces on both sides, between laser and rough surface and between rough surface and
+//! camera, is found neither from here nor from there.
+
+mod draws;
+mod splats;
+mod walk;
+
+use core::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+use tem00_numerics::Grid;
+
+use self::{splats::SplatFilm, walk::Walk};
+use crate::{Camera, Crop, Intersector, LaserLayers, RenderError, Scene, speckle::SpeckleFrame};
+
+/// Follows light from the lasers to the camera, in one frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightTracer<'a> {
+    pub scene: &'a Scene,
+    /// The camera as it stands in the frame.
+    pub camera: &'a Camera,
+    /// The surfaces as they stand in the frame, and the lamps behind them.
+    pub intersector: &'a Intersector,
+    pub speckle: Option<&'a SpeckleFrame<'a>>,
+    pub frame: u32,
+    /// The most surfaces that light may meet between laser and camera; `None` for no limit.
+    pub max_depth: Option<u32>,
+    pub share: LightShare,
+    /// The part of the image that is rendered.
+    pub area: Crop,
+}
+
+/// Which light is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LightShare {
+    /// All that reaches the camera from a rough surface.
+    All,
+    /// That of it which a mirror or glass was the first to meet: all that the path tracer misses.
+    SpecularFirst,
+}
+
+/// What is asked of a light tracer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct LightJob {
+    /// The index of the laser in the scene.
+    pub laser: usize,
+    /// The number of light paths. The same number gives the same bits in every part of the image.
+    pub paths: u64,
+    pub seed: u64,
+}
+
+/// The layers that light paths add to those of a laser.
+///
+/// Radiances in W/(m² sr), averaged over the square of the pixel: a light path comes upon its image
+/// point by chance, so that no other reconstruction filter applies.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LightLayers {
+    /// Radiance of the light that has met one rough surface, before speckle.
+    pub coherent_before: Grid<f32>,
+    /// The same, each path multiplied by its speckle factor.
+    pub coherent_after: Grid<f32>,
+    /// Radiance of the light that has met more than one rough surface.
+    pub incoherent: Grid<f32>,
+    /// The variance of the sum of the last two, without bias: from groups of paths that are
+    /// independent of each other.
+    pub variance: Grid<f32>,
+    /// The power that the light paths bring to the first rough surface where that is seen in the
+    /// image, in watts.
+    pub power_on_target: f64,
+}
+
+/// The groups of light paths whose points of phase space are spread evenly.
+#[derive(Clone, Copy, Debug)]
+struct Groups {
+    paths: u64,
+    count: u64,
+}
+
+impl Groups {
+    /// As large as spreads the points well, but not so few that their scatter is unknown.
+    fn new(paths: u64) -> Self {
+        const FEW: u64 = 64;
+        const LARGE: u64 = 1 << 12;
+        let size = (paths / FEW).clamp(1, LARGE);
+        Self {
+            paths,
+            count: paths.div_ceil(size),
+        }
+    }
+
+    /// Returns the number of paths in group `index`; groups differ by one path at most.
+    fn size(self, index: u64) -> u64 {
+        let start =
+            |group: u64| u128::from(group) * u128::from(self.paths) / u128::from(self.count);
+        u64::try_from(start(index + 1) - start(index)).unwrap_or(u64::MAX)
+    }
+}
+
+/// The groups that are followed before their light is put into the image, in their order: memory is
+/// bounded, and the sums have the same bits for any number of threads.
+const GROUPS_AT_ONCE: u64 = 64;
+
+impl LightTracer<'_> {
+    /// Follows the light of one laser.
+    ///
+    /// `progress` is told, from any thread, the number of light paths done since its last call.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`RenderError::Cancelled`] if `cancel` was set before the end.
+    pub(crate) fn trace(
+        &self,
+        job: &LightJob,
+        progress: &(impl Fn(u64) + Sync),
+        cancel: &AtomicBool,
+    ) -> Result<LightLayers, RenderError> {
+        let walk = Walk::new(self, job);
+        let groups = Groups::new(job.paths);
+        let mut film = SplatFilm::new(self.area);
+        for first in (0..groups.count).step_by(GROUPS_AT_ONCE as usize) {
+            let wave = first..groups.count.min(first + GROUPS_AT_ONCE);
+            let followed: Vec<_> = wave
+                .into_par_iter()
+                .map(|index| {
+                    if cancel.load(Ordering::Relaxed) {
+                        return Err(RenderError::Cancelled);
+                    }
+                    let splats = walk.group(index, groups.size(index));
+                    progress(groups.size(index));
+                    Ok(splats)
+                })
+                .collect::<Result<_, _>>()?;
+            for splats in &followed {
+                film.add(splats);
+            }
+        }
+        Ok(film.layers(groups.count, groups.paths))
+    }
+}
+
+impl LightLayers {
+    /// Adds the light to the layers of its laser.
+    pub(crate) fn add_to(&self, layers: &mut LaserLayers) {
+        let pairs = [
+            (&mut layers.coherent_before, &self.coherent_before),
+            (&mut layers.coherent_after, &self.coherent_after),
+            (&mut layers.incoherent, &self.incoherent),
+            (&mut layers.variance, &self.variance),
+        ];
+        for (sum, light) in pairs {
+            let values = sum.values_mut().iter_mut().zip(light.values());
+            values.for_each(|(sum, light)| *sum += light);
+        }
+        layers.power_on_target += self.power_on_target;
+    }
+}
+
+impl Scene {
+    /// Returns whether an object is a mirror or of smooth glass.
+    ///
+    /// If so, the light that these send from a laser to other surfaces is followed from the laser.
+    /// Light that meets such objects on both sides of a rough surface, before it and between it and
+    /// the camera, is missing from the image.
+    pub fn has_specular_surfaces(&self) -> bool {
+        let mut surfaces = self.surfaces.iter();
+        surfaces.any(|surface| surface.material.is_specular())
+    }
+}
+
+#[cfg(test)]
+mod tests;

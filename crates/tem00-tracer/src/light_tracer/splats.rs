@@ -1,0 +1,115 @@
+use tem00_numerics::Grid;
+
+use super::LightLayers;
+use crate::Crop;
+
+/// What light paths bring to one pixel, in W/(m² sr).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Splat {
+    /// The number of the pixel in the part of the image that is rendered.
+    pub pixel: usize,
+    pub coherent_before: f64,
+    pub coherent_after: f64,
+    pub incoherent: f64,
+}
+
+/// What a group of light paths brings to the image.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Splats {
+    /// By pixel in the end, one for each.
+    list: Vec<Splat>,
+    /// The power on the first rough surface where that is seen, in watts.
+    pub power: f64,
+}
+
+impl Splats {
+    pub(super) fn push(&mut self, splat: Splat) {
+        self.list.push(splat);
+    }
+
+    /// Adds up what belongs to the same pixel.
+    pub(super) fn merge(&mut self) {
+        // Stable: the order of the sums is that of the paths.
+        self.list.sort_by_key(|splat| splat.pixel);
+        self.list.dedup_by(|next, sum| {
+            let same = next.pixel == sum.pixel;
+            if same {
+                sum.coherent_before += next.coherent_before;
+                sum.coherent_after += next.coherent_after;
+                sum.incoherent += next.incoherent;
+            }
+            same
+        });
+    }
+}
+
+/// The image while it is made: 32 bytes per pixel.
+#[derive(Debug)]
+pub(super) struct SplatFilm {
+    area: Crop,
+    pixels: Vec<PixelSums>,
+    power: f64,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct PixelSums {
+    coherent_before: f64,
+    coherent_after: f64,
+    incoherent: f64,
+    /// The sum over groups of the square of what the group brings.
+    squares: f64,
+}
+
+impl SplatFilm {
+    pub(super) fn new(area: Crop) -> Self {
+        Self {
+            area,
+            pixels: vec![PixelSums::default(); area.width * area.height],
+            power: 0.0,
+        }
+    }
+
+    /// Adds what one group brings.
+    pub(super) fn add(&mut self, splats: &Splats) {
+        for splat in &splats.list {
+            let pixel = &mut self.pixels[splat.pixel];
+            pixel.coherent_before += splat.coherent_before;
+            pixel.coherent_after += splat.coherent_after;
+            pixel.incoherent += splat.incoherent;
+            pixel.squares += (splat.coherent_after + splat.incoherent).powi(2);
+        }
+        self.power += splats.power;
+    }
+
+    /// Returns the layers after so many groups and paths, each of which stood for the whole laser.
+    pub(super) fn layers(&self, groups: u64, paths: u64) -> LightLayers {
+        let (groups, paths) = (groups as f64, paths.max(1) as f64);
+        let variance = |pixel: &PixelSums| {
+            if groups < 2.0 {
+                return f64::INFINITY;
+            }
+            let sum = pixel.coherent_after + pixel.incoherent;
+            // Rounding alone can make it negative.
+            let scatter = (pixel.squares - sum * sum / groups).max(0.0);
+            groups / (groups - 1.0) * scatter / (paths * paths)
+        };
+        LightLayers {
+            coherent_before: self.layer(|pixel| pixel.coherent_before / paths),
+            coherent_after: self.layer(|pixel| pixel.coherent_after / paths),
+            incoherent: self.layer(|pixel| pixel.incoherent / paths),
+            variance: self.layer(variance),
+            power_on_target: self.power / paths,
+        }
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "images are stored in single precision"
+    )]
+    fn layer(&self, value: impl Fn(&PixelSums) -> f64) -> Grid<f32> {
+        let Crop { width, height, .. } = self.area;
+        Grid::from_fn(width, height, |x, y| {
+            value(&self.pixels[y * width + x]) as f32
+        })
+    }
+}

@@ -1,0 +1,88 @@
+use core::f64::consts::FRAC_1_PI;
+
+use glam::DVec3;
+
+use super::{
+    BsdfSample,
+    albedo::Albedo,
+    dielectric::refraction,
+    diffuse::{choose_first, cosine_pdf, sample_cosine},
+    ggx::{Ggx, half_vector},
+};
+
+/// A clear coat with a rough surface over a diffuse base. All directions are above the surface.
+///
+/// What the coat does not reflect enters it, is reflected diffusely by the base, and leaves or is
+/// thrown back by the coat's inner side, again and again. With E the albedo of the coat, Ē its mean
+/// over all directions and ρ the reflectance of the base:
+///
+/// ```text
+/// f = R D G₂ / (4 cos θo cos θi) + (κ / π) (1 − E(θo)) (1 − E(θi)) / (1 − Ē)
+/// κ = ρ (1 − R_in) / (1 − ρ R_in)        1 − R_in = (1 − Ē) / n²
+/// ```
+///
+/// `R_in`, what the inner side of the coat throws back of diffuse light, follows from reciprocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Plastic {
+    facets: Ggx,
+    index: f64,
+    albedo: Albedo,
+    /// What comes out of the coat of all that enters it, κ.
+    returned: f64,
+    /// κ / (π (1 − Ē)).
+    base: f64,
+}
+
+impl Plastic {
+    pub(super) fn new(reflectance: f64, index: f64, facets: Ggx) -> Self {
+        let albedo = Albedo::new(facets, |cosine| refraction(cosine, index).reflectance);
+        let entering = 1.0 - albedo.mean();
+        let leaving = entering / (index * index);
+        let returned = reflectance * leaving / (1.0 - reflectance * (1.0 - leaving));
+        Self {
+            facets,
+            index,
+            albedo,
+            returned,
+            base: returned * FRAC_1_PI / entering,
+        }
+    }
+
+    /// Returns the roughness α of the coat.
+    pub(super) const fn roughness(&self) -> f64 {
+        self.facets.alpha
+    }
+
+    pub(super) fn evaluate(&self, wo: DVec3, wi: DVec3) -> f64 {
+        let facet = half_vector(wo, wi);
+        let cosine = wi.dot(facet).clamp(0.0, 1.0);
+        let coat = refraction(cosine, self.index).reflectance
+            * self.facets.density(facet)
+            * self.facets.visibility(wo, wi);
+        coat + self.base * (1.0 - self.albedo.at(wo.z)) * (1.0 - self.albedo.at(wi.z))
+    }
+
+    pub(super) fn sample(&self, wo: DVec3, [u, v]: [f64; 2]) -> Option<BsdfSample> {
+        let (coat, u) = choose_first(self.coat_probability(wo), u);
+        let wi = if coat {
+            self.facets.reflect(wo, [u, v])
+        } else {
+            sample_cosine([u, v])
+        };
+        (wo.z * wi.z > 0.0).then(|| {
+            let pdf = self.pdf(wo, wi);
+            BsdfSample::rough(wi, self.evaluate(wo, wi) * wi.z / pdf, pdf)
+        })
+    }
+
+    pub(super) fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+        let coat = self.coat_probability(wo);
+        coat * self.facets.reflected_pdf(wo, half_vector(wo, wi)) + (1.0 - coat) * cosine_pdf(wi)
+    }
+
+    /// Returns the share of the coat in all that is reflected towards `wo`.
+    fn coat_probability(&self, wo: DVec3) -> f64 {
+        let coat = self.albedo.at(wo.z);
+        coat / (coat + self.returned * (1.0 - coat))
+    }
+}

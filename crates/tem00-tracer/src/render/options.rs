@@ -1,0 +1,148 @@
+use crate::{Camera, RenderSettings, TracerError};
+
+/// Which formulas a render uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Formulas {
+    /// The physics as it was derived and checked for this project.
+    #[default]
+    Derived,
+    /// The formulas as printed in Bergmann et al. 2016, with their errors, for comparison.
+    AsPrinted,
+}
+
+/// How light is followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// From the camera; and from the lasers through mirrors and glass, where the scene has them.
+    #[default]
+    Path,
+    /// From the lasers to the camera.
+    Light,
+}
+
+/// How the light of a laser at a surface is sampled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LaserEvents {
+    /// From the one direction of the mean energy flow.
+    #[default]
+    Beam,
+    /// From a direction drawn from the beam's phase-space density.
+    Sampled,
+}
+
+/// How lamps that have an area, and the environment, are sampled from a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LampEvents {
+    /// By a point of the lamp and by a direction of the material, each weighted by how likely it is to
+    /// find what the other finds.
+    #[default]
+    Both,
+    /// By a point of the lamp only: fewer rays, but noise where shiny surfaces mirror a lamp.
+    NextEvent,
+    /// By a direction of the material only: right for lamps all around, hopeless for small ones.
+    Scattering,
+}
+
+/// A rectangle of pixels: the part of an image that is rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// The first column.
+    pub x: usize,
+    /// The first row.
+    pub y: usize,
+    /// The number of columns, at least 1.
+    pub width: usize,
+    /// The number of rows, at least 1.
+    pub height: usize,
+}
+
+/// How a frame is rendered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderOptions {
+    /// The number of camera samples per pixel, at least 1.
+    pub samples_per_pixel: u32,
+    /// The seed of the camera samples.
+    pub seed: u64,
+    /// The formulas.
+    pub formulas: Formulas,
+    /// The most surfaces that light may meet between source and camera; `None` for no limit.
+    pub max_depth: Option<u32>,
+    /// How light is followed.
+    pub method: Method,
+    /// How the lasers are sampled from a surface.
+    pub laser_events: LaserEvents,
+    /// How lamps are sampled from a surface.
+    pub lamp_events: LampEvents,
+    /// The part of the image that is rendered; `None` for all.
+    pub crop: Option<Crop>,
+    /// The relative standard error of a pixel at which it gets no more samples.
+    pub target_error: Option<f64>,
+}
+
+impl From<&RenderSettings> for RenderOptions {
+    fn from(settings: &RenderSettings) -> Self {
+        Self {
+            samples_per_pixel: settings.samples_per_pixel,
+            seed: settings.seed,
+            formulas: Formulas::Derived,
+            max_depth: settings.max_depth,
+            method: settings.method,
+            laser_events: settings.laser_events,
+            lamp_events: LampEvents::default(),
+            crop: settings.crop,
+            target_error: settings.target_error,
+        }
+    }
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self::from(&RenderSettings::default())
+    }
+}
+
+impl RenderOptions {
+    /// Checks the options and returns the part of the camera's image that is rendered.
+    pub(super) fn area(&self, camera: &Camera) -> Result<Crop, TracerError> {
+        if self.samples_per_pixel == 0 {
+            return Err(out_of_range("samples_per_pixel", 0.0, "at least 1"));
+        }
+        if let Some(error) = self.target_error
+            && !(error > 0.0 && error.is_finite())
+        {
+            return Err(out_of_range("target_error", error, "positive and finite"));
+        }
+        let [width, height] = [camera.width(), camera.height()];
+        let whole = Crop {
+            x: 0,
+            y: 0,
+            width,
+            height,
+        };
+        let crop = self.crop.unwrap_or(whole);
+        check_range("crop (columns)", [crop.x, crop.width], width)?;
+        check_range("crop (rows)", [crop.y, crop.height], height)?;
+        Ok(crop)
+    }
+}
+
+fn check_range(
+    parameter: &'static str,
+    [first, count]: [usize; 2],
+    size: usize,
+) -> Result<(), TracerError> {
+    let end = first.saturating_add(count);
+    if count == 0 || end > size {
+        let allowed = "in the image, with at least one pixel";
+        return Err(out_of_range(parameter, end as f64, allowed));
+    }
+    Ok(())
+}
+
+const fn out_of_range(parameter: &'static str, value: f64, allowed: &'static str) -> TracerError {
+    TracerError::OutOfRange {
+        parameter,
+        value,
+        allowed,
+    }
+}

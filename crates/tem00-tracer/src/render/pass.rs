@@ -1,0 +1,196 @@
+//! The pass over the image: which pixels get samples, in what order, and when they have enough.
+
+use core::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::{Crop, RenderError, RenderOptions};
+use crate::{
+    Frame,
+    film::{Film, FilmLayout, PixelSums},
+    integrator::{Batch, CameraSample, Integrator},
+    sampler::{Strata, Use, independent_pair, pixel_key},
+};
+
+/// The number of neighbouring pixels of a row that one thread works on at a time.
+const STRIP: usize = 32;
+
+/// The most samples that are traced together.
+const BATCH: usize = 1024;
+
+/// The most rounds of samples that a pixel gets for a target error, the first one included.
+const MOST_ROUNDS: u64 = 64;
+
+/// The radiance below which a pixel's error is compared with this radiance instead of its own, by the
+/// mean radiance of the image.
+const DARK: f64 = 0.1;
+
+/// One pass over the image, or over a part of it.
+pub(super) struct PathPass<'a, P> {
+    pub integrator: &'a Integrator<'a>,
+    pub options: &'a RenderOptions,
+    pub frame: u32,
+    pub area: Crop,
+    pub progress: &'a P,
+    pub cancel: &'a AtomicBool,
+}
+
+/// A pixel that is sampled.
+struct Pixel {
+    /// Column and row in the whole image.
+    place: [usize; 2],
+    sums: PixelSums,
+}
+
+impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
+    /// Renders all layers.
+    pub(super) fn render(&self) -> Result<Frame, RenderError> {
+        let wavelengths: Vec<f64> = self.integrator.laser_wavelengths().collect();
+        let film = Mutex::new(Film::new(&FilmLayout {
+            wavelengths: &wavelengths,
+            area: self.area,
+            strips: self.strips(),
+            adaptive: self.options.target_error.is_some(),
+        })?);
+        self.first_round(&film)?;
+        if let Some(target) = self.options.target_error {
+            self.further_rounds(&film, target)?;
+        }
+        let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
+        Ok(film.into_frame())
+    }
+
+    /// Gives every pixel the same number of samples.
+    fn first_round(&self, film: &Mutex<Film>) -> Result<(), RenderError> {
+        let strips = (0..self.strips()).into_par_iter();
+        strips.try_for_each_init(Batch::default, |batch, strip| {
+            let mut pixels = self.strip(strip);
+            self.add_round(0, &mut pixels, batch)?;
+            let mut film = locked(film);
+            for pixel in &pixels {
+                film.write_first(strip, self.in_area(pixel.place), &pixel.sums);
+            }
+            Ok(())
+        })
+    }
+
+    /// Gives pixels more samples, round by round, until their relative error is below the target.
+    fn further_rounds(&self, film: &Mutex<Film>, target: f64) -> Result<(), RenderError> {
+        let dark = DARK * locked(film).mean_radiance();
+        let is_done =
+            |pixel: &Pixel| pixel.sums.error() <= target * pixel.sums.radiance().max(dark);
+        let strips = (0..self.strips()).into_par_iter();
+        strips.try_for_each_init(Batch::default, |batch, strip| {
+            let mut pixels = self.strip(strip);
+            for pixel in &mut pixels {
+                pixel.sums = locked(film).read(self.in_area(pixel.place));
+            }
+            for round in 1..MOST_ROUNDS {
+                pixels.retain(|pixel| !is_done(pixel));
+                self.add_round(round, &mut pixels, batch)?;
+                let mut film = locked(film);
+                for pixel in &pixels {
+                    film.write(self.in_area(pixel.place), &pixel.sums);
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Adds a round of samples to each of the pixels.
+    fn add_round(
+        &self,
+        round: u64,
+        pixels: &mut [Pixel],
+        batch: &mut Batch<'a>,
+    ) -> Result<(), RenderError> {
+        batch.clear();
+        let strata = Strata::new(self.options.samples_per_pixel);
+        for slot in 0..pixels.len() {
+            let place = pixels[slot].place;
+            let key = self.key(place, round);
+            for index in 0..strata.samples() {
+                let sample = self.camera_sample(slot, place, key, (strata, index));
+                batch.samples.push(sample);
+                if batch.samples.len() == BATCH {
+                    self.trace(batch, pixels)?;
+                }
+            }
+        }
+        self.trace(batch, pixels)
+    }
+
+    /// Traces the samples of a batch, adds them to their pixels, and forgets them.
+    fn trace(&self, batch: &mut Batch<'a>, pixels: &mut [Pixel]) -> Result<(), RenderError> {
+        if self.cancel.load(Ordering::Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
+        self.integrator.trace(batch);
+        for (sample, lasers) in batch.results(self.integrator.laser_count()) {
+            pixels[sample.slot].sums.add(sample, lasers);
+        }
+        (self.progress)(batch.samples.len() as u64);
+        batch.clear();
+        Ok(())
+    }
+
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "an image has at most 2²⁸ pixels"
+    )]
+    fn camera_sample(
+        &self,
+        slot: usize,
+        [x, y]: [usize; 2],
+        key: u64,
+        (strata, index): (Strata, u32),
+    ) -> CameraSample {
+        let sequence = self.integrator.sequence();
+        let stream = sequence.stream(key, index);
+        let [u, v] = strata.position(index, independent_pair(stream, Use::Pixel));
+        CameraSample {
+            slot,
+            pixel: DVec2::new(x as f64 + u, y as f64 + v),
+            lens: sequence.pair(stream, Use::Lens),
+            stream,
+            weight: 1.0,
+            lamps: 0.0,
+            seen: None,
+        }
+    }
+
+    /// Every pixel of every round of every frame has random numbers of its own, wherever the image is
+    /// cropped.
+    fn key(&self, [x, y]: [usize; 2], round: u64) -> u64 {
+        let pixel = (y * self.integrator.camera().width() + x) as u64;
+        pixel_key(self.options.seed, [self.frame.into(), pixel, round])
+    }
+
+    fn strips(&self) -> usize {
+        self.area.width.div_ceil(STRIP) * self.area.height
+    }
+
+    /// Returns the pixels of a strip, without samples.
+    fn strip(&self, strip: usize) -> Vec<Pixel> {
+        let per_row = self.area.width.div_ceil(STRIP);
+        let (row, first) = (strip / per_row, strip % per_row * STRIP);
+        let columns = first..self.area.width.min(first + STRIP);
+        let lasers = self.integrator.laser_count();
+        let pixels = columns.map(|column| Pixel {
+            place: [self.area.x + column, self.area.y + row],
+            sums: PixelSums::new(lasers),
+        });
+        pixels.collect()
+    }
+
+    const fn in_area(&self, [x, y]: [usize; 2]) -> [usize; 2] {
+        [x - self.area.x, y - self.area.y]
+    }
+}
+
+/// A thread that panicked has not left the film half written: it writes only finished pixels.
+fn locked(film: &Mutex<Film>) -> MutexGuard<'_, Film> {
+    film.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,59 @@
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::{MeshError, TriangleMesh, read_mesh};
+
+/// Which normals light is scattered by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Shading {
+    /// Those of the vertices, where the file has them.
+    Smooth,
+    /// Those of the triangles.
+    Flat,
+}
+
+/// The files other than text that a scene is made of.
+#[derive(Debug, Default)]
+pub(super) struct Assets {
+    files: Vec<PathBuf>,
+    /// The meshes by canonical path, in the unit of their files.
+    meshes: HashMap<(PathBuf, Shading), Arc<TriangleMesh>>,
+}
+
+impl Assets {
+    /// Reads a mesh in the unit of its file, once for all surfaces that are made of it.
+    pub(super) fn mesh(
+        &mut self,
+        path: &Path,
+        shading: Shading,
+    ) -> Result<Arc<TriangleMesh>, MeshError> {
+        let canonical = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        if let Some(mesh) = self.meshes.get(&(canonical.clone(), shading)) {
+            return Ok(Arc::clone(mesh));
+        }
+        let mesh = read_mesh(path, 1.0)?;
+        let mesh = match shading {
+            Shading::Flat if !mesh.normals().is_empty() => {
+                TriangleMesh::new(mesh.vertices().to_vec(), mesh.triangles().to_vec())?
+            }
+            _ => mesh,
+        };
+        let mesh = Arc::new(mesh);
+        self.note(path);
+        self.meshes.insert((canonical, shading), Arc::clone(&mesh));
+        Ok(mesh)
+    }
+
+    /// Notes that a file was read.
+    fn note(&mut self, path: &Path) {
+        if !self.files.iter().any(|known| known == path) {
+            self.files.push(path.to_path_buf());
+        }
+    }
+
+    /// Returns the files in the order in which they were first read.
+    pub(super) fn into_files(self) -> Vec<PathBuf> {
+        self.files
+    }
+}

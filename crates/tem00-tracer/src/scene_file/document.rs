@@ -1,0 +1,46 @@
+use super::error::Problem;
+use super::section::Section;
+
+/// A scene as its files tell it, those that are included first.
+#[derive(Debug)]
+pub(super) struct Document<'a> {
+    files: Vec<Section<'a>>,
+}
+
+impl<'a> Document<'a> {
+    /// Puts the files of a scene together, in order.
+    pub(super) const fn new(files: Vec<Section<'a>>) -> Self {
+        Self { files }
+    }
+
+    /// Opens the table of a key, which one of the files may have.
+    pub(super) fn table(
+        &self,
+        key: &'static str,
+        keys: &'static [&'static str],
+    ) -> Result<Option<Section<'a>>, Problem> {
+        let mut given = self.files.iter().filter(|file| file.has(key));
+        match (given.next(), given.next()) {
+            (None, _) => Ok(None),
+            (Some(file), None) => file.table(key, keys),
+            (Some(first), Some(second)) => {
+                let first = first.describe(key);
+                let message = format!("[{key}] is given a second time, after {first}");
+                Err(second
+                    .problem_with(key, message)
+                    .with_help("a scene and the files that it includes have one of it together"))
+            }
+        }
+    }
+
+    /// Opens every table of a key of which each file may have several.
+    pub(super) fn tables(
+        &self,
+        key: &'static str,
+        keys: &'static [&'static str],
+    ) -> Result<Vec<Section<'a>>, Problem> {
+        let of_files = self.files.iter().map(|file| file.tables(key, keys));
+        let of_files: Vec<Vec<Section<'a>>> = of_files.collect::<Result<_, _>>()?;
+        Ok(of_files.concat())
+    }
+}

@@ -1,0 +1,216 @@
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use toml::de::DeTable;
+
+use super::error::{Place, Problem, SceneError, line_column};
+use super::section::Section;
+
+/// The key by which a scene file names others that belong to it.
+pub(super) const INCLUDE: &str = "include";
+
+/// The most files that may stand between a scene file and one that it includes.
+const DEEPEST: usize = 16;
+
+/// One text of a scene: the scene file itself, or a file that it includes.
+#[derive(Debug)]
+pub(super) struct Source {
+    /// The place among all texts of the scene, in which the scene file itself is the first.
+    index: usize,
+    path: Option<PathBuf>,
+    directory: PathBuf,
+    text: String,
+}
+
+impl Source {
+    /// Returns the text.
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Returns the path of a file that this text names.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        self.directory.join(name)
+    }
+
+    /// Returns a place in this text.
+    pub(super) const fn place(&self, span: core::ops::Range<usize>) -> Place {
+        Place {
+            source: self.index,
+            span,
+        }
+    }
+
+    /// Names a place as compilers do: "lights.toml:3:1".
+    pub(super) fn describe(&self, place: &Place) -> String {
+        let file = self.path.as_deref().unwrap_or(Path::new("scene"));
+        match line_column(&self.text, place.span.start) {
+            Some((line, column)) => format!("{}:{line}:{column}", file.display()),
+            None => file.display().to_string(),
+        }
+    }
+
+    /// Returns the document and tells where it is no TOML.
+    pub(super) fn parse(&self) -> Result<toml::Spanned<DeTable<'_>>, Problem> {
+        DeTable::parse(&self.text).map_err(|error| {
+            let problem = Problem::new(format!("this is not valid TOML: {}", error.message()));
+            match error.span() {
+                Some(span) => problem.at(self.place(span)),
+                None => problem.at(self.place(0..0)),
+            }
+        })
+    }
+}
+
+/// The texts of a scene.
+#[derive(Debug, Default)]
+pub(super) struct Sources {
+    all: Vec<Source>,
+    /// The order in which they are put together: what is included stands before what includes it.
+    order: Vec<usize>,
+    /// The texts that are being read, outermost first.
+    open: Vec<usize>,
+    /// The canonical paths of the texts that came from files.
+    canonical: Vec<Option<PathBuf>>,
+}
+
+impl Sources {
+    /// Reads a scene file and all that it includes.
+    pub(super) fn of_file(path: &Path) -> Result<Self, SceneError> {
+        let text = read_text(path)?;
+        let directory = path.parent().unwrap_or(Path::new(""));
+        Self::of_text(text, Some(path), directory)
+    }
+
+    /// Reads all that a text includes.
+    pub(super) fn of_text(
+        text: String,
+        path: Option<&Path>,
+        directory: &Path,
+    ) -> Result<Self, SceneError> {
+        let mut sources = Self::default();
+        let canonical = path.and_then(|path| fs::canonicalize(path).ok());
+        let source = Source {
+            index: 0,
+            path: path.map(Path::to_path_buf),
+            directory: directory.to_path_buf(),
+            text,
+        };
+        match sources.add(source, canonical) {
+            Ok(()) => Ok(sources),
+            Err(problem) => Err(sources.locate(problem)),
+        }
+    }
+
+    /// Returns the texts in the order in which they are put together.
+    pub(super) fn in_order(&self) -> impl Iterator<Item = &Source> {
+        self.order.iter().filter_map(|&index| self.all.get(index))
+    }
+
+    /// Returns the files that were read, the scene file first.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        self.all
+            .iter()
+            .filter_map(|source| source.path.clone())
+            .collect()
+    }
+
+    /// Turns a problem into an error that knows its file.
+    pub(super) fn locate(&self, problem: Problem) -> SceneError {
+        let index = problem.place.as_ref().map_or(0, |place| place.source);
+        let source = self.all.get(index);
+        let path = source.and_then(|source| source.path.as_deref());
+        SceneError::new(path, source.map_or("", Source::text), problem)
+    }
+
+    fn add(&mut self, source: Source, canonical: Option<PathBuf>) -> Result<(), Problem> {
+        let index = source.index;
+        self.all.push(source);
+        self.canonical.push(canonical);
+        self.open.push(index);
+        for include in self.all.last().map_or(Ok(Vec::new()), includes_of)? {
+            self.include(include)?;
+        }
+        self.open.pop();
+        self.order.push(index);
+        Ok(())
+    }
+
+    fn include(&mut self, Include { path, place }: Include) -> Result<(), Problem> {
+        let name = path.display();
+        let problem = |why: String| Problem::new(format!("`include`: {why}")).at(place.clone());
+        let canonical = fs::canonicalize(&path)
+            .map_err(|error| problem(format!("{name} cannot be read: {error}")))?;
+        let known = self
+            .canonical
+            .iter()
+            .position(|known| known.as_ref() == Some(&canonical));
+        match known {
+            Some(index) if self.open.contains(&index) => {
+                return Err(problem(format!("{name} would include itself")));
+            }
+            Some(_) => return Err(problem(format!("{name} is part of the scene already"))),
+            None if self.open.len() > DEEPEST => {
+                return Err(problem(format!(
+                    "{name} would be more than {DEEPEST} files away from the scene"
+                )));
+            }
+            None => {}
+        }
+        let text = fs::read(&path)
+            .map_err(|error| problem(format!("{name} cannot be read: {error}")))
+            .and_then(|bytes| {
+                String::from_utf8(bytes)
+                    .map_err(|_| problem(format!("{name} must be text in UTF-8")))
+            })?;
+        let source = Source {
+            index: self.all.len(),
+            directory: path.parent().unwrap_or(Path::new("")).to_path_buf(),
+            path: Some(path),
+            text,
+        };
+        self.add(source, Some(canonical))
+    }
+}
+
+/// A file that another one includes, and where it says so.
+struct Include {
+    path: PathBuf,
+    place: Place,
+}
+
+fn includes_of(source: &Source) -> Result<Vec<Include>, Problem> {
+    let document = source.parse()?;
+    let Some(list) = Section::root(document.get_ref(), source)?.optional(INCLUDE) else {
+        return Ok(Vec::new());
+    };
+    let include = |file: &super::value::Value<'_>| {
+        Ok(Include {
+            path: source.beside(file.string()?),
+            place: file.place(),
+        })
+    };
+    let files = list.list("a list of scene files, such as [\"lights.toml\"]")?;
+    files.iter().map(include).collect()
+}
+
+fn read_text(path: &Path) -> Result<String, SceneError> {
+    let unreadable = |why: &dyn core::fmt::Display| {
+        let problem = Problem::new(format!("the scene file cannot be read: {why}"));
+        SceneError::new(Some(path), "", problem)
+    };
+    if path.is_dir() {
+        return Err(unreadable(&"it is a directory"));
+    }
+    let bytes = fs::read(path).map_err(|why| unreadable(&why))?;
+    String::from_utf8(bytes).map_err(|not_utf8| {
+        let valid = not_utf8.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(&not_utf8.as_bytes()[..valid]);
+        let place = Place {
+            source: 0,
+            span: valid..valid,
+        };
+        let problem = Problem::new("the scene file must be text in UTF-8").at(place);
+        SceneError::new(Some(path), &text, problem)
+    })
+}

@@ -1,0 +1,189 @@
+use std::path::Path;
+
+use super::*;
+use crate::{Keyframe, Rotation, Trajectory};
+
+/// A plate under a spot that diverges, from the side, a little out of focus.
+const SCENE: &str = r#"
+    [render]
+    frames = 8
+    [camera]
+    position = [0.02, 0, 0.3]
+    look_at = [0, 0, 0]
+    focal_length = "25 mm"
+    focus_distance = "290 mm"
+    f_number = 8
+    pixel_pitch = "3.45 um"
+    resolution = [640, 480]
+
+    [[laser]]
+    wavelength = "650 nm"
+    power = "1 mW"
+    position = [0.1, 0, 0.25]
+    look_at = [0, 0, 0]
+    spot = { waist_radius = "20 um", waist_distance = 0 }
+
+    [[surface]]
+    rectangle = { centre = [0, 0, 0], normal = [0.3, 0.1, 1], size = [0.04, 0.04] }
+"#;
+
+fn scene() -> Scene {
+    crate::parse_scene(SCENE, Path::new(".")).unwrap()
+}
+
+fn steady(axis: DVec3, angle: f64, displacement: DVec3) -> Trajectory {
+    let pivot = DVec3::new(0.01, -0.02, 0.05);
+    Trajectory::turning(pivot, Rotation { axis, angle }, displacement).unwrap()
+}
+
+/// A scene in which the plate, the camera and the laser each have a motion of their own.
+fn moving() -> Scene {
+    let mut scene = scene();
+    scene.surfaces[0].trajectory = steady(DVec3::Y, 2e-3, DVec3::new(1e-4, 2e-4, 3e-4));
+    scene.camera_trajectory = steady(DVec3::new(1.0, 0.5, 0.2), 1e-3, DVec3::X * 2e-4);
+    let laser = steady(DVec3::Z, -3e-3, DVec3::new(0.0, 1e-4, 0.0));
+    scene.lasers[0] = scene.lasers[0].clone().with_trajectory(laser);
+    scene
+}
+
+/// The point of the plate at `fractions` of its half edges, as the camera sees it in `frame`.
+fn point(scene: &Scene, frame: u32, fractions: [f64; 2]) -> SpecklePoint {
+    let crate::Shape::Rectangle(plate) = &scene.shapes_at(frame)[0] else {
+        panic!("the plate is a rectangle");
+    };
+    let [u, v] = fractions;
+    let position = plate.centre() + u * plate.half_u() + v * plate.half_v();
+    SpecklePoint {
+        pixel: scene.camera_at(frame).project(position).unwrap(),
+        position,
+        normal: plate.normal(),
+        surface: 0,
+    }
+}
+
+fn drift(scene: &Scene, frame: u32, fractions: [f64; 2]) -> Drift {
+    let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
+    let change = Change::new(scene, frame);
+    change.drift(0, &geometry, &point(scene, frame, fractions))
+}
+
+const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [0.1, -0.05], [-0.15, 0.1], [0.05, 0.2]];
+
+#[test]
+fn speckle_stays_where_all_moves_as_one() {
+    let mut scene = scene();
+    let motion = steady(
+        DVec3::new(0.2, 1.0, -0.4),
+        0.1,
+        DVec3::new(0.01, 0.02, -0.03),
+    );
+    scene.surfaces[0].trajectory = motion.clone();
+    scene.camera_trajectory = motion.clone();
+    scene.lasers[0] = scene.lasers[0].clone().with_trajectory(motion);
+    for place in PLACES {
+        let drift = drift(&scene, 7, place);
+        // Positions of a metre are rounded to 1e−16, a pixel is 4e−5 m and the pupil 3e−3 m wide.
+        // The equivalent shift is a square root of what rounding takes from γ = 1.
+        let moved = drift.displacement.length();
+        assert!(moved < 1e-9, "{place:?}: {moved:e} pixels");
+        assert!(drift.shift < 1e-9, "{place:?}: {:e}", drift.shift);
+    }
+}
+
+#[test]
+fn drifts_are_those_of_the_theory_between_two_states() {
+    let mut scene = moving();
+    scene.render.reference_frame = 2;
+    let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
+    let (reference, frame) = (2, 5);
+    for place in PLACES {
+        // The states put together from the scene's poses, each described anew, without the motion
+        // between them: only the tangents of the surface must be carried along.
+        let [before, now] = [reference, frame].map(|at| point(&scene, at, place));
+        let pose = |at: u32| scene.surfaces[0].trajectory.pose_at(at);
+        let carried = pose(reference).inverse().then(&pose(frame));
+        let light = |at: u32, point: &SpecklePoint| {
+            let wave = scene.laser_at(0, at).illuminate(point.position).unwrap();
+            Illumination::collimated(wave.direction).unwrap()
+        };
+        let axes = |at: u32| CameraFrame::from_axes(scene.camera_at(at).axes()).unwrap();
+        let state = |at: u32, point: &SpecklePoint| ConfigurationData {
+            wavelength: 650e-9,
+            point: point.position,
+            normal: point.normal,
+            illumination: light(at, point),
+            camera: axes(at),
+            pupil: scene.camera_at(at).position(),
+        };
+        let old = Configuration::new(state(reference, &before)).unwrap();
+        // The camera at rest and the plate turned against it: the same relative motion.
+        let home = scene.camera_trajectory.pose_at(frame).inverse();
+        let home = home.then(&scene.camera_trajectory.pose_at(reference));
+        let relative = RigidMotions {
+            surface: carried.then(&home),
+            ..RigidMotions::default()
+        };
+        let lit = Illumination::collimated(
+            home.direction(
+                scene
+                    .laser_at(0, frame)
+                    .illuminate(now.position)
+                    .unwrap()
+                    .direction,
+            ),
+        );
+        let new = old.moved(&relative).unwrap();
+        let new = new.with_illumination(lit.unwrap()).unwrap();
+        let upright_image = ImageOrientation::ScreenUpright;
+        let law = SpeckleMotion::between(&geometry, &old, &new, upright_image);
+
+        let drift = drift(&scene, frame, place);
+        let expected = upright(law.speckle_displacement() / geometry.pixel_pitch());
+        let error = (drift.displacement - expected).length();
+        assert!(error < 1e-8, "{place:?}: {error:e} pixels");
+        // The image of the point itself moves by the difference of its projections.
+        let image = upright(law.image_displacement / geometry.pixel_pitch());
+        let error = (now.pixel - before.pixel - image).length();
+        assert!(error < 1e-8, "{place:?}: {error:e} pixels of the image");
+        let lateral = law.pupil_displacement.unwrap().length() / geometry.pupil_diameter();
+        let shift = equivalent_pupil_shift(law.correlation).max(lateral);
+        assert!((drift.shift - shift).abs() < 1e-9, "{place:?}: {drift:?}");
+        assert!(drift.shift > 0.1, "{place:?}: {drift:?} tells nothing");
+    }
+}
+
+#[test]
+fn time_backwards_moves_the_speckle_back() {
+    let mut scene = moving();
+    for place in PLACES {
+        scene.render.reference_frame = 1;
+        let forth = drift(&scene, 6, place);
+        scene.render.reference_frame = 6;
+        let back = drift(&scene, 1, place);
+        let sum = (forth.displacement + back.displacement).length();
+        let size = forth.displacement.length();
+        // What the pupil displacement stretches on its way differs both ways in second order.
+        assert!(sum < 0.01 * size, "{place:?}: {forth:?} {back:?}");
+        let change = (forth.shift / back.shift - 1.0).abs();
+        assert!(change < 0.02, "{place:?}: {forth:?} and {back:?}");
+    }
+}
+
+#[test]
+fn points_that_the_theory_does_not_know_have_speckle_of_their_own() {
+    let mut scene = scene();
+    // Behind the camera at first.
+    let keyframes = [
+        Keyframe {
+            displacement: DVec3::new(0.0, 0.0, 0.5),
+            ..Keyframe::at(0.0)
+        },
+        Keyframe::at(3.0),
+    ];
+    scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
+    let expected = Drift {
+        displacement: DVec2::ZERO,
+        shift: 3.0,
+    };
+    assert_eq!(drift(&scene, 3, [0.0, 0.0]), expected);
+}

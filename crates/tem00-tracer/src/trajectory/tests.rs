@@ -1,0 +1,243 @@
+use core::f64::consts::{FRAC_PI_2, TAU};
+
+use proptest::{prelude::*, test_runner::RngSeed};
+
+use super::*;
+
+fn turn(axis: DVec3, angle: f64) -> Rotation {
+    Rotation { axis, angle }
+}
+
+/// The largest difference between two motions over a few points about a metre from the origin.
+fn difference(a: &RigidMotion, b: &RigidMotion) -> f64 {
+    [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]
+        .map(|point| (a.point(point) - b.point(point)).length())
+        .into_iter()
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn what_does_not_move_has_the_same_pose_in_every_frame() {
+    let still = [
+        Trajectory::default(),
+        Trajectory::steady(DVec3::ZERO).unwrap(),
+        Trajectory::turning(DVec3::ONE, turn(DVec3::X, 0.0), DVec3::ZERO).unwrap(),
+        Trajectory::keyframed(DVec3::ONE, [Keyframe::at(0.0), Keyframe::at(3.5)]).unwrap(),
+    ];
+    for trajectory in still {
+        assert!(trajectory.is_still(), "{trajectory:?}");
+        for frame in [0, 1, 1000, u32::MAX] {
+            assert_eq!(trajectory.pose_at(frame), RigidMotion::IDENTITY);
+        }
+    }
+    // What stands elsewhere than in the scene description stands still, too.
+    let elsewhere = Keyframe {
+        displacement: DVec3::X,
+        rotation: turn(DVec3::Y, 1.0),
+        ..Keyframe::at(0.0)
+    };
+    let elsewhere = Trajectory::keyframed(DVec3::ZERO, [elsewhere]).unwrap();
+    assert!(elsewhere.is_still(), "{elsewhere:?}");
+    assert_eq!(elsewhere.pose_at(0), elsewhere.pose_at(7));
+}
+
+#[test]
+fn steady_motions_turn_about_their_pivot_and_go_on_from_there() {
+    let (pivot, axis, step) = (
+        DVec3::new(0.3, -0.2, 0.1),
+        DVec3::new(1.0, 2.0, -0.5),
+        DVec3::new(1e-3, 0.0, -2e-3),
+    );
+    let trajectory = Trajectory::turning(pivot, turn(axis, 0.01), step).unwrap();
+    assert!(!trajectory.is_still(), "{trajectory:?}");
+    for frame in [0, 1, 40, 999] {
+        let time = f64::from(frame);
+        // The other way to a rotation: that of the theory's rigid bodies.
+        let expected = RigidMotion::about(pivot, axis, 0.01 * time)
+            .unwrap()
+            .then(&RigidMotion::along(step * time).unwrap());
+        let error = difference(&trajectory.pose_at(frame), &expected);
+        // Ten roundings of numbers up to 3.
+        assert!(error < 1e-14, "frame {frame}: {error:e}");
+    }
+}
+
+#[test]
+fn whole_turns_between_keyframes_are_made() {
+    let twice = Keyframe {
+        rotation: turn(-DVec3::Z, -2.0 * TAU),
+        ..Keyframe::at(16.0)
+    };
+    let start = Keyframe {
+        rotation: turn(DVec3::Z, FRAC_PI_2),
+        ..Keyframe::at(0.0)
+    };
+    let trajectory = Trajectory::keyframed(DVec3::X, [start, twice]).unwrap();
+    for frame in 0..=16 {
+        let angle = FRAC_PI_2 + (2.0 * TAU - FRAC_PI_2) * f64::from(frame) / 16.0;
+        let expected = RigidMotion::about(DVec3::X, DVec3::Z, angle).unwrap();
+        let error = difference(&trajectory.pose_at(frame), &expected);
+        // Rounding of an angle of 13 radians.
+        assert!(error < 1e-14, "frame {frame}: {error:e}");
+    }
+}
+
+#[test]
+fn half_a_turn_about_any_axis_is_made_at_a_constant_rate() {
+    // Two axes whose rotations differ by just half a turn.
+    let (a, b) = (turn(DVec3::X, FRAC_PI_2), turn(DVec3::X, -FRAC_PI_2));
+    let tilted = turn(DVec3::new(1.0, 1.0, 0.0), 2.0 * FRAC_PI_2);
+    for (from, to) in [(a, b), (Rotation::NONE, tilted), (tilted, a)] {
+        let keyframes = [(0.0, from), (8.0, to)].map(|(frame, rotation)| Keyframe {
+            rotation,
+            ..Keyframe::at(frame)
+        });
+        let trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
+        let angle = |i: u32| {
+            let step = trajectory
+                .pose_at(i)
+                .inverse()
+                .then(&trajectory.pose_at(i + 1));
+            let m = step.rotation();
+            0.5 * (m.x_axis.x + m.y_axis.y + m.z_axis.z - 1.0)
+        };
+        for i in 1..8 {
+            let error = (angle(i) - angle(0)).abs();
+            assert!(error < 1e-14, "{from:?} to {to:?}: step {i} by {error:e}");
+        }
+        let end = RigidMotion::about(DVec3::ZERO, to.axis, to.angle).unwrap();
+        let error = difference(&trajectory.pose_at(8), &end);
+        assert!(error < 1e-14, "{from:?} to {to:?}: {error:e}");
+    }
+}
+
+fn vectors(size: f64) -> impl Strategy<Value = DVec3> {
+    [-size..size, -size..size, -size..size].prop_map(DVec3::from_array)
+}
+
+prop_compose! {
+    fn rotations()(
+        axis in vectors(1.0).prop_filter("an axis", |v| v.length() > 1e-3),
+        angle in -7.0_f64..7.0,
+    ) -> Rotation {
+        Rotation { axis, angle }
+    }
+}
+
+prop_compose! {
+    /// Three to six keyframes, one to a few frames apart.
+    fn keyframes()(
+        start in -5.0_f64..5.0,
+        poses in prop::collection::vec((0.5_f64..4.0, vectors(0.5), rotations()), 3..6),
+    ) -> Vec<Keyframe> {
+        let mut time = start;
+        poses.into_iter().map(|(step, displacement, rotation)| {
+            time += step;
+            Keyframe { frame: time, displacement, rotation }
+        }).collect()
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 200,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn poses_pass_through_the_keyframes(keyframes in keyframes(), pivot in vectors(1.0)) {
+        let trajectory = Trajectory::keyframed(pivot, keyframes.clone()).unwrap();
+        for (i, keyframe) in keyframes.iter().enumerate() {
+            let Rotation { axis, angle } = keyframe.rotation;
+            let expected = RigidMotion::about(pivot, axis, angle).unwrap()
+                .then(&RigidMotion::along(keyframe.displacement).unwrap());
+            let error = difference(&trajectory.pose(keyframe.frame), &expected);
+            prop_assert!(error < 1e-14, "keyframe {i}: {error:e}");
+            // From before it is reached as well: the pose has no jump. Half a turn apart the
+            // relative axis is found from products of 1e−16 over sines of some 1e−3.
+            let before = trajectory.pose(keyframe.frame - 1e-9);
+            let speed = if i == 0 { 0.0 } else { 60.0 };
+            let error = difference(&before, &expected);
+            prop_assert!(error < 1e-12 + speed * 1e-9, "before keyframe {i}: {error:e}");
+        }
+        let last = keyframes[keyframes.len() - 1].frame;
+        prop_assert_eq!(trajectory.pose(last), trajectory.pose(last + 100.0));
+        prop_assert_eq!(trajectory.pose(keyframes[0].frame), trajectory.pose(-100.0));
+    }
+
+    #[test]
+    fn between_keyframes_the_velocities_are_constant(
+        keyframes in keyframes(),
+        pivot in vectors(1.0),
+        part in 0.01_f64..0.8,
+    ) {
+        let trajectory = Trajectory::keyframed(pivot, keyframes.clone()).unwrap();
+        let (start, end) = (keyframes[0].frame, keyframes[1].frame);
+        let step = 0.1 * (end - start);
+        // Displacement of the pivot and rotation from one time to a later one.
+        let moved = |time: f64| {
+            let (a, b) = (trajectory.pose(time), trajectory.pose(time + step));
+            let velocity = b.point(pivot) - a.point(pivot);
+            (velocity, a.inverse().then(&b).rotation())
+        };
+        let (v0, r0) = moved(start);
+        let (v1, r1) = moved(start + part * (end - start));
+        prop_assert!((v1 - v0).length() < 1e-14, "{v0} and {v1}");
+        // Steps about one fixed axis of the world: in the frame of the body it is fixed, too.
+        prop_assert!((r1 - r0).abs_diff_eq(DMat3::ZERO, 1e-13), "{r0} and {r1}");
+        let whole = (keyframes[1].displacement - keyframes[0].displacement) * 0.1;
+        prop_assert!((v0 - whole).length() < 1e-14, "{v0} and {whole}");
+    }
+}
+
+#[test]
+fn impossible_motions_are_refused() {
+    type Result = core::result::Result<Trajectory, TracerError>;
+    let parameter = |result: &Result| match result {
+        Err(
+            TracerError::Direction { parameter, .. } | TracerError::OutOfRange { parameter, .. },
+        ) => *parameter,
+        _ => "",
+    };
+    let good = turn(DVec3::X, 0.1);
+    let turning = |pivot, rotation| Trajectory::turning(pivot, rotation, DVec3::ZERO);
+    let through = |keyframe| Trajectory::keyframed(DVec3::ZERO, [Keyframe::at(1.0), keyframe]);
+    let later = Keyframe::at(2.0);
+    let cases = [
+        ("displacement_per_frame", Trajectory::steady(DVec3::NAN)),
+        (
+            "displacement_per_frame",
+            Trajectory::steady(DVec3::X * 1e300),
+        ),
+        ("pivot", turning(DVec3::INFINITY, good)),
+        ("axis", turning(DVec3::ZERO, turn(DVec3::ZERO, 0.1))),
+        ("axis", turning(DVec3::ZERO, turn(DVec3::NAN, 0.1))),
+        ("angle", turning(DVec3::ZERO, turn(DVec3::X, f64::NAN))),
+        ("angle", turning(DVec3::ZERO, turn(DVec3::X, 1e300))),
+        ("pivot", Trajectory::keyframed(DVec3::NAN, [later])),
+        ("frame", through(Keyframe::at(1.0))),
+        ("frame", through(Keyframe::at(f64::NAN))),
+        ("frame", through(Keyframe::at(f64::INFINITY))),
+        (
+            "displacement",
+            through(Keyframe {
+                displacement: DVec3::NEG_INFINITY,
+                ..later
+            }),
+        ),
+        (
+            "axis",
+            through(Keyframe {
+                rotation: turn(DVec3::ZERO, 0.1),
+                ..later
+            }),
+        ),
+    ];
+    for (expected, result) in cases {
+        assert_eq!(parameter(&result), expected, "{result:?}");
+    }
+    let none = Trajectory::keyframed(DVec3::ZERO, []);
+    assert!(matches!(none, Err(TracerError::Missing(_))), "{none:?}");
+}

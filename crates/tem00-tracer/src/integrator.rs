@@ -175,13 +175,13 @@ impl<'a> Integrator<'a> {
         stream: Stream,
         throughput: &mut [f64],
     ) -> Option<(Path, Ray)> {
-        let wavelengths = &self.spectrum.wavelengths;
-        // Choose the direction.
-        let u = self.sequence.pair(stream, Use::Scattering(path.depth));
-        let event = vertex.sample(u, *wavelengths.first()?)?;
-        if path.depth == self.rules.max_depth && !self.meets_light(event.specular) {
+        if path.depth == self.rules.max_depth && !self.meets_light(vertex.is_specular()) {
             return None;
         }
+        // Choose the direction.
+        let wavelengths = &self.spectrum.wavelengths;
+        let u = self.sequence.pair(stream, Use::Scattering(path.depth));
+        let event = vertex.sample(u, *wavelengths.first()?)?;
         // Weight each wavelength.
         let mut largest = 0.0_f64;
         for (throughput, &wavelength) in throughput.iter_mut().zip(wavelengths) {

@@ -92,8 +92,8 @@ pub use camera::{
 pub use environment::Environment;
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
-pub use intersector::{Intersector, Segment};
 pub use filter::{Filter, FilterSample, FilterSampler};
+pub use intersector::{Intersector, Segment};
 pub use lamp::{Lamp, LampSample};
 pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};

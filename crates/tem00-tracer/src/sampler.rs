@@ -175,7 +175,7 @@ const fn scrambled(reversed: u32, seed: u32) -> u32 {
     x ^ x.wrapping_mul(0x8d22_f6e6)
 }
 
-/// Spreads neighbouring numbers over all: the generator SplitMix64 of G. L. Steele, D. Lea and
+/// Spreads neighbouring numbers over all: the generator `SplitMix64` of G. L. Steele, D. Lea and
 /// C. H. Flood, *Fast Splittable Pseudorandom Number Generators*, 2014.
 const fn mixed(number: u64) -> u64 {
     let mut bits = number.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -2,10 +2,10 @@ use fearless_simd::Simd;
 use glam::DVec3;
 
 use super::{
-    hierarchy::{Hierarchy, LocalRay},
+    hierarchy::{Hierarchy, LocalRay, Placement},
     lanes::meet_triangles,
     packet::{Packet, set},
-    primitive::Primitive,
+    primitive::{Primitive, ShearedRay},
     query::{Place, Query},
     traverse::{Leaves, Stacks, follow_many, follow_one},
     triangles::MeshHierarchy,
@@ -75,7 +75,7 @@ impl Body {
             Content::Triangle(instance, triangle) => (instance, *triangle),
         };
         let corners = instance.corners(triangle as usize);
-        let (_, weights) = ray.triangle(&corners)?;
+        let (_, weights) = ShearedRay::new(ray).triangle(&corners)?;
         let [a, b, c] = corners;
         let normal = mesh::normal(&corners)?;
         Some(Hit {
@@ -85,6 +85,14 @@ impl Body {
             shading_normal: instance.shading_normal(triangle as usize, weights, normal),
             surface: self.surface,
         })
+    }
+}
+
+fn placement(instance: &MeshInstance) -> Placement {
+    Placement {
+        scale: instance.scale(),
+        to_local: instance.rotation().transpose(),
+        origin: instance.point(DVec3::ZERO),
     }
 }
 
@@ -144,7 +152,8 @@ impl Leaves for Bodies {
             }
             Content::Mesh(instance) => {
                 let hierarchy = instance.mesh().hierarchy();
-                if let Some(local) = hierarchy.enter(instance, query.ray().ray()) {
+                let (local, enters) = hierarchy.boxes().enter(&placement(instance), query.ray());
+                if enters {
                     let part = Part {
                         hierarchy,
                         instance,
@@ -169,12 +178,8 @@ impl Leaves for Bodies {
         let body = self.order[leaf];
         if let Content::Mesh(instance) = &self.bodies[body as usize].content {
             let hierarchy = instance.mesh().hierarchy();
-            let (mut local, inside) = Packet::gather(lanes, |lane| {
-                hierarchy.enter(instance, queries[lane].ray().ray())
-            });
-            for lane in set(inside) {
-                local.set_end(lane, queries[lane].end());
-            }
+            let boxes = hierarchy.boxes();
+            let (mut local, inside) = Packet::gather(boxes, &placement(instance), lanes, queries);
             let part = Part {
                 hierarchy,
                 instance,

@@ -2,10 +2,10 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, f32x8, f32x16};
 use glam::DVec3;
 
 use super::{
-    hierarchy::{Hierarchy, LocalRay, WIDTH, load},
+    hierarchy::{Hierarchy, LocalRay, WIDTH, load, pick, splat},
     lanes::{RayLanes, TOLERANCE, TriangleLanes},
 };
-use crate::{MeshInstance, Ray, TriangleMesh};
+use crate::TriangleMesh;
 
 /// The hierarchy over the triangles of a mesh, in the mesh's own coordinates.
 #[derive(Clone, Debug)]
@@ -47,16 +47,6 @@ impl MeshHierarchy {
 
     pub(super) fn block(&self, leaf: usize) -> &Block {
         &self.blocks[leaf]
-    }
-
-    /// Returns a ray of the world in the unit of the hierarchy of an instance.
-    #[inline(always)]
-    pub(super) fn enter(&self, instance: &MeshInstance, ray: &Ray) -> Option<LocalRay> {
-        let local = Ray {
-            origin: instance.point_of_mesh(ray.origin),
-            direction: instance.direction_of_mesh(ray.direction),
-        };
-        self.boxes.enter(&local, instance.scale())
     }
 }
 
@@ -110,10 +100,12 @@ impl Block {
     /// Returns one triangle in all lanes.
     #[inline(always)]
     pub(super) fn one<S: Simd>(&self, simd: S, lane: usize) -> TriangleLanes<f32x16<S>> {
-        let splat = |values: &[[f32; WIDTH]; 3]| values.map(|axis| f32x16::splat(simd, axis[lane]));
         TriangleLanes {
-            corner: splat(&self.corner),
-            edges: [splat(&self.edges[0]), splat(&self.edges[1])],
+            corner: splat(simd, pick(&self.corner, lane)),
+            edges: [
+                splat(simd, pick(&self.edges[0], lane)),
+                splat(simd, pick(&self.edges[1], lane)),
+            ],
             tolerance: f32x16::splat(simd, self.tolerance[lane]),
         }
     }
@@ -131,11 +123,10 @@ impl LocalRay {
         simd: S,
         end: f32,
     ) -> RayLanes<V> {
-        let splat = |values: [f32; 3]| values.map(|value| V::splat(simd, value));
         RayLanes {
-            origin: splat(self.origin),
-            direction: splat(self.direction),
-            inverse: splat(self.inverse),
+            origin: splat(simd, self.origin),
+            direction: splat(simd, self.direction),
+            inverse: splat(simd, self.inverse),
             end: V::splat(simd, end),
         }
     }

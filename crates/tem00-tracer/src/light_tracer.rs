@@ -11,6 +11,7 @@
 
 mod draws;
 mod splats;
+mod survey;
 mod walk;
 
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -160,18 +161,6 @@ impl LightLayers {
             values.for_each(|(sum, light)| *sum += light);
         }
         layers.power_on_target += self.power_on_target;
-    }
-}
-
-impl Scene {
-    /// Returns whether an object is a mirror or of smooth glass.
-    ///
-    /// If so, the light that these send from a laser to other surfaces is followed from the laser.
-    /// Light that meets such objects on both sides of a rough surface, before it and between it and
-    /// the camera, is missing from the image.
-    pub fn has_specular_surfaces(&self) -> bool {
-        let mut surfaces = self.surfaces.iter();
-        surfaces.any(|surface| surface.material.is_specular())
     }
 }
 

@@ -8,7 +8,7 @@ use super::{
     draws::{DrawKey, Draws},
     *,
 };
-use crate::{CameraDescription, Material, Shape, TriangleMesh, parse_scene};
+use crate::{CameraDescription, Material, Rectangle, Shape, TriangleMesh, parse_scene};
 
 /// A correct light tracer fails a comparison with this probability at the fixed seeds.
 const SIGNIFICANCE: f64 = 1e-4;
@@ -242,6 +242,28 @@ fn light_that_meets_a_rough_surface_first_is_left_to_the_path_tracer() {
     assert!(dark.power_on_target <= 0.0, "{}", dark.power_on_target);
     scene.surfaces[0].material = Material::mirror(0.9).unwrap();
     assert!(scene.has_specular_surfaces(), "a mirror");
+}
+
+#[test]
+fn mirrors_that_laser_and_camera_look_at_are_reported() {
+    let mut scene = plate();
+    let both = |scene: &Scene| scene.has_specular_surfaces_on_both_sides(0).unwrap();
+    assert!(!both(&scene), "a diffuse plate");
+    scene.surfaces[0].material = Material::mirror(0.9).unwrap();
+    assert!(both(&scene), "both look at the plate");
+    // A diffuse screen before the mirror hides it from the camera, then from the laser.
+    let screen = plate().surfaces.remove(0);
+    for towards in [
+        scene.camera.position(),
+        scene.lasers[0].description().position,
+    ] {
+        let (u, v) = towards.normalize().any_orthonormal_pair();
+        let shape = Rectangle::new(0.5 * towards, 0.02 * u, 0.02 * v).unwrap();
+        let mut screened = scene.clone();
+        screened.surfaces.push(screen.clone());
+        screened.surfaces[1].shape = Shape::Rectangle(shape);
+        assert!(!both(&screened), "a screen before {towards}");
+    }
 }
 
 #[test]

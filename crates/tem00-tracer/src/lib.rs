@@ -64,6 +64,7 @@
 
 mod camera;
 mod environment;
+mod environment_file;
 mod error;
 mod film;
 mod filter;
@@ -90,6 +91,7 @@ pub use camera::{
     SensorTilt,
 };
 pub use environment::Environment;
+pub use environment_file::{RadianceMapError, read_radiance_map};
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use filter::{Filter, FilterSample, FilterSampler};

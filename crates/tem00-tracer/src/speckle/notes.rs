@@ -133,14 +133,14 @@ mod tests {
         let metal = |roughness| Material::conductor(Metal::Iron, roughness).unwrap();
         // N = (2π α d/λ)²/2 with d/λ = 96 for both: 20 patches take α = 0.0105.
         assert_eq!(noted(metal(0.0101), None), [0, 1]);
-        assert_eq!(noted(metal(0.0109), None), [0usize; 0]);
+        assert_eq!(noted(metal(0.0109), None), [0_usize; 0]);
         // exp(−σ²) = 0.01 takes σ = 4π σ_h/λ = 2.146: 111 nm in red, 90.9 nm in green.
-        assert_eq!(noted(metal(0.1), Some(112e-9)), [0usize; 0]);
+        assert_eq!(noted(metal(0.1), Some(112e-9)), [0_usize; 0]);
         assert_eq!(noted(metal(0.1), Some(100e-9)), [0]);
         assert_eq!(noted(metal(0.1), Some(90e-9)), [0, 1]);
         let mirror = Material::mirror(0.9).unwrap();
-        assert_eq!(noted(mirror, Some(1e-9)), [0usize; 0]);
+        assert_eq!(noted(mirror, Some(1e-9)), [0_usize; 0]);
         let paper = Material::lambertian(0.8).unwrap();
-        assert_eq!(noted(paper, None), [0usize; 0]);
+        assert_eq!(noted(paper, None), [0_usize; 0]);
     }
 }

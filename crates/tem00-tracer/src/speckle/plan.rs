@@ -189,7 +189,7 @@ impl Planner<'_> {
         allotments: &[Allotment],
         sums: &[Vec<f64>],
     ) -> Vec<Place> {
-        let shared = allotments.len() < requests.len() || allotments.iter().any(|a| a.places > 1);
+        let shared = allotments.iter().any(|allotment| allotment.places > 1);
         let surfaces = self.groups.iter().zip(sums);
         surfaces
             .map(|(&group, shares)| {

@@ -6,17 +6,22 @@ use tem00::{
     numerics::Grid,
     statistics::{kolmogorov_smirnov, t_test_mean},
     tracer::{
-        Camera, CameraDescription, Frame, LaserLayers, Material, Method, RenderOptions, Scene,
-        SpeckleModel, parse_scene, render_frame,
+        Camera, CameraDescription, Frame, LaserEvents, LaserLayers, Material, Method,
+        RenderOptions, Scene, SpeckleModel, parse_scene, render_frame,
     },
 };
 
 /// Correct tracers fail a comparison with this probability at the fixed seeds.
 pub(crate) const SIGNIFICANCE: f64 = 1e-4;
 
+/// Reads a scene.
+pub(crate) fn scene_of(text: &str) -> Scene {
+    parse_scene(text, Path::new(".")).expect("a valid scene")
+}
+
 /// Reads a scene whose camera is sharp everywhere.
 pub(crate) fn sharp_scene(text: &str) -> Scene {
-    let mut scene = parse_scene(text, Path::new(".")).expect("a valid scene");
+    let mut scene = scene_of(text);
     let sharp = CameraDescription {
         depth_of_field: false,
         ..*scene.camera.description()
@@ -27,11 +32,8 @@ pub(crate) fn sharp_scene(text: &str) -> Scene {
 
 /// Gives the surface called `name` another material.
 pub(crate) fn paint(scene: &mut Scene, name: &str, material: Material) {
-    let named = |surface: &&mut _| -> bool {
-        let surface: &tem00::tracer::Surface = surface;
-        surface.name == name
-    };
-    let surface = scene.surfaces.iter_mut().find(named);
+    let mut surfaces = scene.surfaces.iter_mut();
+    let surface = surfaces.find(|surface| surface.name == name);
     surface.expect("a surface of that name").material = material;
 }
 
@@ -39,11 +41,22 @@ pub(crate) fn paint(scene: &mut Scene, name: &str, material: Material) {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Series {
     pub method: Method,
+    pub laser_events: LaserEvents,
     pub samples_per_pixel: u32,
     pub seeds: u64,
 }
 
 impl Series {
+    /// Sixteen images by a method.
+    pub(crate) const fn of(method: Method, samples_per_pixel: u32) -> Self {
+        Self {
+            method,
+            laser_events: LaserEvents::Beam,
+            samples_per_pixel,
+            seeds: 16,
+        }
+    }
+
     /// Renders a scene once for each seed.
     pub(crate) fn render(&self, scene: &Scene, speckle: Option<&SpeckleModel>) -> Vec<Frame> {
         let render = |seed| {
@@ -51,6 +64,7 @@ impl Series {
                 samples_per_pixel: self.samples_per_pixel,
                 seed,
                 method: self.method,
+                laser_events: self.laser_events,
                 ..RenderOptions::from(&scene.render)
             };
             let cancel = AtomicBool::new(false);
@@ -103,7 +117,6 @@ fn assert_same_sum(one: &[Vec<f64>], other: &[Vec<f64>]) {
     };
     let (one, other) = (sums(one), sums(other));
     let ratios: Vec<f64> = one.iter().zip(&other).map(|(a, b)| a / b - 1.0).collect();
-    println!("sums {ratios:?}");
     assert_mean(&ratios, 0.0, 0.006);
 }
 

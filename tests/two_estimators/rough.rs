@@ -1,8 +1,8 @@
 //! Rough surfaces only: both methods find all the light.
 
-use tem00::tracer::{Material, Method};
+use tem00::tracer::{Camera, CameraDescription, LaserEvents, Material, Method, Scene, SensorTilt};
 
-use super::comparison::{Series, assert_agree, assert_mean, paint, sharp_scene};
+use super::comparison::{Series, assert_agree, assert_mean, paint, scene_of, sharp_scene};
 
 const CAMERA: &str = r#"
     [camera]
@@ -32,28 +32,51 @@ fn tilted_plate(shape: &str) -> String {
     )
 }
 
-/// Few samples for the path tracer: its light is direct, and only varies over the pixel.
-fn assert_both_find(scene: &str) {
-    let scene = sharp_scene(scene);
-    let path = Series {
-        method: Method::Path,
-        samples_per_pixel: 16,
-        seeds: 16,
-    };
-    let light = Series {
-        method: Method::Light,
-        samples_per_pixel: 100,
-        seeds: 16,
-    };
-    let (path, light) = (path.render(&scene, None), light.render(&scene, None));
+/// Few samples for the path tracer: its light is direct, and varies only over pixel and lens.
+fn assert_both_find(scene: &Scene) {
+    let path = Series::of(Method::Path, 16).render(scene, None);
+    let light = Series::of(Method::Light, 100).render(scene, None);
     assert_agree(&path, &light, |layers| &layers.coherent_before, 0.1);
 }
 
 #[test]
 fn a_spot_on_a_tilted_plate_looks_the_same_from_both_ends() {
-    assert_both_find(&tilted_plate(
-        r#"spot = { waist_radius = ["0.6 mm", "0.9 mm"], m_squared = 3 }"#,
-    ));
+    let text = tilted_plate(r#"spot = { waist_radius = ["0.6 mm", "0.9 mm"], m_squared = 3 }"#);
+    assert_both_find(&sharp_scene(&text));
+}
+
+#[test]
+fn a_spot_out_of_focus_looks_the_same_from_both_ends() {
+    let text = tilted_plate(r#"spot = { waist_radius = ["0.6 mm", "0.9 mm"], m_squared = 3 }"#);
+    let mut scene = scene_of(&text);
+    // In focus 0.1 m in front of the plate: the spot is blurred over 4 mm, and the sensor is tilted.
+    let near = CameraDescription {
+        f_number: 3.0,
+        focus_distance: 0.2,
+        tilt: SensorTilt {
+            angle: 0.1,
+            azimuth: 0.7,
+        },
+        ..*scene.camera.description()
+    };
+    scene.camera = Camera::new(near).expect("a valid camera");
+    assert_both_find(&scene);
+}
+
+#[test]
+fn beams_and_drawn_directions_light_a_surface_alike() {
+    // A beam that spreads by 0.1 rad from a wide source, so that surfaces see it as a wide lamp.
+    let text = tilted_plate(
+        r#"spot = { waist_radius = "8 mm", waist_distance = "0.1 m", m_squared = 4000 }"#,
+    );
+    let scene = sharp_scene(&text);
+    let sampled = Series {
+        laser_events: LaserEvents::Sampled,
+        ..Series::of(Method::Path, 64)
+    };
+    let light = Series::of(Method::Light, 1000);
+    let (path, light) = (sampled.render(&scene, None), light.render(&scene, None));
+    assert_agree(&path, &light, |layers| &layers.coherent_before, 0.1);
 }
 
 #[test]
@@ -65,9 +88,10 @@ fn a_line_of_any_profile_looks_the_same_from_both_ends() {
         r#"{ angles = ["-0.5 deg", 0, "0.7 deg"], powers = [0.5, 1, 0.2] }"#,
     ];
     for profile in profiles {
-        assert_both_find(&tilted_plate(&format!(
+        let text = tilted_plate(&format!(
             r#"line = {{ fan_angle = "1 deg", thickness = "1 mm", profile = {profile} }}"#
-        )));
+        ));
+        assert_both_find(&sharp_scene(&text));
     }
 }
 
@@ -96,16 +120,13 @@ fn interreflection_in_a_corner_looks_the_same_from_both_ends() {
     ));
     let plastic = Material::plastic(0.6, 1.5, 0.2).expect("a valid material");
     paint(&mut scene, "wall", plastic);
-    let [path, light] = [(Method::Path, 128), (Method::Light, 128)].map(|(method, samples)| {
-        let series = Series {
-            method,
-            samples_per_pixel: samples,
-            seeds: 16,
-        };
-        series.render(&scene, None)
-    });
-    assert_agree(&path, &light, |layers| &layers.coherent_before, 0.1);
-    assert_agree(&path, &light, |layers| &layers.incoherent, 0.1);
+    for max_depth in [Some(2), None] {
+        scene.render.max_depth = max_depth;
+        let path = Series::of(Method::Path, 128).render(&scene, None);
+        let light = Series::of(Method::Light, 128).render(&scene, None);
+        assert_agree(&path, &light, |layers| &layers.coherent_before, 0.1);
+        assert_agree(&path, &light, |layers| &layers.incoherent, 0.1);
+    }
 }
 
 #[test]
@@ -146,12 +167,7 @@ fn lasers_in_an_integrating_sphere_lose_no_power() {
         lambertian = {{ reflectance = {REFLECTANCE} }}
         "#
     ));
-    let series = Series {
-        method: Method::Light,
-        samples_per_pixel: 250,
-        seeds: 16,
-    };
-    let frames = series.render(&scene, None);
+    let frames = Series::of(Method::Light, 250).render(&scene, None);
     // What a diffuse sphere reflects spreads evenly over it: after the first reflection ρP/A, and ρ
     // times less with every further one. All of P is absorbed: (1 − ρ)(P + A ρP/A (1 + ρ + …)) = P.
     let area = 4.0 * std::f64::consts::PI * RADIUS * RADIUS;

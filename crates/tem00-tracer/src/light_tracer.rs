@@ -11,6 +11,7 @@
 
 mod draws;
 mod splats;
+mod survey;
 mod walk;
 
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -106,7 +107,7 @@ impl Groups {
 
 /// The groups that are followed before their light is put into the image, in their order: memory is
 /// bounded, and the sums have the same bits for any number of threads.
-const GROUPS_AT_ONCE: u64 = 64;
+const GROUPS_AT_ONCE: usize = 64;
 
 impl LightTracer<'_> {
     /// Follows the light of one laser.
@@ -125,8 +126,8 @@ impl LightTracer<'_> {
         let walk = Walk::new(self, job);
         let groups = Groups::new(job.paths);
         let mut film = SplatFilm::new(self.area);
-        for first in (0..groups.count).step_by(GROUPS_AT_ONCE as usize) {
-            let wave = first..groups.count.min(first + GROUPS_AT_ONCE);
+        for first in (0..groups.count).step_by(GROUPS_AT_ONCE) {
+            let wave = first..groups.count.min(first + GROUPS_AT_ONCE as u64);
             let followed: Vec<_> = wave
                 .into_par_iter()
                 .map(|index| {
@@ -160,18 +161,6 @@ impl LightLayers {
             values.for_each(|(sum, light)| *sum += light);
         }
         layers.power_on_target += self.power_on_target;
-    }
-}
-
-impl Scene {
-    /// Returns whether an object is a mirror or of smooth glass.
-    ///
-    /// If so, the light that these send from a laser to other surfaces is followed from the laser.
-    /// Light that meets such objects on both sides of a rough surface, before it and between it and
-    /// the camera, is missing from the image.
-    pub fn has_specular_surfaces(&self) -> bool {
-        let mut surfaces = self.surfaces.iter();
-        surfaces.any(|surface| surface.material.is_specular())
     }
 }
 

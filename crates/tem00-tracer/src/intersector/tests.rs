@@ -2,10 +2,7 @@ use core::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
 
-use super::{
-    primitive::{Primitive, ShearedRay},
-    *,
-};
+use super::{primitive::Primitive, *};
 use crate::{Rectangle, Sphere, TriangleMesh};
 
 fn rectangle(centre: DVec3, half_u: DVec3, half_v: DVec3) -> Shape {
@@ -104,10 +101,9 @@ fn primitives(shape: &Shape) -> Vec<Primitive> {
 /// The nearest hit among all primitives: its distance, and the index of the first shape that has
 /// it.
 fn brute_force(shapes: &[Shape], ray: &Ray) -> Option<(f64, usize)> {
-    let sheared = ShearedRay::new(*ray);
     let distances = shapes.iter().enumerate().flat_map(|(surface, shape)| {
         let primitives = primitives(shape).into_iter();
-        let distances = primitives.filter_map(|primitive| primitive.distance(&sheared));
+        let distances = primitives.filter_map(|primitive| primitive.distance(ray));
         distances
             .map(move |distance| (distance, surface))
             .collect::<Vec<_>>()

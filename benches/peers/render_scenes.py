@@ -194,7 +194,8 @@ def mitsuba_integrator(kind):
 
 def tem00_integrator(kind):
     """The keys of [render] for the same light paths."""
-    return {"direct": "", "path": ""}[kind]
+    # Mitsuba counts the segments of a path, we the surfaces on it.
+    return {"direct": "max_depth = 1", "path": "max_depth = 3"}[kind]
 
 
 def write_scenes(folder):

@@ -51,7 +51,7 @@ impl Server {
         let options = RenderOptions {
             samples_per_pixel,
             seed,
-            ..RenderOptions::default()
+            ..RenderOptions::from(&scene.render)
         };
         let never = AtomicBool::new(false);
         Ok(render_frame(scene, None, 0, &options, |_| (), &never)?)

@@ -5,6 +5,8 @@
 
 #![expect(clippy::print_stdout, reason = "the program says what it has written")]
 
+mod flange;
+
 use std::fmt::Write as _;
 use std::path::Path;
 use std::{fs, io};
@@ -26,6 +28,7 @@ fn main() -> io::Result<()> {
     for (name, text) in [
         ("gauge_blocks.ply", gauge_blocks_ply()),
         ("corrugated_sheet.obj", corrugated_sheet_obj()),
+        ("flange.obj", flange::flange_obj()),
     ] {
         fs::write(directory.join(name), &text)?;
         println!("scenes/meshes/{name}: {} bytes", text.len());

@@ -3,9 +3,10 @@ use std::{fs, path::Path};
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use gltf::{
-    Accessor, Gltf, Node, Primitive, Semantic,
+    Accessor, Document, Gltf, Node, Primitive, Semantic,
     accessor::{DataType, Dimensions},
     buffer::Source,
+    json::{Root, validation::Checked},
     mesh::Mode,
     scene::Transform,
 };
@@ -21,14 +22,18 @@ pub(super) fn parse(content: &[u8], folder: Option<&Path>) -> Result<Polygons, M
     if content.starts_with(b"glTF") && announced_length(content) < 12 {
         return Err(wrong("the glTF header is cut off"));
     }
-    let gltf = Gltf::from_slice(content).map_err(|error| wrong(describe(&error)))?;
+    let Gltf { document, blob } = Gltf::from_slice_without_validation(content).map_err(describe)?;
+    check_positions(document.as_json())?;
+    let document = Document::from_json(document.into_json()).map_err(describe)?;
     let mut reader = Reader {
-        buffers: read_buffers(&gltf, folder)?,
+        buffers: read_buffers(&document, blob.as_deref(), folder)?,
         polygons: Polygons::default(),
     };
-    let scene = gltf.default_scene().or_else(|| gltf.scenes().next());
+    let scene = document
+        .default_scene()
+        .or_else(|| document.scenes().next());
     let scene = scene.ok_or_else(|| wrong("the file has no scene"))?;
-    let mut seen = vec![false; gltf.nodes().count()];
+    let mut seen = vec![false; document.nodes().count()];
     let mut waiting: Vec<_> = scene.nodes().map(|node| (node, DMat4::IDENTITY)).collect();
     waiting.reverse();
     while let Some((node, parent)) = waiting.pop() {
@@ -58,23 +63,42 @@ fn wrong(message: impl Into<String>) -> MeshError {
 }
 
 /// Puts an error of the parser on one line.
-fn describe(error: &gltf::Error) -> String {
-    match error {
+fn describe(error: gltf::Error) -> MeshError {
+    wrong(match &error {
         gltf::Error::Validation(errors) => errors.first().map_or_else(
             || error.to_string(),
             |(path, error)| format!("{path}: {}", error.to_string().to_lowercase()),
         ),
         _ => error.to_string(),
+    })
+}
+
+/// Checks the indices that the validation takes for granted.
+fn check_positions(root: &Root) -> Result<(), MeshError> {
+    let key = Checked::Valid(Semantic::Positions);
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let mut accessors = primitives.filter_map(|primitive| primitive.attributes.get(&key));
+    match accessors.find(|index| index.value() >= root.accessors.len()) {
+        Some(index) => Err(wrong(format!(
+            "positions are in accessor {index} (from 0), but the file has {}",
+            root.accessors.len()
+        ))),
+        None => Ok(()),
     }
 }
 
-fn read_buffers(gltf: &Gltf, folder: Option<&Path>) -> Result<Vec<Vec<u8>>, MeshError> {
-    gltf.buffers()
+fn read_buffers(
+    document: &Document,
+    blob: Option<&[u8]>,
+    folder: Option<&Path>,
+) -> Result<Vec<Vec<u8>>, MeshError> {
+    document
+        .buffers()
         .map(|buffer| match buffer.source() {
-            Source::Bin => gltf
-                .blob
-                .clone()
-                .ok_or_else(|| wrong("the binary part is missing")),
+            Source::Bin => {
+                let bytes = blob.ok_or_else(|| wrong("the binary part is missing"))?;
+                Ok(bytes.to_vec())
+            }
             Source::Uri(uri) => read_uri(uri, folder)
                 .map_err(|why| wrong(format!("buffer {} (from 0): {why}", buffer.index()))),
         })

@@ -74,3 +74,29 @@ proptest! {
         check(&content, valid_files()[kind].0)?;
     }
 }
+
+#[test]
+fn headers_that_promise_more_than_there_is_are_soon_refused() {
+    let ply =
+        |elements: &str| format!("ply\nformat binary_little_endian 1.0\n{elements}end_header\n");
+    let many = u64::MAX / 2;
+    for (format, content) in [
+        (MeshFormat::Ply, ply(&format!("element nothing {many}\n"))),
+        (
+            MeshFormat::Ply,
+            ply(&format!("element vertex {many}\nproperty float x\n")),
+        ),
+        (
+            MeshFormat::Ply,
+            ply("element face 1\nproperty list uint int vertex_indices\n") + "\x7f\x7f\x7f\x7f",
+        ),
+        (MeshFormat::Stl, " ".repeat(80) + "\x7f\x7f\x7f\x7f"),
+        (
+            MeshFormat::Gltf,
+            "glTF\x02\0\0\0\x7f\x7f\x7f\x7f".to_owned(),
+        ),
+    ] {
+        let error = read_mesh_bytes(content.as_bytes(), format, 1.0).unwrap_err();
+        assert!(!error.to_string().is_empty(), "{content:?}");
+    }
+}

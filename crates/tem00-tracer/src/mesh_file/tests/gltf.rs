@@ -84,6 +84,7 @@ fn text_and_binary_files_give_the_same_triangles() {
     ] {
         let mesh = read(name, content).0.unwrap();
         assert_eq!(triangle_corners(&mesh), pyramid(), "{name}");
+        assert!(mesh.normals().is_empty(), "{name} has no normals");
     }
 }
 
@@ -239,6 +240,11 @@ fn broken_gltf_files_are_explained() {
             "{ \"mesh\": 1 }",
             "{ \"mesh\": 1, \"children\": [0] }",
             "node 0 (from 0) has two parents",
+        ),
+        (
+            "\"POSITION\": 0",
+            "\"POSITION\": 4",
+            "positions are in accessor 4 (from 0), but the file has 4",
         ),
         (
             "\"scenes\": [{ \"nodes\": [0] }],",

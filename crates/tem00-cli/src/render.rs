@@ -17,7 +17,10 @@ use tem00_tracer::{
 
 use self::{
     record::{Fingerprint, write_json},
-    report::{hint_at_what_is_not_seen, note, note_invisible_lasers, note_missing_light, report},
+    report::{
+        hint_at_what_is_not_seen, note, note_invisible_lasers, note_missing_light, note_roughness,
+        report,
+    },
     sequence::Sequence,
 };
 use crate::{
@@ -171,6 +174,8 @@ impl<'a> Render<'a> {
         for line in plan.to_string().lines() {
             note(&format!("speckle: {line}"));
         }
+        let notes = self.scene.roughness_notes();
+        note_roughness(&notes.map_err(|error| tracer_failure(&self.args.scene, &error))?);
         let model = SpeckleModel::generate(&self.scene, plan)
             .map_err(|error| tracer_failure(&self.args.scene, &error))?;
         interrupt::check()?;

@@ -254,3 +254,24 @@ fn light_that_no_method_finds_is_told() {
     let said = message(&output);
     assert!(said.contains("before and behind a rough surface"), "{said}");
 }
+
+#[test]
+fn surfaces_too_smooth_for_speckle_are_told() {
+    let folder = scene_folder();
+    let smooth = format!(
+        "{SCENE}\n[[surface]]\nname = \"gauge\"\nsphere.radius = \"1 mm\"\n\
+                          conductor = {{ metal = \"iron\", roughness = 0.01 }}\n"
+    );
+    fs::write(folder.path().join("a.toml"), smooth).expect("written");
+    let output = run(folder.path(), "render a.toml --spp 1");
+    assert_code(&output, 0);
+    let said = message(&output);
+    assert!(said.contains("surface `gauge` is too smooth"), "{said}");
+    // Without speckle there is nothing to be too smooth for.
+    let output = run(folder.path(), "render a.toml --spp 1 --no-speckle");
+    assert!(
+        !message(&output).contains("too smooth"),
+        "{}",
+        message(&output)
+    );
+}

@@ -20,6 +20,7 @@ fn the_scenes_of_the_repository_are_read() {
         "grazing_waist",
         "line_on_metal",
         "line_with_speckle",
+        "machined_part",
         "moved_surface",
         "spot",
     ];

@@ -47,6 +47,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         ],
         &[
             "base64",
+            "exr",
             "fearless_simd",
             "glam",
             "gltf",

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use tem00_numerics::Grid;
-use tem00_tracer::Frame;
+use tem00_tracer::{Frame, LaserLayers};
 
 use crate::{
     atomic::write_atomically,
     failure::Failure,
-    image::{Layer, write_exr, write_rgb_png},
+    image::{Layer, Window, write_exr, write_rgb_png},
     preview::Picture,
     summary::Exposure,
 };
@@ -106,53 +106,100 @@ pub(crate) fn write_preview(
     .map_err(|error| Failure::writing(path, error))
 }
 
-/// Writes all layers: the picture in linear sRGB, each laser's, and the lamps'.
+/// Writes all layers of a frame of which the whole image has `size` pixels: the picture in linear
+/// sRGB, each laser's, the lamps', and what was seen.
 ///
 /// # Errors
 ///
 /// Returns a failure if the file cannot be written.
-pub(crate) fn write_layers(path: &Path, frame: &Frame, picture: &Picture) -> Result<(), Failure> {
+pub(crate) fn write_layers(
+    path: &Path,
+    frame: &Frame,
+    picture: &Picture,
+    size: [usize; 2],
+) -> Result<(), Failure> {
     let colours = [0, 1, 2].map(|component| picture.component(component));
     let layers = layers_of(frame, &colours);
-    write_atomically(path, |file| write_exr(file, &layers))
+    let window = Window {
+        origin: frame.origin,
+        image: size,
+    };
+    write_atomically(path, |file| write_exr(file, &layers, Some(window)))
         .map_err(|error| Failure::writing(path, error))
 }
 
 fn layers_of<'a>(frame: &'a Frame, [red, green, blue]: &'a [Grid<f32>; 3]) -> Vec<Layer<'a>> {
-    let total = Layer {
-        name: "picture".into(),
-        wavelength: None,
-        comments: "all light in linear sRGB, in W/(m^2 sr)".into(),
-        channels: vec![("R", red), ("G", green), ("B", blue)],
-    };
-    let lasers = frame.lasers.iter().enumerate().map(|(index, laser)| Layer {
-        name: format!("laser_{index}"),
-        wavelength: Some(laser.wavelength),
-        comments: "radiance in W/(m^2 sr); speckle is a factor with mean 1".into(),
-        channels: vec![
-            ("coherent_before", &laser.coherent_before),
-            ("speckle", &laser.speckle),
-            ("coherent_after", &laser.coherent_after),
-            ("incoherent", &laser.incoherent),
+    let picture = layer(
+        "picture",
+        "all light in linear sRGB, in W/(m^2 sr)",
+        [("R", red), ("G", green), ("B", blue)],
+    );
+    let lamps = layer(
+        "lamps",
+        "radiance of the lamps in W/(m^2 sr), and its variance",
+        [
+            ("radiance", &frame.lamps),
+            ("variance", &frame.lamps_variance),
         ],
-    });
-    let lamps = Layer {
-        name: "lamps".into(),
-        wavelength: None,
-        comments: "radiance of the lamps in W/(m^2 sr)".into(),
-        channels: vec![("radiance", &frame.lamps)],
-    };
-    core::iter::once(total)
+    );
+    let depth = layer(
+        "depth",
+        "distance along the axis in metres; 0: nothing",
+        [("Z", &frame.depth)],
+    );
+    let [x, y, z] = &frame.normal;
+    let normal = layer(
+        "normal",
+        "unit normal in world axes; 0: nothing",
+        [("X", x), ("Y", y), ("Z", z)],
+    );
+    let samples = layer(
+        "samples",
+        "camera samples of the pixel",
+        [("count", &frame.samples)],
+    );
+    let lasers = frame.lasers.iter().enumerate().map(laser_layer);
+    core::iter::once(picture)
         .chain(lasers)
-        .chain(core::iter::once(lamps))
+        .chain([lamps, depth, normal, samples])
         .collect()
+}
+
+fn laser_layer((index, laser): (usize, &LaserLayers)) -> Layer<'_> {
+    Layer {
+        wavelength: Some(laser.wavelength),
+        ..layer(
+            &format!("laser_{index}"),
+            "radiance in W/(m^2 sr); speckle is a factor with mean 1; variance is that of \
+             coherent_after + incoherent",
+            [
+                ("coherent_before", &laser.coherent_before),
+                ("speckle", &laser.speckle),
+                ("coherent_after", &laser.coherent_after),
+                ("incoherent", &laser.incoherent),
+                ("variance", &laser.variance),
+            ],
+        )
+    }
+}
+
+fn layer<'a, const N: usize>(
+    name: &str,
+    comments: &str,
+    channels: [(&'static str, &'a Grid<f32>); N],
+) -> Layer<'a> {
+    Layer {
+        name: name.into(),
+        wavelength: None,
+        comments: comments.into(),
+        channels: channels.to_vec(),
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use tem00_tracer::LaserLayers;
-
     use super::*;
+    use crate::image::read_image;
 
     #[test]
     fn a_bright_lamp_does_not_burn_out_a_thin_line() {
@@ -160,14 +207,12 @@ mod tests {
         let dark = Grid::filled(100, 100, 0.0);
         let mut frame = Frame {
             lasers: vec![LaserLayers {
-                wavelength: 650e-9,
-                coherent_before: line.clone(),
                 speckle: Grid::filled(100, 100, 1.0),
-                coherent_after: line,
-                incoherent: dark.clone(),
-                power_on_target: 1.0,
+                coherent_after: line.clone(),
+                ..laser_of(&dark, line)
             }],
             lamps: Grid::filled(100, 100, 0.2),
+            ..empty(&dark)
         };
         let white = automatic_exposure(&frame).white_level;
         assert!((white - 3.0).abs() < 1e-6, "white level {white}");
@@ -178,20 +223,47 @@ mod tests {
             "white level {white} of the lamp"
         );
     }
-    use crate::image::read_image;
+    fn empty(dark: &Grid<f32>) -> Frame {
+        Frame {
+            lasers: Vec::new(),
+            lamps: dark.clone(),
+            lamps_variance: dark.clone(),
+            depth: dark.clone(),
+            normal: [dark.clone(), dark.clone(), dark.clone()],
+            samples: dark.clone(),
+            origin: [0, 0],
+        }
+    }
 
+    fn laser_of(dark: &Grid<f32>, coherent_before: Grid<f32>) -> LaserLayers {
+        LaserLayers {
+            wavelength: 650e-9,
+            coherent_before,
+            speckle: dark.clone(),
+            coherent_after: dark.clone(),
+            incoherent: dark.clone(),
+            variance: dark.clone(),
+            power_on_target: 1e-3,
+        }
+    }
+
+    /// A frame of 6 × 4 pixels whose layers all differ.
     fn frame() -> Frame {
         let layer = |k: f32| Grid::from_fn(6, 4, |x, y| k + (x + 6 * y) as f32);
         Frame {
             lasers: vec![LaserLayers {
-                wavelength: 650e-9,
-                coherent_before: layer(1.0),
                 speckle: layer(2.0),
                 coherent_after: layer(3.0),
                 incoherent: layer(4.0),
-                power_on_target: 1e-3,
+                variance: layer(5.0),
+                ..laser_of(&layer(0.0), layer(1.0))
             }],
             lamps: layer(0.5),
+            lamps_variance: layer(6.0),
+            depth: layer(7.0),
+            normal: [layer(8.0), layer(9.0), layer(10.0)],
+            samples: layer(11.0),
+            origin: [3, 2],
         }
     }
 
@@ -209,7 +281,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("a.exr");
         let frame = frame();
-        write_layers(&path, &frame, &picture_of(&frame)).expect("written");
+        write_layers(&path, &frame, &picture_of(&frame), [20, 10]).expect("written");
         let read = |name| {
             read_image(&path, Some(name), None)
                 .expect("the channel is there")
@@ -220,7 +292,14 @@ mod tests {
         assert_eq!(read("laser_0.speckle"), laser.speckle);
         assert_eq!(read("laser_0.coherent_after"), laser.coherent_after);
         assert_eq!(read("laser_0.incoherent"), laser.incoherent);
+        assert_eq!(read("laser_0.variance"), laser.variance);
         assert_eq!(read("lamps.radiance"), frame.lamps);
+        assert_eq!(read("lamps.variance"), frame.lamps_variance);
+        assert_eq!(read("depth.Z"), frame.depth);
+        assert_eq!(read("normal.X"), frame.normal[0]);
+        assert_eq!(read("normal.Y"), frame.normal[1]);
+        assert_eq!(read("normal.Z"), frame.normal[2]);
+        assert_eq!(read("samples.count"), frame.samples);
         // Red laser light and lamps: (3 + 4 + 2 i) + (0.5 + i) at pixel i; blue holds no laser light.
         assert!(
             (read("picture.R")[(2, 0)] - 13.5).abs() < 1e-5,

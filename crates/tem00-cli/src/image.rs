@@ -10,7 +10,7 @@ use num_complex::Complex;
 use tem00_numerics::Grid;
 use thiserror::Error;
 
-pub(crate) use exr_file::{Layer, write_exr};
+pub(crate) use exr_file::{Layer, Window, write_exr};
 pub(crate) use png_file::{write_grey_png, write_rgb_png};
 
 /// The most pixels that are read from a file: 2²⁸, which is 1 GiB of `f32`.

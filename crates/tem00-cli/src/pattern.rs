@@ -206,7 +206,7 @@ fn write_layer(
         comments: description.into(),
         channels,
     };
-    write_exr(file, &[layer])
+    write_exr(file, &[layer], None)
 }
 
 fn write_scaled_png(

@@ -11,13 +11,16 @@ use std::{
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use tem00_tracer::{
-    Crop, Formulas, RenderOptions, Scene, SceneError, SceneFile, SpeckleModel, SpecklePlan,
+    Crop, Formulas, Method, RenderOptions, Scene, SceneError, SceneFile, SpeckleModel, SpecklePlan,
     TracerError,
 };
 
 use self::{
     record::{Fingerprint, write_json},
-    report::{hint_at_what_is_not_seen, note, note_invisible_lasers, report},
+    report::{
+        hint_at_what_is_not_seen, note, note_invisible_lasers, note_missing_light, note_roughness,
+        report,
+    },
     sequence::Sequence,
 };
 use crate::{
@@ -39,6 +42,7 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
         SceneFile::read(&args.scene).map_err(|error| scene_failure(&args.scene, &error))?;
     let render = Render::new(args, overruled(scene, args)?, &files)?;
     note_invisible_lasers(&render.scene);
+    note_missing_light(&render.scene);
     let pool = thread_pool(args.threads)?;
     let sequence = pool.install(|| render.sequence())?;
     let summary = pool.install(|| render.summary(sequence));
@@ -64,15 +68,14 @@ fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
     settings.max_depth = args.max_depth.or(settings.max_depth);
     settings.target_error = args.target_error.or(settings.target_error);
     settings.crop = args.crop.or(settings.crop);
-    match settings.crop {
-        Some(crop) => checked(crop, [scene.camera.width(), scene.camera.height()])?,
-        None => {}
+    if let Some(crop) = settings.crop {
+        check_inside(crop, [scene.camera.width(), scene.camera.height()])?;
     }
     Ok(scene)
 }
 
 /// Makes sure that the crop lies in the image.
-fn checked(crop: Crop, [width, height]: [usize; 2]) -> Result<(), Failure> {
+fn check_inside(crop: Crop, [width, height]: [usize; 2]) -> Result<(), Failure> {
     let inside = |start: usize, length: usize, size: usize| {
         start.checked_add(length).is_some_and(|end| end <= size)
     };
@@ -120,7 +123,7 @@ impl<'a> Render<'a> {
         let render = Self {
             args,
             frames: frames(args, &scene)?,
-            fingerprint: Fingerprint::of(files, &choices)?,
+            fingerprint: Fingerprint::of(&scene, files, &choices)?,
             scene,
             name,
             folder,
@@ -171,6 +174,8 @@ impl<'a> Render<'a> {
         for line in plan.to_string().lines() {
             note(&format!("speckle: {line}"));
         }
+        let notes = self.scene.roughness_notes();
+        note_roughness(&notes.map_err(|error| tracer_failure(&self.args.scene, &error))?);
         let model = SpeckleModel::generate(&self.scene, plan)
             .map_err(|error| tracer_failure(&self.args.scene, &error))?;
         interrupt::check()?;
@@ -190,8 +195,15 @@ impl<'a> Render<'a> {
             formulas: self.formulas(),
             seed: self.options.seed,
             samples_per_pixel: self.options.samples_per_pixel,
+            method: match self.options.method {
+                Method::Path => "path",
+                Method::Light => "light",
+            },
+            max_depth: self.options.max_depth,
+            target_error: self.options.target_error,
             width: self.scene.camera.width(),
             height: self.scene.camera.height(),
+            crop: self.options.crop.map(Into::into),
             lasers: LaserSummary::of_scene(&self.scene, self.plan.as_ref()),
             exposure: sequence.exposure,
             frames,

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 use tem00_statistics::{Contrast, StatisticsError, pixel_contrast};
-use tem00_tracer::{LaserLayers, PatternPlan, Scene, SpecklePlan};
+use tem00_tracer::{Crop, LaserLayers, PatternPlan, Scene, SpecklePlan};
 
 /// The summary of a render. Keys carry their unit.
 #[derive(Debug, Serialize)]
@@ -16,8 +16,14 @@ pub(crate) struct Summary {
     pub(crate) formulas: &'static str,
     pub(crate) seed: u64,
     pub(crate) samples_per_pixel: u32,
+    pub(crate) method: &'static str,
+    /// `None` without a limit.
+    pub(crate) max_depth: Option<u32>,
+    pub(crate) target_error: Option<f64>,
     pub(crate) width: usize,
     pub(crate) height: usize,
+    /// The part of the image that was rendered; `None` for all.
+    pub(crate) crop: Option<CropSummary>,
     pub(crate) lasers: Vec<LaserSummary>,
     pub(crate) exposure: Exposure,
     pub(crate) frames: Vec<FrameSummary>,
@@ -25,6 +31,32 @@ pub(crate) struct Summary {
     pub(crate) samples: u64,
     pub(crate) seconds: f64,
     pub(crate) samples_per_second: f64,
+}
+
+/// A part of the image, in pixels.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct CropSummary {
+    x: usize,
+    y: usize,
+    width: usize,
+    height: usize,
+}
+
+impl From<Crop> for CropSummary {
+    fn from(crop: Crop) -> Self {
+        let Crop {
+            x,
+            y,
+            width,
+            height,
+        } = crop;
+        Self {
+            x,
+            y,
+            width,
+            height,
+        }
+    }
 }
 
 /// One laser and its speckle pattern.
@@ -269,6 +301,7 @@ mod tests {
             }),
             coherent_after: Grid::filled(256, 256, 0.0),
             incoherent: Grid::filled(256, 256, 0.0),
+            variance: Grid::filled(256, 256, 0.0),
             power_on_target: 1e-3,
         };
         let found = contrast(&layers, 4.0, 1).expect("it varies");
@@ -289,6 +322,7 @@ mod tests {
             speckle: Grid::filled(4, 4, 1.0),
             coherent_after: dark(),
             incoherent: dark(),
+            variance: dark(),
             power_on_target: 0.0,
         };
         assert!(contrast(&layers, 4.0, 1).is_err(), "nothing is lit");

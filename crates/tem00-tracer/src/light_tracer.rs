@@ -107,7 +107,7 @@ impl Groups {
 
 /// The groups that are followed before their light is put into the image, in their order: memory is
 /// bounded, and the sums have the same bits for any number of threads.
-const GROUPS_AT_ONCE: u64 = 64;
+const GROUPS_AT_ONCE: usize = 64;
 
 impl LightTracer<'_> {
     /// Follows the light of one laser.
@@ -126,8 +126,8 @@ impl LightTracer<'_> {
         let walk = Walk::new(self, job);
         let groups = Groups::new(job.paths);
         let mut film = SplatFilm::new(self.area);
-        for first in (0..groups.count).step_by(GROUPS_AT_ONCE as usize) {
-            let wave = first..groups.count.min(first + GROUPS_AT_ONCE);
+        for first in (0..groups.count).step_by(GROUPS_AT_ONCE) {
+            let wave = first..groups.count.min(first + GROUPS_AT_ONCE as u64);
             let followed: Vec<_> = wave
                 .into_par_iter()
                 .map(|index| {

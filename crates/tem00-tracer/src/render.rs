@@ -154,3 +154,6 @@ fn add_light_traced(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,4 +1,4 @@
-use crate::{Camera, Crop, Lamp, Laser, LaserEvents, Material, Method, Shape, Trajectory};
+use crate::{Camera, Crop, Filter, Lamp, Laser, LaserEvents, Material, Method, Shape, Trajectory};
 
 /// An object: a shape made of a material, perhaps moving from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,6 +80,8 @@ pub struct RenderSettings {
     pub crop: Option<Crop>,
     /// The relative standard error of a pixel at which it gets no more samples.
     pub target_error: Option<f64>,
+    /// How the samples around a pixel make its value.
+    pub filter: Filter,
 }
 
 impl Default for RenderSettings {
@@ -94,6 +96,7 @@ impl Default for RenderSettings {
             laser_events: LaserEvents::default(),
             crop: None,
             target_error: None,
+            filter: Filter::default(),
         }
     }
 }

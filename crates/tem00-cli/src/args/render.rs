@@ -83,8 +83,10 @@ Examples:
 
 Files:
   <scene>.png     preview, 16 bits, in the colour of the laser; <scene>_0000.png … for several frames
-  <scene>.exr     layers per laser: coherent_before, speckle, coherent_after, incoherent, in W/(m² sr)
-  <scene>.json    power on the target, speckle size, contrast, exposure, speed";
+  <scene>.exr     layers per laser: coherent_before, speckle, coherent_after, incoherent, in W/(m² sr),
+                  and variance; lamps, depth, normal, samples
+  <scene>.json    power on the target, speckle size, contrast, exposure, speed; and one per frame of
+                  several, which --resume goes by";
 
 /// A range of frames, counted from 0, with both ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@ use std::io::{BufRead, Seek, SeekFrom, Write};
 
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
-    LayerAttributes, MetaData, ReadChannels, ReadLayers, Text, WritableImage,
+    IntegerBounds, LayerAttributes, MetaData, ReadChannels, ReadLayers, Text, Vec2, WritableImage,
 };
 use tem00_numerics::Grid;
 
@@ -26,12 +26,27 @@ pub(crate) struct Layer<'a> {
     pub(crate) channels: Vec<(&'static str, &'a Grid<f32>)>,
 }
 
-/// Writes layers of 32-bit floating-point channels.
+/// Where layers lie in an image of which they are a part: in OpenEXR the data window in the display
+/// window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Window {
+    /// The column and the row of the first pixel.
+    pub(crate) origin: [usize; 2],
+    /// The size of the whole image.
+    pub(crate) image: [usize; 2],
+}
+
+/// Writes layers of 32-bit floating-point channels, which are the whole image unless a window says
+/// otherwise.
 ///
 /// # Panics
 ///
 /// Panics unless all channels have the same size.
-pub(crate) fn write_exr(writer: impl Write + Seek, layers: &[Layer<'_>]) -> Result<(), ImageError> {
+pub(crate) fn write_exr(
+    writer: impl Write + Seek,
+    layers: &[Layer<'_>],
+    window: Option<Window>,
+) -> Result<(), ImageError> {
     let Some((_, first)) = layers.first().and_then(|layer| layer.channels.first()) else {
         return Err(ImageError::Size {
             width: 0,
@@ -39,8 +54,21 @@ pub(crate) fn write_exr(writer: impl Write + Seek, layers: &[Layer<'_>]) -> Resu
         });
     };
     let size = (first.width(), first.height());
-    let parts: Vec<_> = layers.iter().map(|layer| part(layer, size)).collect();
-    let image = Image::from_layers(ImageAttributes::with_size(size), parts);
+    let window = window.unwrap_or(Window {
+        origin: [0, 0],
+        image: [size.0, size.1],
+    });
+    let [x, y] = window.origin.map(saturated);
+    let position = Vec2(x, y);
+    let part = |layer| {
+        let mut part = part(layer, size);
+        part.attributes.layer_position = position;
+        part
+    };
+    let parts: Vec<_> = layers.iter().map(part).collect();
+    let [width, height] = window.image;
+    let display = IntegerBounds::new(Vec2(0, 0), Vec2(width, height));
+    let image = Image::from_layers(ImageAttributes::new(display), parts);
     Ok(image.write().to_buffered(writer)?)
 }
 
@@ -67,6 +95,11 @@ fn part(layer: &Layer<'_>, size: (usize, usize)) -> exr::prelude::Layer<AnyChann
         Encoding::SMALL_LOSSLESS,
         AnyChannels::sort(channels.collect()),
     )
+}
+
+/// Image coordinates are far below what this type holds.
+fn saturated(pixels: usize) -> i32 {
+    i32::try_from(pixels).unwrap_or(i32::MAX)
 }
 
 fn ascii(text: &str) -> String {
@@ -188,6 +221,11 @@ mod tests {
         [1, 2, 3].map(|k| Grid::from_fn(7, 5, |x, y| (0.1 * (x + 7 * y * k) as f32).exp()))
     }
 
+    const WINDOW: Window = Window {
+        origin: [10, 20],
+        image: [64, 48],
+    };
+
     fn written(grids: &[Grid<f32>; 3]) -> Vec<u8> {
         let mut file = Cursor::new(Vec::new());
         let layers = [
@@ -204,7 +242,7 @@ mod tests {
                 channels: vec![("speckle", &grids[1]), ("incoherent", &grids[2])],
             },
         ];
-        write_exr(&mut file, &layers).expect("written");
+        write_exr(&mut file, &layers, Some(WINDOW)).expect("written");
         file.into_inner()
     }
 
@@ -238,6 +276,18 @@ mod tests {
                 (f64::from(*got) / mean - 1.0).abs() < 2e-7,
                 "{got} is {mean}"
             );
+        }
+    }
+
+    #[test]
+    fn a_part_knows_its_place_in_the_image() {
+        let file = written(&example());
+        let meta = MetaData::read_from_buffered(&file[..], true).expect("an EXR header");
+        for header in &meta.headers {
+            let display = header.shared_attributes.display_window;
+            assert_eq!(display, IntegerBounds::new(Vec2(0, 0), Vec2(64, 48)));
+            assert_eq!(header.own_attributes.layer_position, Vec2(10, 20));
+            assert_eq!(header.layer_size, Vec2(7, 5));
         }
     }
 

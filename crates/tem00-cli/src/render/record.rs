@@ -1,13 +1,16 @@
 //! What is kept of a finished frame, so that a later run need not render it again.
 
 use std::{
+    collections::HashSet,
     fmt::{self, Debug},
     fs::{self, File},
     io::{self, Read, Write},
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use serde::{Deserialize, Serialize};
+use tem00_tracer::{Scene, Shape, TriangleMesh};
 
 use crate::{
     atomic::write_atomically,
@@ -23,12 +26,16 @@ use crate::{
 pub(super) struct Fingerprint(String);
 
 impl Fingerprint {
-    /// Takes the fingerprint of a render from `files` with `choices`.
+    /// Takes the fingerprint of a render of a scene, read from `files`, with `choices`.
     ///
     /// # Errors
     ///
     /// Returns a failure if one of the files cannot be read.
-    pub(super) fn of(files: &[PathBuf], choices: &impl Debug) -> Result<Self, Failure> {
+    pub(super) fn of(
+        scene: &Scene,
+        files: &[PathBuf],
+        choices: &impl Debug,
+    ) -> Result<Self, Failure> {
         let mut hash = Fnv::default();
         hash.add(concat!("tem00 ", env!("CARGO_PKG_VERSION")).as_bytes());
         hash.add(format!("{choices:?}").as_bytes());
@@ -37,8 +44,25 @@ impl Fingerprint {
                 Failure::running(format!("cannot read {}: {error}", path.display()))
             })?;
         }
+        // Mesh files can name further files, which the list of files does not have.
+        let mut known = HashSet::new();
+        for mesh in meshes(scene) {
+            if known.insert(Arc::as_ptr(mesh)) {
+                hash.add_mesh(mesh);
+            }
+        }
         Ok(Self(format!("{:016x}", hash.0)))
     }
+}
+
+fn meshes(scene: &Scene) -> impl Iterator<Item = &Arc<TriangleMesh>> {
+    scene
+        .surfaces
+        .iter()
+        .filter_map(|surface| match &surface.shape {
+            Shape::Mesh(instance) => Some(instance.mesh()),
+            _ => None,
+        })
 }
 
 /// Fowler, Noll and Vo's hash, variant 1a, of 64 bits.
@@ -61,6 +85,17 @@ impl Fnv {
     fn add(&mut self, bytes: &[u8]) {
         self.bytes(bytes);
         self.bytes(&(bytes.len() as u64).to_le_bytes());
+    }
+
+    fn add_mesh(&mut self, mesh: &TriangleMesh) {
+        for vector in mesh.vertices().iter().chain(mesh.normals()) {
+            for component in vector.to_array() {
+                self.bytes(&component.to_le_bytes());
+            }
+        }
+        for index in mesh.triangles().iter().flatten() {
+            self.bytes(&index.to_le_bytes());
+        }
     }
 
     fn add_file(&mut self, path: &Path) -> io::Result<()> {
@@ -167,6 +202,9 @@ impl fmt::Display for Fingerprint {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+    use tem00_tracer::parse_scene;
+
     use super::*;
 
     fn fnv(text: &str) -> u64 {
@@ -181,6 +219,26 @@ mod tests {
         assert_eq!(fnv(""), 0xcbf2_9ce4_8422_2325);
         assert_eq!(fnv("a"), 0xaf63_dc4c_8601_ec8c);
         assert_eq!(fnv("foobar"), 0x8594_4171_f739_67e8);
+    }
+
+    fn scene() -> Scene {
+        let text = "[camera]\nposition = [0, 0, 1]\n[[laser]]\nwavelength = 650e-9\npower = 1\n\
+                    position = [0, 1, 1]\nspot.waist_radius = 1e-3\n[[surface]]\n\
+                    sphere.radius = 1e-2\n";
+        parse_scene(text, Path::new(".")).expect("a scene")
+    }
+
+    #[test]
+    fn the_fingerprint_sees_every_corner_of_a_mesh() {
+        let with_corner = |x: f64| {
+            let corners = vec![DVec3::ZERO, x * DVec3::X, DVec3::Y];
+            let mesh = TriangleMesh::new(corners, vec![[0, 1, 2]]).expect("a mesh");
+            let mut scene = scene();
+            scene.surfaces[0].shape = mesh.into();
+            Fingerprint::of(&scene, &[], &1).expect("no files")
+        };
+        assert_eq!(with_corner(1.0), with_corner(1.0), "the same again");
+        assert_ne!(with_corner(1.0), with_corner(1.0 + f64::EPSILON), "one bit");
     }
 
     #[test]
@@ -199,7 +257,7 @@ mod tests {
         }
         let of = |names: &[&str], choice: u32| {
             let files: Vec<PathBuf> = names.iter().map(|name| path(name)).collect();
-            Fingerprint::of(&files, &choice).expect("the files can be read")
+            Fingerprint::of(&scene(), &files, &choice).expect("the files can be read")
         };
         let first = of(&["a", "b"], 1);
         assert_eq!(first, of(&["a", "b"], 1), "the same again");
@@ -207,7 +265,8 @@ mod tests {
         assert_ne!(first, of(&["c", "d"], 1), "the same bytes in other files");
         assert_ne!(first, of(&["e", "b"], 1), "one bit");
         assert_ne!(first, of(&["a"], 1), "a file less");
-        assert!(Fingerprint::of(&[path("f")], &1).is_err(), "a missing file");
+        let missing = Fingerprint::of(&scene(), &[path("f")], &1);
+        assert!(missing.is_err(), "a missing file");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use tem00_tracer::Scene;
+use tem00_tracer::{LaserEvents, RoughnessNote, Scene};
 
 use crate::{colour::xyz_of_wavelength, progress::si_prefixed, summary::Summary};
 
@@ -20,6 +20,27 @@ pub(super) fn note_invisible_lasers(scene: &Scene) {
                 1e9 * laser.wavelength()
             ));
         }
+    }
+}
+
+/// Tells which surfaces are too smooth for the theory of speckle, the first few of many.
+pub(super) fn note_roughness(notes: &[RoughnessNote]) {
+    const TOLD: usize = 8;
+    for line in notes.iter().take(TOLD) {
+        note(&format!("speckle: {line}"));
+    }
+    if notes.len() > TOLD {
+        note(&format!("speckle: and so are {} more", notes.len() - TOLD));
+    }
+}
+
+/// Tells which light no method finds.
+pub(super) fn note_missing_light(scene: &Scene) {
+    if scene.has_specular_surfaces() && scene.render.laser_events == LaserEvents::Beam {
+        note(
+            "mirrors and glass: laser light that meets them both before and behind a rough surface is \
+             left out; laser_events = \"sampled\" finds it, with more noise",
+        );
     }
 }
 

@@ -1,6 +1,7 @@
 //! The frames of a render, one after the other.
 
 use std::{
+    cell::Cell,
     sync::atomic::{AtomicU64, Ordering},
     time::Instant,
 };
@@ -143,11 +144,10 @@ impl Render<'_> {
         model: Option<&SpeckleModel>,
         progress: &SequenceProgress,
     ) -> Result<Frame, Failure> {
-        progress.begin(&match self.scene.render.frames {
+        let advance = progress.begin(match self.scene.render.frames {
             1 => self.name.clone(),
             frames => format!("{} frame {number} of 0..{}", self.name, frames - 1),
         });
-        let advance = |samples| progress.advance(samples);
         let flag = interrupt::flag();
         let frame = render_frame(&self.scene, model, number, &self.options, advance, flag);
         frame.map_err(|error| match error {
@@ -172,7 +172,9 @@ impl Render<'_> {
         forget(&paths.record)?;
         let white = exposure.white_level;
         write_preview(&paths.preview, &picture, white, &self.description())?;
-        write_layers(&paths.layers, frame, &picture).inspect_err(|_| {
+        let camera = &self.scene.camera;
+        let size = [camera.width(), camera.height()];
+        write_layers(&paths.layers, frame, &picture, size).inspect_err(|_| {
             // Half a result is none; that the preview may be gone already is no matter.
             let _ = std::fs::remove_file(&paths.preview);
         })?;
@@ -202,8 +204,26 @@ impl Render<'_> {
             preview: FramePaths::name_of(&paths.preview),
             layers: FramePaths::name_of(&paths.layers),
             lasers: lasers.collect(),
-            samples: self.samples_per_frame(),
+            samples: self.samples_of(frame),
             seconds,
+        }
+    }
+
+    /// Returns the number of samples that a frame took: with a target error, those of its pixels.
+    fn samples_of(&self, frame: &Frame) -> u64 {
+        match self.options.target_error {
+            None => self.samples_per_frame(),
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "numbers of samples are whole and not negative"
+            )]
+            Some(_) => frame
+                .samples
+                .values()
+                .iter()
+                .map(|&count| count as u64)
+                .sum(),
         }
     }
 
@@ -222,23 +242,31 @@ impl Render<'_> {
 /// One progress bar over all frames.
 struct SequenceProgress {
     bar: Progress,
-    done: AtomicU64,
+    /// What each frame counts, and how many have begun.
+    samples_per_frame: u64,
+    begun: Cell<u64>,
 }
 
 impl SequenceProgress {
     fn new(render: &Render<'_>, frames: u64) -> Self {
+        let samples_per_frame = render.samples_per_frame();
         Self {
-            bar: Progress::of_samples(frames.saturating_mul(render.samples_per_frame())),
-            done: AtomicU64::new(0),
+            bar: Progress::of_samples(frames.saturating_mul(samples_per_frame)),
+            samples_per_frame,
+            begun: Cell::new(0),
         }
     }
 
-    fn begin(&self, message: &str) {
-        self.bar.name(message.to_owned());
-    }
-
-    fn advance(&self, samples: u64) {
-        let done = self.done.fetch_add(samples, Ordering::Relaxed);
-        self.bar.set(done + samples);
+    /// Begins the next frame and returns what moves the bar on. Samples beyond those that a frame
+    /// counts do not, which a target error can take.
+    fn begin(&self, name: String) -> impl Fn(u64) + Sync + use<'_> {
+        self.bar.name(name);
+        let start = self.begun.get() * self.samples_per_frame;
+        self.begun.set(self.begun.get() + 1);
+        let (bar, most, done) = (&self.bar, self.samples_per_frame, AtomicU64::new(0));
+        move |samples| {
+            let done = done.fetch_add(samples, Ordering::Relaxed) + samples;
+            bar.set(start + done.min(most));
+        }
     }
 }

@@ -171,3 +171,107 @@ fn a_picture_without_laser_light_says_where_things_stand() {
     assert!(notes.contains("sees no light of a laser"), "{notes}");
     assert!(notes.contains("surface 1: x 60.0 … 80.0 mm"), "{notes}");
 }
+
+/// Returns the channel of an image file as `tem00 stats` sees it.
+fn mean_of(folder: &Path, file: &str, channel: &str) -> f64 {
+    let output = run(folder, &format!("stats {file} --channel {channel} --json"));
+    assert_code(&output, 0);
+    let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    found["rows"][0]["measured"].as_f64().expect("a number")
+}
+
+#[test]
+fn a_crop_is_a_part_of_the_image() {
+    let folder = scene_folder();
+    assert_code(&run(folder.path(), "render a.toml -o whole"), 0);
+    assert_code(
+        &run(folder.path(), "render a.toml -o part --crop 8,6,24,20"),
+        0,
+    );
+    let whole = channel(&folder.path().join("whole/a.exr"));
+    let part = channel(&folder.path().join("part/a.exr"));
+    assert_eq!((part.0, part.1), ([8, 6], [24, 20]), "the data window");
+    let [x0, y0] = part.0;
+    for y in 0..20 {
+        for x in 0..24 {
+            let (here, there) = (part.2[y * 24 + x], whole.2[(y + y0) * 48 + x + x0]);
+            assert_eq!(here.to_bits(), there.to_bits(), "pixel ({x}, {y})");
+        }
+    }
+    let summary = fs::read(folder.path().join("part/a.json")).expect("a summary");
+    let summary: Value = serde_json::from_slice(&summary).expect("JSON");
+    assert_eq!(
+        summary["crop"],
+        serde_json::json!({"x": 8, "y": 6, "width": 24, "height": 20})
+    );
+    assert_eq!(summary["samples"], 24 * 20 * 4);
+}
+
+/// Returns origin, size and values of the first laser's layer `coherent_after`.
+fn channel(path: &Path) -> ([usize; 2], [usize; 2], Vec<f32>) {
+    use exr::prelude::*;
+    let image = read_all_flat_layers_from_file(path).expect("an OpenEXR file");
+    let layer = &image.layer_data[1];
+    let channel = layer.channel_data.list.iter();
+    let channel = channel
+        .clone()
+        .find(|channel| channel.name.to_string() == "coherent_after");
+    let position = layer.attributes.layer_position;
+    let origin = [position.x(), position.y()].map(|p| usize::try_from(p).expect("inside"));
+    let values = channel.expect("the channel").sample_data.values_as_f32();
+    (origin, [layer.size.x(), layer.size.y()], values.collect())
+}
+
+#[test]
+fn options_overrule_the_scene() {
+    let folder = scene_folder();
+    let line = "render a.toml -o . --method light --max-depth 1 --no-speckle";
+    assert_code(&run(folder.path(), line), 0);
+    // The light tracer finds what the path tracer finds.
+    let light = mean_of(folder.path(), "a.exr", "laser_0.coherent_before");
+    assert_code(
+        &run(folder.path(), "render a.toml -o . --no-speckle --spp 64"),
+        0,
+    );
+    let path = mean_of(folder.path(), "a.exr", "laser_0.coherent_before");
+    // 7680 photons of which nearly all reach the image: 1.2 % of noise in the mean.
+    assert!((light / path - 1.0).abs() < 0.06, "{light} is not {path}");
+    let summary = fs::read(folder.path().join("a.json")).expect("a summary");
+    let summary: Value = serde_json::from_slice(&summary).expect("JSON");
+    assert_eq!(summary["method"], "path");
+    assert_eq!(summary["max_depth"], Value::Null);
+}
+
+#[test]
+fn light_that_no_method_finds_is_told() {
+    let folder = scene_folder();
+    let mirror = format!(
+        "{SCENE}\n[[surface]]\nrectangle = {{ centre = [0, 1, 0], size = [0.1, 0.1] }}\nmirror = {{}}\n"
+    );
+    fs::write(folder.path().join("a.toml"), mirror).expect("written");
+    let output = run(folder.path(), "render a.toml");
+    assert_code(&output, 0);
+    let said = message(&output);
+    assert!(said.contains("before and behind a rough surface"), "{said}");
+}
+
+#[test]
+fn surfaces_too_smooth_for_speckle_are_told() {
+    let folder = scene_folder();
+    let smooth = format!(
+        "{SCENE}\n[[surface]]\nname = \"gauge\"\nsphere.radius = \"1 mm\"\n\
+                          conductor = {{ metal = \"iron\", roughness = 0.01 }}\n"
+    );
+    fs::write(folder.path().join("a.toml"), smooth).expect("written");
+    let output = run(folder.path(), "render a.toml --spp 1");
+    assert_code(&output, 0);
+    let said = message(&output);
+    assert!(said.contains("surface `gauge` is too smooth"), "{said}");
+    // Without speckle there is nothing to be too smooth for.
+    let output = run(folder.path(), "render a.toml --spp 1 --no-speckle");
+    assert!(
+        !message(&output).contains("too smooth"),
+        "{}",
+        message(&output)
+    );
+}

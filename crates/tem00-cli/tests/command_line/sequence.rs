@@ -251,7 +251,7 @@ fn remains_of_another_render_are_replaced_by_the_one_that_goes_on() {
 fn ctrl_c_keeps_the_finished_frames() {
     use std::process::Stdio;
 
-    let folder = moving_folder(400, FRAMES);
+    let folder = moving_folder(200, FRAMES);
     assert_code(&run(folder.path(), "render a.toml -o whole"), 0);
     let child = tem00(folder.path(), "render a.toml -o cut")
         .stdout(Stdio::piped())

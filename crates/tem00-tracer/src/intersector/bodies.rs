@@ -237,7 +237,9 @@ impl Leaves for Part<'_> {
             return;
         }
         for lane in set(met.possibly) {
-            self.offer(block.triangle(lane), query);
+            if let Some(triangle) = block.triangle(lane) {
+                self.offer(triangle, query);
+            }
         }
     }
 
@@ -252,8 +254,8 @@ impl Leaves for Part<'_> {
         _: &mut Stacks,
     ) {
         let block = self.hierarchy.block(leaf);
-        for triangle in 0..block.count() {
-            let met = packet.meet_triangle(simd, &block.one(simd, triangle), lanes);
+        for (slot, triangle) in block.triangles() {
+            let met = packet.meet_triangle(simd, &block.one(simd, slot), lanes);
             let mut unsure = met.possibly;
             if Q::ANY {
                 unsure &= !met.certainly;
@@ -263,7 +265,7 @@ impl Leaves for Part<'_> {
                 }
             }
             for lane in set(unsure) {
-                self.offer(block.triangle(triangle), &mut queries[lane]);
+                self.offer(triangle, &mut queries[lane]);
                 packet.set_end(lane, queries[lane].end());
             }
         }

@@ -21,7 +21,7 @@ pub(super) struct Hierarchy {
 }
 
 /// Up to eight boxes, and what is in them.
-#[repr(align(64))]
+#[repr(align(32))]
 #[derive(Clone, Debug)]
 pub(super) struct Node {
     low: [[f32; WIDTH]; 3],
@@ -29,11 +29,51 @@ pub(super) struct Node {
     children: [Child; WIDTH],
 }
 
-/// What is in a box.
+/// What is in a box: a node, or a leaf where the highest bit is set.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Child {
-    Node(u32),
-    Leaf(u32),
+pub(super) struct Child(u32);
+
+impl Child {
+    const LEAF: u32 = 1 << 31;
+
+    pub(super) const fn node(index: u32) -> Self {
+        Self(index)
+    }
+
+    pub(super) const fn leaf(index: u32) -> Self {
+        Self(Self::LEAF | index)
+    }
+
+    /// The child after which no other comes.
+    pub(super) const LAST: Self = Self(u32::MAX);
+
+    /// Returns a number for the child at a distance that is not negative: the larger, the farther.
+    ///
+    /// The bits of such distances have the order of the distances.
+    #[inline(always)]
+    pub(super) const fn entry(self, distance: f32) -> u64 {
+        (distance.to_bits() as u64) << 32 | self.0 as u64
+    }
+
+    #[inline(always)]
+    pub(super) const fn of_entry(entry: u64) -> Self {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "the child is in the low bits"
+        )]
+        let bits = entry as u32;
+        Self(bits)
+    }
+
+    /// Returns the index of the node, or that of the leaf as the error.
+    #[inline(always)]
+    pub(super) const fn index(self) -> Result<u32, u32> {
+        if self.0 & Self::LEAF == 0 {
+            Ok(self.0)
+        } else {
+            Err(self.0 & !Self::LEAF)
+        }
+    }
 }
 
 impl Node {
@@ -41,7 +81,7 @@ impl Node {
     const EMPTY: Self = Self {
         low: [[1e30; WIDTH]; 3],
         high: [[1e30; WIDTH]; 3],
-        children: [Child::Leaf(u32::MAX); WIDTH],
+        children: [Child::leaf(0); WIDTH],
     };
 
     pub(super) fn child(&self, slot: usize) -> Child {

@@ -15,7 +15,7 @@ pub(crate) struct MeshHierarchy {
 }
 
 /// The triangles of a leaf in single precision.
-#[repr(align(64))]
+#[repr(align(32))]
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     corner: [[f32; WIDTH]; 3],
@@ -23,7 +23,6 @@ pub(super) struct Block {
     tolerance: [f32; WIDTH],
     /// The indices of the triangles in the mesh.
     triangles: [u32; WIDTH],
-    count: usize,
 }
 
 impl MeshHierarchy {
@@ -50,6 +49,9 @@ impl MeshHierarchy {
     }
 }
 
+/// Stands for the triangle of an empty lane: meshes have fewer.
+const NONE: u32 = u32::MAX;
+
 impl Block {
     /// The shortest edge to which tolerances shrink: below, products of edges underflow.
     const SHORTEST: f64 = 1e-15;
@@ -60,8 +62,7 @@ impl Block {
             corner: [[1e9; WIDTH]; 3],
             edges: [[[0.0; WIDTH]; 3]; 2],
             tolerance: [-1.0; WIDTH],
-            triangles: [0; WIDTH],
-            count: triangles.len(),
+            triangles: [NONE; WIDTH],
         };
         for (lane, &triangle) in triangles.iter().enumerate() {
             let corners = mesh.corners(triangle as usize);
@@ -79,12 +80,19 @@ impl Block {
         block
     }
 
-    pub(super) const fn count(&self) -> usize {
-        self.count
+    /// Returns the index of the triangle in a lane, if there is one.
+    pub(super) fn triangle(&self, lane: usize) -> Option<u32> {
+        self.triangles
+            .get(lane)
+            .copied()
+            .filter(|&triangle| triangle != NONE)
     }
 
-    pub(super) const fn triangle(&self, lane: usize) -> u32 {
-        self.triangles[lane]
+    /// Returns the lanes that hold a triangle, and the triangles' indices.
+    #[inline(always)]
+    pub(super) fn triangles(&self) -> impl Iterator<Item = (usize, u32)> {
+        let triangles = self.triangles.iter().copied().enumerate();
+        triangles.take_while(|&(_, triangle)| triangle != NONE)
     }
 
     /// Returns all triangles, one in each lane.

@@ -272,7 +272,7 @@ impl Vertex<'_> {
     /// |i·n_s| |o·n_g| / (|i·n_g| |o·n_s|)     i back along the path, n_s shading, n_g geometric
     /// ```
     ///
-    /// `shaded` are i·n_s and o·n_s. The factor is 1 without shading normals, and 0 where the two
+    /// The products with n_s are `shaded`. The factor is 1 without shading normals, and 0 where the two
     /// normals disagree about the side.
     ///
     /// # References

@@ -92,12 +92,8 @@ impl Ggx {
 }
 
 /// Returns the unit vector half-way between two directions above the surface.
+///
+/// Opposite directions along the surface leave only their heights, whose product is not 0.
 pub(super) fn half_vector(wo: DVec3, wi: DVec3) -> DVec3 {
-    let sum = wo + wi;
-    let square = sum.length_squared();
-    if square > 1e-200 {
-        return sum / square.sqrt();
-    }
-    // Opposite directions along the surface: only their height above it is left.
-    (sum * 2.0_f64.powi(600)).normalize()
+    (wo + wi).normalize()
 }

@@ -44,8 +44,8 @@ pub struct OpticalRoughnessQuery {
 ///
 /// # Validity
 ///
-/// The roughness of GGX facets is taken for that of Beckmann's, which has the same slope at the peak
-/// of the lobe; GGX has no rms slope of its own. The relations hold for Gaussian surfaces without
+/// GGX has no rms slope of its own: its roughness is taken for that of Beckmann's facets, whose lobe
+/// has the same height, and whose light is therefore correlated over the same area. The relations hold for Gaussian surfaces without
 /// shadowing. For N patches the variance of the intensity departs from that of fully developed
 /// speckle by the order of 1/N.
 ///

@@ -101,7 +101,7 @@ impl From<&RenderSettings> for RenderOptions {
             method: settings.method,
             laser_events: settings.laser_events,
             lamp_events: LampEvents::default(),
-            filter: Filter::default(),
+            filter: settings.filter,
             crop: settings.crop,
             target_error: settings.target_error,
         }

@@ -2,7 +2,9 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::{MeshError, TriangleMesh, read_mesh};
+use tem00_numerics::Grid;
+
+use crate::{MeshError, RadianceMapError, TriangleMesh, read_mesh, read_radiance_map};
 
 /// Which normals light is scattered by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,6 +45,17 @@ impl Assets {
         self.note(path);
         self.meshes.insert((canonical, shading), Arc::clone(&mesh));
         Ok(mesh)
+    }
+
+    /// Reads a map of radiance, whose values are multiplied by `scale`.
+    pub(super) fn radiance_map(
+        &mut self,
+        path: &Path,
+        scale: f64,
+    ) -> Result<Grid<f32>, RadianceMapError> {
+        let map = read_radiance_map(path, scale)?;
+        self.note(path);
+        Ok(map)
     }
 
     /// Notes that a file was read.

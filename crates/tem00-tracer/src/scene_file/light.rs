@@ -1,25 +1,38 @@
+use glam::DVec3;
+
+use super::assets::Assets;
 use super::document::Document;
 use super::error::Problem;
-use super::placement::rejected;
-use super::quantity::{POWER, RADIANCE};
+use super::placement::{across, rejected};
+use super::quantity::{NUMBER, POWER, RADIANCE};
 use super::section::{Choice, Section};
 use super::shape::rectangle;
-use crate::Lamp;
+use super::value::Value;
+use crate::{Environment, Lamp, TracerError};
 
-pub(super) const KEYS: &[&str] = &["point", "rectangle"];
+pub(super) const KEYS: &[&str] = &["point", "rectangle", "environment"];
 pub(super) const SHAPES: &[Choice] = &[
     ("point", &["position", "power"]),
     ("rectangle", &["centre", "normal", "up", "size", "radiance"]),
+    (
+        "environment",
+        &["radiance", "file", "scale", "up", "middle"],
+    ),
 ];
 
-pub(super) fn read(root: &Document<'_>) -> Result<Vec<Lamp>, Problem> {
-    root.tables("lamp", KEYS)?.iter().map(lamp).collect()
+pub(super) fn read(root: &Document<'_>, assets: &mut Assets) -> Result<Vec<Lamp>, Problem> {
+    let sections = root.tables("lamp", KEYS)?;
+    sections
+        .iter()
+        .map(|section| lamp(section, assets))
+        .collect()
 }
 
-fn lamp(section: &Section<'_>) -> Result<Lamp, Problem> {
+fn lamp(section: &Section<'_>, assets: &mut Assets) -> Result<Lamp, Problem> {
     match section.one_of("shape", SHAPES)? {
         ("point", section) => point(&section),
-        (_, section) => area(&section),
+        ("rectangle", section) => area(&section),
+        (_, section) => Ok(Lamp::Environment(environment(&section, assets)?)),
     }
 }
 
@@ -32,4 +45,41 @@ fn point(section: &Section<'_>) -> Result<Lamp, Problem> {
 fn area(section: &Section<'_>) -> Result<Lamp, Problem> {
     let radiance = section.required("radiance", "0.5")?.positive(&RADIANCE)?;
     Lamp::area(rectangle(section)?, radiance).map_err(|error| rejected(&error, &[section]))
+}
+
+/// Reads light from all around: the same everywhere, or a map.
+fn environment(section: &Section<'_>, assets: &mut Assets) -> Result<Environment, Problem> {
+    let Some(file) = section.optional("file") else {
+        let radiance = section.required("radiance", "0.5")?.positive(&RADIANCE)?;
+        let of_maps = ["scale", "up", "middle"]
+            .into_iter()
+            .find(|key| section.has(key));
+        if let Some(key) = of_maps {
+            let message = format!("`{key}` belongs to a map: write `file` as well");
+            return Err(section.problem_with(key, message));
+        }
+        return Environment::constant(radiance).map_err(|error| rejected(&error, &[section]));
+    };
+    if section.has("radiance") {
+        let message = "`radiance` is that of a sky without a map: `scale` brightens the `file`";
+        return Err(section.problem_with("radiance", message));
+    }
+    let scale = section.or("scale", 1.0, |value| value.positive(&NUMBER))?;
+    let up = section.or("up", DVec3::Y, Value::direction)?;
+    let middle = section.or(
+        "middle",
+        across(up, DVec3::NEG_Z, DVec3::Y),
+        Value::direction,
+    )?;
+    let path = section.beside(file.string()?);
+    let failed = |why: String| {
+        Problem::new(format!("`file` must be a map of radiance: {why}")).at(file.place())
+    };
+    let map = assets
+        .radiance_map(&path, scale)
+        .map_err(|error| failed(error.to_string()))?;
+    Environment::from_radiance(map, up, middle).map_err(|error| match &error {
+        TracerError::Direction { .. } => rejected(&error, &[section]),
+        other => failed(other.to_string()),
+    })
 }

@@ -4,6 +4,7 @@ mod assets;
 mod camera;
 mod document;
 mod error;
+mod filter;
 mod laser;
 mod light;
 mod material;
@@ -131,7 +132,7 @@ fn scene(sources: &Sources, assets: &mut Assets) -> Result<Scene, Problem> {
         camera_trajectory: camera.trajectory,
         surfaces: surface::read(&root, assets, &lasers)?,
         lasers,
-        lamps: light::read(&root)?,
+        lamps: light::read(&root, assets)?,
         speckle: settings::speckle(&root)?,
     })
 }

@@ -1,5 +1,6 @@
 use super::document::Document;
 use super::error::Problem;
+use super::filter;
 use super::quantity::{MEMORY, NUMBER};
 use super::value::Value;
 use crate::{Camera, Crop, LaserEvents, Method, RenderSettings, SpeckleSettings};
@@ -14,6 +15,7 @@ pub(super) const RENDER_KEYS: &[&str] = &[
     "laser_events",
     "crop",
     "target_error",
+    "filter",
 ];
 pub(super) const SPECKLE_KEYS: &[&str] = &["size", "diameter", "half_period", "memory"];
 
@@ -54,6 +56,7 @@ pub(super) fn render(root: &Document<'_>, camera: &Camera) -> Result<RenderSetti
                 .within(&NUMBER, 1e-6..=1.0, "from 1e-6 to 1")
                 .map(Some)
         })?,
+        filter: filter::read(&section)?,
     })
 }
 

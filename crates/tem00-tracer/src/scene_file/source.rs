@@ -136,40 +136,36 @@ impl Sources {
         Ok(())
     }
 
-    fn include(&mut self, Include { path, place }: Include) -> Result<(), Problem> {
-        let name = path.display();
-        let problem = |why: String| Problem::new(format!("`include`: {why}")).at(place.clone());
-        let canonical = fs::canonicalize(&path)
-            .map_err(|error| problem(format!("{name} cannot be read: {error}")))?;
-        let known = self
-            .canonical
-            .iter()
-            .position(|known| known.as_ref() == Some(&canonical));
-        match known {
-            Some(index) if self.open.contains(&index) => {
-                return Err(problem(format!("{name} would include itself")));
-            }
-            Some(_) => return Err(problem(format!("{name} is part of the scene already"))),
-            None if self.open.len() > DEEPEST => {
-                return Err(problem(format!(
-                    "{name} would be more than {DEEPEST} files away from the scene"
-                )));
-            }
-            None => {}
-        }
-        let text = fs::read(&path)
-            .map_err(|error| problem(format!("{name} cannot be read: {error}")))
-            .and_then(|bytes| {
-                String::from_utf8(bytes)
-                    .map_err(|_| problem(format!("{name} must be text in UTF-8")))
-            })?;
+    fn include(&mut self, include: Include) -> Result<(), Problem> {
+        let Include { path, .. } = &include;
+        let unreadable = |error| include.problem(format_args!("cannot be read: {error}"));
+        let canonical = fs::canonicalize(path).map_err(unreadable)?;
+        self.check_new(&canonical, &include)?;
+        let bytes = fs::read(path).map_err(unreadable)?;
+        let text =
+            String::from_utf8(bytes).map_err(|_| include.problem("must be text in UTF-8"))?;
         let source = Source {
             index: self.all.len(),
             directory: path.parent().unwrap_or(Path::new("")).to_path_buf(),
-            path: Some(path),
+            path: Some(include.path),
             text,
         };
         self.add(source, Some(canonical))
+    }
+
+    /// Refuses a file that was read before, and one at the end of a long chain.
+    fn check_new(&self, canonical: &Path, include: &Include) -> Result<(), Problem> {
+        let mut read = self.canonical.iter();
+        match read.position(|read| read.as_deref() == Some(canonical)) {
+            Some(index) if self.open.contains(&index) => {
+                Err(include.problem("would include itself"))
+            }
+            Some(_) => Err(include.problem("is part of the scene already")),
+            None if self.open.len() > DEEPEST => Err(include.problem(format_args!(
+                "would be more than {DEEPEST} files away from the scene"
+            ))),
+            None => Ok(()),
+        }
     }
 }
 
@@ -177,6 +173,13 @@ impl Sources {
 struct Include {
     path: PathBuf,
     place: Place,
+}
+
+impl Include {
+    fn problem(&self, what: impl core::fmt::Display) -> Problem {
+        let name = self.path.display();
+        Problem::new(format!("`include`: {name} {what}")).at(self.place.clone())
+    }
 }
 
 fn includes_of(source: &Source) -> Result<Vec<Include>, Problem> {

@@ -21,6 +21,18 @@ fn facets_that_absorb_nothing_lose_nothing() {
     }
 }
 
+#[test]
+fn an_albedo_is_never_more_than_all() {
+    for thousandth in (10..30).chain([40, 80, 160, 320, 640, 1000]) {
+        let alpha = f64::from(thousandth) * 1e-3;
+        let table = Albedo::new(Ggx { alpha }, |_| 1.0);
+        for i in 0..=2000 {
+            let albedo = table.at((f64::from(i) / 2000.0).powi(4));
+            assert!((0.0..=1.0).contains(&albedo), "α = {alpha}: {albedo}");
+        }
+    }
+}
+
 /// The light that meets two, three … facets: each reflects F̄, and a part Ē of it then leaves.
 #[test]
 fn facets_that_absorb_pass_on_a_geometric_series() {

@@ -58,6 +58,7 @@ fn specular_materials_have_no_density() {
         Material::mirror(1.0).unwrap(),
         Material::polished(Metal::Iron).unwrap(),
     ] {
+        assert!(material.is_specular(), "{material:?}");
         for s in outcomes(&material, wo) {
             assert!(
                 material.evaluate(wo, s.wi, RED) < f64::MIN_POSITIVE,

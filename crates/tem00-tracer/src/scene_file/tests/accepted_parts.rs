@@ -4,13 +4,15 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
 use std::sync::Arc;
 
+use approx::assert_relative_eq;
 use glam::{DVec2, DVec3};
 use tempfile::TempDir;
 
 use super::{CAMERA, LASER, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
 use crate::{
-    Crop, Cylinder, Keyframe, LaserEvents, Material, Metal, Method, RadialDistortion, Rotation,
-    SensorTilt, Shape, Surface, SurfaceSpeckle, Trajectory, read_scene,
+    Crop, Cylinder, Environment, Filter, Keyframe, Lamp, LaserEvents, Material, Metal, Method,
+    RadialDistortion, Rotation, SceneFile, SensorTilt, Shape, Surface, SurfaceSpeckle, Trajectory,
+    read_scene,
 };
 
 /// Reads the minimal scene with further keys of its surface.
@@ -277,12 +279,9 @@ fn surfaces_of_one_file_share_its_mesh() {
 
 #[test]
 fn vertex_normals_count_unless_the_file_is_flat() {
-    let smooth = format!(
-        "{TETRAHEDRON}vn 0 0 1\nvn 0 1 0\nvn 1 0 0\n\
-                          f 1//1 2//2 3//3\n"
-    );
+    let smooth = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 1\nvn 1 0 1\nf 1//1 2//2 3//3\n";
     let has_normals = |keys: &str| {
-        let scene = parse_with_mesh("a.obj", &smooth, keys).unwrap();
+        let scene = parse_with_mesh("a.obj", smooth, keys).unwrap();
         match &scene.surfaces[0].shape {
             Shape::Mesh(instance) => !instance.mesh().normals().is_empty(),
             other => panic!("{other:?} is not a mesh"),
@@ -294,4 +293,120 @@ fn vertex_normals_count_unless_the_file_is_flat() {
         has_normals("shading = \"smooth\""),
         "default"
     );
+}
+
+#[test]
+fn filters_have_usual_parameters_or_those_of_the_file() {
+    let filter = |value: &str| {
+        let text = format!("[render]\nfilter = {value}\n{}", minimal());
+        parse(&text)
+            .map_err(|error| error.to_string())
+            .unwrap()
+            .render
+            .filter
+    };
+    let third = 1.0 / 3.0;
+    let cases = [
+        ("\"box\"", Filter::default()),
+        ("\"tent\"", Filter::Tent { radius: 1.0 }),
+        (
+            "\"gaussian\"",
+            Filter::Gaussian {
+                radius: 1.5,
+                standard_deviation: 0.5,
+            },
+        ),
+        (
+            "{ gaussian = { radius = 3 } }",
+            Filter::Gaussian {
+                radius: 3.0,
+                standard_deviation: 0.5,
+            },
+        ),
+        (
+            "\"mitchell_netravali\"",
+            Filter::MitchellNetravali {
+                radius: 2.0,
+                b: third,
+                c: third,
+            },
+        ),
+        (
+            "{ mitchell_netravali = { b = 0, c = 0.5 } }",
+            Filter::MitchellNetravali {
+                radius: 2.0,
+                b: 0.0,
+                c: 0.5,
+            },
+        ),
+        ("\"lanczos\"", Filter::Lanczos { radius: 3.0 }),
+        ("{ lanczos.radius = 2 }", Filter::Lanczos { radius: 2.0 }),
+        ("{ box.radius = 1 }", Filter::Box { radius: 1.0 }),
+        ("{ tent = {} }", Filter::Tent { radius: 1.0 }),
+    ];
+    for (value, expected) in cases {
+        assert_eq!(filter(value), expected, "{value}");
+    }
+    assert_eq!(parse(&minimal()).unwrap().render.filter, Filter::default());
+}
+
+#[test]
+fn environments_are_even_or_mapped() {
+    let lamp = |keys: &str| format!("{}[[lamp]]\nenvironment = {{ {keys} }}\n", minimal());
+    let even = parse(&lamp("radiance = \"0.5 W/(m² sr)\"")).unwrap();
+    let expected = Lamp::Environment(Environment::constant(0.5).unwrap());
+    assert_eq!(even.lamps, [expected], "even");
+
+    let folder = TempDir::new().unwrap();
+    // Two columns by one row, little endian: what faces away shines with 1, the middle with 3.
+    let pixels = [3.0_f32, 1.0].map(f32::to_le_bytes).concat();
+    let map = [b"Pf\n2 1\n-1.0\n".to_vec(), pixels].concat();
+    fs::write(folder.path().join("sky.pfm"), map).unwrap();
+    let read = |keys: &str| {
+        let text = lamp(&format!("file = \"sky.pfm\"{keys}"));
+        super::schema::assert_allowed(&text);
+        fs::write(folder.path().join("scene.toml"), text).unwrap();
+        let file = SceneFile::read(&folder.path().join("scene.toml"));
+        let mut file = file.map_err(|error| error.to_string()).unwrap();
+        assert!(file.files[1].ends_with("sky.pfm"), "{:?}", file.files);
+        match file.scene.lamps.remove(0) {
+            Lamp::Environment(environment) => environment,
+            other => panic!("{other:?} is no environment"),
+        }
+    };
+    // Seen from inside with y up and −z ahead, the left half of the map is at −x.
+    let usual = read("");
+    assert_relative_eq!(usual.radiance_along(DVec3::NEG_X), 3.0);
+    assert_relative_eq!(usual.radiance_along(DVec3::X), 1.0);
+    let turned = read(", up = [0, 0, 1], middle = [1, 0, 0], scale = 2");
+    // With x ahead and z up, the left is at +y.
+    assert_relative_eq!(turned.radiance_along(DVec3::Y), 6.0);
+    assert_relative_eq!(turned.radiance_along(DVec3::NEG_Y), 2.0);
+}
+
+#[test]
+fn meshes_in_gltf_are_in_metres() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("a.gltf"), triangle_in_gltf()).unwrap();
+    let text = [CAMERA, LASER, "[[surface]]\nmesh.file = \"a.gltf\"\n"].concat();
+    fs::write(folder.path().join("scene.toml"), text).unwrap();
+    let scene = read_scene(&folder.path().join("scene.toml"));
+    let scene = scene.map_err(|error| error.to_string()).unwrap();
+    let (_, high) = scene.surfaces[0].shape.bounds();
+    assert_eq!(high, DVec3::new(1.0, 1.0, 0.0), "one metre");
+}
+
+/// A triangle with corners at the origin, (1, 0, 0) and (0, 1, 0).
+fn triangle_in_gltf() -> String {
+    // Nine numbers of 32 bits in base64: all are 0 but the fourth and the eighth, which are 1.
+    let data = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],
+        "nodes": [{{"mesh": 0}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                       "min": [0, 0, 0], "max": [1, 1, 0]}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 36}}],
+        "buffers": [{{"byteLength": 36, "uri": "data:application/octet-stream;base64,{data}"}}]}}"#
+    )
 }

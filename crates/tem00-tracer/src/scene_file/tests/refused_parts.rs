@@ -229,3 +229,51 @@ fn shapes_speckle_and_instances_must_be_possible() {
     let mesh = "mesh = { file = \"a.obj\", shading = \"round\" }";
     assert_refused(&tube(mesh), 9, &["`shading`", "\"smooth\", \"flat\""]);
 }
+
+#[test]
+fn filters_must_be_possible() {
+    let render = |value: &str| format!("[render]\nfilter = {value}\n{}", minimal());
+    let cases: [(&str, &[&str]); 9] = [
+        ("\"gauss\"", &["`filter`", "\"gaussian\""]),
+        ("1", &["`filter`", "string"]),
+        ("{}", &["needs a kernel", "[render.filter.box]"]),
+        ("{ gauss = {} }", &["unknown key `gauss`", "`gaussian`?"]),
+        (
+            "{ box = {}, tent = {} }",
+            &["one kernel", "`box`", "`tent`"],
+        ),
+        ("{ box.radius = 17 }", &["radius must be", "16", "got 17"]),
+        ("{ lanczos.radius = 0.5 }", &["radius must be", "got 0.5"]),
+        (
+            "{ gaussian.standard_deviation = 0 }",
+            &["standard_deviation must be", "got 0"],
+        ),
+        (
+            "{ mitchell_netravali.b = 2 }",
+            &["b must be", "between 0 and 1"],
+        ),
+    ];
+    for (value, words) in cases {
+        assert_refused(&render(value), 2, words);
+    }
+}
+
+#[test]
+fn environments_must_be_possible() {
+    let lamp = |keys: &str| format!("{}[[lamp]]\nenvironment = {{ {keys} }}\n", minimal());
+    let cases: [(&str, &[&str]); 7] = [
+        ("", &["[lamp.environment]", "`radiance`"]),
+        ("radiance = -1", &["`radiance`", "positive"]),
+        (
+            "radiance = 1, up = [0, 0, 1]",
+            &["`up`", "belongs to a map"],
+        ),
+        ("radiance = 1, file = \"a.exr\"", &["`radiance`", "`scale`"]),
+        ("file = \"no.exr\"", &["`file`", "no.exr", "cannot be read"]),
+        ("file = \"no.jpg\"", &["`file`", ".exr or .pfm"]),
+        ("file = \"a.exr\", scale = 0", &["`scale`", "positive"]),
+    ];
+    for (keys, words) in cases {
+        assert_refused(&lamp(keys), 11, words);
+    }
+}

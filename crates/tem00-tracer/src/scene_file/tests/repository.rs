@@ -15,17 +15,16 @@ fn documentation() -> String {
 
 #[test]
 fn the_scenes_of_the_repository_are_read() {
-    let scenes = [
-        "gauge_blocks",
-        "grazing_waist",
-        "line_on_metal",
-        "line_with_speckle",
-        "machined_part",
-        "moved_surface",
-        "spot",
-    ];
-    for name in scenes {
-        let path = repository().join(format!("scenes/{name}.toml"));
+    let entries = fs::read_dir(repository().join("scenes")).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let paths: Vec<PathBuf> = paths
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "toml")
+        })
+        .collect();
+    assert!(paths.len() >= 6, "{paths:?}");
+    for path in paths {
         let scene = read_scene(&path).map_err(|error| error.to_string());
         assert!(scene.is_ok(), "{scene:?}");
         assert_allowed(&fs::read_to_string(path).unwrap());

@@ -9,7 +9,9 @@ use std::path::Path;
 use serde_json::Value;
 use toml::de::DeTable;
 
-use super::super::{camera, laser, light, material, motion, section, settings, shape, surface};
+use super::super::{
+    camera, filter, laser, light, material, motion, section, settings, shape, surface,
+};
 use super::{minimal, parse, with};
 use json::{Schema, from_toml};
 
@@ -49,16 +51,28 @@ pub(super) fn tables() -> BTreeMap<&'static str, &'static [&'static str]> {
         ("rotation", motion::ROTATION_KEYS),
         ("lamp", light::KEYS),
         ("render", settings::RENDER_KEYS),
+        ("filter", filter::KEYS),
         ("speckle", settings::SPECKLE_KEYS),
     ];
     let lamps = light::SHAPES.iter().map(|(name, keys)| match *name {
         "point" => ("lamp_point", *keys),
         "rectangle" => ("lamp_rectangle", *keys),
+        "environment" => ("environment", *keys),
         other => panic!("no definition is named for the lamp {other}"),
+    });
+    let filters = filter::FILTERS.iter().map(|(name, keys)| match *name {
+        "box" | "tent" | "lanczos" => ("filter_radius", *keys),
+        "gaussian" => ("filter_gaussian", *keys),
+        "mitchell_netravali" => ("filter_mitchell_netravali", *keys),
+        other => panic!("no definition is named for the filter {other}"),
     });
     let choices = [laser::SHAPES, shape::SHAPES, material::MATERIALS];
     let choices = choices.into_iter().flatten().copied();
-    own.into_iter().chain(choices).chain(lamps).collect()
+    own.into_iter()
+        .chain(choices)
+        .chain(lamps)
+        .chain(filters)
+        .collect()
 }
 
 #[test]

@@ -80,14 +80,15 @@ pub struct RenderOptions {
     pub crop: Option<Crop>,
     /// The relative standard error of a pixel at which it gets no more samples.
     ///
-    /// Every pixel first gets `samples_per_pixel` samples, at least 16 of which make sense. Then it gets
-    /// as many again, up to 63 times, until the standard error of its total radiance, estimated from
-    /// its samples, is below this fraction of that radiance, or of a tenth of the mean radiance of the
-    /// image where the pixel is darker.
+    /// Every pixel first gets `samples_per_pixel` samples, of which 16 or more tell its error well enough.
+    /// Then it gets as many again, up to 63 times, until the standard error of its total radiance,
+    /// estimated from its samples and raised by 2/√n for the uncertainty of that estimate, is below
+    /// this fraction of that radiance, or of a tenth of the mean radiance of the image where the pixel
+    /// is darker.
     ///
-    /// A pixel whose samples happen to miss bright light stops early, so that images are darker than
-    /// they should be, on average by less than the target error times itself; the fewer the first
-    /// samples, the more.
+    /// A pixel whose samples happen to miss bright light stops early, which darkens the image a
+    /// little: in a closed sphere of reflectance ½ under a narrow beam, with 16 first samples and a target
+    /// of 0.2, by less than 0.4 %. The error there is 0.15.
     pub target_error: Option<f64>,
 }
 

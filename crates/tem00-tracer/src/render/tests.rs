@@ -159,7 +159,14 @@ fn depth_and_normal_are_those_of_the_plate() {
         x == 0.0 && y == 0.0 && (z - 1.0).abs() < 1e-6,
         "({x}, {y}, {z})"
     );
-    assert!(frame.samples.values().iter().all(|&n| n == 7.0), "samples");
+    assert!(
+        frame
+            .samples
+            .values()
+            .iter()
+            .all(|n| n.to_bits() == 7.0_f32.to_bits()),
+        "samples"
+    );
     let none = Frame {
         ..render(&with_nothing_in_view(), &options())
     };
@@ -171,7 +178,13 @@ fn depth_and_normal_are_those_of_the_plate() {
         "nothing has a normal"
     );
     let speckle = &none.lasers[0].speckle;
-    assert!(speckle.values().iter().all(|&s| s == 1.0), "no speckle");
+    assert!(
+        speckle
+            .values()
+            .iter()
+            .all(|s| s.to_bits() == 1.0_f32.to_bits()),
+        "no speckle"
+    );
 }
 
 fn with_nothing_in_view() -> Scene {

@@ -63,7 +63,7 @@ impl Intersector {
     /// # Errors
     ///
     /// Returns an error if there are no shapes, if they reach farther than 1e9 m from the origin,
-    /// if together they are smaller than 1e−12 m, or if they are more than 2³¹.
+    /// if together they are smaller than 1e−12 m, or if they have more than 2³¹ triangles.
     pub fn build(shapes: &[Shape]) -> Result<Self, TracerError> {
         let (low, high) = shapes.iter().map(Shape::bounds).fold(
             (DVec3::INFINITY, DVec3::NEG_INFINITY),
@@ -71,7 +71,7 @@ impl Intersector {
         );
         let radius = 0.5 * (high - low).length();
         let reach = low.abs().max(high.abs()).max_element();
-        check(shapes.len(), reach, radius)?;
+        check(shapes.iter().map(primitives).sum(), reach, radius)?;
         for shape in shapes {
             if let Shape::Mesh(instance) = shape {
                 instance.mesh().hierarchy();
@@ -204,6 +204,14 @@ fn follow_all<S: Simd, Q: Query>(
     let hierarchy = bodies.hierarchy();
     let (mut packet, inside) = Packet::gather(hierarchy, &Placement::WORLD, lanes, queries);
     follow_many(simd, bodies, &mut packet, inside, queries, stacks);
+}
+
+/// Returns the number of triangles of a mesh, and 1 for other shapes.
+fn primitives(shape: &Shape) -> usize {
+    match shape {
+        Shape::Mesh(instance) => instance.mesh().triangles().len(),
+        _ => 1,
+    }
 }
 
 fn check(primitives: usize, reach: f64, radius: f64) -> Result<(), TracerError> {

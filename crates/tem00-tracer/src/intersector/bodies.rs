@@ -101,7 +101,7 @@ fn placement(instance: &MeshInstance) -> Placement {
 fn is_tiny(instance: &MeshInstance, reach: f64) -> bool {
     const LARGE_ENOUGH: f64 = 1.0 / (1 << 24) as f64;
     let (low, high) = instance.bounds();
-    !((high - low).max_element() > LARGE_ENOUGH * reach)
+    (high - low).max_element() <= LARGE_ENOUGH * reach
 }
 
 /// The parts of a scene, as what the leaves of its hierarchy hold.

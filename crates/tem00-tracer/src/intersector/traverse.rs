@@ -38,7 +38,7 @@ pub(super) struct Stacks {
     /// Distances, as bits, and children.
     one: Vec<u64>,
     /// Boxes and the rays that may meet them.
-    many: Vec<(u32, u64)>,
+    many: Vec<(usize, u64)>,
 }
 
 /// Rays that are fewer than this go on alone.
@@ -132,7 +132,7 @@ pub(super) fn follow_many<S: Simd, L: Leaves, Q: Query>(
                 let Some((address, lanes)) = stacks.many.pop() else {
                     break;
                 };
-                let (node, slot) = (&nodes[address as usize / WIDTH], address as usize % WIDTH);
+                let (node, slot) = (&nodes[address / WIDTH], address % WIDTH);
                 let lanes = packet.meet_box(simd, node.corners_of(slot), lanes & open);
                 if lanes == 0 {
                     continue;
@@ -178,9 +178,9 @@ fn visit<S: Simd, L: Leaves, Q: Query>(
     let first = stacks.many.len();
     for slot in set(met) {
         let mut place = stacks.many.len();
-        let entry = (index * WIDTH as u32 + slot as u32, lanes);
+        let entry = (index as usize * WIDTH + slot, lanes);
         stacks.many.push(entry);
-        while place > first && near[stacks.many[place - 1].0 as usize % WIDTH] < near[slot] {
+        while place > first && near[stacks.many[place - 1].0 % WIDTH] < near[slot] {
             stacks.many[place] = stacks.many[place - 1];
             place -= 1;
         }

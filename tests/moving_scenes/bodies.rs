@@ -3,9 +3,9 @@
 use core::f64::consts::PI;
 
 use tem00::{
-    decorrelation::{DVec2, DVec3, RigidMotions, SpeckleMotion},
+    decorrelation::{DVec2, DVec3, RigidMotions, SpeckleMotion, pupil_overlap_correlation},
     statistics::pearson_correlation,
-    tracer::Scene,
+    tracer::{Keyframe, Scene, Trajectory},
     wave::displacement_between,
 };
 
@@ -204,10 +204,36 @@ fn any_two_frames_correlate_by_their_distance_on_both_sides_of_the_reference() {
         let after = part(&frames[j], [40 * (j - i), 0], [width, SIDE]);
         let measured = pearson_correlation(&before, &after).expect("bright frames");
         let distance = 0.5 * (j - i) as f64;
-        let expected = tem00::decorrelation::pupil_overlap_correlation(distance);
+        let expected = pupil_overlap_correlation(distance);
         assert!(
             (measured - expected).abs() < tolerance((width * SIDE) as f64, size),
             "frames {i} and {j}: {measured} | {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_plate_that_swings_through_its_place_has_other_speckle_on_either_side() {
+    let (mut scene, size) = steady(3, 0);
+    let way = DVec3::new(20.0 * 11.0 * LENS.pixel_pitch, 0.0, 0.0);
+    let at = |frame, displacement| Keyframe {
+        displacement,
+        ..Keyframe::at(frame)
+    };
+    let keyframes = [at(0.0, DVec3::ZERO), at(1.0, way), at(2.0, -way)];
+    let swing = Trajectory::keyframed(DVec3::ZERO, keyframes).expect("a motion");
+    scene.surfaces[0].trajectory = swing;
+    let frames = speckle(&scene, &[0, 1, 2], 12);
+    // A quarter of the pupil to either side, and 20 pixels.
+    for (one, other, pixels, distance) in [(0, 1, 20, 0.25), (2, 0, 20, 0.25), (2, 1, 40, 0.5)] {
+        let width = SIDE - pixels;
+        let before = part(&frames[one], [0, 0], [width, SIDE]);
+        let after = part(&frames[other], [pixels, 0], [width, SIDE]);
+        let measured = pearson_correlation(&before, &after).expect("bright frames");
+        let expected = pupil_overlap_correlation(distance);
+        assert!(
+            (measured - expected).abs() < tolerance((width * SIDE) as f64, size),
+            "frames {one} and {other}: {measured} | {expected}"
         );
     }
 }

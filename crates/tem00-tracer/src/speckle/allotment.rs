@@ -8,7 +8,7 @@ use crate::TracerError;
 #[derive(Clone, Debug)]
 pub(super) struct Request {
     pub needs: StackNeeds,
-    /// The largest motion of the pupil before the reference frame and after it, in its diameters.
+    /// The largest motion of the pupil to either side of the reference frame, in its diameters.
     pub shifts: [f64; 2],
     /// The number of independent patterns that add up.
     pub parts: usize,
@@ -21,7 +21,7 @@ pub(super) struct Request {
 pub(super) struct Allotment {
     /// What is asked for, whether it fits or not.
     pub needs: StackNeeds,
-    /// The largest motion of the pupil before the reference frame and after it, in its diameters.
+    /// The largest motion of the pupil to either side of the reference frame, in its diameters.
     pub shifts: [f64; 2],
     pub stack: StackPlan,
     /// The number of stacks.
@@ -40,8 +40,8 @@ impl Allotment {
         self.stack.memory_bytes().saturating_mul(stacks)
     }
 
-    /// Returns the largest motions of the pupil that the slices tell apart, before the reference
-    /// frame and after it, in its diameters.
+    /// Returns the largest motions of the pupil that the slices tell apart, to either side of the
+    /// reference frame, in its diameters.
     ///
     /// Where the path is too short for both, each gets its part of it.
     pub(super) fn reaches(&self) -> [f64; 2] {

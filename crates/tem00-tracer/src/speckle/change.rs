@@ -14,6 +14,8 @@ pub(super) struct Change {
     frames: f64,
     /// The camera in the reference frame and now.
     cameras: [Camera; 2],
+    /// The axes of the camera in the reference frame.
+    axes: Option<CameraFrame>,
     perspective: Perspective,
     camera: BodyChange,
     lasers: Vec<LaserChange>,
@@ -43,6 +45,22 @@ pub(super) struct Drift {
     pub displacement: DVec2,
     /// How far the pupil has moved over it, in pupil diameters, never negative.
     pub shift: f64,
+}
+
+/// A point of a surface whose speckle the pupil has moved over.
+///
+/// It tells a motion to one side of the reference frame from one to the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Witness {
+    surface: usize,
+    /// Where it was seen, in pixels.
+    pixel: DVec2,
+    /// Where it is in the reference frame, in metres.
+    position: DVec3,
+    /// Its unit normal there.
+    normal: DVec3,
+    /// The way of the pupil over its speckle.
+    way: DVec3,
 }
 
 /// The motion since the reference frame as the formulas of the paper take it, in metres.
@@ -75,6 +93,7 @@ impl Change {
             moved: laser.trajectory().pose_at(reference) != laser.trajectory().pose_at(frame),
         };
         Self {
+            axes: CameraFrame::from_axes(scene.camera_at(reference).axes()).ok(),
             frames: f64::from(frame) - f64::from(reference),
             cameras: [scene.camera_at(reference), scene.camera_at(frame)],
             perspective: Perspective::of(scene.camera_at(frame)),
@@ -99,9 +118,61 @@ impl Change {
         &self.lasers[index].now
     }
 
-    /// Returns whether now comes before the reference frame.
-    pub(super) fn is_before(&self) -> bool {
-        self.frames < 0.0
+    /// Returns on which side of the reference frame now is for the speckle of a laser on the surface
+    /// of a witness: 1 where the pupil has moved over its speckle as it has where it moved farthest, and
+    /// −1 where it has moved the other way.
+    ///
+    /// Without a witness, or where the theory has no value, −1 is before the reference frame.
+    pub(super) fn side(
+        &self,
+        laser: usize,
+        geometry: &ImagingGeometry,
+        witness: Option<&Witness>,
+    ) -> f64 {
+        let along = witness.and_then(|witness| {
+            let body = self.surfaces.get(witness.surface)?;
+            let point = SpecklePoint {
+                pixel: witness.pixel,
+                position: body.forth.point(witness.position),
+                normal: body.forth.direction(witness.normal),
+                surface: witness.surface,
+            };
+            Some(self.way(laser, geometry, &point)?.dot(witness.way))
+        });
+        match along {
+            Some(along) if along > 0.0 => 1.0,
+            Some(along) if along < 0.0 => -1.0,
+            _ if self.frames < 0.0 => -1.0,
+            _ => 1.0,
+        }
+    }
+
+    /// Returns what a point tells of the way of the pupil over its speckle, if the theory has a value.
+    pub(super) fn witness(
+        &self,
+        laser: usize,
+        geometry: &ImagingGeometry,
+        point: &SpecklePoint,
+    ) -> Option<Witness> {
+        let body = self.surfaces.get(point.surface)?;
+        Some(Witness {
+            surface: point.surface,
+            pixel: point.pixel,
+            position: body.back.point(point.position),
+            normal: body.back.direction(point.normal),
+            way: self.way(laser, geometry, point)?,
+        })
+    }
+
+    /// The way of the pupil over the speckle of a point: across it in pupil diameters, and along the
+    /// line of sight in axial decorrelation lengths.
+    fn way(&self, laser: usize, geometry: &ImagingGeometry, point: &SpecklePoint) -> Option<DVec3> {
+        let [before, now] = self.states(laser, point)?;
+        let geometry = &self.perspective.geometry(geometry, point.pixel);
+        let across = before.pupil_point_after(&now, DVec2::ZERO)?;
+        let along = axial_shift(geometry, &before, &now);
+        let way = (across / geometry.pupil_diameter()).extend(along);
+        way.is_finite().then_some(way)
     }
 
     /// Returns whether nothing has moved that matters to the speckle of a laser on a surface.
@@ -164,14 +235,13 @@ impl Change {
             let wave = laser.wave_direction_at(point);
             Illumination::collimated(wave.or_else(|| laser.direction_from(point))?).ok()
         };
-        let camera = &self.cameras[0];
         let before = Configuration::new(ConfigurationData {
             wavelength: laser.now.wavelength(),
             point: then,
             normal: body.back.direction(point.normal),
             illumination: light(&laser.before, then)?,
-            camera: CameraFrame::from_axes(camera.axes()).ok()?,
-            pupil: camera.position(),
+            camera: self.axes?,
+            pupil: self.cameras[0].position(),
         })
         .ok()?;
         let motions = RigidMotions {

@@ -32,7 +32,7 @@ struct LaserPatterns {
 struct Pattern {
     /// Slices per pupil diameter.
     slices_per_diameter: f64,
-    /// The largest shifts before the reference frame and after it that the slices hold, in pupil
+    /// The largest shifts to either side of the reference frame that the slices hold, in pupil
     /// diameters.
     reaches: [f64; 2],
     half_period: usize,
@@ -51,6 +51,8 @@ enum Stack {
 pub(crate) struct SpeckleFrame<'a> {
     model: &'a SpeckleModel,
     change: Change,
+    /// On which side of the reference frame each surface is for each laser, as 1 or −1.
+    sides: Vec<Vec<f64>>,
 }
 
 /// Points that are looked up together.
@@ -87,9 +89,17 @@ impl SpeckleModel {
 
     /// Returns the speckle in a frame of the scene that the model was generated for.
     pub(crate) fn in_frame(&self, scene: &Scene, frame: u32) -> SpeckleFrame<'_> {
+        let change = Change::new(scene, frame);
+        let lasers = self.lasers.iter().enumerate();
+        let sides = lasers.map(|(index, laser)| {
+            let places = laser.places.iter();
+            let sides = places.map(|p| change.side(index, &laser.geometry, p.witness.as_ref()));
+            sides.collect()
+        });
         SpeckleFrame {
             model: self,
-            change: Change::new(scene, frame),
+            sides: sides.collect(),
+            change,
         }
     }
 }
@@ -202,11 +212,10 @@ impl SpeckleFrame<'_> {
         points: &[SpecklePoint],
     ) -> Block {
         let geometry = &self.model.lasers[laser].geometry;
-        let before = self.change.is_before();
-        let [reach, sign] = match before {
-            true => [pattern.reaches[0], -1.0],
-            false => [pattern.reaches[1], 1.0],
-        };
+        let sides = &self.sides[laser];
+        let side = points.first().and_then(|p| sides.get(p.surface));
+        let sign = side.copied().unwrap_or(1.0);
+        let reach = pattern.reaches[usize::from(sign > 0.0)];
         let mut block = Block {
             x: [0.0; BLOCK],
             y: [0.0; BLOCK],

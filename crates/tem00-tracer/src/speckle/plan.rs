@@ -5,6 +5,7 @@ use tem00_speckle::{IncoherentSum, SlicePath, StackNeeds, StackPlan};
 
 use super::{
     allotment::{self, Allotment, Part, Request},
+    change::Witness,
     survey::{Audience, Survey, surveys},
 };
 use crate::{Formulas, Scene, SpeckleSettings, SurfaceSpeckle, TracerError, Trajectory};
@@ -44,6 +45,8 @@ pub(super) struct Place {
     pub allotment: usize,
     /// The parts that add up.
     pub parts: Vec<Part>,
+    /// What tells one side of the reference frame from the other.
+    pub witness: Option<Witness>,
 }
 
 impl SpecklePlan {
@@ -145,7 +148,7 @@ impl Planner<'_> {
         Ok(PatternPlan {
             wavelength: geometry.wavelength(),
             speckle_size: geometry.speckle_size_in_pixels(),
-            places: self.places(&requests, &allotments, &sums),
+            places: self.places(&requests, &allotments, &sums, surveys),
             allotments,
             names: self.scene.surfaces.iter().map(|s| s.name.clone()).collect(),
             as_printed,
@@ -188,6 +191,7 @@ impl Planner<'_> {
         requests: &[Request],
         allotments: &[Allotment],
         sums: &[Vec<f64>],
+        surveys: &[Survey],
     ) -> Vec<Place> {
         let shared = allotments.iter().any(|allotment| allotment.places > 1);
         let surfaces = self.groups.iter().zip(sums);
@@ -198,6 +202,7 @@ impl Planner<'_> {
                 let parts = shares.iter().enumerate();
                 Place {
                     allotment: if shared { 0 } else { group },
+                    witness: surveys[group].witness,
                     parts: parts
                         .map(|(number, &share)| match shared {
                             true => Part {

@@ -4,7 +4,11 @@ use glam::DVec2;
 use rayon::prelude::*;
 use tem00_decorrelation::ImagingGeometry;
 
-use super::{SpecklePoint, change::Change, perspective::Perspective};
+use super::{
+    SpecklePoint,
+    change::{Change, Witness},
+    perspective::Perspective,
+};
 use crate::{Camera, Intersector, Scene, TracerError};
 
 /// Rays per image side with which a frame is surveyed.
@@ -26,9 +30,22 @@ pub(super) struct Survey {
     low: DVec2,
     /// The highest corner of that region.
     high: DVec2,
-    /// The largest motion of the pupil over the speckle before the reference frame and after it, in
-    /// pupil diameters.
+    /// The largest motion of the pupil over the speckle to either side of the reference frame, in
+    /// pupil diameters; the second to the side of the farthest.
     pub shifts: [f64; 2],
+    /// A point over whose speckle the pupil has moved farthest.
+    pub witness: Option<Witness>,
+}
+
+/// What one frame asks of a pattern.
+#[derive(Clone, Copy, Debug)]
+struct Glimpse {
+    low: DVec2,
+    high: DVec2,
+    /// The largest motion of the pupil over the speckle, in pupil diameters.
+    shift: f64,
+    /// The point where it is.
+    farthest: Option<SpecklePoint>,
 }
 
 impl Survey {
@@ -39,22 +56,13 @@ impl Survey {
             low,
             high,
             shifts: [0.0; 2],
+            witness: None,
         }
     }
 
     /// Returns width and height of the region from which speckle is looked up, in pixels.
     pub(super) fn region(&self) -> DVec2 {
         self.high - self.low
-    }
-
-    /// Returns what both ask for.
-    pub(super) fn and(&self, other: &Self) -> Self {
-        Self {
-            image: self.image,
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
-            shifts: [0, 1].map(|side| self.shifts[side].max(other.shifts[side])),
-        }
     }
 }
 
@@ -70,7 +78,7 @@ pub(super) struct Audience<'a> {
 /// Follows rays to the points that the lasers light, in frames spread over the sequence, and returns
 /// what each laser asks of the pattern of each group of surfaces.
 ///
-/// Each frame is surveyed on its own thread; the largest of all does not depend on their order.
+/// Each frame is surveyed on its own thread.
 pub(super) fn surveys(
     scene: &Scene,
     audience: Audience<'_>,
@@ -85,30 +93,61 @@ pub(super) fn surveys(
         return Ok(still);
     }
     let frames: Vec<u32> = frames(scene).into_iter().collect();
-    frames
-        .into_par_iter()
-        .map(|frame| of_frame(scene, audience, frame, still.clone()))
-        .try_reduce(
-            || still.clone(),
-            |one, other| {
-                let rows = one.iter().zip(&other);
-                Ok(rows
-                    .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.and(b)).collect())
-                    .collect())
-            },
-        )
+    let changes: Vec<_> = frames.iter().map(|&f| Change::new(scene, f)).collect();
+    let glimpses = frames
+        .par_iter()
+        .zip(&changes)
+        .map(|(&frame, change)| glimpses(scene, audience, frame, change))
+        .collect::<Result<Vec<_>, TracerError>>()?;
+    let mut surveys = still;
+    for (laser, geometry) in audience.geometries.iter().enumerate() {
+        for (group, survey) in surveys[laser].iter_mut().enumerate() {
+            let seen = changes.iter().zip(&glimpses);
+            let seen: Vec<_> = seen.map(|(c, g)| (c, &g[laser][group])).collect();
+            survey.add(laser, geometry, &seen);
+        }
+    }
+    Ok(surveys)
 }
 
-/// What one frame asks for, added to `surveys`.
-fn of_frame(
+impl Survey {
+    /// Adds what the frames ask of the pattern of a laser.
+    fn add(&mut self, laser: usize, geometry: &ImagingGeometry, seen: &[(&Change, &Glimpse)]) {
+        let mut largest = 0.0;
+        for (change, glimpse) in seen {
+            let farther = glimpse.farthest.filter(|_| glimpse.shift > largest);
+            if let Some(witness) = farther.and_then(|point| change.witness(laser, geometry, &point))
+            {
+                largest = glimpse.shift;
+                self.witness = Some(witness);
+            }
+        }
+        for (change, glimpse) in seen {
+            self.low = self.low.min(glimpse.low);
+            self.high = self.high.max(glimpse.high);
+            let side = change.side(laser, geometry, self.witness.as_ref());
+            let shift = &mut self.shifts[usize::from(side > 0.0)];
+            *shift = shift.max(glimpse.shift);
+        }
+    }
+}
+
+/// What one frame asks of the pattern of each laser and group.
+fn glimpses(
     scene: &Scene,
     audience: Audience<'_>,
     frame: u32,
-    mut surveys: Vec<Vec<Survey>>,
-) -> Result<Vec<Vec<Survey>>, TracerError> {
-    let change = Change::new(scene, frame);
+    change: &Change,
+) -> Result<Vec<Vec<Glimpse>>, TracerError> {
+    let none = Glimpse {
+        low: DVec2::INFINITY,
+        high: DVec2::NEG_INFINITY,
+        shift: 0.0,
+        farthest: None,
+    };
+    let groups = audience.groups.iter().max().map_or(0, |last| last + 1);
+    let mut glimpses = vec![vec![none; groups]; audience.geometries.len()];
     let intersector = Intersector::build(&scene.shapes_at(frame))?;
-    let side = usize::from(!change.is_before());
     for pixel in pixels(image_size(change.camera())) {
         let Some(hit) = intersector.intersect(&change.camera().ray(pixel)) else {
             continue;
@@ -123,18 +162,26 @@ fn of_frame(
             surface: hit.surface,
         };
         for (laser, geometry) in audience.geometries.iter().enumerate() {
-            if change.laser(laser).illuminate(hit.position).is_none() {
-                continue;
+            if change.laser(laser).illuminate(hit.position).is_some() {
+                let drift = change.drift(laser, geometry, &point);
+                let origin = change.perspective().point(pixel) - drift.displacement;
+                glimpses[laser][group].add(&point, origin, drift.shift);
             }
-            let drift = change.drift(laser, geometry, &point);
-            let origin = change.perspective().point(pixel) - drift.displacement;
-            let survey = &mut surveys[laser][group];
-            survey.low = survey.low.min(origin);
-            survey.high = survey.high.max(origin);
-            survey.shifts[side] = survey.shifts[side].max(drift.shift);
         }
     }
-    Ok(surveys)
+    Ok(glimpses)
+}
+
+impl Glimpse {
+    /// Adds a point, where its speckle stood, and how far the pupil has moved over it.
+    fn add(&mut self, point: &SpecklePoint, origin: DVec2, shift: f64) {
+        self.low = self.low.min(origin);
+        self.high = self.high.max(origin);
+        if shift > self.shift {
+            self.shift = shift;
+            self.farthest = Some(*point);
+        }
+    }
 }
 
 /// The frames to survey: evenly spread, first and last among them, and those at keyframes.

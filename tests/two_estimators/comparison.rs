@@ -117,7 +117,7 @@ fn assert_same_sum(one: &[Vec<f64>], other: &[Vec<f64>]) {
     };
     let (one, other) = (sums(one), sums(other));
     let ratios: Vec<f64> = one.iter().zip(&other).map(|(a, b)| a / b - 1.0).collect();
-    assert_mean(&ratios, 0.0, 0.006);
+    assert_mean(&ratios, 0.0, 0.004);
 }
 
 /// Tests that values scatter about `expected`, and that the test can tell a deviation of four times

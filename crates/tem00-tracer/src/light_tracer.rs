@@ -8,6 +8,10 @@
 //! What the camera sees in a mirror or through glass cannot be connected to it. Light that meets
 //! specular surfaces on both sides, between laser and rough surface and between rough surface and
 //! camera, is found neither from here nor from there.
+//!
+//! Light that a mirror or glass has turned keeps its coherence: up to the first rough surface it
+//! counts as coherent, and its speckle is looked up at the image point. Where something moves, that
+//! speckle moves and changes as if the light came straight from the laser.
 
 mod draws;
 mod splats;

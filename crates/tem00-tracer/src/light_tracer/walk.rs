@@ -272,12 +272,12 @@ impl Vertex<'_> {
     /// |i·n_s| |o·n_g| / (|i·n_g| |o·n_s|)     i back along the path, n_s shading, n_g geometric
     /// ```
     ///
-    /// The products with n_s are `shaded`. The factor is 1 without shading normals, and 0 where the two
-    /// normals disagree about the side.
+    /// The products with the shading normal are `shaded`. The factor is 1 without shading normals,
+    /// and 0 where the two normals disagree about the side.
     ///
     /// # References
     ///
-    /// - E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, eq. 5.19.
+    /// - E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, §5.3.
     fn adjoint_factor(&self, out: DVec3, shaded: [f64; 2]) -> f64 {
         let back = -self.photon.ray.direction.dot(self.hit.normal);
         let out = out.dot(self.hit.normal);

@@ -1,16 +1,19 @@
 #!/usr/bin/env bash
-# Makes the pictures of this folder again: one small render of every scene, and the diagrams of the
-# examples.
+# Makes the pictures of this folder again: a render of every scene, and the diagrams of the examples.
+#
+#     docs/figures/make.sh [SAMPLES_PER_PIXEL]
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 for scene in scenes/*.toml; do
-    cargo run --locked --release -- render "$scene" --spp "${1:-64}" -o "$work"
+    cargo run --locked --release -- render "$scene" --spp "${1:-256}" -o "$work"
 done
-cargo run --locked --release -- render scenes/spot.toml --spp "${1:-64}" --no-speckle -o "$work/without"
+for scene in spot line_on_metal grazing_waist; do
+    cargo run --locked --release -- render "scenes/$scene.toml" --spp "${1:-256}" --no-speckle -o "$work/without"
+    cp "$work/without/$scene.png" "docs/figures/${scene}_without_speckle.png"
+done
 cp "$work"/*.png docs/figures/
-cp "$work/without/spot.png" docs/figures/spot_without_speckle.png
 for example in beam_caustic correlated_slices defocus focus_by_lens interpolation_matters knife_edge \
     line_profile paper_errors phase_space surface_motion thin_line; do
     cargo run --locked --release --example "$example"

@@ -46,6 +46,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-speckle",
         ],
         &[
+            "exr",
             "fearless_simd",
             "glam",
             "libm",

@@ -134,6 +134,7 @@ fn frames(
         samples_per_pixel: 4,
         seed,
         formulas,
+        ..RenderOptions::default()
     };
     let plan = SpecklePlan::new(&scene, options.formulas, seed).expect("a small pattern");
     let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");

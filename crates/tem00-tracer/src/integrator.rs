@@ -188,9 +188,10 @@ impl<'a> Integrator<'a> {
             *throughput *= vertex.weight(&event, wavelength);
             largest = largest.max(*throughput);
         }
-        // End long and dark paths by chance, without bias.
+        // End long and dark paths by chance, without bias; glass makes a path dark only for a while.
+        let compression = path.compression * event.eta_squared;
         if path.depth > CERTAIN_BOUNCES {
-            let survival = largest.min(0.95);
+            let survival = (largest * compression).min(0.95);
             if self.sequence.single(stream, Use::Survival(path.depth)) >= survival {
                 return None;
             }
@@ -198,6 +199,7 @@ impl<'a> Integrator<'a> {
         }
         let next = Path {
             rough: path.rough + u32::from(!event.specular),
+            compression,
             scattering_pdf: (!event.specular).then_some(event.pdf),
             ..path
         };
@@ -209,3 +211,6 @@ impl<'a> Integrator<'a> {
         self.rays_meet_lamps(specular) || self.rays_meet_lasers()
     }
 }
+
+#[cfg(test)]
+mod tests;

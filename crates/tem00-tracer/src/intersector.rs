@@ -8,14 +8,15 @@ mod segment;
 mod traverse;
 mod triangles;
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
 
 pub use self::segment::Segment;
 pub(crate) use self::triangles::MeshHierarchy;
 use self::{
     bodies::{Bodies, Body},
-    packet::{LANES, Packet, set},
+    hierarchy::Placement,
+    packet::{LANES, Packet},
     query::{Nearest, Query, Shadow},
     traverse::{Leaves, Stacks, follow_many, follow_one},
 };
@@ -62,7 +63,7 @@ impl Intersector {
     /// # Errors
     ///
     /// Returns an error if there are no shapes, if they reach farther than 1e9 m from the origin,
-    /// if together they are smaller than 1e−12 m, or if they are more than 2³¹.
+    /// if together they are smaller than 1e−12 m, or if they have more than 2³¹ triangles.
     pub fn build(shapes: &[Shape]) -> Result<Self, TracerError> {
         let (low, high) = shapes.iter().map(Shape::bounds).fold(
             (DVec3::INFINITY, DVec3::NEG_INFINITY),
@@ -70,7 +71,7 @@ impl Intersector {
         );
         let radius = 0.5 * (high - low).length();
         let reach = low.abs().max(high.abs()).max_element();
-        check(shapes.len(), reach, radius)?;
+        check(shapes.iter().map(primitives).sum(), reach, radius)?;
         for shape in shapes {
             if let Shape::Mesh(instance) = shape {
                 instance.mesh().hierarchy();
@@ -156,9 +157,11 @@ impl Intersector {
     }
 
     fn ask_one<Q: Query>(&self, query: &mut Q) {
-        let Some(ray) = self.bodies.hierarchy().enter(query.ray().ray(), 1.0) else {
+        let hierarchy = self.bodies.hierarchy();
+        let (ray, enters) = hierarchy.enter(&Placement::WORLD, query.ray());
+        if !enters {
             return;
-        };
+        }
         let stacks = &mut Stacks::default();
         dispatch!(self.level, simd => follow_one(simd, &self.bodies, 0, &ray, query, stacks));
     }
@@ -184,15 +187,30 @@ impl Intersector {
     }
 
     fn ask_many<Q: Query>(&self, queries: &mut [Q], stacks: &mut Stacks) {
-        let hierarchy = self.bodies.hierarchy();
         let all = u64::MAX >> (LANES - queries.len());
-        let (mut packet, inside) =
-            Packet::gather(all, |lane| hierarchy.enter(queries[lane].ray().ray(), 1.0));
-        for lane in set(inside) {
-            packet.set_end(lane, queries[lane].end());
-        }
-        let (bodies, packet) = (&self.bodies, &mut packet);
-        dispatch!(self.level, simd => follow_many(simd, bodies, packet, inside, queries, stacks));
+        dispatch!(self.level, simd => follow_all(simd, &self.bodies, all, queries, stacks));
+    }
+}
+
+/// Follows the rays in `lanes` through a scene.
+#[inline(always)]
+fn follow_all<S: Simd, Q: Query>(
+    simd: S,
+    bodies: &Bodies,
+    lanes: u64,
+    queries: &mut [Q],
+    stacks: &mut Stacks,
+) {
+    let hierarchy = bodies.hierarchy();
+    let (mut packet, inside) = Packet::gather(hierarchy, &Placement::WORLD, lanes, queries);
+    follow_many(simd, bodies, &mut packet, inside, queries, stacks);
+}
+
+/// Returns the number of triangles of a mesh, and 1 for other shapes.
+fn primitives(shape: &Shape) -> usize {
+    match shape {
+        Shape::Mesh(instance) => instance.mesh().triangles().len(),
+        _ => 1,
     }
 }
 

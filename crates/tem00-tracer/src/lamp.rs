@@ -7,8 +7,8 @@ use glam::DVec3;
 use self::spherical_rectangle::SphericalRectangle;
 use crate::{Environment, Rectangle, TracerError};
 
-/// The solid angle, in steradian, below which rectangles are sampled by area: its rounding error is
-/// 1e−11 of this.
+/// The solid angle, in steradian, below which near rectangles are sampled by area as far ones are:
+/// its rounding error is 1e−11 of this.
 const SMALL_SOLID_ANGLE: f64 = 1e-4;
 
 /// A source of incoherent light, without colour of its own.
@@ -97,9 +97,9 @@ impl Lamp {
     /// Draws a direction in which light comes to the point `from`, in metres, by two uniform
     /// numbers in [0, 1).
     ///
-    /// Rectangles are drawn uniformly over the solid angle that they cover, those below 1e−4 sr over
-    /// their area, and environments in proportion to their radiance. Returns `None` where no light
-    /// comes from the lamp. Whether the way is free is left to the caller.
+    /// Rectangles are drawn uniformly over their area from afar and, nearer than their diagonal, over
+    /// the solid angle that they cover; environments in proportion to their radiance. Returns
+    /// `None` where no light comes from the lamp. Whether the way is free is left to the caller.
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<LampSample> {
         match self {
             Self::Point { position, power } => sample_point(*position - from, *power),
@@ -163,19 +163,19 @@ fn sample_rectangle(
     from: DVec3,
     u: [f64; 2],
 ) -> Option<LampSample> {
-    let seen = SphericalRectangle::new(rectangle, from)?;
-    let by_area = seen.solid_angle() < SMALL_SOLID_ANGLE;
-    let offset = if by_area {
-        rectangle.point(u[0], u[1]) - from
-    } else {
-        seen.sample(u)
+    if !faces(rectangle, from) {
+        return None;
+    }
+    let image = near_image(rectangle, from);
+    let offset = match &image {
+        Some(image) => image.sample(u),
+        None => rectangle.point(u[0], u[1]) - from,
     };
     let distance = offset.length();
     let direction = offset.try_normalize()?;
-    let pdf = if by_area {
-        pdf_by_area(rectangle, direction, distance)
-    } else {
-        1.0 / seen.solid_angle()
+    let pdf = match &image {
+        Some(image) => 1.0 / image.solid_angle(),
+        None => pdf_by_area(rectangle, direction, distance),
     };
     (pdf > 0.0 && pdf.is_finite()).then(|| LampSample {
         direction,
@@ -186,11 +186,8 @@ fn sample_rectangle(
 }
 
 fn pdf_of_rectangle(rectangle: &Rectangle, from: DVec3, direction: DVec3) -> f64 {
-    let Some(seen) = SphericalRectangle::new(rectangle, from) else {
-        return 0.0;
-    };
     let towards = -direction.dot(rectangle.normal());
-    if towards <= 0.0 {
+    if towards <= 0.0 || !faces(rectangle, from) {
         return 0.0;
     }
     let distance = (from - rectangle.centre()).dot(rectangle.normal()) / towards;
@@ -199,12 +196,27 @@ fn pdf_of_rectangle(rectangle: &Rectangle, from: DVec3, direction: DVec3) -> f64
     let beside = on_plane.dot(half_u).abs() > half_u.length_squared()
         || on_plane.dot(half_v).abs() > half_v.length_squared();
     if beside {
-        0.0
-    } else if seen.solid_angle() < SMALL_SOLID_ANGLE {
-        pdf_by_area(rectangle, direction, distance)
-    } else {
-        1.0 / seen.solid_angle()
+        return 0.0;
     }
+    match near_image(rectangle, from) {
+        Some(image) => 1.0 / image.solid_angle(),
+        None => pdf_by_area(rectangle, direction, distance),
+    }
+}
+
+/// Whether a point sees the front of a rectangle.
+fn faces(rectangle: &Rectangle, from: DVec3) -> bool {
+    (from - rectangle.centre()).dot(rectangle.normal()) > 0.0
+}
+
+/// Returns the image of a rectangle for a point in front of it and nearer to its centre than its
+/// diagonal is long. Farther away points drawn by area do as well and cost a tenth.
+fn near_image(rectangle: &Rectangle, from: DVec3) -> Option<SphericalRectangle> {
+    let half_diagonal_squared =
+        rectangle.half_u().length_squared() + rectangle.half_v().length_squared();
+    (from.distance_squared(rectangle.centre()) < 4.0 * half_diagonal_squared)
+        .then(|| SphericalRectangle::new(rectangle, from))
+        .filter(|image| image.solid_angle() >= SMALL_SOLID_ANGLE)
 }
 
 /// r² / (A cos θ), the density per steradian of points that are uniform over the area.

@@ -8,7 +8,8 @@
 //!
 //! - Lengths are in metres, powers in watts, radiances in W/(m² sr), all in `f64`; images are `f32`.
 //! - Image points are in pixels, x to the right and y down; the image is upright.
-//! - The first frame is the reference that later frames' speckle has moved and changed from.
+//! - One frame, the first unless said otherwise, is the reference that the speckle of the others has
+//!   moved and changed from.
 //! - The same seed gives the same bits for any number of threads.
 //!
 //! # Main types
@@ -64,6 +65,7 @@
 
 mod camera;
 mod environment;
+mod environment_file;
 mod error;
 mod film;
 mod filter;
@@ -90,6 +92,7 @@ pub use camera::{
     SensorTilt,
 };
 pub use environment::Environment;
+pub use environment_file::{RadianceMapError, read_radiance_map};
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use filter::{Filter, FilterSample, FilterSampler};
@@ -107,7 +110,7 @@ pub use render::{
 pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 pub use scene_file::{SceneError, parse_scene, read_scene};
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
-pub use speckle::{PatternPlan, SpeckleModel, SpecklePlan};
+pub use speckle::{PatternPlan, RoughnessNote, SpeckleModel, SpecklePlan};
 pub use trajectory::{Keyframe, Rotation, Trajectory};
 
 /// The beam types that a scene is described with.

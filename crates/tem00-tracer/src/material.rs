@@ -1,16 +1,15 @@
 mod albedo;
 mod conductor;
+mod constructors;
 mod dielectric;
 mod diffuse;
 mod ggx;
+mod interreflection;
 mod optical_roughness;
 mod oren_nayar;
 mod plastic;
 
-use core::{
-    f64::consts::{FRAC_1_PI, FRAC_PI_2},
-    ops::RangeInclusive,
-};
+use core::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
@@ -19,7 +18,7 @@ use self::{
     conductor::Conductor,
     dielectric::Dielectric,
     diffuse::{cosine_pdf, sample_cosine},
-    ggx::Ggx,
+    interreflection::Interreflection,
     oren_nayar::OrenNayar,
     plastic::Plastic,
 };
@@ -63,14 +62,11 @@ pub struct Material {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "scenes have few materials, and a pointer would slow down every evaluation"
-)]
 enum Scattering {
     Lambertian { reflectance: f64 },
     OrenNayar(OrenNayar),
     Conductor(Conductor),
+    Interreflection(Interreflection),
     Plastic(Plastic),
     Mirror { reflectance: f64 },
     Polished { metal: Metal },
@@ -118,161 +114,6 @@ impl BsdfSample {
 }
 
 impl Material {
-    /// Creates a material that looks equally bright from every side and reflects the fraction
-    /// `reflectance` of the power that falls on it, at every wavelength.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the reflectance is not between 0 and 1.
-    pub fn lambertian(reflectance: f64) -> Result<Self, TracerError> {
-        check_reflectance(reflectance)?;
-        Ok(Self::new(Scattering::Lambertian { reflectance }))
-    }
-
-    /// Creates a rough diffuse material, such as plaster, clay or a sandblasted casting: Lambertian
-    /// facets of the given `reflectance` whose slopes have the rms angle `sigma`, in radians.
-    ///
-    /// Seen from where the light comes from, it is as bright at its edge as in its middle. Light is
-    /// followed over any number of facets: white ones lose nothing. A `sigma` of 0 is
-    /// [`lambertian`](Self::lambertian).
-    ///
-    /// # Validity
-    ///
-    /// The model fits facets in V-shaped grooves; the ratio of retro-reflection to even reflection
-    /// is the published fit to them, for one reflection. Facets of any other reflectance than 1
-    /// reflect less in all than a flat surface would, as light meets several of them.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the reflectance is not between 0 and 1 or `sigma` not between 0 and π/2.
-    ///
-    /// # References
-    ///
-    /// - M. Oren and S. K. Nayar, *Generalization of Lambert's Reflectance Model*, 1994, eq. 30.
-    /// - J. Portsmouth, P. Kutz and S. Hill, *EON: A Practical Energy-Preserving Rough Diffuse BRDF*,
-    ///   2025.
-    pub fn oren_nayar(reflectance: f64, sigma: f64) -> Result<Self, TracerError> {
-        check_reflectance(reflectance)?;
-        check("sigma", sigma, 0.0..=FRAC_PI_2, "between 0 and π/2")?;
-        Ok(Self::new(Scattering::OrenNayar(OrenNayar::new(
-            reflectance,
-            sigma,
-        ))))
-    }
-
-    /// Creates a rough metal: microfacets with the GGX distribution of slopes.
-    ///
-    /// `roughness` is the parameter α: facets over half of the surface are inclined by less than
-    /// arctan α. The reflectance of each facet is Fresnel's, without approximation. Light that would
-    /// meet a second facet is lost, as in all single-scattering models.
-    ///
-    /// # Validity
-    ///
-    /// A metal that absorbs nothing would lose, to second facets, of light from everywhere:
-    ///
-    /// ```text
-    /// α      0.1    0.2    0.3    0.5    0.7    1
-    /// lost   3 %    9 %    15 %   30 %   43 %   59 %
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the roughness is not between 0.01 and 1, or if the index of a custom
-    /// metal is impossible. A smoother surface has a lobe of about 1°, too narrow for light and
-    /// camera to meet in it by chance: take [`polished`](Self::polished).
-    ///
-    /// # References
-    ///
-    /// - B. Walter et al., *Microfacet Models for Refraction through Rough Surfaces*, 2007, eq. 33.
-    /// - E. Heitz, *Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs*, 2014,
-    ///   eq. 72 and 99.
-    /// - E. Heitz, *Sampling the GGX Distribution of Visible Normals*, 2018.
-    pub fn conductor(metal: Metal, roughness: f64) -> Result<Self, TracerError> {
-        metal.check_index()?;
-        let facets = rough_facets(roughness)?;
-        Ok(Self::new(Scattering::Conductor(Conductor {
-            metal,
-            facets,
-        })))
-    }
-
-    /// Creates a plastic, lacquer or glaze: a clear coat of the given `index` with a rough surface
-    /// over a diffuse base that reflects the fraction `reflectance` of what reaches it.
-    ///
-    /// `roughness` is that of [`conductor`](Self::conductor). Light that the first facet does not
-    /// reflect enters the coat; the base and the inner side of the coat pass it to and fro until it
-    /// is absorbed or leaves. A white base loses nothing. A grey one looks darker than it is: with an
-    /// index of 1.5 and a nearly smooth coat, a base of 0.5 returns 0.29 of the light that enters.
-    ///
-    /// # Validity
-    ///
-    /// The coat absorbs nothing and is thin beside what the image resolves. Energy is kept to 2e-4.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the reflectance is not between 0 and 1, the index not between 1.1 and 3,
-    /// or the roughness not between 0.01 and 1.
-    ///
-    /// # References
-    ///
-    /// - C. Kelemen and L. Szirmay-Kalos, *A Microfacet Based Coupled Specular-Matte BRDF Model with
-    ///   Importance Sampling*, 2001.
-    pub fn plastic(reflectance: f64, index: f64, roughness: f64) -> Result<Self, TracerError> {
-        check_reflectance(reflectance)?;
-        check("index", index, 1.1..=3.0, "between 1.1 and 3")?;
-        let facets = rough_facets(roughness)?;
-        Ok(Self::new(Scattering::Plastic(Plastic::new(
-            reflectance,
-            index,
-            facets,
-        ))))
-    }
-
-    /// Creates a mirror that reflects the same fraction of power at every angle and wavelength.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the reflectance is not between 0 and 1.
-    pub fn mirror(reflectance: f64) -> Result<Self, TracerError> {
-        check_reflectance(reflectance)?;
-        Ok(Self::new(Scattering::Mirror { reflectance }))
-    }
-
-    /// Creates a mirror of smooth metal, whose reflectance is Fresnel's for unpolarised light.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the index of a custom metal is impossible.
-    pub fn polished(metal: Metal) -> Result<Self, TracerError> {
-        metal.check_index()?;
-        Ok(Self::new(Scattering::Polished { metal }))
-    }
-
-    /// Creates the smooth surface of glass or another clear medium, which lies below the surface;
-    /// above is air or vacuum.
-    ///
-    /// Reflectance is Fresnel's for unpolarised light, refraction follows Snell's law, and nothing
-    /// is absorbed. The index is the same at every wavelength: a path then takes one way for all
-    /// lasers of a scene, and every light costs one path. Take the index at the laser's wavelength;
-    /// from 450 nm to 650 nm that of crown glass falls by 0.7 %.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the index is not between 1 and 4.
-    pub fn dielectric(index: f64) -> Result<Self, TracerError> {
-        check("index", index, 1.0..=4.0, "between 1 and 4")?;
-        Ok(Self::new(Scattering::Dielectric(Dielectric { index })))
-    }
-
-    /// Makes the back black: light that arrives or leaves below the surface is lost.
-    #[must_use]
-    pub const fn one_sided(self) -> Self {
-        Self {
-            one_sided: true,
-            ..self
-        }
-    }
-
     /// Returns whether light goes into single directions only, which [`sample`](Self::sample) finds.
     pub const fn is_specular(&self) -> bool {
         matches!(
@@ -291,9 +132,12 @@ impl Material {
     /// Returns an error if the material is a metal that was not measured at the wavelength.
     pub fn check_wavelength(&self, wavelength: f64) -> Result<(), TracerError> {
         match self.scattering {
-            Scattering::Conductor(Conductor { metal, .. }) | Scattering::Polished { metal } => {
-                metal.check_wavelength(wavelength)
-            }
+            Scattering::Conductor(Conductor { metal, .. })
+            | Scattering::Interreflection(Interreflection {
+                facets: Conductor { metal, .. },
+                ..
+            })
+            | Scattering::Polished { metal } => metal.check_wavelength(wavelength),
             _ => Ok(()),
         }
     }
@@ -310,6 +154,7 @@ impl Material {
             Scattering::Lambertian { reflectance } => reflectance * FRAC_1_PI,
             Scattering::OrenNayar(facets) => facets.evaluate(wo, wi),
             Scattering::Conductor(metal) => metal.evaluate(wo, wi, wavelength),
+            Scattering::Interreflection(metal) => metal.evaluate(wo, wi, wavelength),
             Scattering::Plastic(plastic) => plastic.evaluate(wo, wi),
             Scattering::Mirror { .. } | Scattering::Polished { .. } | Scattering::Dielectric(_) => {
                 0.0
@@ -332,6 +177,7 @@ impl Material {
             }
             Scattering::OrenNayar(facets) => facets.sample(above, u),
             Scattering::Conductor(metal) => metal.sample(above, u, wavelength)?,
+            Scattering::Interreflection(metal) => metal.sample(above, u, wavelength)?,
             Scattering::Plastic(plastic) => plastic.sample(above, u)?,
             Scattering::Mirror { reflectance } => BsdfSample::mirrored(above, *reflectance, 1.0),
             Scattering::Polished { metal } => {
@@ -358,6 +204,7 @@ impl Material {
             Scattering::Lambertian { .. } => cosine_pdf(wi),
             Scattering::OrenNayar(facets) => facets.pdf(wo, wi),
             Scattering::Conductor(metal) => metal.pdf(wo, wi),
+            Scattering::Interreflection(metal) => metal.pdf(wo, wi),
             Scattering::Plastic(plastic) => plastic.pdf(wo, wi),
             Scattering::Mirror { .. } | Scattering::Polished { .. } | Scattering::Dielectric(_) => {
                 0.0
@@ -374,15 +221,11 @@ impl Material {
                 let above = self.same_side(wo, sample.wi);
                 above.map_or(0.0, |(wo, wi)| metal.weight(wo, wi, wavelength))
             }
+            Scattering::Interreflection(_) => {
+                self.evaluate(wo, sample.wi, wavelength) * sample.wi.z.abs() / sample.pdf
+            }
             Scattering::Polished { metal } => smooth_reflectance(*metal, wo.z.abs(), wavelength),
             _ => sample.weight,
-        }
-    }
-
-    const fn new(scattering: Scattering) -> Self {
-        Self {
-            scattering,
-            one_sided: false,
         }
     }
 
@@ -407,31 +250,6 @@ impl Material {
 
 fn smooth_reflectance(metal: Metal, cosine: f64, wavelength: f64) -> f64 {
     fresnel_reflectance(cosine.min(1.0), metal.nearest_refractive_index(wavelength))
-}
-
-fn rough_facets(roughness: f64) -> Result<Ggx, TracerError> {
-    check("roughness", roughness, 0.01..=1.0, "between 0.01 and 1")?;
-    Ok(Ggx { alpha: roughness })
-}
-
-fn check_reflectance(reflectance: f64) -> Result<(), TracerError> {
-    check("reflectance", reflectance, 0.0..=1.0, "between 0 and 1")
-}
-
-fn check(
-    parameter: &'static str,
-    value: f64,
-    range: RangeInclusive<f64>,
-    allowed: &'static str,
-) -> Result<(), TracerError> {
-    if range.contains(&value) {
-        return Ok(());
-    }
-    Err(TracerError::OutOfRange {
-        parameter,
-        value,
-        allowed,
-    })
 }
 
 #[cfg(test)]

@@ -185,10 +185,11 @@ pub(crate) fn fresnel_reflectance(cosine: f64, (n, k): (f64, f64)) -> f64 {
     let modulus = (real * real + 4.0 * n * n * k * k).sqrt();
     let a = (0.5 * (modulus + real)).max(0.0).sqrt();
     let cross = 2.0 * a * cosine;
-    // Only a metal of index 1 seen along its surface makes the denominator 0.
-    let perpendicular = (modulus + c2 - cross) / (modulus + c2 + cross).max(f64::MIN_POSITIVE);
+    let perpendicular = (modulus + c2 - cross) / (modulus + c2 + cross);
     let ratio = (c2 * modulus + s2 * s2 - cross * s2) / (c2 * modulus + s2 * s2 + cross * s2);
-    0.5 * perpendicular * (1.0 + ratio)
+    // An index of 1 reflects nothing. Rounding may say less, and along the surface both polarisations
+    // are 0/0: `max` answers 0 to both.
+    (0.5 * perpendicular * (1.0 + ratio)).max(0.0)
 }
 
 fn interpolate(table: &[Row], nanometres: f64) -> (f64, f64) {

@@ -6,7 +6,7 @@ use core::{error, fmt, sync::atomic::AtomicBool};
 pub use self::options::{Crop, Formulas, LampEvents, LaserEvents, Method, RenderOptions};
 use self::pass::PathPass;
 use crate::{
-    Frame, Intersector, Scene, SpeckleModel, TracerError,
+    FilterSampler, Frame, Intersector, Scene, SpeckleModel, TracerError,
     integrator::Integrator,
     light_tracer::{LightJob, LightShare, LightTracer},
 };
@@ -96,6 +96,7 @@ pub fn render_frame(
     let pass = PathPass {
         integrator: &integrator,
         options,
+        filter: FilterSampler::new(options.filter)?,
         frame,
         area,
         progress: &progress,
@@ -153,3 +154,6 @@ fn add_light_traced(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

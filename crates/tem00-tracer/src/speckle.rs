@@ -3,6 +3,7 @@
 mod allotment;
 mod change;
 mod model;
+mod notes;
 mod perspective;
 mod plan;
 mod printed;
@@ -12,6 +13,7 @@ use glam::{DVec2, DVec3};
 
 pub(crate) use model::SpeckleFrame;
 pub use model::SpeckleModel;
+pub use notes::RoughnessNote;
 pub use plan::{PatternPlan, SpecklePlan};
 
 /// A point of a surface that a path has met, and where in the image it is seen.

@@ -135,9 +135,12 @@ impl PixelSums {
         self.mean(self.total.sum)
     }
 
-    /// Returns the standard error of the mean radiance of all sources.
+    /// Returns an upper estimate of the standard error of the mean radiance of all sources.
+    ///
+    /// The standard error itself is uncertain by about 1/√n of it, more where light is rare.
     pub(crate) fn error(&self) -> f64 {
-        self.variance(&self.total).sqrt()
+        let uncertainty = 2.0 / f64::from(self.samples.max(1)).sqrt();
+        self.variance(&self.total).sqrt() * (1.0 + uncertainty)
     }
 
     /// Returns the mean depth of the samples that meet something, in metres, or 0.

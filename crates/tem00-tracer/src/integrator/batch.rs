@@ -93,6 +93,8 @@ pub(super) struct Path {
     pub depth: u32,
     /// How many of the surfaces left behind were rough.
     pub rough: u32,
+    /// The factor by which refraction has changed radiance without changing power.
+    pub compression: f64,
     /// The density with which the ray's direction was drawn, per steradian; `None` at the camera and
     /// behind a mirror or glass.
     pub scattering_pdf: Option<f64>,
@@ -104,6 +106,7 @@ impl Path {
             sample,
             depth: 0,
             rough: 0,
+            compression: 1.0,
             scattering_pdf: None,
         }
     }

@@ -2,10 +2,10 @@ use fearless_simd::Simd;
 use glam::DVec3;
 
 use super::{
-    hierarchy::{Hierarchy, LocalRay},
+    hierarchy::{Hierarchy, LocalRay, Placement},
     lanes::meet_triangles,
     packet::{Packet, set},
-    primitive::Primitive,
+    primitive::{Primitive, ShearedRay},
     query::{Place, Query},
     traverse::{Leaves, Stacks, follow_many, follow_one},
     triangles::MeshHierarchy,
@@ -75,7 +75,7 @@ impl Body {
             Content::Triangle(instance, triangle) => (instance, *triangle),
         };
         let corners = instance.corners(triangle as usize);
-        let (_, weights) = ray.triangle(&corners)?;
+        let (_, weights) = ShearedRay::new(ray).triangle(&corners)?;
         let [a, b, c] = corners;
         let normal = mesh::normal(&corners)?;
         Some(Hit {
@@ -88,12 +88,20 @@ impl Body {
     }
 }
 
+fn placement(instance: &MeshInstance) -> Placement {
+    Placement {
+        scale: instance.scale(),
+        to_local: instance.rotation().transpose(),
+        origin: instance.point(DVec3::ZERO),
+    }
+}
+
 /// Tells whether the rounding of coordinates in the scene, 2⁻⁵³ `reach`, is not small beside what
 /// single precision resolves in a mesh, 2⁻²⁴ of its size.
 fn is_tiny(instance: &MeshInstance, reach: f64) -> bool {
     const LARGE_ENOUGH: f64 = 1.0 / (1 << 24) as f64;
     let (low, high) = instance.bounds();
-    !((high - low).max_element() > LARGE_ENOUGH * reach)
+    (high - low).max_element() <= LARGE_ENOUGH * reach
 }
 
 /// The parts of a scene, as what the leaves of its hierarchy hold.
@@ -144,7 +152,8 @@ impl Leaves for Bodies {
             }
             Content::Mesh(instance) => {
                 let hierarchy = instance.mesh().hierarchy();
-                if let Some(local) = hierarchy.enter(instance, query.ray().ray()) {
+                let (local, enters) = hierarchy.boxes().enter(&placement(instance), query.ray());
+                if enters {
                     let part = Part {
                         hierarchy,
                         instance,
@@ -169,12 +178,8 @@ impl Leaves for Bodies {
         let body = self.order[leaf];
         if let Content::Mesh(instance) = &self.bodies[body as usize].content {
             let hierarchy = instance.mesh().hierarchy();
-            let (mut local, inside) = Packet::gather(lanes, |lane| {
-                hierarchy.enter(instance, queries[lane].ray().ray())
-            });
-            for lane in set(inside) {
-                local.set_end(lane, queries[lane].end());
-            }
+            let boxes = hierarchy.boxes();
+            let (mut local, inside) = Packet::gather(boxes, &placement(instance), lanes, queries);
             let part = Part {
                 hierarchy,
                 instance,
@@ -232,7 +237,9 @@ impl Leaves for Part<'_> {
             return;
         }
         for lane in set(met.possibly) {
-            self.offer(block.triangle(lane), query);
+            if let Some(triangle) = block.triangle(lane) {
+                self.offer(triangle, query);
+            }
         }
     }
 
@@ -247,8 +254,8 @@ impl Leaves for Part<'_> {
         _: &mut Stacks,
     ) {
         let block = self.hierarchy.block(leaf);
-        for triangle in 0..block.count() {
-            let met = packet.meet_triangle(simd, &block.one(simd, triangle), lanes);
+        for (slot, triangle) in block.triangles() {
+            let met = packet.meet_triangle(simd, &block.one(simd, slot), lanes);
             let mut unsure = met.possibly;
             if Q::ANY {
                 unsure &= !met.certainly;
@@ -258,7 +265,7 @@ impl Leaves for Part<'_> {
                 }
             }
             for lane in set(unsure) {
-                self.offer(block.triangle(triangle), &mut queries[lane]);
+                self.offer(triangle, &mut queries[lane]);
                 packet.set_end(lane, queries[lane].end());
             }
         }

@@ -1,7 +1,7 @@
 mod build;
 
 use fearless_simd::{Simd, f32x8, prelude::*};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::lanes::{RayLanes, meet_boxes};
 use crate::Ray;
@@ -21,7 +21,7 @@ pub(super) struct Hierarchy {
 }
 
 /// Up to eight boxes, and what is in them.
-#[repr(align(64))]
+#[repr(align(32))]
 #[derive(Clone, Debug)]
 pub(super) struct Node {
     low: [[f32; WIDTH]; 3],
@@ -29,11 +29,51 @@ pub(super) struct Node {
     children: [Child; WIDTH],
 }
 
-/// What is in a box.
+/// What is in a box: a node, or a leaf where the highest bit is set.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Child {
-    Node(u32),
-    Leaf(u32),
+pub(super) struct Child(u32);
+
+impl Child {
+    const LEAF: u32 = 1 << 31;
+
+    pub(super) const fn node(index: u32) -> Self {
+        Self(index)
+    }
+
+    pub(super) const fn leaf(index: u32) -> Self {
+        Self(Self::LEAF | index)
+    }
+
+    /// The child after which no other comes.
+    pub(super) const LAST: Self = Self(u32::MAX);
+
+    /// Returns a number for the child at a distance that is not negative: the larger, the farther.
+    ///
+    /// The bits of such distances have the order of the distances.
+    #[inline(always)]
+    pub(super) const fn entry(self, distance: f32) -> u64 {
+        (distance.to_bits() as u64) << 32 | self.0 as u64
+    }
+
+    #[inline(always)]
+    pub(super) const fn of_entry(entry: u64) -> Self {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "the child is in the low bits"
+        )]
+        let bits = entry as u32;
+        Self(bits)
+    }
+
+    /// Returns the index of the node, or that of the leaf as the error.
+    #[inline(always)]
+    pub(super) const fn index(self) -> Result<u32, u32> {
+        if self.0 & Self::LEAF == 0 {
+            Ok(self.0)
+        } else {
+            Err(self.0 & !Self::LEAF)
+        }
+    }
 }
 
 impl Node {
@@ -41,7 +81,7 @@ impl Node {
     const EMPTY: Self = Self {
         low: [[1e30; WIDTH]; 3],
         high: [[1e30; WIDTH]; 3],
-        children: [Child::Leaf(u32::MAX); WIDTH],
+        children: [Child::leaf(0); WIDTH],
     };
 
     pub(super) fn child(&self, slot: usize) -> Child {
@@ -52,8 +92,7 @@ impl Node {
     #[inline(always)]
     pub(super) fn meet<S: Simd>(&self, ray: &RayLanes<f32x8<S>>) -> (f32x8<S>, u64) {
         let simd = ray.end.token();
-        let [low, high] = [&self.low, &self.high].map(|corners| load(simd, corners));
-        meet_boxes(ray, low, high)
+        meet_boxes(ray, load(simd, &self.low), load(simd, &self.high))
     }
 
     /// Returns the corners of all boxes, one in each lane.
@@ -65,13 +104,32 @@ impl Node {
     /// Returns the lowest and the highest corner of one box.
     #[inline(always)]
     pub(super) fn corners_of(&self, slot: usize) -> [[f32; 3]; 2] {
-        [&self.low, &self.high].map(|corners| corners.map(|axis| axis[slot]))
+        [pick(&self.low, slot), pick(&self.high, slot)]
     }
 }
 
 #[inline(always)]
 pub(super) fn load<S: Simd>(simd: S, values: &[[f32; WIDTH]; 3]) -> [f32x8<S>; 3] {
-    values.map(|axis| axis.simd_into(simd))
+    [
+        f32x8::from_slice(simd, &values[0]),
+        f32x8::from_slice(simd, &values[1]),
+        f32x8::from_slice(simd, &values[2]),
+    ]
+}
+
+/// Returns one lane of the values of three axes.
+#[inline(always)]
+pub(super) const fn pick<const N: usize>(values: &[[f32; N]; 3], lane: usize) -> [f32; 3] {
+    [values[0][lane], values[1][lane], values[2][lane]]
+}
+
+/// Returns the values of three axes in all lanes.
+#[inline(always)]
+pub(super) fn splat<S: Simd, V: SimdFloat<S, Element = f32>>(
+    simd: S,
+    [x, y, z]: [f32; 3],
+) -> [V; 3] {
+    [V::splat(simd, x), V::splat(simd, y), V::splat(simd, z)]
 }
 
 /// A ray in the unit of a hierarchy.
@@ -83,13 +141,33 @@ pub(super) struct LocalRay {
     pub scale: Scale,
 }
 
+/// Where a hierarchy is in the world.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placement {
+    /// The unit of the hierarchy's own coordinates, in metres.
+    pub scale: f64,
+    /// The rotation into those coordinates.
+    pub to_local: DMat3,
+    /// Where their origin is, in metres.
+    pub origin: DVec3,
+}
+
+impl Placement {
+    /// The place of what is given in coordinates of the world.
+    pub(super) const WORLD: Self = Self {
+        scale: 1.0,
+        to_local: DMat3::IDENTITY,
+        origin: DVec3::ZERO,
+    };
+}
+
 /// How distances along a ray turn into the unit of a hierarchy.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Scale {
     /// The unit of the hierarchy, in metres.
-    unit: f64,
+    pub unit: f64,
     /// The distance at which the traversal starts, in that unit.
-    start: f64,
+    pub start: f64,
 }
 
 impl Scale {
@@ -133,38 +211,47 @@ impl Hierarchy {
         (point - self.centre) / self.radius
     }
 
-    /// Returns a ray in the unit of the hierarchy, from where it enters the surroundings of the
-    /// bounding sphere; nothing if it passes by or is no ray.
-    ///
-    /// The unit of the ray's own coordinates is `scale` metres.
-    pub(super) fn enter(&self, ray: &Ray, scale: f64) -> Option<LocalRay> {
+    /// Returns the unit of the hierarchy in its place, in metres.
+    pub(super) fn unit(&self, place: &Placement) -> f64 {
+        self.radius * place.scale
+    }
+
+    /// Returns a ray of the world in the unit of the hierarchy, from where it enters the
+    /// surroundings of the bounding sphere, and whether it does so; none that is not finite does.
+    #[inline(always)]
+    pub(super) fn enter(&self, place: &Placement, ray: &Ray) -> (LocalRay, bool) {
         const REACH: f64 = 1.0 + 2.0 * PADDING;
-        let Ray { origin, direction } = *ray;
-        if !(origin.is_finite() && direction.is_finite()) {
-            return None;
-        }
+        let origin = place.to_local * (ray.origin - place.origin) / place.scale;
+        let direction = place.to_local * ray.direction;
         let offset = (self.centre - origin) / self.radius;
         let middle = offset.dot(direction);
         let miss = offset - middle * direction;
-        if !(miss.length_squared() <= REACH * REACH && middle >= -REACH) {
-            return None;
-        }
+        let enters = miss.length_squared() <= REACH * REACH && middle >= -REACH;
         let start = (middle - 1.0).max(0.0);
-        let direction = direction.as_vec3().to_array();
-        Some(LocalRay {
-            origin: (start * ray.direction - offset).as_vec3().to_array(),
-            direction,
-            inverse: direction.map(|component| {
-                component
-                    .abs()
-                    .max(SMALLEST_COMPONENT)
-                    .copysign(component)
-                    .recip()
-            }),
+        let origin = (start * direction - offset).as_vec3();
+        let direction = direction.as_vec3();
+        let local = LocalRay {
+            origin: [origin.x, origin.y, origin.z],
+            direction: [direction.x, direction.y, direction.z],
+            inverse: [
+                inverse(direction.x),
+                inverse(direction.y),
+                inverse(direction.z),
+            ],
             scale: Scale {
-                unit: self.radius * scale,
+                unit: self.unit(place),
                 start,
             },
-        })
+        };
+        (local, enters)
     }
+}
+
+#[inline(always)]
+fn inverse(component: f32) -> f32 {
+    component
+        .abs()
+        .max(SMALLEST_COMPONENT)
+        .copysign(component)
+        .recip()
 }

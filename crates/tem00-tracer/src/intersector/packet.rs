@@ -1,9 +1,12 @@
 use fearless_simd::{Simd, f32x8, f32x16, prelude::*};
+use glam::DVec3;
 
 use super::{
-    hierarchy::{LocalRay, Node, Scale, WIDTH},
+    hierarchy::{Hierarchy, LocalRay, Node, Placement, Scale, WIDTH, pick, splat},
     lanes::{Met, RayLanes, TriangleLanes, meet_boxes, meet_triangles},
+    query::Query,
 };
+use crate::Ray;
 
 /// The number of rays that are followed together.
 pub(super) const LANES: usize = 64;
@@ -18,55 +21,100 @@ pub(super) struct Packet {
     direction: [[f32; LANES]; 3],
     inverse: [[f32; LANES]; 3],
     end: [f32; LANES],
-    scale: [Scale; LANES],
+    /// The distance at which the traversal of each ray starts, in the unit of the hierarchy.
+    start: [f64; LANES],
+    /// That unit, in metres.
+    unit: f64,
     beam: Beam,
 }
 
 impl Packet {
-    /// Gathers the rays that enter a hierarchy, and returns their set.
+    /// Gathers the rays that enter a hierarchy in its place, and returns their set.
     #[inline(always)]
-    pub(super) fn gather(
+    pub(super) fn gather<Q: Query>(
+        hierarchy: &Hierarchy,
+        place: &Placement,
         lanes: u64,
-        mut enter: impl FnMut(usize) -> Option<LocalRay>,
+        queries: &[Q],
     ) -> (Self, u64) {
+        let mut origins = [[0.0; LANES]; 3];
+        let mut directions = [[0.0; LANES]; 3];
+        let mut ends = [0.0; LANES];
+        for lane in set(lanes) {
+            let Ray { origin, direction } = queries[lane].ray();
+            for axis in 0..3 {
+                origins[axis][lane] = origin[axis];
+                directions[axis][lane] = direction[axis];
+            }
+            ends[lane] = queries[lane].end();
+        }
         let mut packet = Self {
             origin: [[0.0; LANES]; 3],
             direction: [[0.0; LANES]; 3],
             inverse: [[0.0; LANES]; 3],
             end: [0.0; LANES],
-            scale: [Scale::default(); LANES],
+            start: [0.0; LANES],
+            unit: hierarchy.unit(place),
             beam: Beam::NONE,
         };
-        let mut inside = 0;
-        for lane in set(lanes) {
-            let Some(ray) = enter(lane) else { continue };
-            inside |= 1 << lane;
+        let mut inside = [false; LANES];
+        for lane in 0..LANES {
+            let ray = Ray {
+                origin: vector(&origins, lane),
+                direction: vector(&directions, lane),
+            };
+            let (ray, enters) = hierarchy.enter(place, &ray);
             for axis in 0..3 {
                 packet.origin[axis][lane] = ray.origin[axis];
                 packet.direction[axis][lane] = ray.direction[axis];
                 packet.inverse[axis][lane] = ray.inverse[axis];
             }
-            packet.scale[lane] = ray.scale;
-            packet.beam.hold(&ray);
+            packet.start[lane] = ray.scale.start;
+            packet.end[lane] = ray.scale.end(ends[lane]);
+            inside[lane] = enters;
         }
-        (packet, inside)
+        let mut entering = 0;
+        for lane in set(lanes) {
+            entering |= u64::from(inside[lane]) << lane;
+        }
+        packet.beam = packet.beam_of(entering);
+        (packet, entering)
+    }
+
+    #[inline(always)]
+    fn beam_of(&self, lanes: u64) -> Beam {
+        let mut beam = Beam::NONE;
+        for lane in set(lanes) {
+            for axis in 0..3 {
+                extend(&mut beam.origin[axis], self.origin[axis][lane]);
+                extend(&mut beam.inverse[axis], self.inverse[axis][lane]);
+            }
+        }
+        beam
+    }
+
+    #[inline(always)]
+    const fn scale(&self, lane: usize) -> Scale {
+        Scale {
+            unit: self.unit,
+            start: self.start[lane],
+        }
     }
 
     /// Sets where a ray ends, in metres from its origin in the world.
     #[inline(always)]
     pub(super) fn set_end(&mut self, lane: usize, distance: f64) {
-        self.end[lane] = self.scale[lane].end(distance);
+        self.end[lane] = self.scale(lane).end(distance);
     }
 
     /// Returns a single ray.
     #[inline(always)]
     pub(super) fn ray(&self, lane: usize) -> LocalRay {
-        let pick = |values: &[[f32; LANES]; 3]| values.map(|axis| axis[lane]);
         LocalRay {
-            origin: pick(&self.origin),
-            direction: pick(&self.direction),
-            inverse: pick(&self.inverse),
-            scale: self.scale[lane],
+            origin: pick(&self.origin, lane),
+            direction: pick(&self.direction, lane),
+            inverse: pick(&self.inverse, lane),
+            scale: self.scale(lane),
         }
     }
 
@@ -80,8 +128,7 @@ impl Packet {
     /// Returns those of `lanes` whose rays meet a box.
     #[inline(always)]
     pub(super) fn meet_box<S: Simd>(&self, simd: S, [low, high]: [[f32; 3]; 2], lanes: u64) -> u64 {
-        let low = low.map(|corner| f32x16::splat(simd, corner));
-        let high = high.map(|corner| f32x16::splat(simd, corner));
+        let (low, high) = (splat(simd, low), splat(simd, high));
         let mut met = 0;
         for chunk in 0..LANES / CHUNK {
             if part(lanes, chunk) != 0 {
@@ -116,17 +163,32 @@ impl Packet {
 
     #[inline(always)]
     fn chunk<S: Simd>(&self, simd: S, chunk: usize) -> RayLanes<f32x16<S>> {
-        let first = chunk * CHUNK;
-        let load = |values: &[f32; LANES]| f32x16::from_slice(simd, &values[first..first + CHUNK]);
-        let loads =
-            |values: &[[f32; LANES]; 3]| [load(&values[0]), load(&values[1]), load(&values[2])];
         RayLanes {
-            origin: loads(&self.origin),
-            direction: loads(&self.direction),
-            inverse: loads(&self.inverse),
-            end: load(&self.end),
+            origin: load(simd, &self.origin, chunk),
+            direction: load(simd, &self.direction, chunk),
+            inverse: load(simd, &self.inverse, chunk),
+            end: load_one(simd, &self.end, chunk),
         }
     }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, values: &[[f32; LANES]; 3], chunk: usize) -> [f32x16<S>; 3] {
+    [
+        load_one(simd, &values[0], chunk),
+        load_one(simd, &values[1], chunk),
+        load_one(simd, &values[2], chunk),
+    ]
+}
+
+#[inline(always)]
+fn load_one<S: Simd>(simd: S, values: &[f32; LANES], chunk: usize) -> f32x16<S> {
+    f32x16::from_slice(simd, &values[chunk * CHUNK..(chunk + 1) * CHUNK])
+}
+
+#[inline(always)]
+const fn vector(values: &[[f64; LANES]; 3], lane: usize) -> DVec3 {
+    DVec3::new(values[0][lane], values[1][lane], values[2][lane])
 }
 
 #[inline(always)]
@@ -161,20 +223,13 @@ impl Beam {
     };
 
     #[inline(always)]
-    fn hold(&mut self, ray: &LocalRay) {
-        for axis in 0..3 {
-            extend(&mut self.origin[axis], ray.origin[axis]);
-            extend(&mut self.inverse[axis], ray.inverse[axis]);
-        }
-    }
-
-    #[inline(always)]
     fn meet<S: Simd>(&self, simd: S, node: &Node) -> (f32x8<S>, u64) {
         let [low, high] = node.corners(simd);
-        let splat = |value: f32| f32x8::splat(simd, value);
-        let (mut near, mut far) = (splat(0.0), splat(4.0));
+        let all = |value: f32| f32x8::splat(simd, value);
+        let (mut near, mut far) = (all(0.0), all(4.0));
         for axis in 0..3 {
-            let [first, last] = self.origin[axis].map(splat);
+            let [first, last] = self.origin[axis];
+            let (first, last) = (all(first), all(last));
             let [least, most] = self.inverse[axis];
             let (enter, leave) = if least > 0.0 {
                 (low[axis] - last, high[axis] - first)
@@ -184,11 +239,11 @@ impl Beam {
                 // Rays to both sides leave nothing out.
                 continue;
             };
-            let (least, most) = (splat(least), splat(most));
+            let (least, most) = (all(least), all(most));
             near = near.max((enter * least).min(enter * most));
             far = far.min((leave * least).max(leave * most));
         }
-        let there = low[0].simd_lt(splat(1e29));
+        let there = low[0].simd_lt(all(1e29));
         (near, (near.simd_le(far) & there).to_bitmask())
     }
 }

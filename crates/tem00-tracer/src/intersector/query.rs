@@ -1,9 +1,6 @@
 use glam::DVec3;
 
-use super::{
-    primitive::{Primitive, ShearedRay},
-    segment::Segment,
-};
+use super::{primitive::Primitive, segment::Segment};
 use crate::Ray;
 
 /// Where in a scene a primitive is: the index of the body, and that of the triangle in it.
@@ -18,7 +15,7 @@ pub(super) trait Query {
     /// Whether any primitive in the way decides.
     const ANY: bool;
 
-    fn ray(&self) -> &ShearedRay;
+    fn ray(&self) -> &Ray;
 
     /// Returns the distance beyond which nothing matters, in metres.
     fn end(&self) -> f64;
@@ -36,16 +33,13 @@ pub(super) trait Query {
 /// Which primitive does the ray meet first?
 #[derive(Clone, Debug)]
 pub(super) struct Nearest {
-    ray: ShearedRay,
+    ray: Ray,
     pub best: Option<(f64, Place)>,
 }
 
 impl Nearest {
-    pub(super) fn new(ray: Ray) -> Self {
-        Self {
-            ray: ShearedRay::new(ray),
-            best: None,
-        }
+    pub(super) const fn new(ray: Ray) -> Self {
+        Self { ray, best: None }
     }
 }
 
@@ -53,7 +47,7 @@ impl Query for Nearest {
     const ANY: bool = false;
 
     #[inline(always)]
-    fn ray(&self) -> &ShearedRay {
+    fn ray(&self) -> &Ray {
         &self.ray
     }
 
@@ -84,7 +78,7 @@ impl Query for Nearest {
 /// Does any primitive stand in the way?
 #[derive(Clone, Debug)]
 pub(super) struct Shadow {
-    ray: ShearedRay,
+    ray: Ray,
     length: f64,
     clearance: f64,
     pub hidden: bool,
@@ -107,7 +101,7 @@ impl Shadow {
         // Nothing is between a point and itself: a direction that is not finite meets nothing.
         let direction = way.try_normalize().unwrap_or(DVec3::NAN);
         Self {
-            ray: ShearedRay::new(Ray { origin, direction }),
+            ray: Ray { origin, direction },
             length,
             clearance,
             hidden: false,
@@ -119,7 +113,7 @@ impl Query for Shadow {
     const ANY: bool = true;
 
     #[inline(always)]
-    fn ray(&self) -> &ShearedRay {
+    fn ray(&self) -> &Ray {
         &self.ray
     }
 
@@ -136,7 +130,7 @@ impl Query for Shadow {
         };
         // The height of the ray's end beyond the primitive's tangent plane; negative if it ends
         // before.
-        let direction = self.ray.ray().direction;
+        let direction = self.ray.direction;
         let height = |normal: DVec3| (self.length - distance) * normal.dot(direction).abs();
         let met = primitive.point_and_normal(&self.ray);
         self.hidden |= met.is_some_and(|(_, normal)| height(normal) > self.clearance);

@@ -38,14 +38,11 @@ pub(super) struct Stacks {
     /// Distances, as bits, and children.
     one: Vec<u64>,
     /// Boxes and the rays that may meet them.
-    many: Vec<(u32, u64)>,
+    many: Vec<(usize, u64)>,
 }
 
-/// Children of nodes that are leaves, in a stack.
-const LEAF: u32 = 1 << 31;
-
 /// Rays that are fewer than this go on alone.
-const FEW: u32 = 5;
+const FEW: u32 = 8;
 
 /// Follows one ray through the node at `index` and everything below.
 pub(super) fn follow_one<S: Simd, L: Leaves, Q: Query>(
@@ -63,26 +60,24 @@ pub(super) fn follow_one<S: Simd, L: Leaves, Q: Query>(
             let nodes = leaves.hierarchy().nodes();
             let mut end = ray.scale.end(query.end());
             let mut lanes = ray.lanes(simd, end);
-            let mut next = u64::from(index);
+            let mut next = Child::node(index).entry(0.0);
             loop {
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    reason = "the child is in the low bits"
-                )]
-                let child = next as u32;
-                if child & LEAF == 0 {
-                    let node = &nodes[child as usize];
-                    let (near, met) = node.meet(&lanes);
-                    push_sorted(&mut stacks.one, node, near, met);
-                } else {
-                    leaves.ask_one(simd, (child & !LEAF) as usize, ray, query, stacks);
-                    if query.is_over() {
-                        break;
+                match Child::of_entry(next).index() {
+                    Ok(index) => {
+                        let node = &nodes[index as usize];
+                        let (near, met) = node.meet(&lanes);
+                        push_sorted(&mut stacks.one, node, near, met);
                     }
-                    end = ray.scale.end(query.end());
-                    lanes.end = f32x8::splat(simd, end);
+                    Err(leaf) => {
+                        leaves.ask_one(simd, leaf as usize, ray, query, stacks);
+                        if query.is_over() {
+                            break;
+                        }
+                        end = ray.scale.end(query.end());
+                        lanes.end = f32x8::splat(simd, end);
+                    }
                 }
-                let limit = (u64::from(end.to_bits()) << 32) | u64::from(u32::MAX);
+                let limit = Child::LAST.entry(end);
                 next = loop {
                     if stacks.one.len() == base {
                         return;
@@ -106,11 +101,7 @@ fn push_sorted<S: Simd>(stack: &mut Vec<u64>, node: &Node, near: f32x8<S>, met: 
     let near: [f32; WIDTH] = near.into();
     let first = stack.len();
     for slot in set(met) {
-        let child = match node.child(slot) {
-            Child::Node(index) => index,
-            Child::Leaf(index) => LEAF | index,
-        };
-        let entry = (u64::from(near[slot].to_bits()) << 32) | u64::from(child);
+        let entry = node.child(slot).entry(near[slot]);
         let mut place = stack.len();
         stack.push(entry);
         while place > first && stack[place - 1] < entry {
@@ -141,17 +132,15 @@ pub(super) fn follow_many<S: Simd, L: Leaves, Q: Query>(
                 let Some((address, lanes)) = stacks.many.pop() else {
                     break;
                 };
-                let (node, slot) = (&nodes[address as usize / WIDTH], address as usize % WIDTH);
+                let (node, slot) = (&nodes[address / WIDTH], address % WIDTH);
                 let lanes = packet.meet_box(simd, node.corners_of(slot), lanes & open);
                 if lanes == 0 {
                     continue;
                 }
-                match node.child(slot) {
-                    Child::Node(index) => {
-                        visit(simd, leaves, index, packet, lanes, queries, stacks);
-                    }
-                    Child::Leaf(index) => {
-                        leaves.ask_many(simd, index as usize, packet, lanes, queries, stacks);
+                match node.child(slot).index() {
+                    Ok(index) => visit(simd, leaves, index, packet, lanes, queries, stacks),
+                    Err(leaf) => {
+                        leaves.ask_many(simd, leaf as usize, packet, lanes, queries, stacks);
                     }
                 }
                 if Q::ANY {
@@ -189,9 +178,9 @@ fn visit<S: Simd, L: Leaves, Q: Query>(
     let first = stacks.many.len();
     for slot in set(met) {
         let mut place = stacks.many.len();
-        let entry = (index * WIDTH as u32 + slot as u32, lanes);
+        let entry = (index as usize * WIDTH + slot, lanes);
         stacks.many.push(entry);
-        while place > first && near[stacks.many[place - 1].0 as usize % WIDTH] < near[slot] {
+        while place > first && near[stacks.many[place - 1].0 % WIDTH] < near[slot] {
             stacks.many[place] = stacks.many[place - 1];
             place -= 1;
         }

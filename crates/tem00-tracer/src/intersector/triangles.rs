@@ -2,10 +2,10 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, f32x8, f32x16};
 use glam::DVec3;
 
 use super::{
-    hierarchy::{Hierarchy, LocalRay, WIDTH, load},
+    hierarchy::{Hierarchy, LocalRay, WIDTH, load, pick, splat},
     lanes::{RayLanes, TOLERANCE, TriangleLanes},
 };
-use crate::{MeshInstance, Ray, TriangleMesh};
+use crate::TriangleMesh;
 
 /// The hierarchy over the triangles of a mesh, in the mesh's own coordinates.
 #[derive(Clone, Debug)]
@@ -15,7 +15,7 @@ pub(crate) struct MeshHierarchy {
 }
 
 /// The triangles of a leaf in single precision.
-#[repr(align(64))]
+#[repr(align(32))]
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     corner: [[f32; WIDTH]; 3],
@@ -23,7 +23,6 @@ pub(super) struct Block {
     tolerance: [f32; WIDTH],
     /// The indices of the triangles in the mesh.
     triangles: [u32; WIDTH],
-    count: usize,
 }
 
 impl MeshHierarchy {
@@ -48,17 +47,10 @@ impl MeshHierarchy {
     pub(super) fn block(&self, leaf: usize) -> &Block {
         &self.blocks[leaf]
     }
-
-    /// Returns a ray of the world in the unit of the hierarchy of an instance.
-    #[inline(always)]
-    pub(super) fn enter(&self, instance: &MeshInstance, ray: &Ray) -> Option<LocalRay> {
-        let local = Ray {
-            origin: instance.point_of_mesh(ray.origin),
-            direction: instance.direction_of_mesh(ray.direction),
-        };
-        self.boxes.enter(&local, instance.scale())
-    }
 }
+
+/// Stands for the triangle of an empty lane: meshes have fewer.
+const NONE: u32 = u32::MAX;
 
 impl Block {
     /// The shortest edge to which tolerances shrink: below, products of edges underflow.
@@ -70,8 +62,7 @@ impl Block {
             corner: [[1e9; WIDTH]; 3],
             edges: [[[0.0; WIDTH]; 3]; 2],
             tolerance: [-1.0; WIDTH],
-            triangles: [0; WIDTH],
-            count: triangles.len(),
+            triangles: [NONE; WIDTH],
         };
         for (lane, &triangle) in triangles.iter().enumerate() {
             let corners = mesh.corners(triangle as usize);
@@ -89,12 +80,19 @@ impl Block {
         block
     }
 
-    pub(super) const fn count(&self) -> usize {
-        self.count
+    /// Returns the index of the triangle in a lane, if there is one.
+    pub(super) fn triangle(&self, lane: usize) -> Option<u32> {
+        self.triangles
+            .get(lane)
+            .copied()
+            .filter(|&triangle| triangle != NONE)
     }
 
-    pub(super) const fn triangle(&self, lane: usize) -> u32 {
-        self.triangles[lane]
+    /// Returns the lanes that hold a triangle, and the triangles' indices.
+    #[inline(always)]
+    pub(super) fn triangles(&self) -> impl Iterator<Item = (usize, u32)> {
+        let triangles = self.triangles.iter().copied().enumerate();
+        triangles.take_while(|&(_, triangle)| triangle != NONE)
     }
 
     /// Returns all triangles, one in each lane.
@@ -110,10 +108,12 @@ impl Block {
     /// Returns one triangle in all lanes.
     #[inline(always)]
     pub(super) fn one<S: Simd>(&self, simd: S, lane: usize) -> TriangleLanes<f32x16<S>> {
-        let splat = |values: &[[f32; WIDTH]; 3]| values.map(|axis| f32x16::splat(simd, axis[lane]));
         TriangleLanes {
-            corner: splat(&self.corner),
-            edges: [splat(&self.edges[0]), splat(&self.edges[1])],
+            corner: splat(simd, pick(&self.corner, lane)),
+            edges: [
+                splat(simd, pick(&self.edges[0], lane)),
+                splat(simd, pick(&self.edges[1], lane)),
+            ],
             tolerance: f32x16::splat(simd, self.tolerance[lane]),
         }
     }
@@ -131,11 +131,10 @@ impl LocalRay {
         simd: S,
         end: f32,
     ) -> RayLanes<V> {
-        let splat = |values: [f32; 3]| values.map(|value| V::splat(simd, value));
         RayLanes {
-            origin: splat(self.origin),
-            direction: splat(self.direction),
-            inverse: splat(self.inverse),
+            origin: splat(simd, self.origin),
+            direction: splat(simd, self.direction),
+            inverse: splat(simd, self.inverse),
             end: V::splat(simd, end),
         }
     }

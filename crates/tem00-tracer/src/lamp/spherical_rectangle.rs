@@ -32,13 +32,10 @@ pub(super) struct SphericalRectangle {
 }
 
 impl SphericalRectangle {
-    /// Returns the image of a rectangle, or `None` from behind it or from its plane.
-    pub(super) fn new(rectangle: &Rectangle, from: DVec3) -> Option<Self> {
+    /// Returns the image of a rectangle for a point before its front.
+    pub(super) fn new(rectangle: &Rectangle, from: DVec3) -> Self {
         let offset = rectangle.centre() - from;
         let distance = -offset.dot(rectangle.normal());
-        if distance <= 0.0 {
-            return None;
-        }
         let (width, height) = (rectangle.half_u().length(), rectangle.half_v().length());
         let (x_axis, y_axis) = (rectangle.half_u() / width, rectangle.half_v() / height);
         let (x, y) = (offset.dot(x_axis), offset.dot(y_axis));
@@ -49,10 +46,10 @@ impl SphericalRectangle {
             distance,
             solid_angle: 0.0,
         };
-        Some(Self {
+        Self {
             solid_angle: seen.strip(seen.high[0]) - seen.strip(seen.low[0]),
             ..seen
-        })
+        }
     }
 
     /// Returns the solid angle, in steradian. It errs by some 1e−15.

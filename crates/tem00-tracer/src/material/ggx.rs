@@ -51,6 +51,12 @@ impl Ggx {
         0.5 * self.density(facet) / (wo.z + self.reach(wo))
     }
 
+    /// Draws a facet that `wo` sees, and returns the direction that it reflects into `wo`.
+    pub(super) fn reflect(self, wo: DVec3, u: [f64; 2]) -> DVec3 {
+        let facet = self.sample_visible(wo, u);
+        2.0 * wo.dot(facet) * facet - wo
+    }
+
     /// Draws the normal of a facet in proportion to its area as `wo` sees it (Heitz 2018).
     pub(super) fn sample_visible(self, wo: DVec3, [u, v]: [f64; 2]) -> DVec3 {
         // Stretch the surface until the facets are those of a hemisphere.
@@ -86,12 +92,8 @@ impl Ggx {
 }
 
 /// Returns the unit vector half-way between two directions above the surface.
+///
+/// Opposite directions along the surface leave only their heights, whose product is not 0.
 pub(super) fn half_vector(wo: DVec3, wi: DVec3) -> DVec3 {
-    let sum = wo + wi;
-    let square = sum.length_squared();
-    if square > 1e-200 {
-        return sum / square.sqrt();
-    }
-    // Opposite directions along the surface: only their height above it is left.
-    (sum * 2.0_f64.powi(600)).normalize()
+    (wo + wi).normalize()
 }

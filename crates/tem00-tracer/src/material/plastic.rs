@@ -65,8 +65,7 @@ impl Plastic {
     pub(super) fn sample(&self, wo: DVec3, [u, v]: [f64; 2]) -> Option<BsdfSample> {
         let (coat, u) = choose_first(self.coat_probability(wo), u);
         let wi = if coat {
-            let facet = self.facets.sample_visible(wo, [u, v]);
-            2.0 * wo.dot(facet) * facet - wo
+            self.facets.reflect(wo, [u, v])
         } else {
             sample_cosine([u, v])
         };

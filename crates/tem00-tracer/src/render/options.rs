@@ -1,4 +1,4 @@
-use crate::{Camera, RenderSettings, TracerError};
+use crate::{Camera, Filter, RenderSettings, TracerError};
 
 /// Which formulas a render uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,9 +73,21 @@ pub struct RenderOptions {
     pub laser_events: LaserEvents,
     /// How lamps are sampled from a surface.
     pub lamp_events: LampEvents,
-    /// The part of the image that is rendered; `None` for all.
+    /// How the samples around a pixel make its value.
+    pub filter: Filter,
+    /// The part of the image that is rendered; `None` for all. Its pixels have the same bits as in the
+    /// whole image, unless a target error asks for more samples.
     pub crop: Option<Crop>,
     /// The relative standard error of a pixel at which it gets no more samples.
+    ///
+    /// Every pixel first gets `samples_per_pixel` samples, at least 16 of which make sense. Then it gets
+    /// as many again, up to 63 times, until the standard error of its total radiance, estimated from
+    /// its samples, is below this fraction of that radiance, or of a tenth of the mean radiance of the
+    /// image where the pixel is darker.
+    ///
+    /// A pixel whose samples happen to miss bright light stops early, so that images are darker than
+    /// they should be, on average by less than the target error times itself; the fewer the first
+    /// samples, the more.
     pub target_error: Option<f64>,
 }
 
@@ -89,6 +101,7 @@ impl From<&RenderSettings> for RenderOptions {
             method: settings.method,
             laser_events: settings.laser_events,
             lamp_events: LampEvents::default(),
+            filter: Filter::default(),
             crop: settings.crop,
             target_error: settings.target_error,
         }

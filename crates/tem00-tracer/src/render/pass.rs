@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::{Crop, RenderError, RenderOptions};
 use crate::{
-    Frame,
+    FilterSampler, Frame,
     film::{Film, FilmLayout, PixelSums},
     integrator::{Batch, CameraSample, Integrator},
     sampler::{Strata, Use, independent_pair, pixel_key},
@@ -31,6 +31,7 @@ const DARK: f64 = 0.1;
 pub(super) struct PathPass<'a, P> {
     pub integrator: &'a Integrator<'a>,
     pub options: &'a RenderOptions,
+    pub filter: FilterSampler,
     pub frame: u32,
     pub area: Crop,
     pub progress: &'a P,
@@ -149,13 +150,14 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
     ) -> CameraSample {
         let sequence = self.integrator.sequence();
         let stream = sequence.stream(key, index);
-        let [u, v] = strata.position(index, independent_pair(stream, Use::Pixel));
+        let cell = strata.position(index, independent_pair(stream, Use::Pixel));
+        let beside = self.filter.sample(cell);
         CameraSample {
             slot,
-            pixel: DVec2::new(x as f64 + u, y as f64 + v),
+            pixel: DVec2::new(x as f64 + 0.5, y as f64 + 0.5) + beside.offset,
             lens: sequence.pair(stream, Use::Lens),
             stream,
-            weight: 1.0,
+            weight: beside.weight,
             lamps: 0.0,
             seen: None,
         }

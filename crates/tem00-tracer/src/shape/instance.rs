@@ -96,16 +96,6 @@ impl MeshInstance {
         self.rotation * direction
     }
 
-    /// Returns the point of the mesh that is at a place, in the unit of the mesh.
-    pub(crate) fn point_of_mesh(&self, point: DVec3) -> DVec3 {
-        self.rotation.transpose() * (point - self.translation) / self.scale
-    }
-
-    /// Returns the direction in the mesh that points along `direction`; its length stays.
-    pub(crate) fn direction_of_mesh(&self, direction: DVec3) -> DVec3 {
-        self.rotation.transpose() * direction
-    }
-
     /// Returns the corners of a triangle, in metres.
     #[inline(always)]
     pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
@@ -121,7 +111,12 @@ impl MeshInstance {
         mesh::shading_normal(normal, interpolated)
     }
 
-    /// Returns the factor from lengths of the mesh to metres.
+    /// Returns the rotation R from the mesh to the world.
+    pub(crate) const fn rotation(&self) -> DMat3 {
+        self.rotation
+    }
+
+    /// Returns the factor s from lengths of the mesh to metres.
     pub const fn scale(&self) -> f64 {
         self.scale
     }
@@ -175,8 +170,6 @@ mod tests {
             point.abs_diff_eq(DVec3::new(0.5, -4.0, 0.25), 2e-15),
             "{point}"
         );
-        let back = twice.point_of_mesh(point);
-        assert!(back.abs_diff_eq(2.0 * DVec3::Y, 2e-15), "{back}");
     }
 
     #[test]

@@ -80,3 +80,98 @@ impl Perspective {
         DVec2::new(self.camera.width() as f64, self.camera.height() as f64)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::CameraDescription;
+
+    fn description() -> CameraDescription {
+        CameraDescription {
+            position: DVec3::new(0.02, -0.01, 0.3),
+            look_at: DVec3::new(0.0, 0.01, 0.0),
+            up: DVec3::Y,
+            focal_length: 25e-3,
+            f_number: 8.0,
+            focus_distance: 0.3,
+            pixel_pitch: 3.45e-6,
+            resolution: [640, 480],
+            principal_point: None,
+            tilt: SensorTilt::default(),
+            distortion: RadialDistortion::default(),
+            depth_of_field: true,
+        }
+    }
+
+    #[test]
+    fn tilt_and_distortion_drop_out_of_the_perspective() {
+        let plain = Camera::new(description()).unwrap();
+        let bent = Camera::new(CameraDescription {
+            tilt: SensorTilt {
+                angle: 0.15,
+                azimuth: 0.7,
+            },
+            distortion: RadialDistortion {
+                k1: -0.1,
+                k2: 0.05,
+                k3: 0.0,
+            },
+            ..description()
+        });
+        let bent = Perspective::of(bent.unwrap());
+        let [low, high] = bent.image();
+        for i in 0..100_u32 {
+            let (x, y) = (f64::from(i % 10) - 4.5, f64::from(i / 10) - 4.5);
+            let point = DVec3::new(2e-3 * x, 1.5e-3 * y, 1e-3 * (x + y));
+            let sensor = bent.camera.project(point).unwrap();
+            let perspective = bent.point(sensor);
+            let error = perspective.distance(plain.project(point).unwrap());
+            // Rounding over 8000 pixels of image distance, and the inversion of the distortion.
+            assert!(error < 1e-8, "{point}: {error:e} pixels");
+            let moved = perspective.distance(sensor);
+            assert!(moved > 1e-3, "{point}: the sensor sees the perspective");
+            let inside = sensor.cmpge(DVec2::ZERO).all() && sensor.cmple(bent.size()).all();
+            let held = perspective.cmpge(low).all() && perspective.cmple(high).all();
+            assert!(held || !inside, "{perspective} beyond {low} to {high}");
+        }
+    }
+
+    #[test]
+    fn a_plain_camera_sees_the_perspective_itself() {
+        let plain = Perspective::of(Camera::new(description()).unwrap());
+        let pixel = DVec2::new(12.3, 400.7);
+        assert_eq!(plain.point(pixel), pixel);
+        assert_eq!(plain.image(), [DVec2::ZERO, DVec2::new(640.0, 480.0)]);
+    }
+
+    #[test]
+    fn points_in_the_plane_in_focus_of_a_tilted_camera_are_in_focus() {
+        let tilted = CameraDescription {
+            tilt: SensorTilt {
+                angle: 0.1,
+                azimuth: 0.3,
+            },
+            ..description()
+        };
+        let tilted = Perspective::of(Camera::new(tilted).unwrap());
+        let camera = tilted.camera;
+        let on_axis = camera.imaging_geometry(650e-9).unwrap();
+        let (origin, normal) = camera.plane_in_focus();
+        let (u, v) = normal.any_orthonormal_pair();
+        let mut largest = 0.0_f64;
+        for (a, b) in [(0.0, 0.0), (3e-3, 1e-3), (-2e-3, 4e-3), (4e-3, 4e-3)] {
+            let point = origin + a * u + b * v;
+            let pixel = camera.project(point).unwrap();
+            let geometry = tilted.geometry(&on_axis, pixel);
+            let depth = (point - camera.position()).dot(-camera.axes().z_axis);
+            let defocus = geometry.defocus_at(depth);
+            // Of lengths of 0.3 m, rounded after some ten operations.
+            assert!(defocus.abs() < 1e-12, "{a}, {b}: {defocus:e} per metre");
+            largest = largest.max(on_axis.defocus_at(depth).abs());
+        }
+        // 4 mm times tan τ′ = 1.1 over the square of 0.3 m.
+        assert!(largest > 0.02, "{largest} per metre: not tilted");
+    }
+}

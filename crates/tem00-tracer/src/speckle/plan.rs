@@ -1,4 +1,4 @@
-use core::fmt;
+mod lines;
 
 use tem00_decorrelation::ImagingGeometry;
 use tem00_speckle::{IncoherentSum, SlicePath, StackNeeds, StackPlan};
@@ -189,7 +189,7 @@ impl Planner<'_> {
         allotments: &[Allotment],
         sums: &[Vec<f64>],
     ) -> Vec<Place> {
-        let shared = allotments.len() < requests.len() || allotments.iter().any(|a| a.places > 1);
+        let shared = allotments.iter().any(|allotment| allotment.places > 1);
         let surfaces = self.groups.iter().zip(sums);
         surfaces
             .map(|(&group, shares)| {
@@ -297,117 +297,6 @@ fn as_asked(plan: StackPlan, settings: &SpeckleSettings) -> StackPlan {
     match settings.half_period {
         Some(half_period) => plan.with_half_period(half_period),
         None => plan,
-    }
-}
-
-impl fmt::Display for SpecklePlan {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, pattern) in self.patterns.iter().enumerate() {
-            if index > 0 {
-                writeln!(f)?;
-            }
-            write!(f, "laser {index}: {pattern}")?;
-        }
-        Ok(())
-    }
-}
-
-impl fmt::Display for PatternPlan {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, allotment) in self.allotments.iter().enumerate() {
-            if index > 0 {
-                writeln!(f)?;
-            }
-            if self.allotments.len() > 1 {
-                write!(f, "{}: ", self.surfaces(allotment))?;
-            }
-            self.line(allotment, f)?;
-        }
-        Ok(())
-    }
-}
-
-impl PatternPlan {
-    /// The names of the first surfaces of an allotment, and how many more there are.
-    fn surfaces(&self, allotment: &Allotment) -> String {
-        const SHOWN: usize = 3;
-        let names = allotment
-            .surfaces
-            .iter()
-            .map(|&surface| &self.names[surface]);
-        let shown: Vec<_> = names.take(SHOWN).map(|name| format!("`{name}`")).collect();
-        let shown = shown.join(", ");
-        match allotment.surfaces.len().saturating_sub(SHOWN) {
-            0 => shown,
-            more => format!("{shown} and {more} more"),
-        }
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "shown to three digits")]
-    fn line(&self, allotment: &Allotment, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Allotment { stack, needs, .. } = allotment;
-        let [width, height] = needs.region;
-        write!(
-            f,
-            "speckles of {:.3} pixels at {:.1} nm; C = {}, {} the {:.1} × {:.1} speckles ({width:.0} \
-             × {height:.0} pixels) of the image{}; Q = {}; ",
-            needs.speckle_size,
-            self.wavelength * 1e9,
-            Sides(stack.diameter()),
-            if stack.holds_region(needs) {
-                "at least"
-            } else {
-                "LESS than"
-            },
-            width / needs.speckle_size,
-            height / needs.speckle_size,
-            if self.chosen {
-                ""
-            } else {
-                ", as the scene asks"
-            },
-            Sides(stack.size()),
-        )?;
-        match needs.motion {
-            None => write!(f, "one slice, since nothing moves; ")?,
-            Some(motion) => write!(
-                f,
-                "{} slices for a motion of up to {motion:.2} pupil diameters{}; ",
-                stack.path().slice_count(),
-                // No memory gives the circle of the printed formulas more than one diameter.
-                if self.as_printed || stack.holds_motion(needs) {
-                    ""
-                } else {
-                    ", MORE than the slices hold: frames beyond share their speckle"
-                }
-            )?,
-        }
-        if allotment.count > 1 {
-            write!(f, "{} patterns that add up; ", allotment.count)?;
-        }
-        if allotment.places > 1 {
-            write!(
-                f,
-                "{} places in one pattern, for the memory does NOT hold more: each repeats what \
-                 another shows elsewhere in the image; ",
-                allotment.places
-            )?;
-        }
-        let mebibytes = allotment.memory_bytes() as f64 / f64::from(1 << 20);
-        write!(f, "{mebibytes:.1} MiB")
-    }
-}
-
-/// One number for a square, two for other patterns.
-struct Sides([usize; 2]);
-
-impl fmt::Display for Sides {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [width, height] = self.0;
-        match width == height {
-            true => write!(f, "{width}"),
-            false => write!(f, "{width} × {height}"),
-        }
     }
 }
 

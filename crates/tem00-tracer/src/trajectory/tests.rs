@@ -83,6 +83,24 @@ fn whole_turns_between_keyframes_are_made() {
 }
 
 #[test]
+fn between_rotations_about_different_axes_the_shortest_way_is_taken() {
+    // From 10° short of a turn to 10° beyond, about axes a milliradian apart.
+    let ends = [
+        turn(DVec3::Z, TAU - 0.2),
+        turn(DVec3::new(1e-3, 0.0, 1.0), 0.2),
+    ];
+    for [from, to] in [ends, [ends[1], ends[0]]] {
+        let keyframes = [(0.0, from), (2.0, to)].map(|(frame, rotation)| Keyframe {
+            rotation,
+            ..Keyframe::at(frame)
+        });
+        let trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
+        let half = difference(&trajectory.pose_at(1), &RigidMotion::IDENTITY);
+        assert!(half < 1e-3, "half way it has turned by {half}");
+    }
+}
+
+#[test]
 fn half_a_turn_about_any_axis_is_made_at_a_constant_rate() {
     // Two axes whose rotations differ by just half a turn.
     let (a, b) = (turn(DVec3::X, FRAC_PI_2), turn(DVec3::X, -FRAC_PI_2));

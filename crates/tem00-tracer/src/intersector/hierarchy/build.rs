@@ -128,11 +128,11 @@ impl Widening<'_> {
         while let Some(&source) = sources.get(next) {
             for (slot, index) in self.children(source).into_iter().enumerate() {
                 let child = if self.counts[index] <= self.capacity {
-                    Child::Leaf(self.leaf(index))
+                    Child::leaf(self.leaf(index))
                 } else {
                     sources.push(index);
                     nodes.push(Node::EMPTY);
-                    Child::Node(number(nodes.len() - 1))
+                    Child::node(number(nodes.len() - 1))
                 };
                 let corners = self.binary.nodes[index].aabb();
                 let (low, high) = (corners.min.to_array(), corners.max.to_array());

@@ -1,0 +1,180 @@
+use super::*;
+
+#[test]
+fn hierarchy_and_brute_force_agree_on_every_ray() {
+    let shapes = mixed_scene();
+    let intersector = build(&shapes);
+    let mut uniform = uniforms(1);
+    let mut hits = 0;
+    for i in 0..4000 {
+        let mut point = || DVec3::new(uniform(), uniform(), uniform()) - 0.5;
+        // Toward the middle from near and far, and anywhere.
+        let (from, to) = (point(), 0.2 * point());
+        let far = if i % 4 == 0 { 1e3 } else { 1.0 };
+        let ray = ray(to + far * (from - to), to - from);
+        let found = intersector.intersect(&ray).map(|hit| hit.distance);
+        let expected = brute_force(&shapes, &ray).map(|(distance, _)| distance);
+        assert_eq!(found, expected, "{ray:?}");
+        hits += u32::from(found.is_some());
+    }
+    assert!(hits > 1000, "{hits} hits");
+}
+
+#[test]
+fn a_nanometre_inside_an_edge_is_found_from_anywhere() {
+    // Boxes end at the edges, and single precision moves them and the rays by up to 1e−7 of
+    // the scene, by more for rays that start far away.
+    let (half_u, half_v) = (0.3 * DVec3::X, 0.2 * DVec3::Y);
+    let centre = DVec3::new(0.7, 1.3, 0.1);
+    let shapes = [
+        rectangle(centre, half_u, half_v),
+        rectangle(centre + 0.3 * DVec3::Z, 0.01 * DVec3::X, 0.01 * DVec3::Y),
+    ];
+    let intersector = build(&shapes);
+    let mut uniform = uniforms(4);
+    for i in 0..4000 {
+        let along = 2.0 * uniform() - 1.0;
+        let edge = 1.0 - 5e-9;
+        let (u, v) = match i % 4 {
+            0 => (-edge, along),
+            1 => (along, -edge),
+            2 => (edge, along),
+            _ => (along, edge),
+        };
+        let target = centre + u * half_u + v * half_v;
+        let aside = DVec3::new(uniform() - 0.5, uniform() - 0.5, -0.2);
+        for reach in [1.0, 1e4] {
+            let ray = ray(target + reach * aside, -aside);
+            let found = intersector.intersect(&ray).map(|hit| hit.distance);
+            let expected = brute_force(&shapes, &ray).map(|(distance, _)| distance);
+            assert!(
+                reach > 1.0 || expected.is_some(),
+                "{ray:?} aims at the rectangle"
+            );
+            assert_eq!(found, expected, "{ray:?}");
+        }
+    }
+}
+
+#[test]
+fn the_nearest_of_many_close_sheets_is_found() {
+    for gap in [1e-3, 1e-5, 1e-7, 1e-9] {
+        let sheet = |i: i32| {
+            let height = f64::from(i) * gap;
+            rectangle(0.5 * DVec3::ONE + height * DVec3::Z, DVec3::X, DVec3::Y)
+        };
+        let stack: Vec<Shape> = (0..20).map(sheet).collect();
+        let stack = build(&stack);
+        for (from, nearest) in [(3.0, 19), (-3.0, 0)] {
+            let origin = DVec3::new(0.3, 0.1, from);
+            let toward = DVec3::new(0.4, 0.6, 0.5) - origin;
+            let hit = stack.intersect(&ray(origin, toward)).unwrap();
+            assert_eq!(hit.surface, nearest, "gap {gap:e} from z = {from}");
+        }
+    }
+}
+
+#[test]
+fn axis_parallel_rays_are_found_whatever_the_sign_of_zero() {
+    let shapes = mixed_scene();
+    let intersector = build(&shapes);
+    let mut uniform = uniforms(2);
+    for i in 0..2000 {
+        let mut direction = DVec3::splat(if i % 2 == 0 { 0.0 } else { -0.0 });
+        direction[i % 3] = if i % 4 < 2 { 1.0 } else { -1.0 };
+        if i % 5 == 0 {
+            // Rounded to single precision this is −0.
+            direction[(i + 1) % 3] = -1e-60;
+        }
+        let place = 0.5 * (DVec3::new(uniform(), uniform(), uniform()) - 0.5);
+        let ray = Ray {
+            origin: place - direction,
+            direction,
+        };
+        let found = intersector.intersect(&ray).map(|hit| hit.distance);
+        let expected = brute_force(&shapes, &ray).map(|(distance, _)| distance);
+        assert_eq!(found, expected, "{ray:?}");
+    }
+}
+
+#[test]
+fn coincident_and_nested_shapes_do_not_break_the_hierarchy() {
+    // Two thousand copies of a triangle, as many too small for single precision to tell apart,
+    // and spheres in spheres.
+    let mut vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    let mut triangles = vec![[0, 1, 2]; 2000];
+    for i in 0..2000_u32 {
+        let place = DVec3::splat(0.7) + f64::from(i) * 1e-12 * DVec3::X;
+        vertices.extend([place, place + 1e-12 * DVec3::X, place + 1e-12 * DVec3::Y]);
+        triangles.push([3 * i + 3, 3 * i + 4, 3 * i + 5]);
+    }
+    let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+    let nested = (0..100).map(|i| sphere(DVec3::splat(-0.5), 0.5_f64.powi(i)));
+    let shapes: Vec<Shape> = std::iter::once(Shape::from(mesh)).chain(nested).collect();
+    let intersector = build(&shapes);
+    let down = ray(DVec3::new(0.2, 0.6, 1.0), -DVec3::Z);
+    assert_eq!(
+        intersector.intersect(&down).unwrap().surface,
+        0,
+        "the triangles"
+    );
+    for i in [1, 1000, 1999] {
+        let target = DVec3::splat(0.7) + (f64::from(i) + 0.2) * 1e-12 * DVec3::X;
+        let tiny = ray(target + 0.3e-12 * DVec3::Y + DVec3::Z, -DVec3::Z);
+        assert_eq!(
+            intersector.intersect(&tiny).unwrap().surface,
+            0,
+            "tiny triangle {i}"
+        );
+    }
+    let from_within = ray(DVec3::splat(-0.5), DVec3::new(0.2, -1.0, 0.3));
+    let hit = intersector.intersect(&from_within).unwrap();
+    assert_eq!(hit.surface, 100, "the smallest sphere");
+    // 2⁻⁹⁹ m, beside coordinates of 0.5 m: the origin is the centre itself.
+    assert!(hit.distance < 1.6e-30, "{:e}", hit.distance);
+}
+
+#[test]
+fn the_surface_is_the_index_of_the_shape_and_ties_go_to_the_first() {
+    let shapes = mixed_scene();
+    let intersector = build(&shapes);
+    for (target, surface) in [
+        (DVec3::new(0.4, 0.3, -0.3), 0),
+        (DVec3::new(0.0, 0.0, 0.0), 1),
+        (DVec3::new(0.2, 0.1, 0.0), 2),
+        (DVec3::new(-0.2, 0.15, -0.1), 3),
+        (DVec3::new(-0.1, -0.2, 0.2), 4),
+        (DVec3::new(0.0, 0.2, 0.2), 5),
+    ] {
+        let hit = intersector
+            .intersect(&ray(target + DVec3::Z, -DVec3::Z))
+            .unwrap();
+        assert_eq!(hit.surface, surface, "above {target}");
+    }
+    let sheet = rectangle(DVec3::ZERO, DVec3::X, DVec3::Y);
+    let twins = build(&[sheet.clone(), sheet.clone(), sheet]);
+    let hit = twins
+        .intersect(&ray(DVec3::new(0.2, 0.3, 1.0), -DVec3::Z))
+        .unwrap();
+    assert_eq!(hit.surface, 0, "the first of three");
+}
+
+#[test]
+fn a_hundred_thousand_coincident_triangles_are_built_and_met() {
+    const COPIES: usize = 100_000;
+    let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(0.9, 0.9, 0.0)];
+    let mut triangles = vec![[0, 1, 2]; COPIES];
+    triangles.push([1, 3, 2]);
+    let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+    let started = std::time::Instant::now();
+    let intersector = build(&[Shape::from(mesh)]);
+    // A quadratic step takes minutes.
+    assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
+    for (x, y, met) in [(0.2, 0.3, true), (0.6, 0.6, true), (-0.01, 0.5, false)] {
+        let down = ray(DVec3::new(x, y, 1.0), -DVec3::Z);
+        let hit = intersector.intersect(&down);
+        assert_eq!(hit.is_some(), met, "above ({x}, {y})");
+        let distance = hit.map_or(1.0, |hit| hit.distance);
+        assert!((distance - 1.0).abs() < 1e-15, "{hit:?}");
+    }
+}

@@ -1,0 +1,146 @@
+use core::fmt;
+
+use crate::{OpticalRoughness, OpticalRoughnessQuery, Scene, TracerError};
+
+/// A surface that is too smooth for the theory of speckle under a laser.
+///
+/// Its `Display` is one line that says why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoughnessNote {
+    /// The name of the surface.
+    pub surface: String,
+    /// The index of the laser.
+    pub laser: usize,
+    /// What its roughness does to the light.
+    pub roughness: OpticalRoughness,
+}
+
+impl fmt::Display for RoughnessNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            surface,
+            laser,
+            roughness,
+        } = self;
+        write!(
+            f,
+            "surface `{surface}` is too smooth for fully developed speckle of laser {laser}: {roughness}"
+        )
+    }
+}
+
+impl Scene {
+    /// Returns a note for each surface and laser whose speckle the theory does not hold for, in the
+    /// order of the surfaces.
+    ///
+    /// A surface counts as lit and seen along its normal, where it is the roughest to light, and as
+    /// resolved by the camera as one in focus. Mirrors and glass make no speckle and get no note.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the imaging geometry is not possible, or if a wavelength or a height is
+    /// beyond what [`Material::optical_roughness`](crate::Material::optical_roughness) judges.
+    ///
+    /// # Examples
+    ///
+    /// A lapped gauge block behind a camera that resolves 62 µm:
+    ///
+    /// ```
+    /// let scene = tem00_tracer::parse_scene(
+    ///     r#"
+    ///     [camera]
+    ///     position = [0, 0, "300 mm"]
+    ///     focal_length = "25 mm"
+    ///     f_number = 8
+    ///     [[laser]]
+    ///     wavelength = "650 nm"
+    ///     power = "1 mW"
+    ///     position = ["100 mm", 0, "300 mm"]
+    ///     spot.waist_radius = "0.1 mm"
+    ///     [[surface]]
+    ///     name = "gauge"
+    ///     rectangle.size = ["20 mm", "20 mm"]
+    ///     conductor = { metal = "iron", roughness = 0.01 }
+    ///     "#,
+    ///     std::path::Path::new("."),
+    /// )?;
+    /// let notes = scene.roughness_notes()?;
+    /// assert_eq!(notes.len(), 1);
+    /// assert!(notes[0].to_string().starts_with("surface `gauge` is too smooth"));
+    /// assert!(notes[0].roughness.patches() < 20.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn roughness_notes(&self) -> Result<Vec<RoughnessNote>, TracerError> {
+        let mut notes = Vec::new();
+        for surface in &self.surfaces {
+            for (index, laser) in self.lasers.iter().enumerate() {
+                let wavelength = laser.wavelength();
+                let geometry = self.camera.imaging_geometry(wavelength)?;
+                let roughness = surface.material.optical_roughness(&OpticalRoughnessQuery {
+                    wavelength,
+                    incidence: 0.0,
+                    viewing: 0.0,
+                    resolution_cell: geometry.object_speckle_size(),
+                    rms_height: surface.rms_height,
+                })?;
+                let smooth = roughness.filter(|roughness| !roughness.is_fully_developed());
+                notes.extend(smooth.map(|roughness| RoughnessNote {
+                    surface: surface.name.clone(),
+                    laser: index,
+                    roughness,
+                }));
+            }
+        }
+        Ok(notes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use crate::{Material, Metal};
+
+    /// A camera that resolves λ L/D = 62 µm at 650 nm and 51 µm at 532 nm.
+    const SCENE: &str = r#"
+        [camera]
+        position = [0, 0, 0.3]
+        focal_length = "25 mm"
+        f_number = 8
+        [[laser]]
+        wavelength = "650 nm"
+        power = "1 mW"
+        position = [0.1, 0, 0.3]
+        spot.waist_radius = "0.1 mm"
+        [[laser]]
+        wavelength = "532 nm"
+        power = "1 mW"
+        position = [0.1, 0, 0.3]
+        spot.waist_radius = "0.1 mm"
+        [[surface]]
+        rectangle.size = [0.02, 0.02]
+        "#;
+
+    #[test]
+    fn what_is_too_smooth_is_noted_for_each_laser_and_nothing_else_is() {
+        let mut scene = crate::parse_scene(SCENE, Path::new(".")).unwrap();
+        let mut noted = |material: Material, rms_height: Option<f64>| -> Vec<usize> {
+            scene.surfaces[0].material = material;
+            scene.surfaces[0].rms_height = rms_height;
+            let notes = scene.roughness_notes().unwrap();
+            notes.iter().map(|note| note.laser).collect()
+        };
+        let metal = |roughness| Material::conductor(Metal::Iron, roughness).unwrap();
+        // N = (2π α d/λ)²/2 with d/λ = 96 for both: 20 patches take α = 0.0105.
+        assert_eq!(noted(metal(0.0101), None), [0, 1]);
+        assert_eq!(noted(metal(0.0109), None), [0_usize; 0]);
+        // exp(−σ²) = 0.01 takes σ = 4π σ_h/λ = 2.146: 111 nm in red, 90.9 nm in green.
+        assert_eq!(noted(metal(0.1), Some(112e-9)), [0_usize; 0]);
+        assert_eq!(noted(metal(0.1), Some(100e-9)), [0]);
+        assert_eq!(noted(metal(0.1), Some(90e-9)), [0, 1]);
+        let mirror = Material::mirror(0.9).unwrap();
+        assert_eq!(noted(mirror, Some(1e-9)), [0_usize; 0]);
+        let paper = Material::lambertian(0.8).unwrap();
+        assert_eq!(noted(paper, None), [0_usize; 0]);
+    }
+}

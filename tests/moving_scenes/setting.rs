@@ -1,0 +1,197 @@
+use std::{path::Path, sync::atomic::AtomicBool};
+
+use tem00::{
+    decorrelation::{
+        CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, Illumination,
+        ImageOrientation, ImagingGeometry, LensData, RigidMotion, RigidMotions, SpeckleMotion,
+    },
+    numerics::Grid,
+    tracer::{
+        RenderOptions, Rotation, Scene, SpeckleModel, SpecklePlan, Trajectory, parse_scene,
+        render_frame,
+    },
+};
+
+/// A plate at the origin that faces a camera 0.3 m away.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Setting {
+    pub(crate) lens: LensData,
+    /// The direction from the plate to the laser.
+    pub(crate) to_laser: DVec3,
+    /// The distance of the laser, which lights as a point source does, or `None` for plane waves.
+    pub(crate) distance: Option<f64>,
+}
+
+/// A lens behind which a speckle spans 6.6 pixels, so that pixels hardly average over it.
+pub(crate) const LENS: LensData = LensData {
+    wavelength: 650e-9,
+    focal_length: 25e-3,
+    f_number: 8.0,
+    surface_to_pupil: 0.3,
+    pixel_pitch: 3.45e-6 / 4.0,
+};
+
+/// Where the camera stands.
+pub(crate) const EYE: DVec3 = DVec3::new(0.0, 0.0, 0.3);
+
+/// Columns and rows of the images.
+pub(crate) const SIDE: usize = 256;
+
+impl Setting {
+    /// The scene with two frames, in which nothing moves.
+    pub(crate) fn scene(&self) -> Scene {
+        let LensData {
+            wavelength,
+            focal_length,
+            f_number,
+            surface_to_pupil,
+            pixel_pitch,
+        } = self.lens;
+        let laser = self.to_laser.normalize() * self.distance.unwrap_or(0.2);
+        // A spot as small as 2 µm lights as a point does; the waist of a wide one is plane.
+        let spot = match self.distance {
+            Some(_) => "waist_radius = \"2 um\", waist_distance = 0",
+            None => "waist_radius = \"4 mm\"",
+        };
+        let text = format!(
+            r#"
+            [render]
+            frames = 2
+            [camera]
+            position = [0, 0, 0.3]
+            look_at = [0, 0, 0]
+            focal_length = {focal_length}
+            focus_distance = {surface_to_pupil}
+            f_number = {f_number}
+            pixel_pitch = {pixel_pitch}
+            resolution = [{SIDE}, {SIDE}]
+
+            [[laser]]
+            wavelength = {wavelength}
+            power = "1 mW"
+            position = [{}, {}, {}]
+            spot = {{ {spot} }}
+
+            [[surface]]
+            rectangle = {{ size = [0.04, 0.04] }}
+            "#,
+            laser.x, laser.y, laser.z
+        );
+        parse_scene(&text, Path::new(".")).expect("a valid scene")
+    }
+
+    pub(crate) fn geometry(&self) -> ImagingGeometry {
+        ImagingGeometry::from_lens(self.lens).expect("a lens")
+    }
+
+    /// The law of finite motions for the point in the middle of the plate.
+    pub(crate) fn law(&self, motions: &RigidMotions) -> SpeckleMotion {
+        let illumination = match self.distance {
+            Some(distance) => Illumination::point_source(self.to_laser.normalize() * distance),
+            None => Illumination::collimated(self.to_laser),
+        };
+        let before = Configuration::new(ConfigurationData {
+            wavelength: self.lens.wavelength,
+            point: DVec3::ZERO,
+            normal: DVec3::Z,
+            illumination: illumination.expect("a light"),
+            camera: CameraFrame::look_at(EYE, DVec3::ZERO, DVec3::Y).expect("a camera"),
+            pupil: EYE,
+        });
+        let before = before.expect("a point before the camera");
+        let after = before.moved(motions).expect("a point before the camera");
+        let screen = ImageOrientation::ScreenUpright;
+        SpeckleMotion::between(&self.geometry(), &before, &after, screen)
+    }
+}
+
+/// A rotation about a pivot and a displacement from each frame to the next.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step {
+    pub(crate) pivot: DVec3,
+    pub(crate) axis: DVec3,
+    pub(crate) angle: f64,
+    pub(crate) displacement: DVec3,
+}
+
+impl Step {
+    pub(crate) const NONE: Self = Self {
+        pivot: DVec3::ZERO,
+        axis: DVec3::Z,
+        angle: 0.0,
+        displacement: DVec3::ZERO,
+    };
+
+    pub(crate) fn along(displacement: DVec3) -> Self {
+        Self {
+            displacement,
+            ..Self::NONE
+        }
+    }
+
+    pub(crate) fn about(pivot: DVec3, axis: DVec3, angle: f64) -> Self {
+        Self {
+            pivot,
+            axis,
+            angle,
+            ..Self::NONE
+        }
+    }
+
+    pub(crate) fn trajectory(&self) -> Trajectory {
+        let rotation = Rotation {
+            axis: self.axis,
+            angle: self.angle,
+        };
+        Trajectory::turning(self.pivot, rotation, self.displacement).expect("a motion")
+    }
+
+    pub(crate) fn motion(&self) -> RigidMotion {
+        RigidMotion::about(self.pivot, self.axis, self.angle)
+            .expect("a rotation")
+            .then(&RigidMotion::along(self.displacement).expect("a displacement"))
+    }
+}
+
+/// The speckle layers of some frames of a scene.
+pub(crate) fn speckle(scene: &Scene, frames: &[u32], seed: u64) -> Vec<Grid<f32>> {
+    let options = RenderOptions {
+        samples_per_pixel: 4,
+        seed,
+        ..RenderOptions::default()
+    };
+    let plan = SpecklePlan::new(scene, options.formulas, seed).expect("small patterns");
+    let model = SpeckleModel::generate(scene, &plan).expect("small patterns");
+    let cancel = AtomicBool::new(false);
+    let render = |&frame: &u32| {
+        render_frame(scene, Some(&model), frame, &options, |_| (), &cancel)
+            .expect("a render")
+            .lasers
+            .remove(0)
+            .speckle
+    };
+    frames.iter().map(render).collect()
+}
+
+/// A part of an image.
+pub(crate) fn part(
+    image: &Grid<f32>,
+    [x0, y0]: [usize; 2],
+    [width, height]: [usize; 2],
+) -> Grid<f32> {
+    Grid::from_fn(width, height, |x, y| image[(x0 + x, y0 + y)])
+}
+
+/// The displacement in speckles, with y up.
+pub(crate) fn in_speckles(pixels: DVec2, geometry: &ImagingGeometry) -> DVec2 {
+    DVec2::new(pixels.x, -pixels.y) / geometry.speckle_size_in_pixels()
+}
+
+/// Four standard errors of the correlation of two images of `area` pixels with speckles of `size`
+/// pixels.
+///
+/// The variance is 0.585 h²/A for independent patterns of the area A. For correlated ones it is of the
+/// same size, at most 1.5² times as large (found for γ = 0.5, where it is largest).
+pub(crate) fn tolerance(area: f64, size: f64) -> f64 {
+    4.0 * 1.5 * 0.585_f64.sqrt() * size / area.sqrt()
+}

@@ -1,52 +1,55 @@
 //! Rays per second through the tracer's intersector, and camera samples per second of a render.
 //!
-//! The mesh is a displaced sphere of 262 144 triangles. Coherent rays come from a pinhole, scattered
-//! ones join random points of a sphere around the mesh.
+//! An open box of [−1, 1]³ m with a displaced sphere of 1 thousand, 262 thousand and 1 million
+//! triangles, and a square lamp of 0.5 m under its ceiling. Camera rays come 64 to a pixel of a
+//! 512² image, shadow rays go from where those end to points of the lamp, second rays leave there
+//! as from a diffuse surface, and scattered rays join random points of a sphere.
+//!
+//! The peer is the CWBVH of obvhs, in single precision with its own triangle test, one ray at a
+//! time, over the same triangles; the rectangles are two triangles each.
 
 #![expect(
     clippy::expect_used,
     reason = "a benchmark has no one to hand an error to"
 )]
 
-use std::{f64::consts::PI, hint::black_box, path::Path, sync::atomic::AtomicBool};
+use std::{f64::consts::PI, hint::black_box, path::Path, sync::atomic::AtomicBool, time::Duration};
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
+use obvhs::{
+    BvhBuildParams, cwbvh::CwBvh, cwbvh::builder::build_cwbvh_from_tris, ray::RayHit,
+    triangle::Triangle,
+};
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use tem00::tracer::{
-    Intersector, Ray, RenderOptions, Scene, Shape, SpeckleModel, SpecklePlan, TriangleMesh,
-    parse_scene, render_frame,
+    Hit, Intersector, LocalFrame, Ray, Rectangle, RenderOptions, Scene, Segment, Shape,
+    SpeckleModel, SpecklePlan, TriangleMesh, parse_scene, render_frame,
 };
 
-/// Rays per image side, and their square.
-const SIDE: usize = 128;
-const RAYS: usize = SIDE * SIDE;
+/// Every eighth pixel of a 512² image in both directions, and the rays of each.
+const PIXELS: usize = 64;
+const PITCH: usize = 8;
+const SAMPLES: usize = 64;
 
-/// A sphere of 512 × 256 quadrilaterals with ripples.
-fn displaced_sphere() -> TriangleMesh {
-    const COLUMNS: u32 = 512;
-    const ROWS: u32 = 256;
+/// A sphere of `columns` × `rows` quadrilaterals with ripples.
+fn displaced_sphere(columns: u32, rows: u32) -> TriangleMesh {
     let vertex = |i: u32, j: u32| {
         let (phi, theta) = (
-            2.0 * PI * f64::from(i) / f64::from(COLUMNS),
-            PI * (f64::from(j) + 0.5) / f64::from(ROWS + 1),
+            2.0 * PI * f64::from(i) / f64::from(columns),
+            PI * (f64::from(j) + 0.5) / f64::from(rows + 1),
         );
-        let radius = 1.0 + 0.05 * (13.0 * phi).sin() * (17.0 * theta).sin();
-        radius
-            * DVec3::new(
-                theta.sin() * phi.cos(),
-                theta.sin() * phi.sin(),
-                theta.cos(),
-            )
+        let radius = 0.5 + 0.025 * (13.0 * phi).sin() * (17.0 * theta).sin();
+        radius * direction(theta.cos(), phi) - 0.2 * DVec3::Y
     };
-    let vertices = (0..=ROWS)
-        .flat_map(|j| (0..COLUMNS).map(move |i| vertex(i, j)))
+    let vertices = (0..=rows)
+        .flat_map(|j| (0..columns).map(move |i| vertex(i, j)))
         .collect();
-    let triangles = (0..ROWS)
-        .flat_map(|j| (0..COLUMNS).map(move |i| (i, j)))
+    let triangles = (0..rows)
+        .flat_map(|j| (0..columns).map(move |i| (i, j)))
         .flat_map(|(i, j)| {
-            let at = |i: u32, j: u32| j * COLUMNS + i % COLUMNS;
+            let at = |i: u32, j: u32| j * columns + i % columns;
             let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
             [[a, b, c], [a, c, d]]
         })
@@ -54,29 +57,94 @@ fn displaced_sphere() -> TriangleMesh {
     TriangleMesh::new(vertices, triangles).expect("a valid mesh")
 }
 
-fn coherent_rays() -> Vec<Ray> {
-    // Seen from the equator: the triangles of the poles are slivers.
-    let origin = DVec3::new(4.0, 0.0, 0.0);
-    (0..RAYS)
+fn direction(cosine: f64, azimuth: f64) -> DVec3 {
+    let radius = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
+    DVec3::new(radius * azimuth.cos(), radius * azimuth.sin(), cosine)
+}
+
+/// The walls of the box, open towards +z, and the lamp.
+fn rectangles() -> Vec<Rectangle> {
+    let [x, y, z] = DVec3::AXES;
+    [
+        (-y, z, x),
+        (y, x, z),
+        (-z, x, y),
+        (-x, y, z),
+        (x, z, y),
+        (0.99 * y, 0.25 * x, 0.25 * z),
+    ]
+    .into_iter()
+    .map(|(centre, u, v)| Rectangle::new(centre, u, v).expect("a valid rectangle"))
+    .collect()
+}
+
+fn shapes(columns: u32, rows: u32) -> Vec<Shape> {
+    let mesh = Shape::from(displaced_sphere(columns, rows));
+    let walls = rectangles().into_iter().map(Shape::Rectangle);
+    walls.chain([mesh]).collect()
+}
+
+/// Rays of each kind, and the segments to the lamp.
+struct Work {
+    camera: Vec<Ray>,
+    second: Vec<Ray>,
+    scattered: Vec<Ray>,
+    shadows: Vec<Segment>,
+}
+
+impl Work {
+    fn new(intersector: &Intersector) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let camera = camera_rays(&mut random);
+        let (mut second, mut shadows) = (Vec::new(), Vec::new());
+        for ray in &camera {
+            let Some(hit) = intersector.intersect(ray) else {
+                continue;
+            };
+            let [u, v, cosine, azimuth]: [f64; 4] = random.random();
+            shadows.push(Segment {
+                from: hit.position,
+                from_normal: hit.normal,
+                to: DVec3::new(0.5 * u - 0.25, 0.99, 0.5 * v - 0.25),
+            });
+            let normal = hit.normal * -hit.normal.dot(ray.direction).signum();
+            let leaves = direction(cosine.sqrt(), 2.0 * PI * azimuth);
+            second.push(Ray {
+                origin: intersector.leave(hit.position, normal),
+                direction: LocalFrame::from_normal(normal).to_world(leaves),
+            });
+        }
+        Self {
+            camera,
+            second,
+            scattered: scattered_rays(&mut random),
+            shadows,
+        }
+    }
+}
+
+fn camera_rays(random: &mut ChaCha8Rng) -> Vec<Ray> {
+    let side = (PIXELS * PITCH) as f64;
+    (0..PIXELS * PIXELS * SAMPLES)
         .map(|i| {
-            let at = |k: usize| (k as f64 + 0.5) / SIDE as f64 - 0.5;
+            let [u, v]: [f64; 2] = random.random();
+            let pixel = i / SAMPLES;
+            let x = ((pixel % PIXELS * PITCH) as f64 + u) / side - 0.5;
+            let y = 0.5 - ((pixel / PIXELS * PITCH) as f64 + v) / side;
             Ray {
-                origin,
-                direction: DVec3::new(-1.0, 0.5 * at(i % SIDE), 0.5 * at(i / SIDE)).normalize(),
+                origin: 3.5 * DVec3::Z,
+                direction: DVec3::new(0.8 * x, 0.8 * y, -1.0).normalize(),
             }
         })
         .collect()
 }
 
-fn scattered_rays() -> Vec<Ray> {
-    let mut random = ChaCha8Rng::seed_from_u64(1);
+fn scattered_rays(random: &mut ChaCha8Rng) -> Vec<Ray> {
     let mut point = || {
         let [u, v]: [f64; 2] = random.random();
-        let (z, phi) = (2.0 * u - 1.0, 2.0 * PI * v);
-        let r = (1.0 - z * z).sqrt();
-        2.0 * DVec3::new(r * phi.cos(), r * phi.sin(), z)
+        0.9 * direction(2.0 * u - 1.0, 2.0 * PI * v)
     };
-    (0..RAYS)
+    (0..65_536)
         .map(|_| {
             let origin = point();
             Ray {
@@ -87,22 +155,113 @@ fn scattered_rays() -> Vec<Ray> {
         .collect()
 }
 
-fn intersections(criterion: &mut Criterion) {
-    let shapes = [Shape::from(displaced_sphere())];
-    let intersector = Intersector::build(&shapes).expect("a valid scene");
-    let mut group = criterion.benchmark_group("rays, one thread");
-    for (name, rays) in [
-        ("coherent", coherent_rays()),
-        ("scattered", scattered_rays()),
-    ] {
-        group.throughput(Throughput::Elements(rays.len() as u64));
-        group.bench_function(name, |bencher| {
-            bencher.iter(|| {
-                let hits = rays.iter().filter_map(|ray| intersector.intersect(ray));
-                black_box(hits.map(|hit| hit.distance).sum::<f64>())
-            });
-        });
+/// The same scene in the peer.
+struct Peer {
+    boxes: CwBvh,
+    triangles: Vec<Triangle>,
+}
+
+impl Peer {
+    fn new(mesh: &TriangleMesh) -> Self {
+        let mut triangles: Vec<Triangle> = mesh
+            .triangles()
+            .iter()
+            .map(|corners| triangle(corners.map(|index| mesh.vertices()[index as usize])))
+            .collect();
+        for rectangle in rectangles() {
+            let [a, b, c, d] = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+                .map(|(u, v)| rectangle.point(u, v));
+            triangles.extend([triangle([a, b, c]), triangle([a, c, d])]);
+        }
+        let preset = BvhBuildParams::slow_build();
+        let boxes = build_cwbvh_from_tris(&triangles, preset, &mut Duration::default());
+        Self { boxes, triangles }
     }
+
+    fn meet(&self, ray: &obvhs::ray::Ray, slot: usize) -> f32 {
+        self.triangles[self.boxes.primitive_indices[slot] as usize].intersect(ray)
+    }
+
+    fn intersect(&self, ray: &Ray) -> f32 {
+        let (origin, direction) = (ray.origin.as_vec3a(), ray.direction.as_vec3a());
+        let mut hit = RayHit::none();
+        let ray = obvhs::ray::Ray::new(origin, direction, 1e-6, f32::MAX);
+        let meet = |ray: &obvhs::ray::Ray, slot: usize| self.meet(ray, slot);
+        self.boxes.ray_traverse(ray, &mut hit, meet);
+        hit.t
+    }
+
+    fn visible(&self, segment: &Segment) -> bool {
+        let way = segment.to - segment.from;
+        let (origin, direction) = (segment.from.as_vec3a(), way.normalize().as_vec3a());
+        let end = way.length() as f32 - 1e-4;
+        let ray = obvhs::ray::Ray::new(origin, direction, 1e-4, end);
+        let meet = |ray: &obvhs::ray::Ray, slot: usize| self.meet(ray, slot);
+        self.boxes.ray_traverse_miss(ray, meet)
+    }
+}
+
+fn triangle(corners: [DVec3; 3]) -> Triangle {
+    let [v0, v1, v2] = corners.map(|corner| corner.as_vec3a());
+    Triangle { v0, v1, v2 }
+}
+
+fn intersections(criterion: &mut Criterion) {
+    for (columns, rows) in [(32, 16), (512, 256), (1000, 500)] {
+        let shapes = shapes(columns, rows);
+        let intersector = Intersector::build(&shapes).expect("a valid scene");
+        let peer = Peer::new(&displaced_sphere(columns, rows));
+        let work = Work::new(&intersector);
+        let name = format!("{} triangles, one thread", 2 * columns * rows);
+        let mut group = criterion.benchmark_group(name);
+        for (kind, rays) in [
+            ("camera", &work.camera),
+            ("second", &work.second),
+            ("scattered", &work.scattered),
+        ] {
+            let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
+            group.throughput(Throughput::Elements(rays.len() as u64));
+            group.bench_function(format!("{kind}, batch"), |bencher| {
+                bencher.iter(|| intersector.intersect_batch(black_box(rays), &mut hits));
+            });
+            group.bench_function(format!("{kind}, one by one"), |bencher| {
+                bencher.iter(|| {
+                    rays.iter()
+                        .filter_map(|ray| intersector.intersect(ray))
+                        .count()
+                });
+            });
+            group.bench_function(format!("{kind}, obvhs"), |bencher| {
+                bencher.iter(|| rays.iter().map(|ray| peer.intersect(ray)).sum::<f32>());
+            });
+        }
+        let mut visible = vec![false; work.shadows.len()];
+        let segments = &work.shadows;
+        group.throughput(Throughput::Elements(segments.len() as u64));
+        group.bench_function("shadow, batch", |bencher| {
+            bencher.iter(|| intersector.visible_batch(black_box(segments), &mut visible));
+        });
+        group.bench_function("shadow, one by one", |bencher| {
+            let visible = |way: &&Segment| intersector.visible(way.from, way.from_normal, way.to);
+            bencher.iter(|| segments.iter().filter(visible).count());
+        });
+        group.bench_function("shadow, obvhs", |bencher| {
+            bencher.iter(|| segments.iter().filter(|way| peer.visible(way)).count());
+        });
+        group.finish();
+    }
+}
+
+fn hierarchies(criterion: &mut Criterion) {
+    let mesh = displaced_sphere(1000, 500);
+    let mut group = criterion.benchmark_group("hierarchy of 1 000 000 triangles");
+    group.bench_function("build", |bencher| {
+        // A mesh moved has no hierarchy yet.
+        let fresh = || [Shape::from(mesh.translated(DVec3::ZERO))];
+        let build = |shapes: [Shape; 1]| Intersector::build(&shapes).expect("a valid scene");
+        bencher.iter_batched(fresh, build, criterion::BatchSize::PerIteration);
+    });
+    group.bench_function("obvhs", |bencher| bencher.iter(|| Peer::new(&mesh)));
     group.finish();
 }
 
@@ -150,7 +309,10 @@ fn renders(criterion: &mut Criterion) {
 
 criterion_group! {
     name = benches;
-    config = Criterion::default().sample_size(20);
-    targets = intersections, renders
+    config = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    targets = intersections, hierarchies, renders
 }
 criterion_main!(benches);

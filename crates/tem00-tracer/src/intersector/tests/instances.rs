@@ -38,10 +38,11 @@ fn instances_are_met_as_the_meshes_that_stand_where_they_do() {
 
 #[test]
 fn an_instance_far_smaller_than_the_scene_is_met_exactly() {
-    // A ball of a nanometre beside coordinates of a metre, and one of a micrometre.
+    // Balls of 0.1 pm and 1 nm, for which coordinates of a metre are coarser than single precision,
+    // and one of a micrometre.
     let mesh = Arc::new(ball(8, 1.0));
     let place = DVec3::new(0.7, 0.6, 0.5);
-    for scale in [1e-9, 1e-6] {
+    for scale in [1e-13, 1e-9, 1e-6] {
         let motion = RigidMotion::along(place).unwrap();
         let tiny = MeshInstance::new(Arc::clone(&mesh))
             .placed(scale, &motion)

@@ -124,7 +124,20 @@ impl Material {
     ///
     /// # Validity
     ///
-    /// The coat absorbs nothing and is thin beside what the image resolves. Energy is kept to 2e-4.
+    /// The coat absorbs nothing and is thin beside what the image resolves. Energy is kept to 3e-4.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use tem00_tracer::Material;
+    ///
+    /// let lacquer = Material::plastic(0.0, 1.5, 0.1)?;
+    /// // Seen head-on, facets reflect 4 % into a lobe of the density 1 / (π α²): F D / 4.
+    /// let highlight = lacquer.evaluate(DVec3::Z, DVec3::Z, 650e-9);
+    /// assert!((highlight - 0.04 / (4.0 * core::f64::consts::PI * 0.01)).abs() < 1e-12);
+    /// # Ok::<(), tem00_tracer::TracerError>(())
+    /// ```
     ///
     /// # Errors
     ///
@@ -158,6 +171,18 @@ impl Material {
 
     /// Creates a mirror of smooth metal, whose reflectance is Fresnel's for unpolarised light.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use tem00_tracer::{Material, Metal};
+    ///
+    /// let mirror = Material::polished(Metal::Silver)?;
+    /// let sample = mirror.sample(DVec3::Z, [0.5, 0.5], 650e-9).ok_or("nothing to draw")?;
+    /// assert!(sample.specular && sample.weight > 0.98);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     ///
     /// Returns an error if the index of a custom metal is impossible.
@@ -173,6 +198,26 @@ impl Material {
     /// is absorbed. The index is the same at every wavelength: a path then takes one way for all
     /// lasers of a scene, and every light costs one path. Take the index at the laser's wavelength;
     /// from 450 nm to 650 nm that of crown glass falls by 0.7 %.
+    ///
+    /// # Examples
+    ///
+    /// Light that enters glass is bent towards the normal and its radiance rises by n²:
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use tem00_tracer::Material;
+    ///
+    /// let glass = Material::dielectric(1.5)?;
+    /// let (sin, cos) = 30_f64.to_radians().sin_cos();
+    /// // Seen from inside, light comes from outside.
+    /// let inside = DVec3::new(-sin, 0.0, -cos);
+    /// let sample = glass.sample(inside, [0.9, 0.5], 650e-9).ok_or("nothing to draw")?;
+    /// assert!((sample.wi.x - 0.75).abs() < 1e-15); // 1.5 sin 30°
+    /// assert!((sample.weight - 2.25).abs() < 1e-15);
+    /// // Power that leaves the glass this way keeps its amount.
+    /// assert!((sample.weight * sample.eta_squared - 1.0).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     ///

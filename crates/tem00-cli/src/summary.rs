@@ -141,7 +141,8 @@ pub(crate) struct FrameLaser {
     pub(crate) power_on_target_w: f64,
     /// The same in units of the laser's power: 1 if the whole footprint is in the image.
     pub(crate) power_ratio: f64,
-    /// The contrast of the speckle in the lit pixels; `None` without speckle or without light.
+    /// The contrast of the speckle in the lit pixels; `None` without speckle, without light, or where
+    /// what to expect is not known.
     pub(crate) contrast: Option<ContrastSummary>,
 }
 

@@ -6,7 +6,9 @@ use std::{
     time::Instant,
 };
 
-use tem00_tracer::{Frame, RenderError, SpeckleModel, render_frame};
+use tem00_tracer::{
+    Filter, Frame, Method, RenderError, SpeckleModel, SurfaceSpeckle, render_frame,
+};
 
 use super::{
     Render,
@@ -193,7 +195,8 @@ impl Render<'_> {
         seconds: f64,
         paths: &FramePaths,
     ) -> FrameSummary {
-        let plans = self.plan.as_ref().map(|plan| plan.patterns());
+        let plans = self.plan.as_ref().filter(|_| self.knows_contrast());
+        let plans = plans.map(|plan| plan.patterns());
         let lasers = frame.lasers.iter().zip(&self.scene.lasers).enumerate();
         let lasers = lasers.map(|(index, (layers, laser))| {
             let plan = plans.and_then(|plans| plans.get(index));
@@ -207,6 +210,16 @@ impl Render<'_> {
             samples: self.samples_of(frame),
             seconds,
         }
+    }
+
+    /// Returns whether the expected contrast is that of one pattern, averaged over the area of a pixel
+    /// by a fixed number of camera samples.
+    fn knows_contrast(&self) -> bool {
+        let mut surfaces = self.scene.surfaces.iter();
+        self.options.method == Method::Path
+            && self.options.target_error.is_none()
+            && self.options.filter == Filter::default()
+            && surfaces.all(|surface| surface.speckle == SurfaceSpeckle::default())
     }
 
     /// Returns the number of samples that a frame took: with a target error, those of its pixels.

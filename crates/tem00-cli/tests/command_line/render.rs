@@ -275,3 +275,32 @@ fn surfaces_too_smooth_for_speckle_are_told() {
         message(&output)
     );
 }
+
+#[test]
+fn contrast_is_told_only_where_it_is_known() {
+    let folder = scene_folder();
+    let contrast = |scene: &str, options: &str| {
+        fs::write(folder.path().join("a.toml"), scene).expect("written");
+        assert_code(
+            &run(folder.path(), &format!("render a.toml -o . {options}")),
+            0,
+        );
+        let summary = fs::read(folder.path().join("a.json")).expect("a summary");
+        let summary: Value = serde_json::from_slice(&summary).expect("JSON");
+        summary["frames"][0]["lasers"][0]["contrast"].clone()
+    };
+    assert!(
+        contrast(SCENE, "").is_object(),
+        "one sharp polarised pattern"
+    );
+    // The expectation is that of box-shaped pixels, seen by a fixed number of camera samples.
+    let tent = SCENE.replace("[render]", "[render]\nfilter = \"tent\"");
+    assert!(contrast(&tent, "").is_null(), "another filter");
+    assert!(contrast(SCENE, "--method light").is_null(), "splats");
+    assert!(
+        contrast(SCENE, "--target-error 0.5").is_null(),
+        "any number"
+    );
+    let paper = SCENE.replace("[render]", "speckle.polarisation = 0\n[render]");
+    assert!(contrast(&paper, "").is_null(), "two patterns");
+}

@@ -293,7 +293,7 @@ fn renders(criterion: &mut Criterion) {
     let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
     let mut group = criterion.benchmark_group("camera samples, all threads");
     group.throughput(Throughput::Elements(
-        scene.samples_per_frame(options.samples_per_pixel),
+        scene.samples_per_frame(&options),
     ));
     for (name, speckle) in [
         ("laser line", None),

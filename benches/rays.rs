@@ -194,6 +194,7 @@ impl Peer {
     fn visible(&self, segment: &Segment) -> bool {
         let way = segment.to - segment.from;
         let (origin, direction) = (segment.from.as_vec3a(), way.normalize().as_vec3a());
+        #[expect(clippy::cast_possible_truncation, reason = "the peer is in f32")]
         let end = way.length() as f32 - 1e-4;
         let ray = obvhs::ray::Ray::new(origin, direction, 1e-4, end);
         let meet = |ray: &obvhs::ray::Ray, slot: usize| self.meet(ray, slot);
@@ -292,9 +293,7 @@ fn renders(criterion: &mut Criterion) {
     let plan = SpecklePlan::new(&scene, options.formulas, 0).expect("a small pattern");
     let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
     let mut group = criterion.benchmark_group("camera samples, all threads");
-    group.throughput(Throughput::Elements(
-        scene.samples_per_frame(&options),
-    ));
+    group.throughput(Throughput::Elements(scene.samples_per_frame(&options)));
     for (name, speckle) in [
         ("laser line", None),
         ("laser line with speckle", Some(&model)),

@@ -20,7 +20,7 @@ fn render(scene: &str, seed: u64, samples_per_pixel: u32) -> Frame {
     let options = RenderOptions {
         samples_per_pixel,
         seed,
-        ..RenderOptions::default()
+        ..RenderOptions::from(&scene.render)
     };
     let cancel = AtomicBool::new(false);
     render_frame(&scene, None, 0, &options, |_| (), &cancel).expect("a render")
@@ -150,4 +150,122 @@ fn an_area_lamp_lights_by_its_form_factor() {
         "p = {:e}, {radiances:?} | {expected}",
         test.p_value
     );
+}
+
+/// Two plates that face each other, `GAP` apart, under a laser that stands just before the upper one
+/// and lights the lower one.
+mod facing_plates {
+    use tem00::beam::GaussianBeam;
+
+    use super::*;
+
+    const GAP: f64 = 0.05;
+    /// Half the side of the upper plate; the lower one is larger than all light.
+    const HALF: f64 = 0.1;
+    const LOWER: f64 = 0.7;
+    const UPPER: f64 = 0.5;
+    const POWER: f64 = 2.0;
+    const WAIST: f64 = 0.5e-6;
+    const CELLS: usize = 160;
+
+    /// The middles of the cells of an interval about 0.
+    fn cells(half: f64) -> impl Iterator<Item = f64> + Clone {
+        (0..CELLS).map(move |i| half * ((2 * i + 1) as f64 / CELLS as f64 - 1.0))
+    }
+
+    /// Returns the irradiance at `x` off the axis of one plate by the radiance, round the axis, of a
+    /// square of the other.
+    fn irradiance(x: f64, half: f64, radiance: impl Fn(f64) -> f64) -> f64 {
+        let cell = (2.0 * half / CELLS as f64).powi(2);
+        let rows = cells(half).flat_map(|u| cells(half).map(move |v| (u, v)));
+        let share = |(u, v): (f64, f64)| {
+            let squared = (u - x).powi(2) + v * v + GAP * GAP;
+            radiance(u.hypot(v)) * GAP * GAP / (squared * squared)
+        };
+        rows.map(share).sum::<f64>() * cell
+    }
+
+    /// Returns the radiance of the upper plate at `x` off the axis, of light from the lower one.
+    fn upper_radiance(x: f64) -> f64 {
+        let beam = GaussianBeam::from_waist(650e-9, WAIST).expect("a valid beam");
+        let pi = std::f64::consts::PI;
+        let lower = |r: f64| LOWER / pi * POWER * beam.irradiance_per_watt(r, GAP);
+        // Beyond four radii lie 1e-14 of the power.
+        UPPER / pi * irradiance(x, 4.0 * beam.radius_at(GAP), lower)
+    }
+
+    /// Returns the radiance of the lower plate at `x` off the axis, of light that has met all of
+    /// lower, upper and lower plate.
+    fn lower_radiance(x: f64) -> f64 {
+        const KNOTS: usize = 64;
+        let step = HALF * 2.0_f64.sqrt() / (KNOTS - 1) as f64;
+        let table: Vec<f64> = (0..=KNOTS)
+            .map(|i| upper_radiance(i as f64 * step))
+            .collect();
+        let upper = |r: f64| {
+            let (knot, part) = ((r / step).floor(), (r / step).fract());
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a distance within the table"
+            )]
+            let knot = knot as usize;
+            table[knot] + part * (table[knot + 1] - table[knot])
+        };
+        LOWER / std::f64::consts::PI * irradiance(x, HALF, upper)
+    }
+
+    /// Returns the light that has met more than one surface, where a camera between the plates looks.
+    fn seen(camera_height: f64, height: f64, max_depth: u32, seed: u64) -> f64 {
+        let scene = format!(
+            r#"
+            [render]
+            max_depth = {max_depth}
+            [camera]
+            position = [0.09, 0, {camera_height}]
+            look_at = [0.01, 0, {height}]
+            up = [0, 1, 0]
+            focal_length = 0.05
+            pixel_pitch = "20 um"
+            resolution = [8, 8]
+            depth_of_field = false
+            [[laser]]
+            wavelength = "650 nm"
+            power = {POWER}
+            position = [0, 0, {GAP}]
+            look_at = [0, 0, 0]
+            spot = {{ waist_radius = {WAIST}, waist_distance = 0 }}
+            [[surface]]
+            rectangle = {{ normal = [0, 0, 1], size = [2, 2] }}
+            lambertian = {{ reflectance = {LOWER} }}
+            [[surface]]
+            rectangle = {{ centre = [0, 0, {above}], normal = [0, 0, -1], size = [{side}, {side}] }}
+            lambertian = {{ reflectance = {UPPER} }}
+            "#,
+            side = 2.0 * HALF,
+            // The laser's aperture must not lie behind the plate.
+            above = GAP * (1.0 + 1e-9),
+        );
+        mean(render(&scene, seed, 256).lasers[0].incoherent.values())
+    }
+
+    #[test]
+    fn plates_that_face_each_other_pass_light_to_and_fro() {
+        for (name, camera, at, depth, expected) in [
+            ("upper", 0.01, GAP, 2, upper_radiance(0.01)),
+            ("lower", 0.04, 0.0, 3, lower_radiance(0.01)),
+        ] {
+            let radiances: Vec<f64> = (0..20).map(|seed| seen(camera, at, depth, seed)).collect();
+            let test = t_test_mean(&radiances, expected).expect("renders with noise");
+            assert!(
+                test.p_value > SIGNIFICANCE,
+                "{name}: p = {:e}, {radiances:?} | {expected}",
+                test.p_value
+            );
+            // Their spread is small enough to tell one reflection from two: 9 % more light.
+            let squares = radiances.iter().map(|r| (r / expected - 1.0).powi(2));
+            let error = (squares.sum::<f64>() / 400.0).sqrt();
+            assert!(error < 1.2e-2, "{name}: standard error {error:e}");
+        }
+    }
 }

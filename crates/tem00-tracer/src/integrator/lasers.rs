@@ -101,10 +101,11 @@ impl<'a> Integrator<'a> {
         if !self.rays_meet_lasers() || path.rough == 0 || path.depth > self.rules.max_depth {
             return;
         }
-        let free = hit.map_or(f64::INFINITY, |hit| hit.distance);
+        let intersector = self.intersector;
+        let is_hidden = |distance| hit.is_some_and(|hit| intersector.hides(hit, ray, distance));
         for (index, laser) in self.lasers.iter().enumerate() {
             let aperture = laser.aperture_distance(ray.origin, ray.direction);
-            if aperture.is_none_or(|distance| distance > free) {
+            if aperture.is_none_or(is_hidden) {
                 continue;
             }
             let radiance = laser.radiance(ray.origin, ray.direction);

@@ -7,7 +7,7 @@ use super::Integrator;
 
 /// The wavelength at which materials are evaluated for lamps, in metres: lamps are white and
 /// materials grey under them.
-const LAMP_WAVELENGTH: f64 = 550e-9;
+pub(super) const LAMP_WAVELENGTH: f64 = 550e-9;
 
 /// Which paths are followed, and how they find light.
 #[derive(Clone, Copy, Debug)]
@@ -60,13 +60,6 @@ impl Spectrum {
             of_laser,
             of_lamps,
         }
-    }
-}
-
-impl Spectrum {
-    /// Returns the wavelength that stands for the lamps, in metres.
-    pub(super) fn lamp_wavelength(&self) -> f64 {
-        LAMP_WAVELENGTH
     }
 }
 

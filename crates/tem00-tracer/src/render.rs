@@ -126,12 +126,10 @@ pub fn render_frame(
 /// Paths from the camera find all but the light that a mirror or glass was the first to meet; where
 /// they look for the beams themselves, they find that, too.
 fn light_traced(scene: &Scene, options: &RenderOptions) -> Option<LightShare> {
-    match (options.method, options.laser_events) {
-        (Method::Light, _) => Some(LightShare::All),
-        (Method::Path, LaserEvents::Beam) => scene
-            .has_specular_surfaces()
-            .then_some(LightShare::SpecularFirst),
-        (Method::Path, LaserEvents::Sampled) => None,
+    match options.method {
+        Method::Light => Some(LightShare::All),
+        Method::Path if options.samples_beams() || !scene.has_specular_surfaces() => None,
+        Method::Path => Some(LightShare::SpecularFirst),
     }
 }
 

@@ -1,6 +1,6 @@
 use crate::{
-    Camera, Formulas, Intersector, Lamp, LampEvents, Laser, LaserEvents, Method, RenderOptions,
-    Scene, sampler::Sequence, speckle::SpeckleFrame,
+    Camera, Formulas, Intersector, Lamp, LampEvents, Laser, Method, RenderOptions, Scene,
+    sampler::Sequence, speckle::SpeckleFrame,
 };
 
 use super::Integrator;
@@ -17,7 +17,8 @@ pub(crate) struct PathRules {
     pub max_depth: u32,
     /// Whether the lasers' light is found from the camera at all.
     pub finds_lasers: bool,
-    pub laser_events: LaserEvents,
+    /// Whether directions towards lasers are drawn, and rays meet their beams by chance.
+    pub samples_beams: bool,
     pub lamp_events: LampEvents,
 }
 
@@ -27,7 +28,7 @@ impl From<&RenderOptions> for PathRules {
             formulas: options.formulas,
             max_depth: options.max_depth.unwrap_or(u32::MAX),
             finds_lasers: options.method == Method::Path,
-            laser_events: options.laser_events,
+            samples_beams: options.samples_beams(),
             lamp_events: options.lamp_events,
         }
     }

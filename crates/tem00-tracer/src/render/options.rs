@@ -119,6 +119,12 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
+    /// Tells whether directions towards lasers are drawn, and paths meet their beams by chance; the
+    /// printed formulas have no such directions.
+    pub(crate) fn samples_beams(&self) -> bool {
+        self.formulas == Formulas::Derived && self.laser_events == LaserEvents::Sampled
+    }
+
     /// Checks the options and returns the part of the camera's image that is rendered.
     pub(super) fn area(&self, camera: &Camera) -> Result<Crop, TracerError> {
         if self.samples_per_pixel == 0 {

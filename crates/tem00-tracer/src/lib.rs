@@ -88,6 +88,8 @@ mod scene;
 mod scene_file;
 mod shape;
 mod speckle;
+#[cfg(test)]
+mod testing;
 mod trajectory;
 
 pub use camera::{

@@ -80,6 +80,8 @@ pub(crate) struct FilmLayout<'a> {
     pub strips: usize,
     /// Whether the number of samples depends on the radiance.
     pub adaptive: bool,
+    /// Whether light is followed from the lasers, too.
+    pub light_traced: bool,
 }
 
 impl Film {

@@ -159,6 +159,22 @@ impl Intersector {
         position + self.clearance * normal
     }
 
+    /// Returns the ray that [leaves](Self::leave) a surface with this unit normal, of either sign.
+    pub(crate) fn ray_from(&self, position: DVec3, normal: DVec3, direction: DVec3) -> Ray {
+        let side = normal * normal.dot(direction).signum();
+        Ray {
+            origin: self.leave(position, side),
+            direction,
+        }
+    }
+
+    /// Tells whether a ray's nearest hit hides what lies at `distance` along it, in metres; what lies
+    /// on the surface itself it does not hide.
+    pub(crate) fn hides(&self, hit: &Hit, ray: &Ray, distance: f64) -> bool {
+        let height = (distance - hit.distance) * hit.normal.dot(ray.direction).abs();
+        height > self.clearance
+    }
+
     fn hit(&self, query: &Nearest) -> Option<Hit> {
         let best = query.best?;
         self.bodies.body(best.1).hit(query, best)

@@ -1,8 +1,9 @@
-//! A minimal reference path tracer that shows how laser beams, speckle and its decorrelation meet.
+//! A reference path tracer that shows how laser beams, speckle and its decorrelation meet.
 //!
 //! A scene of surfaces, lasers and lamps is seen by a camera with a real lens and sensor. Light that
-//! goes from a laser over *one* surface into the camera is coherent: each camera sample of it is
-//! multiplied by the speckle pattern at its place in the image. All other light is left as it is.
+//! meets *one* rough surface on its way from a laser to the camera, and any number of mirrors and
+//! glass, is coherent: each camera sample of it is multiplied by the speckle pattern at its place in
+//! the image. All other light is left as it is.
 //!
 //! # Conventions
 //!
@@ -19,9 +20,11 @@
 //!
 //! # Scope and non-goals
 //!
-//! Flat-shaded meshes, rectangles and spheres; diffuse and rough metallic surfaces; a camera that is
-//! sharp everywhere. Lasers are sampled by next-event estimation only: they do not pass through
-//! mirrors or lenses. Each laser is traced at its own wavelength and lamps are white.
+//! Rectangles, spheres, tubes and meshes; diffuse surfaces, metals, plastic, mirrors and clear glass; a
+//! thin lens with depth of field, tilt and distortion; moving objects, lasers and cameras. Each laser
+//! is traced at its own wavelength, and lamps are white. There is no polarisation, no dispersion, and
+//! nothing scatters between surfaces. Laser light that meets mirrors or glass both before and after
+//! a rough surface is not found unless lasers are [sampled](LaserEvents::Sampled).
 //!
 //! # Example
 //!
@@ -85,6 +88,8 @@ mod scene;
 mod scene_file;
 mod shape;
 mod speckle;
+#[cfg(test)]
+mod testing;
 mod trajectory;
 
 pub use camera::{

@@ -57,9 +57,9 @@ impl Scene {
 /// Renders one frame, on the threads of the current rayon pool.
 ///
 /// One pass over the image serves all lasers and lamps. Without a `speckle` model every speckle factor
-/// is 1. `progress` is told, from any thread, the number of camera samples done since its last call;
-/// once `cancel` is set, the render stops within a thousand samples per thread. The result has the
-/// same bits for any number of threads.
+/// is 1. `progress` is told, from any thread, the number of camera samples and light paths done since
+/// its last call; once `cancel` is set, the render stops within some thousand of them per thread. The
+/// result has the same bits for any number of threads.
 ///
 /// # Errors
 ///
@@ -93,17 +93,19 @@ pub fn render_frame(
     let speckle = speckle.map(|model| model.in_frame(scene, frame));
     let integrator =
         Integrator::new(scene, frame, &intersector, options).with_speckle(speckle.as_ref());
+    let light_share = light_traced(scene, options);
     let pass = PathPass {
         integrator: &integrator,
         options,
         filter: FilterSampler::new(options.filter)?,
         frame,
         area,
+        light_traced: light_share.is_some(),
         progress: &progress,
         cancel,
     };
     let mut rendered = pass.render()?;
-    if let Some(share) = light_traced(scene, options) {
+    if let Some(share) = light_share {
         let tracer = LightTracer {
             scene,
             camera: integrator.camera(),
@@ -124,12 +126,10 @@ pub fn render_frame(
 /// Paths from the camera find all but the light that a mirror or glass was the first to meet; where
 /// they look for the beams themselves, they find that, too.
 fn light_traced(scene: &Scene, options: &RenderOptions) -> Option<LightShare> {
-    match (options.method, options.laser_events) {
-        (Method::Light, _) => Some(LightShare::All),
-        (Method::Path, LaserEvents::Beam) => scene
-            .has_specular_surfaces()
-            .then_some(LightShare::SpecularFirst),
-        (Method::Path, LaserEvents::Sampled) => None,
+    match options.method {
+        Method::Light => Some(LightShare::All),
+        Method::Path if options.samples_beams() || !scene.has_specular_surfaces() => None,
+        Method::Path => Some(LightShare::SpecularFirst),
     }
 }
 
@@ -155,5 +155,7 @@ fn add_light_traced(
     Ok(())
 }
 
+#[cfg(test)]
+mod edge_cases;
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@ mod sphere;
 use glam::DVec3;
 
 pub use self::{cylinder::Cylinder, instance::MeshInstance, rectangle::Rectangle, sphere::Sphere};
-use crate::{RigidMotion, TracerError, TriangleMesh};
+use crate::{LocalFrame, RigidMotion, TracerError, TriangleMesh};
 
 /// A shape that light can meet.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,6 +91,21 @@ pub struct Hit {
     pub surface: usize,
 }
 
+impl Hit {
+    /// Returns local axes whose z is the normal with which light is scattered towards a viewer in
+    /// this direction.
+    ///
+    /// Where the interpolated normal shows the viewer its other side, it is the surface's own.
+    pub(crate) fn axes_seen_from(&self, towards: DVec3) -> LocalFrame {
+        let agree = self.shading_normal.dot(towards) * self.normal.dot(towards) > 0.0;
+        LocalFrame::from_normal(if agree {
+            self.shading_normal
+        } else {
+            self.normal
+        })
+    }
+}
+
 fn check_point(parameter: &'static str, point: DVec3) -> Result<(), TracerError> {
     if point.is_finite() {
         return Ok(());
@@ -112,6 +127,27 @@ fn direction(parameter: &'static str, vector: DVec3) -> Result<DVec3, TracerErro
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_interpolated_normal_counts_for_those_who_see_its_front() {
+        let hit = Hit {
+            distance: 1.0,
+            position: DVec3::ZERO,
+            normal: DVec3::Z,
+            shading_normal: DVec3::new(0.6, 0.0, 0.8),
+            surface: 0,
+        };
+        let (from_above, from_beside) = (DVec3::Z, DVec3::new(-0.8, 0.0, 0.1));
+        for (towards, normal) in [
+            (from_above, hit.shading_normal),
+            (-from_above, hit.shading_normal),
+            (from_beside, hit.normal),
+            (-from_beside, hit.normal),
+        ] {
+            let axes = hit.axes_seen_from(towards);
+            assert_eq!(axes.normal(), normal, "from {towards}");
+        }
+    }
 
     #[test]
     fn translation_moves_the_bounds() {

@@ -9,6 +9,10 @@ use crate::TracerError;
 const LAYERS_PER_LASER: u64 = 5;
 const COMMON_LAYERS: u64 = 7;
 
+/// What is followed from one laser, before it is added to that laser's layers: four sums in double
+/// precision, and four layers made of them.
+const LIGHT_LAYERS: u64 = 12;
+
 /// Checks that the layers fit into the memory that the system says is available (Linux).
 ///
 /// Many systems grant any memory that is asked for and end the program when it is used.
@@ -29,7 +33,8 @@ fn needed(layout: &FilmLayout<'_>) -> u64 {
     let pixels = (layout.area.width as u64).saturating_mul(layout.area.height as u64);
     let lasers = layout.wavelengths.len() as u64;
     let totals = if layout.adaptive { 2 } else { 0 };
-    let layers = LAYERS_PER_LASER * lasers + COMMON_LAYERS + totals;
+    let light = if layout.light_traced { LIGHT_LAYERS } else { 0 };
+    let layers = LAYERS_PER_LASER * lasers + COMMON_LAYERS + totals + light;
     pixels.saturating_mul(layers * size_of::<f32>() as u64)
 }
 
@@ -59,9 +64,16 @@ mod tests {
             },
             strips: 1,
             adaptive: false,
+            light_traced: false,
         };
         // 50 · 5 + 7 layers of 4 MiB.
         assert_eq!(needed(&layout), 257 << 22, "bytes");
+        let light_traced = FilmLayout {
+            light_traced: true,
+            ..layout
+        };
+        // One laser at a time: 32 bytes of sums and 16 of layers.
+        assert_eq!(needed(&light_traced), (257 << 22) + (48 << 20), "bytes");
     }
 
     #[test]

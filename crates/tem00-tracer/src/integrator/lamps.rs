@@ -2,6 +2,7 @@ use super::{
     Integrator,
     batch::{Arrival, Batch, Path},
     lasers::number,
+    rules::LAMP_WAVELENGTH,
 };
 use crate::{Hit, Lamp, LampEvents, Ray, sampler::Use};
 
@@ -59,7 +60,7 @@ impl<'a> Integrator<'a> {
         let Some(wi) = vertex.towards(light.direction) else {
             return;
         };
-        let reflected = vertex.reflected(wi, self.spectrum.lamp_wavelength());
+        let reflected = vertex.reflected(wi, LAMP_WAVELENGTH);
         let radiance = self.lamp_throughput(&path, batch) * light.radiance_over_pdf * reflected;
         if radiance <= 0.0 {
             return;

@@ -4,7 +4,7 @@ use super::{
     lamps::share,
     vertex::Vertex,
 };
-use crate::{Formulas, Hit, LaserEvents, Ray, laser::Illumination, sampler::Use};
+use crate::{Formulas, Hit, Ray, laser::Illumination, sampler::Use};
 
 impl<'a> Integrator<'a> {
     /// Connects every rough surface point to every laser.
@@ -66,28 +66,22 @@ impl<'a> Integrator<'a> {
         sample: &CameraSample,
     ) -> Option<(Illumination, Option<f64>)> {
         let source = &self.lasers[laser];
-        match (self.rules.formulas, self.rules.laser_events) {
-            (Formulas::AsPrinted, _) => {
-                let normal = vertex.seen_normal();
-                let light = source.illuminate_as_printed(vertex.position, normal)?;
-                Some((light, None))
-            }
-            (Formulas::Derived, LaserEvents::Beam) => {
-                Some((source.illuminate(vertex.position)?, None))
-            }
-            (Formulas::Derived, LaserEvents::Sampled) => {
-                let u = self
-                    .sequence
-                    .pair(sample.stream, Use::Laser(path.depth, number(laser)));
-                let event = source.sampled_event(vertex.position, u)?;
-                let light = Illumination {
-                    source: event.source,
-                    direction: event.direction,
-                    irradiance: event.value,
-                };
-                Some((light, Some(event.pdf)))
-            }
+        if self.rules.formulas == Formulas::AsPrinted {
+            let light = source.illuminate_as_printed(vertex.position, vertex.seen_normal())?;
+            return Some((light, None));
         }
+        if !self.rules.samples_beams {
+            return Some((source.illuminate(vertex.position)?, None));
+        }
+        let purpose = Use::Laser(path.depth, number(laser));
+        let u = self.sequence.pair(sample.stream, purpose);
+        let event = source.sampled_event(vertex.position, u)?;
+        let light = Illumination {
+            source: event.source,
+            direction: event.direction,
+            irradiance: event.value,
+        };
+        Some((light, Some(event.pdf)))
     }
 
     /// Takes the light of the sampled lasers whose beams a ray from a rough surface runs back.
@@ -101,10 +95,11 @@ impl<'a> Integrator<'a> {
         if !self.rays_meet_lasers() || path.rough == 0 || path.depth > self.rules.max_depth {
             return;
         }
-        let free = hit.map_or(f64::INFINITY, |hit| hit.distance);
+        let intersector = self.intersector;
+        let is_hidden = |distance| hit.is_some_and(|hit| intersector.hides(hit, ray, distance));
         for (index, laser) in self.lasers.iter().enumerate() {
             let aperture = laser.aperture_distance(ray.origin, ray.direction);
-            if aperture.is_none_or(|distance| distance > free) {
+            if aperture.is_none_or(is_hidden) {
                 continue;
             }
             let radiance = laser.radiance(ray.origin, ray.direction);
@@ -122,10 +117,7 @@ impl<'a> Integrator<'a> {
 
     /// Tells whether rays can find lasers by chance.
     pub(super) fn rays_meet_lasers(&self) -> bool {
-        self.rules.finds_lasers
-            && self.rules.laser_events == LaserEvents::Sampled
-            && self.rules.formulas == Formulas::Derived
-            && !self.lasers.is_empty()
+        self.rules.finds_lasers && self.rules.samples_beams && !self.lasers.is_empty()
     }
 
     fn laser_throughput(&self, laser: usize, path: &Path, batch: &Batch<'_>) -> f64 {

@@ -1,13 +1,13 @@
 use crate::{
-    Camera, Formulas, Intersector, Lamp, LampEvents, Laser, LaserEvents, Method, RenderOptions,
-    Scene, sampler::Sequence, speckle::SpeckleFrame,
+    Camera, Formulas, Intersector, Lamp, LampEvents, Laser, Method, RenderOptions, Scene,
+    sampler::Sequence, speckle::SpeckleFrame,
 };
 
 use super::Integrator;
 
 /// The wavelength at which materials are evaluated for lamps, in metres: lamps are white and
 /// materials grey under them.
-const LAMP_WAVELENGTH: f64 = 550e-9;
+pub(super) const LAMP_WAVELENGTH: f64 = 550e-9;
 
 /// Which paths are followed, and how they find light.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +17,8 @@ pub(crate) struct PathRules {
     pub max_depth: u32,
     /// Whether the lasers' light is found from the camera at all.
     pub finds_lasers: bool,
-    pub laser_events: LaserEvents,
+    /// Whether directions towards lasers are drawn, and rays meet their beams by chance.
+    pub samples_beams: bool,
     pub lamp_events: LampEvents,
 }
 
@@ -27,7 +28,7 @@ impl From<&RenderOptions> for PathRules {
             formulas: options.formulas,
             max_depth: options.max_depth.unwrap_or(u32::MAX),
             finds_lasers: options.method == Method::Path,
-            laser_events: options.laser_events,
+            samples_beams: options.samples_beams(),
             lamp_events: options.lamp_events,
         }
     }
@@ -60,13 +61,6 @@ impl Spectrum {
             of_laser,
             of_lamps,
         }
-    }
-}
-
-impl Spectrum {
-    /// Returns the wavelength that stands for the lamps, in metres.
-    pub(super) fn lamp_wavelength(&self) -> f64 {
-        LAMP_WAVELENGTH
     }
 }
 

@@ -2,15 +2,13 @@ use core::{f64::consts::PI, sync::atomic::AtomicBool};
 use std::path::Path;
 
 use glam::DVec3;
-use tem00_statistics::t_test_mean;
 
 use crate::{
     Environment, Frame, Lamp, LampEvents, LaserEvents, Material, Metal, RenderOptions, Scene,
     parse_scene, render_frame,
+    testing::{assert_mean, mean},
 };
 
-/// A correct integrator fails a comparison with this probability at a given set of seeds.
-const SIGNIFICANCE: f64 = 1e-4;
 const SEEDS: u64 = 20;
 
 fn scene(text: &str) -> Scene {
@@ -27,28 +25,6 @@ fn options(samples_per_pixel: u32, seed: u64) -> RenderOptions {
         seed,
         ..RenderOptions::default()
     }
-}
-
-fn mean(values: &[f32]) -> f64 {
-    values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len() as f64
-}
-
-/// Asserts that renders with different seeds have the mean `expected`, and can tell by `precision`.
-fn assert_mean(name: &str, values: &[f64], expected: f64, precision: f64) {
-    let test = t_test_mean(values, expected).unwrap();
-    assert!(
-        test.p_value > SIGNIFICANCE,
-        "{name}: p = {:e}, {values:?} | {expected}",
-        test.p_value
-    );
-    let n = values.len() as f64;
-    let average = values.iter().sum::<f64>() / n;
-    let squares = values.iter().map(|v| (v - average).powi(2)).sum::<f64>();
-    let error = (squares / (n * (n - 1.0))).sqrt();
-    assert!(
-        error <= precision,
-        "{name}: the standard error {error:e} exceeds {precision:e}"
-    );
 }
 
 /// A ball of 0.1 m before the camera, or around it.

@@ -27,13 +27,7 @@ impl<'a> Vertex<'a> {
     pub(super) fn new(ray: &Ray, hit: &Hit, material: &'a Material) -> Option<Self> {
         let back = -ray.direction;
         let cosine = hit.normal.dot(back);
-        // Where the interpolated normal shows its other side, the surface's own does not.
-        let normal = if hit.shading_normal.dot(back) * cosine > 0.0 {
-            hit.shading_normal
-        } else {
-            hit.normal
-        };
-        let axes = LocalFrame::from_normal(normal);
+        let axes = hit.axes_seen_from(back);
         let wo = axes.to_local(back);
         (wo.z * cosine > 0.0).then_some(Self {
             position: hit.position,
@@ -93,12 +87,7 @@ impl<'a> Vertex<'a> {
 
     /// Returns the ray that leaves the surface in the local direction `wi`.
     pub(super) fn leave(&self, intersector: &Intersector, wi: DVec3) -> Ray {
-        let direction = self.axes.to_world(wi);
-        let side = self.normal * self.normal.dot(direction).signum();
-        Ray {
-            origin: intersector.leave(self.position, side),
-            direction,
-        }
+        intersector.ray_from(self.position, self.normal, self.axes.to_world(wi))
     }
 
     /// Returns the way from the surface to a point.

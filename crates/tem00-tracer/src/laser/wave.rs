@@ -26,7 +26,7 @@ impl Laser {
                     return None;
                 }
                 let in_fan = along(light.ex) / depth;
-                let secant = 1.0_f64.hypot(in_fan);
+                let secant = (1.0 + in_fan * in_fan).sqrt();
                 let from_waist = depth * secant - line.waist_slant_distance_at(in_fan);
                 let across = along(light.ey) * line.focus().curvature_at(from_waist);
                 ([in_fan, across * secant], [light.ex, light.ey, light.ez])

@@ -5,7 +5,9 @@ use super::{
     draws::{DrawKey, Draws},
     splats::{Splat, Splats},
 };
-use crate::{Crop, Hit, Laser, LocalFrame, Material, Ray, Segment, speckle::SpecklePoint};
+use crate::{
+    Crop, EmittedRay, Hit, Laser, LocalFrame, Material, Ray, Segment, speckle::SpecklePoint,
+};
 
 /// Surfaces that a light path always leaves again before it may end by chance.
 const CERTAIN_BOUNCES: u32 = 2;
@@ -44,6 +46,8 @@ struct Vertex<'a> {
 struct Connection<'a> {
     vertex: &'a Vertex<'a>,
     pixel: DVec2,
+    /// The unit normal with which light is scattered, on the side that the camera sees.
+    normal: DVec3,
     /// The number of the pixel in the part of the image that is rendered.
     index: usize,
     /// In W/(m² sr).
@@ -91,10 +95,12 @@ impl<'a> Walk<'a> {
     }
 
     fn emit(&self, draws: &mut Draws) -> Photon {
-        let emitted = self.laser.sample_ray(draws.start());
+        let EmittedRay { ray, flux } = self.laser.sample_ray(draws.start());
+        // The aperture may lie in a surface.
+        let intersector = self.tracer.intersector;
         Photon {
-            ray: emitted.ray,
-            flux: emitted.flux,
+            ray: intersector.ray_from(ray.origin, ray.direction, ray.direction),
+            flux,
             rough: 0,
         }
     }
@@ -160,11 +166,13 @@ impl<'a> Walk<'a> {
         let seen = self.tracer.camera.connect(from, lens)?;
         let index = pixel_index(seen.pixel, &self.tracer.area)?;
         let towards = (seen.lens_point - from).try_normalize()?;
-        let scattered = vertex.scattered(towards, self.laser.wavelength());
+        let axes = vertex.hit.axes_seen_from(towards);
+        let scattered = vertex.scattered(towards, &axes, self.laser.wavelength());
         let radiance = vertex.photon.flux * scattered * seen.importance;
         let connection = Connection {
             vertex,
             pixel: seen.pixel,
+            normal: axes.normal() * axes.normal().dot(towards).signum(),
             index,
             radiance,
         };
@@ -201,15 +209,10 @@ impl<'a> Walk<'a> {
     fn speckle_factor(&self, connection: &Connection<'_>) -> f64 {
         let tracer = self.tracer;
         let hit = connection.vertex.hit;
-        let towards = tracer.camera.position() - hit.position;
         let point = SpecklePoint {
             pixel: connection.pixel,
             position: hit.position,
-            normal: if towards.dot(hit.normal) < 0.0 {
-                -hit.normal
-            } else {
-                hit.normal
-            },
+            normal: connection.normal,
             surface: hit.surface,
         };
         tracer
@@ -235,12 +238,13 @@ impl<'a> Walk<'a> {
             }
             flux /= survival;
         }
-        let normal = vertex.hit.normal;
-        let leaving = normal * direction.dot(normal).signum();
-        let ray = Ray {
-            origin: self.tracer.intersector.leave(vertex.hit.position, leaving),
-            direction,
-        };
+        let Hit {
+            position, normal, ..
+        } = vertex.hit;
+        let ray = self
+            .tracer
+            .intersector
+            .ray_from(position, normal, direction);
         (flux > 0.0).then_some(Photon {
             ray,
             flux,
@@ -250,16 +254,9 @@ impl<'a> Walk<'a> {
 }
 
 impl Vertex<'_> {
-    /// Returns the share of the flux that goes towards the unit vector `out`, per steradian.
-    fn scattered(&self, out: DVec3, wavelength: f64) -> f64 {
-        // Where the interpolated normal shows its other side, a path from the camera takes the
-        // surface's own.
-        let shows = self.hit.shading_normal.dot(out) * self.hit.normal.dot(out) > 0.0;
-        let axes = if shows {
-            self.axes
-        } else {
-            LocalFrame::from_normal(self.hit.normal)
-        };
+    /// Returns the share of the flux that goes towards the unit vector `out`, per steradian, where
+    /// light is scattered in these `axes`.
+    fn scattered(&self, out: DVec3, axes: &LocalFrame, wavelength: f64) -> f64 {
         let [wo, back] = [out, -self.photon.ray.direction].map(|v| axes.to_local(v));
         let reflected = self.material.evaluate(wo, back, wavelength) * wo.z.abs();
         reflected * self.adjoint_factor(out, [back.z, wo.z])

@@ -16,7 +16,8 @@ pub enum Method {
     /// From the camera; and from the lasers through mirrors and glass, where the scene has them.
     #[default]
     Path,
-    /// From the lasers to the camera.
+    /// From the lasers to the camera; lamps as by the other method. What the camera sees in mirrors
+    /// and through glass has no light of lasers.
     Light,
 }
 
@@ -73,7 +74,8 @@ pub struct RenderOptions {
     pub laser_events: LaserEvents,
     /// How lamps are sampled from a surface.
     pub lamp_events: LampEvents,
-    /// How the samples around a pixel make its value.
+    /// How the samples around a pixel make its value. Light that is followed from the lasers is
+    /// averaged over the square of the pixel instead.
     pub filter: Filter,
     /// The part of the image that is rendered; `None` for all. Its pixels have the same bits as in the
     /// whole image, unless a target error asks for more samples.
@@ -84,7 +86,8 @@ pub struct RenderOptions {
     /// Then it gets as many again, up to 63 times, until the standard error of its total radiance,
     /// estimated from its samples and raised by 2/√n for the uncertainty of that estimate, is below
     /// this fraction of that radiance, or of a tenth of the mean radiance of the image where the pixel
-    /// is darker.
+    /// is darker. Light that is followed from the lasers is added afterwards: neither its error nor
+    /// its radiance counts.
     ///
     /// A pixel whose samples happen to miss bright light stops early, which darkens the image a
     /// little: in a closed sphere of reflectance ½ under a narrow beam, with 16 first samples and a target
@@ -116,6 +119,12 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
+    /// Tells whether directions towards lasers are drawn, and paths meet their beams by chance; the
+    /// printed formulas have no such directions.
+    pub(crate) fn samples_beams(&self) -> bool {
+        self.formulas == Formulas::Derived && self.laser_events == LaserEvents::Sampled
+    }
+
     /// Checks the options and returns the part of the camera's image that is rendered.
     pub(super) fn area(&self, camera: &Camera) -> Result<Crop, TracerError> {
         if self.samples_per_pixel == 0 {

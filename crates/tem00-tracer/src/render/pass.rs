@@ -34,6 +34,8 @@ pub(super) struct PathPass<'a, P> {
     pub filter: FilterSampler,
     pub frame: u32,
     pub area: Crop,
+    /// Whether light that is followed from the lasers will be added.
+    pub light_traced: bool,
     pub progress: &'a P,
     pub cancel: &'a AtomicBool,
 }
@@ -54,6 +56,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
             area: self.area,
             strips: self.strips(),
             adaptive: self.options.target_error.is_some(),
+            light_traced: self.light_traced,
         })?);
         self.first_round(&film)?;
         if let Some(target) = self.options.target_error {

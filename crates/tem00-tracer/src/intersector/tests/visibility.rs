@@ -76,3 +76,27 @@ fn a_point_sees_itself_and_what_is_outside_the_scene() {
         "through the floor"
     );
 }
+
+#[test]
+fn a_hit_hides_what_lies_beyond_its_surface_and_not_what_lies_on_it() {
+    let plate = Rectangle::new(DVec3::new(0.1, 0.2, 0.3), 0.1 * DVec3::X, 0.1 * DVec3::Y).unwrap();
+    let intersector = Intersector::build(&[Shape::Rectangle(plate)]).unwrap();
+    for slope in [0.0, 1.0, 30.0] {
+        let direction = DVec3::new(slope, 0.0, -1.0).normalize();
+        let point = plate.centre() + 0.03 * DVec3::Y;
+        let ray = Ray {
+            origin: point - 0.7 * direction,
+            direction,
+        };
+        let hit = intersector.intersect(&ray).unwrap();
+        // Computed distances err by a few 1e−16 divided by the cosine.
+        for (distance, hidden) in [
+            (0.7 - 2e-15, false),
+            (0.7 + 2e-15, false),
+            (0.7 + 1e-11, true),
+        ] {
+            let told = intersector.hides(&hit, &ray, distance);
+            assert_eq!(told, hidden, "{distance} at slope {slope}");
+        }
+    }
+}

@@ -64,6 +64,7 @@
 //! ```
 
 mod camera;
+mod circle;
 mod environment;
 mod environment_file;
 mod error;

@@ -54,6 +54,15 @@ impl<'a> Integrator<'a> {
         }
     }
 
+    /// Draws a place in the pupil, as a pair of numbers; a pinhole has only its middle.
+    pub(crate) fn lens(&self, stream: Stream) -> [f64; 2] {
+        if self.camera.description().depth_of_field {
+            self.sequence.pair(stream, Use::Lens)
+        } else {
+            [0.5, 0.5]
+        }
+    }
+
     /// Sends a ray from the camera for each sample.
     fn start(&self, batch: &mut Batch<'a>) {
         batch.prepare(self.lasers.len(), self.spectrum.wavelengths.len());
@@ -67,7 +76,6 @@ impl<'a> Integrator<'a> {
 
     /// Moves every path to the surface that its ray meets; ends those that meet a lamp or nothing.
     fn arrive(&self, batch: &mut Batch<'a>) {
-        batch.hits.clear();
         batch.hits.resize(batch.rays.len(), None);
         self.intersector
             .intersect_batch(&batch.rays, &mut batch.hits);
@@ -203,7 +211,13 @@ impl<'a> Integrator<'a> {
             scattering_pdf: (!event.specular).then_some(event.pdf),
             ..path
         };
-        Some((next, vertex.leave(self.intersector, event.wi)))
+        let ray = vertex.leave(self.intersector, event.wi);
+        (path.depth < self.rules.max_depth || self.finds_light(&ray)).then_some((next, ray))
+    }
+
+    /// Tells whether a ray can find light if no surface may follow.
+    fn finds_light(&self, ray: &Ray) -> bool {
+        self.may_meet_lamp(ray) || self.rays_meet_lasers()
     }
 
     /// Tells whether a ray from a surface can still find light where no surface may follow.

@@ -6,6 +6,8 @@ mod lasers;
 mod rules;
 mod vertex;
 
+use core::mem::take;
+
 use self::{batch::Path, rules::Spectrum, vertex::Vertex};
 pub(crate) use self::{
     batch::{Batch, CameraSample, LaserSample, Seen},
@@ -80,12 +82,13 @@ impl<'a> Integrator<'a> {
         self.intersector
             .intersect_batch(&batch.rays, &mut batch.hits);
         batch.vertices.clear();
+        let hits = take(&mut batch.hits);
         let mut kept = 0;
-        for index in 0..batch.paths.len() {
-            let (mut path, ray, hit) = (batch.paths[index], batch.rays[index], batch.hits[index]);
-            self.take_light(&path, &ray, hit.as_ref(), batch);
-            let Some(vertex) = hit.and_then(|hit| self.vertex(&ray, &hit)) else {
-                self.see_lamp(&path, &ray, hit.as_ref(), batch);
+        for (index, hit) in hits.iter().map(Option::as_ref).enumerate() {
+            let (mut path, ray) = (batch.paths[index], batch.rays[index]);
+            self.take_light(&path, &ray, hit, batch);
+            let Some(vertex) = hit.and_then(|hit| self.vertex(&ray, hit)) else {
+                self.see_lamp(&path, &ray, hit, batch);
                 continue;
             };
             path.depth += 1;
@@ -99,6 +102,7 @@ impl<'a> Integrator<'a> {
                 kept += 1;
             }
         }
+        batch.hits = hits;
         batch.paths.truncate(kept);
         batch.rays.truncate(kept);
     }
@@ -216,6 +220,7 @@ impl<'a> Integrator<'a> {
     }
 
     /// Tells whether a ray can find light if no surface may follow.
+    #[inline(never)] // It is rare beside what surrounds it.
     fn finds_light(&self, ray: &Ray) -> bool {
         self.may_meet_lamp(ray) || self.rays_meet_lasers()
     }

@@ -33,6 +33,7 @@ class Program:
             text=True,
             env={**os.environ, **environment},
         )
+        self.task = "render"
         self.seconds, self.images = [], []
 
     def ask(self, task):
@@ -44,7 +45,7 @@ class Program:
         self.load_seconds = self.ask(task)
 
     def render(self, seed, counts, raw):
-        seconds = self.ask(f"render {SAMPLES} {seed}")
+        seconds = self.ask(f"{self.task} {SAMPLES} {seed}")
         if counts:
             self.ask(f"write {raw}")
             self.seconds.append(seconds)
@@ -106,6 +107,8 @@ def compare(row, arguments, folder):
         )
         for variant in arguments.variants.split(",")
     ]
+    # Mitsuba's integrator of direct light makes no use of the directions that materials draw.
+    ours.task = "connect" if name.startswith("direct") else "render"
     ours.load(f"{'lamps' if lamps_only else 'load'} {our_file}")
     for program in theirs:
         program.load(f"load {their_file}")

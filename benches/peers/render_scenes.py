@@ -65,7 +65,7 @@ WALLS = [
 def tem00_box(mesh, light, integrator):
     image_distance = FOCAL_LENGTH * CAMERA_Z / (CAMERA_Z - FOCAL_LENGTH)
     pitch = 2 * TANGENT * image_distance / SIDE
-    # The lens is all but a pinhole, as Mitsuba's is.
+    # A pinhole, as Mitsuba's is.
     text = f"""
 [render]
 {integrator}
@@ -73,6 +73,7 @@ def tem00_box(mesh, light, integrator):
 position = [0, 0, {CAMERA_Z}]
 focal_length = {FOCAL_LENGTH}
 f_number = 1e6
+depth_of_field = false
 pixel_pitch = {pitch}
 resolution = [{SIDE}, {SIDE}]
 [[laser]] # a scene file needs one; it is left out

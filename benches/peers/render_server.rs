@@ -4,6 +4,7 @@
 //! load scene.toml   reads a scene
 //! lamps scene.toml  reads a scene and leaves its lasers out
 //! render 64 1       renders it without speckle: samples per pixel, and seed
+//! connect 64 1      the same, but lamps count only where surfaces are connected to them
 //! write image.raw   writes what was rendered as rows of 32-bit floats: the sum of all light
 //! peak              no time: the most memory the process has had, in MiB (Linux)
 //! ```
@@ -19,7 +20,7 @@ use std::{
     time::Instant,
 };
 
-use tem00::tracer::{Frame, RenderOptions, Scene, read_scene, render_frame};
+use tem00::tracer::{Frame, LampEvents, RenderOptions, Scene, read_scene, render_frame};
 
 #[derive(Default)]
 struct Server {
@@ -36,21 +37,21 @@ impl Server {
                 scene.lasers.clear();
                 self.scene = Some(scene);
             }
-            "render" => {
-                let (samples, seed) = arguments.split_once(' ').ok_or("samples and a seed")?;
-                self.frame = Some(self.render(samples.parse()?, seed.parse()?)?);
-            }
+            "render" => self.frame = Some(self.render(arguments, LampEvents::Both)?),
+            "connect" => self.frame = Some(self.render(arguments, LampEvents::NextEvent)?),
             "write" => write(arguments, self.image()?)?,
             _ => return Err(format!("unknown task {task}").into()),
         }
         Ok(())
     }
 
-    fn render(&self, samples_per_pixel: u32, seed: u64) -> Result<Frame, Box<dyn Error>> {
+    fn render(&self, arguments: &str, lamp_events: LampEvents) -> Result<Frame, Box<dyn Error>> {
         let scene = self.scene.as_ref().ok_or("no scene")?;
+        let (samples, seed) = arguments.split_once(' ').ok_or("samples and a seed")?;
         let options = RenderOptions {
-            samples_per_pixel,
-            seed,
+            samples_per_pixel: samples.parse()?,
+            seed: seed.parse()?,
+            lamp_events,
             ..RenderOptions::from(&scene.render)
         };
         let never = AtomicBool::new(false);

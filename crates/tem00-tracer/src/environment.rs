@@ -7,7 +7,7 @@ use glam::DVec3;
 use tem00_numerics::Grid;
 
 use self::map::RadianceMap;
-use crate::{LampSample, TracerError};
+use crate::{LampSample, TracerError, circle};
 
 /// Light from all around, so far away that it is the same everywhere in the scene.
 ///
@@ -164,8 +164,7 @@ impl Environment {
 fn on_sphere([u, v]: [f64; 2]) -> DVec3 {
     let z = 1.0 - 2.0 * v;
     let radius = (4.0 * v * (1.0 - v)).sqrt();
-    let (sin, cos) = libm::sincos(2.0 * PI * u);
-    DVec3::new(radius * cos, radius * sin, z)
+    (radius * circle::at_turn(u)).extend(z)
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@ mod lasers;
 mod rules;
 mod vertex;
 
+use core::mem::take;
+
 use self::{batch::Path, rules::Spectrum, vertex::Vertex};
 pub(crate) use self::{
     batch::{Batch, CameraSample, LaserSample, Seen},
@@ -54,6 +56,15 @@ impl<'a> Integrator<'a> {
         }
     }
 
+    /// Draws a place in the pupil, as a pair of numbers; a pinhole has only its middle.
+    pub(crate) fn lens(&self, stream: Stream) -> [f64; 2] {
+        if self.camera.description().depth_of_field {
+            self.sequence.pair(stream, Use::Lens)
+        } else {
+            [0.5, 0.5]
+        }
+    }
+
     /// Sends a ray from the camera for each sample.
     fn start(&self, batch: &mut Batch<'a>) {
         batch.prepare(self.lasers.len(), self.spectrum.wavelengths.len());
@@ -67,17 +78,17 @@ impl<'a> Integrator<'a> {
 
     /// Moves every path to the surface that its ray meets; ends those that meet a lamp or nothing.
     fn arrive(&self, batch: &mut Batch<'a>) {
-        batch.hits.clear();
         batch.hits.resize(batch.rays.len(), None);
         self.intersector
             .intersect_batch(&batch.rays, &mut batch.hits);
         batch.vertices.clear();
+        let hits = take(&mut batch.hits);
         let mut kept = 0;
-        for index in 0..batch.paths.len() {
-            let (mut path, ray, hit) = (batch.paths[index], batch.rays[index], batch.hits[index]);
-            self.take_light(&path, &ray, hit.as_ref(), batch);
-            let Some(vertex) = hit.and_then(|hit| self.vertex(&ray, &hit)) else {
-                self.see_lamp(&path, &ray, hit.as_ref(), batch);
+        for (index, hit) in hits.iter().map(Option::as_ref).enumerate() {
+            let (mut path, ray) = (batch.paths[index], batch.rays[index]);
+            self.take_light(&path, &ray, hit, batch);
+            let Some(vertex) = hit.and_then(|hit| self.vertex(&ray, hit)) else {
+                self.see_lamp(&path, &ray, hit, batch);
                 continue;
             };
             path.depth += 1;
@@ -91,6 +102,7 @@ impl<'a> Integrator<'a> {
                 kept += 1;
             }
         }
+        batch.hits = hits;
         batch.paths.truncate(kept);
         batch.rays.truncate(kept);
     }
@@ -203,7 +215,14 @@ impl<'a> Integrator<'a> {
             scattering_pdf: (!event.specular).then_some(event.pdf),
             ..path
         };
-        Some((next, vertex.leave(self.intersector, event.wi)))
+        let ray = vertex.leave(self.intersector, event.wi);
+        (path.depth < self.rules.max_depth || self.finds_light(&ray)).then_some((next, ray))
+    }
+
+    /// Tells whether a ray can find light if no surface may follow.
+    #[inline(never)] // It is rare beside what surrounds it.
+    fn finds_light(&self, ray: &Ray) -> bool {
+        self.may_meet_lamp(ray) || self.rays_meet_lasers()
     }
 
     /// Tells whether a ray from a surface can still find light where no surface may follow.

@@ -172,12 +172,13 @@ fn sample_rectangle(
         None => rectangle.point(u[0], u[1]) - from,
     };
     let distance = offset.length();
-    let direction = offset.try_normalize()?;
+    let direction = offset / distance;
     let pdf = match &image {
         Some(image) => 1.0 / image.solid_angle(),
         None => pdf_by_area(rectangle, direction, distance),
     };
-    (pdf > 0.0 && pdf.is_finite()).then(|| LampSample {
+    // Rounding can put a point before a rectangle onto it.
+    (distance > 0.0 && pdf > 0.0 && pdf.is_finite()).then(|| LampSample {
         direction,
         distance,
         radiance_over_pdf: radiance / pdf,
@@ -192,10 +193,8 @@ fn pdf_of_rectangle(rectangle: &Rectangle, from: DVec3, direction: DVec3) -> f64
     }
     let distance = (from - rectangle.centre()).dot(rectangle.normal()) / towards;
     let on_plane = from + distance * direction - rectangle.centre();
-    let (half_u, half_v) = (rectangle.half_u(), rectangle.half_v());
-    let beside = on_plane.dot(half_u).abs() > half_u.length_squared()
-        || on_plane.dot(half_v).abs() > half_v.length_squared();
-    if beside {
+    let [u, v] = rectangle.fractions(on_plane);
+    if u.abs() > 1.0 || v.abs() > 1.0 {
         return 0.0;
     }
     match near_image(rectangle, from) {

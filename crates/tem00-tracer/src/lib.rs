@@ -67,6 +67,7 @@
 //! ```
 
 mod camera;
+mod circle;
 mod environment;
 mod environment_file;
 mod error;

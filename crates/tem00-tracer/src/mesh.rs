@@ -153,7 +153,8 @@ impl TriangleMesh {
     /// Returns the corners of a triangle, in metres.
     #[inline(always)]
     pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].map(|index| self.vertices[index as usize])
+        let [a, b, c] = self.triangles[triangle].map(|index| index as usize);
+        [self.vertices[a], self.vertices[b], self.vertices[c]]
     }
 
     /// Returns the sum of the normals of a triangle's corners, each times its weight, or `None` if

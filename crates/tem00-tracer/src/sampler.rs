@@ -104,9 +104,11 @@ impl Sequence {
         ]
     }
 
-    /// Returns one number in (0, 1).
+    /// Returns one number in (0, 1): the first of the pair.
     pub(crate) fn single(&self, stream: Stream, purpose: Use) -> f64 {
-        self.pair(stream, purpose)[0]
+        let [order, first, _] = seeds(stream, purpose);
+        let [x, _] = self.points[self.shuffled(stream.index, order)];
+        fraction(scrambled(x, first).reverse_bits())
     }
 
     /// Puts the points into another order, in which each half of the points still fills the square.

@@ -1,9 +1,7 @@
-use core::f64::consts::FRAC_PI_4;
-
 use glam::{DVec2, DVec3};
 
 use super::Camera;
-use crate::Ray;
+use crate::{Ray, circle};
 
 /// A ray from a point of the lens into the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,11 +134,13 @@ impl Camera {
         let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
         let radius = 0.5 * self.pupil_diameter();
         if x.abs() > y.abs() {
-            let (sin, cos) = libm::sincos(FRAC_PI_4 * (y / x));
-            radius * x * DVec2::new(cos, sin)
+            radius * x * circle::at_eighth(y / x)
         } else if y != 0.0 {
-            let (sin, cos) = libm::sincos(FRAC_PI_4 * (x / y));
-            radius * y * DVec2::new(sin, cos)
+            let DVec2 {
+                x: along,
+                y: across,
+            } = circle::at_eighth(x / y);
+            radius * y * DVec2::new(across, along)
         } else {
             DVec2::ZERO
         }

@@ -183,7 +183,6 @@ impl Batch<'_> {
     /// Adds what arrives over the connections that nothing hides, and forgets them all.
     pub(super) fn resolve_connections(&mut self, intersector: &Intersector) {
         let connections = &mut self.connections;
-        connections.visible.clear();
         connections
             .visible
             .resize(connections.segments.len(), false);

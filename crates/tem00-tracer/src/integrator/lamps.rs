@@ -120,6 +120,15 @@ impl<'a> Integrator<'a> {
         is_needed && self.scene.lamps.iter().any(can_be_met)
     }
 
+    /// Tells whether a ray meets light of a lamp if nothing is in its way.
+    pub(super) fn may_meet_lamp(&self, ray: &Ray) -> bool {
+        self.scene.lamps.iter().any(|lamp| match lamp {
+            Lamp::Point { .. } => false,
+            Lamp::Area { .. } => lamp.pdf(ray.origin, ray.direction) > 0.0,
+            Lamp::Environment(_) => true,
+        })
+    }
+
     fn lamp_throughput(&self, path: &Path, batch: &Batch<'_>) -> f64 {
         let first = path.sample * self.spectrum.wavelengths.len();
         batch.throughput[first + self.spectrum.of_lamps]

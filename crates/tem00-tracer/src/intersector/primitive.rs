@@ -142,8 +142,7 @@ fn meet_rectangle(ray: &Ray, rectangle: &Rectangle) -> Option<(f64, f64, f64)> {
     let offset = rectangle.centre() - origin;
     let distance = rectangle.normal().dot(offset) / approach;
     let point = distance * direction - offset;
-    let fraction = |half_edge: DVec3| point.dot(half_edge) / half_edge.length_squared();
-    let (u, v) = (fraction(rectangle.half_u()), fraction(rectangle.half_v()));
+    let [u, v] = rectangle.fractions(point);
     (u.abs() <= 1.0 && v.abs() <= 1.0).then_some((distance, u, v))
 }
 

@@ -99,7 +99,7 @@ impl Shadow {
         let way = to - origin;
         let length = way.length();
         // Nothing is between a point and itself: a direction that is not finite meets nothing.
-        let direction = way.try_normalize().unwrap_or(DVec3::NAN);
+        let direction = way / length;
         Self {
             ray: Ray { origin, direction },
             length,
@@ -128,6 +128,9 @@ impl Query for Shadow {
         let Some(distance) = primitive.distance(&self.ray) else {
             return;
         };
+        if distance >= self.length {
+            return;
+        }
         // The height of the ray's end beyond the primitive's tangent plane; negative if it ends
         // before.
         let direction = self.ray.direction;

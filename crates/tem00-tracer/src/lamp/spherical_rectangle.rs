@@ -28,6 +28,8 @@ pub(super) struct SphericalRectangle {
     low: [f64; 2],
     high: [f64; 2],
     distance: f64,
+    /// τ at the first edge, in steradian.
+    first: f64,
     solid_angle: f64,
 }
 
@@ -44,10 +46,13 @@ impl SphericalRectangle {
             low: [x - width, y - height],
             high: [x + width, y + height],
             distance,
+            first: 0.0,
             solid_angle: 0.0,
         };
+        let first = seen.strip(seen.low[0]);
         Self {
-            solid_angle: seen.strip(seen.high[0]) - seen.strip(seen.low[0]),
+            first,
+            solid_angle: seen.strip(seen.high[0]) - first,
             ..seen
         }
     }
@@ -61,7 +66,7 @@ impl SphericalRectangle {
     /// directions that are uniform over the solid angle.
     pub(super) fn sample(&self, [u, v]: [f64; 2]) -> DVec3 {
         let d = self.distance;
-        let tau = self.strip(self.low[0]) + u * self.solid_angle;
+        let tau = self.first + u * self.solid_angle;
         let (low, high) = (part(self.low[1], d), part(self.high[1], d));
         let half = libm::sin(0.5 * tau);
         let squared = (high - low) * (high - low) + 4.0 * low * high * half * half;

@@ -1,6 +1,8 @@
-use core::f64::consts::{FRAC_1_PI, TAU};
+use core::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
+
+use crate::circle;
 
 /// The largest uniform number below 1.
 const LARGEST: f64 = 1.0 - f64::EPSILON / 2.0;
@@ -8,8 +10,7 @@ const LARGEST: f64 = 1.0 - f64::EPSILON / 2.0;
 /// Draws a direction above the surface with the density [`cosine_pdf`].
 pub(super) fn sample_cosine([u, v]: [f64; 2]) -> DVec3 {
     let radius = u.sqrt();
-    let (sin, cos) = libm::sincos(TAU * v);
-    DVec3::new(radius * cos, radius * sin, (1.0 - u).sqrt())
+    (radius * circle::at_turn(v)).extend((1.0 - u).sqrt())
 }
 
 /// Returns `cos θ / π`, per steradian.
@@ -21,8 +22,7 @@ pub(super) fn cosine_pdf(wi: DVec3) -> f64 {
 pub(super) fn sample_hemisphere([u, v]: [f64; 2]) -> DVec3 {
     let cosine = 1.0 - u;
     let radius = (u * (1.0 + cosine)).sqrt();
-    let (sin, cos) = libm::sincos(TAU * v);
-    DVec3::new(radius * cos, radius * sin, cosine)
+    (radius * circle::at_turn(v)).extend(cosine)
 }
 
 /// Chooses the first of two lobes with `probability` by `u`, which is uniform again afterwards.

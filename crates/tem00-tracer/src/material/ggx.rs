@@ -1,6 +1,8 @@
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::PI;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+
+use crate::circle;
 
 /// Isotropic microfacets with the GGX (Trowbridge–Reitz) distribution of slopes.
 ///
@@ -66,12 +68,10 @@ impl Ggx {
             .unwrap_or(DVec3::X);
         let upward = view.cross(across);
         // Draw a point of the hemisphere's projection: a half disc beside a half ellipse.
-        let radius = u.sqrt();
-        let (sin, cos) = libm::sincos(TAU * v);
-        let x = radius * cos;
+        let DVec2 { x, y: up } = u.sqrt() * circle::at_turn(v);
         let lift = 0.5 * (1.0 + view.z);
         let half_disc = ((1.0 - x) * (1.0 + x)).sqrt();
-        let y = (1.0 - lift) * half_disc + lift * radius * sin;
+        let y = (1.0 - lift) * half_disc + lift * up;
         // Rounding can leave the disc by 1e−16.
         let z = (1.0 - x * x - y * y).max(0.0).sqrt();
         let normal = x * across + y * upward + z * view;

@@ -158,7 +158,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         CameraSample {
             slot,
             pixel: DVec2::new(x as f64 + 0.5, y as f64 + 0.5) + beside.offset,
-            lens: sequence.pair(stream, Use::Lens),
+            lens: self.integrator.lens(stream),
             stream,
             weight: beside.weight,
             lamps: 0.0,

@@ -87,6 +87,7 @@ impl MeshInstance {
     }
 
     /// Returns where a point of the mesh is, in metres.
+    #[inline]
     pub fn point(&self, point: DVec3) -> DVec3 {
         self.rotation * (self.scale * point) + self.translation
     }
@@ -99,7 +100,8 @@ impl MeshInstance {
     /// Returns the corners of a triangle, in metres.
     #[inline(always)]
     pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        self.mesh.corners(triangle).map(|corner| self.point(corner))
+        let [a, b, c] = self.mesh.corners(triangle);
+        [self.point(a), self.point(b), self.point(c)]
     }
 
     /// Returns the normal with which a triangle scatters light where its corners have `weights`,

@@ -27,6 +27,10 @@ pub struct Rectangle {
     half_u: DVec3,
     half_v: DVec3,
     normal: DVec3,
+    /// The half edges divided by the squares of their lengths, in 1/m.
+    inverse_u: DVec3,
+    inverse_v: DVec3,
+    area: f64,
 }
 
 impl Rectangle {
@@ -50,11 +54,15 @@ impl Rectangle {
                 allowed: "perpendicular to half_u",
             });
         }
+        let half_v = half_v - half_v.dot(u) * u;
         Ok(Self {
             centre,
             half_u,
-            half_v: half_v - half_v.dot(u) * u,
+            half_v,
             normal: u.cross(v).normalize(),
+            inverse_u: half_u / half_u.length_squared(),
+            inverse_v: half_v / half_v.length_squared(),
+            area: 4.0 * half_u.length() * half_v.length(),
         })
     }
 
@@ -79,8 +87,8 @@ impl Rectangle {
     }
 
     /// Returns the area, in m².
-    pub fn area(&self) -> f64 {
-        4.0 * self.half_u.length() * self.half_v.length()
+    pub const fn area(&self) -> f64 {
+        self.area
     }
 
     /// Returns the point at the fractions `u` and `v`, in [0, 1), of the two edges.
@@ -88,6 +96,12 @@ impl Rectangle {
     /// Uniform fractions give points that are uniform over the area.
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
         self.centre + (2.0 * u - 1.0) * self.half_u + (2.0 * v - 1.0) * self.half_v
+    }
+
+    /// Returns how far an offset from the centre reaches along the half edges, as fractions of them.
+    #[inline]
+    pub(crate) fn fractions(&self, offset: DVec3) -> [f64; 2] {
+        [offset.dot(self.inverse_u), offset.dot(self.inverse_v)]
     }
 
     pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
@@ -103,6 +117,9 @@ impl Rectangle {
             half_u: motion.direction(self.half_u),
             half_v: motion.direction(self.half_v),
             normal: motion.direction(self.normal).normalize(),
+            inverse_u: motion.direction(self.inverse_u),
+            inverse_v: motion.direction(self.inverse_v),
+            area: self.area,
         }
     }
 }

@@ -14,7 +14,7 @@
 //! | [`numerics`] | `tem00-numerics` | grids, pruned Fourier transform, pupil functions |
 #![cfg_attr(
     feature = "tracer",
-    doc = "| [`tracer`] | `tem00-tracer` | a minimal reference path tracer (feature `tracer`) |"
+    doc = "| [`tracer`] | `tem00-tracer` | a reference path and light tracer (feature `tracer`) |"
 )]
 
 pub use tem00_beam as beam;

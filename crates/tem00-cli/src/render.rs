@@ -285,10 +285,27 @@ fn scene_failure(path: &Path, error: &SceneError) -> Failure {
 
 fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
     let help = match error {
-        TracerError::PatternMemory { .. } | TracerError::Speckle(_) => {
-            "[speckle] in the scene file can set memory, size, diameter and half_period"
+        TracerError::PatternMemory { needed, allowed } => format!(
+            "{} needed, {} allowed: `memory` in [speckle], which all lasers share, allows more; \
+             `size` and `diameter` ask for smaller patterns; --no-speckle leaves them out",
+            binary(*needed),
+            binary(*allowed)
+        ),
+        TracerError::Speckle(_) => {
+            "[speckle] in the scene file can set memory, size, diameter and half_period".into()
         }
-        _ => "docs/scene_file.md lists what is allowed",
+        TracerError::FilmMemory { .. } => {
+            "--crop renders a part of the image; `resolution` in [camera] makes it smaller".into()
+        }
+        _ => "docs/scene_file.md lists what is allowed".into(),
     };
     Failure::input(format!("{}: {error}", path.display()), help)
+}
+
+/// A number of bytes in KiB, or MiB where those are many, rounded up.
+fn binary(bytes: u64) -> String {
+    match bytes.div_ceil(1 << 10) {
+        few @ ..16_384 => format!("{few} KiB"),
+        many => format!("{} MiB", many.div_ceil(1 << 10)),
+    }
 }

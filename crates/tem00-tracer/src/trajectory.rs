@@ -131,6 +131,14 @@ impl Trajectory {
     ) -> Result<Self, TracerError> {
         check_finite("pivot", pivot * ROOM, "a finite point")?;
         let rotation = checked(rotation, ROOM * f64::from(u32::MAX))?;
+        if rotation.angle == 0.0 {
+            // Motions without rotation are the same whatever their pivot.
+            return Self::steady(displacement);
+        }
+        if rotation.angle == 0.0 {
+            // Motions without rotation are the same whatever their pivot.
+            return Self::steady(displacement);
+        }
         check_steps(displacement)?;
         Ok(Self {
             pivot,

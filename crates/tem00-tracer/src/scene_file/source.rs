@@ -199,7 +199,8 @@ fn includes_of(source: &Source) -> Result<Vec<Include>, Problem> {
 
 fn read_text(path: &Path) -> Result<String, SceneError> {
     let unreadable = |why: &dyn core::fmt::Display| {
-        let problem = Problem::new(format!("the scene file cannot be read: {why}"));
+        let problem = Problem::new(format!("the scene file cannot be read: {why}"))
+            .with_help("scenes/spot.toml is one, and docs/scene_file.md tells how to write them");
         SceneError::new(Some(path), "", problem)
     };
     if path.is_dir() {

@@ -95,17 +95,17 @@ impl SpecklePlan {
     }
 }
 
-/// The group of each surface: those with the same motion have the same.
+/// The group of each surface: those with the same motion have the same, and all that stand still.
 fn groups(scene: &Scene) -> Vec<usize> {
     let mut motions: Vec<&Trajectory> = Vec::new();
     let surfaces = scene.surfaces.iter();
     surfaces
         .map(|surface| {
-            let known = motions
-                .iter()
-                .position(|&motion| *motion == surface.trajectory);
-            known.unwrap_or_else(|| {
-                motions.push(&surface.trajectory);
+            let motion = &surface.trajectory;
+            let alike =
+                |known: &&Trajectory| *known == motion || (known.is_still() && motion.is_still());
+            motions.iter().position(alike).unwrap_or_else(|| {
+                motions.push(motion);
                 motions.len() - 1
             })
         })

@@ -7,11 +7,16 @@ use crate::speckle::allotment::Allotment;
 
 impl fmt::Display for SpecklePlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, pattern) in self.patterns.iter().enumerate() {
-            if index > 0 {
+        let patterns = self.patterns.iter().enumerate();
+        let lines = patterns.flat_map(|(laser, pattern)| {
+            let lines: Vec<_> = pattern.to_string().lines().map(str::to_owned).collect();
+            lines.into_iter().map(move |line| (laser, line))
+        });
+        for (number, (laser, line)) in lines.enumerate() {
+            if number > 0 {
                 writeln!(f)?;
             }
-            write!(f, "laser {index}: {pattern}")?;
+            write!(f, "laser {laser}: {line}")?;
         }
         Ok(())
     }

@@ -107,6 +107,23 @@ fn what_stands_still_takes_one_slice() {
 }
 
 #[test]
+fn surfaces_that_move_alike_share_a_pattern_wherever_they_turn() {
+    // Each turns about its own middle: by nothing.
+    let more = |motion: &str| {
+        format!(
+            "[[surface]]\n{motion}\nrectangle = {{ centre = [0.01, 0, 0.01], size = [0.1, 0.1] }}\n\
+             [[surface]]\n{motion}\nsphere = {{ centre = [0.03, 0, 0.01], radius = 0.01 }}\n"
+        )
+    };
+    let keyframes = "keyframe = [{ frame = 0 }, { frame = 1 }]";
+    let still = plan(2, "[0, 0, 0]", &(more("") + &more(keyframes))).unwrap();
+    assert_eq!(still.allotments().len(), 1, "{still}");
+    let steady = "displacement_per_frame = [0.3795e-3, 0, 0]";
+    let moving = plan(2, "[0.3795e-3, 0, 0]", &more(steady)).unwrap();
+    assert_eq!(moving.allotments().len(), 1, "{moving}");
+}
+
+#[test]
 fn a_memory_that_does_not_hold_patterns_for_all_holds_places_for_them() {
     let planned = |memory: &str| {
         let more = format!("{REST}[speckle]\nmemory = \"{memory}\"");

@@ -232,6 +232,7 @@ mod tests {
             normal: [dark.clone(), dark.clone(), dark.clone()],
             samples: dark.clone(),
             origin: [0, 0],
+            rays: 0,
         }
     }
 
@@ -264,6 +265,7 @@ mod tests {
             normal: [layer(8.0), layer(9.0), layer(10.0)],
             samples: layer(11.0),
             origin: [3, 2],
+            rays: 0,
         }
     }
 

@@ -186,8 +186,9 @@ impl<'a> Render<'a> {
         let frames = sequence.finished;
         let seconds: f64 = frames.iter().map(|frame| frame.seconds).sum();
         let samples: u64 = frames.iter().map(|frame| frame.samples).sum();
+        let rays: u64 = frames.iter().map(|frame| frame.rays).sum();
         #[expect(clippy::cast_precision_loss, reason = "shown to a few digits")]
-        let samples_per_second = samples as f64 / seconds.max(1e-9);
+        let per_second = |count: u64| count as f64 / seconds.max(1e-9);
         Summary {
             program: concat!("tem00 ", env!("CARGO_PKG_VERSION")),
             scene: self.args.scene.display().to_string(),
@@ -209,8 +210,10 @@ impl<'a> Render<'a> {
             frames,
             threads: rayon::current_num_threads(),
             samples,
+            rays,
             seconds,
-            samples_per_second,
+            samples_per_second: per_second(samples),
+            rays_per_second: per_second(rays),
         }
     }
 

@@ -29,8 +29,10 @@ pub(crate) struct Summary {
     pub(crate) frames: Vec<FrameSummary>,
     pub(crate) threads: usize,
     pub(crate) samples: u64,
+    pub(crate) rays: u64,
     pub(crate) seconds: f64,
     pub(crate) samples_per_second: f64,
+    pub(crate) rays_per_second: f64,
 }
 
 /// A part of the image, in pixels.
@@ -129,8 +131,10 @@ pub(crate) struct FrameSummary {
     pub(crate) preview: String,
     pub(crate) layers: String,
     pub(crate) lasers: Vec<FrameLaser>,
-    /// The camera samples over all sources of light, and the time that they took.
+    /// The camera samples, the rays followed from the camera and towards light, and the time that they
+    /// took.
     pub(crate) samples: u64,
+    pub(crate) rays: u64,
     pub(crate) seconds: f64,
 }
 

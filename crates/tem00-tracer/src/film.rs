@@ -31,6 +31,9 @@ pub struct Frame {
     pub samples: Grid<f32>,
     /// The column and the row of the first pixel in the whole image.
     pub origin: [usize; 2],
+    /// The number of rays that were followed from the camera and, as shadow rays, towards light. Paths
+    /// from the lasers are not counted.
+    pub rays: u64,
 }
 
 /// The layers of one laser.
@@ -112,10 +115,16 @@ impl Film {
                 normal: [layer(), layer(), layer()],
                 samples: layer(),
                 origin: [area.x, area.y],
+                rays: 0,
             },
             power: vec![0.0; layout.strips * layout.wavelengths.len()],
             total: layout.adaptive.then(|| [layer(), layer()]),
         })
+    }
+
+    /// Counts rays that were followed.
+    pub(crate) const fn count_rays(&mut self, rays: u64) {
+        self.frame.rays += rays;
     }
 
     /// Writes what the first samples of a pixel of a strip have found.

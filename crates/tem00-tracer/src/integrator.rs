@@ -81,6 +81,7 @@ impl<'a> Integrator<'a> {
         batch.hits.resize(batch.rays.len(), None);
         self.intersector
             .intersect_batch(&batch.rays, &mut batch.hits);
+        batch.rays_followed += batch.rays.len() as u64;
         batch.vertices.clear();
         let hits = take(&mut batch.hits);
         let mut kept = 0;

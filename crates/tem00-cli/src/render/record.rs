@@ -280,6 +280,7 @@ mod tests {
             layers: "a.exr".into(),
             lasers: Vec::new(),
             samples: 7,
+            rays: 14,
             seconds: 0.1,
         };
         let record = Record {

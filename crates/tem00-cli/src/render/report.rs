@@ -103,9 +103,10 @@ pub(super) fn report(summary: &Summary) {
         summary.exposure.white_level, summary.exposure.chosen_by
     ));
     note(&format!(
-        "{:.2} s on {} threads, {}samples/s",
+        "{:.2} s on {} threads, {}samples/s, {}rays/s",
         summary.seconds,
         summary.threads,
-        si_prefixed(summary.samples_per_second)
+        si_prefixed(summary.samples_per_second),
+        si_prefixed(summary.rays_per_second)
     ));
 }

@@ -208,6 +208,7 @@ impl Render<'_> {
             layers: FramePaths::name_of(&paths.layers),
             lasers: lasers.collect(),
             samples: self.samples_of(frame),
+            rays: frame.rays,
             seconds,
         }
     }

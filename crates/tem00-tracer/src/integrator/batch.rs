@@ -25,6 +25,8 @@ pub(crate) struct Batch<'a> {
     pub(super) throughput: Vec<f64>,
     pub(super) connections: Connections,
     pub(super) speckle: SpeckleLookUps,
+    /// The rays followed since they were counted last.
+    pub(super) rays_followed: u64,
 }
 
 /// A place in the image and in the pupil, and what is found there.
@@ -118,6 +120,11 @@ impl Batch<'_> {
         self.samples.clear();
     }
 
+    /// Returns the number of rays followed, shadow rays included, since the last call.
+    pub(crate) const fn take_ray_count(&mut self) -> u64 {
+        core::mem::replace(&mut self.rays_followed, 0)
+    }
+
     /// Returns the samples, each with its values for each laser.
     pub(crate) fn results(
         &self,
@@ -187,6 +194,7 @@ impl Batch<'_> {
             .visible
             .resize(connections.segments.len(), false);
         intersector.visible_batch(&connections.segments, &mut connections.visible);
+        self.rays_followed += connections.segments.len() as u64;
         let arrivals = connections.arrivals.iter().zip(&connections.visible);
         for (arrival, _) in arrivals.filter(|(_, visible)| **visible) {
             match *arrival {

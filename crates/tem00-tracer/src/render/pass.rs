@@ -73,6 +73,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
             let mut pixels = self.strip(strip);
             self.add_round(0, &mut pixels, batch)?;
             let mut film = locked(film);
+            film.count_rays(batch.take_ray_count());
             for pixel in &pixels {
                 film.write_first(strip, self.in_area(pixel.place), &pixel.sums);
             }
@@ -95,6 +96,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
                 pixels.retain(|pixel| !is_done(pixel));
                 self.add_round(round, &mut pixels, batch)?;
                 let mut film = locked(film);
+                film.count_rays(batch.take_ray_count());
                 for pixel in &pixels {
                     film.write(self.in_area(pixel.place), &pixel.sums);
                 }

@@ -52,6 +52,8 @@ struct Connection<'a> {
     index: usize,
     /// In W/(m² sr).
     radiance: f64,
+    /// What the first rough surface is lit with on the side that the camera sees, in watts.
+    power: f64,
 }
 
 impl<'a> Walk<'a> {
@@ -169,19 +171,22 @@ impl<'a> Walk<'a> {
         let axes = vertex.hit.axes_seen_from(towards);
         let scattered = vertex.scattered(towards, &axes, self.laser.wavelength());
         let radiance = vertex.photon.flux * scattered * seen.importance;
+        let power = vertex.power_seen_from(towards);
         let connection = Connection {
             vertex,
             pixel: seen.pixel,
             normal: axes.normal() * axes.normal().dot(towards).signum(),
             index,
             radiance,
+            power,
         };
         let segment = Segment {
             from,
             from_normal: vertex.hit.normal,
             to: seen.lens_point,
         };
-        (radiance > 0.0).then_some((connection, segment))
+        // Power counts on black surfaces, too.
+        (radiance > 0.0 || power > 0.0).then_some((connection, segment))
     }
 
     fn add(&self, connection: &Connection<'_>, splats: &mut Splats) {
@@ -189,6 +194,7 @@ impl<'a> Walk<'a> {
             vertex,
             index,
             radiance,
+            power,
             ..
         } = *connection;
         let mut splat = Splat {
@@ -199,7 +205,7 @@ impl<'a> Walk<'a> {
             // The first rough surface: the light is coherent.
             splat.coherent_before = radiance;
             splat.coherent_after = radiance * self.speckle_factor(connection);
-            splats.power += vertex.photon.flux;
+            splats.power += power;
         } else {
             splat.incoherent = radiance;
         }
@@ -254,6 +260,18 @@ impl<'a> Walk<'a> {
 }
 
 impl Vertex<'_> {
+    /// Returns the power with which light that has met no rough surface before lights the side that
+    /// is seen from the unit direction `out`, in watts.
+    fn power_seen_from(&self, out: DVec3) -> f64 {
+        let normal = self.hit.normal;
+        let is_lit = -self.photon.ray.direction.dot(normal) * out.dot(normal) > 0.0;
+        if is_lit && self.photon.rough == 0 {
+            self.photon.flux
+        } else {
+            0.0
+        }
+    }
+
     /// Returns the share of the flux that goes towards the unit vector `out`, per steradian, where
     /// light is scattered in these `axes`.
     fn scattered(&self, out: DVec3, axes: &LocalFrame, wavelength: f64) -> f64 {

@@ -26,12 +26,14 @@
 #[cfg(feature = "fft")]
 mod fft;
 mod grid;
+mod memory;
 mod pupil;
 mod vectorised;
 
 #[cfg(feature = "fft")]
 pub use fft::{Fft2, Fft2Error, Fft2Scratch};
 pub use grid::{Grid, GridError, wrap_coordinate};
+pub use memory::available_memory;
 pub use pupil::{
     circular_path_overlap, circular_path_overlap_inverse, disc_overlap, disc_overlap_inverse, jinc,
     sinc, sinc_inverse,

@@ -1,8 +1,6 @@
 //! The memory of a stack: asked for before it is used.
 
-use std::fs;
-
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, available_memory};
 
 use crate::{Interpolation, SlicePath, SpeckleError};
 
@@ -39,8 +37,7 @@ pub(crate) const fn check_limit(needed: u64, limit: u64) -> Result<(), SpeckleEr
 ///
 /// It is only used, and taken from the machine, when the slices are filled in.
 pub(crate) fn reserve<T>(path: SlicePath, size: [usize; 2]) -> Result<Vec<Vec<T>>, SpeckleError> {
-    let described = fs::read_to_string("/proc/meminfo").unwrap_or_default();
-    reserve_of(path, size, available(&described))
+    reserve_of(path, size, available_memory())
 }
 
 /// The same on a machine with so many bytes `available`, if it says so.
@@ -62,15 +59,6 @@ fn reserve_of<T>(
     rooms.map_err(|_| SpeckleError::Memory { bytes })
 }
 
-/// The bytes that a Linux system can give without swapping, from its description of its memory.
-fn available(described: &str) -> Option<u64> {
-    let line = described
-        .lines()
-        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kibibytes = line.trim().strip_suffix("kB")?.trim_end();
-    kibibytes.parse::<u64>().ok()?.checked_mul(1024)
-}
-
 /// A grid of one value in `room`.
 pub(crate) fn filled<T: Clone>(
     mut room: Vec<T>,
@@ -84,21 +72,6 @@ pub(crate) fn filled<T: Clone>(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_available_memory_is_read_where_it_is_told() {
-        let described = "MemTotal:       24000000 kB\nMemAvailable:   20000001 kB\nBuffers: 5 kB\n";
-        assert_eq!(available(described), Some(20_000_001 * 1024));
-        for other in [
-            "",
-            "MemTotal: 5 kB",
-            "MemAvailable: many kB",
-            "MemAvailable: 5 MB",
-            "MemAvailable: 18446744073709551615 kB",
-        ] {
-            assert_eq!(available(other), None, "{other}");
-        }
-    }
 
     #[test]
     fn more_than_the_machine_has_is_refused_before_it_is_used() {

@@ -1,6 +1,6 @@
 //! The memory of the layers: asked for before it is used.
 
-use std::fs;
+use tem00_numerics::available_memory;
 
 use super::FilmLayout;
 use crate::TracerError;
@@ -17,8 +17,7 @@ const LIGHT_LAYERS: u64 = 12;
 ///
 /// Many systems grant any memory that is asked for and end the program when it is used.
 pub(super) fn check(layout: &FilmLayout<'_>) -> Result<(), TracerError> {
-    let described = fs::read_to_string("/proc/meminfo").unwrap_or_default();
-    check_against(needed(layout), available(&described))
+    check_against(needed(layout), available_memory())
 }
 
 fn check_against(needed: u64, available: Option<u64>) -> Result<(), TracerError> {
@@ -36,15 +35,6 @@ fn needed(layout: &FilmLayout<'_>) -> u64 {
     let light = if layout.light_traced { LIGHT_LAYERS } else { 0 };
     let layers = LAYERS_PER_LASER * lasers + COMMON_LAYERS + totals + light;
     pixels.saturating_mul(layers * size_of::<f32>() as u64)
-}
-
-/// The bytes that a Linux system can give without swapping, from its description of its memory.
-fn available(described: &str) -> Option<u64> {
-    let line = described
-        .lines()
-        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kibibytes = line.trim().strip_suffix("kB")?.trim_end();
-    kibibytes.parse::<u64>().ok()?.checked_mul(1024)
 }
 
 #[cfg(test)]
@@ -78,9 +68,7 @@ mod tests {
 
     #[test]
     fn more_than_what_is_available_is_refused() {
-        let described = "MemTotal:       24000 kB\nMemAvailable:   20001 kB\nBuffers: 5 kB\n";
-        let room = available(described);
-        assert_eq!(room, Some(20_001 * 1024), "bytes");
+        let room = Some(20_001 * 1024);
         assert!(check_against(20_001 * 1024, room).is_ok(), "all of it");
         let error = check_against(20_001 * 1024 + 1, room).unwrap_err();
         assert_eq!(
@@ -88,12 +76,6 @@ mod tests {
             "the layers of a frame need 20481025 bytes of memory, and 20481024 are available",
             "one byte more"
         );
-        for other in ["", "MemAvailable: many kB\n", "MemAvailable: 5 MB\n"] {
-            let room = available(other);
-            assert!(
-                check_against(u64::MAX, room).is_ok(),
-                "{other:?} says nothing"
-            );
-        }
+        assert!(check_against(u64::MAX, None).is_ok(), "nothing is known");
     }
 }

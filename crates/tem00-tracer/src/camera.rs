@@ -306,15 +306,6 @@ impl Camera {
         pupil_area * cosine * self.solid_angle_per_pixel(pixel) / (pitch * pitch)
     }
 
-    /// Returns the camera moved by `displacement`, in metres, without turning.
-    #[must_use]
-    pub fn translated(&self, displacement: DVec3) -> Self {
-        let mut moved = *self;
-        moved.description.position += displacement;
-        moved.description.look_at += displacement;
-        moved
-    }
-
     /// Returns the camera moved as a rigid body.
     #[must_use]
     pub fn moved(&self, motion: &RigidMotion) -> Self {

@@ -85,6 +85,22 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "thiserror",
         ],
     ),
+    (
+        "tem00-capi",
+        &["tem00-beam", "tem00-decorrelation", "tem00-speckle"],
+        &[],
+    ),
+    (
+        "tem00-python",
+        &[
+            "tem00-beam",
+            "tem00-decorrelation",
+            "tem00-numerics",
+            "tem00-speckle",
+            "tem00-statistics",
+        ],
+        &["numpy", "pyo3"],
+    ),
 ];
 
 /// Crates of the workspace that judge the others, and so may appear in the tests of any of them.

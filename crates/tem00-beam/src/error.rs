@@ -137,6 +137,58 @@ pub enum BeamError {
     SinglePrecision(f64),
 }
 
+impl BeamError {
+    /// Returns the name of the parameter that was refused, as constructors and functions call it.
+    pub const fn parameter(&self) -> &'static str {
+        match self {
+            Self::Wavelength(..) => "wavelength",
+            Self::Wavelengths { .. } => "wavelengths",
+            Self::WaistRadius(..) => "waist_radius",
+            Self::Divergence(..) => "divergence",
+            Self::MSquared(..) => "m_squared",
+            Self::NotParaxial { .. } => "not_paraxial",
+            Self::Radius(..) => "radius",
+            Self::Growth(..) => "growth",
+            Self::PowerFraction(..) => "power_fraction",
+            Self::FanAngle(..) => "fan_angle",
+            Self::ApexOffset { .. } => "apex_offset",
+            Self::FocusDistance(..) => "focus_distance",
+            Self::Edge(..) => "edge",
+            Self::ProfileLength { .. } => "profile_length",
+            Self::ProfileAngle { .. } => "profile_angle",
+            Self::ProfilePower { .. } => "profile_power",
+            Self::ProfileTotal(..) => "profile_total",
+            Self::TabulatedProfile => "tabulated_profile",
+            Self::NotTabulated => "not_tabulated",
+            Self::WaistDistance(..) => "waist_distance",
+            Self::Rotation(..) => "rotation",
+            Self::RayleighRange(..) => "rayleigh_range",
+            Self::Curvature(..) => "curvature",
+            Self::MatrixEntry(..) => "matrix_entry",
+            Self::Determinant(..) => "determinant",
+            Self::NotSymplectic(..) => "not_symplectic",
+            Self::Determinants { .. } => "determinants",
+            Self::HalfTrace(..) => "half_trace",
+            Self::Length(..) => "length",
+            Self::FocalLength(..) => "focal_length",
+            Self::Thickness(..) => "thickness",
+            Self::Index(..) => "index",
+            Self::AngleOfIncidence(..) => "angle_of_incidence",
+            Self::Gradient(..) => "gradient",
+            Self::PositionMoments(..) => "position_moments",
+            Self::MixedMoments(..) => "mixed_moments",
+            Self::SlopeMoments(..) => "slope_moments",
+            Self::ComplexCurvature(..) => "complex_curvature",
+            Self::Power(..) => "power",
+            Self::Origin(..) => "origin",
+            Self::Direction(..) => "direction",
+            Self::FanAxis(..) => "fan_axis",
+            Self::CutoffFraction(..) => "cutoff_fraction",
+            Self::SinglePrecision(..) => "single_precision",
+        }
+    }
+}
+
 impl fmt::Display for BeamError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const LENGTH: &str = "must lie between 1e-30 m and 1e30 m";

@@ -93,6 +93,43 @@ pub enum DecorrelationError {
     PatternSpeckleSize(f64),
 }
 
+impl DecorrelationError {
+    /// Returns the name of the parameter that was refused, as constructors and functions call it.
+    pub const fn parameter(&self) -> &'static str {
+        match self {
+            Self::Wavelength(..) => "wavelength",
+            Self::FocalLength(..) => "focal_length",
+            Self::FNumber(..) => "f_number",
+            Self::PixelPitch(..) => "pixel_pitch",
+            Self::SurfaceToPupil { .. } => "surface_to_pupil",
+            Self::SurfaceToPrincipalPlane { .. } => "surface_to_principal_plane",
+            Self::PupilToImage(..) => "pupil_to_image",
+            Self::Magnification(..) => "magnification",
+            Self::PupilMagnification(..) => "pupil_magnification",
+            Self::PupilDiameter { .. } => "pupil_diameter",
+            Self::PupilTooWide { .. } => "pupil_too_wide",
+            Self::Axes(..) => "axes",
+            Self::ViewDirection(..) => "view_direction",
+            Self::Up(..) => "up",
+            Self::ToPupil(..) => "to_pupil",
+            Self::DirectionToSource(..) => "direction_to_source",
+            Self::Curvature(..) => "curvature",
+            Self::CurvatureTensor(..) => "curvature_tensor",
+            Self::PrincipalAxis(..) => "principal_axis",
+            Self::LightPosition(..) => "light_position",
+            Self::LitPoint(..) => "lit_point",
+            Self::Normal(..) => "normal",
+            Self::Rotation(..) => "rotation",
+            Self::RotationAxis(..) => "rotation_axis",
+            Self::RotationAngle(..) => "rotation_angle",
+            Self::Pivot(..) => "pivot",
+            Self::Translation(..) => "translation",
+            Self::PupilCentre(..) => "pupil_centre",
+            Self::PatternSpeckleSize(..) => "pattern_speckle_size",
+        }
+    }
+}
+
 impl fmt::Display for DecorrelationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const POSITIVE: &str = "must be positive and finite, got";

@@ -132,6 +132,50 @@ pub enum SpeckleError {
     SamplePitch(f64),
 }
 
+impl SpeckleError {
+    /// Returns the name of the parameter that was refused, as constructors and functions call it.
+    pub const fn parameter(&self) -> &'static str {
+        match self {
+            Self::Size(..) => "size",
+            Self::SpeckleSize { .. } => "speckle_size",
+            Self::Diameter { .. } => "diameter",
+            Self::InnerDiameter(..) => "inner_diameter",
+            Self::Height(..) => "height",
+            Self::GaussianRadius(..) => "gaussian_radius",
+            Self::Transmission(..) => "transmission",
+            Self::Sample { .. } => "sample",
+            Self::PhasorCount(..) => "phasor_count",
+            Self::HalfPeriod(..) => "half_period",
+            Self::PathLength(..) => "path_length",
+            Self::MemoryLimit { .. } => "memory_limit",
+            Self::Memory { .. } => "memory",
+            Self::Image(..) => "image",
+            Self::Region(..) => "region",
+            Self::SpeckleSizeInPixels(..) => "speckle_size_in_pixels",
+            Self::Motion(..) => "motion",
+            Self::PatternCount(..) => "pattern_count",
+            Self::Weight { .. } => "weight",
+            Self::NoSeed => "no_seed",
+            Self::Polarisation(..) => "polarisation",
+            Self::Wavelength(..) => "wavelength",
+            Self::Linewidth { .. } => "linewidth",
+            Self::PathSpread(..) => "path_spread",
+            Self::BeamRatio(..) => "beam_ratio",
+            Self::Phase(..) => "phase",
+            Self::ImageDrift(..) => "image_drift",
+            Self::PupilDrift(..) => "pupil_drift",
+            Self::PixelCount(..) => "pixel_count",
+            Self::PixelPitch(..) => "pixel_pitch",
+            Self::PixelSize(..) => "pixel_size",
+            Self::PixelOrigin(..) => "pixel_origin",
+            Self::ScattererCount { .. } => "scatterer_count",
+            Self::Distance(..) => "distance",
+            Self::LitSize(..) => "lit_size",
+            Self::SamplePitch(..) => "sample_pitch",
+        }
+    }
+}
+
 impl fmt::Display for SpeckleError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

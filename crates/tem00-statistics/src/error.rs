@@ -139,6 +139,46 @@ pub enum StatisticsError {
     },
 }
 
+impl StatisticsError {
+    /// Returns the name of the parameter that was refused, as constructors and functions call it.
+    pub const fn parameter(&self) -> &'static str {
+        match self {
+            Self::Shape(..) => "shape",
+            Self::Contrast(..) => "contrast",
+            Self::Degree(..) => "degree",
+            Self::AmplitudeCorrelation(..) => "amplitude_correlation",
+            Self::BeamRatio(..) => "beam_ratio",
+            Self::Weight { .. } => "weight",
+            Self::NoWeight(..) => "no_weight",
+            Self::Phasors(..) => "phasors",
+            Self::Wavelength(..) => "wavelength",
+            Self::Linewidth { .. } => "linewidth",
+            Self::Distance(..) => "distance",
+            Self::LitSize(..) => "lit_size",
+            Self::Level(..) => "level",
+            Self::NotPositive { .. } => "not_positive",
+            Self::Window { .. } => "window",
+            Self::Samples { .. } => "samples",
+            Self::NotFinite { .. } => "not_finite",
+            Self::Constant(..) => "constant",
+            Self::Mean(..) => "mean",
+            Self::TestedMean(..) => "tested_mean",
+            Self::Size { .. } => "size",
+            Self::Transform(..) => "transform",
+            Self::Stride(..) => "stride",
+            Self::Step(..) => "step",
+            Self::SpeckleSize(..) => "speckle_size",
+            Self::ZeroLag(..) => "zero_lag",
+            Self::Unresolved { .. } => "unresolved",
+            Self::TooCoarse { .. } => "too_coarse",
+            Self::Probability { .. } => "probability",
+            Self::Bins { .. } => "bins",
+            Self::ExpectedCount { .. } => "expected_count",
+            Self::DegreesOfFreedom { .. } => "degrees_of_freedom",
+        }
+    }
+}
+
 impl fmt::Display for StatisticsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {

@@ -1,0 +1,73 @@
+use pyo3::{
+    PyErr,
+    exceptions::{PyMemoryError, PyValueError},
+    prelude::*,
+};
+use tem00_beam::BeamError;
+use tem00_decorrelation::DecorrelationError;
+use tem00_speckle::SpeckleError;
+use tem00_statistics::StatisticsError;
+
+pyo3::create_exception!(
+    tem00,
+    ParameterError,
+    PyValueError,
+    "A parameter lies outside what is allowed.\n\nThe message names it, its value and what is \
+     allowed; the attribute ``parameter`` is its name."
+);
+
+/// The exception that refuses `parameter`.
+pub(crate) fn refused(parameter: &str, message: String) -> PyErr {
+    let error = ParameterError::new_err(message);
+    Python::attach(|py| match error.value(py).setattr("parameter", parameter) {
+        Ok(()) => error.clone_ref(py),
+        Err(other) => other,
+    })
+}
+
+/// What the errors of the physics crates become in Python.
+pub(crate) trait IntoPython {
+    /// Returns the exception.
+    fn into_python(self) -> PyErr;
+}
+
+impl IntoPython for BeamError {
+    fn into_python(self) -> PyErr {
+        refused(self.parameter(), self.to_string())
+    }
+}
+
+impl IntoPython for DecorrelationError {
+    fn into_python(self) -> PyErr {
+        refused(self.parameter(), self.to_string())
+    }
+}
+
+impl IntoPython for StatisticsError {
+    fn into_python(self) -> PyErr {
+        refused(self.parameter(), self.to_string())
+    }
+}
+
+impl IntoPython for SpeckleError {
+    fn into_python(self) -> PyErr {
+        match self {
+            Self::MemoryLimit { .. } | Self::Memory { .. } => {
+                PyMemoryError::new_err(self.to_string())
+            }
+            _ => refused(self.parameter(), self.to_string()),
+        }
+    }
+}
+
+/// `?` for results of the physics crates.
+pub(crate) trait OrRaise<T> {
+    /// Returns the value, or the error as an exception.
+    fn or_raise(self) -> PyResult<T>;
+}
+
+impl<T, E: IntoPython> OrRaise<T> for Result<T, E> {
+    fn or_raise(self) -> PyResult<T> {
+        self.map_err(IntoPython::into_python)
+    }
+}

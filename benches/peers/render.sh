@@ -6,4 +6,6 @@
 set -eu
 cd "$(dirname "$0")/../.."
 cargo build --quiet --release --example render_server
+DRJIT_LIBLLVM_PATH="$(benches/peers/libllvm.sh || true)"
+export DRJIT_LIBLLVM_PATH
 exec target/peers/bin/python benches/peers/render_peers.py target/release/examples/render_server "$@"

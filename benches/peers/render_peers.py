@@ -10,7 +10,6 @@ time × variance: what equal noise costs. `mean` is the mean of our image by the
 """
 
 import argparse
-import os
 import pathlib
 import statistics
 import subprocess
@@ -24,14 +23,13 @@ from render_scenes import ROOT, SAMPLES, write_scenes
 class Program:
     """A process that renders."""
 
-    def __init__(self, name, command, environment):
+    def __init__(self, name, command):
         self.name = name
         self.process = subprocess.Popen(
             command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
-            env={**os.environ, **environment},
         )
         self.task = "render"
         self.seconds, self.images = [], []
@@ -72,12 +70,6 @@ class Program:
         return np.mean(variance[lit] / mean[lit] ** 2)
 
 
-def llvm_environment():
-    """Says where the LLVM library is, if setup_mitsuba.sh has found one."""
-    libraries = sorted((ROOT / "target/peers/llvm").rglob("libLLVM*.so*"))
-    return {"DRJIT_LIBLLVM_PATH": str(libraries[0])} if libraries else {}
-
-
 def report(name, ours, theirs):
     pixels = len(ours.images[0])
     print(f"{name}")
@@ -98,13 +90,9 @@ def report(name, ours, theirs):
 def compare(row, arguments, folder):
     name, our_file, their_file, lamps_only = row
     here = pathlib.Path(__file__).parent
-    ours = Program("tem00", [arguments.server], {})
+    ours = Program("tem00", [arguments.server])
     theirs = [
-        Program(
-            variant,
-            [sys.executable, here / "mitsuba_server.py", variant],
-            llvm_environment(),
-        )
+        Program(variant, [sys.executable, here / "mitsuba_server.py", variant])
         for variant in arguments.variants.split(",")
     ]
     # Mitsuba's integrator of direct light makes no use of the directions that materials draw.

@@ -5,10 +5,4 @@ set -eu
 cd "$(dirname "$0")/../.."
 python3 -m venv target/peers
 target/peers/bin/pip install --quiet numpy==2.4.6 mitsuba==3.9.1
-mkdir -p target/peers/llvm
-cd target/peers/llvm
-if apt-get download libllvm19 2>/dev/null; then
-    dpkg-deb --extract libllvm19_*.deb .
-else
-    echo "libllvm19 is not to be had: only scalar_rgb is compared" >&2
-fi
+benches/peers/libllvm.sh || echo "no LLVM library: only scalar_rgb can be compared" >&2

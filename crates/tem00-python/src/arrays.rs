@@ -54,30 +54,63 @@ pub(crate) fn map_many<'py, const N: usize, const M: usize>(
 /// Hands `N` arguments, broadcast together, to `f` as slices of equal length, and returns the `M`
 /// slices that it fills, in the common shape; floats for numbers. Without the interpreter's lock.
 ///
-/// An array that already has the common shape and lies in memory row by row is not copied.
-///
 /// # Errors
 ///
-/// Refuses arguments that are not finite, shapes that do not fit together, and what memory does not
-/// hold.
+/// As [`evaluate`].
 pub(crate) fn fill<'py, const N: usize, const M: usize>(
     py: Python<'py>,
     arguments: [Named<'_, 'py>; N],
     f: impl FnOnce([&[f64]; N], &mut [Vec<f64>; M]) + Send,
 ) -> PyResult<[Bound<'py, PyAny>; M]> {
-    let names = arguments.map(|(name, _)| name);
-    let views = arguments.map(|(_, argument)| argument.as_array());
-    let shape = common_shape(&names, &views)?;
-    let filled = py.detach(|| -> Result<[Vec<f64>; M], Refusal> {
-        let columns = views.each_ref().map(|view| broadcast(view, &shape));
-        check_finite(&names, &columns)?;
-        let mut out = zeros(columns[0].len())?;
-        f(columns.each_ref().map(|column| &**column), &mut out);
-        Ok(out)
+    let columns = arguments.map(|(name, values)| Column {
+        name,
+        values: values.as_array(),
+        limit: f64::MAX,
     });
+    evaluate(py, columns, [&[]; M], f)
+}
+
+/// The values of one argument, or of one component of an argument that holds vectors.
+pub(crate) struct Column<'a> {
+    /// The name of the argument.
+    pub(crate) name: &'static str,
+    /// The values, in the shape that broadcasts with the others.
+    pub(crate) values: ArrayViewD<'a, f64>,
+    /// The largest magnitude that is allowed.
+    pub(crate) limit: f64,
+}
+
+/// As [`fill`], for columns of any origin and for results that hold a vector or a matrix in each
+/// place: `inner` is the shape of each, empty for a number.
+///
+/// A column that already has the common shape and lies in memory row by row is not copied. `f`
+/// fills vectors component by component, all first components before all second ones. Python
+/// nevertheless sees the components in the last axes, without a copy.
+///
+/// # Errors
+///
+/// Refuses values beyond their limit or not finite, shapes that do not fit together, and what memory
+/// does not hold.
+pub(crate) fn evaluate<'py, const N: usize, const M: usize>(
+    py: Python<'py>,
+    columns: [Column<'_>; N],
+    inner: [&[usize]; M],
+    f: impl FnOnce([&[f64]; N], &mut [Vec<f64>; M]) + Send,
+) -> PyResult<[Bound<'py, PyAny>; M]> {
+    let shape = common_shape(&columns)?;
+    let filled = py.detach(|| -> Result<[Vec<f64>; M], Refusal> {
+        let mut slices = [const { Cow::Owned(Vec::new()) }; N];
+        for (slice, column) in slices.iter_mut().zip(&columns) {
+            *slice = column.broadcast(&shape)?;
+            column.check(slice)?;
+        }
+        let mut out = zeros(slices[0].len(), inner)?;
+        f(slices.each_ref().map(|values| &**values), &mut out);
+        Ok(out)
+    })?;
     let mut arrays = Vec::with_capacity(M);
-    for values in filled? {
-        arrays.push(into_python(py, &shape, values)?);
+    for (values, inner) in filled.into_iter().zip(inner) {
+        arrays.push(into_python(py, &shape, inner, values)?);
     }
     arrays
         .try_into()
@@ -86,32 +119,70 @@ pub(crate) fn fill<'py, const N: usize, const M: usize>(
 
 /// Why arguments were refused, said once the interpreter is at hand again.
 enum Refusal {
-    NotFinite { name: &'static str, value: f64 },
-    Memory { bytes: usize },
+    TooLarge {
+        name: &'static str,
+        value: f64,
+        limit: f64,
+    },
+    Memory {
+        bytes: usize,
+    },
 }
 
 impl From<Refusal> for PyErr {
     fn from(refusal: Refusal) -> Self {
         match refusal {
-            Refusal::NotFinite { name, value } => refused(
+            Refusal::TooLarge { name, value, limit } if limit < f64::MAX => refused(
+                name,
+                format!("{name} must be finite and within ±{limit:e} everywhere, got {value:e}"),
+            ),
+            Refusal::TooLarge { name, value, .. } => refused(
                 name,
                 format!("{name} is {value}, but must be finite everywhere"),
             ),
             Refusal::Memory { bytes } => {
-                PyMemoryError::new_err(format!("the machine refused {bytes} bytes for the result"))
+                PyMemoryError::new_err(format!("the machine refused {bytes} bytes for an array"))
             }
         }
     }
 }
 
+impl Column<'_> {
+    /// The values in the shape of all, borrowed where they already lie that way.
+    fn broadcast(&self, shape: &[usize]) -> Result<Cow<'_, [f64]>, Refusal> {
+        let Some(wide) = self.values.broadcast(IxDyn(shape)) else {
+            return Ok(Cow::Borrowed(&[]));
+        };
+        if let Some(slice) = wide.to_slice() {
+            return Ok(Cow::Borrowed(slice));
+        }
+        let mut copy = reserved(wide.len())?;
+        copy.extend(wide.iter());
+        Ok(Cow::Owned(copy))
+    }
+
+    /// Whether a value is within the limit; one of `f64::MAX` allows all that is finite.
+    fn allows(&self, value: f64) -> bool {
+        value.abs() <= self.limit
+    }
+
+    fn check(&self, values: &[f64]) -> Result<(), Refusal> {
+        match values.iter().find(|value| !self.allows(**value)) {
+            None => Ok(()),
+            Some(&value) => Err(Refusal::TooLarge {
+                name: self.name,
+                value,
+                limit: self.limit,
+            }),
+        }
+    }
+}
+
 /// The shape that all arguments broadcast to, by NumPy's rule.
-fn common_shape<const N: usize>(
-    names: &[&'static str; N],
-    views: &[ArrayViewD<'_, f64>; N],
-) -> PyResult<Vec<usize>> {
+fn common_shape(columns: &[Column<'_>]) -> PyResult<Vec<usize>> {
     let mut common: Vec<usize> = Vec::new();
-    for (name, view) in names.iter().zip(views) {
-        let shape = view.shape();
+    for Column { name, values, .. } in columns {
+        let shape = values.shape();
         let longer = shape.len().saturating_sub(common.len());
         common.splice(0..0, std::iter::repeat_n(1, longer));
         let skipped = common.len() - shape.len();
@@ -130,51 +201,42 @@ fn common_shape<const N: usize>(
     Ok(common)
 }
 
-/// The values in the shape of all, borrowed where they already lie that way.
-fn broadcast<'a>(view: &'a ArrayViewD<'a, f64>, shape: &[usize]) -> Cow<'a, [f64]> {
-    match view.broadcast(IxDyn(shape)) {
-        Some(wide) => match wide.to_slice() {
-            Some(slice) => Cow::Borrowed(slice),
-            None => Cow::Owned(wide.iter().copied().collect()),
-        },
-        None => Cow::Borrowed(&[]),
-    }
-}
-
-fn check_finite<const N: usize>(
-    names: &[&'static str; N],
-    columns: &[Cow<'_, [f64]>; N],
-) -> Result<(), Refusal> {
-    for (&name, column) in names.iter().zip(columns) {
-        if let Some(&value) = column.iter().find(|value| !value.is_finite()) {
-            return Err(Refusal::NotFinite { name, value });
-        }
-    }
-    Ok(())
-}
-
-fn zeros<const M: usize>(length: usize) -> Result<[Vec<f64>; M], Refusal> {
+/// Room for `length` results of each inner shape.
+fn zeros<const M: usize>(length: usize, inner: [&[usize]; M]) -> Result<[Vec<f64>; M], Refusal> {
     let mut out = [const { Vec::new() }; M];
-    for values in &mut out {
-        let bytes = length.saturating_mul(size_of::<f64>());
-        values
-            .try_reserve_exact(length)
-            .map_err(|_| Refusal::Memory { bytes })?;
-        values.resize(length, 0.0);
+    for (values, inner) in out.iter_mut().zip(inner) {
+        let count = length.saturating_mul(inner.iter().product());
+        *values = reserved(count)?;
+        values.resize(count, 0.0);
     }
     Ok(out)
 }
 
-/// A float for the shape of a number, else an array that owns the values.
+/// An empty list with room for `count` numbers.
+fn reserved(count: usize) -> Result<Vec<f64>, Refusal> {
+    let mut values = Vec::new();
+    let bytes = count.saturating_mul(size_of::<f64>());
+    values
+        .try_reserve_exact(count)
+        .map_err(|_| Refusal::Memory { bytes })?;
+    Ok(values)
+}
+
+/// A float for the shape of a number, else an array that owns the values, with the inner shape in
+/// its last axes.
 fn into_python<'py>(
     py: Python<'py>,
     shape: &[usize],
+    inner: &[usize],
     values: Vec<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    match (shape, values.as_slice()) {
-        ([], [value]) => Ok(PyFloat::new(py, *value).into_any()),
-        _ => Ok(PyArray1::from_vec(py, values)
-            .reshape(shape.to_vec())?
-            .into_any()),
+    if let ([], [], [value]) = (shape, inner, values.as_slice()) {
+        return Ok(PyFloat::new(py, *value).into_any());
     }
+    let in_memory = [inner, shape].concat();
+    let axes: Vec<usize> = (inner.len()..in_memory.len())
+        .chain(0..inner.len())
+        .collect();
+    let array = PyArray1::from_vec(py, values).reshape(in_memory)?;
+    Ok(array.permute(Some(axes))?.into_any())
 }

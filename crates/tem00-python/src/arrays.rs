@@ -12,9 +12,10 @@ mod results;
 use pyo3::{exceptions::PyRuntimeError, prelude::*};
 
 pub(crate) use images::{ComplexImage, Image, image_array};
-pub(crate) use numbers::Numbers;
+pub(crate) use numbers::{Count, Numbers};
 pub(crate) use results::{array, vector_array, zeros};
 
+use crate::error::refused;
 use blocks::Blocks;
 
 /// An argument and its name.
@@ -58,18 +59,24 @@ pub(crate) fn map_vectors<'py, const N: usize, const K: usize>(
     arguments: [Named<'_, 'py>; N],
     f: impl Fn([f64; N]) -> [f64; K] + Send + Sync,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let names = arguments.map(|(name, _)| name);
     let blocks = Blocks::new(arguments)?;
     let mut shape = blocks.shape().to_vec();
     shape.push(K);
     let filled = py.detach(|| {
         let [mut out] = zeros::<f64, 1>(&shape)?;
         let mut vectors = out.chunks_exact_mut(K.max(1));
+        let mut outcome = Ok(());
         blocks.run(|columns| {
             for (i, vector) in (0..columns[0].len()).zip(&mut vectors) {
-                vector.copy_from_slice(&f(columns.map(|column| column[i])));
+                let point = columns.map(|column| column[i]);
+                vector.copy_from_slice(&f(point));
+                if vector.iter().any(|component| component.is_nan()) {
+                    outcome = Err(no_number(names, point));
+                }
             }
         });
-        Ok::<_, PyErr>(out)
+        outcome.map(|()| out)
     });
     Ok(array(py, &shape, filled?)?.into_any())
 }
@@ -90,19 +97,26 @@ pub(crate) fn fill<'py, const N: usize, const M: usize>(
     arguments: [Named<'_, 'py>; N],
     mut f: impl FnMut([&[f64]; N], [&mut [f64]; M]) + Send,
 ) -> PyResult<[Bound<'py, PyAny>; M]> {
+    let names = arguments.map(|(name, _)| name);
     let blocks = Blocks::new(arguments)?;
     let filled = py.detach(|| {
         let mut out = zeros::<f64, M>(blocks.shape())?;
         let mut rest = out.each_mut().map(Vec::as_mut_slice);
+        let mut outcome = Ok(());
         blocks.run(|columns| {
-            let block = rest.each_mut().map(|rest| {
+            let mut block = rest.each_mut().map(|rest| {
                 let (block, after) = core::mem::take(rest).split_at_mut(columns[0].len());
                 *rest = after;
                 block
             });
-            f(columns, block);
+            f(columns, block.each_mut().map(|block| &mut **block));
+            for block in block {
+                if let Some(index) = block.iter().position(|value| value.is_nan()) {
+                    outcome = Err(no_number(names, columns.map(|column| column[index])));
+                }
+            }
         });
-        Ok::<_, PyErr>(out)
+        outcome.map(|()| out)
     });
     let mut arrays = Vec::with_capacity(M);
     for values in filled? {
@@ -111,4 +125,14 @@ pub(crate) fn fill<'py, const N: usize, const M: usize>(
     arrays
         .try_into()
         .map_err(|_| PyRuntimeError::new_err("an array is missing"))
+}
+
+/// The exception for finite arguments so extreme that the result of a formula is not a number.
+fn no_number<const N: usize>(names: [&'static str; N], values: [f64; N]) -> PyErr {
+    let pairs = names.iter().zip(values);
+    let all: Vec<String> = pairs
+        .map(|(name, value)| format!("{name} = {value:e}"))
+        .collect();
+    let message = format!("{} must be less extreme to have a result", all.join(", "));
+    refused(names.first().copied().unwrap_or_default(), message)
 }

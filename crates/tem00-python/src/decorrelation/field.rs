@@ -208,6 +208,10 @@ impl FieldSlices {
     fn slice_coordinate(&self, py: Python<'_>) -> Py<PyAny> {
         self.0[7].clone_ref(py)
     }
+
+    fn __repr__(&self) -> String {
+        format!("FieldSlices(correlation={})", self.0[4])
+    }
 }
 
 /// What motions do to the speckle at many surface points, such as those behind the pixels.

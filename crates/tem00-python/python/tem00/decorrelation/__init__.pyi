@@ -4,6 +4,37 @@ from typing import ClassVar, Literal, final, overload
 from tem00._typing import FloatArray, Numbers, Pair, RealArray, Vector
 from tem00.decorrelation import paper as paper
 
+__all__ = [
+    "CameraFrame",
+    "Configuration",
+    "CorrelationLaw",
+    "FieldLight",
+    "FieldSetup",
+    "FieldSlices",
+    "Focus",
+    "Illumination",
+    "ImagingGeometry",
+    "LensData",
+    "LineOfSight",
+    "Motion",
+    "MotionField",
+    "PupilDistances",
+    "RigidMotion",
+    "RigidMotions",
+    "SpeckleMotion",
+    "SurfacePoint",
+    "ThickLensData",
+    "Wavefront",
+    "axial_correlation",
+    "correlation",
+    "equivalent_axial_shift",
+    "equivalent_pupil_shift",
+    "motion_multiple",
+    "paper",
+    "pupil_overlap_correlation",
+    "slice_coordinate",
+]
+
 _Orientation = Literal["screen_upright", "sensor_inverted"]
 _Matrix = FloatArray | Sequence[Sequence[float]]
 _Triple = tuple[Numbers, Numbers, Numbers] | Sequence[Numbers]
@@ -55,6 +86,7 @@ class CorrelationLaw:
 
 @final
 class LensData:
+    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, object]]: ...
     def __new__(
         cls,
         *,
@@ -92,6 +124,7 @@ class Focus:
 
 @final
 class ThickLensData:
+    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, object]]: ...
     def __new__(
         cls,
         *,
@@ -120,6 +153,7 @@ class ThickLensData:
 
 @final
 class PupilDistances:
+    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, object]]: ...
     def __new__(
         cls,
         *,
@@ -325,6 +359,7 @@ class RigidMotions:
 
 @final
 class Motion:
+    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, object]]: ...
     def __new__(
         cls,
         *,

@@ -3,6 +3,17 @@ from typing import ClassVar, final, overload
 from tem00._typing import FloatArray, Numbers, Pair, Vector
 from tem00.decorrelation import CameraFrame, ImagingGeometry
 
+__all__ = [
+    "Emitter",
+    "EulerAngles",
+    "axial_decorrelation_length",
+    "image_displacement",
+    "pattern_coordinate",
+    "pupil_displacement",
+    "relative_pupil_displacement",
+    "slice_coordinate",
+]
+
 def image_displacement(magnification: float, angles: EulerAngles, a: Vector) -> FloatArray: ...
 def pupil_displacement(
     angles: EulerAngles, emitter: Emitter, surface_to_pupil: float, a: Vector

@@ -1,6 +1,5 @@
 //! The header against the library that it describes.
 #![expect(
-    clippy::expect_used,
     clippy::unwrap_used,
     reason = "a test stops at what it does not expect"
 )]

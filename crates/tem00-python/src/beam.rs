@@ -4,14 +4,19 @@ mod abcd;
 mod arguments;
 mod astigmatic;
 mod astigmatic_system;
+mod closed_form;
 mod complex_parameter;
 mod cross_section;
 mod emitter;
+mod fit;
 mod gaussian;
 mod general;
+mod light;
 mod lights;
 mod line;
-mod pickling;
+mod line_lights;
+mod located;
+mod paper;
 mod placement;
 mod profile;
 mod records;
@@ -22,8 +27,8 @@ use pyo3::prelude::*;
 /// Gaussian beams, laser lines, and the lights that a renderer places.
 ///
 /// All lengths are in metres, angles in radians, powers in watts. Light travels along +z of its own
-/// frame. A beam radius is where the irradiance has fallen to 1/e² of the axis. Coordinates and all
-/// that is computed from them lie within ±1e30: what is larger, or not finite, is refused.
+/// frame. A beam radius is where the irradiance has fallen to 1/e² of the axis. Coordinates beyond
+/// ±1e30, or not finite, are refused.
 #[pymodule(submodule)]
 pub(crate) mod beam {
     #[pymodule_export]
@@ -31,13 +36,18 @@ pub(crate) mod beam {
         abcd::{AbcdMatrix, ThickLens},
         astigmatic::AstigmaticBeam,
         astigmatic_system::AstigmaticSystem,
+        closed_form::closed_form,
         complex_parameter::ComplexBeamParameter,
         cross_section::CrossSection,
         emitter::Emitter,
-        gaussian::{GaussianBeam, LocatedBeam},
+        fit::{CausticFit, Estimate, FitError, KnifeEdgeFit},
+        gaussian::GaussianBeam,
         general::{GeneralAstigmaticBeam, SecondMoments},
-        lights::{AstigmaticLight, LineLight, SpotLight, TabulatedLineLight},
+        lights::{AstigmaticLight, SpotLight},
         line::{FanGeometry, LaserLine},
+        line_lights::{LineLight, TabulatedLineLight},
+        located::LocatedBeam,
+        paper::paper,
         placement::{Axis, Ellipse, Placement},
         profile::{AngularProfile, LineProfile},
         records::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent},

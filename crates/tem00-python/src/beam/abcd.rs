@@ -6,7 +6,7 @@ use tem00_beam as physics;
 use super::{
     arguments::{OrRaiseAs, components, map_inner},
     complex_parameter::ComplexBeamParameter,
-    gaussian::LocatedBeam,
+    located::LocatedBeam,
 };
 use crate::{
     arrays::Numbers,

@@ -1,7 +1,6 @@
 //! Arguments of the queries of beams and lights, and what becomes of them.
 
-use numpy::ndarray::Axis;
-use pyo3::prelude::*;
+use pyo3::{exceptions::PyRuntimeError, prelude::*};
 use tem00_beam::BeamError;
 
 use crate::{
@@ -21,60 +20,44 @@ pub(super) fn coordinate(name: &str, value: f64) -> PyResult<f64> {
     Err(refused(name, message))
 }
 
-/// An argument of numbers.
-pub(super) fn column<'a>((name, numbers): Named<'a, '_>) -> Column<'a> {
-    Column {
-        name,
-        values: numbers.as_array(),
-        limit: LIMIT,
-    }
-}
-
-/// The components of an argument that holds vectors in its last axis.
-pub(super) fn components<'a, const K: usize>(
-    (name, vectors): Named<'a, '_>,
-) -> PyResult<[Column<'a>; K]> {
-    let view = vectors.as_array();
-    match view.shape() {
-        [.., last] if *last == K => {
-            let axis = Axis(view.ndim() - 1);
-            Ok(std::array::from_fn(|k| Column {
-                name,
-                values: view.clone().index_axis_move(axis, k),
-                limit: LIMIT,
-            }))
-        }
+/// The values of an argument that is a list of numbers.
+pub(super) fn list<'a>(name: &'static str, numbers: &'a Numbers<'_>) -> PyResult<&'a [f64]> {
+    match numbers.shape() {
+        [_] => numbers.values(),
         shape => {
-            let message =
-                format!("{name} must have {K} components in its last axis, got {shape:?}");
+            let message = format!("{name} must have one axis, but has the shape {shape:?}");
             Err(refused(name, message))
         }
     }
 }
 
+/// Arguments of numbers.
+pub(super) fn columns<'a, const N: usize>(
+    arguments: [Named<'a, '_>; N],
+) -> PyResult<[Column<'a>; N]> {
+    let mut columns = Vec::with_capacity(N);
+    for argument in arguments {
+        columns.push(Column::new(argument, LIMIT)?);
+    }
+    columns
+        .try_into()
+        .map_err(|_| PyRuntimeError::new_err("an argument is missing"))
+}
+
+/// The components of an argument that holds vectors in its last axis.
+pub(super) fn components<'a, const K: usize>(argument: Named<'a, '_>) -> PyResult<[Column<'a>; K]> {
+    Column::components(argument, &[K], LIMIT)
+}
+
 /// The entries, row by row, of an argument that holds 2 × 2 matrices in its last axes.
-pub(super) fn last_matrices<'a>((name, matrices): Named<'a, '_>) -> PyResult<[Column<'a>; 4]> {
-    let view = matrices.as_array();
-    let [.., 2, 2] = view.shape() else {
-        let shape = view.shape();
-        let message = format!("{name} must have the shape [2, 2] in its last axes, got {shape:?}");
-        return Err(refused(name, message));
-    };
-    let axis = Axis(view.ndim() - 2);
-    Ok([(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, place)| Column {
-        name,
-        values: view
-            .clone()
-            .index_axis_move(axis, row)
-            .index_axis_move(axis, place),
-        limit: LIMIT,
-    }))
+pub(super) fn matrices<'a>(argument: Named<'a, '_>) -> PyResult<[Column<'a>; 4]> {
+    Column::components(argument, &[2, 2], LIMIT)
 }
 
 /// Uniform variates in [0, 1), `K` for each draw, in the last axis of the argument `u`.
 pub(super) fn uniforms<'a, const K: usize>(u: &'a Numbers<'_>) -> PyResult<[Column<'a>; K]> {
     let outside = |value: &&f64| !(0.0..1.0).contains(*value);
-    match u.as_array().iter().find(outside) {
+    match u.values()?.iter().find(outside) {
         Some(value) => Err(refused("u", format!("u must lie in [0, 1), got {value:e}"))),
         None => components(("u", u)),
     }
@@ -86,7 +69,7 @@ pub(super) fn map<'py, const N: usize>(
     arguments: [Named<'_, 'py>; N],
     f: impl Fn([f64; N]) -> f64 + Send + Sync,
 ) -> PyResult<Bound<'py, PyAny>> {
-    map_inner(py, arguments.map(column), &[], |x| [f(x)])
+    map_inner(py, columns(arguments)?, &[], |x| [f(x)])
 }
 
 /// Applies `f` to numbers, broadcast together; its vectors lie in the last axis of the result.
@@ -95,7 +78,7 @@ pub(super) fn map_vector<'py, const N: usize, const K: usize>(
     arguments: [Named<'_, 'py>; N],
     f: impl Fn([f64; N]) -> [f64; K] + Send + Sync,
 ) -> PyResult<Bound<'py, PyAny>> {
-    map_inner(py, arguments.map(column), &[K], f)
+    map_inner(py, columns(arguments)?, &[K], f)
 }
 
 /// Applies `f` to columns; its values lie in the shape `inner` in the last axes of the result.
@@ -106,11 +89,8 @@ pub(super) fn map_inner<'py, const N: usize, const K: usize>(
     f: impl Fn([f64; N]) -> [f64; K] + Send + Sync,
 ) -> PyResult<Bound<'py, PyAny>> {
     let [values] = evaluate(py, columns, [inner], |columns, [out]| {
-        let count = columns[0].len();
-        for i in 0..count {
-            for (k, value) in f(columns.map(|column| column[i])).into_iter().enumerate() {
-                out[k * count + i] = value;
-            }
+        for (i, out) in out.chunks_exact_mut(K).enumerate() {
+            out.copy_from_slice(&f(columns.map(|column| column[i])));
         }
     })?;
     Ok(values)
@@ -124,18 +104,13 @@ pub(super) fn try_map<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let name = argument.0;
     let mut first_error = Ok(());
-    let column = Column {
-        limit: f64::MAX,
-        ..column(argument)
-    };
+    let column = Column::new(argument, f64::MAX)?;
     let [values] = evaluate(py, [column], [&[]], |[x], [out]| {
         for (out, &x) in out.iter_mut().zip(x) {
             match f(x) {
                 Ok(value) => *out = value,
-                Err(error) => {
-                    first_error = Err(error);
-                    break;
-                }
+                Err(error) if first_error.is_ok() => first_error = Err(error),
+                Err(_) => {}
             }
         }
     })?;

@@ -6,12 +6,15 @@ use tem00_beam::DVec3;
 
 use super::{
     abcd::AbcdMatrix,
-    arguments::{OrRaiseAs, column, coordinate, map, map_inner, map_vector},
+    arguments::{OrRaiseAs, columns, coordinate, map, map_inner, map_vector},
     cross_section::CrossSection,
-    gaussian::LocatedBeam,
-    pickling::Reduced,
+    located::LocatedBeam,
 };
-use crate::{arrays::Numbers, error::OrRaise};
+use crate::{
+    arrays::Numbers,
+    error::OrRaise,
+    pickling::{Recipe, by_constructor},
+};
 
 /// An elliptic Gaussian beam with simple astigmatism.
 ///
@@ -278,7 +281,7 @@ impl AstigmaticBeam {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = [("x", &x), ("y", &y), ("z", &z)].map(column);
+        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| {
             self.0.flux_per_watt(DVec3::from(p)).to_array()
         })
@@ -290,12 +293,9 @@ impl AstigmaticBeam {
         format!("AstigmaticBeam(x={x}, y={y}, rotation={rotation:?})")
     }
 
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<Reduced<'py, (LocatedBeam, LocatedBeam, f64)>> {
-        let (x, y) = slf.get().axes();
-        let restore = slf.get_type().getattr("_restored")?;
-        Ok((restore, (x, y, slf.get().rotation())))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        let (x, y) = self.axes();
+        by_constructor::<Self>(py, "_restored", (x, y, self.rotation()))
     }
 
     /// What pickle calls.

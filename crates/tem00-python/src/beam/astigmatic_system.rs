@@ -7,7 +7,7 @@ use tem00_beam::DVec2;
 
 use super::{
     abcd::AbcdMatrix,
-    arguments::{OrRaiseAs, last_matrices, map_inner},
+    arguments::{OrRaiseAs, map_inner, matrices},
     general::{matrix_of, rows_of},
 };
 use crate::{arrays::Numbers, error::OrRaise};
@@ -132,7 +132,7 @@ impl AstigmaticSystem {
         py: Python<'py>,
         ray: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let columns = last_matrices(("ray", &ray))?;
+        let columns = matrices(("ray", &ray))?;
         map_inner(py, columns, &[2, 2], |[x, y, s_x, s_y]| {
             let ray = [DVec2::new(x, y), DVec2::new(s_x, s_y)];
             let [position, slope] = self.0.transform_ray(ray);

@@ -5,7 +5,7 @@ use tem00_beam as physics;
 
 use super::{
     arguments::{OrRaiseAs, try_map},
-    gaussian::LocatedBeam,
+    located::LocatedBeam,
 };
 use crate::{arrays::Numbers, error::OrRaise};
 
@@ -24,6 +24,7 @@ use crate::{arrays::Numbers, error::OrRaise};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ComplexBeamParameter(pub(super) physics::ComplexBeamParameter);
 
+#[expect(clippy::wrong_self_convention, reason = "Python objects are borrowed")]
 #[pymethods]
 impl ComplexBeamParameter {
     #[new]

@@ -2,71 +2,14 @@
 
 use numpy::PyArray1;
 use pyo3::{prelude::*, types::PyFloat};
-use tem00_beam::{
-    self as physics, AngularProfile, AstigmaticLight, BeamError, LineLight, NextEventSlices,
-    SpotLight, TabulatedLineLight,
-};
 
 use super::{
-    arguments::{OrRaiseAs, column, components, coordinate, map_inner, uniforms},
+    arguments::{OrRaiseAs, columns, components, coordinate, map_inner, uniforms},
+    light::Light,
     records::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
     rows::{Precision, array_of},
 };
 use crate::arrays::{Numbers, evaluate};
-
-/// A light as the beam crate holds it.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Light {
-    Spot(SpotLight<f64>),
-    Astigmatic(AstigmaticLight<f64>),
-    Line(LineLight<f64>),
-    Tabulated(LineLight<f64>, AngularProfile),
-}
-
-impl Light {
-    /// The fields of the light, as rows of four.
-    fn rows(&self) -> Vec<[f64; 4]> {
-        match self {
-            Self::Spot(light) => light.to_rows().to_vec(),
-            Self::Astigmatic(light) => light.to_rows().to_vec(),
-            Self::Line(light) | Self::Tabulated(light, _) => light.to_rows().to_vec(),
-        }
-    }
-
-    /// The rows that all lights have: origin and power, ex and cutoff, ey, ez.
-    fn frame_rows(&self) -> [[f64; 4]; 4] {
-        let rows = self.rows();
-        std::array::from_fn(|i| rows[i])
-    }
-
-    fn single_rows(&self) -> Result<Vec<[f32; 4]>, BeamError> {
-        Ok(match self {
-            Self::Spot(light) => light.to_f32()?.to_rows().to_vec(),
-            Self::Astigmatic(light) => light.to_f32()?.to_rows().to_vec(),
-            Self::Line(light) => light.to_f32()?.to_rows().to_vec(),
-            Self::Tabulated(line, profile) => {
-                let (line, knots) = (*line, profile.knots());
-                let single = TabulatedLineLight { line, knots }
-                    .to_f32(&profile.to_f32()?)?
-                    .line;
-                single.to_rows().to_vec()
-            }
-        })
-    }
-
-    /// Asks the light, whichever it is.
-    fn ask<R>(&self, query: impl FnOnce(&dyn physics::Emitter<f64>) -> R) -> R {
-        match self {
-            Self::Spot(light) => query(light),
-            Self::Astigmatic(light) => query(light),
-            Self::Line(light) => query(light),
-            Self::Tabulated(line, profile) => query(&TabulatedLineLight {
-                line: *line,
-                knots: profile.knots(),
-            }),
-        }
-    }
-}
 
 /// A light that a renderer can evaluate and sample: what all placed lights have in common.
 ///
@@ -172,7 +115,7 @@ impl Emitter {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = [("x", &x), ("y", &y), ("z", &z)].map(column);
+        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
         let [irradiance] = evaluate(py, points, [&[]], |[x, y, z], [out]| {
             self.0.ask(|light| light.irradiance_batch(x, y, z, out));
         })?;
@@ -199,7 +142,7 @@ impl Emitter {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = [("x", &x), ("y", &y), ("z", &z)].map(column);
+        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| self.0.ask(|light| light.flux(p)))
     }
 
@@ -225,10 +168,10 @@ impl Emitter {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Option<NextEvent>> {
-        let points = [("x", &x), ("y", &y), ("z", &z)].map(column);
+        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
         let inner: [&[usize]; 4] = [&[3], &[], &[3], &[]];
         let [point, distance, wi, e_perp] = evaluate(py, points, inner, |points, out| {
-            self.next_events(points, out);
+            self.0.next_events(points, out);
         })?;
         let event = NextEvent {
             point: point.unbind(),
@@ -264,12 +207,12 @@ impl Emitter {
         z: Numbers<'py>,
         u: Numbers<'py>,
     ) -> PyResult<Option<SampledEvent>> {
-        let [x, y, z] = [("x", &x), ("y", &y), ("z", &z)].map(column);
+        let [x, y, z] = columns([("x", &x), ("y", &y), ("z", &z)])?;
         let [u0, u1] = uniforms(&u)?;
         let inner: [&[usize]; 5] = [&[3], &[], &[3], &[], &[]];
         let [point, distance, wi, value, pdf] =
             evaluate(py, [x, y, z, u0, u1], inner, |columns, out| {
-                self.sampled_events(columns, out);
+                self.0.sampled_events(columns, out);
             })?;
         let dark = is_dark_number(&value);
         let event = SampledEvent {
@@ -305,7 +248,7 @@ impl Emitter {
         z: Numbers<'py>,
         wi: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let [x, y, z] = [("x", &x), ("y", &y), ("z", &z)].map(column);
+        let [x, y, z] = columns([("x", &x), ("y", &y), ("z", &z)])?;
         let [wi_x, wi_y, wi_z] = components(("wi", &wi))?;
         let columns = [x, y, z, wi_x, wi_y, wi_z];
         map_inner(py, columns, &[], |[x, y, z, wi @ ..]| {
@@ -328,7 +271,7 @@ impl Emitter {
         let columns = uniforms::<4>(&u)?;
         let inner: [&[usize]; 6] = [&[3], &[], &[3], &[], &[], &[]];
         let [origin, flux, direction, cos, pdf_position, pdf_direction] =
-            evaluate(py, columns, inner, |columns, out| self.rays(columns, out))?;
+            evaluate(py, columns, inner, |columns, out| self.0.rays(columns, out))?;
         Ok(RaySample {
             origin: origin.unbind(),
             flux: flux.unbind(),
@@ -363,16 +306,11 @@ impl Emitter {
         z: Numbers<'py>,
         d: Numbers<'py>,
     ) -> PyResult<RayPdf> {
-        let [x, y, z] = [("x", &x), ("y", &y), ("z", &z)].map(column);
+        let [x, y, z] = columns([("x", &x), ("y", &y), ("z", &z)])?;
         let [d_x, d_y, d_z] = components(("d", &d))?;
         let columns = [x, y, z, d_x, d_y, d_z];
         let [position, direction] = evaluate(py, columns, [&[]; 2], |columns, out| {
-            let [positions, directions] = out;
-            for i in 0..columns[0].len() {
-                let [x, y, z, d @ ..] = columns.map(|column| column[i]);
-                let pdf = self.0.ask(|light| light.ray_pdf([x, y, z], d));
-                (positions[i], directions[i]) = (pdf.position, pdf.direction);
-            }
+            self.0.ray_pdfs(columns, out);
         })?;
         Ok(RayPdf {
             position: position.unbind(),
@@ -405,7 +343,7 @@ impl Emitter {
         z: Numbers<'py>,
         d: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let [x, y, z] = [("x", &x), ("y", &y), ("z", &z)].map(column);
+        let [x, y, z] = columns([("x", &x), ("y", &y), ("z", &z)])?;
         let [d_x, d_y, d_z] = components(("d", &d))?;
         map_inner(py, [x, y, z, d_x, d_y, d_z], &[], |[x, y, z, d @ ..]| {
             [self.0.ask(|light| light.radiance([x, y, z], d))]
@@ -442,72 +380,10 @@ impl Emitter {
     fn vector<'py>(&self, py: Python<'py>, row: usize) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.0.frame_rows()[row][..3])
     }
-
-    /// Writes the point, distance, direction and irradiance of each next event.
-    ///
-    /// The point follows from the batch form, which leaves it out: `p + distance · wi`.
-    fn next_events(&self, points: [&[f64]; 3], out: &mut [Vec<f64>; 4]) {
-        let [x, y, z] = points;
-        let [point, distance, wi, e_perp] = out;
-        let (wi_x, wi_yz) = wi.split_at_mut(x.len());
-        let (wi_y, wi_z) = wi_yz.split_at_mut(x.len());
-        let slices = NextEventSlices {
-            wi: [wi_x, wi_y, wi_z],
-            distance,
-            e_perp,
-        };
-        self.0.ask(|light| light.next_event_batch(x, y, z, slices));
-        for (k, p) in points.into_iter().enumerate() {
-            for (i, p) in p.iter().enumerate().filter(|&(i, _)| e_perp[i] > 0.0) {
-                let place = k * x.len() + i;
-                point[place] = p + distance[i] * wi[place];
-            }
-        }
-    }
-
-    /// Writes the point, distance, direction, value and density of each sampled event.
-    fn sampled_events(&self, columns: [&[f64]; 5], out: &mut [Vec<f64>; 5]) {
-        let [point, distance, wi, value, pdf] = out;
-        for i in 0..columns[0].len() {
-            let [x, y, z, u @ ..] = columns.map(|column| column[i]);
-            let event = self.0.ask(|light| light.next_event_sampled([x, y, z], u));
-            if let Some(event) = event {
-                scatter(point, i, event.point);
-                distance[i] = event.distance;
-                scatter(wi, i, event.wi);
-                value[i] = event.value;
-                pdf[i] = event.pdf;
-            }
-        }
-    }
-
-    /// Writes the members of each sampled ray.
-    fn rays(&self, columns: [&[f64]; 4], out: &mut [Vec<f64>; 6]) {
-        let [origin, flux, direction, cos, pdf_position, pdf_direction] = out;
-        for i in 0..columns[0].len() {
-            let ray = self
-                .0
-                .ask(|light| light.sample_ray(columns.map(|column| column[i])));
-            scatter(origin, i, ray.origin);
-            flux[i] = ray.flux;
-            scatter(direction, i, ray.direction);
-            cos[i] = ray.cos;
-            pdf_position[i] = ray.pdf_position;
-            pdf_direction[i] = ray.pdf_direction;
-        }
-    }
 }
 
-/// Writes the components of vector `i` to an array that holds them component by component.
-fn scatter<const K: usize>(out: &mut [f64], i: usize, vector: [f64; K]) {
-    let count = out.len() / K;
-    for (k, value) in vector.into_iter().enumerate() {
-        out[k * count + i] = value;
-    }
-}
-
-/// Whether the irradiance is that of one point, and 0.
-fn is_dark_number(irradiance: &Bound<'_, PyAny>) -> bool {
+/// Whether the value is that of one point, and 0.
+pub(super) fn is_dark_number(irradiance: &Bound<'_, PyAny>) -> bool {
     irradiance
         .cast::<PyFloat>()
         .is_ok_and(|number| number.value() <= 0.0)

@@ -9,7 +9,7 @@ use tem00_beam as physics;
 use tem00_beam::{DMat2, DVec3};
 
 use super::{
-    arguments::{OrRaiseAs, column, coordinate, map, map_inner, map_vector},
+    arguments::{OrRaiseAs, columns, coordinate, map, map_inner, map_vector},
     astigmatic::AstigmaticBeam,
     astigmatic_system::AstigmaticSystem,
     cross_section::CrossSection,
@@ -41,7 +41,7 @@ pub(crate) struct SecondMoments(physics::SecondMoments);
 #[pymethods]
 impl SecondMoments {
     #[new]
-    fn new(position: [[f64; 2]; 2], mixed: [[f64; 2]; 2], slope: [[f64; 2]; 2]) -> Self {
+    fn new(position: Rows, mixed: Rows, slope: Rows) -> Self {
         Self(physics::SecondMoments {
             position: matrix_of(position),
             mixed: matrix_of(mixed),
@@ -72,7 +72,7 @@ impl SecondMoments {
         format!("SecondMoments(position={position:?}, mixed={mixed:?}, slope={slope:?})")
     }
 
-    fn __getnewargs__(&self) -> ([[f64; 2]; 2], [[f64; 2]; 2], [[f64; 2]; 2]) {
+    fn __getnewargs__(&self) -> (Rows, Rows, Rows) {
         let moments = &self.0;
         [moments.position, moments.mixed, moments.slope]
             .map(rows_of)
@@ -282,7 +282,7 @@ impl GeneralAstigmaticBeam {
         py: Python<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        map_inner(py, [("z", &z)].map(column), &[2, 2], |[z]| {
+        map_inner(py, columns([("z", &z)])?, &[2, 2], |[z]| {
             self.0.curvature_tensor_at(z).transpose().to_cols_array()
         })
     }
@@ -369,7 +369,7 @@ impl GeneralAstigmaticBeam {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = [("x", &x), ("y", &y), ("z", &z)].map(column);
+        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| {
             self.0.flux_per_watt(DVec3::from(p)).to_array()
         })
@@ -398,12 +398,15 @@ impl<'py> FromPyObject<'_, 'py> for Complex {
     }
 }
 
+/// The rows of a 2 × 2 matrix.
+type Rows = [[f64; 2]; 2];
+
 /// A matrix from its rows.
-pub(super) fn matrix_of(rows: [[f64; 2]; 2]) -> DMat2 {
+pub(super) fn matrix_of(rows: Rows) -> DMat2 {
     DMat2::from_cols_array_2d(&rows).transpose()
 }
 
 /// The rows of a matrix.
-pub(super) fn rows_of(matrix: DMat2) -> [[f64; 2]; 2] {
+pub(super) fn rows_of(matrix: DMat2) -> Rows {
     matrix.transpose().to_cols_array_2d()
 }

@@ -5,7 +5,7 @@ use tem00_beam as physics;
 use tem00_beam::DVec3;
 
 use super::{
-    arguments::{column, map, map_inner},
+    arguments::{columns, map, map_inner},
     gaussian::GaussianBeam,
     profile::LineProfile,
 };
@@ -366,7 +366,7 @@ impl LaserLine {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = [("x", &x), ("y", &y), ("z", &z)].map(column);
+        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| {
             self.0.flux_per_watt(DVec3::from(p)).to_array()
         })
@@ -386,7 +386,7 @@ impl LaserLine {
 /// Checks that angles of a fan lie in front of the lens.
 fn check_theta(theta: &Numbers<'_>) -> PyResult<()> {
     let behind = |angle: &&f64| angle.abs() >= std::f64::consts::FRAC_PI_2;
-    match theta.as_array().iter().find(behind) {
+    match theta.values()?.iter().find(behind) {
         Some(angle) => {
             let message = format!("theta must lie in (-π/2, π/2) rad, got {angle:e} rad");
             Err(refused("theta", message))

@@ -1,11 +1,18 @@
 //! How a laser line spreads its power along the fan.
 
-use numpy::{AllowTypeChange, PyArray2, PyArrayLike1, PyArrayLike2};
+use numpy::PyArray2;
 use pyo3::prelude::*;
 use tem00_beam as physics;
 
-use super::{arguments::OrRaiseAs, rows::array_of};
-use crate::error::{OrRaise, refused};
+use super::{
+    arguments::{OrRaiseAs, list},
+    rows::array_of,
+};
+use crate::{
+    arrays::Numbers,
+    error::{OrRaise, refused},
+    pickling::{Recipe, by_constructor},
+};
 
 /// How a laser line spreads its power along the fan.
 ///
@@ -76,17 +83,15 @@ impl LineProfile {
         format!("LineProfile.{name}({arguments})")
     }
 
-    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-        let py = slf.py();
-        let (name, _) = slf.get().constructor();
-        let arguments = match &slf.get().0 {
-            physics::LineProfile::Powell { edge } => (*edge,).into_pyobject(py)?.into_any(),
-            physics::LineProfile::Tabulated(profile) => (AngularProfile(profile.clone()),)
-                .into_pyobject(py)?
-                .into_any(),
-            _ => ().into_pyobject(py)?.into_any(),
-        };
-        Ok((slf.get_type().getattr(name)?.unbind(), arguments.unbind()))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        let (name, _) = self.constructor();
+        match &self.0 {
+            physics::LineProfile::Powell { edge } => by_constructor::<Self>(py, name, (*edge,)),
+            physics::LineProfile::Tabulated(profile) => {
+                by_constructor::<Self>(py, name, (AngularProfile(profile.clone()),))
+            }
+            _ => by_constructor::<Self>(py, name, ()),
+        }
     }
 }
 
@@ -127,9 +132,9 @@ pub(crate) struct AngularProfile(pub(super) physics::AngularProfile);
 #[pymethods]
 impl AngularProfile {
     #[new]
-    fn new(angles: List<'_>, powers: List<'_>) -> PyResult<Self> {
-        let [angles, powers] = [angles, powers].map(|list| list.as_array().to_vec());
-        let profile = physics::AngularProfile::new(&angles, &powers);
+    fn new(angles: Numbers<'_>, powers: Numbers<'_>) -> PyResult<Self> {
+        let (angles, powers) = (list("angles", &angles)?, list("powers", &powers)?);
+        let profile = physics::AngularProfile::new(angles, powers);
         Ok(Self(profile.or_raise()?))
     }
 
@@ -144,17 +149,14 @@ impl AngularProfile {
     /// -------
     /// AngularProfile
     #[staticmethod]
-    fn from_pairs(pairs: PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<Self> {
-        let view = pairs.as_array();
-        if view.ncols() != 2 {
-            let message = format!("pairs must have 2 columns, got {}", view.ncols());
+    fn from_pairs(pairs: Numbers<'_>) -> PyResult<Self> {
+        let [_, 2] = pairs.shape() else {
+            let shape = pairs.shape();
+            let message = format!("pairs must have the shape [n, 2], got {shape:?}");
             return Err(refused("pairs", message));
-        }
-        let pairs: Vec<(f64, f64)> = view
-            .rows()
-            .into_iter()
-            .map(|row| (row[0], row[1]))
-            .collect();
+        };
+        let (rows, _) = pairs.values()?.as_chunks::<2>();
+        let pairs: Vec<(f64, f64)> = rows.iter().copied().map(Into::into).collect();
         let names = [("angles", "pairs"), ("powers", "pairs")];
         let profile = physics::AngularProfile::from_pairs(&pairs);
         Ok(Self(profile.or_raise_as(&names)?))
@@ -208,6 +210,3 @@ impl AngularProfile {
         knots.map(|knot| (knot.angle, knot.density)).unzip()
     }
 }
-
-/// A list of numbers as an argument.
-type List<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;

@@ -1,12 +1,12 @@
 //! What queries return: named numbers, or named arrays of one shape.
 
-use pyo3::{prelude::*, types::PyTuple};
+use pyo3::prelude::*;
 
 /// Defines a frozen class of named values with a constructor, a repr and pickling.
 macro_rules! record {
-    ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident,)+ }) => {
+    ($module:literal, $(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident,)+ }) => {
         $(#[$doc])*
-        #[pyclass(frozen, module = "tem00.beam")]
+        #[pyclass(frozen, module = $module)]
         #[derive(Debug)]
         pub(crate) struct $name {
             $($(#[$field_doc])* #[pyo3(get)] pub(super) $field: Py<PyAny>,)+
@@ -21,17 +21,21 @@ macro_rules! record {
 
             fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
                 let fields = [$((stringify!($field), &self.$field)),+];
-                shown(py, stringify!($name), &fields)
+                $crate::beam::records::shown(py, stringify!($name), &fields)
             }
 
-            fn __getnewargs__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-                PyTuple::new(py, [$(self.$field.clone_ref(py)),+])
+            fn __getnewargs__<'py>(
+                &self,
+                py: Python<'py>,
+            ) -> PyResult<Bound<'py, pyo3::types::PyTuple>> {
+                pyo3::types::PyTuple::new(py, [$(self.$field.clone_ref(py)),+])
             }
         }
     };
 }
 
 record! {
+    "tem00.beam",
     /// The light that arrives at a point, as one direction and one irradiance.
     ///
     /// For arrays of points all members are arrays, and 0 where no light arrives.
@@ -48,6 +52,7 @@ record! {
 }
 
 record! {
+    "tem00.beam",
     /// The light that arrives at a point, as a random direction and its density.
     ///
     /// For arrays of points all members are arrays, and 0 where no light arrives.
@@ -66,6 +71,7 @@ record! {
 }
 
 record! {
+    "tem00.beam",
     /// A ray that leaves the aperture, or arrays of them.
     RaySample {
         /// Point of the aperture plane, shape (..., 3).
@@ -86,6 +92,7 @@ record! {
 }
 
 record! {
+    "tem00.beam",
     /// The probability densities of a ray; their product is the joint density.
     RayPdf {
         /// Density of the position given the direction, per m² of the aperture plane, shape (...).
@@ -96,6 +103,7 @@ record! {
 }
 
 record! {
+    "tem00.beam",
     /// Bounds of a light in space and direction, as a light hierarchy stores them.
     Bounds {
         /// Smallest corner of an axis-aligned box around the lit volume, in metres, shape (3,).
@@ -110,10 +118,12 @@ record! {
 }
 
 /// The values of a record as Python would write its constructor.
-fn shown(py: Python<'_>, name: &str, fields: &[(&str, &Py<PyAny>)]) -> PyResult<String> {
+pub(super) fn shown(py: Python<'_>, name: &str, fields: &[(&str, &Py<PyAny>)]) -> PyResult<String> {
     let mut text = Vec::new();
     for (field, value) in fields {
         text.push(format!("{field}={}", value.bind(py).repr()?));
     }
     Ok(format!("{name}({})", text.join(", ")))
 }
+
+pub(super) use record;

@@ -16,17 +16,14 @@ pub(super) struct Rows<const N: usize>(pub(super) [[f64; 4]; N]);
 impl<const N: usize> Rows<N> {
     /// Takes finite rows that place a light, its power and its cut-off.
     pub(super) fn placed(numbers: &Numbers<'_>) -> PyResult<Self> {
-        let view = numbers.as_array();
-        if view.shape() != [N, 4] {
-            let shape = view.shape();
+        if numbers.shape() != [N, 4] {
+            let shape = numbers.shape();
             return Err(wrong(&format!(
                 "must have the shape [{N}, 4], got {shape:?}"
             )));
         }
         let mut rows = [[0.0; 4]; N];
-        for (to, &from) in rows.as_flattened_mut().iter_mut().zip(view.iter()) {
-            *to = from;
-        }
+        rows.as_flattened_mut().copy_from_slice(numbers.values()?);
         let rows = Self(rows);
         rows.check_frame()?;
         rows.within(0, 3, "power", 0.0..=1e100)?;
@@ -88,8 +85,8 @@ impl<const N: usize> Rows<N> {
             for (j, b) in axes.iter().enumerate() {
                 let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
                 let expected = if i == j { 1.0 } else { 0.0 };
-                // Not a number is refused too.
-                if !((dot - expected).abs() <= ORTHONORMAL) {
+                let allowed = expected - ORTHONORMAL..=expected + ORTHONORMAL;
+                if !allowed.contains(&dot) {
                     return Err(wrong(&format!("must hold orthonormal axes, got {axes:?}")));
                 }
             }

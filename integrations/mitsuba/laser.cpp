@@ -160,6 +160,10 @@ private:
         }
         m_light = std::visit(
             [&](const auto &shape) { return shape.light(m_source, placement); }, m_shape);
+        // Mitsuba computes in single precision, which refuses some lights.
+        const float origin_f32[3] = { origin.x(), origin.y(), origin.z() };
+        tem00_next_event_f32 event{};
+        check(tem00_light_next_event_f32(m_light.get(), origin_f32, &event), "laser");
     }
 
     /// Lengths are not scaled with the frame, so that it has to leave them as they are.

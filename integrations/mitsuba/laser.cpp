@@ -163,7 +163,8 @@ private:
         // Mitsuba computes in single precision, which refuses some lights.
         const float origin_f32[3] = { origin.x(), origin.y(), origin.z() };
         tem00_next_event_f32 event{};
-        check(tem00_light_next_event_f32(m_light.get(), origin_f32, &event), "laser");
+        check(tem00_light_next_event_f32(m_light.get(), origin_f32, &event), "laser",
+              { { "single_precision", "power" } });
     }
 
     /// Lengths are not scaled with the frame, so that it has to leave them as they are.

@@ -1,0 +1,147 @@
+"""The speckle of each laser of a scene: planned, generated, and placed in the image."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import drjit as dr
+import mitsuba as mi
+
+from tem00.mitsuba.look_up import SplineTable, intensity_coefficients, nodes_per_sample
+from tem00.mitsuba.speckle_settings import refused
+from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackPlan
+
+if TYPE_CHECKING:
+    from tem00.mitsuba.speckle_settings import PatternSettings
+
+# Steps of Weyl's sequence: they keep the seeds of the lasers apart. The same in `tem00 render`.
+_SEED_STEP = 0x9E37_79B9_7F4A_7C15
+# What the patterns of all lasers may take, in bytes, and the tables of all.
+_PATTERN_MEMORY = 1 << 30
+_TABLE_MEMORY = 1 << 30
+# The root of x**3 = x + 1: multiples of its powers are far apart (Roberts 2018).
+_PLASTIC = 1.324717957244746
+
+
+class Place(NamedTuple):
+    """Where the pattern of a laser is looked up.
+
+    ``u`` is the slice coordinate, ``shift`` the motion of the pattern in the image, in pixels, x to
+    the right and y down.
+    """
+
+    u: float
+    shift: tuple[float, float]
+
+
+class Pattern:
+    """The speckle of one laser.
+
+    Parameters
+    ----------
+    stack
+        The stack.
+    speckle_size
+        The speckle size on the sensor, in pixels.
+    offset
+        The place in the stack that belongs to the image's corner, in periods along x and y.
+    """
+
+    def __init__(
+        self, stack: SpeckleStack, speckle_size: float, offset: tuple[float, float]
+    ) -> None:
+        self.stack = stack
+        self._per_sample = nodes_per_sample(stack)
+        self._nodes_per_pixel = self._per_sample * stack.speckle_size / speckle_size
+        self._offset = offset
+        self._u: float | None = None
+
+    def move_to(self, place: Place) -> None:
+        """Look the pattern up at another place from now on."""
+        if place.u != self._u:
+            self._table = SplineTable(intensity_coefficients(self.stack, place.u))
+            self._u = place.u
+        scale = self._nodes_per_pixel
+        periods = self._table.columns, self._table.rows
+        origin = [
+            (-sign * scale * shift + offset * period) % period
+            for sign, shift, offset, period in zip(
+                (1.0, -1.0), place.shift, self._offset, periods, strict=True
+            )
+        ]
+        # Read from memory, so that motion compiles nothing anew. Patterns have y up.
+        self._scale = mi.Vector2f(scale, -scale)
+        self._origin = mi.Vector2f(*origin)
+        dr.make_opaque(self._scale, self._origin)
+
+    def factor(self, film: mi.Point2f) -> mi.Float:
+        """Return the intensity at points of the film, in pixels; its mean is 1."""
+        x, y = dr.fma(self._scale, film, self._origin)
+        # The spline swings below dark points by 1e-4 at most.
+        return dr.maximum(self._table.at(x, y), 0.0)
+
+
+def generate(
+    settings: PatternSettings, speckle_sizes: list[float], image: tuple[int, int]
+) -> list[Pattern]:
+    """Return the pattern of each laser, by its speckle size in an image of so many pixels."""
+    sizes = speckle_sizes
+    if settings.file is not None:
+        stack = _read(settings.file)
+        _check_table([stack])
+        return [Pattern(stack, size, _place(number)) for number, size in enumerate(sizes)]
+    stacks = [_stack(settings, size, number, image) for number, size in enumerate(sizes)]
+    _check_table(stacks)
+    return [Pattern(stack, size, (0.0, 0.0)) for stack, size in zip(stacks, sizes, strict=True)]
+
+
+def _stack(
+    settings: PatternSettings, speckle_size: float, number: int, image: tuple[int, int]
+) -> SpeckleStack:
+    """Return the stack that `tem00 render` has for the laser of this number in a still scene."""
+    needs = StackNeeds(
+        image=image,
+        region=image,
+        speckle_size=speckle_size,
+        motion=None,
+        frames=1,
+        memory_limit=_PATTERN_MEMORY,
+    )
+    plan = StackPlan.new(needs)
+    size, diameter = settings.pattern_size, settings.pattern_diameter
+    if size is not None or diameter is not None:
+        plan = plan.with_square(size or 2 * (diameter or 0), diameter or (size or 0) // 2)
+    field = plan.field((settings.seed + (number + 1) * _SEED_STEP) % 2**64)
+    return SpeckleStack.generate(field, _path(settings))
+
+
+def _path(settings: PatternSettings) -> SlicePath:
+    if settings.path == "circle":
+        return SlicePath.circle(half_period=settings.half_period)
+    if settings.path == "straight":
+        return SlicePath.straight(half_period=settings.half_period, length=settings.length)
+    return SlicePath.still()
+
+
+def _read(file: str) -> SpeckleStack:
+    path = mi.file_resolver().resolve(file)
+    try:
+        return SpeckleStack.read_from(str(path), memory_limit=_PATTERN_MEMORY)
+    except OSError as error:
+        raise refused("file", f"{path} cannot be read: {error}") from error
+
+
+def _place(number: int) -> tuple[float, float]:
+    return number / _PLASTIC % 1.0, number / _PLASTIC**2 % 1.0
+
+
+def _check_table(stacks: list[SpeckleStack]) -> None:
+    nodes = sum(
+        stack.size[0] * stack.size[1] * nodes_per_sample(stack) ** 2 for stack in stacks
+    )
+    if 4 * nodes > _TABLE_MEMORY:
+        raise refused(
+            "speckle_size",
+            f"so small that the image holds too many speckles: their table would take "
+            f"{4 * nodes / 2**30:.1f} GiB of {_TABLE_MEMORY / 2**30:.0f} GiB",
+        )

@@ -1,0 +1,168 @@
+"""The integrator ``speckle``: paths whose coherent light carries the speckle of its laser."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import radians, tan
+from typing import TYPE_CHECKING
+
+import drjit as dr
+import mitsuba as mi
+
+from tem00.mitsuba.film import Exposure
+from tem00.mitsuba.patterns import Pattern, Place, generate
+from tem00.mitsuba.speckle_settings import (
+    PatternSettings,
+    flag,
+    number,
+    refuse_unknown,
+    refused,
+    whole,
+)
+from tem00.mitsuba.transport import PathTracer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from tem00.mitsuba.transport import Factor
+
+# The private flag of emitters whose light is coherent.
+COHERENT = 0x1000
+_ENDLESS = 2**32 - 1
+
+
+@cache
+def speckle_class(variant: str) -> type[mi.Integrator]:
+    """Return the class of the integrator in ``variant``, which must be the current one."""
+
+    class Speckle(mi.SamplingIntegrator):
+        """A path tracer that multiplies direct light of lasers by their speckle.
+
+        Light of an emitter with the private flag bit 0x1000 that meets exactly one rough surface on
+        its way to the camera is multiplied by the intensity of the laser's pattern at the place of
+        the camera sample on the film. All other light is left alone.
+        """
+
+        def __init__(self, props: mi.Properties) -> None:
+            super().__init__(props)
+            depth = whole(props, "max_depth", -1, (-1, _ENDLESS))
+            self.max_depth = _ENDLESS if depth == -1 else depth
+            self.rr_depth = whole(props, "rr_depth", 5, (1, _ENDLESS))
+            self.speckle = flag(props, "speckle", True)
+            self.hidden = flag(props, "hide_emitters", False)
+            self.settings = PatternSettings.read(props)
+            names = ("u", "shift_x", "shift_y")
+            self.place = {name: mi.Float(number(props, name, 0.0)) for name in names}
+            refuse_unknown(props)
+            self._made_for: object = None
+            self._patterns: list[Pattern] = []
+
+        def traverse(self, cb: mi.TraversalCallback) -> None:
+            super().traverse(cb)
+            for name, value in self.place.items():
+                cb.put(name, value, mi.ParamFlags.NonDifferentiable)
+
+        def parameters_changed(self, keys: Sequence[str] = ()) -> None:
+            super().parameters_changed(list(keys))
+            self._place()
+
+        def _place(self) -> Place:
+            u, x, y = (float(value[0]) for value in self.place.values())
+            for name, value in zip(self.place, (u, x, y), strict=True):
+                if not abs(value) < float("inf"):
+                    raise refused(name, f"must be a finite number, got {value}")
+            return Place(u, (x, y))
+
+        def render(
+            self,
+            scene: mi.Scene,
+            sensor: int | mi.Sensor = 0,
+            seed: int = 0,
+            spp: int = 0,
+            develop: bool = True,
+            evaluate: bool = True,
+        ) -> mi.TensorXf:
+            if isinstance(sensor, int):
+                sensor = scene.sensors()[sensor]
+            exposure = Exposure(sensor, seed, spp)
+            factor = self._factor(scene, sensor) if self.speckle else None
+            for rays in exposure.passes():
+                tracer = PathTracer(
+                    scene=scene,
+                    factor=factor and factor(rays.film),
+                    max_depth=self.max_depth,
+                    rr_depth=self.rr_depth,
+                    meets_light=any(_can_be_met(emitter) for emitter in scene.emitters()),
+                    first_surface=self.skip_area_emitters if self.hidden else None,
+                )
+                walk = tracer.trace(exposure.sampler, rays.ray)
+                exposure.add(rays, walk.radiance, walk.hit)
+            return exposure.finish(develop, evaluate)
+
+        def _factor(self, scene: mi.Scene, sensor: mi.Sensor) -> Callable[[mi.Point2f], Factor]:
+            """Return the factor on light from an emitter, for camera samples on the film."""
+            lasers = [e for e in scene.emitters() if e.flags() & COHERENT]
+            alone = len(scene.emitters()) == 1
+            patterns = self._patterns_for(lasers, sensor)
+
+            def at(film: mi.Point2f) -> Factor:
+                def factor(emitter: mi.EmitterPtr, active: mi.Bool) -> mi.Float:
+                    product = mi.Float(1.0)
+                    for laser, pattern in zip(lasers, patterns, strict=True):
+                        own = active if alone else active & (emitter == mi.EmitterPtr(laser))
+                        product = dr.select(own, pattern.factor(film), product)
+                    return product
+
+                return factor
+
+            return at
+
+        def _patterns_for(self, lasers: list[mi.Emitter], sensor: mi.Sensor) -> list[Pattern]:
+            """Return the patterns of the lasers, from the last image where nothing has changed."""
+            width, height = (int(side) for side in sensor.film().size())
+            given = self.settings.speckle_size
+            sizes = [given or speckle_size(laser, sensor) for laser in lasers]
+            needs = (sizes, width, height)
+            if self._made_for != needs:
+                self._patterns = generate(self.settings, sizes, (width, height))
+                self._made_for = needs
+            place = self._place()
+            for pattern in self._patterns:
+                pattern.move_to(place)
+            return self._patterns
+
+        def to_string(self) -> str:
+            lines = [f"max_depth = {self.max_depth}", f"speckle = {self.speckle}"]
+            lines += [f"{name} = {value}" for name, value in vars(self.settings).items()]
+            return "Speckle[\n  " + ",\n  ".join(lines) + "\n]"
+
+    return Speckle
+
+
+def speckle_size(laser: mi.Emitter, sensor: mi.Sensor) -> float:
+    """Return the speckle size of a laser on the sensor of a thin lens, in pixels.
+
+    ::
+
+        h = wavelength / D * d_PI / pitch        d_PI / pitch = (width / 2) / tan(x_fov / 2)
+
+    Raises
+    ------
+    tem00.ParameterError
+        If the sensor has no lens or the emitter no wavelength.
+    """
+    lens = mi.traverse(sensor)
+    wavelength = getattr(laser, "wavelength", None)
+    if "aperture_radius" not in lens or "x_fov" not in lens:
+        raise refused("speckle_size", "required, as the sensor is no `thinlens` that determines it")
+    if wavelength is None:
+        raise refused("speckle_size", f"required, as {laser.class_name()} has no wavelength")
+    diameter = 2.0 * float(dr.slice(lens["aperture_radius"]))
+    half_width = 0.5 * float(sensor.film().size()[0])
+    distance = half_width / tan(0.5 * radians(float(dr.slice(lens["x_fov"]))))
+    return wavelength / diameter * distance
+
+
+def _can_be_met(emitter: mi.Emitter) -> bool:
+    """Tell whether a ray can meet the light of an emitter by chance."""
+    return not emitter.flags() & int(mi.EmitterFlags.Delta)

@@ -1,0 +1,110 @@
+"""The properties of the integrator ``speckle``, read and named in errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from tem00 import ParameterError
+
+if TYPE_CHECKING:
+    import mitsuba as mi
+
+PATHS = ("still", "straight", "circle")
+# What a stack file says itself.
+_OF_THE_FILE = ("seed", "pattern_size", "pattern_diameter", "path", "half_period", "length")
+_LARGEST_SEED = 2**63 - 1
+_LARGEST_SIDE = 2**15
+
+
+def refused(name: str, why: str) -> ParameterError:
+    """Return the exception that refuses the property ``name``."""
+    error = ParameterError(f"speckle: {name}: {why}")
+    error.parameter = name
+    return error
+
+
+@dataclass(frozen=True)
+class PatternSettings:
+    """How the patterns are made; see the documentation of the integrator for the properties."""
+
+    speckle_size: float | None
+    seed: int
+    pattern_size: int | None
+    pattern_diameter: int | None
+    path: str
+    half_period: int
+    length: int
+    file: str | None
+
+    @classmethod
+    def read(cls, props: mi.Properties) -> PatternSettings:
+        """Read the properties."""
+        file = props.get("file", None)
+        if file is not None:
+            _refuse_beside_file(props)
+        path = props.get("path", PATHS[0])
+        if path not in PATHS:
+            raise refused("path", f"must be one of {', '.join(PATHS)}, got {path!r}")
+        return cls(
+            speckle_size=_speckle_size(props),
+            seed=whole(props, "seed", 0, (0, _LARGEST_SEED)),
+            pattern_size=_side(props, "pattern_size"),
+            pattern_diameter=_side(props, "pattern_diameter"),
+            path=path,
+            half_period=whole(props, "half_period", 64, (1, _LARGEST_SIDE)),
+            length=whole(props, "length", 2, (1, _LARGEST_SIDE)),
+            file=file,
+        )
+
+
+def whole(props: mi.Properties, name: str, default: int, allowed: tuple[int, int]) -> int:
+    """Read a whole number."""
+    value = props.get(name, default)
+    low, high = allowed
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise refused(name, f"must be a whole number from {low} to {high}, got {value!r}")
+    return value
+
+
+def number(props: mi.Properties, name: str, default: float) -> float:
+    """Read a finite number."""
+    value = props.get(name, default)
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not isfinite(value):
+        raise refused(name, f"must be a finite number, got {value!r}")
+    return float(value)
+
+
+def flag(props: mi.Properties, name: str, default: bool) -> bool:
+    """Read a truth value."""
+    value = props.get(name, default)
+    if not isinstance(value, bool):
+        raise refused(name, f"must be true or false, got {value!r}")
+    return value
+
+
+def refuse_unknown(props: mi.Properties) -> None:
+    """Refuse properties that nobody asked for."""
+    unknown = props.unqueried()
+    if unknown:
+        raise refused(unknown[0], "no property of this integrator")
+
+
+def _speckle_size(props: mi.Properties) -> float | None:
+    if "speckle_size" not in props:
+        return None
+    size = number(props, "speckle_size", 0.0)
+    if size <= 0.0:
+        raise refused("speckle_size", f"must be positive (in pixels), got {size:g}")
+    return size
+
+
+def _side(props: mi.Properties, name: str) -> int | None:
+    return whole(props, name, 0, (8, _LARGEST_SIDE)) if name in props else None
+
+
+def _refuse_beside_file(props: mi.Properties) -> None:
+    for name in _OF_THE_FILE:
+        if name in props:
+            raise refused(name, "does not go with a stack file, which determines it")

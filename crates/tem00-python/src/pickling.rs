@@ -1,4 +1,5 @@
 use pyo3::{
+    PyTypeInfo,
     prelude::*,
     types::{PyTuple, PyType},
 };
@@ -8,13 +9,18 @@ pub(crate) type Recipe<'py> = (Bound<'py, PyAny>, (Bound<'py, PyType>,));
 
 /// Returns how pickle makes an object of the class `T` again: by calling its static method `name`
 /// with these arguments.
-pub(crate) fn by_constructor<'py, T: pyo3::PyTypeInfo>(
+pub(crate) fn by_constructor<'py, T: PyTypeInfo>(
     py: Python<'py>,
     name: &str,
-    arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
+    arguments: impl IntoPyObject<
+        'py,
+        Target = PyTuple,
+        Output = Bound<'py, PyTuple>,
+        Error: Into<PyErr>,
+    >,
 ) -> PyResult<Recipe<'py>> {
     let mut all = vec![name.into_pyobject(py)?.into_any()];
-    all.extend(arguments.into_pyobject(py)?.iter());
+    all.extend(arguments.into_pyobject(py).map_err(Into::into)?.iter());
     // Unlike a static method of an extension, this can be pickled.
     let call = py.import("operator")?.getattr("methodcaller")?;
     Ok((call.call1(PyTuple::new(py, all)?)?, (T::type_object(py),)))

@@ -1,0 +1,118 @@
+"""The properties of a ``laser`` in a scene, read and named in errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import mitsuba as mi
+
+from tem00 import ParameterError
+
+SHAPES = ("spot", "line")
+FOCUS_CURVES = ("distance", "plane")
+PROFILES = ("gaussian", "gaussian_angle", "gaussian_sin", "uniform", "uniform_angle", "powell")
+
+_COMMON = ("wavelength", "power")
+_REQUIRED = {
+    "spot": (*_COMMON, "waist_radius"),
+    "line": (*_COMMON, "fan_angle", "thickness", "focus_distance"),
+}
+_OPTIONAL = {
+    "spot": (
+        "waist_distance",
+        "m_squared",
+        "waist_radius_y",
+        "waist_distance_y",
+        "m_squared_y",
+    ),
+    "line": ("apex_offset", "edge", "m_squared"),
+}
+_CHOICES = {
+    "spot": {},
+    "line": {"focus_curve": FOCUS_CURVES, "profile": PROFILES},
+}
+_DEFAULTS = {
+    "spot": {"waist_distance": 0.0, "m_squared": 1.0},
+    "line": {"m_squared": 1.0},
+}
+
+
+def refused(name: str, why: str) -> ParameterError:
+    """Return the exception that refuses the property ``name``."""
+    error = ParameterError(f"laser: {name}: {why}")
+    error.parameter = name
+    return error
+
+
+@dataclass
+class Description:
+    """What a scene says of the beam of a laser.
+
+    ``numbers`` are the properties that are numbers, in the units of the scene and in degrees, and
+    ``choices`` those that are words. Properties that follow from others are absent unless given.
+    """
+
+    shape: str
+    numbers: dict[str, float]
+    choices: dict[str, str]
+
+
+def read(props: mi.Properties) -> Description:
+    """Read all properties of the beam; every other name is an error."""
+    shape = _choice(props, "shape", SHAPES)
+    known = (*_REQUIRED[shape], *_OPTIONAL[shape])
+    for name in _REQUIRED[shape]:
+        if name not in props:
+            raise refused(name, f"required for the shape {shape!r}")
+    numbers = dict(_DEFAULTS[shape])
+    numbers.update({name: _number(props, name) for name in known if name in props})
+    choices = {name: _choice(props, name, words) for name, words in _CHOICES[shape].items()}
+    if "edge" in numbers and choices["profile"] != "powell":
+        raise refused("edge", "belongs to the profile 'powell'")
+    if choices.get("profile") == "powell":
+        numbers.setdefault("edge", 0.05)
+    return Description(shape, numbers, choices)
+
+
+def read_color(props: mi.Properties) -> tuple[float, float, float]:
+    """Read the colour that multiplies the light, white by default."""
+    color: Any = props.get("color", None)
+    if color is None:
+        return 1.0, 1.0, 1.0
+    try:
+        red, green, blue = (float(channel) for channel in color)
+    except TypeError:
+        raise refused("color", f"must be an rgb value, got {color}") from None
+    return red, green, blue
+
+
+def read_to_world(props: mi.Properties) -> mi.AffineTransform4f:
+    """Read the transform from the light's frame to the world, the identity by default."""
+    to_world: Any = props.get("to_world", mi.ScalarAffineTransform4f())
+    return mi.AffineTransform4f(to_world.matrix)
+
+
+def refuse_unknown(props: mi.Properties, shape: str) -> None:
+    """Refuse properties that nobody asked for."""
+    unknown = [name for name in props.unqueried() if name != "sampling_weight"]
+    if unknown:
+        known = (*_REQUIRED[shape], *_OPTIONAL[shape], *_CHOICES[shape], "color", "to_world")
+        names = ", ".join(sorted(known))
+        raise refused(unknown[0], f"no property of the shape {shape!r}; those are {names}")
+
+
+def _number(props: mi.Properties, name: str) -> float:
+    value = props[name]
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise refused(name, f"must be a number, got {value!r}")
+    return float(value)
+
+
+def _choice(props: mi.Properties, name: str, words: tuple[str, ...]) -> str:
+    """Return a word; the first one is the default."""
+    value = props.get(name, words[0])
+    if value not in words:
+        listed = ", ".join(repr(word) for word in words)
+        raise refused(name, f"must be one of {listed}, got {value!r}")
+    return str(value)

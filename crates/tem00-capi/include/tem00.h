@@ -291,7 +291,7 @@ typedef struct {
 
 /**
  * An elliptic Gaussian beam with two principal axes, as of a laser diode. Its arrays hold the value
- * of the first axis, then that of the second.
+ * of the first axis, then that of the second; a refusal names one as "`waist_radius[1]`".
  */
 typedef struct {
     /**
@@ -640,7 +640,13 @@ typedef struct {
      */
     size_t height;
     /**
-     * Speckle size in samples, at least 2 and at most an eighth of the smaller side.
+     * Diameter of the pupil along the width, in lattice points: the speckles after which the pattern
+     * repeats, from 8 to half the width. 0 if `speckle_size` is to say it.
+     */
+    size_t diameter;
+    /**
+     * Speckle size in samples, at least 2 and at most an eighth of the smaller side; read if
+     * `diameter` is 0, else it is width / diameter.
      */
     double speckle_size;
     /**

@@ -4,8 +4,9 @@ use core::fmt::Display;
 
 use crate::status::Failure;
 
-/// The largest coordinate, in metres: up to here no square leaves the range of a double.
-const LARGEST: f64 = 1e30;
+/// The largest coordinate, in metres: up to here no square leaves the range of a double. It is the
+/// number that 1e30 becomes in single precision.
+const LARGEST: f64 = 1.000_000_015_047_466_2e30;
 
 /// How far from 1 the length of a unit vector may be: a direction in single precision is nearer.
 const UNIT_TOLERANCE: f64 = 1e-4;
@@ -35,6 +36,22 @@ pub(crate) fn check_length(name: &str, value: f64) -> Result<(), Failure> {
     check_all(name, &[value], "from 0 to 1e30", |x| {
         (0.0..=LARGEST).contains(&x)
     })
+}
+
+/// Checks a size: a length that is not zero.
+pub(crate) fn check_size(name: &str, value: f64) -> Result<(), Failure> {
+    let allowed = "above 0 and at most 1e30";
+    check_all(name, &[value], allowed, |x| x > 0.0 && x <= LARGEST)
+}
+
+/// Checks that no result is NaN, as it may be where the numbers that lead to it overflow.
+pub(crate) fn check_result(name: &str, values: &[f64]) -> Result<(), Failure> {
+    if values.iter().any(|x| x.is_nan()) {
+        let message =
+            format!("{name} overflows: the numbers are too far apart to be of one camera");
+        return Err(Failure::argument(name, message));
+    }
+    Ok(())
 }
 
 /// Checks that a vector is of length 1.
@@ -84,3 +101,6 @@ pub(crate) fn code<T: Copy>(name: &str, code: u32, values: &[T]) -> Result<T, Fa
         Failure::argument(name, format!("{name} must be 0 to {last}, got {code}"))
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -145,7 +145,7 @@ impl PupilDistances {
 }
 
 impl ImagingInfo {
-    fn new(geometry: &ImagingGeometry) -> Self {
+    pub(super) fn new(geometry: &ImagingGeometry) -> Self {
         Self {
             wavelength: geometry.wavelength(),
             focal_length: geometry.focal_length(),

@@ -2,7 +2,7 @@ use tem00_decorrelation::{CameraFrame, DMat3, DVec2, DVec3, LineOfSight};
 
 use super::Imaging;
 use crate::{
-    numbers::{check_coordinates, check_finite, code},
+    numbers::{check_coordinates, check_result, check_size, code},
     pointers::{borrow, read, write},
     status::{Failure, Status, call},
 };
@@ -140,6 +140,25 @@ impl Motion {
     }
 }
 
+impl SpeckleMotion {
+    fn numbers(&self) -> [f64; 8] {
+        let [image_x, image_y] = self.image_displacement;
+        let [defocus_x, defocus_y] = self.defocus_displacement;
+        let [pupil_x, pupil_y] = self.pupil_displacement;
+        let (axial, correlation) = (self.axial_displacement, self.correlation);
+        [
+            image_x,
+            image_y,
+            defocus_x,
+            defocus_y,
+            pupil_x,
+            pupil_y,
+            axial,
+            correlation,
+        ]
+    }
+}
+
 impl From<tem00_decorrelation::SpeckleMotion> for SpeckleMotion {
     fn from(speckle: tem00_decorrelation::SpeckleMotion) -> Self {
         let pupil_displacement = speckle.pupil_displacement.unwrap_or(DVec2::INFINITY);
@@ -217,8 +236,10 @@ pub unsafe extern "C" fn tem00_imaging_speckle_motion(
         let orientation = self::orientation(orientation)?;
         let result =
             tem00_decorrelation::SpeckleMotion::new(geometry, &point, &motion, orientation);
+        let result = SpeckleMotion::from(result);
+        check_result("speckle", &result.numbers())?;
         // SAFETY: by the contract of this function.
-        unsafe { write("speckle", speckle, result.into()) }
+        unsafe { write("speckle", speckle, result) }
     })
 }
 
@@ -248,9 +269,10 @@ pub unsafe extern "C" fn tem00_imaging_pattern_coordinate(
         let displacement: [f64; 2] = unsafe { read("displacement", displacement) }?;
         check_coordinates("pixel", &pixel)?;
         check_coordinates("displacement", &displacement)?;
-        check_finite("pattern_speckle_size", &[pattern_speckle_size])?;
+        check_size("pattern_speckle_size", pattern_speckle_size)?;
         let [pixel, displacement] = [pixel, displacement].map(DVec2::from_array);
         let result = geometry.pattern_coordinate(pixel, displacement, pattern_speckle_size);
+        check_result("coordinate", &result.to_array())?;
         // SAFETY: by the contract of this function.
         unsafe { write("coordinate", coordinate.cast(), result.to_array()) }
     })

@@ -1,7 +1,7 @@
 use tem00_beam::{
-    AngularProfile, AstigmaticBeam, AstigmaticLight, DMat2, DVec3, FanGeometry, GaussianBeam,
-    GeneralAstigmaticBeam, LaserLine, LineLight, LocatedBeam, SecondMoments, SpotLight,
-    TabulatedLineLight,
+    AngularProfile, AstigmaticBeam, AstigmaticLight, BeamError, DMat2, DVec3, FanGeometry,
+    GaussianBeam, GeneralAstigmaticBeam, LaserLine, LineLight, LocatedBeam, SecondMoments,
+    SpotLight, TabulatedLineLight,
 };
 
 use super::Light;
@@ -43,7 +43,7 @@ pub struct SpotDescription {
 }
 
 /// An elliptic Gaussian beam with two principal axes, as of a laser diode. Its arrays hold the value
-/// of the first axis, then that of the second.
+/// of the first axis, then that of the second; a refusal names one as "`waist_radius[1]`".
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct EllipticDescription {
@@ -170,16 +170,24 @@ impl SpotDescription {
 
 impl EllipticDescription {
     fn light(&self) -> Result<Light, Failure> {
-        let axis = |i: usize| {
-            let beam = GaussianBeam::from_waist(self.wavelength, self.waist_radius[i])?;
-            LocatedBeam::new(
-                beam.with_m_squared(self.m_squared[i])?,
-                self.waist_distance[i],
-            )
-        };
-        let beam = AstigmaticBeam::new(axis(0)?, axis(1)?)?.with_rotation(self.rotation)?;
+        let beam = AstigmaticBeam::new(self.axis(0)?, self.axis(1)?)?;
+        let beam = beam.with_rotation(self.rotation)?;
         let light = SpotLight::place_astigmatic(&beam, &self.placement.placed(), self.power)?;
         Ok(Light::spot(light))
+    }
+
+    /// One axis of the beam; a refusal says which.
+    fn axis(&self, i: usize) -> Result<LocatedBeam, Failure> {
+        let beam = GaussianBeam::from_waist(self.wavelength, self.waist_radius[i]);
+        let beam = beam.and_then(|beam| beam.with_m_squared(self.m_squared[i]));
+        let located = beam.and_then(|beam| LocatedBeam::new(beam, self.waist_distance[i]));
+        located.map_err(|error| match error {
+            BeamError::Wavelength(_) => error.into(),
+            _ => Failure::argument(
+                &format!("{}[{i}]", error.parameter()),
+                format!("axis {i}: {error}"),
+            ),
+        })
     }
 }
 

@@ -40,7 +40,11 @@ pub struct StackDescription {
     pub width: usize,
     /// Height of the pattern, in samples.
     pub height: usize,
-    /// Speckle size in samples, at least 2 and at most an eighth of the smaller side.
+    /// Diameter of the pupil along the width, in lattice points: the speckles after which the pattern
+    /// repeats, from 8 to half the width. 0 if `speckle_size` is to say it.
+    pub diameter: usize,
+    /// Speckle size in samples, at least 2 and at most an eighth of the smaller side; read if
+    /// `diameter` is 0, else it is width / diameter.
     pub speckle_size: f64,
     /// Seed of the pattern.
     pub seed: u64,
@@ -79,10 +83,33 @@ pub struct StackNeeds {
 
 impl StackDescription {
     fn stack(&self) -> Result<Stack, Failure> {
+        let (path, options) = (self.slice_path()?, self.options()?);
+        Ok(Stack(SpeckleStack::generate_with(
+            &self.field()?,
+            path,
+            options,
+        )?))
+    }
+
+    /// The field of a plan of these sizes has the same bits.
+    fn field(&self) -> Result<PupilField, Failure> {
         let size = [self.width, self.height];
-        let field = PupilField::from_speckle_size(size, self.speckle_size, self.seed)?;
-        let stack = SpeckleStack::generate_with(&field, self.slice_path()?, self.options()?)?;
-        Ok(Stack(stack))
+        if self.diameter == 0 {
+            return Ok(PupilField::from_speckle_size(
+                size,
+                self.speckle_size,
+                self.seed,
+            )?);
+        }
+        if self.width == self.height {
+            return Ok(PupilField::new(self.width, self.diameter, self.seed)?);
+        }
+        let speckle_size = lattice(self.width) / lattice(self.diameter);
+        Ok(PupilField::from_speckle_size(
+            size,
+            speckle_size,
+            self.seed,
+        )?)
     }
 
     fn slice_path(&self) -> Result<tem00_speckle::SlicePath, Failure> {
@@ -125,6 +152,7 @@ impl StackNeeds {
         Ok(StackDescription {
             width,
             height,
+            diameter: plan.diameter()[0],
             speckle_size: plan.field(0)?.speckle_size(),
             seed: 0,
             path: path as u32,
@@ -134,6 +162,15 @@ impl StackNeeds {
             memory_limit: self.memory_limit,
         })
     }
+}
+
+/// A number of lattice points, which a double holds exactly.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "larger ones are refused as a size"
+)]
+fn lattice(points: usize) -> f64 {
+    points as f64
 }
 
 /// The path, its half period and its length as C counts them.

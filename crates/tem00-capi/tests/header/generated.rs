@@ -1,16 +1,11 @@
 //! The committed header against the one that cbindgen makes of the sources.
 
-use std::{
-    env, fs,
-    path::{Path, PathBuf},
-};
+use std::{env, fs};
+
+use super::here;
 
 /// Set to anything, it writes the header instead of comparing it.
 const WRITE: &str = "TEM00_WRITE_HEADER";
-
-fn here(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
-}
 
 fn generated() -> String {
     let config = cbindgen::Config::from_file(here("cbindgen.toml")).unwrap();
@@ -43,4 +38,24 @@ fn the_committed_header_is_that_of_the_sources() {
         "the header differs from line {:?}: run the test once with {WRITE}=1",
         differs.map(|line| line + 1)
     );
+}
+
+/// The names that a line at the outermost level declares.
+fn declared(line: &str) -> Option<&str> {
+    if let Some(name) = line.strip_prefix("} ") {
+        return Some(name).filter(|name| !name.contains("extern"));
+    }
+    let before = line.split(['(', ';']).next()?;
+    let is_code = line.starts_with(|c: char| c.is_ascii_alphabetic()) && line.contains(['(', ';']);
+    before.rsplit([' ', '*']).next().filter(|_| is_code)
+}
+
+#[test]
+fn every_name_begins_with_that_of_the_library() {
+    let header = fs::read_to_string(here("include/tem00.h")).unwrap();
+    let names: Vec<_> = header.lines().filter_map(declared).collect();
+    let foreign = |name: &&&str| !name.starts_with("tem00_");
+    let foreign: Vec<_> = names.iter().filter(foreign).collect();
+    assert!(names.len() > 80, "all of them are found: {}", names.len());
+    assert!(foreign.is_empty(), "names without the prefix: {foreign:?}");
 }

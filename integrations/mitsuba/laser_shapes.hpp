@@ -1,0 +1,62 @@
+// The shapes of the emitter `laser`: from properties to a light of the library.
+
+#pragma once
+
+#include <mitsuba/core/properties.h>
+
+#include <tem00.h>
+
+#include <memory>
+#include <optional>
+
+namespace mitsuba {
+
+struct DestroyLight {
+    void operator()(tem00_light *light) const { tem00_light_destroy(light); }
+};
+using LightPointer = std::unique_ptr<tem00_light, DestroyLight>;
+
+/// What lasers of all shapes have.
+struct Source {
+    explicit Source(const Properties &props);
+
+    /// In the scene's unit of length.
+    double wavelength;
+    /// In watts.
+    double power;
+};
+
+/// A round or elliptic Gaussian beam; lengths in the scene's unit.
+struct Spot {
+    explicit Spot(const Properties &props);
+
+    LightPointer light(const Source &source, const tem00_placement &placement) const;
+
+    /// An elliptic beam has second values of its own.
+    bool elliptic;
+    double waist_radius[2];
+    double waist_distance[2];
+    double m_squared[2];
+};
+
+/// A laser line; lengths in the scene's unit, the angle in degrees.
+struct Line {
+    explicit Line(const Properties &props);
+
+    LightPointer light(const Source &source, const tem00_placement &placement) const;
+
+    double fan_angle;
+    double thickness;
+    double focus_distance;
+    /// Left out, the fan leaves the lens as wide along the line as the beam is across it.
+    std::optional<double> apex_offset;
+    uint32_t focus_curve;
+    uint32_t profile;
+    double edge;
+    double m_squared;
+
+private:
+    double default_apex_offset(double wavelength) const;
+};
+
+} // namespace mitsuba

@@ -94,7 +94,20 @@ pub enum DecorrelationError {
 }
 
 impl DecorrelationError {
-    /// Returns the name of the parameter that was refused, as constructors and functions call it.
+    /// Returns the name of the argument that was refused, as constructors and functions call it.
+    ///
+    /// A pupil that follows from other arguments is `pupil_diameter` all the same, and a line of sight
+    /// from two points `to_pupil`.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_decorrelation::{DVec3, DecorrelationError, RigidMotion};
+    ///
+    /// let name = |error: DecorrelationError| error.parameter();
+    /// let turn = RigidMotion::about(DVec3::ZERO, DVec3::ZERO, 1.0);
+    /// assert_eq!(turn.map_err(name), Err("axis"));
+    /// ```
     pub const fn parameter(&self) -> &'static str {
         match self {
             Self::Wavelength(..) => "wavelength",
@@ -107,21 +120,21 @@ impl DecorrelationError {
             Self::Magnification(..) => "magnification",
             Self::PupilMagnification(..) => "pupil_magnification",
             Self::PupilDiameter { .. } => "pupil_diameter",
-            Self::PupilTooWide { .. } => "pupil_too_wide",
+            Self::PupilTooWide { .. } => "pupil_diameter",
             Self::Axes(..) => "axes",
-            Self::ViewDirection(..) => "view_direction",
+            Self::ViewDirection(..) => "target",
             Self::Up(..) => "up",
             Self::ToPupil(..) => "to_pupil",
             Self::DirectionToSource(..) => "direction_to_source",
             Self::Curvature(..) => "curvature",
-            Self::CurvatureTensor(..) => "curvature_tensor",
-            Self::PrincipalAxis(..) => "principal_axis",
-            Self::LightPosition(..) => "light_position",
-            Self::LitPoint(..) => "lit_point",
+            Self::CurvatureTensor(..) => "curvature",
+            Self::PrincipalAxis(..) => "axis",
+            Self::LightPosition(..) => "position",
+            Self::LitPoint(..) => "point",
             Self::Normal(..) => "normal",
             Self::Rotation(..) => "rotation",
-            Self::RotationAxis(..) => "rotation_axis",
-            Self::RotationAngle(..) => "rotation_angle",
+            Self::RotationAxis(..) => "axis",
+            Self::RotationAngle(..) => "angle",
             Self::Pivot(..) => "pivot",
             Self::Translation(..) => "translation",
             Self::PupilCentre(..) => "pupil_centre",
@@ -243,6 +256,27 @@ impl error::Error for DecorrelationError {}
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{CameraFrame, Illumination, RigidMotion, Wavefront};
+
+    #[test]
+    fn the_parameter_is_the_argument_that_was_given() {
+        let (x, zero) = (DVec3::X, DVec3::ZERO);
+        let fan = |axis| Wavefront::astigmatic(x, axis, 1.0, 1.0);
+        let skew = DMat3::from_cols(x, x, x);
+        let refusals = [
+            (CameraFrame::look_at(x, x, DVec3::Y).err(), "target"),
+            (CameraFrame::look_at(x, zero, x).err(), "up"),
+            (Wavefront::spherical(x, f64::NAN).err(), "curvature"),
+            (Wavefront::from_tensor(x, skew).err(), "curvature"),
+            (fan(x).err(), "axis"),
+            (Illumination::point_source(DVec3::NAN).err(), "position"),
+            (RigidMotion::about(zero, zero, 1.0).err(), "axis"),
+            (RigidMotion::about(zero, x, f64::NAN).err(), "angle"),
+        ];
+        for (error, parameter) in refusals {
+            assert_eq!(error.map(|e| e.parameter()), Some(parameter), "{error:?}");
+        }
+    }
 
     #[test]
     fn every_message_names_the_parameter_and_its_value() {

@@ -1,21 +1,22 @@
-//! Arrays in and out: numbers of any shape, broadcast together as NumPy does it.
+//! Arrays in and out: numbers of any shape, broadcast together as NumPy does it, and images.
+//!
+//! What lies in memory row by row in the right type is read where it is; anything else NumPy copies
+//! first. Results are moved to Python without a copy. While a function works, the interpreter is free
+//! for other threads; these must leave its arguments alone.
 
-use std::borrow::Cow;
+mod blocks;
+mod images;
+mod numbers;
+mod results;
 
-use numpy::{
-    AllowTypeChange, PyArray1, PyArrayLikeDyn, PyArrayMethods,
-    ndarray::{ArrayViewD, IxDyn},
-};
-use pyo3::{
-    exceptions::{PyMemoryError, PyRuntimeError},
-    prelude::*,
-    types::PyFloat,
-};
+use pyo3::{exceptions::PyRuntimeError, prelude::*};
+
+pub(crate) use images::{ComplexImage, Image, image_array};
+pub(crate) use numbers::{Count, Numbers};
+pub(crate) use results::{array, vector_array, zeros};
 
 use crate::error::refused;
-
-/// A number, or an array of numbers of any shape, as an argument of a function.
-pub(crate) type Numbers<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
+use blocks::Blocks;
 
 /// An argument and its name.
 pub(crate) type Named<'a, 'py> = (&'static str, &'a Numbers<'py>);
@@ -41,7 +42,7 @@ pub(crate) fn map_many<'py, const N: usize, const M: usize>(
     arguments: [Named<'_, 'py>; N],
     f: impl Fn([f64; N]) -> [f64; M] + Send + Sync,
 ) -> PyResult<[Bound<'py, PyAny>; M]> {
-    fill(py, arguments, |columns, out| {
+    fill(py, arguments, |columns, mut out| {
         for i in 0..columns[0].len() {
             let values = f(columns.map(|column| column[i]));
             for (out, value) in out.iter_mut().zip(values) {
@@ -51,10 +52,41 @@ pub(crate) fn map_many<'py, const N: usize, const M: usize>(
     })
 }
 
-/// Hands `N` arguments, broadcast together, to `f` as slices of equal length, and returns the `M`
-/// slices that it fills, in the common shape; floats for numbers. Without the interpreter's lock.
+/// As [`map`], for functions whose value is a vector: its components are the last axis of the
+/// result, which is an array for numbers too.
+pub(crate) fn map_vectors<'py, const N: usize, const K: usize>(
+    py: Python<'py>,
+    arguments: [Named<'_, 'py>; N],
+    f: impl Fn([f64; N]) -> [f64; K] + Send + Sync,
+) -> PyResult<Bound<'py, PyAny>> {
+    let names = arguments.map(|(name, _)| name);
+    let blocks = Blocks::new(arguments)?;
+    let mut shape = blocks.shape().to_vec();
+    shape.push(K);
+    let filled = py.detach(|| {
+        let [mut out] = zeros::<f64, 1>(&shape)?;
+        let mut vectors = out.chunks_exact_mut(K.max(1));
+        let mut outcome = Ok(());
+        blocks.run(|columns| {
+            for (i, vector) in (0..columns[0].len()).zip(&mut vectors) {
+                let point = columns.map(|column| column[i]);
+                vector.copy_from_slice(&f(point));
+                if vector.iter().any(|component| component.is_nan()) {
+                    outcome = Err(no_number(names, point));
+                }
+            }
+        });
+        outcome.map(|()| out)
+    });
+    Ok(array(py, &shape, filled?)?.into_any())
+}
+
+/// Hands `N` arguments, broadcast together, to `f` block by block as slices of equal length, and
+/// returns what it writes to the `M` slices beside them, in the common shape; floats for numbers.
+/// Without the interpreter's lock.
 ///
-/// An array that already has the common shape and lies in memory row by row is not copied.
+/// Only the results take memory. `f` is called with at most 4096 elements at a time; not at all where
+/// there are none.
 ///
 /// # Errors
 ///
@@ -63,118 +95,44 @@ pub(crate) fn map_many<'py, const N: usize, const M: usize>(
 pub(crate) fn fill<'py, const N: usize, const M: usize>(
     py: Python<'py>,
     arguments: [Named<'_, 'py>; N],
-    f: impl FnOnce([&[f64]; N], &mut [Vec<f64>; M]) + Send,
+    mut f: impl FnMut([&[f64]; N], [&mut [f64]; M]) + Send,
 ) -> PyResult<[Bound<'py, PyAny>; M]> {
     let names = arguments.map(|(name, _)| name);
-    let views = arguments.map(|(_, argument)| argument.as_array());
-    let shape = common_shape(&names, &views)?;
-    let filled = py.detach(|| -> Result<[Vec<f64>; M], Refusal> {
-        let columns = views.each_ref().map(|view| broadcast(view, &shape));
-        check_finite(&names, &columns)?;
-        let mut out = zeros(columns[0].len())?;
-        f(columns.each_ref().map(|column| &**column), &mut out);
-        Ok(out)
+    let blocks = Blocks::new(arguments)?;
+    let filled = py.detach(|| {
+        let mut out = zeros::<f64, M>(blocks.shape())?;
+        let mut rest = out.each_mut().map(Vec::as_mut_slice);
+        let mut outcome = Ok(());
+        blocks.run(|columns| {
+            let mut block = rest.each_mut().map(|rest| {
+                let (block, after) = core::mem::take(rest).split_at_mut(columns[0].len());
+                *rest = after;
+                block
+            });
+            f(columns, block.each_mut().map(|block| &mut **block));
+            for block in block {
+                if let Some(index) = block.iter().position(|value| value.is_nan()) {
+                    outcome = Err(no_number(names, columns.map(|column| column[index])));
+                }
+            }
+        });
+        outcome.map(|()| out)
     });
     let mut arrays = Vec::with_capacity(M);
     for values in filled? {
-        arrays.push(into_python(py, &shape, values)?);
+        arrays.push(results::array_or_float(py, blocks.shape(), values)?);
     }
     arrays
         .try_into()
         .map_err(|_| PyRuntimeError::new_err("an array is missing"))
 }
 
-/// Why arguments were refused, said once the interpreter is at hand again.
-enum Refusal {
-    NotFinite { name: &'static str, value: f64 },
-    Memory { bytes: usize },
-}
-
-impl From<Refusal> for PyErr {
-    fn from(refusal: Refusal) -> Self {
-        match refusal {
-            Refusal::NotFinite { name, value } => refused(
-                name,
-                format!("{name} is {value}, but must be finite everywhere"),
-            ),
-            Refusal::Memory { bytes } => {
-                PyMemoryError::new_err(format!("the machine refused {bytes} bytes for the result"))
-            }
-        }
-    }
-}
-
-/// The shape that all arguments broadcast to, by NumPy's rule.
-fn common_shape<const N: usize>(
-    names: &[&'static str; N],
-    views: &[ArrayViewD<'_, f64>; N],
-) -> PyResult<Vec<usize>> {
-    let mut common: Vec<usize> = Vec::new();
-    for (name, view) in names.iter().zip(views) {
-        let shape = view.shape();
-        let longer = shape.len().saturating_sub(common.len());
-        common.splice(0..0, std::iter::repeat_n(1, longer));
-        let skipped = common.len() - shape.len();
-        for (side, &own) in common[skipped..].iter_mut().zip(shape) {
-            if *side == 1 {
-                *side = own;
-            } else if own != 1 && own != *side {
-                let message = format!(
-                    "{name} has the shape {shape:?}, which does not broadcast with the arguments \
-                     before it"
-                );
-                return Err(refused(name, message));
-            }
-        }
-    }
-    Ok(common)
-}
-
-/// The values in the shape of all, borrowed where they already lie that way.
-fn broadcast<'a>(view: &'a ArrayViewD<'a, f64>, shape: &[usize]) -> Cow<'a, [f64]> {
-    match view.broadcast(IxDyn(shape)) {
-        Some(wide) => match wide.to_slice() {
-            Some(slice) => Cow::Borrowed(slice),
-            None => Cow::Owned(wide.iter().copied().collect()),
-        },
-        None => Cow::Borrowed(&[]),
-    }
-}
-
-fn check_finite<const N: usize>(
-    names: &[&'static str; N],
-    columns: &[Cow<'_, [f64]>; N],
-) -> Result<(), Refusal> {
-    for (&name, column) in names.iter().zip(columns) {
-        if let Some(&value) = column.iter().find(|value| !value.is_finite()) {
-            return Err(Refusal::NotFinite { name, value });
-        }
-    }
-    Ok(())
-}
-
-fn zeros<const M: usize>(length: usize) -> Result<[Vec<f64>; M], Refusal> {
-    let mut out = [const { Vec::new() }; M];
-    for values in &mut out {
-        let bytes = length.saturating_mul(size_of::<f64>());
-        values
-            .try_reserve_exact(length)
-            .map_err(|_| Refusal::Memory { bytes })?;
-        values.resize(length, 0.0);
-    }
-    Ok(out)
-}
-
-/// A float for the shape of a number, else an array that owns the values.
-fn into_python<'py>(
-    py: Python<'py>,
-    shape: &[usize],
-    values: Vec<f64>,
-) -> PyResult<Bound<'py, PyAny>> {
-    match (shape, values.as_slice()) {
-        ([], [value]) => Ok(PyFloat::new(py, *value).into_any()),
-        _ => Ok(PyArray1::from_vec(py, values)
-            .reshape(shape.to_vec())?
-            .into_any()),
-    }
+/// The exception for finite arguments so extreme that the result of a formula is not a number.
+fn no_number<const N: usize>(names: [&'static str; N], values: [f64; N]) -> PyErr {
+    let pairs = names.iter().zip(values);
+    let all: Vec<String> = pairs
+        .map(|(name, value)| format!("{name} = {value:e}"))
+        .collect();
+    let message = format!("{} must be less extreme to have a result", all.join(", "));
+    refused(names.first().copied().unwrap_or_default(), message)
 }

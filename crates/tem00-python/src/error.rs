@@ -25,6 +25,11 @@ pub(crate) fn refused(parameter: &str, message: String) -> PyErr {
     })
 }
 
+/// The parameter that an exception refuses, if it does.
+fn parameter_of(error: &PyErr) -> Option<String> {
+    Python::attach(|py| error.value(py).getattr("parameter").ok()?.extract().ok())
+}
+
 /// What the errors of the physics crates become in Python.
 pub(crate) trait IntoPython {
     /// Returns the exception.
@@ -64,10 +69,23 @@ impl IntoPython for SpeckleError {
 pub(crate) trait OrRaise<T> {
     /// Returns the value, or the error as an exception.
     fn or_raise(self) -> PyResult<T>;
+
+    /// As [`or_raise`](Self::or_raise), for a function whose argument `to` has another name in the
+    /// error: one of `from`.
+    fn or_raise_renamed(self, from: &[&str], to: &'static str) -> PyResult<T>;
 }
 
 impl<T, E: IntoPython> OrRaise<T> for Result<T, E> {
     fn or_raise(self) -> PyResult<T> {
         self.map_err(IntoPython::into_python)
+    }
+
+    fn or_raise_renamed(self, from: &[&str], to: &'static str) -> PyResult<T> {
+        self.or_raise().map_err(|error| match parameter_of(&error) {
+            Some(name) if from.contains(&name.as_str()) => {
+                Python::attach(|py| refused(to, error.value(py).to_string()))
+            }
+            _ => error,
+        })
     }
 }

@@ -7,6 +7,7 @@ mod arrays;
 mod beam;
 mod decorrelation;
 mod error;
+mod pickling;
 mod speckle;
 mod statistics;
 

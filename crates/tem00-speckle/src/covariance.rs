@@ -24,7 +24,7 @@ pub(crate) const EVEN: usize = 4;
 /// Powers of p for the part that is odd.
 const ODD: usize = 2;
 /// The shapes along one axis: 1, p, p², p³ and o, o p with o = p (1 − 2f).
-const SHAPES: usize = EVEN + ODD;
+pub(crate) const SHAPES: usize = EVEN + ODD;
 
 /// Coefficients of the products of even shapes, `[ny][nx]`.
 pub(crate) type Even = [[f32; EVEN]; EVEN];
@@ -66,6 +66,15 @@ impl Covariance {
             }
         }
         sums
+    }
+
+    /// The coefficients of the products of all shapes, `[ny][nx]`.
+    pub(crate) fn table(&self) -> [[f32; SHAPES]; SHAPES] {
+        let mut table = self.odd.unwrap_or([[0.0; SHAPES]; SHAPES]);
+        for (row, even) in table.iter_mut().zip(&self.even) {
+            row[..EVEN].copy_from_slice(even);
+        }
+        table
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]

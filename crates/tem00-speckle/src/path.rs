@@ -69,7 +69,13 @@ impl SlicePath {
             .saturating_mul(self.slice_count() as u64)
     }
 
-    pub(crate) const fn check(self) -> Result<(), SpeckleError> {
+    /// Tells whether a stack can follow this path.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the half period is zero or above [`MAX_HALF_PERIOD`](Self::MAX_HALF_PERIOD),
+    /// or the length below 2 or above [`MAX_LENGTH`](Self::MAX_LENGTH).
+    pub const fn check(self) -> Result<(), SpeckleError> {
         match self {
             Self::Circle { half_period } | Self::Straight { half_period, .. }
                 if half_period == 0 || half_period > Self::MAX_HALF_PERIOD =>

@@ -36,7 +36,8 @@ pub enum Pupil {
     },
     /// A disc whose amplitude transmission falls off as `exp(−p²/radius²)`.
     Gaussian {
-        /// The radius, in units of the diameter, at which 1/e² of the power is transmitted.
+        /// The radius, in units of the diameter, at which 1/e² of the power is transmitted; positive
+        /// and finite.
         radius: f64,
     },
     /// Any amplitude transmission over the bounding square, with phase if there are aberrations.
@@ -85,7 +86,12 @@ impl Pupil {
         }
     }
 
-    pub(crate) fn check(&self) -> Result<(), SpeckleError> {
+    /// Tells whether the proportions of the pupil are possible.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if one lies outside the range that its variant states.
+    pub fn check(&self) -> Result<(), SpeckleError> {
         match *self {
             Self::Annulus { inner } if !(inner > 0.0 && inner < 1.0) => {
                 Err(SpeckleError::InnerDiameter(inner))

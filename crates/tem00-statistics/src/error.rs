@@ -140,7 +140,20 @@ pub enum StatisticsError {
 }
 
 impl StatisticsError {
-    /// Returns the name of the parameter that was refused, as constructors and functions call it.
+    /// Returns the name of the argument that was refused, as constructors and functions call it.
+    ///
+    /// The values of an image or a field are `samples`, those of a grid of lags `lags`, whatever the
+    /// function at hand calls them.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_statistics::{GammaIntensity, Moments, StatisticsError};
+    ///
+    /// let name = |error: StatisticsError| error.parameter();
+    /// assert_eq!(GammaIntensity::new(0.5).map_err(name), Err("shape"));
+    /// assert_eq!(Moments::of(&[1.0]).map_err(name), Err("samples"));
+    /// ```
     pub const fn parameter(&self) -> &'static str {
         match self {
             Self::Shape(..) => "shape",
@@ -148,33 +161,33 @@ impl StatisticsError {
             Self::Degree(..) => "degree",
             Self::AmplitudeCorrelation(..) => "amplitude_correlation",
             Self::BeamRatio(..) => "beam_ratio",
-            Self::Weight { .. } => "weight",
-            Self::NoWeight(..) => "no_weight",
-            Self::Phasors(..) => "phasors",
+            Self::Weight { .. } => "weights",
+            Self::NoWeight(..) => "weights",
+            Self::Phasors(..) => "count",
             Self::Wavelength(..) => "wavelength",
             Self::Linewidth { .. } => "linewidth",
             Self::Distance(..) => "distance",
-            Self::LitSize(..) => "lit_size",
+            Self::LitSize(..) => "area",
             Self::Level(..) => "level",
-            Self::NotPositive { .. } => "not_positive",
+            Self::NotPositive { .. } => "samples",
             Self::Window { .. } => "window",
             Self::Samples { .. } => "samples",
-            Self::NotFinite { .. } => "not_finite",
-            Self::Constant(..) => "constant",
-            Self::Mean(..) => "mean",
-            Self::TestedMean(..) => "tested_mean",
-            Self::Size { .. } => "size",
-            Self::Transform(..) => "transform",
+            Self::NotFinite { .. } => "samples",
+            Self::Constant(..) => "samples",
+            Self::Mean(..) => "samples",
+            Self::TestedMean(..) => "mean",
+            Self::Size { .. } => "second",
+            Self::Transform(..) => "image",
             Self::Stride(..) => "stride",
             Self::Step(..) => "step",
             Self::SpeckleSize(..) => "speckle_size",
-            Self::ZeroLag(..) => "zero_lag",
-            Self::Unresolved { .. } => "unresolved",
-            Self::TooCoarse { .. } => "too_coarse",
-            Self::Probability { .. } => "probability",
-            Self::Bins { .. } => "bins",
-            Self::ExpectedCount { .. } => "expected_count",
-            Self::DegreesOfFreedom { .. } => "degrees_of_freedom",
+            Self::ZeroLag(..) => "lags",
+            Self::Unresolved { .. } => "lags",
+            Self::TooCoarse { .. } => "lags",
+            Self::Probability { .. } => "cumulative",
+            Self::Bins { .. } => "expected",
+            Self::ExpectedCount { .. } => "expected",
+            Self::DegreesOfFreedom { .. } => "constraints",
         }
     }
 }
@@ -389,6 +402,31 @@ mod tests {
         ];
         for (error, message) in rows {
             assert_eq!(error.to_string(), message);
+        }
+    }
+
+    #[test]
+    fn the_parameter_is_the_argument_that_was_given() {
+        use crate as s;
+        let name = |error: StatisticsError| error.parameter();
+        let spot = s::LitArea::Disc { diameter: -1.0 };
+        let image = tem00_numerics::Grid::filled(4, 4, 1.0);
+        let other = tem00_numerics::Grid::filled(4, 5, 1.0);
+        let refusals = [
+            (s::WeightedSum::new(&[-1.0]).err(), "weights"),
+            (s::WeightedSum::new(&[0.0]).err(), "weights"),
+            (s::PhasorSum::new(3).err(), "count"),
+            (s::ObjectiveSpeckle::new(1e-6, 1.0, spot).err(), "area"),
+            (s::t_test_mean(&[1.0, 2.0], f64::NAN).err(), "mean"),
+            (s::pearson_correlation(&image, &other).err(), "second"),
+            (s::kolmogorov_smirnov(&[1.0], |_| 2.0).err(), "cumulative"),
+            (s::chi_squared(&[1], &[], 0).err(), "expected"),
+            (s::chi_squared(&[9], &[9.0], 1).err(), "constraints"),
+            (s::decorrelated_samples(&image, 0).err(), "stride"),
+            (s::GammaFit::by_likelihood(&[0.0, 1.0]).err(), "samples"),
+        ];
+        for (error, parameter) in refusals {
+            assert_eq!(error.map(name), Some(parameter), "{error:?}");
         }
     }
 

@@ -5,6 +5,7 @@ NumPy; numbers give numbers, arrays give arrays of the common shape.
 """
 
 import sys
+from types import ModuleType
 
 from tem00 import _tem00
 from tem00._tem00 import (
@@ -16,8 +17,18 @@ from tem00._tem00 import (
     statistics,
 )
 
-for _module in (beam, decorrelation, speckle, statistics):
-    sys.modules[f"tem00.{_module.__name__.rsplit('.', 1)[-1]}"] = _module
+
+def _register(module: ModuleType, name: str) -> None:
+    """Make a module of the extension, and those inside, importable under a name."""
+    module.__name__ = name
+    sys.modules[name] = module
+    for short, inner in list(vars(module).items()):
+        if isinstance(inner, ModuleType):
+            _register(inner, f"{name}.{short}")
+
+
+for _short in ("beam", "decorrelation", "speckle", "statistics"):
+    _register(getattr(_tem00, _short), f"tem00.{_short}")
 
 __all__ = [
     "ParameterError",

@@ -1,0 +1,11 @@
+from tem00 import beam as beam
+from tem00 import decorrelation as decorrelation
+from tem00 import speckle as speckle
+from tem00 import statistics as statistics
+
+__version__: str
+
+class ParameterError(ValueError):
+    """A parameter lies outside what is allowed."""
+
+    parameter: str

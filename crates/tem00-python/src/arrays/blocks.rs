@@ -1,0 +1,130 @@
+use numpy::ndarray::{ArrayViewD, IxDyn, iter::Iter};
+use pyo3::{PyResult, exceptions::PyValueError};
+
+use super::{Named, results::element_count};
+use crate::error::refused;
+
+/// Elements that are worked on at a time: they stay in the cache.
+const BLOCK: usize = 4096;
+
+/// Arguments broadcast together, to be walked through block by block.
+pub(super) struct Blocks<'a, const N: usize> {
+    shape: Vec<usize>,
+    length: usize,
+    views: [ArrayViewD<'a, f64>; N],
+}
+
+impl<'a, const N: usize> Blocks<'a, N> {
+    /// Broadcasts arguments by NumPy's rule.
+    ///
+    /// # Errors
+    ///
+    /// Refuses arguments that are not finite, shapes that do not fit together, and more elements than
+    /// an address counts.
+    pub(super) fn new(arguments: [Named<'a, '_>; N]) -> PyResult<Self> {
+        let shape = common_shape(&arguments)?;
+        let mut views = Vec::with_capacity(N);
+        for (name, argument) in arguments {
+            let view = ArrayViewD::from_shape(argument.shape(), argument.finite(name)?);
+            views.push(view.map_err(|error| PyValueError::new_err(error.to_string()))?);
+        }
+        let views = views
+            .try_into()
+            .map_err(|_| PyValueError::new_err("an argument is missing"))?;
+        Ok(Self {
+            length: element_count(&shape)?,
+            shape,
+            views,
+        })
+    }
+
+    /// Returns the common shape.
+    pub(super) fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    /// Calls `f` with the arguments as slices of equal length, from the first elements to the last.
+    pub(super) fn run(&self, mut f: impl FnMut([&[f64]; N])) {
+        let wide = self
+            .views
+            .each_ref()
+            .map(|view| view.broadcast(self.shape.as_slice()));
+        let mut columns = wide
+            .each_ref()
+            .map(|view| Column::new(view.as_ref(), self.length));
+        let mut left = self.length;
+        while left > 0 {
+            let count = left.min(BLOCK);
+            f(columns.each_mut().map(|column| column.next(count)));
+            left -= count;
+        }
+    }
+}
+
+/// One argument as the elements of the common shape.
+enum Column<'a> {
+    /// It has that shape, and is read where it lies.
+    Whole(&'a [f64]),
+    /// It is one number, repeated over a block.
+    Same(Vec<f64>),
+    /// It repeats along some axes.
+    Spread(Iter<'a, f64, IxDyn>, Vec<f64>),
+}
+
+impl<'a> Column<'a> {
+    /// Nothing is ever read of a column without a view: there are no elements then.
+    fn new(wide: Option<&'a ArrayViewD<'a, f64>>, length: usize) -> Self {
+        let Some(wide) = wide else {
+            return Self::Whole(&[]);
+        };
+        if let Some(whole) = wide.as_slice() {
+            return Self::Whole(whole);
+        }
+        match wide.first() {
+            Some(&first) if wide.strides().iter().all(|&stride| stride == 0) => {
+                Self::Same(vec![first; length.min(BLOCK)])
+            }
+            _ => Self::Spread(wide.iter(), Vec::with_capacity(length.min(BLOCK))),
+        }
+    }
+
+    /// Returns the next elements.
+    fn next(&mut self, count: usize) -> &[f64] {
+        match self {
+            Self::Whole(rest) => {
+                let (block, after) = rest.split_at(count);
+                *rest = after;
+                block
+            }
+            Self::Same(block) => &block[..count],
+            Self::Spread(values, block) => {
+                block.clear();
+                block.extend(values.by_ref().take(count));
+                block
+            }
+        }
+    }
+}
+
+/// The shape that all arguments broadcast to, by NumPy's rule.
+fn common_shape<const N: usize>(arguments: &[Named<'_, '_>; N]) -> PyResult<Vec<usize>> {
+    let mut common: Vec<usize> = Vec::new();
+    for (name, argument) in arguments {
+        let shape = argument.shape();
+        let longer = shape.len().saturating_sub(common.len());
+        common.splice(0..0, core::iter::repeat_n(1, longer));
+        let skipped = common.len() - shape.len();
+        for (side, &own) in common[skipped..].iter_mut().zip(shape) {
+            if *side == 1 {
+                *side = own;
+            } else if own != 1 && own != *side {
+                let message = format!(
+                    "{name} has the shape {shape:?}, which does not broadcast with the arguments \
+                     before it"
+                );
+                return Err(refused(name, message));
+            }
+        }
+    }
+    Ok(common)
+}

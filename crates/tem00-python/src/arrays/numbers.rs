@@ -1,0 +1,161 @@
+use core::slice;
+
+use numpy::{
+    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
+use pyo3::{
+    exceptions::{PyOverflowError, PyTypeError, PyValueError},
+    prelude::*,
+    types::{PyFloat, PyInt},
+};
+
+use crate::error::refused;
+
+/// A number, or an array of real numbers of any shape, as an argument of a function.
+///
+/// Arrays that are not in `float64`, row by row, are copied. What is no number (text, truth values,
+/// complex numbers) is a `TypeError`, which names the argument.
+#[derive(Debug)]
+pub(crate) enum Numbers<'py> {
+    /// A number.
+    One(f64),
+    /// An array, aligned and row by row.
+    Array(PyReadonlyArrayDyn<'py, f64>),
+}
+
+impl<'py> FromPyObject<'_, 'py> for Numbers<'py> {
+    type Error = PyErr;
+
+    fn extract(argument: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(number) = argument.cast::<PyFloat>() {
+            return Ok(Self::One(number.value()));
+        }
+        if let Ok(number) = argument.cast_exact::<PyInt>() {
+            return Ok(Self::One(number.extract()?));
+        }
+        Ok(Self::Array(row_by_row(&argument, b"iuf")?))
+    }
+}
+
+impl Numbers<'_> {
+    /// Returns all values, row by row.
+    pub(crate) fn values(&self) -> PyResult<&[f64]> {
+        match self {
+            Self::One(number) => Ok(slice::from_ref(number)),
+            Self::Array(array) => Ok(array.as_slice()?),
+        }
+    }
+
+    /// Returns the lengths of the axes.
+    pub(crate) fn shape(&self) -> &[usize] {
+        match self {
+            Self::One(_) => &[],
+            Self::Array(array) => array.shape(),
+        }
+    }
+
+    /// Returns all values, row by row, where they are finite.
+    ///
+    /// # Errors
+    ///
+    /// Refuses the argument of this name if one is not.
+    pub(crate) fn finite(&self, name: &'static str) -> PyResult<&[f64]> {
+        let values = self.values()?;
+        match values.iter().find(|value| !value.is_finite()) {
+            Some(value) => Err(refused(
+                name,
+                format!("{name} is {value}, but must be finite everywhere"),
+            )),
+            None => Ok(values),
+        }
+    }
+
+    /// Returns a vector of `K` finite components.
+    ///
+    /// # Errors
+    ///
+    /// Refuses the argument of this name if it has another shape or a component that is not finite.
+    pub(crate) fn vector<const K: usize>(&self, name: &'static str) -> PyResult<[f64; K]> {
+        if self.shape() != [K] {
+            let shape = self.shape();
+            let message = format!("{name} has the shape {shape:?}, but must have [{K}]");
+            return Err(refused(name, message));
+        }
+        self.finite(name)?
+            .try_into()
+            .map_err(|_| PyValueError::new_err("a component is missing"))
+    }
+}
+
+/// A number of things, as an argument of a function.
+#[derive(Debug)]
+pub(crate) struct Count(Result<usize, String>);
+
+impl<'py> FromPyObject<'_, 'py> for Count {
+    type Error = PyErr;
+
+    fn extract(argument: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        match argument.extract() {
+            Ok(count) => Ok(Self(Ok(count))),
+            Err(error) if error.is_instance_of::<PyOverflowError>(argument.py()) => {
+                Ok(Self(Err(argument.str()?.to_string())))
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
+impl Count {
+    /// Returns the number.
+    ///
+    /// # Errors
+    ///
+    /// Refuses the argument of this name if it is negative or no address counts that far.
+    pub(crate) fn value(&self, name: &'static str) -> PyResult<usize> {
+        self.0.clone().map_err(|given| {
+            let most = usize::MAX;
+            let message = format!("{name} must be a whole number from 0 to {most}, got {given}");
+            refused(name, message)
+        })
+    }
+
+    /// Returns the number where it lies between `least` and `most`.
+    ///
+    /// # Errors
+    ///
+    /// Refuses the argument of this name elsewhere.
+    pub(crate) fn within(&self, name: &'static str, [least, most]: [usize; 2]) -> PyResult<usize> {
+        let value = self.value(name)?;
+        if (least..=most).contains(&value) {
+            return Ok(value);
+        }
+        let message = format!("{name} must lie between {least} and {most}, got {value}");
+        Err(refused(name, message))
+    }
+}
+
+/// Returns an array of `T` that is aligned and lies in memory row by row: the argument itself where it
+/// is one, else a copy. `kinds` are NumPy's letters for the kinds of numbers that are allowed.
+pub(super) fn row_by_row<'py, T: Element>(
+    argument: &Bound<'py, PyAny>,
+    kinds: &[u8],
+) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
+    if let Ok(array) = argument.cast::<PyArrayDyn<T>>()
+        && array.is_c_contiguous()
+        && array.is_aligned()
+    {
+        return Ok(array.try_readonly()?);
+    }
+    let py = argument.py();
+    let numpy = py.import("numpy")?;
+    let any = numpy.call_method1("asarray", (argument,))?;
+    let dtype = any.cast::<PyUntypedArray>()?.dtype();
+    if !kinds.contains(&dtype.kind()) {
+        let message = format!("expected numbers, got {dtype}");
+        return Err(PyTypeError::new_err(message));
+    }
+    let wanted = (any, numpy::dtype::<T>(py), ["C_CONTIGUOUS", "ALIGNED"]);
+    let array = numpy.call_method1("require", wanted)?;
+    Ok(array.cast::<PyArrayDyn<T>>()?.try_readonly()?)
+}

@@ -1,0 +1,74 @@
+use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods};
+use pyo3::{exceptions::PyMemoryError, prelude::*, types::PyFloat};
+use tem00_numerics::available_memory;
+
+/// Results below this many bytes are made without asking how much memory is left.
+const SMALL: usize = 1 << 24;
+
+/// Returns the number of elements of an array.
+///
+/// # Errors
+///
+/// Returns a `MemoryError` where no address counts that many.
+pub(super) fn element_count(shape: &[usize]) -> PyResult<usize> {
+    if shape.contains(&0) {
+        return Ok(0);
+    }
+    shape
+        .iter()
+        .try_fold(1_usize, |count, &side| count.checked_mul(side))
+        .ok_or_else(|| PyMemoryError::new_err(format!("no memory holds the shape {shape:?}")))
+}
+
+/// Returns `M` arrays of zeros of this shape.
+///
+/// # Errors
+///
+/// Returns a `MemoryError` where memory does not hold them.
+pub(crate) fn zeros<T: Copy + Default, const M: usize>(shape: &[usize]) -> PyResult<[Vec<T>; M]> {
+    let count = element_count(shape)?;
+    let bytes = count.saturating_mul(size_of::<T>()).saturating_mul(M);
+    let refusal = || {
+        PyMemoryError::new_err(format!(
+            "memory does not hold the {bytes} bytes of the result"
+        ))
+    };
+    if bytes > SMALL && available_memory().is_some_and(|available| bytes as u64 > available) {
+        return Err(refusal());
+    }
+    let mut out = [const { Vec::new() }; M];
+    for values in &mut out {
+        values.try_reserve_exact(count).map_err(|_| refusal())?;
+        values.resize(count, T::default());
+    }
+    Ok(out)
+}
+
+/// Moves values, row by row, into an array of this shape.
+pub(crate) fn array<'py, T: Element>(
+    py: Python<'py>,
+    shape: &[usize],
+    values: Vec<T>,
+) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    PyArray1::from_vec(py, values).reshape(shape.to_vec())
+}
+
+/// Returns a vector as an array of the shape (K,).
+pub(crate) fn vector_array<'py, const K: usize>(
+    py: Python<'py>,
+    components: [f64; K],
+) -> Bound<'py, PyArray1<f64>> {
+    PyArray1::from_slice(py, &components)
+}
+
+/// A float for the shape of a number, else an array.
+pub(super) fn array_or_float<'py>(
+    py: Python<'py>,
+    shape: &[usize],
+    values: Vec<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match (shape, values.as_slice()) {
+        ([], [value]) => Ok(PyFloat::new(py, *value).into_any()),
+        _ => Ok(array(py, shape, values)?.into_any()),
+    }
+}

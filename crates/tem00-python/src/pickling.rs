@@ -1,0 +1,26 @@
+use pyo3::{
+    prelude::*,
+    types::{PyTuple, PyType},
+};
+
+/// What `__reduce__` returns: something to call, and its arguments.
+pub(crate) type Recipe<'py> = (Bound<'py, PyAny>, (Bound<'py, PyType>,));
+
+/// Returns how pickle makes an object of the class `T` again: by calling its static method `name`
+/// with these arguments.
+pub(crate) fn by_constructor<'py, T: pyo3::PyTypeInfo>(
+    py: Python<'py>,
+    name: &str,
+    arguments: impl IntoPyObject<
+        'py,
+        Target = PyTuple,
+        Output = Bound<'py, PyTuple>,
+        Error: Into<PyErr>,
+    >,
+) -> PyResult<Recipe<'py>> {
+    let mut all = vec![name.into_pyobject(py)?.into_any()];
+    all.extend(arguments.into_pyobject(py).map_err(Into::into)?.iter());
+    // Unlike a static method of an extension, this can be pickled.
+    let call = py.import("operator")?.getattr("methodcaller")?;
+    Ok((call.call1(PyTuple::new(py, all)?)?, (T::type_object(py),)))
+}

@@ -1,0 +1,46 @@
+//! Images that Python sees where they lie, [row, column].
+
+use numpy::{Element, PyArray2, PyArrayMethods, ndarray::ArrayView2};
+use pyo3::{
+    exceptions::{PyMemoryError, PyRuntimeError},
+    prelude::*,
+};
+use tem00_numerics::{Grid, available_memory};
+
+/// Returns a read-only array over the values of `grid`, which belongs to `owner`.
+///
+/// # Safety
+///
+/// `grid` must live in the memory of `owner`, an object that never changes.
+pub(crate) unsafe fn view<'py, T: Element>(
+    owner: Bound<'py, PyAny>,
+    grid: &Grid<T>,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let rows = (grid.height(), grid.width());
+    let values = ArrayView2::from_shape(rows, grid.values())
+        .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    // SAFETY: the array keeps `owner` alive, and with it the values, which nobody changes: not Rust,
+    // as the caller promises, and not Python, for which they are made read-only here.
+    let array = unsafe { PyArray2::borrow_from_array(&values, owner) };
+    drop(array.try_readwrite()?.make_nonwriteable());
+    Ok(array)
+}
+
+/// Refuses an image with so many bytes for each of its samples, and another complex one to work
+/// with, if the machine does not have them.
+pub(crate) fn check_room([width, height]: [usize; 2], bytes_each: u64) -> PyResult<()> {
+    const COMPLEX: u64 = 8;
+    let samples = (width as u64).saturating_mul(height as u64);
+    check_bytes(samples.saturating_mul(bytes_each + COMPLEX))
+}
+
+/// Refuses so many bytes if the machine does not have them: one that grants them nevertheless ends
+/// the program later.
+pub(crate) fn check_bytes(needed: u64) -> PyResult<()> {
+    match available_memory() {
+        Some(available) if needed > available => Err(PyMemoryError::new_err(format!(
+            "{needed} bytes for the image are more than the machine has to give"
+        ))),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,98 @@
+use std::{fs::File, io::BufWriter, path::PathBuf};
+
+use numpy::{Complex32, PyArray2};
+use pyo3::prelude::*;
+use tem00_speckle as physics;
+
+use super::images::view;
+
+/// A speckle pattern: intensity with mean 1, periodic in both axes.
+#[pyclass(frozen, eq, module = "tem00.speckle")]
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SpecklePattern(pub(super) physics::SpecklePattern);
+
+#[pymethods]
+impl SpecklePattern {
+    /// Intensity at every sample, float32 [row, column]: a read-only view without a copy.
+    #[getter]
+    fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        // SAFETY: the values lie in this object, which is frozen.
+        unsafe { view(slf.clone().into_any(), slf.get().0.values()) }
+    }
+
+    /// Width and height, which are the periods, in samples.
+    #[getter]
+    fn size(&self) -> (usize, usize) {
+        self.0.size().into()
+    }
+
+    /// Speckle size in samples.
+    #[getter]
+    const fn speckle_size(&self) -> f64 {
+        self.0.speckle_size()
+    }
+
+    /// Write the intensity as an NPY file of float32, to be read by `numpy.load`.
+    ///
+    /// Parameters
+    /// ----------
+    /// file : str or os.PathLike
+    ///     Where to write.
+    fn write_npy(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
+        Ok(py.detach(|| self.0.write_npy(BufWriter::new(File::create(file)?)))?)
+    }
+
+    fn __repr__(&self) -> String {
+        let [width, height] = self.0.size();
+        let speckle_size = self.0.speckle_size();
+        format!("<SpecklePattern: size=({width}, {height}), speckle_size={speckle_size}>")
+    }
+}
+
+/// The complex amplitude of a speckle field, of mean square 1, periodic in both axes.
+#[pyclass(frozen, eq, module = "tem00.speckle")]
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SpeckleField(pub(super) physics::SpeckleField);
+
+#[pymethods]
+impl SpeckleField {
+    /// Amplitude at every sample, complex64 [row, column]: a read-only view without a copy.
+    #[getter]
+    fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<Complex32>>> {
+        // SAFETY: the values lie in this object, which is frozen.
+        unsafe { view(slf.clone().into_any(), slf.get().0.values()) }
+    }
+
+    /// Width and height, which are the periods, in samples.
+    #[getter]
+    fn size(&self) -> (usize, usize) {
+        self.0.size().into()
+    }
+
+    /// Speckle size in samples.
+    #[getter]
+    const fn speckle_size(&self) -> f64 {
+        self.0.speckle_size()
+    }
+
+    /// Return the intensity, the squared magnitude of the amplitude.
+    fn to_pattern(&self, py: Python<'_>) -> SpecklePattern {
+        SpecklePattern(py.detach(|| self.0.to_pattern()))
+    }
+
+    /// Write the amplitude as an NPY file of complex64, to be read by `numpy.load`.
+    ///
+    /// Parameters
+    /// ----------
+    /// file : str or os.PathLike
+    ///     Where to write.
+    fn write_npy(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
+        Ok(py.detach(|| self.0.write_npy(BufWriter::new(File::create(file)?)))?)
+    }
+
+    fn __repr__(&self) -> String {
+        let [width, height] = self.0.size();
+        let speckle_size = self.0.speckle_size();
+        format!("<SpeckleField: size=({width}, {height}), speckle_size={speckle_size}>")
+    }
+}

@@ -1,0 +1,297 @@
+use pyo3::{
+    prelude::*,
+    types::{PyTuple, PyType},
+};
+use tem00_speckle as physics;
+
+use super::{
+    arguments::Whole,
+    field::PupilField,
+    path::SlicePath,
+    stack::{SpeckleStack, StackOptions},
+};
+use crate::error::OrRaise;
+
+/// What a stack is to be looked up for.
+///
+/// Parameters
+/// ----------
+/// image : (float, float)
+///     Width and height of the image in pixels.
+/// region : (float, float)
+///     Width and height of all that is looked up in any frame, in pixels.
+/// `speckle_size` : float
+///     Speckle size on the sensor in pixels.
+/// motion : float or None
+///     Largest motion of the pupil over the speckle, in its diameters; None if the speckle never
+///     changes.
+/// frames : int
+///     Number of frames among which the speckle is compared.
+/// `memory_limit` : int
+///     Bytes that the slices may take.
+#[pyclass(frozen, eq, module = "tem00.speckle")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StackNeeds(physics::StackNeeds);
+
+#[pymethods]
+impl StackNeeds {
+    #[new]
+    fn new(
+        image: [f64; 2],
+        region: [f64; 2],
+        speckle_size: f64,
+        motion: Option<f64>,
+        frames: Whole<'_>,
+        memory_limit: Whole<'_>,
+    ) -> PyResult<Self> {
+        Ok(Self(physics::StackNeeds {
+            image,
+            region,
+            speckle_size,
+            motion,
+            frames: frames.unsigned("frames")?,
+            memory_limit: memory_limit.unsigned("memory_limit")?,
+        }))
+    }
+
+    /// Width and height of the image in pixels.
+    #[getter]
+    fn image(&self) -> (f64, f64) {
+        self.0.image.into()
+    }
+
+    /// Width and height of all that is looked up, in pixels.
+    #[getter]
+    fn region(&self) -> (f64, f64) {
+        self.0.region.into()
+    }
+
+    /// Speckle size on the sensor in pixels.
+    #[getter]
+    const fn speckle_size(&self) -> f64 {
+        self.0.speckle_size
+    }
+
+    /// Largest motion of the pupil in its diameters, or None.
+    #[getter]
+    const fn motion(&self) -> Option<f64> {
+        self.0.motion
+    }
+
+    /// Number of frames among which the speckle is compared.
+    #[getter]
+    const fn frames(&self) -> u32 {
+        self.0.frames
+    }
+
+    /// Bytes that the slices may take.
+    #[getter]
+    const fn memory_limit(&self) -> u64 {
+        self.0.memory_limit
+    }
+
+    fn __repr__(&self) -> String {
+        let needs = &self.0;
+        let motion = needs.motion.map_or("None".to_owned(), |m| m.to_string());
+        format!(
+            "StackNeeds(image={:?}, region={:?}, speckle_size={}, motion={motion}, frames={}, \
+             memory_limit={})",
+            self.image(),
+            self.region(),
+            needs.speckle_size,
+            needs.frames,
+            needs.memory_limit
+        )
+    }
+
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyType>, Bound<'py, PyTuple>)> {
+        let needs = &slf.get().0;
+        let arguments = (
+            needs.image,
+            needs.region,
+            needs.speckle_size,
+            needs.motion,
+            needs.frames,
+            needs.memory_limit,
+        );
+        Ok((slf.get_type(), arguments.into_pyobject(slf.py())?))
+    }
+}
+
+/// Sizes of a stack that repeats nothing where it is looked up and takes no more memory than that
+/// needs.
+#[pyclass(frozen, eq, module = "tem00.speckle")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StackPlan(physics::StackPlan);
+
+#[pymethods]
+impl StackPlan {
+    /// Return the first of the `candidates` that fits the memory.
+    ///
+    /// Parameters
+    /// ----------
+    /// needs : `StackNeeds`
+    ///     What the stack is to be looked up for.
+    ///
+    /// Raises
+    /// ------
+    /// `ParameterError`
+    ///     If a value of `needs` is out of range.
+    /// `MemoryError`
+    ///     If not even the smallest stack fits the memory limit.
+    #[staticmethod]
+    fn new(needs: &StackNeeds) -> PyResult<Self> {
+        Ok(Self(physics::StackPlan::new(&needs.0).or_raise()?))
+    }
+
+    /// Return the plans for `needs` in the order of their worth, whatever memory they take.
+    ///
+    /// Parameters
+    /// ----------
+    /// needs : `StackNeeds`
+    ///     What the stack is to be looked up for.
+    #[staticmethod]
+    fn candidates(needs: &StackNeeds) -> PyResult<Vec<Self>> {
+        let plans = physics::StackPlan::candidates(&needs.0).or_raise()?;
+        Ok(plans.into_iter().map(Self).collect())
+    }
+
+    /// Return the first of `plans` that takes at most `memory_limit` bytes.
+    ///
+    /// Parameters
+    /// ----------
+    /// plans : sequence of `StackPlan`
+    ///     Plans in the order of their worth.
+    /// `memory_limit` : int
+    ///     Bytes that the slices may take.
+    #[staticmethod]
+    fn first_within(plans: Vec<PyRef<'_, Self>>, memory_limit: Whole<'_>) -> PyResult<Self> {
+        let plans = plans.iter().map(|plan| plan.0);
+        let limit = memory_limit.unsigned("memory_limit")?;
+        Ok(Self(
+            physics::StackPlan::first_within(plans, limit).or_raise()?,
+        ))
+    }
+
+    /// Return the plan with a square pattern.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : int
+    ///     Side of the pattern in samples.
+    /// diameter : int
+    ///     Diameter of the pupil in lattice points.
+    fn with_square(&self, size: Whole<'_>, diameter: Whole<'_>) -> PyResult<Self> {
+        let (size, diameter) = (size.unsigned("size")?, diameter.unsigned("diameter")?);
+        let plan = self.0.with_square(size, diameter);
+        plan.field(0).or_raise()?;
+        Ok(Self(plan))
+    }
+
+    /// Return the plan with 2 * `half_period` slices on its path.
+    ///
+    /// Parameters
+    /// ----------
+    /// `half_period` : int
+    ///     Half the number of slices.
+    fn with_half_period(&self, half_period: Whole<'_>) -> PyResult<Self> {
+        let plan = self
+            .0
+            .with_half_period(half_period.unsigned("half_period")?);
+        plan.path().check().or_raise()?;
+        Ok(Self(plan))
+    }
+
+    /// Return the plan with its slices on the circle of Bergmann et al. 2016.
+    fn on_circle(&self) -> PyResult<Self> {
+        let plan = self.0.on_circle();
+        plan.path().check().or_raise()?;
+        Ok(Self(plan))
+    }
+
+    /// Width and height of the pattern in samples.
+    #[getter]
+    fn size(&self) -> (usize, usize) {
+        self.0.size().into()
+    }
+
+    /// Diameter of the pupil along each axis in lattice points.
+    #[getter]
+    fn diameter(&self) -> (usize, usize) {
+        self.0.diameter().into()
+    }
+
+    /// Path of the slices.
+    #[getter]
+    const fn path(&self) -> SlicePath {
+        SlicePath(self.0.path())
+    }
+
+    /// Bytes that the slices take.
+    #[getter]
+    const fn memory_bytes(&self) -> u64 {
+        self.0.memory_bytes()
+    }
+
+    /// Slices that a motion of the pupil by its diameter passes.
+    #[getter]
+    fn slices_per_diameter(&self) -> f64 {
+        self.0.slices_per_diameter()
+    }
+
+    /// Largest motion of the pupil that the slices tell apart from every smaller one, in diameters.
+    #[getter]
+    fn reach(&self) -> f64 {
+        self.0.reach()
+    }
+
+    /// Return whether the pattern repeats nothing within the region.
+    fn holds_region(&self, needs: &StackNeeds) -> bool {
+        self.0.holds_region(&needs.0)
+    }
+
+    /// Return whether each frame has the speckle of its own motion.
+    fn holds_motion(&self, needs: &StackNeeds) -> bool {
+        self.0.holds_motion(&needs.0)
+    }
+
+    /// Return the pupil field of this plan.
+    ///
+    /// Parameters
+    /// ----------
+    /// seed : int
+    ///     Seed of the phasors, 0 to 2**64 - 1.
+    fn field(&self, seed: Whole<'_>) -> PyResult<PupilField> {
+        Ok(PupilField(self.0.field(seed.unsigned("seed")?).or_raise()?))
+    }
+
+    /// Generate the stack of this plan.
+    ///
+    /// Parameters
+    /// ----------
+    /// seed : int
+    ///     Seed of the phasors, 0 to 2**64 - 1.
+    /// options : `StackOptions`
+    ///     Interpolation and memory limit.
+    fn stack(
+        &self,
+        py: Python<'_>,
+        seed: Whole<'_>,
+        options: &StackOptions,
+    ) -> PyResult<SpeckleStack> {
+        let seed = seed.unsigned("seed")?;
+        let stack = py.detach(|| self.0.stack(seed, options.0));
+        Ok(SpeckleStack(stack.or_raise()?))
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<StackPlan: size={:?}, diameter={:?}, path={}>",
+            self.size(),
+            self.diameter(),
+            self.path().__repr__()
+        )
+    }
+}

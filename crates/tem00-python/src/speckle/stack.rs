@@ -1,0 +1,457 @@
+use std::{
+    fs::File,
+    io::{BufReader, BufWriter},
+    path::PathBuf,
+};
+
+use numpy::{Complex32, PyArray1, PyArray2, PyArrayMethods};
+use pyo3::{
+    prelude::*,
+    types::{PyTuple, PyType},
+};
+use tem00_speckle as physics;
+
+use super::{
+    arguments::{INTERPOLATIONS, Whole, choice, finite_pair, index, name_of},
+    field::PupilField,
+    files::OrRaiseFile,
+    images::view,
+    path::SlicePath,
+};
+use crate::{
+    arrays::{Numbers, fill, map},
+    error::{OrRaise, refused},
+};
+
+/// How a stack is built.
+///
+/// Parameters
+/// ----------
+/// interpolation : {"cubic_spline", "bilinear", "nearest"}
+///     How look-ups interpolate in the plane.
+/// `memory_limit` : int
+///     Bytes that the slices may take; 2**64 - 1 by default.
+#[pyclass(frozen, eq, module = "tem00.speckle")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StackOptions(pub(super) physics::StackOptions);
+
+#[pymethods]
+impl StackOptions {
+    #[new]
+    #[pyo3(signature = (interpolation = "cubic_spline", memory_limit = None))]
+    fn new(interpolation: &str, memory_limit: Option<Whole<'_>>) -> PyResult<Self> {
+        let memory_limit = memory_limit.map(|limit| limit.unsigned("memory_limit"));
+        Ok(Self(physics::StackOptions {
+            interpolation: choice("interpolation", &INTERPOLATIONS, interpolation)?,
+            memory_limit: memory_limit.transpose()?.unwrap_or(u64::MAX),
+        }))
+    }
+
+    /// How look-ups interpolate in the plane.
+    #[getter]
+    fn interpolation(&self) -> &'static str {
+        name_of(&INTERPOLATIONS, self.0.interpolation)
+    }
+
+    /// Bytes that the slices may take.
+    #[getter]
+    const fn memory_limit(&self) -> u64 {
+        self.0.memory_limit
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "StackOptions(interpolation='{}', memory_limit={})",
+            self.interpolation(),
+            self.0.memory_limit
+        )
+    }
+
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyType>, Bound<'py, PyTuple>)> {
+        let options = slf.get();
+        let arguments = (options.interpolation(), options.0.memory_limit);
+        Ok((slf.get_type(), arguments.into_pyobject(slf.py())?))
+    }
+}
+
+/// The closed forms of a slice, for look-ups that run where no library can be called.
+///
+/// With the fraction f of the way between the slices i and i + 1, and fx, fy between samples:
+///
+/// ```text
+/// U = (1 - f) U_i + f U_{i+1} exp(2 pi i (turns[0] x + turns[1] y))
+/// I = |U|**2 / ((1 - f)**2 v_i + f**2 v_{i+1} + 2 f (1 - f) w_i)
+/// v = sum of mean_square[ny, nx] s[ny](fy) s[nx](fx)
+/// w = sum of covariance[ny, nx] s[ny](fy) s[nx](fx)
+/// s(f) = 1, p, p**2, p**3, o, o p        p = f (1 - f),  o = p (1 - 2 f)
+/// ```
+///
+/// x and y lie in one period, from 0 to the size. For the nearest sample both are those of the sample,
+/// and fx and fy are 0.
+#[pyclass(frozen, eq, module = "tem00.speckle")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SliceLaw(physics::SliceLaw);
+
+#[pymethods]
+impl SliceLaw {
+    /// Coefficients of the mean square of the interpolated amplitude, float32 of shape (4, 4).
+    #[getter]
+    fn mean_square<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        PyArray1::from_slice(py, self.0.mean_square.as_flattened()).reshape([4, 4])
+    }
+
+    /// Coefficients of the covariance with the next slice, float32 of shape (6, 6).
+    #[getter]
+    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        PyArray1::from_slice(py, self.0.covariance.as_flattened()).reshape([6, 6])
+    }
+
+    /// Turns of phase per sample along x and y, from the frame of the next slice to that of this
+    /// one, float64 of shape (2,).
+    #[getter]
+    fn turns<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.0.turns)
+    }
+
+    fn __repr__(&self) -> String {
+        let [x, y] = self.0.turns;
+        format!("<SliceLaw: turns=[{x}, {y}]>")
+    }
+}
+
+/// Speckle that moves and decorrelates: slices of one random field behind a wandering pupil.
+///
+/// A look-up takes a position (x, y) in samples and a coordinate u in slices. Along x and y the
+/// pattern repeats after its size, along u after `slice_count` slices.
+#[pyclass(frozen, eq, module = "tem00.speckle")]
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SpeckleStack(pub(super) physics::SpeckleStack);
+
+#[pymethods]
+impl SpeckleStack {
+    /// Generate the slices of a field along a path, for look-ups by cubic splines.
+    ///
+    /// Parameters
+    /// ----------
+    /// field : `PupilField`
+    ///     Field that the slices are cut from.
+    /// path : `SlicePath`
+    ///     Path of the pupil over the field.
+    ///
+    /// Raises
+    /// ------
+    /// `MemoryError`
+    ///     If the machine does not have `memory_bytes`.
+    #[staticmethod]
+    fn generate(py: Python<'_>, field: &PupilField, path: &SlicePath) -> PyResult<Self> {
+        let stack = py.detach(|| physics::SpeckleStack::generate(&field.0, path.0));
+        Ok(Self(stack.or_raise()?))
+    }
+
+    /// Generate the slices of a field along a path.
+    ///
+    /// Parameters
+    /// ----------
+    /// field : `PupilField`
+    ///     Field that the slices are cut from.
+    /// path : `SlicePath`
+    ///     Path of the pupil over the field.
+    /// options : `StackOptions`
+    ///     Interpolation and memory limit.
+    ///
+    /// Raises
+    /// ------
+    /// `MemoryError`
+    ///     If the slices take more than the limit, or than the machine has.
+    #[staticmethod]
+    fn generate_with(
+        py: Python<'_>,
+        field: &PupilField,
+        path: &SlicePath,
+        options: &StackOptions,
+    ) -> PyResult<Self> {
+        let (field, path, options) = (&field.0, path.0, options.0);
+        let stack = py.detach(|| physics::SpeckleStack::generate_with(field, path, options));
+        Ok(Self(stack.or_raise()?))
+    }
+
+    /// Read a stack that `write_to` has written.
+    ///
+    /// Parameters
+    /// ----------
+    /// file : str or os.PathLike
+    ///     File to read.
+    /// `memory_limit` : int
+    ///     Bytes that the slices may take.
+    #[staticmethod]
+    fn read_from(py: Python<'_>, file: PathBuf, memory_limit: Whole<'_>) -> PyResult<Self> {
+        let limit = memory_limit.unsigned("memory_limit")?;
+        let stack = py
+            .detach(|| physics::SpeckleStack::read_from(BufReader::new(File::open(file)?), limit));
+        Ok(Self(stack.or_raise_file()?))
+    }
+
+    /// Read the slices of a stack from an NPY file of complex numbers (slices, rows, columns).
+    ///
+    /// Parameters
+    /// ----------
+    /// file : str or os.PathLike
+    ///     File to read: one that `write_npy` has written, or that was computed elsewhere.
+    /// field : `PupilField`
+    ///     Field that the slices are of.
+    /// path : `SlicePath`
+    ///     Path of the pupil over the field.
+    /// options : `StackOptions`
+    ///     Interpolation and memory limit.
+    #[staticmethod]
+    fn read_npy(
+        py: Python<'_>,
+        file: PathBuf,
+        field: &PupilField,
+        path: &SlicePath,
+        options: &StackOptions,
+    ) -> PyResult<Self> {
+        let (field, path, options) = (&field.0, path.0, options.0);
+        let stack = py.detach(|| {
+            let reader = BufReader::new(File::open(file)?);
+            physics::SpeckleStack::read_npy(reader, field, path, options)
+        });
+        Ok(Self(stack.or_raise_file()?))
+    }
+
+    /// Write the stack to a file that keeps its bits.
+    ///
+    /// Parameters
+    /// ----------
+    /// file : str or os.PathLike
+    ///     Where to write.
+    fn write_to(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
+        Ok(py.detach(|| self.0.write_to(BufWriter::new(File::create(file)?)))?)
+    }
+
+    /// Write the amplitude of all slices as an NPY file of complex64 (slices, rows, columns), to be
+    /// read by `numpy.load`.
+    ///
+    /// Parameters
+    /// ----------
+    /// file : str or os.PathLike
+    ///     Where to write.
+    fn write_npy(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
+        Ok(py.detach(|| self.0.write_npy(BufWriter::new(File::create(file)?)))?)
+    }
+
+    /// Field the slices were cut from. That of a straight path closes on itself after the length of
+    /// the path.
+    #[getter]
+    fn field(&self) -> PupilField {
+        PupilField(self.0.field().clone())
+    }
+
+    /// Path of the pupil.
+    #[getter]
+    const fn path(&self) -> SlicePath {
+        SlicePath(self.0.path())
+    }
+
+    /// How look-ups interpolate in the plane.
+    #[getter]
+    fn interpolation(&self) -> &'static str {
+        name_of(&INTERPOLATIONS, self.0.interpolation())
+    }
+
+    /// Width and height, which are the periods in the plane, in samples.
+    #[getter]
+    fn size(&self) -> (usize, usize) {
+        self.0.size().into()
+    }
+
+    /// Speckle size in samples.
+    #[getter]
+    const fn speckle_size(&self) -> f64 {
+        self.0.speckle_size()
+    }
+
+    /// Number of slices, the period in u.
+    #[getter]
+    const fn slice_count(&self) -> usize {
+        self.0.slice_count()
+    }
+
+    /// Bytes that the slices take.
+    #[getter]
+    const fn memory_bytes(&self) -> u64 {
+        self.0.memory_bytes()
+    }
+
+    /// Return the coefficients that look-ups interpolate, complex64 [row, column].
+    ///
+    /// They are the samples of the slice's amplitude, or those of the prefiltered spline: a read-only
+    /// view without a copy.
+    ///
+    /// Parameters
+    /// ----------
+    /// index : int
+    ///     Slice; negative ones count from the last.
+    fn coefficients<'py>(
+        slf: &Bound<'py, Self>,
+        index: Whole<'py>,
+    ) -> PyResult<Bound<'py, PyArray2<Complex32>>> {
+        let slice = slf.get().slice(&index)?;
+        // SAFETY: the coefficients lie in this object, which is frozen.
+        unsafe { view(slf.clone().into_any(), slf.get().0.coefficients(slice)) }
+    }
+
+    /// Return the closed forms of a slice and of its join to the next.
+    ///
+    /// Parameters
+    /// ----------
+    /// index : int
+    ///     Slice; negative ones count from the last.
+    fn slice_law(&self, index: Whole<'_>) -> PyResult<SliceLaw> {
+        Ok(SliceLaw(self.0.slice_law(self.slice(&index)?)))
+    }
+
+    /// Return where the pupil of a slice stands, in its diameters along x and y.
+    ///
+    /// Parameters
+    /// ----------
+    /// index : int
+    ///     Slice; negative ones count from the last.
+    fn offset(&self, index: Whole<'_>) -> PyResult<(f64, f64)> {
+        Ok(self.0.offset(self.slice(&index)?).into())
+    }
+
+    /// Return the intensity, with mean 1, at positions and slice coordinates.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y : `array_like`
+    ///     Position in samples; the period is the size.
+    /// u : `array_like`
+    ///     Coordinate in slices; the period is `slice_count`.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    ///     Intensity in the common shape of the arguments.
+    fn intensity_at<'py>(
+        &self,
+        py: Python<'py>,
+        x: Numbers<'py>,
+        y: Numbers<'py>,
+        u: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let arguments = [("x", &x), ("y", &y), ("u", &u)];
+        let [intensity] = fill(py, arguments, |[x, y, u], [intensity]| {
+            self.0.intensity_batch(x, y, u, intensity);
+        })?;
+        Ok(intensity)
+    }
+
+    /// Return the mean of the intensity over boxes: what pixels see whose whole area takes part.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y : `array_like`
+    ///     Centre of the box in samples.
+    /// size : (float, float)
+    ///     Width and height of the box in samples, 0 or more.
+    /// u : `array_like`
+    ///     Coordinate in slices.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    ///     Mean intensity in the common shape of x, y and u.
+    fn average_over<'py>(
+        &self,
+        py: Python<'py>,
+        x: Numbers<'py>,
+        y: Numbers<'py>,
+        size: [f64; 2],
+        u: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let size = finite_pair("size", size)?;
+        if let Some(bad) = size.into_iter().find(|side| *side < 0.0) {
+            return Err(refused(
+                "size",
+                format!("size must be 0 or more, got {bad}"),
+            ));
+        }
+        map(py, [("x", &x), ("y", &y), ("u", &u)], |[x, y, u]| {
+            self.0.average_over([x, y], size, u)
+        })
+    }
+
+    /// Return the correlation of the intensities of two slices, exactly.
+    ///
+    /// Parameters
+    /// ----------
+    /// i, j : int
+    ///     Slices; negative ones count from the last.
+    fn correlation_between(&self, i: Whole<'_>, j: Whole<'_>) -> PyResult<f64> {
+        let count = self.0.slice_count();
+        let (i, j) = (index("i", &i, count)?, index("j", &j, count)?);
+        Ok(self.0.correlation_between(i, j))
+    }
+
+    /// Return the correlation of the intensities at u = 0 and u = distance, in closed form.
+    ///
+    /// Parameters
+    /// ----------
+    /// distance : `array_like`
+    ///     Distance in slices.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    ///     Correlation between 0 and 1.
+    fn correlation_at<'py>(
+        &self,
+        py: Python<'py>,
+        distance: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("distance", &distance)], |[distance]| {
+            self.0.correlation_at(distance)
+        })
+    }
+
+    /// Return the distance in u after which the correlation has fallen to a value.
+    ///
+    /// Parameters
+    /// ----------
+    /// correlation : `array_like`
+    ///     Correlation; 1 and more give 0, 0 and less the first coordinate of no correlation.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    ///     Distance in slices.
+    fn coordinate_of<'py>(
+        &self,
+        py: Python<'py>,
+        correlation: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("correlation", &correlation)], |[correlation]| {
+            self.0.coordinate_of(correlation)
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<SpeckleStack: size={:?}, speckle_size={}, path={}, interpolation='{}'>",
+            self.size(),
+            self.speckle_size(),
+            self.path().__repr__(),
+            self.interpolation()
+        )
+    }
+}
+
+impl SpeckleStack {
+    fn slice(&self, slice: &Whole<'_>) -> PyResult<usize> {
+        index("index", slice, self.0.slice_count())
+    }
+}

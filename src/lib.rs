@@ -29,3 +29,7 @@ pub use tem00_wave as wave;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;
+
+#[cfg(doctest)]
+#[doc = include_str!("../docs/integration.md")]
+struct IntegrationExamples;

@@ -1,0 +1,230 @@
+//! The three physics crates are light enough to link, and fit into a renderer of many threads.
+
+#![expect(
+    clippy::expect_used,
+    reason = "a test stops at what it does not expect"
+)]
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use tem00::{beam, decorrelation};
+
+const CRATES: [&str; 3] = ["beam", "speckle", "decorrelation"];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: impl AsRef<Path>) -> String {
+    let path = root().join(path);
+    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The crates that `tem00-{name}` brings with it, one to a line; build scripts' included.
+fn brought_by(name: &str, features: &str) -> BTreeSet<String> {
+    let package = format!("tem00-{name}");
+    let output = Command::new(env!("CARGO"))
+        .current_dir(root())
+        .args(["tree", "--offline", "--locked", "--package", &package])
+        .args(["--edges", "normal,build", "--no-default-features"])
+        .args([
+            "--features",
+            features,
+            "--target",
+            "x86_64-unknown-linux-gnu",
+        ])
+        .args(["--prefix", "none", "--format", "{p}", "--no-dedupe"])
+        .output()
+        .expect("cargo runs");
+    let tree = String::from_utf8(output.stdout).expect("cargo prints UTF-8");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "cargo tree of {package}: {errors}");
+    let lines = tree.lines().skip(1).filter(|line| !line.is_empty());
+    lines.map(str::to_owned).collect()
+}
+
+/// The rows of docs/integration.md that begin with the name of a crate, as their further cells.
+fn rows(page: &str, name: &str) -> Vec<Vec<String>> {
+    let start = format!("| `tem00-{name}` |");
+    let rows = page.lines().filter_map(|line| line.strip_prefix(&start));
+    rows.map(|row| row.split('|').map(|cell| cell.trim().to_owned()).collect())
+        .collect()
+}
+
+#[test]
+fn the_documentation_counts_the_crates_that_each_brings() {
+    let page = read("docs/integration.md");
+    for name in CRATES {
+        let rows = rows(&page, name);
+        assert_eq!(rows.len(), 1, "rows of tem00-{name} in docs/integration.md");
+        let manifest = read(format!("crates/tem00-{name}/Cargo.toml"));
+        for (cell, feature) in rows[0].iter().zip(["", "simd", "parallel"]) {
+            let exists = feature.is_empty() || manifest.contains(&format!("\n{feature} = ["));
+            let count = exists.then(|| brought_by(name, feature).len().to_string());
+            assert_eq!(
+                *cell,
+                count.unwrap_or("–".to_owned()),
+                "tem00-{name} with the features [{feature}]"
+            );
+        }
+    }
+}
+
+#[test]
+fn no_threads_come_along_unless_asked_for() {
+    for name in CRATES {
+        for features in ["", "simd"] {
+            let crates = brought_by(name, features);
+            assert!(
+                !crates.iter().any(|line| line.starts_with("rayon")),
+                "tem00-{name} with the features [{features}] brings {crates:?}"
+            );
+        }
+    }
+}
+
+const fn crosses_threads<T: Send + Sync>() {}
+
+/// Holds the types to `Send + Sync`, and returns their names.
+macro_rules! names_of_shared {
+    ($($shared:ty),+ $(,)?) => {{
+        $(const { crosses_threads::<$shared>() };)+
+        let names = [$(stringify!($shared)),+].into_iter();
+        names.map(|name| name.split('<').next().unwrap_or(name).to_owned())
+    }};
+}
+
+/// The types that `lib.rs` of a crate exports: what is named in capitals.
+fn exported(name: &str) -> BTreeSet<String> {
+    let text = read(format!("crates/tem00-{name}/src/lib.rs"));
+    let statements = text
+        .split(';')
+        .filter_map(|part| part.split_once("\npub use "));
+    let words =
+        statements.flat_map(|(_, names)| names.split(|c: char| !c.is_alphanumeric() && c != '_'));
+    let types = words.filter(|word| {
+        word.starts_with(char::is_uppercase) && word.contains(|c: char| c.is_lowercase())
+    });
+    types.map(str::to_owned).collect()
+}
+
+#[test]
+fn every_type_of_beam_crosses_threads() {
+    use tem00::beam::*;
+    let names = names_of_shared! {
+        AbcdMatrix, AngularKnot<f64>, AngularProfile, AstigmaticBeam, AstigmaticLight<f64>,
+        AstigmaticSystem, Axis<f64>, BeamError, Bounds<f64>, CausticFit, Complex64,
+        ComplexBeamParameter, CrossSection, DMat2, DVec2, DVec3, Ellipse<f64>, Estimate,
+        FanGeometry, FitError, FocusCurve, GaussianBeam, GeneralAstigmaticBeam,
+        KnifeEdgeFit, LaserLine, LineLight<f64>, LineProfile, LocatedBeam, NextEvent<f64>,
+        NextEventSlices<'static, f64>, Placement, RadiusErrors<'static>, RayPdf<f64>,
+        RaySample<f64>, SampledEvent<f64>, SecondMoments, SpotLight<f64>,
+        TabulatedLineLight<'static, f64>, ThickLens,
+    };
+    let traits = ["Emitter", "Real"].map(str::to_owned);
+    let listed: BTreeSet<_> = names.chain(traits).collect();
+    assert_eq!(exported("beam"), listed, "types of tem00-beam");
+}
+
+#[test]
+fn every_type_of_speckle_crosses_threads() {
+    use tem00::speckle::*;
+    let names = names_of_shared! {
+        Bandwidth, CoherentBackground, Complex<f32>, Exposure, IncoherentSum, Interpolation,
+        LitArea, NpyError, NpyReader<&'static [u8]>, ObjectiveSpeckle, Phasors, PixelArray,
+        Pupil, PupilField, SlicePath, SpeckleError, SpeckleField, SpecklePattern,
+        SpeckleScratch, SpeckleStack, StackFileError, StackNeeds, StackOptions, StackPlan,
+        Transmission,
+    };
+    let listed: BTreeSet<_> = names.collect();
+    assert_eq!(exported("speckle"), listed, "types of tem00-speckle");
+}
+
+#[test]
+fn every_type_of_decorrelation_crosses_threads() {
+    use tem00::decorrelation::*;
+    let names = names_of_shared! {
+        CameraFrame, Configuration, ConfigurationData, CorrelationLaw, DMat3, DVec2, DVec3,
+        DecorrelationError, FieldLight<'static>, FieldPoints<'static>, FieldSetup,
+        FieldSlices<'static>, Focus, Illumination, ImageOrientation, ImagingGeometry,
+        LensData, LineOfSight, Motion, MotionField, PupilDistances, RigidMotion,
+        RigidMotions, SpeckleMotion, SurfacePoint, ThickLensData, Wavefront,
+    };
+    let listed: BTreeSet<_> = names.collect();
+    assert_eq!(
+        exported("decorrelation"),
+        listed,
+        "types of tem00-decorrelation"
+    );
+}
+
+#[test]
+fn the_formulas_as_printed_cross_threads() {
+    use tem00::{beam::paper as lights, decorrelation::paper as motions, speckle::paper as stacks};
+    let names = names_of_shared! {
+        lights::DiscConeRay, lights::DiscConeSampler, lights::PrintedEvent,
+        lights::PrintedFan, motions::Emitter, motions::EulerAngles, stacks::BilinearStack,
+    };
+    assert_eq!(names.count(), 7, "types of the modules `paper`");
+}
+
+/// The sources of a folder, tests aside.
+fn sources(folder: PathBuf) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).expect("a crate has sources") {
+        let path = entry.expect("a readable folder").path();
+        if path.is_dir() {
+            found.extend(sources(path));
+        } else if !path.ends_with("tests.rs") {
+            found.push(path);
+        }
+    }
+    found
+}
+
+#[test]
+fn there_is_no_global_state() {
+    const KEPT: [&str; 5] = [
+        "thread_local!",
+        "LazyLock",
+        "OnceLock",
+        "OnceCell",
+        "Atomic",
+    ];
+    for name in CRATES.into_iter().chain(["numerics"]) {
+        for path in sources(root().join(format!("crates/tem00-{name}/src"))) {
+            let text = read(&path);
+            let keeps = |line: &str| {
+                let item = line.trim_start().trim_start_matches("pub ");
+                item.starts_with("static ") || KEPT.iter().any(|kept| item.contains(kept))
+            };
+            let line = text.lines().find(|line| keeps(line));
+            assert_eq!(line, None, "global state in {}", path.display());
+        }
+    }
+}
+
+#[test]
+fn vectors_of_other_libraries_pass_through_mint() {
+    let theirs = mint::Vector3 {
+        x: 1.0,
+        y: -2.0,
+        z: 0.5,
+    };
+    let placement = beam::Placement {
+        origin: theirs.into(),
+        direction: theirs.into(),
+        fan_axis: beam::DVec3::Z,
+    };
+    let motion = decorrelation::Motion {
+        surface: theirs.into(),
+        ..decorrelation::Motion::default()
+    };
+    let back: [mint::Vector3<f64>; 2] = [placement.origin.into(), motion.surface.into()];
+    assert_eq!(back, [theirs; 2], "there and back");
+}

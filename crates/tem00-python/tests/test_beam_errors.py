@@ -29,8 +29,8 @@ WRONG_ROWS[1, 0] = 2
 
 
 def place(**change: object) -> object:
-    vectors: dict[str, object] = {"origin": (0, 0, 0), "direction": (0, 0, 1), "fan_axis": (1, 0, 0)}
-    placement = beam.Placement(**(vectors | change))  # type: ignore[arg-type]
+    good: dict[str, object] = {"origin": (0, 0, 0), "direction": (0, 0, 1), "fan_axis": (1, 0, 0)}
+    placement = beam.Placement(**(good | change))  # type: ignore[arg-type]
     return beam.SpotLight.place(LASER, 0.1, placement, 1e-3)
 
 
@@ -145,6 +145,48 @@ def test_what_is_refused_is_named(parameter: str, call: Callable[[], object]) ->
         call()
     assert refusal.value.parameter == parameter
     assert isinstance(refusal.value, ValueError)
+
+
+def changed(light: beam.Emitter, row: int, place: int, value: float) -> np.ndarray:
+    rows = light.to_rows()
+    rows[row, place] = value
+    return rows
+
+
+@pytest.mark.parametrize(
+    ("row", "place", "value", "field"),
+    [
+        (0, 0, NAN, "origin.x"),
+        (0, 3, -1, "power"),
+        (1, 3, 0, "cutoff"),
+        (2, 1, 0.5, "orthonormal"),
+        (4, 0, 0, "w0_sq"),
+        (4, 1, 1, "theta_sq"),
+        (4, 2, INF, "z0"),
+        (2, 3, 0, "apex_offset"),
+        (3, 3, -1, "source_radius"),
+        (5, 0, -1, "flat"),
+        (5, 1, NAN, "sigma"),
+        (5, 2, 1.5, "variable"),
+        (5, 3, 2, "mass"),
+        (6, 0, 0, "half_slope"),
+        (6, 1, 0.5, "focus_on_plane"),
+    ],
+)
+def test_rows_of_no_light_are_refused(row: int, place: int, value: float, field: str) -> None:
+    with pytest.raises(ParameterError, match=field) as refusal:
+        beam.LineLight.from_rows(changed(LINE_LIGHT, row, place, value))
+    assert refusal.value.parameter == "rows"
+
+
+def test_ellipses_of_no_light_are_refused() -> None:
+    light = beam.AstigmaticLight.place(GENERAL, PLACEMENT, 1e-3)
+    for row in (4, 5):
+        with pytest.raises(ParameterError, match="positive definite"):
+            beam.AstigmaticLight.from_rows(changed(light, row, 1, light.to_rows()[row, 0]))
+        with pytest.raises(ParameterError, match="yy"):
+            beam.AstigmaticLight.from_rows(changed(light, row, 2, -1))
+    assert light.position.xx == light.to_rows()[4, 0] and light.slope.yy == light.to_rows()[5, 2]
 
 
 OBJECTS = [

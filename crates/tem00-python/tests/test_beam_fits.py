@@ -5,30 +5,32 @@ import pytest
 from scipy import optimize, special
 from tem00 import ParameterError, beam
 
+Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
+
 WAVELENGTH = 1064e-9
 Z = np.linspace(-0.05, 0.12, 18)
 
 
-def caustic(
-    z: np.ndarray, waist: float, position: float, divergence: float
-) -> np.ndarray:
-    return np.hypot(waist, divergence * (z - position))
+def caustic(z: Array, waist: float, position: float, divergence: float) -> Array:
+    radius: Array = np.hypot(waist, divergence * (z - position))
+    return radius
 
 
-def measured_radii() -> np.ndarray:
+def measured_radii() -> Array:
     noise = np.random.default_rng(1).normal(1, 0.01, Z.size)
     return caustic(Z, 80e-6, 0.03, 6e-3) * noise
 
 
-def knife(x: np.ndarray, power: float, centre: float, radius: float, floor: float = 0) -> np.ndarray:
-    return power / 2 * special.erfc(np.sqrt(2) * (x - centre) / radius) + floor
+def knife(x: Array, power: float, centre: float, radius: float, floor: float = 0) -> Array:
+    passed: Array = power / 2 * special.erfc(np.sqrt(2) * (x - centre) / radius)
+    return passed + floor
 
 
 def test_relative_errors_fit_the_logarithm() -> None:
     radii = measured_radii()
     scale = np.array([1e-4, 1e-2, 1e-3])
 
-    def model(z: np.ndarray, *p: float) -> np.ndarray:
+    def model(z: Array, *p: float) -> Array:
         return np.log(caustic(z, *(np.array(p) * scale)))
 
     found, covariance = optimize.curve_fit(
@@ -57,7 +59,7 @@ def test_absolute_errors_fit_the_radius(known: bool) -> None:
     scale = np.array([1e-4, 1e-2, 1e-3])
     deviations = np.linspace(1e-6, 4e-6, Z.size)
 
-    def model(z: np.ndarray, *p: float) -> np.ndarray:
+    def model(z: Array, *p: float) -> Array:
         return caustic(z, *(np.array(p) * scale)) / 1e-6
 
     found, covariance = optimize.curve_fit(
@@ -80,7 +82,7 @@ def test_knife_edges_fit_the_error_function(floor: float, sign: int) -> None:
     powers = knife(sign * x, 2.0, sign * 6e-4, 4e-4, floor) + noise
     start = [2.0, sign * 6.0, 4.0] + ([floor] if floor else [])
 
-    def model(x: np.ndarray, power: float, centre: float, radius: float, *rest: float) -> np.ndarray:
+    def model(x: Array, power: float, centre: float, radius: float, *rest: float) -> Array:
         return knife(sign * x, power, centre * 1e-4, radius * 1e-4, *rest)
 
     found, covariance = optimize.curve_fit(model, x, powers, p0=start, ftol=1e-15, xtol=1e-15)

@@ -64,7 +64,7 @@ lights = pytest.mark.parametrize("name", LIGHTS)
 def world(light: beam.Emitter, local: FloatArray) -> FloatArray:
     """Return points of the frame of the light, shape (..., 3), in the world."""
     axes = np.array([light.ex, light.ey, light.ez])
-    return light.origin + local @ axes
+    return np.asarray(light.origin + local @ axes)
 
 
 def components(points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -76,7 +76,7 @@ def lit_points(light: beam.Emitter, count: int) -> FloatArray:
     random = np.random.default_rng(3)
     rays = light.sample_ray(random.random((count, 4)))
     z = random.uniform(0.1, 0.4, (count, 1))
-    return rays.origin + rays.direction * (z / np.asarray(rays.cos)[..., None])
+    return np.asarray(rays.origin + rays.direction * (z / np.asarray(rays.cos)[..., None]))
 
 
 def test_the_frame_is_the_placement() -> None:
@@ -162,7 +162,7 @@ def test_sampled_rays_fall_where_the_irradiance_says(name: str) -> None:
     observed = np.append(counts.ravel(), outside)
     predicted = np.append(expected.ravel(), count - expected.sum())
     assert inside > 0.8 * count
-    # Bin edges are quantiles of the sample itself, which only lowers the sum; 64 degrees of freedom.
+    # Edges that are quantiles of the sample itself only lower the sum; 64 degrees of freedom.
     chi2 = ((observed - predicted) ** 2 / predicted).sum()
     assert chi2 < stats.chi2.ppf(1 - 1e-3, 64)
 
@@ -180,7 +180,8 @@ def test_densities_and_radiance_of_rays_agree(name: str) -> None:
     joint = np.asarray(pdf.position) * np.asarray(pdf.direction)
     radiance = light.radiance(*further, rays.direction)
     np.testing.assert_allclose(radiance, POWER * joint / np.asarray(rays.cos), rtol=1e-12)
-    assert light.radiance(*(float(c[0]) for c in further), -rays.direction[0]) == 0
+    x, y, z = further
+    np.testing.assert_array_equal(light.radiance(x, y, z, -rays.direction), 0)
 
 
 @lights
@@ -223,9 +224,9 @@ def test_single_points_have_the_bits_of_arrays(name: str) -> None:
     sampled = light.next_event_sampled(x, y, z, u)
     assert sampled is not None
     for i, point in enumerate(points):
-        one = tuple(float(c) for c in point)
-        assert light.irradiance(*one) == irradiance[i]
-        single, drawn = light.next_event(*one), light.next_event_sampled(*one, u[i])
+        a, b, c = (float(coordinate) for coordinate in point)
+        assert light.irradiance(a, b, c) == irradiance[i]
+        single, drawn = light.next_event(a, b, c), light.next_event_sampled(a, b, c, u[i])
         if single is None or drawn is None:
             assert single is None and drawn is None
             assert np.asarray(event.e_perp)[i] == 0 == np.asarray(sampled.value)[i]
@@ -245,8 +246,9 @@ def test_rows_are_the_fields_in_the_order_of_memory() -> None:
     np.testing.assert_array_equal(light.to_rows("float32"), rows.astype(np.float32))
     fan = line("powell")
     assert isinstance(fan, beam.LineLight)
-    end = [[fan.flat, fan.sigma, fan.variable, fan.mass], [fan.half_slope, fan.focus_on_plane, 0, 0]]
-    np.testing.assert_array_equal(fan.to_rows()[5:], end)
+    profile = [fan.flat, fan.sigma, fan.variable, fan.mass]
+    np.testing.assert_array_equal(fan.to_rows()[5], profile)
+    np.testing.assert_array_equal(fan.to_rows()[6], [fan.half_slope, fan.focus_on_plane, 0, 0])
     assert fan.to_rows(np.float32).dtype == np.float32
     table = line("table")
     assert table.to_rows("float32").shape == (7, 4)
@@ -281,8 +283,8 @@ def test_a_laser_line_spreads_its_power_as_its_density_says() -> None:
 
 def test_the_waist_of_a_line_lies_on_its_focus_curve() -> None:
     focus = beam.GaussianBeam.from_waist(650e-9, 60e-6)
-    for curve, length in (("equal_distance", 0.202), ("equal_plane", 0.202 * np.hypot(1, 0.2))):
-        fan = beam.FanGeometry(0.4, 2e-3, 0.2, curve)
+    fans = (beam.FanGeometry(0.4, 2e-3, 0.2), beam.FanGeometry(0.4, 2e-3, 0.2, "equal_plane"))
+    for fan, length in zip(fans, (0.202, 0.202 * np.hypot(1, 0.2)), strict=True):
         laser = beam.LaserLine.new(focus, fan, beam.LineProfile.gaussian_sin())
         assert laser.waist_slant_distance_at(0.2) == pytest.approx(length, rel=1e-15)
         z = length / np.hypot(1, 0.2) - 2e-3

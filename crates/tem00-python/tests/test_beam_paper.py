@@ -34,7 +34,7 @@ def test_the_printed_radiance_divides_by_the_cosine() -> None:
     np.testing.assert_allclose(aperture, [1e-4 * ratio, 2e-4 * ratio, -0.1], rtol=1e-13)
     cosine = printed.wi @ n
     assert printed.radiance * cosine == pytest.approx(light.irradiance(1e-4, 2e-4, 0.15), rel=1e-12)
-    many = paper.spot_next_event(light, [1e-4, 1e-4], 2e-4, 0.15, [n, -n])
+    many = paper.spot_next_event(light, [1e-4, 1e-4], 2e-4, 0.15, np.stack([n, -n]))
     assert many is not None
     np.testing.assert_array_equal(many.radiance, [printed.radiance, 0])
 

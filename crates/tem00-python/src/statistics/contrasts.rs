@@ -1,0 +1,143 @@
+use core::cell::RefCell;
+
+use pyo3::{prelude::*, types::PyAny};
+use tem00_statistics as physics;
+
+use crate::{
+    arrays::{Numbers, map},
+    error::refused,
+};
+
+/// Return the contrast of fully developed speckle seen by square pixels.
+///
+/// Parameters
+/// ----------
+/// pixel_size : float or array
+///     Side of the pixels in units of the speckle size.
+///
+/// Returns
+/// -------
+/// float or array
+///     Contrast, in the shape of `pixel_size`.
+#[pyfunction]
+pub(super) fn pixel_contrast<'py>(
+    py: Python<'py>,
+    pixel_size: Numbers<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    map(py, [("pixel_size", &pixel_size)], |[q]| {
+        physics::pixel_contrast(q)
+    })
+}
+
+/// Return the contrast of fully developed speckle seen by rectangular pixels.
+///
+/// Parameters
+/// ----------
+/// pixel_size : pair of floats or arrays
+///     Width and height in units of the speckle size, broadcast together.
+#[pyfunction]
+pub(super) fn rectangular_pixel_contrast<'py>(
+    py: Python<'py>,
+    pixel_size: [Numbers<'py>; 2],
+) -> PyResult<Bound<'py, PyAny>> {
+    let [width, height] = &pixel_size;
+    let named = [("pixel_size", width), ("pixel_size", height)];
+    map(py, named, physics::rectangular_pixel_contrast)
+}
+
+/// Return the contrast of fully developed speckle behind a Gaussian filter.
+///
+/// Parameters
+/// ----------
+/// spread : float or array
+///     Standard deviation of the filter along either axis, in units of the speckle size.
+#[pyfunction]
+pub(super) fn gaussian_filter_contrast<'py>(
+    py: Python<'py>,
+    spread: Numbers<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    map(py, [("spread", &spread)], |[s]| {
+        physics::gaussian_filter_contrast(s)
+    })
+}
+
+/// Return the contrast of an exposure during which speckle boils and the image stands still.
+///
+/// Parameters
+/// ----------
+/// drift : float or array
+///     Shift of the light across a circular pupil during the exposure, in pupil diameters.
+#[pyfunction]
+pub(super) fn boiling_contrast<'py>(
+    py: Python<'py>,
+    drift: Numbers<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    map(py, [("drift", &drift)], |[s]| physics::boiling_contrast(s))
+}
+
+/// Return the contrast of an exposure during which the pattern moves across the image.
+///
+/// Parameters
+/// ----------
+/// drift : float or array
+///     Motion of the pattern during the exposure, in units of the speckle size.
+#[pyfunction]
+pub(super) fn translation_contrast<'py>(
+    py: Python<'py>,
+    drift: Numbers<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    map(py, [("drift", &drift)], |[s]| {
+        physics::translation_contrast(s)
+    })
+}
+
+/// Return the contrast of an exposure during which the pattern changes in any way.
+///
+/// Parameters
+/// ----------
+/// correlation : callable
+///     Takes the share t of the exposure between two moments, a float in [0, 1], and returns the
+///     correlation of the intensities then, in [−1, 1]. It is called a thousand times.
+#[pyfunction]
+pub(super) fn contrast_of_exposure(correlation: Bound<'_, PyAny>) -> PyResult<f64> {
+    let failure = RefCell::new(None);
+    let contrast = physics::contrast_of_exposure(|t| {
+        if failure.borrow().is_some() {
+            return 0.0;
+        }
+        correlation_at(&correlation, t).unwrap_or_else(|error| {
+            *failure.borrow_mut() = Some(error);
+            0.0
+        })
+    });
+    failure.into_inner().map_or(Ok(contrast), Err)
+}
+
+fn correlation_at(correlation: &Bound<'_, PyAny>, t: f64) -> PyResult<f64> {
+    let value: f64 = correlation.call1((t,))?.extract()?;
+    if (-1.0..=1.0).contains(&value) {
+        return Ok(value);
+    }
+    let message = format!("correlation must return values in [-1, 1], got {value} at {t}");
+    Err(refused("correlation", message))
+}
+
+/// Return the standard deviation of the squared contrast from pattern to pattern.
+///
+/// Parameters
+/// ----------
+/// speckles_across : float or array
+///     Width and height of the pattern in units of the speckle size, positive.
+#[pyfunction]
+pub(super) fn contrast_squared_spread<'py>(
+    py: Python<'py>,
+    speckles_across: Numbers<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let name = "speckles_across";
+    if let Some(bad) = speckles_across.values()?.iter().find(|&&n| n <= 0.0) {
+        return Err(refused(name, format!("{name} must be positive, got {bad}")));
+    }
+    map(py, [(name, &speckles_across)], |[n]| {
+        physics::contrast_squared_spread(n)
+    })
+}

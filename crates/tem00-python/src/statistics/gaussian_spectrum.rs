@@ -1,0 +1,123 @@
+use pyo3::{prelude::*, types::PyAny};
+use tem00_statistics as physics;
+
+use crate::{
+    arrays::{Numbers, map},
+    error::OrRaise,
+    pickling::{Recipe, by_constructor},
+};
+
+/// Light of a narrow Gaussian spectrum, and the contrast of the speckle it makes.
+#[pyclass(frozen, eq, module = "tem00.statistics")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct GaussianSpectrum(physics::GaussianSpectrum);
+
+#[pymethods]
+impl GaussianSpectrum {
+    /// Return the spectrum of a wavelength and a linewidth.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Central wavelength in metres.
+    /// linewidth : float
+    ///     Full width at half maximum in metres, at most a tenth of the wavelength.
+    #[staticmethod]
+    fn new(wavelength: f64, linewidth: f64) -> PyResult<Self> {
+        let spectrum = physics::GaussianSpectrum::new(wavelength, linewidth).or_raise()?;
+        Ok(Self(spectrum))
+    }
+
+    /// Central wavelength in metres.
+    #[getter]
+    fn wavelength(&self) -> f64 {
+        self.0.wavelength()
+    }
+
+    /// Linewidth, the full width at half maximum, in metres.
+    #[getter]
+    fn linewidth(&self) -> f64 {
+        self.0.linewidth()
+    }
+
+    /// Coherence length in metres.
+    #[getter]
+    fn coherence_length(&self) -> f64 {
+        self.0.coherence_length()
+    }
+
+    /// Return the correlation of the patterns at the central and at a longer wavelength.
+    ///
+    /// Parameters
+    /// ----------
+    /// shift : float or array
+    ///     By how much the other wavelength is longer, in metres.
+    /// path_spread : float or array
+    ///     Standard deviation of the optical path, in metres.
+    fn correlation<'py>(
+        &self,
+        py: Python<'py>,
+        shift: Numbers<'py>,
+        path_spread: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let named = [("shift", &shift), ("path_spread", &path_spread)];
+        map(py, named, |[shift, spread]| {
+            self.0.correlation(shift, spread)
+        })
+    }
+
+    /// Return the contrast of the speckle in this light.
+    ///
+    /// Parameters
+    /// ----------
+    /// path_spread : float or array
+    ///     Standard deviation of the optical path, in metres.
+    fn contrast<'py>(
+        &self,
+        py: Python<'py>,
+        path_spread: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("path_spread", &path_spread)], |[spread]| {
+            self.0.contrast(spread)
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let (wavelength, linewidth) = (self.0.wavelength(), self.0.linewidth());
+        format!("GaussianSpectrum.new(wavelength={wavelength:?}, linewidth={linewidth:?})")
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        by_constructor::<Self>(py, "new", (self.0.wavelength(), self.0.linewidth()))
+    }
+}
+
+/// Return the standard deviation of the optical path of light reflected by a rough surface.
+///
+/// Parameters
+/// ----------
+/// height_spread : float or array
+///     Standard deviation of the height of the surface, in metres.
+/// angles : pair of floats or arrays
+///     Angles of incidence and of observation to the normal, in radians.
+///
+/// Returns
+/// -------
+/// float or array
+///     Standard deviation in metres, in the common shape.
+#[pyfunction]
+pub(super) fn path_spread_of_reflection<'py>(
+    py: Python<'py>,
+    height_spread: Numbers<'py>,
+    angles: [Numbers<'py>; 2],
+) -> PyResult<Bound<'py, PyAny>> {
+    let [incidence, observation] = &angles;
+    let named = [
+        ("height_spread", &height_spread),
+        ("angles", incidence),
+        ("angles", observation),
+    ];
+    map(py, named, |[height, incidence, observation]| {
+        physics::path_spread_of_reflection(height, [incidence, observation])
+    })
+}

@@ -1,0 +1,149 @@
+use numpy::PyArray1;
+use pyo3::{prelude::*, types::PyAny};
+use tem00_statistics as physics;
+use tem00_statistics::StatisticsError;
+
+use crate::{
+    arrays::{Count, Numbers},
+    error::{OrRaise, refused},
+};
+
+/// What a test of a hypothesis found.
+#[pyclass(frozen, eq, module = "tem00.statistics")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TestOutcome(pub(super) physics::TestOutcome);
+
+#[pymethods]
+impl TestOutcome {
+    /// The test's statistic: the larger, the further from the hypothesis.
+    #[getter]
+    fn statistic(&self) -> f64 {
+        self.0.statistic
+    }
+
+    /// The probability of a statistic at least as far from the hypothesis, were it true.
+    #[getter]
+    fn p_value(&self) -> f64 {
+        self.0.p_value
+    }
+
+    fn __repr__(&self) -> String {
+        let physics::TestOutcome { statistic, p_value } = self.0;
+        format!("TestOutcome(statistic={statistic:?}, p_value={p_value:?})")
+    }
+}
+
+/// Test whether samples follow a continuous distribution, after Kolmogorov and Smirnov.
+///
+/// Parameters
+/// ----------
+/// samples : array
+///     Independent samples, in any shape.
+/// cumulative : callable
+///     The distribution function, fixed beforehand. It is called once with an array of shape (n,)
+///     and returns probabilities in the same shape.
+#[pyfunction]
+pub(super) fn kolmogorov_smirnov(
+    py: Python<'_>,
+    samples: Numbers<'_>,
+    cumulative: Bound<'_, PyAny>,
+) -> PyResult<TestOutcome> {
+    let places = probabilities(&cumulative, checked(samples.values()?)?)?;
+    // The distance is that of the probabilities from an even distribution.
+    let outcome = py.detach(|| physics::kolmogorov_smirnov(&places, |place| place));
+    Ok(TestOutcome(outcome.or_raise()?))
+}
+
+/// Test whether counts in bins agree with the expected ones, after Pearson.
+///
+/// Parameters
+/// ----------
+/// observed : array of shape (n,)
+///     Counts, whole numbers.
+/// expected : array of shape (n,)
+///     Expected counts; bins are merged until each expects five.
+/// constraints : int
+///     What the expected counts were fitted to: 1 for the total, 1 more for each parameter.
+#[pyfunction]
+pub(super) fn chi_squared(
+    observed: Numbers<'_>,
+    expected: Numbers<'_>,
+    constraints: Count,
+) -> PyResult<TestOutcome> {
+    let observed = counts(observed.values()?)?;
+    let constraints = constraints.value("constraints")?;
+    let outcome = physics::chi_squared(&observed, expected.values()?, constraints);
+    Ok(TestOutcome(outcome.or_raise()?))
+}
+
+/// Test whether the expectation of independent samples is `mean`, after Student; two-sided.
+///
+/// Parameters
+/// ----------
+/// samples : array
+///     At least two finite samples that differ, in any shape.
+/// mean : float
+///     The expectation to be tested.
+#[pyfunction]
+pub(super) fn t_test_mean(
+    py: Python<'_>,
+    samples: Numbers<'_>,
+    mean: f64,
+) -> PyResult<TestOutcome> {
+    let samples = samples.values()?;
+    let outcome = py.detach(|| physics::t_test_mean(samples, mean));
+    Ok(TestOutcome(outcome.or_raise()?))
+}
+
+/// Returns finite samples, of which there is one at least.
+pub(super) fn checked(samples: &[f64]) -> PyResult<&[f64]> {
+    if samples.is_empty() {
+        let (given, needed) = (0, 1);
+        return Err(StatisticsError::Samples { given, needed }).or_raise();
+    }
+    match samples.iter().position(|sample| !sample.is_finite()) {
+        Some(index) => {
+            let value = samples[index];
+            Err(StatisticsError::NotFinite { index, value }).or_raise()
+        }
+        None => Ok(samples),
+    }
+}
+
+/// Asks a distribution function for the probabilities at samples.
+pub(super) fn probabilities(cumulative: &Bound<'_, PyAny>, samples: &[f64]) -> PyResult<Vec<f64>> {
+    let given = PyArray1::from_slice(cumulative.py(), samples);
+    let values: Numbers<'_> = cumulative.call1((given,))?.extract()?;
+    if values.shape() != [samples.len()] {
+        let shape = values.shape();
+        let message = format!(
+            "cumulative must return the shape [{}] of the samples, got {shape:?}",
+            samples.len()
+        );
+        return Err(refused("cumulative", message));
+    }
+    let values = values.values()?.to_vec();
+    let bad = |(_, value): &(&f64, &f64)| !(0.0..=1.0).contains(*value);
+    match samples.iter().zip(&values).find(bad) {
+        Some((&sample, &value)) => Err(StatisticsError::Probability { sample, value }).or_raise(),
+        None => Ok(values),
+    }
+}
+
+/// Returns whole numbers as such.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "whole numbers between 0 and 2⁵³ only"
+)]
+fn counts(observed: &[f64]) -> PyResult<Vec<u64>> {
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    let is_count = |&value: &f64| (0.0..=EXACT).contains(&value) && value.fract() == 0.0;
+    match observed.iter().find(|value| !is_count(value)) {
+        Some(value) => {
+            let message = format!("observed must be whole numbers from 0 to 2^53, got {value}");
+            Err(refused("observed", message))
+        }
+        None => Ok(observed.iter().map(|&value| value as u64).collect()),
+    }
+}

@@ -1,0 +1,121 @@
+use pyo3::{prelude::*, types::PyAny};
+use tem00_statistics as physics;
+
+use super::phasors::checked_order;
+use crate::{
+    arrays::{Count, Numbers, map},
+    error::OrRaise,
+    pickling::{Recipe, by_constructor},
+};
+
+/// The joint law of the intensities at two points of fully developed speckle, or at one point of two
+/// correlated patterns.
+#[pyclass(frozen, eq, module = "tem00.statistics")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct JointIntensity(physics::JointIntensity);
+
+#[pymethods]
+impl JointIntensity {
+    /// Return the law of a magnitude of the correlation of the two amplitudes, from 0 to below 1.
+    #[staticmethod]
+    fn new(amplitude_correlation: f64) -> PyResult<Self> {
+        let law = physics::JointIntensity::new(amplitude_correlation).or_raise()?;
+        Ok(Self(law))
+    }
+
+    /// Magnitude of the correlation of the amplitudes.
+    #[getter]
+    fn amplitude_correlation(&self) -> f64 {
+        self.0.amplitude_correlation()
+    }
+
+    /// Correlation of the intensities, the square of that of the amplitudes.
+    #[getter]
+    fn intensity_correlation(&self) -> f64 {
+        self.0.intensity_correlation()
+    }
+
+    /// Return the joint density of two intensities.
+    ///
+    /// Parameters
+    /// ----------
+    /// intensities : pair of floats or arrays
+    ///     The intensities in units of their mean, broadcast together.
+    fn density<'py>(
+        &self,
+        py: Python<'py>,
+        intensities: [Numbers<'py>; 2],
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let [first, second] = &intensities;
+        let named = [("intensities", first), ("intensities", second)];
+        map(py, named, |pair| self.0.density(pair))
+    }
+
+    /// Return the density of the intensity at one point where that at the other is `given`.
+    ///
+    /// Parameters
+    /// ----------
+    /// intensity, given : float or array
+    ///     Intensities in units of their mean, broadcast together.
+    fn conditional_density<'py>(
+        &self,
+        py: Python<'py>,
+        intensity: Numbers<'py>,
+        given: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let named = [("intensity", &intensity), ("given", &given)];
+        map(py, named, |[i, g]| self.0.conditional_density(i, g))
+    }
+
+    /// Return the probability of at most `intensity` at one point where the other has `given`.
+    ///
+    /// Parameters
+    /// ----------
+    /// intensity, given : float or array
+    ///     Intensities in units of their mean, broadcast together.
+    fn conditional_cumulative<'py>(
+        &self,
+        py: Python<'py>,
+        intensity: Numbers<'py>,
+        given: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let named = [("intensity", &intensity), ("given", &given)];
+        map(py, named, |[i, g]| self.0.conditional_cumulative(i, g))
+    }
+
+    /// Return the mean of the intensity at one point where that at the other is `given`.
+    fn conditional_mean<'py>(
+        &self,
+        py: Python<'py>,
+        given: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("given", &given)], |[g]| self.0.conditional_mean(g))
+    }
+
+    /// Return the variance of the intensity at one point where that at the other is `given`.
+    fn conditional_variance<'py>(
+        &self,
+        py: Python<'py>,
+        given: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("given", &given)], |[g]| {
+            self.0.conditional_variance(g)
+        })
+    }
+
+    /// Return the moment ⟨I₁ᵐ I₂ⁿ⟩ of the orders (m, n), each at most 20.
+    fn moment(&self, orders: [Count; 2]) -> PyResult<f64> {
+        let [m, n] = &orders;
+        let orders = [checked_order("orders", m)?, checked_order("orders", n)?];
+        Ok(self.0.moment(orders))
+    }
+
+    fn __repr__(&self) -> String {
+        let correlation = self.0.amplitude_correlation();
+        format!("JointIntensity.new(amplitude_correlation={correlation:?})")
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        by_constructor::<Self>(py, "new", (self.0.amplitude_correlation(),))
+    }
+}

@@ -1,0 +1,109 @@
+use pyo3::prelude::*;
+use tem00_statistics as physics;
+
+use super::images::boundary_of;
+use crate::{arrays::ComplexImage, error::OrRaise};
+
+/// A phase singularity of a complex field: a point of intensity zero around which the phase turns.
+#[pyclass(frozen, eq, hash, module = "tem00.statistics")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Singularity(physics::Singularity);
+
+#[pymethods]
+impl Singularity {
+    /// Column of the cell: the singularity lies between this sample and the next.
+    #[getter]
+    fn x(&self) -> usize {
+        self.0.x
+    }
+
+    /// Row of the cell.
+    #[getter]
+    fn y(&self) -> usize {
+        self.0.y
+    }
+
+    /// +1 where the phase grows on the way from the x to the y axis, −1 where it falls.
+    #[getter]
+    fn charge(&self) -> i8 {
+        self.0.charge
+    }
+
+    fn __repr__(&self) -> String {
+        let physics::Singularity { x, y, charge } = self.0;
+        format!("Singularity(x={x}, y={y}, charge={charge})")
+    }
+}
+
+/// Find the phase singularities of a sampled field, cell by cell, in the order of its rows.
+///
+/// Parameters
+/// ----------
+/// field : complex array of shape (rows, columns)
+///     The field, in single precision.
+/// boundary : {"periodic", "finite"}
+///     Whether the field repeats, or nothing is known beyond its edges.
+#[pyfunction]
+pub(super) fn phase_singularities(
+    py: Python<'_>,
+    field: ComplexImage<'_>,
+    boundary: &str,
+) -> PyResult<Vec<Singularity>> {
+    let (field, boundary) = (field.grid("field")?, boundary_of(boundary)?);
+    let found = py.detach(|| physics::phase_singularities(&field, boundary));
+    let found = found.or_raise_renamed(&["samples"], "field")?;
+    Ok(found.into_iter().map(Singularity).collect())
+}
+
+/// An estimate of the number of phase singularities per area.
+#[pyclass(frozen, eq, module = "tem00.statistics")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct VortexDensity(physics::VortexDensity);
+
+#[pymethods]
+impl VortexDensity {
+    /// Count the singularities of a field.
+    ///
+    /// Parameters
+    /// ----------
+    /// field : complex array of shape (rows, columns)
+    ///     The field, in single precision.
+    /// boundary : {"periodic", "finite"}
+    ///     Whether the field repeats, or nothing is known beyond its edges.
+    #[staticmethod]
+    fn of(py: Python<'_>, field: ComplexImage<'_>, boundary: &str) -> PyResult<Self> {
+        let (field, boundary) = (field.grid("field")?, boundary_of(boundary)?);
+        let density = py.detach(|| physics::VortexDensity::of(&field, boundary));
+        Ok(Self(density.or_raise_renamed(&["samples"], "field")?))
+    }
+
+    /// Number of singularities.
+    #[getter]
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+
+    /// Number of singularities per squared sample.
+    #[getter]
+    fn value(&self) -> f64 {
+        self.0.value()
+    }
+
+    /// Standard error of the density, per squared sample.
+    #[getter]
+    fn standard_error(&self) -> f64 {
+        self.0.standard_error()
+    }
+
+    /// Speckle size that makes this density, in samples; `None` without singularities.
+    #[getter]
+    fn speckle_size(&self) -> Option<f64> {
+        self.0.speckle_size()
+    }
+
+    fn __repr__(&self) -> String {
+        let (count, value) = (self.0.count(), self.0.value());
+        let error = self.0.standard_error();
+        format!("VortexDensity(count={count}, value={value:?}, standard_error={error:?})")
+    }
+}

@@ -7,7 +7,7 @@ use crate::{
 #[test]
 fn a_tight_waist_shows_the_limit_that_the_wavelength_sets() {
     // A wavelength in nanometres: it, and not the radius, is what looks wrong.
-    let text = crate::GaussianBeam::from_waist(650.0, 1e-3)
+    let text = GaussianBeam::from_waist(650.0, 1e-3)
         .unwrap_err()
         .to_string();
     assert!(text.contains("2 M² λ / π = 4.138"), "{text:?}");

@@ -26,7 +26,7 @@ CAMERA = dc.ImagingGeometry.from_lens(LENS)
 
 
 def unit(vector: FloatArray) -> FloatArray:
-    return vector / np.linalg.norm(vector, axis=-1, keepdims=True)
+    return np.asarray(vector / np.linalg.norm(vector, axis=-1, keepdims=True), dtype=np.float64)
 
 
 class Bench:
@@ -109,7 +109,7 @@ def test_the_image_moves_as_a_pinhole_sees_the_point() -> None:
 
     def image(point: FloatArray) -> FloatArray:
         x, y, z = axes @ (point - bench.eye)
-        return np.array([x, y]) / -z * CAMERA.principal_distance
+        return np.array([x / -z, y / -z], dtype=np.float64) * CAMERA.principal_distance
 
     expected = image(bench.point + motion) - image(bench.point)
     speckle = dc.SpeckleMotion.new(

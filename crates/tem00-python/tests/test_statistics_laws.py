@@ -122,7 +122,7 @@ def overlap(shift: FloatArray | float) -> FloatArray:
         chord = lambda x: 2 * math.sqrt(max(0.0, 1 - x * x))
         return 2 / math.pi * integrate.quad(chord, abs(s), 1, epsabs=1e-12)[0]
 
-    return np.vectorize(of)(shift)
+    return np.asarray(np.vectorize(of)(shift), dtype=np.float64)
 
 
 def airy(r: FloatArray) -> FloatArray:

@@ -1,6 +1,6 @@
 //! Python bindings of tem00, the extension module `tem00._tem00`.
 //!
-//! One file for each physics crate; [`arrays`] takes NumPy arrays in and gives them out, [`error`]
+//! One file for each physics crate; `arrays` takes NumPy arrays in and gives them out, `error`
 //! makes Python exceptions of the errors.
 
 mod arrays;

@@ -60,7 +60,7 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: Pupil.gaussian(radius=-1.0), "radius", "-1"),
     (lambda: Pupil.circle().overlap(np.nan, 0.0), "x", "NaN"),
     (lambda: Transmission.new([[1.5]]), "amplitude", "1.5"),
-    (lambda: Transmission.from_complex([[2j]]), "amplitude", "2"),
+    (lambda: Transmission.from_complex(np.array([[2j]])), "amplitude", "2"),
     (lambda: SlicePath.circle(half_period=0), "half_period", "0"),
     (lambda: SlicePath.straight(half_period=4, length=1), "length", "1"),
     (lambda: StackOptions("linear"), "interpolation", "'linear'"),  # type: ignore[arg-type]
@@ -163,7 +163,7 @@ def no_pattern(part: PupilField) -> None:
 WRONG_TYPES: list[Callable[[], object]] = [
     lambda: PupilField.new(64.0, 16, 0),  # type: ignore[arg-type]
     lambda: PupilField.from_speckle_size(64, 4.0, 0),  # type: ignore[arg-type]
-    lambda: STACK.intensity_at("1", 0.0, 0.0),
+    lambda: STACK.intensity_at("1", 0.0, 0.0),  # type: ignore[arg-type]
     lambda: IncoherentSum.equal(2).pattern(FIELD, no_pattern),  # type: ignore[arg-type]
     lambda: FIELD.with_pupil(SlicePath.still()),  # type: ignore[arg-type]
 ]

@@ -311,3 +311,72 @@ fn no_place_and_no_direction_however_far_gives_a_nan() {
         }
     }
 }
+
+#[test]
+fn records_keep_each_number_under_its_name() {
+    // Both print their fields by name.
+    let fields = |record: &dyn core::fmt::Debug| {
+        let text = format!("{record:?}");
+        text.split_once('{').unwrap().1.to_owned()
+    };
+    let (a, b, c) = ([1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]);
+    let event = tem00_beam::NextEvent {
+        point: a,
+        distance: 10.0,
+        wi: b,
+        e_perp: 11.0,
+    };
+    assert_eq!(
+        fields(&NextEvent::from(event)),
+        fields(&event),
+        "next event"
+    );
+    let single = tem00_beam::NextEvent {
+        point: [1.0, 2.0, 3.0],
+        distance: 10.0_f32,
+        wi: [4.0, 5.0, 6.0],
+        e_perp: 11.0,
+    };
+    assert_eq!(
+        fields(&NextEventF32::from(single)),
+        fields(&single),
+        "in single precision"
+    );
+    let drawn = tem00_beam::SampledEvent {
+        point: a,
+        distance: 10.0,
+        wi: b,
+        value: 11.0,
+        pdf: 12.0,
+    };
+    assert_eq!(
+        fields(&SampledEvent::from(drawn)),
+        fields(&drawn),
+        "sampled event"
+    );
+    let ray = tem00_beam::RaySample {
+        origin: a,
+        flux: 10.0,
+        direction: b,
+        cos: 11.0,
+        pdf_position: 12.0,
+        pdf_direction: 13.0,
+    };
+    assert_eq!(fields(&RaySample::from(ray)), fields(&ray), "ray");
+    let pdf = tem00_beam::RayPdf {
+        position: 10.0,
+        direction: 11.0,
+    };
+    assert_eq!(
+        fields(&RayPdf::from(pdf)),
+        fields(&pdf),
+        "densities of a ray"
+    );
+    let bounds = tem00_beam::Bounds {
+        min: a,
+        max: b,
+        axis: c,
+        half_angle: 10.0,
+    };
+    assert_eq!(fields(&Bounds::from(bounds)), fields(&bounds), "bounds");
+}

@@ -6,7 +6,7 @@
 >>> tem00.mitsuba.register()
 
 From then on ``<emitter type="laser">`` can stand in scenes, in every variant that is set later too.
-The light is recorded into the renderer's kernels, so this works in the LLVM and CUDA variants. In
+The light is recorded into the renderer's kernels, which only the LLVM and CUDA variants have. In
 ``scalar_rgb`` a plugin in C++ does the same, which is built apart from this package.
 """
 

@@ -16,7 +16,7 @@ import mitsuba as mi
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import special, stats
 
 import tem00
 from tem00 import beam
@@ -24,6 +24,7 @@ from tem00 import beam
 mi.set_variant("llvm_ad_rgb")
 
 import tem00.mitsuba  # noqa: E402
+from tem00.mitsuba.normal import erfc, standard_normal  # noqa: E402
 
 tem00.mitsuba.register()
 
@@ -154,6 +155,24 @@ def box_around(light: Any, points: Array) -> Array:
     corners = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 3), axis=-1).reshape(27, 1, 3)
     moved: Array = points + corners @ frame_of(light) * (4.0 * EPSILON * size[:, np.newaxis])
     return moved
+
+
+def test_the_error_function_keeps_its_digits_in_the_tail() -> None:
+    x = np.linspace(-9.0, 9.0, 100_001).astype(np.float32)
+    single: Any = mi.Float(x)
+    ratio = np.array(erfc(single)) / special.erfc(x.astype(np.float64))
+    # As its documentation states, down to 1e-36.
+    assert (np.abs(ratio - 1.0) < 4e-7 * (1.0 + x.astype(np.float64) ** 2)).all()
+
+
+def test_normal_variates_are_quantiles() -> None:
+    u = np.concatenate([np.linspace(0.0, 1.0, 10_001)[:-1], 2.0 ** np.arange(-24.0, 0.0)])
+    single: Any = mi.Float(u.astype(np.float32))
+    variates = np.array(standard_normal(single))
+    expected = special.ndtri(np.maximum(u.astype(np.float32), 2.0**-25).astype(np.float64))
+    # 1e-6 of the inverse error function; 2 u - 1 is rounded to 2**-25 and the density divides it.
+    density = stats.norm.pdf(expected)
+    assert (np.abs(variates - expected) < 2e-6 + 2.0**-25 / density * (u > 2.0**-20)).all()
 
 
 @every_laser

@@ -451,6 +451,11 @@ def test_the_other_variants_hold_a_laser_or_say_why_not(monkeypatch: pytest.Monk
         # The luminance of the green of sRGB (ITU-R BT.709).
         assert np.allclose(grey[0], 0.7152 * coloured[1], rtol=1e-4)
         assert grey.any()
+        mi.set_variant("llvm_ad_mono_polarized")
+        _, stokes = sampled_direction(emitter(SPOT, color=green), points)
+        # Light leaves unpolarised: a depolariser holds the radiance alone.
+        assert np.array_equal(stokes[0, 0], grey)
+        assert np.count_nonzero(stokes) == np.count_nonzero(grey)
         mi.set_variant("llvm_ad_spectral")
         with pytest.raises(RuntimeError, match="use an rgb or mono variant"):
             tem00.mitsuba.register()

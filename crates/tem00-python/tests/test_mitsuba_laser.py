@@ -9,6 +9,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from math import radians, tan
+from pathlib import Path
 from typing import Any
 
 import drjit as dr
@@ -90,7 +91,7 @@ def library_light(properties: Properties) -> Any:
         return beam.LineLight.place(library_line(properties), placement, properties["power"])
     axes = [located(properties, suffix) for suffix in ("", "_y")]
     return beam.SpotLight.place_astigmatic(
-        beam.AstigmaticBeam(*axes), placement, properties["power"]
+        beam.AstigmaticBeam.new(*axes), placement, properties["power"]
     )
 
 
@@ -99,7 +100,7 @@ def located(spot: Properties, suffix: str) -> Any:
     m_squared = spot.get("m_squared" + suffix, spot.get("m_squared", 1.0))
     distance = spot.get("waist_distance" + suffix, spot.get("waist_distance", 0.0))
     focus = beam.GaussianBeam.from_waist(spot["wavelength"], waist_radius)
-    return beam.LocatedBeam(focus.with_m_squared(m_squared), distance)
+    return beam.LocatedBeam.new(focus.with_m_squared(m_squared), distance)
 
 
 def library_line(line: Properties) -> Any:
@@ -117,7 +118,7 @@ def library_line(line: Properties) -> Any:
         profile = beam.LineProfile.powell(line.get("edge", 0.05))
     else:
         profile = PROFILES[line.get("profile", "gaussian")]
-    return beam.LaserLine(focus, fan, profile)
+    return beam.LaserLine.new(focus, fan, profile)
 
 
 def frame_of(light: Any) -> Array:
@@ -466,6 +467,19 @@ def test_the_other_variants_hold_a_laser_or_say_why_not(monkeypatch: pytest.Monk
             tem00.mitsuba.register(plugin_folder="/nowhere")
     finally:
         mi.set_variant("llvm_ad_rgb")
+
+
+def test_a_folder_of_plugins_serves_the_scalar_variant(tmp_path: Path) -> None:
+    (tmp_path / "plugins").mkdir()
+    (tmp_path / "plugins" / "laser.so").touch()
+    program = f"""
+import mitsuba as mi
+mi.set_variant("scalar_rgb")
+import tem00.mitsuba
+tem00.mitsuba.register(plugin_folder={str(tmp_path)!r})
+assert {str(tmp_path)!r} in str(mi.file_resolver())
+"""
+    assert subprocess.run([sys.executable, "-W", "error", "-c", program], check=False).returncode == 0
 
 
 def test_the_package_itself_needs_no_mitsuba() -> None:

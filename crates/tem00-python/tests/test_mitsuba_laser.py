@@ -479,7 +479,8 @@ import tem00.mitsuba
 tem00.mitsuba.register(plugin_folder={str(tmp_path)!r})
 assert {str(tmp_path)!r} in str(mi.file_resolver())
 """
-    assert subprocess.run([sys.executable, "-W", "error", "-c", program], check=False).returncode == 0
+    command = [sys.executable, "-W", "error", "-c", program]
+    assert subprocess.run(command, check=False).returncode == 0
 
 
 def test_the_package_itself_needs_no_mitsuba() -> None:

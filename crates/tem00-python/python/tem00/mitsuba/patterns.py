@@ -9,7 +9,7 @@ import mitsuba as mi
 
 from tem00.mitsuba.look_up import SplineTable, intensity_coefficients, nodes_per_sample
 from tem00.mitsuba.speckle_settings import refused
-from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackPlan
+from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackOptions, StackPlan
 
 if TYPE_CHECKING:
     from tem00.mitsuba.speckle_settings import PatternSettings
@@ -101,6 +101,17 @@ def _stack(
     settings: PatternSettings, speckle_size: float, number: int, image: tuple[int, int]
 ) -> SpeckleStack:
     """Return the stack that `tem00 render` has for the laser of this number in a still scene."""
+    seed = (settings.seed + (number + 1) * _SEED_STEP) % 2**64
+    try:
+        field = _plan(settings, speckle_size, image).field(seed)
+        options = StackOptions(memory_limit=_PATTERN_MEMORY)
+        return SpeckleStack.generate_with(field, _path(settings), options)
+    except MemoryError as error:
+        raise refused("speckle_size", f"too small for an image of {image}: {error}") from error
+
+
+def _plan(settings: PatternSettings, speckle_size: float, image: tuple[int, int]) -> StackPlan:
+    """Return the sizes of a pattern: what the image needs, or what the scene sets."""
     needs = StackNeeds(
         image=image,
         region=image,
@@ -111,10 +122,9 @@ def _stack(
     )
     plan = StackPlan.new(needs)
     size, diameter = settings.pattern_size, settings.pattern_diameter
-    if size is not None or diameter is not None:
-        plan = plan.with_square(size or 2 * (diameter or 0), diameter or (size or 0) // 2)
-    field = plan.field((settings.seed + (number + 1) * _SEED_STEP) % 2**64)
-    return SpeckleStack.generate(field, _path(settings))
+    if size is None and diameter is None:
+        return plan
+    return plan.with_square(size or 2 * (diameter or 0), diameter or (size or 0) // 2)
 
 
 def _path(settings: PatternSettings) -> SlicePath:

@@ -408,6 +408,7 @@ def test_a_thin_lens_determines_the_speckle_size() -> None:
         ("seed", 1.5),
         ("pattern_size", 7),
         ("pattern_diameter", 2**20),
+        ("pattern_diameter", 2**14 + 1),
         ("path", "spiral"),
         ("half_period", 0),
         ("length", 0),
@@ -429,6 +430,12 @@ def test_a_refused_property_is_named(name: str, value: Any) -> None:
 def text_of(error: BaseException | None) -> str:
     """Return the messages of an exception and of those that caused it: Mitsuba wraps them."""
     return f"{error}\n{text_of(error.__cause__ or error.__context__)}" if error else ""
+
+
+def test_a_pattern_too_small_for_its_pupil_is_refused() -> None:
+    with pytest.raises(ParameterError) as caught:
+        generate(settings(pattern_size=64, pattern_diameter=50), [SPECKLE_SIZE], (32, 24))
+    assert caught.value.parameter == "pattern_diameter"
 
 
 def test_a_file_refuses_what_it_determines(tmp_path: Path) -> None:

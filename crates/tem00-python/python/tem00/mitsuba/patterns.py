@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import drjit as dr
 import mitsuba as mi
 
+from tem00 import ParameterError
 from tem00.mitsuba.look_up import SplineTable, intensity_coefficients, nodes_per_sample
 from tem00.mitsuba.speckle_settings import refused
 from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackOptions, StackPlan
@@ -20,6 +21,8 @@ _SEED_STEP = 0x9E37_79B9_7F4A_7C15
 _PATTERN_MEMORY = 1 << 30
 _TABLE_MEMORY = 1 << 30
 _BYTES_PER_NODE = 8
+# What the library's arguments are called here.
+_PROPERTIES = {"size": "pattern_size", "diameter": "pattern_diameter", "image": "speckle_size"}
 # The root of x**3 = x + 1: multiples of its powers are far apart (Roberts 2018).
 _PLASTIC = 1.324717957244746
 
@@ -108,6 +111,9 @@ def _stack(
         return SpeckleStack.generate_with(field, _path(settings), options)
     except MemoryError as error:
         raise refused("speckle_size", f"too small for an image of {image}: {error}") from error
+    except ParameterError as error:
+        name = _PROPERTIES.get(error.parameter, error.parameter)
+        raise refused(name, str(error)) from error
 
 
 def _plan(settings: PatternSettings, speckle_size: float, image: tuple[int, int]) -> StackPlan:

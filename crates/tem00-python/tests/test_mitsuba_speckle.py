@@ -316,6 +316,12 @@ def lit_box() -> dict[str, Node]:
             "to_world": overhead @ Transform().scale(0.05),
             "emitter": {"type": "area", "radiance": 500.0},
         },
+        bulb={
+            "type": "sphere",
+            "radius": 5e-4,
+            "center": [-1e-3, -2e-3, 5e-3],
+            "emitter": {"type": "area", "radiance": 100.0},
+        },
         sky={"type": "constant", "radiance": 20.0},
     )
 
@@ -324,8 +330,9 @@ def lit_box() -> dict[str, Node]:
 @pytest.mark.parametrize("depth", [2, 3, -1])
 def test_without_speckle_it_is_the_path_tracer_of_mitsuba(depth: int, hidden: bool) -> None:
     rounds, parts = 6, lit_box()
+    rules = {"max_depth": depth, "rr_depth": 2, "hide_emitters": hidden}
     loaded = [
-        scene({"type": kind, "max_depth": depth, "hide_emitters": hidden, **extra}, **dict(parts))
+        scene({"type": kind, **rules, **extra}, **dict(parts))
         for kind, extra in (("speckle", {"speckle": False}), ("path", {}))
     ]
     ours, theirs = (

@@ -96,7 +96,7 @@ def perspective() -> Node:
 
 def pictures(scene: Any, count: int, spp: int) -> Array:
     """Render independent pictures, shape (count, rows, columns), of the first channel."""
-    renders = [np.array(mi.render(scene, spp=spp, seed=seed)) for seed in range(count)]
+    renders = [np.array(mi.render(scene, spp=spp, seed=mi.UInt32(seed))) for seed in range(count)]
     return np.stack(renders)[..., 0].astype(np.float64)
 
 
@@ -126,14 +126,16 @@ def test_a_plane_receives_the_power_at_every_tilt(name: str, tilt: float) -> Non
 def test_the_particle_tracer_sees_what_the_path_tracer_sees(name: str) -> None:
     laser = laser_at(LASERS[name], 40.0)
     count = 16
-    path, particles = (
-        pictures(scene_of({"type": kind, "max_depth": 2}, perspective(), 0.7, laser=laser), count, spp)
-        for kind, spp in (("path", 16), ("ptracer", 64))
-    )
-    # Blocks of 4 x 4 pixels that are not dark.
-    path, particles = (
-        p.reshape(count, 12, 4, 12, 4).mean(axis=(2, 4)).reshape(count, 144) for p in (path, particles)
-    )
+
+    def blocks(kind: str, spp: int) -> Array:
+        """Render pictures by an integrator and average 4 x 4 pixels."""
+        integrator = {"type": kind, "max_depth": 2}
+        scene = scene_of(integrator, perspective(), 0.7, laser=laser)
+        many = pictures(scene, count, spp).reshape(count, 12, 4, 12, 4)
+        averages: Array = many.mean(axis=(2, 4)).reshape(count, 144)
+        return averages
+
+    path, particles = blocks("path", 16), blocks("ptracer", 64)
     lit = path.mean(axis=0) > 0.01 * path.mean(axis=0).max()
     t = t_value((path - particles)[:, lit])
     # Significance 1e-3 for all blocks together (Bonferroni).
@@ -181,10 +183,10 @@ def test_the_picture_follows_the_power_by_differentiation() -> None:
     parameters = mi.traverse(scene)
     dr.enable_grad(parameters["laser.power"])
     parameters.update()
-    picture = mi.render(scene, parameters, spp=8, seed=1, seed_grad=2)
+    picture = mi.render(scene, parameters, spp=8, seed=mi.UInt32(1), seed_grad=2)
     dr.backward(dr.sum(picture, axis=None))
     # Linear in the power, along the same paths; sums of 18,000 samples in single precision.
-    total = np.array(mi.render(scene, spp=8, seed=2)).sum(dtype=np.float64)
+    total = np.array(mi.render(scene, spp=8, seed=mi.UInt32(2))).sum(dtype=np.float64)
     assert dr.grad(parameters["laser.power"])[0] == pytest.approx(total / POWER, rel=1e-4)
 
 

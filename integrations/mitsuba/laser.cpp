@@ -22,8 +22,7 @@ public:
     MI_IMPORT_TYPES()
 
     explicit Laser(const Properties &props)
-        : Base(props), m_source(props), m_shape(shape_of(props)), m_power(m_source.power),
-          m_wavelength(m_source.wavelength), m_color(color_of(props)) {
+        : Base(props), m_source(props), m_shape(shape_of(props)), m_color(color_of(props)) {
         // No ray from a surface finds the laser.
         m_flags = +EmitterFlags::DeltaPosition | COHERENT;
         place();
@@ -91,15 +90,13 @@ public:
 
     void traverse(TraversalCallback *callback) override {
         Base::traverse(callback);
-        callback->put("power", m_power, ParamFlags::NonDifferentiable);
         callback->put("color", m_color, ParamFlags::NonDifferentiable);
         callback->put("to_world", m_to_world, ParamFlags::NonDifferentiable);
-        callback->put("wavelength", m_wavelength,
-                      ParamFlags::NonDifferentiable | ParamFlags::ReadOnly);
+        m_source.traverse(callback);
+        std::visit([&](auto &shape) { shape.traverse(callback); }, m_shape);
     }
 
     void parameters_changed(const std::vector<std::string> &keys) override {
-        m_source.power = m_power;
         place();
         Base::parameters_changed(keys);
     }
@@ -184,8 +181,6 @@ private:
 
     Source m_source;
     LaserShape m_shape;
-    /// As they stand in the traversal.
-    Float m_power, m_wavelength;
     Spectrum m_color;
     LightPointer m_light;
 };

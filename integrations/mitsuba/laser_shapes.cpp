@@ -46,10 +46,19 @@ LightPointer round_light(const Spot &spot, int axis, const Source &source,
     return create(tem00_light_create_spot, description, names);
 }
 
+void expose(TraversalCallback *callback, const char *name, double &value) {
+    callback->put(name, value, ParamFlags::NonDifferentiable);
+}
+
 } // namespace
 
 Source::Source(const Properties &props)
     : wavelength(props.get<double>("wavelength")), power(props.get<double>("power")) {}
+
+void Source::traverse(TraversalCallback *callback) {
+    expose(callback, "wavelength", wavelength);
+    expose(callback, "power", power);
+}
 
 Spot::Spot(const Properties &props)
     : waist_radius{ props.get<double>("waist_radius"), 0.0 },
@@ -86,6 +95,17 @@ LightPointer Spot::light(const Source &source, const tem00_placement &placement)
     return create(tem00_light_create_elliptic, description, {});
 }
 
+void Spot::traverse(TraversalCallback *callback) {
+    expose(callback, "waist_radius", waist_radius[0]);
+    expose(callback, "waist_distance", waist_distance[0]);
+    expose(callback, "m_squared", m_squared[0]);
+    if (!elliptic)
+        return;
+    expose(callback, "waist_radius_y", waist_radius[1]);
+    expose(callback, "waist_distance_y", waist_distance[1]);
+    expose(callback, "m_squared_y", m_squared[1]);
+}
+
 Line::Line(const Properties &props)
     : fan_angle(props.get<double>("fan_angle")), thickness(props.get<double>("thickness")),
       focus_distance(props.get<double>("focus_distance")),
@@ -111,6 +131,17 @@ LightPointer Line::light(const Source &source, const tem00_placement &placement)
     description.edge           = edge;
     return create(tem00_light_create_line, description,
                   { { "not_paraxial", "thickness" }, { "waist_radius", "thickness" } });
+}
+
+void Line::traverse(TraversalCallback *callback) {
+    expose(callback, "fan_angle", fan_angle);
+    expose(callback, "thickness", thickness);
+    expose(callback, "focus_distance", focus_distance);
+    expose(callback, "m_squared", m_squared);
+    if (apex_offset)
+        expose(callback, "apex_offset", *apex_offset);
+    if (profile == TEM00_LINE_PROFILE_POWELL)
+        expose(callback, "edge", edge);
 }
 
 double Line::default_apex_offset(double wavelength) const {

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <mitsuba/core/object.h>
 #include <mitsuba/core/properties.h>
 
 #include <tem00.h>
@@ -16,9 +17,13 @@ struct DestroyLight {
 };
 using LightPointer = std::unique_ptr<tem00_light, DestroyLight>;
 
+// `traverse` exposes the numbers under the names of the properties, to be changed.
+
 /// What lasers of all shapes have.
 struct Source {
     explicit Source(const Properties &props);
+
+    void traverse(TraversalCallback *callback);
 
     /// In the scene's unit of length.
     double wavelength;
@@ -31,6 +36,7 @@ struct Spot {
     explicit Spot(const Properties &props);
 
     LightPointer light(const Source &source, const tem00_placement &placement) const;
+    void traverse(TraversalCallback *callback);
 
     /// An elliptic beam has second values of its own.
     bool elliptic;
@@ -44,6 +50,7 @@ struct Line {
     explicit Line(const Properties &props);
 
     LightPointer light(const Source &source, const tem00_placement &placement) const;
+    void traverse(TraversalCallback *callback);
 
     double fan_angle;
     double thickness;

@@ -67,7 +67,7 @@ def _append(folder: Path) -> None:
     """Let Mitsuba find the C++ plugins."""
     if not any((folder / "plugins").glob("laser.*")):
         raise FileNotFoundError(f"{folder} holds no plugins/laser.so")
-    mi.Thread.file_resolver().append(str(folder))
+    mi.file_resolver().append(str(folder))
     _folders.append(folder)
 
 

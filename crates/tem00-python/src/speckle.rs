@@ -6,12 +6,15 @@ mod arguments;
 mod field;
 mod files;
 mod images;
+mod light;
+mod objective;
+mod paper;
 mod path;
 mod pattern;
-mod pickle;
 mod plan;
 mod pupil;
 mod stack;
+mod sum;
 
 /// Pupil fields, patterns, stacks and their look-up.
 ///
@@ -21,10 +24,14 @@ pub(crate) mod speckle {
     #[pymodule_export]
     use super::{
         field::PupilField,
+        light::{CoherentBackground, Exposure, PixelArray},
+        objective::{LitArea, ObjectiveSpeckle},
+        paper::paper,
         path::SlicePath,
         pattern::{SpeckleField, SpecklePattern},
         plan::{StackNeeds, StackPlan},
         pupil::{Pupil, Transmission},
         stack::{SliceLaw, SpeckleStack, StackOptions},
+        sum::{Bandwidth, IncoherentSum},
     };
 }

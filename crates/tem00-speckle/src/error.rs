@@ -133,44 +133,54 @@ pub enum SpeckleError {
 }
 
 impl SpeckleError {
-    /// Returns the name of the parameter that was refused, as constructors and functions call it.
+    /// Returns the name of the argument that was refused, as the function that refused it calls it.
+    ///
+    /// A variant may belong to arguments of several functions: a diameter that is too small can
+    /// follow from a [speckle size](Self::SpeckleSize) that is too large. The name is then that of the
+    /// argument which the variant is about. [`Memory`](Self::Memory) is about none: its name is "memory".
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_speckle::{Pupil, PupilField};
+    ///
+    /// let field = PupilField::new(64, 16, 1)?;
+    /// let error = field.with_pupil(Pupil::Annulus { inner: 1.5 }).unwrap_err();
+    /// assert_eq!(error.parameter(), "inner");
+    /// # Ok::<(), tem00_speckle::SpeckleError>(())
+    /// ```
     pub const fn parameter(&self) -> &'static str {
         match self {
-            Self::Size(..) => "size",
-            Self::SpeckleSize { .. } => "speckle_size",
+            Self::Size(..) | Self::PixelSize(..) => "size",
+            Self::SpeckleSize { .. } | Self::SpeckleSizeInPixels(..) => "speckle_size",
             Self::Diameter { .. } => "diameter",
-            Self::InnerDiameter(..) => "inner_diameter",
+            Self::InnerDiameter(..) => "inner",
             Self::Height(..) => "height",
-            Self::GaussianRadius(..) => "gaussian_radius",
-            Self::Transmission(..) => "transmission",
-            Self::Sample { .. } => "sample",
-            Self::PhasorCount(..) => "phasor_count",
+            Self::GaussianRadius(..) => "radius",
+            Self::Transmission(..) => "amplitude",
+            Self::Sample { .. } => "samples",
+            Self::PhasorCount(..) => "pupil",
             Self::HalfPeriod(..) => "half_period",
-            Self::PathLength(..) => "path_length",
+            Self::PathLength(..) => "length",
             Self::MemoryLimit { .. } => "memory_limit",
             Self::Memory { .. } => "memory",
             Self::Image(..) => "image",
             Self::Region(..) => "region",
-            Self::SpeckleSizeInPixels(..) => "speckle_size_in_pixels",
             Self::Motion(..) => "motion",
-            Self::PatternCount(..) => "pattern_count",
-            Self::Weight { .. } => "weight",
-            Self::NoSeed => "no_seed",
-            Self::Polarisation(..) => "polarisation",
+            Self::PatternCount(..) | Self::PixelCount(..) | Self::ScattererCount { .. } => "count",
+            Self::Weight { .. } => "weights",
+            Self::NoSeed => "field",
+            Self::Polarisation(..) => "degree",
             Self::Wavelength(..) => "wavelength",
             Self::Linewidth { .. } => "linewidth",
             Self::PathSpread(..) => "path_spread",
             Self::BeamRatio(..) => "beam_ratio",
             Self::Phase(..) => "phase",
-            Self::ImageDrift(..) => "image_drift",
-            Self::PupilDrift(..) => "pupil_drift",
-            Self::PixelCount(..) => "pixel_count",
-            Self::PixelPitch(..) => "pixel_pitch",
-            Self::PixelSize(..) => "pixel_size",
-            Self::PixelOrigin(..) => "pixel_origin",
-            Self::ScattererCount { .. } => "scatterer_count",
+            Self::ImageDrift(..) | Self::PupilDrift(..) => "drift",
+            Self::PixelPitch(..) => "pitch",
+            Self::PixelOrigin(..) => "origin",
             Self::Distance(..) => "distance",
-            Self::LitSize(..) => "lit_size",
+            Self::LitSize(..) => "area",
             Self::SamplePitch(..) => "sample_pitch",
         }
     }
@@ -346,6 +356,7 @@ impl error::Error for SpeckleError {}
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{LitArea, ObjectiveSpeckle, Pupil, SlicePath};
 
     #[test]
     fn messages_name_the_parameter_the_value_and_what_is_allowed() {
@@ -432,6 +443,39 @@ mod tests {
             for part in parts {
                 assert!(message.contains(part), "no '{part}' in '{message}'");
             }
+        }
+    }
+    #[test]
+    fn parameters_are_named_as_the_functions_that_refuse_them_call_them() {
+        let field = PupilField::new(64, 32, 0).unwrap();
+        let sum = |weights: &[f64]| IncoherentSum::weighted(weights).unwrap_err();
+        let thin = field.clone().with_pupil(Pupil::Rectangle { height: 0.01 });
+        let path = SlicePath::Straight {
+            half_period: 4,
+            length: 1,
+        };
+        let lit = LitArea::Disc { diameter: -1.0 };
+        for (error, name) in [
+            (PupilField::new(1 << 20, 32, 0).unwrap_err(), "size"),
+            (PupilField::new(64, 33, 0).unwrap_err(), "diameter"),
+            (thin.unwrap_err(), "pupil"),
+            (path.check().unwrap_err(), "length"),
+            (sum(&[]), "count"),
+            (sum(&[-1.0]), "weights"),
+            (
+                IncoherentSum::partially_polarised(2.0).unwrap_err(),
+                "degree",
+            ),
+            (
+                Exposure::default()
+                    .with_pupil_drift([f64::NAN; 2])
+                    .unwrap_err(),
+                "drift",
+            ),
+            (ObjectiveSpeckle::new(1.0, 1.0, lit).unwrap_err(), "area"),
+            (PixelArray::new([1; 2], [0.0; 2]).unwrap_err(), "pitch"),
+        ] {
+            assert_eq!(error.parameter(), name, "{error}");
         }
     }
 }

@@ -32,7 +32,7 @@ impl AstigmaticSystem {
     fn new(blocks: [[[[f64; 2]; 2]; 2]; 2]) -> PyResult<Self> {
         let blocks = blocks.map(|row| row.map(matrix_of));
         let system = physics::AstigmaticSystem::new(blocks);
-        Ok(Self(system.or_raise_as(&[("matrix_entry", "blocks")])?))
+        Ok(Self(system.or_raise_as(&[("matrix", "blocks")])?))
     }
 
     /// Return the system that acts as one of two matrices in each of its principal axes.

@@ -94,7 +94,13 @@ impl Emitter {
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
         let class = slf.get_type().name()?;
         let rows = slf.get().0.rows();
-        Ok(format!("{class}.from_rows({rows:?})"))
+        Ok(match &slf.get().0 {
+            Light::Tabulated(_, profile) => {
+                let count = profile.knots().len();
+                format!("<{class}: a table of {count} angles, rows {rows:?}>")
+            }
+            _ => format!("{class}.from_rows({rows:?})"),
+        })
     }
 
     /// Return the irradiance, in W/m², of a plane at right angles to the axis.

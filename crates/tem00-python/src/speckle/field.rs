@@ -4,14 +4,14 @@ use tem00_speckle as physics;
 
 use super::{
     arguments::{PHASORS, Whole, choice, counts, finite, finite_pair, name_of},
-    images::{Image, check_room, grid, view},
+    images::{check_room, view},
     pattern::{SpeckleField, SpecklePattern},
-    pickle::{Reduced, reduce},
     pupil::Pupil,
 };
 use crate::{
-    arrays::{Numbers, map_many},
+    arrays::{ComplexImage, Numbers, map_many},
     error::OrRaise,
+    pickling::{Recipe, by_constructor},
 };
 
 mod parts;
@@ -89,11 +89,11 @@ impl PupilField {
     ///     Speckle size in samples: for a pupil of C samples in diameter, width / C.
     #[staticmethod]
     fn from_samples(
-        samples: Image<'_, Complex32>,
+        samples: ComplexImage<'_>,
         size: [Whole<'_>; 2],
         speckle_size: f64,
     ) -> PyResult<Self> {
-        let (samples, size) = (grid("samples", &samples)?, counts("size", &size)?);
+        let (samples, size) = (samples.grid("samples")?, counts("size", &size)?);
         let field = physics::PupilField::from_samples(samples, size, speckle_size);
         Ok(Self(field.or_raise()?))
     }
@@ -329,7 +329,7 @@ impl PupilField {
         )
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Recipe<'py>> {
         let Some(parts) = Parts::of(&slf.get().0) else {
             let message = "the field of a stack on a straight path cannot be pickled: its lattice \
                            is closed; pickle the field that the stack was made of";
@@ -341,7 +341,7 @@ impl PupilField {
             Self::samples(slf)?,
             slf.get().pupil(),
         );
-        reduce::<Self>(slf.py(), "_restore", arguments)
+        by_constructor::<Self>(slf.py(), "_restore", arguments)
     }
 
     /// Make a field again of what it was made of.
@@ -349,13 +349,13 @@ impl PupilField {
     fn _restore(
         layout: ([usize; 2], f64, Option<usize>),
         random: (Option<u64>, Option<String>),
-        samples: Option<Image<'_, Complex32>>,
+        samples: Option<ComplexImage<'_>>,
         pupil: &Pupil,
     ) -> PyResult<Self> {
         let ((size, speckle_size, diameter), (seed, phasors)) = (layout, random);
         let phasors = phasors.map(|name| choice("phasors", &PHASORS, &name));
         let seeded = Source::Seeded(seed.unwrap_or(0), phasors.transpose()?.unwrap_or_default());
-        let samples = samples.map(|samples| grid("samples", &samples));
+        let samples = samples.map(|samples| samples.grid("samples"));
         let parts = Parts {
             size,
             speckle_size,

@@ -1,11 +1,11 @@
 use pyo3::prelude::*;
 use tem00_speckle as physics;
 
-use super::{
-    arguments::{Whole, counts},
-    pickle::{Reduced, reduce},
+use super::arguments::{Whole, counts};
+use crate::{
+    error::OrRaise,
+    pickling::{Recipe, by_constructor},
 };
-use crate::error::OrRaise;
 
 /// The way the pupil takes over the lattice from slice to slice of a stack.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
@@ -114,16 +114,16 @@ impl SlicePath {
         }
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         match self.0 {
-            physics::SlicePath::Still => reduce::<Self>(py, "still", ()),
+            physics::SlicePath::Still => by_constructor::<Self>(py, "still", ()),
             physics::SlicePath::Circle { half_period } => {
-                reduce::<Self>(py, "circle", (half_period,))
+                by_constructor::<Self>(py, "circle", (half_period,))
             }
             physics::SlicePath::Straight {
                 half_period,
                 length,
-            } => reduce::<Self>(py, "straight", (half_period, length)),
+            } => by_constructor::<Self>(py, "straight", (half_period, length)),
         }
     }
 }

@@ -2,13 +2,11 @@ use numpy::{Complex32, PyArray2};
 use pyo3::prelude::*;
 use tem00_speckle as physics;
 
-use super::{
-    images::{Image, grid, view},
-    pickle::{Reduced, reduce},
-};
+use super::images::view;
 use crate::{
-    arrays::{Numbers, map},
+    arrays::{ComplexImage, Image, Numbers, map},
     error::OrRaise,
+    pickling::{Recipe, by_constructor},
 };
 
 /// The shape of the camera's pupil; lengths are in units of its diameter.
@@ -116,16 +114,20 @@ impl Pupil {
         }
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Recipe<'py>> {
         let py = slf.py();
         match &slf.get().0 {
-            physics::Pupil::Circle => reduce::<Self>(py, "circle", ()),
-            physics::Pupil::Annulus { inner } => reduce::<Self>(py, "annulus", (*inner,)),
-            physics::Pupil::Rectangle { height } => reduce::<Self>(py, "rectangle", (*height,)),
-            physics::Pupil::Gaussian { radius } => reduce::<Self>(py, "gaussian", (*radius,)),
+            physics::Pupil::Circle => by_constructor::<Self>(py, "circle", ()),
+            physics::Pupil::Annulus { inner } => by_constructor::<Self>(py, "annulus", (*inner,)),
+            physics::Pupil::Rectangle { height } => {
+                by_constructor::<Self>(py, "rectangle", (*height,))
+            }
+            physics::Pupil::Gaussian { radius } => {
+                by_constructor::<Self>(py, "gaussian", (*radius,))
+            }
             physics::Pupil::Sampled(transmission) => {
                 let transmission = Transmission(transmission.clone());
-                reduce::<Self>(py, "sampled", (transmission,))
+                by_constructor::<Self>(py, "sampled", (transmission,))
             }
         }
     }
@@ -152,8 +154,8 @@ impl Transmission {
     /// amplitude : `array_like`, shape (rows, columns)
     ///     0 where the pupil is opaque, 1 where it is open.
     #[staticmethod]
-    fn new(amplitude: Image<'_, f32>) -> PyResult<Self> {
-        let amplitude = grid("amplitude", &amplitude)?;
+    fn new(amplitude: Image<'_>) -> PyResult<Self> {
+        let amplitude = amplitude.grid("amplitude")?;
         Ok(Self(physics::Transmission::new(&amplitude).or_raise()?))
     }
 
@@ -164,8 +166,8 @@ impl Transmission {
     /// amplitude : `array_like` of complex, shape (rows, columns)
     ///     Magnitudes between 0 and 1.
     #[staticmethod]
-    fn from_complex(amplitude: Image<'_, Complex32>) -> PyResult<Self> {
-        let amplitude = grid("amplitude", &amplitude)?;
+    fn from_complex(amplitude: ComplexImage<'_>) -> PyResult<Self> {
+        let amplitude = amplitude.grid("amplitude")?;
         let transmission = physics::Transmission::from_complex(amplitude);
         Ok(Self(transmission.or_raise()?))
     }
@@ -186,8 +188,8 @@ impl Transmission {
         )
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Recipe<'py>> {
         let values = Self::values(slf)?;
-        reduce::<Self>(slf.py(), "from_complex", (values,))
+        by_constructor::<Self>(slf.py(), "from_complex", (values,))
     }
 }

@@ -45,6 +45,7 @@ use crate::{SpeckleError, SpeckleField, SpecklePattern};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoherentBackground {
     beam_ratio: f64,
+    phase: f64,
     /// What is added to the amplitude.
     wave: Complex<f64>,
 }
@@ -68,6 +69,7 @@ impl CoherentBackground {
         }
         Ok(Self {
             beam_ratio,
+            phase,
             wave: Complex::from_polar(beam_ratio.sqrt(), phase),
         })
     }
@@ -75,6 +77,11 @@ impl CoherentBackground {
     /// Returns the beam ratio r, background over mean of the speckle.
     pub const fn beam_ratio(&self) -> f64 {
         self.beam_ratio
+    }
+
+    /// Returns the phase φ, in radians.
+    pub const fn phase(&self) -> f64 {
+        self.phase
     }
 
     /// Returns the contrast `√(1 + 2r) / (1 + r)` on fully developed speckle.

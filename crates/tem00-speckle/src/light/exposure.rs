@@ -86,6 +86,16 @@ impl Exposure {
         Ok(self)
     }
 
+    /// Returns the drift of the pattern over the sensor, in speckle sizes along x and y.
+    pub const fn image_drift(&self) -> [f64; 2] {
+        self.image_drift
+    }
+
+    /// Returns the drift of the light over the pupil, in pupil diameters along x and y.
+    pub const fn pupil_drift(&self) -> [f64; 2] {
+        self.pupil_drift
+    }
+
     /// Returns the number of patterns whose mean the exposure is, 1 without pupil drift.
     ///
     /// ```text

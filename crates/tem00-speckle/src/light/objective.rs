@@ -148,6 +148,21 @@ impl ObjectiveSpeckle {
         })
     }
 
+    /// Returns the wavelength, in metres.
+    pub const fn wavelength(&self) -> f64 {
+        self.wavelength
+    }
+
+    /// Returns the distance of the screen, in metres.
+    pub const fn distance(&self) -> f64 {
+        self.distance
+    }
+
+    /// Returns the lit area.
+    pub const fn area(&self) -> LitArea {
+        self.area
+    }
+
     /// Returns the speckle size `λ z / W`, in metres: the period of the finest fringes along x.
     ///
     /// W is the diameter, the width or, of a Gaussian spot, five radii: that is where it is cut off.

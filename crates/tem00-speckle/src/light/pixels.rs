@@ -112,6 +112,26 @@ impl PixelArray {
         }
     }
 
+    /// Returns the number of pixels along x and y.
+    pub const fn count(&self) -> [usize; 2] {
+        self.count
+    }
+
+    /// Returns the distance of neighbours along x and y, in samples.
+    pub const fn pitch(&self) -> [f64; 2] {
+        self.pitch
+    }
+
+    /// Returns the width and the height of a pixel, in samples.
+    pub const fn size(&self) -> [f64; 2] {
+        self.size
+    }
+
+    /// Returns where the middle of the first pixel lies, in samples.
+    pub const fn origin(&self) -> [f64; 2] {
+        self.origin
+    }
+
     /// Returns the mean intensity over each pixel.
     pub fn image(&self, pattern: &SpecklePattern) -> Grid<f32> {
         let size = pattern.size();

@@ -254,16 +254,51 @@ impl IncoherentSum {
         field: &PupilField,
         part: impl Fn(&PupilField) -> SpecklePattern,
     ) -> Result<SpecklePattern, SpeckleError> {
+        self.try_pattern(field, |field| Ok(part(field)))
+    }
+
+    /// Like [`pattern`](Self::pattern), for a `part` that can fail: the first error ends the sum.
+    ///
+    /// # Errors
+    ///
+    /// As [`fields`](Self::fields), and those of `part`.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `part` returns patterns of one size.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_speckle::{IncoherentSum, PupilField, SpeckleError};
+    ///
+    /// let field = PupilField::new(64, 16, 1)?;
+    /// let light = IncoherentSum::equal(3)?;
+    ///
+    /// // Each part with speckles of its own size, as of three wavelengths.
+    /// let mut sizes = [4.0, 4.4, 4.8].into_iter();
+    /// let pattern = light.try_pattern(&field, |part| {
+    ///     let size = sizes.next().unwrap_or(4.0);
+    ///     Ok::<_, SpeckleError>(part.clone().with_speckle_size(size)?.pattern())
+    /// })?;
+    /// assert_eq!(pattern.size(), [64, 64]);
+    /// # Ok::<(), SpeckleError>(())
+    /// ```
+    pub fn try_pattern<E: From<SpeckleError>>(
+        &self,
+        field: &PupilField,
+        mut part: impl FnMut(&PupilField) -> Result<SpecklePattern, E>,
+    ) -> Result<SpecklePattern, E> {
         let fields = self.fields(field)?;
         let speckle_size = field.speckle_size();
-        let mut sum = part(&fields[0]).into_values();
+        let mut sum = part(&fields[0])?.into_values();
         let first = to_f32(self.shares[0]);
         sum.values_mut()
             .iter_mut()
             .for_each(|value| *value *= first);
         for (field, &share) in fields.iter().zip(&self.shares).skip(1) {
             let share = to_f32(share);
-            let values = part(field).into_values();
+            let values = part(field)?.into_values();
             assert!(
                 values.width() == sum.width() && values.height() == sum.height(),
                 "the patterns of a sum differ in size"

@@ -1,0 +1,188 @@
+use pyo3::prelude::*;
+use tem00_speckle as physics;
+
+use super::{
+    arguments::{Whole, counts, finite_pair},
+    field::PupilField,
+};
+use crate::{
+    error::OrRaise,
+    pickling::{Recipe, by_constructor},
+};
+
+/// The area of a rough surface that is lit; lengths are in metres.
+#[pyclass(frozen, eq, module = "tem00.speckle")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LitArea(physics::LitArea);
+
+#[pymethods]
+impl LitArea {
+    /// Return a uniformly lit disc.
+    ///
+    /// Parameters
+    /// ----------
+    /// diameter : float
+    ///     Diameter in metres.
+    #[staticmethod]
+    const fn disc(diameter: f64) -> Self {
+        Self(physics::LitArea::Disc { diameter })
+    }
+
+    /// Return a uniformly lit ring.
+    ///
+    /// Parameters
+    /// ----------
+    /// outer, inner : float
+    ///     Outer and inner diameter in metres.
+    #[staticmethod]
+    const fn ring(outer: f64, inner: f64) -> Self {
+        Self(physics::LitArea::Ring { outer, inner })
+    }
+
+    /// Return a uniformly lit rectangle, longer along x than along y or as long.
+    ///
+    /// Parameters
+    /// ----------
+    /// width, height : float
+    ///     Length along x and along y in metres.
+    #[staticmethod]
+    const fn rectangle(width: f64, height: f64) -> Self {
+        Self(physics::LitArea::Rectangle { width, height })
+    }
+
+    /// Return a Gaussian spot, cut off at 2.5 of its radii.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : float
+    ///     Radius in metres at which the irradiance has fallen to 1/e².
+    #[staticmethod]
+    const fn gaussian_spot(radius: f64) -> Self {
+        Self(physics::LitArea::GaussianSpot { radius })
+    }
+
+    fn __repr__(&self) -> String {
+        match self.0 {
+            physics::LitArea::Disc { diameter } => format!("LitArea.disc(diameter={diameter})"),
+            physics::LitArea::Ring { outer, inner } => {
+                format!("LitArea.ring(outer={outer}, inner={inner})")
+            }
+            physics::LitArea::Rectangle { width, height } => {
+                format!("LitArea.rectangle(width={width}, height={height})")
+            }
+            physics::LitArea::GaussianSpot { radius } => {
+                format!("LitArea.gaussian_spot(radius={radius})")
+            }
+        }
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        match self.0 {
+            physics::LitArea::Disc { diameter } => by_constructor::<Self>(py, "disc", (diameter,)),
+            physics::LitArea::Ring { outer, inner } => {
+                by_constructor::<Self>(py, "ring", (outer, inner))
+            }
+            physics::LitArea::Rectangle { width, height } => {
+                by_constructor::<Self>(py, "rectangle", (width, height))
+            }
+            physics::LitArea::GaussianSpot { radius } => {
+                by_constructor::<Self>(py, "gaussian_spot", (radius,))
+            }
+        }
+    }
+}
+
+/// Speckle without a lens: what a lit area of a rough surface makes on a screen or sensor.
+#[pyclass(frozen, eq, module = "tem00.speckle")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ObjectiveSpeckle(physics::ObjectiveSpeckle);
+
+#[pymethods]
+impl ObjectiveSpeckle {
+    /// Return the speckle of a wavelength, a distance and a lit area.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Wavelength in metres.
+    /// distance : float
+    ///     Distance of the screen in metres.
+    /// area : `LitArea`
+    ///     Area of the surface that is lit.
+    #[staticmethod]
+    fn new(wavelength: f64, distance: f64, area: &LitArea) -> PyResult<Self> {
+        let speckle = physics::ObjectiveSpeckle::new(wavelength, distance, area.0);
+        Ok(Self(speckle.or_raise()?))
+    }
+
+    /// Wavelength in metres.
+    #[getter]
+    const fn wavelength(&self) -> f64 {
+        self.0.wavelength()
+    }
+
+    /// Distance of the screen in metres.
+    #[getter]
+    const fn distance(&self) -> f64 {
+        self.0.distance()
+    }
+
+    /// Area of the surface that is lit.
+    #[getter]
+    const fn area(&self) -> LitArea {
+        LitArea(self.0.area())
+    }
+
+    /// Speckle size in metres: the period of the finest fringes along x.
+    #[getter]
+    fn speckle_size(&self) -> f64 {
+        self.0.speckle_size()
+    }
+
+    /// Return the field on a screen.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : (int, int)
+    ///     Width and height of the screen in samples.
+    /// `sample_pitch` : float
+    ///     Distance of neighbouring samples in metres, at most half the speckle size.
+    /// seed : int
+    ///     Seed of the phasors, 0 to 2**64 - 1.
+    fn field(
+        &self,
+        size: [Whole<'_>; 2],
+        sample_pitch: f64,
+        seed: Whole<'_>,
+    ) -> PyResult<PupilField> {
+        let (size, seed) = (counts("size", &size)?, seed.unsigned("seed")?);
+        let field = self.0.field(size, sample_pitch, seed);
+        Ok(PupilField(field.or_raise()?))
+    }
+
+    /// Return the displacement of the pupil, in its diameters, when the surface has moved.
+    ///
+    /// Parameters
+    /// ----------
+    /// displacement : (float, float)
+    ///     Motion of the surface through the light along x and y, in metres.
+    fn offset(&self, displacement: [f64; 2]) -> PyResult<(f64, f64)> {
+        let displacement = finite_pair("displacement", displacement)?;
+        let [x, y] = finite_pair("displacement", self.0.offset(displacement))?;
+        Ok((x, y))
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "ObjectiveSpeckle.new(wavelength={:e}, distance={}, area={})",
+            self.0.wavelength(),
+            self.0.distance(),
+            self.area().__repr__()
+        )
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        let arguments = (self.0.wavelength(), self.0.distance(), self.area());
+        by_constructor::<Self>(py, "new", arguments)
+    }
+}

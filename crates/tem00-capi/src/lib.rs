@@ -19,6 +19,8 @@
 
 mod numbers;
 mod pointers;
+#[cfg(test)]
+mod testing;
 
 // The order of the header.
 mod status;

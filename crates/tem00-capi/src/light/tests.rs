@@ -5,7 +5,7 @@ mod descriptions;
 mod questions;
 mod refusals;
 
-use core::{f64::consts::FRAC_PI_4, ffi::CStr, ptr};
+use core::{f64::consts::FRAC_PI_4, ptr};
 
 use tem00_beam::{
     AngularProfile, AstigmaticBeam, DVec3, FanGeometry, GaussianBeam, GeneralAstigmaticBeam,
@@ -13,7 +13,10 @@ use tem00_beam::{
 };
 
 use super::*;
-use crate::status::{Status, tem00_last_error_parameter};
+use crate::{
+    status::Status,
+    testing::{argument, last_parameter, pointer, refusal},
+};
 
 const ANGLES: [f64; 4] = [-0.4, -0.2, 0.3, 0.5];
 const POWERS: [f64; 4] = [0.0, 1.0, 0.7, 0.1];
@@ -248,11 +251,4 @@ impl Variates {
         let bits = u32::try_from((z ^ (z >> 31)) >> 32).unwrap();
         f64::from(bits) / 4_294_967_296.0
     }
-}
-
-/// The parameter that the last failure named.
-fn last_parameter() -> String {
-    // SAFETY: the text is that of this thread, and no call fails meanwhile.
-    let text = unsafe { CStr::from_ptr(tem00_last_error_parameter()) };
-    text.to_str().unwrap().to_owned()
 }

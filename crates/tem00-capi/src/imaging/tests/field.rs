@@ -1,3 +1,5 @@
+use tem00_decorrelation::{DMat3, FieldSlices, MotionField};
+
 use super::*;
 
 const COUNT: usize = 37;
@@ -223,6 +225,6 @@ fn results_in_one_place_are_refused() {
             results,
         )
     };
-    let expected = (Status::InvalidPointer, "slice_coordinate".to_owned());
+    let expected = pointer("slice_coordinate");
     assert_eq!(refusal(status), expected, "two results in one column");
 }

@@ -74,13 +74,12 @@ Spot::Spot(const Properties &props)
 }
 
 LightPointer Spot::light(const Source &source, const tem00_placement &placement) const {
-    auto first = round_light(*this, 0, source, placement, { { "not_paraxial", "waist_radius" } });
+    auto first = round_light(*this, 0, source, placement, {});
     if (!elliptic)
         return first;
     // Alone, a bad value of the second axis is told from one of the first.
     round_light(*this, 1, source, placement,
-                { { "not_paraxial", "waist_radius_y" },
-                  { "waist_radius", "waist_radius_y" },
+                { { "waist_radius", "waist_radius_y" },
                   { "waist_distance", "waist_distance_y" },
                   { "m_squared", "m_squared_y" } });
     tem00_elliptic_description description{};
@@ -129,8 +128,7 @@ LightPointer Line::light(const Source &source, const tem00_placement &placement)
     description.focus_curve    = focus_curve;
     description.profile        = profile;
     description.edge           = edge;
-    return create(tem00_light_create_line, description,
-                  { { "not_paraxial", "thickness" }, { "waist_radius", "thickness" } });
+    return create(tem00_light_create_line, description, { { "waist_radius", "thickness" } });
 }
 
 void Line::traverse(TraversalCallback *callback) {

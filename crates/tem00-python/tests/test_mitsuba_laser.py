@@ -130,7 +130,8 @@ def lit_points(light: Any, count: int = 20_000) -> Array:
     depth = rng.uniform(0.01, 0.5, count) / rays.cos
     points: Array = rays.origin + depth[:, np.newaxis] * rays.direction
     # Steep rays of wide fans leave the scene.
-    return points[np.linalg.norm(points, axis=1) < 1.0]
+    near: Array = points[np.linalg.norm(points, axis=1) < 1.0]
+    return near
 
 
 def interaction(points: Array) -> Any:
@@ -151,7 +152,8 @@ def box_around(light: Any, points: Array) -> Array:
     """
     size = np.maximum(np.linalg.norm(points, axis=1), np.linalg.norm(light.origin))
     corners = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 3), axis=-1).reshape(27, 1, 3)
-    return points + corners @ frame_of(light) * (4.0 * EPSILON * size[:, np.newaxis])
+    moved: Array = points + corners @ frame_of(light) * (4.0 * EPSILON * size[:, np.newaxis])
+    return moved
 
 
 @every_laser
@@ -204,11 +206,11 @@ def test_rays_are_those_of_the_library(name: str) -> None:
     ray, weight = laser.sample_ray(0.0, 0.5, mi.Point2f(u.T[2:]), mi.Point2f(u.T[:2]))
     rays = light.sample_ray(u.astype(np.float64))
 
-    # The inverse error function of Dr.Jit is off by 1e-6; a sine next to 1 magnifies rounding.
+    # The inverse error function of Dr.Jit is off by 1e-6; angles next to 90 degrees magnify it.
     plain = rays.cos > 0.2
     assert plain.mean() > 0.95
     tilt = np.abs(np.array(ray.d).T - rays.direction).max(axis=1)
-    assert (tilt < 4e-6)[plain].all()
+    assert (tilt * rays.cos < 2e-6)[plain].all()
     size = np.linalg.norm(rays.origin - light.origin, axis=1) / rays.cos**2
     shift = np.abs(np.array(ray.o).T - rays.origin).max(axis=1)
     assert (shift < 4e-6 * (size + 1e-4) + 2.0 * EPSILON)[plain].all()
@@ -289,9 +291,10 @@ def test_the_light_follows_its_place_by_differentiation(name: str) -> None:
     shift = mi.Float(0.0)
     dr.enable_grad(shift)
     parameters = mi.traverse(laser)
-    ex = [float(c) for c in light.ex]
-    moved = mi.AffineTransform4f().translate(mi.Vector3f(*ex) * shift) @ parameters["to_world"]
-    parameters["to_world"] = moved
+    along_x = mi.Vector3f(*(shift * float(component) for component in light.ex))
+    parameters["to_world"] = (
+        mi.AffineTransform4f().translate(along_x) @ parameters["to_world"]
+    )
     parameters.update()
     points = lit_points(light, 1000)
     _, weight = laser.sample_direction(interaction(points), mi.Point2f(0.5), True)
@@ -421,11 +424,14 @@ def test_the_other_variants_hold_a_laser_or_say_why_not(monkeypatch: pytest.Monk
     monkeypatch.delenv("TEM00_MITSUBA_PLUGINS", raising=False)
     tem00.mitsuba.register()
     points = lit_points(library_light(SPOT), 100)
-    _, coloured = sampled_direction(emitter(SPOT), points)
+    green = {"type": "rgb", "value": [0.0, 1.0, 0.0]}
+    _, coloured = sampled_direction(emitter(SPOT, color=green), points)
     try:
         mi.set_variant("llvm_ad_mono")
-        _, grey = sampled_direction(emitter(SPOT), points)
-        assert np.allclose(grey[0], coloured[0], rtol=4.0 * EPSILON)
+        _, grey = sampled_direction(emitter(SPOT, color=green), points)
+        # The luminance of the green of sRGB (ITU-R BT.709).
+        assert np.allclose(grey[0], 0.7152 * coloured[1], rtol=1e-4)
+        assert grey.any()
         mi.set_variant("llvm_ad_spectral")
         with pytest.raises(RuntimeError, match="use an rgb or mono variant"):
             tem00.mitsuba.register()

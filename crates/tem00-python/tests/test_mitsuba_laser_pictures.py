@@ -96,7 +96,7 @@ def perspective() -> Node:
 
 def pictures(scene: Any, count: int, spp: int) -> Array:
     """Render independent pictures, shape (count, rows, columns), of the first channel."""
-    renders = [np.array(mi.render(scene, spp=spp, seed=seed)) for seed in range(count)]
+    renders = [np.array(mi.render(scene, spp=spp, seed=mi.UInt32(seed))) for seed in range(count)]
     return np.stack(renders)[..., 0].astype(np.float64)
 
 
@@ -181,10 +181,10 @@ def test_the_picture_follows_the_power_by_differentiation() -> None:
     parameters = mi.traverse(scene)
     dr.enable_grad(parameters["laser.power"])
     parameters.update()
-    picture = mi.render(scene, parameters, spp=8, seed=1, seed_grad=2)
+    picture = mi.render(scene, parameters, spp=8, seed=mi.UInt32(1), seed_grad=2)
     dr.backward(dr.sum(picture, axis=None))
     # Linear in the power, along the same paths; sums of 18,000 samples in single precision.
-    total = np.array(mi.render(scene, spp=8, seed=2)).sum(dtype=np.float64)
+    total = np.array(mi.render(scene, spp=8, seed=mi.UInt32(2))).sum(dtype=np.float64)
     assert dr.grad(parameters["laser.power"])[0] == pytest.approx(total / POWER, rel=1e-4)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from math import radians, tan
 from typing import TYPE_CHECKING, Final, cast
 
@@ -17,7 +18,7 @@ from tem00.mitsuba.properties import Description, refused
 from tem00.mitsuba.spot import Axis, Spot
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from drjit.auto.ad import Float
     from numpy.typing import NDArray
@@ -30,8 +31,6 @@ _PROFILES = {
     "uniform": beam.LineProfile.uniform_tan,
     "uniform_angle": beam.LineProfile.uniform_angle,
 }
-# What the library calls the properties of a line.
-_LINE_NAMES: Final = {"waist_radius": "thickness", "dtype": "thickness", "z": "focus_distance"}
 _VARIABLES = (Tan(), Angle(), Sin())
 # The frame of a scene applies the position; here the light stands at the origin.
 _AT_THE_ORIGIN = beam.Placement(
@@ -76,47 +75,42 @@ def frame_of(to_world: mi.AffineTransform4f) -> Frame:
 
 def _spot(numbers: Mapping[str, float]) -> Spot:
     axes = _located(numbers, ""), _located(numbers, "_y")
-    try:
+    with _named({"dtype": "waist_radius"}):
         light = beam.SpotLight.place_astigmatic(
             beam.AstigmaticBeam(*axes), _AT_THE_ORIGIN, numbers["power"]
         )
         rows = light.to_rows(np.float32)
-    except ParameterError as error:
-        raise _renamed(error, {"dtype": "waist_radius"}) from None
     return Spot(x=_axis(rows[4]), y=_axis(rows[5]), cutoff=opaque(rows[1][3]))
 
 
 def _located(numbers: Mapping[str, float], suffix: str) -> beam.LocatedBeam:
     """Return the beam along one axis; what is not given is that of the first."""
-
-    def number(name: str) -> float:
-        return numbers.get(name + suffix, numbers[name])
-
-    try:
-        focus = beam.GaussianBeam.from_waist(numbers["wavelength"], number("waist_radius"))
-        focus = focus.with_m_squared(number("m_squared"))
-        return beam.LocatedBeam(focus, number("waist_distance"))
-    except ParameterError as error:
-        names = ("waist_radius", "m_squared", "waist_distance")
-        raise _renamed(error, {name: name + suffix for name in names}) from None
+    names = ("waist_radius", "m_squared", "waist_distance")
+    waist_radius, m_squared, waist_distance = (
+        numbers.get(name + suffix, numbers[name]) for name in names
+    )
+    with _named({name: name + suffix for name in names}):
+        focus = beam.GaussianBeam.from_waist(numbers["wavelength"], waist_radius)
+        return beam.LocatedBeam(focus.with_m_squared(m_squared), waist_distance)
 
 
 def _line(description: Description) -> Line:
-    numbers, choices = description.numbers, description.choices
-    try:
+    numbers = description.numbers
+    # The waist radius is half the thickness; messages say which value they speak of.
+    with _named({"waist_radius": "thickness"}):
         focus = beam.GaussianBeam.from_waist(numbers["wavelength"], 0.5 * numbers["thickness"])
         focus = focus.with_m_squared(numbers["m_squared"])
-        line = beam.LaserLine(focus, _fan(description, focus), _profile(description))
+    fan = _fan(description, focus)
+    with _named({"dtype": "thickness"}):
+        line = beam.LaserLine(focus, fan, _profile(description))
         rows = beam.LineLight.place(line, _AT_THE_ORIGIN, numbers["power"]).to_rows(np.float32)
-    except ParameterError as error:
-        raise _renamed(error, _LINE_NAMES) from None
     return Line(
         across=_axis(rows[4]),
         profile=_slope_profile(rows[5]),
         cutoff=opaque(rows[1][3]),
         apex_offset=opaque(rows[2][3]),
         source_radius=opaque(rows[3][3]),
-        focus_on_plane=choices["focus_curve"] == "plane",
+        focus_on_plane=fan.focus_curve == "equal_plane",
     )
 
 
@@ -125,10 +119,11 @@ def _fan(description: Description, focus: beam.GaussianBeam) -> beam.FanGeometry
     degrees, focus_distance = numbers["fan_angle"], numbers["focus_distance"]
     if not 0.0 < degrees < 180.0:
         raise refused("fan_angle", f"must lie between 0 and 180 degrees, got {degrees}")
-    # A lens that receives a round beam fans it out from a point where it would be this wide.
     apex_offset = numbers.get("apex_offset")
     if apex_offset is None:
-        apex_offset = focus.radius_at(focus_distance) / tan(0.5 * radians(degrees))
+        # A lens that receives a round beam fans it out from a point where it would be this wide.
+        with _named({"z": "focus_distance"}):
+            apex_offset = focus.radius_at(focus_distance) / tan(0.5 * radians(degrees))
     return beam.FanGeometry(
         fan_angle=radians(degrees),
         apex_offset=apex_offset,
@@ -165,7 +160,11 @@ def opaque(value: float) -> Float:
     return cast("Float", dr.opaque(mi.Float, float(value)))
 
 
-def _renamed(error: ParameterError, names: Mapping[str, str]) -> ParameterError:
-    """Return the error with the name of the property in place of that of the argument."""
-    name = names.get(error.parameter, error.parameter)
-    return error if str(error).startswith("laser: ") else refused(name, str(error))
+@contextmanager
+def _named(names: Mapping[str, str]) -> Iterator[None]:
+    """Let refusals of the library name the property in place of the argument."""
+    try:
+        yield
+    except ParameterError as error:
+        name = names.get(error.parameter, error.parameter)
+        raise refused(name, str(error)) from None

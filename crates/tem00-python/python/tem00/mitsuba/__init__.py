@@ -92,5 +92,7 @@ def _register_in(variant: str) -> None:
         return
     # Needs a variant, so it cannot stand above.
     from tem00.mitsuba.laser import laser_class
+    from tem00.mitsuba.speckle import speckle_class
 
     mi.register_emitter("laser", laser_class(variant))
+    mi.register_integrator("speckle", speckle_class(variant))

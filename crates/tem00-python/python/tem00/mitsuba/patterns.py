@@ -16,9 +16,10 @@ if TYPE_CHECKING:
 
 # Steps of Weyl's sequence: they keep the seeds of the lasers apart. The same in `tem00 render`.
 _SEED_STEP = 0x9E37_79B9_7F4A_7C15
-# What the patterns of all lasers may take, in bytes, and the tables of all.
+# What the patterns of a laser may take, in bytes, and the tables of all.
 _PATTERN_MEMORY = 1 << 30
 _TABLE_MEMORY = 1 << 30
+_BYTES_PER_NODE = 8
 # The root of x**3 = x + 1: multiples of its powers are far apart (Roberts 2018).
 _PLASTIC = 1.324717957244746
 
@@ -77,8 +78,9 @@ class Pattern:
     def factor(self, film: mi.Point2f) -> mi.Float:
         """Return the intensity at points of the film, in pixels; its mean is 1."""
         x, y = dr.fma(self._scale, film, self._origin)
+        intensity = self._table.at(x, y)
         # The spline swings below dark points by 1e-4 at most.
-        return dr.maximum(self._table.at(x, y), 0.0)
+        return dr.select(intensity > 0.0, intensity, 0.0)
 
 
 def generate(
@@ -136,12 +138,13 @@ def _place(number: int) -> tuple[float, float]:
 
 
 def _check_table(stacks: list[SpeckleStack]) -> None:
-    nodes = sum(
-        stack.size[0] * stack.size[1] * nodes_per_sample(stack) ** 2 for stack in stacks
+    needed = sum(
+        _BYTES_PER_NODE * stack.size[0] * stack.size[1] * nodes_per_sample(stack) ** 2
+        for stack in stacks
     )
-    if 4 * nodes > _TABLE_MEMORY:
+    if needed > _TABLE_MEMORY:
         raise refused(
             "speckle_size",
             f"so small that the image holds too many speckles: their table would take "
-            f"{4 * nodes / 2**30:.1f} GiB of {_TABLE_MEMORY / 2**30:.0f} GiB",
+            f"{needed / 2**30:.1f} GiB, and {_TABLE_MEMORY / 2**30:.0f} GiB are allowed",
         )

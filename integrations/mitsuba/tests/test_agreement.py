@@ -25,8 +25,8 @@ def pictures(variant: str, figure: str, samples: int) -> Images:
     scene = mi.load_file(str(FIGURES / f"{figure}.xml"), spp=samples)
     drawn = []
     for seed in range(REPEATS):
-        picture = np.array(mi.render(scene, seed=seed), dtype=float)
-        grey = picture.reshape(picture.shape[0], picture.shape[1], -1)[:, :, 0]
+        picture: Images = np.array(mi.render(scene, seed=mi.UInt32(seed)))
+        grey = picture[:, :, 0].astype(float)
         rows, columns = (side // BLOCK for side in grey.shape)
         grey = grey[: rows * BLOCK, : columns * BLOCK]
         drawn.append(grey.reshape(rows, BLOCK, columns, BLOCK).mean(axis=(1, 3)))
@@ -40,7 +40,8 @@ def test_a_figure_is_the_same_in_scalar_and_vectorised_variants(figure: str) -> 
 
     def student(first: Images, second: Images) -> Images:
         variance = (first.var(axis=0, ddof=1) + second.var(axis=0, ddof=1)) / REPEATS
-        return (first.mean(axis=0) - second.mean(axis=0)) / np.sqrt(variance)
+        t: Images = (first.mean(axis=0) - second.mean(axis=0)) / np.sqrt(variance)
+        return t
 
     # Student's t has at least 4 degrees of freedom. Of the whole picture: beyond 8.6 by 1e-3.
     assert abs(student(scalar.mean(axis=(1, 2)), vector.mean(axis=(1, 2)))) < 8.6

@@ -80,7 +80,7 @@ def test_a_spot_is_a_gaussian_beam(
     x, y, z = ((points - origin) @ axes.T).T
 
     # Siegman 1986, ch. 17: w² = w0² + θ² (z − z0)², and the flux follows the wavefront.
-    peak, slopes = 2 * POWER / np.pi, []
+    peak, slopes = np.full_like(z, 2 * POWER / np.pi), []
     exponent = np.zeros_like(z)
     for across, (waist, z0, quality) in zip((x, y), axes_of_beam, strict=True):
         divergence = quality * WAVELENGTH / (np.pi * waist)
@@ -224,7 +224,8 @@ def test_the_particle_tracer_makes_the_picture_of_the_path_tracer(shape: str) ->
 def blocks(picture: scenes.Image) -> scenes.Image:
     """Return the mean of each block of eight by eight pixels."""
     rows, columns = picture.shape
-    return picture.reshape(rows // 8, 8, columns // 8, 8).mean(axis=(1, 3))
+    means: scenes.Image = picture.reshape(rows // 8, 8, columns // 8, 8).mean(axis=(1, 3))
+    return means
 
 
 def test_a_plate_reflects_the_power_of_the_laser() -> None:
@@ -248,7 +249,7 @@ def test_a_shadow_ray_is_sent_to_where_light_comes_from() -> None:
     # middle of the fan's apex behind it.
     laser = mi.load_dict(line())
     interaction = mi.SurfaceInteraction3f()
-    interaction.p = [0.03, 0.0, 0.0]
+    interaction.p = mi.Point3f(0.03, 0.0, 0.0)
     sample, weight = laser.sample_direction(interaction, [0.5, 0.5])
     origin, axes = frame(laser)
     assert abs((np.array(sample.p) - origin) @ axes[2]) < 1e-7
@@ -264,7 +265,7 @@ def test_where_no_light_arrives_no_shadow_ray_is_needed() -> None:
     interaction = mi.SurfaceInteraction3f()
     # Far beside the beam, and behind the laser.
     for point in ([0.05, 0.0, 0.0], [0.2, 0.0, 0.3464]):
-        interaction.p = point
+        interaction.p = mi.Point3f(point)
         sample, weight = laser.sample_direction(interaction, [0.5, 0.5])
         assert sample.pdf == 0
         assert np.all(np.array(weight) == 0)

@@ -4,6 +4,7 @@
 #include <mitsuba/render/emitter.h>
 #include <mitsuba/render/medium.h>
 
+#include <optional>
 #include <variant>
 
 #include "coherent.hpp"
@@ -22,8 +23,7 @@ public:
     MI_IMPORT_TYPES()
 
     explicit Laser(const Properties &props)
-        : Base(props), m_source(props), m_shape(shape_of(props)), m_power(m_source.power),
-          m_wavelength(m_source.wavelength), m_color(color_of(props)) {
+        : Base(props), m_source(props), m_shape(shape_of(props)), m_color(color_of(props)) {
         // No ray from a surface finds the laser.
         m_flags = +EmitterFlags::DeltaPosition | COHERENT;
         place();
@@ -32,24 +32,24 @@ public:
     std::pair<DirectionSample3f, Spectrum> sample_direction(const Interaction3f &it,
                                                             const Point2f &,
                                                             Mask) const override {
-        const tem00_next_event event = event_at(it.p);
-        DirectionSample3f ds         = dr::zeros<DirectionSample3f>();
-        ds.time                      = it.time;
-        ds.delta                     = true;
-        ds.emitter                   = this;
-        ds.n                         = Normal3f(axis());
-        if (event.e_perp == 0.0) {
+        const auto event     = event_at(it.p);
+        DirectionSample3f ds = dr::zeros<DirectionSample3f>();
+        ds.time              = it.time;
+        ds.delta             = true;
+        ds.emitter           = this;
+        ds.n                 = Normal3f(axis());
+        if (!event) {
             // Nothing arrives: with a density of 0 no shadow ray is sent.
             ds.p    = m_to_world.value().translation();
             ds.d    = -axis();
             ds.dist = dr::norm(ds.p - it.p);
             return { ds, 0.f };
         }
-        ds.p    = Point3f(vector(event.point));
-        ds.d    = vector(event.wi);
-        ds.dist = (Float) event.distance;
+        ds.p    = Point3f(vector(event->point));
+        ds.d    = vector(event->wi);
+        ds.dist = (Float) event->distance;
         ds.pdf  = 1.f;
-        return { ds, m_color * (Float) event.e_perp };
+        return { ds, m_color * (Float) event->e_perp };
     }
 
     Float pdf_direction(const Interaction3f &, const DirectionSample3f &, Mask) const override {
@@ -58,14 +58,14 @@ public:
 
     Spectrum eval_direction(const Interaction3f &it, const DirectionSample3f &,
                             Mask) const override {
-        return m_color * (Float) event_at(it.p).e_perp;
+        const auto event = event_at(it.p);
+        return event ? m_color * (Float) event->e_perp : Spectrum(0.f);
     }
 
     std::pair<Ray3f, Spectrum> sample_ray(Float time, Float, const Point2f &slope,
                                           const Point2f &position, Mask) const override {
-        const double u[4] = { position.x(), position.y(), slope.x(), slope.y() };
-        tem00_ray_sample ray{};
-        check(tem00_light_sample_ray(m_light.get(), u, &ray), "laser");
+        const tem00_ray_sample ray =
+            m_light->sample_ray({ position.x(), position.y(), slope.x(), slope.y() });
         return { Ray3f(Point3f(vector(ray.origin)), vector(ray.direction), time, Wavelength()),
                  m_color * (Float) ray.flux };
     }
@@ -91,15 +91,13 @@ public:
 
     void traverse(TraversalCallback *callback) override {
         Base::traverse(callback);
-        callback->put("power", m_power, ParamFlags::NonDifferentiable);
         callback->put("color", m_color, ParamFlags::NonDifferentiable);
         callback->put("to_world", m_to_world, ParamFlags::NonDifferentiable);
-        callback->put("wavelength", m_wavelength,
-                      ParamFlags::NonDifferentiable | ParamFlags::ReadOnly);
+        m_source.traverse(callback);
+        std::visit([&](auto &shape) { shape.traverse(callback); }, m_shape);
     }
 
     void parameters_changed(const std::vector<std::string> &keys) override {
-        m_source.power = m_power;
         place();
         Base::parameters_changed(keys);
     }
@@ -138,11 +136,8 @@ private:
     /// The direction of travel.
     Vector3f axis() const { return m_to_world.value() * Vector3f(0.f, 0.f, 1.f); }
 
-    tem00_next_event event_at(const Point3f &p) const {
-        const double point[3] = { p.x(), p.y(), p.z() };
-        tem00_next_event event{};
-        check(tem00_light_next_event(m_light.get(), point, &event), "laser");
-        return event;
+    std::optional<tem00_next_event> event_at(const Point3f &p) const {
+        return m_light->next_event({ p.x(), p.y(), p.z() });
     }
 
     /// Prepares the light for where `to_world` puts it.
@@ -158,13 +153,11 @@ private:
             placement.direction[i] = z[i];
             placement.fan_axis[i]  = x[i];
         }
-        m_light = std::visit(
+        auto light = std::visit(
             [&](const auto &shape) { return shape.light(m_source, placement); }, m_shape);
-        // Mitsuba computes in single precision, which refuses some lights.
-        const float origin_f32[3] = { origin.x(), origin.y(), origin.z() };
-        tem00_next_event_f32 event{};
-        check(tem00_light_next_event_f32(m_light.get(), origin_f32, &event), "laser",
-              { { "single_precision", "power" } });
+        // Mitsuba computes in single precision, which cannot carry every light.
+        named("laser", { { "single_precision", "power" } }, [&] { return light.plain_data(); });
+        m_light = std::move(light);
     }
 
     /// Lengths are not scaled with the frame, so that it has to leave them as they are.
@@ -184,10 +177,8 @@ private:
 
     Source m_source;
     LaserShape m_shape;
-    /// As they stand in the traversal.
-    Float m_power, m_wavelength;
     Spectrum m_color;
-    LightPointer m_light;
+    std::optional<tem00::light> m_light;
 };
 
 } // namespace mitsuba

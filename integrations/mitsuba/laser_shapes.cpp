@@ -24,17 +24,14 @@ Names with_placement(Names names) {
     return names;
 }
 
-/// Takes a light from the library, or throws under the name of the property.
+/// Makes a light, or throws under the name of the property.
 template <typename Description>
-LightPointer create(tem00_status (*call)(const Description *, tem00_light **),
-                    const Description &description, const Names &names) {
-    tem00_light *light = nullptr;
-    check(call(&description, &light), "laser", with_placement(names));
-    return LightPointer(light);
+tem00::light make(const Description &description, const Names &names) {
+    return named("laser", with_placement(names), [&] { return tem00::light(description); });
 }
 
 /// A round beam with the values of one axis.
-LightPointer round_light(const Spot &spot, int axis, const Source &source,
+tem00::light round_light(const Spot &spot, int axis, const Source &source,
                          const tem00_placement &placement, const Names &names) {
     tem00_spot_description description{};
     description.placement      = placement;
@@ -43,13 +40,22 @@ LightPointer round_light(const Spot &spot, int axis, const Source &source,
     description.waist_radius   = spot.waist_radius[axis];
     description.waist_distance = spot.waist_distance[axis];
     description.m_squared      = spot.m_squared[axis];
-    return create(tem00_light_create_spot, description, names);
+    return make(description, names);
+}
+
+void expose(TraversalCallback *callback, const char *name, double &value) {
+    callback->put(name, value, ParamFlags::NonDifferentiable);
 }
 
 } // namespace
 
 Source::Source(const Properties &props)
     : wavelength(props.get<double>("wavelength")), power(props.get<double>("power")) {}
+
+void Source::traverse(TraversalCallback *callback) {
+    expose(callback, "wavelength", wavelength);
+    expose(callback, "power", power);
+}
 
 Spot::Spot(const Properties &props)
     : waist_radius{ props.get<double>("waist_radius"), 0.0 },
@@ -64,14 +70,13 @@ Spot::Spot(const Properties &props)
     m_squared[1]        = quality.value_or(m_squared[0]);
 }
 
-LightPointer Spot::light(const Source &source, const tem00_placement &placement) const {
-    auto first = round_light(*this, 0, source, placement, { { "not_paraxial", "waist_radius" } });
+tem00::light Spot::light(const Source &source, const tem00_placement &placement) const {
+    auto first = round_light(*this, 0, source, placement, {});
     if (!elliptic)
         return first;
     // Alone, a bad value of the second axis is told from one of the first.
     round_light(*this, 1, source, placement,
-                { { "not_paraxial", "waist_radius_y" },
-                  { "waist_radius", "waist_radius_y" },
+                { { "waist_radius", "waist_radius_y" },
                   { "waist_distance", "waist_distance_y" },
                   { "m_squared", "m_squared_y" } });
     tem00_elliptic_description description{};
@@ -83,7 +88,18 @@ LightPointer Spot::light(const Source &source, const tem00_placement &placement)
         description.waist_distance[axis] = waist_distance[axis];
         description.m_squared[axis]      = m_squared[axis];
     }
-    return create(tem00_light_create_elliptic, description, {});
+    return make(description, {});
+}
+
+void Spot::traverse(TraversalCallback *callback) {
+    expose(callback, "waist_radius", waist_radius[0]);
+    expose(callback, "waist_distance", waist_distance[0]);
+    expose(callback, "m_squared", m_squared[0]);
+    if (!elliptic)
+        return;
+    expose(callback, "waist_radius_y", waist_radius[1]);
+    expose(callback, "waist_distance_y", waist_distance[1]);
+    expose(callback, "m_squared_y", m_squared[1]);
 }
 
 Line::Line(const Properties &props)
@@ -96,7 +112,7 @@ Line::Line(const Properties &props)
       edge(profile == TEM00_LINE_PROFILE_POWELL ? props.get<double>("edge", 0.05) : 0.0),
       m_squared(props.get<double>("m_squared", 1.0)) {}
 
-LightPointer Line::light(const Source &source, const tem00_placement &placement) const {
+tem00::light Line::light(const Source &source, const tem00_placement &placement) const {
     tem00_line_description description{};
     description.placement      = placement;
     description.wavelength     = source.wavelength;
@@ -109,8 +125,18 @@ LightPointer Line::light(const Source &source, const tem00_placement &placement)
     description.focus_curve    = focus_curve;
     description.profile        = profile;
     description.edge           = edge;
-    return create(tem00_light_create_line, description,
-                  { { "not_paraxial", "thickness" }, { "waist_radius", "thickness" } });
+    return make(description, { { "waist_radius", "thickness" } });
+}
+
+void Line::traverse(TraversalCallback *callback) {
+    expose(callback, "fan_angle", fan_angle);
+    expose(callback, "thickness", thickness);
+    expose(callback, "focus_distance", focus_distance);
+    expose(callback, "m_squared", m_squared);
+    if (apex_offset)
+        expose(callback, "apex_offset", *apex_offset);
+    if (profile == TEM00_LINE_PROFILE_POWELL)
+        expose(callback, "edge", edge);
 }
 
 double Line::default_apex_offset(double wavelength) const {

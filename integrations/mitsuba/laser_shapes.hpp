@@ -2,23 +2,22 @@
 
 #pragma once
 
+#include <mitsuba/core/object.h>
 #include <mitsuba/core/properties.h>
 
-#include <tem00.h>
+#include <tem00.hpp>
 
-#include <memory>
 #include <optional>
 
 namespace mitsuba {
 
-struct DestroyLight {
-    void operator()(tem00_light *light) const { tem00_light_destroy(light); }
-};
-using LightPointer = std::unique_ptr<tem00_light, DestroyLight>;
+// `traverse` exposes the numbers under the names of the properties, to be changed.
 
 /// What lasers of all shapes have.
 struct Source {
     explicit Source(const Properties &props);
+
+    void traverse(TraversalCallback *callback);
 
     /// In the scene's unit of length.
     double wavelength;
@@ -30,7 +29,8 @@ struct Source {
 struct Spot {
     explicit Spot(const Properties &props);
 
-    LightPointer light(const Source &source, const tem00_placement &placement) const;
+    tem00::light light(const Source &source, const tem00_placement &placement) const;
+    void traverse(TraversalCallback *callback);
 
     /// An elliptic beam has second values of its own.
     bool elliptic;
@@ -43,7 +43,8 @@ struct Spot {
 struct Line {
     explicit Line(const Properties &props);
 
-    LightPointer light(const Source &source, const tem00_placement &placement) const;
+    tem00::light light(const Source &source, const tem00_placement &placement) const;
+    void traverse(TraversalCallback *callback);
 
     double fan_angle;
     double thickness;

@@ -161,27 +161,22 @@ double Patterns::factor(const Emitter *laser, const FilmPosition &position) cons
         const double x = pattern.samples_per_pixel * (position.x - m_settings.shift_x);
         // In the pattern y points up.
         const double y = -pattern.samples_per_pixel * (position.y - m_settings.shift_y);
-        double intensity = 0.0;
-        check(tem00_stack_intensity(pattern.stack.get(), pattern.origin[0] + x,
-                                    pattern.origin[1] + y, m_settings.u, &intensity),
-              "speckle");
-        return intensity;
+        return pattern.stack->intensity(pattern.origin[0] + x, pattern.origin[1] + y,
+                                        m_settings.u);
     }
     Throw("speckle: a laser has come into the scene while it is rendered");
 }
 
 Patterns::Pattern Patterns::pattern(Stack stack, double speckle_size, const Place &place) {
-    tem00_stack_info info{};
-    check(tem00_stack_describe(stack.get(), &info), "speckle");
+    const tem00_stack_info info = stack->info();
     return { nullptr, std::move(stack), info.speckle_size / speckle_size,
              { place[0] * (double) info.width, place[1] * (double) info.height } };
 }
 
 Patterns::Stack Patterns::generate(const Purpose &purpose, size_t laser) const {
-    const tem00_stack_description description = describe(purpose, laser);
-    tem00_stack *stack = nullptr;
-    check(tem00_stack_create(&description, &stack), "speckle");
-    return Stack(stack, tem00_stack_destroy);
+    return named("speckle", {}, [&] {
+        return std::make_shared<tem00::stack>(describe(purpose, laser));
+    });
 }
 
 tem00_stack_description Patterns::describe(const Purpose &purpose, size_t laser) const {
@@ -198,7 +193,7 @@ tem00_stack_description Patterns::describe(const Purpose &purpose, size_t laser)
         needs.speckle_size = purpose.speckle_sizes[laser];
         needs.frames       = 1;
         needs.memory_limit = memory;
-        check(tem00_stack_plan(&needs, &description), "speckle");
+        description        = tem00::plan(needs);
     }
     description.seed          = m_settings.seed + (laser + 1) * SEED_STEP;
     description.path          = m_settings.path;
@@ -210,10 +205,9 @@ tem00_stack_description Patterns::describe(const Purpose &purpose, size_t laser)
 }
 
 Patterns::Stack Patterns::read() const {
-    tem00_stack *stack = nullptr;
-    check(tem00_stack_read(m_settings.file.c_str(), UINT64_MAX, &stack), "speckle",
-          { { "path", "file" } });
-    return Stack(stack, tem00_stack_destroy);
+    return named("speckle", { { "path", "file" } }, [&] {
+        return std::make_shared<tem00::stack>(tem00::stack::read(m_settings.file, UINT64_MAX));
+    });
 }
 
 } // namespace mitsuba

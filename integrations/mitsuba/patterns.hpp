@@ -6,7 +6,7 @@
 #include <mitsuba/render/scene.h>
 #include <mitsuba/render/sensor.h>
 
-#include <tem00.h>
+#include <tem00.hpp>
 
 #include <array>
 #include <cstdint>
@@ -69,7 +69,7 @@ public:
     double factor(const Emitter *laser, const FilmPosition &position) const;
 
 private:
-    using Stack = std::shared_ptr<const tem00_stack>;
+    using Stack = std::shared_ptr<const tem00::stack>;
 
     struct Pattern {
         const Emitter *laser;

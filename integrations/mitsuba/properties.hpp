@@ -4,7 +4,7 @@
 
 #include <mitsuba/core/properties.h>
 
-#include <tem00.h>
+#include <tem00.hpp>
 
 #include <array>
 #include <map>
@@ -42,18 +42,20 @@ size_t choice(const Properties &props, std::string_view name,
 }
 
 /// Parameters of the library and the properties that they come from; others are called the same.
-using Names = std::map<std::string, std::string, std::less<>>;
+using Names = std::map<std::string, std::string>;
 
-/// Throws the library's last error under the name of the property, unless `status` is success.
-inline void check(tem00_status status, std::string_view plugin, const Names &names = {}) {
-    if (status == TEM00_STATUS_OK)
-        return;
-    const std::string parameter = tem00_last_error_parameter();
-    if (parameter.empty())
-        Throw("%s: %s", plugin, tem00_last_error());
-    const auto found = names.find(parameter);
-    Throw("%s: %s: %s", plugin, found == names.end() ? parameter : found->second,
-          tem00_last_error());
+/// Calls the library. What it refuses is refused under the name of the property.
+template <typename Call>
+auto named(std::string_view plugin, const Names &names, Call call) {
+    try {
+        return call();
+    } catch (const tem00::error &error) {
+        if (error.parameter().empty())
+            Throw("%s: %s", plugin, error.what());
+        const auto found = names.find(error.parameter());
+        const auto &name = found == names.end() ? error.parameter() : found->second;
+        Throw("%s: %s: %s", plugin, name, error.what());
+    }
 }
 
 } // namespace mitsuba

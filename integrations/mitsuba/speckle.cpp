@@ -12,6 +12,8 @@
 
 #include <drjit/morton.h>
 
+#include <algorithm>
+
 #include "coherent.hpp"
 #include "patterns.hpp"
 
@@ -33,6 +35,10 @@ public:
                     bool evaluate) override {
         if (m_patterns.settings().speckle)
             m_patterns.prepare(*scene, *sensor);
+        const auto &emitters = scene->emitters();
+        m_light_is_met = std::any_of(emitters.begin(), emitters.end(), [](const auto &emitter) {
+            return !has_flag(emitter->flags(), EmitterFlags::Delta);
+        });
         return Base::render(scene, sensor, seed, spp, develop, evaluate);
     }
 
@@ -169,17 +175,27 @@ private:
         const BSDF *bsdf = si.bsdf(walk.ray);
         const bool rough = has_flag(bsdf->flags(), BSDFFlags::Smooth);
         const auto light = rough ? draw_light(scene, si, sampler) : DirectLight();
+        if (is_last(bsdf, walk)) {
+            const auto [value, pdf] = bsdf->eval_pdf(BSDFContext(), si, light.wo);
+            walk.radiance += walk.throughput * direct(light, value, pdf, position, walk.rough);
+            walk.seen = true;
+            return false;
+        }
         // Two numbers for the direction, and one for the end of the path whether it is used or not.
         const Float lobe      = sampler->next_1d();
         const Point2f toward  = sampler->next_2d();
         const auto [value, pdf, scattered, weight] =
             bsdf->eval_pdf_sample(BSDFContext(), si, light.wo, lobe, toward);
-        if (rough) {
-            walk.radiance += walk.throughput * direct(light, value, pdf, position, walk.rough);
-            walk.rough = true;
-        }
+        walk.radiance += walk.throughput * direct(light, value, pdf, position, walk.rough);
+        walk.rough |= rough;
         scatter(si, scattered, weight, walk);
         return survives(sampler->next_1d(), walk);
+    }
+
+    /// Whether nothing is to be found beyond this surface.
+    bool is_last(const BSDF *bsdf, const Walk &walk) const {
+        return walk.depth + 2 == m_max_depth && !m_light_is_met &&
+               !has_flag(bsdf->flags(), BSDFFlags::Null);
     }
 
     SurfaceInteraction3f arrive(const Scene *scene, const Walk &walk) const {
@@ -251,6 +267,8 @@ private:
     }
 
     Patterns m_patterns;
+    /// Whether rays can meet an emitter by chance.
+    bool m_light_is_met = true;
 };
 
 } // namespace mitsuba

@@ -6,6 +6,8 @@ from pathlib import Path
 import mitsuba as mi
 import pytest
 
+import tem00.mitsuba
+
 FOLDER = Path(os.environ.get("TEM00_MITSUBA_PLUGINS", Path(__file__).parents[1] / "build"))
 
 
@@ -19,7 +21,6 @@ def plugin_folder() -> Path:
 
 @pytest.fixture(autouse=True)
 def scalar(plugin_folder: Path) -> None:
-    """Set the variant ``scalar_rgb`` and let Mitsuba find the plugins."""
+    """Set the variant ``scalar_rgb``, in which the plugins are found."""
     mi.set_variant("scalar_rgb")
-    if str(plugin_folder) not in map(str, mi.file_resolver()):
-        mi.file_resolver().append(str(plugin_folder))
+    tem00.mitsuba.register(plugin_folder)

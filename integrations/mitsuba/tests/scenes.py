@@ -73,5 +73,5 @@ def scene(integrator: Scene, **parts: Any) -> Any:
 
 def render(integrator: Scene, seed: int = 0, **parts: Any) -> Image:
     """Return the first channel of a picture, [row, column], in W/(m² sr)."""
-    picture = mi.render(scene(integrator, **parts), seed=seed)
-    return np.asarray(picture, dtype=float)[:, :, 0]
+    picture: Image = np.array(mi.render(scene(integrator, **parts), seed=mi.UInt32(seed)))
+    return picture[:, :, 0].astype(float)

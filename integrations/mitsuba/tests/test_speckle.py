@@ -36,7 +36,7 @@ def film_positions(**parts: Any) -> tuple[Image, Image]:
     integrator with the same seed, as the place on the film takes the first random numbers.
     """
     integrator = {"type": "aov", "aovs": "point:position"}
-    point = np.asarray(mi.render(scenes.scene(integrator, **parts), seed=0), dtype=float)
+    point: Image = np.array(mi.render(scenes.scene(integrator, **parts))).astype(float)
     per_metre = WIDTH / 2 / (scenes.DISTANCE * np.tan(np.radians(scenes.FOV / 2)))
     return WIDTH / 2 + per_metre * point[:, :, 0], HEIGHT / 2 - per_metre * point[:, :, 1]
 
@@ -198,7 +198,7 @@ def test_the_pattern_is_seen_in_a_mirror() -> None:
 
 def test_light_from_a_second_rough_surface_has_no_speckle() -> None:
     # The laser lights a wall beside the plate, which the camera does not see.
-    parts = {
+    parts: dict[str, Any] = {
         "laser": scenes.spot(
             to_world=scenes.looking([0, 0, 0.05], [0.08, 0, 0.05], [0, 1, 0])
         ),

@@ -5,12 +5,14 @@
 //! for other threads; these must leave its arguments alone.
 
 mod blocks;
+mod columns;
 mod images;
 mod numbers;
 mod results;
 
 use pyo3::{exceptions::PyRuntimeError, prelude::*};
 
+pub(crate) use columns::{Column, evaluate};
 pub(crate) use images::{ComplexImage, Image, image_array};
 pub(crate) use numbers::{Count, Numbers};
 pub(crate) use results::{array, vector_array, zeros};

@@ -1,34 +1,55 @@
-use pyo3::prelude::*;
-use tem00_beam as physics;
+//! Bindings of tem00-beam.
 
-use crate::{
-    arrays::{Numbers, map},
-    error::OrRaise,
-};
+mod abcd;
+mod arguments;
+mod astigmatic;
+mod astigmatic_system;
+mod closed_form;
+mod complex_parameter;
+mod cross_section;
+mod emitter;
+mod fit;
+mod gaussian;
+mod general;
+mod light;
+mod lights;
+mod line;
+mod line_lights;
+mod located;
+mod paper;
+mod placement;
+mod profile;
+mod records;
+mod rows;
+
+use pyo3::prelude::*;
 
 /// Gaussian beams, laser lines, and the lights that a renderer places.
+///
+/// All lengths are in metres, angles in radians, powers in watts. Light travels along +z of its own
+/// frame. A beam radius is where the irradiance has fallen to 1/e² of the axis. Coordinates beyond
+/// ±1e30, or not finite, are refused.
 #[pymodule(submodule)]
 pub(crate) mod beam {
     #[pymodule_export]
-    use super::GaussianBeam;
-}
-
-/// A round Gaussian beam; z = 0 is its waist.
-#[pyclass(frozen, eq, module = "tem00.beam")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct GaussianBeam(physics::GaussianBeam);
-
-#[pymethods]
-impl GaussianBeam {
-    /// Return the beam of a wavelength and a waist radius (1/e²), both in metres.
-    #[staticmethod]
-    fn from_waist(wavelength: f64, waist_radius: f64) -> PyResult<Self> {
-        let beam = physics::GaussianBeam::from_waist(wavelength, waist_radius).or_raise()?;
-        Ok(Self(beam))
-    }
-
-    /// Return the beam radius (1/e²) in metres at the distance z from the waist, in metres.
-    fn radius_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.radius_at(z))
-    }
+    use super::{
+        abcd::{AbcdMatrix, ThickLens},
+        astigmatic::AstigmaticBeam,
+        astigmatic_system::AstigmaticSystem,
+        closed_form::closed_form,
+        complex_parameter::ComplexBeamParameter,
+        cross_section::CrossSection,
+        emitter::Emitter,
+        fit::{CausticFit, Estimate, FitError, KnifeEdgeFit},
+        gaussian::GaussianBeam,
+        general::{GeneralAstigmaticBeam, SecondMoments},
+        lights::{AstigmaticLight, SpotLight},
+        line::{FanGeometry, LaserLine},
+        line_lights::{LineLight, TabulatedLineLight},
+        located::LocatedBeam,
+        paper::paper,
+        placement::{Axis, Ellipse, Placement},
+        profile::{AngularProfile, LineProfile},
+        records::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
+    };
 }

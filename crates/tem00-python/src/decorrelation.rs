@@ -1,5 +1,42 @@
+mod configuration;
+mod correlations;
+mod field;
+mod frame;
+mod geometry;
+mod illumination;
+mod lens;
+mod motion;
+mod paper;
+mod rigid;
+mod speckle_motion;
+mod vectors;
+mod wavefront;
+
 use pyo3::prelude::*;
 
 /// Imaging geometry, and how speckle moves and changes.
+///
+/// Vectors are arrays of shape (3,) in world coordinates or of shape (2,) along b1 (to the right)
+/// and b2 (up) of the camera. Directions lead away from the surface. Correlations are those of the
+/// intensity.
 #[pymodule(submodule)]
-pub(crate) mod decorrelation {}
+pub(crate) mod decorrelation {
+    #[pymodule_export]
+    use super::{
+        configuration::Configuration,
+        correlations::{
+            CorrelationLaw, axial_correlation, correlation, equivalent_axial_shift,
+            equivalent_pupil_shift, motion_multiple, pupil_overlap_correlation, slice_coordinate,
+        },
+        field::{FieldLight, FieldSetup, FieldSlices, MotionField},
+        frame::{CameraFrame, LineOfSight},
+        geometry::ImagingGeometry,
+        illumination::Illumination,
+        lens::{Focus, LensData, PupilDistances, ThickLensData},
+        motion::{Motion, SurfacePoint},
+        paper::paper,
+        rigid::{RigidMotion, RigidMotions},
+        speckle_motion::SpeckleMotion,
+        wavefront::Wavefront,
+    };
+}

@@ -1,4 +1,5 @@
 use pyo3::{
+    PyTypeInfo,
     prelude::*,
     types::{PyTuple, PyType},
 };
@@ -8,7 +9,7 @@ pub(crate) type Recipe<'py> = (Bound<'py, PyAny>, (Bound<'py, PyType>,));
 
 /// Returns how pickle makes an object of the class `T` again: by calling its static method `name`
 /// with these arguments.
-pub(crate) fn by_constructor<'py, T: pyo3::PyTypeInfo>(
+pub(crate) fn by_constructor<'py, T: PyTypeInfo>(
     py: Python<'py>,
     name: &str,
     arguments: impl IntoPyObject<

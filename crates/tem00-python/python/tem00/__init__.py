@@ -5,7 +5,7 @@ NumPy; numbers give numbers, arrays give arrays of the common shape.
 """
 
 import sys
-from types import ModuleType
+from types import BuiltinFunctionType, ModuleType
 
 from tem00 import _tem00
 from tem00._tem00 import (
@@ -19,12 +19,14 @@ from tem00._tem00 import (
 
 
 def _register(module: ModuleType, name: str) -> None:
-    """Make a module of the extension, and those inside, importable under a name."""
+    """Make a module of the extension, and what is inside, importable under a name."""
     module.__name__ = name
     sys.modules[name] = module
     for short, inner in list(vars(module).items()):
         if isinstance(inner, ModuleType):
             _register(inner, f"{name}.{short}")
+        elif isinstance(inner, BuiltinFunctionType):
+            inner.__module__ = name
 
 
 for _short in ("beam", "decorrelation", "speckle", "statistics"):

@@ -3,6 +3,15 @@ from tem00 import decorrelation as decorrelation
 from tem00 import speckle as speckle
 from tem00 import statistics as statistics
 
+__all__ = [
+    "ParameterError",
+    "__version__",
+    "beam",
+    "decorrelation",
+    "speckle",
+    "statistics",
+]
+
 __version__: str
 
 class ParameterError(ValueError):

@@ -22,7 +22,7 @@ impl<'a, const N: usize> Blocks<'a, N> {
     /// Refuses arguments that are not finite, shapes that do not fit together, and more elements than
     /// an address counts.
     pub(super) fn new(arguments: [Named<'a, '_>; N]) -> PyResult<Self> {
-        let shape = common_shape(&arguments)?;
+        let names = arguments.map(|(name, _)| name);
         let mut views = Vec::with_capacity(N);
         for (name, argument) in arguments {
             let view = ArrayViewD::from_shape(argument.shape(), argument.finite(name)?);
@@ -31,6 +31,19 @@ impl<'a, const N: usize> Blocks<'a, N> {
         let views = views
             .try_into()
             .map_err(|_| PyValueError::new_err("an argument is missing"))?;
+        Self::of_views(names, views)
+    }
+
+    /// Broadcasts the values of arguments by NumPy's rule.
+    ///
+    /// # Errors
+    ///
+    /// Refuses shapes that do not fit together, and more elements than an address counts.
+    pub(super) fn of_views(
+        names: [&'static str; N],
+        views: [ArrayViewD<'a, f64>; N],
+    ) -> PyResult<Self> {
+        let shape = common_shape(&names, &views)?;
         Ok(Self {
             length: element_count(&shape)?,
             shape,
@@ -107,10 +120,13 @@ impl<'a> Column<'a> {
 }
 
 /// The shape that all arguments broadcast to, by NumPy's rule.
-fn common_shape<const N: usize>(arguments: &[Named<'_, '_>; N]) -> PyResult<Vec<usize>> {
+fn common_shape<const N: usize>(
+    names: &[&'static str; N],
+    views: &[ArrayViewD<'_, f64>; N],
+) -> PyResult<Vec<usize>> {
     let mut common: Vec<usize> = Vec::new();
-    for (name, argument) in arguments {
-        let shape = argument.shape();
+    for (name, view) in names.iter().zip(views) {
+        let shape = view.shape();
         let longer = shape.len().saturating_sub(common.len());
         common.splice(0..0, core::iter::repeat_n(1, longer));
         let skipped = common.len() - shape.len();

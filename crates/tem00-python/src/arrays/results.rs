@@ -26,8 +26,25 @@ pub(super) fn element_count(shape: &[usize]) -> PyResult<usize> {
 ///
 /// Returns a `MemoryError` where memory does not hold them.
 pub(crate) fn zeros<T: Copy + Default, const M: usize>(shape: &[usize]) -> PyResult<[Vec<T>; M]> {
-    let count = element_count(shape)?;
-    let bytes = count.saturating_mul(size_of::<T>()).saturating_mul(M);
+    zeros_of([shape; M])
+}
+
+/// Returns an array of zeros of each of these shapes.
+///
+/// # Errors
+///
+/// Returns a `MemoryError` where memory does not hold them.
+pub(super) fn zeros_of<T: Copy + Default, const M: usize>(
+    shapes: [&[usize]; M],
+) -> PyResult<[Vec<T>; M]> {
+    let mut counts = [0; M];
+    for (count, shape) in counts.iter_mut().zip(shapes) {
+        *count = element_count(shape)?;
+    }
+    let all = counts
+        .iter()
+        .fold(0, |sum: usize, &count| sum.saturating_add(count));
+    let bytes = all.saturating_mul(size_of::<T>());
     let refusal = || {
         PyMemoryError::new_err(format!(
             "memory does not hold the {bytes} bytes of the result"
@@ -37,7 +54,7 @@ pub(crate) fn zeros<T: Copy + Default, const M: usize>(shape: &[usize]) -> PyRes
         return Err(refusal());
     }
     let mut out = [const { Vec::new() }; M];
-    for values in &mut out {
+    for (values, count) in out.iter_mut().zip(counts) {
         values.try_reserve_exact(count).map_err(|_| refusal())?;
         values.resize(count, T::default());
     }

@@ -1,0 +1,147 @@
+//! The complex beam parameter.
+
+use pyo3::{prelude::*, types::PyComplex};
+use tem00_beam as physics;
+
+use super::{
+    arguments::{OrRaiseAs, try_map},
+    located::LocatedBeam,
+};
+use crate::{arrays::Numbers, error::OrRaise};
+
+/// The complex beam parameter ``q = z + i z_R`` of a Gaussian beam in one plane.
+///
+/// It knows neither wavelength nor M²; together with the effective wavelength ``M² λ`` it also says
+/// how wide the beam is.
+///
+/// Parameters
+/// ----------
+/// distance_from_waist : float
+///     Signed distance past the waist, in metres, within ±1e30; negative where the beam converges.
+/// rayleigh_range : float
+///     Rayleigh range, in metres, from 1e-100 to 1e100.
+#[pyclass(frozen, eq, module = "tem00.beam")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ComplexBeamParameter(pub(super) physics::ComplexBeamParameter);
+
+#[expect(clippy::wrong_self_convention, reason = "Python objects are borrowed")]
+#[pymethods]
+impl ComplexBeamParameter {
+    #[new]
+    fn new(distance_from_waist: f64, rayleigh_range: f64) -> PyResult<Self> {
+        let parameter = physics::ComplexBeamParameter::new(distance_from_waist, rayleigh_range);
+        let names = [("waist_distance", "distance_from_waist")];
+        Ok(Self(parameter.or_raise_as(&names)?))
+    }
+
+    /// Return the parameter of a beam from what is seen of it in one plane.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : float
+    ///     Beam radius (1/e²), in metres.
+    /// curvature : float
+    ///     Wavefront curvature 1/R, in 1/m, positive where the beam diverges.
+    /// effective_wavelength : float
+    ///     ``M² λ``, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// ComplexBeamParameter
+    #[staticmethod]
+    fn from_radius_and_curvature(
+        radius: f64,
+        curvature: f64,
+        effective_wavelength: f64,
+    ) -> PyResult<Self> {
+        let parameter = physics::ComplexBeamParameter::from_radius_and_curvature(
+            radius,
+            curvature,
+            effective_wavelength,
+        );
+        let names = [("wavelength", "effective_wavelength")];
+        Ok(Self(parameter.or_raise_as(&names)?))
+    }
+
+    /// Signed distance past the waist, in metres.
+    #[getter]
+    fn distance_from_waist(&self) -> f64 {
+        self.0.distance_from_waist()
+    }
+
+    /// Rayleigh range, in metres.
+    #[getter]
+    fn rayleigh_range(&self) -> f64 {
+        self.0.rayleigh_range()
+    }
+
+    /// Wavefront curvature 1/R, in 1/m, positive where the beam diverges.
+    #[getter]
+    fn curvature(&self) -> f64 {
+        self.0.curvature()
+    }
+
+    /// Gouy phase, in radians.
+    #[getter]
+    fn gouy_phase(&self) -> f64 {
+        self.0.gouy_phase()
+    }
+
+    /// Return the beam radius (1/e²), in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// effective_wavelength : float or array_like
+    ///     ``M² λ``, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Radius in metres, in the shape of ``effective_wavelength``.
+    fn radius<'py>(
+        &self,
+        py: Python<'py>,
+        effective_wavelength: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let argument = ("effective_wavelength", &effective_wavelength);
+        try_map(py, argument, |wavelength| self.0.radius(wavelength))
+    }
+
+    /// Return the parameter as a complex number, in metres.
+    fn to_complex<'py>(&self, py: Python<'py>) -> Bound<'py, PyComplex> {
+        let q = self.0.to_complex();
+        PyComplex::from_doubles(py, q.re, q.im)
+    }
+
+    /// Return the parameter as a complex number, in metres.
+    fn __complex__<'py>(&self, py: Python<'py>) -> Bound<'py, PyComplex> {
+        let q = self.0.to_complex();
+        PyComplex::from_doubles(py, q.re, q.im)
+    }
+
+    /// Return the beam of this parameter, seen from the plane of the parameter.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Wavelength in the medium the beam travels in, in metres.
+    /// m_squared : float
+    ///     Beam quality factor, at least 1.
+    ///
+    /// Returns
+    /// -------
+    /// LocatedBeam
+    fn to_located_beam(&self, wavelength: f64, m_squared: f64) -> PyResult<LocatedBeam> {
+        let beam = self.0.to_located_beam(wavelength, m_squared);
+        Ok(LocatedBeam(beam.or_raise()?))
+    }
+
+    fn __repr__(&self) -> String {
+        let (distance, range) = self.__getnewargs__();
+        format!("ComplexBeamParameter(distance_from_waist={distance:?}, rayleigh_range={range:?})")
+    }
+
+    fn __getnewargs__(&self) -> (f64, f64) {
+        (self.0.distance_from_waist(), self.0.rayleigh_range())
+    }
+}

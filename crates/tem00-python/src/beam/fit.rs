@@ -1,0 +1,367 @@
+//! Beams fitted to measured data.
+
+use pyo3::{exceptions::PyRuntimeError, prelude::*};
+use tem00_beam as physics;
+
+use super::{
+    arguments::{list, map},
+    located::LocatedBeam,
+};
+use crate::{
+    arrays::Numbers,
+    error::{OrRaise, refused},
+};
+
+pyo3::create_exception!(
+    tem00.beam,
+    FitError,
+    PyRuntimeError,
+    "Measured data that are valid each, but do not determine a beam together."
+);
+
+/// A fitted value and its standard error, in the same unit.
+#[pyclass(frozen, eq, get_all, module = "tem00.beam")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Estimate {
+    /// The value that fits best.
+    value: f64,
+    /// The standard deviation of the value over repeated measurements, to first order.
+    standard_error: f64,
+}
+
+#[pymethods]
+impl Estimate {
+    #[new]
+    fn new(value: f64, standard_error: f64) -> Self {
+        Self {
+            value,
+            standard_error,
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        let (value, error) = self.__getnewargs__();
+        format!("Estimate(value={value:?}, standard_error={error:?})")
+    }
+
+    fn __getnewargs__(&self) -> (f64, f64) {
+        (self.value, self.standard_error)
+    }
+}
+
+impl From<physics::Estimate> for Estimate {
+    fn from(estimate: physics::Estimate) -> Self {
+        Self::new(estimate.value, estimate.standard_error)
+    }
+}
+
+/// A Gaussian beam fitted to its radius measured at several positions: its caustic.
+///
+/// The model is ``w(z) = √(w₀² + δ² (z − z₀)²)``, and ``M² = π w₀ δ / λ``. The radii count with errors
+/// proportional to the radius; ``with_errors`` takes other assumptions. M² is not confined to 1 and
+/// above: noise may bring it below.
+///
+/// Parameters
+/// ----------
+/// wavelength : float
+///     Wavelength in metres.
+/// positions : array_like, shape (n,)
+///     Positions along the beam, in metres; at least 4.
+/// radii : array_like, shape (n,)
+///     Second-moment radii there, half of D4σ, in metres.
+///
+/// Raises
+/// ------
+/// FitError
+///     If the data do not determine a beam.
+#[pyclass(frozen, eq, module = "tem00.beam")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CausticFit(physics::CausticFit);
+
+#[pymethods]
+impl CausticFit {
+    #[new]
+    fn new(wavelength: f64, positions: Numbers<'_>, radii: Numbers<'_>) -> PyResult<Self> {
+        Self::with_errors(wavelength, positions, radii, Errors::Relative)
+    }
+
+    /// Return the fit with errors of the radii as stated.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Wavelength in metres.
+    /// positions : array_like, shape (n,)
+    ///     Positions along the beam, in metres; at least 4.
+    /// radii : array_like, shape (n,)
+    ///     Second-moment radii there, half of D4σ, in metres.
+    /// errors : {"relative", "equal"} or array_like, shape (n,)
+    ///     ``"relative"``: proportional to the radius; ``"equal"``: the same for all. The size of both
+    ///     follows from the scatter of the data. Numbers: the known standard deviations, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// CausticFit
+    ///
+    /// Raises
+    /// ------
+    /// FitError
+    ///     If the data do not determine a beam.
+    #[staticmethod]
+    fn with_errors(
+        wavelength: f64,
+        positions: Numbers<'_>,
+        radii: Numbers<'_>,
+        errors: Errors<'_>,
+    ) -> PyResult<Self> {
+        let (positions, radii) = (list("positions", &positions)?, list("radii", &radii)?);
+        let known = errors.known(radii.len())?;
+        let errors = match (&errors, known) {
+            (_, Some(deviations)) => physics::RadiusErrors::Known(deviations),
+            (Errors::Equal, None) => physics::RadiusErrors::Equal,
+            _ => physics::RadiusErrors::Relative,
+        };
+        physics::CausticFit::with_errors(wavelength, positions, radii, errors)
+            .map(Self)
+            .map_err(|error| raised(error, "radii"))
+    }
+
+    /// Waist radius w₀, in metres.
+    #[getter]
+    fn waist_radius(&self) -> Estimate {
+        self.0.waist_radius().into()
+    }
+
+    /// Position z₀ of the waist, in metres, on the axis of the measured positions.
+    #[getter]
+    fn waist_position(&self) -> Estimate {
+        self.0.waist_position().into()
+    }
+
+    /// Far-field divergence half-angle δ, in radians.
+    #[getter]
+    fn divergence(&self) -> Estimate {
+        self.0.divergence().into()
+    }
+
+    /// Rayleigh range ``w₀ / δ``, in metres.
+    #[getter]
+    fn rayleigh_range(&self) -> Estimate {
+        self.0.rayleigh_range().into()
+    }
+
+    /// Beam parameter product ``w₀ δ``, in m·rad.
+    #[getter]
+    fn beam_parameter_product(&self) -> Estimate {
+        self.0.beam_parameter_product().into()
+    }
+
+    /// Beam quality factor M².
+    #[getter]
+    fn m_squared(&self) -> Estimate {
+        self.0.m_squared().into()
+    }
+
+    /// Standard deviation of the data from the fit: relative to the radius, in metres for ``"equal"``
+    /// errors, in units of the known deviations for known ones.
+    #[getter]
+    fn residual_deviation(&self) -> f64 {
+        self.0.residual_deviation()
+    }
+
+    /// Return the fitted beam radius (1/e²) in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Position, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Radius in metres, in the shape of ``z``.
+    fn radius_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("z", &z)], |[z]| self.0.radius_at(z))
+    }
+
+    /// Return the fitted beam, seen from the position 0.
+    ///
+    /// Returns
+    /// -------
+    /// LocatedBeam
+    ///     Refused where noise has brought M² below 1 or the fit is not paraxial.
+    fn beam(&self) -> PyResult<LocatedBeam> {
+        Ok(LocatedBeam(self.0.beam().or_raise()?))
+    }
+
+    fn __repr__(&self) -> String {
+        let [waist, position, m_squared] =
+            [self.waist_radius(), self.waist_position(), self.m_squared()]
+                .map(|estimate| format!("{:?} ± {:?}", estimate.value, estimate.standard_error));
+        format!("<CausticFit: waist radius {waist} m, waist position {position} m, M² {m_squared}>")
+    }
+}
+
+/// A Gaussian beam fitted to the power that passes a knife edge moved across it.
+///
+/// The model is ``P(x) = P₀/2 · erfc(±√2 (x − x₀) / w)``; ``with_background`` adds a constant.
+///
+/// Parameters
+/// ----------
+/// positions : array_like, shape (n,)
+///     Positions of the edge, in metres; at least 4.
+/// powers : array_like, shape (n,)
+///     Power that passes there, in any unit.
+///
+/// Raises
+/// ------
+/// FitError
+///     If the data do not determine a beam.
+#[pyclass(frozen, eq, module = "tem00.beam")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct KnifeEdgeFit(physics::KnifeEdgeFit);
+
+#[pymethods]
+impl KnifeEdgeFit {
+    #[new]
+    fn new(positions: Numbers<'_>, powers: Numbers<'_>) -> PyResult<Self> {
+        let (positions, powers) = (list("positions", &positions)?, list("powers", &powers)?);
+        let fit = physics::KnifeEdgeFit::new(positions, powers);
+        fit.map(Self).map_err(|error| raised(error, "powers"))
+    }
+
+    /// Return the fit with a constant background.
+    ///
+    /// Parameters
+    /// ----------
+    /// positions : array_like, shape (n,)
+    ///     Positions of the edge, in metres; at least 5.
+    /// powers : array_like, shape (n,)
+    ///     Power that passes there, in any unit.
+    ///
+    /// Returns
+    /// -------
+    /// KnifeEdgeFit
+    ///
+    /// Raises
+    /// ------
+    /// FitError
+    ///     If the data do not determine a beam.
+    #[staticmethod]
+    fn with_background(positions: Numbers<'_>, powers: Numbers<'_>) -> PyResult<Self> {
+        let (positions, powers) = (list("positions", &positions)?, list("powers", &powers)?);
+        let fit = physics::KnifeEdgeFit::with_background(positions, powers);
+        fit.map(Self).map_err(|error| raised(error, "powers"))
+    }
+
+    /// Radius (1/e²) of the beam along the movement of the edge, in metres.
+    #[getter]
+    fn radius(&self) -> Estimate {
+        self.0.radius().into()
+    }
+
+    /// Position of the centre of the beam, in metres.
+    #[getter]
+    fn centre(&self) -> Estimate {
+        self.0.centre().into()
+    }
+
+    /// Power of the whole beam, in the unit of the measured powers.
+    #[getter]
+    fn power(&self) -> Estimate {
+        self.0.power().into()
+    }
+
+    /// Background, in the unit of the measured powers; None if none was fitted.
+    #[getter]
+    fn background(&self) -> Option<Estimate> {
+        self.0.background().map(Into::into)
+    }
+
+    /// Standard deviation of the data from the fit, in the unit of the measured powers.
+    #[getter]
+    fn residual_deviation(&self) -> f64 {
+        self.0.residual_deviation()
+    }
+
+    /// Return the fitted power, in the unit of the measured powers.
+    ///
+    /// Parameters
+    /// ----------
+    /// position : float or array_like
+    ///     Position of the edge, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Power that passes, in the shape of ``position``.
+    fn power_at<'py>(
+        &self,
+        py: Python<'py>,
+        position: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("position", &position)], |[x]| self.0.power_at(x))
+    }
+
+    fn __repr__(&self) -> String {
+        let [radius, centre, power] = [self.radius(), self.centre(), self.power()]
+            .map(|estimate| format!("{:?} ± {:?}", estimate.value, estimate.standard_error));
+        format!("<KnifeEdgeFit: radius {radius} m, centre {centre} m, power {power}>")
+    }
+}
+
+/// What is known of the errors of measured radii.
+enum Errors<'py> {
+    Relative,
+    Equal,
+    Known(Numbers<'py>),
+}
+
+impl<'py> FromPyObject<'_, 'py> for Errors<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        match object.extract::<String>() {
+            Err(_) => Ok(Self::Known(object.extract()?)),
+            Ok(name) if name == "relative" => Ok(Self::Relative),
+            Ok(name) if name == "equal" => Ok(Self::Equal),
+            Ok(name) => {
+                let message =
+                    format!("errors must be 'relative', 'equal' or numbers, got '{name}'");
+                Err(refused("errors", message))
+            }
+        }
+    }
+}
+
+impl Errors<'_> {
+    /// The known deviations, one for each radius, if they are known.
+    fn known(&self, radii: usize) -> PyResult<Option<&[f64]>> {
+        let Self::Known(numbers) = self else {
+            return Ok(None);
+        };
+        let deviations = list("errors", numbers)?;
+        if deviations.len() == radii {
+            return Ok(Some(deviations));
+        }
+        let got = deviations.len();
+        let message = format!("errors must be one for each radius, got {got} for {radii} radii");
+        Err(refused("errors", message))
+    }
+}
+
+/// The exception for data that cannot be fitted; `values` is the name of what was measured.
+fn raised(error: physics::FitError, values: &str) -> PyErr {
+    let name = match error {
+        physics::FitError::Wavelength(_) => "wavelength",
+        physics::FitError::Deviation { .. } => "errors",
+        physics::FitError::Position { .. }
+        | physics::FitError::TooFewPoints { .. }
+        | physics::FitError::EqualPositions => "positions",
+        physics::FitError::LengthsDiffer { .. }
+        | physics::FitError::Radius { .. }
+        | physics::FitError::Power { .. } => values,
+        _ => return FitError::new_err(error.to_string()),
+    };
+    refused(name, error.to_string())
+}

@@ -1,0 +1,129 @@
+//! The four lights as one, and their queries over many points.
+
+use tem00_beam::{
+    self as physics, AngularProfile, AstigmaticLight, BeamError, LineLight, NextEventSlices,
+    SpotLight, TabulatedLineLight,
+};
+
+/// A light as the beam crate holds it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Light {
+    Spot(SpotLight<f64>),
+    Astigmatic(AstigmaticLight<f64>),
+    Line(LineLight<f64>),
+    Tabulated(LineLight<f64>, AngularProfile),
+}
+
+impl Light {
+    /// The fields of the light, as rows of four.
+    pub(super) fn rows(&self) -> Vec<[f64; 4]> {
+        match self {
+            Self::Spot(light) => light.to_rows().to_vec(),
+            Self::Astigmatic(light) => light.to_rows().to_vec(),
+            Self::Line(light) | Self::Tabulated(light, _) => light.to_rows().to_vec(),
+        }
+    }
+
+    /// The rows that all lights have: origin and power, ex and cutoff, ey, ez.
+    pub(super) fn frame_rows(&self) -> [[f64; 4]; 4] {
+        let rows = self.rows();
+        std::array::from_fn(|i| rows[i])
+    }
+
+    pub(super) fn single_rows(&self) -> Result<Vec<[f32; 4]>, BeamError> {
+        Ok(match self {
+            Self::Spot(light) => light.to_f32()?.to_rows().to_vec(),
+            Self::Astigmatic(light) => light.to_f32()?.to_rows().to_vec(),
+            Self::Line(light) => light.to_f32()?.to_rows().to_vec(),
+            Self::Tabulated(line, profile) => {
+                let (line, knots) = (*line, profile.knots());
+                let single = TabulatedLineLight { line, knots }
+                    .to_f32(&profile.to_f32()?)?
+                    .line;
+                single.to_rows().to_vec()
+            }
+        })
+    }
+
+    /// Asks the light, whichever it is.
+    pub(super) fn ask<R>(&self, query: impl FnOnce(&dyn physics::Emitter<f64>) -> R) -> R {
+        match self {
+            Self::Spot(light) => query(light),
+            Self::Astigmatic(light) => query(light),
+            Self::Line(light) => query(light),
+            Self::Tabulated(line, profile) => query(&TabulatedLineLight {
+                line: *line,
+                knots: profile.knots(),
+            }),
+        }
+    }
+}
+
+/// A query of a light at many points, block by block.
+impl Light {
+    /// Writes the point, distance, direction and irradiance of each next event.
+    ///
+    /// The point follows from the batch form, which leaves it out: `p + distance · wi`.
+    pub(super) fn next_events(&self, points: [&[f64]; 3], out: [&mut [f64]; 4]) {
+        let [x, y, z] = points;
+        let [point, distance, wi, e_perp] = out;
+        let mut towards = [const { Vec::new() }; 3];
+        for component in &mut towards {
+            component.resize(x.len(), 0.0);
+        }
+        let slices = NextEventSlices {
+            wi: towards.each_mut().map(Vec::as_mut_slice),
+            distance,
+            e_perp,
+        };
+        self.ask(|light| light.next_event_batch(x, y, z, slices));
+        for (i, (point, wi)) in vectors(point).zip(vectors(wi)).enumerate() {
+            *wi = towards.each_ref().map(|component| component[i]);
+            if e_perp[i] > 0.0 {
+                let p = points.map(|component| component[i]);
+                *point = std::array::from_fn(|k| p[k] + distance[i] * wi[k]);
+            }
+        }
+    }
+
+    /// Writes the point, distance, direction, value and density of each sampled event.
+    pub(super) fn sampled_events(&self, columns: [&[f64]; 5], out: [&mut [f64]; 5]) {
+        let [point, distance, wi, value, pdf] = out;
+        for (i, (point, wi)) in vectors(point).zip(vectors(wi)).enumerate() {
+            let [x, y, z, u @ ..] = columns.map(|column| column[i]);
+            let event = self.ask(|light| light.next_event_sampled([x, y, z], u));
+            if let Some(event) = event {
+                (*point, *wi) = (event.point, event.wi);
+                (distance[i], value[i], pdf[i]) = (event.distance, event.value, event.pdf);
+            }
+        }
+    }
+
+    /// Writes the members of each sampled ray.
+    pub(super) fn rays(&self, columns: [&[f64]; 4], out: [&mut [f64]; 6]) {
+        let [origin, flux, direction, cos, pdf_position, pdf_direction] = out;
+        for (i, (origin, direction)) in vectors(origin).zip(vectors(direction)).enumerate() {
+            let u = columns.map(|column| column[i]);
+            let ray = self.ask(|light| light.sample_ray(u));
+            (*origin, *direction) = (ray.origin, ray.direction);
+            (flux[i], cos[i]) = (ray.flux, ray.cos);
+            (pdf_position[i], pdf_direction[i]) = (ray.pdf_position, ray.pdf_direction);
+        }
+    }
+
+    /// Writes the densities of the position and the direction of each ray.
+    pub(super) fn ray_pdfs(&self, columns: [&[f64]; 6], out: [&mut [f64]; 2]) {
+        let [positions, directions] = out;
+        for i in 0..positions.len() {
+            let [x, y, z, d @ ..] = columns.map(|column| column[i]);
+            let pdf = self.ask(|light| light.ray_pdf([x, y, z], d));
+            (positions[i], directions[i]) = (pdf.position, pdf.direction);
+        }
+    }
+}
+
+/// Numbers as the vectors that they hold one after another.
+pub(super) fn vectors(numbers: &mut [f64]) -> impl Iterator<Item = &mut [f64; 3]> {
+    let (vectors, _) = numbers.as_chunks_mut();
+    vectors.iter_mut()
+}

@@ -1,0 +1,216 @@
+//! Placed beams.
+
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use tem00_beam as physics;
+
+use super::{
+    astigmatic::AstigmaticBeam,
+    emitter::Emitter,
+    gaussian::GaussianBeam,
+    general::GeneralAstigmaticBeam,
+    light::Light,
+    placement::{Axis, Ellipse, Placement},
+    rows::{Rows, array_of},
+};
+use crate::{
+    arrays::Numbers,
+    error::OrRaise,
+    pickling::{Recipe, by_constructor},
+};
+
+/// A Gaussian beam in a scene, circular or elliptic, prepared for a renderer.
+///
+/// Made by ``place`` or ``place_astigmatic``, queried as an ``Emitter``. With the coordinates
+/// ``(x, y, z)`` of a point in the frame of the light, its irradiance is::
+///
+///     E = 2 P / (π w_x w_y) · exp(−2 (x²/w_x² + y²/w_y²))     if x²/w_x² + y²/w_y² ≤ cutoff², z ≥ 0
+///
+/// The rows of ``to_rows`` are::
+///
+///     origin, power | ex, cutoff | ey, 0 | ez, 0 | x: w0_sq, theta_sq, z0, 0 | y: likewise
+#[pyclass(frozen, extends = Emitter, module = "tem00.beam")]
+#[derive(Debug)]
+pub(crate) struct SpotLight(pub(super) physics::SpotLight<f64>);
+
+#[pymethods]
+impl SpotLight {
+    /// Place a beam in a scene.
+    ///
+    /// Parameters
+    /// ----------
+    /// beam : GaussianBeam
+    /// waist_distance : float
+    ///     Signed distance from the aperture to the waist along the axis, in metres.
+    /// placement : Placement
+    /// power : float
+    ///     Power in watts, from 0 to 1e100.
+    ///
+    /// Returns
+    /// -------
+    /// SpotLight
+    #[staticmethod]
+    fn place(
+        py: Python<'_>,
+        beam: &GaussianBeam,
+        waist_distance: f64,
+        placement: &Placement,
+        power: f64,
+    ) -> PyResult<Py<Self>> {
+        let light = physics::SpotLight::place(&beam.0, waist_distance, &placement.0, power);
+        Self::of(py, light.or_raise()?)
+    }
+
+    /// Place an elliptic beam in a scene, with its reference plane as the aperture.
+    ///
+    /// The local x axis is the first principal axis of the beam: the fan axis of the placement,
+    /// turned by the rotation of the beam about the direction of travel.
+    ///
+    /// Parameters
+    /// ----------
+    /// beam : AstigmaticBeam
+    /// placement : Placement
+    /// power : float
+    ///     Power in watts, from 0 to 1e100.
+    ///
+    /// Returns
+    /// -------
+    /// SpotLight
+    #[staticmethod]
+    fn place_astigmatic(
+        py: Python<'_>,
+        beam: &AstigmaticBeam,
+        placement: &Placement,
+        power: f64,
+    ) -> PyResult<Py<Self>> {
+        let light = physics::SpotLight::place_astigmatic(&beam.0, &placement.0, power);
+        Self::of(py, light.or_raise()?)
+    }
+
+    /// Return the light with the fields that ``to_rows`` returns.
+    ///
+    /// Parameters
+    /// ----------
+    /// rows : array_like, shape (6, 4)
+    ///     The fields in the order of memory. What no placed light could hold is refused.
+    ///
+    /// Returns
+    /// -------
+    /// SpotLight
+    #[staticmethod]
+    fn from_rows(py: Python<'_>, rows: Numbers<'_>) -> PyResult<Py<Self>> {
+        let rows = Rows::placed(&rows)?;
+        rows.check_axis(4)?;
+        rows.check_axis(5)?;
+        Self::of(py, physics::SpotLight::from_rows(rows.0))
+    }
+
+    /// Squared beam radius along x; its ``z0`` is the distance from the aperture to the waist.
+    #[getter]
+    fn x(&self) -> Axis {
+        Axis(self.0.x)
+    }
+
+    /// Squared beam radius along y; its ``z0`` is the distance from the aperture to the waist.
+    #[getter]
+    fn y(&self) -> Axis {
+        Axis(self.0.y)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        let rows = array_of(py, &self.0.to_rows())?;
+        by_constructor::<Self>(py, "from_rows", (rows,))
+    }
+}
+
+impl SpotLight {
+    fn of(py: Python<'_>, light: physics::SpotLight<f64>) -> PyResult<Py<Self>> {
+        let base = PyClassInitializer::from(Emitter(Light::Spot(light)));
+        Py::new(py, base.add_subclass(Self(light)))
+    }
+}
+
+/// A beam with general astigmatism in a scene, prepared for a renderer.
+///
+/// Made by ``place``, queried as an ``Emitter``. Its ellipse may turn on the way, and its rays may be
+/// twisted about the axis. A ray has the slope ``s ~ N(0, S/4)`` and crosses the aperture plane at
+/// ``K s + e``, with an independent ``e ~ N(0, W/4)``. The rows of ``to_rows`` are::
+///
+///     origin, power | ex, cutoff | ey, 0 | ez, 0 | W: xx, xy, yy, 0 | S: likewise | K: xx, xy, yx, yy
+#[pyclass(frozen, extends = Emitter, module = "tem00.beam")]
+#[derive(Debug)]
+pub(crate) struct AstigmaticLight(physics::AstigmaticLight<f64>);
+
+#[pymethods]
+impl AstigmaticLight {
+    /// Place a beam in a scene, with its reference plane as the aperture.
+    ///
+    /// Parameters
+    /// ----------
+    /// beam : GeneralAstigmaticBeam
+    /// placement : Placement
+    /// power : float
+    ///     Power in watts, from 0 to 1e100.
+    ///
+    /// Returns
+    /// -------
+    /// AstigmaticLight
+    #[staticmethod]
+    fn place(
+        py: Python<'_>,
+        beam: &GeneralAstigmaticBeam,
+        placement: &Placement,
+        power: f64,
+    ) -> PyResult<Py<Self>> {
+        let light = physics::AstigmaticLight::place(&beam.0, &placement.0, power);
+        Self::of(py, light.or_raise()?)
+    }
+
+    /// Return the light with the fields that ``to_rows`` returns.
+    ///
+    /// Parameters
+    /// ----------
+    /// rows : array_like, shape (7, 4)
+    ///     The fields in the order of memory. What no placed light could hold is refused.
+    ///
+    /// Returns
+    /// -------
+    /// AstigmaticLight
+    #[staticmethod]
+    fn from_rows(py: Python<'_>, rows: Numbers<'_>) -> PyResult<Py<Self>> {
+        let rows = Rows::placed(&rows)?;
+        rows.check_ellipse(4)?;
+        rows.check_ellipse(5)?;
+        Self::of(py, physics::AstigmaticLight::from_rows(rows.0))
+    }
+
+    /// W: squared radii of the position on the aperture plane of rays with a given slope, in m².
+    #[getter]
+    fn position(&self) -> Ellipse {
+        Ellipse(self.0.position)
+    }
+
+    /// S: squared radii of the slope, in rad².
+    #[getter]
+    fn slope(&self) -> Ellipse {
+        Ellipse(self.0.slope)
+    }
+
+    /// K: mean position on the aperture plane per slope, in metres, shape (2, 2).
+    #[getter]
+    fn position_per_slope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        array_of(py, &self.0.position_per_slope)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        let rows = array_of(py, &self.0.to_rows())?;
+        by_constructor::<Self>(py, "from_rows", (rows,))
+    }
+}
+
+impl AstigmaticLight {
+    fn of(py: Python<'_>, light: physics::AstigmaticLight<f64>) -> PyResult<Py<Self>> {
+        let base = PyClassInitializer::from(Emitter(Light::Astigmatic(light)));
+        Py::new(py, base.add_subclass(Self(light)))
+    }
+}

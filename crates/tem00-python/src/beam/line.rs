@@ -1,0 +1,396 @@
+//! Laser lines.
+
+use pyo3::prelude::*;
+use tem00_beam as physics;
+use tem00_beam::DVec3;
+
+use super::{
+    arguments::{columns, map, map_inner},
+    gaussian::GaussianBeam,
+    profile::LineProfile,
+};
+use crate::{
+    arrays::Numbers,
+    error::{OrRaise, refused},
+};
+
+/// The geometry of a laser fan.
+///
+/// Parameters
+/// ----------
+/// fan_angle : float
+///     Full angle, in radians in (0, π), between the edges of the line.
+/// apex_offset : float
+///     Distance of the virtual apex behind the lens, in metres. A beam that is ``w_in`` wide
+///     (half-width at 1/e²) on the lens has its apex at ``w_in / tan(fan_angle / 2)`` behind it.
+/// focus_distance : float
+///     Distance from the lens along the axis to where the line is thinnest, in metres; negative for
+///     a line that diverges from a waist before the lens.
+/// focus_curve : {"equal_distance", "equal_plane"}, optional
+///     Where the line is thinnest off the axis: on the circle about the virtual apex, or on the
+///     plane square to the axis.
+///
+/// Notes
+/// -----
+/// The values are checked where a line is made.
+#[pyclass(frozen, eq, module = "tem00.beam")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FanGeometry(pub(super) physics::FanGeometry);
+
+#[pymethods]
+impl FanGeometry {
+    #[new]
+    #[pyo3(signature = (fan_angle, apex_offset, focus_distance, focus_curve = FocusCurve::default()))]
+    fn new(fan_angle: f64, apex_offset: f64, focus_distance: f64, focus_curve: FocusCurve) -> Self {
+        Self(physics::FanGeometry {
+            fan_angle,
+            apex_offset,
+            focus_distance,
+            focus_curve: focus_curve.0,
+        })
+    }
+
+    /// Full angle between the edges of the line, in radians.
+    #[getter]
+    fn fan_angle(&self) -> f64 {
+        self.0.fan_angle
+    }
+
+    /// Distance of the virtual apex behind the lens, in metres.
+    #[getter]
+    fn apex_offset(&self) -> f64 {
+        self.0.apex_offset
+    }
+
+    /// Distance from the lens along the axis to where the line is thinnest, in metres.
+    #[getter]
+    fn focus_distance(&self) -> f64 {
+        self.0.focus_distance
+    }
+
+    /// Where the line is thinnest off the axis, ``"equal_distance"`` or ``"equal_plane"``.
+    #[getter]
+    fn focus_curve(&self) -> &'static str {
+        match self.0.focus_curve {
+            physics::FocusCurve::EqualDistance => EQUAL_DISTANCE,
+            physics::FocusCurve::EqualPlane => EQUAL_PLANE,
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        let (fan_angle, apex_offset, focus_distance, curve) = self.__getnewargs__();
+        format!(
+            "FanGeometry(fan_angle={fan_angle:?}, apex_offset={apex_offset:?}, \
+             focus_distance={focus_distance:?}, focus_curve='{curve}')"
+        )
+    }
+
+    fn __getnewargs__(&self) -> (f64, f64, f64, &'static str) {
+        let fan = &self.0;
+        let curve = self.focus_curve();
+        (fan.fan_angle, fan.apex_offset, fan.focus_distance, curve)
+    }
+}
+
+const EQUAL_DISTANCE: &str = "equal_distance";
+const EQUAL_PLANE: &str = "equal_plane";
+
+/// A curve by its name.
+#[derive(Clone, Copy, Debug, Default)]
+struct FocusCurve(physics::FocusCurve);
+
+impl<'py> FromPyObject<'_, 'py> for FocusCurve {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        match object.extract::<String>()?.as_str() {
+            EQUAL_DISTANCE => Ok(Self(physics::FocusCurve::EqualDistance)),
+            EQUAL_PLANE => Ok(Self(physics::FocusCurve::EqualPlane)),
+            other => {
+                let message = format!(
+                    "focus_curve must be '{EQUAL_DISTANCE}' or '{EQUAL_PLANE}', got '{other}'"
+                );
+                Err(refused("focus_curve", message))
+            }
+        }
+    }
+}
+
+/// A laser line: a Gaussian beam, fanned out in one plane by a cylinder or Powell lens.
+///
+/// The light travels along +z, z = 0 is the lens, the fan opens along x and its plane has the normal
+/// y. The fan diverges from a virtual apex behind the lens. Points at z < 0 receive nothing.
+///
+/// Parameters
+/// ----------
+/// focus : GaussianBeam
+///     The beam across the fan.
+/// fan : FanGeometry
+/// profile : LineProfile
+///     How the power is spread along the fan.
+#[pyclass(frozen, eq, module = "tem00.beam")]
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LaserLine(pub(super) physics::LaserLine);
+
+#[pymethods]
+impl LaserLine {
+    #[new]
+    fn new(focus: &GaussianBeam, fan: &FanGeometry, profile: &LineProfile) -> PyResult<Self> {
+        let line = physics::LaserLine::new(focus.0, fan.0, profile.0.clone());
+        Ok(Self(line.or_raise()?))
+    }
+
+    /// The beam across the fan.
+    #[getter]
+    fn focus(&self) -> GaussianBeam {
+        GaussianBeam(*self.0.focus())
+    }
+
+    /// The geometry of the fan.
+    #[getter]
+    fn fan(&self) -> FanGeometry {
+        FanGeometry(*self.0.fan())
+    }
+
+    /// The profile along the line.
+    #[getter]
+    fn profile(&self) -> LineProfile {
+        LineProfile(self.0.profile().clone())
+    }
+
+    /// Slope of the edges of the fan, the tangent of half the fan angle.
+    #[getter]
+    fn half_slope(&self) -> f64 {
+        self.0.half_slope()
+    }
+
+    /// Slant distance from the virtual apex to the waist on the axis, in metres.
+    #[getter]
+    fn waist_slant_distance(&self) -> f64 {
+        self.0.waist_slant_distance()
+    }
+
+    /// Diffraction-limited radius of the virtual apex, in metres.
+    #[getter]
+    fn source_radius(&self) -> f64 {
+        self.0.source_radius()
+    }
+
+    /// Return the slant distance from the virtual apex to the waist, in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// slope : float or array_like
+    ///     Tangent of the fan angle.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Distance in metres, in the shape of ``slope``.
+    fn waist_slant_distance_at<'py>(
+        &self,
+        py: Python<'py>,
+        slope: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("slope", &slope)], |[slope]| {
+            self.0.waist_slant_distance_at(slope)
+        })
+    }
+
+    /// Return the half-length of the line, in metres, on a plane square to the axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Distance from the lens, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Half-length in metres, in the shape of ``z``.
+    fn half_length_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("z", &z)], |[z]| self.0.half_length_at(z))
+    }
+
+    /// Return the half-thickness of the line on the axis (1/e²), in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Distance from the lens, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Half-thickness in metres, in the shape of ``z``.
+    fn half_thickness_at<'py>(
+        &self,
+        py: Python<'py>,
+        z: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("z", &z)], |[z]| self.0.half_thickness_at(z))
+    }
+
+    /// Return the half-thickness of the line (1/e²), in metres, at a fan angle.
+    ///
+    /// Parameters
+    /// ----------
+    /// z, theta : float or array_like
+    ///     Distance from the lens, in metres, and angle from the axis, in radians in (-π/2, π/2);
+    ///     they broadcast together.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Half-thickness in metres, along the normal of the fan plane, in the common shape.
+    fn half_thickness_at_angle<'py>(
+        &self,
+        py: Python<'py>,
+        z: Numbers<'py>,
+        theta: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        check_theta(&theta)?;
+        map(py, [("z", &z), ("theta", &theta)], |[z, theta]| {
+            self.0.half_thickness_at_angle(z, theta)
+        })
+    }
+
+    /// Return the fraction of the power between two fan angles, in either order.
+    ///
+    /// Parameters
+    /// ----------
+    /// a, b : float or array_like
+    ///     Angles from the axis, in radians; they broadcast together. There is no power beyond ±π/2.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Fraction from 0 to 1, in the common shape.
+    fn power_between_angles<'py>(
+        &self,
+        py: Python<'py>,
+        a: Numbers<'py>,
+        b: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("a", &a), ("b", &b)], |[a, b]| {
+            self.0.power_between_angles(a, b)
+        })
+    }
+
+    /// Return the fraction of the power between two places along the line, in either order.
+    ///
+    /// Parameters
+    /// ----------
+    /// x_min, x_max, z : float or array_like
+    ///     The places, in metres, on the plane at the distance ``z`` from the lens, in metres; they
+    ///     broadcast together.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Fraction from 0 to 1, in the common shape; 0 for z < 0.
+    fn power_on_length<'py>(
+        &self,
+        py: Python<'py>,
+        x_min: Numbers<'py>,
+        x_max: Numbers<'py>,
+        z: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let arguments = [("x_min", &x_min), ("x_max", &x_max), ("z", &z)];
+        map(py, arguments, |[x_min, x_max, z]| {
+            self.0.power_on_length(x_min, x_max, z)
+        })
+    }
+
+    /// Return the fraction of the power per fan angle, in 1/rad.
+    ///
+    /// Parameters
+    /// ----------
+    /// theta : float or array_like
+    ///     Signed angle from the axis, in radians.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Fraction per radian, in the shape of ``theta``; 0 at right angles to the axis and behind.
+    fn power_per_angle<'py>(
+        &self,
+        py: Python<'py>,
+        theta: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("theta", &theta)], |[theta]| {
+            self.0.power_per_angle(theta)
+        })
+    }
+
+    /// Return the irradiance per watt, in 1/m², on planes square to the axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates in the frame of the line, in metres; they broadcast together.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Irradiance per watt, in the common shape.
+    fn irradiance_per_watt<'py>(
+        &self,
+        py: Python<'py>,
+        x: Numbers<'py>,
+        y: Numbers<'py>,
+        z: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("x", &x), ("y", &y), ("z", &z)], |p| {
+            self.0.irradiance_per_watt(DVec3::from(p))
+        })
+    }
+
+    /// Return the energy-flow vector per watt of laser power, in 1/m².
+    ///
+    /// A surface whose normal ``n`` lies on the lit side receives the irradiance ``max(0, -F·n)``.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates in the frame of the line, in metres; they broadcast together.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (..., 3)
+    ///     Energy flow per watt, with its components in the last axis.
+    fn flux_per_watt<'py>(
+        &self,
+        py: Python<'py>,
+        x: Numbers<'py>,
+        y: Numbers<'py>,
+        z: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        map_inner(py, points, &[3], |p| {
+            self.0.flux_per_watt(DVec3::from(p)).to_array()
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let (focus, fan, profile) = self.__getnewargs__();
+        let [focus, fan, profile] = [focus.__repr__(), fan.__repr__(), profile.__repr__()];
+        format!("LaserLine(focus={focus}, fan={fan}, profile={profile})")
+    }
+
+    fn __getnewargs__(&self) -> (GaussianBeam, FanGeometry, LineProfile) {
+        (self.focus(), self.fan(), self.profile())
+    }
+}
+
+/// Checks that angles of a fan lie in front of the lens.
+fn check_theta(theta: &Numbers<'_>) -> PyResult<()> {
+    let behind = |angle: &&f64| angle.abs() >= std::f64::consts::FRAC_PI_2;
+    match theta.values()?.iter().find(behind) {
+        Some(angle) => {
+            let message = format!("theta must lie in (-π/2, π/2) rad, got {angle:e} rad");
+            Err(refused("theta", message))
+        }
+        None => Ok(()),
+    }
+}

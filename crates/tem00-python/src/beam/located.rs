@@ -1,0 +1,124 @@
+//! Beams seen from a reference plane.
+
+use pyo3::prelude::*;
+use tem00_beam as physics;
+
+use super::{
+    arguments::{coordinate, map},
+    complex_parameter::ComplexBeamParameter,
+    cross_section::CrossSection,
+    gaussian::GaussianBeam,
+};
+use crate::{arrays::Numbers, error::OrRaise};
+
+/// A Gaussian beam and where its waist lies, seen from a reference plane.
+///
+/// The beam travels along +z, z = 0 is the reference plane, and the waist lies at
+/// ``z = waist_distance``: positive where it is still to come, negative where it has been passed or
+/// is virtual.
+///
+/// Parameters
+/// ----------
+/// beam : GaussianBeam
+/// waist_distance : float
+///     Signed distance from the reference plane to the waist, in metres, within ±1e30.
+#[pyclass(frozen, eq, module = "tem00.beam")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LocatedBeam(pub(super) physics::LocatedBeam);
+
+#[pymethods]
+impl LocatedBeam {
+    #[new]
+    fn new(beam: &GaussianBeam, waist_distance: f64) -> PyResult<Self> {
+        Ok(Self(
+            physics::LocatedBeam::new(beam.0, waist_distance).or_raise()?,
+        ))
+    }
+
+    /// The beam.
+    #[getter]
+    fn beam(&self) -> GaussianBeam {
+        GaussianBeam(*self.0.beam())
+    }
+
+    /// Signed distance from the reference plane to the waist, in metres.
+    #[getter]
+    fn waist_distance(&self) -> f64 {
+        self.0.waist_distance()
+    }
+
+    /// Complex beam parameter in the reference plane.
+    #[getter]
+    fn complex_parameter(&self) -> ComplexBeamParameter {
+        ComplexBeamParameter(self.0.complex_parameter())
+    }
+
+    /// Return the beam radius (1/e²) in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the reference plane, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Radius in metres, in the shape of ``z``.
+    fn radius_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("z", &z)], |[z]| self.0.radius_at(z))
+    }
+
+    /// Return the distribution of the irradiance over a plane across the beam.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float
+    ///     Signed distance from the reference plane, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// CrossSection
+    fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
+        let z = coordinate("z", z)?;
+        Ok(CrossSection(self.0.cross_section_at(z)))
+    }
+
+    /// Return the wavefront curvature 1/R in 1/m, positive where the beam diverges.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the reference plane, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Curvature in 1/m, in the shape of ``z``.
+    fn curvature_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("z", &z)], |[z]| self.0.curvature_at(z))
+    }
+
+    /// Return the beam behind a thin lens in the reference plane.
+    ///
+    /// Parameters
+    /// ----------
+    /// focal_length : float
+    ///     Focal length in metres, positive for a focusing lens.
+    ///
+    /// Returns
+    /// -------
+    /// LocatedBeam
+    ///     The beam seen from the lens.
+    fn through_lens(&self, focal_length: f64) -> PyResult<Self> {
+        Ok(Self(self.0.through_lens(focal_length).or_raise()?))
+    }
+
+    pub(super) fn __repr__(&self) -> String {
+        let (beam, distance) = (self.beam().__repr__(), self.0.waist_distance());
+        format!("LocatedBeam(beam={beam}, waist_distance={distance:?})")
+    }
+
+    fn __getnewargs__(&self) -> (GaussianBeam, f64) {
+        (self.beam(), self.0.waist_distance())
+    }
+}

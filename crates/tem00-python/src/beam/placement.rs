@@ -1,0 +1,158 @@
+//! Where a light stands, and the plain parts of placed lights.
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use tem00_beam as physics;
+use tem00_beam::DVec3;
+
+use super::arguments::map;
+use crate::arrays::Numbers;
+
+/// Where a light stands and where it points, in world coordinates.
+///
+/// Parameters
+/// ----------
+/// origin : array_like, shape (3,)
+///     Centre of the aperture (the lens of a laser line), in metres.
+/// direction : array_like, shape (3,)
+///     Direction of travel, of any length.
+/// fan_axis : array_like, shape (3,)
+///     Any vector that is not parallel to ``direction``. Its part at right angles to ``direction``
+///     is the x axis of the light, along which a fan opens.
+///
+/// Notes
+/// -----
+/// The values are checked where a light is placed.
+#[pyclass(frozen, eq, module = "tem00.beam")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Placement(pub(super) physics::Placement);
+
+#[pymethods]
+impl Placement {
+    #[new]
+    fn new(origin: [f64; 3], direction: [f64; 3], fan_axis: [f64; 3]) -> Self {
+        Self(physics::Placement {
+            origin: DVec3::from(origin),
+            direction: DVec3::from(direction),
+            fan_axis: DVec3::from(fan_axis),
+        })
+    }
+
+    /// Centre of the aperture, in metres, shape (3,).
+    #[getter]
+    fn origin<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.0.origin.as_ref())
+    }
+
+    /// Direction of travel, of any length, shape (3,).
+    #[getter]
+    fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.0.direction.as_ref())
+    }
+
+    /// A vector in the plane of the fan, shape (3,).
+    #[getter]
+    fn fan_axis<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.0.fan_axis.as_ref())
+    }
+
+    fn __repr__(&self) -> String {
+        let [origin, direction, fan_axis] = self.vectors();
+        format!("Placement(origin={origin:?}, direction={direction:?}, fan_axis={fan_axis:?})")
+    }
+
+    fn __getnewargs__(&self) -> ([f64; 3], [f64; 3], [f64; 3]) {
+        self.vectors().into()
+    }
+}
+
+impl Placement {
+    fn vectors(&self) -> [[f64; 3]; 3] {
+        [self.0.origin, self.0.direction, self.0.fan_axis].map(Into::into)
+    }
+}
+
+/// The squared beam radius along one principal axis of a placed light.
+///
+/// ``w²(z) = w0_sq + theta_sq (z − z0)²``. Keep the sum in this form: multiplied out into powers of z
+/// it loses all digits of ``float32`` near a tight waist.
+#[pyclass(frozen, eq, module = "tem00.beam")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Axis(pub(super) physics::Axis<f64>);
+
+#[pymethods]
+impl Axis {
+    /// Squared waist radius, in m².
+    #[getter]
+    fn w0_sq(&self) -> f64 {
+        self.0.w0_sq
+    }
+
+    /// Squared divergence half-angle, in rad².
+    #[getter]
+    fn theta_sq(&self) -> f64 {
+        self.0.theta_sq
+    }
+
+    /// Position of the waist, in metres, on the coordinate that the light says.
+    #[getter]
+    fn z0(&self) -> f64 {
+        self.0.z0
+    }
+
+    /// Return the squared beam radius in m².
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Coordinate along the beam, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Squared radius, in the shape of ``z``.
+    fn radius_sq_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("z", &z)], |[z]| self.0.radius_sq_at(z))
+    }
+
+    fn __repr__(&self) -> String {
+        let physics::Axis {
+            w0_sq,
+            theta_sq,
+            z0,
+            ..
+        } = self.0;
+        format!("Axis(w0_sq={w0_sq:?}, theta_sq={theta_sq:?}, z0={z0:?})")
+    }
+}
+
+/// A symmetric 2 × 2 matrix of a placed light: squared radii of an ellipse.
+#[pyclass(frozen, eq, module = "tem00.beam")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ellipse(pub(super) physics::Ellipse<f64>);
+
+#[pymethods]
+impl Ellipse {
+    /// Element in the first row and column.
+    #[getter]
+    fn xx(&self) -> f64 {
+        self.0.xx
+    }
+
+    /// Element off the diagonal.
+    #[getter]
+    fn xy(&self) -> f64 {
+        self.0.xy
+    }
+
+    /// Element in the second row and column.
+    #[getter]
+    fn yy(&self) -> f64 {
+        self.0.yy
+    }
+
+    fn __repr__(&self) -> String {
+        let physics::Ellipse { xx, xy, yy, .. } = self.0;
+        format!("Ellipse(xx={xx:?}, xy={xy:?}, yy={yy:?})")
+    }
+}

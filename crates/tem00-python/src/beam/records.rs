@@ -1,0 +1,129 @@
+//! What queries return: named numbers, or named arrays of one shape.
+
+use pyo3::prelude::*;
+
+/// Defines a frozen class of named values with a constructor, a repr and pickling.
+macro_rules! record {
+    ($module:literal, $(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident,)+ }) => {
+        $(#[$doc])*
+        #[pyclass(frozen, module = $module)]
+        #[derive(Debug)]
+        pub(crate) struct $name {
+            $($(#[$field_doc])* #[pyo3(get)] pub(super) $field: Py<PyAny>,)+
+        }
+
+        #[pymethods]
+        impl $name {
+            #[new]
+            fn new($($field: Py<PyAny>),+) -> Self {
+                Self { $($field),+ }
+            }
+
+            fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+                let fields = [$((stringify!($field), &self.$field)),+];
+                $crate::beam::records::shown(py, stringify!($name), &fields)
+            }
+
+            fn __getnewargs__<'py>(
+                &self,
+                py: Python<'py>,
+            ) -> PyResult<Bound<'py, pyo3::types::PyTuple>> {
+                pyo3::types::PyTuple::new(py, [$(self.$field.clone_ref(py)),+])
+            }
+        }
+    };
+}
+
+record! {
+    "tem00.beam",
+    /// The light that arrives at a point, as one direction and one irradiance.
+    ///
+    /// For arrays of points all members are arrays, and 0 where no light arrives.
+    NextEvent {
+        /// Point of the aperture plane that the light seems to come from, shape (..., 3).
+        point,
+        /// Distance to ``point``, in metres, shape (...).
+        distance,
+        /// Unit vector towards the light, against the mean energy flow, shape (..., 3).
+        wi,
+        /// Irradiance of a surface square to ``wi``, in W/m², shape (...).
+        e_perp,
+    }
+}
+
+record! {
+    "tem00.beam",
+    /// The light that arrives at a point, as a random direction and its density.
+    ///
+    /// For arrays of points all members are arrays, and 0 where no light arrives.
+    SampledEvent {
+        /// Point of the aperture plane that the ray comes from, shape (..., 3).
+        point,
+        /// Distance to ``point``, in metres, shape (...).
+        distance,
+        /// Unit vector towards the light, shape (..., 3).
+        wi,
+        /// Radiance divided by ``pdf``, in W/m², shape (...).
+        value,
+        /// Probability density of ``wi``, per steradian, shape (...).
+        pdf,
+    }
+}
+
+record! {
+    "tem00.beam",
+    /// A ray that leaves the aperture, or arrays of them.
+    RaySample {
+        /// Point of the aperture plane, shape (..., 3).
+        origin,
+        /// Power the ray stands for, in watts: that of the light, to be divided by the number of
+        /// rays, shape (...).
+        flux,
+        /// Unit vector along the ray, shape (..., 3).
+        direction,
+        /// Cosine of the angle between the ray and the axis, shape (...).
+        cos,
+        /// Probability density of ``origin`` given the direction, per m² of the aperture plane,
+        /// shape (...).
+        pdf_position,
+        /// Probability density of ``direction``, per steradian, shape (...).
+        pdf_direction,
+    }
+}
+
+record! {
+    "tem00.beam",
+    /// The probability densities of a ray; their product is the joint density.
+    RayPdf {
+        /// Density of the position given the direction, per m² of the aperture plane, shape (...).
+        position,
+        /// Density of the direction, per steradian, shape (...).
+        direction,
+    }
+}
+
+record! {
+    "tem00.beam",
+    /// Bounds of a light in space and direction, as a light hierarchy stores them.
+    Bounds {
+        /// Smallest corner of an axis-aligned box around the lit volume, in metres, shape (3,).
+        min,
+        /// Largest corner of the box, in metres, shape (3,).
+        max,
+        /// Unit vector along the axis, shape (3,).
+        axis,
+        /// Half-angle, in radians, of the cone about ``axis`` that the light travels in.
+        half_angle,
+    }
+}
+
+/// The values of a record as Python would write its constructor.
+pub(super) fn shown(py: Python<'_>, name: &str, fields: &[(&str, &Py<PyAny>)]) -> PyResult<String> {
+    let mut text = Vec::new();
+    for (field, value) in fields {
+        text.push(format!("{field}={}", value.bind(py).repr()?));
+    }
+    Ok(format!("{name}({})", text.join(", ")))
+}
+
+pub(super) use record;

@@ -1,0 +1,201 @@
+use pyo3::{prelude::*, types::PyAny};
+use tem00_decorrelation as physics;
+
+use crate::{
+    arrays::{Count, Numbers, map},
+    error::refused,
+    pickling::{Recipe, by_constructor},
+};
+
+/// What is meant by the correlation after a pupil and an axial displacement together.
+#[pyclass(frozen, eq, module = "tem00.decorrelation")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct CorrelationLaw(physics::CorrelationLaw);
+
+impl CorrelationLaw {
+    const fn name(self) -> &'static str {
+        match self.0 {
+            physics::CorrelationLaw::Product => "product",
+            physics::CorrelationLaw::AtImageDisplacement => "at_image_displacement",
+            physics::CorrelationLaw::AtPeak => "at_peak",
+        }
+    }
+}
+
+#[pymethods]
+impl CorrelationLaw {
+    /// Return the product of both laws, the fastest.
+    #[staticmethod]
+    fn product() -> Self {
+        Self(physics::CorrelationLaw::Product)
+    }
+
+    /// Return the law at the displacement of the projected surface point.
+    #[staticmethod]
+    fn at_image_displacement() -> Self {
+        Self(physics::CorrelationLaw::AtImageDisplacement)
+    }
+
+    /// Return the law at the peak of the cross-correlation, which defocus moves elsewhere.
+    #[staticmethod]
+    fn at_peak() -> Self {
+        Self(physics::CorrelationLaw::AtPeak)
+    }
+
+    /// Return the intensity correlation left, in [0, 1].
+    ///
+    /// Parameters
+    /// ----------
+    /// pupil_shift : float or array
+    ///     Displacement across the pupil in pupil diameters.
+    /// axial_shift : float or array
+    ///     Displacement along the axis in axial decorrelation lengths.
+    fn correlation<'py>(
+        &self,
+        py: Python<'py>,
+        pupil_shift: Numbers<'py>,
+        axial_shift: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let named = [("pupil_shift", &pupil_shift), ("axial_shift", &axial_shift)];
+        map(py, named, |[s, x]| self.0.correlation(s, x))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("CorrelationLaw.{}()", self.name())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        by_constructor::<Self>(py, self.name(), ())
+    }
+}
+
+/// Return the intensity correlation left when the speckle slides across a circular pupil.
+///
+/// Parameters
+/// ----------
+/// shift : float or array
+///     Pupil displacement in pupil diameters.
+#[pyfunction]
+pub(super) fn pupil_overlap_correlation<'py>(
+    py: Python<'py>,
+    shift: Numbers<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    map(py, [("shift", &shift)], |[s]| {
+        physics::pupil_overlap_correlation(s)
+    })
+}
+
+/// Return the intensity correlation left when the surface moves along the optical axis.
+///
+/// Parameters
+/// ----------
+/// shift : float or array
+///     Axial displacement in axial decorrelation lengths.
+#[pyfunction]
+pub(super) fn axial_correlation<'py>(
+    py: Python<'py>,
+    shift: Numbers<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    map(py, [("shift", &shift)], |[x]| physics::axial_correlation(x))
+}
+
+/// Return the product of the laws for a pupil and an axial displacement.
+///
+/// Parameters
+/// ----------
+/// pupil_shift : float or array
+///     Displacement across the pupil in pupil diameters.
+/// axial_shift : float or array
+///     Displacement along the axis in axial decorrelation lengths.
+#[pyfunction]
+pub(super) fn correlation<'py>(
+    py: Python<'py>,
+    pupil_shift: Numbers<'py>,
+    axial_shift: Numbers<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let named = [("pupil_shift", &pupil_shift), ("axial_shift", &axial_shift)];
+    map(py, named, |[s, x]| physics::correlation(s, x))
+}
+
+/// Return the distance between two slices of a circular stack that have a correlation.
+///
+/// Parameters
+/// ----------
+/// correlation : float or array
+///     Intensity correlation.
+/// half_period : int
+///     Number of slices to the first uncorrelated one; the stack has twice as many.
+///
+/// Returns
+/// -------
+/// float or array
+///     Slices, from 0 for a correlation of 1 or more to `half_period` for 0 or less.
+#[pyfunction]
+pub(super) fn slice_coordinate<'py>(
+    py: Python<'py>,
+    correlation: Numbers<'py>,
+    half_period: Count,
+) -> PyResult<Bound<'py, PyAny>> {
+    let half_period = half_period.value("half_period")?;
+    map(py, [("correlation", &correlation)], |[left]| {
+        physics::slice_coordinate(left, half_period)
+    })
+}
+
+/// Return the pupil displacement, in pupil diameters, that alone would leave a correlation.
+#[pyfunction]
+pub(super) fn equivalent_pupil_shift<'py>(
+    py: Python<'py>,
+    correlation: Numbers<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    map(py, [("correlation", &correlation)], |[left]| {
+        physics::equivalent_pupil_shift(left)
+    })
+}
+
+/// Return the axial displacement, in axial decorrelation lengths, that alone leaves a correlation.
+#[pyfunction]
+pub(super) fn equivalent_axial_shift<'py>(
+    py: Python<'py>,
+    correlation: Numbers<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    map(py, [("correlation", &correlation)], |[left]| {
+        physics::equivalent_axial_shift(left)
+    })
+}
+
+/// Return the multiple of a motion at which the product law first leaves a correlation.
+///
+/// Parameters
+/// ----------
+/// correlation : float
+///     Intensity correlation.
+/// pupil_shift : float
+///     Displacement across the pupil in pupil diameters.
+/// axial_shift : float
+///     Displacement along the axis in axial decorrelation lengths.
+///
+/// Returns
+/// -------
+/// float or None
+///     `None` if the motion leaves the pattern as it is.
+#[pyfunction]
+pub(super) fn motion_multiple(
+    correlation: f64,
+    pupil_shift: f64,
+    axial_shift: f64,
+) -> PyResult<Option<f64>> {
+    let named = [
+        ("correlation", correlation),
+        ("pupil_shift", pupil_shift),
+        ("axial_shift", axial_shift),
+    ];
+    if let Some((name, value)) = named.iter().find(|(_, value)| !value.is_finite()) {
+        return Err(refused(name, format!("{name} must be finite, got {value}")));
+    }
+    Ok(physics::motion_multiple(
+        correlation,
+        pupil_shift,
+        axial_shift,
+    ))
+}

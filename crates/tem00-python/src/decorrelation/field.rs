@@ -1,0 +1,407 @@
+use pyo3::prelude::*;
+use tem00_decorrelation::{self as physics, DVec3};
+
+use super::{
+    frame::CameraFrame,
+    geometry::ImagingGeometry,
+    motion::Motion,
+    vectors::{Array3, array3, orientation_name, orientation_of, shown, vec3},
+};
+use crate::{
+    arrays::{Count, Named, Numbers, fill},
+    error::OrRaise,
+};
+
+/// What all points of a field share: the camera and the pattern it looks up.
+///
+/// Parameters
+/// ----------
+/// geometry : ImagingGeometry
+///     The lens, its pupil and the sensor.
+/// camera : CameraFrame
+///     The axes of the camera.
+/// pupil_centre : array of shape (3,)
+///     Centre of the pupil in world coordinates, in metres.
+/// orientation : {"screen_upright", "sensor_inverted"}
+///     Which way up image displacements are counted.
+/// pattern_speckle_size : float
+///     Speckle size of the pattern in samples.
+/// half_period : int
+///     Number of slices of the stack to the first uncorrelated one; the stack has twice as many.
+#[pyclass(frozen, eq, module = "tem00.decorrelation")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FieldSetup {
+    setup: physics::FieldSetup,
+    geometry: ImagingGeometry,
+}
+
+#[pymethods]
+impl FieldSetup {
+    #[new]
+    #[pyo3(signature = (
+        *, geometry, camera, pupil_centre, orientation, pattern_speckle_size, half_period
+    ))]
+    fn new(
+        geometry: PyRef<'_, ImagingGeometry>,
+        camera: PyRef<'_, CameraFrame>,
+        pupil_centre: Numbers<'_>,
+        orientation: &str,
+        pattern_speckle_size: f64,
+        half_period: Count,
+    ) -> PyResult<Self> {
+        let setup = physics::FieldSetup {
+            geometry: geometry.geometry,
+            camera: camera.0,
+            pupil_centre: vec3("pupil_centre", &pupil_centre)?,
+            orientation: orientation_of(orientation)?,
+            pattern_speckle_size,
+            half_period: half_period.value("half_period")?,
+        };
+        let geometry = *geometry;
+        Ok(Self { setup, geometry })
+    }
+
+    /// The lens, its pupil and the sensor.
+    #[getter]
+    fn geometry(&self) -> ImagingGeometry {
+        self.geometry
+    }
+
+    /// The axes of the camera.
+    #[getter]
+    fn camera(&self) -> CameraFrame {
+        CameraFrame(self.setup.camera)
+    }
+
+    /// Centre of the pupil in metres, of shape (3,).
+    #[getter]
+    fn pupil_centre<'py>(&self, py: Python<'py>) -> Array3<'py> {
+        array3(py, self.setup.pupil_centre)
+    }
+
+    /// Which way up image displacements are counted.
+    #[getter]
+    fn orientation(&self) -> &'static str {
+        orientation_name(self.setup.orientation)
+    }
+
+    /// Speckle size of the pattern in samples.
+    #[getter]
+    fn pattern_speckle_size(&self) -> f64 {
+        self.setup.pattern_speckle_size
+    }
+
+    /// Number of slices of the stack to the first uncorrelated one.
+    #[getter]
+    fn half_period(&self) -> usize {
+        self.setup.half_period
+    }
+
+    fn __repr__(&self) -> String {
+        let (geometry, camera) = (self.geometry.__repr__(), self.camera().__repr__());
+        let centre = shown(self.setup.pupil_centre);
+        format!(
+            "FieldSetup(geometry={geometry}, camera={camera}, pupil_centre={centre}, \
+             orientation={:?}, pattern_speckle_size={:?}, half_period={})",
+            self.orientation(),
+            self.setup.pattern_speckle_size,
+            self.setup.half_period
+        )
+    }
+}
+
+/// The light on the points of a field, by the curvature of its wavefront there.
+#[pyclass(frozen, module = "tem00.decorrelation")]
+#[derive(Debug)]
+pub(crate) struct FieldLight(Light);
+
+#[derive(Debug)]
+enum Light {
+    Collimated,
+    PointSource(DVec3),
+    /// The components of the tensor, as they were given.
+    Curvature([Py<PyAny>; 6]),
+}
+
+#[pymethods]
+impl FieldLight {
+    /// Return plane waves.
+    #[staticmethod]
+    fn collimated() -> Self {
+        Self(Light::Collimated)
+    }
+
+    /// Return spherical waves that diverge from a point of shape (3,), in metres.
+    #[staticmethod]
+    fn point_source(position: Numbers<'_>) -> PyResult<Self> {
+        Ok(Self(Light::PointSource(vec3("position", &position)?)))
+    }
+
+    /// Return waves of any curvature tensor, in 1/m and world coordinates.
+    ///
+    /// Parameters
+    /// ----------
+    /// curvature : six floats or arrays
+    ///     The components xx, xy, xz, yy, yz, zz, which broadcast with the points.
+    #[staticmethod]
+    fn curvature(curvature: [Bound<'_, PyAny>; 6]) -> PyResult<Self> {
+        for component in &curvature {
+            component.extract::<Numbers<'_>>()?;
+        }
+        Ok(Self(Light::Curvature(curvature.map(Bound::unbind))))
+    }
+
+    fn __repr__(&self) -> String {
+        match &self.0 {
+            Light::Collimated => "FieldLight.collimated()".to_owned(),
+            Light::PointSource(position) => {
+                format!("FieldLight.point_source({})", shown(*position))
+            }
+            Light::Curvature(_) => "FieldLight.curvature(...)".to_owned(),
+        }
+    }
+}
+
+/// What motions do to the speckle at many surface points.
+///
+/// Numbers where points were numbers, arrays of the common shape where they were arrays.
+#[pyclass(frozen, module = "tem00.decorrelation")]
+#[derive(Debug)]
+pub(crate) struct FieldSlices([Py<PyAny>; 8]);
+
+impl FieldSlices {
+    fn pair(&self, py: Python<'_>, first: usize) -> (Py<PyAny>, Py<PyAny>) {
+        (self.0[first].clone_ref(py), self.0[first + 1].clone_ref(py))
+    }
+}
+
+#[pymethods]
+impl FieldSlices {
+    /// Motion of the speckle in the image along b1 and b2, in metres on the sensor.
+    #[getter]
+    fn speckle_displacement(&self, py: Python<'_>) -> (Py<PyAny>, Py<PyAny>) {
+        self.pair(py, 0)
+    }
+
+    /// Motion of the speckle field across the pupil along b1 and b2, in metres.
+    ///
+    /// Infinite where the pattern counts as decorrelated because the speckle left the pupil.
+    #[getter]
+    fn pupil_displacement(&self, py: Python<'_>) -> (Py<PyAny>, Py<PyAny>) {
+        self.pair(py, 2)
+    }
+
+    /// What is left of the old pattern as a correlation of intensity, in [0, 1].
+    #[getter]
+    fn correlation(&self, py: Python<'_>) -> Py<PyAny> {
+        self.0[4].clone_ref(py)
+    }
+
+    /// Where to look the pattern up, in pattern samples and not wrapped.
+    #[getter]
+    fn pattern_coordinate(&self, py: Python<'_>) -> (Py<PyAny>, Py<PyAny>) {
+        self.pair(py, 5)
+    }
+
+    /// Which slice of a circular stack to look up, from 0 to the half period.
+    #[getter]
+    fn slice_coordinate(&self, py: Python<'_>) -> Py<PyAny> {
+        self.0[7].clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("FieldSlices(correlation={})", self.0[4])
+    }
+}
+
+/// What motions do to the speckle at many surface points, such as those behind the pixels.
+#[pyclass(frozen, eq, module = "tem00.decorrelation")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MotionField {
+    field: physics::MotionField,
+    setup: FieldSetup,
+}
+
+#[pymethods]
+impl MotionField {
+    /// Return a field in which the surface moves alone.
+    #[staticmethod]
+    fn new(setup: PyRef<'_, FieldSetup>) -> PyResult<Self> {
+        let field = physics::MotionField::new(setup.setup).or_raise()?;
+        let setup = *setup;
+        Ok(Self { field, setup })
+    }
+
+    /// Return the field with a motion of camera, source and all surfaces added to the points'.
+    fn with_shared_motion(&self, motion: PyRef<'_, Motion>) -> Self {
+        Self {
+            field: self.field.with_shared_motion(&motion.0),
+            setup: self.setup,
+        }
+    }
+
+    /// What all points share.
+    #[getter]
+    fn setup(&self) -> FieldSetup {
+        self.setup
+    }
+
+    /// Work out displacements, correlation and coordinates at many points.
+    ///
+    /// All arguments broadcast together. Arrays in float64 that lie row by row are not copied.
+    ///
+    /// Parameters
+    /// ----------
+    /// position : three floats or arrays
+    ///     Positions x, y, z in the reference state, in metres.
+    /// normal : three floats or arrays
+    ///     Surface normals of any length, to either side.
+    /// motion : three floats or arrays
+    ///     Translations of the surface since the reference state, in metres.
+    /// pixel : two floats or arrays
+    ///     Positions in the image in pixels, along b1 and b2.
+    /// light : FieldLight
+    ///     The light on the points.
+    ///
+    /// Returns
+    /// -------
+    /// FieldSlices
+    ///     The results, in the common shape.
+    #[pyo3(signature = (*, position, normal, motion, pixel, light))]
+    fn evaluate<'py>(
+        &self,
+        py: Python<'py>,
+        position: [Numbers<'py>; 3],
+        normal: [Numbers<'py>; 3],
+        motion: [Numbers<'py>; 3],
+        pixel: [Numbers<'py>; 2],
+        light: PyRef<'py, FieldLight>,
+    ) -> PyResult<FieldSlices> {
+        let points = [&position, &normal, &motion];
+        let results = match &light.0 {
+            Light::Collimated => self.run(py, points, &pixel, physics::FieldLight::Collimated),
+            Light::PointSource(source) => self.run(
+                py,
+                points,
+                &pixel,
+                physics::FieldLight::PointSource(*source),
+            ),
+            Light::Curvature(tensor) => self.run_curved(py, points, &pixel, tensor),
+        };
+        Ok(FieldSlices(results?.map(Bound::unbind)))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("MotionField.new({})", self.setup.__repr__())
+    }
+}
+
+/// The arrays of the results.
+type Results<'py> = [Bound<'py, PyAny>; 8];
+
+impl MotionField {
+    /// Evaluates in light that is the same for all points.
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        points: [&[Numbers<'py>; 3]; 3],
+        pixel: &[Numbers<'py>; 2],
+        light: physics::FieldLight<'static>,
+    ) -> PyResult<Results<'py>> {
+        let [p, n, a] = points;
+        let named: [Named<'_, 'py>; 11] = named_points([p, n, a], pixel);
+        fill(py, named, |columns, out| {
+            let [px, py, pz, nx, ny, nz, ax, ay, az, tx, ty] = columns;
+            let points = physics::FieldPoints {
+                position: [px, py, pz],
+                normal: [nx, ny, nz],
+                motion: [ax, ay, az],
+                pixel: [tx, ty],
+                light,
+            };
+            self.field.evaluate(&points, slices(out));
+        })
+    }
+
+    /// Evaluates in light of any curvature.
+    fn run_curved<'py>(
+        &self,
+        py: Python<'py>,
+        points: [&[Numbers<'py>; 3]; 3],
+        pixel: &[Numbers<'py>; 2],
+        tensor: &[Py<PyAny>; 6],
+    ) -> PyResult<Results<'py>> {
+        let tensor: Vec<Numbers<'py>> = tensor
+            .iter()
+            .map(|component| component.bind(py).extract())
+            .collect::<PyResult<_>>()?;
+        let mut named: [Named<'_, 'py>; 17] = [("curvature", &tensor[0]); 17];
+        named[..11].copy_from_slice(&named_points(points, pixel));
+        for (named, component) in named[11..].iter_mut().zip(&tensor) {
+            named.1 = component;
+        }
+        fill(py, named, |columns, out| {
+            let [
+                px,
+                py,
+                pz,
+                nx,
+                ny,
+                nz,
+                ax,
+                ay,
+                az,
+                tx,
+                ty,
+                xx,
+                xy,
+                xz,
+                yy,
+                yz,
+                zz,
+            ] = columns;
+            let points = physics::FieldPoints {
+                position: [px, py, pz],
+                normal: [nx, ny, nz],
+                motion: [ax, ay, az],
+                pixel: [tx, ty],
+                light: physics::FieldLight::Curvature([xx, xy, xz, yy, yz, zz]),
+            };
+            self.field.evaluate(&points, slices(out));
+        })
+    }
+}
+
+/// The components of points with their names, in order.
+fn named_points<'a, 'py>(
+    [position, normal, motion]: [&'a [Numbers<'py>; 3]; 3],
+    pixel: &'a [Numbers<'py>; 2],
+) -> [Named<'a, 'py>; 11] {
+    let [[px, py, pz], [nx, ny, nz]] = [position, normal];
+    let ([ax, ay, az], [tx, ty]) = (motion, pixel);
+    [
+        ("position", px),
+        ("position", py),
+        ("position", pz),
+        ("normal", nx),
+        ("normal", ny),
+        ("normal", nz),
+        ("motion", ax),
+        ("motion", ay),
+        ("motion", az),
+        ("pixel", tx),
+        ("pixel", ty),
+    ]
+}
+
+/// Where the results of a block go.
+fn slices(out: [&mut [f64]; 8]) -> physics::FieldSlices<'_> {
+    let [sx, sy, px, py, correlation, cx, cy, slice_coordinate] = out;
+    physics::FieldSlices {
+        speckle_displacement: [sx, sy],
+        pupil_displacement: [px, py],
+        correlation,
+        pattern_coordinate: [cx, cy],
+        slice_coordinate,
+    }
+}

@@ -1,0 +1,295 @@
+use pyo3::{prelude::*, types::PyAny};
+use tem00_decorrelation::{self as physics, DVec2};
+
+use super::lens::{LensData, PupilDistances, ThickLensData};
+use crate::{
+    arrays::{Numbers, map, map_many},
+    error::{OrRaise, refused},
+    pickling::{Recipe, by_constructor},
+};
+
+/// A camera focused on a surface: a lens, its pupils and the sensor behind it.
+///
+/// All lengths are in metres.
+#[pyclass(frozen, eq, module = "tem00.decorrelation")]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ImagingGeometry {
+    pub(super) geometry: physics::ImagingGeometry,
+    made: Made,
+}
+
+/// What a geometry can be made from again.
+#[derive(Clone, Copy, Debug)]
+enum Made {
+    Lens(LensData),
+    ThickLens(ThickLensData),
+    Distances(PupilDistances),
+}
+
+impl Made {
+    fn with_wavelength(mut self, wavelength: f64) -> Self {
+        let (Self::Lens(LensData {
+            wavelength: old, ..
+        })
+        | Self::ThickLens(ThickLensData {
+            wavelength: old, ..
+        })
+        | Self::Distances(PupilDistances {
+            wavelength: old, ..
+        })) = &mut self;
+        *old = wavelength;
+        self
+    }
+}
+
+impl PartialEq for ImagingGeometry {
+    fn eq(&self, other: &Self) -> bool {
+        self.geometry == other.geometry
+    }
+}
+
+#[pymethods]
+impl ImagingGeometry {
+    /// Return the geometry of a thin lens that images a surface at a given distance sharply.
+    #[staticmethod]
+    fn from_lens(lens: PyRef<'_, LensData>) -> PyResult<Self> {
+        let geometry = physics::ImagingGeometry::from_lens(lens.physics())
+            .or_raise_renamed(&["pupil_diameter"], "f_number")?;
+        let made = Made::Lens(*lens);
+        Ok(Self { geometry, made })
+    }
+
+    /// Return the geometry of a lens of many elements.
+    #[staticmethod]
+    fn from_thick_lens(lens: PyRef<'_, ThickLensData>) -> PyResult<Self> {
+        let geometry = physics::ImagingGeometry::from_thick_lens(lens.physics())
+            .or_raise_renamed(&["pupil_diameter"], "f_number")?;
+        let made = Made::ThickLens(*lens);
+        Ok(Self { geometry, made })
+    }
+
+    /// Return the geometry of a camera whose pupil and distances are known.
+    #[staticmethod]
+    fn from_distances(distances: PyRef<'_, PupilDistances>) -> PyResult<Self> {
+        let geometry = physics::ImagingGeometry::from_distances(distances.physics()).or_raise()?;
+        let made = Made::Distances(*distances);
+        Ok(Self { geometry, made })
+    }
+
+    /// Return the geometry of the same camera in light of another wavelength, in metres.
+    fn with_wavelength(&self, wavelength: f64) -> PyResult<Self> {
+        let changed = self.geometry.with_wavelength(wavelength);
+        let geometry = changed.or_raise_renamed(&["pupil_diameter"], "wavelength")?;
+        let made = self.made.with_wavelength(wavelength);
+        Ok(Self { geometry, made })
+    }
+
+    /// Vacuum wavelength in metres.
+    #[getter]
+    fn wavelength(&self) -> f64 {
+        self.geometry.wavelength()
+    }
+
+    /// Focal length in metres.
+    #[getter]
+    fn focal_length(&self) -> f64 {
+        self.geometry.focal_length()
+    }
+
+    /// F-number, that of focus at infinity.
+    #[getter]
+    fn f_number(&self) -> f64 {
+        self.geometry.f_number()
+    }
+
+    /// F-number of the light on the sensor.
+    #[getter]
+    fn working_f_number(&self) -> f64 {
+        self.geometry.working_f_number()
+    }
+
+    /// Distance from the surface in focus to the entrance pupil, in metres.
+    #[getter]
+    fn surface_to_pupil(&self) -> f64 {
+        self.geometry.surface_to_pupil()
+    }
+
+    /// Pixel pitch of the sensor in metres.
+    #[getter]
+    fn pixel_pitch(&self) -> f64 {
+        self.geometry.pixel_pitch()
+    }
+
+    /// Principal distance in metres, which takes the tangent of a viewing angle to the sensor.
+    #[getter]
+    fn principal_distance(&self) -> f64 {
+        self.geometry.principal_distance()
+    }
+
+    /// Distance from the exit pupil to the sensor, in metres.
+    #[getter]
+    fn pupil_to_image(&self) -> f64 {
+        self.geometry.pupil_to_image()
+    }
+
+    /// Magnification at the surface in focus, without a sign.
+    #[getter]
+    fn magnification(&self) -> f64 {
+        self.geometry.magnification()
+    }
+
+    /// Pupil magnification, 1 for a thin lens.
+    #[getter]
+    fn pupil_magnification(&self) -> f64 {
+        self.geometry.pupil_magnification()
+    }
+
+    /// Diameter of the entrance pupil in metres.
+    #[getter]
+    fn pupil_diameter(&self) -> f64 {
+        self.geometry.pupil_diameter()
+    }
+
+    /// Diameter of the exit pupil in metres.
+    #[getter]
+    fn exit_pupil_diameter(&self) -> f64 {
+        self.geometry.exit_pupil_diameter()
+    }
+
+    /// Speckle size on the sensor in metres.
+    #[getter]
+    fn speckle_size(&self) -> f64 {
+        self.geometry.speckle_size()
+    }
+
+    /// Speckle size on the sensor in pixels.
+    #[getter]
+    fn speckle_size_in_pixels(&self) -> f64 {
+        self.geometry.speckle_size_in_pixels()
+    }
+
+    /// Speckle size projected onto the surface in focus, in metres.
+    #[getter]
+    fn object_speckle_size(&self) -> f64 {
+        self.geometry.object_speckle_size()
+    }
+
+    /// Displacement along the axis that first decorrelates the speckle of the surface, in metres.
+    #[getter]
+    fn axial_decorrelation_length(&self) -> f64 {
+        self.geometry.axial_decorrelation_length()
+    }
+
+    /// Depth of focus of the speckle at the surface, in metres.
+    #[getter]
+    fn depth_of_focus(&self) -> f64 {
+        self.geometry.depth_of_focus()
+    }
+
+    /// Depth of focus of the speckle at the sensor, in metres.
+    #[getter]
+    fn sensor_depth_of_focus(&self) -> f64 {
+        self.geometry.sensor_depth_of_focus()
+    }
+
+    /// Return the axial decorrelation length of points at depths before the pupil, in metres.
+    fn axial_decorrelation_length_at<'py>(
+        &self,
+        py: Python<'py>,
+        depth: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("depth", &depth)], |[z]| {
+            self.geometry.axial_decorrelation_length_at(z)
+        })
+    }
+
+    /// Return the defocus 1/Z − 1/L of points at depths Z before the pupil, in 1/m.
+    ///
+    /// Parameters
+    /// ----------
+    /// depth : float or array
+    ///     Depth in metres, positive.
+    fn defocus_at<'py>(&self, py: Python<'py>, depth: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
+        if let Some(bad) = depth.values()?.iter().find(|&&depth| depth <= 0.0) {
+            let message = format!("depth must be positive, got {bad:e} m");
+            return Err(refused("depth", message));
+        }
+        map(py, [("depth", &depth)], |[z]| self.geometry.defocus_at(z))
+    }
+
+    /// Return the coordinate in a speckle pattern that belongs to a place in the image.
+    ///
+    /// Parameters
+    /// ----------
+    /// pixel : pair of floats or arrays
+    ///     Place in pixels, along two axes.
+    /// image_displacement : pair of floats or arrays
+    ///     Motion of the speckle since the reference state, in metres on the sensor along the same
+    ///     axes.
+    /// pattern_speckle_size : float
+    ///     Speckle size of the pattern in samples.
+    ///
+    /// Returns
+    /// -------
+    /// pair of floats or arrays
+    ///     Coordinate in samples, not wrapped, in the common shape.
+    fn pattern_coordinate<'py>(
+        &self,
+        py: Python<'py>,
+        pixel: [Numbers<'py>; 2],
+        image_displacement: [Numbers<'py>; 2],
+        pattern_speckle_size: f64,
+    ) -> PyResult<[Bound<'py, PyAny>; 2]> {
+        check_pattern(pattern_speckle_size)?;
+        let named = coordinate_arguments(&pixel, &image_displacement);
+        map_many(py, named, |[x, y, ax, ay]| {
+            self.geometry
+                .pattern_coordinate(DVec2::new(x, y), DVec2::new(ax, ay), pattern_speckle_size)
+                .to_array()
+        })
+    }
+
+    pub(super) fn __repr__(&self) -> String {
+        let made = match &self.made {
+            Made::Lens(lens) => format!("from_lens({})", lens.__repr__()),
+            Made::ThickLens(lens) => format!("from_thick_lens({})", lens.__repr__()),
+            Made::Distances(distances) => format!("from_distances({})", distances.__repr__()),
+        };
+        format!("ImagingGeometry.{made}")
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        match self.made {
+            Made::Lens(lens) => by_constructor::<Self>(py, "from_lens", (lens,)),
+            Made::ThickLens(lens) => by_constructor::<Self>(py, "from_thick_lens", (lens,)),
+            Made::Distances(distances) => {
+                by_constructor::<Self>(py, "from_distances", (distances,))
+            }
+        }
+    }
+}
+
+/// The two pairs of a pattern coordinate by their names.
+pub(super) fn coordinate_arguments<'a, 'py>(
+    [x, y]: &'a [Numbers<'py>; 2],
+    [ax, ay]: &'a [Numbers<'py>; 2],
+) -> [(&'static str, &'a Numbers<'py>); 4] {
+    let displacement = "image_displacement";
+    [
+        ("pixel", x),
+        ("pixel", y),
+        (displacement, ax),
+        (displacement, ay),
+    ]
+}
+
+/// Refuses a speckle size that is not positive and finite.
+pub(super) fn check_pattern(pattern_speckle_size: f64) -> PyResult<()> {
+    if pattern_speckle_size > 0.0 && pattern_speckle_size.is_finite() {
+        return Ok(());
+    }
+    Err(physics::DecorrelationError::PatternSpeckleSize(
+        pattern_speckle_size,
+    ))
+    .or_raise()
+}

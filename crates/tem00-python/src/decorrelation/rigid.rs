@@ -1,0 +1,173 @@
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use tem00_decorrelation as physics;
+
+use super::vectors::{Array3, array3, array33, mat3, shown, shown33, vec3};
+use crate::{
+    arrays::Numbers,
+    error::{OrRaise, refused},
+    pickling::{Recipe, by_constructor},
+};
+
+/// A rotation and a translation of a rigid body, in world coordinates: x' = R x + t.
+#[pyclass(frozen, eq, module = "tem00.decorrelation")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RigidMotion(pub(super) physics::RigidMotion);
+
+#[pymethods]
+impl RigidMotion {
+    /// Return the motion of a body that stands still.
+    #[staticmethod]
+    fn identity() -> Self {
+        Self(physics::RigidMotion::IDENTITY)
+    }
+
+    /// Return the motion of a rotation matrix of shape (3, 3) and a translation in metres.
+    #[staticmethod]
+    fn new(rotation: Numbers<'_>, translation: Numbers<'_>) -> PyResult<Self> {
+        let rotation = mat3("rotation", &rotation)?;
+        let motion = physics::RigidMotion::new(rotation, vec3("translation", &translation)?);
+        Ok(Self(motion.or_raise()?))
+    }
+
+    /// Return a translation of shape (3,), in metres.
+    #[staticmethod]
+    fn along(translation: Numbers<'_>) -> PyResult<Self> {
+        let motion = physics::RigidMotion::along(vec3("translation", &translation)?);
+        Ok(Self(motion.or_raise()?))
+    }
+
+    /// Return a rotation.
+    ///
+    /// Parameters
+    /// ----------
+    /// pivot : array of shape (3,)
+    ///     A point on the axis, in metres.
+    /// axis : array of shape (3,)
+    ///     Direction of the axis, of any length.
+    /// angle : float
+    ///     Angle in radians, right-handed.
+    #[staticmethod]
+    fn about(pivot: Numbers<'_>, axis: Numbers<'_>, angle: f64) -> PyResult<Self> {
+        let (pivot, axis) = (vec3("pivot", &pivot)?, vec3("axis", &axis)?);
+        let motion = physics::RigidMotion::about(pivot, axis, angle);
+        // Of finite arguments, one at the end of the range makes the translation overflow.
+        Ok(Self(motion.or_raise_renamed(&["translation"], "pivot")?))
+    }
+
+    /// Return this motion followed by another.
+    fn then(&self, next: PyRef<'_, Self>) -> PyResult<Self> {
+        finite(self.0.then(&next.0), "next")
+    }
+
+    /// Return the motion back.
+    fn inverse(&self) -> Self {
+        Self(self.0.inverse())
+    }
+
+    /// Rotation matrix of shape (3, 3).
+    #[getter]
+    fn rotation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        array33(py, self.0.rotation())
+    }
+
+    /// Translation in metres, of shape (3,).
+    #[getter]
+    fn translation<'py>(&self, py: Python<'py>) -> Array3<'py> {
+        array3(py, self.0.translation())
+    }
+
+    /// Return where the motion takes a point of shape (3,), in metres.
+    fn point<'py>(&self, py: Python<'py>, point: Numbers<'py>) -> PyResult<Array3<'py>> {
+        let moved = self.0.point(vec3("point", &point)?);
+        if moved.is_finite() {
+            return Ok(array3(py, moved));
+        }
+        let message = format!("point must be less extreme: {} overflows", shown(moved));
+        Err(refused("point", message))
+    }
+
+    /// Return where the motion turns a direction of shape (3,).
+    fn direction<'py>(&self, py: Python<'py>, direction: Numbers<'py>) -> PyResult<Array3<'py>> {
+        Ok(array3(py, self.0.direction(vec3("direction", &direction)?)))
+    }
+
+    fn __repr__(&self) -> String {
+        let (rotation, translation) = (self.0.rotation(), self.0.translation());
+        format!(
+            "RigidMotion.new({}, {})",
+            shown33(rotation),
+            shown(translation)
+        )
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        let rows = self.0.rotation().transpose().to_cols_array_2d();
+        let rows = rows.map(Vec::from).to_vec();
+        let translation = Vec::from(self.0.translation().to_array());
+        by_constructor::<Self>(py, "new", (rows, translation))
+    }
+}
+
+/// Returns a motion whose translation has not overflowed.
+fn finite(motion: physics::RigidMotion, name: &'static str) -> PyResult<RigidMotion> {
+    if motion.translation().is_finite() {
+        return Ok(RigidMotion(motion));
+    }
+    let message = format!("{name} must be less extreme: the translation overflows");
+    Err(refused(name, message))
+}
+
+/// How surface, camera and light source have moved since the reference state, as rigid bodies.
+///
+/// Parameters
+/// ----------
+/// surface, camera, source : RigidMotion, optional
+///     Motions of each; what is left out stands still.
+#[pyclass(frozen, eq, module = "tem00.decorrelation")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RigidMotions(pub(super) physics::RigidMotions);
+
+#[pymethods]
+impl RigidMotions {
+    #[new]
+    #[pyo3(signature = (*, surface = None, camera = None, source = None))]
+    fn new(
+        surface: Option<PyRef<'_, RigidMotion>>,
+        camera: Option<PyRef<'_, RigidMotion>>,
+        source: Option<PyRef<'_, RigidMotion>>,
+    ) -> Self {
+        let of = |motion: Option<PyRef<'_, RigidMotion>>| {
+            motion.map_or(physics::RigidMotion::IDENTITY, |motion| motion.0)
+        };
+        Self(physics::RigidMotions {
+            surface: of(surface),
+            camera: of(camera),
+            source: of(source),
+        })
+    }
+
+    /// Motion of the surface.
+    #[getter]
+    fn surface(&self) -> RigidMotion {
+        RigidMotion(self.0.surface)
+    }
+
+    /// Motion of the camera.
+    #[getter]
+    fn camera(&self) -> RigidMotion {
+        RigidMotion(self.0.camera)
+    }
+
+    /// Motion of the light source and its wave.
+    #[getter]
+    fn source(&self) -> RigidMotion {
+        RigidMotion(self.0.source)
+    }
+
+    fn __repr__(&self) -> String {
+        let [surface, camera, source] =
+            [self.0.surface, self.0.camera, self.0.source].map(|m| RigidMotion(m).__repr__());
+        format!("RigidMotions(surface={surface}, camera={camera}, source={source})")
+    }
+}

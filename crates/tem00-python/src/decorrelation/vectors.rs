@@ -1,0 +1,107 @@
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use tem00_decorrelation::{DMat3, DVec2, DVec3, ImageOrientation};
+
+use crate::{
+    arrays::{Numbers, vector_array},
+    error::refused,
+};
+
+/// A vector of the world as an array of shape (3,).
+pub(super) type Array3<'py> = Bound<'py, PyArray1<f64>>;
+
+/// A vector in the pupil or the image as an array of shape (2,).
+pub(super) type Array2<'py> = Bound<'py, PyArray1<f64>>;
+
+/// Returns an argument as a vector of the world.
+pub(super) fn vec3(name: &'static str, argument: &Numbers<'_>) -> PyResult<DVec3> {
+    Ok(DVec3::from_array(argument.vector(name)?))
+}
+
+/// Returns an argument as a vector in the pupil or the image.
+pub(super) fn vec2(name: &'static str, argument: &Numbers<'_>) -> PyResult<DVec2> {
+    Ok(DVec2::from_array(argument.vector(name)?))
+}
+
+/// Returns an argument of shape (3, 3) as a matrix.
+pub(super) fn mat3(name: &'static str, argument: &Numbers<'_>) -> PyResult<DMat3> {
+    let values = argument.finite(name)?;
+    match (argument.shape(), <&[f64; 9]>::try_from(values)) {
+        // Rows of NumPy are columns of the transpose.
+        ([3, 3], Ok(rows)) => Ok(DMat3::from_cols_array(rows).transpose()),
+        (shape, _) => {
+            let message = format!("{name} has the shape {shape:?}, but must have [3, 3]");
+            Err(refused(name, message))
+        }
+    }
+}
+
+/// Returns a unit vector, or another that is finite, as an array.
+pub(super) fn array3(py: Python<'_>, vector: DVec3) -> Array3<'_> {
+    vector_array(py, vector.to_array())
+}
+
+/// Returns a vector in the pupil or the image, which follows from the argument `name`, as an array.
+///
+/// # Errors
+///
+/// Refuses an argument so extreme that the vector is no numbers.
+pub(super) fn array2<'py>(
+    py: Python<'py>,
+    name: &'static str,
+    vector: DVec2,
+) -> PyResult<Array2<'py>> {
+    Ok(vector_array(py, numbers(name, vector)?.to_array()))
+}
+
+/// Returns a vector that follows from the argument `name`.
+///
+/// # Errors
+///
+/// Refuses an argument so extreme that the vector is no numbers.
+pub(super) fn numbers(name: &'static str, vector: DVec2) -> PyResult<DVec2> {
+    if vector.is_nan() {
+        let message = format!("{name} must be less extreme to have a result");
+        return Err(refused(name, message));
+    }
+    Ok(vector)
+}
+
+/// Returns a matrix as an array of shape (3, 3).
+pub(super) fn array33(py: Python<'_>, matrix: DMat3) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    vector_array(py, matrix.transpose().to_cols_array()).reshape([3, 3])
+}
+
+/// Returns which way up image displacements are counted.
+pub(super) fn orientation_of(orientation: &str) -> PyResult<ImageOrientation> {
+    match orientation {
+        "screen_upright" => Ok(ImageOrientation::ScreenUpright),
+        "sensor_inverted" => Ok(ImageOrientation::SensorInverted),
+        _ => {
+            let message = format!(
+                "orientation must be \"screen_upright\" or \"sensor_inverted\", got {orientation:?}"
+            );
+            Err(refused("orientation", message))
+        }
+    }
+}
+
+/// Returns the name of an orientation.
+pub(super) const fn orientation_name(orientation: ImageOrientation) -> &'static str {
+    match orientation {
+        ImageOrientation::ScreenUpright => "screen_upright",
+        ImageOrientation::SensorInverted => "sensor_inverted",
+    }
+}
+
+/// Writes a vector as Python does.
+pub(super) fn shown(vector: DVec3) -> String {
+    format!("{:?}", vector.to_array())
+}
+
+/// Writes a matrix as Python does, row by row.
+pub(super) fn shown33(matrix: DMat3) -> String {
+    let rows = matrix.transpose();
+    let rows = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.to_array());
+    format!("{rows:?}")
+}

@@ -1,0 +1,192 @@
+"""Arguments that are refused: the exception names them, their value and what is allowed."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tem00
+from tem00.speckle import (
+    Bandwidth,
+    CoherentBackground,
+    Exposure,
+    IncoherentSum,
+    LitArea,
+    ObjectiveSpeckle,
+    PixelArray,
+    Pupil,
+    PupilField,
+    SlicePath,
+    SpeckleStack,
+    StackNeeds,
+    StackOptions,
+    StackPlan,
+    Transmission,
+)
+from tem00.speckle.paper import BilinearStack
+
+FIELD = PupilField.new(64, 16, 7)
+STACK = SpeckleStack.generate(FIELD, SlicePath.circle(half_period=2))
+MEASURED = PupilField.from_samples(np.ones((40, 40)), (160, 160), 4.0)
+NEEDS = StackNeeds((64, 48), (64, 48), 2.5, 0.33, frames=10, memory_limit=2**30)
+
+
+def needs(**changes: object) -> StackNeeds:
+    """Return needs with another value."""
+    values = {name: getattr(NEEDS, name) for name in dir(NEEDS) if not name.startswith("_")}
+    return StackNeeds(**(values | changes))
+
+
+REFUSED: list[tuple[Callable[[], object], str, str]] = [
+    (lambda: PupilField.new(-1, 16, 0), "size", "-1"),
+    (lambda: PupilField.new(2**20, 16, 0), "size", "32768"),
+    (lambda: PupilField.new(64, 33, 0), "diameter", "33"),
+    (lambda: PupilField.new(64, 16, 2**64), "seed", "18446744073709551616"),
+    (lambda: PupilField.from_speckle_size((64, 64), 1.5, 0), "speckle_size", "1.5"),
+    (lambda: PupilField.from_speckle_size((64, 64), np.nan, 0), "speckle_size", "NaN"),
+    (lambda: PupilField.from_samples([[np.inf]], (64, 64), 4.0), "samples", "finite"),
+    (lambda: PupilField.from_samples(np.ones((0, 4)), (64, 64), 4.0), "samples", "0"),
+    (lambda: PupilField.from_samples(np.ones(4), (64, 64), 4.0), "samples", "[4]"),
+    (lambda: PupilField.from_scatterers(0, (64, 64), 2.0, 0), "count", "0"),
+    (lambda: FIELD.with_phasors("round"), "phasors", "'round'"),  # type: ignore[arg-type]
+    (lambda: FIELD.with_pupil(Pupil.annulus(inner=0.99)), "pupil", "49"),
+    (lambda: FIELD.pattern_at((np.inf, 0.0), 0.0), "offset", "inf"),
+    (lambda: FIELD.speckle((0.0, 0.0), np.nan), "defocus", "NaN"),
+    (lambda: FIELD.overlap((2**63, 0)), "shift", "9223372036854775808"),
+    (lambda: FIELD.amplitude_correlation(0.0, np.inf), "y", "inf"),
+    (lambda: Pupil.annulus(inner=1.0), "inner", "1"),
+    (lambda: Pupil.rectangle(height=0.0), "height", "0"),
+    (lambda: Pupil.gaussian(radius=-1.0), "radius", "-1"),
+    (lambda: Pupil.circle().overlap(np.nan, 0.0), "x", "NaN"),
+    (lambda: Transmission.new([[1.5]]), "amplitude", "1.5"),
+    (lambda: Transmission.from_complex([[2j]]), "amplitude", "2"),
+    (lambda: SlicePath.circle(half_period=0), "half_period", "0"),
+    (lambda: SlicePath.straight(half_period=4, length=1), "length", "1"),
+    (lambda: StackOptions("linear"), "interpolation", "'linear'"),  # type: ignore[arg-type]
+    (lambda: StackOptions(memory_limit=-5), "memory_limit", "-5"),
+    (lambda: STACK.coefficients(4), "index", "4"),
+    (lambda: STACK.slice_law(-5), "index", "-5"),
+    (lambda: STACK.offset(10**30), "index", "1" + 30 * "0"),
+    (lambda: STACK.correlation_between(0, 4), "j", "4"),
+    (lambda: STACK.intensity_at([0.0, np.nan], 0.0, 0.0), "x", "NaN"),
+    (lambda: STACK.intensity_at(0.0, 0.0, np.inf), "u", "inf"),
+    (lambda: STACK.intensity_at([0.0, 1.0], [0.0, 1.0, 2.0], 0.0), "y", "3"),
+    (lambda: STACK.average_over(0.0, 0.0, (1.0, -2.0), 0.0), "size", "-2"),
+    (lambda: STACK.correlation_at(np.nan), "distance", "NaN"),
+    (lambda: STACK.coordinate_of(np.nan), "correlation", "NaN"),
+    (lambda: StackPlan.new(needs(image=(0.0, 1.0))), "image", "0"),
+    (lambda: StackPlan.new(needs(region=(1.0, np.inf))), "region", "inf"),
+    (lambda: StackPlan.new(needs(speckle_size=-2.0)), "speckle_size", "-2"),
+    (lambda: StackPlan.new(needs(motion=np.nan)), "motion", "NaN"),
+    (lambda: needs(frames=2**32), "frames", "4294967296"),
+    (lambda: StackPlan.new(NEEDS).with_half_period(0), "half_period", "0"),
+    (lambda: StackPlan.new(NEEDS).with_square(64, 33), "diameter", "33"),
+    (lambda: IncoherentSum.equal(0), "count", "0"),
+    (lambda: IncoherentSum.weighted([1.0, -1.5]), "weights", "-1.5"),
+    (lambda: IncoherentSum.partially_polarised(1.5), "degree", "1.5"),
+    (lambda: IncoherentSum.polychromatic(Bandwidth(1e-6, 2e-7, 0)), "linewidth", "2e-7"),
+    (lambda: IncoherentSum.polychromatic(Bandwidth(-1e-6, 0, 0)), "wavelength", "-1e-6"),
+    (lambda: IncoherentSum.polychromatic(Bandwidth(1e-6, 0, -1)), "path_spread", "-1"),
+    (lambda: IncoherentSum.equal(2).fields(MEASURED), "field", "seed"),
+    (lambda: CoherentBackground.new(-3.0, 0.0), "beam_ratio", "-3"),
+    (lambda: CoherentBackground.new(1.0, np.inf), "phase", "inf"),
+    (lambda: CoherentBackground.new(1.0, 0.0).intensity(1e300), "amplitude", "1e300"),
+    (lambda: Exposure().with_image_drift((2e6, 0.0)), "drift", "2000000"),
+    (lambda: Exposure().with_pupil_drift((0.0, 129.0)), "drift", "129"),
+    (lambda: Exposure().pattern_at(FIELD, (0.0, np.nan), 0.0), "offset", "NaN"),
+    (lambda: PixelArray.new((0, 1), (1.0, 1.0)), "count", "0"),
+    (lambda: PixelArray.new((1, 1), (-1.0, 1.0)), "pitch", "-1"),
+    (lambda: PixelArray.new((1, 1), (1.0, 1.0)).with_size((-1.0, 1.0)), "size", "-1"),
+    (lambda: PixelArray.new((1, 1), (1.0, 1.0)).with_origin((2e12, 0.0)), "origin", "2000000000"),
+    (lambda: ObjectiveSpeckle.new(-1.0, 1.0, LitArea.disc(1.0)), "wavelength", "-1"),
+    (lambda: ObjectiveSpeckle.new(1.0, 0.0, LitArea.disc(1.0)), "distance", "0"),
+    (lambda: ObjectiveSpeckle.new(1.0, 1.0, LitArea.disc(-1.0)), "area", "-1"),
+    (lambda: ObjectiveSpeckle.new(1.0, 1.0, LitArea.ring(1.0, 2.0)), "inner", "2"),
+    (
+        lambda: ObjectiveSpeckle.new(1.0, 1.0, LitArea.disc(1.0)).field((64, 64), 0.0, 0),
+        "sample_pitch",
+        "0",
+    ),
+    (
+        lambda: ObjectiveSpeckle.new(1.0, 1.0, LitArea.disc(1e-300)).offset((1e300, 0.0)),
+        "displacement",
+        "inf",
+    ),
+    (lambda: BilinearStack.generate(FIELD, 0), "half_period", "0"),
+    (lambda: BilinearStack.generate(FIELD, 2).contrast_between_slices(4, 0.5), "index", "4"),
+    (lambda: BilinearStack.generate(FIELD, 2).intensity_at(0.0, np.nan, 0.0), "y", "NaN"),
+    (lambda: SpeckleStack.read_from(__file__, 1 << 20), "file", "stack"),
+    (
+        lambda: SpeckleStack.read_npy(__file__, FIELD, SlicePath.still(), StackOptions()),
+        "file",
+        "NumPy",
+    ),
+]
+
+
+@pytest.mark.parametrize(("call", "parameter", "value"), REFUSED)
+def test_errors_name_the_argument_and_its_value(
+    call: Callable[[], object], parameter: str, value: str
+) -> None:
+    with pytest.raises(tem00.ParameterError) as caught:
+        call()
+    assert caught.value.parameter == parameter
+    assert value in str(caught.value)
+
+
+TOO_LARGE: list[Callable[[], object]] = [
+    lambda: SpeckleStack.generate(
+        PupilField.new(2**15, 8, 0), SlicePath.circle(half_period=2**15)
+    ),
+    lambda: SpeckleStack.generate_with(
+        FIELD, SlicePath.circle(half_period=4), StackOptions(memory_limit=1000)
+    ),
+    lambda: StackPlan.new(needs(memory_limit=1000)),
+    lambda: BilinearStack.generate(PupilField.new(2**15, 8, 0), 2**15),
+    lambda: STACK.intensity_at(
+        np.zeros((10**6, 1, 1)), np.zeros((1, 10**6, 1)), np.zeros((1, 1, 100))
+    ),
+]
+
+
+@pytest.mark.parametrize("call", TOO_LARGE)
+def test_what_memory_cannot_hold_is_a_memory_error(call: Callable[[], object]) -> None:
+    with pytest.raises(MemoryError):
+        call()
+
+
+def no_pattern(part: PupilField) -> None:
+    """Return what is no pattern."""
+
+
+WRONG_TYPES: list[Callable[[], object]] = [
+    lambda: PupilField.new(64.0, 16, 0),  # type: ignore[arg-type]
+    lambda: PupilField.from_speckle_size(64, 4.0, 0),  # type: ignore[arg-type]
+    lambda: STACK.intensity_at("1", 0.0, 0.0),
+    lambda: IncoherentSum.equal(2).pattern(FIELD, no_pattern),  # type: ignore[arg-type]
+    lambda: FIELD.with_pupil(SlicePath.still()),  # type: ignore[arg-type]
+]
+
+
+@pytest.mark.parametrize("call", WRONG_TYPES)
+def test_arguments_of_another_type_are_type_errors(call: Callable[[], object]) -> None:
+    with pytest.raises(TypeError):
+        call()
+
+
+def test_errors_of_a_part_come_through_a_sum() -> None:
+    light = IncoherentSum.equal(3)
+    with pytest.raises(ZeroDivisionError):
+        light.pattern(FIELD, lambda part: PupilField.new(1 // 0, 16, 0).pattern())
+    sizes = iter([64, 128, 64])
+    with pytest.raises(tem00.ParameterError, match=r"\[64, 64\], got \[128, 128\]") as caught:
+        light.pattern(FIELD, lambda part: PupilField.new(next(sizes), 16, 0).pattern())
+    assert caught.value.parameter == "part"
+
+
+def test_files_that_are_not_there_are_os_errors(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        SpeckleStack.read_from(tmp_path / "none", 1 << 20)
+    with pytest.raises(FileNotFoundError):
+        FIELD.pattern().write_npy(tmp_path / "no folder" / "pattern.npy")

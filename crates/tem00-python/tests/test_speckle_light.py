@@ -1,0 +1,163 @@
+"""Sums, backgrounds, exposures, pixels and speckle without a lens, against NumPy and SciPy."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy import fft, integrate, stats
+
+from tem00.speckle import (
+    Bandwidth,
+    CoherentBackground,
+    Exposure,
+    IncoherentSum,
+    LitArea,
+    ObjectiveSpeckle,
+    PixelArray,
+    Pupil,
+    PupilField,
+    SlicePath,
+    SpeckleStack,
+)
+
+# Sums of patterns in single precision, whose brightest speckle has the intensity 10.
+SINGLE = 1e-5
+
+
+@pytest.fixture(scope="module")
+def field() -> PupilField:
+    return PupilField.new(128, 48, 21)
+
+
+def test_a_sum_adds_its_patterns_in_their_shares(field: PupilField) -> None:
+    light = IncoherentSum.weighted([3.0, 0.0, 1.0])
+    np.testing.assert_allclose(light.shares, [0.75, 0.25], rtol=1e-15)
+    first, second = light.fields(field)
+    assert first == field
+    expected = 0.75 * first.pattern().values + 0.25 * second.pattern().values
+    np.testing.assert_allclose(light.pattern(field).values, expected, atol=SINGLE)
+    moved = light.pattern(field, lambda part: part.pattern_at((0.5, 0.0), 0.0))
+    expected = 0.75 * first.pattern_at((0.5, 0.0), 0.0).values
+    expected = expected + 0.25 * second.pattern_at((0.5, 0.0), 0.0).values
+    np.testing.assert_allclose(moved.values, expected, atol=SINGLE)
+
+
+def test_a_sum_weighs_look_ups(field: PupilField) -> None:
+    light = IncoherentSum.weighted([3.0, 1.0])
+    stacks = [SpeckleStack.generate(part, SlicePath.still()) for part in light.fields(field)]
+    x = np.linspace(0.0, 10.0, 7)
+    intensity = light.intensity(lambda part: stacks[part].intensity_at(x, 3.0, 0.0))
+    expected = [stack.intensity_at(x, 3.0, 0.0) for stack in stacks]
+    np.testing.assert_allclose(intensity, 0.75 * expected[0] + 0.25 * expected[1], rtol=1e-15)
+    assert light.intensity(lambda part: float(part)) == 0.25
+
+
+def test_sums_have_the_contrast_of_their_shares() -> None:
+    assert IncoherentSum.equal(9).contrast == pytest.approx(1 / 3, rel=1e-14)
+    polarised = IncoherentSum.partially_polarised(0.6)
+    assert polarised.contrast == pytest.approx(np.sqrt((1 + 0.36) / 2), rel=1e-14)
+    both = IncoherentSum.equal(3).and_(polarised)
+    assert len(both.shares) == 6
+    assert both.contrast == pytest.approx(polarised.contrast / np.sqrt(3), rel=1e-14)
+    assert both != polarised
+
+
+def test_equal_sums_have_the_gamma_law() -> None:
+    field = PupilField.new(256, 64, 0).with_phasors("gaussian")
+    light = IncoherentSum.equal(3)
+    # Beyond the first zero of the autocovariance, 1.22 speckle sizes of 4 samples.
+    samples = np.concatenate(
+        [light.pattern(field.with_seed(seed)).values[::5, ::5].ravel() for seed in range(4)]
+    )
+    assert stats.kstest(samples, stats.gamma(3, scale=1 / 3).cdf).pvalue > 1e-3
+
+
+def test_a_spectrum_has_the_contrast_of_its_coherence() -> None:
+    wavelength, linewidth, spread = 650e-9, 20e-9, 10e-6
+    light = IncoherentSum.polychromatic(Bandwidth(wavelength, linewidth, spread))
+    # A Gaussian spectrum of wave numbers of that width at half maximum, on a Gaussian surface:
+    # C² = ∫∫ S(k) S(k') exp(-(k - k')² spread²) dk dk', in units of its standard deviation.
+    sigma = 2 * np.pi * linewidth / wavelength**2 / np.sqrt(8 * np.log(2))
+    # The difference of two such wave numbers is Gaussian with the variance 2.
+    law = stats.norm(scale=np.sqrt(2)).pdf
+    square, _ = integrate.quad(lambda d: law(d) * np.exp(-((d * sigma * spread) ** 2)), -12, 12)
+    # The last modes, 1e-4 of the light, are left out.
+    assert light.contrast == pytest.approx(np.sqrt(square), rel=2e-4)
+
+
+def test_a_background_interferes(field: PupilField) -> None:
+    background = CoherentBackground.new(2.5, 0.7)
+    assert background.contrast == pytest.approx(np.sqrt(6) / 3.5, rel=1e-14)
+    amplitude = field.field()
+    expected = np.abs(amplitude.values + np.sqrt(2.5) * np.exp(0.7j)) ** 2 / 3.5
+    np.testing.assert_allclose(background.intensity(amplitude.values), expected, rtol=1e-5)
+    np.testing.assert_allclose(background.pattern(amplitude).values, expected, rtol=1e-5)
+    one = background.intensity(0.5 - 0.25j)
+    assert isinstance(one, float)
+    assert one == pytest.approx(abs(0.5 - 0.25j + np.sqrt(2.5) * np.exp(0.7j)) ** 2 / 3.5)
+
+
+def test_a_drift_over_the_sensor_is_a_sinc_in_the_spectrum(field: PupilField) -> None:
+    drift = (1.5, -0.6)
+    exposure = Exposure().with_image_drift(drift)
+    assert (exposure.image_drift, exposure.pupil_drift, exposure.moments) == (drift, (0, 0), 1)
+    turns = fft.fftfreq(128)
+    samples = [side * field.speckle_size for side in drift]
+    smear = np.sinc(turns * samples[0] + turns[:, np.newaxis] * samples[1])
+    expected = fft.ifft2(fft.fft2(field.pattern().values.astype(float)) * smear).real
+    np.testing.assert_allclose(exposure.pattern(field).values, expected, atol=SINGLE)
+
+
+def test_a_drift_over_the_pupil_is_a_mean_of_moments(field: PupilField) -> None:
+    exposure = Exposure().with_pupil_drift((0.4, 0.3))
+    # 30 √½, rounded up.
+    assert exposure.moments == 22
+    times = (np.arange(22) + 0.5) / 22 - 0.5
+    patterns = [field.pattern_at((0.1 + 0.4 * t, 0.3 * t), 0.2).values for t in times]
+    exposed = exposure.pattern_at(field, (0.1, 0.0), 0.2)
+    np.testing.assert_allclose(exposed.values, np.mean(patterns, axis=0), atol=SINGLE)
+
+
+def test_pixels_are_integrals_of_the_interpolated_pattern(field: PupilField) -> None:
+    pixels = PixelArray.new((5, 4), (3.3, 2.9)).with_size((2.4, 1.7)).with_origin((-7.0, 120.3))
+    pattern = field.pattern()
+    spectrum = fft.fft2(pattern.values.astype(float)) / pattern.values.size
+    k = fft.fftfreq(128)
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+
+    def wave_means(centres: NDArray[np.floating], size: float) -> NDArray[np.complex128]:
+        places = centres[:, np.newaxis] + 0.5 * size * nodes
+        waves = np.exp(2j * np.pi * places[..., np.newaxis] * k)
+        return np.asarray(np.einsum("pnk,n->pk", waves, 0.5 * weights))
+
+    columns = wave_means(-7.0 + 3.3 * np.arange(5), 2.4)
+    rows = wave_means(120.3 + 2.9 * np.arange(4), 1.7)
+    expected = (rows @ spectrum @ columns.T).real
+    image = pixels.image(pattern)
+    assert image.dtype == np.float32
+    assert image.shape == (4, 5)
+    np.testing.assert_allclose(image, expected, atol=SINGLE)
+
+
+def test_a_lit_area_is_a_pupil_without_a_lens() -> None:
+    spot = ObjectiveSpeckle.new(650e-9, 2.0, LitArea.disc(diameter=1e-3))
+    assert spot.speckle_size == pytest.approx(650e-9 * 2.0 / 1e-3, rel=1e-14)
+    field = spot.field((256, 192), 0.5e-3, 1)
+    assert field == PupilField.from_speckle_size((256, 192), field.speckle_size, 1)
+    assert field.speckle_size == pytest.approx(2.6, rel=1e-14)
+    assert spot.offset((0.1e-3, -0.2e-3)) == pytest.approx((-0.1, 0.2), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("area", "width", "pupil"),
+    [
+        (LitArea.ring(outer=2e-3, inner=1e-3), 2e-3, Pupil.annulus(0.5)),
+        (LitArea.rectangle(width=2e-3, height=1e-3), 2e-3, Pupil.rectangle(0.5)),
+        (LitArea.gaussian_spot(radius=0.4e-3), 2e-3, Pupil.gaussian(0.2)),
+    ],
+    ids=repr,
+)
+def test_lit_areas_have_the_shape_of_a_pupil(area: LitArea, width: float, pupil: Pupil) -> None:
+    speckle = ObjectiveSpeckle.new(500e-9, 1.0, area)
+    assert speckle.speckle_size == pytest.approx(500e-9 / width, rel=1e-14)
+    field = speckle.field((256, 256), speckle.speckle_size / 2, 1)
+    assert field.pupil == pupil

@@ -1,0 +1,204 @@
+"""How objects behave in Python: views, pickles, threads, plans."""
+
+import gc
+import pickle
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tem00.speckle import (
+    Bandwidth,
+    CoherentBackground,
+    Exposure,
+    LitArea,
+    ObjectiveSpeckle,
+    PixelArray,
+    Pupil,
+    PupilField,
+    SlicePath,
+    SpeckleStack,
+    StackNeeds,
+    StackOptions,
+    StackPlan,
+    Transmission,
+)
+
+FIELD = PupilField.new(64, 16, 7)
+STACK = SpeckleStack.generate(FIELD, SlicePath.circle(half_period=2))
+NEEDS = StackNeeds(
+    image=(640, 480),
+    region=(640, 480),
+    speckle_size=2.5,
+    motion=0.33,
+    frames=10,
+    memory_limit=256 << 20,
+)
+MEASURED = PupilField.from_samples(np.full((40, 40), 1 + 2j), (160, 160), 4.0)
+TRANSMISSION = Transmission.new(np.ones((4, 4)))
+
+VIEWS: list[Callable[[], tuple[object, NDArray[np.generic] | None]]] = [
+    lambda: (pattern := FIELD.pattern(), pattern.values),
+    lambda: (amplitude := FIELD.field(), amplitude.values),
+    lambda: (
+        stack := SpeckleStack.generate(FIELD, SlicePath.circle(half_period=1)),
+        stack.coefficients(1),
+    ),
+    lambda: (MEASURED, MEASURED.samples),
+    lambda: (TRANSMISSION, TRANSMISSION.values),
+]
+
+
+@pytest.mark.parametrize("make", VIEWS, ids=("pattern", "field", "stack", "samples", "pupil"))
+def test_images_are_views_that_nobody_can_write(
+    make: Callable[[], tuple[object, NDArray[np.generic] | None]],
+) -> None:
+    owner, image = make()
+    assert image is not None
+    assert image.base is owner
+    assert image.ndim == 2
+    assert image.flags.c_contiguous
+    with pytest.raises(ValueError, match="read-only"):
+        image[0, 0] = 0
+    with pytest.raises(ValueError, match="WRITEABLE"):
+        image.flags.writeable = True
+
+
+def test_views_share_their_memory_and_keep_it_alive() -> None:
+    pattern = FIELD.pattern()
+    image, again = pattern.values, pattern.values
+    assert np.shares_memory(image, again)
+    before = image.copy()
+    del pattern, again
+    gc.collect()
+    # Another pattern would take the place of one that was given back.
+    others = [FIELD.with_seed(seed).pattern() for seed in range(5)]
+    np.testing.assert_array_equal(image, before)
+    assert len(others) == 5
+
+
+def resident_bytes() -> int:
+    """Return the memory that this process holds, on Linux."""
+    status = Path("/proc/self/status").read_text(encoding="ascii")
+    line = next(line for line in status.splitlines() if line.startswith("VmRSS"))
+    return int(line.split()[1]) * 1024
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="Linux tells its memory there")
+def test_views_of_a_large_stack_take_no_memory() -> None:
+    stack = SpeckleStack.generate(PupilField.new(1024, 64, 1), SlicePath.circle(half_period=4))
+    assert stack.memory_bytes == 64 << 20
+    gc.collect()
+    before = resident_bytes()
+    views = [stack.coefficients(index) for index in range(8)]
+    assert sum(view.nbytes for view in views) == 64 << 20
+    # A copy of a single slice would take 8 MiB.
+    assert resident_bytes() - before < 4 << 20
+
+
+PICKLED = [
+    FIELD,
+    FIELD.with_phasors("gaussian").with_pupil(Pupil.annulus(inner=0.3)),
+    PupilField.new(100, 30, 2**64 - 1),
+    PupilField.from_speckle_size((640, 480), 3.3, 7),
+    MEASURED.with_pupil(Pupil.sampled(TRANSMISSION)),
+    PupilField.from_scatterers(3, (64, 64), 2.0, 5),
+    Pupil.circle(),
+    Pupil.rectangle(height=0.3),
+    Pupil.gaussian(radius=0.5),
+    TRANSMISSION,
+    SlicePath.still(),
+    SlicePath.circle(half_period=3),
+    SlicePath.straight(half_period=8, length=4),
+    StackOptions("bilinear", memory_limit=10**9),
+    NEEDS,
+    Bandwidth(650e-9, 20e-9, 10e-6),
+    CoherentBackground.new(1.5, 0.25),
+    Exposure().with_image_drift((1.0, 2.0)).with_pupil_drift((0.1, 0.2)),
+    PixelArray.new((4, 5), (1.5, 2.0)).with_size((1.0, 1.0)).with_origin((3.0, -4.0)),
+    LitArea.disc(diameter=1e-3),
+    LitArea.ring(outer=2e-3, inner=1e-3),
+    LitArea.rectangle(width=2e-3, height=1e-3),
+    LitArea.gaussian_spot(radius=1e-3),
+    ObjectiveSpeckle.new(650e-9, 2.0, LitArea.disc(diameter=1e-3)),
+]
+
+
+@pytest.mark.parametrize("thing", PICKLED, ids=repr)
+def test_pickles_are_equal_to_what_was_pickled(thing: object) -> None:
+    again = pickle.loads(pickle.dumps(thing))
+    assert again == thing
+    assert repr(again) == repr(thing)
+
+
+def test_pickled_fields_have_the_same_bits_in_another_process() -> None:
+    program = (
+        "import pickle, sys; field = pickle.load(sys.stdin.buffer); "
+        "sys.stdout.buffer.write(field.pattern().values.tobytes())"
+    )
+    run = [sys.executable, "-c", program]
+    other = subprocess.run(run, input=pickle.dumps(FIELD), capture_output=True, check=True)
+    assert other.stdout == FIELD.pattern().values.tobytes()
+
+
+def test_a_field_on_a_closed_lattice_refuses_to_be_pickled() -> None:
+    stack = SpeckleStack.generate(FIELD, SlicePath.straight(half_period=2, length=2))
+    with pytest.raises(TypeError, match="closed"):
+        pickle.dumps(stack.field)
+
+
+def test_long_work_leaves_the_interpreter_free() -> None:
+    field = PupilField.new(1024, 512, 1)
+    done = threading.Event()
+
+    def work() -> None:
+        for seed in range(3):
+            SpeckleStack.generate(field.with_seed(seed), SlicePath.circle(half_period=2))
+        done.set()
+
+    worker = threading.Thread(target=work)
+    worker.start()
+    turns = 0
+    while not done.is_set():
+        turns += 1
+        time.sleep(1e-3)
+    worker.join()
+    # With the interpreter held, this thread would have a turn before and after each of three calls
+    # of a tenth of a second.
+    assert turns > 12
+
+
+def test_plans_have_the_sizes_of_their_needs() -> None:
+    plan = StackPlan.new(NEEDS)
+    # 640 / 2.5 and 480 / 2.5 speckles, two samples each, and 32 slices per diameter.
+    assert (plan.diameter, plan.size) == ((256, 192), (512, 384))
+    assert plan.path == SlicePath.straight(half_period=32, length=2)
+    assert plan.memory_bytes == 64 * 512 * 384 * 8
+    assert (plan.slices_per_diameter, plan.reach) == (32.0, 1.0)
+    assert plan.holds_region(NEEDS)
+    assert plan.holds_motion(NEEDS)
+    assert plan in StackPlan.candidates(NEEDS)
+    half = StackPlan.first_within(StackPlan.candidates(NEEDS), plan.memory_bytes // 2)
+    assert half.memory_bytes == plan.memory_bytes // 2
+    square = plan.with_square(64, 16).with_half_period(2)
+    assert square.stack(7, StackOptions()).field.size == (64, 64)
+    assert square.field(7) == FIELD
+    assert plan.on_circle().path == SlicePath.circle(half_period=32)
+
+
+def test_objects_know_their_equals() -> None:
+    assert FIELD == PupilField.new(64, 16, 7)
+    assert FIELD != PupilField.new(64, 16, 8)
+    assert FIELD.pattern() == FIELD.pattern()
+    assert STACK.slice_law(0) == STACK.slice_law(0)
+    assert STACK.path != SlicePath.still()
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(FIELD)
+    with pytest.raises(AttributeError):
+        FIELD.seed = 8  # type: ignore[misc]

@@ -137,7 +137,7 @@ fn every_type_of_speckle_crosses_threads() {
     let names = names_of_shared! {
         Bandwidth, CoherentBackground, Complex<f32>, Exposure, IncoherentSum, Interpolation,
         LitArea, NpyError, NpyReader<&'static [u8]>, ObjectiveSpeckle, Phasors, PixelArray,
-        Pupil, PupilField, SlicePath, SpeckleError, SpeckleField, SpecklePattern,
+        Pupil, PupilField, SliceLaw, SlicePath, SpeckleError, SpeckleField, SpecklePattern,
         SpeckleScratch, SpeckleStack, StackFileError, StackNeeds, StackOptions, StackPlan,
         Transmission,
     };

@@ -3,16 +3,20 @@
 use pyo3::prelude::*;
 
 mod arguments;
+mod background;
+mod exposure;
 mod field;
 mod files;
 mod images;
-mod light;
 mod objective;
+mod options;
 mod paper;
 mod path;
 mod pattern;
+mod pixels;
 mod plan;
 mod pupil;
+mod slice_law;
 mod stack;
 mod sum;
 
@@ -23,15 +27,19 @@ mod sum;
 pub(crate) mod speckle {
     #[pymodule_export]
     use super::{
+        background::CoherentBackground,
+        exposure::Exposure,
         field::PupilField,
-        light::{CoherentBackground, Exposure, PixelArray},
         objective::{LitArea, ObjectiveSpeckle},
+        options::StackOptions,
         paper::paper,
         path::SlicePath,
         pattern::{SpeckleField, SpecklePattern},
+        pixels::PixelArray,
         plan::{StackNeeds, StackPlan},
         pupil::{Pupil, Transmission},
-        stack::{SliceLaw, SpeckleStack, StackOptions},
+        slice_law::SliceLaw,
+        stack::SpeckleStack,
         sum::{Bandwidth, IncoherentSum},
     };
 }

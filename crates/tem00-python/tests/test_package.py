@@ -128,7 +128,7 @@ def test_rows_in_double_precision_are_not_copied() -> None:
 
 def test_the_interpreter_is_free_while_a_function_works() -> None:
     image = np.random.default_rng(2).exponential(size=(1024, 1024)).astype(np.float32)
-    counts = []
+    counts: list[int] = []
     done = threading.Event()
 
     def work() -> None:

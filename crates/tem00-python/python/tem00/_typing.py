@@ -20,8 +20,11 @@ Numbers: TypeAlias = float | RealArray
 Vector: TypeAlias = NDArray[np.floating] | NDArray[np.integer] | Sequence[float]
 """The components of a vector."""
 
-Pair: TypeAlias = tuple[Numbers, Numbers] | Sequence[Numbers]
+Pair: TypeAlias = tuple[Numbers, Numbers] | Sequence[Numbers] | FloatArray
 """Two numbers, or two arrays."""
+
+Triple: TypeAlias = tuple[Numbers, Numbers, Numbers] | Sequence[Numbers] | FloatArray
+"""Three numbers, or three arrays."""
 
 ComplexArray: TypeAlias = NDArray[np.complexfloating] | NDArray[np.floating]
 """An array of complex numbers."""

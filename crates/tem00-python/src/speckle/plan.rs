@@ -5,10 +5,8 @@ use pyo3::{
 use tem00_speckle as physics;
 
 use super::{
-    arguments::Whole,
-    field::PupilField,
-    path::SlicePath,
-    stack::{SpeckleStack, StackOptions},
+    arguments::Whole, field::PupilField, options::StackOptions, path::SlicePath,
+    stack::SpeckleStack,
 };
 use crate::error::OrRaise;
 

@@ -1,7 +1,7 @@
 from collections.abc import Sequence
 from typing import ClassVar, Literal, final, overload
 
-from tem00._typing import FloatArray, Numbers, Pair, RealArray, Vector
+from tem00._typing import FloatArray, Numbers, Pair, RealArray, Triple, Vector
 from tem00.decorrelation import paper as paper
 
 __all__ = [
@@ -37,7 +37,6 @@ __all__ = [
 
 _Orientation = Literal["screen_upright", "sensor_inverted"]
 _Matrix = FloatArray | Sequence[Sequence[float]]
-_Triple = tuple[Numbers, Numbers, Numbers] | Sequence[Numbers]
 _Field = float | FloatArray
 
 @overload
@@ -526,9 +525,9 @@ class MotionField:
     def evaluate(
         self,
         *,
-        position: _Triple,
-        normal: _Triple,
-        motion: _Triple,
+        position: Triple,
+        normal: Triple,
+        motion: Triple,
         pixel: Pair,
         light: FieldLight,
     ) -> FieldSlices: ...

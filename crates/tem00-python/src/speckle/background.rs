@@ -1,0 +1,117 @@
+use numpy::Complex32;
+use pyo3::prelude::*;
+use tem00_speckle as physics;
+
+use super::{
+    images::check_room,
+    pattern::{SpeckleField, SpecklePattern},
+};
+use crate::{
+    arrays::{Numbers, map},
+    error::OrRaise,
+    pickling::{Recipe, by_constructor},
+};
+
+/// A uniform wave that interferes with the speckle: partially developed speckle.
+#[pyclass(frozen, eq, module = "tem00.speckle")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CoherentBackground(physics::CoherentBackground);
+
+#[pymethods]
+impl CoherentBackground {
+    /// The largest beam ratio.
+    #[classattr]
+    const MAX_BEAM_RATIO: f64 = physics::CoherentBackground::MAX_BEAM_RATIO;
+
+    /// Return the background of a beam ratio and a phase.
+    ///
+    /// Parameters
+    /// ----------
+    /// `beam_ratio` : float
+    ///     Intensity of the background over the mean of the speckle, 0 to `MAX_BEAM_RATIO`.
+    /// phase : float
+    ///     Phase in radians.
+    #[staticmethod]
+    fn new(beam_ratio: f64, phase: f64) -> PyResult<Self> {
+        let background = physics::CoherentBackground::new(beam_ratio, phase);
+        Ok(Self(background.or_raise()?))
+    }
+
+    /// Intensity of the background over the mean of the speckle.
+    #[getter]
+    const fn beam_ratio(&self) -> f64 {
+        self.0.beam_ratio()
+    }
+
+    /// Phase in radians.
+    #[getter]
+    const fn phase(&self) -> f64 {
+        self.0.phase()
+    }
+
+    /// Contrast on fully developed speckle.
+    #[getter]
+    fn contrast(&self) -> f64 {
+        self.0.contrast()
+    }
+
+    /// Return the intensity, with expected mean 1, where the speckle has an amplitude.
+    ///
+    /// Parameters
+    /// ----------
+    /// amplitude : `array_like` of complex
+    ///     Amplitude of the speckle, of mean square 1.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    ///     Intensity in the shape of the argument.
+    fn intensity<'py>(
+        &self,
+        py: Python<'py>,
+        amplitude: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let amplitude = py.import("numpy")?.call_method1("asarray", (amplitude,))?;
+        let (re, im): (Numbers<'_>, Numbers<'_>) = (
+            amplitude.getattr("real")?.extract()?,
+            amplitude.getattr("imag")?.extract()?,
+        );
+        map(py, [("amplitude", &re), ("amplitude", &im)], |[re, im]| {
+            let intensity = self.0.intensity(Complex32::new(single(re), single(im)));
+            // What single precision does not hold is refused as not a number.
+            if intensity.is_finite() {
+                intensity
+            } else {
+                f64::NAN
+            }
+        })
+    }
+
+    /// Return the intensity of a whole field on the background.
+    ///
+    /// Parameters
+    /// ----------
+    /// field : `SpeckleField`
+    ///     Amplitude of the speckle.
+    fn pattern(&self, py: Python<'_>, field: &SpeckleField) -> PyResult<SpecklePattern> {
+        check_room(field.0.size(), 4)?;
+        Ok(SpecklePattern(py.detach(|| self.0.pattern(&field.0))))
+    }
+
+    fn __repr__(&self) -> String {
+        let (ratio, phase) = (self.0.beam_ratio(), self.0.phase());
+        format!("CoherentBackground.new(beam_ratio={ratio}, phase={phase})")
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        by_constructor::<Self>(py, "new", (self.0.beam_ratio(), self.0.phase()))
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "amplitudes are stored in single precision"
+)]
+const fn single(x: f64) -> f32 {
+    x as f32
+}

@@ -1,0 +1,1586 @@
+/*
+ * tem00: laser beams as lights, speckle, and how it moves and decorrelates. C99 and C++17.
+ *
+ * UNITS are SI and radians. Vectors are three numbers x, y, z in the world of the caller. All lengths
+ * share one unit, metres unless the caller uses another throughout, wavelengths included.
+ *
+ * STATUS: what can fail returns a tem00_status and writes its results only where it succeeds. After a
+ * failure tem00_last_error() says what is wrong, with the name of the parameter, its value and what is
+ * allowed, and tem00_last_error_parameter() names the parameter. Both are kept for each thread. NaN,
+ * infinite and senseless numbers are refused: no NaN comes out.
+ *
+ * POINTERS must be valid and aligned. Null is refused with a status, as are results that overlap with
+ * what is read; columns of no numbers may be null. What is written is never read before.
+ *
+ * HANDLES (tem00_light, tem00_stack, tem00_imaging) come from a function named create or read, which
+ * leaves null where it fails, and go to the one named destroy, once; null may be destroyed. They never
+ * change, so that threads may use one at the same time.
+ *
+ * ENUMERATIONS in what the caller writes are uint32_t, so that any number may be refused.
+ */
+
+
+#ifndef TEM00_H
+#define TEM00_H
+
+
+
+#include <stddef.h>
+#include <stdint.h>
+
+/** Version of this header; tem00_version() is that of the library. */
+#define TEM00_VERSION "0.1.0"
+
+
+/**
+ * Whether a call succeeded and, if not, why. The message is that of `tem00_last_error`.
+ */
+typedef enum {
+    /**
+     * The call succeeded, and all its results are written.
+     */
+    TEM00_STATUS_OK = 0,
+    /**
+     * A number is outside what is allowed; `tem00_last_error_parameter` names it.
+     */
+    TEM00_STATUS_INVALID_ARGUMENT = 1,
+    /**
+     * A pointer is null or not aligned, or what is written overlaps what is read.
+     */
+    TEM00_STATUS_INVALID_POINTER = 2,
+    /**
+     * The memory is more than the limit, or than the machine has.
+     */
+    TEM00_STATUS_MEMORY = 3,
+    /**
+     * A file could not be opened, read or written.
+     */
+    TEM00_STATUS_IO = 4,
+    /**
+     * A file is no speckle stack, or damaged, cut short or from a newer version.
+     */
+    TEM00_STATUS_FILE = 5,
+    /**
+     * The library failed: a bug, to be reported with its message.
+     */
+    TEM00_STATUS_PANIC = 6,
+} tem00_status;
+
+/**
+ * The kinds of lights, and the structs of `tem00_beam.h` whose fields they are.
+ */
+typedef enum {
+    /**
+     * `Tem00SpotLightF32`: a round or elliptic beam, 24 fields.
+     */
+    TEM00_LIGHT_KIND_SPOT = 0,
+    /**
+     * `Tem00AstigmaticLightF32`: a beam with general astigmatism, 28 fields.
+     */
+    TEM00_LIGHT_KIND_ASTIGMATIC = 1,
+    /**
+     * `Tem00LineLightF32`: a laser line, 28 fields.
+     */
+    TEM00_LIGHT_KIND_LINE = 2,
+    /**
+     * `Tem00LineLightF32` without its table, so that the closed forms leave it dark: 28 fields.
+     */
+    TEM00_LIGHT_KIND_TABULATED_LINE = 3,
+} tem00_light_kind;
+
+/**
+ * The way the pupil takes from slice to slice of a stack.
+ */
+typedef enum {
+    /**
+     * One slice: the pattern moves, but does not change.
+     */
+    TEM00_SLICE_PATH_STILL = 0,
+    /**
+     * A circle, as of Bergmann et al. 2016: slices are uncorrelated after `half_period`.
+     */
+    TEM00_SLICE_PATH_CIRCLE = 1,
+    /**
+     * A straight line of `length` pupil diameters: a motion over `length` - 1 diameters never
+     * returns to speckle it has left.
+     */
+    TEM00_SLICE_PATH_STRAIGHT = 2,
+} tem00_slice_path;
+
+/**
+ * How a look-up finds the amplitude between the samples of a slice.
+ */
+typedef enum {
+    /**
+     * Cubic B-spline, the most exact.
+     */
+    TEM00_INTERPOLATION_CUBIC_SPLINE = 0,
+    /**
+     * Bilinear.
+     */
+    TEM00_INTERPOLATION_BILINEAR = 1,
+    /**
+     * The nearest sample.
+     */
+    TEM00_INTERPOLATION_NEAREST = 2,
+} tem00_interpolation;
+
+/**
+ * The light on the points of a field, by the curvature of its wavefront there.
+ */
+typedef enum {
+    /**
+     * Plane waves.
+     */
+    TEM00_FIELD_LIGHT_COLLIMATED = 0,
+    /**
+     * Spherical waves that diverge from `source`.
+     */
+    TEM00_FIELD_LIGHT_POINT_SOURCE = 1,
+    /**
+     * Waves of the curvature tensor `curvature`.
+     */
+    TEM00_FIELD_LIGHT_CURVATURE = 2,
+} tem00_field_light;
+
+/**
+ * Where the surface in focus lies before a lens: what `focus` of a description counts.
+ */
+typedef enum {
+    /**
+     * The distance from the surface to the entrance pupil, in metres.
+     */
+    TEM00_FOCUS_SURFACE_TO_PUPIL = 0,
+    /**
+     * The distance from the surface to the front principal plane, in metres.
+     */
+    TEM00_FOCUS_SURFACE_TO_PRINCIPAL_PLANE = 1,
+    /**
+     * The magnification, counted positive.
+     */
+    TEM00_FOCUS_MAGNIFICATION = 2,
+} tem00_focus;
+
+/**
+ * Where a laser line is thinnest off its axis.
+ */
+typedef enum {
+    /**
+     * On the circle about the virtual apex of the fan.
+     */
+    TEM00_FOCUS_CURVE_EQUAL_DISTANCE = 0,
+    /**
+     * On the plane square to the axis.
+     */
+    TEM00_FOCUS_CURVE_EQUAL_PLANE = 1,
+} tem00_focus_curve;
+
+/**
+ * Which way up image displacements are counted: along `right` and `up` of the camera.
+ */
+typedef enum {
+    /**
+     * The picture as shown on a screen.
+     */
+    TEM00_IMAGE_ORIENTATION_SCREEN_UPRIGHT = 0,
+    /**
+     * The picture on the sensor behind the lens, upside down and mirrored.
+     */
+    TEM00_IMAGE_ORIENTATION_SENSOR_INVERTED = 1,
+} tem00_image_orientation;
+
+/**
+ * How a laser line spreads its power along the fan.
+ */
+typedef enum {
+    /**
+     * Gaussian in the tangent of the fan angle, and so along the line on a flat screen.
+     */
+    TEM00_LINE_PROFILE_GAUSSIAN_TAN = 0,
+    /**
+     * Gaussian in the fan angle.
+     */
+    TEM00_LINE_PROFILE_GAUSSIAN_ANGLE = 1,
+    /**
+     * Gaussian in the sine of the fan angle.
+     */
+    TEM00_LINE_PROFILE_GAUSSIAN_SIN = 2,
+    /**
+     * Uniform in the tangent of the fan angle between the edges of the fan.
+     */
+    TEM00_LINE_PROFILE_UNIFORM_TAN = 3,
+    /**
+     * Uniform in the fan angle between the edges of the fan.
+     */
+    TEM00_LINE_PROFILE_UNIFORM_ANGLE = 4,
+    /**
+     * Uniform in the tangent of the fan angle with a Gaussian roll-off, as behind a Powell lens.
+     */
+    TEM00_LINE_PROFILE_POWELL = 5,
+    /**
+     * A table of the power per angle.
+     */
+    TEM00_LINE_PROFILE_TABULATED = 6,
+} tem00_line_profile;
+
+/**
+ * A camera focused on a surface: a lens, its pupils and the sensor behind it. It never changes: any
+ * number of threads may ask it at once.
+ */
+typedef struct tem00_imaging tem00_imaging;
+
+/**
+ * A laser in a scene. It never changes: any number of threads may ask it at once.
+ */
+typedef struct tem00_light tem00_light;
+
+/**
+ * Speckle that moves and decorrelates. It never changes: any number of threads may look it up at
+ * once.
+ */
+typedef struct tem00_stack tem00_stack;
+
+/**
+ * Where a light stands and where it points, in world coordinates.
+ */
+typedef struct {
+    /**
+     * Centre of the aperture (the lens of a laser line), in metres.
+     */
+    double origin[3];
+    /**
+     * Direction of travel, of any length.
+     */
+    double direction[3];
+    /**
+     * Any vector that is not parallel to `direction`. Its part at right angles to `direction` is
+     * the x axis of the light, along which a fan opens.
+     */
+    double fan_axis[3];
+} tem00_placement;
+
+/**
+ * A round Gaussian beam.
+ */
+typedef struct {
+    /**
+     * Where the light stands.
+     */
+    tem00_placement placement;
+    /**
+     * Wavelength in the medium, in metres.
+     */
+    double wavelength;
+    /**
+     * Power, in watts.
+     */
+    double power;
+    /**
+     * Waist radius to 1/e² of the irradiance, in metres.
+     */
+    double waist_radius;
+    /**
+     * Signed distance from the aperture to the waist, in metres.
+     */
+    double waist_distance;
+    /**
+     * Beam quality factor M², at least 1, which is that of an ideal beam.
+     */
+    double m_squared;
+} tem00_spot_description;
+
+/**
+ * An elliptic Gaussian beam with two principal axes, as of a laser diode. Its arrays hold the value
+ * of the first axis, then that of the second; a refusal names one as "`waist_radius[1]`".
+ */
+typedef struct {
+    /**
+     * Where the light stands.
+     */
+    tem00_placement placement;
+    /**
+     * Wavelength in the medium, in metres.
+     */
+    double wavelength;
+    /**
+     * Power, in watts.
+     */
+    double power;
+    /**
+     * Waist radii to 1/e² of the irradiance, in metres.
+     */
+    double waist_radius[2];
+    /**
+     * Signed distances from the aperture to the waists, in metres.
+     */
+    double waist_distance[2];
+    /**
+     * Beam quality factors M², at least 1.
+     */
+    double m_squared[2];
+    /**
+     * Angle from the x axis of the light to the first axis of the beam, towards y, in radians.
+     */
+    double rotation;
+} tem00_elliptic_description;
+
+/**
+ * A beam with general astigmatism, whose ellipse may turn on its way, by the covariances of its rays
+ * on the aperture: (x, y) are positions, (s, t) slopes along the same axes.
+ */
+typedef struct {
+    /**
+     * Where the light stands.
+     */
+    tem00_placement placement;
+    /**
+     * Wavelength in the medium, in metres.
+     */
+    double wavelength;
+    /**
+     * Power, in watts.
+     */
+    double power;
+    /**
+     * Covariances of the position, in m²: ((xx, xy), (yx, yy)). A radius is twice a deviation.
+     */
+    double position[2][2];
+    /**
+     * Covariances of position and slope, in metres: ((xs, xt), (ys, yt)).
+     */
+    double mixed[2][2];
+    /**
+     * Covariances of the slope: ((ss, st), (ts, tt)).
+     */
+    double slope[2][2];
+} tem00_astigmatic_description;
+
+/**
+ * A laser line behind a cylinder lens or a Powell lens.
+ */
+typedef struct {
+    /**
+     * Where the light stands; the fan opens along its fan axis.
+     */
+    tem00_placement placement;
+    /**
+     * Wavelength in the medium, in metres.
+     */
+    double wavelength;
+    /**
+     * Power, in watts.
+     */
+    double power;
+    /**
+     * Half-thickness of the line where it is thinnest, to 1/e² of the irradiance, in metres.
+     */
+    double waist_radius;
+    /**
+     * Beam quality factor M² across the fan, at least 1.
+     */
+    double m_squared;
+    /**
+     * Full fan angle between the edges of the line, in radians.
+     */
+    double fan_angle;
+    /**
+     * Distance of the virtual apex of the fan behind the lens, in metres.
+     */
+    double apex_offset;
+    /**
+     * Signed distance from the lens to where the line is thinnest on the axis, in metres.
+     */
+    double focus_distance;
+    /**
+     * Where the line is thinnest off the axis: a `tem00_focus_curve`.
+     */
+    uint32_t focus_curve;
+    /**
+     * The profile along the line: a `tem00_line_profile`.
+     */
+    uint32_t profile;
+    /**
+     * Standard deviation of the roll-off relative to the half-length of the line, from 1e-6 to 1;
+     * read for the Powell profile alone.
+     */
+    double edge;
+    /**
+     * Ascending angles from the axis, in radians; read for the tabulated profile alone, as are the
+     * next two. The light keeps a copy.
+     */
+    const double *angles;
+    /**
+     * Power per angle at each of the angles, in any unit.
+     */
+    const double *powers;
+    /**
+     * Number of angles and powers, at least 2.
+     */
+    size_t knot_count;
+} tem00_line_description;
+
+/**
+ * The light at a point, as one direction and one irradiance; all 0 where it is dark.
+ */
+typedef struct {
+    /**
+     * Point of the aperture plane that the light seems to come from, in metres.
+     */
+    double point[3];
+    /**
+     * Distance to that point, in metres.
+     */
+    double distance;
+    /**
+     * Unit vector towards the light, against the mean energy flow.
+     */
+    double wi[3];
+    /**
+     * Irradiance of a surface square to `wi`, in W/m².
+     */
+    double e_perp;
+} tem00_next_event;
+
+/**
+ * As `tem00_next_event`, in single precision.
+ */
+typedef struct {
+    /**
+     * Point of the aperture plane that the light seems to come from, in metres.
+     */
+    float point[3];
+    /**
+     * Distance to that point, in metres.
+     */
+    float distance;
+    /**
+     * Unit vector towards the light, against the mean energy flow.
+     */
+    float wi[3];
+    /**
+     * Irradiance of a surface square to `wi`, in W/m².
+     */
+    float e_perp;
+} tem00_next_event_f32;
+
+/**
+ * The light at a point, as a random direction and its density; all 0 where it is dark.
+ */
+typedef struct {
+    /**
+     * Point of the aperture plane that the ray comes from, in metres.
+     */
+    double point[3];
+    /**
+     * Distance to that point, in metres.
+     */
+    double distance;
+    /**
+     * Unit vector towards the light.
+     */
+    double wi[3];
+    /**
+     * Radiance divided by `pdf`, in W/m².
+     */
+    double value;
+    /**
+     * Probability density of `wi`, per steradian.
+     */
+    double pdf;
+} tem00_sampled_event;
+
+/**
+ * A ray that leaves the aperture.
+ */
+typedef struct {
+    /**
+     * Point of the aperture plane, in metres.
+     */
+    double origin[3];
+    /**
+     * Power of the light, in watts, to be divided by the number of rays.
+     */
+    double flux;
+    /**
+     * Unit vector along the ray.
+     */
+    double direction[3];
+    /**
+     * Cosine of the angle between the ray and the axis.
+     */
+    double cos;
+    /**
+     * Probability density of `origin` given the direction, per m² of the aperture plane.
+     */
+    double pdf_position;
+    /**
+     * Probability density of `direction`, per steradian.
+     */
+    double pdf_direction;
+} tem00_ray_sample;
+
+/**
+ * The probability densities of a ray; their product is the joint density.
+ */
+typedef struct {
+    /**
+     * Density of the position given the direction, per m² of the aperture plane.
+     */
+    double position;
+    /**
+     * Density of the direction, per steradian.
+     */
+    double direction;
+} tem00_ray_pdf;
+
+/**
+ * Bounds of the light in space and direction, as a light hierarchy stores them.
+ */
+typedef struct {
+    /**
+     * Smallest corner of a box around the lit volume, in metres.
+     */
+    double min[3];
+    /**
+     * Largest corner of the box, in metres.
+     */
+    double max[3];
+    /**
+     * Unit vector along the axis.
+     */
+    double axis[3];
+    /**
+     * Half-angle of the cone about `axis` that the light travels in, in radians.
+     */
+    double half_angle;
+} tem00_bounds;
+
+/**
+ * Where the next events at many points go: pointers to as many numbers as there are points.
+ *
+ * The point of the aperture plane is p + distance * wi.
+ */
+typedef struct {
+    /**
+     * Components x of the unit vectors towards the light.
+     */
+    double *wi_x;
+    /**
+     * Components y.
+     */
+    double *wi_y;
+    /**
+     * Components z.
+     */
+    double *wi_z;
+    /**
+     * Distances to the aperture plane along `wi`, in metres.
+     */
+    double *distance;
+    /**
+     * Irradiances of a surface square to `wi`, in W/m²; 0 where no light arrives.
+     */
+    double *e_perp;
+} tem00_next_event_columns;
+
+/**
+ * As `tem00_next_event_columns`, in single precision.
+ */
+typedef struct {
+    /**
+     * Components x of the unit vectors towards the light.
+     */
+    float *wi_x;
+    /**
+     * Components y.
+     */
+    float *wi_y;
+    /**
+     * Components z.
+     */
+    float *wi_z;
+    /**
+     * Distances to the aperture plane along `wi`, in metres.
+     */
+    float *distance;
+    /**
+     * Irradiances of a surface square to `wi`, in W/m²; 0 where no light arrives.
+     */
+    float *e_perp;
+} tem00_next_event_columns_f32;
+
+/**
+ * A light as plain numbers in single precision: what a kernel that cannot call a library evaluates.
+ */
+typedef struct {
+    /**
+     * Which struct of `tem00_beam.h` or `tem00_beam.wgsl` the fields belong to.
+     */
+    tem00_light_kind kind;
+    /**
+     * Number of fields, 24 or 28.
+     */
+    uint32_t count;
+    /**
+     * The fields in the order of memory, then zeros.
+     */
+    float fields[28];
+} tem00_light_data;
+
+/**
+ * What a stack is made of.
+ */
+typedef struct {
+    /**
+     * Width of the pattern, in samples, after which it repeats.
+     */
+    size_t width;
+    /**
+     * Height of the pattern, in samples.
+     */
+    size_t height;
+    /**
+     * Diameter of the pupil along the width, in lattice points: the speckles after which the pattern
+     * repeats, from 8 to half the width. 0 if `speckle_size` is to say it.
+     */
+    size_t diameter;
+    /**
+     * Speckle size in samples, at least 2 and at most an eighth of the smaller side; read if
+     * `diameter` is 0, else it is width / diameter.
+     */
+    double speckle_size;
+    /**
+     * Seed of the pattern.
+     */
+    uint64_t seed;
+    /**
+     * The way the pupil takes: a `tem00_slice_path`.
+     */
+    uint32_t path;
+    /**
+     * Half the number of slices, not read for a still path.
+     */
+    size_t half_period;
+    /**
+     * Length of a straight path in pupil diameters, at least 2; not read for others.
+     */
+    size_t length;
+    /**
+     * How look-ups interpolate: a `tem00_interpolation`.
+     */
+    uint32_t interpolation;
+    /**
+     * Bytes that the slices may take; `UINT64_MAX` for all the machine has.
+     */
+    uint64_t memory_limit;
+} tem00_stack_description;
+
+/**
+ * What a stack is to be looked up for.
+ */
+typedef struct {
+    /**
+     * Width and height of the image, in pixels.
+     */
+    double image[2];
+    /**
+     * Width and height of all that is looked up in any frame, in pixels: the image, and what motion
+     * brings in.
+     */
+    double region[2];
+    /**
+     * Speckle size on the sensor, in pixels.
+     */
+    double speckle_size;
+    /**
+     * 1 if the speckle changes, 0 if it never does.
+     */
+    uint32_t changes;
+    /**
+     * Largest motion of the pupil over the speckle, in its diameters; not read if nothing changes.
+     */
+    double motion;
+    /**
+     * Number of frames among which the speckle is compared.
+     */
+    uint32_t frames;
+    /**
+     * Bytes that the slices may take.
+     */
+    uint64_t memory_limit;
+} tem00_stack_needs;
+
+/**
+ * What a stack is.
+ */
+typedef struct {
+    /**
+     * Width of the pattern, in samples, after which it repeats.
+     */
+    size_t width;
+    /**
+     * Height of the pattern, in samples.
+     */
+    size_t height;
+    /**
+     * Number of slices, after which the coordinate u repeats: 1, or twice `half_period`.
+     */
+    size_t slice_count;
+    /**
+     * Speckle size in samples.
+     */
+    double speckle_size;
+    /**
+     * The way the pupil takes.
+     */
+    tem00_slice_path path;
+    /**
+     * Half the number of slices, 0 for a still path.
+     */
+    size_t half_period;
+    /**
+     * Length of a straight path in pupil diameters, 0 for others.
+     */
+    size_t length;
+    /**
+     * How look-ups interpolate.
+     */
+    tem00_interpolation interpolation;
+    /**
+     * Bytes that the slices take.
+     */
+    uint64_t memory_bytes;
+} tem00_stack_info;
+
+/**
+ * A lens and a sensor.
+ */
+typedef struct {
+    /**
+     * Vacuum wavelength of the light, in metres.
+     */
+    double wavelength;
+    /**
+     * Focal length of the lens, in metres.
+     */
+    double focal_length;
+    /**
+     * F-number as engraved on the lens, for focus at infinity, at least 0.5.
+     */
+    double f_number;
+    /**
+     * Diameter of the exit pupil over that of the entrance pupil; 1 for a thin lens.
+     */
+    double pupil_magnification;
+    /**
+     * What `focus` counts: a `tem00_focus`.
+     */
+    uint32_t focus_kind;
+    /**
+     * Where the surface in focus lies.
+     */
+    double focus;
+    /**
+     * Distance between the centres of neighbouring pixels on the sensor, in metres.
+     */
+    double pixel_pitch;
+} tem00_lens_description;
+
+/**
+ * The distances and the pupil of a camera as such. Entrance and exit pupil are one, at the lens.
+ */
+typedef struct {
+    /**
+     * Vacuum wavelength of the light, in metres.
+     */
+    double wavelength;
+    /**
+     * Distance from the surface in focus to the pupil along the optical axis, in metres.
+     */
+    double surface_to_pupil;
+    /**
+     * Distance from the pupil to the sensor, in metres.
+     */
+    double pupil_to_image;
+    /**
+     * Diameter of the pupil, in metres.
+     */
+    double pupil_diameter;
+    /**
+     * Distance between the centres of neighbouring pixels on the sensor, in metres.
+     */
+    double pixel_pitch;
+} tem00_pupil_distances;
+
+/**
+ * What a camera is.
+ */
+typedef struct {
+    /**
+     * Vacuum wavelength of the light, in metres.
+     */
+    double wavelength;
+    /**
+     * Focal length, in metres.
+     */
+    double focal_length;
+    /**
+     * F-number for focus at infinity.
+     */
+    double f_number;
+    /**
+     * F-number of the light on the sensor.
+     */
+    double working_f_number;
+    /**
+     * Diameter of the entrance pupil, in metres.
+     */
+    double pupil_diameter;
+    /**
+     * Diameter of the exit pupil over that of the entrance pupil.
+     */
+    double pupil_magnification;
+    /**
+     * Distance from the surface in focus to the entrance pupil, in metres.
+     */
+    double surface_to_pupil;
+    /**
+     * Distance from the exit pupil to the sensor, in metres.
+     */
+    double pupil_to_image;
+    /**
+     * Length of the image of a unit tangent of the viewing angle, in metres.
+     */
+    double principal_distance;
+    /**
+     * Magnification at the surface in focus, without a sign.
+     */
+    double magnification;
+    /**
+     * Distance between the centres of neighbouring pixels on the sensor, in metres.
+     */
+    double pixel_pitch;
+    /**
+     * Speckle size on the sensor, the period of its finest fringes, in metres.
+     */
+    double speckle_size;
+    /**
+     * Speckle size on the sensor, in pixels.
+     */
+    double speckle_size_in_pixels;
+    /**
+     * Speckle size projected onto the surface in focus, in metres.
+     */
+    double object_speckle_size;
+    /**
+     * Displacement along the axis that first decorrelates the speckle entirely, in metres.
+     */
+    double axial_decorrelation_length;
+} tem00_imaging_info;
+
+/**
+ * The axes of a camera in world coordinates: right-handed and orthonormal within 1e-6.
+ */
+typedef struct {
+    /**
+     * To the right in the image.
+     */
+    double right[3];
+    /**
+     * Upwards in the image.
+     */
+    double up[3];
+    /**
+     * From the scene towards the camera, against the direction of view.
+     */
+    double towards_camera[3];
+} tem00_camera_axes;
+
+/**
+ * The light on a point: where it comes from and how its wavefront is curved.
+ */
+typedef struct {
+    /**
+     * From the surface to the source, of any length.
+     */
+    double direction_to_source[3];
+    /**
+     * A principal axis of the curvature, of any length and not along the direction to the source;
+     * not read if both curvatures are equal.
+     */
+    double axis[3];
+    /**
+     * Curvature 1/R along that axis, in 1/m: positive where the wave diverges, 0 for a plane wave.
+     */
+    double curvature_along;
+    /**
+     * Curvature 1/R across that axis, in 1/m.
+     */
+    double curvature_across;
+} tem00_wavefront;
+
+/**
+ * A point of a rough surface, as the camera sees it and as the laser lights it.
+ */
+typedef struct {
+    /**
+     * The axes of the camera.
+     */
+    tem00_camera_axes camera;
+    /**
+     * From the point to the centre of the entrance pupil, in metres.
+     */
+    double to_pupil[3];
+    /**
+     * Normal of the surface, of any length and to either side.
+     */
+    double normal[3];
+    /**
+     * The light on the point.
+     */
+    tem00_wavefront wavefront;
+} tem00_surface_point;
+
+/**
+ * Small translations since the reference state, in world coordinates and metres. Only differences
+ * count.
+ */
+typedef struct {
+    /**
+     * Translation of the surface.
+     */
+    double surface[3];
+    /**
+     * Translation of the camera.
+     */
+    double camera[3];
+    /**
+     * Translation of the light source and its wavefront.
+     */
+    double source[3];
+} tem00_motion;
+
+/**
+ * What a motion does to the speckle at one surface point.
+ */
+typedef struct {
+    /**
+     * Motion of the image of the surface along right and up, in metres on the sensor.
+     */
+    double image_displacement[2];
+    /**
+     * What the speckle of a point out of focus moves in addition, in metres on the sensor.
+     */
+    double defocus_displacement[2];
+    /**
+     * Motion of the speckle field across the pupil along right and up, in metres; infinite if it
+     * left the pupil in a grazing view.
+     */
+    double pupil_displacement[2];
+    /**
+     * Motion of the surface towards the camera along the optical axis, in metres.
+     */
+    double axial_displacement;
+    /**
+     * What is left of the old pattern as a correlation of intensity, in [0, 1].
+     */
+    double correlation;
+} tem00_speckle_motion;
+
+/**
+ * What all points of a field share.
+ */
+typedef struct {
+    /**
+     * The axes of the camera.
+     */
+    tem00_camera_axes camera;
+    /**
+     * Centre of the pupil in world coordinates, in metres.
+     */
+    double pupil_centre[3];
+    /**
+     * Which way up image displacements are counted: a `tem00_image_orientation`.
+     */
+    uint32_t orientation;
+    /**
+     * Speckle size of the pattern, in samples.
+     */
+    double pattern_speckle_size;
+    /**
+     * Number of slices of a circular stack to the first uncorrelated one.
+     */
+    size_t half_period;
+    /**
+     * Motion of camera, source and all surfaces, added to those of the points.
+     */
+    tem00_motion shared_motion;
+} tem00_field_setup;
+
+/**
+ * Points of rough surfaces: pointers to as many numbers as there are points, in world coordinates.
+ */
+typedef struct {
+    /**
+     * Positions x, y, z in the reference state, in metres.
+     */
+    const double *position[3];
+    /**
+     * Surface normals x, y, z of any length, to either side.
+     */
+    const double *normal[3];
+    /**
+     * Translations x, y, z of the surface since the reference state, in metres.
+     */
+    const double *motion[3];
+    /**
+     * Positions of the pixels in the image, to the right and upwards, in pixels.
+     */
+    const double *pixel[2];
+    /**
+     * The light on the points: a `tem00_field_light`.
+     */
+    uint32_t light;
+    /**
+     * The point source in world coordinates, in metres; not read for other lights.
+     */
+    double source[3];
+    /**
+     * Components xx, xy, xz, yy, yz, zz of the curvature tensors, in 1/m; not read for other lights.
+     */
+    const double *curvature[6];
+} tem00_field_points;
+
+/**
+ * Where the results of a field go: pointers to as many numbers as there are points.
+ */
+typedef struct {
+    /**
+     * Motion of the speckle in the image to the right and upwards, in metres on the sensor.
+     */
+    double *speckle_displacement[2];
+    /**
+     * Motion of the speckle field across the pupil, in metres; infinite where it left the pupil.
+     */
+    double *pupil_displacement[2];
+    /**
+     * What is left of the old pattern as a correlation of intensity, in [0, 1].
+     */
+    double *correlation;
+    /**
+     * Where to look the pattern up, in pattern samples and not wrapped.
+     */
+    double *pattern_coordinate[2];
+    /**
+     * Which slice of a circular stack to look up, from 0 to `half_period`.
+     */
+    double *slice_coordinate;
+} tem00_field_results;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/**
+ * Returns the version of the library, as "0.1.0"; that of the header is `TEM00_VERSION`.
+ */
+const char *tem00_version(void);
+
+/**
+ * Returns why the last call that failed on this thread failed, in UTF-8, with the parameter, its
+ * value and what is allowed; empty if none has failed.
+ *
+ * Valid until the next call that fails on this thread, and until the thread ends. Not to be freed.
+ */
+const char *tem00_last_error(void);
+
+/**
+ * Returns the name of the parameter that the last call that failed on this thread refused; empty
+ * if it was none.
+ *
+ * Valid until the next call that fails on this thread, and until the thread ends. Not to be freed.
+ */
+const char *tem00_last_error_parameter(void);
+
+/**
+ * Frees a light; null is allowed. No thread may be using it, and it must not be used again.
+ *
+ * `light` is null, or came from one of the functions that create lights and was not destroyed.
+ */
+void tem00_light_destroy(tem00_light *light);
+
+/**
+ * Creates a round Gaussian beam.
+ *
+ * On failure `*light` is null.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_create_spot(const tem00_spot_description *description,
+                                     tem00_light **light);
+
+/**
+ * Creates an elliptic Gaussian beam.
+ *
+ * On failure `*light` is null.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_create_elliptic(const tem00_elliptic_description *description,
+                                         tem00_light **light);
+
+/**
+ * Creates a beam with general astigmatism.
+ *
+ * On failure `*light` is null.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_create_astigmatic(const tem00_astigmatic_description *description,
+                                           tem00_light **light);
+
+/**
+ * Creates a laser line.
+ *
+ * On failure `*light` is null.
+ *
+ * The pointers are null or valid, those of a table for `knot_count` numbers.
+ */
+tem00_status tem00_light_create_line(const tem00_line_description *description,
+                                     tem00_light **light);
+
+/**
+ * Computes the irradiance, in W/m², of a plane through `point` at right angles to the axis.
+ *
+ * `point` holds x, y, z in metres.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_irradiance(const tem00_light *light,
+                                    const double *point,
+                                    double *irradiance);
+
+/**
+ * Computes the energy-flow vector at `point`, in W/m²: a surface whose normal n lies on the lit side
+ * receives the irradiance max(0, -flux . n).
+ *
+ * `point` and `flux` hold x, y, z.
+ *
+ * The pointers are null or valid, `flux` for three numbers.
+ */
+tem00_status tem00_light_flux(const tem00_light *light,
+                              const double *point,
+                              double *flux);
+
+/**
+ * Computes the light at `point` as one direction, that of the mean energy flow: a delta light.
+ *
+ * A surface of normal n reflects f |n . wi| V times `e_perp`. Where it is dark, beyond the cut-off and behind
+ * the aperture, all of `event` is 0 and no shadow ray is needed. `point` holds x, y, z in metres.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_next_event(const tem00_light *light,
+                                    const double *point,
+                                    tem00_next_event *event);
+
+/**
+ * As `tem00_light_next_event`, in single precision.
+ *
+ * Fails if single precision cannot carry the light.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_next_event_f32(const tem00_light *light,
+                                        const float *point,
+                                        tem00_next_event_f32 *event);
+
+/**
+ * Draws a direction from the light that arrives at `point`, with two random numbers `u` in [0, 1).
+ *
+ * The estimate of the reflected radiance is f |n . wi| V times `value`, which has been divided by the
+ * density. Where it is dark, all of `event` is 0. `point` holds x, y, z in metres.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_next_event_sampled(const tem00_light *light,
+                                            const double *point,
+                                            const double *u,
+                                            tem00_sampled_event *event);
+
+/**
+ * Computes the density, per steradian, with which `tem00_light_next_event_sampled` draws the unit
+ * vector `wi` towards the light at `point`; 0 where it is dark.
+ *
+ * `point` and `wi` hold x, y, z.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_next_event_pdf(const tem00_light *light,
+                                        const double *point,
+                                        const double *wi,
+                                        double *pdf);
+
+/**
+ * Draws a ray that leaves the aperture, with four random numbers `u` in [0, 1).
+ *
+ * Every ray stands for the same power, so straight rays reproduce the irradiance at every distance.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_sample_ray(const tem00_light *light,
+                                    const double *u,
+                                    tem00_ray_sample *ray);
+
+/**
+ * Computes the densities with which `tem00_light_sample_ray` draws the ray through `origin` along the
+ * unit vector `direction`; 0 for a ray against the axis.
+ *
+ * `origin`, any point of the ray, and `direction` hold x, y, z.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_ray_pdf(const tem00_light *light,
+                                 const double *origin,
+                                 const double *direction,
+                                 tem00_ray_pdf *pdf);
+
+/**
+ * Computes the radiance, in W/(m² sr), of the ray through `origin` along the unit vector `direction`
+ * of travel; 0 for a ray against the axis.
+ *
+ * `origin`, any point of the ray, and `direction` hold x, y, z.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_radiance(const tem00_light *light,
+                                  const double *origin,
+                                  const double *direction,
+                                  double *radiance);
+
+/**
+ * Computes bounds of the light from the aperture to `distance`, in metres, along its axis.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_bounds(const tem00_light *light, double distance, tem00_bounds *bounds);
+
+/**
+ * Computes the irradiances, in W/m², of planes through `count` points at right angles to the axis:
+ * the bits of `tem00_light_irradiance`.
+ *
+ * `x`, `y`, `z` hold the coordinates, in metres; `irradiance` must not overlap with them.
+ *
+ * The pointers are null or valid for `count` numbers.
+ */
+tem00_status tem00_light_irradiance_batch(const tem00_light *light,
+                                          const double *x,
+                                          const double *y,
+                                          const double *z,
+                                          size_t count,
+                                          double *irradiance);
+
+/**
+ * As `tem00_light_irradiance_batch`, in single precision.
+ *
+ * Fails if single precision cannot carry the light.
+ *
+ * The pointers are null or valid for `count` numbers.
+ */
+tem00_status tem00_light_irradiance_batch_f32(const tem00_light *light,
+                                              const float *x,
+                                              const float *y,
+                                              const float *z,
+                                              size_t count,
+                                              float *irradiance);
+
+/**
+ * Computes the next events at `count` points: the bits of `tem00_light_next_event`.
+ *
+ * `x`, `y`, `z` hold the coordinates, in metres. The columns of `events` are written; they must not
+ * overlap with each other nor with the coordinates.
+ *
+ * The pointers are null or valid for `count` numbers.
+ */
+tem00_status tem00_light_next_event_batch(const tem00_light *light,
+                                          const double *x,
+                                          const double *y,
+                                          const double *z,
+                                          size_t count,
+                                          const tem00_next_event_columns *events);
+
+/**
+ * As `tem00_light_next_event_batch`, in single precision.
+ *
+ * Fails if single precision cannot carry the light.
+ *
+ * The pointers are null or valid for `count` numbers.
+ */
+tem00_status tem00_light_next_event_batch_f32(const tem00_light *light,
+                                              const float *x,
+                                              const float *y,
+                                              const float *z,
+                                              size_t count,
+                                              const tem00_next_event_columns_f32 *events);
+
+/**
+ * Copies a light as plain numbers in single precision, to be uploaded to a GPU or evaluated by
+ * `tem00_beam.h`.
+ *
+ * Fails if single precision cannot carry the light.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_plain_data(const tem00_light *light, tem00_light_data *data);
+
+/**
+ * Frees a stack; null is allowed. No thread may be using it, and it must not be used again.
+ *
+ * `stack` is null, or came from one of the functions that create stacks and was not destroyed.
+ */
+void tem00_stack_destroy(tem00_stack *stack);
+
+/**
+ * Generates a stack, 8 bytes for each sample of each slice, with all the cores of the machine.
+ *
+ * On failure `*stack` is null.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_stack_create(const tem00_stack_description *description, tem00_stack **stack);
+
+/**
+ * Chooses a stack that repeats nothing in the region and takes no more memory than allowed: writes
+ * its description, with the seed 0, for `tem00_stack_create`.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_stack_plan(const tem00_stack_needs *needs, tem00_stack_description *description);
+
+/**
+ * Reads a stack that `tem00_stack_write` or the library in another language has written, if its
+ * slices take no more than `memory_limit` bytes.
+ *
+ * `path` is a file name in UTF-8. On failure `*stack` is null.
+ *
+ * The pointers are null or valid, `path` for a string that ends with a zero.
+ */
+tem00_status tem00_stack_read(const char *path, uint64_t memory_limit, tem00_stack **stack);
+
+/**
+ * Writes a stack as a file, which keeps its bits.
+ *
+ * `path` is a file name in UTF-8; a file of that name is replaced.
+ *
+ * The pointers are null or valid, `path` for a string that ends with a zero.
+ */
+tem00_status tem00_stack_write(const tem00_stack *stack, const char *path);
+
+/**
+ * Tells what a stack is.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_stack_describe(const tem00_stack *stack, tem00_stack_info *info);
+
+/**
+ * Looks up the intensity, with mean 1, at (`x`, `y`) in samples and `u` in slices.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_stack_intensity(const tem00_stack *stack,
+                                   double x,
+                                   double y,
+                                   double u,
+                                   double *intensity);
+
+/**
+ * Looks up the intensities at `count` points: the bits of `tem00_stack_intensity`. Points close to
+ * each other between the same two slices are fastest.
+ *
+ * `x` and `y` are in samples and `u` in slices; `intensity` must not overlap with them.
+ *
+ * The pointers are null or valid for `count` numbers.
+ */
+tem00_status tem00_stack_intensity_batch(const tem00_stack *stack,
+                                         const double *x,
+                                         const double *y,
+                                         const double *u,
+                                         size_t count,
+                                         double *intensity);
+
+/**
+ * Computes the mean of the intensity over a box about `centre`, at `u`: what a pixel sees whose whole
+ * area takes part.
+ *
+ * `centre` holds x, y and `size` the width and the height of the box, all in samples; `u` is in
+ * slices.
+ *
+ * The pointers are null or valid, `centre` and `size` for two numbers.
+ */
+tem00_status tem00_stack_average(const tem00_stack *stack,
+                                 const double *centre,
+                                 const double *size,
+                                 double u,
+                                 double *average);
+
+/**
+ * Computes the distance in u, in slices, after which the correlation of the intensity has fallen to
+ * `correlation`: 0 for 1 or more, and the first coordinate of no correlation for 0 or less.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_stack_coordinate_of(const tem00_stack *stack, double correlation, double *u);
+
+/**
+ * Computes the correlation of the intensities at u = 0 and u = `distance`, in slices: the inverse of
+ * `tem00_stack_coordinate_of`.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_stack_correlation_at(const tem00_stack *stack,
+                                        double distance,
+                                        double *correlation);
+
+/**
+ * Computes the correlation of the intensities of two slices, exactly.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_stack_correlation_between(const tem00_stack *stack,
+                                             size_t first,
+                                             size_t second,
+                                             double *correlation);
+
+/**
+ * Gives the coefficients of a slice, for upload to a GPU: width * height complex numbers row by row,
+ * each a real and an imaginary part.
+ *
+ * They are the samples of the amplitude, or for the cubic spline its prefiltered coefficients, and
+ * belong to the stack.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_stack_coefficients(const tem00_stack *stack,
+                                      size_t slice,
+                                      const float **coefficients);
+
+/**
+ * Gives the place of the pupil of a slice, in its diameters: `offset` holds x, y.
+ *
+ * The pointers are null or valid, `offset` for two numbers.
+ */
+tem00_status tem00_stack_offset(const tem00_stack *stack, size_t slice, double *offset);
+
+/**
+ * Frees a camera; null is allowed. No thread may be using it, and it must not be used again.
+ *
+ * `imaging` is null, or came from one of the functions that create cameras and was not destroyed.
+ */
+void tem00_imaging_destroy(tem00_imaging *imaging);
+
+/**
+ * Creates a camera from its lens.
+ *
+ * On failure `*imaging` is null.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_imaging_create_lens(const tem00_lens_description *description,
+                                       tem00_imaging **imaging);
+
+/**
+ * Creates a camera from its distances and its pupil.
+ *
+ * On failure `*imaging` is null.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_imaging_create_distances(const tem00_pupil_distances *distances,
+                                            tem00_imaging **imaging);
+
+/**
+ * Tells what a camera is: among others, the size of its speckle.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_imaging_describe(const tem00_imaging *imaging, tem00_imaging_info *info);
+
+/**
+ * Computes the axes of a camera at `position` that looks at `target`, with `up` upwards in the image
+ * as far as possible.
+ *
+ * `position`, `target` and `up` hold x, y, z.
+ *
+ * The pointers are null or valid, those to numbers for three.
+ */
+tem00_status tem00_camera_axes_look_at(const double *position,
+                                       const double *target,
+                                       const double *up,
+                                       tem00_camera_axes *axes);
+
+/**
+ * Computes the motion of the speckle at a surface point since the reference state, at first order in
+ * the motion.
+ *
+ * `orientation` is a `tem00_image_orientation`.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_imaging_speckle_motion(const tem00_imaging *imaging,
+                                          const tem00_surface_point *point,
+                                          const tem00_motion *motion,
+                                          uint32_t orientation,
+                                          tem00_speckle_motion *speckle);
+
+/**
+ * Computes where in a speckle pattern a pixel lies, in pattern samples, not wrapped to its period.
+ *
+ * `pixel` holds its position x, y in pixels, `displacement` the motion of the speckle since the
+ * reference state in metres on the sensor, along the same two axes; `pattern_speckle_size` is the
+ * speckle size of the pattern in samples.
+ *
+ * The pointers are null or valid, those to numbers for two.
+ */
+tem00_status tem00_imaging_pattern_coordinate(const tem00_imaging *imaging,
+                                              const double *pixel,
+                                              const double *displacement,
+                                              double pattern_speckle_size,
+                                              double *coordinate);
+
+/**
+ * Computes what motions do to the speckle at `count` surface points, such as those behind the pixels
+ * of an image, at first order in the motion.
+ *
+ * A point that the camera cannot see is decorrelated. The columns of `results` are written; they must
+ * not overlap with each other nor with those of `points`.
+ *
+ * The pointers are null or valid, those to columns for `count` numbers.
+ */
+tem00_status tem00_imaging_motion_field(const tem00_imaging *imaging,
+                                        const tem00_field_setup *setup,
+                                        const tem00_field_points *points,
+                                        size_t count,
+                                        const tem00_field_results *results);
+
+/**
+ * Computes the intensity correlation left after a pupil displacement, in pupil diameters, and an
+ * axial displacement, in axial decorrelation lengths.
+ *
+ * The pointer is null or valid.
+ */
+tem00_status tem00_correlation(double pupil_shift, double axial_shift, double *correlation);
+
+/**
+ * Computes the distance between two slices of a circular stack that have a given intensity
+ * correlation; the stack has twice `half_period` slices.
+ *
+ * The pointer is null or valid.
+ */
+tem00_status tem00_slice_coordinate(double correlation, size_t half_period, double *coordinate);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* TEM00_H */

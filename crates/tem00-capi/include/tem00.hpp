@@ -1,0 +1,373 @@
+/*
+ * tem00 for C++17: handles that free themselves, and exceptions in place of statuses.
+ *
+ * Header only, on top of tem00.h, whose structs it uses and whose comments hold: units, shapes, what
+ * is allowed. Every function that can fail throws tem00::error.
+ *
+ *     tem00_spot_description description = {};
+ *     description.placement = {{0, 0, 0.3}, {0, 0, -1}, {1, 0, 0}};
+ *     description.wavelength = 650e-9;
+ *     description.power = 5e-3;
+ *     description.waist_radius = 0.1e-3;
+ *     description.waist_distance = 0.3;
+ *     description.m_squared = 1;
+ *     const tem00::light laser(description);
+ *     if (const auto event = laser.next_event({0, 0, 0})) {
+ *         // L = f |n . wi| V e_perp
+ *     }
+ */
+#ifndef TEM00_HPP
+#define TEM00_HPP
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "tem00.h"
+
+namespace tem00 {
+
+using vec2 = std::array<double, 2>;
+using vec3 = std::array<double, 3>;
+
+/** Why a call failed: what() has the parameter, its value and what is allowed. */
+class error : public std::runtime_error {
+public:
+    explicit error(tem00_status status)
+        : std::runtime_error(tem00_last_error()),
+          status_(status),
+          parameter_(tem00_last_error_parameter()) {}
+
+    /** The kind of failure. */
+    tem00_status status() const noexcept { return status_; }
+
+    /** The name of the parameter that was refused, empty if it was none. */
+    const std::string &parameter() const noexcept { return parameter_; }
+
+private:
+    tem00_status status_;
+    std::string parameter_;
+};
+
+/** Throws what a status stands for. */
+inline void check(tem00_status status) {
+    if (status != TEM00_STATUS_OK) {
+        throw error(status);
+    }
+}
+
+/** A laser in a scene. Any number of threads may ask it at once. */
+class light {
+public:
+    explicit light(const tem00_spot_description &spot)
+        : handle_(made(tem00_light_create_spot, spot)) {}
+
+    explicit light(const tem00_elliptic_description &elliptic)
+        : handle_(made(tem00_light_create_elliptic, elliptic)) {}
+
+    explicit light(const tem00_astigmatic_description &astigmatic)
+        : handle_(made(tem00_light_create_astigmatic, astigmatic)) {}
+
+    explicit light(const tem00_line_description &line)
+        : handle_(made(tem00_light_create_line, line)) {}
+
+    /** Irradiance, in W/m², of a plane through `point` at right angles to the axis. */
+    double irradiance(const vec3 &point) const {
+        double irradiance = 0;
+        check(tem00_light_irradiance(get(), point.data(), &irradiance));
+        return irradiance;
+    }
+
+    /** Energy-flow vector at `point`, in W/m². */
+    vec3 flux(const vec3 &point) const {
+        vec3 flux{};
+        check(tem00_light_flux(get(), point.data(), flux.data()));
+        return flux;
+    }
+
+    /** The light at `point` as one direction, a delta light; nothing where it is dark. */
+    std::optional<tem00_next_event> next_event(const vec3 &point) const {
+        tem00_next_event event;
+        check(tem00_light_next_event(get(), point.data(), &event));
+        return event.e_perp > 0 ? std::optional(event) : std::nullopt;
+    }
+
+    /** A direction drawn from the light at `point` with two random numbers; nothing where dark. */
+    std::optional<tem00_sampled_event> next_event_sampled(const vec3 &point, const vec2 &u) const {
+        tem00_sampled_event event;
+        check(tem00_light_next_event_sampled(get(), point.data(), u.data(), &event));
+        return event.pdf > 0 ? std::optional(event) : std::nullopt;
+    }
+
+    /** Density, per steradian, of a sampled event in the direction `wi`. */
+    double next_event_pdf(const vec3 &point, const vec3 &wi) const {
+        double pdf = 0;
+        check(tem00_light_next_event_pdf(get(), point.data(), wi.data(), &pdf));
+        return pdf;
+    }
+
+    /** A ray that leaves the aperture, drawn with four random numbers. */
+    tem00_ray_sample sample_ray(const std::array<double, 4> &u) const {
+        tem00_ray_sample ray;
+        check(tem00_light_sample_ray(get(), u.data(), &ray));
+        return ray;
+    }
+
+    /** Densities of a given ray. */
+    tem00_ray_pdf ray_pdf(const vec3 &origin, const vec3 &direction) const {
+        tem00_ray_pdf pdf;
+        check(tem00_light_ray_pdf(get(), origin.data(), direction.data(), &pdf));
+        return pdf;
+    }
+
+    /** Radiance, in W/(m² sr), of a given ray. */
+    double radiance(const vec3 &origin, const vec3 &direction) const {
+        double radiance = 0;
+        check(tem00_light_radiance(get(), origin.data(), direction.data(), &radiance));
+        return radiance;
+    }
+
+    /** Bounds from the aperture to `distance`, in metres, along the axis. */
+    tem00_bounds bounds(double distance) const {
+        tem00_bounds bounds;
+        check(tem00_light_bounds(get(), distance, &bounds));
+        return bounds;
+    }
+
+    /** Irradiances at `count` points. */
+    void irradiance(const double *x, const double *y, const double *z, std::size_t count,
+                    double *irradiance) const {
+        check(tem00_light_irradiance_batch(get(), x, y, z, count, irradiance));
+    }
+
+    /** Irradiances at `count` points in single precision. */
+    void irradiance(const float *x, const float *y, const float *z, std::size_t count,
+                    float *irradiance) const {
+        check(tem00_light_irradiance_batch_f32(get(), x, y, z, count, irradiance));
+    }
+
+    /** Next events at `count` points; all 0 where it is dark. */
+    void next_event(const double *x, const double *y, const double *z, std::size_t count,
+                    const tem00_next_event_columns &events) const {
+        check(tem00_light_next_event_batch(get(), x, y, z, count, &events));
+    }
+
+    /** Next events at `count` points in single precision; all 0 where it is dark. */
+    void next_event(const float *x, const float *y, const float *z, std::size_t count,
+                    const tem00_next_event_columns_f32 &events) const {
+        check(tem00_light_next_event_batch_f32(get(), x, y, z, count, &events));
+    }
+
+    /** The light as plain numbers in single precision, for a GPU or tem00_beam.h. */
+    tem00_light_data plain_data() const {
+        tem00_light_data data;
+        check(tem00_light_plain_data(get(), &data));
+        return data;
+    }
+
+    /** The handle, for what is called in C. */
+    const tem00_light *get() const noexcept { return handle_.get(); }
+
+private:
+    struct destroy {
+        void operator()(tem00_light *handle) const noexcept { tem00_light_destroy(handle); }
+    };
+
+    template <typename Description>
+    static tem00_light *made(tem00_status (*create)(const Description *, tem00_light **),
+                             const Description &description) {
+        tem00_light *handle = nullptr;
+        check(create(&description, &handle));
+        return handle;
+    }
+
+    std::unique_ptr<tem00_light, destroy> handle_;
+};
+
+/** Chooses a stack that repeats nothing in the region, with the seed 0. */
+inline tem00_stack_description plan(const tem00_stack_needs &needs) {
+    tem00_stack_description description;
+    check(tem00_stack_plan(&needs, &description));
+    return description;
+}
+
+/** Speckle that moves and decorrelates. Any number of threads may look it up at once. */
+class stack {
+public:
+    explicit stack(const tem00_stack_description &description) {
+        tem00_stack *handle = nullptr;
+        check(tem00_stack_create(&description, &handle));
+        handle_.reset(handle);
+    }
+
+    /** Reads a stack from a file, if its slices take no more than `memory_limit` bytes. */
+    static stack read(const std::string &path, std::uint64_t memory_limit) {
+        tem00_stack *handle = nullptr;
+        check(tem00_stack_read(path.c_str(), memory_limit, &handle));
+        return stack(handle);
+    }
+
+    /** Writes the stack as a file. */
+    void write(const std::string &path) const { check(tem00_stack_write(get(), path.c_str())); }
+
+    /** What the stack is. */
+    tem00_stack_info info() const {
+        tem00_stack_info info;
+        check(tem00_stack_describe(get(), &info));
+        return info;
+    }
+
+    /** Intensity, with mean 1, at (x, y) in samples and u in slices. */
+    double intensity(double x, double y, double u) const {
+        double intensity = 0;
+        check(tem00_stack_intensity(get(), x, y, u, &intensity));
+        return intensity;
+    }
+
+    /** Intensities at `count` points. */
+    void intensity(const double *x, const double *y, const double *u, std::size_t count,
+                   double *intensity) const {
+        check(tem00_stack_intensity_batch(get(), x, y, u, count, intensity));
+    }
+
+    /** Mean of the intensity over a box of `size` samples about `centre`. */
+    double average(const vec2 &centre, const vec2 &size, double u) const {
+        double average = 0;
+        check(tem00_stack_average(get(), centre.data(), size.data(), u, &average));
+        return average;
+    }
+
+    /** Distance in u after which the correlation has fallen to `correlation`. */
+    double coordinate_of(double correlation) const {
+        double u = 0;
+        check(tem00_stack_coordinate_of(get(), correlation, &u));
+        return u;
+    }
+
+    /** Correlation of the intensities at u = 0 and u = `distance`. */
+    double correlation_at(double distance) const {
+        double correlation = 0;
+        check(tem00_stack_correlation_at(get(), distance, &correlation));
+        return correlation;
+    }
+
+    /** Correlation of the intensities of two slices, exactly. */
+    double correlation_between(std::size_t first, std::size_t second) const {
+        double correlation = 0;
+        check(tem00_stack_correlation_between(get(), first, second, &correlation));
+        return correlation;
+    }
+
+    /** The complex coefficients of a slice, which belong to the stack: real, imaginary, real, … */
+    const float *coefficients(std::size_t slice) const {
+        const float *coefficients = nullptr;
+        check(tem00_stack_coefficients(get(), slice, &coefficients));
+        return coefficients;
+    }
+
+    /** Place of the pupil of a slice, in its diameters. */
+    vec2 offset(std::size_t slice) const {
+        vec2 offset{};
+        check(tem00_stack_offset(get(), slice, offset.data()));
+        return offset;
+    }
+
+    /** The handle, for what is called in C. */
+    const tem00_stack *get() const noexcept { return handle_.get(); }
+
+private:
+    struct destroy {
+        void operator()(tem00_stack *handle) const noexcept { tem00_stack_destroy(handle); }
+    };
+
+    explicit stack(tem00_stack *handle) noexcept : handle_(handle) {}
+
+    std::unique_ptr<tem00_stack, destroy> handle_;
+};
+
+/** The axes of a camera at `position` that looks at `target`. */
+inline tem00_camera_axes look_at(const vec3 &position, const vec3 &target, const vec3 &up) {
+    tem00_camera_axes axes;
+    check(tem00_camera_axes_look_at(position.data(), target.data(), up.data(), &axes));
+    return axes;
+}
+
+/** A camera focused on a surface. Any number of threads may ask it at once. */
+class imaging {
+public:
+    explicit imaging(const tem00_lens_description &lens) {
+        tem00_imaging *handle = nullptr;
+        check(tem00_imaging_create_lens(&lens, &handle));
+        handle_.reset(handle);
+    }
+
+    explicit imaging(const tem00_pupil_distances &distances) {
+        tem00_imaging *handle = nullptr;
+        check(tem00_imaging_create_distances(&distances, &handle));
+        handle_.reset(handle);
+    }
+
+    /** What the camera is: among others, the size of its speckle. */
+    tem00_imaging_info info() const {
+        tem00_imaging_info info;
+        check(tem00_imaging_describe(get(), &info));
+        return info;
+    }
+
+    /** Motion of the speckle at a surface point since the reference state. */
+    tem00_speckle_motion speckle_motion(
+        const tem00_surface_point &point, const tem00_motion &motion,
+        tem00_image_orientation orientation = TEM00_IMAGE_ORIENTATION_SCREEN_UPRIGHT) const {
+        tem00_speckle_motion speckle;
+        check(tem00_imaging_speckle_motion(get(), &point, &motion,
+                                           static_cast<std::uint32_t>(orientation), &speckle));
+        return speckle;
+    }
+
+    /** Where in a speckle pattern a pixel lies, in pattern samples. */
+    vec2 pattern_coordinate(const vec2 &pixel, const vec2 &displacement,
+                            double pattern_speckle_size) const {
+        vec2 coordinate{};
+        check(tem00_imaging_pattern_coordinate(get(), pixel.data(), displacement.data(),
+                                               pattern_speckle_size, coordinate.data()));
+        return coordinate;
+    }
+
+    /** What motions do to the speckle at `count` surface points. */
+    void motion_field(const tem00_field_setup &setup, const tem00_field_points &points,
+                      std::size_t count, const tem00_field_results &results) const {
+        check(tem00_imaging_motion_field(get(), &setup, &points, count, &results));
+    }
+
+    /** The handle, for what is called in C. */
+    const tem00_imaging *get() const noexcept { return handle_.get(); }
+
+private:
+    struct destroy {
+        void operator()(tem00_imaging *handle) const noexcept { tem00_imaging_destroy(handle); }
+    };
+
+    std::unique_ptr<tem00_imaging, destroy> handle_;
+};
+
+/** Intensity correlation after a displacement in pupil diameters and in axial lengths. */
+inline double correlation(double pupil_shift, double axial_shift) {
+    double correlation = 0;
+    check(tem00_correlation(pupil_shift, axial_shift, &correlation));
+    return correlation;
+}
+
+/** Distance between two slices of a circular stack that have a given correlation. */
+inline double slice_coordinate(double correlation, std::size_t half_period) {
+    double coordinate = 0;
+    check(tem00_slice_coordinate(correlation, half_period, &coordinate));
+    return coordinate;
+}
+
+} // namespace tem00
+
+#endif

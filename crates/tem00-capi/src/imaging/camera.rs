@@ -1,0 +1,225 @@
+use tem00_decorrelation::{ImagingGeometry, LensData, ThickLensData};
+
+use super::Imaging;
+use crate::{
+    numbers::code,
+    pointers::{borrow, create, write},
+    status::{Failure, Status, call},
+};
+
+/// Where the surface in focus lies before a lens: what `focus` of a description counts.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Focus {
+    /// The distance from the surface to the entrance pupil, in metres.
+    SurfaceToPupil = 0,
+    /// The distance from the surface to the front principal plane, in metres.
+    SurfaceToPrincipalPlane = 1,
+    /// The magnification, counted positive.
+    Magnification = 2,
+}
+
+/// A lens and a sensor.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct LensDescription {
+    /// Vacuum wavelength of the light, in metres.
+    pub wavelength: f64,
+    /// Focal length of the lens, in metres.
+    pub focal_length: f64,
+    /// F-number as engraved on the lens, for focus at infinity, at least 0.5.
+    pub f_number: f64,
+    /// Diameter of the exit pupil over that of the entrance pupil; 1 for a thin lens.
+    pub pupil_magnification: f64,
+    /// What `focus` counts: a `tem00_focus`.
+    pub focus_kind: u32,
+    /// Where the surface in focus lies.
+    pub focus: f64,
+    /// Distance between the centres of neighbouring pixels on the sensor, in metres.
+    pub pixel_pitch: f64,
+}
+
+/// The distances and the pupil of a camera as such. Entrance and exit pupil are one, at the lens.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct PupilDistances {
+    /// Vacuum wavelength of the light, in metres.
+    pub wavelength: f64,
+    /// Distance from the surface in focus to the pupil along the optical axis, in metres.
+    pub surface_to_pupil: f64,
+    /// Distance from the pupil to the sensor, in metres.
+    pub pupil_to_image: f64,
+    /// Diameter of the pupil, in metres.
+    pub pupil_diameter: f64,
+    /// Distance between the centres of neighbouring pixels on the sensor, in metres.
+    pub pixel_pitch: f64,
+}
+
+/// What a camera is.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImagingInfo {
+    /// Vacuum wavelength of the light, in metres.
+    pub wavelength: f64,
+    /// Focal length, in metres.
+    pub focal_length: f64,
+    /// F-number for focus at infinity.
+    pub f_number: f64,
+    /// F-number of the light on the sensor.
+    pub working_f_number: f64,
+    /// Diameter of the entrance pupil, in metres.
+    pub pupil_diameter: f64,
+    /// Diameter of the exit pupil over that of the entrance pupil.
+    pub pupil_magnification: f64,
+    /// Distance from the surface in focus to the entrance pupil, in metres.
+    pub surface_to_pupil: f64,
+    /// Distance from the exit pupil to the sensor, in metres.
+    pub pupil_to_image: f64,
+    /// Length of the image of a unit tangent of the viewing angle, in metres.
+    pub principal_distance: f64,
+    /// Magnification at the surface in focus, without a sign.
+    pub magnification: f64,
+    /// Distance between the centres of neighbouring pixels on the sensor, in metres.
+    pub pixel_pitch: f64,
+    /// Speckle size on the sensor, the period of its finest fringes, in metres.
+    pub speckle_size: f64,
+    /// Speckle size on the sensor, in pixels.
+    pub speckle_size_in_pixels: f64,
+    /// Speckle size projected onto the surface in focus, in metres.
+    pub object_speckle_size: f64,
+    /// Displacement along the axis that first decorrelates the speckle entirely, in metres.
+    pub axial_decorrelation_length: f64,
+}
+
+impl LensDescription {
+    /// A thin lens by the formulas of a thin lens, which round in their own way.
+    fn geometry(&self) -> Result<ImagingGeometry, Failure> {
+        use tem00_decorrelation::Focus as F;
+        const KINDS: [Focus; 3] = [
+            Focus::SurfaceToPupil,
+            Focus::SurfaceToPrincipalPlane,
+            Focus::Magnification,
+        ];
+        let focus = match code("focus_kind", self.focus_kind, &KINDS)? {
+            Focus::SurfaceToPupil if self.is_thin() => return self.thin(),
+            Focus::SurfaceToPupil => F::SurfaceToPupil(self.focus),
+            Focus::SurfaceToPrincipalPlane => F::SurfaceToPrincipalPlane(self.focus),
+            Focus::Magnification => F::Magnification(self.focus),
+        };
+        Ok(ImagingGeometry::from_thick_lens(ThickLensData {
+            wavelength: self.wavelength,
+            focal_length: self.focal_length,
+            f_number: self.f_number,
+            pupil_magnification: self.pupil_magnification,
+            focus,
+            pixel_pitch: self.pixel_pitch,
+        })?)
+    }
+
+    fn is_thin(&self) -> bool {
+        (1.0..=1.0).contains(&self.pupil_magnification)
+    }
+
+    fn thin(&self) -> Result<ImagingGeometry, Failure> {
+        Ok(ImagingGeometry::from_lens(LensData {
+            wavelength: self.wavelength,
+            focal_length: self.focal_length,
+            f_number: self.f_number,
+            surface_to_pupil: self.focus,
+            pixel_pitch: self.pixel_pitch,
+        })?)
+    }
+}
+
+impl PupilDistances {
+    fn geometry(&self) -> Result<ImagingGeometry, Failure> {
+        let distances = tem00_decorrelation::PupilDistances {
+            wavelength: self.wavelength,
+            surface_to_pupil: self.surface_to_pupil,
+            pupil_to_image: self.pupil_to_image,
+            pupil_diameter: self.pupil_diameter,
+            pixel_pitch: self.pixel_pitch,
+        };
+        Ok(ImagingGeometry::from_distances(distances)?)
+    }
+}
+
+impl ImagingInfo {
+    pub(super) fn new(geometry: &ImagingGeometry) -> Self {
+        Self {
+            wavelength: geometry.wavelength(),
+            focal_length: geometry.focal_length(),
+            f_number: geometry.f_number(),
+            working_f_number: geometry.working_f_number(),
+            pupil_diameter: geometry.pupil_diameter(),
+            pupil_magnification: geometry.pupil_magnification(),
+            surface_to_pupil: geometry.surface_to_pupil(),
+            pupil_to_image: geometry.pupil_to_image(),
+            principal_distance: geometry.principal_distance(),
+            magnification: geometry.magnification(),
+            pixel_pitch: geometry.pixel_pitch(),
+            speckle_size: geometry.speckle_size(),
+            speckle_size_in_pixels: geometry.speckle_size_in_pixels(),
+            object_speckle_size: geometry.object_speckle_size(),
+            axial_decorrelation_length: geometry.axial_decorrelation_length(),
+        }
+    }
+}
+
+/// Creates a camera from its lens.
+///
+/// On failure `*imaging` is null.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_imaging_create_lens(
+    description: *const LensDescription,
+    imaging: *mut *mut Imaging,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    call(|| unsafe {
+        create("imaging", imaging, || {
+            borrow("description", description)?.geometry().map(Imaging)
+        })
+    })
+}
+
+/// Creates a camera from its distances and its pupil.
+///
+/// On failure `*imaging` is null.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_imaging_create_distances(
+    distances: *const PupilDistances,
+    imaging: *mut *mut Imaging,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    call(|| unsafe {
+        create("imaging", imaging, || {
+            borrow("distances", distances)?.geometry().map(Imaging)
+        })
+    })
+}
+
+/// Tells what a camera is: among others, the size of its speckle.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_imaging_describe(
+    imaging: *const Imaging,
+    info: *mut ImagingInfo,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let Imaging(geometry) = unsafe { borrow("imaging", imaging) }?;
+        // SAFETY: by the contract of this function.
+        unsafe { write("info", info, ImagingInfo::new(geometry)) }
+    })
+}

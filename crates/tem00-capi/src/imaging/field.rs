@@ -1,0 +1,256 @@
+use tem00_decorrelation::{DVec3, FieldSlices, MotionField};
+
+use super::{
+    Imaging,
+    motion::{CameraAxes, Motion, orientation},
+};
+use crate::{
+    numbers::{check_coordinates, code},
+    pointers::{Named, borrow, columns},
+    status::{Failure, Status, call},
+};
+
+/// The light on the points of a field, by the curvature of its wavefront there.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FieldLight {
+    /// Plane waves.
+    Collimated = 0,
+    /// Spherical waves that diverge from `source`.
+    PointSource = 1,
+    /// Waves of the curvature tensor `curvature`.
+    Curvature = 2,
+}
+
+/// What all points of a field share.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FieldSetup {
+    /// The axes of the camera.
+    pub camera: CameraAxes,
+    /// Centre of the pupil in world coordinates, in metres.
+    pub pupil_centre: [f64; 3],
+    /// Which way up image displacements are counted: a `tem00_image_orientation`.
+    pub orientation: u32,
+    /// Speckle size of the pattern, in samples.
+    pub pattern_speckle_size: f64,
+    /// Number of slices of a circular stack to the first uncorrelated one.
+    pub half_period: usize,
+    /// Motion of camera, source and all surfaces, added to those of the points.
+    pub shared_motion: Motion,
+}
+
+/// Points of rough surfaces: pointers to as many numbers as there are points, in world coordinates.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FieldPoints {
+    /// Positions x, y, z in the reference state, in metres.
+    pub position: [*const f64; 3],
+    /// Surface normals x, y, z of any length, to either side.
+    pub normal: [*const f64; 3],
+    /// Translations x, y, z of the surface since the reference state, in metres.
+    pub motion: [*const f64; 3],
+    /// Positions of the pixels in the image, to the right and upwards, in pixels.
+    pub pixel: [*const f64; 2],
+    /// The light on the points: a `tem00_field_light`.
+    pub light: u32,
+    /// The point source in world coordinates, in metres; not read for other lights.
+    pub source: [f64; 3],
+    /// Components xx, xy, xz, yy, yz, zz of the curvature tensors, in 1/m; not read for other lights.
+    pub curvature: [*const f64; 6],
+}
+
+/// Where the results of a field go: pointers to as many numbers as there are points.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FieldResults {
+    /// Motion of the speckle in the image to the right and upwards, in metres on the sensor.
+    pub speckle_displacement: [*mut f64; 2],
+    /// Motion of the speckle field across the pupil, in metres; infinite where it left the pupil.
+    pub pupil_displacement: [*mut f64; 2],
+    /// What is left of the old pattern as a correlation of intensity, in [0, 1].
+    pub correlation: *mut f64,
+    /// Where to look the pattern up, in pattern samples and not wrapped.
+    pub pattern_coordinate: [*mut f64; 2],
+    /// Which slice of a circular stack to look up, from 0 to `half_period`.
+    pub slice_coordinate: *mut f64,
+}
+
+impl FieldSetup {
+    fn field(&self, Imaging(geometry): &Imaging) -> Result<MotionField, Failure> {
+        let field = MotionField::new(tem00_decorrelation::FieldSetup {
+            geometry: *geometry,
+            camera: self.camera.frame()?,
+            pupil_centre: DVec3::from_array(self.pupil_centre),
+            orientation: orientation(self.orientation)?,
+            pattern_speckle_size: self.pattern_speckle_size,
+            half_period: self.half_period,
+        })?;
+        Ok(field.with_shared_motion(&self.shared_motion.motion()?))
+    }
+}
+
+const INPUTS: [&str; 17] = [
+    "position",
+    "position",
+    "position",
+    "normal",
+    "normal",
+    "normal",
+    "motion",
+    "motion",
+    "motion",
+    "pixel",
+    "pixel",
+    "curvature",
+    "curvature",
+    "curvature",
+    "curvature",
+    "curvature",
+    "curvature",
+];
+
+impl FieldPoints {
+    /// The columns in order; those of the curvature repeat others where the light needs none.
+    fn columns(&self, light: FieldLight) -> [Named<*const f64>; 17] {
+        let [px, py, pz] = self.position;
+        let [nx, ny, nz] = self.normal;
+        let [ax, ay, az] = self.motion;
+        let [tx, ty] = self.pixel;
+        let [xx, xy, xz, yy, yz, zz] = match light {
+            FieldLight::Curvature => self.curvature,
+            FieldLight::Collimated | FieldLight::PointSource => [px; 6],
+        };
+        let pointers = [
+            px, py, pz, nx, ny, nz, ax, ay, az, tx, ty, xx, xy, xz, yy, yz, zz,
+        ];
+        core::array::from_fn(|i| (INPUTS[i], pointers[i]))
+    }
+
+    fn light(&self) -> Result<FieldLight, Failure> {
+        const LIGHTS: [FieldLight; 3] = [
+            FieldLight::Collimated,
+            FieldLight::PointSource,
+            FieldLight::Curvature,
+        ];
+        let light = code("light", self.light, &LIGHTS)?;
+        if light == FieldLight::PointSource {
+            check_coordinates("source", &self.source)?;
+        }
+        Ok(light)
+    }
+
+    /// The points as the library takes them.
+    fn borrowed<'a>(
+        &self,
+        light: FieldLight,
+        columns: [&'a [f64]; 17],
+    ) -> tem00_decorrelation::FieldPoints<'a> {
+        use tem00_decorrelation::FieldLight as L;
+        let [
+            px,
+            py,
+            pz,
+            nx,
+            ny,
+            nz,
+            ax,
+            ay,
+            az,
+            tx,
+            ty,
+            xx,
+            xy,
+            xz,
+            yy,
+            yz,
+            zz,
+        ] = columns;
+        tem00_decorrelation::FieldPoints {
+            position: [px, py, pz],
+            normal: [nx, ny, nz],
+            motion: [ax, ay, az],
+            pixel: [tx, ty],
+            light: match light {
+                FieldLight::Collimated => L::Collimated,
+                FieldLight::PointSource => L::PointSource(DVec3::from_array(self.source)),
+                FieldLight::Curvature => L::Curvature([xx, xy, xz, yy, yz, zz]),
+            },
+        }
+    }
+}
+
+impl FieldResults {
+    fn columns(&self) -> [Named<*mut f64>; 8] {
+        let [speckle_x, speckle_y] = self.speckle_displacement;
+        let [pupil_x, pupil_y] = self.pupil_displacement;
+        let [pattern_x, pattern_y] = self.pattern_coordinate;
+        [
+            ("speckle_displacement", speckle_x),
+            ("speckle_displacement", speckle_y),
+            ("pupil_displacement", pupil_x),
+            ("pupil_displacement", pupil_y),
+            ("correlation", self.correlation),
+            ("pattern_coordinate", pattern_x),
+            ("pattern_coordinate", pattern_y),
+            ("slice_coordinate", self.slice_coordinate),
+        ]
+    }
+}
+
+fn slices(columns: [&mut [f64]; 8]) -> FieldSlices<'_> {
+    let [
+        speckle_x,
+        speckle_y,
+        pupil_x,
+        pupil_y,
+        correlation,
+        pattern_x,
+        pattern_y,
+        slice_coordinate,
+    ] = columns;
+    FieldSlices {
+        speckle_displacement: [speckle_x, speckle_y],
+        pupil_displacement: [pupil_x, pupil_y],
+        correlation,
+        pattern_coordinate: [pattern_x, pattern_y],
+        slice_coordinate,
+    }
+}
+
+/// Computes what motions do to the speckle at `count` surface points, such as those behind the pixels
+/// of an image, at first order in the motion.
+///
+/// A point that the camera cannot see is decorrelated. The columns of `results` are written; they must
+/// not overlap with each other nor with those of `points`.
+///
+/// # Safety
+///
+/// The pointers are null or valid, those to columns for `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_imaging_motion_field(
+    imaging: *const Imaging,
+    setup: *const FieldSetup,
+    points: *const FieldPoints,
+    count: usize,
+    results: *const FieldResults,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let imaging = unsafe { borrow("imaging", imaging) }?;
+        // SAFETY: by the contract of this function.
+        let field = unsafe { borrow("setup", setup) }?.field(imaging)?;
+        // SAFETY: by the contract of this function.
+        let points = unsafe { borrow("points", points) }?;
+        let light = points.light()?;
+        // SAFETY: by the contract of this function.
+        let results = unsafe { borrow("results", results) }?.columns();
+        // SAFETY: by the contract of this function.
+        let (read, write) = unsafe { columns(count, points.columns(light), results) }?;
+        for (name, values) in INPUTS.iter().zip(read) {
+            check_coordinates(name, values)?;
+        }
+        field.evaluate(&points.borrowed(light, read), slices(write));
+        Ok(())
+    })
+}

@@ -1,0 +1,46 @@
+use crate::{
+    numbers::check_finite,
+    pointers::write,
+    status::{Status, call},
+};
+
+/// Computes the intensity correlation left after a pupil displacement, in pupil diameters, and an
+/// axial displacement, in axial decorrelation lengths.
+///
+/// # Safety
+///
+/// The pointer is null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_correlation(
+    pupil_shift: f64,
+    axial_shift: f64,
+    correlation: *mut f64,
+) -> Status {
+    call(|| {
+        check_finite("pupil_shift", &[pupil_shift])?;
+        check_finite("axial_shift", &[axial_shift])?;
+        let result = tem00_decorrelation::correlation(pupil_shift, axial_shift);
+        // SAFETY: by the contract of this function.
+        unsafe { write("correlation", correlation, result) }
+    })
+}
+
+/// Computes the distance between two slices of a circular stack that have a given intensity
+/// correlation; the stack has twice `half_period` slices.
+///
+/// # Safety
+///
+/// The pointer is null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_slice_coordinate(
+    correlation: f64,
+    half_period: usize,
+    coordinate: *mut f64,
+) -> Status {
+    call(|| {
+        check_finite("correlation", &[correlation])?;
+        let result = tem00_decorrelation::slice_coordinate(correlation, half_period);
+        // SAFETY: by the contract of this function.
+        unsafe { write("coordinate", coordinate, result) }
+    })
+}

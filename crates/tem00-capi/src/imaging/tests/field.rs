@@ -1,0 +1,230 @@
+use tem00_decorrelation::{DMat3, FieldSlices, MotionField};
+
+use super::*;
+
+const COUNT: usize = 37;
+
+fn setup() -> FieldSetup {
+    FieldSetup {
+        camera: axes(),
+        pupil_centre: EYE,
+        orientation: ImageOrientation::ScreenUpright as u32,
+        pattern_speckle_size: 4.0,
+        half_period: 8,
+        shared_motion: MOTION,
+    }
+}
+
+/// Columns of points: position, normal, motion, pixel, curvature.
+fn inputs() -> [Vec<f64>; 17] {
+    core::array::from_fn(|column| {
+        let (start, step) = match column {
+            0..2 => (-5e-3, 3e-4),
+            2 => (0.0, 1e-3),
+            5 => (1.0, 0.0),
+            3 | 4 => (-0.3, 0.02),
+            6..9 => (-1e-4, 7e-6),
+            9..11 => (0.5, 10.0),
+            _ => (-0.5, 0.05),
+        };
+        let number = |i: u32| start + step * f64::from(i) * (1.0 + 0.1 * column as f64);
+        (0..).take(COUNT).map(number).collect()
+    })
+}
+
+fn points(inputs: &[Vec<f64>; 17], light: FieldLight) -> FieldPoints {
+    let [px, py, pz, nx, ny, nz, ax, ay, az, tx, ty, curvature @ ..] =
+        inputs.each_ref().map(|column| column.as_ptr());
+    FieldPoints {
+        position: [px, py, pz],
+        normal: [nx, ny, nz],
+        motion: [ax, ay, az],
+        pixel: [tx, ty],
+        light: light as u32,
+        source: [0.1, 0.2, 0.5],
+        curvature,
+    }
+}
+
+fn results(columns: &mut [Vec<f64>; 8]) -> FieldResults {
+    let [a, b, c, d, correlation, e, f, slice_coordinate] =
+        columns.each_mut().map(|column| column.as_mut_ptr());
+    FieldResults {
+        speckle_displacement: [a, b],
+        pupil_displacement: [c, d],
+        correlation,
+        pattern_coordinate: [e, f],
+        slice_coordinate,
+    }
+}
+
+fn room() -> [Vec<f64>; 8] {
+    [(); 8].map(|()| vec![7.0; COUNT])
+}
+
+fn evaluate(setup: &FieldSetup, points: &FieldPoints, out: &mut [Vec<f64>; 8]) -> Status {
+    let imaging = Owned::new(&LENS);
+    let results = results(out);
+    // SAFETY: the pointers are valid, or refused.
+    unsafe { tem00_imaging_motion_field(imaging.0, setup, points, COUNT, &raw const results) }
+}
+
+fn by_library(inputs: &[Vec<f64>; 17], light: FieldLight) -> [Vec<f64>; 8] {
+    use tem00_decorrelation::FieldLight as L;
+    let CameraAxes {
+        right,
+        up,
+        towards_camera,
+    } = axes();
+    let columns = [right, up, towards_camera].map(DVec3::from_array);
+    let camera = CameraFrame::from_axes(DMat3::from_cols(columns[0], columns[1], columns[2]));
+    let field = MotionField::new(tem00_decorrelation::FieldSetup {
+        geometry: geometry(),
+        camera: camera.unwrap(),
+        pupil_centre: DVec3::from_array(EYE),
+        orientation: tem00_decorrelation::ImageOrientation::ScreenUpright,
+        pattern_speckle_size: 4.0,
+        half_period: 8,
+    });
+    let [px, py, pz, nx, ny, nz, ax, ay, az, tx, ty, curvature @ ..] =
+        inputs.each_ref().map(Vec::as_slice);
+    let points = tem00_decorrelation::FieldPoints {
+        position: [px, py, pz],
+        normal: [nx, ny, nz],
+        motion: [ax, ay, az],
+        pixel: [tx, ty],
+        light: match light {
+            FieldLight::Collimated => L::Collimated,
+            FieldLight::PointSource => L::PointSource(DVec3::new(0.1, 0.2, 0.5)),
+            FieldLight::Curvature => L::Curvature(curvature),
+        },
+    };
+    let mut out = room();
+    let [a, b, c, d, correlation, e, f, slice_coordinate] = &mut out;
+    let slices = FieldSlices {
+        speckle_displacement: [a, b],
+        pupil_displacement: [c, d],
+        correlation,
+        pattern_coordinate: [e, f],
+        slice_coordinate,
+    };
+    field
+        .unwrap()
+        .with_shared_motion(&motion())
+        .evaluate(&points, slices);
+    out
+}
+
+#[test]
+fn motion_fields_are_those_of_the_library_for_each_light() {
+    let inputs = inputs();
+    for light in [
+        FieldLight::Collimated,
+        FieldLight::PointSource,
+        FieldLight::Curvature,
+    ] {
+        let mut out = room();
+        let status = evaluate(&setup(), &points(&inputs, light), &mut out);
+        assert_eq!(status, Status::Ok, "{light:?}: {}", last_parameter());
+        assert_eq!(out, by_library(&inputs, light), "{light:?}");
+    }
+}
+
+#[test]
+fn the_curvature_may_be_null_where_the_light_needs_none() {
+    let inputs = inputs();
+    for (light, allowed) in [
+        (FieldLight::Collimated, true),
+        (FieldLight::PointSource, true),
+        (FieldLight::Curvature, false),
+    ] {
+        let points = FieldPoints {
+            curvature: [ptr::null(); 6],
+            ..points(&inputs, light)
+        };
+        let status = evaluate(&setup(), &points, &mut room());
+        assert_eq!(status == Status::Ok, allowed, "{light:?}: {status:?}");
+    }
+}
+
+#[test]
+fn fields_are_refused_by_the_name_of_what_is_wrong() {
+    let good = inputs();
+    let collimated = points(&good, FieldLight::Collimated);
+    let refused = |setup: FieldSetup, points: FieldPoints| {
+        let mut out = room();
+        let refused = refusal(evaluate(&setup, &points, &mut out));
+        assert_eq!(out, room(), "nothing is written");
+        refused
+    };
+    let bad_setup = |change: fn(&mut FieldSetup)| {
+        let mut setup = setup();
+        change(&mut setup);
+        refused(setup, collimated)
+    };
+    assert_eq!(
+        bad_setup(|s| s.pupil_centre[1] = f64::NAN),
+        argument("pupil_centre"),
+        "NaN"
+    );
+    assert_eq!(
+        bad_setup(|s| s.orientation = 2),
+        argument("orientation"),
+        "2"
+    );
+    assert_eq!(
+        bad_setup(|s| s.pattern_speckle_size = 0.0),
+        argument("pattern_speckle_size"),
+        "0"
+    );
+    assert_eq!(
+        bad_setup(|s| s.shared_motion.camera[0] = f64::NAN),
+        argument("camera"),
+        "NaN"
+    );
+    let light = FieldPoints {
+        light: 3,
+        ..collimated
+    };
+    assert_eq!(refused(setup(), light), argument("light"), "3");
+    let source = FieldPoints {
+        light: FieldLight::PointSource as u32,
+        source: [f64::NAN; 3],
+        ..collimated
+    };
+    assert_eq!(refused(setup(), source), argument("source"), "NaN");
+    for (column, name) in [(1, "position"), (5, "normal"), (8, "motion"), (10, "pixel")] {
+        let mut bad = good.clone();
+        bad[column][COUNT - 1] = f64::NAN;
+        let points = points(&bad, FieldLight::Collimated);
+        assert_eq!(refused(setup(), points), argument(name), "column {column}");
+    }
+    let mut bad = good.clone();
+    bad[16][0] = f64::INFINITY;
+    let points = points(&bad, FieldLight::Curvature);
+    assert_eq!(refused(setup(), points), argument("curvature"), "infinite");
+}
+
+#[test]
+fn results_in_one_place_are_refused() {
+    let inputs = inputs();
+    let mut out = room();
+    let imaging = Owned::new(&LENS);
+    let points = points(&inputs, FieldLight::Collimated);
+    let setup = setup();
+    let mut results = results(&mut out);
+    results.slice_coordinate = results.correlation;
+    // SAFETY: the columns are valid, and refused as they overlap.
+    let status = unsafe {
+        let results = &raw const results;
+        tem00_imaging_motion_field(
+            imaging.0,
+            &raw const setup,
+            &raw const points,
+            COUNT,
+            results,
+        )
+    };
+    let expected = pointer("slice_coordinate");
+    assert_eq!(refusal(status), expected, "two results in one column");
+}

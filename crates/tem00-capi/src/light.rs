@@ -1,0 +1,115 @@
+//! Lights: made from a description, then asked.
+//!
+//! A light is a handle and not a plain struct, so that one set of functions serves every kind, that
+//! a table has an owner, and that nothing unchecked reaches the laws.
+
+// The order of the header.
+mod description;
+
+mod queries;
+
+mod batch;
+
+mod plain;
+
+pub use batch::*;
+pub use description::*;
+pub use plain::*;
+pub use queries::*;
+
+use tem00_beam::{
+    AngularKnot, AngularProfile, AstigmaticLight, BeamError, Emitter, LineLight, Real, SpotLight,
+    TabulatedLineLight,
+};
+
+use crate::{pointers, status::Failure};
+
+/// A laser in a scene. It never changes: any number of threads may ask it at once.
+#[derive(Debug)]
+pub struct Light {
+    double: Laser<f64>,
+    single: Result<Laser<f32>, BeamError>,
+}
+
+/// The lights of the library, in one precision.
+#[derive(Clone, Debug)]
+enum Laser<T> {
+    Spot(SpotLight<T>),
+    Astigmatic(AstigmaticLight<T>),
+    Line(LineLight<T>),
+    Tabulated(LineLight<T>, Vec<AngularKnot<T>>),
+}
+
+impl<T: Real> Laser<T> {
+    /// Asks the light, whichever it is.
+    fn ask<R>(&self, question: impl FnOnce(&dyn Emitter<T>) -> R) -> R {
+        match self {
+            Self::Spot(light) => question(light),
+            Self::Astigmatic(light) => question(light),
+            Self::Line(light) => question(light),
+            Self::Tabulated(line, knots) => question(&TabulatedLineLight { line: *line, knots }),
+        }
+    }
+}
+
+impl Light {
+    /// A light that is a struct of numbers in either precision.
+    fn plain<D, S>(
+        light: D,
+        to_single: impl Fn(&D) -> Result<S, BeamError>,
+        double: impl Fn(D) -> Laser<f64>,
+        single: impl Fn(S) -> Laser<f32>,
+    ) -> Self {
+        Self {
+            single: to_single(&light).map(single),
+            double: double(light),
+        }
+    }
+
+    fn spot(light: SpotLight<f64>) -> Self {
+        Self::plain(light, SpotLight::to_f32, Laser::Spot, Laser::Spot)
+    }
+
+    fn astigmatic(light: AstigmaticLight<f64>) -> Self {
+        Self::plain(
+            light,
+            AstigmaticLight::to_f32,
+            Laser::Astigmatic,
+            Laser::Astigmatic,
+        )
+    }
+
+    fn line(light: LineLight<f64>) -> Self {
+        Self::plain(light, LineLight::to_f32, Laser::Line, Laser::Line)
+    }
+
+    fn tabulated(light: TabulatedLineLight<'_, f64>, profile: &AngularProfile) -> Self {
+        let single = profile.to_f32().and_then(|knots| {
+            let line = light.to_f32(&knots)?.line;
+            Ok(Laser::Tabulated(line, knots))
+        });
+        Self {
+            double: Laser::Tabulated(light.line, light.knots.to_vec()),
+            single,
+        }
+    }
+
+    /// The light in single precision, if that can carry it.
+    fn single(&self) -> Result<&Laser<f32>, Failure> {
+        self.single.as_ref().map_err(|error| (*error).into())
+    }
+}
+
+/// Frees a light; null is allowed. No thread may be using it, and it must not be used again.
+///
+/// # Safety
+///
+/// `light` is null, or came from one of the functions that create lights and was not destroyed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_light_destroy(light: *mut Light) {
+    // SAFETY: by the contract of this function.
+    unsafe { pointers::destroy(light) };
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,222 @@
+use tem00_beam::{NextEventSlices, Real};
+
+use super::{Laser, Light};
+use crate::{
+    numbers::check_coordinates,
+    pointers::{Borrowed, borrow, columns},
+    status::{Failure, Status, call},
+};
+
+/// Where the next events at many points go: pointers to as many numbers as there are points.
+///
+/// The point of the aperture plane is p + distance * wi.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct NextEventColumns {
+    /// Components x of the unit vectors towards the light.
+    pub wi_x: *mut f64,
+    /// Components y.
+    pub wi_y: *mut f64,
+    /// Components z.
+    pub wi_z: *mut f64,
+    /// Distances to the aperture plane along `wi`, in metres.
+    pub distance: *mut f64,
+    /// Irradiances of a surface square to `wi`, in W/m²; 0 where no light arrives.
+    pub e_perp: *mut f64,
+}
+
+/// As `tem00_next_event_columns`, in single precision.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct NextEventColumnsF32 {
+    /// Components x of the unit vectors towards the light.
+    pub wi_x: *mut f32,
+    /// Components y.
+    pub wi_y: *mut f32,
+    /// Components z.
+    pub wi_z: *mut f32,
+    /// Distances to the aperture plane along `wi`, in metres.
+    pub distance: *mut f32,
+    /// Irradiances of a surface square to `wi`, in W/m²; 0 where no light arrives.
+    pub e_perp: *mut f32,
+}
+
+/// The two precisions of a light.
+trait Precision: Real + Into<f64> {
+    fn laser(light: &Light) -> Result<&Laser<Self>, Failure>;
+}
+
+impl Precision for f64 {
+    fn laser(light: &Light) -> Result<&Laser<Self>, Failure> {
+        Ok(&light.double)
+    }
+}
+
+impl Precision for f32 {
+    fn laser(light: &Light) -> Result<&Laser<Self>, Failure> {
+        light.single()
+    }
+}
+
+const POINT: [&str; 3] = ["x", "y", "z"];
+
+/// Borrows the coordinates of `count` points and `M` columns for the answers.
+///
+/// # Safety
+///
+/// Each pointer is null, or points to `count` numbers that nobody else touches during `'a`.
+unsafe fn points_and_answers<'a, T: Precision, const M: usize>(
+    points: [*const T; 3],
+    count: usize,
+    answers: [(&'static str, *mut T); M],
+) -> Result<Borrowed<'a, T, 3, M>, Failure> {
+    let points = core::array::from_fn(|i| (POINT[i], points[i]));
+    // SAFETY: by the contract of this function.
+    let (points, answers) = unsafe { columns(count, points, answers) }?;
+    for (name, coordinates) in POINT.iter().zip(points) {
+        check_coordinates(name, coordinates)?;
+    }
+    Ok((points, answers))
+}
+
+/// # Safety
+///
+/// As [`points_and_answers`]; the light is null or valid.
+unsafe fn irradiance<T: Precision>(
+    light: *const Light,
+    points: [*const T; 3],
+    count: usize,
+    irradiance: *mut T,
+) -> Status {
+    call(|| {
+        let answers = [("irradiance", irradiance)];
+        // SAFETY: by the contract of this function.
+        let light = unsafe { borrow("light", light) }?;
+        // SAFETY: by the contract of this function.
+        let ([x, y, z], [out]) = unsafe { points_and_answers(points, count, answers) }?;
+        T::laser(light)?.ask(|light| light.irradiance_batch(x, y, z, out));
+        Ok(())
+    })
+}
+
+/// # Safety
+///
+/// As [`points_and_answers`]; the light is null or valid.
+unsafe fn next_event<T: Precision>(
+    light: *const Light,
+    points: [*const T; 3],
+    count: usize,
+    [wi_x, wi_y, wi_z, distance, e_perp]: [*mut T; 5],
+) -> Result<(), Failure> {
+    let answers = [
+        ("wi_x", wi_x),
+        ("wi_y", wi_y),
+        ("wi_z", wi_z),
+        ("distance", distance),
+        ("e_perp", e_perp),
+    ];
+    // SAFETY: by the contract of this function.
+    let light = unsafe { borrow("light", light) }?;
+    // SAFETY: by the contract of this function.
+    let ([x, y, z], answers) = unsafe { points_and_answers(points, count, answers) }?;
+    let [wi_x, wi_y, wi_z, distance, e_perp] = answers;
+    let out = NextEventSlices {
+        wi: [wi_x, wi_y, wi_z],
+        distance,
+        e_perp,
+    };
+    T::laser(light)?.ask(|light| light.next_event_batch(x, y, z, out));
+    Ok(())
+}
+
+/// Computes the irradiances, in W/m², of planes through `count` points at right angles to the axis:
+/// the bits of `tem00_light_irradiance`.
+///
+/// `x`, `y`, `z` hold the coordinates, in metres; `irradiance` must not overlap with them.
+///
+/// # Safety
+///
+/// The pointers are null or valid for `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_light_irradiance_batch(
+    light: *const Light,
+    x: *const f64,
+    y: *const f64,
+    z: *const f64,
+    count: usize,
+    irradiance: *mut f64,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe { self::irradiance(light, [x, y, z], count, irradiance) }
+}
+
+/// As `tem00_light_irradiance_batch`, in single precision.
+///
+/// Fails if single precision cannot carry the light.
+///
+/// # Safety
+///
+/// The pointers are null or valid for `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_light_irradiance_batch_f32(
+    light: *const Light,
+    x: *const f32,
+    y: *const f32,
+    z: *const f32,
+    count: usize,
+    irradiance: *mut f32,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe { self::irradiance(light, [x, y, z], count, irradiance) }
+}
+
+/// Computes the next events at `count` points: the bits of `tem00_light_next_event`.
+///
+/// `x`, `y`, `z` hold the coordinates, in metres. The columns of `events` are written; they must not
+/// overlap with each other nor with the coordinates.
+///
+/// # Safety
+///
+/// The pointers are null or valid for `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_light_next_event_batch(
+    light: *const Light,
+    x: *const f64,
+    y: *const f64,
+    z: *const f64,
+    count: usize,
+    events: *const NextEventColumns,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let out = unsafe { borrow("events", events) }?;
+        let out = [out.wi_x, out.wi_y, out.wi_z, out.distance, out.e_perp];
+        // SAFETY: by the contract of this function.
+        unsafe { next_event(light, [x, y, z], count, out) }
+    })
+}
+
+/// As `tem00_light_next_event_batch`, in single precision.
+///
+/// Fails if single precision cannot carry the light.
+///
+/// # Safety
+///
+/// The pointers are null or valid for `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_light_next_event_batch_f32(
+    light: *const Light,
+    x: *const f32,
+    y: *const f32,
+    z: *const f32,
+    count: usize,
+    events: *const NextEventColumnsF32,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let out = unsafe { borrow("events", events) }?;
+        let out = [out.wi_x, out.wi_y, out.wi_z, out.distance, out.e_perp];
+        // SAFETY: by the contract of this function.
+        unsafe { next_event(light, [x, y, z], count, out) }
+    })
+}

@@ -1,0 +1,76 @@
+use super::{Laser, Light};
+use crate::{
+    pointers::{borrow, write},
+    status::{Status, call},
+};
+
+/// The kinds of lights, and the structs of `tem00_beam.h` whose fields they are.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightKind {
+    /// `Tem00SpotLightF32`: a round or elliptic beam, 24 fields.
+    Spot = 0,
+    /// `Tem00AstigmaticLightF32`: a beam with general astigmatism, 28 fields.
+    Astigmatic = 1,
+    /// `Tem00LineLightF32`: a laser line, 28 fields.
+    Line = 2,
+    /// `Tem00LineLightF32` without its table, so that the closed forms leave it dark: 28 fields.
+    TabulatedLine = 3,
+}
+
+/// A light as plain numbers in single precision: what a kernel that cannot call a library evaluates.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightData {
+    /// Which struct of `tem00_beam.h` or `tem00_beam.wgsl` the fields belong to.
+    pub kind: LightKind,
+    /// Number of fields, 24 or 28.
+    pub count: u32,
+    /// The fields in the order of memory, then zeros.
+    pub fields: [f32; 28],
+}
+
+impl LightData {
+    fn new(laser: &Laser<f32>) -> Self {
+        match laser {
+            Laser::Spot(light) => Self::of_rows(LightKind::Spot, &light.to_rows()),
+            Laser::Astigmatic(light) => Self::of_rows(LightKind::Astigmatic, &light.to_rows()),
+            Laser::Line(light) => Self::of_rows(LightKind::Line, &light.to_rows()),
+            Laser::Tabulated(light, _) => Self::of_rows(LightKind::TabulatedLine, &light.to_rows()),
+        }
+    }
+
+    fn of_rows<const N: usize>(kind: LightKind, rows: &[[f32; 4]; N]) -> Self {
+        let mut data = Self {
+            kind,
+            count: 0,
+            fields: [0.0; 28],
+        };
+        for (field, value) in data.fields.iter_mut().zip(rows.as_flattened()) {
+            *field = *value;
+            data.count += 1;
+        }
+        data
+    }
+}
+
+/// Copies a light as plain numbers in single precision, to be uploaded to a GPU or evaluated by
+/// `tem00_beam.h`.
+///
+/// Fails if single precision cannot carry the light.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_light_plain_data(
+    light: *const Light,
+    data: *mut LightData,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let result = LightData::new(unsafe { borrow("light", light) }?.single()?);
+        // SAFETY: by the contract of this function.
+        unsafe { write("data", data, result) }
+    })
+}

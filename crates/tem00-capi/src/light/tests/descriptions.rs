@@ -1,0 +1,314 @@
+use super::*;
+
+/// Tries to create a light, and returns the status and the parameter it refuses.
+fn refused(create: impl FnOnce(*mut *mut Light) -> Status) -> (Status, String) {
+    let mut handle = ptr::dangling_mut();
+    let status = create(&raw mut handle);
+    assert!(handle.is_null(), "a light was made");
+    (status, last_parameter())
+}
+
+#[test]
+fn a_spot_refuses_each_number_that_is_wrong() {
+    let refused = |spot: SpotDescription| {
+        // SAFETY: the description is valid.
+        refused(|handle| unsafe { tem00_light_create_spot(&raw const spot, handle) })
+    };
+    let cases = [
+        (
+            "wavelength",
+            SpotDescription {
+                wavelength: f64::NAN,
+                ..SPOT
+            },
+        ),
+        (
+            "waist_radius",
+            SpotDescription {
+                waist_radius: -1e-3,
+                ..SPOT
+            },
+        ),
+        (
+            "m_squared",
+            SpotDescription {
+                m_squared: 0.9,
+                ..SPOT
+            },
+        ),
+        (
+            "power",
+            SpotDescription {
+                power: -1.0,
+                ..SPOT
+            },
+        ),
+        (
+            "waist_distance",
+            SpotDescription {
+                waist_distance: f64::INFINITY,
+                ..SPOT
+            },
+        ),
+        (
+            "origin",
+            SpotDescription {
+                placement: Placement {
+                    origin: [f64::NAN; 3],
+                    ..PLACEMENT
+                },
+                ..SPOT
+            },
+        ),
+        (
+            "direction",
+            SpotDescription {
+                placement: Placement {
+                    direction: [0.0; 3],
+                    ..PLACEMENT
+                },
+                ..SPOT
+            },
+        ),
+        (
+            "fan_axis",
+            SpotDescription {
+                placement: Placement {
+                    fan_axis: PLACEMENT.direction,
+                    ..PLACEMENT
+                },
+                ..SPOT
+            },
+        ),
+    ];
+    for (name, spot) in cases {
+        assert_eq!(refused(spot), argument(name), "{spot:?}");
+    }
+}
+
+#[test]
+fn an_elliptic_beam_refuses_the_numbers_of_either_axis_and_says_which() {
+    for axis in [0, 1] {
+        let with = |change: fn(&mut EllipticDescription, usize)| {
+            let mut elliptic = ELLIPTIC;
+            change(&mut elliptic, axis);
+            // SAFETY: the description is valid.
+            refused(|handle| unsafe { tem00_light_create_elliptic(&raw const elliptic, handle) })
+        };
+        let of_axis = |name: &str| argument(&format!("{name}[{axis}]"));
+        assert_eq!(
+            with(|e, i| e.waist_radius[i] = 0.0),
+            of_axis("waist_radius"),
+            "0 m"
+        );
+        assert_eq!(
+            with(|e, i| e.m_squared[i] = 0.5),
+            of_axis("m_squared"),
+            "0.5"
+        );
+        assert_eq!(
+            with(|e, i| e.waist_distance[i] = 2e30),
+            of_axis("waist_distance"),
+            "2e30 m"
+        );
+        assert_eq!(
+            with(|e, _| e.wavelength = 0.0),
+            argument("wavelength"),
+            "0 m"
+        );
+        assert_eq!(
+            with(|e, _| e.rotation = f64::NAN),
+            argument("rotation"),
+            "NaN"
+        );
+    }
+}
+
+#[test]
+fn an_astigmatic_beam_refuses_moments_of_no_beam() {
+    let refused = |astigmatic: AstigmaticDescription| {
+        // SAFETY: the description is valid.
+        refused(|handle| unsafe { tem00_light_create_astigmatic(&raw const astigmatic, handle) })
+    };
+    let zero = [[0.0; 2]; 2];
+    let position = AstigmaticDescription {
+        position: zero,
+        ..ASTIGMATIC
+    };
+    let slope = AstigmaticDescription {
+        slope: zero,
+        ..ASTIGMATIC
+    };
+    let mixed = AstigmaticDescription {
+        mixed: [[f64::NAN; 2]; 2],
+        ..ASTIGMATIC
+    };
+    for astigmatic in [position, slope, mixed] {
+        assert_eq!(
+            refused(astigmatic).0,
+            Status::InvalidArgument,
+            "{astigmatic:?}"
+        );
+    }
+}
+
+#[test]
+fn a_line_refuses_each_number_that_is_wrong() {
+    let refused = |line: LineDescription| {
+        // SAFETY: the description is valid.
+        refused(|handle| unsafe { tem00_light_create_line(&raw const line, handle) })
+    };
+    let cases = [
+        (
+            "fan_angle",
+            LineDescription {
+                fan_angle: 4.0,
+                ..LINE
+            },
+        ),
+        (
+            "apex_offset",
+            LineDescription {
+                apex_offset: 0.0,
+                ..LINE
+            },
+        ),
+        (
+            "focus_distance",
+            LineDescription {
+                focus_distance: f64::NAN,
+                ..LINE
+            },
+        ),
+        (
+            "focus_curve",
+            LineDescription {
+                focus_curve: 2,
+                ..LINE
+            },
+        ),
+        ("profile", LineDescription { profile: 7, ..LINE }),
+        (
+            "edge",
+            LineDescription {
+                edge: f64::NAN,
+                ..LINE
+            },
+        ),
+    ];
+    for (name, line) in cases {
+        assert_eq!(refused(line), argument(name), "{line:?}");
+    }
+    let without_table = LineDescription {
+        angles: ptr::null(),
+        ..tabulated()
+    };
+    let expected = pointer("angles");
+    assert_eq!(refused(without_table), expected, "a table without angles");
+    let short = LineDescription {
+        knot_count: 1,
+        ..tabulated()
+    };
+    assert_eq!(
+        refused(short).0,
+        Status::InvalidArgument,
+        "a table of one knot"
+    );
+}
+
+const ALONG_Z: Placement = Placement {
+    origin: [0.0; 3],
+    direction: [0.0, 0.0, 1.0],
+    fan_axis: [1.0, 0.0, 0.0],
+};
+
+/// The irradiance of a line at the fan angle `theta`, 0.3 m from its apex.
+fn irradiance_at(description: &LineDescription, theta: f64) -> f64 {
+    let mut handle = ptr::null_mut();
+    let mut irradiance = 0.0;
+    let point = [0.3 * theta.sin(), 0.0, 0.3 * theta.cos() - LINE.apex_offset];
+    // SAFETY: the description is valid, and the light destroyed once.
+    unsafe {
+        let status = tem00_light_create_line(&raw const *description, &raw mut handle);
+        assert_eq!(status, Status::Ok, "{description:?}");
+        let status = tem00_light_irradiance(handle, point.as_ptr(), &raw mut irradiance);
+        assert_eq!(status, Status::Ok, "{description:?}");
+        tem00_light_destroy(handle);
+    }
+    irradiance
+}
+
+#[test]
+fn each_profile_and_each_focus_curve_is_the_one_of_its_name() {
+    use tem00_beam::{FocusCurve as F, LineProfile as P};
+    let profiles = [
+        (LineProfile::GaussianTan, P::GaussianTan),
+        (LineProfile::GaussianAngle, P::GaussianAngle),
+        (LineProfile::GaussianSin, P::GaussianSin),
+        (LineProfile::UniformTan, P::UniformTan),
+        (LineProfile::UniformAngle, P::UniformAngle),
+        (LineProfile::Powell, P::Powell { edge: 0.1 }),
+    ];
+    let curves = [
+        (FocusCurve::EqualDistance, F::EqualDistance),
+        (FocusCurve::EqualPlane, F::EqualPlane),
+    ];
+    let placed = tem00_beam::Placement {
+        origin: DVec3::ZERO,
+        direction: DVec3::Z,
+        fan_axis: DVec3::X,
+    };
+    for (profile, of_library) in &profiles {
+        for (curve, curve_of_library) in curves {
+            let description = LineDescription {
+                placement: ALONG_Z,
+                profile: *profile as u32,
+                focus_curve: curve as u32,
+                ..LINE
+            };
+            let fan = FanGeometry {
+                fan_angle: 0.5,
+                apex_offset: 2e-3,
+                focus_distance: 0.25,
+                focus_curve: curve_of_library,
+            };
+            let line = LaserLine::new(beam(80e-6, 1.2), fan, of_library.clone()).unwrap();
+            let light = LineLight::place(&line, &placed, 2e-3).unwrap();
+            for theta in [-0.2_f64, 0.0, 0.11] {
+                let point = [0.3 * theta.sin(), 0.0, 0.3 * theta.cos() - 2e-3];
+                let got = irradiance_at(&description, theta);
+                assert_eq!(
+                    got,
+                    light.irradiance(point),
+                    "{profile:?} {curve:?} at {theta}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_light_keeps_a_copy_of_its_table() {
+    let mut angles = ANGLES.to_vec();
+    let mut handle = ptr::null_mut();
+    let description = LineDescription {
+        placement: ALONG_Z,
+        angles: angles.as_ptr(),
+        ..tabulated()
+    };
+    let point = [0.0, 0.0, 0.2];
+    let mut irradiance = [0.0; 2];
+    // SAFETY: the description is valid, and the light destroyed once.
+    unsafe {
+        tem00_light_create_line(&raw const description, &raw mut handle);
+        tem00_light_irradiance(handle, point.as_ptr(), &raw mut irradiance[0]);
+        angles.fill(0.0);
+        tem00_light_irradiance(handle, point.as_ptr(), &raw mut irradiance[1]);
+        tem00_light_destroy(handle);
+    }
+    assert!(irradiance[0] > 0.0, "on the axis");
+    assert_eq!(
+        irradiance[0], irradiance[1],
+        "before and after the table has changed"
+    );
+}

@@ -1,0 +1,313 @@
+use super::*;
+
+/// Asks the interface, which must succeed.
+fn answer<R: Default>(question: impl FnOnce(*mut R) -> Status) -> R {
+    let mut result = R::default();
+    assert_eq!(
+        question(&raw mut result),
+        Status::Ok,
+        "{}",
+        last_parameter()
+    );
+    result
+}
+
+/// Checks that some of the points are lit and some are dark.
+fn both_lit_and_dark(name: &str, irradiance: impl Iterator<Item = f64>) {
+    let (lit, dark): (Vec<_>, Vec<_>) = irradiance.partition(|e| *e > 0.0);
+    assert!(
+        lit.len() > 10 && dark.len() > 1,
+        "{name}: {} and {}",
+        lit.len(),
+        dark.len()
+    );
+}
+
+#[test]
+fn answers_about_points_are_those_of_the_library_to_the_last_bit() {
+    for Pair { name, handle, peer } in &pairs() {
+        let light = handle.cast_const();
+        let mut irradiance = Vec::new();
+        for p in peer.points() {
+            let point = p.as_ptr();
+            // SAFETY: the handle and the pointers are valid.
+            unsafe {
+                let e = answer(|out| tem00_light_irradiance(light, point, out));
+                assert_eq!(e, peer.ask(|light| light.irradiance(p)), "{name} at {p:?}");
+                irradiance.push(e);
+
+                let f: [f64; 3] =
+                    answer(|out: *mut [f64; 3]| tem00_light_flux(light, point, out.cast()));
+                assert_eq!(f, peer.ask(|light| light.flux(p)), "{name} at {p:?}");
+
+                let event: NextEvent = answer(|out| tem00_light_next_event(light, point, out));
+                let expected = peer.ask(|light| light.next_event(p)).map(NextEvent::from);
+                assert_eq!(event, expected.unwrap_or_default(), "{name} at {p:?}");
+            }
+        }
+        both_lit_and_dark(name, irradiance.into_iter());
+    }
+}
+
+#[test]
+fn sampled_events_and_their_densities_are_those_of_the_library() {
+    for Pair { name, handle, peer } in &pairs() {
+        let light = handle.cast_const();
+        let mut variates = Variates(2);
+        for p in peer.points() {
+            let (point, u) = (p.as_ptr(), [variates.next(), variates.next()]);
+            // SAFETY: the handle and the pointers are valid.
+            unsafe {
+                let event: SampledEvent =
+                    answer(|out| tem00_light_next_event_sampled(light, point, u.as_ptr(), out));
+                let expected = peer.ask(|light| light.next_event_sampled(p, u));
+                let expected = expected.map(SampledEvent::from).unwrap_or_default();
+                assert_eq!(event, expected, "{name} at {p:?}");
+
+                if event.pdf > 0.0 {
+                    let wi = event.wi;
+                    let pdf: f64 =
+                        answer(|out| tem00_light_next_event_pdf(light, point, wi.as_ptr(), out));
+                    assert_eq!(pdf, peer.ask(|light| light.next_event_pdf(p, wi)), "{name}");
+                    assert!(
+                        pdf > 0.0,
+                        "{name} at {p:?}: a drawn direction has a density"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn rays_their_densities_and_radiances_are_those_of_the_library() {
+    for Pair { name, handle, peer } in &pairs() {
+        let light = handle.cast_const();
+        let mut variates = Variates(3);
+        for _ in 0..40 {
+            let u = [(); 4].map(|()| variates.next());
+            // SAFETY: the handle and the pointers are valid.
+            unsafe {
+                let ray: RaySample = answer(|out| tem00_light_sample_ray(light, u.as_ptr(), out));
+                assert_eq!(ray, peer.ask(|light| light.sample_ray(u)).into(), "{name}");
+
+                let (o, d) = (ray.origin, ray.direction);
+                let pdf: RayPdf =
+                    answer(|out| tem00_light_ray_pdf(light, o.as_ptr(), d.as_ptr(), out));
+                assert_eq!(pdf, peer.ask(|light| light.ray_pdf(o, d)).into(), "{name}");
+                assert!(pdf.position > 0.0, "{name}: a drawn ray has a density");
+
+                let radiance: f64 =
+                    answer(|out| tem00_light_radiance(light, o.as_ptr(), d.as_ptr(), out));
+                assert_eq!(radiance, peer.ask(|light| light.radiance(o, d)), "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn bounds_are_those_of_the_library() {
+    for Pair { name, handle, peer } in &pairs() {
+        for distance in [0.0, 0.5, 1e30] {
+            // SAFETY: the handle and the pointer are valid.
+            let bounds: Bounds =
+                answer(|out| unsafe { tem00_light_bounds(*handle, distance, out) });
+            let expected = peer.ask(|light| light.bounds(distance));
+            assert_eq!(bounds, expected.into(), "{name} to {distance:e} m");
+        }
+    }
+}
+
+/// Five columns of answers.
+fn room<T: Copy + Default>(count: usize) -> [Vec<T>; 5] {
+    [(); 5].map(|()| vec![T::default(); count])
+}
+
+/// The coordinates of points, each in a column.
+fn coordinates(points: &[[f64; 3]]) -> [Vec<f64>; 3] {
+    [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect())
+}
+
+#[test]
+fn batches_are_single_calls_to_the_last_bit() {
+    for Pair { name, handle, peer } in &pairs() {
+        let points = peer.points();
+        let count = points.len();
+        let [x, y, z] = coordinates(&points);
+        let [mut wi_x, mut wi_y, mut wi_z, mut distance, mut e_perp] = room::<f64>(count);
+        let mut irradiance = vec![0.0; count];
+        let events = NextEventColumns {
+            wi_x: wi_x.as_mut_ptr(),
+            wi_y: wi_y.as_mut_ptr(),
+            wi_z: wi_z.as_mut_ptr(),
+            distance: distance.as_mut_ptr(),
+            e_perp: e_perp.as_mut_ptr(),
+        };
+        let (x, y, z) = (x.as_ptr(), y.as_ptr(), z.as_ptr());
+        // SAFETY: the handle and the columns are valid.
+        let statuses = unsafe {
+            let out = irradiance.as_mut_ptr();
+            [
+                tem00_light_irradiance_batch(*handle, x, y, z, count, out),
+                tem00_light_next_event_batch(*handle, x, y, z, count, &raw const events),
+            ]
+        };
+        assert_eq!(statuses, [Status::Ok; 2], "{name}");
+        for (i, p) in points.into_iter().enumerate() {
+            assert_eq!(
+                irradiance[i],
+                peer.ask(|light| light.irradiance(p)),
+                "{name} at {p:?}"
+            );
+            let event = peer.ask(|light| light.next_event(p)).map(NextEvent::from);
+            let event = event.unwrap_or_default();
+            let got = ([wi_x[i], wi_y[i], wi_z[i]], distance[i], e_perp[i]);
+            assert_eq!(
+                got,
+                (event.wi, event.distance, event.e_perp),
+                "{name} at {p:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn single_precision_is_that_of_the_library() {
+    for Pair { name, handle, peer } in &pairs() {
+        let points: Vec<_> = peer.points();
+        let count = points.len();
+        let [x, y, z] = coordinates(&points).map(narrowed);
+        let [mut wi_x, mut wi_y, mut wi_z, mut distance, mut e_perp] = room::<f32>(count);
+        let mut irradiance = vec![0.0; count];
+        let events = NextEventColumnsF32 {
+            wi_x: wi_x.as_mut_ptr(),
+            wi_y: wi_y.as_mut_ptr(),
+            wi_z: wi_z.as_mut_ptr(),
+            distance: distance.as_mut_ptr(),
+            e_perp: e_perp.as_mut_ptr(),
+        };
+        // SAFETY: the handle and the columns are valid.
+        let statuses = unsafe {
+            let (x, y, z, out) = (x.as_ptr(), y.as_ptr(), z.as_ptr(), irradiance.as_mut_ptr());
+            [
+                tem00_light_irradiance_batch_f32(*handle, x, y, z, count, out),
+                tem00_light_next_event_batch_f32(*handle, x, y, z, count, &raw const events),
+            ]
+        };
+        assert_eq!(statuses, [Status::Ok; 2], "{name}");
+        for i in 0..count {
+            let p = [x[i], y[i], z[i]];
+            // SAFETY: the handle and the pointers are valid.
+            let event: NextEventF32 =
+                answer(|out| unsafe { tem00_light_next_event_f32(*handle, p.as_ptr(), out) });
+            let expected = peer.ask_in_single(|light| light.next_event(p));
+            assert_eq!(
+                event,
+                expected.map(NextEventF32::from).unwrap_or_default(),
+                "{name}"
+            );
+            assert_eq!(
+                irradiance[i],
+                peer.ask_in_single(|light| light.irradiance(p)),
+                "{name}"
+            );
+            let got = ([wi_x[i], wi_y[i], wi_z[i]], distance[i], e_perp[i]);
+            assert_eq!(
+                got,
+                (event.wi, event.distance, event.e_perp),
+                "{name} at {p:?}"
+            );
+        }
+        both_lit_and_dark(name, irradiance.into_iter().map(f64::from));
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounded on purpose")]
+fn narrowed(values: Vec<f64>) -> Vec<f32> {
+    values.into_iter().map(|x| x as f32).collect()
+}
+
+#[test]
+fn plain_data_are_the_rows_of_the_light_in_single_precision() {
+    let expected: [(LightKind, Vec<f32>); 5] = pairs().map(|pair| match &pair.peer {
+        Peer::Spot(light) => (LightKind::Spot, light.to_f32().unwrap().to_rows().concat()),
+        Peer::Astigmatic(light) => (
+            LightKind::Astigmatic,
+            light.to_f32().unwrap().to_rows().concat(),
+        ),
+        Peer::Line(light) => (LightKind::Line, light.to_f32().unwrap().to_rows().concat()),
+        Peer::Tabulated(line) => {
+            let light = TabulatedLineLight::place(line, &placement(), 2e-3)
+                .unwrap()
+                .line;
+            (
+                LightKind::TabulatedLine,
+                light.to_f32().unwrap().to_rows().concat(),
+            )
+        }
+    });
+    for (pair, (kind, fields)) in pairs().iter().zip(expected) {
+        let mut data = LightData {
+            kind: LightKind::Line,
+            count: 99,
+            fields: [9.0; 28],
+        };
+        // SAFETY: the handle and the pointer are valid.
+        let status = unsafe { tem00_light_plain_data(pair.handle, &raw mut data) };
+        assert_eq!(status, Status::Ok, "{}", pair.name);
+        assert_eq!(data.kind, kind, "{}", pair.name);
+        let count = usize::try_from(data.count).unwrap();
+        assert_eq!(data.fields[..count], fields, "{}", pair.name);
+        assert!(
+            data.fields[count..].iter().all(|x| *x == 0.0),
+            "{}",
+            pair.name
+        );
+    }
+}
+
+#[test]
+fn no_place_and_no_direction_however_far_gives_a_nan() {
+    let extremes = [-1e30, -1e15, -1.0, -1e-300, 0.0, 1e-300, 1.0, 1e15, 1e30];
+    for Pair { name, handle, .. } in &pairs() {
+        let light = handle.cast_const();
+        for (x, y, z) in extremes
+            .iter()
+            .flat_map(|x| extremes.map(|y| (*x, y)))
+            .flat_map(|(x, y)| extremes.map(|z| (x, y, z)))
+        {
+            let (p, d) = (
+                [x, y, z],
+                DVec3::new(x, y, z).normalize_or(DVec3::Z).to_array(),
+            );
+            let single = p.map(|x| narrowed(vec![x])[0]);
+            let (point, way, u) = (p.as_ptr(), d.as_ptr(), [0.0, 0.999]);
+            // SAFETY: the handle and the pointers are valid.
+            let numbers = unsafe {
+                let event: NextEvent = answer(|out| tem00_light_next_event(light, point, out));
+                let single: NextEventF32 =
+                    answer(|out| tem00_light_next_event_f32(light, single.as_ptr(), out));
+                let pdf: RayPdf = answer(|out| tem00_light_ray_pdf(light, point, way, out));
+                let drawn: SampledEvent =
+                    answer(|out| tem00_light_next_event_sampled(light, point, u.as_ptr(), out));
+                [
+                    event.e_perp,
+                    event.distance,
+                    event.wi.iter().chain(&event.point).sum(),
+                    f64::from(single.e_perp + single.distance),
+                    f64::from(single.wi.iter().chain(&single.point).sum::<f32>()),
+                    pdf.position,
+                    pdf.direction,
+                    drawn.pdf,
+                    drawn.value,
+                    answer(|out| tem00_light_next_event_pdf(light, point, way, out)),
+                    answer(|out| tem00_light_radiance(light, point, way, out)),
+                ]
+            };
+            assert!(
+                numbers.iter().all(|x| x.is_finite()),
+                "{name} at {p:?}: {numbers:?}"
+            );
+        }
+    }
+}

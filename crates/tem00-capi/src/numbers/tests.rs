@@ -1,0 +1,87 @@
+use super::*;
+
+const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+
+#[test]
+fn numbers_are_refused_exactly_outside_what_is_allowed() {
+    let accepts = |check: &dyn Fn(f64) -> Result<(), Failure>, allowed: &[f64], refused: &[f64]| {
+        for &x in allowed {
+            assert_eq!(check(x), Ok(()), "{x:e} is allowed");
+        }
+        for &x in refused.iter().chain(&NOT_FINITE) {
+            assert!(check(x).is_err(), "{x:e} is not allowed");
+        }
+    };
+    accepts(
+        &|x| check_coordinates("x", &[x]),
+        &[0.0, -1e30, 1e30],
+        &[1.000_001e30, -1.000_001e30],
+    );
+    accepts(
+        &|x| check_finite("x", &[x]),
+        &[0.0, f64::MAX, -f64::MAX],
+        &[],
+    );
+    accepts(
+        &|x| check_variates("x", &[x]),
+        &[0.0, 1.0 - f64::EPSILON],
+        &[1.0, -1e-300],
+    );
+    accepts(
+        &|x| check_length("x", x),
+        &[0.0, 1e30],
+        &[-1e-300, 1.000_001e30],
+    );
+    accepts(
+        &|x| check_size("x", x),
+        &[1e-300, 1e30],
+        &[0.0, -1e-300, 1.000_001e30],
+    );
+    accepts(
+        &|x| check_unit("x", [0.0, 0.6 * x, 0.8 * x]),
+        &[1.0, -1.0, 0.999_91, 1.000_09],
+        &[0.0, 0.999_89, 1.000_11, 1e300],
+    );
+}
+
+#[test]
+fn a_refusal_names_the_parameter_the_place_the_value_and_what_is_allowed() {
+    let message = |result: Result<(), Failure>| result.unwrap_err().message;
+    assert_eq!(
+        message(check_coordinates("x", &[1.0, 2.0, f32::NAN])),
+        "x[2] must be finite and within ±1e30, got NaN",
+        "of a column"
+    );
+    assert_eq!(
+        message(check_length("distance", -2.5)),
+        "distance must be from 0 to 1e30, got -2.5e0",
+        "of a number"
+    );
+    assert_eq!(
+        message(check_unit("wi", [0.0, 3.0, 4.0])),
+        "wi must be of length 1 within 1e-4, got (0, 3, 4)",
+        "of a vector"
+    );
+}
+
+#[test]
+fn codes_without_a_meaning_are_refused() {
+    assert_eq!(code("path", 1, &['a', 'b']), Ok('b'), "a code");
+    for number in [2, u32::MAX] {
+        let failure = code("path", number, &['a', 'b']).unwrap_err();
+        assert_eq!(failure.parameter, "path", "of {number}");
+        assert_eq!(
+            failure.message,
+            format!("path must be 0 to 1, got {number}"),
+            "of {number}"
+        );
+    }
+}
+
+#[test]
+fn results_may_be_infinite_but_not_nan() {
+    let results = [0.0, f64::INFINITY, f64::NAN];
+    assert_eq!(check_result("motion", &results[..2]), Ok(()), "infinite");
+    let failure = check_result("motion", &results).unwrap_err();
+    assert_eq!(failure.parameter, "motion", "{}", failure.message);
+}

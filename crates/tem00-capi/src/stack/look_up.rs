@@ -1,0 +1,292 @@
+use super::{
+    Stack,
+    description::{Interpolation, SlicePath, path_numbers},
+};
+use crate::{
+    numbers::{check_coordinates, check_finite, check_length},
+    pointers::{borrow, columns, read, write},
+    status::{Failure, Status, call},
+};
+
+/// What a stack is.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StackInfo {
+    /// Width of the pattern, in samples, after which it repeats.
+    pub width: usize,
+    /// Height of the pattern, in samples.
+    pub height: usize,
+    /// Number of slices, after which the coordinate u repeats: 1, or twice `half_period`.
+    pub slice_count: usize,
+    /// Speckle size in samples.
+    pub speckle_size: f64,
+    /// The way the pupil takes.
+    pub path: SlicePath,
+    /// Half the number of slices, 0 for a still path.
+    pub half_period: usize,
+    /// Length of a straight path in pupil diameters, 0 for others.
+    pub length: usize,
+    /// How look-ups interpolate.
+    pub interpolation: Interpolation,
+    /// Bytes that the slices take.
+    pub memory_bytes: u64,
+}
+
+impl StackInfo {
+    fn new(Stack(stack): &Stack) -> Self {
+        use tem00_speckle::Interpolation as I;
+        let [width, height] = stack.size();
+        let (path, half_period, length) = path_numbers(stack.path());
+        Self {
+            width,
+            height,
+            slice_count: stack.slice_count(),
+            speckle_size: stack.speckle_size(),
+            path,
+            half_period,
+            length,
+            interpolation: match stack.interpolation() {
+                I::CubicSpline => Interpolation::CubicSpline,
+                I::Bilinear => Interpolation::Bilinear,
+                I::Nearest => Interpolation::Nearest,
+            },
+            memory_bytes: stack.memory_bytes(),
+        }
+    }
+}
+
+/// Asks a stack a question, and writes the answer.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+unsafe fn ask<R>(
+    stack: *const Stack,
+    answer: (&'static str, *mut R),
+    question: impl FnOnce(&Stack) -> Result<R, Failure>,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let result = question(unsafe { borrow("stack", stack) }?)?;
+        // SAFETY: by the contract of this function.
+        unsafe { write(answer.0, answer.1, result) }
+    })
+}
+
+fn check_slice(name: &str, Stack(stack): &Stack, index: usize) -> Result<usize, Failure> {
+    let count = stack.slice_count();
+    if index < count {
+        return Ok(index);
+    }
+    let last = count - 1;
+    Err(Failure::argument(
+        name,
+        format!("{name} must be 0 to {last}, got {index}"),
+    ))
+}
+
+/// Tells what a stack is.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_describe(stack: *const Stack, info: *mut StackInfo) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe { ask(stack, ("info", info), |stack| Ok(StackInfo::new(stack))) }
+}
+
+/// Looks up the intensity, with mean 1, at (`x`, `y`) in samples and `u` in slices.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_intensity(
+    stack: *const Stack,
+    x: f64,
+    y: f64,
+    u: f64,
+    intensity: *mut f64,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        ask(stack, ("intensity", intensity), |Stack(stack)| {
+            for (name, value) in [("x", x), ("y", y), ("u", u)] {
+                check_coordinates(name, &[value])?;
+            }
+            Ok(stack.intensity_at(x, y, u))
+        })
+    }
+}
+
+/// Looks up the intensities at `count` points: the bits of `tem00_stack_intensity`. Points close to
+/// each other between the same two slices are fastest.
+///
+/// `x` and `y` are in samples and `u` in slices; `intensity` must not overlap with them.
+///
+/// # Safety
+///
+/// The pointers are null or valid for `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_intensity_batch(
+    stack: *const Stack,
+    x: *const f64,
+    y: *const f64,
+    u: *const f64,
+    count: usize,
+    intensity: *mut f64,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let Stack(stack) = unsafe { borrow("stack", stack) }?;
+        let coordinates = [("x", x), ("y", y), ("u", u)];
+        // SAFETY: by the contract of this function.
+        let ([x, y, u], [out]) =
+            unsafe { columns(count, coordinates, [("intensity", intensity)]) }?;
+        for ((name, _), values) in coordinates.iter().zip([x, y, u]) {
+            check_coordinates(name, values)?;
+        }
+        stack.intensity_batch(x, y, u, out);
+        Ok(())
+    })
+}
+
+/// Computes the mean of the intensity over a box about `centre`, at `u`: what a pixel sees whose whole
+/// area takes part.
+///
+/// `centre` holds x, y and `size` the width and the height of the box, all in samples; `u` is in
+/// slices.
+///
+/// # Safety
+///
+/// The pointers are null or valid, `centre` and `size` for two numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_average(
+    stack: *const Stack,
+    centre: *const f64,
+    size: *const f64,
+    u: f64,
+    average: *mut f64,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        ask(stack, ("average", average), |Stack(stack)| {
+            let centre: [f64; 2] = read("centre", centre)?;
+            let size: [f64; 2] = read("size", size)?;
+            check_coordinates("centre", &centre)?;
+            size.iter()
+                .try_for_each(|side| check_length("size", *side))?;
+            check_coordinates("u", &[u])?;
+            Ok(stack.average_over(centre, size, u))
+        })
+    }
+}
+
+/// Computes the distance in u, in slices, after which the correlation of the intensity has fallen to
+/// `correlation`: 0 for 1 or more, and the first coordinate of no correlation for 0 or less.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_coordinate_of(
+    stack: *const Stack,
+    correlation: f64,
+    u: *mut f64,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        ask(stack, ("u", u), |Stack(stack)| {
+            check_finite("correlation", &[correlation])?;
+            Ok(stack.coordinate_of(correlation))
+        })
+    }
+}
+
+/// Computes the correlation of the intensities at u = 0 and u = `distance`, in slices: the inverse of
+/// `tem00_stack_coordinate_of`.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_correlation_at(
+    stack: *const Stack,
+    distance: f64,
+    correlation: *mut f64,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        ask(stack, ("correlation", correlation), |Stack(stack)| {
+            check_coordinates("distance", &[distance])?;
+            Ok(stack.correlation_at(distance))
+        })
+    }
+}
+
+/// Computes the correlation of the intensities of two slices, exactly.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_correlation_between(
+    stack: *const Stack,
+    first: usize,
+    second: usize,
+    correlation: *mut f64,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        ask(stack, ("correlation", correlation), |stack| {
+            let first = check_slice("first", stack, first)?;
+            let second = check_slice("second", stack, second)?;
+            Ok(stack.0.correlation_between(first, second))
+        })
+    }
+}
+
+/// Gives the coefficients of a slice, for upload to a GPU: width * height complex numbers row by row,
+/// each a real and an imaginary part.
+///
+/// They are the samples of the amplitude, or for the cubic spline its prefiltered coefficients, and
+/// belong to the stack.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_coefficients(
+    stack: *const Stack,
+    slice: usize,
+    coefficients: *mut *const f32,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        ask(stack, ("coefficients", coefficients), |stack| {
+            let slice = check_slice("slice", stack, slice)?;
+            // A complex number is its two parts, one after the other.
+            Ok(stack.0.coefficients(slice).values().as_ptr().cast())
+        })
+    }
+}
+
+/// Gives the place of the pupil of a slice, in its diameters: `offset` holds x, y.
+///
+/// # Safety
+///
+/// The pointers are null or valid, `offset` for two numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_offset(
+    stack: *const Stack,
+    slice: usize,
+    offset: *mut f64,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        ask(stack, ("offset", offset.cast::<[f64; 2]>()), |stack| {
+            Ok(stack.0.offset(check_slice("slice", stack, slice)?))
+        })
+    }
+}

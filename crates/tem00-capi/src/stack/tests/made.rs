@@ -1,0 +1,131 @@
+use tem00_speckle::{PupilField, StackOptions, StackPlan};
+
+use super::*;
+
+fn peer(
+    path: tem00_speckle::SlicePath,
+    interpolation: tem00_speckle::Interpolation,
+) -> SpeckleStack {
+    let field = PupilField::from_speckle_size([64, 48], 3.0, 11).unwrap();
+    let options = StackOptions {
+        interpolation,
+        memory_limit: 1 << 20,
+    };
+    SpeckleStack::generate_with(&field, path, options).unwrap()
+}
+
+#[test]
+fn every_path_and_interpolation_makes_the_stack_of_the_library() {
+    use tem00_speckle::{Interpolation as I, SlicePath as P};
+    let (half_period, length) = (6, 3);
+    let straight = P::Straight {
+        half_period,
+        length,
+    };
+    let paths = [
+        (SlicePath::Still, P::Still),
+        (SlicePath::Circle, P::Circle { half_period }),
+        (SlicePath::Straight, straight),
+    ];
+    let interpolations = [
+        (Interpolation::CubicSpline, I::CubicSpline),
+        (Interpolation::Bilinear, I::Bilinear),
+        (Interpolation::Nearest, I::Nearest),
+    ];
+    for (path, of_library) in paths {
+        for (interpolation, interpolation_of_library) in interpolations {
+            let stack = Owned::new(&StackDescription {
+                path: path as u32,
+                interpolation: interpolation as u32,
+                ..DESCRIPTION
+            });
+            let same = *stack.library() == peer(of_library, interpolation_of_library);
+            assert!(same, "{path:?} with {interpolation:?}");
+        }
+    }
+}
+
+#[test]
+fn a_diameter_makes_the_field_of_that_diameter() {
+    let whole = |height, diameter| {
+        Owned::new(&StackDescription {
+            width: 98,
+            height,
+            diameter,
+            speckle_size: f64::NAN,
+            path: SlicePath::Still as u32,
+            ..DESCRIPTION
+        })
+    };
+    let square = whole(98, 23);
+    let expected = PupilField::new(98, 23, 11).unwrap();
+    assert!(
+        *square.library().field() == expected,
+        "a square of 98 samples"
+    );
+    let oblong = whole(112, 23);
+    let expected = PupilField::from_speckle_size([98, 112], 98.0 / 23.0, 11).unwrap();
+    assert!(*oblong.library().field() == expected, "98 × 112 samples");
+}
+
+#[test]
+fn a_description_from_a_plan_makes_the_stack_of_the_plan() {
+    for (memory_limit, changes, side) in [(4 << 20, 1, 60.0), (1 << 30, 0, 80.0)] {
+        let needs = StackNeeds {
+            image: [side, 40.0],
+            memory_limit,
+            changes,
+            ..NEEDS
+        };
+        // SAFETY: the pointers are valid.
+        let description = answer(DESCRIPTION, |out| unsafe {
+            tem00_stack_plan(&raw const needs, out)
+        });
+        let plan = StackPlan::new(&tem00_speckle::StackNeeds {
+            image: [side, 40.0],
+            region: [80.0, 40.0],
+            speckle_size: 1.5,
+            motion: (changes == 1).then_some(0.7),
+            frames: 5,
+            memory_limit,
+        })
+        .unwrap();
+        let stack = Owned::new(&StackDescription {
+            seed: 5,
+            ..description
+        });
+        let expected = plan.stack(
+            5,
+            StackOptions {
+                memory_limit,
+                ..StackOptions::default()
+            },
+        );
+        assert!(*stack.library() == expected.unwrap(), "{plan:?}");
+    }
+}
+
+#[test]
+fn a_stack_tells_what_it_is() {
+    let stack = Owned::new(&DESCRIPTION);
+    let info = StackInfo {
+        width: 64,
+        height: 48,
+        slice_count: 12,
+        speckle_size: 3.0,
+        path: SlicePath::Straight,
+        half_period: 6,
+        length: 3,
+        interpolation: Interpolation::CubicSpline,
+        memory_bytes: 64 * 48 * 12 * 8,
+    };
+    let blank = StackInfo {
+        width: 0,
+        height: 0,
+        slice_count: 0,
+        ..info
+    };
+    // SAFETY: the pointers are valid.
+    let got = answer(blank, |out| unsafe { tem00_stack_describe(stack.0, out) });
+    assert_eq!(got, info, "{DESCRIPTION:?}");
+}

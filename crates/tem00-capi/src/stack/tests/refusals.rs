@@ -1,0 +1,260 @@
+use super::*;
+
+#[test]
+fn descriptions_are_refused_by_the_name_of_what_is_wrong() {
+    let create = |description: StackDescription| {
+        let mut stack = ptr::dangling_mut();
+        // SAFETY: the pointers are valid.
+        let status = unsafe { tem00_stack_create(&raw const description, &raw mut stack) };
+        assert!(stack.is_null(), "{description:?} made a stack");
+        refusal(status)
+    };
+    let memory = (Status::Memory, "memory_limit".to_owned());
+    let d = DESCRIPTION;
+    assert_eq!(
+        create(StackDescription {
+            width: 1 << 20,
+            ..d
+        }),
+        argument("size"),
+        "width"
+    );
+    assert_eq!(
+        create(StackDescription {
+            speckle_size: 1.0,
+            ..d
+        }),
+        argument("speckle_size"),
+        "1"
+    );
+    let nan = StackDescription {
+        speckle_size: f64::NAN,
+        ..d
+    };
+    assert_eq!(create(nan), argument("speckle_size"), "NaN");
+    let wide = StackDescription {
+        height: 64,
+        diameter: 33,
+        ..d
+    };
+    assert_eq!(create(wide), argument("diameter"), "above half the width");
+    assert_eq!(
+        create(StackDescription {
+            half_period: 0,
+            ..d
+        }),
+        argument("half_period"),
+        "0"
+    );
+    assert_eq!(
+        create(StackDescription { path: 3, ..d }),
+        argument("path"),
+        "3"
+    );
+    assert_eq!(
+        create(StackDescription {
+            interpolation: 3,
+            ..d
+        }),
+        argument("interpolation"),
+        "3"
+    );
+    assert_eq!(
+        create(StackDescription {
+            memory_limit: 1000,
+            ..d
+        }),
+        memory,
+        "1000 bytes"
+    );
+    let short = create(StackDescription { length: 1, ..d });
+    assert_eq!(short.0, Status::InvalidArgument, "a path of length 1");
+}
+
+#[test]
+fn needs_are_refused_by_the_name_of_what_is_wrong() {
+    let plan = |needs: StackNeeds| {
+        let mut description = DESCRIPTION;
+        // SAFETY: the pointers are valid.
+        refusal(unsafe { tem00_stack_plan(&raw const needs, &raw mut description) })
+    };
+    assert_eq!(
+        plan(StackNeeds {
+            image: [f64::NAN, 1.0],
+            ..NEEDS
+        }),
+        argument("image"),
+        "NaN"
+    );
+    assert_eq!(
+        plan(StackNeeds {
+            region: [1.0, 0.0],
+            ..NEEDS
+        }),
+        argument("region"),
+        "0"
+    );
+    assert_eq!(
+        plan(StackNeeds {
+            changes: 2,
+            ..NEEDS
+        }),
+        argument("changes"),
+        "2"
+    );
+    assert_eq!(
+        plan(StackNeeds {
+            motion: f64::NAN,
+            ..NEEDS
+        }),
+        argument("motion"),
+        "NaN"
+    );
+    let memory = (Status::Memory, "memory_limit".to_owned());
+    assert_eq!(
+        plan(StackNeeds {
+            memory_limit: 10,
+            ..NEEDS
+        }),
+        memory,
+        "10 bytes"
+    );
+}
+
+#[test]
+fn look_ups_are_refused_by_the_name_of_what_is_wrong() {
+    let stack = Owned::new(&DESCRIPTION);
+    let handle = stack.0.cast_const();
+    let nan = f64::NAN;
+    let mut result = [7.0; 2];
+    let out = result.as_mut_ptr();
+    let (good, bad, negative) = ([1.0, 2.0], [1.0, nan], [1.0, -2.0]);
+    let (good, bad, negative) = (good.as_ptr(), bad.as_ptr(), negative.as_ptr());
+    // SAFETY: the handle and the pointers are valid.
+    let refusals = unsafe {
+        [
+            (
+                "x",
+                refusal(tem00_stack_intensity(handle, nan, 0.0, 0.0, out)),
+            ),
+            (
+                "y",
+                refusal(tem00_stack_intensity(handle, 0.0, nan, 0.0, out)),
+            ),
+            (
+                "u",
+                refusal(tem00_stack_intensity(handle, 0.0, 0.0, nan, out)),
+            ),
+            (
+                "u",
+                refusal(tem00_stack_intensity_batch(handle, good, good, bad, 2, out)),
+            ),
+            (
+                "centre",
+                refusal(tem00_stack_average(handle, bad, good, 0.0, out)),
+            ),
+            (
+                "size",
+                refusal(tem00_stack_average(handle, good, negative, 0.0, out)),
+            ),
+            (
+                "u",
+                refusal(tem00_stack_average(handle, good, good, nan, out)),
+            ),
+            (
+                "correlation",
+                refusal(tem00_stack_coordinate_of(handle, nan, out)),
+            ),
+            (
+                "distance",
+                refusal(tem00_stack_correlation_at(handle, nan, out)),
+            ),
+            (
+                "first",
+                refusal(tem00_stack_correlation_between(handle, 12, 0, out)),
+            ),
+            (
+                "second",
+                refusal(tem00_stack_correlation_between(handle, 0, 12, out)),
+            ),
+            (
+                "slice",
+                refusal(tem00_stack_coefficients(handle, 12, &mut ptr::null())),
+            ),
+            (
+                "slice",
+                refusal(tem00_stack_offset(handle, 12, [0.0; 2].as_mut_ptr())),
+            ),
+        ]
+    };
+    for (name, refused) in refusals {
+        assert_eq!(refused, argument(name), "for {name}");
+    }
+    assert_eq!(result, [7.0; 2], "nothing is written");
+}
+
+#[test]
+fn null_is_refused_for_every_pointer() {
+    let stack = Owned::new(&DESCRIPTION);
+    let handle = stack.0.cast_const();
+    let mut result = 0.0;
+    let out = &raw mut result;
+    let pair = [1.0; 2];
+    let (pair, null) = (pair.as_ptr(), ptr::null());
+    // SAFETY: null is refused, the other pointers are valid.
+    let refusals = unsafe {
+        [
+            (
+                "stack",
+                refusal(tem00_stack_intensity(ptr::null(), 0.0, 0.0, 0.0, out)),
+            ),
+            (
+                "intensity",
+                refusal(tem00_stack_intensity(
+                    handle,
+                    0.0,
+                    0.0,
+                    0.0,
+                    ptr::null_mut(),
+                )),
+            ),
+            (
+                "x",
+                refusal(tem00_stack_intensity_batch(
+                    handle, null, pair, pair, 2, out,
+                )),
+            ),
+            (
+                "centre",
+                refusal(tem00_stack_average(handle, null, pair, 0.0, out)),
+            ),
+            (
+                "size",
+                refusal(tem00_stack_average(handle, pair, null, 0.0, out)),
+            ),
+            (
+                "info",
+                refusal(tem00_stack_describe(handle, ptr::null_mut())),
+            ),
+            (
+                "offset",
+                refusal(tem00_stack_offset(handle, 0, ptr::null_mut())),
+            ),
+            (
+                "description",
+                refusal(tem00_stack_create(ptr::null(), &mut ptr::null_mut())),
+            ),
+            (
+                "stack",
+                refusal(tem00_stack_create(&DESCRIPTION, ptr::null_mut())),
+            ),
+            (
+                "needs",
+                refusal(tem00_stack_plan(ptr::null(), ptr::null_mut())),
+            ),
+        ]
+    };
+    for (name, refused) in refusals {
+        assert_eq!(refused, pointer(name), "null for {name}");
+    }
+}

@@ -1,0 +1,27 @@
+//! What the tests of the functions share.
+
+use core::ffi::CStr;
+
+use crate::status::{Status, tem00_last_error_parameter};
+
+/// The parameter that the last failure of this thread named.
+pub(crate) fn last_parameter() -> String {
+    // SAFETY: the text is that of this thread, and no call fails meanwhile.
+    let text = unsafe { CStr::from_ptr(tem00_last_error_parameter()) };
+    text.to_str().unwrap().to_owned()
+}
+
+/// The status of a call that has just failed, and the parameter that it refused.
+pub(crate) fn refusal(status: Status) -> (Status, String) {
+    (status, last_parameter())
+}
+
+/// The refusal of a number.
+pub(crate) fn argument(name: &str) -> (Status, String) {
+    (Status::InvalidArgument, name.to_owned())
+}
+
+/// The refusal of a pointer.
+pub(crate) fn pointer(name: &str) -> (Status, String) {
+    (Status::InvalidPointer, name.to_owned())
+}

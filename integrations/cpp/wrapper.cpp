@@ -1,0 +1,187 @@
+// What tem00.hpp adds to the header: handles that free themselves, and exceptions.
+//
+//     wrapper FILE
+//
+// The file is written and read again.
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "tem00.hpp"
+
+namespace {
+
+int failures = 0;
+
+void expect(bool holds, const char *what) {
+    std::printf("%-60s %s\n", what, holds ? "yes" : "NO");
+    failures += !holds;
+}
+
+tem00_spot_description spot() {
+    tem00_spot_description spot = {};
+    spot.placement = {{0, 0, 0.3}, {0, 0, -1}, {1, 0, 0}};
+    spot.wavelength = 650e-9;
+    spot.power = 5e-3;
+    spot.waist_radius = 0.1e-3;
+    spot.waist_distance = 0.3;
+    spot.m_squared = 1;
+    return spot;
+}
+
+tem00_stack_description stack_description() {
+    tem00_stack_description description = {};
+    description.width = description.height = 64;
+    description.diameter = 16;
+    description.seed = 7;
+    description.path = TEM00_SLICE_PATH_CIRCLE;
+    description.half_period = 4;
+    description.interpolation = TEM00_INTERPOLATION_CUBIC_SPLINE;
+    description.memory_limit = UINT64_MAX;
+    return description;
+}
+
+// The error that a call throws, or one of no status if it throws none.
+template <typename Call> std::pair<tem00_status, std::string> thrown(const Call &call) {
+    try {
+        call();
+    } catch (const tem00::error &error) {
+        return {error.status(), error.parameter()};
+    }
+    return {TEM00_STATUS_OK, ""};
+}
+
+using refusal = std::pair<tem00_status, std::string>;
+
+void lights() {
+    tem00::light first(spot());
+    const tem00::light light = std::move(first);
+    // 2 P / (π w²) at the waist.
+    const double peak = 2 * 5e-3 / (3.14159265358979323846 * 1e-8);
+    const auto event = light.next_event({0, 0, 0});
+    expect(event && std::abs(event->e_perp / peak - 1) < 1e-12, "the waist has 2 P / (pi w^2)");
+    expect(event && event->wi[2] == 1, "the light comes from above");
+    expect(!light.next_event({0.01, 0, 0}), "it is dark beside the beam");
+
+    const auto drawn = light.next_event_sampled({0, 0, 0}, {0.3, 0.8});
+    const tem00::vec3 wi = {drawn->wi[0], drawn->wi[1], drawn->wi[2]};
+    const double pdf = light.next_event_pdf({0, 0, 0}, wi);
+    expect(std::abs(pdf / drawn->pdf - 1) < 1e-9, "a sampled event has its density");
+
+    const auto ray = light.sample_ray({0.2, 0.4, 0.6, 0.8});
+    const tem00::vec3 origin = {ray.origin[0], ray.origin[1], ray.origin[2]};
+    const tem00::vec3 way = {ray.direction[0], ray.direction[1], ray.direction[2]};
+    const auto density = light.ray_pdf(origin, way);
+    const double flux = light.radiance(origin, way) * ray.cos /
+                        (density.position * density.direction);
+    expect(std::abs(flux / 5e-3 - 1) < 1e-9, "a ray carries the power of the laser");
+
+    const std::vector<float> zero(100, 0);
+    std::vector<float> irradiance(100);
+    light.irradiance(zero.data(), zero.data(), zero.data(), zero.size(), irradiance.data());
+    expect(std::abs(irradiance[99] / peak - 1) < 1e-5, "single precision has it too");
+    expect(light.bounds(0.3).max[2] >= 0.3, "the bounds hold the laser");
+    expect(light.plain_data().kind == TEM00_LIGHT_KIND_SPOT, "its plain data are of a spot");
+}
+
+void refusals() {
+    auto wrong = spot();
+    wrong.waist_radius = -1;
+    expect(thrown([&] { tem00::light light(wrong); }) ==
+               refusal(TEM00_STATUS_INVALID_ARGUMENT, "waist_radius"),
+           "a negative waist is refused by name");
+    const tem00::light light(spot());
+    expect(thrown([&] { light.irradiance({NAN, 0, 0}); }) ==
+               refusal(TEM00_STATUS_INVALID_ARGUMENT, "point"),
+           "a point that is not finite is refused by name");
+    std::vector<double> column(8);
+    expect(thrown([&] {
+               light.irradiance(column.data(), column.data(), column.data(), 8, column.data());
+           }) == refusal(TEM00_STATUS_INVALID_POINTER, "irradiance"),
+           "results over what is read are refused");
+    auto large = stack_description();
+    large.memory_limit = 1000;
+    expect(thrown([&] { tem00::stack stack(large); }).first == TEM00_STATUS_MEMORY,
+           "a stack above the limit is refused");
+}
+
+void stacks(const std::string &path) {
+    const tem00::stack stack(stack_description());
+    stack.write(path);
+    const tem00::stack same = tem00::stack::read(path, UINT64_MAX);
+    const std::size_t bytes = 64 * 64 * 2 * sizeof(float);
+    expect(std::memcmp(stack.coefficients(7), same.coefficients(7), bytes) == 0,
+           "a file gives back the bits of a stack");
+    const double u = stack.coordinate_of(0.5);
+    expect(std::abs(stack.correlation_at(u) - 0.5) < 1e-9, "half the correlation is left at u");
+    const double mean = same.average({3, 8}, {64, 64}, 0);
+    expect(std::abs(mean - 1) < 1e-4, "the mean over the period is 1");
+}
+
+void cameras() {
+    const tem00::imaging camera(tem00_pupil_distances{632.8e-9, 0.3, 75e-3, 10e-3, 3.45e-6});
+    expect(std::abs(camera.info().speckle_size - 632.8e-9 * 7.5) < 1e-18,
+           "speckle is wavelength times working f-number");
+    tem00_surface_point point = {};
+    point.camera = tem00::look_at({0, 0, 0.3}, {0, 0, 0}, {0, 1, 0});
+    point.to_pupil[2] = 0.3;
+    point.normal[2] = 1;
+    point.wavefront.direction_to_source[2] = 1;
+    tem00_motion motion = {};
+    motion.surface[0] = 1e-4;
+    const auto moved = camera.speckle_motion(point, motion);
+    // The magnification is 0.25, and the light collimated.
+    expect(std::abs(moved.image_displacement[0] - 2.5e-5) < 1e-18, "it moves with the image");
+    expect(std::abs(moved.pupil_displacement[0] - 1e-4) < 1e-18, "and with the surface");
+    expect(moved.correlation == tem00::correlation(0.01, 0), "what is left is the overlap");
+}
+
+// Threads ask one light at once, and each has its own message.
+void threads() {
+    const tem00::light light(spot());
+    std::vector<std::thread> all;
+    std::vector<int> right(4);
+    for (std::size_t i = 0; i < right.size(); ++i) {
+        all.emplace_back([&light, &right, i] {
+            const std::string name = i % 2 == 0 ? "point" : "distance";
+            int count = 0;
+            for (int j = 0; j < 200; ++j) {
+                const auto refused = thrown([&] {
+                    i % 2 == 0 ? (void)light.irradiance({0, INFINITY, 0}) : (void)light.bounds(-1);
+                });
+                count += refused.second == name && light.next_event({0, 0, 0}).has_value();
+            }
+            right[i] = count;
+        });
+    }
+    for (auto &thread : all) {
+        thread.join();
+    }
+    expect(right == std::vector<int>(4, 200), "each thread has its own message");
+}
+
+}  // namespace
+
+int main(int count, char **arguments) {
+    if (count != 2) {
+        std::fputs("usage: wrapper FILE\n", stderr);
+        return 2;
+    }
+    try {
+        lights();
+        refusals();
+        stacks(arguments[1]);
+        cameras();
+        threads();
+    } catch (const std::exception &error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+    return failures == 0 ? 0 : 1;
+}

@@ -135,7 +135,7 @@ def surface_points(parameters: Parameters, camera: ImagingGeometry) -> tuple[Flo
 
 def laser_line(thickness: float) -> LineLight:
     """Return the laser, in focus at the origin."""
-    line = LaserLine(
+    line = LaserLine.new(
         GaussianBeam.from_waist(WAVELENGTH, 0.5 * thickness),
         FanGeometry(fan_angle=0.5, apex_offset=5e-3, focus_distance=DISTANCE),
         LineProfile.uniform_angle(),
@@ -184,7 +184,8 @@ def measure(smooth: Floats, speckle: Floats, camera: ImagingGeometry) -> Row:
 
 def centre_of_gravity(picture: Floats) -> Floats:
     """Return the centre of each row, in pixels, shape (rows,)."""
-    return picture @ np.arange(picture.shape[1]) / picture.sum(axis=1)
+    centre: Floats = picture @ np.arange(picture.shape[1]) / picture.sum(axis=1)
+    return centre
 
 
 def line_noise(speckle_size: float, line_radius: float) -> float:

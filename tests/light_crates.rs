@@ -88,6 +88,22 @@ fn no_threads_come_along_unless_asked_for() {
     }
 }
 
+#[test]
+fn the_documentation_names_functions_that_the_header_has() {
+    let (page, header) = (
+        read("docs/integration.md"),
+        read("crates/tem00-capi/include/tem00.h"),
+    );
+    let names = page.split('`').filter(|word| {
+        let kinds = ["tem00_light_", "tem00_stack_", "tem00_imaging_"];
+        kinds.iter().any(|kind| word.starts_with(kind))
+    });
+    let missing: Vec<_> = names
+        .filter(|name| !header.contains(&format!("{name}(")))
+        .collect();
+    assert!(missing.is_empty(), "not in tem00.h: {missing:?}");
+}
+
 const fn crosses_threads<T: Send + Sync>() {}
 
 /// Holds the types to `Send + Sync`, and returns their names.
@@ -137,7 +153,7 @@ fn every_type_of_speckle_crosses_threads() {
     let names = names_of_shared! {
         Bandwidth, CoherentBackground, Complex<f32>, Exposure, IncoherentSum, Interpolation,
         LitArea, NpyError, NpyReader<&'static [u8]>, ObjectiveSpeckle, Phasors, PixelArray,
-        Pupil, PupilField, SlicePath, SpeckleError, SpeckleField, SpecklePattern,
+        Pupil, PupilField, SliceLaw, SlicePath, SpeckleError, SpeckleField, SpecklePattern,
         SpeckleScratch, SpeckleStack, StackFileError, StackNeeds, StackOptions, StackPlan,
         Transmission,
     };

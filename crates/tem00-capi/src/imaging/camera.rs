@@ -1,4 +1,4 @@
-use tem00_decorrelation::{ImagingGeometry, LensData, ThickLensData};
+use tem00_decorrelation::{DecorrelationError, ImagingGeometry, LensData, ThickLensData};
 
 use super::Imaging;
 use crate::{
@@ -18,6 +18,12 @@ pub enum Focus {
     /// The magnification, counted positive.
     Magnification = 2,
 }
+
+const FOCUS_KINDS: [Focus; 3] = [
+    Focus::SurfaceToPupil,
+    Focus::SurfaceToPrincipalPlane,
+    Focus::Magnification,
+];
 
 /// A lens and a sensor.
 #[repr(C)]
@@ -92,42 +98,52 @@ pub struct ImagingInfo {
 }
 
 impl LensDescription {
-    /// A thin lens by the formulas of a thin lens, which round in their own way.
+    /// The camera; a refusal names what the description says.
     fn geometry(&self) -> Result<ImagingGeometry, Failure> {
+        use DecorrelationError as E;
+        let kind = code("focus_kind", self.focus_kind, &FOCUS_KINDS)?;
+        self.geometry_of(kind).map_err(|error| {
+            let parameter = match error {
+                E::SurfaceToPupil { .. }
+                | E::SurfaceToPrincipalPlane { .. }
+                | E::Magnification(_) => "focus",
+                _ => error.parameter(),
+            };
+            Failure::argument(parameter, error)
+        })
+    }
+
+    /// A thin lens by the formulas of a thin lens, which round in their own way.
+    fn geometry_of(&self, kind: Focus) -> Result<ImagingGeometry, DecorrelationError> {
         use tem00_decorrelation::Focus as F;
-        const KINDS: [Focus; 3] = [
-            Focus::SurfaceToPupil,
-            Focus::SurfaceToPrincipalPlane,
-            Focus::Magnification,
-        ];
-        let focus = match code("focus_kind", self.focus_kind, &KINDS)? {
+        let focus = match kind {
             Focus::SurfaceToPupil if self.is_thin() => return self.thin(),
             Focus::SurfaceToPupil => F::SurfaceToPupil(self.focus),
             Focus::SurfaceToPrincipalPlane => F::SurfaceToPrincipalPlane(self.focus),
             Focus::Magnification => F::Magnification(self.focus),
         };
-        Ok(ImagingGeometry::from_thick_lens(ThickLensData {
+        ImagingGeometry::from_thick_lens(ThickLensData {
             wavelength: self.wavelength,
             focal_length: self.focal_length,
             f_number: self.f_number,
             pupil_magnification: self.pupil_magnification,
             focus,
             pixel_pitch: self.pixel_pitch,
-        })?)
+        })
     }
 
     fn is_thin(&self) -> bool {
         (1.0..=1.0).contains(&self.pupil_magnification)
     }
 
-    fn thin(&self) -> Result<ImagingGeometry, Failure> {
-        Ok(ImagingGeometry::from_lens(LensData {
+    fn thin(&self) -> Result<ImagingGeometry, DecorrelationError> {
+        ImagingGeometry::from_lens(LensData {
             wavelength: self.wavelength,
             focal_length: self.focal_length,
             f_number: self.f_number,
             surface_to_pupil: self.focus,
             pixel_pitch: self.pixel_pitch,
-        })?)
+        })
     }
 }
 

@@ -1,4 +1,4 @@
-use tem00_speckle::{PupilField, SpeckleStack, StackOptions, StackPlan};
+use tem00_speckle::{PupilField, SpeckleError, SpeckleStack, StackOptions, StackPlan};
 
 use super::Stack;
 use crate::{
@@ -91,25 +91,30 @@ impl StackDescription {
         )?))
     }
 
-    /// The field of a plan of these sizes has the same bits.
+    /// The field; a refusal names what the description says.
     fn field(&self) -> Result<PupilField, Failure> {
+        self.field_of_sizes().map_err(|error| {
+            let parameter = match error {
+                SpeckleError::Size(_) if self.width >= self.height => "width",
+                SpeckleError::Size(_) => "height",
+                SpeckleError::SpeckleSize { .. } if self.diameter > 0 => "diameter",
+                _ => error.parameter(),
+            };
+            Failure::argument(parameter, error)
+        })
+    }
+
+    /// The field of a plan of these sizes has the same bits.
+    fn field_of_sizes(&self) -> Result<PupilField, SpeckleError> {
         let size = [self.width, self.height];
         if self.diameter == 0 {
-            return Ok(PupilField::from_speckle_size(
-                size,
-                self.speckle_size,
-                self.seed,
-            )?);
+            return PupilField::from_speckle_size(size, self.speckle_size, self.seed);
         }
         if self.width == self.height {
-            return Ok(PupilField::new(self.width, self.diameter, self.seed)?);
+            return PupilField::new(self.width, self.diameter, self.seed);
         }
         let speckle_size = lattice(self.width) / lattice(self.diameter);
-        Ok(PupilField::from_speckle_size(
-            size,
-            speckle_size,
-            self.seed,
-        )?)
+        PupilField::from_speckle_size(size, speckle_size, self.seed)
     }
 
     fn slice_path(&self) -> Result<tem00_speckle::SlicePath, Failure> {

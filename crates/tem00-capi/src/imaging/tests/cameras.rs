@@ -124,7 +124,7 @@ fn cameras_are_refused_by_the_name_of_what_is_wrong() {
     );
     assert_eq!(
         create(LensDescription { focus: nan, ..LENS }),
-        argument("surface_to_pupil"),
+        argument("focus"),
         "NaN"
     );
     assert_eq!(
@@ -135,6 +135,14 @@ fn cameras_are_refused_by_the_name_of_what_is_wrong() {
         argument("focus_kind"),
         "3"
     );
+    for kind in [Focus::SurfaceToPrincipalPlane, Focus::Magnification] {
+        let lens = LensDescription {
+            focus_kind: kind as u32,
+            focus: -1.0,
+            ..LENS
+        };
+        assert_eq!(create(lens), argument("focus"), "{kind:?}");
+    }
     let magnification = LensDescription {
         pupil_magnification: nan,
         ..LENS

@@ -16,7 +16,7 @@ fn descriptions_are_refused_by_the_name_of_what_is_wrong() {
             width: 1 << 20,
             ..d
         }),
-        argument("size"),
+        argument("width"),
         "width"
     );
     assert_eq!(
@@ -32,6 +32,13 @@ fn descriptions_are_refused_by_the_name_of_what_is_wrong() {
         ..d
     };
     assert_eq!(create(nan), argument("speckle_size"), "NaN");
+    let high = StackDescription {
+        height: 1 << 20,
+        ..d
+    };
+    assert_eq!(create(high), argument("height"), "height");
+    let oblong = StackDescription { diameter: 33, ..d };
+    assert_eq!(create(oblong), argument("diameter"), "of an oblong");
     let wide = StackDescription {
         height: 64,
         diameter: 33,

@@ -424,6 +424,7 @@ def test_a_thin_lens_determines_the_speckle_size() -> None:
         ("shift_x", float("nan")),
         ("shift_y", "far"),
         ("file", "nowhere.t00"),
+        ("file", 3.0),
         ("speckle", 1),
         ("hide_emitters", "no"),
         ("speckle_sise", 4.5),

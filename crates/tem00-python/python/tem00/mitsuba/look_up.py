@@ -44,7 +44,7 @@ def intensity_coefficients(stack: SpeckleStack, u: float) -> NDArray[np.float32]
     per_sample = nodes_per_sample(stack)
     columns, rows = (side * per_sample for side in stack.size)
     x = np.arange(columns) / per_sample
-    values = np.empty((rows, columns), dtype=np.float32)
+    values: NDArray[np.float32] = np.empty((rows, columns), dtype=np.float32)
     # Row by row, so that the coordinates take no memory to speak of.
     for row in range(rows):
         values[row] = stack.intensity_at(x, row / per_sample, u)

@@ -42,9 +42,7 @@ class PatternSettings:
     @classmethod
     def read(cls, props: mi.Properties) -> PatternSettings:
         """Read the properties."""
-        file = props.get("file", None)
-        if file is not None:
-            _refuse_beside_file(props)
+        file = _file(props)
         path = props.get("path", PATHS[0])
         if path not in PATHS:
             raise refused("path", f"must be one of {', '.join(PATHS)}, got {path!r}")
@@ -106,7 +104,13 @@ def _side(props: mi.Properties, name: str, smallest: int) -> int | None:
     return whole(props, name, 0, (smallest, largest)) if name in props else None
 
 
-def _refuse_beside_file(props: mi.Properties) -> None:
+def _file(props: mi.Properties) -> str | None:
+    file = props.get("file", None)
+    if file is None:
+        return None
+    if not isinstance(file, str):
+        raise refused("file", f"must be the name of a stack file, got {file!r}")
     for name in _OF_THE_FILE:
         if name in props:
             raise refused(name, "does not go with a stack file, which determines it")
+    return file

@@ -2,11 +2,11 @@
 
     mitsuba_speckle.py [--rounds N] [--variant NAME] [--figure]
 
-The scene is that of figure 11, by default on 512 x 512 pixels: a plate, a thin lens, a spot, direct light, 256 samples per
-pixel. Every row renders it in turns with the others, once as a warm-up that compiles the kernel (which
-Dr.Jit keeps on disk) and makes the patterns, and N times that count. The table has the medians in seconds,
-the throughput, and the ratio to the first row, whose quartiles are those of the ratios of neighbouring
-turns.
+The scene is that of figure 11, by default on 512 x 512 pixels: a plate, a thin lens, a laser, direct
+light, 256 samples per pixel. Every row renders it in turns with the others, once as a warm-up that
+compiles the kernel (which Dr.Jit keeps on disk) and makes the patterns, and N times that count. The
+table has the medians in seconds, the throughput, and the median and the quartiles of the ratios to the
+first row, turn by turn.
 """
 
 import argparse
@@ -117,9 +117,7 @@ def main():
 
     tem00.mitsuba.register()
     width, height = (320, 240) if arguments.figure else (512, 512)
-    pictures = {
-        name: scene(*parts, width, height) for name, parts in ROWS.items()
-    }
+    pictures = {name: scene(*parts, width, height) for name, parts in ROWS.items()}
     times = {name: [] for name in pictures}
     for seed in range(arguments.rounds + 1):
         for name, picture in pictures.items():

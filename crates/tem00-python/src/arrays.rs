@@ -54,35 +54,6 @@ pub(crate) fn map_many<'py, const N: usize, const M: usize>(
     })
 }
 
-/// As [`map`], for functions whose value is a vector: its components are the last axis of the
-/// result, which is an array for numbers too.
-pub(crate) fn map_vectors<'py, const N: usize, const K: usize>(
-    py: Python<'py>,
-    arguments: [Named<'_, 'py>; N],
-    f: impl Fn([f64; N]) -> [f64; K] + Send + Sync,
-) -> PyResult<Bound<'py, PyAny>> {
-    let names = arguments.map(|(name, _)| name);
-    let blocks = Blocks::new(arguments)?;
-    let mut shape = blocks.shape().to_vec();
-    shape.push(K);
-    let filled = py.detach(|| {
-        let [mut out] = zeros::<f64, 1>(&shape)?;
-        let mut vectors = out.chunks_exact_mut(K.max(1));
-        let mut outcome = Ok(());
-        blocks.run(|columns| {
-            for (i, vector) in (0..columns[0].len()).zip(&mut vectors) {
-                let point = columns.map(|column| column[i]);
-                vector.copy_from_slice(&f(point));
-                if vector.iter().any(|component| component.is_nan()) {
-                    outcome = Err(no_number(names, point));
-                }
-            }
-        });
-        outcome.map(|()| out)
-    });
-    Ok(array(py, &shape, filled?)?.into_any())
-}
-
 /// Hands `N` arguments, broadcast together, to `f` block by block as slices of equal length, and
 /// returns what it writes to the `M` slices beside them, in the common shape; floats for numbers.
 /// Without the interpreter's lock.

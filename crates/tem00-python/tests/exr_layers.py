@@ -1,7 +1,8 @@
 """Reads the layers that ``tem00 render`` writes: OpenEXR files of several parts.
 
-Mitsuba's own reader takes the first part of a file only. Understood are scan lines of 32-bit floats,
-compressed by ZIP in blocks of 16 lines; see "OpenEXR File Layout" of the Academy Software Foundation.
+Mitsuba's own reader takes the first part of a file only. Understood are scan lines of 32-bit
+floats, compressed by ZIP in blocks of 16 lines; see "OpenEXR File Layout" of the Academy Software
+Foundation.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ class _Part:
 
 
 def read_layers(path: Path) -> dict[str, NDArray[np.float32]]:
-    """Return all channels of all parts by the name ``part.channel``, each of shape (rows, columns)."""
+    """Return the channels of all parts by the name ``part.channel``, of shape (rows, columns)."""
     data = path.read_bytes()
     magic, version = struct.unpack_from("<ii", data)
     assert (magic, version & 0xFF) == (_MAGIC, _VERSION), f"{path} is no OpenEXR file"

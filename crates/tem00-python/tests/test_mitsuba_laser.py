@@ -9,6 +9,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from math import radians, tan
+from pathlib import Path
 from typing import Any
 
 import drjit as dr
@@ -16,7 +17,7 @@ import mitsuba as mi
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import special, stats
 
 import tem00
 from tem00 import beam
@@ -24,6 +25,7 @@ from tem00 import beam
 mi.set_variant("llvm_ad_rgb")
 
 import tem00.mitsuba  # noqa: E402
+from tem00.mitsuba.normal import erfc, standard_normal  # noqa: E402
 
 tem00.mitsuba.register()
 
@@ -89,7 +91,7 @@ def library_light(properties: Properties) -> Any:
         return beam.LineLight.place(library_line(properties), placement, properties["power"])
     axes = [located(properties, suffix) for suffix in ("", "_y")]
     return beam.SpotLight.place_astigmatic(
-        beam.AstigmaticBeam(*axes), placement, properties["power"]
+        beam.AstigmaticBeam.new(*axes), placement, properties["power"]
     )
 
 
@@ -98,7 +100,7 @@ def located(spot: Properties, suffix: str) -> Any:
     m_squared = spot.get("m_squared" + suffix, spot.get("m_squared", 1.0))
     distance = spot.get("waist_distance" + suffix, spot.get("waist_distance", 0.0))
     focus = beam.GaussianBeam.from_waist(spot["wavelength"], waist_radius)
-    return beam.LocatedBeam(focus.with_m_squared(m_squared), distance)
+    return beam.LocatedBeam.new(focus.with_m_squared(m_squared), distance)
 
 
 def library_line(line: Properties) -> Any:
@@ -116,7 +118,7 @@ def library_line(line: Properties) -> Any:
         profile = beam.LineProfile.powell(line.get("edge", 0.05))
     else:
         profile = PROFILES[line.get("profile", "gaussian")]
-    return beam.LaserLine(focus, fan, profile)
+    return beam.LaserLine.new(focus, fan, profile)
 
 
 def frame_of(light: Any) -> Array:
@@ -154,6 +156,24 @@ def box_around(light: Any, points: Array) -> Array:
     corners = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 3), axis=-1).reshape(27, 1, 3)
     moved: Array = points + corners @ frame_of(light) * (4.0 * EPSILON * size[:, np.newaxis])
     return moved
+
+
+def test_the_error_function_keeps_its_digits_in_the_tail() -> None:
+    x = np.linspace(-9.0, 9.0, 100_001).astype(np.float32)
+    single: Any = mi.Float(x)
+    ratio = np.array(erfc(single)) / special.erfc(x.astype(np.float64))
+    # As its documentation states, down to 1e-36.
+    assert (np.abs(ratio - 1.0) < 4e-7 * (1.0 + x.astype(np.float64) ** 2)).all()
+
+
+def test_normal_variates_are_quantiles() -> None:
+    u = np.concatenate([np.linspace(0.0, 1.0, 10_001)[:-1], 2.0 ** np.arange(-24.0, 0.0)])
+    single: Any = mi.Float(u.astype(np.float32))
+    variates = np.array(standard_normal(single))
+    expected = special.ndtri(np.maximum(u.astype(np.float32), 2.0**-25).astype(np.float64))
+    # 1e-6 of the inverse error function; 2 u - 1 is rounded to 2**-25 and the density divides it.
+    density = stats.norm.pdf(expected)
+    assert (np.abs(variates - expected) < 2e-6 + 2.0**-25 / density * (u > 2.0**-20)).all()
 
 
 @every_laser
@@ -432,6 +452,11 @@ def test_the_other_variants_hold_a_laser_or_say_why_not(monkeypatch: pytest.Monk
         # The luminance of the green of sRGB (ITU-R BT.709).
         assert np.allclose(grey[0], 0.7152 * coloured[1], rtol=1e-4)
         assert grey.any()
+        mi.set_variant("llvm_ad_mono_polarized")
+        _, stokes = sampled_direction(emitter(SPOT, color=green), points)
+        # Light leaves unpolarised: a depolariser holds the radiance alone.
+        assert np.array_equal(stokes[0, 0], grey)
+        assert np.count_nonzero(stokes) == np.count_nonzero(grey)
         mi.set_variant("llvm_ad_spectral")
         with pytest.raises(RuntimeError, match="use an rgb or mono variant"):
             tem00.mitsuba.register()
@@ -442,6 +467,20 @@ def test_the_other_variants_hold_a_laser_or_say_why_not(monkeypatch: pytest.Monk
             tem00.mitsuba.register(plugin_folder="/nowhere")
     finally:
         mi.set_variant("llvm_ad_rgb")
+
+
+def test_a_folder_of_plugins_serves_the_scalar_variant(tmp_path: Path) -> None:
+    (tmp_path / "plugins").mkdir()
+    (tmp_path / "plugins" / "laser.so").touch()
+    program = f"""
+import mitsuba as mi
+mi.set_variant("scalar_rgb")
+import tem00.mitsuba
+tem00.mitsuba.register(plugin_folder={str(tmp_path)!r})
+assert {str(tmp_path)!r} in str(mi.file_resolver())
+"""
+    command = [sys.executable, "-W", "error", "-c", program]
+    assert subprocess.run(command, check=False).returncode == 0
 
 
 def test_the_package_itself_needs_no_mitsuba() -> None:

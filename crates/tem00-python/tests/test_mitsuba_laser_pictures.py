@@ -126,14 +126,16 @@ def test_a_plane_receives_the_power_at_every_tilt(name: str, tilt: float) -> Non
 def test_the_particle_tracer_sees_what_the_path_tracer_sees(name: str) -> None:
     laser = laser_at(LASERS[name], 40.0)
     count = 16
-    path, particles = (
-        pictures(scene_of({"type": kind, "max_depth": 2}, perspective(), 0.7, laser=laser), count, spp)
-        for kind, spp in (("path", 16), ("ptracer", 64))
-    )
-    # Blocks of 4 x 4 pixels that are not dark.
-    path, particles = (
-        p.reshape(count, 12, 4, 12, 4).mean(axis=(2, 4)).reshape(count, 144) for p in (path, particles)
-    )
+
+    def blocks(kind: str, spp: int) -> Array:
+        """Render pictures by an integrator and average 4 x 4 pixels."""
+        integrator = {"type": kind, "max_depth": 2}
+        scene = scene_of(integrator, perspective(), 0.7, laser=laser)
+        many = pictures(scene, count, spp).reshape(count, 12, 4, 12, 4)
+        averages: Array = many.mean(axis=(2, 4)).reshape(count, 144)
+        return averages
+
+    path, particles = blocks("path", 16), blocks("ptracer", 64)
     lit = path.mean(axis=0) > 0.01 * path.mean(axis=0).max()
     t = t_value((path - particles)[:, lit])
     # Significance 1e-3 for all blocks together (Bonferroni).

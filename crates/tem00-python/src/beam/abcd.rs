@@ -95,11 +95,6 @@ impl ThickLens {
 ///
 /// The static methods are the elements, ``then`` joins them in the order of travel.
 ///
-/// Parameters
-/// ----------
-/// a, b, c, d : float
-///     Entries of the matrix; ``b`` is in metres and ``c`` in 1/m.
-///
 /// Examples
 /// --------
 /// >>> from tem00.beam import AbcdMatrix
@@ -116,7 +111,17 @@ pub(crate) struct AbcdMatrix(pub(super) physics::AbcdMatrix);
 
 #[pymethods]
 impl AbcdMatrix {
-    #[new]
+    /// Return the matrix with the rows (a, b) and (c, d).
+    ///
+    /// Parameters
+    /// ----------
+    /// a, b, c, d : float
+    ///     Entries of the matrix; ``b`` is in metres and ``c`` in 1/m.
+    ///
+    /// Returns
+    /// -------
+    /// AbcdMatrix
+    #[staticmethod]
     fn new(a: f64, b: f64, c: f64, d: f64) -> PyResult<Self> {
         for (name, entry) in [("a", a), ("b", b), ("c", c), ("d", d)] {
             if !entry.is_finite() {

@@ -7,19 +7,16 @@ use super::{
     arguments::{OrRaiseAs, try_map},
     located::LocatedBeam,
 };
-use crate::{arrays::Numbers, error::OrRaise};
+use crate::{
+    arrays::Numbers,
+    error::OrRaise,
+    pickling::{Recipe, by_constructor},
+};
 
 /// The complex beam parameter ``q = z + i z_R`` of a Gaussian beam in one plane.
 ///
 /// It knows neither wavelength nor M²; together with the effective wavelength ``M² λ`` it also says
 /// how wide the beam is.
-///
-/// Parameters
-/// ----------
-/// distance_from_waist : float
-///     Signed distance past the waist, in metres, within ±1e30; negative where the beam converges.
-/// rayleigh_range : float
-///     Rayleigh range, in metres, from 1e-100 to 1e100.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ComplexBeamParameter(pub(super) physics::ComplexBeamParameter);
@@ -27,7 +24,19 @@ pub(crate) struct ComplexBeamParameter(pub(super) physics::ComplexBeamParameter)
 #[expect(clippy::wrong_self_convention, reason = "Python objects are borrowed")]
 #[pymethods]
 impl ComplexBeamParameter {
-    #[new]
+    /// Return the parameter ``z + i z_R``.
+    ///
+    /// Parameters
+    /// ----------
+    /// distance_from_waist : float
+    ///     Signed distance past the waist, in metres, within ±1e30; negative where the beam converges.
+    /// rayleigh_range : float
+    ///     Rayleigh range, in metres, from 1e-100 to 1e100.
+    ///
+    /// Returns
+    /// -------
+    /// ComplexBeamParameter
+    #[staticmethod]
     fn new(distance_from_waist: f64, rayleigh_range: f64) -> PyResult<Self> {
         let parameter = physics::ComplexBeamParameter::new(distance_from_waist, rayleigh_range);
         let names = [("waist_distance", "distance_from_waist")];
@@ -137,11 +146,12 @@ impl ComplexBeamParameter {
     }
 
     fn __repr__(&self) -> String {
-        let (distance, range) = self.__getnewargs__();
+        let (distance, range) = (self.0.distance_from_waist(), self.0.rayleigh_range());
         format!("ComplexBeamParameter(distance_from_waist={distance:?}, rayleigh_range={range:?})")
     }
 
-    fn __getnewargs__(&self) -> (f64, f64) {
-        (self.0.distance_from_waist(), self.0.rayleigh_range())
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        let parts = (self.0.distance_from_waist(), self.0.rayleigh_range());
+        by_constructor::<Self>(py, "new", parts)
     }
 }

@@ -5,24 +5,32 @@ use pyo3::prelude::*;
 use tem00_beam as physics;
 
 use super::arguments::{OrRaiseAs, columns, components, map, map_inner, try_map};
-use crate::arrays::Numbers;
+use crate::{
+    arrays::Numbers,
+    pickling::{Recipe, by_constructor},
+};
 
 /// The irradiance of a Gaussian beam of 1 W over a plane across it.
 ///
 /// The principal axes of the distribution are x and y, its centre is the origin. Powers are fractions
 /// of the whole, from 0 to 1; an aperture of negative size holds nothing.
-///
-/// Parameters
-/// ----------
-/// radii : (float, float)
-///     Principal radii (1/e²) along x and y, in metres, from 1e-30 to 1e30.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CrossSection(pub(super) physics::CrossSection);
 
 #[pymethods]
 impl CrossSection {
-    #[new]
+    /// Return the cross-section of two principal radii.
+    ///
+    /// Parameters
+    /// ----------
+    /// radii : (float, float)
+    ///     Principal radii (1/e²) along x and y, in metres, from 1e-30 to 1e30.
+    ///
+    /// Returns
+    /// -------
+    /// CrossSection
+    #[staticmethod]
     fn new(radii: [f64; 2]) -> PyResult<Self> {
         let section = physics::CrossSection::new(radii);
         Ok(Self(section.or_raise_as(&[("radius", "radii")])?))
@@ -248,7 +256,7 @@ impl CrossSection {
         format!("CrossSection(radii={:?})", self.0.radii())
     }
 
-    fn __getnewargs__(&self) -> ([f64; 2],) {
-        (self.0.radii(),)
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        by_constructor::<Self>(py, "new", (self.0.radii(),))
     }
 }

@@ -12,6 +12,7 @@ use super::{
 use crate::{
     arrays::Numbers,
     error::{OrRaise, refused},
+    pickling::{Recipe, by_constructor},
 };
 
 /// The geometry of a laser fan.
@@ -120,21 +121,26 @@ impl<'py> FromPyObject<'_, 'py> for FocusCurve {
 ///
 /// The light travels along +z, z = 0 is the lens, the fan opens along x and its plane has the normal
 /// y. The fan diverges from a virtual apex behind the lens. Points at z < 0 receive nothing.
-///
-/// Parameters
-/// ----------
-/// focus : GaussianBeam
-///     The beam across the fan.
-/// fan : FanGeometry
-/// profile : LineProfile
-///     How the power is spread along the fan.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LaserLine(pub(super) physics::LaserLine);
 
 #[pymethods]
 impl LaserLine {
-    #[new]
+    /// Return the line of a beam, a fan and a profile.
+    ///
+    /// Parameters
+    /// ----------
+    /// focus : GaussianBeam
+    ///     The beam across the fan.
+    /// fan : FanGeometry
+    /// profile : LineProfile
+    ///     How the power is spread along the fan.
+    ///
+    /// Returns
+    /// -------
+    /// LaserLine
+    #[staticmethod]
     fn new(focus: &GaussianBeam, fan: &FanGeometry, profile: &LineProfile) -> PyResult<Self> {
         let line = physics::LaserLine::new(focus.0, fan.0, profile.0.clone());
         Ok(Self(line.or_raise()?))
@@ -373,13 +379,13 @@ impl LaserLine {
     }
 
     fn __repr__(&self) -> String {
-        let (focus, fan, profile) = self.__getnewargs__();
-        let [focus, fan, profile] = [focus.__repr__(), fan.__repr__(), profile.__repr__()];
+        let [focus, fan] = [self.focus().__repr__(), self.fan().__repr__()];
+        let profile = self.profile().__repr__();
         format!("LaserLine(focus={focus}, fan={fan}, profile={profile})")
     }
 
-    fn __getnewargs__(&self) -> (GaussianBeam, FanGeometry, LineProfile) {
-        (self.focus(), self.fan(), self.profile())
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        by_constructor::<Self>(py, "new", (self.focus(), self.fan(), self.profile()))
     }
 }
 

@@ -9,26 +9,35 @@ use super::{
     cross_section::CrossSection,
     gaussian::GaussianBeam,
 };
-use crate::{arrays::Numbers, error::OrRaise};
+use crate::{
+    arrays::Numbers,
+    error::OrRaise,
+    pickling::{Recipe, by_constructor},
+};
 
 /// A Gaussian beam and where its waist lies, seen from a reference plane.
 ///
 /// The beam travels along +z, z = 0 is the reference plane, and the waist lies at
 /// ``z = waist_distance``: positive where it is still to come, negative where it has been passed or
 /// is virtual.
-///
-/// Parameters
-/// ----------
-/// beam : GaussianBeam
-/// waist_distance : float
-///     Signed distance from the reference plane to the waist, in metres, within ±1e30.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LocatedBeam(pub(super) physics::LocatedBeam);
 
 #[pymethods]
 impl LocatedBeam {
-    #[new]
+    /// Return the beam whose waist lies at a distance from the reference plane.
+    ///
+    /// Parameters
+    /// ----------
+    /// beam : GaussianBeam
+    /// waist_distance : float
+    ///     Signed distance from the reference plane to the waist, in metres, within ±1e30.
+    ///
+    /// Returns
+    /// -------
+    /// LocatedBeam
+    #[staticmethod]
     fn new(beam: &GaussianBeam, waist_distance: f64) -> PyResult<Self> {
         Ok(Self(
             physics::LocatedBeam::new(beam.0, waist_distance).or_raise()?,
@@ -118,7 +127,7 @@ impl LocatedBeam {
         format!("LocatedBeam(beam={beam}, waist_distance={distance:?})")
     }
 
-    fn __getnewargs__(&self) -> (GaussianBeam, f64) {
-        (self.beam(), self.0.waist_distance())
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        by_constructor::<Self>(py, "new", (self.beam(), self.0.waist_distance()))
     }
 }

@@ -118,20 +118,25 @@ impl LineProfile {
 ///
 /// Between the angles of the table the power per angle is linear, outside them there is none. Its
 /// integral is normalised to 1.
-///
-/// Parameters
-/// ----------
-/// angles : array_like, shape (n,)
-///     Ascending angles from the axis, in radians, in (-π/2, π/2); at least 2.
-/// powers : array_like, shape (n,)
-///     Power per angle at each of them, in any unit; not negative, and not all 0.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct AngularProfile(pub(super) physics::AngularProfile);
 
 #[pymethods]
 impl AngularProfile {
-    #[new]
+    /// Return the profile of a table.
+    ///
+    /// Parameters
+    /// ----------
+    /// angles : array_like, shape (n,)
+    ///     Ascending angles from the axis, in radians, in (-π/2, π/2); at least 2.
+    /// powers : array_like, shape (n,)
+    ///     Power per angle at each of them, in any unit; not negative, and not all 0.
+    ///
+    /// Returns
+    /// -------
+    /// AngularProfile
+    #[staticmethod]
     fn new(angles: Numbers<'_>, powers: Numbers<'_>) -> PyResult<Self> {
         let (angles, powers) = (list("angles", &angles)?, list("powers", &powers)?);
         let profile = physics::AngularProfile::new(angles, powers);
@@ -198,8 +203,8 @@ impl AngularProfile {
         format!("AngularProfile(angles={angles:?}, powers={densities:?})")
     }
 
-    fn __getnewargs__(&self) -> (Vec<f64>, Vec<f64>) {
-        self.columns()
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        by_constructor::<Self>(py, "new", self.columns())
     }
 }
 

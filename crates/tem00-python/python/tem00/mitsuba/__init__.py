@@ -6,7 +6,7 @@
 >>> tem00.mitsuba.register()
 
 From then on ``<emitter type="laser">`` can stand in scenes, in every variant that is set later too.
-The light is recorded into the renderer's kernels, so this works in the LLVM and CUDA variants. In
+The light is recorded into the renderer's kernels, which only the LLVM and CUDA variants have. In
 ``scalar_rgb`` a plugin in C++ does the same, which is built apart from this package.
 """
 
@@ -15,6 +15,7 @@ from __future__ import annotations
 import os
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import mitsuba as mi
 from mitsuba.detail import add_variant_callback
@@ -67,7 +68,9 @@ def _append(folder: Path) -> None:
     """Let Mitsuba find the C++ plugins."""
     if not any((folder / "plugins").glob("laser.*")):
         raise FileNotFoundError(f"{folder} holds no plugins/laser.so")
-    mi.file_resolver().append(str(folder))
+    # The stubs of Mitsuba do not know this function.
+    file_resolver: Any = mi.file_resolver
+    file_resolver().append(str(folder))
     _folders.append(folder)
 
 

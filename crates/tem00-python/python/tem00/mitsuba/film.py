@@ -103,7 +103,7 @@ class Exposure:
         return CameraRays(ray, film, weight, pixel)
 
     def _corner(self) -> mi.Vector2i:
-        """Return the corners of the pixels, one after the other, each as often as it has samples."""
+        """Return the corners of the pixels in turn, each as often as it has samples."""
         index = dr.arange(mi.UInt32, self._wavefront())
         shift = self._per_pass.bit_length() - 1
         if self._per_pass == 1 << shift:

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     Weights = tuple[mi.Float, mi.Float, mi.Float, mi.Float]
 
 # The fewest nodes of the spline per period of the finest fringes. The intensity has fringes down to
-# one speckle size, and the interpolation of its amplitude adds faint ones down to half of that: with
-# 8 nodes per speckle the spline errs by 1.1e-4 (rms) and 9e-4 (worst of 20000 points) of the mean.
+# one speckle size, and the interpolation of its amplitude adds faint ones down to half of that. With
+# 8 nodes per speckle the spline errs by 1.1e-4 (rms) and 9e-4 (worst of 20000) of the mean.
 _FEWEST_NODES = 7.5
 # The nodes before and behind a cell's own that its taps reach.
 _BEFORE, _AFTER = 1, 2

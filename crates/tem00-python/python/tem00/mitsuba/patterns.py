@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import drjit as dr
 import mitsuba as mi
 
+from tem00 import ParameterError
 from tem00.mitsuba.look_up import SplineTable, intensity_coefficients, nodes_per_sample
 from tem00.mitsuba.speckle_settings import refused
-from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackPlan
+from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackOptions, StackPlan
 
 if TYPE_CHECKING:
     from tem00.mitsuba.speckle_settings import PatternSettings
@@ -20,6 +21,8 @@ _SEED_STEP = 0x9E37_79B9_7F4A_7C15
 _PATTERN_MEMORY = 1 << 30
 _TABLE_MEMORY = 1 << 30
 _BYTES_PER_NODE = 8
+# What the library's arguments are called here.
+_PROPERTIES = {"size": "pattern_size", "diameter": "pattern_diameter", "image": "speckle_size"}
 # The root of x**3 = x + 1: multiples of its powers are far apart (Roberts 2018).
 _PLASTIC = 1.324717957244746
 
@@ -101,6 +104,20 @@ def _stack(
     settings: PatternSettings, speckle_size: float, number: int, image: tuple[int, int]
 ) -> SpeckleStack:
     """Return the stack that `tem00 render` has for the laser of this number in a still scene."""
+    seed = (settings.seed + (number + 1) * _SEED_STEP) % 2**64
+    try:
+        field = _plan(settings, speckle_size, image).field(seed)
+        options = StackOptions(memory_limit=_PATTERN_MEMORY)
+        return SpeckleStack.generate_with(field, _path(settings), options)
+    except MemoryError as error:
+        raise refused("speckle_size", f"too small for an image of {image}: {error}") from error
+    except ParameterError as error:
+        name = _PROPERTIES.get(error.parameter, error.parameter)
+        raise refused(name, str(error)) from error
+
+
+def _plan(settings: PatternSettings, speckle_size: float, image: tuple[int, int]) -> StackPlan:
+    """Return the sizes of a pattern: what the image needs, or what the scene sets."""
     needs = StackNeeds(
         image=image,
         region=image,
@@ -111,10 +128,9 @@ def _stack(
     )
     plan = StackPlan.new(needs)
     size, diameter = settings.pattern_size, settings.pattern_diameter
-    if size is not None or diameter is not None:
-        plan = plan.with_square(size or 2 * (diameter or 0), diameter or (size or 0) // 2)
-    field = plan.field((settings.seed + (number + 1) * _SEED_STEP) % 2**64)
-    return SpeckleStack.generate(field, _path(settings))
+    if size is None and diameter is None:
+        return plan
+    return plan.with_square(size or 2 * (diameter or 0), diameter or (size or 0) // 2)
 
 
 def _path(settings: PatternSettings) -> SlicePath:

@@ -82,7 +82,7 @@ def read_color(props: mi.Properties) -> tuple[float, float, float]:
         return 1.0, 1.0, 1.0
     try:
         red, green, blue = (float(channel) for channel in color)
-    except TypeError:
+    except (TypeError, ValueError):
         raise refused("color", f"must be an rgb value, got {color}") from None
     return red, green, blue
 

@@ -10,6 +10,7 @@ import drjit as dr
 import mitsuba as mi
 
 from tem00.mitsuba.film import Exposure
+from tem00.mitsuba.laser import COHERENT
 from tem00.mitsuba.patterns import Pattern, Place, generate
 from tem00.mitsuba.speckle_settings import (
     PatternSettings,
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 
     from tem00.mitsuba.transport import Factor
 
-# The private flag of emitters whose light is coherent.
-COHERENT = 0x1000
 _ENDLESS = 2**32 - 1
 
 
@@ -45,6 +44,8 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
 
         def __init__(self, props: mi.Properties) -> None:
             super().__init__(props)
+            if mi.is_polarized:
+                raise RuntimeError(f"speckle: does not follow polarisation, as {variant} asks")
             depth = whole(props, "max_depth", -1, (-1, _ENDLESS))
             self.max_depth = _ENDLESS if depth == -1 else depth
             self.rr_depth = whole(props, "rr_depth", 5, (1, _ENDLESS))

@@ -16,6 +16,7 @@ PATHS = ("still", "straight", "circle")
 _OF_THE_FILE = ("seed", "pattern_size", "pattern_diameter", "path", "half_period", "length")
 _LARGEST_SEED = 2**63 - 1
 _LARGEST_SIDE = 2**15
+_SMALLEST_DIAMETER = 8
 
 
 def refused(name: str, why: str) -> ParameterError:
@@ -50,8 +51,8 @@ class PatternSettings:
         return cls(
             speckle_size=_speckle_size(props),
             seed=whole(props, "seed", 0, (0, _LARGEST_SEED)),
-            pattern_size=_side(props, "pattern_size"),
-            pattern_diameter=_side(props, "pattern_diameter"),
+            pattern_size=_side(props, "pattern_size", 2 * _SMALLEST_DIAMETER),
+            pattern_diameter=_side(props, "pattern_diameter", _SMALLEST_DIAMETER),
             path=path,
             half_period=whole(props, "half_period", 64, (1, _LARGEST_SIDE)),
             length=whole(props, "length", 2, (1, _LARGEST_SIDE)),
@@ -100,8 +101,9 @@ def _speckle_size(props: mi.Properties) -> float | None:
     return size
 
 
-def _side(props: mi.Properties, name: str) -> int | None:
-    return whole(props, name, 0, (8, _LARGEST_SIDE)) if name in props else None
+def _side(props: mi.Properties, name: str, smallest: int) -> int | None:
+    largest = smallest * (_LARGEST_SIDE // (2 * _SMALLEST_DIAMETER))
+    return whole(props, name, 0, (smallest, largest)) if name in props else None
 
 
 def _refuse_beside_file(props: mi.Properties) -> None:

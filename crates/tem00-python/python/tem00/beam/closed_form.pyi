@@ -1,0 +1,6 @@
+from typing import Final
+
+__all__ = ["C_HEADER", "WGSL"]
+
+WGSL: Final[str]
+C_HEADER: Final[str]

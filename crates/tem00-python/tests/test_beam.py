@@ -1,0 +1,250 @@
+"""Beams, ray matrices and cross-sections against NumPy and SciPy."""
+
+import numpy as np
+import pytest
+from scipy import integrate, special
+from tem00 import beam
+
+WAVELENGTH = 650e-9
+# Some ten roundings of double precision.
+ROUNDING = 4e-15
+
+
+def round_beam(m_squared: float = 1.3) -> beam.GaussianBeam:
+    return beam.GaussianBeam.from_waist(WAVELENGTH, 80e-6).with_m_squared(m_squared)
+
+
+def test_radius_and_curvature_follow_from_the_complex_parameter() -> None:
+    laser = round_beam()
+    z_r = np.pi * 80e-6**2 / (1.3 * WAVELENGTH)
+    z = np.linspace(-0.4, 0.4, 41)
+    inverse = 1 / (z + 1j * z_r)
+    radius = np.sqrt(1.3 * WAVELENGTH / (-np.pi * inverse.imag))
+    np.testing.assert_allclose(laser.radius_at(z), radius, rtol=ROUNDING)
+    np.testing.assert_allclose(laser.curvature_at(z), inverse.real, rtol=ROUNDING, atol=1e-15)
+    phase = np.angle(1j * inverse)
+    np.testing.assert_allclose(laser.gouy_phase_at(z), phase, rtol=ROUNDING, atol=1e-15)
+    q = beam.LocatedBeam.new(laser, 0.1).complex_parameter
+    assert q.to_complex() == pytest.approx(complex(-0.1, z_r), rel=ROUNDING)
+    assert complex(q) == q.to_complex()
+
+
+def test_constants_of_a_beam_are_those_of_its_waist() -> None:
+    laser = round_beam()
+    z_r = np.pi * 80e-6**2 / (1.3 * WAVELENGTH)
+    expected = {
+        "rayleigh_range": z_r,
+        "divergence": 80e-6 / z_r,
+        "confocal_parameter": 2 * z_r,
+        "beam_parameter_product": 1.3 * WAVELENGTH / np.pi,
+    }
+    for name, value in expected.items():
+        assert getattr(laser, name) == pytest.approx(value, rel=ROUNDING), name
+    growth = np.array([1.05, np.sqrt(2), 3])
+    depth = 2 * z_r * np.sqrt(growth**2 - 1)
+    np.testing.assert_allclose(laser.depth_of_focus(growth), depth, rtol=1e-14)
+    assert laser.fwhm_at(0.0) == pytest.approx(np.sqrt(2 * np.log(2)) * 80e-6, rel=ROUNDING)
+    assert laser.d4_sigma_at(0.0) == pytest.approx(160e-6, rel=ROUNDING)
+    narrow = beam.GaussianBeam.from_divergence(WAVELENGTH, 1e-3)
+    assert narrow.waist_radius == pytest.approx(WAVELENGTH / (np.pi * 1e-3), rel=ROUNDING)
+
+
+@pytest.mark.parametrize("degrees", [0, 30, 60, 75])
+def test_a_tilted_plane_receives_the_whole_power(degrees: float) -> None:
+    laser = round_beam()
+    tilt = np.deg2rad(degrees)
+    # exp(-2 · 4²) = 1e-14 of the power lies beyond four radii; the beam widens by less than 1.2.
+    reach = 4.8 * laser.radius_at(0.3)
+    along, s = np.linspace(-reach / np.cos(tilt), reach / np.cos(tilt), 401, retstep=True)
+    across, t = np.linspace(-reach, reach, 401, retstep=True)
+    p, q = np.meshgrid(along, across)
+    flux = laser.flux_per_watt(p * np.cos(tilt), q, 0.3 + p * np.sin(tilt))
+    normal = np.array([np.sin(tilt), 0, -np.cos(tilt)])
+    power = integrate.simpson(integrate.simpson(-flux @ normal, dx=s), dx=t)
+    # Simpson's rule on a smooth bell is exact beyond the cut-off's 1e-10 at the far end.
+    assert power == pytest.approx(1, abs=1e-9)
+
+
+def test_encircled_power_is_the_integral_of_the_irradiance() -> None:
+    laser = round_beam()
+    for radius in (20e-6, 80e-6, 300e-6):
+        integral, _ = integrate.quad(
+            lambda r: 2 * np.pi * r * laser.irradiance_per_watt(r, 0.05), 0, radius, epsabs=1e-13
+        )
+        assert laser.encircled_power(radius, 0.05) == pytest.approx(integral, abs=1e-12)
+
+
+def test_apertures_pass_what_error_functions_say() -> None:
+    spot = beam.CrossSection.new((1e-3, 2e-3))
+    x = np.linspace(-2e-3, 2e-3, 17)
+    root = np.sqrt(2)
+    np.testing.assert_allclose(
+        spot.power_past_knife_edge(x), special.erfc(root * x / 1e-3) / 2, rtol=1e-11
+    )
+    slit = (special.erf(root * (x + 5e-4) / 1e-3) - special.erf(root * (x - 5e-4) / 1e-3)) / 2
+    np.testing.assert_allclose(spot.power_in_slit(x, 1e-3), slit, rtol=1e-10, atol=1e-12)
+    square = special.erf(1e-3 / root / 1e-3) * special.erf(1e-3 / root / 2e-3)
+    assert spot.power_in_square(1e-3) == pytest.approx(square, rel=1e-11)
+    assert spot.power_in_rectangle((0, 0), (1e-3, 1e-3)) == pytest.approx(square, rel=1e-11)
+    assert spot.transposed.radii.tolist() == [2e-3, 1e-3]
+    assert spot.effective_area == pytest.approx(np.pi * 2e-6, rel=ROUNDING)
+    np.testing.assert_allclose(spot.knife_edge_width, special.ndtri(0.9) * spot.radii, rtol=1e-14)
+
+
+def test_a_circle_off_the_axis_passes_the_integral_over_it() -> None:
+    spot = beam.CrossSection.new((1e-3, 2e-3))
+
+    def chord(x: float) -> float:
+        half = np.sqrt(max(1.2e-3**2 - (x - 4e-4) ** 2, 0))
+        ends = [special.erf(np.sqrt(2) * (3e-4 + sign * half) / 2e-3) for sign in (1, -1)]
+        profile = np.sqrt(2 / np.pi) / 1e-3 * np.exp(-2 * x**2 / 1e-6)
+        return float(profile * (ends[0] - ends[1]) / 2)
+
+    expected, _ = integrate.quad(chord, -8e-4, 1.6e-3, epsabs=1e-12)
+    # The square-root ends of the chord cost the quadrature 1e-9.
+    assert spot.power_in_circle_at((4e-4, 3e-4), 1.2e-3) == pytest.approx(expected, abs=1e-9)
+    fraction = np.array([0.1, 0.5, 0.99])
+    radius = spot.circle_radius(fraction)
+    np.testing.assert_allclose(spot.power_in_circle(radius), fraction, atol=1e-11)
+
+
+def matrix(system: beam.AbcdMatrix) -> np.ndarray:
+    return np.array([[system.a, system.b], [system.c, system.d]])
+
+
+def test_systems_multiply_as_matrices_do() -> None:
+    lens = beam.AbcdMatrix.thick_lens(beam.ThickLens(1.5, 20.0, -10.0, 5e-3))
+    surfaces = [
+        np.array([[1, 0], [-(1.5 - 1) / 1.5 * 20, 1 / 1.5]]),
+        np.array([[1, 5e-3], [0, 1]]),
+        np.array([[1, 0], [-(1 - 1.5) / 1 * -10, 1.5]]),
+    ]
+    np.testing.assert_allclose(matrix(lens), surfaces[2] @ surfaces[1] @ surfaces[0], rtol=1e-14)
+    space = beam.AbcdMatrix.free_space(0.3)
+    both = space.then(lens)
+    np.testing.assert_allclose(matrix(both), matrix(lens) @ matrix(space), rtol=1e-14)
+    rays = np.random.default_rng(2).normal(size=(4, 5, 2))
+    np.testing.assert_allclose(
+        both.transform_ray(rays), rays @ matrix(both).T, rtol=1e-13, atol=1e-15
+    )
+    grin = matrix(beam.AbcdMatrix.grin(300.0, 4e-3))
+    sin, cos = np.sin(1.2), np.cos(1.2)
+    np.testing.assert_allclose(grin, [[cos, sin / 300], [-300 * sin, cos]], rtol=1e-14)
+
+
+def test_a_beam_passes_a_system_by_the_law_of_its_complex_parameter() -> None:
+    system = beam.AbcdMatrix.free_space(0.3).then(beam.AbcdMatrix.thin_lens(0.12))
+    before = beam.LocatedBeam.new(round_beam(), 0.05)
+    q = before.complex_parameter.to_complex()
+    expected = (system.a * q + system.b) / (system.c * q + system.d)
+    after = system.transform(before)
+    assert after.complex_parameter.to_complex() == pytest.approx(expected, rel=1e-13)
+    parameter = system.transform_parameter(before.complex_parameter)
+    assert parameter.to_complex() == pytest.approx(expected, rel=1e-13)
+    assert after.beam.m_squared == 1.3
+    lens = before.through_lens(0.12)
+    assert lens.complex_parameter.to_complex() == pytest.approx(1 / (1 / q - 1 / 0.12), rel=1e-13)
+
+
+def test_the_eigenmode_of_a_resonator_is_the_fixed_point_of_its_round_trip() -> None:
+    arm = beam.AbcdMatrix.free_space(0.3)
+    trip = arm.then(beam.AbcdMatrix.curved_mirror(1.0)).then(arm)
+    assert trip.is_stable
+    assert trip.half_trace == pytest.approx(2 * (1 - 0.3) - 1, rel=1e-14)
+    q = trip.eigenmode().to_complex()
+    assert (trip.a * q + trip.b) / (trip.c * q + trip.d) == pytest.approx(q, rel=1e-13)
+
+
+def twisted_beam() -> beam.GeneralAstigmaticBeam:
+    elliptic = beam.AstigmaticBeam.from_divergences(WAVELENGTH, (0.5e-3, 1e-3))
+    lens = beam.AstigmaticSystem.cylinder_lens(0.1, np.pi / 5)
+    return beam.GeneralAstigmaticBeam.from_astigmatic(elliptic).through(lens)
+
+
+def test_moments_pass_a_system_as_covariances_do() -> None:
+    elliptic = beam.AstigmaticBeam.from_divergences(WAVELENGTH, (0.5e-3, 1e-3))
+    start = beam.GeneralAstigmaticBeam.from_astigmatic(elliptic)
+    lens = beam.AstigmaticSystem.cylinder_lens(0.1, np.pi / 5)
+
+    def whole(moments: beam.SecondMoments) -> np.ndarray:
+        rows = [[moments.position, moments.mixed], [moments.mixed.T, moments.slope]]
+        return np.block(rows)
+
+    (a, b), (c, d) = lens.blocks
+    system = np.block([[a, b], [c, d]])
+    expected = system @ whole(start.moments_at(0.0)) @ system.T
+    scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
+    got = whole(start.through(lens).moments_at(0.0))
+    np.testing.assert_allclose(got / scale, expected / scale, atol=1e-13)
+    again = beam.GeneralAstigmaticBeam.from_moments(WAVELENGTH, start.moments_at(0.0))
+    np.testing.assert_allclose(again.radii_at(0.2), start.radii_at(0.2), rtol=1e-12)
+    np.testing.assert_allclose(start.through(lens).beam_quality, [1, 1], rtol=1e-9)
+
+
+def test_the_ellipse_is_that_of_the_moments() -> None:
+    laser = twisted_beam()
+    for z in (0.0, 0.07, 0.3):
+        values, vectors = np.linalg.eigh(laser.moments_at(z).position)
+        np.testing.assert_allclose(laser.radii_at(z), 2 * np.sqrt(values[::-1]), rtol=1e-9)
+        angle = np.arctan2(vectors[1, 1], vectors[0, 1])
+        assert np.sin(laser.orientation_at(z) - angle) == pytest.approx(0, abs=1e-9)
+        moments = laser.moments_at(z)
+        tensor = moments.mixed.T @ np.linalg.inv(moments.position)
+        np.testing.assert_allclose(laser.curvature_tensor_at(z), tensor, rtol=1e-8)
+    inverse = laser.complex_curvature_at(0.07)
+    again = beam.GeneralAstigmaticBeam.from_complex_curvature(WAVELENGTH, inverse)
+    np.testing.assert_allclose(again.radii_at(0.1), laser.propagated(0.07).radii_at(0.1), rtol=1e-9)
+
+
+def test_systems_of_two_axes_act_by_their_blocks() -> None:
+    turned = beam.AstigmaticSystem.image_rotation(0.3)
+    sin, cos = np.sin(0.3), np.cos(0.3)
+    np.testing.assert_allclose(turned.blocks[0, 0], [[cos, -sin], [sin, cos]], rtol=ROUNDING)
+    lens = beam.AstigmaticSystem.cylinder_lens(0.1, 0.7).then(turned)
+    assert beam.AstigmaticSystem.new(lens.blocks) == lens
+    (a, b), (c, d) = lens.blocks
+    rays = np.random.default_rng(9).normal(size=(3, 4, 2, 2))
+    x, s = rays[..., 0, :], rays[..., 1, :]
+    expected = np.stack([x @ a.T + s @ b.T, x @ c.T + s @ d.T], axis=-2)
+    np.testing.assert_allclose(lens.transform_ray(rays), expected, rtol=1e-13, atol=1e-14)
+    planes = beam.AbcdMatrix.tilted_mirror(5.0, 0.4)
+    mirror = beam.AstigmaticSystem.from_axes(planes, 0.0)
+    np.testing.assert_allclose(np.diag(mirror.blocks[1, 0]), [planes[0].c, planes[1].c], rtol=1e-15)
+
+
+def test_a_partially_coherent_beam_may_be_twisted() -> None:
+    mixed = np.array([[1e-9, 4e-9], [-2e-9, 3e-9]])
+    moments = beam.SecondMoments(np.diag([1e-8, 4e-8]), mixed, np.diag([4e-6, 3e-6]))
+    laser = beam.GeneralAstigmaticBeam.from_moments(WAVELENGTH, moments)
+    np.testing.assert_allclose(laser.moments_at(0.0).mixed, mixed, rtol=1e-12)
+    assert laser.twist == pytest.approx(4e-9 + 2e-9, rel=1e-12)
+    tensor = mixed.T @ np.linalg.inv(np.diag([1e-8, 4e-8]))
+    np.testing.assert_allclose(laser.curvature_tensor_at(0.0), tensor, rtol=1e-12)
+    assert np.shape(laser.curvature_tensor_at(np.zeros((3, 5)))) == (3, 5, 2, 2)
+
+
+def test_a_twisted_beam_carries_its_power_across_any_plane() -> None:
+    laser = twisted_beam()
+    reach = 5 * laser.radii_at(0.15)[0]
+    axis, step = np.linspace(-reach, reach, 301, retstep=True)
+    x, y = np.meshgrid(axis, axis)
+    irradiance = laser.irradiance_per_watt(x, y, 0.15)
+    power = integrate.simpson(integrate.simpson(irradiance, dx=step), dx=step)
+    # The smaller radius covers more than ten steps: a bell is summed beyond rounding.
+    assert power == pytest.approx(1, abs=1e-9)
+    np.testing.assert_allclose(laser.flux_per_watt(x, y, 0.15)[..., 2], irradiance, rtol=1e-12)
+
+
+def test_an_elliptic_beam_is_the_product_of_two() -> None:
+    x, y = (beam.LocatedBeam.new(round_beam(m), d) for m, d in ((1.0, 0.1), (1.6, 0.14)))
+    laser = beam.AstigmaticBeam.new(x, y).with_rotation(0.4)
+    wx, wy = x.radius_at(0.2), y.radius_at(0.2)
+    p, q = 3e-4, -2e-4
+    u, v = p * np.cos(0.4) + q * np.sin(0.4), q * np.cos(0.4) - p * np.sin(0.4)
+    expected = 2 / (np.pi * wx * wy) * np.exp(-2 * (u / wx) ** 2 - 2 * (v / wy) ** 2)
+    assert laser.irradiance_per_watt(p, q, 0.2) == pytest.approx(expected, rel=1e-13)
+    assert laser.ellipticity_at(0.2) == pytest.approx(min(wx, wy) / max(wx, wy), rel=ROUNDING)
+    for plane in laser.circular_planes:
+        if plane is not None:
+            assert laser.ellipticity_at(plane) == pytest.approx(1, abs=1e-12)
+    assert laser.circular_planes[0] is not None

@@ -1,0 +1,247 @@
+"""What the beams refuse, what they show of themselves, and how they travel."""
+
+import pickle
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from tem00 import ParameterError, beam
+from tem00.beam import closed_form, paper
+
+NAN, INF = float("nan"), float("inf")
+LASER = beam.GaussianBeam.from_waist(650e-9, 1e-4)
+LOCATED = beam.LocatedBeam.new(LASER, 0.1)
+ELLIPTIC = beam.AstigmaticBeam.new(LOCATED, LOCATED)
+PLACEMENT = beam.Placement((0, 0, 0.3), (0, 0, -1), (1, 0, 0))
+SPOT = beam.SpotLight.place(LASER, 0.1, PLACEMENT, 1e-3)
+FAN = beam.FanGeometry(0.5, 2e-3, 0.2)
+LINE = beam.LaserLine.new(LASER, FAN, beam.LineProfile.powell(0.1))
+TABLE = beam.AngularProfile.new([-0.2, 0, 0.2], [1, 2, 1])
+TABULATED = beam.LaserLine.new(LASER, FAN, beam.LineProfile.tabulated(TABLE))
+LINE_LIGHT = beam.LineLight.place(LINE, PLACEMENT, 1e-3)
+GENERAL = beam.GeneralAstigmaticBeam.from_astigmatic(ELLIPTIC)
+MATRIX = beam.AbcdMatrix.thin_lens(0.1)
+SECTION = LASER.cross_section_at(0.1)
+Q = beam.ComplexBeamParameter.new(0.1, 0.2)
+MOMENTS = GENERAL.moments_at(0.0)
+WRONG_ROWS = SPOT.to_rows()
+WRONG_ROWS[1, 0] = 2
+
+
+def place(**change: object) -> object:
+    good: dict[str, object] = {"origin": (0, 0, 0), "direction": (0, 0, 1), "fan_axis": (1, 0, 0)}
+    placement = beam.Placement(**(good | change))  # type: ignore[arg-type]
+    return beam.SpotLight.place(LASER, 0.1, placement, 1e-3)
+
+
+def fan(fan_angle: float = 0.5, apex_offset: float = 2e-3, focus_distance: float = 0.2) -> object:
+    geometry = beam.FanGeometry(fan_angle, apex_offset, focus_distance)
+    return beam.LaserLine.new(LASER, geometry, beam.LineProfile.gaussian_tan())
+
+
+REFUSED: list[tuple[str, Callable[[], object]]] = [
+    ("wavelength", lambda: beam.GaussianBeam.from_waist(NAN, 1e-4)),
+    ("waist_radius", lambda: beam.GaussianBeam.from_waist(650e-9, 0.0)),
+    ("waist_radius", lambda: beam.GaussianBeam.from_waist(100e-6, 650e-9)),
+    ("divergence", lambda: beam.GaussianBeam.from_divergence(650e-9, 0.6)),
+    ("m_squared", lambda: LASER.with_m_squared(0.5)),
+    ("m_squared", lambda: LASER.with_m_squared(1e6)),
+    ("growth", lambda: LASER.depth_of_focus([2, 1])),
+    ("z", lambda: LASER.radius_at(NAN)),
+    ("z", lambda: LASER.radius_at([0, INF])),
+    ("z", lambda: LASER.radius_at(1e31)),
+    ("z", lambda: LASER.cross_section_at(-INF)),
+    ("waist_distance", lambda: beam.LocatedBeam.new(LASER, INF)),
+    ("focal_length", lambda: LOCATED.through_lens(0.0)),
+    ("y", lambda: beam.AstigmaticBeam.new(LOCATED, beam.LocatedBeam.new(
+        beam.GaussianBeam.from_waist(500e-9, 1e-4), 0.1))),
+    ("divergences", lambda: beam.AstigmaticBeam.from_divergences(650e-9, (1e-3, 0.7))),
+    ("waist_distances", lambda: ELLIPTIC.with_waist_distances((0.1, NAN))),
+    ("rotation", lambda: ELLIPTIC.with_rotation(INF)),
+    ("systems", lambda: ELLIPTIC.through_axes((MATRIX, beam.AbcdMatrix.flat_interface(1, 1.5)))),
+    ("distance", lambda: GENERAL.propagated(1e31)),
+    ("position", lambda: beam.GeneralAstigmaticBeam.from_moments(
+        650e-9, beam.SecondMoments(-MOMENTS.position, MOMENTS.mixed, MOMENTS.slope))),
+    ("mixed", lambda: beam.GeneralAstigmaticBeam.from_moments(
+        650e-9, beam.SecondMoments(MOMENTS.position, MOMENTS.mixed * NAN, MOMENTS.slope))),
+    ("slope", lambda: beam.GeneralAstigmaticBeam.from_moments(
+        650e-9, beam.SecondMoments(MOMENTS.position, MOMENTS.mixed, -MOMENTS.slope))),
+    ("m_squared", lambda: beam.GeneralAstigmaticBeam.from_moments(1064e-9, MOMENTS)),
+    ("curvature", lambda: beam.GeneralAstigmaticBeam.from_complex_curvature(
+        650e-9, [[1j, 0], [0, 1j]])),
+    ("distance_from_waist", lambda: beam.ComplexBeamParameter.new(INF, 0.1)),
+    ("rayleigh_range", lambda: beam.ComplexBeamParameter.new(0.1, 0.0)),
+    ("radius", lambda: beam.ComplexBeamParameter.from_radius_and_curvature(0.0, 1.0, 1e-6)),
+    ("curvature", lambda: beam.ComplexBeamParameter.from_radius_and_curvature(1e-3, INF, 1e-6)),
+    ("effective_wavelength", lambda: beam.ComplexBeamParameter.from_radius_and_curvature(
+        1e-3, 1.0, 0.0)),
+    ("effective_wavelength", lambda: Q.radius(0.0)),
+    ("m_squared", lambda: Q.to_located_beam(650e-9, 0.9)),
+    ("b", lambda: beam.AbcdMatrix.new(1, NAN, 0, 1)),
+    ("determinant", lambda: beam.AbcdMatrix.new(1, 0, 0, -1)),
+    ("length", lambda: beam.AbcdMatrix.free_space(INF)),
+    ("focal_length", lambda: beam.AbcdMatrix.thin_lens(0)),
+    ("index", lambda: beam.AbcdMatrix.thick_lens(beam.ThickLens(0, 1, 1, 1e-3))),
+    ("front_curvature", lambda: beam.AbcdMatrix.thick_lens(beam.ThickLens(1.5, INF, 1, 1e-3))),
+    ("back_curvature", lambda: beam.AbcdMatrix.thick_lens(beam.ThickLens(1.5, 1, NAN, 1e-3))),
+    ("thickness", lambda: beam.AbcdMatrix.thick_lens(beam.ThickLens(1.5, 1, 1, -1e-3))),
+    ("index_before", lambda: beam.AbcdMatrix.flat_interface(0, 1.5)),
+    ("index_after", lambda: beam.AbcdMatrix.curved_interface(1, NAN, 0)),
+    ("curvature", lambda: beam.AbcdMatrix.curved_mirror(NAN)),
+    ("angle_of_incidence", lambda: beam.AbcdMatrix.tilted_mirror(1, 2)),
+    ("gradient", lambda: beam.AbcdMatrix.grin(-1, 1)),
+    ("index", lambda: beam.AbcdMatrix.grin_rod(0, 1, 1)),
+    ("half_trace", lambda: beam.AbcdMatrix.free_space(1).eigenmode()),
+    ("ray", lambda: MATRIX.transform_ray([1, 2, 3])),
+    ("blocks", lambda: beam.AstigmaticSystem.new(np.ones((2, 2, 2, 2)).tolist())),
+    ("blocks", lambda: beam.AstigmaticSystem.new(np.full((2, 2, 2, 2), NAN).tolist())),
+    ("axes", lambda: beam.AstigmaticSystem.from_axes(
+        (MATRIX, beam.AbcdMatrix.flat_interface(1, 1.5)), 0)),
+    ("rotation", lambda: beam.AstigmaticSystem.cylinder_lens(0.1, NAN)),
+    ("radii", lambda: beam.CrossSection.new((1e-3, 0))),
+    ("fraction", lambda: SECTION.circle_radius([0.5, 1])),
+    ("centre", lambda: SECTION.power_in_circle_at((0, 0, 0), 1e-3)),
+    ("fan_angle", lambda: fan(fan_angle=4)),
+    ("apex_offset", lambda: fan(apex_offset=0)),
+    ("focus_distance", lambda: fan(focus_distance=NAN)),
+    ("focus_curve", lambda: beam.FanGeometry(0.5, 1e-3, 0.2, "sphere")),  # type: ignore[arg-type]
+    ("edge", lambda: beam.LaserLine.new(LASER, FAN, beam.LineProfile.powell(0))),
+    ("theta", lambda: LINE.half_thickness_at_angle(0.2, 1.6)),
+    ("angles", lambda: beam.AngularProfile.new([0.1, 0.0], [1, 1])),
+    ("powers", lambda: beam.AngularProfile.new([0.0, 0.1], [1, -1])),
+    ("powers", lambda: beam.AngularProfile.new([0.0, 0.1], [1])),
+    ("pairs", lambda: beam.AngularProfile.from_pairs([[0.1, 1], [0, 1]])),
+    ("pairs", lambda: beam.AngularProfile.from_pairs([[0.1, 1, 2], [0, 1, 2]])),
+    ("origin", lambda: place(origin=(0, NAN, 0))),
+    ("direction", lambda: place(direction=(0, 0, 0))),
+    ("fan_axis", lambda: place(fan_axis=(0, 0, 1))),
+    ("power", lambda: beam.SpotLight.place(LASER, 0.1, PLACEMENT, -1)),
+    ("line", lambda: beam.LineLight.place(TABULATED, PLACEMENT, 1)),
+    ("line", lambda: beam.TabulatedLineLight.place(LINE, PLACEMENT, 1)),
+    ("rows", lambda: beam.SpotLight.from_rows(WRONG_ROWS)),
+    ("rows", lambda: beam.LineLight.from_rows(SPOT.to_rows())),
+    ("dtype", lambda: SPOT.to_rows("int8")),  # type: ignore[arg-type]
+    ("dtype", lambda: beam.SpotLight.place(LASER, 0.1, PLACEMENT, 1e39).to_rows("float32")),
+    ("x", lambda: SPOT.irradiance(NAN, 0, 0)),
+    ("z", lambda: SPOT.next_event(0, 0, [1e31])),
+    ("y", lambda: SPOT.flux(np.zeros(3), np.zeros(2), 0)),
+    ("u", lambda: SPOT.sample_ray([0.5, 0.5, 0.5, 1.0])),
+    ("u", lambda: SPOT.sample_ray([0.5, 0.5])),
+    ("u", lambda: SPOT.next_event_sampled(0, 0, 0, [NAN, 0.5])),
+    ("d", lambda: SPOT.radiance(0, 0, 0, [0, 1])),
+    ("wi", lambda: SPOT.next_event_pdf(0, 0, 0, [0, NAN, 1])),
+    ("l", lambda: SPOT.bounds(INF)),
+    ("l", lambda: paper.modified_divergence(LASER, 0)),
+    ("l", lambda: paper.lost_by_cone([0.5, 1])),
+    ("l", lambda: paper.DiscConeSampler.new(LASER, 0.1, NAN)),
+    ("fan_angle", lambda: paper.PrintedFan.new(LASER, 0, 0.1)),
+    ("n", lambda: paper.spot_next_event(SPOT, 0, 0, 0, [0, 1])),
+]
+
+
+@pytest.mark.parametrize(("parameter", "call"), REFUSED)
+def test_what_is_refused_is_named(parameter: str, call: Callable[[], object]) -> None:
+    with pytest.raises(ParameterError) as refusal:
+        call()
+    assert refusal.value.parameter == parameter
+    assert isinstance(refusal.value, ValueError)
+
+
+def changed(light: beam.Emitter, row: int, place: int, value: float) -> np.ndarray:
+    rows = light.to_rows()
+    rows[row, place] = value
+    return rows
+
+
+@pytest.mark.parametrize(
+    ("row", "place", "value", "field"),
+    [
+        (0, 0, NAN, "origin.x"),
+        (0, 3, -1, "power"),
+        (1, 3, 0, "cutoff"),
+        (2, 1, 0.5, "orthonormal"),
+        (4, 0, 0, "w0_sq"),
+        (4, 1, 1, "theta_sq"),
+        (4, 2, INF, "z0"),
+        (2, 3, 0, "apex_offset"),
+        (3, 3, -1, "source_radius"),
+        (5, 0, -1, "flat"),
+        (5, 1, NAN, "sigma"),
+        (5, 2, 1.5, "variable"),
+        (5, 3, 2, "mass"),
+        (6, 0, 0, "half_slope"),
+        (6, 1, 0.5, "focus_on_plane"),
+    ],
+)
+def test_rows_of_no_light_are_refused(row: int, place: int, value: float, field: str) -> None:
+    with pytest.raises(ParameterError, match=field) as refusal:
+        beam.LineLight.from_rows(changed(LINE_LIGHT, row, place, value))
+    assert refusal.value.parameter == "rows"
+
+
+def test_ellipses_of_no_light_are_refused() -> None:
+    light = beam.AstigmaticLight.place(GENERAL, PLACEMENT, 1e-3)
+    for row in (4, 5):
+        with pytest.raises(ParameterError, match="positive definite"):
+            beam.AstigmaticLight.from_rows(changed(light, row, 1, light.to_rows()[row, 0]))
+        with pytest.raises(ParameterError, match="yy"):
+            beam.AstigmaticLight.from_rows(changed(light, row, 2, -1))
+    assert light.position.xx == light.to_rows()[4, 0] and light.slope.yy == light.to_rows()[5, 2]
+
+
+OBJECTS = [
+    LASER.with_m_squared(1.5),
+    LOCATED,
+    ELLIPTIC.with_rotation(0.3),
+    SECTION,
+    Q,
+    MOMENTS,
+    beam.ThickLens(1.5, 1, -1, 1e-3),
+    FAN,
+    beam.LineProfile.gaussian_sin(),
+    LINE,
+    PLACEMENT,
+    SPOT,
+    LINE_LIGHT,
+    beam.AstigmaticLight.place(GENERAL, PLACEMENT, 1e-3),
+    beam.Estimate(1.0, 0.1),
+]
+
+
+@pytest.mark.parametrize("thing", OBJECTS, ids=lambda thing: type(thing).__name__)
+def test_pickles_are_equal_to_what_went_in(thing: object) -> None:
+    again = pickle.loads(pickle.dumps(thing))
+    assert again == thing
+    assert type(again) is type(thing)
+    assert repr(again) == repr(thing)
+
+
+def test_tables_and_records_can_be_pickled() -> None:
+    again = pickle.loads(pickle.dumps(TABLE))
+    # It is normalised once more, which may change the last digit.
+    np.testing.assert_allclose(again.knots, TABLE.knots, rtol=1e-15)
+    event = SPOT.next_event([0.0, 1e-5], 0.0, 0.0)
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(event)).wi, event.wi)
+
+
+def test_representations_show_the_numbers() -> None:
+    assert repr(LASER) == "GaussianBeam(wavelength=6.5e-7, waist_radius=0.0001, m_squared=1.0)"
+    assert repr(FAN) == (
+        "FanGeometry(fan_angle=0.5, apex_offset=0.002, focus_distance=0.2, "
+        "focus_curve='equal_distance')"
+    )
+    assert eval(repr(SPOT), vars(beam)) == SPOT
+    assert "3 angles" in repr(beam.TabulatedLineLight.place(TABULATED, PLACEMENT, 1e-3))
+    assert repr(SPOT.next_event(0, 0, 0.2)).startswith("NextEvent(point=array([0. , 0. , 0.3])")
+
+
+def test_objects_cannot_be_changed() -> None:
+    with pytest.raises(AttributeError):
+        LASER.wavelength = 1.0  # type: ignore[misc]
+    with pytest.raises(AttributeError):
+        SPOT.power = 1.0  # type: ignore[misc]
+
+
+def test_closed_forms_are_the_texts_of_the_shaders() -> None:
+    assert "fn tem00_spot_next_event(" in closed_form.WGSL
+    assert "tem00_spot_next_event_f32" in closed_form.C_HEADER

@@ -22,12 +22,10 @@ constexpr uint64_t MEMORY_BYTES = uint64_t(1) << 30;
 /// Keeps the seeds of the lasers apart.
 constexpr uint64_t SEED_STEP = 0x9e3779b97f4a7c15;
 
-double finite(const Properties &props, std::string_view name, double otherwise) {
-    const double value = props.get<double>(name, otherwise);
-    // Up to here coordinates are exact to less than a sample.
+/// Refuses a coordinate beyond 1e9; up to there it is exact to far less than a sample.
+void check_coordinate(std::string_view name, double value) {
     if (!(std::abs(value) <= 1e9))
-        refuse(props, name, tfm::format("must be from -1e9 to 1e9, got %g", value));
-    return value;
+        Throw("speckle: %s: must be from -1e9 to 1e9, got %g", name, value);
 }
 
 uint64_t count(const Properties &props, std::string_view name, int64_t otherwise, int64_t least,
@@ -109,13 +107,26 @@ Settings::Settings(const Properties &props)
       pattern_diameter(optional_count(props, "pattern_diameter", 8, 1 << 14)),
       path((uint32_t) choice(props, "path", PATHS)),
       half_period(count(props, "half_period", 64, 1, 1 << 15)),
-      length(count(props, "length", 2, 2, 1 << 14)), u(finite(props, "u", 0.0)),
-      shift_x(finite(props, "shift_x", 0.0)), shift_y(finite(props, "shift_y", 0.0)),
+      length(count(props, "length", 2, 2, 1 << 14)), u(props.get<double>("u", 0.0)),
+      shift_x(props.get<double>("shift_x", 0.0)), shift_y(props.get<double>("shift_y", 0.0)),
       file(stack_file(props)) {
     if (pattern_size && pattern_diameter > pattern_size / 2)
         refuse(props, "pattern_diameter",
                tfm::format("must be at most half the pattern_size %i, got %i", pattern_size,
                            pattern_diameter));
+    check_motion();
+}
+
+void Settings::traverse(TraversalCallback *callback) {
+    callback->put("u", u, ParamFlags::NonDifferentiable);
+    callback->put("shift_x", shift_x, ParamFlags::NonDifferentiable);
+    callback->put("shift_y", shift_y, ParamFlags::NonDifferentiable);
+}
+
+void Settings::check_motion() const {
+    check_coordinate("u", u);
+    check_coordinate("shift_x", shift_x);
+    check_coordinate("shift_y", shift_y);
 }
 
 std::array<uint64_t, 2> Settings::square() const {

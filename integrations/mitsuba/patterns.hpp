@@ -29,6 +29,12 @@ struct Settings {
     /// Returns the side of the square pattern that is asked for, and its diameter, in samples.
     std::array<uint64_t, 2> square() const;
 
+    /// Exposes what may change between two images.
+    void traverse(TraversalCallback *callback);
+
+    /// Throws if what was changed is out of range.
+    void check_motion() const;
+
     std::string to_string() const;
 
     /// Whether there is any speckle.
@@ -61,6 +67,7 @@ public:
     explicit Patterns(const Properties &props) : m_settings(props) {}
 
     const Settings &settings() const { return m_settings; }
+    Settings &settings() { return m_settings; }
 
     /// Makes what an image of the scene needs, unless it is there already.
     void prepare(const Scene &scene, const Sensor &sensor);

@@ -51,6 +51,16 @@ public:
         return trace(scene, sampler, ray, {});
     }
 
+    void traverse(TraversalCallback *callback) override {
+        Base::traverse(callback);
+        m_patterns.settings().traverse(callback);
+    }
+
+    void parameters_changed(const std::vector<std::string> &keys) override {
+        m_patterns.settings().check_motion();
+        Base::parameters_changed(keys);
+    }
+
     std::string to_string() const override {
         return tfm::format("Speckle[\n  max_depth = %i,\n  rr_depth = %u,\n  %s\n]",
                            (int) m_max_depth, m_rr_depth, m_patterns.settings().to_string());

@@ -105,6 +105,19 @@ def test_the_pattern_moves_right_and_down_by_the_shift() -> None:
     np.testing.assert_allclose(factor(integrator=integrator), expected, atol=TOLERANCE)
 
 
+def test_the_pattern_can_be_moved_after_the_scene_was_loaded() -> None:
+    moved = scenes.scene(speckle(path="circle", half_period=4))
+    parameters = mi.traverse(moved.integrator())
+    parameters["u"], parameters["shift_x"] = 1.375, 3.25
+    parameters.update()
+    integrator = speckle(path="circle", half_period=4, u=1.375, shift_x=3.25)
+    loaded = scenes.scene(integrator)
+    np.testing.assert_array_equal(np.array(mi.render(moved)), np.array(mi.render(loaded)))
+    parameters["shift_y"] = float("nan")
+    with pytest.raises(RuntimeError, match="speckle: shift_y: "):
+        parameters.update()
+
+
 @pytest.mark.parametrize(
     ("path", "words"),
     [

@@ -119,7 +119,8 @@ def blocks(image: Array, side: int = 8) -> Array:
     """Return the sums over blocks of pixels, without the rest at the lower and right edges."""
     rows, columns = (length // side for length in image.shape)
     cut = image[: rows * side, : columns * side]
-    return cut.reshape(rows, side, columns, side).sum(axis=(1, 3))
+    sums: Array = cut.reshape(rows, side, columns, side).sum(axis=(1, 3))
+    return sums
 
 
 def assert_within_noise(both: Pair, side: int) -> None:

@@ -96,11 +96,10 @@ def library_light(properties: Properties) -> Any:
 
 
 def located(spot: Properties, suffix: str) -> Any:
-    waist_radius = spot.get("waist_radius" + suffix, spot["waist_radius"])
-    m_squared = spot.get("m_squared" + suffix, spot.get("m_squared", 1.0))
-    distance = spot.get("waist_distance" + suffix, spot.get("waist_distance", 0.0))
-    focus = beam.GaussianBeam.from_waist(spot["wavelength"], waist_radius)
-    return beam.LocatedBeam.new(focus.with_m_squared(m_squared), distance)
+    first = {"waist_distance": 0.0, "m_squared": 1.0, **spot}
+    own = {name: first.get(name + suffix, value) for name, value in first.items()}
+    focus = beam.GaussianBeam.from_waist(own["wavelength"], own["waist_radius"])
+    return beam.LocatedBeam.new(focus.with_m_squared(own["m_squared"]), own["waist_distance"])
 
 
 def library_line(line: Properties) -> Any:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import mitsuba as mi
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy import stats
 
 mi.set_variant("llvm_ad_rgb")
@@ -20,11 +21,9 @@ from tem00.mitsuba.speckle_settings import PatternSettings  # noqa: E402
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
 tem00.mitsuba.register()
 
-Array = NDArray[np.float64] if TYPE_CHECKING else Any
+Array = NDArray[np.float64]
 Node = dict[str, Any]
 Transform = mi.ScalarTransform4f
 
@@ -169,7 +168,7 @@ def test_pixels_show_the_mean_of_the_pattern_over_their_areas() -> None:
 
 def test_a_crop_shows_the_same_pattern_at_the_same_pixels() -> None:
     window = {"crop_offset_x": 7, "crop_offset_y": 5, "crop_width": 12, "crop_height": 9}
-    parts = {"plate": PLATE, "laser": LASER, "camera": camera(**window)}
+    parts: Node = {"plate": PLATE, "laser": LASER, "camera": camera(**window)}
     ratio = picture(DIRECT, 256, **parts) / picture(plain(), 256, **parts)
     expected = pixel_means(stack_of())[5:14, 7:19]
     # 256 samples of a factor that varies by at most its mean over a pixel of 1/4.5 speckle.
@@ -191,7 +190,7 @@ def test_a_shift_moves_the_pattern_right_and_down() -> None:
 
 
 def test_slices_change_the_pattern_by_their_correlation() -> None:
-    wide = {"plate": PLATE, "laser": LASER, "camera": camera(128, 96)}
+    wide: Node = {"plate": PLATE, "laser": LASER, "camera": camera(128, 96)}
     moving = {**DIRECT, "path": "straight", "half_period": 32}
     loaded = scene(moving, **wide)
     smooth = picture(plain(), 64, **wide)
@@ -216,7 +215,7 @@ def test_a_stack_file_is_the_stack_it_holds(tmp_path: Path) -> None:
     assert np.array_equal(picture(from_file), picture({**DIRECT, "seed": 3}))
 
 
-def corner(**lights: Node) -> dict[str, Node]:
+def corner(**lights: Node) -> Node:
     """Return a plate and a wall beside it that only light from the plate reaches."""
     wall = {
         "type": "rectangle",
@@ -236,7 +235,7 @@ def test_light_that_met_two_rough_surfaces_is_left_alone() -> None:
     assert np.array_equal(smooth, speckled)
 
 
-def hidden_plate() -> dict[str, Node]:
+def hidden_plate() -> Node:
     """Return a lit plate that faces away from the camera, and a wall that it lights."""
     above = Transform().translate([0.0, 0.0, 0.02])
     facing_away = above @ Transform().rotate([0.0, 1.0, 0.0], 180.0)
@@ -260,7 +259,7 @@ def test_a_mirror_on_the_way_leaves_the_speckle() -> None:
         @ Transform().scale(0.02),
         "bsdf": {"type": "conductor"},
     }
-    parts = {"plate": PLATE, "mirror": mirror, "laser": LASER, "camera": sensor}
+    parts: Node = {"plate": PLATE, "mirror": mirror, "laser": LASER, "camera": sensor}
     ratio = picture({**DIRECT, "max_depth": 3}, 256, **parts) / picture(
         plain(max_depth=3), 256, **parts
     )
@@ -268,7 +267,7 @@ def test_a_mirror_on_the_way_leaves_the_speckle() -> None:
 
 
 def test_other_lights_have_no_speckle() -> None:
-    lamps = {
+    lamps: Node = {
         "point": {"type": "point", "position": [0.05, 0.0, 0.2]},
         "sky": {"type": "constant", "radiance": 0.2},
     }
@@ -286,7 +285,7 @@ def test_two_lasers_have_patterns_of_their_own_seeds() -> None:
     off = {**LASER, "power": 1e-12}
     for number in range(2):
         # Nothing to see of the other but the choice between the two.
-        pair = {name: LASER if index == number else off for index, name in enumerate(names)}
+        pair: Node = {name: LASER if index == number else off for index, name in enumerate(names)}
         ratio = picture(DIRECT, 1024, plate=PLATE, **pair) / picture(
             plain(), 1024, plate=PLATE, **pair
         )
@@ -296,7 +295,7 @@ def test_two_lasers_have_patterns_of_their_own_seeds() -> None:
         assert correlations[1 - number] < 0.5
 
 
-def lit_box() -> dict[str, Node]:
+def lit_box() -> Node:
     """Return rough, smooth and transparent things under lights of all kinds."""
     overhead = Transform().look_at([0.0, 0.1, 0.2], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0])
     return corner(
@@ -352,7 +351,7 @@ def test_direct_light_of_a_laser_is_that_of_the_direct_integrator() -> None:
 
 
 def test_gaussian_filters_and_several_passes_see_the_same_light() -> None:
-    parts = {"plate": PLATE, "laser": LASER, "camera": camera(filter={"type": "gaussian"})}
+    parts: Node = {"plate": PLATE, "laser": LASER, "camera": camera(filter={"type": "gaussian"})}
     smooth = picture(plain(), 64, **parts)
     theirs = picture({"type": "direct", "emitter_samples": 1, "bsdf_samples": 0}, 64, **parts)
     # Rounding of the places on the film.

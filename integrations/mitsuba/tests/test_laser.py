@@ -113,7 +113,7 @@ def placed_line(laser: Any, properties: Scene) -> beam.LineLight:
         "uniform_angle": beam.LineProfile.uniform_angle(),
         "powell": beam.LineProfile.powell(properties.get("edge", 0.05)),
     }
-    curves = {"distance": "equal_distance", "plane": "equal_plane"}
+    on_plane = properties.get("focus_curve") == "plane"
     focus = beam.GaussianBeam.from_waist(WAVELENGTH, properties["thickness"] / 2)
     focus = focus.with_m_squared(properties.get("m_squared", 1.0))
     tangent = np.tan(np.radians(properties["fan_angle"] / 2))
@@ -122,7 +122,7 @@ def placed_line(laser: Any, properties: Scene) -> beam.LineLight:
         apex_offset=properties.get("apex_offset",
                                    focus.radius_at(properties["focus_distance"]) / tangent),
         focus_distance=properties["focus_distance"],
-        focus_curve=curves[properties.get("focus_curve", "distance")],
+        focus_curve="equal_plane" if on_plane else "equal_distance",
     )
     profile = profiles[properties.get("profile", "gaussian")]
     origin, axes = frame(laser)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from math import radians, tan
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, Literal, cast
 
 import drjit as dr
 import mitsuba as mi
@@ -23,7 +23,10 @@ if TYPE_CHECKING:
     from drjit.auto.ad import Float
     from numpy.typing import NDArray
 
-_FOCUS_CURVES: Final = {"distance": "equal_distance", "plane": "equal_plane"}
+_FOCUS_CURVES: dict[str, Literal["equal_distance", "equal_plane"]] = {
+    "distance": "equal_distance",
+    "plane": "equal_plane",
+}
 _PROFILES = {
     "gaussian": beam.LineProfile.gaussian_tan,
     "gaussian_angle": beam.LineProfile.gaussian_angle,

@@ -153,7 +153,7 @@ def speckle_size(laser: mi.Emitter, sensor: mi.Sensor) -> float:
         If the sensor has no lens or the emitter no wavelength.
     """
     lens = mi.traverse(sensor)
-    wavelength = getattr(laser, "wavelength", None)
+    wavelength: float | None = getattr(laser, "wavelength", None)
     if "aperture_radius" not in lens or "x_fov" not in lens:
         raise refused("speckle_size", "required, as the sensor is no `thinlens` that determines it")
     if wavelength is None:

@@ -79,7 +79,8 @@ class PathTracer(NamedTuple):
             si = self._arrive(walk)
             self._connect(walk, si, sampler)
             return walk
-        return self._walk(walk, sampler)
+        end: Walk = self._walk(walk, sampler)
+        return end
 
     @dr.syntax
     def _walk(self, walk: Walk, sampler: mi.Sampler) -> Walk:

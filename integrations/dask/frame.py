@@ -59,8 +59,8 @@ class Parameters:
     rows: int
 
     def __post_init__(self) -> None:
-        check("thickness", self.thickness, 5e-5, 5e-3)
-        check("tilt", self.tilt, -0.87, 1.2)
+        check("thickness in metres", self.thickness, 5e-5, 5e-3)
+        check("tilt in radians", self.tilt, -0.87, 1.2)
         check("columns", self.columns, 16, 2048)
         check("rows", self.rows, 16, 2048)
 

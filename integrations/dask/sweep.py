@@ -127,7 +127,7 @@ def parse(command_line: list[str]) -> argparse.Namespace:
     )
     add = parser.add_argument
     add("--thickness", type=float, nargs="+", default=[2e-4, 4e-4, 8e-4], help="full, 1/e², in m")
-    add("--tilt", type=float, nargs="+", default=[-30.0, 0.0, 30.0], help="surface, in degrees")
+    add("--tilt", type=float, nargs="+", default=[-30.0, 0.0, 30.0], help="degrees, -49 to 68")
     add("--f-number", type=float, nargs="+", default=[5.6, 8.0, 16.0], help="of the camera")
     add("--seeds", type=int, default=12, help="patterns of speckle for each of these")
     add("--size", type=int, nargs=2, default=[192, 128], help="columns and rows of a picture")
@@ -164,6 +164,10 @@ def main(command_line: list[str]) -> None:
 if __name__ == "__main__":
     try:
         main(sys.argv[1:])
-    except ValueError as error:  # tem00.ParameterError is one, too
+    # tem00.ParameterError is a ValueError, a folder or scheduler out of reach an OSError.
+    except (ValueError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         sys.exit(2)
+    except KeyboardInterrupt:
+        print("stopped; started again it computes the frames that are missing", file=sys.stderr)
+        sys.exit(130)

@@ -179,8 +179,8 @@ def test_speckle_moves_the_line_as_the_closed_form_says() -> None:
 @pytest.mark.parametrize(
     ("name", "options"),
     [
-        ("thickness", ["--thickness", "nan"]),
-        ("tilt", ["--tilt", "80"]),
+        ("thickness in metres", ["--thickness", "nan"]),
+        ("tilt in radians", ["--tilt", "80"]),
         ("columns", ["--size", "4", "64"]),
         ("rows", ["--size", "64", "4096"]),
     ],
@@ -198,3 +198,20 @@ def test_what_a_worker_refuses_ends_the_program_with_its_message(
     assert refused.returncode == 2
     assert refused.stderr.startswith("error: f-number must")
     assert "Traceback" not in refused.stderr
+
+
+def test_a_folder_that_cannot_be_made_ends_the_program_with_a_message(
+    tmp_path: Path, scheduler: str
+) -> None:
+    (tmp_path / "file").touch()
+    options = ["--scheduler", scheduler]
+    refused = subprocess.run(command(tmp_path / "file", *options), capture_output=True, text=True)
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("error: ")
+    assert "Traceback" not in refused.stderr
+
+
+def test_an_interrupt_says_how_to_go_on(tmp_path: Path, scheduler: str) -> None:
+    with start(tmp_path, scheduler) as process:
+        process.send_signal(signal.SIGINT)
+    assert process.returncode == 130

@@ -185,7 +185,8 @@ Patterns::Pattern Patterns::pattern(Stack stack, double speckle_size, const Plac
 }
 
 Patterns::Stack Patterns::generate(const Purpose &purpose, size_t laser) const {
-    return named("speckle", {}, [&] {
+    const char *too_many = m_settings.path ? "half_period" : "pattern_size";
+    return named("speckle", { { "memory_limit", too_many } }, [&] {
         return std::make_shared<tem00::stack>(describe(purpose, laser));
     });
 }
@@ -204,7 +205,8 @@ tem00_stack_description Patterns::describe(const Purpose &purpose, size_t laser)
         needs.speckle_size = purpose.speckle_sizes[laser];
         needs.frames       = 1;
         needs.memory_limit = memory;
-        description        = tem00::plan(needs);
+        description = named("speckle", { { "memory_limit", "speckle_size" } },
+                            [&] { return tem00::plan(needs); });
     }
     description.seed          = m_settings.seed + (laser + 1) * SEED_STEP;
     description.path          = m_settings.path;

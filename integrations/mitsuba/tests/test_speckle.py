@@ -305,8 +305,20 @@ def test_a_camera_without_a_lens_needs_the_speckle_size() -> None:
 
 
 def test_speckle_finer_than_any_pattern_is_refused() -> None:
-    with pytest.raises(RuntimeError, match="speckle"):
+    with pytest.raises(RuntimeError, match="speckle: speckle_size: "):
         scenes.render(speckle(speckle_size=1e-6))
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        ("half_period", {"path": "circle", "half_period": 4096, "pattern_size": 1024}),
+        ("pattern_size", {"pattern_size": 32768}),
+    ],
+)
+def test_more_pattern_than_fits_the_memory_is_refused(name: str, given: dict[str, object]) -> None:
+    with pytest.raises(RuntimeError, match=f"speckle: {name}: memory"):
+        scenes.render(speckle() | given)
 
 
 def test_inside_another_integrator_it_says_what_it_lacks() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import isfinite
 from typing import TYPE_CHECKING
 
@@ -87,7 +87,9 @@ def refuse_unknown(props: mi.Properties) -> None:
     """Refuse properties that nobody asked for."""
     unknown = props.unqueried()
     if unknown:
-        raise refused(unknown[0], "no property of this integrator")
+        names = "max_depth, rr_depth, hide_emitters, speckle, u, shift_x, shift_y"
+        known = ", ".join([names, *(field.name for field in fields(PatternSettings))])
+        raise refused(unknown[0], f"no property of this integrator; those are {known}")
 
 
 def _speckle_size(props: mi.Properties) -> float | None:

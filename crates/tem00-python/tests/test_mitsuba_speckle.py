@@ -446,6 +446,19 @@ def test_a_pattern_too_small_for_its_pupil_is_refused() -> None:
     assert caught.value.parameter == "pattern_diameter"
 
 
+@pytest.mark.parametrize(
+    ("name", "properties"),
+    [
+        ("half_period", {"path": "circle", "half_period": 4096, "pattern_size": 1024}),
+        ("pattern_size", {"pattern_size": 32768}),
+    ],
+)
+def test_what_takes_too_much_memory_is_named(name: str, properties: dict[str, Any]) -> None:
+    with pytest.raises(ParameterError, match="bytes|GiB") as caught:
+        generate(settings(**properties), [SPECKLE_SIZE], (32, 24))
+    assert caught.value.parameter == name
+
+
 def test_a_file_refuses_what_it_determines(tmp_path: Path) -> None:
     file = tmp_path / "stack.t00"
     stack_of().write_to(file)

@@ -95,42 +95,54 @@ def generate(
         stack = _read(settings.file)
         _check_table([stack])
         return [Pattern(stack, size, _place(number)) for number, size in enumerate(sizes)]
-    stacks = [_stack(settings, size, number, image) for number, size in enumerate(sizes)]
+    memory = _PATTERN_MEMORY // max(len(sizes), 1)
+    stacks = []
+    for number, size in enumerate(sizes):
+        plan = _plan(settings, size, image, memory)
+        stacks.append(_stack(settings, plan, number, memory))
     _check_table(stacks)
     return [Pattern(stack, size, (0.0, 0.0)) for stack, size in zip(stacks, sizes, strict=True)]
 
 
-def _stack(
-    settings: PatternSettings, speckle_size: float, number: int, image: tuple[int, int]
-) -> SpeckleStack:
-    """Return the stack that `tem00 render` has for the laser of this number in a still scene."""
-    seed = (settings.seed + (number + 1) * _SEED_STEP) % 2**64
+def _plan(
+    settings: PatternSettings, speckle_size: float, image: tuple[int, int], memory: int
+) -> StackPlan:
+    """Return the sizes of a pattern: what the image needs, or what the scene sets."""
     try:
-        field = _plan(settings, speckle_size, image).field(seed)
-        options = StackOptions(memory_limit=_PATTERN_MEMORY)
-        return SpeckleStack.generate_with(field, _path(settings), options)
+        needs = StackNeeds(
+            image=image,
+            region=image,
+            speckle_size=speckle_size,
+            motion=None,
+            frames=1,
+            memory_limit=memory,
+        )
+        plan = StackPlan.new(needs)
+        size, diameter = settings.pattern_size, settings.pattern_diameter
+        if size is None and diameter is None:
+            return plan
+        return plan.with_square(size or 2 * (diameter or 0), diameter or (size or 0) // 2)
     except MemoryError as error:
         raise refused("speckle_size", f"too small for an image of {image}: {error}") from error
     except ParameterError as error:
-        name = _PROPERTIES.get(error.parameter, error.parameter)
-        raise refused(name, str(error)) from error
+        raise _renamed(error) from error
 
 
-def _plan(settings: PatternSettings, speckle_size: float, image: tuple[int, int]) -> StackPlan:
-    """Return the sizes of a pattern: what the image needs, or what the scene sets."""
-    needs = StackNeeds(
-        image=image,
-        region=image,
-        speckle_size=speckle_size,
-        motion=None,
-        frames=1,
-        memory_limit=_PATTERN_MEMORY,
-    )
-    plan = StackPlan.new(needs)
-    size, diameter = settings.pattern_size, settings.pattern_diameter
-    if size is None and diameter is None:
-        return plan
-    return plan.with_square(size or 2 * (diameter or 0), diameter or (size or 0) // 2)
+def _stack(settings: PatternSettings, plan: StackPlan, number: int, memory: int) -> SpeckleStack:
+    """Return the stack that `tem00 render` has for the laser of this number in a still scene."""
+    seed = (settings.seed + (number + 1) * _SEED_STEP) % 2**64
+    try:
+        options = StackOptions(memory_limit=memory)
+        return SpeckleStack.generate_with(plan.field(seed), _path(settings), options)
+    except MemoryError as error:
+        name = "pattern_size" if settings.path == "still" else "half_period"
+        raise refused(name, f"too large: {error}") from error
+    except ParameterError as error:
+        raise _renamed(error) from error
+
+
+def _renamed(error: ParameterError) -> ParameterError:
+    return refused(_PROPERTIES.get(error.parameter, error.parameter), str(error))
 
 
 def _path(settings: PatternSettings) -> SlicePath:

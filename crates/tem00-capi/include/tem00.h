@@ -1573,7 +1573,8 @@ tem00_status tem00_correlation(double pupil_shift, double axial_shift, double *c
 
 /**
  * Computes the distance between two slices of a circular stack that have a given intensity
- * correlation; the stack has twice `half_period` slices.
+ * correlation: 0 for 1 or more, and `half_period` for 0 or less. The stack has twice `half_period`
+ * slices.
  *
  * The pointer is null or valid.
  */

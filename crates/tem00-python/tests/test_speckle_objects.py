@@ -29,6 +29,7 @@ from tem00.speckle import (
     StackPlan,
     Transmission,
 )
+from tem00.statistics import autocovariance
 
 FIELD = PupilField.new(64, 16, 7)
 STACK = SpeckleStack.generate(FIELD, SlicePath.circle(half_period=2))
@@ -81,6 +82,15 @@ def test_views_share_their_memory_and_keep_it_alive() -> None:
     others = [FIELD.with_seed(seed).pattern() for seed in range(5)]
     np.testing.assert_array_equal(image, before)
     assert len(others) == 5
+
+
+def test_views_are_given_while_another_thread_reads_them() -> None:
+    pattern = PupilField.new(1024, 256, 1).pattern()
+    worker = threading.Thread(target=lambda: autocovariance(pattern.values, "periodic"))
+    worker.start()
+    while worker.is_alive():
+        assert pattern.values.shape == (1024, 1024)
+    worker.join()
 
 
 def resident_bytes() -> int:

@@ -26,7 +26,8 @@ pub unsafe extern "C" fn tem00_correlation(
 }
 
 /// Computes the distance between two slices of a circular stack that have a given intensity
-/// correlation; the stack has twice `half_period` slices.
+/// correlation: 0 for 1 or more, and `half_period` for 0 or less. The stack has twice `half_period`
+/// slices.
 ///
 /// # Safety
 ///

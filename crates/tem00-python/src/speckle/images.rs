@@ -1,6 +1,6 @@
 //! Images that Python sees where they lie, [row, column].
 
-use numpy::{Element, PyArray2, PyArrayMethods, ndarray::ArrayView2};
+use numpy::{Element, PyArray2, ndarray::ArrayView2};
 use pyo3::{
     exceptions::{PyMemoryError, PyRuntimeError},
     prelude::*,
@@ -22,7 +22,8 @@ pub(crate) unsafe fn view<'py, T: Element>(
     // SAFETY: the array keeps `owner` alive, and with it the values, which nobody changes: not Rust,
     // as the caller promises, and not Python, for which they are made read-only here.
     let array = unsafe { PyArray2::borrow_from_array(&values, owner) };
-    drop(array.try_readwrite()?.make_nonwriteable());
+    // Not through a borrow to write, which fails while another thread reads the same values.
+    array.call_method1("setflags", (false,))?;
     Ok(array)
 }
 

@@ -16,6 +16,10 @@
     feature = "tracer",
     doc = "| [`tracer`] | `tem00-tracer` | a reference path and light tracer (feature `tracer`) |"
 )]
+#![cfg_attr(
+    feature = "triangulation",
+    doc = "| [`triangulation`] | `tem00-triangulation` | sensor, line detectors, calibration, profiles and their uncertainty (feature `triangulation`) |"
+)]
 
 pub use tem00_beam as beam;
 pub use tem00_decorrelation as decorrelation;
@@ -24,6 +28,8 @@ pub use tem00_speckle as speckle;
 pub use tem00_statistics as statistics;
 #[cfg(feature = "tracer")]
 pub use tem00_tracer as tracer;
+#[cfg(feature = "triangulation")]
+pub use tem00_triangulation as triangulation;
 pub use tem00_wave as wave;
 
 #[cfg(doctest)]

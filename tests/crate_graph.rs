@@ -62,17 +62,39 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         ],
     ),
     (
-        "tem00-cli",
+        "tem00-triangulation",
         &[
+            "tem00-beam",
+            "tem00-decorrelation",
             "tem00-numerics",
             "tem00-speckle",
             "tem00-statistics",
             "tem00-tracer",
         ],
         &[
+            "glam",
+            "libm",
+            "nalgebra",
+            "rand_chacha",
+            "rand_core",
+            "rand_distr",
+            "rayon",
+        ],
+    ),
+    (
+        "tem00-cli",
+        &[
+            "tem00-numerics",
+            "tem00-speckle",
+            "tem00-statistics",
+            "tem00-tracer",
+            "tem00-triangulation",
+        ],
+        &[
             "clap",
             "ctrlc",
             "exr",
+            "glam",
             "indicatif",
             "kuva",
             "miette",
@@ -83,6 +105,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "serde_json",
             "tempfile",
             "thiserror",
+            "tiff",
         ],
     ),
     (

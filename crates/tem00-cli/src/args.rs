@@ -1,13 +1,25 @@
 //! The command line.
 
+mod budget;
+mod calibrate;
+mod design;
+mod lines;
 mod render;
+mod triangulate;
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use tem00_speckle::Pupil;
 
-pub(crate) use self::render::{FrameRange, RenderArgs};
+pub(crate) use self::{
+    budget::BudgetArgs,
+    calibrate::CalibrateArgs,
+    design::DesignArgs,
+    lines::LinesArgs,
+    render::{FrameRange, RenderArgs},
+    triangulate::TriangulateArgs,
+};
 use crate::image::Transfer;
 
 const EXAMPLES: &str = "\
@@ -32,6 +44,11 @@ pub(crate) enum Command {
     Render(RenderArgs),
     Pattern(PatternArgs),
     Stats(StatsArgs),
+    Lines(LinesArgs),
+    Calibrate(CalibrateArgs),
+    Triangulate(TriangulateArgs),
+    Budget(BudgetArgs),
+    Design(DesignArgs),
 }
 
 /// Generate a speckle pattern and compare it with the theory.

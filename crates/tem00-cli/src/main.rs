@@ -2,11 +2,15 @@
 
 mod args;
 mod atomic;
+mod budget;
+mod calibrate;
 mod colour;
+mod design;
 mod failure;
 mod frame_files;
 mod image;
 mod interrupt;
+mod lines;
 mod pattern;
 mod preview;
 mod progress;
@@ -14,6 +18,7 @@ mod render;
 mod stats;
 mod summary;
 mod table;
+mod triangulate;
 
 use std::{
     io::{self, Write},
@@ -48,6 +53,11 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Render(args) => render::run(args, &mut out),
         Command::Pattern(args) => pattern::run(args, &mut out),
         Command::Stats(args) => stats::run(args, &mut out),
+        Command::Lines(args) => lines::run(args, &mut out),
+        Command::Calibrate(args) => calibrate::run(args, &mut out),
+        Command::Triangulate(args) => triangulate::run(args, &mut out),
+        Command::Budget(args) => budget::run(args, &mut out),
+        Command::Design(args) => design::run(args, &mut out),
     }?;
     out.flush().map_err(|error| Failure::stdout(&error))
 }

@@ -115,12 +115,21 @@ pub use render::{
 };
 pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 pub use scene_file::{SceneError, SceneFile, parse_scene, read_scene};
+
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
 pub use speckle::{PatternPlan, RoughnessNote, SpeckleModel, SpecklePlan};
 pub use trajectory::{Keyframe, Rotation, Trajectory};
 
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};
+
+/// Files in the syntax of scene files, section by section: for what reads more than a scene.
+pub mod document {
+    pub use crate::scene_file::{
+        ANGLE, Choice, DURATION, Dimension, Document, Format, LENGTH, MEMORY, NUMBER, POWER,
+        Problem, RADIANCE, Section, Value, parse_document, read_document,
+    };
+}
 
 /// How rigid bodies move.
 pub use tem00_decorrelation::RigidMotion;

@@ -3,7 +3,7 @@ use super::section::Section;
 
 /// A scene as its files tell it, those that are included first.
 #[derive(Debug)]
-pub(super) struct Document<'a> {
+pub struct Document<'a> {
     files: Vec<Section<'a>>,
 }
 
@@ -14,7 +14,12 @@ impl<'a> Document<'a> {
     }
 
     /// Opens the table of a key, which one of the files may have.
-    pub(super) fn table(
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed in its file, if it is written otherwise, is given twice or has a key that it
+    /// may not have.
+    pub fn table(
         &self,
         key: &'static str,
         keys: &'static [&'static str],
@@ -34,7 +39,12 @@ impl<'a> Document<'a> {
     }
 
     /// Opens every table of a key of which each file may have several.
-    pub(super) fn tables(
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed in its file, if it is written otherwise, is given twice or has a key that it
+    /// may not have.
+    pub fn tables(
         &self,
         key: &'static str,
         keys: &'static [&'static str],

@@ -95,7 +95,7 @@ pub(super) struct Place {
 
 /// A [`SceneError`] before it knows the file it belongs to.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Problem {
+pub struct Problem {
     pub(super) message: String,
     pub(super) place: Option<Place>,
     pub(super) help: Option<String>,
@@ -103,7 +103,7 @@ pub(super) struct Problem {
 
 impl Problem {
     /// Creates a problem without a place.
-    pub(super) fn new(message: impl Into<String>) -> Self {
+    pub fn new(message: impl Into<String>) -> Self {
         Self {
             message: message.into(),
             place: None,
@@ -118,7 +118,8 @@ impl Problem {
     }
 
     /// Adds how to put it right.
-    pub(super) fn with_help(mut self, help: impl Into<String>) -> Self {
+    #[must_use]
+    pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }

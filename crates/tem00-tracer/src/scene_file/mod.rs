@@ -5,6 +5,7 @@ mod camera;
 mod document;
 mod error;
 mod filter;
+mod format;
 mod laser;
 mod light;
 mod material;
@@ -23,11 +24,15 @@ mod value;
 use std::path::{Path, PathBuf};
 
 use assets::Assets;
-use document::Document;
-use error::Problem;
-pub use error::SceneError;
-use section::Section;
+use format::SCENE;
 use source::Sources;
+
+pub use document::Document;
+pub use error::{Problem, SceneError};
+pub use format::Format;
+pub use quantity::{ANGLE, DURATION, Dimension, LENGTH, MEMORY, NUMBER, POWER, RADIANCE};
+pub use section::{Choice, Section};
+pub use value::Value;
 
 use crate::Scene;
 
@@ -62,12 +67,30 @@ impl SceneFile {
     ///
     /// Returns the errors of [`read_scene`].
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let sources = Sources::of_file(path)?;
+        Self::read_with(path, |_, _| Ok(())).map(|(file, ())| file)
+    }
+
+    /// Reads a scene file, and with `further` those of its sections that say what becomes of the image:
+    /// `[sensor]`, `[detector]`, `[calibration]` and `[scan]`.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`read_scene`], and those of `further`, placed in the file.
+    pub fn read_with<T>(
+        path: &Path,
+        further: impl FnOnce(&Document<'_>, &Scene) -> Result<T, Problem>,
+    ) -> Result<(Self, T), SceneError> {
+        let sources = Sources::of_file(path, SCENE)?;
         let mut files = sources.files();
         let mut assets = Assets::default();
-        let scene = scene(&sources, &mut assets).map_err(|problem| sources.locate(problem))?;
+        let read = with_document(&sources, |root| {
+            let scene = scene(root, &mut assets)?;
+            let further = further(root, &scene)?;
+            Ok((scene, further))
+        });
+        let (scene, further) = read.map_err(|problem| sources.locate(problem))?;
         files.extend(assets.into_files());
-        Ok(Self { scene, files })
+        Ok((Self { scene, files }, further))
     }
 }
 
@@ -111,28 +134,65 @@ impl SceneFile {
 /// # Ok::<(), tem00_tracer::SceneError>(())
 /// ```
 pub fn parse_scene(text: &str, base_directory: &Path) -> Result<Scene, SceneError> {
-    let sources = Sources::of_text(text.to_owned(), None, base_directory)?;
-    scene(&sources, &mut Assets::default()).map_err(|problem| sources.locate(problem))
+    let sources = Sources::of_text(text.to_owned(), None, base_directory, SCENE)?;
+    with_document(&sources, |root| scene(root, &mut Assets::default()))
+        .map_err(|problem| sources.locate(problem))
 }
 
-fn scene(sources: &Sources, assets: &mut Assets) -> Result<Scene, Problem> {
+/// Reads a file of another kind, in the syntax and with the units of scene files.
+///
+/// # Errors
+///
+/// Returns an error if the file cannot be read or is not valid TOML, if it has a key that its `format`
+/// does not know, and the errors of `read`, placed in the file.
+pub fn read_document<T>(
+    path: &Path,
+    format: Format,
+    read: impl FnOnce(&Document<'_>) -> Result<T, Problem>,
+) -> Result<T, SceneError> {
+    let sources = Sources::of_file(path, format)?;
+    with_document(&sources, read).map_err(|problem| sources.locate(problem))
+}
+
+/// Reads text as [`read_document`] reads a file; other files are looked for in `base_directory`.
+///
+/// # Errors
+///
+/// Returns the errors of [`read_document`].
+pub fn parse_document<T>(
+    text: &str,
+    base_directory: &Path,
+    format: Format,
+    read: impl FnOnce(&Document<'_>) -> Result<T, Problem>,
+) -> Result<T, SceneError> {
+    let sources = Sources::of_text(text.to_owned(), None, base_directory, format)?;
+    with_document(&sources, read).map_err(|problem| sources.locate(problem))
+}
+
+fn with_document<T>(
+    sources: &Sources,
+    read: impl FnOnce(&Document<'_>) -> Result<T, Problem>,
+) -> Result<T, Problem> {
     let parsed = sources
         .in_order()
         .map(|source| Ok((source, source.parse()?)));
     let parsed: Vec<_> = parsed.collect::<Result<_, Problem>>()?;
     let files = parsed
         .iter()
-        .map(|(source, document)| Section::root(document.get_ref(), source));
-    let root = Document::new(files.collect::<Result<_, _>>()?);
-    let camera = camera::read(&root)?;
-    let lasers = laser::read(&root)?;
+        .map(|(source, document)| Section::root(document.get_ref(), source, sources.format()));
+    read(&Document::new(files.collect::<Result<_, _>>()?))
+}
+
+fn scene(root: &Document<'_>, assets: &mut Assets) -> Result<Scene, Problem> {
+    let camera = camera::read(root)?;
+    let lasers = laser::read(root)?;
     Ok(Scene {
-        render: settings::render(&root, &camera.camera)?,
+        render: settings::render(root, &camera.camera)?,
         camera: camera.camera,
         camera_trajectory: camera.trajectory,
-        surfaces: surface::read(&root, assets, &lasers)?,
+        surfaces: surface::read(root, assets, &lasers)?,
         lasers,
-        lamps: light::read(&root, assets)?,
-        speckle: settings::speckle(&root)?,
+        lamps: light::read(root, assets)?,
+        speckle: settings::speckle(root)?,
     })
 }

@@ -2,7 +2,7 @@
 ///
 /// A bare number is in the SI unit; a string is a number followed by a unit.
 #[derive(Debug)]
-pub(super) struct Dimension {
+pub struct Dimension {
     /// What a value of this kind is called, with its article.
     pub(super) noun: &'static str,
     /// The plural of the SI unit, for messages.
@@ -33,7 +33,8 @@ const fn unit(symbol: &'static str, multiplier: f64, divisor: f64) -> Unit {
     }
 }
 
-pub(super) const NUMBER: Dimension = Dimension {
+/// Plain numbers.
+pub const NUMBER: Dimension = Dimension {
     noun: "a number",
     si_unit: "",
     example: "0.5",
@@ -41,7 +42,8 @@ pub(super) const NUMBER: Dimension = Dimension {
     units: &[],
 };
 
-pub(super) const LENGTH: Dimension = Dimension {
+/// Lengths, in metres.
+pub const LENGTH: Dimension = Dimension {
     noun: "a length",
     si_unit: "metres",
     example: "0.25 mm",
@@ -58,7 +60,8 @@ pub(super) const LENGTH: Dimension = Dimension {
     ],
 };
 
-pub(super) const ANGLE: Dimension = Dimension {
+/// Angles, in radians.
+pub const ANGLE: Dimension = Dimension {
     noun: "an angle",
     si_unit: "radians",
     example: "30 deg",
@@ -71,7 +74,8 @@ pub(super) const ANGLE: Dimension = Dimension {
     ],
 };
 
-pub(super) const POWER: Dimension = Dimension {
+/// Powers, in watts.
+pub const POWER: Dimension = Dimension {
     noun: "a power",
     si_unit: "watts",
     example: "5 mW",
@@ -85,7 +89,8 @@ pub(super) const POWER: Dimension = Dimension {
     ],
 };
 
-pub(super) const RADIANCE: Dimension = Dimension {
+/// Radiances, in W/(m² sr).
+pub const RADIANCE: Dimension = Dimension {
     noun: "a radiance",
     si_unit: "W/(m² sr)",
     example: "0.5 W/(m² sr)",
@@ -93,7 +98,24 @@ pub(super) const RADIANCE: Dimension = Dimension {
     units: &[unit("W/(m² sr)", 1.0, 1.0), unit("W/(m2 sr)", 1.0, 1.0)],
 };
 
-pub(super) const MEMORY: Dimension = Dimension {
+/// Durations, in seconds.
+pub const DURATION: Dimension = Dimension {
+    noun: "a duration",
+    si_unit: "seconds",
+    example: "2 ms",
+    magnitudes: (1e-12, 1e9),
+    units: &[
+        unit("ns", 1.0, 1e9),
+        unit("us", 1.0, 1e6),
+        unit("\u{b5}s", 1.0, 1e6),
+        unit("\u{3bc}s", 1.0, 1e6),
+        unit("ms", 1.0, 1e3),
+        unit("s", 1.0, 1.0),
+    ],
+};
+
+/// Amounts of memory, in bytes.
+pub const MEMORY: Dimension = Dimension {
     noun: "an amount of memory",
     si_unit: "bytes",
     example: "100 MiB",
@@ -111,7 +133,7 @@ pub(super) const MEMORY: Dimension = Dimension {
 
 /// All kinds that have units.
 #[cfg(test)]
-pub(super) const ALL: [&Dimension; 5] = [&LENGTH, &ANGLE, &POWER, &RADIANCE, &MEMORY];
+pub(super) const ALL: [&Dimension; 6] = [&LENGTH, &ANGLE, &POWER, &RADIANCE, &DURATION, &MEMORY];
 
 impl Dimension {
     /// Returns the symbols of all units.

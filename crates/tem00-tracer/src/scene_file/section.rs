@@ -5,24 +5,21 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Place, Problem};
-use super::source::{INCLUDE, Source};
+use super::format::Format;
+use super::source::Source;
 use super::value::{Value, nearest};
 
 /// A table that a section may have: its key, and the keys that it may have itself.
-pub(super) type Choice = (&'static str, &'static [&'static str]);
-
-/// The keys of a scene file itself.
-pub(super) const ROOT_KEYS: &[&str] = &[
-    "camera", "laser", "surface", "lamp", "render", "speckle", INCLUDE,
-];
+pub type Choice = (&'static str, &'static [&'static str]);
 
 /// One table of the file.
 ///
 /// It is opened with the keys that it may have. A key that is not among them is an error at once,
 /// before a missing key is missed: a typo in a required key is both.
 #[derive(Clone, Debug)]
-pub(super) struct Section<'a> {
+pub struct Section<'a> {
     header: String,
+    is_root: bool,
     keys: &'static [&'static str],
     table: &'a DeTable<'a>,
     place: Place,
@@ -31,10 +28,15 @@ pub(super) struct Section<'a> {
 
 impl<'a> Section<'a> {
     /// Opens a document itself.
-    pub(super) fn root(document: &'a DeTable<'a>, source: &'a Source) -> Result<Self, Problem> {
+    pub(super) fn root(
+        document: &'a DeTable<'a>,
+        source: &'a Source,
+        format: &Format,
+    ) -> Result<Self, Problem> {
         Self {
-            header: "the scene".to_owned(),
-            keys: ROOT_KEYS,
+            header: format!("the {}", format.noun),
+            is_root: true,
+            keys: format.keys,
             table: document,
             place: source.place(0..0),
             source,
@@ -43,14 +45,18 @@ impl<'a> Section<'a> {
     }
 
     /// Returns the value of a key, if the file gives one.
-    pub(super) fn optional(&self, key: &'static str) -> Option<Value<'a>> {
+    pub fn optional(&self, key: &'static str) -> Option<Value<'a>> {
         debug_assert!(self.keys.contains(&key), "{key} is not declared");
         let item = self.table.get(key)?;
         Some(Value::new(key, item, self.source))
     }
 
     /// Returns the value of a key that must be there; `example` shows how it may look.
-    pub(super) fn required(&self, key: &'static str, example: &str) -> Result<Value<'a>, Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the section, if there is none.
+    pub fn required(&self, key: &'static str, example: &str) -> Result<Value<'a>, Problem> {
         self.optional(key).ok_or_else(|| {
             self.problem(format_args!("{} needs the key `{key}`", self.header))
                 .with_help(format!("for example `{key} = {example}`"))
@@ -58,7 +64,11 @@ impl<'a> Section<'a> {
     }
 
     /// Returns what `read` makes of the value of a key, or `default` without such a key.
-    pub(super) fn or<T>(
+    ///
+    /// # Errors
+    ///
+    /// Returns the problems of `read`.
+    pub fn or<T>(
         &self,
         key: &'static str,
         default: T,
@@ -68,7 +78,12 @@ impl<'a> Section<'a> {
     }
 
     /// Opens the table of a key, if the file has one.
-    pub(super) fn table(
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
+    /// not have.
+    pub fn table(
         &self,
         key: &'static str,
         keys: &'static [&'static str],
@@ -84,7 +99,12 @@ impl<'a> Section<'a> {
     }
 
     /// Opens every table of a key of which the file may have several.
-    pub(super) fn tables(
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
+    /// not have.
+    pub fn tables(
         &self,
         key: &'static str,
         keys: &'static [&'static str],
@@ -111,7 +131,12 @@ impl<'a> Section<'a> {
     }
 
     /// Opens the one table of `choices` that the file has, or returns `None` without any.
-    pub(super) fn at_most_one_of(
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
+    /// not have.
+    pub fn at_most_one_of(
         &self,
         what: &str,
         choices: &[Choice],
@@ -136,11 +161,12 @@ impl<'a> Section<'a> {
     }
 
     /// Opens the one table of `choices` that the file has.
-    pub(super) fn one_of(
-        &self,
-        what: &str,
-        choices: &[Choice],
-    ) -> Result<(&'static str, Self), Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
+    /// not have.
+    pub fn one_of(&self, what: &str, choices: &[Choice]) -> Result<(&'static str, Self), Problem> {
         self.at_most_one_of(what, choices)?.ok_or_else(|| {
             let headers = choices
                 .iter()
@@ -152,7 +178,7 @@ impl<'a> Section<'a> {
     }
 
     /// Returns the path of a file that the section names.
-    pub(super) fn beside(&self, name: &str) -> PathBuf {
+    pub fn beside(&self, name: &str) -> PathBuf {
         self.source.beside(name)
     }
 
@@ -165,18 +191,18 @@ impl<'a> Section<'a> {
     }
 
     /// Returns whether the file gives the key.
-    pub(super) fn has(&self, key: &str) -> bool {
+    pub fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
     }
 
     /// Returns a problem placed at the header of the section.
-    pub(super) fn problem(&self, message: impl Display) -> Problem {
+    pub fn problem(&self, message: impl Display) -> Problem {
         Problem::new(message.to_string()).at(self.place.clone())
     }
 
     /// Returns a problem that was found when an object was made of the section, placed at the value
     /// of `key` if the file gives one.
-    pub(super) fn problem_with(&self, key: &str, message: impl Display) -> Problem {
+    pub fn problem_with(&self, key: &str, message: impl Display) -> Problem {
         let value = self.table.get(key);
         let place = value.map_or(self.place.clone(), |value| self.source.place(value.span()));
         Problem::new(message.to_string()).at(place)
@@ -191,6 +217,7 @@ impl<'a> Section<'a> {
     ) -> Result<Self, Problem> {
         Self {
             header,
+            is_root: false,
             keys,
             table,
             place,
@@ -201,10 +228,10 @@ impl<'a> Section<'a> {
 
     /// The path of a key of this section, as in "laser.spot".
     fn path_to(&self, key: &str) -> String {
-        match self.header.trim_matches(['[', ']']) {
-            "the scene" => key.to_owned(),
-            own => format!("{own}.{key}"),
+        if self.is_root {
+            return key.to_owned();
         }
+        format!("{}.{key}", self.header.trim_matches(['[', ']']))
     }
 
     /// Complains about the first key that the section does not know.
@@ -230,7 +257,7 @@ impl<'a> Section<'a> {
             None => format!("unknown key `{key}` in {header}"),
         };
         let help = match parent {
-            Some(parent) if parent.keys.contains(&key) && parent.header != "the scene" => format!(
+            Some(parent) if parent.keys.contains(&key) && !parent.is_root => format!(
                 "`{key}` belongs to {}: write it above the line `{header}`",
                 parent.header
             ),

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use toml::de::DeTable;
 
 use super::error::{Place, Problem, SceneError, line_column};
+use super::format::Format;
 use super::section::Section;
 
 /// The key by which a scene file names others that belong to it.
@@ -63,8 +64,9 @@ impl Source {
 }
 
 /// The texts of a scene.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Sources {
+    format: Format,
     all: Vec<Source>,
     /// The order in which they are put together: what is included stands before what includes it.
     order: Vec<usize>,
@@ -76,10 +78,10 @@ pub(super) struct Sources {
 
 impl Sources {
     /// Reads a scene file and all that it includes.
-    pub(super) fn of_file(path: &Path) -> Result<Self, SceneError> {
-        let text = read_text(path)?;
+    pub(super) fn of_file(path: &Path, format: Format) -> Result<Self, SceneError> {
+        let text = read_text(path, &format)?;
         let directory = path.parent().unwrap_or(Path::new(""));
-        Self::of_text(text, Some(path), directory)
+        Self::of_text(text, Some(path), directory, format)
     }
 
     /// Reads all that a text includes.
@@ -87,8 +89,15 @@ impl Sources {
         text: String,
         path: Option<&Path>,
         directory: &Path,
+        format: Format,
     ) -> Result<Self, SceneError> {
-        let mut sources = Self::default();
+        let mut sources = Self {
+            format,
+            all: Vec::new(),
+            order: Vec::new(),
+            open: Vec::new(),
+            canonical: Vec::new(),
+        };
         let canonical = path.and_then(|path| fs::canonicalize(path).ok());
         let source = Source {
             index: 0,
@@ -105,6 +114,11 @@ impl Sources {
     /// Returns the texts in the order in which they are put together.
     pub(super) fn in_order(&self) -> impl Iterator<Item = &Source> {
         self.order.iter().filter_map(|&index| self.all.get(index))
+    }
+
+    /// Returns the kind of file.
+    pub(super) const fn format(&self) -> &Format {
+        &self.format
     }
 
     /// Returns the files that were read, the scene file first.
@@ -128,12 +142,19 @@ impl Sources {
         self.all.push(source);
         self.canonical.push(canonical);
         self.open.push(index);
-        for include in self.all.last().map_or(Ok(Vec::new()), includes_of)? {
+        for include in self.includes_of_last()? {
             self.include(include)?;
         }
         self.open.pop();
         self.order.push(index);
         Ok(())
+    }
+
+    fn includes_of_last(&self) -> Result<Vec<Include>, Problem> {
+        match self.all.last() {
+            Some(source) => includes_of(source, &self.format),
+            None => Ok(Vec::new()),
+        }
     }
 
     fn include(&mut self, include: Include) -> Result<(), Problem> {
@@ -182,9 +203,13 @@ impl Include {
     }
 }
 
-fn includes_of(source: &Source) -> Result<Vec<Include>, Problem> {
+fn includes_of(source: &Source, format: &Format) -> Result<Vec<Include>, Problem> {
     let document = source.parse()?;
-    let Some(list) = Section::root(document.get_ref(), source)?.optional(INCLUDE) else {
+    let root = Section::root(document.get_ref(), source, format)?;
+    if !format.keys.contains(&INCLUDE) {
+        return Ok(Vec::new());
+    }
+    let Some(list) = root.optional(INCLUDE) else {
         return Ok(Vec::new());
     };
     let include = |file: &super::value::Value<'_>| {
@@ -197,10 +222,10 @@ fn includes_of(source: &Source) -> Result<Vec<Include>, Problem> {
     files.iter().map(include).collect()
 }
 
-fn read_text(path: &Path) -> Result<String, SceneError> {
+fn read_text(path: &Path, format: &Format) -> Result<String, SceneError> {
     let unreadable = |why: &dyn core::fmt::Display| {
-        let problem = Problem::new(format!("the scene file cannot be read: {why}"))
-            .with_help("scenes/spot.toml is one, and docs/scene_file.md tells how to write them");
+        let problem = Problem::new(format!("the {} file cannot be read: {why}", format.noun))
+            .with_help(format.help);
         SceneError::new(Some(path), "", problem)
     };
     if path.is_dir() {
@@ -214,7 +239,8 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
             source: 0,
             span: valid..valid,
         };
-        let problem = Problem::new("the scene file must be text in UTF-8").at(place);
+        let problem =
+            Problem::new(format!("the {} file must be text in UTF-8", format.noun)).at(place);
         SceneError::new(Some(path), &text, problem)
     })
 }

@@ -11,7 +11,7 @@ use super::source::Source;
 
 /// A value of the file, with what it takes to complain about it: its name, its text and its place.
 #[derive(Clone, Debug)]
-pub(super) struct Value<'a> {
+pub struct Value<'a> {
     name: String,
     item: &'a Spanned<DeValue<'a>>,
     source: &'a Source,
@@ -32,7 +32,7 @@ impl<'a> Value<'a> {
     }
 
     /// Returns the problem that the value is not `allowed`.
-    pub(super) fn must_be(&self, allowed: impl Display) -> Problem {
+    pub fn must_be(&self, allowed: impl Display) -> Problem {
         let (name, got) = (&self.name, self.as_written());
         Problem::new(format!("{name} must be {allowed}, got {got}")).at(self.place())
     }
@@ -50,7 +50,11 @@ impl<'a> Value<'a> {
     }
 
     /// Returns the value in SI units: a bare number, or a string with a unit.
-    pub(super) fn quantity(&self, dimension: &Dimension) -> Result<f64, Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn quantity(&self, dimension: &Dimension) -> Result<f64, Problem> {
         let value = match self.item.get_ref() {
             DeValue::Integer(integer) => decimal(integer.as_str(), integer.radix()),
             DeValue::Float(float) => float.as_str().parse().ok(),
@@ -79,14 +83,22 @@ impl<'a> Value<'a> {
     }
 
     /// Returns a quantity that is greater than zero.
-    pub(super) fn positive(&self, dimension: &Dimension) -> Result<f64, Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn positive(&self, dimension: &Dimension) -> Result<f64, Problem> {
         let (least, _) = dimension.magnitudes;
         let allowed = format!("positive, at least {least:e} {}", dimension.si_unit);
         self.within(dimension, least.., allowed.trim_end())
     }
 
     /// Returns a quantity in `range`, which `allowed` describes.
-    pub(super) fn within(
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn within(
         &self,
         dimension: &Dimension,
         range: impl RangeBounds<f64>,
@@ -106,7 +118,11 @@ impl<'a> Value<'a> {
     }
 
     /// Returns the size, in metres, of a unit of length: "mm", "25.4 mm" or a bare number.
-    pub(super) fn unit_of_length(&self) -> Result<f64, Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn unit_of_length(&self) -> Result<f64, Problem> {
         match self
             .item
             .get_ref()
@@ -119,7 +135,11 @@ impl<'a> Value<'a> {
     }
 
     /// Returns a whole number in `range`.
-    pub(super) fn integer(&self, range: RangeInclusive<u64>) -> Result<u64, Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn integer(&self, range: RangeInclusive<u64>) -> Result<u64, Problem> {
         let value = match self.item.get_ref() {
             DeValue::Integer(integer) => {
                 u64::from_str_radix(integer.as_str(), integer.radix()).ok()
@@ -133,13 +153,21 @@ impl<'a> Value<'a> {
     }
 
     /// Returns whether the value is true or false.
-    pub(super) fn boolean(&self) -> Result<bool, Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn boolean(&self) -> Result<bool, Problem> {
         let value = self.item.get_ref().as_bool();
         value.ok_or_else(|| self.must_be("true or false"))
     }
 
     /// Returns a string.
-    pub(super) fn string(&self) -> Result<&'a str, Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn string(&self) -> Result<&'a str, Problem> {
         self.item
             .get_ref()
             .as_str()
@@ -147,7 +175,11 @@ impl<'a> Value<'a> {
     }
 
     /// Returns what the string names among `choices`.
-    pub(super) fn one_of<T: Clone>(&self, choices: &[(&'static str, T)]) -> Result<T, Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn one_of<T: Clone>(&self, choices: &[(&'static str, T)]) -> Result<T, Problem> {
         let text = self.string()?;
         if let Some((_, chosen)) = choices.iter().find(|(name, _)| *name == text) {
             return Ok(chosen.clone());
@@ -161,23 +193,31 @@ impl<'a> Value<'a> {
     }
 
     /// Returns whether the value is a table.
-    pub(super) fn is_table(&self) -> bool {
+    pub fn is_table(&self) -> bool {
         self.item.get_ref().is_table()
     }
 
     /// Returns whether the value is an array.
-    pub(super) fn is_list(&self) -> bool {
+    pub fn is_list(&self) -> bool {
         self.item.get_ref().is_array()
     }
 
     /// Returns the elements of an array of exactly `N`.
-    pub(super) fn elements<const N: usize>(&self, allowed: &str) -> Result<[Self; N], Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn elements<const N: usize>(&self, allowed: &str) -> Result<[Self; N], Problem> {
         let elements = self.list(allowed)?;
         elements.try_into().map_err(|_| self.must_be(allowed))
     }
 
     /// Returns the elements of an array of any length.
-    pub(super) fn list(&self, allowed: &str) -> Result<Vec<Self>, Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn list(&self, allowed: &str) -> Result<Vec<Self>, Problem> {
         let array = self.item.get_ref().as_array();
         let items = array.ok_or_else(|| self.must_be(allowed))?.iter();
         let element = |(index, item)| Self {
@@ -189,12 +229,20 @@ impl<'a> Value<'a> {
     }
 
     /// Returns a vector of three lengths, in metres.
-    pub(super) fn lengths(&self) -> Result<DVec3, Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn lengths(&self) -> Result<DVec3, Problem> {
         self.vector(&LENGTH, "three lengths, such as [0, \"5 mm\", \"0.3 m\"]")
     }
 
     /// Returns a vector that points somewhere, of length 1.
-    pub(super) fn direction(&self) -> Result<DVec3, Problem> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the value, if it is anything else.
+    pub fn direction(&self) -> Result<DVec3, Problem> {
         const ALLOWED: &str = "three numbers that are not all zero, such as [0, 0, 1]";
         let vector = self.vector(&NUMBER, ALLOWED)?;
         // The largest component first, so that no square leaves the range of numbers.

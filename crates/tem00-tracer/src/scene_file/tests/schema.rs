@@ -9,9 +9,7 @@ use std::path::Path;
 use serde_json::Value;
 use toml::de::DeTable;
 
-use super::super::{
-    camera, filter, laser, light, material, motion, section, settings, shape, surface,
-};
+use super::super::{camera, filter, laser, light, material, motion, settings, shape, surface};
 use super::{minimal, parse, with};
 use json::{Schema, from_toml};
 
@@ -39,7 +37,7 @@ fn check(text: &str) -> Result<(), String> {
 /// itself has none.
 pub(super) fn tables() -> BTreeMap<&'static str, &'static [&'static str]> {
     let own = [
-        ("", section::ROOT_KEYS),
+        ("", crate::scene_file::format::SCENE.keys),
         ("camera", camera::KEYS),
         ("tilt", camera::TILT_KEYS),
         ("laser", laser::KEYS),

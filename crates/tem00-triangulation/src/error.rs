@@ -1,0 +1,84 @@
+use core::{error, fmt};
+
+use tem00_speckle::SpeckleError;
+use tem00_tracer::{RenderError, TracerError};
+
+/// Why a part of a triangulation set-up could not be constructed or evaluated.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum TriangulationError {
+    /// A quantity is outside its range.
+    OutOfRange {
+        /// The name of the parameter.
+        parameter: &'static str,
+        /// The rejected value.
+        value: f64,
+        /// What is allowed, with the unit.
+        allowed: &'static str,
+    },
+    /// A vector that must point somewhere is zero, not finite or parallel to its partner.
+    Direction {
+        /// The name of the parameter.
+        parameter: &'static str,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// There is not enough of something that was counted.
+    TooFew {
+        /// What was counted, in the plural.
+        what: &'static str,
+        /// How many there are.
+        got: usize,
+        /// How many it takes.
+        needed: usize,
+    },
+    /// Camera, laser or scene are not possible, or were not rendered.
+    Tracer(TracerError),
+    /// A speckle pattern is not possible.
+    Speckle(SpeckleError),
+    /// The caller asked to stop.
+    Cancelled,
+}
+
+impl fmt::Display for TriangulationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutOfRange {
+                parameter,
+                value,
+                allowed,
+            } => write!(f, "{parameter} must be {allowed}, got {value}"),
+            Self::Direction { parameter, allowed } => write!(f, "{parameter} must be {allowed}"),
+            Self::TooFew { what, got, needed } => {
+                write!(f, "there must be at least {needed} {what}, got {got}")
+            }
+            Self::Tracer(source) => source.fmt(f),
+            Self::Speckle(source) => source.fmt(f),
+            Self::Cancelled => write!(f, "the work was cancelled"),
+        }
+    }
+}
+
+impl error::Error for TriangulationError {}
+
+impl From<TracerError> for TriangulationError {
+    fn from(source: TracerError) -> Self {
+        Self::Tracer(source)
+    }
+}
+
+impl From<SpeckleError> for TriangulationError {
+    fn from(source: SpeckleError) -> Self {
+        Self::Speckle(source)
+    }
+}
+
+impl From<RenderError> for TriangulationError {
+    fn from(source: RenderError) -> Self {
+        match source {
+            RenderError::Scene(source) => Self::Tracer(source),
+            // Whatever else there may be one day, the render did not end.
+            _ => Self::Cancelled,
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! Sections of scene files and set-up files.

@@ -15,12 +15,14 @@
 //! - Uncertainties are standard uncertainties unless called expanded.
 
 mod detector;
+mod dorsch;
 mod error;
 mod file;
 mod geometry;
 mod sensor;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
+pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use geometry::{LaserPlane, Triangulator};
 pub use sensor::{RawFrame, Sensor, SensorDescription};

@@ -1,1 +1,5 @@
 //! Sections of scene files and set-up files.
+
+mod detector;
+
+pub use detector::read_detector;

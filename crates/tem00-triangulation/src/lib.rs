@@ -24,6 +24,7 @@ mod sensor;
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use dorsch::Dorsch;
 pub use error::TriangulationError;
+pub use file::read_detector;
 pub use geometry::{LaserPlane, Triangulator};
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 

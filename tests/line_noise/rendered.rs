@@ -86,7 +86,7 @@ fn the_wide_centre_of_gravity_is_the_best_detector() {
     // A line four pixels wide, as cameras see it.
     let frames = LineFrames {
         thickness: 0.4e-3,
-        samples_per_pixel: 16,
+        lines: 3,
         ..LINE
     };
     let order = FilterOrder::Eighth;
@@ -105,7 +105,7 @@ fn the_wide_centre_of_gravity_is_the_best_detector() {
     for (noise, method) in noise.iter().zip(&methods).skip(1) {
         let ratio = noise.deviation / best;
         // What is looked at is narrower than the line: single speckles draw harder at it, hardest where
-        // three pixels are all, which follow the brightest one. A ratio of two has the error 2 %.
+        // three pixels are all, which follow the brightest one. A ratio of two has the error 3 %.
         let expected = match method {
             LineMethod::LogGaussian | LineMethod::Parabola | LineMethod::LinearInterpolation => {
                 2.0..3.0

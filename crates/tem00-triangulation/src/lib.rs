@@ -24,7 +24,7 @@ pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, Line
 pub use error::TriangulationError;
 pub use file::read_sensor;
 pub use geometry::{LaserPlane, Triangulator};
-pub use sensor::{RawFrame, Sensor, SensorDescription};
+pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 
 /// The places and directions of this crate.
 pub use glam::{DVec2, DVec3};

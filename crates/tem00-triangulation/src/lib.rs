@@ -22,7 +22,7 @@ mod sensor;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
-pub use file::read_sensor;
+pub use file::{read_detector, read_sensor};
 pub use geometry::{LaserPlane, Triangulator};
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 

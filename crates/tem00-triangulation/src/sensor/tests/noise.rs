@@ -56,7 +56,7 @@ fn the_photon_transfer_line_has_the_slope_of_the_gain() {
     let pixels = (SIDE * SIDE) as f64;
     let sensor = typical();
     let gain = sensor.description().gain;
-    let point = |electrons: f64, seed| {
+    let point = |electrons: f64, seed: u64| {
         let frame = |seed| sensor.uniform_frame([SIDE, SIDE], electrons, seed).unwrap();
         PhotonTransferPoint::of_pair(&frame(2 * seed), &frame(2 * seed + 1)).unwrap()
     };

@@ -22,7 +22,7 @@ mod sensor;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
-pub use geometry::{LaserPlane, Triangulator};
+pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 
 /// The places and directions of this crate.

@@ -1,1 +1,5 @@
 //! Sections of scene files and set-up files.
+
+mod sensor;
+
+pub use sensor::read_sensor;

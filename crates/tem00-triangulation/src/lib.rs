@@ -14,16 +14,20 @@
 //! - Widths of lines are full widths between the points of 1/e², four standard deviations of a Gaussian.
 //! - Uncertainties are standard uncertainties unless called expanded.
 
+mod calibration;
 mod detector;
 mod error;
 mod file;
 mod geometry;
 mod sensor;
 
+pub use calibration::{
+    Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS, Parameter,
+};
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
 pub use file::{read_detector, read_sensor};
-pub use geometry::{LaserPlane, Triangulator};
+pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 
 /// The places and directions of this crate.

@@ -19,12 +19,17 @@ mod error;
 mod file;
 mod geometry;
 mod sensor;
+mod setup;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
 pub use file::read_sensor;
-pub use geometry::{LaserPlane, Triangulator};
+pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use sensor::{RawFrame, Sensor, SensorDescription};
+pub use setup::{
+    Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
+    SetupSurface,
+};
 
 /// The places and directions of this crate.
 pub use glam::{DVec2, DVec3};

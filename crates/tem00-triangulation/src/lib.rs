@@ -23,7 +23,9 @@ mod setup;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
-pub use file::read_sensor;
+pub use file::{
+    parse_setup, parse_setup_with, read_detector, read_sensor, read_setup, read_setup_with,
+};
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 pub use setup::{

@@ -19,11 +19,19 @@ mod error;
 mod file;
 mod geometry;
 mod sensor;
+mod setup;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
-pub use geometry::{LaserPlane, Triangulator};
+pub use file::{
+    parse_setup, parse_setup_with, read_detector, read_sensor, read_setup, read_setup_with,
+};
+pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use sensor::{RawFrame, Sensor, SensorDescription};
+pub use setup::{
+    Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
+    SetupSurface,
+};
 
 /// The places and directions of this crate.
 pub use glam::{DVec2, DVec3};

@@ -3,6 +3,9 @@
 mod detector;
 mod sensor;
 mod setup;
+mod setup_text;
+#[cfg(test)]
+mod tests;
 
 pub use detector::read_detector;
 pub use sensor::read_sensor;

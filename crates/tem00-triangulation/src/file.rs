@@ -1,1 +1,5 @@
 //! Sections of scene files and set-up files.
+
+mod scan;
+
+pub use self::scan::read_scan;

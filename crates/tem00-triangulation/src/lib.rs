@@ -18,11 +18,14 @@ mod detector;
 mod error;
 mod file;
 mod geometry;
+mod scan;
 mod sensor;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
+pub use file::read_scan;
 pub use geometry::{LaserPlane, Triangulator};
+pub use scan::{Averaging, RawFormat, ScanSettings};
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 
 /// The places and directions of this crate.

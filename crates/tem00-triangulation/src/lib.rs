@@ -24,8 +24,8 @@ mod sensor;
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
 pub use file::read_scan;
-pub use geometry::{LaserPlane, Triangulator};
-pub use scan::{Averaging, RawFormat, ScanSettings};
+pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
+pub use scan::{Averaging, Exposure, LAMP_WAVELENGTH, RawFormat, ScanMotion, ScanSettings};
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 
 /// The places and directions of this crate.

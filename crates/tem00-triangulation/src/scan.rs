@@ -1,5 +1,11 @@
 //! From a scene to what a triangulation sensor measures of it, frame by frame.
 
+mod exposure;
+mod motion;
 mod settings;
 
-pub use self::settings::{Averaging, RawFormat, ScanSettings};
+pub use self::{
+    exposure::{Exposure, LAMP_WAVELENGTH},
+    motion::ScanMotion,
+    settings::{Averaging, RawFormat, ScanSettings},
+};

@@ -18,13 +18,15 @@ mod detector;
 mod error;
 mod file;
 mod geometry;
+mod place_noise;
 mod scan;
 mod sensor;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
-pub use file::read_scan;
+pub use file::{read_scan, read_sensor};
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
+pub use place_noise::{ColumnLight, PixelCovariance, PlaceNoise, speckle_covariance};
 pub use scan::{Averaging, Exposure, LAMP_WAVELENGTH, RawFormat, ScanMotion, ScanSettings};
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 

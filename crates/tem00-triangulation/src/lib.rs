@@ -27,7 +27,10 @@ pub use error::TriangulationError;
 pub use file::{read_scan, read_sensor};
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use place_noise::{ColumnLight, PixelCovariance, PlaceNoise, speckle_covariance};
-pub use scan::{Averaging, Exposure, LAMP_WAVELENGTH, RawFormat, ScanMotion, ScanSettings};
+pub use scan::{
+    Averaging, Exposure, LAMP_WAVELENGTH, RawFormat, ScanMotion, ScanSettings, SensorSpeckle,
+    SpeckleTable,
+};
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 
 /// The places and directions of this crate.

@@ -64,8 +64,8 @@ impl PlaceNoise {
         column: &ColumnLight<'_>,
     ) -> Self {
         column.check();
-        let dark = sensor.dark_noise * sensor.dark_noise
-            + sensor.dark_current * sensor.exposure_time;
+        let dark =
+            sensor.dark_noise * sensor.dark_noise + sensor.dark_current * sensor.exposure_time;
         let mut noise = Self {
             speckle: speckle_covariance(sensor, speckle, [column, column], [0.0; 2]),
             ..Self::default()
@@ -152,7 +152,9 @@ impl ColumnLight<'_> {
     /// The rows that count, and how far the place moves with the speckle factor in each.
     fn weights(&self) -> Vec<(f64, f64)> {
         let products = self.sensitivities.iter().zip(self.coherent);
-        let rows = products.zip(0_u32..).map(|((g, e), row)| (f64::from(row), g * e));
+        let rows = products
+            .zip(0_u32..)
+            .map(|((g, e), row)| (f64::from(row), g * e));
         rows.filter(|(_, weight)| *weight != 0.0).collect()
     }
 }

@@ -3,9 +3,11 @@
 mod exposure;
 mod motion;
 mod settings;
+mod speckle_table;
 
 pub use self::{
     exposure::{Exposure, LAMP_WAVELENGTH},
     motion::ScanMotion,
     settings::{Averaging, RawFormat, ScanSettings},
+    speckle_table::{SensorSpeckle, SpeckleTable},
 };

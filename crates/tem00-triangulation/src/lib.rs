@@ -24,7 +24,7 @@ mod sensor;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
-pub use file::{read_scan, read_sensor};
+pub use file::{read_detector, read_scan, read_sensor};
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use place_noise::{ColumnLight, PixelCovariance, PlaceNoise, speckle_covariance};
 pub use scan::{

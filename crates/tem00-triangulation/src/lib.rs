@@ -21,6 +21,7 @@ mod geometry;
 mod place_noise;
 mod scan;
 mod sensor;
+mod setup;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
@@ -32,6 +33,10 @@ pub use scan::{
     SpeckleTable,
 };
 pub use sensor::{RawFrame, Sensor, SensorDescription};
+pub use setup::{
+    Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
+    SetupSurface,
+};
 
 /// The places and directions of this crate.
 pub use glam::{DVec2, DVec3};

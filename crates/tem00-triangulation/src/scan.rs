@@ -2,12 +2,14 @@
 
 mod exposure;
 mod motion;
+mod scene;
 mod settings;
 mod speckle_table;
 
 pub use self::{
     exposure::{Exposure, LAMP_WAVELENGTH},
     motion::ScanMotion,
+    scene::MeasurementScene,
     settings::{Averaging, RawFormat, ScanSettings},
     speckle_table::{SensorSpeckle, SpeckleTable},
 };

@@ -18,6 +18,7 @@ mod detector;
 mod error;
 mod file;
 mod geometry;
+mod line_image;
 mod place_noise;
 mod scan;
 mod sensor;
@@ -30,6 +31,7 @@ pub use file::{
     read_setup_with,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
+pub use line_image::{LineImage, LineImageData};
 pub use place_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
 };
@@ -37,7 +39,7 @@ pub use scan::{
     Averaging, Exposure, LAMP_WAVELENGTH, MeasurementScene, RawFormat, ScanMotion, ScanSettings,
     SensorSpeckle, SpeckleTable,
 };
-pub use sensor::{RawFrame, Sensor, SensorDescription};
+pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
     Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
     SetupSurface,

@@ -15,6 +15,7 @@
 //! - Uncertainties are standard uncertainties unless called expanded.
 
 mod detector;
+mod dorsch;
 mod error;
 mod file;
 mod geometry;
@@ -25,6 +26,7 @@ mod sensor;
 mod setup;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
+pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
     parse_setup, parse_setup_with, read_detector, read_scan, read_sensor, read_setup,

@@ -15,21 +15,25 @@
 //! - Uncertainties are standard uncertainties unless called expanded.
 
 mod detector;
+mod dorsch;
 mod error;
 mod file;
 mod geometry;
+mod line_image;
 mod place_noise;
 mod scan;
 mod sensor;
 mod setup;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
+pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
     parse_setup, parse_setup_with, read_detector, read_scan, read_sensor, read_setup,
     read_setup_with,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
+pub use line_image::{LineImage, LineImageData};
 pub use place_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
 };
@@ -37,7 +41,7 @@ pub use scan::{
     Averaging, Exposure, LAMP_WAVELENGTH, MeasurementScene, RawFormat, ScanMotion, ScanSettings,
     SensorSpeckle, SpeckleTable,
 };
-pub use sensor::{RawFrame, Sensor, SensorDescription};
+pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
     Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
     SetupSurface,

@@ -82,6 +82,8 @@ pub(crate) enum ImageError {
     RawFormat(String),
     #[error("pixels of {0} are not supported: use grey or RGB of 8 or 16 bits, not in planes")]
     Pixels(String),
+    #[error("grey values of the file have {found} bits, not {told}")]
+    FewerBits { told: u32, found: u32 },
     #[error("grey values of {told} bits are at most {}, but there is one of {found}", (1_u32 << .told) - 1)]
     Bits { told: u32, found: u16 },
     #[error("the image has {width} × {height} pixels; between 1 and {MAXIMUM_PIXELS} are allowed")]

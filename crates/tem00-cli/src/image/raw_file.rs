@@ -53,8 +53,14 @@ impl RawImage {
     ///
     /// # Errors
     ///
-    /// Returns an error if a grey value is larger than `bit_depth` bits allow.
+    /// Returns an error if the file has fewer bits, or a grey value is larger than `bit_depth` bits allow.
     pub(crate) fn with_bit_depth(mut self, bit_depth: u32) -> Result<Self, ImageError> {
+        if bit_depth > self.bit_depth {
+            return Err(ImageError::FewerBits {
+                told: bit_depth,
+                found: self.bit_depth,
+            });
+        }
         self.bit_depth = bit_depth;
         if f64::from(self.largest) > self.saturation() {
             return Err(ImageError::Bits {

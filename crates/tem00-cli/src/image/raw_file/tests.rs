@@ -123,6 +123,11 @@ fn the_bits_of_a_camera_can_be_told() {
         .with_bit_depth(10)
         .expect("ten bits are enough");
     assert_eq!((told.bit_depth, told.saturated), (10, 1));
+    let error = told.with_bit_depth(12).expect_err("ten bits are ten");
+    assert!(
+        error.to_string().contains("have 10 bits, not 12"),
+        "{error}"
+    );
     let error = image.with_bit_depth(8).expect_err("1023 does not fit");
     assert!(
         error

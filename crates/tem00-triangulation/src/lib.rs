@@ -14,19 +14,42 @@
 //! - Widths of lines are full widths between the points of 1/e², four standard deviations of a Gaussian.
 //! - Uncertainties are standard uncertainties unless called expanded.
 
+mod calibration;
 mod detector;
 mod dorsch;
 mod error;
 mod file;
 mod geometry;
+mod line_image;
+mod place_noise;
+mod scan;
 mod sensor;
+mod setup;
 
+pub use calibration::{
+    Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS, Parameter,
+};
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use dorsch::Dorsch;
 pub use error::TriangulationError;
-pub use file::read_detector;
-pub use geometry::{LaserPlane, Triangulator};
-pub use sensor::{RawFrame, Sensor, SensorDescription};
+pub use file::{
+    parse_setup, parse_setup_with, read_detector, read_scan, read_sensor, read_setup,
+    read_setup_with,
+};
+pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
+pub use line_image::{LineImage, LineImageData};
+pub use place_noise::{
+    ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
+};
+pub use scan::{
+    Averaging, Exposure, LAMP_WAVELENGTH, MeasurementScene, RawFormat, ScanMotion, ScanSettings,
+    SensorSpeckle, SpeckleTable,
+};
+pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
+pub use setup::{
+    Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
+    SetupSurface,
+};
 
 /// The places and directions of this crate.
 pub use glam::{DVec2, DVec3};

@@ -1,0 +1,15 @@
+//! From a scene to what a triangulation sensor measures of it, frame by frame.
+
+mod exposure;
+mod motion;
+mod scene;
+mod settings;
+mod speckle_table;
+
+pub use self::{
+    exposure::{Exposure, LAMP_WAVELENGTH},
+    motion::ScanMotion,
+    scene::MeasurementScene,
+    settings::{Averaging, RawFormat, ScanSettings},
+    speckle_table::{SensorSpeckle, SpeckleTable},
+};

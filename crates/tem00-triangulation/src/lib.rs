@@ -14,6 +14,7 @@
 //! - Widths of lines are full widths between the points of 1/e², four standard deviations of a Gaussian.
 //! - Uncertainties are standard uncertainties unless called expanded.
 
+mod budget;
 mod detector;
 mod dorsch;
 mod error;
@@ -25,6 +26,10 @@ mod scan;
 mod sensor;
 mod setup;
 
+pub use budget::{
+    Budget, BudgetTerm, ErrorDistribution, Evaluation, MonteCarloEstimate, Simulation,
+    SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,
+};
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use dorsch::Dorsch;
 pub use error::TriangulationError;
@@ -43,8 +48,8 @@ pub use scan::{
 };
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
-    Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
-    SetupSurface,
+    Averages, HeightRange, ImagedLine, LaserLineData, LightLevel, Setup, SetupCamera,
+    SetupDescription, SetupSurface,
 };
 
 /// The places and directions of this crate.

@@ -3,6 +3,7 @@
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
 mod budget;
+mod design;
 mod patterns;
 mod render;
 mod sequence;

@@ -94,7 +94,7 @@ fn wide_lines_scatter_as_their_closed_form_says() {
 #[test]
 fn patterns_say_too_much_of_thin_lines_if_blurred_and_too_little_if_sharp() {
     for (width, blurred_over_waves) in [(0.25, 1.865), (0.5, 1.189)] {
-        let waves = deviation(&by_waves(width));
+        let waves = deviation(&by_waves(width, IMAGES));
         let blurred = deviation(&by_profile(&blurred_profile(width), IMAGES)) / waves;
         let sharp = deviation(&by_profile(&geometric_profile(width), IMAGES)) / waves;
         let line = SpeckledLine::new(width, 0.0).expect("a line");

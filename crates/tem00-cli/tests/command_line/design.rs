@@ -85,7 +85,7 @@ fn a_search_writes_its_files_and_a_winner_that_reads_back() {
     assert_eq!(best.len(), 2, "{found}");
     let uncertainty = best[0]["figures"]["uncertainty"].as_f64();
     assert_eq!(uncertainty, Some(budget.combined()), "{found}");
-    assert_code(&run(folder.path(), "budget out/a/best.toml"), 0);
+    assert_code(&run(folder.path(), "budget out/a/best.toml --trials 20"), 0);
 
     let csv = fs::read_to_string(out.join("design.csv")).expect("text");
     assert_eq!(csv.lines().count(), 7, "a line of headings and six set-ups");

@@ -170,6 +170,15 @@ fn bad_searches_are_one_message_and_no_file() {
         assert!(output.stdout.is_empty(), "{line}: nothing is data");
         assert_eq!(files(folder.path()), before, "{line}");
     }
+    let some = plain.to_owned() + "\n[design.vary]\ndistance = [\"20 mm\", \"300 mm\"]\n";
+    write("some.toml", &some);
+    let output = run(folder.path(), "design some.toml");
+    assert_code(&output, 0);
+    let told = text(&output.stdout);
+    assert!(
+        told.contains("1 not possible; the first, number 0: distance"),
+        "{told}"
+    );
     let output = run(folder.path(), "design none.toml");
     assert_code(&output, 2);
     let told = message(&output);

@@ -1,5 +1,6 @@
 //! Sections of scene files and set-up files.
 
+mod design;
 mod detector;
 mod scan;
 mod sensor;
@@ -8,6 +9,7 @@ mod setup_text;
 #[cfg(test)]
 mod tests;
 
+pub use self::design::read_design;
 pub use self::detector::read_detector;
 pub use self::scan::read_scan;
 pub use self::sensor::read_sensor;

@@ -15,6 +15,8 @@
 //! - Uncertainties are standard uncertainties unless called expanded.
 
 mod calibration;
+mod budget;
+mod design;
 mod detector;
 mod dorsch;
 mod error;
@@ -28,12 +30,20 @@ mod setup;
 
 pub use calibration::{
     Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS, Parameter,
+pub use budget::{
+    Budget, BudgetTerm, ErrorDistribution, Evaluation, MonteCarloEstimate, Simulation,
+    SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,
+};
+pub use design::{
+    Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignParameter,
+    DesignQuestion, DesignSearch, Exclusion, Neighbours, Objective, Spacing, Sweep, neighbours,
+    pareto_front,
 };
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
-    parse_setup, parse_setup_with, read_detector, read_scan, read_sensor, read_setup,
+    parse_setup, parse_setup_with, read_design, read_detector, read_scan, read_sensor, read_setup,
     read_setup_with,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
@@ -47,8 +57,8 @@ pub use scan::{
 };
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
-    Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
-    SetupSurface,
+    Averages, HeightRange, ImagedLine, LaserLineData, LightLevel, Setup, SetupCamera,
+    SetupDescription, SetupSurface,
 };
 
 /// The places and directions of this crate.

@@ -3,6 +3,8 @@
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
 mod lines;
+mod budget;
+mod design;
 mod patterns;
 mod render;
 mod sequence;

@@ -22,11 +22,13 @@ mod geometry;
 mod sensor;
 
 pub use calibration::{
-    Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS, Parameter,
+    Calibration, CalibrationCovariance, CalibrationQuality, Checkerboard, PARAMETERS, Parameter,
 };
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
-pub use file::read_sensor;
+pub use file::{
+    BoardSettings, CalibrationMethod, CalibrationSettings, read_calibration, read_sensor,
+};
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 

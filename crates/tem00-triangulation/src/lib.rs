@@ -22,7 +22,8 @@ mod geometry;
 mod sensor;
 
 pub use calibration::{
-    Calibration, CalibrationCovariance, CalibrationQuality, Checkerboard, PARAMETERS, Parameter,
+    BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard,
+    PARAMETERS, Parameter, calibrate,
 };
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;

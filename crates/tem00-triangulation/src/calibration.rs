@@ -1,11 +1,14 @@
 mod board;
+mod corners;
 mod covariance;
 mod estimate;
 mod homography;
+mod lattice;
 mod least_squares;
 mod model;
 mod perturbation;
 mod plane_fit;
+mod ring;
 mod start;
 
 use glam::{DMat3, DVec2, DVec3};
@@ -16,6 +19,7 @@ use self::{covariance::COUNT, perturbation::Perturbations};
 use crate::{LaserPlane, TriangulationError, Triangulator};
 
 pub use self::board::Checkerboard;
+pub use self::corners::find_corners;
 pub use self::covariance::{CalibrationCovariance, PARAMETERS, Parameter};
 pub use self::estimate::{BoardView, CameraModel, calibrate};
 

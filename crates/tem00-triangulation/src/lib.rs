@@ -23,7 +23,7 @@ mod sensor;
 
 pub use calibration::{
     BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard,
-    PARAMETERS, Parameter, calibrate,
+    PARAMETERS, Parameter, calibrate, find_corners,
 };
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;

@@ -31,8 +31,8 @@ pub use place_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
 };
 pub use scan::{
-    Averaging, Exposure, LAMP_WAVELENGTH, MeasurementScene, RawFormat, ScanMotion, ScanSettings,
-    SensorSpeckle, SpeckleTable,
+    Averaging, Exposure, LAMP_WAVELENGTH, MeasuredFrame, MeasuredPoint, Measurement,
+    MeasurementScene, RawFormat, ScanMotion, ScanSettings, SensorSpeckle, SpeckleTable,
 };
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 pub use setup::{

@@ -54,6 +54,12 @@ pub trait PixelCovariance {
     fn at(&self, displacement: [f64; 2]) -> f64;
 }
 
+impl<C: PixelCovariance> PixelCovariance for &C {
+    fn at(&self, displacement: [f64; 2]) -> f64 {
+        (**self).at(displacement)
+    }
+}
+
 impl<C: PixelCovariance> PixelCovariance for Option<C> {
     /// Returns 0 without speckle.
     fn at(&self, displacement: [f64; 2]) -> f64 {

@@ -31,8 +31,9 @@ pub use place_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
 };
 pub use scan::{
-    Averaging, Exposure, LAMP_WAVELENGTH, MeasuredFrame, MeasuredPoint, Measurement,
-    MeasurementScene, RawFormat, ScanMotion, ScanSettings, SensorSpeckle, SpeckleTable,
+    Averaging, Exposure, FrameCorrelation, LAMP_WAVELENGTH, MeasuredFrame, MeasuredPoint,
+    Measurement, MeasurementScene, RawFormat, ScanMotion, ScanSettings, SensorSpeckle,
+    SpeckleChange, SpeckleCorrelation, SpeckleTable, SpeckleWitness, averaged_profile,
 };
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 pub use setup::{

@@ -1,5 +1,7 @@
 //! From a scene to what a triangulation sensor measures of it, frame by frame.
 
+mod average;
+mod decorrelation;
 mod exposure;
 mod frame;
 mod measurement;
@@ -9,6 +11,8 @@ mod settings;
 mod speckle_table;
 
 pub use self::{
+    average::{SpeckleCorrelation, averaged_profile},
+    decorrelation::{FrameCorrelation, SpeckleChange, SpeckleWitness},
     exposure::{Exposure, LAMP_WAVELENGTH},
     frame::{MeasuredFrame, MeasuredPoint},
     measurement::Measurement,

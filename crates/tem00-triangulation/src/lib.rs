@@ -31,9 +31,10 @@ pub use place_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
 };
 pub use scan::{
-    Averaging, Exposure, FrameCorrelation, LAMP_WAVELENGTH, MeasuredFrame, MeasuredPoint,
-    Measurement, MeasurementScene, RawFormat, ScanMotion, ScanSettings, SensorSpeckle,
-    SpeckleChange, SpeckleCorrelation, SpeckleTable, SpeckleWitness, averaged_profile,
+    Averaging, Exposure, FrameCorrelation, HeightMap, HeightScale, LAMP_WAVELENGTH, MeasuredFrame,
+    MeasuredPoint, Measurement, MeasurementScene, Raster, RawFormat, ScanMotion, ScanSettings,
+    SensorSpeckle, SpeckleChange, SpeckleCorrelation, SpeckleTable, SpeckleWitness,
+    averaged_profile, write_point_cloud,
 };
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 pub use setup::{

@@ -4,8 +4,10 @@ mod average;
 mod decorrelation;
 mod exposure;
 mod frame;
+mod height_map;
 mod measurement;
 mod motion;
+mod point_cloud;
 mod scene;
 mod settings;
 mod speckle_table;
@@ -15,8 +17,10 @@ pub use self::{
     decorrelation::{FrameCorrelation, SpeckleChange, SpeckleWitness},
     exposure::{Exposure, LAMP_WAVELENGTH},
     frame::{MeasuredFrame, MeasuredPoint},
+    height_map::{HeightMap, HeightScale, Raster},
     measurement::Measurement,
     motion::ScanMotion,
+    point_cloud::write_point_cloud,
     scene::MeasurementScene,
     settings::{Averaging, RawFormat, ScanSettings},
     speckle_table::{SensorSpeckle, SpeckleTable},

@@ -88,23 +88,30 @@ impl Row {
     /// ```text
     /// S(f) = (8/π) ∫ chat(√(f² + g²)) T²(g) dg      from 0 to √(1 − f²)
     /// ```
-    ///
-    /// The pieces grow with the distance from the kink of chat at 0, which is as wide as f.
     pub(crate) fn spectrum(&self, frequency: f64) -> f64 {
         let end = (1.0 - frequency * frequency).max(0.0).sqrt();
+        let density = |g: f64| airy_power_spectrum(frequency.hypot(g));
+        self.weigh(density, frequency.abs(), end)
+    }
+
+    /// Returns 2 ∫ density(g) T²(g) dg over the frequencies g along the row from 0 to `end`.
+    ///
+    /// The density has a kink at 0 that is `kink` wide, from where on the pieces grow, and a root of
+    /// the order 3/2 at the end.
+    pub(crate) fn weigh(&self, density: impl Fn(f64) -> f64, kink: f64, end: f64) -> f64 {
         if self.size.is_infinite() || end <= 0.0 {
             return 0.0;
         }
         let averaged_from = self.averaged_from();
         let (mut start, mut sum) = (0.0, 0.0);
-        for next in pieces(frequency.abs(), averaged_from, end) {
+        for next in pieces(kink, averaged_from, end) {
             let averaged = start >= averaged_from;
             let longest = if averaged { 1.0 } else { self.period() };
-            let f = |g: f64| airy_power_spectrum(frequency.hypot(g)) * self.transfer(g, averaged);
+            let f = |g: f64| density(g) * self.transfer(g, averaged);
             sum += if next < end {
                 integrate(f, [start, next], longest)
             } else {
-                // The root of chat at ρ = 1 stands at the end, which is mirrored to the start.
+                // What is mirrored has its root at the start.
                 let panel = longest / (2.0 * (end - start));
                 integrate_from_root(|u| f(start + end - u), [start, end], panel)
             };

@@ -16,6 +16,7 @@
 
 mod calibration;
 mod detector;
+mod dorsch;
 mod error;
 mod file;
 mod geometry;
@@ -28,6 +29,7 @@ pub use calibration::{
     Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS, Parameter,
 };
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
+pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{read_detector, read_scan, read_sensor};
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};

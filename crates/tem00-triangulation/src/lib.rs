@@ -20,6 +20,7 @@ mod dorsch;
 mod error;
 mod file;
 mod geometry;
+mod line_image;
 mod place_noise;
 mod scan;
 mod sensor;
@@ -31,8 +32,12 @@ pub use calibration::{
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use dorsch::Dorsch;
 pub use error::TriangulationError;
-pub use file::{read_detector, read_scan, read_sensor};
+pub use file::{
+    parse_setup, parse_setup_with, read_detector, read_scan, read_sensor, read_setup,
+    read_setup_with,
+};
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
+pub use line_image::{LineImage, LineImageData};
 pub use place_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
 };
@@ -42,7 +47,7 @@ pub use scan::{
     SensorSpeckle, SpeckleChange, SpeckleCorrelation, SpeckleTable, SpeckleWitness,
     averaged_profile, write_point_cloud,
 };
-pub use sensor::{RawFrame, Sensor, SensorDescription};
+pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
     Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
     SetupSurface,

@@ -1,5 +1,6 @@
 //! From a scene to what a triangulation sensor measures of it, frame by frame.
 
+mod assembly;
 mod average;
 mod decorrelation;
 mod exposure;
@@ -13,7 +14,8 @@ mod settings;
 mod speckle_table;
 
 pub use self::{
-    average::{SpeckleCorrelation, averaged_profile},
+    assembly::{Scan, ScannedPart},
+    average::{SpeckleCorrelation, averaged_profile, brightest_points, mean_point},
     decorrelation::{FrameCorrelation, SpeckleChange, SpeckleWitness},
     exposure::{Exposure, LAMP_WAVELENGTH},
     frame::{MeasuredFrame, MeasuredPoint},

@@ -34,20 +34,20 @@ pub fn averaged_profile(
     let block = |point: &MeasuredPoint| point.seen.column / averaging.columns;
     let mut members: Vec<Member<'_>> = frames
         .iter()
-        .flat_map(|frame| brightest(frame).map(|point| (frame.frame, point)))
+        .flat_map(|frame| brightest_points(frame).map(|point| (frame.frame, point)))
         .collect();
     members.sort_by_key(|(frame, point)| (block(point), *frame, point.seen.column));
     members
         .chunk_by(|(_, a), (_, b)| block(a) == block(b))
-        .filter_map(|members| mean(members, speckle))
+        .filter_map(|members| mean_point(members, speckle))
         .collect()
 }
 
 /// A point and the frame it was seen in.
 type Member<'a> = (u32, &'a MeasuredPoint);
 
-/// The valid points of a frame, of several in a column the brightest.
-pub(super) fn brightest(frame: &MeasuredFrame) -> impl Iterator<Item = &MeasuredPoint> {
+/// Returns the valid points of a frame, of several in a column the brightest.
+pub fn brightest_points(frame: &MeasuredFrame) -> impl Iterator<Item = &MeasuredPoint> {
     let columns = frame.points.chunk_by(|a, b| a.seen.column == b.seen.column);
     columns.filter_map(|points| {
         let valid = points.iter().filter(|point| point.is_valid());
@@ -55,7 +55,14 @@ pub(super) fn brightest(frame: &MeasuredFrame) -> impl Iterator<Item = &Measured
     })
 }
 
-fn mean(members: &[Member<'_>], speckle: &impl SpeckleCorrelation) -> Option<MeasuredPoint> {
+/// Returns the mean of points, each with the frame it was seen in, or `None` without any.
+///
+/// It carries the uncertainty of a mean of correlated numbers, as [`averaged_profile`] says; what else it
+/// has is the mean, too, or that of the middle one of the points.
+pub fn mean_point(
+    members: &[(u32, &MeasuredPoint)],
+    speckle: &impl SpeckleCorrelation,
+) -> Option<MeasuredPoint> {
     let (_, middle) = members.get(members.len() / 2)?;
     let count = members.len() as f64;
     let points = || members.iter().map(|(_, point)| *point);

@@ -27,14 +27,14 @@ mod sensor;
 mod setup;
 
 pub use calibration::{
-    Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS, Parameter,
+    Calibration, CalibrationCovariance, CalibrationQuality, Checkerboard, PARAMETERS, Parameter,
 };
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
-    parse_setup, parse_setup_with, read_detector, read_scan, read_sensor, read_setup,
-    read_setup_with,
+    BoardSettings, CalibrationMethod, CalibrationSettings, parse_setup, parse_setup_with,
+    read_calibration, read_detector, read_scan, read_sensor, read_setup, read_setup_with,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use line_image::{LineImage, LineImageData};

@@ -6,7 +6,6 @@ mod scan;
 mod sensor;
 mod setup;
 mod setup_text;
-mod tests;
 
 pub use self::calibration::{
     BoardSettings, CalibrationMethod, CalibrationSettings, read_calibration,
@@ -15,3 +14,6 @@ pub use self::detector::read_detector;
 pub use self::scan::read_scan;
 pub use self::sensor::read_sensor;
 pub use self::setup::{parse_setup, parse_setup_with, read_setup, read_setup_with};
+
+#[cfg(test)]
+mod tests;

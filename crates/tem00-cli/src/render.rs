@@ -267,14 +267,14 @@ fn frames(args: &RenderArgs, scene: &Scene) -> Result<FrameRange, Failure> {
     ))
 }
 
-fn thread_pool(threads: Option<u16>) -> Result<ThreadPool, Failure> {
+pub(crate) fn thread_pool(threads: Option<u16>) -> Result<ThreadPool, Failure> {
     ThreadPoolBuilder::new()
         .num_threads(threads.map_or(0, usize::from))
         .build()
         .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))
 }
 
-fn scene_failure(path: &Path, error: &SceneError) -> Failure {
+pub(crate) fn scene_failure(path: &Path, error: &SceneError) -> Failure {
     let help = error.help().map(str::to_owned);
     let path = error.path().unwrap_or(path);
     match error.span() {
@@ -286,7 +286,7 @@ fn scene_failure(path: &Path, error: &SceneError) -> Failure {
     }
 }
 
-fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
+pub(crate) fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
     let help = match error {
         TracerError::PatternMemory { needed, allowed } => format!(
             "{} needed, {} allowed: `memory` in [speckle], which all lasers share, allows more; \

@@ -1,8 +1,10 @@
-//! Image files: PNG, OpenEXR and NumPy.
+//! Image files: PNG, OpenEXR and NumPy for light, PNG and TIFF for grey values.
 
 mod exr_file;
 mod npy_file;
 mod png_file;
+mod raw_file;
+mod selection;
 
 use std::{fs::File, io::BufReader, path::Path};
 
@@ -12,6 +14,7 @@ use thiserror::Error;
 
 pub(crate) use exr_file::{Layer, Window, write_exr};
 pub(crate) use png_file::{write_grey_png, write_rgb_png};
+pub(crate) use raw_file::{RawImage, read_raw, write_raw};
 
 /// The most pixels that are read from a file: 2²⁸, which is 1 GiB of `f32`.
 const MAXIMUM_PIXELS: u64 = 1 << 28;
@@ -67,12 +70,20 @@ pub(crate) enum ImageError {
     PngDecoding(#[from] png::DecodingError),
     #[error("{0}")]
     PngEncoding(#[from] png::EncodingError),
+    #[error("TIFF: {0}")]
+    Tiff(#[from] tiff::TiffError),
     #[error("OpenEXR: {0}")]
     Exr(#[from] exr::error::Error),
     #[error("{0}")]
     Npy(#[from] tem00_speckle::NpyError),
     #[error("{0} is not supported: use .png, .exr or .npy")]
     Format(String),
+    #[error("{0} is no raw frame: use .png, .tif or .tiff")]
+    RawFormat(String),
+    #[error("pixels of {0} are not supported: use grey or RGB of 8 or 16 bits, not in planes")]
+    Pixels(String),
+    #[error("grey values of {told} bits are at most {}, but there is one of {found}", (1_u32 << .told) - 1)]
+    Bits { told: u32, found: u16 },
     #[error("the image has {width} × {height} pixels; between 1 and {MAXIMUM_PIXELS} are allowed")]
     Size { width: u64, height: u64 },
     #[error("the array has the shape {0:?}; two dimensions, height × width, are needed")]

@@ -226,6 +226,24 @@ impl Camera {
         }
     }
 
+    /// Returns the direction of the ray through the centre of the lens that arrives at an image point,
+    /// one metre along the axis, and its derivatives by the image point, per pixel to the right and
+    /// per pixel down; all in the axes of the world.
+    ///
+    /// Returns `None` for an image point that no ray reaches.
+    pub fn sight(&self, pixel: DVec2) -> Option<(DVec3, [DVec3; 2])> {
+        let (depth, tangent) = self.seen_by(pixel)?;
+        let place = self.sensor.point(pixel);
+        let undo = self.distortion.jacobian(tangent).inverse();
+        // The tangent of the image point is place.xy / place.z.
+        let derivative = |step: DVec3| {
+            let image = (step.truncate() - step.z / depth * place.truncate()) / depth;
+            self.world((undo * image).extend(0.0))
+        };
+        let direction = self.world(tangent.extend(1.0));
+        Some((direction, self.sensor.steps().map(derivative)))
+    }
+
     /// Returns the image point of a point in space, by the ray through the centre of the lens.
     ///
     /// It may lie outside of the image. Returns `None` if the point lies behind the lens, where the

@@ -1,50 +1,10 @@
+mod method;
+
 use tem00_numerics::Grid;
 
 use crate::TriangulationError;
 
-/// How the place of a line in a column is estimated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum LineMethod {
-    /// The centre of gravity of what lies above the background, over the window.
-    CentreOfGravity,
-    /// The centre of gravity of what lies above a fraction of the peak.
-    ThresholdedCentreOfGravity {
-        /// The threshold as a fraction of the peak, from 0 to 1.
-        threshold: f64,
-    },
-    /// The centre of gravity over a window that is moved onto its result until it stays.
-    IteratedCentreOfGravity,
-    /// The vertex of the parabola through the peak and its neighbours.
-    Parabola,
-    /// The vertex of the parabola through the logarithms of the peak and its neighbours.
-    LogGaussian,
-    /// Linear interpolation between the peak and its neighbours.
-    LinearInterpolation,
-    /// The zero of the derivative by a filter of Blais and Rioux.
-    BlaisRioux {
-        /// The order of the filter.
-        order: FilterOrder,
-    },
-    /// The Gaussian on a constant background that fits best.
-    GaussianFit,
-    /// The ridge by Steger, with derivatives of a Gaussian.
-    Steger {
-        /// The standard deviation of the Gaussian, in pixels.
-        sigma: f64,
-    },
-}
-
-/// The order of a filter of Blais and Rioux.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FilterOrder {
-    /// Two taps.
-    Second,
-    /// Four taps.
-    Fourth,
-    /// Eight taps.
-    Eighth,
-}
+pub use method::{FilterOrder, LineMethod};
 
 /// How lines are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +19,62 @@ pub struct DetectorSettings {
     pub most_lines: usize,
     /// The grey value from which on a pixel is saturated; infinite if there is none.
     pub saturation: f64,
+}
+
+impl Default for DetectorSettings {
+    /// The centre of gravity over 31 pixels of one line per column, at least 10 grey values high.
+    fn default() -> Self {
+        Self {
+            method: LineMethod::CentreOfGravity,
+            window: 31,
+            least_peak: 10.0,
+            most_lines: 1,
+            saturation: f64::INFINITY,
+        }
+    }
+}
+
+impl DetectorSettings {
+    /// The most pixels of a window.
+    pub const MOST_WINDOW: usize = 1001;
+    /// The most lines per column.
+    pub const MOST_LINES: usize = 100;
+
+    fn validate(&self) -> Result<(), TriangulationError> {
+        let refuse = |parameter, value, allowed| {
+            Err(TriangulationError::OutOfRange {
+                parameter,
+                value,
+                allowed,
+            })
+        };
+        self.method.validate()?;
+        if self.window.is_multiple_of(2) || !(3..=Self::MOST_WINDOW).contains(&self.window) {
+            return refuse(
+                "window",
+                self.window as f64,
+                "an odd number of pixels from 3 to 1001",
+            );
+        }
+        if self.window < self.method.least_window() {
+            return Err(TriangulationError::TooFew {
+                what: "pixels in the window of this method",
+                got: self.window,
+                needed: self.method.least_window(),
+            });
+        }
+        if !(0.0..f64::INFINITY).contains(&self.least_peak) {
+            let allowed = "zero or more grey values, and finite";
+            return refuse("least_peak", self.least_peak, allowed);
+        }
+        if !(1..=Self::MOST_LINES).contains(&self.most_lines) {
+            return refuse("most_lines", self.most_lines as f64, "from 1 to 100");
+        }
+        if self.saturation.is_nan() || self.saturation <= 0.0 {
+            return refuse("saturation", self.saturation, "positive, infinite if none");
+        }
+        Ok(())
+    }
 }
 
 /// A line where it crosses a column.
@@ -91,8 +107,27 @@ pub enum Validity {
     Saturated,
     /// The window reaches beyond the image.
     Cut,
-    /// The estimate did not converge or lies outside of the window.
+    /// The window was cut where the next line of the column begins.
+    Crowded,
+    /// A pixel of the window is not a finite number; it counts as background.
+    Missing,
+    /// The estimate did not converge or lies outside of the window; the place is that of the peak.
     Failed,
+}
+
+impl Validity {
+    /// Returns what to write into a table: `valid`, `saturated`, `cut`, `crowded`, `missing` or
+    /// `failed`.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Valid => "valid",
+            Self::Saturated => "saturated",
+            Self::Cut => "cut",
+            Self::Crowded => "crowded",
+            Self::Missing => "missing",
+            Self::Failed => "failed",
+        }
+    }
 }
 
 /// Finds laser lines in columns and images.
@@ -107,7 +142,8 @@ impl LineDetector {
     /// # Errors
     ///
     /// Returns an error if a setting is outside its range.
-    pub const fn new(settings: DetectorSettings) -> Result<Self, TriangulationError> {
+    pub fn new(settings: DetectorSettings) -> Result<Self, TriangulationError> {
+        settings.validate()?;
         Ok(Self { settings })
     }
 
@@ -144,6 +180,12 @@ impl LineDetector {
         (0..image.width())
             .map(|x| self.detect_column(&column(x)))
             .collect()
+    }
+
+    /// Finds the lines of an image in which they run from top to bottom: for each *row* the points on
+    /// them, from the left, with places along x.
+    pub fn detect_rows(&self, image: &Grid<f32>) -> Vec<Vec<LinePoint>> {
+        image.rows().map(|row| self.detect_column(row)).collect()
     }
 
     /// Returns by how much the place of the line at `point` moves per grey value of each pixel of the

@@ -18,12 +18,25 @@ mod detector;
 mod error;
 mod file;
 mod geometry;
+mod place_noise;
+mod scan;
 mod sensor;
+mod setup;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
-pub use geometry::{LaserPlane, Triangulator};
+pub use file::{read_detector, read_scan, read_sensor};
+pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
+pub use place_noise::{ColumnLight, PixelCovariance, PlaceNoise, speckle_covariance};
+pub use scan::{
+    Averaging, Exposure, LAMP_WAVELENGTH, RawFormat, ScanMotion, ScanSettings, SensorSpeckle,
+    SpeckleTable,
+};
 pub use sensor::{RawFrame, Sensor, SensorDescription};
+pub use setup::{
+    Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
+    SetupSurface,
+};
 
 /// The places and directions of this crate.
 pub use glam::{DVec2, DVec3};

@@ -5,6 +5,7 @@ use png::{
 };
 use tem00_numerics::Grid;
 
+use super::selection::{Components, Selection};
 use super::{ImageError, LoadedImage, Transfer, checked_area, grid};
 use crate::colour::{srgb_decoded, srgb_encoded};
 
@@ -88,7 +89,7 @@ pub(super) fn read(
     let (width, height) = (reader.info().width, reader.info().height);
     let area = checked_area(width.into(), height.into())?;
     let (colour, depth) = reader.output_color_type();
-    let selection = Selection::new(colour, channel)?;
+    let selection = Selection::new(colour.into(), channel)?;
     let curve = Curve::new(reader.info(), transfer);
     let full = if depth == BitDepth::Sixteen {
         u16::MAX
@@ -165,43 +166,6 @@ impl Pixels {
             self.saturated += usize::from(chosen().any(|value| value == full));
             self.values.push((linear / count) as f32);
         }
-    }
-}
-
-/// Which of the components of a pixel are taken.
-struct Selection {
-    components: usize,
-    chosen: core::ops::Range<usize>,
-    description: String,
-}
-
-impl Selection {
-    fn new(colour: ColorType, channel: Option<&str>) -> Result<Self, ImageError> {
-        let (names, colours): (&[&str], usize) = match colour {
-            ColorType::Grayscale => (&["Y"], 1),
-            ColorType::GrayscaleAlpha => (&["Y", "A"], 1),
-            ColorType::Rgb | ColorType::Indexed => (&["R", "G", "B"], 3),
-            ColorType::Rgba => (&["R", "G", "B", "A"], 3),
-        };
-        let (chosen, description) = match channel {
-            None if colours == 1 => (0..1, "grey".to_owned()),
-            None => (0..3, "mean of R, G and B".to_owned()),
-            Some(wanted) => {
-                let index = names
-                    .iter()
-                    .position(|name| name.eq_ignore_ascii_case(wanted))
-                    .ok_or_else(|| ImageError::Channel {
-                        wanted: wanted.to_owned(),
-                        available: names.iter().map(|name| (*name).to_owned()).collect(),
-                    })?;
-                (index..index + 1, format!("channel {}", names[index]))
-            }
-        };
-        Ok(Self {
-            components: names.len(),
-            chosen,
-            description,
-        })
     }
 }
 

@@ -41,6 +41,11 @@ impl Sensor {
         offset.x * self.right - offset.y * self.up + self.distance * DVec3::Z
     }
 
+    /// Returns by how much the place moves per pixel to the right and per pixel down, in metres.
+    pub(super) fn steps(&self) -> [DVec3; 2] {
+        [self.pitch * self.right, -self.pitch * self.up]
+    }
+
     /// Returns the image point in the direction of a tangent, or `None` if the sensor is not there.
     pub(super) fn pixel(&self, tangent: DVec2) -> Option<DVec2> {
         let depth = self.depth(tangent)?;

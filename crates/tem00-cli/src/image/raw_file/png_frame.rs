@@ -1,0 +1,115 @@
+use std::io::{BufRead, Seek, Write};
+
+use png::{BitDepth, ColorType, Decoder, Encoder, Transformations};
+use tem00_triangulation::RawFrame;
+
+use super::{BIT_DEPTH, Components, ImageError, Samples, checked_area, stated_bit_depth};
+
+pub(super) fn read(reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
+    let mut decoder = Decoder::new(reader);
+    decoder.set_transformations(Transformations::EXPAND);
+    let mut reader = decoder.read_info()?;
+    let (width, height) = (reader.info().width, reader.info().height);
+    let area = checked_area(width.into(), height.into())?;
+    let (colour, depth) = reader.output_color_type();
+    let components = Components::from(colour);
+    let stored = if depth == BitDepth::Sixteen { 16 } else { 8 };
+
+    let mut values = Vec::with_capacity(area * components.names().len());
+    let mut line = vec![0; reader.output_line_size(width).unwrap_or(0)];
+    if reader.info().interlaced {
+        line.resize(reader.output_buffer_size().unwrap_or(0), 0);
+        reader.next_frame(&mut line)?;
+        extend(&mut values, &line, stored);
+    } else {
+        while reader.read_row(&mut line)?.is_some() {
+            extend(&mut values, &line, stored);
+        }
+    }
+    // The text may stand behind the image.
+    reader.finish()?;
+    let bits = Bits::of(reader.info(), stored);
+    values.iter_mut().for_each(|value| *value >>= bits.shift);
+    Ok(Samples {
+        width: width as usize,
+        height: height as usize,
+        components,
+        values,
+        bit_depth: bits.depth,
+        remark: bits.remark,
+    })
+}
+
+fn extend(values: &mut Vec<u16>, data: &[u8], stored: u32) {
+    if stored == 16 {
+        let pairs = data.chunks_exact(2);
+        values.extend(pairs.map(|pair| u16::from_be_bytes([pair[0], pair[1]])));
+    } else {
+        values.extend(data.iter().map(|&value| u16::from(value)));
+    }
+}
+
+/// How grey values stand in the file.
+struct Bits {
+    depth: u32,
+    shift: u32,
+    remark: &'static str,
+}
+
+impl Bits {
+    fn of(info: &png::Info<'_>, stored: u32) -> Self {
+        let entry = info.utf8_text.iter().find(|text| text.keyword == BIT_DEPTH);
+        let told = entry.and_then(|text| stated_bit_depth(&text.get_text().ok()?));
+        let significant = info.sbit.as_deref().and_then(<[u8]>::first);
+        match (told, significant) {
+            (Some(depth), _) if depth <= stored => Self {
+                depth,
+                shift: 0,
+                remark: ", as the file says",
+            },
+            (_, Some(&bits)) if (8..stored).contains(&u32::from(bits)) => Self {
+                depth: bits.into(),
+                shift: stored - u32::from(bits),
+                remark: ", scaled up in the file",
+            },
+            _ => Self {
+                depth: stored,
+                shift: 0,
+                remark: "",
+            },
+        }
+    }
+}
+
+pub(super) fn write(
+    writer: impl Write,
+    frame: &RawFrame,
+    text: &[(&str, String)],
+) -> Result<(), ImageError> {
+    let size = |pixels: usize| u32::try_from(pixels).unwrap_or(u32::MAX);
+    let values = &frame.values;
+    let mut encoder = Encoder::new(writer, size(values.width()), size(values.height()));
+    encoder.set_color(ColorType::Grayscale);
+    encoder.add_itxt_chunk(BIT_DEPTH.to_owned(), frame.bit_depth.to_string())?;
+    for (keyword, content) in text {
+        encoder.add_itxt_chunk((*keyword).to_owned(), content.clone())?;
+    }
+    let data: Vec<u8> = if frame.bit_depth == 8 {
+        encoder.set_depth(BitDepth::Eight);
+        values
+            .values()
+            .iter()
+            .map(|value| value.to_be_bytes()[1])
+            .collect()
+    } else {
+        encoder.set_depth(BitDepth::Sixteen);
+        values
+            .values()
+            .iter()
+            .flat_map(|value| value.to_be_bytes())
+            .collect()
+    };
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&data)?;
+    Ok(writer.finish()?)
+}

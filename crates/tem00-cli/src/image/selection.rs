@@ -1,0 +1,75 @@
+//! Which part of a pixel is taken.
+
+use png::ColorType;
+
+use super::ImageError;
+
+/// What a pixel of a file consists of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Components {
+    Grey,
+    GreyAlpha,
+    Rgb,
+    Rgba,
+}
+
+impl Components {
+    /// Returns the names of the components, in order.
+    pub(super) const fn names(self) -> &'static [&'static str] {
+        match self {
+            Self::Grey => &["Y"],
+            Self::GreyAlpha => &["Y", "A"],
+            Self::Rgb => &["R", "G", "B"],
+            Self::Rgba => &["R", "G", "B", "A"],
+        }
+    }
+
+    const fn is_grey(self) -> bool {
+        matches!(self, Self::Grey | Self::GreyAlpha)
+    }
+}
+
+impl From<ColorType> for Components {
+    /// A palette counts as the colours in it.
+    fn from(colour: ColorType) -> Self {
+        match colour {
+            ColorType::Grayscale => Self::Grey,
+            ColorType::GrayscaleAlpha => Self::GreyAlpha,
+            ColorType::Rgb | ColorType::Indexed => Self::Rgb,
+            ColorType::Rgba => Self::Rgba,
+        }
+    }
+}
+
+/// Which of the components of a pixel are taken.
+pub(super) struct Selection {
+    pub(super) components: usize,
+    pub(super) chosen: core::ops::Range<usize>,
+    pub(super) description: String,
+}
+
+impl Selection {
+    /// Takes the component of the name `channel`, or without one the grey value or all colours.
+    pub(super) fn new(of: Components, channel: Option<&str>) -> Result<Self, ImageError> {
+        let names = of.names();
+        let (chosen, description) = match channel {
+            None if of.is_grey() => (0..1, "grey".to_owned()),
+            None => (0..3, "mean of R, G and B".to_owned()),
+            Some(wanted) => {
+                let index = names
+                    .iter()
+                    .position(|name| name.eq_ignore_ascii_case(wanted))
+                    .ok_or_else(|| ImageError::Channel {
+                        wanted: wanted.to_owned(),
+                        available: names.iter().map(|name| (*name).to_owned()).collect(),
+                    })?;
+                (index..index + 1, format!("channel {}", names[index]))
+            }
+        };
+        Ok(Self {
+            components: names.len(),
+            chosen,
+            description,
+        })
+    }
+}

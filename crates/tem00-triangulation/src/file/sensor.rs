@@ -1,0 +1,89 @@
+use tem00_tracer::document::{DURATION, Document, NUMBER, Problem, Section};
+
+use crate::{Sensor, SensorDescription, TriangulationError};
+
+/// The keys of the section `[sensor]`.
+const KEYS: &[&str] = &[
+    "quantum_efficiency",
+    "exposure",
+    "bit_depth",
+    "gain",
+    "black_level",
+    "full_well",
+    "dark_noise",
+    "dark_current",
+    "prnu",
+    "dsnu",
+    "fill_factor",
+    "serial_number",
+];
+
+/// Reads the section `[sensor]` of a file; the pixel pitch, in metres, stands in `[camera]`.
+///
+/// `quantum_efficiency` and `exposure` must be there. What else is missing is as in
+/// [`SensorDescription::typical`]; a gain that is missing makes a full well the largest grey value.
+///
+/// # Errors
+///
+/// Returns a problem, placed in the file, if the section is missing or describes no sensor.
+pub fn read_sensor(
+    document: &Document<'_>,
+    pixel_pitch: f64,
+) -> Result<SensorDescription, Problem> {
+    let section = document.table("sensor", KEYS)?.ok_or_else(|| {
+        Problem::new("the file needs a sensor: a section [sensor]").with_help(
+            "for example `quantum_efficiency = 0.6` and `exposure = \"2 ms\"` below `[sensor]`",
+        )
+    })?;
+    let description = description(&section, pixel_pitch)?;
+    match Sensor::new(description) {
+        Ok(_) => Ok(description),
+        Err(error) => Err(section.problem_with(key_of(&error), &error)),
+    }
+}
+
+fn description(section: &Section<'_>, pixel_pitch: f64) -> Result<SensorDescription, Problem> {
+    let bit_depth = section.or("bit_depth", 12, |value| value.integer(8..=16))?;
+    // From 8 to 16.
+    let bit_depth = u32::try_from(bit_depth).unwrap_or(0);
+    let typical = SensorDescription::typical(bit_depth);
+    let number = |key, default| section.or(key, default, |value| value.quantity(&NUMBER));
+    let quantum_efficiency = section.required("quantum_efficiency", "0.6")?;
+    let (full_well, black_level) = (
+        number("full_well", typical.full_well)?,
+        number("black_level", typical.black_level)?,
+    );
+    Ok(SensorDescription {
+        quantum_efficiency: quantum_efficiency.quantity(&NUMBER)?,
+        exposure_time: section
+            .required("exposure", "\"2 ms\"")?
+            .positive(&DURATION)?,
+        full_well,
+        black_level,
+        gain: number(
+            "gain",
+            SensorDescription::filling_gain(bit_depth, black_level, full_well),
+        )?,
+        dark_noise: number("dark_noise", typical.dark_noise)?,
+        dark_current: number("dark_current", typical.dark_current)?,
+        prnu: number("prnu", typical.prnu)?,
+        dsnu: number("dsnu", typical.dsnu)?,
+        bit_depth,
+        pixel_pitch,
+        fill_factor: number("fill_factor", typical.fill_factor)?,
+        serial_number: section.or("serial_number", 0, |value| {
+            value.integer(0..=u64::from(u32::MAX))
+        })?,
+    })
+}
+
+/// The key that an error is about.
+fn key_of(error: &TriangulationError) -> &'static str {
+    match error {
+        TriangulationError::OutOfRange { parameter, .. } if *parameter == "exposure_time" => {
+            "exposure"
+        }
+        TriangulationError::OutOfRange { parameter, .. } => parameter,
+        _ => "",
+    }
+}

@@ -1,0 +1,65 @@
+use glam::DVec2;
+
+use super::{Triangulator, UncertainPoint};
+use crate::{LinePoint, Validity};
+
+/// A point of a profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfilePoint {
+    /// The column of the image in which the line was found, counted from 0.
+    pub column: usize,
+    /// Which line of the image the point belongs to, as [`LinePoint::line`].
+    pub line: usize,
+    /// The image point, in pixels.
+    pub pixel: DVec2,
+    /// The point in space and what the place of the line leaves uncertain about it.
+    pub point: UncertainPoint,
+    /// The full width of the line between the points of 1/e² in the image, in pixels.
+    pub width: f64,
+    /// The grey values above the background, summed over the line: in proportion to the light that the
+    /// surface sends to the camera.
+    pub reflectance: f64,
+    /// Whether the place of the line can be trusted.
+    pub validity: Validity,
+}
+
+impl Triangulator {
+    /// Returns the profile that the lines found in an image draw, by column and from the top: the points
+    /// of the laser plane at `(column + 0.5, position)`.
+    ///
+    /// `uncertainty` tells the standard uncertainty of the place of a point along its column, in pixels.
+    /// Points at which the camera does not see the laser plane, above its horizon, are left out.
+    pub fn profile(
+        &self,
+        columns: &[Vec<LinePoint>],
+        uncertainty: impl Fn(usize, &LinePoint) -> f64,
+    ) -> Vec<ProfilePoint> {
+        let point = &|column: usize, found: &LinePoint| {
+            let pixel = DVec2::new(middle_of(column), found.position);
+            let point = self.point_with_uncertainty(pixel, uncertainty(column, found))?;
+            Some(ProfilePoint {
+                column,
+                line: found.line,
+                pixel,
+                point,
+                width: found.width,
+                reflectance: found.integral,
+                validity: found.validity,
+            })
+        };
+        columns
+            .iter()
+            .enumerate()
+            .flat_map(|(column, found)| found.iter().filter_map(move |found| point(column, found)))
+            .collect()
+    }
+}
+
+/// Returns the place of the middle of a column, in pixels.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "an image has at most 2²⁸ columns"
+)]
+fn middle_of(column: usize) -> f64 {
+    column as f64 + 0.5
+}

@@ -1,0 +1,176 @@
+use crate::TriangulationError;
+
+/// What a data sheet after EMVA 1288 (linear model) tells of a sensor, and how it is used.
+///
+/// [`typical`](Self::typical) fills in what a data sheet leaves open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorDescription {
+    /// The quantum efficiency η at the wavelength of the laser, above 0 and at most 1: electrons per
+    /// photon that falls on the whole area of a pixel, as EMVA 1288 measures it. Fill factor and
+    /// microlenses are in it.
+    pub quantum_efficiency: f64,
+    /// The overall system gain K, in DN per electron.
+    pub gain: f64,
+    /// The temporal dark noise, in electrons, without quantisation and dark current.
+    pub dark_noise: f64,
+    /// The mean dark current, in electrons per second.
+    pub dark_current: f64,
+    /// The capacity at saturation, in electrons.
+    pub full_well: f64,
+    /// The photo response non-uniformity: the standard deviation of the pixels' response as a fraction.
+    pub prnu: f64,
+    /// The dark signal non-uniformity: the standard deviation of the pixels' dark signal, in electrons.
+    pub dsnu: f64,
+    /// The bits of a grey value: 8, 10, 12, 14 or 16.
+    pub bit_depth: u32,
+    /// The grey value without light and dark current, in DN.
+    pub black_level: f64,
+    /// The distance of the pixels' centres, in metres.
+    pub pixel_pitch: f64,
+    /// The part of a pixel that is sensitive, above 0 and at most 1: a square about its centre. It tells
+    /// over which part of the image a pixel integrates, not how much light it takes; behind microlenses
+    /// it is 1.
+    pub fill_factor: f64,
+    /// The exposure time, in seconds.
+    pub exposure_time: f64,
+    /// The number of the camera in its series: it draws the differences between the pixels.
+    pub serial_number: u64,
+}
+
+impl SensorDescription {
+    /// Returns an industrial CMOS sensor with global shutter, as data sheets have them around 2020 for
+    /// pixels of 3.45 µm: 10 500 electrons full well, 2.3 electrons dark noise, 0.5 % PRNU, 1 electron
+    /// DSNU, 3 electrons/s dark current at room temperature, quantum efficiency ½ in the red, 1 ms.
+    ///
+    /// The black level is 1/64 of the range of `bit_depth` bits, and the gain is such that a full well
+    /// is the largest grey value. A bit depth that no sensor has is rejected by
+    /// [`Sensor::new`](crate::Sensor::new), not here.
+    pub fn typical(bit_depth: u32) -> Self {
+        let (black_level, full_well) = (f64::from(bit_depth).exp2() / 64.0, 10_500.0);
+        Self {
+            quantum_efficiency: 0.5,
+            gain: Self::filling_gain(bit_depth, black_level, full_well),
+            dark_noise: 2.3,
+            dark_current: 3.0,
+            full_well,
+            prnu: 0.005,
+            dsnu: 1.0,
+            bit_depth,
+            black_level,
+            pixel_pitch: 3.45e-6,
+            fill_factor: 1.0,
+            exposure_time: 1e-3,
+            serial_number: 0,
+        }
+    }
+
+    /// Returns the gain, in DN per electron, with which a full well is the largest grey value.
+    pub(crate) fn filling_gain(bit_depth: u32, black_level: f64, full_well: f64) -> f64 {
+        (f64::from(bit_depth).exp2() - 1.0 - black_level) / full_well
+    }
+
+    /// Returns the largest grey value, `2^bits − 1`, in DN.
+    pub(super) fn largest_value(&self) -> f64 {
+        f64::from(self.bit_depth).exp2() - 1.0
+    }
+
+    /// Returns the first quantity that is outside its range as an error.
+    pub(super) fn check(&self) -> Result<(), TriangulationError> {
+        if !matches!(self.bit_depth, 8 | 10 | 12 | 14 | 16) {
+            return Err(TriangulationError::OutOfRange {
+                parameter: "bit_depth",
+                value: f64::from(self.bit_depth),
+                allowed: "8, 10, 12, 14 or 16",
+            });
+        }
+        let outside = self.ranges().into_iter().find(|range| !range.holds);
+        outside.map_or(Ok(()), |range| {
+            Err(TriangulationError::OutOfRange {
+                parameter: range.parameter,
+                value: range.value,
+                allowed: range.allowed,
+            })
+        })
+    }
+
+    fn ranges(&self) -> [Range; 11] {
+        let positive = |parameter, value: f64, most, allowed| Range {
+            parameter,
+            value,
+            holds: value > 0.0 && value <= most,
+            allowed,
+        };
+        let not_negative = |parameter, value: f64, most, allowed| Range {
+            parameter,
+            value,
+            holds: (0.0..=most).contains(&value),
+            allowed,
+        };
+        const FRACTION: &str = "above 0 and at most 1";
+        [
+            positive("quantum_efficiency", self.quantum_efficiency, 1.0, FRACTION),
+            Range {
+                parameter: "black_level",
+                value: self.black_level,
+                holds: (0.0..self.largest_value()).contains(&self.black_level),
+                allowed: "at least 0 and below the largest grey value, in DN",
+            },
+            Range {
+                parameter: "full_well",
+                value: self.full_well,
+                holds: (1.0..=1e9).contains(&self.full_well),
+                allowed: "from 1 to 1e9, in electrons",
+            },
+            // After the two that a gain follows from if it is not told.
+            positive(
+                "gain",
+                self.gain,
+                1e6,
+                "above 0 and at most 1e6, in DN per electron",
+            ),
+            not_negative(
+                "dark_noise",
+                self.dark_noise,
+                1e6,
+                "from 0 to 1e6, in electrons",
+            ),
+            not_negative(
+                "dark_current",
+                self.dark_current,
+                1e12,
+                "from 0 to 1e12, in electrons per second",
+            ),
+            // Ten standard deviations below its mean, which no pixel is, the response is still not negative.
+            not_negative("prnu", self.prnu, 0.1, "from 0 to 0.1, as a fraction"),
+            not_negative("dsnu", self.dsnu, 1e6, "from 0 to 1e6, in electrons"),
+            positive(
+                "pixel_pitch",
+                self.pixel_pitch,
+                1.0,
+                "above 0 and at most 1, in metres",
+            ),
+            positive("fill_factor", self.fill_factor, 1.0, FRACTION),
+            positive(
+                "exposure_time",
+                self.exposure_time,
+                1e6,
+                "above 0 and at most 1e6, in seconds",
+            ),
+        ]
+    }
+}
+
+impl Default for SensorDescription {
+    /// The typical sensor with 12 bits.
+    fn default() -> Self {
+        Self::typical(12)
+    }
+}
+
+/// A quantity and whether it is in its range.
+struct Range {
+    parameter: &'static str,
+    value: f64,
+    holds: bool,
+    allowed: &'static str,
+}

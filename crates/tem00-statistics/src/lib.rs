@@ -24,6 +24,7 @@
 //!   [`GaussianSpectrum`], [`contrast_of_phasor_sum`], [`contrast_squared_spread`].
 //! - In space: [`airy_autocovariance`], [`airy_power_spectrum`], [`ObjectiveSpeckle`],
 //!   [`COHERENCE_AREA`], [`VORTEX_DENSITY`], [`level_crossings`], [`area_fraction_above`].
+//! - Laser lines and spots under speckle: [`speckle_length`], [`PixelAutocovariance`].
 //! - Estimators: [`Moments`], [`Contrast`], [`local_contrast`], [`GammaFit`],
 //!   [`pearson_correlation`], [`autocovariance`], [`power_spectrum`], [`radial_average`],
 //!   [`SpeckleSize`], [`phase_singularities`], [`VortexDensity`], [`decorrelated_samples`].
@@ -69,10 +70,12 @@ mod objective;
 mod passage;
 mod phasor_sum;
 mod pixel;
+mod pixel_autocovariance;
 mod pixel_widening;
 mod polarisation;
 mod quadrature;
 mod rectangular_pixel;
+mod row_spectrum;
 mod second_order;
 mod singularities;
 mod spatial;
@@ -101,9 +104,11 @@ pub use moments::{Contrast, Moments, pearson_correlation};
 pub use objective::{LitArea, ObjectiveSpeckle};
 pub use phasor_sum::{PhasorSum, moment_of_phasor_sum};
 pub use pixel::pixel_contrast;
+pub use pixel_autocovariance::{PixelAutocovariance, PixelColumn};
 pub use pixel_widening::size_before_pixels;
 pub use polarisation::PartiallyPolarised;
 pub use rectangular_pixel::{gaussian_filter_contrast, rectangular_pixel_contrast};
+pub use row_spectrum::speckle_length;
 pub use second_order::{
     AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, COHERENCE_AREA, airy_autocovariance, airy_power_spectrum,
     contrast_squared_spread,

@@ -27,10 +27,12 @@ pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, Line
 pub use error::TriangulationError;
 pub use file::{read_detector, read_scan, read_sensor};
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
-pub use place_noise::{ColumnLight, PixelCovariance, PlaceNoise, speckle_covariance};
+pub use place_noise::{
+    ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
+};
 pub use scan::{
-    Averaging, Exposure, LAMP_WAVELENGTH, RawFormat, ScanMotion, ScanSettings, SensorSpeckle,
-    SpeckleTable,
+    Averaging, Exposure, LAMP_WAVELENGTH, MeasuredFrame, MeasuredPoint, Measurement,
+    MeasurementScene, RawFormat, ScanMotion, ScanSettings, SensorSpeckle, SpeckleTable,
 };
 pub use sensor::{RawFrame, Sensor, SensorDescription};
 pub use setup::{

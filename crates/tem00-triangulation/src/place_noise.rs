@@ -1,3 +1,5 @@
+use tem00_statistics::PixelAutocovariance;
+
 use crate::SensorDescription;
 
 /// What makes the place of a line along a column uncertain: variances, in square pixels.
@@ -50,6 +52,43 @@ pub trait PixelCovariance {
     /// Returns the covariance of the speckle factors of two pixels, a displacement in pixels apart:
     /// C² c, at no displacement the square of the contrast in a pixel.
     fn at(&self, displacement: [f64; 2]) -> f64;
+}
+
+impl<C: PixelCovariance> PixelCovariance for &C {
+    fn at(&self, displacement: [f64; 2]) -> f64 {
+        (**self).at(displacement)
+    }
+}
+
+impl<C: PixelCovariance> PixelCovariance for Option<C> {
+    /// Returns 0 without speckle.
+    fn at(&self, displacement: [f64; 2]) -> f64 {
+        self.as_ref()
+            .map_or(0.0, |speckle| speckle.at(displacement))
+    }
+}
+
+/// The speckle in the pixels of one column.
+#[derive(Clone, Copy, Debug)]
+pub struct ColumnSpeckle<'a> {
+    /// Its covariance for one polarised pattern.
+    pub autocovariance: &'a PixelAutocovariance,
+    /// The variance of the speckle factor in a point: (1 + P²)/2 by the number of patterns, for light of
+    /// the degree of polarisation P.
+    pub variance: f64,
+}
+
+impl PixelCovariance for ColumnSpeckle<'_> {
+    /// Returns the covariance of two pixels of the column, a whole number of rows apart.
+    fn at(&self, [_, rows]: [f64; 2]) -> f64 {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "rows are counted in whole numbers"
+        )]
+        let lag = rows.abs().round() as usize;
+        self.variance * self.autocovariance.covariance(lag)
+    }
 }
 
 impl PlaceNoise {

@@ -1,0 +1,215 @@
+use tem00_numerics::Grid;
+use tem00_tracer::RigidMotion;
+
+use super::{
+    exposure::{Exposure, single},
+    speckle_table::SpeckleTable,
+};
+use crate::{
+    ColumnLight, DVec3, LineDetector, LinePoint, PlaceNoise, ProfilePoint, RawFrame, Sensor,
+    TriangulationError, Triangulator, Validity, speckle_covariance,
+};
+
+/// What the sensor measures in one frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredFrame {
+    /// The number of the frame.
+    pub frame: u32,
+    /// What fell on the sensor.
+    pub exposure: Exposure,
+    /// The frame as the camera gives it.
+    pub raw: RawFrame,
+    /// The lines that were found in each column.
+    pub lines: Vec<Vec<LinePoint>>,
+    /// The points on them, by column and from the top.
+    pub points: Vec<MeasuredPoint>,
+    /// How speckle correlates the places of the line in columns 0, 1, 2 … apart; 1 alone without speckle.
+    pub correlation: Vec<f64>,
+}
+
+/// A measured point of a part and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredPoint {
+    /// The point as the profile has it, before the part is brought back to where it stands in its
+    /// description.
+    pub seen: ProfilePoint,
+    /// The point on the part as the scene describes it, in metres.
+    pub position: DVec3,
+    /// How that moves as the line moves down by a pixel, in metres.
+    pub per_pixel: DVec3,
+    /// What makes the place of the line uncertain, in square pixels.
+    pub noise: PlaceNoise,
+}
+
+impl MeasuredPoint {
+    /// Returns the standard uncertainties of the coordinates of the position, in metres.
+    pub fn uncertainty(&self) -> DVec3 {
+        self.noise.total().sqrt() * self.per_pixel.abs()
+    }
+
+    /// Returns the standard uncertainty along a direction of length 1, in metres.
+    pub fn uncertainty_along(&self, direction: DVec3) -> f64 {
+        self.noise.total().sqrt() * self.per_pixel.dot(direction).abs()
+    }
+
+    /// Returns whether the place of the line can be trusted.
+    pub fn is_valid(&self) -> bool {
+        self.seen.validity == Validity::Valid
+    }
+}
+
+/// All that it takes to measure a frame.
+#[derive(Clone, Debug)]
+pub(super) struct Surroundings<'a> {
+    pub(super) sensor: &'a Sensor,
+    pub(super) detector: &'a LineDetector,
+    pub(super) triangulator: &'a Triangulator,
+    /// `None` without speckle.
+    pub(super) speckle: Option<&'a SpeckleTable>,
+    pub(super) to_part: RigidMotion,
+}
+
+impl Surroundings<'_> {
+    /// Exposes the sensor and measures what it shows.
+    pub(super) fn measure(
+        &self,
+        exposure: Exposure,
+        frame: u32,
+        seed: u64,
+    ) -> Result<MeasuredFrame, TriangulationError> {
+        let raw = self.sensor.expose(&exposure.electrons, seed)?;
+        let image = raw.grey_values();
+        let lines = self.detector.detect(&image);
+        let expected = Expected::of(self, &exposure);
+        let points = self.points(&lines, &expected);
+        Ok(MeasuredFrame {
+            frame,
+            correlation: self.correlation(&points, &expected),
+            points,
+            lines,
+            raw,
+            exposure,
+        })
+    }
+
+    fn points(&self, lines: &[Vec<LinePoint>], expected: &Expected) -> Vec<MeasuredPoint> {
+        let profile = self.triangulator.profile(lines, |_, _| 0.0);
+        let measured = |seen: &ProfilePoint| {
+            let [_, down] = self.triangulator.derivatives(seen.pixel)?;
+            let noise = expected.noise(self, seen);
+            let mut seen = *seen;
+            seen.point = self
+                .triangulator
+                .point_with_uncertainty(seen.pixel, noise.total().sqrt())?;
+            Some(MeasuredPoint {
+                position: self.to_part.point(seen.point.position),
+                per_pixel: self.to_part.direction(down),
+                noise,
+                seen,
+            })
+        };
+        profile.iter().filter_map(measured).collect()
+    }
+
+    /// How speckle correlates neighbouring columns: that of the middle one of the points stands for all.
+    ///
+    /// A slope of the line makes the correlation shorter than this; it is left out.
+    fn correlation(&self, points: &[MeasuredPoint], expected: &Expected) -> Vec<f64> {
+        let valid: Vec<&MeasuredPoint> = points.iter().filter(|point| point.is_valid()).collect();
+        let (Some(middle), Some(speckle)) = (valid.get(valid.len() / 2), self.speckle) else {
+            return vec![1.0];
+        };
+        let column = expected.column(self, &middle.seen);
+        let light = column.light();
+        let sensor = self.sensor.description();
+        let covariance =
+            |lag: usize| speckle_covariance(sensor, speckle, [&light, &light], [lag as f64, 0.0]);
+        let variance = covariance(0);
+        if variance <= 0.0 {
+            return vec![1.0];
+        }
+        (0..=speckle.columns())
+            .map(|lag| covariance(lag) / variance)
+            .collect()
+    }
+}
+
+/// The frame that the sensor would give on average over all surfaces that look alike.
+struct Expected {
+    electrons: Grid<f32>,
+    coherent: Grid<f32>,
+    grey_values: Grid<f32>,
+    lines: Vec<Vec<LinePoint>>,
+}
+
+impl Expected {
+    fn of(surroundings: &Surroundings<'_>, exposure: &Exposure) -> Self {
+        let sensor = surroundings.sensor.description();
+        let dark = surroundings.sensor.dark_electrons();
+        let largest = f64::from((1_u32 << sensor.bit_depth) - 1);
+        let grey_values = exposure.without_speckle.map(|&electrons| {
+            let charge = (f64::from(electrons) + dark).min(sensor.full_well);
+            single((sensor.black_level + sensor.gain * charge).min(largest))
+        });
+        Self {
+            lines: surroundings.detector.detect(&grey_values),
+            electrons: exposure.without_speckle.clone(),
+            coherent: exposure.coherent.clone(),
+            grey_values,
+        }
+    }
+
+    /// What makes the place of a line uncertain.
+    fn noise(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> PlaceNoise {
+        let sensor = surroundings.sensor.description();
+        let column = self.column(surroundings, seen);
+        PlaceNoise::of_column(sensor, &surroundings.speckle, &column.light())
+    }
+
+    /// The light in the column of a point, and how its place depends on it: as without speckle where
+    /// there would be a line, too.
+    fn column(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> Column {
+        let take = |grid: &Grid<f32>| -> Vec<f32> {
+            (0..grid.height()).map(|y| grid[(seen.column, y)]).collect()
+        };
+        let wide = |grid: &Grid<f32>| take(grid).into_iter().map(f64::from).collect();
+        let detector = surroundings.detector;
+        let distance = |line: &LinePoint| (line.position - seen.pixel.y).abs();
+        let reach = 0.5 * detector.settings().window as f64;
+        let nearest = self.lines[seen.column]
+            .iter()
+            .filter(|line| distance(line) < reach)
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let line = nearest.copied().unwrap_or(LinePoint {
+            position: seen.pixel.y,
+            width: seen.width,
+            peak: 0.0,
+            integral: seen.reflectance,
+            background: 0.0,
+            validity: seen.validity,
+            line: seen.line,
+        });
+        Column {
+            sensitivities: detector.sensitivities(&take(&self.grey_values), &line),
+            electrons: wide(&self.electrons),
+            coherent: wide(&self.coherent),
+        }
+    }
+}
+
+/// The light in a column, and how the place of a line depends on it.
+struct Column {
+    electrons: Vec<f64>,
+    coherent: Vec<f64>,
+    sensitivities: Vec<f64>,
+}
+
+impl Column {
+    fn light(&self) -> ColumnLight<'_> {
+        ColumnLight {
+            electrons: &self.electrons,
+            coherent: &self.coherent,
+            sensitivities: &self.sensitivities,
+        }
+    }
+}

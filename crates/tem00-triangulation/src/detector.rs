@@ -1,6 +1,24 @@
+mod blais_rioux;
+mod column;
+mod estimate;
+mod extent;
+mod gaussian_fit;
+mod gravity;
 mod method;
+mod sensitivity;
+mod steger;
+#[cfg(test)]
+mod tests;
+mod three_point;
+mod tracks;
 
+use rayon::prelude::*;
 use tem00_numerics::Grid;
+
+use column::{Column, Sighting};
+use estimate::{Estimate, Profile};
+use extent::Extent;
+use steger::Kernels;
 
 use crate::TriangulationError;
 
@@ -153,44 +171,108 @@ impl LineDetector {
     }
 
     /// Finds the lines that cross a column, from the top.
+    ///
+    /// A line is where the column, smoothed over about a quarter of the window, has a maximum that stands
+    /// out of the noise by six of its standard deviations. Of maxima closer than half a window the greater
+    /// one counts, and of all the [`most_lines`](DetectorSettings::most_lines) greatest. The background is
+    /// the median of the pixels outside of the windows; where they are fewer than eight, the lowest
+    /// decile of the column. Lines less than [`least_peak`](DetectorSettings::least_peak) above it are
+    /// left out. Windows end where the next line begins, at the least value between both.
     pub fn detect_column(&self, column: &[f32]) -> Vec<LinePoint> {
-        let weights = || column.iter().zip(0_u16..);
-        let integral: f64 = column.iter().copied().map(f64::from).sum();
-        let moment: f64 = weights()
-            .map(|(&value, y)| f64::from(value) * (f64::from(y) + 0.5))
-            .sum();
-        vec![LinePoint {
-            position: moment / integral,
-            width: 0.0,
-            peak: 0.0,
-            integral,
-            background: 0.0,
-            validity: Validity::Valid,
-            line: 0,
-        }]
+        let found = Column::of(column, &self.settings);
+        let place = |profile: &Profile<'_>| profile.estimate(&self.settings.method);
+        self.points(column, &found, place)
     }
 
     /// Finds the lines of an image: for each column the points on them, from the top.
+    ///
+    /// Points of neighbouring columns that continue each other belong to the same
+    /// [line](LinePoint::line). The straight line through the last 16 points of a line tells where it
+    /// goes on; a point belongs to the nearest one within a quarter of a window of that, and 2 pixels at
+    /// least. A line may miss points for two windows; behind a longer gap, or a step higher than a
+    /// quarter of a window, it is another one. Lines that cross keep their numbers: where they come
+    /// close they go on as they came. Near the crossing both are seen as one, and a point belongs to the
+    /// one that it is nearer to. Lines are numbered from the top, by their mean places; those of less than
+    /// a tenth of the points of the longest come after all others.
     pub fn detect(&self, image: &Grid<f32>) -> Vec<Vec<LinePoint>> {
-        let column = |x| {
-            (0..image.height())
-                .map(|y| image[(x, y)])
-                .collect::<Vec<_>>()
-        };
-        (0..image.width())
-            .map(|x| self.detect_column(&column(x)))
-            .collect()
+        let columns = Grid::from_fn(image.height(), image.width(), |y, x| image[(x, y)]);
+        self.detect_rows(&columns)
     }
 
-    /// Finds the lines of an image in which they run from top to bottom: for each *row* the points on
-    /// them, from the left, with places along x.
+    /// Finds the lines of an image in which they run from top to bottom, as [`detect`](Self::detect)
+    /// does: for each *row* the points on them, from the left, with places along x.
     pub fn detect_rows(&self, image: &Grid<f32>) -> Vec<Vec<LinePoint>> {
-        image.rows().map(|row| self.detect_column(row)).collect()
+        let kernels = match self.settings.method {
+            LineMethod::Steger { sigma } => Some(Kernels::new(sigma)),
+            _ => None,
+        };
+        let find = |y| match &kernels {
+            Some(kernels) => self.ridges(image, y, kernels),
+            None => self.detect_column(image.row(y)),
+        };
+        let rows = (0..image.height()).into_par_iter();
+        let mut points: Vec<Vec<LinePoint>> = rows.map(find).collect();
+        tracks::number(&mut points, self.settings.window);
+        points
     }
 
-    /// Returns by how much the place of the line at `point` moves per grey value of each pixel of the
-    /// column, in pixels per grey value: the sensitivities of its uncertainty.
-    pub fn sensitivities(&self, column: &[f32], _point: &LinePoint) -> Vec<f64> {
-        vec![0.0; column.len()]
+    fn ridges(&self, image: &Grid<f32>, y: usize, kernels: &Kernels) -> Vec<LinePoint> {
+        let found = Column::of(image.row(y), &self.settings);
+        let place = |profile: &Profile<'_>| {
+            let position = steger::in_image(profile, image, (y, found.background), kernels)?;
+            let width = None;
+            profile.placed(Estimate { position, width })
+        };
+        self.points(image.row(y), &found, place)
+    }
+
+    fn points(
+        &self,
+        raw: &[f32],
+        column: &Column,
+        place: impl Fn(&Profile<'_>) -> Option<Estimate>,
+    ) -> Vec<LinePoint> {
+        let above = &column.above;
+        let point = |line: &Sighting| {
+            let profile = Profile { above, line };
+            let (extent, estimate) = (Extent::of(&profile), place(&profile));
+            let of_extent = extent.map_or(0.0, |extent| extent.width);
+            LinePoint {
+                position: estimate.map_or(line.greatest as f64 + 0.5, |found| found.position),
+                width: estimate.and_then(|found| found.width).unwrap_or(of_extent),
+                peak: above[line.greatest],
+                integral: line.window.clone().map(|i| above[i]).sum(),
+                background: column.background,
+                validity: match estimate {
+                    Some(_) => self.validity(raw, line),
+                    None => Validity::Failed,
+                },
+                line: 0,
+            }
+        };
+        let mut points: Vec<LinePoint> = column.lines.iter().map(point).collect();
+        points.sort_by(|a, b| a.position.total_cmp(&b.position));
+        points
+            .iter_mut()
+            .zip(0..)
+            .for_each(|(point, line)| point.line = line);
+        points
+    }
+
+    /// Returns what speaks against a line whose place was estimated.
+    fn validity(&self, raw: &[f32], line: &Sighting) -> Validity {
+        let half = self.settings.window / 2;
+        let window = || raw[line.window.clone()].iter().copied();
+        if window().any(|value| f64::from(value) >= self.settings.saturation) {
+            Validity::Saturated
+        } else if window().any(|value| !value.is_finite()) {
+            Validity::Missing
+        } else if line.is_cut(half, raw.len()) {
+            Validity::Cut
+        } else if line.is_crowded(half, raw.len()) {
+            Validity::Crowded
+        } else {
+            Validity::Valid
+        }
     }
 }

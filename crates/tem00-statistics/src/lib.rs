@@ -24,7 +24,9 @@
 //!   [`GaussianSpectrum`], [`contrast_of_phasor_sum`], [`contrast_squared_spread`].
 //! - In space: [`airy_autocovariance`], [`airy_power_spectrum`], [`ObjectiveSpeckle`],
 //!   [`COHERENCE_AREA`], [`VORTEX_DENSITY`], [`level_crossings`], [`area_fraction_above`].
-//! - Laser lines and spots under speckle: [`speckle_length`], [`PixelAutocovariance`].
+//! - Laser lines and spots under speckle: [`line_centroid_deviation`], [`SpeckledLine`],
+//!   [`gaussian_spot_centroid_deviation`], [`disc_spot_centroid_deviation`], [`speckle_length`],
+//!   [`PixelAutocovariance`].
 //! - Estimators: [`Moments`], [`Contrast`], [`local_contrast`], [`GammaFit`],
 //!   [`pearson_correlation`], [`autocovariance`], [`power_spectrum`], [`radial_average`],
 //!   [`SpeckleSize`], [`phase_singularities`], [`VortexDensity`], [`decorrelated_samples`].
@@ -56,6 +58,7 @@ mod autocovariance;
 mod background;
 mod bandwidth;
 mod bessel;
+mod centroid;
 mod error;
 mod exposure;
 mod first_order;
@@ -89,6 +92,10 @@ pub use autocovariance::{
 };
 pub use background::CoherentBackground;
 pub use bandwidth::{GaussianSpectrum, path_spread_of_reflection};
+pub use centroid::{
+    SpeckledLine, disc_spot_centroid_deviation, gaussian_spot_centroid_deviation,
+    line_centroid_deviation,
+};
 pub use error::StatisticsError;
 pub use exposure::{boiling_contrast, contrast_of_exposure, translation_contrast};
 pub use first_order::{

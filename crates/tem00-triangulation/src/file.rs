@@ -3,7 +3,12 @@
 mod detector;
 mod scan;
 mod sensor;
+mod setup;
+mod setup_text;
+#[cfg(test)]
+mod tests;
 
 pub use self::detector::read_detector;
 pub use self::scan::read_scan;
 pub use self::sensor::read_sensor;
+pub use self::setup::{parse_setup, parse_setup_with, read_setup, read_setup_with};

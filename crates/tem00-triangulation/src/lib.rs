@@ -25,7 +25,10 @@ mod setup;
 
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
-pub use file::{read_detector, read_scan, read_sensor};
+pub use file::{
+    parse_setup, parse_setup_with, read_detector, read_scan, read_sensor, read_setup,
+    read_setup_with,
+};
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use place_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,

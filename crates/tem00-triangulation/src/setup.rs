@@ -238,4 +238,4 @@ fn camera(description: &SetupDescription) -> Result<Camera, TriangulationError> 
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,3 +1,6 @@
+#[cfg(test)]
+mod tests;
+
 use tem00_tracer::document::{DURATION, Document, NUMBER, Problem, Section};
 
 use crate::{Sensor, SensorDescription, TriangulationError};

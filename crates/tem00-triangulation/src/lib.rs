@@ -14,6 +14,7 @@
 //! - Widths of lines are full widths between the points of 1/e², four standard deviations of a Gaussian.
 //! - Uncertainties are standard uncertainties unless called expanded.
 
+mod calibration;
 mod detector;
 mod error;
 mod file;
@@ -23,6 +24,9 @@ mod scan;
 mod sensor;
 mod setup;
 
+pub use calibration::{
+    Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS, Parameter,
+};
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use error::TriangulationError;
 pub use file::{

@@ -1,0 +1,143 @@
+use glam::DVec3;
+use nalgebra::{SMatrix, SymmetricEigen};
+use tem00_tracer::RigidMotion;
+
+use crate::TriangulationError;
+
+/// The number of parameters.
+pub(super) const COUNT: usize = PARAMETERS.len();
+
+/// What is uncertain about a calibration, in the order of its covariance.
+///
+/// The camera's axes are those of its image: to the right, down, and along the view. A tilt is the
+/// vector of [`SensorTilt`](tem00_tracer::SensorTilt): its angle along the right of the image and along
+/// its top. The board is turned and shifted in the axes of the camera about its own origin, where the
+/// origin of heights is. The normal of the laser plane changes by a vector across itself, and the plane is
+/// shifted along its normal.
+pub const PARAMETERS: [Parameter; 18] = [
+    Parameter::new("image distance", "m"),
+    Parameter::new("principal point x", "pixel"),
+    Parameter::new("principal point y", "pixel"),
+    Parameter::new("tilt right", "rad"),
+    Parameter::new("tilt up", "rad"),
+    Parameter::new("k1", ""),
+    Parameter::new("k2", ""),
+    Parameter::new("k3", ""),
+    Parameter::new("rotation right", "rad"),
+    Parameter::new("rotation down", "rad"),
+    Parameter::new("rotation view", "rad"),
+    Parameter::new("shift right", "m"),
+    Parameter::new("shift down", "m"),
+    Parameter::new("shift view", "m"),
+    Parameter::new("plane normal right", ""),
+    Parameter::new("plane normal down", ""),
+    Parameter::new("plane normal view", ""),
+    Parameter::new("plane offset", "m"),
+];
+
+/// A parameter of a calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// The name.
+    pub name: &'static str,
+    /// The unit; empty for a pure number.
+    pub unit: &'static str,
+}
+
+impl Parameter {
+    const fn new(name: &'static str, unit: &'static str) -> Self {
+        Self { name, unit }
+    }
+}
+
+/// The covariance of the [`PARAMETERS`] of an estimated calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibrationCovariance {
+    origin: DVec3,
+    matrix: SMatrix<f64, COUNT, COUNT>,
+}
+
+impl CalibrationCovariance {
+    /// Creates a covariance from its rows, in the units of the [`PARAMETERS`]. Parameters that are known
+    /// have rows and columns of zeros. `origin` is the origin of the first board, in metres.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a number is not finite, or if no quantities have this covariance: it is not
+    /// symmetric, or has a variance that is negative beyond rounding.
+    pub fn new(
+        origin: DVec3,
+        rows: &[[f64; PARAMETERS.len()]; PARAMETERS.len()],
+    ) -> Result<Self, TriangulationError> {
+        let matrix = SMatrix::<f64, COUNT, COUNT>::from_fn(|i, j| rows[i][j]);
+        let refused = |value| TriangulationError::OutOfRange {
+            parameter: "covariance",
+            value,
+            allowed: "finite, symmetric and without negative variances",
+        };
+        let numbers = matrix.iter().copied().chain(origin.to_array());
+        if let Some(value) = numbers.into_iter().find(|value| !value.is_finite()) {
+            return Err(refused(value));
+        }
+        // The parameters differ in size by many orders: what counts are the correlations.
+        let scales = matrix
+            .diagonal()
+            .map(|v| if v > 0.0 { 1.0 / v.sqrt() } else { 0.0 });
+        let scaled = SMatrix::<f64, COUNT, COUNT>::from_fn(|i, j| {
+            if i == j && matrix[(i, i)] <= 0.0 {
+                matrix[(i, i)]
+            } else {
+                scales[i] * matrix[(i, j)] * scales[j]
+            }
+        });
+        let unknown = |i: usize| scales[i] == 0.0 && matrix.row(i).amax() > 0.0;
+        let asymmetry: f64 = (scaled - scaled.transpose()).amax();
+        if asymmetry > ROUNDING || (0..COUNT).any(unknown) {
+            return Err(refused(asymmetry));
+        }
+        let least = SymmetricEigen::new(scaled).eigenvalues.min();
+        if least < -ROUNDING {
+            return Err(refused(least));
+        }
+        Ok(Self { origin, matrix })
+    }
+
+    /// Returns the origin of the first board, in metres.
+    pub const fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// Returns the covariance of two parameters, by their places among the [`PARAMETERS`].
+    ///
+    /// # Panics
+    ///
+    /// Panics unless both are below their number.
+    pub fn between(&self, one: usize, two: usize) -> f64 {
+        self.matrix[(one, two)]
+    }
+
+    /// Returns the standard uncertainty of a parameter, by its place among the [`PARAMETERS`].
+    ///
+    /// # Panics
+    ///
+    /// Panics unless it is below their number.
+    pub fn standard_uncertainty(&self, parameter: usize) -> f64 {
+        self.matrix[(parameter, parameter)].max(0.0).sqrt()
+    }
+
+    pub(super) const fn matrix(&self) -> &SMatrix<f64, COUNT, COUNT> {
+        &self.matrix
+    }
+
+    /// Returns the covariance for a set-up carried along: its parameters are in the camera's axes.
+    pub(super) fn moved(&self, motion: &RigidMotion) -> Self {
+        Self {
+            origin: motion.point(self.origin),
+            matrix: self.matrix,
+        }
+    }
+}
+
+/// How far correlations may be from a possible set by rounding: they come out of sums of many products
+/// and an inversion.
+const ROUNDING: f64 = 1e-6;

@@ -1,0 +1,144 @@
+use tem00_tracer::{CameraDescription, RadialDistortion, SensorTilt};
+
+use super::*;
+
+fn camera() -> Camera {
+    Camera::new(CameraDescription {
+        position: 0.3 * DVec3::new(0.0, -0.5, 0.75_f64.sqrt()),
+        look_at: DVec3::ZERO,
+        up: DVec3::Z,
+        focal_length: 25e-3,
+        f_number: 8.0,
+        focus_distance: 0.3,
+        pixel_pitch: 3.45e-6,
+        resolution: [640, 480],
+        principal_point: None,
+        tilt: SensorTilt::default(),
+        distortion: RadialDistortion::default(),
+        depth_of_field: true,
+    })
+    .unwrap()
+}
+
+fn exact() -> Calibration {
+    Calibration::exact(camera(), LaserPlane::new(DVec3::ZERO, DVec3::Y).unwrap())
+}
+
+/// The calibration in which a single parameter is uncertain.
+fn with_uncertain(parameter: usize, uncertainty: f64) -> Calibration {
+    let mut rows = [[0.0; PARAMETERS.len()]; PARAMETERS.len()];
+    rows[parameter][parameter] = uncertainty * uncertainty;
+    let covariance = CalibrationCovariance::new(DVec3::ZERO, &rows).unwrap();
+    exact().with_covariance(covariance).unwrap()
+}
+
+#[test]
+fn exact_calibrations_leave_no_uncertainty() {
+    let calibration = exact();
+    let heights = [DVec3::ZERO, 1e-3 * DVec3::Z];
+    assert_eq!(
+        calibration.height_uncertainty(heights[1], DVec3::Z),
+        Some(0.0)
+    );
+    assert_eq!(calibration.step_uncertainty(heights, DVec3::Z), Some(0.0));
+    let behind = DVec3::new(0.0, -1.0, 1.0);
+    assert_eq!(calibration.height_uncertainty(behind, DVec3::Z), None);
+}
+
+#[test]
+fn parameters_move_heights_as_the_geometry_says() {
+    let height = |name, uncertainty, point| {
+        let parameter = PARAMETERS.iter().position(|p| p.name == name).unwrap();
+        let calibration = with_uncertain(parameter, uncertainty);
+        calibration.height_uncertainty(point, DVec3::Z).unwrap()
+    };
+    let cases = [
+        // The plane moves by δ along y: the sight at 30° to the plane slides by δ / tan 30° in height.
+        (
+            height("plane offset", 1e-6, DVec3::ZERO),
+            3.0_f64.sqrt() * 1e-6,
+        ),
+        // A pixel of the principal point is pitch / (m sin 30°).
+        (
+            height("principal point y", 0.1, DVec3::ZERO),
+            0.1 * 3.45e-6 * 11.0 / 0.5,
+        ),
+        // A board that stands higher by δ along the view: cos 30° of it.
+        (
+            height("shift view", 1e-6, DVec3::ZERO),
+            0.75_f64.sqrt() * 1e-6,
+        ),
+        // Turned about the right of the image by ω, a point at the height z moves along y alone.
+        (height("rotation right", 1e-4, 5e-3 * DVec3::Z), 0.0),
+        // On the axis the image distance does nothing.
+        (height("image distance", 1e-6, DVec3::ZERO), 0.0),
+    ];
+    for (i, (found, expected)) in cases.into_iter().enumerate() {
+        // Central differences of a step of 1e-3 uncertainties: rounding 1e-16 m by 1e-3 of 1e-6 m.
+        let error = (found - expected).abs();
+        assert!(
+            error < 1e-6 * expected + 1e-12,
+            "case {i}: {found:e}, {expected:e}"
+        );
+    }
+}
+
+#[test]
+fn what_moves_both_points_alike_leaves_their_step_certain() {
+    let shift = PARAMETERS
+        .iter()
+        .position(|p| p.name == "shift view")
+        .unwrap();
+    let calibration = with_uncertain(shift, 1e-5);
+    let points = [DVec3::ZERO, DVec3::new(1e-3, 0.0, 2e-3)];
+    let step = calibration.step_uncertainty(points, DVec3::Z).unwrap();
+    assert!(step < 1e-18, "{step:e}");
+    // A scale does not: the step is wrong by the share by which the plane is.
+    let plane = with_uncertain(PARAMETERS.len() - 1, 1e-4);
+    let step = plane.step_uncertainty(points, DVec3::Z).unwrap();
+    let alone = plane.height_uncertainty(points[1], DVec3::Z).unwrap();
+    assert!(step > 0.0 && step < 0.02 * alone, "{step:e}, {alone:e}");
+}
+
+#[test]
+fn carried_along_nothing_changes() {
+    let motion = RigidMotion::about(DVec3::X, DVec3::new(1.0, 2.0, 0.5), 0.7).unwrap();
+    let point = DVec3::new(1e-3, 0.0, 2e-3);
+    for parameter in 0..PARAMETERS.len() {
+        let calibration = with_uncertain(parameter, 1e-5);
+        let moved = calibration.moved(&motion).unwrap();
+        let before = calibration.height_uncertainty(point, DVec3::Z).unwrap();
+        let up = motion.direction(DVec3::Z);
+        let after = moved.height_uncertainty(motion.point(point), up).unwrap();
+        // Positions round at 1e-16 m, by a step of 1e-8 m.
+        assert!(
+            (after - before).abs() < 1e-6 * before + 1e-12,
+            "{parameter}"
+        );
+    }
+}
+
+#[test]
+fn impossible_covariances_are_refused() {
+    let refused = |change: &dyn Fn(&mut [[f64; 18]; 18])| {
+        let mut rows = [[0.0; 18]; 18];
+        (0..18).for_each(|i| rows[i][i] = 1e-8);
+        change(&mut rows);
+        CalibrationCovariance::new(DVec3::ZERO, &rows).is_err()
+    };
+    assert!(!refused(&|_| ()), "independent parameters");
+    assert!(refused(&|rows| rows[3][3] = f64::NAN), "not a number");
+    assert!(refused(&|rows| rows[3][3] = -1e-8), "a negative variance");
+    assert!(refused(&|rows| rows[3][4] = 1e-9), "not symmetric");
+    assert!(
+        refused(&|rows| (rows[3][4], rows[4][3]) = (2e-8, 2e-8)),
+        "a correlation of 2"
+    );
+    assert!(
+        refused(&|rows| {
+            rows[5][5] = 0.0;
+            (rows[5][4], rows[4][5]) = (1e-9, 1e-9);
+        }),
+        "a known parameter that is correlated"
+    );
+}

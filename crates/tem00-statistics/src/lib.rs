@@ -25,6 +25,7 @@
 //! - In space: [`airy_autocovariance`], [`airy_power_spectrum`], [`ObjectiveSpeckle`],
 //!   [`COHERENCE_AREA`], [`VORTEX_DENSITY`], [`level_crossings`], [`area_fraction_above`].
 //! - Laser lines and spots under speckle: [`line_centroid_deviation`], [`SpeckledLine`],
+//!   [`imaged_line_centroid_deviation`],
 //!   [`gaussian_spot_centroid_deviation`], [`disc_spot_centroid_deviation`], [`speckle_length`],
 //!   [`PixelAutocovariance`].
 //! - Estimators: [`Moments`], [`Contrast`], [`local_contrast`], [`GammaFit`],
@@ -94,7 +95,7 @@ pub use background::CoherentBackground;
 pub use bandwidth::{GaussianSpectrum, path_spread_of_reflection};
 pub use centroid::{
     SpeckledLine, disc_spot_centroid_deviation, gaussian_spot_centroid_deviation,
-    line_centroid_deviation,
+    imaged_line_centroid_deviation, line_centroid_deviation,
 };
 pub use error::StatisticsError;
 pub use exposure::{boiling_contrast, contrast_of_exposure, translation_contrast};

@@ -14,26 +14,35 @@
 //! - Widths of lines are full widths between the points of 1/e², four standard deviations of a Gaussian.
 //! - Uncertainties are standard uncertainties unless called expanded.
 
+mod budget;
 mod calibration;
 mod detector;
+mod dorsch;
 mod error;
 mod file;
 mod geometry;
+mod line_image;
 mod place_noise;
 mod scan;
 mod sensor;
 mod setup;
 
+pub use budget::{
+    Budget, BudgetTerm, ErrorDistribution, Evaluation, MonteCarloEstimate, Simulation,
+    SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,
+};
 pub use calibration::{
     Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS, Parameter,
 };
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
+pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
     parse_setup, parse_setup_with, read_detector, read_scan, read_sensor, read_setup,
     read_setup_with,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
+pub use line_image::{LineImage, LineImageData};
 pub use place_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
 };
@@ -41,10 +50,10 @@ pub use scan::{
     Averaging, Exposure, LAMP_WAVELENGTH, MeasuredFrame, MeasuredPoint, Measurement,
     MeasurementScene, RawFormat, ScanMotion, ScanSettings, SensorSpeckle, SpeckleTable,
 };
-pub use sensor::{RawFrame, Sensor, SensorDescription};
+pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
-    Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
-    SetupSurface,
+    Averages, HeightRange, ImagedLine, LaserLineData, LightLevel, Setup, SetupCamera,
+    SetupDescription, SetupSurface,
 };
 
 /// The places and directions of this crate.

@@ -2,6 +2,7 @@
 
 mod description;
 mod imaged_line;
+mod light_level;
 mod range;
 mod scene;
 
@@ -10,16 +11,16 @@ use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 
 use crate::{DetectorSettings, LaserPlane, LineDetector, Sensor, TriangulationError, Triangulator};
 
-pub(crate) use self::description::within;
+pub(crate) use self::{description::within, imaged_line::share_between};
 pub use self::{
     description::{Averages, LaserLineData, SetupCamera, SetupDescription, SetupSurface},
     imaged_line::ImagedLine,
+    light_level::LightLevel,
     range::HeightRange,
 };
 
-/// The part of a speckle, and the number of speckles, that a pixel may be: beyond it neither patterns
-/// nor their covariance can be computed in reasonable time.
-const SPECKLES_PER_PIXEL: (f64, f64) = (1.0 / 64.0, 64.0);
+/// The speckle sizes, in pixels, whose patterns and covariances can be computed in reasonable time.
+const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
 
 /// A laser-triangulation set-up: a laser line on a flat part, and a camera that looks from the side.
 ///
@@ -57,7 +58,7 @@ impl Setup {
     ///
     /// Returns an error if a quantity is outside its range; if camera, sensor or detector are not
     /// possible; if the line is narrower in the image than a tenth of a pixel or wider than a third of
-    /// the image; or if a speckle is smaller than 1/64 of a pixel or larger than 64 pixels.
+    /// the image; or if a speckle is smaller than 1/16 of a pixel or larger than 64 pixels.
     pub fn new(description: SetupDescription) -> Result<Self, TriangulationError> {
         description.check()?;
         let camera = camera(&description)?;
@@ -154,19 +155,15 @@ impl Setup {
     /// Speckle makes single pixels brighter than the mean: several times, where pixels are small
     /// against it.
     pub fn saturation(&self) -> f64 {
-        let sensor = &self.description.sensor;
-        let peak = self.peak_electrons();
-        let full = ((1_u64 << sensor.bit_depth) - 1) as f64;
-        let grey = (sensor.black_level + sensor.gain * peak) / full;
-        grey.max(peak / sensor.full_well)
+        self.saturation_of(self.peak_electrons())
     }
 
     fn check_image(&self) -> Result<(), TriangulationError> {
         let [width, height] = self.description.camera.resolution;
         let rows = height as f64;
         let per_pixel = self.line.speckle_size;
-        let (least, greatest) = SPECKLES_PER_PIXEL;
-        let allowed = "such that the speckle size λ F (1 + m) is from 1/64 to 64 pixels";
+        let (least, greatest) = SPECKLE_SIZES;
+        let allowed = "such that the speckle size λ F (1 + m) is from 1/16 to 64 pixels";
         within("f_number", per_pixel[0], (least, greatest), allowed)?;
         within("f_number", per_pixel[1], (least, greatest), allowed)?;
         let allowed = "such that the line is from 0.1 pixel to a third of the image wide in it; its \

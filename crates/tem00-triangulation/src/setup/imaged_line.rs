@@ -43,6 +43,8 @@ pub struct ImagedLine {
     pub peak_irradiance: f64,
     /// The mean number of electrons that the light frees in a column.
     pub column_electrons: f64,
+    /// The height of the sensitive part of a pixel, in pixels.
+    pub sensitive_height: f64,
 }
 
 impl ImagedLine {
@@ -83,19 +85,29 @@ impl ImagedLine {
             column_electrons: sensor.electrons(peak_irradiance, laser.wavelength)
                 * width
                 * (PI / 8.0).sqrt(),
+            sensitive_height: 2.0 * sensor.sensitive_half_width(),
         };
         (depth > 0.0 && sin > 0.0 && line.height_per_pixel.is_finite()).then_some(line)
     }
 
     /// Returns the mean number of electrons that light frees in the pixel of a column that begins at
-    /// `start`, in pixels, if the line is at `centre`: the integral of the line over the pixel.
+    /// `start`, in pixels, if the line is at `centre`: the mean of the line over the sensitive part of
+    /// the pixel, of the height a about its middle.
     ///
     /// ```text
-    /// n = N/2 · (erf(√8 (y + 1 − c)/W) − erf(√8 (y − c)/W))      N electrons in the column
+    /// n = N/(2a) · (erf(√8 (y + a/2 − c)/W) − erf(√8 (y − a/2 − c)/W))    N electrons in the column
     /// ```
     pub fn pixel_electrons(&self, start: f64, centre: f64) -> f64 {
-        let scale = 8.0_f64.sqrt() / self.width;
-        let edge = |y: f64| libm::erf(scale * (y - centre));
-        0.5 * self.column_electrons * (edge(start + 1.0) - edge(start))
+        let half = 0.5 * self.sensitive_height;
+        let middle = start + 0.5;
+        let share = share_between(self.width, middle - half - centre, middle + half - centre);
+        self.column_electrons / self.sensitive_height * share
     }
+}
+
+/// Returns the share of the light of a line of the full width `width` between two distances from its
+/// middle.
+pub(crate) fn share_between(width: f64, from: f64, to: f64) -> f64 {
+    let scale = 8.0_f64.sqrt() / width;
+    0.5 * (libm::erf(scale * to) - libm::erf(scale * from))
 }

@@ -4,6 +4,7 @@ mod args;
 mod atomic;
 mod budget;
 mod calibrate;
+mod calibration_file;
 mod colour;
 mod design;
 mod failure;

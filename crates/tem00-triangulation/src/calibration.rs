@@ -1,4 +1,6 @@
+mod board;
 mod covariance;
+mod least_squares;
 mod perturbation;
 
 use glam::{DMat3, DVec2, DVec3};
@@ -8,6 +10,7 @@ use tem00_tracer::{Camera, RigidMotion};
 use self::{covariance::COUNT, perturbation::Perturbations};
 use crate::{LaserPlane, TriangulationError, Triangulator};
 
+pub use self::board::Checkerboard;
 pub use self::covariance::{CalibrationCovariance, PARAMETERS, Parameter};
 
 /// A calibrated set-up: its camera and its laser plane, and how well they are known.

@@ -1,13 +1,16 @@
 //! Sections of scene files and set-up files.
 
+mod calibration;
 mod detector;
 mod scan;
 mod sensor;
 mod setup;
 mod setup_text;
-#[cfg(test)]
 mod tests;
 
+pub use self::calibration::{
+    BoardSettings, CalibrationMethod, CalibrationSettings, read_calibration,
+};
 pub use self::detector::read_detector;
 pub use self::scan::read_scan;
 pub use self::sensor::read_sensor;

@@ -32,14 +32,14 @@ pub use budget::{
     SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,
 };
 pub use calibration::{
-    Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS, Parameter,
+    Calibration, CalibrationCovariance, CalibrationQuality, Checkerboard, PARAMETERS, Parameter,
 };
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
-    parse_setup, parse_setup_with, read_detector, read_scan, read_sensor, read_setup,
-    read_setup_with,
+    BoardSettings, CalibrationMethod, CalibrationSettings, parse_setup, parse_setup_with,
+    read_calibration, read_detector, read_scan, read_sensor, read_setup, read_setup_with,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use line_image::{LineImage, LineImageData};
@@ -47,8 +47,10 @@ pub use place_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
 };
 pub use scan::{
-    Averaging, Exposure, LAMP_WAVELENGTH, MeasuredFrame, MeasuredPoint, Measurement,
-    MeasurementScene, RawFormat, ScanMotion, ScanSettings, SensorSpeckle, SpeckleTable,
+    Averaging, Exposure, FrameCorrelation, HeightMap, HeightScale, LAMP_WAVELENGTH, MeasuredFrame,
+    MeasuredPoint, Measurement, MeasurementScene, Raster, RawFormat, Scan, ScanMotion,
+    ScanSettings, ScannedPart, SensorSpeckle, SpeckleChange, SpeckleCorrelation, SpeckleTable,
+    SpeckleWitness, averaged_profile, brightest_points, mean_point, write_point_cloud,
 };
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{

@@ -2,6 +2,7 @@ use tem00_numerics::Grid;
 use tem00_tracer::RigidMotion;
 
 use super::{
+    decorrelation::{SpeckleChange, SpeckleWitness},
     exposure::{Exposure, single},
     speckle_table::SpeckleTable,
 };
@@ -25,6 +26,9 @@ pub struct MeasuredFrame {
     pub points: Vec<MeasuredPoint>,
     /// How speckle correlates the places of the line in columns 0, 1, 2 … apart; 1 alone without speckle.
     pub correlation: Vec<f64>,
+    /// The point in the middle of the profile, whose speckle stands for that of all; `None` without
+    /// speckle or without points.
+    pub witness: Option<SpeckleWitness>,
 }
 
 /// A measured point of a part and how well it is known.
@@ -82,9 +86,14 @@ impl Surroundings<'_> {
         let lines = self.detector.detect(&image);
         let expected = Expected::of(self, &exposure);
         let points = self.points(&lines, &expected);
+        let still = self.speckle.map(|table| {
+            let both = self.correlation(&exposure, &points, (SpeckleChange::NONE, table));
+            both[both.len() / 2..].to_vec()
+        });
         Ok(MeasuredFrame {
             frame,
-            correlation: self.correlation(&points, &expected),
+            correlation: still.unwrap_or_else(|| vec![1.0]),
+            witness: None,
             points,
             lines,
             raw,
@@ -111,27 +120,56 @@ impl Surroundings<'_> {
         profile.iter().filter_map(measured).collect()
     }
 
-    /// How speckle correlates neighbouring columns: that of the middle one of the points stands for all.
+    /// Returns how speckle correlates the place of the line in neighbouring columns, as the pattern
+    /// has changed: for columns from −n to n apart.
     ///
-    /// A slope of the line makes the correlation shorter than this; it is left out.
-    fn correlation(&self, points: &[MeasuredPoint], expected: &Expected) -> Vec<f64> {
-        let valid: Vec<&MeasuredPoint> = points.iter().filter(|point| point.is_valid()).collect();
-        let (Some(middle), Some(speckle)) = (valid.get(valid.len() / 2), self.speckle) else {
+    /// The middle one of the valid points stands for all. A slope of the line makes the correlation
+    /// shorter than this; it is left out.
+    pub(super) fn correlation(
+        &self,
+        exposure: &Exposure,
+        points: &[MeasuredPoint],
+        change: (SpeckleChange, &SpeckleTable),
+    ) -> Vec<f64> {
+        let (Some(middle), Some(still)) = (middle(points), self.speckle) else {
             return vec![1.0];
         };
-        let column = expected.column(self, &middle.seen);
+        let column = Expected::of(self, exposure).column(self, &middle.seen);
         let light = column.light();
         let sensor = self.sensor.description();
-        let covariance =
-            |lag: usize| speckle_covariance(sensor, speckle, [&light, &light], [lag as f64, 0.0]);
-        let variance = covariance(0);
+        let variance = speckle_covariance(sensor, &still, [&light, &light], [0.0; 2]);
         if variance <= 0.0 {
             return vec![1.0];
         }
-        (0..=speckle.columns())
-            .map(|lag| covariance(lag) / variance)
-            .collect()
+        let (
+            SpeckleChange {
+                displacement,
+                correlation,
+            },
+            table,
+        ) = change;
+        let covariance = |columns: f64| {
+            let apart = [columns - displacement.x, -displacement.y];
+            correlation * speckle_covariance(sensor, &table, [&light, &light], apart)
+        };
+        let reach = table.columns() as f64 + displacement.x.abs().ceil().min(FARTHEST);
+        let mut columns = -reach;
+        let mut correlations = Vec::new();
+        while columns <= reach {
+            correlations.push(covariance(columns) / variance);
+            columns += 1.0;
+        }
+        correlations
     }
+}
+
+/// The most columns that a pattern is followed beyond its reach.
+const FARTHEST: f64 = 1024.0;
+
+/// The middle one of the valid points.
+pub(super) fn middle(points: &[MeasuredPoint]) -> Option<&MeasuredPoint> {
+    let valid: Vec<&MeasuredPoint> = points.iter().filter(|point| point.is_valid()).collect();
+    valid.get(valid.len() / 2).copied()
 }
 
 /// The frame that the sensor would give on average over all surfaces that look alike.

@@ -1,13 +1,14 @@
 use core::sync::atomic::AtomicBool;
 
 use tem00_tracer::{
-    BeamShape, Camera, Filter, Laser, Method, RenderOptions, Scene, SpeckleModel, SurfaceSpeckle,
-    render_frame,
+    BeamShape, Camera, Filter, Frame, Laser, Method, RenderOptions, Scene, SpeckleModel,
+    SurfaceSpeckle, render_frame,
 };
 
 use super::{
+    decorrelation::{FrameCorrelation, SpeckleChange, SpeckleWitness},
     exposure::Exposure,
-    frame::{MeasuredFrame, Surroundings},
+    frame::{MeasuredFrame, Surroundings, middle},
     motion::ScanMotion,
     scene::MeasurementScene,
     settings::ScanSettings,
@@ -156,14 +157,58 @@ impl Measurement {
         let options = RenderOptions::from(&self.scene.render);
         let rendered = render_frame(&self.scene, speckle, frame, &options, progress, cancel)?;
         let exposure = Exposure::of_frame(&rendered, &self.scene.camera, &self.sensor);
-        let surroundings = Surroundings {
+        let seed = noise_seed(self.scene.render.seed, frame);
+        let mut measured = self
+            .surroundings(frame, speckle.is_some())
+            .measure(exposure, frame, seed)?;
+        measured.witness = speckle.and_then(|_| self.witness(&measured, &rendered));
+        Ok(measured)
+    }
+
+    /// Returns how speckle correlates the places of the line between a frame and those that follow, up
+    /// to `frames` of them together, by the law of its motion and decorrelation.
+    pub fn frame_correlation(&self, first: &MeasuredFrame, frames: u32) -> FrameCorrelation {
+        let surroundings = self.surroundings(first.frame, first.witness.is_some());
+        let table = |later: u32| {
+            let Some(witness) = &first.witness else {
+                return vec![if later == 0 { 1.0 } else { 0.0 }];
+            };
+            let frames = [first.frame, first.frame.saturating_add(later)];
+            let change = SpeckleChange::between(&self.scene, witness, frames);
+            let [x, y] = change.displacement.to_array();
+            let table = SpeckleTable::new(&self.speckle, [-x, -y]);
+            surroundings.correlation(&first.exposure, &first.points, (change, &table))
+        };
+        FrameCorrelation::new((0..frames).map(table).collect())
+    }
+
+    fn surroundings(&self, frame: u32, speckled: bool) -> Surroundings<'_> {
+        Surroundings {
             sensor: &self.sensor,
             detector: &self.detector,
             triangulator: &self.triangulator,
-            speckle: speckle.map(|_| &self.table),
+            speckle: speckled.then_some(&self.table),
             to_part: self.motion.to_part(frame),
-        };
-        surroundings.measure(exposure, frame, noise_seed(self.scene.render.seed, frame))
+        }
+    }
+
+    /// The middle point of the profile in the world, with the normal that the render has seen there.
+    fn witness(&self, measured: &MeasuredFrame, rendered: &Frame) -> Option<SpeckleWitness> {
+        let middle = middle(&measured.points)?;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "lines are found inside of the image"
+        )]
+        let row = (middle.seen.pixel.y as usize).min(rendered.lamps.height() - 1);
+        let at = (middle.seen.column, row);
+        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(rendered.normal[axis][at]));
+        let world = self.motion.head_at(measured.frame);
+        Some(SpeckleWitness {
+            surface: *self.motion.surfaces().first()?,
+            position: world.point(middle.seen.point.position),
+            normal: DVec3::new(x, y, z).try_normalize()?,
+        })
     }
 }
 

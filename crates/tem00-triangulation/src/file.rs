@@ -6,6 +6,7 @@ mod scan;
 mod sensor;
 mod setup;
 mod setup_text;
+#[cfg(test)]
 mod tests;
 
 pub use self::calibration::{

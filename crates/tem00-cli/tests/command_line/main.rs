@@ -5,6 +5,7 @@
 mod patterns;
 mod render;
 mod sequence;
+mod tutorial;
 
 use std::{
     fs,

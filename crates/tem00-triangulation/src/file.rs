@@ -1,6 +1,7 @@
 //! Sections of scene files and set-up files.
 
 mod calibration;
+mod design;
 mod detector;
 mod scan;
 mod sensor;
@@ -12,6 +13,7 @@ mod tests;
 pub use self::calibration::{
     BoardSettings, CalibrationMethod, CalibrationSettings, read_calibration,
 };
+pub use self::design::read_design;
 pub use self::detector::read_detector;
 pub use self::scan::read_scan;
 pub use self::sensor::read_sensor;

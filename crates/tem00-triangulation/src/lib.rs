@@ -16,6 +16,7 @@
 
 mod budget;
 mod calibration;
+mod design;
 mod detector;
 mod dorsch;
 mod error;
@@ -34,12 +35,18 @@ pub use budget::{
 pub use calibration::{
     Calibration, CalibrationCovariance, CalibrationQuality, Checkerboard, PARAMETERS, Parameter,
 };
+pub use design::{
+    Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignParameter,
+    DesignQuestion, DesignSearch, Exclusion, Neighbours, Objective, Spacing, Sweep, neighbours,
+    pareto_front,
+};
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
     BoardSettings, CalibrationMethod, CalibrationSettings, parse_setup, parse_setup_with,
-    read_calibration, read_detector, read_scan, read_sensor, read_setup, read_setup_with,
+    read_calibration, read_design, read_detector, read_scan, read_sensor, read_setup,
+    read_setup_with,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use line_image::{LineImage, LineImageData};

@@ -14,6 +14,7 @@ pub struct Scan<'a> {
     /// The frames of the profile that is not complete.
     pending: Vec<MeasuredFrame>,
     profiles: Vec<Vec<MeasuredPoint>>,
+    /// That of the first profile.
     correlation: Option<FrameCorrelation>,
 }
 
@@ -56,13 +57,11 @@ impl<'a> Scan<'a> {
         let profile = match &frames[..] {
             [frame] if averaging.columns == 1 => frame.points.clone(),
             _ => {
-                // The first profile has shown how speckle changes from frame to frame; that of a steady
-                // motion stays the same.
                 let first = &frames[0];
-                let correlation = self.correlation.get_or_insert_with(|| {
-                    self.measurement.frame_correlation(first, averaging.frames)
-                });
-                averaged_profile(&frames, averaging, correlation)
+                let correlation = self.measurement.frame_correlation(first, averaging.frames);
+                let profile = averaged_profile(&frames, averaging, &correlation);
+                self.correlation.get_or_insert(correlation);
+                profile
             }
         };
         self.profiles.push(profile);
@@ -83,7 +82,7 @@ impl ScannedPart<'_> {
         &self.profiles
     }
 
-    /// Returns how many profiles of independent speckle each profile is worth: 1 without averaging over
+    /// Returns how many profiles of independent speckle the first profile is worth: 1 without averaging over
     /// frames, and as many as frames if each has speckle of its own.
     pub fn effective_frames(&self) -> f64 {
         let frames = self.measurement.settings().average.frames;

@@ -1,3 +1,5 @@
+use glam::DMat3;
+
 use super::{
     frame::{MeasuredFrame, MeasuredPoint},
     settings::Averaging,
@@ -74,6 +76,7 @@ pub fn mean_point(
     seen.width = points().map(|point| point.seen.width).sum::<f64>() / count;
     seen.reflectance = points().map(|point| point.seen.reflectance).sum::<f64>() / count;
     seen.point.position = points().map(|p| p.seen.point.position).sum::<DVec3>() / count;
+    mean.calibration = points().fold(DMat3::ZERO, |sum, p| sum + p.calibration) * count.recip();
     mean.noise = mean_noise(members, speckle);
     let place = mean.noise.total().sqrt();
     let along = mean.per_pixel.length();

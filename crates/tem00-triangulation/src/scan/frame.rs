@@ -1,3 +1,4 @@
+use glam::DMat3;
 use tem00_numerics::Grid;
 use tem00_tracer::RigidMotion;
 
@@ -7,8 +8,8 @@ use super::{
     speckle_table::SpeckleTable,
 };
 use crate::{
-    ColumnLight, DVec3, LineDetector, LinePoint, PlaceNoise, ProfilePoint, RawFrame, Sensor,
-    TriangulationError, Triangulator, Validity, speckle_covariance,
+    Calibration, ColumnLight, DVec3, LineDetector, LinePoint, PlaceNoise, ProfilePoint, RawFrame,
+    Sensor, TriangulationError, Validity, speckle_covariance,
 };
 
 /// What the sensor measures in one frame.
@@ -43,17 +44,34 @@ pub struct MeasuredPoint {
     pub per_pixel: DVec3,
     /// What makes the place of the line uncertain, in square pixels.
     pub noise: PlaceNoise,
+    /// The covariance that the calibration gives to the position, in m²: common to all points.
+    pub calibration: DMat3,
 }
 
 impl MeasuredPoint {
     /// Returns the standard uncertainties of the coordinates of the position, in metres.
     pub fn uncertainty(&self) -> DVec3 {
-        self.noise.total().sqrt() * self.per_pixel.abs()
+        DVec3::from_array(DVec3::AXES.map(|axis| self.uncertainty_along(axis)))
     }
 
-    /// Returns the standard uncertainty along a direction of length 1, in metres.
+    /// Returns the standard uncertainty along a direction of length 1, in metres: that of the place of the
+    /// line and that of the calibration together.
     pub fn uncertainty_along(&self, direction: DVec3) -> f64 {
+        self.place_uncertainty_along(direction)
+            .hypot(self.calibration_uncertainty_along(direction))
+    }
+
+    /// Returns the standard uncertainty along a direction of length 1 that comes from the place of the
+    /// line, in metres.
+    pub fn place_uncertainty_along(&self, direction: DVec3) -> f64 {
         self.noise.total().sqrt() * self.per_pixel.dot(direction).abs()
+    }
+
+    /// Returns the standard uncertainty along a direction of length 1 that comes from the calibration, in
+    /// metres. It is the same error for all points: it does not average out.
+    pub fn calibration_uncertainty_along(&self, direction: DVec3) -> f64 {
+        // A variance of rounding errors may turn out negative.
+        direction.dot(self.calibration * direction).max(0.0).sqrt()
     }
 
     /// Returns whether the place of the line can be trusted.
@@ -67,7 +85,9 @@ impl MeasuredPoint {
 pub(super) struct Surroundings<'a> {
     pub(super) sensor: &'a Sensor,
     pub(super) detector: &'a LineDetector,
-    pub(super) triangulator: &'a Triangulator,
+    pub(super) calibration: &'a Calibration,
+    /// The covariance that is added to that of the calibration, in m², in the coordinates of the part.
+    pub(super) further: DMat3,
     /// `None` without speckle.
     pub(super) speckle: Option<&'a SpeckleTable>,
     pub(super) to_part: RigidMotion,
@@ -102,17 +122,19 @@ impl Surroundings<'_> {
     }
 
     fn points(&self, lines: &[Vec<LinePoint>], expected: &Expected) -> Vec<MeasuredPoint> {
-        let profile = self.triangulator.profile(lines, |_, _| 0.0);
+        let triangulator = self.calibration.triangulator();
+        let profile = triangulator.profile(lines, |_, _| 0.0);
         let measured = |seen: &ProfilePoint| {
-            let [_, down] = self.triangulator.derivatives(seen.pixel)?;
+            let [_, down] = triangulator.derivatives(seen.pixel)?;
             let noise = expected.noise(self, seen);
+            let calibration = self.calibration.point_covariance(seen.pixel)?;
+            let turn = self.to_part.rotation();
             let mut seen = *seen;
-            seen.point = self
-                .triangulator
-                .point_with_uncertainty(seen.pixel, noise.total().sqrt())?;
+            seen.point = triangulator.point_with_uncertainty(seen.pixel, noise.total().sqrt())?;
             Some(MeasuredPoint {
                 position: self.to_part.point(seen.point.position),
                 per_pixel: self.to_part.direction(down),
+                calibration: turn * calibration * turn.transpose() + self.further,
                 noise,
                 seen,
             })

@@ -1,5 +1,6 @@
 use core::sync::atomic::AtomicBool;
 
+use glam::DMat3;
 use tem00_tracer::{
     BeamShape, Camera, Filter, Frame, Laser, Method, RenderOptions, Scene, SpeckleModel,
     SurfaceSpeckle, render_frame,
@@ -15,8 +16,8 @@ use super::{
     speckle_table::{SensorSpeckle, SpeckleTable},
 };
 use crate::{
-    DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, Sensor, SensorDescription,
-    TriangulationError, Triangulator,
+    Calibration, DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, Sensor,
+    SensorDescription, TriangulationError,
 };
 
 /// A scene that is measured frame by frame.
@@ -25,7 +26,8 @@ pub struct Measurement {
     scene: Scene,
     sensor: Sensor,
     detector: LineDetector,
-    triangulator: Triangulator,
+    calibration: Calibration,
+    height_uncertainty: f64,
     motion: ScanMotion,
     scan: ScanSettings,
     speckle: SensorSpeckle,
@@ -34,7 +36,8 @@ pub struct Measurement {
 }
 
 impl Measurement {
-    /// Prepares to measure a scene, with the camera and the laser plane known exactly.
+    /// Prepares to measure a scene, with the camera and the laser plane known exactly; for a calibration
+    /// that is estimated see [`with_calibration`](Self::with_calibration).
     ///
     /// The render integrates over the sensitive part of each pixel. The first laser draws the line that is
     /// triangulated; others only add their light.
@@ -50,13 +53,14 @@ impl Measurement {
             mut scene,
             sensor,
             detector,
+            calibration: settings,
             scan,
         } = measured;
         let motion = ScanMotion::of_scene(&scene, scan.surface.as_deref())?;
         let laser = line_laser(&scene)?;
         check_direction(&scene.camera, laser)?;
         check_render(&scene)?;
-        let triangulator = Triangulator::new(scene.camera, LaserPlane::of_laser(laser)?);
+        let calibration = Calibration::exact(scene.camera, LaserPlane::of_laser(laser)?);
         let sensor = Sensor::new(sensor)?;
         let speckle = speckle(&scene, laser, &motion, &sensor)?;
         scene.render.filter = Filter::Box {
@@ -69,7 +73,8 @@ impl Measurement {
             })?,
             scene,
             sensor,
-            triangulator,
+            calibration,
+            height_uncertainty: checked_uncertainty(settings.uncertainty)?,
             motion,
             scan,
             table: SpeckleTable::new(&speckle, [0.0; 2]),
@@ -77,12 +82,15 @@ impl Measurement {
         })
     }
 
-    /// Returns the same measurement with another camera and laser plane than those of the scene, as a
-    /// calibration found them.
+    /// Returns the same measurement with camera and laser plane as a calibration found them.
+    ///
+    /// They stand before anything moves, in the coordinates of the scene.
     #[must_use]
-    pub const fn with_triangulator(mut self, triangulator: Triangulator) -> Self {
-        self.triangulator = triangulator;
-        self
+    pub fn with_calibration(self, calibration: Calibration) -> Self {
+        Self {
+            calibration,
+            ..self
+        }
     }
 
     /// Returns the scene as it is rendered.
@@ -102,8 +110,8 @@ impl Measurement {
 
     /// Returns the camera and the laser plane that points are computed with, as they stand before
     /// anything moves.
-    pub const fn triangulator(&self) -> &Triangulator {
-        &self.triangulator
+    pub const fn calibration(&self) -> &Calibration {
+        &self.calibration
     }
 
     /// Returns what moves.
@@ -186,10 +194,17 @@ impl Measurement {
         Surroundings {
             sensor: &self.sensor,
             detector: &self.detector,
-            triangulator: &self.triangulator,
+            calibration: &self.calibration,
+            further: self.further_covariance(),
             speckle: speckled.then_some(&self.table),
             to_part: self.motion.to_part(frame),
         }
+    }
+
+    /// The covariance of a further uncertainty of heights.
+    fn further_covariance(&self) -> DMat3 {
+        let height = self.height_uncertainty * self.scan.height;
+        DMat3::from_cols(height.x * height, height.y * height, height.z * height)
     }
 
     /// The middle point of the profile in the world, with the normal that the render has seen there.
@@ -210,6 +225,17 @@ impl Measurement {
             normal: DVec3::new(x, y, z).try_normalize()?,
         })
     }
+}
+
+fn checked_uncertainty(uncertainty: f64) -> Result<f64, TriangulationError> {
+    if (0.0..f64::INFINITY).contains(&uncertainty) {
+        return Ok(uncertainty);
+    }
+    Err(TriangulationError::OutOfRange {
+        parameter: "uncertainty",
+        value: uncertainty,
+        allowed: "at least 0 and finite (in metres)",
+    })
 }
 
 /// The laser that draws the line.

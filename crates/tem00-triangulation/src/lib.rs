@@ -33,7 +33,8 @@ pub use budget::{
     SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,
 };
 pub use calibration::{
-    Calibration, CalibrationCovariance, CalibrationQuality, Checkerboard, PARAMETERS, Parameter,
+    BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard,
+    PARAMETERS, Parameter, calibrate,
 };
 pub use design::{
     Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignParameter,

@@ -63,7 +63,7 @@ pub(crate) struct DetectorArgs {
 
     /// The threshold of thresholded_centre_of_gravity, a fraction of the peak from 0 to below 1
     /// [default: 0.2].
-    #[arg(long, value_name = "F")]
+    #[arg(long, value_name = "F", allow_negative_numbers = true)]
     threshold: Option<f64>,
 
     /// The number of taps of blais_rioux: 2, 4 or 8 [default: 4].
@@ -71,11 +71,16 @@ pub(crate) struct DetectorArgs {
     order: Option<usize>,
 
     /// The standard deviation of the Gaussian of steger, in pixels [default: 2].
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     sigma: Option<f64>,
 
     /// The least height of a line above the background, in grey values.
-    #[arg(long, value_name = "DN", default_value_t = 10.0)]
+    #[arg(
+        long,
+        value_name = "DN",
+        default_value_t = 10.0,
+        allow_negative_numbers = true
+    )]
     least_peak: f64,
 
     /// The most lines per column.

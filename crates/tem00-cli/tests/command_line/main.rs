@@ -2,6 +2,7 @@
 
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
+mod lines;
 mod patterns;
 mod render;
 mod sequence;

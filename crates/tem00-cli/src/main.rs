@@ -12,6 +12,7 @@ mod frame_files;
 mod image;
 mod interrupt;
 mod lines;
+mod output;
 mod pattern;
 mod plot;
 mod preview;

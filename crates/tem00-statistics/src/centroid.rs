@@ -77,8 +77,8 @@ pub fn line_centroid_deviation(radius: f64, row_height: f64) -> f64 {
 ///
 /// let line = SpeckledLine::new(4.0, 1.0)?;
 /// assert!((line.centroid_deviation() - 0.45281).abs() < 1e-5);
-/// // What lies beyond 1.5 half-widths has a long lever.
-/// let window = line.with_window(6.0)?;
+/// // The wings of the line have a long lever.
+/// let window = line.with_window(2.0)?;
 /// assert!(window.centroid_deviation() < line.centroid_deviation());
 /// # Ok::<(), tem00_statistics::StatisticsError>(())
 /// ```

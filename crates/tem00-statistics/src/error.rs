@@ -389,6 +389,14 @@ mod tests {
                 "linewidth must be positive and at most 6.5e-8 m, got 5e-7 m",
             ),
             (
+                StatisticsError::Extent {
+                    parameter: "radius",
+                    value: 0.0,
+                    allowed: "from 0.01 to 1e6",
+                },
+                "radius must be from 0.01 to 1e6, got 0",
+            ),
+            (
                 StatisticsError::Distance(-1.0),
                 "distance must be positive and finite, got -1e0 m",
             ),

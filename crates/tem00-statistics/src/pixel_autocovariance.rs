@@ -158,3 +158,174 @@ fn add_cosines(values: &mut [f64], amplitude: f64, angle: f64) {
         *value += amplitude * (lag as f64 * angle).cos();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::{SpeckledLine, airy_autocovariance, rectangular_pixel_contrast};
+
+    const COLUMN: PixelColumn = PixelColumn {
+        size: [0.6, 0.5],
+        pitch: [0.8, 0.7],
+        pixels: 24,
+        averaged_columns: 1,
+    };
+
+    fn of(column: &PixelColumn) -> PixelAutocovariance {
+        PixelAutocovariance::new(column).expect("a column")
+    }
+
+    #[test]
+    fn a_pixel_has_the_contrast_of_its_area() {
+        for size in [[0.1, 0.1], [0.5, 2.0], [3.0, 1.0]] {
+            let pitch = size;
+            let speckle = of(&PixelColumn {
+                size,
+                pitch,
+                ..COLUMN
+            });
+            let contrast = rectangular_pixel_contrast(size);
+            assert_relative_eq!(speckle.covariance(0).sqrt(), contrast, epsilon = 1e-8);
+        }
+    }
+
+    #[test]
+    fn points_have_the_autocovariance_of_the_speckle() {
+        let point = PixelColumn {
+            size: [0.0, 0.0],
+            ..COLUMN
+        };
+        let pair = PixelColumn {
+            averaged_columns: 2,
+            ..point
+        };
+        let (one, two) = (of(&point), of(&pair));
+        for lag in 0..COLUMN.pixels {
+            let across = lag as f64 * COLUMN.pitch[1];
+            let same = airy_autocovariance(across);
+            let beside = airy_autocovariance(across.hypot(COLUMN.pitch[0]));
+            assert_relative_eq!(one.covariance(lag), same, epsilon = 1e-9);
+            assert_relative_eq!(two.covariance(lag), 0.5 * (same + beside), epsilon = 1e-9);
+        }
+        assert!(one.covariance(COLUMN.pixels).abs() < f64::MIN_POSITIVE);
+    }
+
+    #[test]
+    fn pixels_average_the_autocovariance_over_their_area() {
+        // The midpoint rule over the differences of two points in two pixels errs by the second
+        // derivative, some 5, over 24 · 50² and less, as the triangles meet without a step.
+        const STEPS: u32 = 100;
+        let difference = |step: u32| (f64::from(step) + 0.5) / 50.0 - 1.0;
+        let speckle = of(&COLUMN);
+        for lag in [0_u32, 1, 2, 5] {
+            let across = f64::from(lag) * COLUMN.pitch[1];
+            let mut sum = 0.0;
+            for y in (0..STEPS).map(difference) {
+                for x in (0..STEPS).map(difference) {
+                    let weight = (1.0 - x.abs()) * (1.0 - y.abs()) / 2500.0;
+                    let lag = (COLUMN.size[0] * x).hypot(across + COLUMN.size[1] * y);
+                    sum += weight * airy_autocovariance(lag);
+                }
+            }
+            assert_relative_eq!(speckle.covariance(lag as usize), sum, epsilon = 1e-4);
+        }
+    }
+
+    #[test]
+    fn columns_without_gaps_average_like_one_wide_pixel() {
+        let many = of(&PixelColumn {
+            size: [0.8, 0.5],
+            averaged_columns: 30,
+            ..COLUMN
+        });
+        let wide = of(&PixelColumn {
+            size: [24.0, 0.5],
+            pitch: [24.0, 0.7],
+            ..COLUMN
+        });
+        for (many, wide) in many.values().iter().zip(wide.values()) {
+            assert_relative_eq!(many, wide, epsilon = 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_line_of_fine_pixels_has_the_noise_of_the_line() {
+        let (radius, pitch) = (3.0, 0.25);
+        let speckle = of(&PixelColumn {
+            size: [1.0, pitch],
+            pitch: [1.0, pitch],
+            pixels: 64,
+            averaged_columns: 1,
+        });
+        let places = (0..64_u32).map(|i| (f64::from(i) - 31.5) * pitch);
+        let irradiance = |y: f64| (-2.0 * (y / radius).powi(2)).exp();
+        let power: f64 = places.clone().map(irradiance).sum();
+        let amplitudes: Vec<_> = places.map(|y| y * irradiance(y) / power).collect();
+        let line = SpeckledLine::new(radius, 1.0).expect("a line");
+        // Pixels hide (π 0.25 f)²/3 of what is of the frequency f: f² is some 3/(2π w)².
+        let ratio = speckle.variance(&amplitudes).sqrt() / line.centroid_deviation();
+        assert!((ratio - 1.0).abs() < 3e-3, "{ratio}");
+    }
+
+    #[test]
+    fn columns_that_cannot_be_are_refused() {
+        let refused = [
+            (
+                PixelColumn {
+                    size: [1.0, 0.5],
+                    ..COLUMN
+                },
+                "size",
+            ),
+            (
+                PixelColumn {
+                    size: [0.6, f64::NAN],
+                    ..COLUMN
+                },
+                "size",
+            ),
+            (
+                PixelColumn {
+                    pitch: [0.0, 0.7],
+                    ..COLUMN
+                },
+                "pitch",
+            ),
+            (
+                PixelColumn {
+                    pitch: [0.8, f64::INFINITY],
+                    ..COLUMN
+                },
+                "pitch",
+            ),
+            (
+                PixelColumn {
+                    pixels: 0,
+                    ..COLUMN
+                },
+                "pixels",
+            ),
+            (
+                PixelColumn {
+                    pixels: 6000,
+                    ..COLUMN
+                },
+                "pixels",
+            ),
+            (
+                PixelColumn {
+                    averaged_columns: 0,
+                    ..COLUMN
+                },
+                "averaged_columns",
+            ),
+        ];
+        for (column, name) in refused {
+            let error = PixelAutocovariance::new(&column).err();
+            let parameter = error.map(|error| error.parameter());
+            assert_eq!(parameter, Some(name), "{column:?}: {error:?}");
+        }
+    }
+}

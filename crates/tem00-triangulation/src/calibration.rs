@@ -1,7 +1,12 @@
 mod board;
 mod covariance;
+mod estimate;
+mod homography;
 mod least_squares;
+mod model;
 mod perturbation;
+mod plane_fit;
+mod start;
 
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::SMatrix;
@@ -12,6 +17,7 @@ use crate::{LaserPlane, TriangulationError, Triangulator};
 
 pub use self::board::Checkerboard;
 pub use self::covariance::{CalibrationCovariance, PARAMETERS, Parameter};
+pub use self::estimate::{BoardView, CameraModel, calibrate};
 
 /// A calibrated set-up: its camera and its laser plane, and how well they are known.
 ///

@@ -14,7 +14,9 @@
 //! - Widths of lines are full widths between the points of 1/e², four standard deviations of a Gaussian.
 //! - Uncertainties are standard uncertainties unless called expanded.
 
+mod budget;
 mod calibration;
+mod design;
 mod detector;
 mod dorsch;
 mod error;
@@ -26,15 +28,26 @@ mod scan;
 mod sensor;
 mod setup;
 
+pub use budget::{
+    Budget, BudgetTerm, ErrorDistribution, Evaluation, MonteCarloEstimate, Simulation,
+    SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,
+};
 pub use calibration::{
-    Calibration, CalibrationCovariance, CalibrationQuality, Checkerboard, PARAMETERS, Parameter,
+    BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard,
+    PARAMETERS, Parameter, calibrate,
+};
+pub use design::{
+    Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignParameter,
+    DesignQuestion, DesignSearch, Exclusion, Neighbours, Objective, Spacing, Sweep, neighbours,
+    pareto_front,
 };
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
 pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
     BoardSettings, CalibrationMethod, CalibrationSettings, parse_setup, parse_setup_with,
-    read_calibration, read_detector, read_scan, read_sensor, read_setup, read_setup_with,
+    read_calibration, read_design, read_detector, read_scan, read_sensor, read_setup,
+    read_setup_with,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use line_image::{LineImage, LineImageData};
@@ -49,8 +62,8 @@ pub use scan::{
 };
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
-    Averages, HeightRange, ImagedLine, LaserLineData, Setup, SetupCamera, SetupDescription,
-    SetupSurface,
+    Averages, HeightRange, ImagedLine, LaserLineData, LightLevel, Setup, SetupCamera,
+    SetupDescription, SetupSurface,
 };
 
 /// The places and directions of this crate.

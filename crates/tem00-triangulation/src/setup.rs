@@ -2,6 +2,7 @@
 
 mod description;
 mod imaged_line;
+mod light_level;
 mod range;
 mod scene;
 
@@ -14,6 +15,7 @@ pub(crate) use self::{description::within, imaged_line::share_between};
 pub use self::{
     description::{Averages, LaserLineData, SetupCamera, SetupDescription, SetupSurface},
     imaged_line::ImagedLine,
+    light_level::LightLevel,
     range::HeightRange,
 };
 
@@ -153,11 +155,7 @@ impl Setup {
     /// Speckle makes single pixels brighter than the mean: several times, where pixels are small
     /// against it.
     pub fn saturation(&self) -> f64 {
-        let sensor = &self.description.sensor;
-        let peak = self.peak_electrons();
-        let full = ((1_u64 << sensor.bit_depth) - 1) as f64;
-        let grey = (sensor.black_level + sensor.gain * peak) / full;
-        grey.max(peak / sensor.full_well)
+        self.saturation_of(self.peak_electrons())
     }
 
     fn check_image(&self) -> Result<(), TriangulationError> {

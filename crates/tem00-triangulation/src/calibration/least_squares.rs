@@ -25,8 +25,6 @@ pub(super) struct Solution<S> {
     pub state: S,
     /// The sum of the squared residuals.
     pub sum: f64,
-    /// The variance of a residual: the sum by the degrees of freedom.
-    pub variance: f64,
     /// The covariance of the step from the true state.
     pub covariance: DMatrix<f64>,
 }
@@ -89,7 +87,7 @@ const UNDETERMINED: TriangulationError = TriangulationError::NotDetermined {
     advice: "take more boards, tilted about different axes",
 };
 
-/// Returns JᵀJ and Jᵀr, the derivatives by central differences.
+/// Returns `JᵀJ` and `Jᵀr`, the derivatives by central differences.
 fn normal_equations<P: LeastSquares>(
     problem: &P,
     state: &P::State,
@@ -133,7 +131,6 @@ fn solution<S>(
     Ok(Solution {
         state,
         sum,
-        variance,
         covariance,
     })
 }
@@ -203,7 +200,7 @@ mod tests {
         let solution = minimise(&Exponential(data), [1.0, 0.1]).unwrap();
         // a is the mean of the first cluster; the variance of a residual is 0.1 / 4.
         let variance = (0.04 + 0.04 + 0.01 + 0.01) / 4.0;
-        assert!((solution.variance - variance).abs() < 1e-9, "{solution:?}");
+        assert!((solution.sum / 4.0 - variance).abs() < 1e-9, "{solution:?}");
         assert!((solution.covariance[(0, 0)] - variance / 3.0).abs() < 1e-8);
     }
 

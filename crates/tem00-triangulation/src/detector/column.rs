@@ -136,7 +136,7 @@ fn background(
 }
 
 /// The pixels that belong to each line: up to the least smoothed value between it and its neighbours, of
-/// equal ones that next to the middle.
+/// equal ones that next to the middle. That one belongs to neither.
 fn zones(smoothed: &[f64], centres: &[usize]) -> Vec<Range<usize>> {
     let valley = |pair: &[usize]| {
         let (from, to) = (pair[0], pair[1]);
@@ -149,7 +149,7 @@ fn zones(smoothed: &[f64], centres: &[usize]) -> Vec<Range<usize>> {
             .unwrap_or(to)
     };
     let valleys: Vec<usize> = centres.windows(2).map(valley).collect();
-    let starts = core::iter::once(0).chain(valleys.iter().copied());
+    let starts = core::iter::once(0).chain(valleys.iter().map(|valley| valley + 1));
     let ends = valleys.iter().copied().chain([smoothed.len()]);
     starts.zip(ends).map(|(start, end)| start..end).collect()
 }

@@ -39,27 +39,23 @@ pub(super) fn fit(profile: &Profile<'_>) -> Option<Estimate> {
         radius: (extent.width / 2.0).max(0.5),
         background: 0.0,
     };
-    let widest = 4.0 * profile.line.window.len() as f64;
+    let window = profile.line.window.len() as f64;
     let mut normal = model.normal(profile, scale);
     let mut damping = 1e-3;
     for _ in 0..MOST_STEPS {
         let (next, step) = model.improved(&normal, damping)?;
-        if next.radius > 0.1 && next.radius < widest {
-            let candidate = next.normal(profile, scale);
-            if candidate.cost <= normal.cost {
-                (model, normal) = (next, candidate);
-                damping = f64::max(damping / 10.0, 1e-15);
-                if step < Gaussian::STAYS {
-                    return model.estimate();
-                }
-                continue;
-            }
+        let is_last = step < Gaussian::STAYS;
+        let is_possible = next.radius > 0.1 && next.radius < 4.0 * window;
+        let candidate = next.normal(profile, scale);
+        if is_possible && candidate.cost <= (1.0 + Gaussian::ROUNDING) * normal.cost {
+            (model, normal) = (next, candidate);
+            damping = f64::max(damping / 10.0, 1e-15);
+        } else {
+            damping *= 10.0;
         }
-        // What cannot be made better by more than a rounding is the best.
-        if step < Gaussian::STAYS {
-            return model.estimate();
+        if is_last {
+            return model.estimate(window);
         }
-        damping *= 10.0;
     }
     None
 }
@@ -67,9 +63,15 @@ pub(super) fn fit(profile: &Profile<'_>) -> Option<Estimate> {
 impl Gaussian {
     /// The step of the centre and the radius, in pixels, that ends the fit.
     const STAYS: f64 = 1e-11;
+    /// What the sum of squares may rise by. Near its minimum it is flat: its rounding hides a step of
+    /// 1e−8 of the radius, which the normal equations still tell.
+    const ROUNDING: f64 = 1e-12;
 
-    fn estimate(&self) -> Option<Estimate> {
-        (self.amplitude > 0.0).then_some(Estimate {
+    /// The estimate, if the pixels hold a line: they tell nothing of one much thinner than a pixel or
+    /// wider than the window, and the fit ran into its bounds.
+    fn estimate(&self, window: f64) -> Option<Estimate> {
+        let is_line = self.amplitude > 0.0 && self.radius > 0.2 && self.radius < window;
+        is_line.then_some(Estimate {
             position: self.centre,
             width: Some(2.0 * self.radius),
         })

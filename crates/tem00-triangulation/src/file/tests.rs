@@ -128,7 +128,7 @@ fn what_is_wrong_is_told_at_its_place() {
             Some((45, 11)),
             "a whole number",
         ),
-        ("window = 15", "window = 14", Some((37, 10)), "odd"),
+        ("window = 31", "window = 30", Some((37, 10)), "odd"),
     ] {
         let error = parse_setup(&with(line, instead)).unwrap_err();
         assert!(error.to_string().contains(part), "{instead}: {error}");

@@ -22,7 +22,7 @@ pub(crate) fn description() -> SetupDescription {
         },
         sensor: SensorDescription {
             quantum_efficiency: 0.6,
-            exposure_time: 1e-3,
+            exposure_time: 0.1e-3,
             pixel_pitch: 3.45e-6,
             ..SensorDescription::typical(12)
         },
@@ -33,7 +33,7 @@ pub(crate) fn description() -> SetupDescription {
         },
         detector: DetectorSettings {
             method: LineMethod::CentreOfGravity,
-            window: 15,
+            window: 31,
             least_peak: 1.0,
             most_lines: 1,
             saturation: f64::INFINITY,
@@ -170,7 +170,7 @@ fn the_measuring_range_is_seen_with_half_a_window_about_it() {
         let top = setup.line_at(high).unwrap().position;
         let bottom = setup.line_at(low).unwrap().position;
         assert!(
-            (top - 7.5).abs() < 1e-9 && (bottom - 472.5).abs() < 1e-9,
+            (top - 15.5).abs() < 1e-9 && (bottom - 464.5).abs() < 1e-9,
             "{top}, {bottom}"
         );
         let range = setup.measuring_range();

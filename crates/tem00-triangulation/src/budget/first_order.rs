@@ -174,12 +174,14 @@ fn autocovariance(d: &SetupDescription, line: &ImagedLine) -> Option<(PixelAutoc
     let [along, across] = line.speckle_size;
     let side = line.sensitive_height;
     let most = |size: f64| (LONGEST * size).floor().max(1.0) as usize;
+    // Farther apart, one of two pixels has less than 10⁻⁵ of the light of the crest.
+    let reach = (2.5 * line.width).ceil() as usize + 2;
     let columns = d.average.columns as usize;
     let together = columns.min(most(along));
     let autocovariance = PixelAutocovariance::new(&PixelColumn {
         size: [side / along, side / across],
         pitch: [1.0 / along, 1.0 / across],
-        pixels: rows(d, line).min(most(across)),
+        pixels: rows(d, line).min(reach).min(most(across)),
         averaged_columns: together,
     });
     let fewer = together as f64 / columns as f64;

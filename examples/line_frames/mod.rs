@@ -4,7 +4,6 @@
 use std::{error::Error, path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
-    statistics::{SpeckledLine, line_centroid_deviation},
     tracer::{Crop, RenderOptions, Scene, SpeckleModel, SpecklePlan, parse_scene, render_frame},
     triangulation::{DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, Triangulator},
 };
@@ -41,19 +40,6 @@ pub(crate) struct Noise {
     pub(crate) deviation: f64,
     /// Relative standard error of that.
     pub(crate) error: f64,
-}
-
-impl Noise {
-    /// Returns the deviation in units of the closed form for wide lines.
-    pub(crate) fn over_law(&self) -> f64 {
-        self.deviation / line_centroid_deviation(self.radius, self.row_height)
-    }
-
-    /// Returns the deviation in units of the first order.
-    pub(crate) fn over_first_order(&self) -> Result<f64, Box<dyn Error>> {
-        let line = SpeckledLine::new(self.radius, self.row_height)?;
-        Ok(self.deviation / line.centroid_deviation())
-    }
 }
 
 impl LineFrames {

@@ -1,3 +1,5 @@
+use tem00::statistics::{SpeckledLine, line_centroid_deviation};
+
 use crate::line_frames::LineFrames;
 
 const LINE: LineFrames = LineFrames {
@@ -14,7 +16,9 @@ const LINE: LineFrames = LineFrames {
 /// Holds the noise to both closed forms.
 fn judge(frames: LineFrames) {
     let noise = frames.noise().expect("frames");
-    let first_order = noise.over_first_order().expect("a line");
+    let line = SpeckledLine::new(noise.radius, noise.row_height).expect("a line");
+    let first_order = noise.deviation / line.centroid_deviation();
+    let law = noise.deviation / line_centroid_deviation(noise.radius, noise.row_height);
     // A column's own power fluctuates: it scatters by up to 0.11 h/w less than first order says. Of
     // samples and of pixels as coarse as a quarter of a line's half-width there is 1 % more.
     let chance = 3.3 * noise.error;
@@ -23,7 +27,6 @@ fn judge(frames: LineFrames) {
         allowed.contains(&first_order),
         "{frames:?}: {noise:?}, {first_order:.4} of first order, allowed {allowed:?}"
     );
-    let law = noise.over_law();
     assert!(
         (law - 1.0).abs() < 0.05,
         "{frames:?}: {noise:?}, {law:.4} of the law"

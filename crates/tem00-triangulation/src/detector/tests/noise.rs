@@ -24,6 +24,13 @@ fn compare(detector: &LineDetector, variance: f64, mut column: impl FnMut(u64) -
     assert!(off.abs() < 3.3, "the mean is {off} standard errors off");
 }
 
+fn with_white_noise(line: &[f32], noise: f64, seed: u64) -> Vec<f32> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let law = Normal::new(500.0, noise).unwrap();
+    let mut draw = |&value: &f32| value + law.sample(&mut random) as f32;
+    line.iter().map(&mut draw).collect()
+}
+
 #[test]
 fn centre_of_gravity_is_as_good_as_photons_allow() {
     // The centre of gravity of N electrons scatters as the mean of N places: σ²/N, the bound of Cramér
@@ -53,22 +60,32 @@ fn centre_of_gravity_is_as_good_as_photons_allow() {
 }
 
 #[test]
+fn white_noise_moves_the_centre_of_gravity_by_its_lever_arms() {
+    // δŷ = Σ (y_i − ŷ) δI_i / Σ I: over 31 pixels Σ y² = 15 · 16 · 31 / 3. The sum of the light is 1 %
+    // uncertain, and that 31 pixels scatter moves the estimate in the second order, (31 s²)/(Σ I)², too.
+    let (sigma, noise) = (3.0, PEAK / 100.0);
+    let line = integrated(LENGTH, MIDDLE, sigma);
+    let light = PEAK * TAU.sqrt() * sigma;
+    let variance = 15.0 * 16.0 * 31.0 / 3.0 * (noise / light).powi(2);
+    let detector = detector(LineMethod::CentreOfGravity, 31);
+    compare(&detector, variance, |seed| {
+        with_white_noise(&line, noise, seed)
+    });
+}
+
+#[test]
 fn the_fit_is_as_good_as_white_noise_allows() {
     // The bound of Cramér and Rao is s²/Σ (∂I_i/∂c)² for white noise of the variance s². With
     // ∂I/∂c = P u/σ² e^{−u²/2σ²} the sum is P² √π/(2σ); the pixels, of 1/12 σ², take 1.5/12 σ² of it.
     // The second order of the fit is (s/P)² of the first.
     let (sigma, noise) = (3.0, PEAK / 100.0);
     let line = integrated(LENGTH, MIDDLE, sigma);
-    let white = |seed| {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let law = Normal::new(500.0, noise).unwrap();
-        line.iter()
-            .map(|&value| value + law.sample(&mut random) as f32)
-            .collect()
-    };
     let pixels = 1.0 + 0.125 / (sigma * sigma);
     let variance = 2.0 * sigma * (noise / PEAK).powi(2) / core::f64::consts::PI.sqrt() * pixels;
-    compare(&detector(LineMethod::GaussianFit, 41), variance, white);
+    let detector = detector(LineMethod::GaussianFit, 41);
+    compare(&detector, variance, |seed| {
+        with_white_noise(&line, noise, seed)
+    });
 }
 
 #[test]

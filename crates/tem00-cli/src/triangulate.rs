@@ -8,7 +8,7 @@ mod terms;
 use std::{
     cell::Cell,
     io::Write,
-    path::{Path, PathBuf},
+    path::Path,
     sync::atomic::{AtomicU64, Ordering},
     time::Instant,
 };
@@ -28,10 +28,13 @@ use self::{
 use crate::{
     args::{FrameRange, TriangulateArgs},
     failure::Failure,
-    interrupt,
+    interrupt, output,
     progress::Progress,
-    render::{scene_failure, thread_pool, tracer_failure},
+    render::tracer_failure,
 };
+
+/// What to say of a file that is no scene.
+const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface and a [sensor]";
 
 /// Measures a scene and prints what makes its heights uncertain.
 ///
@@ -39,10 +42,10 @@ use crate::{
 ///
 /// Returns a failure if the input is not valid, a file cannot be written or the user ends it.
 pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (scene, _) =
-        MeasurementScene::read(&args.scene).map_err(|error| scene_failure(&args.scene, &error))?;
+    let (scene, _) = MeasurementScene::read(&args.scene)
+        .map_err(|error| Failure::file(&args.scene, &error, HELP))?;
     let job = Job::new(args, scene)?;
-    let pool = thread_pool(args.threads)?;
+    let pool = output::thread_pool(args.threads)?;
     let measured = pool.install(|| job.measure())?;
     job.write(&measured)?;
     job.print(&measured, out)
@@ -72,14 +75,8 @@ struct Measured {
 
 impl<'a> Job<'a> {
     fn new(args: &'a TriangulateArgs, scene: MeasurementScene) -> Result<Self, Failure> {
-        let name = args.scene.file_stem().map_or_else(
-            || "scene".to_owned(),
-            |stem| stem.to_string_lossy().into_owned(),
-        );
-        let folder = args
-            .output
-            .clone()
-            .unwrap_or_else(|| Path::new("out").join(&name));
+        let name = output::name(&args.scene, "scene");
+        let folder = output::folder(args.output.as_deref(), &name);
         let scene = overruled(scene, args);
         let raw = scene.scan.raw;
         let measurement =
@@ -231,7 +228,7 @@ impl FrameProgress {
         let samples_per_frame = scene.samples_per_frame(&(&scene.render).into());
         let frames = u64::from(job.frames.last - job.frames.first) + 1;
         Self {
-            bar: Progress::of_samples(frames.saturating_mul(samples_per_frame)),
+            bar: Progress::of(frames.saturating_mul(samples_per_frame), "samples"),
             samples_per_frame,
             begun: Cell::new(0),
         }

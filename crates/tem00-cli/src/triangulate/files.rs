@@ -12,11 +12,7 @@ use tem00_triangulation::{
     DVec3, HeightMap, MeasuredFrame, MeasuredPoint, Raster, RawFormat, RawFrame, write_point_cloud,
 };
 
-use crate::{
-    atomic::{create_writable_folder, write_atomically},
-    failure::Failure,
-    image::write_raw,
-};
+use crate::{atomic::write_atomically, failure::Failure, image::write_raw, output};
 
 /// Where the files of a measurement go.
 pub(super) struct Files {
@@ -33,12 +29,7 @@ const HEADINGS: &str = "column,line,x_pixel,y_pixel,width_pixel,intensity_dn,val
 impl Files {
     /// Makes sure, before the work, that files can be written.
     pub(super) fn new(folder: PathBuf, raw: RawFormat) -> Result<Self, Failure> {
-        create_writable_folder(&folder).map_err(|error| {
-            Failure::input(
-                format!("cannot write into the folder {}: {error}", folder.display()),
-                "name a folder that may be written with -o",
-            )
-        })?;
+        output::prepare(&folder)?;
         Ok(Self { folder, raw })
     }
 

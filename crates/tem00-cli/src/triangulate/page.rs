@@ -1,7 +1,6 @@
 //! The report of a measurement.
 
-use tem00_numerics::Grid;
-use tem00_triangulation::{HeightMap, MeasuredFrame, MeasuredPoint, Raster};
+use tem00_triangulation::{HeightMap, MeasuredPoint, Raster};
 
 use super::{
     Job, Measured,
@@ -11,6 +10,7 @@ use super::{
 use crate::{
     failure::Failure,
     image::write_rgb_png,
+    lines::overlay::picture,
     plot::{Bars, Chart, HeatMap},
     report::{Report, Table},
 };
@@ -55,8 +55,9 @@ impl Page<'_> {
             return Ok(());
         };
         report.heading("Frame");
+        let marked = picture(&frame.raw.grey_values(), (&frame.lines, false));
         let mut png = Vec::new();
-        write_rgb_png(&mut png, &marked(frame), &[])
+        write_rgb_png(&mut png, &marked, &[])
             .map_err(|error| Failure::running(format!("cannot write a picture: {error}")))?;
         let caption = format!(
             "Frame {} as the camera gives it, brightened to its largest grey value; red: the line, magenta: \
@@ -281,25 +282,4 @@ impl Page<'_> {
             ),
         ]);
     }
-}
-
-/// The frame in grey with a coloured pixel for each point of the line.
-fn marked(frame: &MeasuredFrame) -> Grid<[f32; 3]> {
-    const LINE: [f32; 3] = [1.0, 0.05, 0.02];
-    const DOUBTFUL: [f32; 3] = [0.9, 0.0, 0.9];
-    let values = &frame.raw.values;
-    let brightest = values.values().iter().copied().max().unwrap_or(0).max(1);
-    let mut picture = values.map(|&value| [f32::from(value) / f32::from(brightest); 3]);
-    for point in &frame.points {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "places outside of the image are left out"
-        )]
-        let (x, y) = (point.seen.column, point.seen.pixel.y.max(0.0) as usize);
-        if x < picture.width() && y < picture.height() {
-            picture[(x, y)] = if point.is_valid() { LINE } else { DOUBTFUL };
-        }
-    }
-    picture
 }

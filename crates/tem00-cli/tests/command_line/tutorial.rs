@@ -70,7 +70,8 @@ fn the_commands_of_the_tutorial_work() {
         copy(name, folder.path());
     }
     make_smaller(folder.path());
-    let page = fs::read_to_string(repository().join("docs/tutorial.md")).expect("the page is there");
+    let page =
+        fs::read_to_string(repository().join("docs/tutorial.md")).expect("the page is there");
     let commands = commands(&page);
     for name in ["budget", "design", "triangulate", "lines"] {
         let named = commands.iter().any(|command| command.starts_with(name));

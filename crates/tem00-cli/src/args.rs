@@ -126,7 +126,6 @@ pub(crate) struct StatsArgs {
     pub(crate) json: bool,
 
     /// Draw one page: histogram, autocovariance and power spectrum beside the theory.
-    #[cfg(feature = "plot")]
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) plot: Option<PathBuf>,
 }

@@ -3,6 +3,7 @@
 use std::{io, path::Path};
 
 use miette::{Diagnostic, NamedSource, Report, SourceSpan};
+use tem00_tracer::SceneError;
 use thiserror::Error;
 
 /// Why the program ends before its work is done.
@@ -45,6 +46,20 @@ impl Failure {
             )),
             span: Some(span.into()),
         }))
+    }
+
+    /// Returns a complaint about a scene file, a set-up file or one that they include, with `otherwise`
+    /// for help where the complaint has no place and no help of its own.
+    pub(crate) fn file(path: &Path, error: &SceneError, otherwise: &str) -> Self {
+        let help = error.help().map(str::to_owned);
+        let path = error.path().unwrap_or(path);
+        match error.span() {
+            Some(span) => Self::input_at(error.message(), help, (path, error.source_text()), span),
+            None => Self::input(
+                format!("{}: {}", path.display(), error.message()),
+                help.unwrap_or_else(|| otherwise.into()),
+            ),
+        }
     }
 
     /// Returns a failure of the work itself.

@@ -1,10 +1,204 @@
 //! `tem00 lines`.
 
-use std::io::Write;
+pub(crate) mod overlay;
+mod points;
+mod summary;
 
-use crate::{args::LinesArgs, failure::Failure};
+use std::{
+    collections::HashMap,
+    io::Write,
+    path::{Path, PathBuf},
+};
 
-pub(crate) fn run(args: &LinesArgs, _out: &mut impl Write) -> Result<(), Failure> {
-    let _ = &args.images;
-    Ok(())
+use tem00_numerics::Grid;
+use tem00_triangulation::{Calibration, DetectorSettings, LineDetector, LinePoint};
+
+use crate::{
+    args::LinesArgs,
+    atomic::write_atomically,
+    calibration_file::read_calibration,
+    failure::Failure,
+    image::{ImageError, RawImage, read_raw, write_rgb_png},
+    interrupt, output,
+    progress::Progress,
+    table::write_columns,
+};
+
+use self::{
+    points::Places,
+    summary::{ImageSummary, LineSummary},
+};
+
+/// The lines of an image: for each column, or row, the points on them.
+type Found = [Vec<LinePoint>];
+
+pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure> {
+    let settings = settings(args)?;
+    let calibration = args
+        .calibration
+        .as_deref()
+        .map(read_calibration)
+        .transpose()?;
+    let folder = output::folder(args.output.as_deref(), "lines");
+    output::prepare(&folder)?;
+
+    let progress = Progress::of(args.images.len() as u64, "images");
+    let mut names = Names::default();
+    let mut summaries = Vec::new();
+    for path in &args.images {
+        interrupt::check()?;
+        progress.name(path.display().to_string());
+        let target = folder.join(names.unused(path));
+        summaries.push(image(
+            path,
+            &target,
+            (args, settings, calibration.as_ref()),
+        )?);
+        progress.advance(1);
+    }
+    drop(progress);
+    let record = summary::json(&settings, &summaries);
+    write_whole(&folder.join("lines.json"), record.as_bytes())?;
+    let shown = if args.json {
+        out.write_all(record.as_bytes())
+    } else {
+        let mut table = vec![summary::headings()];
+        table.extend(summaries.iter().flat_map(ImageSummary::rows));
+        write_columns(&table, out).and_then(|()| {
+            writeln!(
+                out,
+                "\nPoints, pictures and lines.json: {}",
+                folder.display()
+            )
+        })
+    };
+    shown.map_err(|error| Failure::stdout(&error))
+}
+
+fn settings(args: &LinesArgs) -> Result<DetectorSettings, Failure> {
+    let refused =
+        |message: String| Failure::input(message, "`tem00 lines --help` lists what is allowed");
+    let settings = args.detector.settings().map_err(refused)?;
+    LineDetector::new(settings).map_err(|error| refused(error.to_string()))?;
+    Ok(settings)
+}
+
+/// Finds the lines of one image and writes its files, whose names begin with `target`.
+fn image(
+    path: &Path,
+    target: &Path,
+    (args, settings, calibration): (&LinesArgs, DetectorSettings, Option<&Calibration>),
+) -> Result<ImageSummary, Failure> {
+    let image = read(path, args)?;
+    if let Some(calibration) = calibration {
+        check_size(path, &image, calibration)?;
+    }
+    let settings = DetectorSettings {
+        saturation: image.saturation(),
+        ..settings
+    };
+    let detector =
+        LineDetector::new(settings).map_err(|error| Failure::running(error.to_string()))?;
+    let found = if args.rows {
+        detector.detect_rows(&image.values)
+    } else {
+        detector.detect(&image.values)
+    };
+    let lines = LineSummary::of_all(&found);
+    let places = Places {
+        found: &found,
+        rows: args.rows,
+        lines: &lines,
+        calibration,
+    };
+    let table = with_ending(target, ".csv");
+    write_atomically(&table, |writer| places.write(writer))
+        .map_err(|error: std::io::Error| Failure::writing(&table, error))?;
+    draw(
+        &with_ending(target, "_lines.png"),
+        &image.values,
+        (&found, args.rows),
+    )?;
+    Ok(ImageSummary::new(path, &image, lines))
+}
+
+fn read(path: &Path, args: &LinesArgs) -> Result<RawImage, Failure> {
+    let unreadable = |error: ImageError| {
+        Failure::input(
+            format!("cannot read {}: {error}", path.display()),
+            "images are PNG or TIFF files of 8 to 16 bits, grey or RGB",
+        )
+    };
+    let image = read_raw(path, args.channel.as_deref()).map_err(unreadable)?;
+    match args.bits {
+        Some(bits) => image.with_bit_depth(bits).map_err(unreadable),
+        None => Ok(image),
+    }
+}
+
+fn check_size(path: &Path, image: &RawImage, calibration: &Calibration) -> Result<(), Failure> {
+    let [width, height] = calibration.camera().description().resolution;
+    let got = [image.values.width(), image.values.height()];
+    if got == [width, height] {
+        return Ok(());
+    }
+    Err(Failure::input(
+        format!(
+            "{} has {} × {} pixels, but the calibrated camera has {width} × {height}",
+            path.display(),
+            got[0],
+            got[1]
+        ),
+        "a calibration belongs to whole images of the camera it was made with",
+    ))
+}
+
+fn draw(path: &Path, image: &Grid<f32>, found: (&Found, bool)) -> Result<(), Failure> {
+    let picture = overlay::picture(image, found);
+    write_atomically(path, |writer| write_rgb_png(writer, &picture, &[]))
+        .map_err(|error: ImageError| Failure::writing(path, error))
+}
+
+fn write_whole(path: &Path, content: &[u8]) -> Result<(), Failure> {
+    write_atomically(path, |writer| writer.write_all(content))
+        .map_err(|error: std::io::Error| Failure::writing(path, error))
+}
+
+fn with_ending(target: &Path, ending: &str) -> PathBuf {
+    let mut name = target.as_os_str().to_owned();
+    name.push(ending);
+    name.into()
+}
+
+/// The names of the files of one run.
+#[derive(Default)]
+struct Names(HashMap<String, usize>);
+
+impl Names {
+    /// Returns the name of an image without its ending; if several images have the same, the second gets
+    /// `_2`, and so on.
+    fn unused(&mut self, path: &Path) -> String {
+        let name = output::name(path, "image");
+        let mut candidate = name.clone();
+        while self.0.contains_key(&candidate) {
+            let number = self.0.entry(name.clone()).or_insert(1);
+            *number += 1;
+            candidate = format!("{name}_{number}");
+        }
+        self.0.insert(candidate.clone(), 1);
+        candidate
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_of_one_name_do_not_overwrite_each_other() {
+        let mut names = Names::default();
+        let paths = ["a/x.png", "b/x.png", "x_2.tif", "x.tif", "y.png"];
+        let unused = paths.map(|path| names.unused(Path::new(path)));
+        assert_eq!(unused, ["x", "x_2", "x_2_2", "x_3", "y"]);
+    }
 }

@@ -2,14 +2,14 @@
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-/// A bar with percent, samples per second and time left.
+/// A bar with percent, speed and time left.
 ///
 /// It is drawn only if standard error is a terminal.
 pub(crate) struct Progress(ProgressBar);
 
 impl Progress {
-    /// Starts a bar that is full after `total` samples.
-    pub(crate) fn of_samples(total: u64) -> Self {
+    /// Starts a bar that is full after `total` of something, in the plural: "samples".
+    pub(crate) fn of(total: u64, what: &'static str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
         let template = "{msg} {wide_bar} {percent:>3} %  {rate}  {left} left";
         if let Ok(style) = ProgressStyle::with_template(template) {
@@ -17,9 +17,9 @@ impl Progress {
                 style
                     .with_key(
                         "rate",
-                        |state: &ProgressState, out: &mut dyn core::fmt::Write| {
+                        move |state: &ProgressState, out: &mut dyn core::fmt::Write| {
                             // A line that cannot be formatted is a line that is not shown.
-                            let _ = write!(out, "{} samples/s", si_prefixed(state.per_sec()));
+                            let _ = write!(out, "{}{what}/s", si_prefixed(state.per_sec()));
                         },
                     )
                     .with_key(
@@ -33,14 +33,19 @@ impl Progress {
         Self(bar)
     }
 
-    /// Says what the samples belong to from now on.
+    /// Says what the work belongs to from now on.
     pub(crate) fn name(&self, message: String) {
         self.0.set_message(message);
     }
 
-    /// Moves the bar to `done` samples.
+    /// Moves the bar to `done`.
     pub(crate) fn set(&self, done: u64) {
         self.0.set_position(done);
+    }
+
+    /// Moves the bar on, from any thread.
+    pub(crate) fn advance(&self, done: u64) {
+        self.0.inc(done);
     }
 }
 
@@ -83,9 +88,10 @@ mod tests {
 
     #[test]
     fn a_bar_nobody_sees_can_be_moved() {
-        let progress = Progress::of_samples(10);
+        let progress = Progress::of(10, "samples");
         progress.name("frame 1 of 1".into());
         progress.set(3);
-        assert_eq!(progress.0.position(), 3);
+        progress.advance(2);
+        assert_eq!(progress.0.position(), 5);
     }
 }

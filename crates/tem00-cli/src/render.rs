@@ -9,10 +9,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use tem00_tracer::{
-    Crop, Formulas, Method, RenderOptions, Scene, SceneError, SceneFile, SpeckleModel, SpecklePlan,
-    TracerError,
+    Crop, Formulas, Method, RenderOptions, Scene, SceneFile, SpeckleModel, SpecklePlan, TracerError,
 };
 
 use self::{
@@ -25,10 +23,9 @@ use self::{
 };
 use crate::{
     args::{FrameRange, RenderArgs},
-    atomic::create_writable_folder,
     failure::Failure,
     frame_files::FramePaths,
-    interrupt,
+    interrupt, output,
     summary::{LaserSummary, Summary},
 };
 
@@ -38,12 +35,17 @@ use crate::{
 ///
 /// Returns a failure if the input is not valid, a file cannot be written or the user ends it.
 pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let SceneFile { scene, files, .. } =
-        SceneFile::read(&args.scene).map_err(|error| scene_failure(&args.scene, &error))?;
+    let SceneFile { scene, files, .. } = SceneFile::read(&args.scene).map_err(|error| {
+        Failure::file(
+            &args.scene,
+            &error,
+            "a scene needs a laser, a camera and a surface",
+        )
+    })?;
     let render = Render::new(args, overruled(scene, args)?, &files)?;
     note_invisible_lasers(&render.scene);
     note_missing_light(&render.scene);
-    let pool = thread_pool(args.threads)?;
+    let pool = output::thread_pool(args.threads)?;
     let sequence = pool.install(|| render.sequence())?;
     let summary = pool.install(|| render.summary(sequence));
     report(&summary);
@@ -106,14 +108,8 @@ struct Render<'a> {
 
 impl<'a> Render<'a> {
     fn new(args: &'a RenderArgs, scene: Scene, files: &[PathBuf]) -> Result<Self, Failure> {
-        let name = args.scene.file_stem().map_or_else(
-            || "scene".to_owned(),
-            |stem| stem.to_string_lossy().into_owned(),
-        );
-        let folder = args
-            .output
-            .clone()
-            .unwrap_or_else(|| Path::new("out").join(&name));
+        let name = output::name(&args.scene, "scene");
+        let folder = output::folder(args.output.as_deref(), &name);
         let options = options(args, &scene);
         let plan = (!args.no_speckle)
             .then(|| SpecklePlan::new(&scene, options.formulas, options.seed))
@@ -136,15 +132,7 @@ impl<'a> Render<'a> {
 
     /// Makes sure, before the work, that the files can be written.
     fn prepare_folder(&self) -> Result<(), Failure> {
-        create_writable_folder(&self.folder).map_err(|error| {
-            Failure::input(
-                format!(
-                    "cannot write into the folder {}: {error}",
-                    self.folder.display()
-                ),
-                "name a folder that may be written with -o",
-            )
-        })?;
+        output::prepare(&self.folder)?;
         let frames = self.scene.render.frames;
         let of_frames = (self.frames.first..=self.frames.last).flat_map(|number| {
             let paths = FramePaths::new(&self.folder, &self.name, number, frames);
@@ -267,26 +255,7 @@ fn frames(args: &RenderArgs, scene: &Scene) -> Result<FrameRange, Failure> {
     ))
 }
 
-fn thread_pool(threads: Option<u16>) -> Result<ThreadPool, Failure> {
-    ThreadPoolBuilder::new()
-        .num_threads(threads.map_or(0, usize::from))
-        .build()
-        .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))
-}
-
-fn scene_failure(path: &Path, error: &SceneError) -> Failure {
-    let help = error.help().map(str::to_owned);
-    let path = error.path().unwrap_or(path);
-    match error.span() {
-        Some(span) => Failure::input_at(error.message(), help, (path, error.source_text()), span),
-        None => Failure::input(
-            format!("{}: {}", path.display(), error.message()),
-            help.unwrap_or_else(|| "a scene needs a laser, a camera and a surface".into()),
-        ),
-    }
-}
-
-fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
+pub(crate) fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
     let help = match error {
         TracerError::PatternMemory { needed, allowed } => format!(
             "{} needed, {} allowed: `memory` in [speckle], which all lasers share, allows more; \

@@ -2,7 +2,6 @@
 
 mod curves;
 mod findings;
-#[cfg(feature = "plot")]
 mod page;
 
 use std::{io::Write, path::Path};
@@ -14,6 +13,7 @@ use crate::{
     args::StatsArgs,
     failure::Failure,
     image::{LoadedImage, read_image},
+    plot::Format,
     table::{Row, write_table},
 };
 use curves::{Curves, Measured};
@@ -44,7 +44,6 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
     let cannot = |error: &dyn core::fmt::Display, help: &str| {
         Failure::input(format!("{}: {error}", args.image.display()), help)
     };
-    #[cfg(feature = "plot")]
     let plot = args.plot.as_deref().map(plot_file).transpose()?;
     let image = read_image(&args.image, args.channel.as_deref(), args.transfer)
         .map_err(|error| cannot(&error, "give a .png, .exr or .npy image of light"))?;
@@ -56,7 +55,6 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
     }
     let measurement = measure(&args.image, &image)
         .map_err(|error| cannot(&error, "give an image that light and speckle fill"))?;
-    #[cfg(feature = "plot")]
     if let Some((path, format)) = plot {
         draw(&measurement, path, format)?;
     }
@@ -64,9 +62,8 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
 }
 
 /// Returns the file of the page and its format, if it can be written.
-#[cfg(feature = "plot")]
-fn plot_file(path: &Path) -> Result<(&Path, page::PageFormat), Failure> {
-    let format = page::PageFormat::of_path(path).ok_or_else(|| {
+fn plot_file(path: &Path) -> Result<(&Path, Format), Failure> {
+    let format = Format::of_path(path).ok_or_else(|| {
         Failure::input(
             format!("{} names no known format of a page", path.display()),
             "end the name in .svg or .png",
@@ -81,14 +78,14 @@ fn plot_file(path: &Path) -> Result<(&Path, page::PageFormat), Failure> {
     Ok((path, format))
 }
 
-#[cfg(feature = "plot")]
-fn draw(measurement: &Measurement, path: &Path, format: page::PageFormat) -> Result<(), Failure> {
+fn draw(measurement: &Measurement, path: &Path, format: Format) -> Result<(), Failure> {
     let page = page::Page {
         title: &measurement.image,
         curves: &measurement.curves,
     };
     let bytes = page
-        .render(format)
+        .draw()
+        .bytes(format)
         .map_err(|error| Failure::writing(path, error))?;
     crate::atomic::write_atomically(path, |file| file.write_all(&bytes))
         .map_err(|error| Failure::writing(path, error))

@@ -72,16 +72,24 @@ impl Row {
 /// Writes the rows as columns, two spaces apart, under a line of headings.
 pub(crate) fn write_table(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
     let headings = ["quantity", "measured", "theory", "tolerance"].map(String::from);
-    let lines: Vec<_> = core::iter::once(headings)
-        .chain(rows.iter().map(Row::cells))
-        .collect();
-    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max();
-    let widths = [0, 1, 2, 3].map(|column| width(column).unwrap_or(0));
-    for line in &lines {
+    let rows = rows.iter().map(|row| row.cells().to_vec());
+    let lines: Vec<_> = core::iter::once(headings.to_vec()).chain(rows).collect();
+    write_columns(&lines, out)
+}
+
+/// Writes lines of as many cells each as columns, two spaces apart.
+pub(crate) fn write_columns(lines: &[Vec<String>], out: &mut impl Write) -> io::Result<()> {
+    let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |column: usize| {
+        let cells = lines.iter().filter_map(|line| line.get(column));
+        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let widths: Vec<_> = (0..columns).map(width).collect();
+    for line in lines {
         let padded: Vec<_> = line
             .iter()
-            .zip(widths)
-            .map(|(cell, width)| format!("{cell:width$}"))
+            .zip(&widths)
+            .map(|(cell, &width)| format!("{cell:width$}"))
             .collect();
         writeln!(out, "{}", padded.join("  ").trim_end())?;
     }
@@ -89,7 +97,7 @@ pub(crate) fn write_table(rows: &[Row], out: &mut impl Write) -> io::Result<()> 
 }
 
 /// Writes a number with five significant digits, without an exponent where that is readable.
-fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     let magnitude = value.abs();
     let text = if magnitude == 0.0 {
         return "0".into();

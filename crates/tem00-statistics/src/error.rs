@@ -38,6 +38,15 @@ pub enum StatisticsError {
         /// The largest linewidth the model accepts at this wavelength, in metres.
         maximum: f64,
     },
+    /// A length, in units of the speckle size, or a number of pixels is outside its range.
+    Extent {
+        /// The name of the parameter.
+        parameter: &'static str,
+        /// The rejected value.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
     /// The distance from a lit area, in metres, is not positive and finite.
     Distance(f64),
     /// The size of a lit area, in metres, is not positive and finite.
@@ -166,6 +175,7 @@ impl StatisticsError {
             Self::Phasors(..) => "count",
             Self::Wavelength(..) => "wavelength",
             Self::Linewidth { .. } => "linewidth",
+            Self::Extent { parameter, .. } => parameter,
             Self::Distance(..) => "distance",
             Self::LitSize(..) => "area",
             Self::Level(..) => "level",
@@ -226,6 +236,11 @@ impl fmt::Display for StatisticsError {
                 f,
                 "linewidth must be positive and at most {maximum:e} m, got {linewidth:e} m"
             ),
+            Self::Extent {
+                parameter,
+                value,
+                allowed,
+            } => write!(f, "{parameter} must be {allowed}, got {value}"),
             Self::Distance(got) => {
                 write!(f, "distance must be positive and finite, got {got:e} m")
             }
@@ -372,6 +387,14 @@ mod tests {
                     maximum: 6.5e-8,
                 },
                 "linewidth must be positive and at most 6.5e-8 m, got 5e-7 m",
+            ),
+            (
+                StatisticsError::Extent {
+                    parameter: "radius",
+                    value: 0.0,
+                    allowed: "from 0.01 to 1e6",
+                },
+                "radius must be from 0.01 to 1e6, got 0",
             ),
             (
                 StatisticsError::Distance(-1.0),

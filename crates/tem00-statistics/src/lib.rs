@@ -24,6 +24,10 @@
 //!   [`GaussianSpectrum`], [`contrast_of_phasor_sum`], [`contrast_squared_spread`].
 //! - In space: [`airy_autocovariance`], [`airy_power_spectrum`], [`ObjectiveSpeckle`],
 //!   [`COHERENCE_AREA`], [`VORTEX_DENSITY`], [`level_crossings`], [`area_fraction_above`].
+//! - Laser lines and spots under speckle: [`line_centroid_deviation`], [`SpeckledLine`],
+//!   [`imaged_line_centroid_deviation`],
+//!   [`gaussian_spot_centroid_deviation`], [`disc_spot_centroid_deviation`], [`speckle_length`],
+//!   [`PixelAutocovariance`].
 //! - Estimators: [`Moments`], [`Contrast`], [`local_contrast`], [`GammaFit`],
 //!   [`pearson_correlation`], [`autocovariance`], [`power_spectrum`], [`radial_average`],
 //!   [`SpeckleSize`], [`phase_singularities`], [`VortexDensity`], [`decorrelated_samples`].
@@ -55,6 +59,7 @@ mod autocovariance;
 mod background;
 mod bandwidth;
 mod bessel;
+mod centroid;
 mod error;
 mod exposure;
 mod first_order;
@@ -69,10 +74,12 @@ mod objective;
 mod passage;
 mod phasor_sum;
 mod pixel;
+mod pixel_autocovariance;
 mod pixel_widening;
 mod polarisation;
 mod quadrature;
 mod rectangular_pixel;
+mod row_spectrum;
 mod second_order;
 mod singularities;
 mod spatial;
@@ -86,6 +93,10 @@ pub use autocovariance::{
 };
 pub use background::CoherentBackground;
 pub use bandwidth::{GaussianSpectrum, path_spread_of_reflection};
+pub use centroid::{
+    SpeckledLine, disc_spot_centroid_deviation, gaussian_spot_centroid_deviation,
+    imaged_line_centroid_deviation, line_centroid_deviation,
+};
 pub use error::StatisticsError;
 pub use exposure::{boiling_contrast, contrast_of_exposure, translation_contrast};
 pub use first_order::{
@@ -101,9 +112,11 @@ pub use moments::{Contrast, Moments, pearson_correlation};
 pub use objective::{LitArea, ObjectiveSpeckle};
 pub use phasor_sum::{PhasorSum, moment_of_phasor_sum};
 pub use pixel::pixel_contrast;
+pub use pixel_autocovariance::{PixelAutocovariance, PixelColumn};
 pub use pixel_widening::size_before_pixels;
 pub use polarisation::PartiallyPolarised;
 pub use rectangular_pixel::{gaussian_filter_contrast, rectangular_pixel_contrast};
+pub use row_spectrum::speckle_length;
 pub use second_order::{
     AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, COHERENCE_AREA, airy_autocovariance, airy_power_spectrum,
     contrast_squared_spread,

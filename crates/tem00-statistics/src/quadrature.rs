@@ -13,22 +13,29 @@ static RULE: LazyLock<Vec<(f64, f64)>> =
 ///
 /// On one panel polynomials up to the order 31 are exact, and a cosine of one period to 10⁻¹⁵.
 pub(crate) fn integrate(f: impl Fn(f64) -> f64, [start, end]: [f64; 2], longest: f64) -> f64 {
+    let mut sum = 0.0;
+    for_each_node([start, end], longest, |x, weight| sum += weight * f(x));
+    sum
+}
+
+/// Calls `visit` with the nodes of the rule of [`integrate`] and their weights, for integrals that share
+/// them.
+pub(crate) fn for_each_node([start, end]: [f64; 2], longest: f64, mut visit: impl FnMut(f64, f64)) {
     if end <= start {
-        return 0.0;
+        return;
     }
     let panels = ((end - start) / longest).ceil().max(1.0);
     let half = 0.5 * (end - start) / panels;
-    let mut sum = 0.0;
     let mut panel = 0.0;
     while panel < panels {
         let centre = start + (2.0 * panel + 1.0) * half;
         for &(node, weight) in RULE.iter() {
             let offset = node * half;
-            sum += weight * (f(centre - offset) + f(centre + offset));
+            visit(centre - offset, weight * half);
+            visit(centre + offset, weight * half);
         }
         panel += 1.0;
     }
-    sum * half
 }
 
 /// Returns ∫ f over `[start, end]` for an f that has a root `√(x − start)` at its start, by the

@@ -69,7 +69,7 @@ struct Sides {
 
 /// From here on the autocovariance is replaced by its mean over its oscillation, at a zero of the
 /// integral of the oscillation.
-const AVERAGED_FROM: f64 = 128.25;
+pub(crate) const AVERAGED_FROM: f64 = 128.25;
 
 impl Sides {
     /// Returns ∫ c(r) r g(r) dr, where r g is the density of the distance of two random points of
@@ -138,7 +138,7 @@ fn weigh(g: impl Fn(f64) -> f64, [start, end]: [f64; 2]) -> f64 {
 
 /// Returns the mean of the Airy autocovariance over its oscillation, far from the centre: J₁² is
 /// (1 + 3/8x²)/πx on average.
-fn averaged_autocovariance(r: f64) -> f64 {
+pub(crate) fn averaged_autocovariance(r: f64) -> f64 {
     let x = PI * r;
     4.0 / (PI * x) / (x * x) * (1.0 + 0.375 / (x * x))
 }

@@ -50,6 +50,8 @@ pub enum TriangulationError {
     Tracer(TracerError),
     /// A speckle pattern is not possible.
     Speckle(SpeckleError),
+    /// A scene is none that can be measured, and why.
+    Scene(String),
     /// The caller asked to stop.
     Cancelled,
 }
@@ -79,6 +81,7 @@ impl fmt::Display for TriangulationError {
             }
             Self::Tracer(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
+            Self::Scene(why) => f.write_str(why),
             Self::Cancelled => write!(f, "the work was cancelled"),
         }
     }

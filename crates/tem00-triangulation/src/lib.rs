@@ -14,24 +14,57 @@
 //! - Widths of lines are full widths between the points of 1/e², four standard deviations of a Gaussian.
 //! - Uncertainties are standard uncertainties unless called expanded.
 
+mod budget;
 mod calibration;
+mod design;
 mod detector;
+mod dorsch;
 mod error;
 mod file;
 mod geometry;
+mod line_image;
+mod place_noise;
+mod scan;
 mod sensor;
+mod setup;
 
+pub use budget::{
+    Budget, BudgetTerm, ErrorDistribution, Evaluation, MonteCarloEstimate, Simulation,
+    SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,
+};
 pub use calibration::{
     BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard,
     PARAMETERS, Parameter, calibrate, find_corners,
 };
+pub use design::{
+    Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignParameter,
+    DesignQuestion, DesignSearch, Exclusion, Neighbours, Objective, Spacing, Sweep, neighbours,
+    pareto_front,
+};
 pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, LinePoint, Validity};
+pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
-    BoardSettings, CalibrationMethod, CalibrationSettings, read_calibration, read_sensor,
+    BoardSettings, CalibrationMethod, CalibrationSettings, parse_setup, parse_setup_with,
+    read_calibration, read_design, read_detector, read_scan, read_sensor, read_setup,
+    read_setup_with,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
-pub use sensor::{RawFrame, Sensor, SensorDescription};
+pub use line_image::{LineImage, LineImageData};
+pub use place_noise::{
+    ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
+};
+pub use scan::{
+    Averaging, Exposure, FrameCorrelation, HeightMap, HeightScale, LAMP_WAVELENGTH, MeasuredFrame,
+    MeasuredPoint, Measurement, MeasurementScene, Raster, RawFormat, Scan, ScanMotion,
+    ScanSettings, ScannedPart, SensorSpeckle, SpeckleChange, SpeckleCorrelation, SpeckleTable,
+    SpeckleWitness, averaged_profile, brightest_points, mean_point, write_point_cloud,
+};
+pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
+pub use setup::{
+    Averages, HeightRange, ImagedLine, LaserLineData, LightLevel, Setup, SetupCamera,
+    SetupDescription, SetupSurface,
+};
 
 /// The places and directions of this crate.
 pub use glam::{DVec2, DVec3};

@@ -1,5 +1,9 @@
 mod description;
 mod exposure;
+mod photon_transfer;
+mod response;
+#[cfg(test)]
+mod tests;
 
 use tem00_numerics::Grid;
 
@@ -7,6 +11,7 @@ use crate::TriangulationError;
 
 pub use description::SensorDescription;
 pub use exposure::RawFrame;
+pub use photon_transfer::PhotonTransferPoint;
 
 /// A camera sensor after EMVA 1288, the linear model.
 ///

@@ -5,9 +5,46 @@ use std::path::PathBuf;
 use clap::Args;
 
 /// Search set-ups for the least height uncertainty under constraints.
+///
+/// The section [design] of the set-up file says what is varied, what a set-up must keep and what is
+/// made small. All combinations are tried; the table on standard output lists the best that keep every
+/// constraint. If there is none, it says which constraint excludes most, and the nearest set-up.
 #[derive(Args, Debug)]
+#[command(after_help = DESIGN_EXAMPLES)]
 pub(crate) struct DesignArgs {
     /// The set-up file, with the section [design].
     #[arg(value_name = "SETUP.toml")]
     pub(crate) setup: PathBuf,
+
+    /// The folder for the files, made if it is missing [default: out/<name of the set-up>].
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// How many of the best set-ups are listed, 1 to 1000.
+    #[arg(long, value_name = "N", default_value_t = 10,
+          value_parser = clap::value_parser!(u16).range(1..=1_000))]
+    pub(crate) best: u16,
+
+    /// Threads to work with, 1 to 1024; the result does not depend on it [default: all].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
+
+const DESIGN_EXAMPLES: &str = "\
+Examples:
+  tem00 design setups/design.toml                     search, into out/design/
+  tem00 design setups/design.toml --best 3 -o search
+  tem00 budget out/design/best.toml                   the budget of the winner
+
+Files:
+  best.toml           the best set-up, or the nearest if none keeps every constraint
+  design.csv          every set-up that was tried, in SI units
+  design.json         the search, its best set-ups, the front, and what constraints exclude
+  design.html         all of it in one report that opens offline
+  trade_off.svg|png   uncertainty against depth of field
+  over_<parameter>    the least uncertainty over each parameter that is varied, by source
+  sensitivity         what 10 % more or less of each parameter makes of the best";

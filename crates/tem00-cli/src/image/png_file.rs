@@ -5,7 +5,7 @@ use png::{
 };
 use tem00_numerics::Grid;
 
-use super::selection::{Components, Selection};
+use super::selection::Selection;
 use super::{ImageError, LoadedImage, Transfer, checked_area, grid};
 use crate::colour::{srgb_decoded, srgb_encoded};
 

@@ -265,7 +265,7 @@ impl SequenceProgress {
     fn new(render: &Render<'_>, frames: u64) -> Self {
         let samples_per_frame = render.samples_per_frame();
         Self {
-            bar: Progress::of_samples(frames.saturating_mul(samples_per_frame)),
+            bar: Progress::of(frames.saturating_mul(samples_per_frame), "samples"),
             samples_per_frame,
             begun: Cell::new(0),
         }

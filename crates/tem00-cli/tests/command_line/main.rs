@@ -2,9 +2,11 @@
 
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
+mod lines;
 mod patterns;
 mod render;
 mod sequence;
+mod tutorial;
 
 use std::{
     fs,

@@ -136,7 +136,6 @@ fn a_size_that_cannot_be_measured_costs_no_file() {
     );
 }
 
-#[cfg(feature = "plot")]
 #[test]
 fn a_page_of_plots_is_drawn_where_it_was_asked_for() {
     let folder = folder();

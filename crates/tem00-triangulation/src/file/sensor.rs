@@ -1,9 +1,12 @@
+#[cfg(test)]
+mod tests;
+
 use tem00_tracer::document::{DURATION, Document, NUMBER, Problem, Section};
 
 use crate::{Sensor, SensorDescription, TriangulationError};
 
 /// The keys of the section `[sensor]`.
-const KEYS: &[&str] = &[
+pub(super) const KEYS: &[&str] = &[
     "quantum_efficiency",
     "exposure",
     "bit_depth",

@@ -34,8 +34,9 @@ impl RawFrame {
     }
 
     /// Returns the largest grey value that the bits allow, in DN.
-    pub const fn largest_value(&self) -> u16 {
-        ((1_u32 << self.bit_depth) - 1) as u16
+    pub fn largest_value(&self) -> u16 {
+        let unused = 16_u32.saturating_sub(self.bit_depth);
+        u16::MAX.checked_shr(unused).unwrap_or(0)
     }
 
     /// Returns the grey values as numbers, in DN.

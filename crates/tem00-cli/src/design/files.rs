@@ -1,0 +1,117 @@
+//! The files of a search.
+
+use std::{
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+use tem00_triangulation::{Candidate, DesignFigure, Neighbours};
+
+use super::{Design, page, plots, record::Record};
+use crate::{atomic::write_atomically, failure::Failure};
+
+/// Writes all files into the folder, and returns the names of those that one opens first.
+pub(super) fn write(
+    design: &Design<'_>,
+    near: &[Neighbours],
+    folder: &Path,
+) -> Result<Vec<PathBuf>, Failure> {
+    let path = |name: &str| folder.join(name);
+    let best = best(design)?;
+    save(&path("best.toml"), |file| file.write_all(best.as_bytes()))?;
+    save(&path("design.csv"), |file| write_csv(design, file))?;
+    let record = Record::of(design).text()?;
+    save(&path("design.json"), |file| writeln!(file, "{record}"))?;
+    let mut figures = Vec::new();
+    for named in plots::all(design, near) {
+        let svg = named.drawing.save(folder, &named.name)?;
+        figures.push((svg, named.caption));
+    }
+    let report = page::report(design, near, &figures, &best)?;
+    report.save(&path("design.html"))?;
+    Ok(["best.toml", "design.csv", "design.json", "design.html"]
+        .map(path)
+        .into())
+}
+
+fn save(
+    path: &Path,
+    write: impl FnOnce(&mut io::BufWriter<std::fs::File>) -> io::Result<()>,
+) -> Result<(), Failure> {
+    write_atomically(path, write).map_err(|error| Failure::writing(path, error))
+}
+
+/// Returns the set-up that is shown as the text of a set-up file.
+fn best(design: &Design<'_>) -> Result<String, Failure> {
+    let shown = design.shown()?;
+    let kind = if shown.allowed().is_some() {
+        "The best set-up"
+    } else {
+        "No set-up keeps every constraint; the nearest"
+    };
+    let (index, file) = (shown.index, design.file.display().to_string());
+    // A name may hold what would end the line of a comment.
+    let file = file.replace(char::is_control, " ");
+    let text = shown.description.to_toml();
+    Ok(format!(
+        "# {kind} of the search in {file}: number {index}. SI units.\n\n{text}"
+    ))
+}
+
+/// Writes all set-ups, in SI units, a line for each.
+fn write_csv(design: &Design<'_>, out: &mut impl Write) -> io::Result<()> {
+    let sweeps = || {
+        design
+            .search
+            .question()
+            .sweeps
+            .iter()
+            .map(|sweep| sweep.parameter())
+    };
+    write!(out, "number")?;
+    for parameter in sweeps() {
+        write!(out, ",{parameter}")?;
+    }
+    // What is varied may be a figure as well, and has its column already.
+    let figures: Vec<_> = DesignFigure::ALL
+        .into_iter()
+        .filter(|figure| sweeps().all(|parameter| parameter.name() != figure.name()))
+        .collect();
+    for figure in &figures {
+        write!(out, ",{figure}")?;
+    }
+    writeln!(out, ",dominant,allowed,why_not")?;
+    for candidate in design.outcome.candidates() {
+        write!(out, "{}", candidate.index)?;
+        for parameter in sweeps() {
+            write!(out, ",{:e}", parameter.of(&candidate.description))?;
+        }
+        write_figures(candidate, &figures, out)?;
+    }
+    Ok(())
+}
+
+fn write_figures(
+    candidate: &Candidate,
+    shown: &[DesignFigure],
+    out: &mut impl Write,
+) -> io::Result<()> {
+    match &candidate.figures {
+        Ok(figures) => {
+            for figure in shown {
+                write!(out, ",{:e}", figure.of(figures))?;
+            }
+            let broken = candidate
+                .broken
+                .iter()
+                .map(|constraint| constraint.figure.name());
+            let broken = broken.collect::<Vec<_>>().join(" ");
+            let dominant = figures.dominant.name();
+            writeln!(out, ",{dominant},{},{broken}", broken.is_empty())
+        }
+        Err(why) => {
+            let why = why.to_string().replace('"', "\"\"");
+            writeln!(out, "{},,false,\"{why}\"", ",".repeat(shown.len()))
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The picture of an image with its lines.
+
+use tem00_numerics::Grid;
+use tem00_triangulation::{LinePoint, Validity};
+
+use super::Found;
+
+/// The colours of the lines, in linear sRGB; those of further lines begin again.
+const COLOURS: [[f32; 3]; 4] = [
+    [1.0, 0.05, 0.02],
+    [0.0, 0.6, 1.0],
+    [1.0, 0.7, 0.0],
+    [0.1, 0.9, 0.1],
+];
+
+/// The colour of points that cannot be trusted.
+const DOUBTFUL: [f32; 3] = [0.9, 0.0, 0.9];
+
+/// Returns the image in grey, its brightest pixel white, with a coloured pixel for each point.
+pub(crate) fn picture(image: &Grid<f32>, (found, rows): (&Found, bool)) -> Grid<[f32; 3]> {
+    let brightest = image.values().iter().copied().fold(0.0, f32::max);
+    let white = if brightest > 0.0 { brightest } else { 1.0 };
+    let mut picture = image.map(|&value| [value / white; 3]);
+    for (index, points) in found.iter().enumerate() {
+        for point in points {
+            let place = whole(point.position);
+            let (x, y) = if rows { (place, index) } else { (index, place) };
+            if x < picture.width() && y < picture.height() {
+                picture[(x, y)] = colour(point);
+            }
+        }
+    }
+    picture
+}
+
+fn colour(point: &LinePoint) -> [f32; 3] {
+    match point.validity {
+        Validity::Valid => COLOURS[point.line % COLOURS.len()],
+        _ => DOUBTFUL,
+    }
+}
+
+/// The pixel that a place lies in; one before the image counts as beyond it.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "negative places are none, and places of an image are below 2²⁸"
+)]
+fn whole(place: f64) -> usize {
+    if place >= 0.0 {
+        place as usize
+    } else {
+        usize::MAX
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(position: f64, line: usize, validity: Validity) -> LinePoint {
+        LinePoint {
+            position,
+            width: 2.0,
+            peak: 1.0,
+            integral: 1.0,
+            background: 0.0,
+            validity,
+            line,
+        }
+    }
+
+    #[test]
+    fn points_are_drawn_where_they_are() {
+        let image = Grid::from_fn(3, 4, |x, y| (x + y) as f32);
+        let found = [
+            vec![
+                point(1.99, 0, Validity::Valid),
+                point(-0.2, 1, Validity::Valid),
+            ],
+            vec![],
+            vec![
+                point(3.0, 1, Validity::Saturated),
+                point(4.0, 0, Validity::Valid),
+            ],
+        ];
+        let across = picture(&image, (&found, false));
+        assert_eq!(across[(0, 1)], COLOURS[0]);
+        assert_eq!(across[(2, 3)], DOUBTFUL);
+        let untouched = across
+            .values()
+            .iter()
+            .filter(|[r, g, b]| r == g && g == b)
+            .count();
+        assert_eq!(untouched, 10, "what lies outside is left out");
+        assert_eq!(across[(1, 3)], [0.8; 3], "the brightest is white");
+
+        let down = picture(&image, (&found, true));
+        assert_eq!(down[(1, 0)], COLOURS[0]);
+    }
+
+    #[test]
+    fn darkness_is_black() {
+        let dark = picture(&Grid::filled(2, 2, 0.0), (&[], false));
+        assert!(dark.values().iter().flatten().all(|&v| v == 0.0), "black");
+    }
+}

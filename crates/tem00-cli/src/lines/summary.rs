@@ -1,0 +1,256 @@
+//! What is said of the lines of an image in a few numbers.
+
+use std::path::Path;
+
+use serde::Serialize;
+use tem00_triangulation::{DetectorSettings, LinePoint, Validity};
+
+use super::Found;
+use crate::{image::RawImage, table::number};
+
+/// The columns to either side of one that a parabola is fitted to.
+const REACH: usize = 8;
+
+/// One line of an image.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct LineSummary {
+    /// The number of the line, from 0.
+    pub(super) line: usize,
+    /// The columns in which it was found.
+    columns: usize,
+    /// The columns in which its place can be trusted.
+    valid: usize,
+    /// The mean of its valid places, in pixels.
+    position: Option<f64>,
+    /// The standard deviation of its valid places about a smooth line, in pixels.
+    pub(super) noise: Option<f64>,
+    /// The mean of its full 1/e² widths where it is valid, in pixels.
+    width: Option<f64>,
+    /// The mean of its peaks above the background where it is valid, in DN.
+    peak: Option<f64>,
+}
+
+impl LineSummary {
+    /// Sums up all lines of an image.
+    pub(super) fn of_all(found: &Found) -> Vec<Self> {
+        let numbers = found.iter().flatten().map(|point| point.line);
+        let count = numbers.max().map_or(0, |most| most + 1);
+        (0..count).map(|line| Self::of(found, line)).collect()
+    }
+
+    fn of(found: &Found, line: usize) -> Self {
+        let of_line = |points: &Vec<LinePoint>| points.iter().find(|p| p.line == line).copied();
+        let columns: Vec<Option<LinePoint>> = found.iter().map(of_line).collect();
+        let is_valid = |point: &LinePoint| point.validity == Validity::Valid;
+        let valid: Vec<LinePoint> = columns.iter().flatten().copied().filter(is_valid).collect();
+        let places: Vec<Option<f64>> = columns
+            .iter()
+            .map(|point| point.filter(is_valid).map(|point| point.position))
+            .collect();
+        let of = |what: fn(&LinePoint) -> f64| mean(valid.iter().map(what));
+        Self {
+            line,
+            columns: columns.iter().flatten().count(),
+            valid: valid.len(),
+            position: of(|point| point.position),
+            noise: noise_about_parabola(&places),
+            width: of(|point| point.width),
+            peak: of(|point| point.peak),
+        }
+    }
+}
+
+/// Returns the standard deviation of values about a smooth curve, or `None` if there are no 17 in a row.
+///
+/// The smooth curve is the least-squares parabola of the 17 values about each. Of noise of the variance
+/// σ² that is independent from value to value, the residual in the middle has the variance σ² (1 − h)
+/// with the weight h of the middle value in the parabola; noise that neighbours share is underestimated.
+///
+/// ```text
+/// w_i = 3 (3m² + 3m − 1 − 5i²) / ((2m − 1) (2m + 1) (2m + 3))     h = w_0, m = 8
+/// ```
+///
+/// The weights are those of A. Savitzky and M. J. E. Golay, *Smoothing and Differentiation of Data by
+/// Simplified Least Squares Procedures*, 1964.
+fn noise_about_parabola(values: &[Option<f64>]) -> Option<f64> {
+    let weights = parabola_weights();
+    let residuals = values.windows(weights.len()).filter_map(|window| {
+        let terms = window.iter().zip(&weights);
+        let smooth: Option<f64> = terms.map(|(value, weight)| Some((*value)? * weight)).sum();
+        Some(window[REACH]? - smooth?)
+    });
+    let variance = mean(residuals.map(|residual| residual * residual))?;
+    Some((variance / (1.0 - weights[REACH])).sqrt())
+}
+
+fn parabola_weights() -> [f64; 2 * REACH + 1] {
+    #[expect(clippy::cast_precision_loss, reason = "a few columns")]
+    let (m, at) = (REACH as f64, |i: usize| i as f64 - REACH as f64);
+    let sum = (2.0 * m - 1.0) * (2.0 * m + 1.0) * (2.0 * m + 3.0);
+    let weight = |i: f64| 3.0 * (3.0 * m * m + 3.0 * m - 1.0 - 5.0 * i * i) / sum;
+    core::array::from_fn(|i| weight(at(i)))
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (count, sum) = values.fold((0_u32, 0.0), |(count, sum), value| (count + 1, sum + value));
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+/// One image.
+#[derive(Debug, Serialize)]
+pub(super) struct ImageSummary {
+    image: String,
+    size: [usize; 2],
+    bit_depth: u32,
+    interpretation: String,
+    saturated_pixels: usize,
+    lines: Vec<LineSummary>,
+    #[serde(skip)]
+    name: String,
+}
+
+impl ImageSummary {
+    pub(super) fn new(path: &Path, image: &RawImage, lines: Vec<LineSummary>) -> Self {
+        Self {
+            image: path.display().to_string(),
+            size: [image.values.width(), image.values.height()],
+            bit_depth: image.bit_depth,
+            interpretation: image.interpretation.clone(),
+            saturated_pixels: image.saturated,
+            lines,
+            name: crate::output::name(path, "image"),
+        }
+    }
+
+    /// Returns the rows of the table: one per line, or one that says that there is none.
+    pub(super) fn rows(&self) -> Vec<Vec<String>> {
+        if self.lines.is_empty() {
+            let dashes = core::iter::repeat_n("-".to_owned(), 6);
+            return vec![
+                [self.name.clone(), "none".into()]
+                    .into_iter()
+                    .chain(dashes)
+                    .collect(),
+            ];
+        }
+        let cell = |value: Option<f64>| value.map_or_else(|| "-".into(), number);
+        let row = |line: &LineSummary| {
+            vec![
+                self.name.clone(),
+                line.line.to_string(),
+                line.columns.to_string(),
+                valid_share(line),
+                cell(line.position),
+                cell(line.noise),
+                cell(line.width),
+                cell(line.peak),
+            ]
+        };
+        self.lines.iter().map(row).collect()
+    }
+}
+
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "an image has at most 2²⁸ columns"
+)]
+fn valid_share(line: &LineSummary) -> String {
+    format!(
+        "{:.1} %",
+        100.0 * line.valid as f64 / line.columns.max(1) as f64
+    )
+}
+
+/// Returns the headings of the table.
+pub(super) fn headings() -> Vec<String> {
+    [
+        "image",
+        "line",
+        "columns",
+        "valid",
+        "position/px",
+        "noise/px",
+        "width/px",
+        "peak/DN",
+    ]
+    .map(String::from)
+    .to_vec()
+}
+
+#[derive(Serialize)]
+struct Record<'a> {
+    detector: &'static str,
+    window_px: usize,
+    least_peak_dn: f64,
+    most_lines: usize,
+    images: &'a [ImageSummary],
+}
+
+/// Returns all summaries as JSON.
+pub(super) fn json(settings: &DetectorSettings, images: &[ImageSummary]) -> String {
+    let record = Record {
+        detector: settings.method.name(),
+        window_px: settings.window,
+        least_peak_dn: settings.least_peak,
+        most_lines: settings.most_lines,
+        images,
+    };
+    // Numbers and text without maps of other keys than text are always JSON.
+    let mut text = serde_json::to_string_pretty(&record).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_smooth() {
+        let parabola = |x: f64| 3.0 - 0.4 * x + 0.02 * x * x;
+        let values: Vec<_> = (0..40).map(|x| Some(parabola(f64::from(x)))).collect();
+        let noise = noise_about_parabola(&values).expect("there are enough");
+        // Rounding of values up to 20.
+        assert!(noise < 1e-13, "{noise}");
+    }
+
+    #[test]
+    fn the_noise_of_a_line_is_its_standard_deviation() {
+        // Numbers of a fixed multiplicative sequence, uniform in [−½, ½): the variance is 1/12.
+        let mut state = 1_u64;
+        let mut uniform = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 40) as f64 / 16_777_216.0 - 0.5
+        };
+        let values: Vec<_> = (0..20_000)
+            .map(|x| Some(uniform() + 1e-3 * f64::from(x)))
+            .collect();
+        let noise = noise_about_parabola(&values).expect("there are enough");
+        let expected = 1.0 / 12.0_f64.sqrt();
+        // Four standard errors: that of a variance of n uniform values is √(0.8 / n) of it, 0.6 %, and a
+        // little more for the neighbours that residuals share.
+        assert!(
+            (noise / expected - 1.0).abs() < 0.015,
+            "{noise} for {expected}"
+        );
+    }
+
+    #[test]
+    fn noise_takes_seventeen_columns_in_a_row() {
+        let mut values = vec![Some(1.0); 40];
+        assert!(noise_about_parabola(&values).is_some(), "without gaps");
+        for gap in [5, 14, 25, 36] {
+            values[gap] = None;
+        }
+        assert_eq!(noise_about_parabola(&values), None);
+        assert_eq!(noise_about_parabola(&[]), None);
+    }
+
+    #[test]
+    fn the_weights_of_a_parabola_add_up_to_one() {
+        let sum: f64 = parabola_weights().iter().sum();
+        assert!((sum - 1.0).abs() < 1e-15, "{sum}");
+    }
+}

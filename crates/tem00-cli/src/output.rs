@@ -1,0 +1,46 @@
+//! What the commands share: where their files go, and the threads that they work on.
+
+use std::path::{Path, PathBuf};
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::{atomic::create_writable_folder, failure::Failure};
+
+/// Returns the name of an input file without folder and ending, or `otherwise` if it has none.
+pub(crate) fn name(input: &Path, otherwise: &str) -> String {
+    input.file_stem().map_or_else(
+        || otherwise.to_owned(),
+        |stem| stem.to_string_lossy().into_owned(),
+    )
+}
+
+/// Returns the folder that was asked for, or `out/<name>`.
+pub(crate) fn folder(asked: Option<&Path>, name: &str) -> PathBuf {
+    asked.map_or_else(|| Path::new("out").join(name), Path::to_path_buf)
+}
+
+/// Makes sure, before the work, that files can be written into the folder, and makes it if need be.
+///
+/// # Errors
+///
+/// Returns a failure if they cannot.
+pub(crate) fn prepare(folder: &Path) -> Result<(), Failure> {
+    create_writable_folder(folder).map_err(|error| {
+        Failure::input(
+            format!("cannot write into the folder {}: {error}", folder.display()),
+            "name a folder that may be written with -o",
+        )
+    })
+}
+
+/// Starts the threads that were asked for, or one per core.
+///
+/// # Errors
+///
+/// Returns a failure if the operating system refuses.
+pub(crate) fn thread_pool(threads: Option<u16>) -> Result<ThreadPool, Failure> {
+    ThreadPoolBuilder::new()
+        .num_threads(threads.map_or(0, usize::from))
+        .build()
+        .map_err(|error| Failure::running(format!("cannot start the threads: {error}")))
+}

@@ -1,0 +1,92 @@
+//! Bars over categories.
+
+use kuva::prelude::{BarPlot, Layout, Plot};
+
+use super::{Drawing, EMPTY, LEGEND, Panel, colour};
+
+/// Bars over categories, one bar per series in each.
+#[derive(Clone, Debug)]
+pub(crate) struct Bars {
+    title: String,
+    value_label: String,
+    series: Vec<String>,
+    groups: Vec<(String, Vec<f64>)>,
+}
+
+impl Bars {
+    /// Starts bars of the series with the label of the axis of values; one series needs no name.
+    pub(crate) fn new(title: &str, value_label: &str, series: &[&str]) -> Self {
+        Self {
+            title: title.to_owned(),
+            value_label: value_label.to_owned(),
+            series: series.iter().copied().map(String::from).collect(),
+            groups: Vec::new(),
+        }
+    }
+
+    /// Adds a category with the value of each series; what is not finite has no bar.
+    pub(crate) fn group(mut self, name: &str, values: &[f64]) -> Self {
+        let bar = |&value: &f64| if value.is_finite() { value } else { 0.0 };
+        let values = values.iter().map(bar).collect();
+        self.groups.push((name.to_owned(), values));
+        self
+    }
+
+    /// Draws the bars.
+    pub(crate) fn draw(self) -> Drawing {
+        Drawing::of_panel(self.panel())
+    }
+
+    fn panel(self) -> Panel {
+        let empty = self.groups.is_empty();
+        let mut bars = BarPlot::new();
+        for (name, values) in self.groups {
+            let coloured = (0..).map(colour);
+            bars = bars.with_group(name, values.into_iter().zip(coloured));
+        }
+        if self.series.len() > 1 {
+            bars = bars.with_legend(self.series.iter().map(String::as_str).collect());
+        }
+        let plots = if empty {
+            Vec::new()
+        } else {
+            vec![Plot::from(bars)]
+        };
+        let layout = if empty {
+            Layout::new(EMPTY, EMPTY)
+        } else {
+            Layout::auto_from_plots(&plots).with_legend_position(LEGEND)
+        };
+        let layout = layout.with_title(self.title).with_y_label(self.value_label);
+        (plots, layout.with_x_tick_rotate(-35.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_show_their_words() {
+        let bars = Bars::new("contributions", "u (µm)", &["analytic", "Monte Carlo"]);
+        let bars = bars.group("speckle", &[3.0, 3.1]);
+        let svg = bars.group("shot noise", &[0.2, f64::NAN]).draw().svg();
+        for word in [
+            "contributions",
+            "u (µm)",
+            "analytic",
+            "Monte Carlo",
+            "speckle",
+            "shot noise",
+        ] {
+            assert!(svg.contains(word), "{word} is on the chart");
+        }
+        assert!(!svg.contains("NaN"), "{svg}");
+    }
+
+    #[test]
+    fn no_bars_are_no_panic() {
+        let svg = Bars::new("nothing", "u (µm)", &[""]).draw().svg();
+        assert!(svg.contains("nothing"), "{svg}");
+    }
+}

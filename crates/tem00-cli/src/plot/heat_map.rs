@@ -1,0 +1,136 @@
+//! Values over a plane, as colours.
+
+use std::sync::Arc;
+
+use kuva::prelude::{ColorMap, Heatmap, Layout, Plot};
+use tem00_numerics::Grid;
+
+use super::{Drawing, EMPTY, Panel};
+
+/// The most cells that are drawn along an axis.
+const MOST_CELLS: usize = 200;
+
+/// The colour of what has no value.
+const HOLE: &str = "#ffffff";
+
+/// Values over a plane, as colours beside a scale; a value that is not finite is a hole.
+///
+/// More than 200 cells along an axis are drawn as the means of blocks of them.
+#[derive(Clone, Debug)]
+pub(crate) struct HeatMap<'a> {
+    /// What the colours mean, with the unit.
+    pub(crate) title: &'a str,
+    /// The labels of the axes, across and up.
+    pub(crate) labels: [&'a str; 2],
+    /// Where the axes begin and end.
+    pub(crate) ranges: [(f64, f64); 2],
+    /// The values; the first row is at the *bottom*, where the axis up begins.
+    pub(crate) values: &'a Grid<f32>,
+}
+
+impl HeatMap<'_> {
+    /// Draws the map.
+    pub(crate) fn draw(&self) -> Drawing {
+        Drawing::of_panel(self.panel())
+    }
+
+    fn panel(&self) -> Panel {
+        let rows = self.cells();
+        let finite = rows.iter().flatten().any(|value| value.is_finite());
+        let [x, y] = self.ranges;
+        let spans = [x, y].iter().all(|(from, to)| to - from > 0.0);
+        let (plots, layout) = if finite && spans {
+            let mut map = Heatmap::new().with_data(rows).with_color_map(colours());
+            (map.cell_size, map.x_range, map.y_range) = (1.0, Some(x), Some(y));
+            let plots = vec![Plot::from(map)];
+            let layout = Layout::auto_from_plots(&plots);
+            (plots, layout)
+        } else {
+            (Vec::new(), Layout::new(EMPTY, EMPTY))
+        };
+        let layout = layout.with_title(self.title).with_x_label(self.labels[0]);
+        (plots, layout.with_y_label(self.labels[1]))
+    }
+
+    /// Returns what is drawn, from the bottom up.
+    fn cells(&self) -> Vec<Vec<f64>> {
+        let size = [self.values.width(), self.values.height()];
+        let [columns, rows] = size.map(|cells| cells.min(MOST_CELLS));
+        let bounds =
+            |index: usize, cells: usize, of: usize| (index * of / cells, (index + 1) * of / cells);
+        let cell = |x, y| {
+            mean(
+                self.values,
+                bounds(x, columns, size[0]),
+                bounds(y, rows, size[1]),
+            )
+        };
+        (0..rows)
+            .map(|y| (0..columns).map(|x| cell(x, y)).collect())
+            .collect()
+    }
+}
+
+/// Viridis, and a colour of its own for holes.
+fn colours() -> ColorMap {
+    ColorMap::Custom(Arc::new(|value: f64| {
+        if value.is_finite() {
+            ColorMap::Viridis.map(value)
+        } else {
+            HOLE.to_owned()
+        }
+    }))
+}
+
+/// Returns the mean of the finite values of a block, or the NaN of 0 / 0, a hole, without any.
+fn mean(values: &Grid<f32>, (x0, x1): (usize, usize), (y0, y1): (usize, usize)) -> f64 {
+    let cells = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
+    let finite = cells
+        .map(|cell| f64::from(values[cell]))
+        .filter(|value| value.is_finite());
+    let (sum, count) = finite.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(values: &Grid<f32>) -> HeatMap<'_> {
+        HeatMap {
+            title: "height (mm)",
+            labels: ["x (mm)", "frame"],
+            ranges: [(-5.0, 5.0), (0.0, 10.0)],
+            values,
+        }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a few hundred rows")]
+    #[test]
+    fn large_maps_are_drawn_as_means_of_blocks() {
+        let values = Grid::from_fn(450, 3, |x, y| if x == 0 { f32::NAN } else { y as f32 });
+        let cells = map(&values).cells();
+        assert_eq!((cells.len(), cells[0].len()), (3, MOST_CELLS));
+        // The hole is left out of the mean of its block.
+        for (row, expected) in cells.iter().zip([0.0, 1.0, 2.0]) {
+            assert!(row.iter().all(|&value| value == expected), "{row:?}");
+        }
+    }
+
+    #[test]
+    fn holes_have_a_colour_of_their_own() {
+        let values = Grid::from_fn(2, 2, |x, y| if x + y == 0 { f32::NAN } else { 1.0 });
+        let svg = map(&values).draw().svg();
+        assert!(
+            svg.contains("height (mm)") && svg.contains("frame"),
+            "{svg}"
+        );
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+    }
+
+    #[test]
+    fn a_map_of_holes_only_has_axes_all_the_same() {
+        let svg = map(&Grid::from_fn(2, 2, |_, _| f32::NAN)).draw().svg();
+        assert!(svg.contains("x (mm)") && !svg.contains("NaN"), "{svg}");
+    }
+}

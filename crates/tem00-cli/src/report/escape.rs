@@ -1,0 +1,50 @@
+//! Text in HTML.
+
+use std::borrow::Cow;
+
+/// Returns text as HTML shows it, between tags and in quoted attributes.
+///
+/// Control characters, which no HTML file may have, become the replacement character.
+pub(super) fn escaped(text: &str) -> Cow<'_, str> {
+    let special = |c: char| matches!(c, '&' | '<' | '>' | '"' | '\'') || is_control(c);
+    if !text.contains(special) {
+        return Cow::Borrowed(text);
+    }
+    let mut out = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            c if is_control(c) => out.push(char::REPLACEMENT_CHARACTER),
+            c => out.push(c),
+        }
+    }
+    Cow::Owned(out)
+}
+
+fn is_control(c: char) -> bool {
+    c.is_control() && !matches!(c, '\n' | '\t')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_stays_text() {
+        for (text, expected) in [
+            ("σ = 3.2 µm", "σ = 3.2 µm"),
+            (
+                "<script>alert('x')</script>",
+                "&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt;",
+            ),
+            ("a & \"b\"", "a &amp; &quot;b&quot;"),
+            ("two\nlines\tand \u{1b}[0m", "two\nlines\tand \u{fffd}[0m"),
+        ] {
+            assert_eq!(escaped(text), expected);
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! What height uncertainty a set-up gives, and what dominates it.
+
+mod coverage;
+mod first_order;
+mod monte_carlo;
+mod term;
+
+use tem00_statistics::imaged_line_centroid_deviation;
+
+use crate::{Dorsch, Setup};
+
+pub use self::{
+    coverage::{coverage_factor, effective_degrees_of_freedom},
+    monte_carlo::{MonteCarloEstimate, Simulation, SimulationOptions, simulate},
+    term::{BudgetTerm, ErrorDistribution, Evaluation, UncertaintySource},
+};
+
+/// The uncertainty budget of a height, after the GUM.
+///
+/// To first order the place of a line moves with the grey values of its column, δy = Σ gᵢ δIᵢ, whatever
+/// the detector; the sensitivities gᵢ are those of the noise-free column. Each source adds a variance
+/// ([`PlaceNoise`](crate::PlaceNoise)), which the geometry turns into one of height. They are means over
+/// the place of the line within a pixel.
+///
+/// # Averages
+///
+/// Over N columns and M frames shot noise and dark noise fall with √(N M), and so does quantisation as
+/// long as the noise exceeds 0.3 grey values, below which all frames round alike. PRNU and DSNU fall
+/// with √N: pixels stay what they are from frame to frame. Speckle of neighbouring columns goes
+/// together as far as a speckle reaches; over frames it falls with √M only if each has speckle of its
+/// own. Detector bias and calibration do not average out.
+///
+/// # Validity
+///
+/// First order. Speckle is as strong as the light itself: a centre of gravity scatters up to 7 % less
+/// than first order says, what looks at three pixels up to half as much again less, and Steger's detector,
+/// which also looks at neighbouring columns, half as much. [`simulate`] tells, and whether all columns
+/// have a line that can be trusted. Pixels count as linear, also where the mean exceeds the sensor's range; see
+/// [`Setup::light_level`].
+///
+/// # Examples
+///
+/// ```
+/// use tem00_triangulation::{Budget, UncertaintySource, parse_setup};
+///
+/// let setup = parse_setup(
+///     r#"
+///     laser = { wavelength = "650 nm", power = "5 mW", line_width = "0.2 mm", line_length = "50 mm" }
+///     surface = { reflectance = 0.5 }
+///     sensor = { quantum_efficiency = 0.6, exposure = "1 ms" }
+///     [camera]
+///     focal_length = "25 mm"
+///     f_number = 8
+///     pixel_pitch = "3.45 um"
+///     resolution = [640, 480]
+///     distance = "300 mm"
+///     angle = "30 deg"
+///     "#,
+/// )?;
+/// let budget = Budget::new(&setup).ok_or("the detector finds no line")?;
+/// assert_eq!(budget.dominant().source, UncertaintySource::Speckle);
+/// let micrometres = budget.combined() * 1e6;
+/// assert!((10.0..40.0).contains(&micrometres), "{micrometres}");
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+///
+/// # References
+///
+/// - JCGM 100:2008, *Guide to the expression of uncertainty in measurement*, ch. 4 to 6 and annex G.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Budget {
+    height: f64,
+    terms: Vec<BudgetTerm>,
+    line_law: f64,
+    dorsch: f64,
+}
+
+impl Budget {
+    /// Returns the budget of a height at the reference plane, or `None` if the detector finds no line
+    /// there even without noise.
+    pub fn new(setup: &Setup) -> Option<Self> {
+        Self::at(setup, 0.0)
+    }
+
+    /// Returns the budget of a height of about `height`, in metres, or `None` if the camera does not see
+    /// the line there or the detector finds none even without noise.
+    pub fn at(setup: &Setup, height: f64) -> Option<Self> {
+        let line = setup.line_at(height)?;
+        let terms = first_order::terms(setup, &line)?;
+        let d = setup.description();
+        let contrast = d.surface.contrast();
+        let [along, across] = line.speckle_size;
+        let frames = if d.average.independent_speckle {
+            f64::from(d.average.frames)
+        } else {
+            1.0
+        };
+        let radius = 0.5 * line.line_width.hypot(line.blur) / across;
+        let row_height = f64::from(d.average.columns) / along;
+        let deviation = imaged_line_centroid_deviation(radius, row_height);
+        let place = contrast * across * deviation / frames.sqrt();
+        Some(Self {
+            height,
+            terms,
+            line_law: place * line.height_per_pixel.abs(),
+            dorsch: dorsch(setup, contrast)?,
+        })
+    }
+
+    /// Returns the height that the budget is for, in metres.
+    pub const fn height(&self) -> f64 {
+        self.height
+    }
+
+    /// Returns all terms, in the order of [`UncertaintySource::ALL`].
+    pub fn terms(&self) -> &[BudgetTerm] {
+        &self.terms
+    }
+
+    /// Returns the standard uncertainty by one source alone, in metres.
+    pub fn contribution(&self, source: UncertaintySource) -> f64 {
+        let term = self.terms.iter().find(|term| term.source == source);
+        term.map_or(0.0, BudgetTerm::contribution)
+    }
+
+    /// Returns the combined standard uncertainty of the height, in metres.
+    pub fn combined(&self) -> f64 {
+        let squares = self.terms.iter().map(|term| term.contribution().powi(2));
+        squares.sum::<f64>().sqrt()
+    }
+
+    /// Returns the share of a term in the variance of the height, from 0 to 1.
+    pub fn share(&self, term: &BudgetTerm) -> f64 {
+        let combined = self.combined();
+        if combined > 0.0 {
+            (term.contribution() / combined).powi(2)
+        } else {
+            0.0
+        }
+    }
+
+    /// Returns the effective degrees of freedom of the combined standard uncertainty.
+    pub fn degrees_of_freedom(&self) -> f64 {
+        let pair = |term: &BudgetTerm| (term.contribution(), term.degrees_of_freedom);
+        effective_degrees_of_freedom(&self.terms.iter().map(pair).collect::<Vec<_>>())
+    }
+
+    /// Returns the factor for a coverage of 95 %.
+    pub fn coverage_factor(&self) -> f64 {
+        coverage_factor(self.degrees_of_freedom())
+    }
+
+    /// Returns the expanded uncertainty of the height for a coverage of 95 %, in metres.
+    pub fn expanded(&self) -> f64 {
+        self.coverage_factor() * self.combined()
+    }
+
+    /// Returns the term that contributes most.
+    pub fn dominant(&self) -> &BudgetTerm {
+        let larger = |best: usize, next: usize| {
+            let contribution = |index: usize| self.terms[index].contribution();
+            if contribution(next) > contribution(best) {
+                next
+            } else {
+                best
+            }
+        };
+        let index = (1..self.terms.len()).fold(0, larger);
+        &self.terms[index]
+    }
+
+    /// Returns the standard uncertainty by speckle after the closed form for a line that a lens images
+    /// as waves do, weighed over all of its width, in metres.
+    ///
+    /// See [`imaged_line_centroid_deviation`]; columns that are averaged make the rows higher. The
+    /// budget's own term is that of the detector with its window and of pixels, on a line blurred by the
+    /// lens times speckle, which agrees with waves for lines from 1.5 speckles in full width on.
+    pub const fn line_law(&self) -> f64 {
+        self.line_law
+    }
+
+    /// Returns the standard uncertainty by speckle of a spot instead of a line after Dorsch, Häusler and
+    /// Herrmann, in metres: the classical reference. It knows no averages.
+    pub const fn dorsch(&self) -> f64 {
+        self.dorsch
+    }
+}
+
+fn dorsch(setup: &Setup, contrast: f64) -> Option<f64> {
+    let d = setup.description();
+    let sensor = Dorsch {
+        wavelength: d.laser.wavelength,
+        contrast,
+        aperture_angle: (0.5 * setup.camera().pupil_diameter() / d.camera.distance).asin(),
+        triangulation_angle: d.camera.angle,
+    };
+    sensor.distance_deviation().ok()
+}
+
+#[cfg(test)]
+mod tests;

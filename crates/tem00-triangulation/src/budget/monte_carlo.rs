@@ -1,0 +1,289 @@
+mod noise;
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
+use tem00_numerics::Grid;
+
+use self::noise::Frames;
+use super::{UncertaintySource, first_order};
+use crate::{
+    DetectorSettings, LineDetector, LineImage, Setup, TriangulationError, Validity, setup::within,
+};
+
+/// The least number of columns of a simulated frame.
+const COLUMNS: usize = 128;
+
+/// How a set-up is simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SimulationOptions {
+    /// The number of trials, at least 10: each has a place of the line within a pixel, speckle and a
+    /// camera of its own, and as many frames as are averaged.
+    pub trials: u32,
+    /// The seed of everything random.
+    pub seed: u64,
+}
+
+impl Default for SimulationOptions {
+    /// 200 trials with the seed 0.
+    fn default() -> Self {
+        Self {
+            trials: 200,
+            seed: 0,
+        }
+    }
+}
+
+/// A standard uncertainty of a height that was found by trials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MonteCarloEstimate {
+    /// The root mean square error of the height, in metres.
+    pub uncertainty: f64,
+    /// Its standard error, from the scatter between the trials, in metres.
+    pub standard_error: f64,
+}
+
+/// What trials say of the uncertainty of a height.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    options: SimulationOptions,
+    terms: Vec<(UncertaintySource, MonteCarloEstimate)>,
+    total: MonteCarloEstimate,
+    invalid: f64,
+}
+
+impl Simulation {
+    /// Returns how the set-up was simulated.
+    pub const fn options(&self) -> SimulationOptions {
+        self.options
+    }
+
+    /// Returns the standard uncertainty by one source alone, or `None` for the calibration, which is
+    /// not simulated.
+    pub fn term(&self, source: UncertaintySource) -> Option<MonteCarloEstimate> {
+        let found = self.terms.iter().find(|(of, _)| *of == source);
+        found.map(|(_, estimate)| *estimate)
+    }
+
+    /// Returns the standard uncertainty by everything at once but the calibration.
+    pub const fn total(&self) -> MonteCarloEstimate {
+        self.total
+    }
+
+    /// Returns the share of the columns of all frames in which the detector found no line that can be
+    /// trusted, from 0 to 1.
+    pub const fn invalid(&self) -> f64 {
+        self.invalid
+    }
+}
+
+/// What trials add up to, source by source; the last is everything at once.
+#[derive(Clone, Copy, Debug, Default)]
+struct Trial {
+    /// The mean square deviation, in square pixels.
+    squares: [f64; SIMULATED.len() + 1],
+    invalid: f64,
+}
+
+/// The sources that are simulated.
+const SIMULATED: [UncertaintySource; 7] = [
+    UncertaintySource::Speckle,
+    UncertaintySource::ShotNoise,
+    UncertaintySource::DarkNoise,
+    UncertaintySource::Quantisation,
+    UncertaintySource::Prnu,
+    UncertaintySource::Dsnu,
+    UncertaintySource::DetectorBias,
+];
+
+/// Finds the uncertainty of a height at the reference plane by trials: frames with speckle, exposed by
+/// the sensor, in which the detector finds the line; and frames with one source of noise alone.
+///
+/// Errors of a single source are counted from the place without noise, those of all at once from the
+/// true place. Columns without a trusted line are left out and [counted](Simulation::invalid).
+/// `progress` is told the number of trials that are done; setting `cancel` ends the work.
+///
+/// The same seed gives the same bits for any number of threads.
+///
+/// # Errors
+///
+/// Returns an error if there are fewer than 10 trials or more than 10⁶, if the detector finds no line
+/// even without noise, if averages are so large that their pattern has more than 2²⁵ samples, or if the
+/// work was cancelled.
+pub fn simulate(
+    setup: &Setup,
+    options: SimulationOptions,
+    progress: impl Fn(u64) + Sync,
+    cancel: &AtomicBool,
+) -> Result<Simulation, TriangulationError> {
+    let trials = f64::from(options.trials);
+    within("trials", trials, (10.0, 1e6), "from 10 to a million")?;
+    let simulator = Simulator::new(setup)?;
+    let done = AtomicU64::new(0);
+    let trial = |index: u32| {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(TriangulationError::Cancelled);
+        }
+        let trial = simulator.trial(options.seed, index);
+        progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+        trial
+    };
+    let outcomes = (0..options.trials).into_par_iter().map(trial);
+    let outcomes: Vec<Trial> = outcomes.collect::<Result<_, _>>()?;
+    Ok(simulator.summary(options, &outcomes))
+}
+
+struct Simulator<'a> {
+    setup: &'a Setup,
+    /// The detector for noise without a sensor, which does not saturate.
+    unlimited: LineDetector,
+    image: LineImage,
+    group: usize,
+}
+
+impl<'a> Simulator<'a> {
+    fn new(setup: &'a Setup) -> Result<Self, TriangulationError> {
+        let group = setup.description().average.columns as usize;
+        let columns = group * COLUMNS.div_ceil(group);
+        let rows = first_order::rows(setup.description(), setup.line());
+        let simulator = Self {
+            setup,
+            unlimited: LineDetector::new(DetectorSettings {
+                saturation: f64::INFINITY,
+                ..*setup.detector().settings()
+            })?,
+            image: LineImage::of_setup(setup, [columns, rows])?,
+            group,
+        };
+        simulator.noise_free_place(0.0).map(|_| simulator)
+    }
+
+    /// Returns where the detector finds the line without noise.
+    fn noise_free_place(&self, phase: f64) -> Result<f64, TriangulationError> {
+        let column = first_order::NoiseFreeColumn::new(self.setup, self.setup.line(), phase);
+        let found = column.found(self.setup).map(|point| point.position);
+        found.ok_or(TriangulationError::TooFew {
+            what: "lines that the detector finds without noise",
+            got: 0,
+            needed: 1,
+        })
+    }
+
+    fn trial(&self, seed: u64, index: u32) -> Result<Trial, TriangulationError> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(u64::from(index));
+        // A place within a pixel, of 2²⁰ that are possible.
+        let phase = f64::from(random.next_u32() >> 12) / f64::from(1_u32 << 20);
+        let place = self.noise_free_place(phase)?;
+        let frames = Frames::new(self.setup, &self.image, phase, random.next_u64());
+        let centre = frames.centre();
+        let mut trial = Trial::default();
+        for (square, source) in trial.squares.iter_mut().zip(SIMULATED) {
+            *square = match source {
+                UncertaintySource::DetectorBias => (place - centre).powi(2),
+                source => {
+                    let found = places(&self.unlimited, &frames.of(source)?);
+                    let reference = match source {
+                        UncertaintySource::Quantisation => {
+                            places(&self.unlimited, &frames.unrounded())
+                        }
+                        _ => Places::uniform(place),
+                    };
+                    self.mean_square(&found, &reference).unwrap_or(0.0)
+                }
+            };
+        }
+        let found = places(self.setup.detector(), &frames.exposed()?);
+        let truth = Places::uniform(centre);
+        trial.squares[SIMULATED.len()] = self.mean_square(&found, &truth).unwrap_or(0.0);
+        trial.invalid = found.invalid();
+        Ok(trial)
+    }
+
+    /// Returns the mean square of the deviations, each averaged over a group of columns and all frames;
+    /// `None` without any that can be trusted.
+    fn mean_square(&self, places: &Places, reference: &Places) -> Option<f64> {
+        let columns = places.0.first().map_or(0, Vec::len);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for first in (0..columns).step_by(self.group) {
+            let (mut deviation, mut members) = (0.0, 0.0);
+            for frame in 0..places.0.len() {
+                for column in first..first + self.group {
+                    let pair = places.at(frame, column).zip(reference.at(frame, column));
+                    if let Some((place, reference)) = pair {
+                        deviation += place - reference;
+                        members += 1.0;
+                    }
+                }
+            }
+            if members > 0.0 {
+                sum += (deviation / members).powi(2);
+                count += 1.0;
+            }
+        }
+        (count > 0.0).then(|| sum / count)
+    }
+
+    fn summary(&self, options: SimulationOptions, outcomes: &[Trial]) -> Simulation {
+        let per_pixel = self.setup.line().height_per_pixel.abs();
+        let estimate =
+            |index: usize| estimate(outcomes.iter().map(|t| t.squares[index]), per_pixel);
+        let trials = outcomes.len() as f64;
+        Simulation {
+            options,
+            terms: SIMULATED.into_iter().zip((0..).map(estimate)).collect(),
+            total: estimate(SIMULATED.len()),
+            invalid: outcomes.iter().map(|trial| trial.invalid).sum::<f64>() / trials,
+        }
+    }
+}
+
+/// Places of a line, by frame and column; a single one stands for all.
+struct Places(Vec<Vec<Option<f64>>>);
+
+impl Places {
+    fn uniform(place: f64) -> Self {
+        Self(vec![vec![Some(place)]])
+    }
+
+    fn at(&self, frame: usize, column: usize) -> Option<f64> {
+        let of_frame = &self.0[frame.min(self.0.len() - 1)];
+        of_frame[column.min(of_frame.len() - 1)]
+    }
+
+    fn invalid(&self) -> f64 {
+        let all = self.0.iter().flatten();
+        let missing = all.clone().filter(|place| place.is_none()).count();
+        missing as f64 / all.count() as f64
+    }
+}
+
+/// Returns the places of the line in all columns of all frames.
+fn places(detector: &LineDetector, frames: &[Grid<f32>]) -> Places {
+    let place = |points| {
+        let point = first_order::brightest(points)?;
+        (point.validity == Validity::Valid).then_some(point.position)
+    };
+    let of_frame = |frame| detector.detect(frame).into_iter().map(place).collect();
+    Places(frames.iter().map(of_frame).collect())
+}
+
+/// Returns the root of the mean of independent mean squares, and its standard error by the scatter.
+fn estimate(squares: impl Iterator<Item = f64> + Clone, per_pixel: f64) -> MonteCarloEstimate {
+    let count = squares.clone().count() as f64;
+    let mean = squares.clone().sum::<f64>() / count;
+    let scatter = squares.map(|square| (square - mean).powi(2)).sum::<f64>();
+    let error_of_mean = (scatter / (count * (count - 1.0))).sqrt();
+    let root = mean.sqrt();
+    MonteCarloEstimate {
+        uncertainty: per_pixel * root,
+        // δ√m = δm / (2√m)
+        standard_error: if root > 0.0 {
+            per_pixel * error_of_mean / (2.0 * root)
+        } else {
+            0.0
+        },
+    }
+}

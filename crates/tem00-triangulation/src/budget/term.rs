@@ -1,0 +1,142 @@
+use core::fmt;
+
+/// What makes a height uncertain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum UncertaintySource {
+    /// Speckle in the light of the line.
+    Speckle,
+    /// The Poisson noise of the light.
+    ShotNoise,
+    /// The temporal dark noise of the sensor and the noise of its dark current.
+    DarkNoise,
+    /// The rounding to whole grey values.
+    Quantisation,
+    /// The different response of the pixels.
+    Prnu,
+    /// The different dark signal of the pixels.
+    Dsnu,
+    /// The systematic error of the detector, which varies with the place of the line in a pixel.
+    DetectorBias,
+    /// The calibration of camera and laser plane.
+    Calibration,
+}
+
+impl UncertaintySource {
+    /// All sources, in the order of a budget.
+    pub const ALL: [Self; 8] = [
+        Self::Speckle,
+        Self::ShotNoise,
+        Self::DarkNoise,
+        Self::Quantisation,
+        Self::Prnu,
+        Self::Dsnu,
+        Self::DetectorBias,
+        Self::Calibration,
+    ];
+
+    /// Returns what to call it in a table.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Speckle => "speckle",
+            Self::ShotNoise => "shot noise",
+            Self::DarkNoise => "dark noise",
+            Self::Quantisation => "quantisation",
+            Self::Prnu => "PRNU",
+            Self::Dsnu => "DSNU",
+            Self::DetectorBias => "detector bias",
+            Self::Calibration => "calibration",
+        }
+    }
+
+    /// Returns what lowers it.
+    pub const fn remedy(self) -> &'static str {
+        match self {
+            Self::Speckle => {
+                "a larger pupil (smaller f-number), a narrower line, a larger angle, or averages over \
+                 columns or frames of a moving part lower it; more light does not"
+            }
+            Self::ShotNoise => {
+                "more light lowers it: power, exposure or pupil, or a sensor with a larger full well"
+            }
+            Self::DarkNoise => "more light, a shorter window or a quieter sensor lowers it",
+            Self::Quantisation => "more bits, or more light per grey value, lower it",
+            Self::Prnu | Self::Dsnu => {
+                "a flat-field correction, averages over columns or a wider line lower it"
+            }
+            Self::DetectorBias => "another detector, a wider window or a wider line lowers it",
+            Self::Calibration => "a better calibration lowers it",
+        }
+    }
+}
+
+impl fmt::Display for UncertaintySource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// How a standard uncertainty was evaluated, by the types of the GUM.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evaluation {
+    /// By statistics of observations.
+    A,
+    /// By other knowledge: models and data sheets.
+    B,
+}
+
+/// The distribution of an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ErrorDistribution {
+    /// Normal, if only as the sum of many.
+    Normal,
+    /// Rectangular in each pixel.
+    Rectangular,
+    /// That of a periodic error at a place that is even over the period.
+    Periodic,
+}
+
+impl ErrorDistribution {
+    /// Returns what to call it in a table.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::Rectangular => "rectangular",
+            Self::Periodic => "periodic",
+        }
+    }
+}
+
+/// One line of a budget.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BudgetTerm {
+    /// What makes the height uncertain.
+    pub source: UncertaintySource,
+    /// How that was evaluated.
+    pub evaluation: Evaluation,
+    /// The distribution of the error.
+    pub distribution: ErrorDistribution,
+    /// The standard uncertainty of the input quantity after all averages: of the place of the line, in
+    /// pixels, or of a height, in metres, for the calibration.
+    pub uncertainty: f64,
+    /// By how much the height changes with the input quantity: in metres per pixel, or 1.
+    pub sensitivity: f64,
+    /// The degrees of freedom of the standard uncertainty; infinite if it is known.
+    pub degrees_of_freedom: f64,
+}
+
+impl BudgetTerm {
+    /// Returns the standard uncertainty of the height by this alone, in metres.
+    pub fn contribution(&self) -> f64 {
+        self.uncertainty * self.sensitivity.abs()
+    }
+
+    /// Returns the unit of the input quantity: `px` or `m`.
+    pub const fn unit(&self) -> &'static str {
+        match self.source {
+            UncertaintySource::Calibration => "m",
+            _ => "px",
+        }
+    }
+}

@@ -1,0 +1,376 @@
+use core::f64::consts::PI;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use approx::assert_relative_eq;
+use tem00_statistics::SpeckledLine;
+
+use super::*;
+use crate::{LineMethod, SetupDescription, TriangulationError, setup::tests::description};
+
+fn setup_of(change: impl Fn(&mut SetupDescription)) -> Setup {
+    let mut description = description();
+    change(&mut description);
+    Setup::new(description).unwrap()
+}
+
+fn budget_of(change: impl Fn(&mut SetupDescription)) -> Budget {
+    Budget::new(&setup_of(change)).unwrap()
+}
+
+/// The contribution of one source to the place of the line, in pixels.
+fn place(budget: &Budget, source: UncertaintySource) -> f64 {
+    let terms = budget.terms().iter();
+    terms
+        .filter(|term| term.source == source)
+        .map(|term| term.uncertainty)
+        .sum()
+}
+
+/// The mean over the place of the line in a pixel of Σ (yᵢ − ŷ)² over a window of 2 n + 1 pixels about
+/// the pixel of the line: its own second moment, and the mean square of the place.
+fn squares_of_window(n: f64) -> f64 {
+    n * (n + 1.0) * (2.0 * n + 1.0) / 3.0 + (2.0 * n + 1.0) / 12.0
+}
+
+#[test]
+fn shot_noise_of_a_centre_of_gravity_is_the_bound() {
+    let setup = setup_of(|_| ());
+    let (line, budget) = (setup.line(), Budget::new(&setup).unwrap());
+    // σ² = (w²/4 + 1/12)/N: a pixel widens a line of the variance w²/4 = W²/16 by its own 1/12.
+    let bound = ((line.width.powi(2) / 16.0 + 1.0 / 12.0) / line.column_electrons).sqrt();
+    // The background's share is 31/47 of Σ g over pixels that hardly see light.
+    assert_relative_eq!(
+        place(&budget, UncertaintySource::ShotNoise),
+        bound,
+        max_relative = 1e-3
+    );
+}
+
+#[test]
+fn noise_of_pixels_counts_by_their_distance_to_the_line() {
+    let setup = setup_of(|_| ());
+    let (d, line) = (setup.description().sensor, setup.line());
+    let budget = Budget::new(&setup).unwrap();
+    // g = (y − ŷ)/(K N) for pixels that are equal and independent.
+    let arm = squares_of_window(15.0).sqrt() / line.column_electrons;
+    let dark = (d.dark_noise.powi(2) + d.dark_current * d.exposure_time).sqrt();
+    for (source, electrons) in [
+        (UncertaintySource::DarkNoise, dark),
+        (UncertaintySource::Dsnu, d.dsnu),
+        (
+            UncertaintySource::Quantisation,
+            1.0 / 12.0_f64.sqrt() / d.gain,
+        ),
+    ] {
+        // The background, found from 47 pixels, adds (31²/12)(31²/47)/(31 · 31²/12) · … ≤ 2 · 10⁻³.
+        assert_relative_eq!(place(&budget, source), electrons * arm, max_relative = 3e-3);
+    }
+    // s² Σ n² y²/N² = s² σ/(4 √π) for a Gaussian of the standard deviation σ, here of a line that is
+    // wide enough for its pixels to be points.
+    let wide = setup_of(|d| {
+        d.laser.line_width = 0.6e-3;
+        d.detector.window = 61;
+    });
+    let sigma = wide.line().width / 4.0;
+    let expected = d.prnu * (sigma / (4.0 * PI.sqrt())).sqrt();
+    let found = place(&Budget::new(&wide).unwrap(), UncertaintySource::Prnu);
+    // Pixels widen σ² = 11 by 1/12.
+    assert_relative_eq!(found, expected, max_relative = 5e-3);
+}
+
+#[test]
+fn speckle_of_a_wide_centre_of_gravity_is_that_of_the_line_in_first_order() {
+    for (f_number, line_width) in [(22.0, 0.3e-3), (16.0, 0.6e-3)] {
+        let setup = setup_of(|d| {
+            d.camera.f_number = f_number;
+            d.laser.line_width = line_width;
+            d.laser.power *= 4.0;
+            d.detector.window = 101;
+        });
+        let (line, budget) = (setup.line(), Budget::new(&setup).unwrap());
+        let h = line.speckle_size[1];
+        let law = SpeckledLine::new(0.5 * line.width / h, 1.0 / h).unwrap();
+        let found = place(&budget, UncertaintySource::Speckle) / h;
+        // The height of the pixel smooths speckle of 4.5 and 3.3 pixels: the variance of the place by
+        // (π f p)²/3 at frequencies f of some 2/(2π w/2), 0.2 % here, and by the light's own 1/12.
+        assert_relative_eq!(found, law.centroid_deviation(), max_relative = 1e-2);
+    }
+}
+
+#[test]
+fn depolarised_light_and_sums_of_patterns_have_less_speckle() {
+    let one = budget_of(|_| ());
+    let many = budget_of(|d| (d.surface.patterns, d.surface.polarisation) = (3, 0.5));
+    let ratio = ((1.0 + 0.25) / 6.0_f64).sqrt();
+    for speckle in [
+        |b: &Budget| b.contribution(UncertaintySource::Speckle),
+        Budget::line_law,
+        Budget::dorsch,
+    ] {
+        assert_relative_eq!(speckle(&many), ratio * speckle(&one), max_relative = 1e-12);
+    }
+}
+
+#[test]
+fn averages_lower_what_is_independent() {
+    let one = budget_of(|_| ());
+    let still = budget_of(|d| (d.average.columns, d.average.frames) = (4, 9));
+    let moving = budget_of(|d| {
+        d.average.frames = 9;
+        d.average.independent_speckle = true;
+    });
+    for (source, of_still, of_moving) in [
+        (UncertaintySource::ShotNoise, 6.0, 3.0),
+        (UncertaintySource::DarkNoise, 6.0, 3.0),
+        (UncertaintySource::Quantisation, 6.0, 3.0),
+        (UncertaintySource::Prnu, 2.0, 1.0),
+        (UncertaintySource::Dsnu, 2.0, 1.0),
+        (UncertaintySource::DetectorBias, 1.0, 1.0),
+        (UncertaintySource::Calibration, 1.0, 1.0),
+    ] {
+        let before = one.contribution(source);
+        assert_relative_eq!(
+            still.contribution(source),
+            before / of_still,
+            max_relative = 1e-12
+        );
+        assert_relative_eq!(
+            moving.contribution(source),
+            before / of_moving,
+            max_relative = 1e-12
+        );
+    }
+    let speckle = |budget: &Budget| budget.contribution(UncertaintySource::Speckle);
+    assert_relative_eq!(speckle(&moving), speckle(&one) / 3.0, max_relative = 1e-12);
+    // Four columns are 2.4 speckles: less than independent, more than one, as rows of that height.
+    let ratio = speckle(&still) / speckle(&one);
+    let h = 1.644;
+    let law = |columns: f64| {
+        let line = SpeckledLine::new(0.5 * 5.44 / h, columns / h).unwrap();
+        line.centroid_deviation()
+    };
+    // Pixels of the height 0.6 h take as much of both to half a per cent.
+    assert_relative_eq!(ratio, law(4.0) / law(1.0), max_relative = 0.02);
+    assert!(ratio > 0.5 && ratio < 0.8, "{ratio}");
+}
+
+#[test]
+fn rounding_without_noise_to_dither_it_does_not_average_over_frames() {
+    let quiet = |frames| {
+        budget_of(|d| {
+            d.sensor.dark_noise = 0.01;
+            d.sensor.dark_current = 0.0;
+            d.average.frames = frames;
+        })
+    };
+    let quantisation = |frames| quiet(frames).contribution(UncertaintySource::Quantisation);
+    assert_relative_eq!(quantisation(100), quantisation(1), max_relative = 1e-12);
+}
+
+#[test]
+fn the_bias_of_a_parabola_is_that_of_its_three_pixels() {
+    let setup = setup_of(|d| d.detector.method = LineMethod::Parabola);
+    let scale = 8.0_f64.sqrt() / setup.line().width;
+    let pixel = |y: f64, centre: f64| {
+        libm::erf(scale * (y + 0.5 - centre)) - libm::erf(scale * (y - 0.5 - centre))
+    };
+    let squares = (0..1000).map(|i| {
+        let centre = (f64::from(i) + 0.5) / 1000.0 - 0.5;
+        let [left, middle, right] = [-1.0, 0.0, 1.0].map(|y| pixel(y, centre));
+        let vertex = 0.5 * (right - left) / (2.0 * middle - left - right);
+        (vertex - centre).powi(2)
+    });
+    let expected = (squares.sum::<f64>() / 1000.0).sqrt();
+    let found = place(
+        &Budget::new(&setup).unwrap(),
+        UncertaintySource::DetectorBias,
+    );
+    // A smooth periodic error is averaged exactly by 32 places; images are f32.
+    assert_relative_eq!(found, expected, max_relative = 2e-3);
+}
+
+#[test]
+fn a_budget_adds_up() {
+    let budget = budget_of(|_| ());
+    let shares: f64 = budget.terms().iter().map(|term| budget.share(term)).sum();
+    assert_relative_eq!(shares, 1.0, max_relative = 1e-12);
+    let squares = UncertaintySource::ALL.map(|source| budget.contribution(source).powi(2));
+    let combined = squares.iter().sum::<f64>().sqrt();
+    assert_relative_eq!(budget.combined(), combined, max_relative = 1e-12);
+    assert_eq!(
+        budget.dominant().source,
+        UncertaintySource::Speckle,
+        "{budget:?}"
+    );
+    // All terms are known, so k is that of a normal distribution.
+    assert_relative_eq!(budget.expanded(), 1.959_964 * combined, max_relative = 1e-6);
+    let setup = setup_of(|_| ());
+    let per_pixel = setup.line().height_per_pixel;
+    let shot = place(&budget, UncertaintySource::ShotNoise) * per_pixel;
+    let contribution = budget.contribution(UncertaintySource::ShotNoise);
+    assert_relative_eq!(contribution, shot, max_relative = 1e-12);
+}
+
+#[test]
+fn closed_forms_stand_beside_the_budget() {
+    let (setup, budget) = (setup_of(|_| ()), budget_of(|_| ()));
+    // sin u = D/2L = 1/192 and sin θ = 1/2.
+    let dorsch = 650e-9 / (2.0 * PI / 192.0 * 0.5);
+    assert_relative_eq!(budget.dorsch(), dorsch, max_relative = 1e-12);
+    // The line law at 4.56 pixels of full width on speckle of 1.644 pixels, as high as a pixel.
+    let h = setup.line().speckle_size[1];
+    let wide =
+        tem00_statistics::line_centroid_deviation(0.5 * setup.line().line_width / h, 1.0 / h);
+    let law = wide * h * setup.line().height_per_pixel;
+    // Waves are within 1 % of the limit of wide lines at w = 1.4 h.
+    assert_relative_eq!(budget.line_law(), law, max_relative = 0.01);
+}
+
+#[test]
+fn the_uncertainty_grows_out_of_focus() {
+    let setup = setup_of(|_| ());
+    let far = setup.depth_of_field().low;
+    let (near, far) = (
+        Budget::new(&setup).unwrap(),
+        Budget::at(&setup, far).unwrap(),
+    );
+    assert!(far.combined() > 1.1 * near.combined(), "{far:?}");
+}
+
+fn simulated(setup: &Setup, trials: u32) -> Simulation {
+    let options = SimulationOptions { trials, seed: 7 };
+    simulate(setup, options, |_| (), &AtomicBool::new(false)).unwrap()
+}
+
+#[test]
+fn trials_agree_with_first_order_term_by_term() {
+    let setup = setup_of(|d| (d.average.columns, d.average.frames) = (2, 2));
+    let (budget, trials) = (Budget::new(&setup).unwrap(), simulated(&setup, 40));
+    for source in [
+        UncertaintySource::ShotNoise,
+        UncertaintySource::DarkNoise,
+        UncertaintySource::Quantisation,
+        UncertaintySource::Prnu,
+        UncertaintySource::Dsnu,
+    ] {
+        let (first, found) = (budget.contribution(source), trials.term(source).unwrap());
+        // Four standard errors of 40 · 64 independent places, and 1 % for what is not first order.
+        let apart = (found.uncertainty - first).abs();
+        let allowed = 4.0 * found.standard_error + 0.01 * first;
+        assert!(apart < allowed, "{source}: {found:?}, {first:e}");
+        // 1/√(2n), to a third.
+        let error = found.standard_error / found.uncertainty * 5120.0_f64.sqrt();
+        assert!((0.66..1.5).contains(&error), "{source}: {error}");
+    }
+    let speckle = trials.term(UncertaintySource::Speckle).unwrap();
+    let ratio = speckle.uncertainty / budget.contribution(UncertaintySource::Speckle);
+    let chance = 4.0 * speckle.standard_error / speckle.uncertainty;
+    // A centre of gravity of a line of 1.7 speckles scatters up to 7 % less than first order says.
+    assert!(
+        ratio > 0.93 - chance && ratio < 1.0 + chance,
+        "{ratio} ± {chance}"
+    );
+    assert!(
+        trials.term(UncertaintySource::Calibration).is_none(),
+        "nothing to simulate"
+    );
+}
+
+#[test]
+fn trials_of_everything_at_once_are_the_sum_of_their_terms() {
+    // Depolarised light of eight patterns, and so little of it that all terms count.
+    let setup = setup_of(|d| {
+        (d.surface.patterns, d.surface.polarisation) = (8, 0.0);
+        d.laser.power *= 0.05;
+        d.sensor.prnu = 0.05;
+        d.detector.method = LineMethod::GaussianFit;
+        d.detector.window = 15;
+    });
+    let trials = simulated(&setup, 40);
+    let terms = UncertaintySource::ALL
+        .iter()
+        .filter_map(|source| trials.term(*source));
+    let sum = terms
+        .map(|term| term.uncertainty.powi(2))
+        .sum::<f64>()
+        .sqrt();
+    let total = trials.total();
+    // Four standard errors of both, and 3 %: noise on top of speckle is not first order either.
+    let allowed = 4.0 * 2.0_f64.sqrt() * total.standard_error + 0.03 * sum;
+    assert!(
+        (total.uncertainty - sum).abs() < allowed,
+        "{total:?}, {sum:e}"
+    );
+    assert!(trials.invalid() < 0.01, "{}", trials.invalid());
+    let first = Budget::new(&setup).unwrap();
+    let apart = (total.uncertainty / first.combined() - 1.0).abs();
+    assert!(apart < 0.1, "{total:?}, {first:?}");
+}
+
+#[test]
+fn trials_of_saturated_setups_tell_how_many_columns_are_lost() {
+    let setup = setup_of(|d| d.laser.power *= 5.0);
+    assert_eq!(
+        setup.light_level(),
+        crate::LightLevel::Saturated,
+        "{}",
+        setup.saturation()
+    );
+    let trials = simulated(&setup, 10);
+    assert!(trials.invalid() > 0.5, "{}", trials.invalid());
+}
+
+#[test]
+fn trials_give_the_same_bits_for_any_number_of_threads() {
+    let setup = setup_of(|d| (d.average.frames, d.average.independent_speckle) = (2, true));
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap().install(|| simulated(&setup, 10))
+    };
+    assert_eq!(on(1), on(3), "one thread and three");
+}
+
+#[test]
+fn trials_report_progress_and_can_be_cancelled() {
+    let setup = setup_of(|_| ());
+    let most = AtomicU64::new(0);
+    let cancel = AtomicBool::new(false);
+    let options = SimulationOptions {
+        trials: 10,
+        seed: 1,
+    };
+    let progress = |done| {
+        most.fetch_max(done, Ordering::Relaxed);
+    };
+    simulate(&setup, options, progress, &cancel).unwrap();
+    assert_eq!(most.load(Ordering::Relaxed), 10, "all trials are reported");
+    cancel.store(true, Ordering::Relaxed);
+    let error = simulate(&setup, options, |_| (), &cancel).unwrap_err();
+    assert_eq!(error, TriangulationError::Cancelled, "{error}");
+    let few = SimulationOptions { trials: 9, seed: 1 };
+    let error = simulate(&setup, few, |_| (), &AtomicBool::new(false)).unwrap_err();
+    assert!(error.to_string().contains("trials"), "{error}");
+}
+
+#[test]
+fn a_line_that_is_not_found_has_no_budget() {
+    let dark = setup_of(|d| {
+        d.laser.power = 1e-9;
+        d.detector.least_peak = 10.0;
+    });
+    assert_eq!(
+        dark.light_level(),
+        crate::LightLevel::Dark,
+        "{}",
+        dark.saturation()
+    );
+    assert_eq!(Budget::new(&dark), None, "no line");
+    let options = SimulationOptions::default();
+    let error = simulate(&dark, options, |_| (), &AtomicBool::new(false)).unwrap_err();
+    assert!(error.to_string().contains("lines"), "{error}");
+    assert_eq!(
+        Budget::at(&setup_of(|_| ()), 1e3),
+        None,
+        "behind the camera"
+    );
+}

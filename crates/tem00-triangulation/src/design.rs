@@ -1,0 +1,236 @@
+//! The search for the best set-up: which lens, angle, line and exposure give the least uncertainty.
+
+mod constraint;
+mod figures;
+mod front;
+mod outcome;
+mod parameter;
+mod sensitivity;
+mod sweep;
+#[cfg(test)]
+mod tests;
+
+use core::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+pub use self::{
+    constraint::{Constraint, DesignFigure},
+    figures::DesignFigures,
+    front::pareto_front,
+    outcome::{Candidate, DesignOutcome, Exclusion},
+    parameter::DesignParameter,
+    sensitivity::{Neighbours, neighbours},
+    sweep::{Spacing, Sweep},
+};
+use crate::{SetupDescription, TriangulationError};
+
+/// What a search makes as small as possible.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Objective {
+    /// The combined standard uncertainty of a height.
+    #[default]
+    Uncertainty,
+    /// The expanded uncertainty of a height.
+    ExpandedUncertainty,
+}
+
+impl Objective {
+    /// Returns the figure that is made small.
+    pub const fn figure(self) -> DesignFigure {
+        match self {
+            Self::Uncertainty => DesignFigure::Uncertainty,
+            Self::ExpandedUncertainty => DesignFigure::ExpandedUncertainty,
+        }
+    }
+}
+
+/// What a search is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignQuestion {
+    /// The set-up to begin with: what is not varied stays as it is here.
+    pub base: SetupDescription,
+    /// What is varied. The last one varies fastest.
+    pub sweeps: Vec<Sweep>,
+    /// What a set-up must keep.
+    pub constraints: Vec<Constraint>,
+    /// What is made small.
+    pub objective: Objective,
+    /// The most set-ups that may be tried.
+    pub most_setups: usize,
+}
+
+/// A search among all combinations of the values of some parameters.
+///
+/// # What pulls which way
+///
+/// The pupil decides between depth of field and noise. With the f-number F the speckle size
+/// `h = λ F (1 + m)` grows, and the noise of a line that is much wider than a speckle with it:
+///
+/// ```text
+/// speckle   σ = √(w ℓ / (8√π)) / (m sin θ)   ∝ √F for rows finer than a speckle (ℓ = 32 h / 3π²),
+///                                            ∝  F for rows that hold many (ℓ = 4 h² / (π p))
+/// shot      σ = (w / 2) / √N / (m sin θ)     ∝  F, the light falls as 1 / F²
+/// depth of field, from D |Δz| = f |Δz| / F   ∝  F
+/// ```
+///
+/// so that a smaller pupil buys depth with noise, by speckle and by shot noise alike.
+///
+/// # Validity
+///
+/// Uncertainties are those of the first-order budget on the reference plane; within the depth of field
+/// they grow by the widening of line and image there, √2 at most each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignSearch {
+    question: DesignQuestion,
+    count: usize,
+}
+
+impl DesignSearch {
+    /// The most set-ups that any search may try.
+    pub const MOST_SETUPS: usize = 1_000_000;
+
+    /// Creates a search.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if nothing is varied, if something is varied twice, if a bound is not positive
+    /// and finite, or if there are more combinations than are allowed.
+    pub fn new(question: DesignQuestion) -> Result<Self, TriangulationError> {
+        let DesignQuestion {
+            sweeps,
+            constraints,
+            most_setups,
+            ..
+        } = &question;
+        check_sweeps(sweeps)?;
+        for constraint in constraints {
+            if !(constraint.bound > 0.0 && constraint.bound.is_finite()) {
+                return Err(TriangulationError::OutOfRange {
+                    parameter: constraint.figure.name(),
+                    value: constraint.bound,
+                    allowed: "a bound that is positive and finite",
+                });
+            }
+        }
+        let most = (*most_setups).min(Self::MOST_SETUPS);
+        let product = |count: usize, sweep: &Sweep| count.checked_mul(sweep.values().len());
+        let count = sweeps.iter().try_fold(1, product);
+        match count.filter(|&count| count <= most) {
+            Some(count) => Ok(Self { question, count }),
+            None => Err(too_many(sweeps)),
+        }
+    }
+
+    /// Returns what the search was created from.
+    pub const fn question(&self) -> &DesignQuestion {
+        &self.question
+    }
+
+    /// Returns the number of combinations.
+    pub const fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Returns the set-up of a combination, whether or not it is possible; they are counted from 0,
+    /// the last parameter fastest.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `index < self.count()`.
+    pub fn description(&self, index: usize) -> SetupDescription {
+        assert!(index < self.count, "{index} < {}", self.count);
+        let mut rest = index;
+        let mut description = self.question.base;
+        for sweep in self.question.sweeps.iter().rev() {
+            let values = sweep.values();
+            description = sweep
+                .parameter()
+                .set(&description, values[rest % values.len()]);
+            rest /= values.len();
+        }
+        description
+    }
+
+    /// Tries all combinations, on all threads of the current pool.
+    ///
+    /// `progress` is told, from any thread, the number of set-ups done since its last call. The outcome
+    /// is the same, bit by bit, for any number of threads.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`TriangulationError::Cancelled`] if `cancel` was set before the end. A set-up that is
+    /// not possible is part of the outcome.
+    pub fn run(
+        &self,
+        progress: impl Fn(u64) + Sync,
+        cancel: &AtomicBool,
+    ) -> Result<DesignOutcome, TriangulationError> {
+        let attempt = |index: usize| {
+            if cancel.load(Ordering::Relaxed) {
+                return Err(TriangulationError::Cancelled);
+            }
+            let candidate = self.candidate(index);
+            progress(1);
+            Ok(candidate)
+        };
+        let candidates: Result<Vec<_>, _> = (0..self.count).into_par_iter().map(attempt).collect();
+        Ok(DesignOutcome::new(&self.question, candidates?))
+    }
+
+    fn candidate(&self, index: usize) -> Candidate {
+        let description = self.description(index);
+        let figures = DesignFigures::of(&description);
+        let broken = figures.as_ref().map_or_else(
+            |_| Vec::new(),
+            |figures| {
+                let constraints = self.question.constraints.iter().copied();
+                constraints
+                    .filter(|constraint| !constraint.is_kept(figures))
+                    .collect()
+            },
+        );
+        Candidate {
+            index,
+            description,
+            figures,
+            broken,
+        }
+    }
+}
+
+fn check_sweeps(sweeps: &[Sweep]) -> Result<(), TriangulationError> {
+    if sweeps.is_empty() {
+        return Err(TriangulationError::TooFew {
+            what: "parameters that are varied",
+            got: 0,
+            needed: 1,
+        });
+    }
+    for (place, sweep) in sweeps.iter().enumerate() {
+        let parameter = sweep.parameter();
+        if sweeps[..place]
+            .iter()
+            .any(|other| other.parameter() == parameter)
+        {
+            return Err(TriangulationError::OutOfRange {
+                parameter: parameter.name(),
+                value: 2.0,
+                allowed: "varied once",
+            });
+        }
+    }
+    Ok(())
+}
+
+#[expect(clippy::cast_precision_loss, reason = "it is shown, not counted with")]
+fn too_many(sweeps: &[Sweep]) -> TriangulationError {
+    TriangulationError::OutOfRange {
+        parameter: "most_setups",
+        value: sweeps
+            .iter()
+            .map(|sweep| sweep.values().len() as f64)
+            .product(),
+        allowed: "at least the number of combinations, and at most 1000000; try fewer steps",
+    }
+}

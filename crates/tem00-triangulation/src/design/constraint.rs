@@ -1,0 +1,120 @@
+use core::fmt;
+
+use tem00_tracer::document::{DURATION, Dimension, LENGTH, NUMBER, POWER};
+
+use super::DesignFigures;
+
+/// A figure of merit of a set-up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum DesignFigure {
+    /// The combined standard uncertainty of a height on the reference plane, in metres.
+    Uncertainty,
+    /// The expanded uncertainty of a height on the reference plane, in metres.
+    ExpandedUncertainty,
+    /// The length of the range of heights that can be measured, in metres.
+    Range,
+    /// The depth of field of camera and laser line together, in metres of height.
+    DepthOfField,
+    /// The width of the field, in metres.
+    FieldWidth,
+    /// The power in the line, in watts.
+    Power,
+    /// The exposure time, in seconds.
+    Exposure,
+    /// The mean of the brightest pixel as a part of what the sensor can hold.
+    Saturation,
+}
+
+impl DesignFigure {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Uncertainty,
+        Self::ExpandedUncertainty,
+        Self::Range,
+        Self::DepthOfField,
+        Self::FieldWidth,
+        Self::Power,
+        Self::Exposure,
+        Self::Saturation,
+    ];
+
+    /// Returns the name, as set-up files have it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Uncertainty => "uncertainty",
+            Self::ExpandedUncertainty => "expanded_uncertainty",
+            Self::Range => "range",
+            Self::DepthOfField => "depth_of_field",
+            Self::FieldWidth => "field_width",
+            Self::Power => "power",
+            Self::Exposure => "exposure",
+            Self::Saturation => "saturation",
+        }
+    }
+
+    /// Returns the value of a set-up, in SI units.
+    pub const fn of(self, figures: &DesignFigures) -> f64 {
+        match self {
+            Self::Uncertainty => figures.uncertainty,
+            Self::ExpandedUncertainty => figures.expanded_uncertainty,
+            Self::Range => figures.range,
+            Self::DepthOfField => figures.depth_of_field,
+            Self::FieldWidth => figures.field_width,
+            Self::Power => figures.power,
+            Self::Exposure => figures.exposure,
+            Self::Saturation => figures.saturation,
+        }
+    }
+
+    /// Returns whether more of it is better: such a figure is bounded from below, others from above.
+    pub const fn is_gain(self) -> bool {
+        matches!(self, Self::Range | Self::DepthOfField | Self::FieldWidth)
+    }
+
+    /// Returns what kind of quantity it is.
+    pub(crate) const fn dimension(self) -> &'static Dimension {
+        match self {
+            Self::Power => &POWER,
+            Self::Exposure => &DURATION,
+            Self::Saturation => &NUMBER,
+            _ => &LENGTH,
+        }
+    }
+}
+
+impl fmt::Display for DesignFigure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A bound that a set-up must keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constraint {
+    /// What is bounded.
+    pub figure: DesignFigure,
+    /// The least value of a [gain](DesignFigure::is_gain), the greatest of any other figure, in SI
+    /// units.
+    pub bound: f64,
+}
+
+impl Constraint {
+    /// Returns whether the bound is kept. To reach it is to keep it.
+    pub fn is_kept(&self, figures: &DesignFigures) -> bool {
+        let value = self.figure.of(figures);
+        if self.figure.is_gain() {
+            value >= self.bound
+        } else {
+            value <= self.bound
+        }
+    }
+
+    /// Returns by which part of the bound it is missed; 0 if it is kept.
+    pub fn excess(&self, figures: &DesignFigures) -> f64 {
+        if self.is_kept(figures) {
+            return 0.0;
+        }
+        (self.figure.of(figures) / self.bound - 1.0).abs()
+    }
+}

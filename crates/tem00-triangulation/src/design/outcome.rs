@@ -1,0 +1,142 @@
+use super::{Constraint, DesignFigure, DesignFigures, DesignQuestion, pareto_front};
+use crate::{SetupDescription, TriangulationError};
+
+/// A set-up that was tried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// The number of the combination, counted from 0.
+    pub index: usize,
+    /// The set-up.
+    pub description: SetupDescription,
+    /// What it comes to, or why it is not possible.
+    pub figures: Result<DesignFigures, TriangulationError>,
+    /// The constraints that it breaks; none if it is not possible.
+    pub broken: Vec<Constraint>,
+}
+
+impl Candidate {
+    /// Returns the figures if the set-up is possible and keeps every constraint.
+    pub fn allowed(&self) -> Option<&DesignFigures> {
+        self.possible().filter(|_| self.broken.is_empty())
+    }
+
+    /// Returns the figures if the set-up is possible.
+    pub fn possible(&self) -> Option<&DesignFigures> {
+        self.figures.as_ref().ok()
+    }
+}
+
+/// What a constraint excludes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exclusion {
+    /// The constraint.
+    pub constraint: Constraint,
+    /// How many of the possible set-ups break it.
+    pub excluded: usize,
+    /// How many of them break no other one: without it they would be allowed.
+    pub alone: usize,
+}
+
+/// All set-ups that a search tried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignOutcome {
+    candidates: Vec<Candidate>,
+    constraints: Vec<Constraint>,
+    objective: DesignFigure,
+}
+
+impl DesignOutcome {
+    pub(super) fn new(question: &DesignQuestion, candidates: Vec<Candidate>) -> Self {
+        Self {
+            candidates,
+            constraints: question.constraints.clone(),
+            objective: question.objective.figure(),
+        }
+    }
+
+    /// Returns all set-ups, in the order of their numbers.
+    pub fn candidates(&self) -> &[Candidate] {
+        &self.candidates
+    }
+
+    /// Returns the number of set-ups that are possible, and of those that keep every constraint.
+    pub fn counts(&self) -> (usize, usize) {
+        let possible = self.candidates.iter().filter_map(Candidate::possible);
+        let allowed = self.candidates.iter().filter_map(Candidate::allowed);
+        (possible.count(), allowed.count())
+    }
+
+    /// Returns the best set-ups that keep every constraint, at most `count`, the best first; of equals
+    /// the one that was tried first.
+    pub fn best(&self, count: usize) -> Vec<&Candidate> {
+        let allowed = self.candidates.iter();
+        let mut allowed: Vec<_> = allowed
+            .filter_map(|candidate| Some((candidate, self.objective.of(candidate.allowed()?))))
+            .collect();
+        allowed.sort_by(|a, b| a.1.total_cmp(&b.1));
+        allowed.truncate(count);
+        allowed
+            .into_iter()
+            .map(|(candidate, _)| candidate)
+            .collect()
+    }
+
+    /// Returns the set-ups that no other betters in both the objective and a figure: to have more of
+    /// one costs some of the other. They are taken from those that keep every constraint, or, if there
+    /// is none, from all that are possible, and come in the order of the objective.
+    pub fn front(&self, against: DesignFigure) -> Vec<&Candidate> {
+        let (_, allowed) = self.counts();
+        let entered = |candidate: &&Candidate| match allowed {
+            0 => candidate.possible().is_some(),
+            _ => candidate.allowed().is_some(),
+        };
+        let entered: Vec<_> = self.candidates.iter().filter(entered).collect();
+        let sign = if against.is_gain() { 1.0 } else { -1.0 };
+        let point =
+            |figures: &DesignFigures| [self.objective.of(figures), sign * against.of(figures)];
+        let points: Vec<_> = entered
+            .iter()
+            .filter_map(|candidate| candidate.possible().map(point))
+            .collect();
+        let front = pareto_front(&points);
+        front.into_iter().map(|index| entered[index]).collect()
+    }
+
+    /// Returns what each constraint excludes, the one that excludes most first.
+    pub fn exclusions(&self) -> Vec<Exclusion> {
+        let breaking = |constraint: &Constraint| {
+            let candidates = self.candidates.iter();
+            candidates
+                .filter(|candidate| candidate.broken.contains(constraint))
+                .map(|candidate| candidate.broken.len())
+                .collect::<Vec<_>>()
+        };
+        let exclusion = |&constraint: &Constraint| {
+            let broken = breaking(&constraint);
+            Exclusion {
+                constraint,
+                excluded: broken.len(),
+                alone: broken.iter().filter(|&&count| count == 1).count(),
+            }
+        };
+        let mut exclusions: Vec<_> = self.constraints.iter().map(exclusion).collect();
+        exclusions.sort_by_key(|exclusion| core::cmp::Reverse(exclusion.excluded));
+        exclusions
+    }
+
+    /// Returns the possible set-up that misses the constraints by least, as the sum of the parts of
+    /// each bound by which it is missed; of equals the better, then the one that was tried first.
+    pub fn nearest(&self) -> Option<&Candidate> {
+        let missed = |figures: &DesignFigures| -> f64 {
+            let excess = |constraint: &Constraint| constraint.excess(figures);
+            self.constraints.iter().map(excess).sum()
+        };
+        let keyed = self.candidates.iter().filter_map(|candidate| {
+            let figures = candidate.possible()?;
+            Some((missed(figures), self.objective.of(figures), candidate))
+        });
+        keyed
+            .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))
+            .map(|(.., candidate)| candidate)
+    }
+}

@@ -1,0 +1,30 @@
+use super::{DesignFigures, DesignParameter};
+use crate::SetupDescription;
+
+/// What becomes of a set-up when one of its parameters is off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Neighbours {
+    /// The parameter.
+    pub parameter: DesignParameter,
+    /// The figures with less of it, or `None` if that is not possible.
+    pub less: Option<DesignFigures>,
+    /// The figures with more of it, or `None` if that is not possible.
+    pub more: Option<DesignFigures>,
+}
+
+/// Returns what becomes of a set-up when each of its parameters, one at a time, is smaller and greater
+/// by a part of itself: 0.1 for ±10 %.
+pub fn neighbours(description: &SetupDescription, part: f64) -> Vec<Neighbours> {
+    let changed = |parameter: DesignParameter, factor: f64| {
+        let value = factor * parameter.of(description);
+        DesignFigures::of(&parameter.set(description, value)).ok()
+    };
+    DesignParameter::ALL
+        .into_iter()
+        .map(|parameter| Neighbours {
+            parameter,
+            less: changed(parameter, 1.0 - part),
+            more: changed(parameter, 1.0 + part),
+        })
+        .collect()
+}

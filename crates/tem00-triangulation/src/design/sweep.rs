@@ -1,0 +1,149 @@
+use super::DesignParameter;
+use crate::TriangulationError;
+
+/// The values that a search tries of one parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    parameter: DesignParameter,
+    values: Vec<f64>,
+}
+
+/// How the values of a sweep are spaced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spacing {
+    /// Equal differences.
+    #[default]
+    Linear,
+    /// Equal ratios.
+    Logarithmic,
+}
+
+impl Sweep {
+    /// Creates a sweep over given values, in SI units, in the order in which they are tried.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if there is no value, or one is not positive and finite.
+    pub fn list(parameter: DesignParameter, values: Vec<f64>) -> Result<Self, TriangulationError> {
+        if values.is_empty() {
+            return Err(TriangulationError::TooFew {
+                what: "values of a parameter that is varied",
+                got: 0,
+                needed: 1,
+            });
+        }
+        for &value in &values {
+            check(parameter.name(), value)?;
+        }
+        Ok(Self { parameter, values })
+    }
+
+    /// Creates a sweep over `steps` values from one end to the other, both of them among the values.
+    ///
+    /// ```text
+    /// linear        x_i = a + (b − a) i / (n − 1)
+    /// logarithmic   x_i = a (b / a)^(i / (n − 1))
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if an end is not positive and finite, or if there are less than two steps.
+    pub fn between(
+        parameter: DesignParameter,
+        (from, to): (f64, f64),
+        steps: u32,
+        spacing: Spacing,
+    ) -> Result<Self, TriangulationError> {
+        check(parameter.name(), from)?;
+        check(parameter.name(), to)?;
+        if steps < 2 {
+            return Err(TriangulationError::OutOfRange {
+                parameter: "steps",
+                value: f64::from(steps),
+                allowed: "at least 2, the two ends",
+            });
+        }
+        let last = f64::from(steps - 1);
+        let value = |step: u32| match (step, spacing) {
+            (0, _) => from,
+            (step, _) if step == steps - 1 => to,
+            (step, Spacing::Linear) => from + (to - from) * f64::from(step) / last,
+            (step, Spacing::Logarithmic) => {
+                from * libm::exp(libm::log(to / from) * f64::from(step) / last)
+            }
+        };
+        Self::list(parameter, (0..steps).map(value).collect())
+    }
+
+    /// Returns what is varied.
+    pub const fn parameter(&self) -> DesignParameter {
+        self.parameter
+    }
+
+    /// Returns the values, in SI units.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+}
+
+fn check(parameter: &'static str, value: f64) -> Result<(), TriangulationError> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    Err(TriangulationError::OutOfRange {
+        parameter,
+        value,
+        allowed: "positive and finite",
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+
+    #[test]
+    fn ends_are_exact_and_steps_even() {
+        let sweep = |spacing| {
+            Sweep::between(DesignParameter::FNumber, (2.8, 22.4), 4, spacing)
+                .unwrap()
+                .values
+        };
+        let linear = sweep(Spacing::Linear);
+        let log = sweep(Spacing::Logarithmic);
+        for values in [&linear, &log] {
+            assert_eq!((values[0], values[3]), (2.8, 22.4), "{values:?}");
+        }
+        // A few roundings.
+        let tolerance = 4.0 * f64::EPSILON;
+        for pair in linear.windows(2) {
+            assert_relative_eq!(
+                pair[1] - pair[0],
+                19.6 / 3.0,
+                max_relative = 4.0 * tolerance
+            );
+        }
+        for pair in log.windows(2) {
+            assert_relative_eq!(pair[1] / pair[0], 2.0, max_relative = tolerance);
+        }
+    }
+
+    #[test]
+    fn values_that_are_no_sizes_are_refused() {
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let error = Sweep::list(DesignParameter::Angle, vec![0.5, bad]).unwrap_err();
+            assert!(error.to_string().contains("angle"), "{error}");
+        }
+        let none = Sweep::list(DesignParameter::Angle, Vec::new());
+        assert!(
+            matches!(none, Err(TriangulationError::TooFew { .. })),
+            "{none:?}"
+        );
+        let one = Sweep::between(DesignParameter::Angle, (0.1, 0.2), 1, Spacing::Linear);
+        assert!(
+            one.unwrap_err().to_string().contains("steps"),
+            "one step has one end"
+        );
+    }
+}

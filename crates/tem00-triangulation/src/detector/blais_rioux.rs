@@ -1,0 +1,28 @@
+use super::{FilterOrder, estimate::Profile};
+
+/// The zero of the filtered derivative nearest to the greatest pixel, on the side to which it points.
+pub(super) fn zero(profile: &Profile<'_>, order: FilterOrder) -> Option<f64> {
+    let filtered = |at: isize| filter(profile, at, order);
+    let window = &profile.line.window;
+    let greatest = profile.line.greatest;
+    // The derivative is negative where the line lies further down, for the filter is its negative.
+    let crossing = |i: &isize| filtered(*i) <= 0.0 && filtered(*i + 1) > 0.0;
+    let found = if filtered(0) <= 0.0 {
+        (0..(window.end - greatest).cast_signed()).find(crossing)
+    } else {
+        let first = -(greatest - window.start).cast_signed() - 1;
+        (first..0).rev().find(crossing)
+    };
+    found.map(|i| {
+        let (before, after) = (filtered(i), filtered(i + 1));
+        i as f64 + before / (before - after)
+    })
+}
+
+/// What lies above less what lies below a pixel, at a distance from the greatest one.
+fn filter(profile: &Profile<'_>, at: isize, order: FilterOrder) -> f64 {
+    let half = (order.taps() / 2).cast_signed();
+    (1..=half)
+        .map(|tap| profile.at(at - tap) - profile.at(at + tap))
+        .sum()
+}

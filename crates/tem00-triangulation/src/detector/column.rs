@@ -1,0 +1,240 @@
+use core::ops::Range;
+
+use super::DetectorSettings;
+
+/// A column of an image, with the lines that stand out of it.
+pub(super) struct Column {
+    /// The grey values above the background; what is no finite number counts as background.
+    pub(super) above: Vec<f64>,
+    /// The grey value of the background.
+    pub(super) background: f64,
+    /// The pixels that the background was taken from.
+    pub(super) background_pixels: Vec<usize>,
+    /// The lines from the top.
+    pub(super) lines: Vec<Sighting>,
+}
+
+/// A line that stands out of a column, before its place is estimated.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Sighting {
+    /// The pixel in the middle of the window: the maximum of the smoothed column.
+    pub(super) centre: usize,
+    /// The pixels up to where the neighbouring lines begin.
+    pub(super) zone: Range<usize>,
+    /// The pixels of the window, in the zone.
+    pub(super) window: Range<usize>,
+    /// The greatest pixel of the window.
+    pub(super) greatest: usize,
+}
+
+impl Sighting {
+    /// Returns whether the window reaches beyond a column of `length` pixels.
+    pub(super) const fn is_cut(&self, half: usize, length: usize) -> bool {
+        self.centre < half || self.centre + half >= length
+    }
+
+    /// Returns whether the window was cut where another line begins.
+    pub(super) fn is_crowded(&self, half: usize, length: usize) -> bool {
+        self.window != uncut(self.centre, half, length)
+    }
+}
+
+impl Column {
+    /// The fewest pixels whose median is a background.
+    const FEWEST_BACKGROUND: usize = 8;
+
+    /// Finds the lines of a column.
+    ///
+    /// The background is the median of what lies outside of all windows. If that is fewer than
+    /// [`FEWEST_BACKGROUND`](Self::FEWEST_BACKGROUND) pixels, it is the lowest decile of the column.
+    pub(super) fn of(column: &[f32], settings: &DetectorSettings) -> Self {
+        let is_known = |i: usize| column[i].is_finite();
+        let values = finite(column);
+        let half = settings.window / 2;
+        let smooth = Smoothed::of(&values, settings.window);
+        let centres = smooth.maxima(half + 1, settings.most_lines);
+        let (background, background_pixels) = background(&values, is_known, &centres, half);
+        let above = |i: usize| {
+            if is_known(i) {
+                values[i] - background
+            } else {
+                0.0
+            }
+        };
+        let above: Vec<f64> = (0..values.len()).map(above).collect();
+        let zones = zones(&smooth.values, &centres);
+        let sightings = centres.iter().zip(zones).map(|(&centre, zone)| {
+            let window = uncut(centre, half, above.len());
+            let window = window.start.max(zone.start)..window.end.min(zone.end);
+            let greatest = greatest(&above, window.clone(), centre);
+            Sighting {
+                centre,
+                zone,
+                window,
+                greatest,
+            }
+        });
+        let stands_out = |line: &Sighting| {
+            above[line.greatest] > 0.0 && above[line.greatest] >= settings.least_peak
+        };
+        Self {
+            lines: sightings.filter(stands_out).collect(),
+            above,
+            background,
+            background_pixels,
+        }
+    }
+}
+
+/// Returns the values, the least of them where one is no finite number.
+fn finite(column: &[f32]) -> Vec<f64> {
+    let finite = || column.iter().copied().filter(|value| value.is_finite());
+    let least = finite().reduce(f32::min).unwrap_or(0.0);
+    let known = |&value: &f32| f64::from(if value.is_finite() { value } else { least });
+    column.iter().map(known).collect()
+}
+
+/// The window about a pixel, as far as there are pixels.
+fn uncut(centre: usize, half: usize, length: usize) -> Range<usize> {
+    centre.saturating_sub(half)..(centre + half + 1).min(length)
+}
+
+/// The greatest pixel of a window; of equal ones that next to its middle.
+fn greatest(above: &[f64], window: Range<usize>, centre: usize) -> usize {
+    window
+        .max_by(|&a, &b| {
+            let by_value = above[a].total_cmp(&above[b]);
+            by_value.then(b.abs_diff(centre).cmp(&a.abs_diff(centre)))
+        })
+        .unwrap_or(centre)
+}
+
+/// The background, and the pixels that it was taken from.
+fn background(
+    values: &[f64],
+    is_known: impl Fn(usize) -> bool,
+    centres: &[usize],
+    half: usize,
+) -> (f64, Vec<usize>) {
+    let mut is_line = vec![false; values.len()];
+    for &centre in centres {
+        is_line[uncut(centre, half, values.len())].fill(true);
+    }
+    let known = (0..values.len()).filter(|&i| is_known(i));
+    let outside: Vec<usize> = known.clone().filter(|&i| !is_line[i]).collect();
+    if outside.len() >= Column::FEWEST_BACKGROUND {
+        let mut values: Vec<f64> = outside.iter().map(|&i| values[i]).collect();
+        return (median(&mut values), outside);
+    }
+    let mut order: Vec<usize> = known.collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    let decile = order.get(order.len() / 10).copied();
+    (
+        decile.map_or(0.0, |i| values[i]),
+        decile.into_iter().collect(),
+    )
+}
+
+/// The pixels that belong to each line: up to the least smoothed value between it and its neighbours, of
+/// equal ones that next to the middle. That one belongs to neither.
+fn zones(smoothed: &[f64], centres: &[usize]) -> Vec<Range<usize>> {
+    let valley = |pair: &[usize]| {
+        let (from, to) = (pair[0], pair[1]);
+        let off_middle = |i: usize| (2 * i).abs_diff(from + to);
+        (from + 1..to)
+            .min_by(|&a, &b| {
+                let by_value = smoothed[a].total_cmp(&smoothed[b]);
+                by_value.then(off_middle(a).cmp(&off_middle(b)))
+            })
+            .unwrap_or(to)
+    };
+    let valleys: Vec<usize> = centres.windows(2).map(valley).collect();
+    let starts = core::iter::once(0).chain(valleys.iter().map(|valley| valley + 1));
+    let ends = valleys.iter().copied().chain([smoothed.len()]);
+    starts.zip(ends).map(|(start, end)| start..end).collect()
+}
+
+/// A column after a triangular filter.
+struct Smoothed {
+    values: Vec<f64>,
+    /// A maximum must be greater than this.
+    least: f64,
+}
+
+impl Smoothed {
+    /// How many standard deviations of the smoothed noise a line must stand out by. Of 10⁵ independent
+    /// pixels of Gaussian noise not one in ten thousand times does.
+    const STAND_OUT: f64 = 6.0;
+    /// The lower quartile of |a − b| for two independent standard normal numbers a and b.
+    const QUARTILE_OF_DIFFERENCES: f64 = 0.450_6;
+
+    /// Smooths over a quarter of the window, twice.
+    ///
+    /// The noise is judged by the quieter of the differences of neighbours, the level by the lower
+    /// quartile: both hold as long as a quarter of the column is background.
+    fn of(raw: &[f64], window: usize) -> Self {
+        let width = (window / 4) | 1;
+        let values = box_mean(&box_mean(raw, width), width);
+        let mut differences: Vec<f64> = raw.windows(2).map(|p| (p[1] - p[0]).abs()).collect();
+        let noise = quartile(&mut differences) / Self::QUARTILE_OF_DIFFERENCES;
+        // The triangle has the weights (m − |j|)/m²; the sum of their squares is (2m² + 1)/(3m³).
+        let m = width as f64;
+        let gain = ((2.0 * m * m + 1.0) / (3.0 * m * m * m)).sqrt();
+        let level = quartile(&mut values.clone());
+        Self {
+            least: level + Self::STAND_OUT * gain * noise,
+            values,
+        }
+    }
+
+    /// The greatest maxima, at least `apart` pixels from each other, from the top.
+    fn maxima(&self, apart: usize, most: usize) -> Vec<usize> {
+        let s = &self.values;
+        let at = |i: usize| s.get(i).copied().unwrap_or(f64::NEG_INFINITY);
+        let is_maximum = |&i: &usize| s[i] > at(i.wrapping_sub(1)) && s[i] >= at(i + 1);
+        let mut order: Vec<usize> = (0..s.len())
+            .filter(|&i| s[i] > self.least)
+            .filter(is_maximum)
+            .collect();
+        order.sort_by(|&a, &b| s[b].total_cmp(&s[a]).then(a.cmp(&b)));
+        let mut taken: Vec<usize> = Vec::new();
+        for i in order {
+            if taken.len() < most && taken.iter().all(|&j| i.abs_diff(j) >= apart) {
+                taken.push(i);
+            }
+        }
+        taken.sort_unstable();
+        taken
+    }
+}
+
+/// The mean over an odd number of pixels about each, of those that there are.
+fn box_mean(values: &[f64], width: usize) -> Vec<f64> {
+    if width == 1 {
+        return values.to_vec();
+    }
+    let mean = |i| {
+        let about = &values[uncut(i, width / 2, values.len())];
+        about.iter().sum::<f64>() / about.len() as f64
+    };
+    (0..values.len()).map(mean).collect()
+}
+
+/// The lower quartile, 0 of nothing.
+fn quartile(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let rank = (values.len() - 1) / 4;
+    *values.select_nth_unstable_by(rank, f64::total_cmp).1
+}
+
+/// The median of at least one value; of an even number the mean of the two in the middle.
+fn median(values: &mut [f64]) -> f64 {
+    let is_odd = !values.len().is_multiple_of(2);
+    let (below, &mut upper, _) = values.select_nth_unstable_by(values.len() / 2, f64::total_cmp);
+    match below.iter().copied().reduce(f64::max) {
+        Some(lower) if !is_odd => lower.midpoint(upper),
+        _ => upper,
+    }
+}

@@ -1,0 +1,206 @@
+use core::fmt;
+
+use crate::TriangulationError;
+
+/// How the place of a line in a column is estimated.
+///
+/// Values are above the background b of the column. What an estimate looks at is the window and nothing
+/// else. "Exact" is said of a Gaussian line without noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum LineMethod {
+    /// The centre of gravity over the window.
+    ///
+    /// ```text
+    /// ŷ = Σ (I_i − b) y_i / Σ (I_i − b)
+    /// ```
+    ///
+    /// Exact but for the light outside of the window. Negative values count as such: cut off, they would
+    /// draw the estimate towards the middle of the window.
+    CentreOfGravity,
+    /// The centre of gravity of what lies above a fraction of the peak, over the window.
+    ///
+    /// ```text
+    /// ŷ = Σ w_i y_i / Σ w_i      w_i = max(0, I_i − b − t P)
+    /// ```
+    ///
+    /// P is the greatest of the values. The threshold is subtracted (Thomas et al., MNRAS 371, 323, 2006):
+    /// a pixel that comes in at the threshold does so without a step.
+    ThresholdedCentreOfGravity {
+        /// The threshold t as a fraction of the peak, from 0 to below 1.
+        threshold: f64,
+    },
+    /// The centre of gravity over a window that is moved onto its result until it stays.
+    ///
+    /// The window holds fractions of the pixels at its ends, so that it can stand anywhere.
+    IteratedCentreOfGravity,
+    /// The vertex of the parabola through the greatest pixel of the window and its neighbours.
+    ///
+    /// ```text
+    /// ŷ = y + (I₊ − I₋) / (2 (2 I₀ − I₋ − I₊))
+    /// ```
+    Parabola,
+    /// The vertex of the parabola through the logarithms of the greatest pixel and its neighbours.
+    ///
+    /// Exact for points. Pixels integrate: at the distance δ of a line from the middle of its pixel the
+    /// estimate is δ (1 − 4 δ²)/(1440 σ⁶) too far out, with σ = w/2 in pixels.
+    LogGaussian,
+    /// Straight flanks of equal slope through the greatest pixel and its neighbours (Naidu & Fisher,
+    /// *A Comparative Analysis of Algorithms for Determining the Peak Position of a Stripe to Sub-Pixel
+    /// Accuracy*, 1991).
+    ///
+    /// ```text
+    /// ŷ = y + (I₊ − I₋) / (2 (I₀ − min(I₋, I₊)))
+    /// ```
+    LinearInterpolation,
+    /// The zero of the derivative by a filter of Blais and Rioux (*Real-time numerical peak detector*,
+    /// Signal Processing 11, 145, 1986), the nearest to the greatest pixel of the window.
+    ///
+    /// ```text
+    /// g(i) = I_{i−m} + … + I_{i−1} − I_{i+1} − … − I_{i+m}      m half the order
+    /// ŷ = y_i + g(i) / (g(i) − g(i+1))                          g(i) ≤ 0 < g(i+1)
+    /// ```
+    BlaisRioux {
+        /// The order of the filter.
+        order: FilterOrder,
+    },
+    /// The Gaussian on a constant background that fits best, by least squares.
+    ///
+    /// The fitted Gaussian is integrated over the pixels, as a sensor without gaps does it. Width, peak
+    /// and background of the point are those of the fit.
+    GaussianFit,
+    /// The ridge by Steger (*An unbiased detector of curvilinear structures*, IEEE PAMI 20, 113, 1998),
+    /// with derivatives of a Gaussian.
+    ///
+    /// In an image it looks along the normal of the ridge and needs the neighbours of the column; in a
+    /// single column it looks along the column. A line of the 1/e² radius w keeps one ridge in its middle
+    /// for σ ≥ w / (2√3) or more.
+    Steger {
+        /// The standard deviation σ of the Gaussian, in pixels.
+        sigma: f64,
+    },
+}
+
+/// The order of a filter of Blais and Rioux.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FilterOrder {
+    /// Two taps.
+    Second,
+    /// Four taps.
+    Fourth,
+    /// Eight taps.
+    Eighth,
+}
+
+impl FilterOrder {
+    /// Returns the number of taps that are not zero: 2, 4 or 8.
+    pub const fn taps(self) -> usize {
+        match self {
+            Self::Second => 2,
+            Self::Fourth => 4,
+            Self::Eighth => 8,
+        }
+    }
+
+    /// Returns the order with as many taps, or `None` if there is none.
+    pub const fn from_taps(taps: usize) -> Option<Self> {
+        match taps {
+            2 => Some(Self::Second),
+            4 => Some(Self::Fourth),
+            8 => Some(Self::Eighth),
+            _ => None,
+        }
+    }
+}
+
+impl LineMethod {
+    /// All methods, with the parameters that they have unless told otherwise: a threshold of 0.2, the
+    /// order 4, a σ of 2 pixels.
+    pub const ALL: [Self; 9] = [
+        Self::CentreOfGravity,
+        Self::ThresholdedCentreOfGravity { threshold: 0.2 },
+        Self::IteratedCentreOfGravity,
+        Self::Parabola,
+        Self::LogGaussian,
+        Self::LinearInterpolation,
+        Self::BlaisRioux {
+            order: FilterOrder::Fourth,
+        },
+        Self::GaussianFit,
+        Self::Steger { sigma: 2.0 },
+    ];
+
+    /// Returns the name in files and arguments: `centre_of_gravity`.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::CentreOfGravity => "centre_of_gravity",
+            Self::ThresholdedCentreOfGravity { .. } => "thresholded_centre_of_gravity",
+            Self::IteratedCentreOfGravity => "iterated_centre_of_gravity",
+            Self::Parabola => "parabola",
+            Self::LogGaussian => "log_gaussian",
+            Self::LinearInterpolation => "linear_interpolation",
+            Self::BlaisRioux { .. } => "blais_rioux",
+            Self::GaussianFit => "gaussian_fit",
+            Self::Steger { .. } => "steger",
+        }
+    }
+
+    /// Returns the method of a [name](Self::name), with the parameters that it has in
+    /// [`ALL`](Self::ALL).
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+
+    /// Returns the fewest pixels of a window that the method can work with.
+    pub fn least_window(&self) -> usize {
+        match self {
+            Self::BlaisRioux { order } => order.taps() + 3,
+            Self::GaussianFit => 7,
+            Self::Steger { sigma } => 2 * kernel_radius(*sigma) + 1,
+            _ => 3,
+        }
+    }
+
+    /// Complains about a parameter that is outside its range.
+    pub(super) fn validate(&self) -> Result<(), TriangulationError> {
+        let (parameter, value, good, allowed) = match *self {
+            Self::ThresholdedCentreOfGravity { threshold } => (
+                "threshold",
+                threshold,
+                (0.0..1.0).contains(&threshold),
+                "from 0 to below 1, a fraction of the peak",
+            ),
+            Self::Steger { sigma } => (
+                "sigma",
+                sigma,
+                (0.5..=100.0).contains(&sigma),
+                "from 0.5 to 100 pixels",
+            ),
+            _ => return Ok(()),
+        };
+        if good {
+            return Ok(());
+        }
+        Err(TriangulationError::OutOfRange {
+            parameter,
+            value,
+            allowed,
+        })
+    }
+}
+
+impl fmt::Display for LineMethod {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The pixels that a Gaussian of Steger's reaches to either side: beyond 4 σ is 6e−5 of it.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a valid σ is from 0.5 to 100 pixels, and any other saturates"
+)]
+pub(super) fn kernel_radius(sigma: f64) -> usize {
+    (4.0 * sigma).ceil().min(400.0) as usize
+}

@@ -1,0 +1,72 @@
+use super::{
+    LineDetector, LinePoint,
+    column::{Column, Sighting},
+    estimate::Profile,
+};
+
+/// The change of a pixel, as a fraction of the peak, over which differences are taken. They err by its
+/// square, and by the rounding of the places divided by it.
+const CHANGE: f64 = 1e-4;
+
+impl LineDetector {
+    /// Returns by how much the place of the line at `point` moves per grey value of each pixel of the
+    /// column, in pixels per grey value: the sensitivities of its uncertainty.
+    ///
+    /// ```text
+    /// δŷ = Σ g_i δI_i      to first order, for noise δI_i of the pixels; Σ g_i = 0
+    /// ```
+    ///
+    /// The window, the pixel that a three-point method looks at and the part of the column that is
+    /// background stay what they are. Pixels of the background count equally, as in a mean: they share
+    /// the negative sum over the window. (Their median scatters 1.25 times as much as a mean.) Methods
+    /// that look at the neighbours of a column take it for one of many that are equal.
+    ///
+    /// `point` is one that [`detect_column`](Self::detect_column) finds in `column`; the line that is
+    /// nearest to it is looked at. A column without lines has no sensitivities: all are zero. So are
+    /// those of a place that could not be estimated.
+    pub fn sensitivities(&self, column: &[f32], point: &LinePoint) -> Vec<f64> {
+        let mut sensitivities = vec![0.0; column.len()];
+        let mut found = Column::of(column, &self.settings);
+        let distance = |line: &Sighting| (line.centre as f64 + 0.5 - point.position).abs();
+        let nearest = found
+            .lines
+            .iter()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let Some(line) = nearest.cloned() else {
+            return sensitivities;
+        };
+        for i in self.within_reach(&line, point.position) {
+            if column[i].is_finite() {
+                sensitivities[i] = self.derivative(&mut found.above, &line, i);
+            }
+        }
+        let share = sensitivities.iter().sum::<f64>() / found.background_pixels.len() as f64;
+        for i in found.background_pixels {
+            sensitivities[i] -= share;
+        }
+        sensitivities
+    }
+
+    /// The pixels that an estimate may look at: the window, also if it was moved onto its result.
+    fn within_reach(&self, line: &Sighting, position: f64) -> impl Iterator<Item = usize> {
+        let reach = self.settings.window as f64 / 2.0 + 1.0;
+        let window = line.window.clone();
+        line.zone
+            .clone()
+            .filter(move |i| window.contains(i) || (*i as f64 + 0.5 - position).abs() <= reach)
+    }
+
+    /// The central difference of the place by one pixel; 0 if it cannot be estimated.
+    fn derivative(&self, above: &mut [f64], line: &Sighting, i: usize) -> f64 {
+        let kept = above[i];
+        let change = CHANGE * above[line.greatest];
+        let mut place = |value: f64| {
+            above[i] = value;
+            let estimate = Profile { above, line }.estimate(&self.settings.method)?;
+            Some(estimate.position)
+        };
+        let places = place(kept + change).zip(place(kept - change));
+        above[i] = kept;
+        places.map_or(0.0, |(more, less)| (more - less) / (2.0 * change))
+    }
+}

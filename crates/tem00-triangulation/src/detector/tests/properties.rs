@@ -1,0 +1,195 @@
+use proptest::prelude::*;
+
+use super::*;
+
+/// Any grey value: usual ones, none, huge ones and what is no number.
+fn any_value() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        6 => 0.0_f32..4095.0,
+        2 => Just(0.0_f32),
+        1 => any::<f32>(),
+        1 => prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(f32::MAX), Just(f32::MIN)],
+    ]
+}
+
+fn finder(method: LineMethod) -> LineDetector {
+    LineDetector::new(DetectorSettings {
+        method,
+        window: 17,
+        least_peak: 0.0,
+        most_lines: 3,
+        saturation: 1e30,
+    })
+    .unwrap()
+}
+
+/// A ragged line in the dark, `before` pixels from the top of 160.
+fn ragged(values: &[f32], before: usize) -> Vec<f32> {
+    let mut column = vec![0.0; 160];
+    column[before..before + values.len()].copy_from_slice(values);
+    column
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn any_column_gives_finite_points_inside_of_it(column in prop::collection::vec(any_value(), 0..80)) {
+        for method in methods() {
+            let detector = finder(method);
+            for point in detector.detect_column(&column) {
+                let numbers = [point.width, point.peak, point.integral, point.background];
+                prop_assert!(numbers.iter().all(|x| x.is_finite()), "{method}: {point:?}");
+                prop_assert!(point.width >= 0.0 && point.peak > 0.0, "{method}: {point:?}");
+                let inside = 0.0..=column.len() as f64;
+                prop_assert!(inside.contains(&point.position), "{method}: {point:?}");
+                let sensitivities = detector.sensitivities(&column, &point);
+                prop_assert!(sensitivities.iter().all(|g| g.is_finite()), "{method}: {sensitivities:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_that_moves_by_whole_pixels_is_found_moved_by_them(
+        values in prop::collection::vec(1.0_f32..200.0, 12..30), before in 30..80_usize,
+    ) {
+        for method in methods() {
+            let points = |before| finder(method).detect_column(&ragged(&values, before));
+            let (here, there) = (points(before), points(before + 17));
+            prop_assert_eq!(here.len(), there.len());
+            for (a, b) in here.iter().zip(&there) {
+                // Rounding of the number 100 and, of the widest fit, a part of 1e−9.
+                prop_assert!((b.position - a.position - 17.0).abs() < 1e-8, "{method}: {a:?} {b:?}");
+                prop_assert_eq!(a.validity, b.validity);
+            }
+        }
+    }
+
+    #[test]
+    fn a_mirrored_line_is_found_mirrored(values in prop::collection::vec(1.0_f32..200.0, 12..30)) {
+        let column = ragged(&values, 60);
+        let mirrored: Vec<f32> = column.iter().rev().copied().collect();
+        for method in methods() {
+            let here = finder(method).detect_column(&column);
+            let there = finder(method).detect_column(&mirrored);
+            prop_assert_eq!(here.len(), there.len());
+            for (a, b) in here.iter().zip(there.iter().rev()) {
+                prop_assert!((a.position + b.position - 160.0).abs() < 1e-7, "{method}: {a:?} {b:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn brighter_lines_are_found_in_the_same_place(
+        values in prop::collection::vec(1.0_f32..200.0, 12..30), scale in 1e-3_f32..1e3,
+    ) {
+        let scaled: Vec<f32> = values.iter().map(|value| value * scale).collect();
+        for method in methods() {
+            let here = finder(method).detect_column(&ragged(&values, 60));
+            let there = finder(method).detect_column(&ragged(&scaled, 60));
+            prop_assert_eq!(here.len(), there.len());
+            for (a, b) in here.iter().zip(&there) {
+                // 6e−8 of rounding, over curvatures that are a small part of the peak.
+                if a.validity == Validity::Valid && b.validity == Validity::Valid {
+                    prop_assert!((a.position - b.position).abs() < 1e-3, "{method}: {a:?} {b:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn validity_says_what_speaks_against_a_point() {
+    let settings = DetectorSettings {
+        saturation: 900.0,
+        ..DetectorSettings::default()
+    };
+    let validity = |column: &[f32]| {
+        let detector = LineDetector::new(settings).unwrap();
+        only(&detector, column).validity
+    };
+    let dim: Vec<f32> = integrated(LENGTH, MIDDLE, 3.0)
+        .iter()
+        .map(|v| 0.8 * v)
+        .collect();
+    assert_eq!(validity(&dim), Validity::Valid);
+    assert_eq!(
+        validity(&integrated(LENGTH, MIDDLE, 3.0)),
+        Validity::Saturated
+    );
+    assert_eq!(
+        validity(&dim[190..]),
+        Validity::Cut,
+        "10 pixels to the edge"
+    );
+    let mut dead = dim.clone();
+    dead[190] = f32::NAN;
+    assert_eq!(validity(&dead), Validity::Missing);
+    let fitted = detector(LineMethod::GaussianFit, 31);
+    let mut spike = vec![0.0; LENGTH];
+    spike[200] = 500.0;
+    let point = only(&fitted, &spike);
+    assert_eq!((point.validity, point.position), (Validity::Failed, 200.5));
+}
+
+#[test]
+fn settings_outside_of_their_range_are_refused() {
+    let good = DetectorSettings::default();
+    let bad = [
+        DetectorSettings { window: 0, ..good },
+        DetectorSettings { window: 30, ..good },
+        DetectorSettings {
+            window: 1003,
+            ..good
+        },
+        DetectorSettings {
+            least_peak: -1.0,
+            ..good
+        },
+        DetectorSettings {
+            least_peak: f64::NAN,
+            ..good
+        },
+        DetectorSettings {
+            most_lines: 0,
+            ..good
+        },
+        DetectorSettings {
+            most_lines: 101,
+            ..good
+        },
+        DetectorSettings {
+            saturation: f64::NAN,
+            ..good
+        },
+        DetectorSettings {
+            saturation: 0.0,
+            ..good
+        },
+        DetectorSettings {
+            method: order(8),
+            window: 9,
+            ..good
+        },
+        DetectorSettings {
+            method: LineMethod::GaussianFit,
+            window: 5,
+            ..good
+        },
+        DetectorSettings {
+            method: LineMethod::Steger { sigma: f64::NAN },
+            ..good
+        },
+        DetectorSettings {
+            method: LineMethod::Steger { sigma: 5.0 },
+            ..good
+        },
+        DetectorSettings {
+            method: LineMethod::ThresholdedCentreOfGravity { threshold: 1.0 },
+            ..good
+        },
+    ];
+    for settings in bad {
+        assert!(LineDetector::new(settings).is_err(), "{settings:?}");
+    }
+}

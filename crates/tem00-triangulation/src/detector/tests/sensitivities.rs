@@ -1,0 +1,73 @@
+use super::*;
+
+const SIGMA: f64 = 2.5;
+
+#[test]
+fn of_the_centre_of_gravity_are_the_lever_arms() {
+    let detector = detector(LineMethod::CentreOfGravity, 31);
+    let column = integrated(LENGTH, MIDDLE + 0.2, SIGMA);
+    let point = only(&detector, &column);
+    let sensitivities = detector.sensitivities(&column, &point);
+    for (i, found) in sensitivities.iter().enumerate().take(216).skip(185) {
+        let lever = (i as f64 + 0.5 - point.position) / point.integral;
+        // The 370 pixels of the background take the sum of the window, 31 · 0.2 / 370 of a pixel. The
+        // difference over 1e−4 of the peak errs by the square of that, the rest is rounding over it.
+        let background = 31.0 * 0.2 / (370.0 * point.integral);
+        let off = found - lever;
+        assert!(
+            off.abs() < 1e-9 * lever.abs() + 1e-11,
+            "pixel {i}: {off} {background}"
+        );
+    }
+    let outside = 31.0 * (point.position - MIDDLE) / (370.0 * point.integral);
+    assert!(
+        (sensitivities[3] - outside).abs() < 1e-11,
+        "{}",
+        sensitivities[3]
+    );
+}
+
+#[test]
+fn follow_a_line_that_moves_and_ignore_a_background_that_rises() {
+    // Σ g_i dI_i/dc is the derivative of the place by c: 1 but for the derivative of the bias. Rounding
+    // of f32 over the step: 1e−7/1e−2 each.
+    let step = 0.01;
+    for method in methods() {
+        let detector = detector(method, 31);
+        for phase in [-0.35, 0.1, 0.2] {
+            let at = |off: f64| integrated(LENGTH, MIDDLE + phase + off, SIGMA);
+            let (column, more, less) = (at(0.0), at(step), at(-step));
+            let place = |column: &[f32]| only(&detector, column).position;
+            let expected = (place(&more) - place(&less)) / (2.0 * step);
+            let sensitivities = detector.sensitivities(&column, &only(&detector, &column));
+            let motion = more
+                .iter()
+                .zip(&less)
+                .map(|(m, l)| f64::from(m - l) / (2.0 * step));
+            let moved: f64 = sensitivities.iter().zip(motion).map(|(g, d)| g * d).sum();
+            // The difference errs by step²/6 of the third derivative of the place: up to 40 where linear
+            // interpolation, whose flanks change at the middle of a pixel, is near to that.
+            assert!(
+                (moved - expected).abs() < 7e-4,
+                "{method} at {phase}: {moved}, not {expected}"
+            );
+            assert!(
+                (expected - 1.0).abs() < 0.7,
+                "{method} at {phase} follows: {expected}"
+            );
+            let sum: f64 = sensitivities.iter().sum();
+            assert!(
+                sum.abs() < 1e-12,
+                "{method}: a background moves it by {sum}"
+            );
+        }
+    }
+}
+
+#[test]
+fn of_columns_without_a_line_are_zero() {
+    let detector = detector(LineMethod::GaussianFit, 31);
+    let point = only(&detector, &integrated(LENGTH, MIDDLE, SIGMA));
+    assert_eq!(detector.sensitivities(&[7.0; 50], &point), [0.0; 50]);
+    assert_eq!(detector.sensitivities(&[], &point), [] as [f64; 0]);
+}

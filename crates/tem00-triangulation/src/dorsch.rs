@@ -1,0 +1,165 @@
+use core::f64::consts::{FRAC_PI_2, TAU};
+
+use crate::TriangulationError;
+
+/// A triangulation sensor as the classical limit of its uncertainty sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dorsch {
+    /// The vacuum wavelength of the laser, in metres.
+    pub wavelength: f64,
+    /// The contrast of the speckle in the image, from 0 to 1.
+    pub contrast: f64,
+    /// The half-angle u under which the pupil of the camera is seen from the surface, in radians.
+    pub aperture_angle: f64,
+    /// The angle θ between the axes of laser and camera, in radians.
+    pub triangulation_angle: f64,
+}
+
+impl Dorsch {
+    /// Returns the standard deviation of a distance that is read off the centroid of one laser spot, in
+    /// metres.
+    ///
+    /// ```text
+    /// δz = C λ / (2π sin u sin θ)
+    /// ```
+    ///
+    /// However bright the spot and however good the sensor, speckle leaves this. A *line* that is read
+    /// in single rows is another matter: its noise grows with the root of its width, is the same as that
+    /// of a spot at a half-width of some 1.3 speckles and larger beyond.
+    ///
+    /// # Validity
+    ///
+    /// A uniformly lit round spot, much wider than a speckle, and a rough surface. For a camera
+    /// without a tilt of its own, `sin u = D / 2L` with the diameter D of its pupil at the distance L.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless the wavelength is positive, the contrast lies in [0, 1] and both
+    /// angles are positive and at most π/2.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_triangulation::Dorsch;
+    ///
+    /// let sensor = Dorsch {
+    ///     wavelength: 650e-9,
+    ///     contrast: 1.0,
+    ///     aperture_angle: 0.01,
+    ///     triangulation_angle: 0.5,
+    /// };
+    /// // A pupil of 1 : 50 and half a radian: 22 µm.
+    /// assert!((sensor.distance_deviation()? - 21.6e-6).abs() < 0.1e-6);
+    /// # Ok::<(), tem00_triangulation::TriangulationError>(())
+    /// ```
+    ///
+    /// # References
+    ///
+    /// - R. G. Dorsch, G. Häusler, J. M. Herrmann, *Laser triangulation: fundamental uncertainty in
+    ///   distance measurement*, Appl. Opt. 33, 1306, 1994.
+    pub fn distance_deviation(&self) -> Result<f64, TriangulationError> {
+        self.check()?;
+        let sines = self.aperture_angle.sin() * self.triangulation_angle.sin();
+        Ok(self.contrast * self.wavelength / (TAU * sines))
+    }
+
+    fn check(&self) -> Result<(), TriangulationError> {
+        let angle = |value: f64| value > 0.0 && value <= FRAC_PI_2;
+        let right_angle = "positive and at most π/2 radians";
+        let rows = [
+            (
+                "wavelength",
+                self.wavelength,
+                self.wavelength > 0.0 && self.wavelength.is_finite(),
+                "positive and finite, in metres",
+            ),
+            (
+                "contrast",
+                self.contrast,
+                (0.0..=1.0).contains(&self.contrast),
+                "from 0 to 1",
+            ),
+            (
+                "aperture_angle",
+                self.aperture_angle,
+                angle(self.aperture_angle),
+                right_angle,
+            ),
+            (
+                "triangulation_angle",
+                self.triangulation_angle,
+                angle(self.triangulation_angle),
+                right_angle,
+            ),
+        ];
+        match rows.into_iter().find(|row| !row.2) {
+            Some((parameter, value, _, allowed)) => Err(TriangulationError::OutOfRange {
+                parameter,
+                value,
+                allowed,
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SENSOR: Dorsch = Dorsch {
+        wavelength: 650e-9,
+        contrast: 0.7,
+        aperture_angle: 0.02,
+        triangulation_angle: 0.6,
+    };
+
+    #[test]
+    fn it_is_the_noise_of_a_wide_disc_of_speckle() {
+        // The first order of a disc of 1e6 speckles, whose blurred edge costs ln(a)/a, on the surface:
+        // h = λ / (2 sin u), and a height moves the spot by sin θ.
+        let speckle_size = SENSOR.wavelength / (2.0 * SENSOR.aperture_angle.sin());
+        let place = speckle_size * tem00_statistics::disc_spot_centroid_deviation(1e6);
+        let height = SENSOR.contrast * place / SENSOR.triangulation_angle.sin();
+        let deviation = SENSOR.distance_deviation().expect("a sensor");
+        assert!(
+            (deviation / height - 1.0).abs() < 2e-5,
+            "{deviation:e} | {height:e}"
+        );
+    }
+
+    #[test]
+    fn sensors_that_cannot_be_are_refused() {
+        let refused = [
+            Dorsch {
+                wavelength: f64::NAN,
+                ..SENSOR
+            },
+            Dorsch {
+                contrast: 1.1,
+                ..SENSOR
+            },
+            Dorsch {
+                aperture_angle: 0.0,
+                ..SENSOR
+            },
+            Dorsch {
+                triangulation_angle: 1.6,
+                ..SENSOR
+            },
+        ];
+        let names = [
+            "wavelength",
+            "contrast",
+            "aperture_angle",
+            "triangulation_angle",
+        ];
+        for (sensor, name) in refused.into_iter().zip(names) {
+            let error = sensor.distance_deviation();
+            assert!(
+                matches!(error, Err(TriangulationError::OutOfRange { parameter, .. }) if parameter == name),
+                "{name}: {error:?}"
+            );
+        }
+    }
+}

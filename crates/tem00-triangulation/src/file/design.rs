@@ -1,0 +1,164 @@
+use tem00_tracer::document::{Dimension, Document, Problem, Section, Value};
+
+use crate::{
+    Constraint, DesignFigure, DesignParameter, DesignQuestion, DesignSearch, Objective,
+    SetupDescription, Spacing, Sweep, TriangulationError,
+};
+
+pub(super) const KEYS: &[&str] = &["objective", "most_setups", "vary", "require"];
+pub(super) const VARY: &[&str] = &[
+    "f_number",
+    "angle",
+    "line_width",
+    "wavelength",
+    "power",
+    "exposure",
+    "pixel_pitch",
+    "focal_length",
+    "distance",
+];
+pub(super) const RANGE: &[&str] = &["from", "to", "steps", "scale"];
+pub(super) const REQUIRE: &[&str] = &[
+    "range",
+    "depth_of_field",
+    "field_width",
+    "power",
+    "exposure",
+    "saturation",
+    "uncertainty",
+    "expanded_uncertainty",
+];
+
+/// The most set-ups that are tried if the file does not say.
+const MOST_SETUPS: u64 = 20_000;
+
+/// The part of what the sensor can hold that the mean of the brightest pixel may fill if the file does
+/// not say.
+const SATURATION: f64 = 0.9;
+
+/// Reads the section `[design]` of a set-up file: a search that begins with the set-up.
+///
+/// ```toml
+/// [design]
+/// objective = "uncertainty"      # or "expanded_uncertainty"
+///
+/// [design.vary]                  # lists, or ranges with both ends
+/// f_number = { from = 4, to = 16, steps = 5, scale = "log" }
+/// angle = ["20 deg", "30 deg", "45 deg"]
+///
+/// [design.require]               # at least range, depth_of_field, field_width; at most the others
+/// range = "20 mm"
+/// saturation = 0.9
+/// ```
+///
+/// # Errors
+///
+/// Returns a problem, placed in the file, if the section is missing, has a key that it may not have, or
+/// a value that cannot be; or if there are more combinations than allowed.
+pub fn read_design(
+    document: &Document<'_>,
+    base: &SetupDescription,
+) -> Result<DesignSearch, Problem> {
+    let section = document.table("design", KEYS)?.ok_or_else(|| {
+        let help = "for example `f_number = [4, 8, 16]` below the line `[design.vary]`";
+        Problem::new("the set-up has no section [design] to search by").with_help(help)
+    })?;
+    let objectives = [
+        ("uncertainty", Objective::Uncertainty),
+        ("expanded_uncertainty", Objective::ExpandedUncertainty),
+    ];
+    let most = DesignSearch::MOST_SETUPS as u64;
+    let most_setups = section.or("most_setups", MOST_SETUPS, |value| value.integer(1..=most))?;
+    let question = DesignQuestion {
+        base: *base,
+        sweeps: sweeps(&section)?,
+        constraints: constraints(&section)?,
+        objective: section.or("objective", Objective::default(), |value| {
+            value.one_of(&objectives)
+        })?,
+        most_setups: usize::try_from(most_setups).unwrap_or(DesignSearch::MOST_SETUPS),
+    };
+    DesignSearch::new(question).map_err(|error| section.problem_with("vary", error))
+}
+
+fn sweeps(section: &Section<'_>) -> Result<Vec<Sweep>, Problem> {
+    let Some(vary) = section.table("vary", VARY)? else {
+        let message = "[design] needs the section [design.vary], with what is varied";
+        return Err(section.problem(message));
+    };
+    let given = DesignParameter::ALL.into_iter();
+    given
+        .filter_map(|parameter| Some((parameter, vary.optional(parameter.name())?)))
+        .map(|(parameter, value)| sweep(&vary, parameter, &value))
+        .collect()
+}
+
+fn sweep(
+    vary: &Section<'_>,
+    parameter: DesignParameter,
+    value: &Value<'_>,
+) -> Result<Sweep, Problem> {
+    let dimension = parameter.dimension();
+    let name = parameter.name();
+    if let Some(range) = value
+        .is_table()
+        .then(|| vary.table(name, RANGE))
+        .transpose()?
+    {
+        return match range {
+            Some(range) => between(&range, parameter),
+            None => Err(value.must_be(ALLOWED)),
+        };
+    }
+    let values = value.list(ALLOWED)?;
+    let values: Result<Vec<_>, _> = values
+        .iter()
+        .map(|value| value.positive(dimension))
+        .collect();
+    Sweep::list(parameter, values?).map_err(|_| value.must_be(ALLOWED))
+}
+
+const ALLOWED: &str = "a list of values, or a range such as { from = 4, to = 16, steps = 5 }";
+
+fn between(range: &Section<'_>, parameter: DesignParameter) -> Result<Sweep, Problem> {
+    let end = |key, dimension: &Dimension| {
+        let example = if key == "from" { "4" } else { "16" };
+        range.required(key, example)?.positive(dimension)
+    };
+    let ends = (
+        end("from", parameter.dimension())?,
+        end("to", parameter.dimension())?,
+    );
+    let steps = range.required("steps", "5")?.integer(2..=10_000)?;
+    let scales = [("linear", Spacing::Linear), ("log", Spacing::Logarithmic)];
+    let spacing = range.or("scale", Spacing::Linear, |value| value.one_of(&scales))?;
+    // From 2 to 10000.
+    let steps = u32::try_from(steps).unwrap_or(0);
+    Sweep::between(parameter, ends, steps, spacing)
+        .map_err(|error: TriangulationError| range.problem_with("steps", error))
+}
+
+fn constraints(section: &Section<'_>) -> Result<Vec<Constraint>, Problem> {
+    let saturation = Constraint {
+        figure: DesignFigure::Saturation,
+        bound: SATURATION,
+    };
+    let Some(require) = section.table("require", REQUIRE)? else {
+        return Ok(vec![saturation]);
+    };
+    let mut constraints = Vec::new();
+    for figure in DesignFigure::ALL {
+        match require.optional(figure.name()) {
+            Some(value) => constraints.push(Constraint {
+                figure,
+                bound: value.positive(figure.dimension())?,
+            }),
+            None if figure == DesignFigure::Saturation => constraints.push(saturation),
+            None => {}
+        }
+    }
+    Ok(constraints)
+}
+
+#[cfg(test)]
+mod tests;

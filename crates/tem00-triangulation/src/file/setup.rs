@@ -1,0 +1,250 @@
+use std::path::Path;
+
+use tem00_tracer::{
+    SceneError,
+    document::{
+        ANGLE, Document, Format, LENGTH, NUMBER, POWER, Problem, Section, Value, parse_document,
+        read_document,
+    },
+};
+
+use super::{read_detector, read_sensor};
+use crate::{
+    Averages, LaserLineData, Setup, SetupCamera, SetupDescription, SetupSurface, TriangulationError,
+};
+
+/// Set-up files.
+///
+/// The section `[design]` is for searches among set-ups: it is not read with the set-up.
+const SETUP: Format = Format {
+    noun: "set-up",
+    keys: &[
+        "laser",
+        "camera",
+        "sensor",
+        "surface",
+        "detector",
+        "calibration",
+        "average",
+        "design",
+        "include",
+    ],
+    help: "setups/ has some, and docs/setup_file.md tells how to write them",
+};
+pub(super) const LASER: &[&str] = &["wavelength", "power", "line_width", "line_length"];
+pub(super) const CAMERA: &[&str] = &[
+    "focal_length",
+    "f_number",
+    "pixel_pitch",
+    "resolution",
+    "distance",
+    "angle",
+    "scheimpflug",
+];
+pub(super) const SURFACE: &[&str] = &["reflectance", "patterns", "polarisation"];
+pub(super) const CALIBRATION: &[&str] = &["uncertainty"];
+pub(super) const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"];
+
+/// Reads a set-up file.
+///
+/// The format is that of scene files: TOML, with numbers in SI units or strings with a unit.
+///
+/// # Errors
+///
+/// Returns an error if the file cannot be read, is not valid TOML, or does not describe a set-up. It
+/// names key, value and what is allowed, and knows its place in the file.
+pub fn read_setup(path: &Path) -> Result<Setup, SceneError> {
+    read_setup_with(path, |_, _| Ok(())).map(|(setup, ())| setup)
+}
+
+/// Reads a set-up file, and with `further` what else it has to say: `[design]`.
+///
+/// # Errors
+///
+/// Returns the errors of [`read_setup`], and those of `further`, placed in the file.
+pub fn read_setup_with<T>(
+    path: &Path,
+    further: impl FnOnce(&Document<'_>, &Setup) -> Result<T, Problem>,
+) -> Result<(Setup, T), SceneError> {
+    read_document(path, SETUP, |document| with_further(document, further))
+}
+
+/// Reads a set-up from text in the format of set-up files.
+///
+/// # Errors
+///
+/// Returns an error if the text is not valid TOML or does not describe a set-up.
+///
+/// # Examples
+///
+/// ```
+/// let setup = tem00_triangulation::parse_setup(
+///     r#"
+///     [laser]
+///     wavelength = "650 nm"
+///     power = "5 mW"
+///     line_width = "0.2 mm"
+///     line_length = "50 mm"
+///
+///     [camera]
+///     focal_length = "25 mm"
+///     f_number = 8
+///     pixel_pitch = "3.45 um"
+///     resolution = [640, 480]
+///     distance = "300 mm"
+///     angle = "30 deg"
+///
+///     [sensor]
+///     quantum_efficiency = 0.6
+///     exposure = "1 ms"
+///
+///     [surface]
+///     reflectance = 0.5
+///     "#,
+/// )?;
+/// // One pixel is p / (m sin θ) in height, with the magnification 1/11.
+/// let per_pixel = setup.line().height_per_pixel;
+/// assert!((per_pixel - 3.45e-6 * 11.0 / 0.5).abs() < 1e-9);
+/// # Ok::<(), tem00_tracer::SceneError>(())
+/// ```
+pub fn parse_setup(text: &str) -> Result<Setup, SceneError> {
+    parse_setup_with(text, |_, _| Ok(())).map(|(setup, ())| setup)
+}
+
+/// Reads text as [`read_setup_with`] reads a file.
+///
+/// # Errors
+///
+/// Returns the errors of [`read_setup_with`].
+pub fn parse_setup_with<T>(
+    text: &str,
+    further: impl FnOnce(&Document<'_>, &Setup) -> Result<T, Problem>,
+) -> Result<(Setup, T), SceneError> {
+    parse_document(text, Path::new("."), SETUP, |document| {
+        with_further(document, further)
+    })
+}
+
+fn with_further<T>(
+    document: &Document<'_>,
+    further: impl FnOnce(&Document<'_>, &Setup) -> Result<T, Problem>,
+) -> Result<(Setup, T), Problem> {
+    let setup = setup(document)?;
+    let further = further(document, &setup)?;
+    Ok((setup, further))
+}
+
+fn setup(document: &Document<'_>) -> Result<Setup, Problem> {
+    let laser = needed(document, "laser", LASER, "wavelength = \"650 nm\"")?;
+    let camera = needed(document, "camera", CAMERA, "focal_length = \"25 mm\"")?;
+    let surface = needed(document, "surface", SURFACE, "reflectance = 0.5")?;
+    let calibration = document.table("calibration", CALIBRATION)?;
+    let average = document.table("average", AVERAGE)?;
+    let pitch = camera
+        .required("pixel_pitch", "\"3.45 um\"")?
+        .positive(&LENGTH)?;
+    let sections = [&laser, &camera, &surface];
+    let description = SetupDescription {
+        laser: read_laser(&laser)?,
+        camera: read_camera(&camera)?,
+        sensor: read_sensor(document, pitch)?,
+        surface: read_surface(&surface)?,
+        detector: read_detector(document)?,
+        calibration_uncertainty: match &calibration {
+            Some(section) => section.or("uncertainty", 0.0, |value| {
+                value.within(&LENGTH, 0.0..=1.0, "a length from 0 to 1 m")
+            })?,
+            None => 0.0,
+        },
+        average: match &average {
+            Some(section) => read_average(section)?,
+            None => Averages::default(),
+        },
+    };
+    Setup::new(description).map_err(|error| {
+        let optional = [calibration.as_ref(), average.as_ref()];
+        let all = sections.into_iter().chain(optional.into_iter().flatten());
+        rejected(&error, &all.collect::<Vec<_>>())
+    })
+}
+
+fn needed<'a>(
+    document: &Document<'a>,
+    key: &'static str,
+    keys: &'static [&'static str],
+    example: &str,
+) -> Result<Section<'a>, Problem> {
+    document.table(key, keys)?.ok_or_else(|| {
+        let help = format!("for example `{example}` below the line `[{key}]`");
+        Problem::new(format!("the set-up needs a section [{key}]")).with_help(help)
+    })
+}
+
+fn read_laser(section: &Section<'_>) -> Result<LaserLineData, Problem> {
+    let length = |key, example| section.required(key, example)?.positive(&LENGTH);
+    Ok(LaserLineData {
+        wavelength: length("wavelength", "\"650 nm\"")?,
+        power: section.required("power", "\"5 mW\"")?.positive(&POWER)?,
+        line_width: length("line_width", "\"0.2 mm\"")?,
+        line_length: length("line_length", "\"50 mm\"")?,
+    })
+}
+
+fn read_camera(section: &Section<'_>) -> Result<SetupCamera, Problem> {
+    let length = |key, example| section.required(key, example)?.positive(&LENGTH);
+    let resolution = section.required("resolution", "[640, 480]")?;
+    let [width, height] = resolution.elements("two numbers of pixels, such as [640, 480]")?;
+    Ok(SetupCamera {
+        focal_length: length("focal_length", "\"25 mm\"")?,
+        f_number: section.required("f_number", "8")?.positive(&NUMBER)?,
+        resolution: [pixels(&width)?, pixels(&height)?],
+        distance: length("distance", "\"300 mm\"")?,
+        angle: section.required("angle", "\"30 deg\"")?.positive(&ANGLE)?,
+        scheimpflug: section.or("scheimpflug", false, Value::boolean)?,
+    })
+}
+
+fn pixels(value: &Value<'_>) -> Result<usize, Problem> {
+    let pixels = value.integer(1..=1 << 20)?;
+    usize::try_from(pixels).map_err(|_| value.must_be("a number of pixels that can be counted"))
+}
+
+fn read_surface(section: &Section<'_>) -> Result<SetupSurface, Problem> {
+    let fraction = |value: &Value<'_>| value.within(&NUMBER, 0.0..=1.0, "from 0 to 1");
+    Ok(SetupSurface {
+        reflectance: fraction(&section.required("reflectance", "0.5")?)?,
+        patterns: section.or("patterns", 1, |value| count(value, 64))?,
+        polarisation: section.or("polarisation", 1.0, fraction)?,
+    })
+}
+
+fn read_average(section: &Section<'_>) -> Result<Averages, Problem> {
+    Ok(Averages {
+        columns: section.or("columns", 1, |value| count(value, 10_000))?,
+        frames: section.or("frames", 1, |value| count(value, 10_000))?,
+        independent_speckle: section.or("independent_speckle", false, Value::boolean)?,
+    })
+}
+
+fn count(value: &Value<'_>, most: u32) -> Result<u32, Problem> {
+    let number = value.integer(1..=u64::from(most))?;
+    u32::try_from(number).map_err(|_| value.must_be("a number that can be counted"))
+}
+
+/// Places the error of a set-up that is not possible at the key that it is about.
+fn rejected(error: &TriangulationError, sections: &[&Section<'_>]) -> Problem {
+    let key = match error {
+        TriangulationError::OutOfRange { parameter, .. }
+        | TriangulationError::Direction { parameter, .. } => parameter,
+        TriangulationError::Tracer(tem00_tracer::TracerError::OutOfRange { parameter, .. }) => {
+            parameter
+        }
+        TriangulationError::Tracer(tem00_tracer::TracerError::Resolution { .. }) => "resolution",
+        _ => "",
+    };
+    let section = sections.iter().find(|section| section.has(key));
+    match section {
+        Some(section) => section.problem_with(key, error),
+        None => Problem::new(error.to_string()),
+    }
+}

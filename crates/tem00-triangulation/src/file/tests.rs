@@ -1,0 +1,169 @@
+use crate::{
+    FilterOrder, LineMethod, Setup, SetupDescription, parse_setup, setup::tests::description,
+};
+
+/// A set-up file with one line in place of another.
+fn with(line: &str, instead: &str) -> String {
+    let text = description().to_toml();
+    assert!(text.contains(line), "{line} is not in\n{text}");
+    text.replacen(line, instead, 1)
+}
+
+#[test]
+fn a_written_description_reads_back_as_the_same_bits() {
+    let methods = [
+        LineMethod::CentreOfGravity,
+        LineMethod::ThresholdedCentreOfGravity { threshold: 0.3 },
+        LineMethod::BlaisRioux {
+            order: FilterOrder::Eighth,
+        },
+        LineMethod::Steger { sigma: 1.7 },
+        LineMethod::GaussianFit,
+    ];
+    for method in methods {
+        let mut written = description();
+        written.detector.method = method;
+        written.camera.angle = 0.1 + 0.2;
+        written.laser.power = 1.0 / 3.0;
+        written.camera.scheimpflug = true;
+        written.average.columns = 7;
+        let read = parse_setup(&written.to_toml()).unwrap();
+        assert_eq!(*read.description(), written, "{}", written.to_toml());
+    }
+}
+
+#[test]
+fn what_may_be_left_out_has_defaults() {
+    let text = description().to_toml();
+    let needed: Vec<&str> = text
+        .split_inclusive("\n\n")
+        .filter(|section| {
+            !["[detector]", "[calibration]", "[average]"]
+                .iter()
+                .any(|name| section.starts_with(name))
+        })
+        .collect();
+    let setup = parse_setup(&needed.concat()).unwrap();
+    let read: &SetupDescription = setup.description();
+    assert_eq!(
+        read.average,
+        crate::Averages::default(),
+        "one column of one frame"
+    );
+    assert!(
+        read.calibration_uncertainty.abs() < f64::MIN_POSITIVE,
+        "none is known"
+    );
+}
+
+#[test]
+fn what_is_wrong_is_told_at_its_place() {
+    for (line, instead, place, part) in [
+        ("[laser]", "[lasser]", Some((1, 2)), "did you mean `laser`?"),
+        (
+            "wavelength = 6.5e-7",
+            "wavelenght = 1",
+            Some((2, 1)),
+            "did you mean `wavelength`?",
+        ),
+        (
+            "wavelength = 6.5e-7",
+            "wavelength = \"650 mm\"",
+            Some((2, 14)),
+            "from 100 nm to 100 µm",
+        ),
+        (
+            "wavelength = 6.5e-7",
+            "wavelength = nan",
+            Some((2, 14)),
+            "a finite number",
+        ),
+        (
+            "wavelength = 6.5e-7\n",
+            "",
+            Some((1, 1)),
+            "needs the key `wavelength`",
+        ),
+        ("power = 0.005", "power = 1e300", Some((3, 9)), "at most"),
+        (
+            "line_length = 0.05",
+            "line_length = 1e-5",
+            Some((5, 15)),
+            "width of the line",
+        ),
+        (
+            "f_number = 8",
+            "f_number = 0.1",
+            Some((9, 12)),
+            "from 0.5 to 1000",
+        ),
+        (
+            "[640, 480]",
+            "[640]",
+            Some((11, 14)),
+            "two numbers of pixels",
+        ),
+        ("[640, 480]", "[1048576, 1048576]", Some((11, 14)), "pixels"),
+        (
+            "distance = 0.3",
+            "distance = 0.02",
+            Some((12, 12)),
+            "focal lengths",
+        ),
+        (
+            "reflectance = 0.5",
+            "reflectance = 0",
+            Some((31, 15)),
+            "positive, at most 1",
+        ),
+        (
+            "columns = 1",
+            "columns = 641",
+            Some((45, 11)),
+            "columns of the image",
+        ),
+        (
+            "columns = 1",
+            "columns = 1.5",
+            Some((45, 11)),
+            "a whole number",
+        ),
+        ("window = 31", "window = 30", Some((37, 10)), "odd"),
+    ] {
+        let error = parse_setup(&with(line, instead)).unwrap_err();
+        assert!(error.to_string().contains(part), "{instead}: {error}");
+        assert_eq!(error.line_column(), place, "{instead}: {error}");
+    }
+}
+
+#[test]
+fn a_setup_without_a_laser_says_so() {
+    let text = description().to_toml();
+    let (_, rest) = text.split_once("\n\n").unwrap();
+    let error = parse_setup(rest).unwrap_err();
+    assert!(error.message().contains("[laser]"), "{error}");
+    assert!(
+        error.help().is_some_and(|help| help.contains("wavelength")),
+        "{error:?}"
+    );
+    let empty = parse_setup("").unwrap_err();
+    assert!(empty.message().contains("[laser]"), "{empty}");
+}
+
+#[test]
+fn further_sections_are_read_with_the_setup() {
+    let text = format!("{}\n[design]\nbest = 3\n", description().to_toml());
+    let (setup, best) = crate::parse_setup_with(&text, |document, _| {
+        let section = document.table("design", &["best"])?;
+        section.map_or(Ok(0), |section| {
+            section.or("best", 1, |value| value.integer(1..=9))
+        })
+    })
+    .unwrap();
+    assert_eq!(best, 3, "the number in the section");
+    assert_eq!(
+        setup,
+        Setup::new(description()).unwrap(),
+        "the set-up as without it"
+    );
+}

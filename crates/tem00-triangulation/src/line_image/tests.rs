@@ -1,0 +1,178 @@
+use approx::assert_relative_eq;
+use tem00_statistics::{PixelAutocovariance, PixelColumn, rectangular_pixel_contrast};
+
+use super::*;
+
+/// A line of 12 pixels on speckle of 1.6 pixels.
+const DATA: LineImageData = LineImageData {
+    size: [96, 48],
+    width: 12.0,
+    column_electrons: 1e4,
+    speckle_size: [1.6; 2],
+    sensitive_side: 1.0,
+    patterns: 1,
+    polarisation: 1.0,
+};
+
+#[test]
+fn without_speckle_pixels_hold_the_integral_of_the_line() {
+    for sensitive_side in [1.0, 0.7] {
+        let data = LineImageData {
+            sensitive_side,
+            ..DATA
+        };
+        let image = LineImage::new(data).unwrap().mean(|x| 24.0 + 0.01 * x);
+        for (x, y) in [(0, 20), (50, 24), (95, 31)] {
+            let centre = 24.0 + 0.01 * (x as f64 + 0.5);
+            // Simpson's rule over the sensitive part; 8 intervals of a twelfth of the width err by 1e−9.
+            let gaussian = |v: f64| (-8.0 * ((v - centre) / 12.0).powi(2)).exp();
+            let low = y as f64 + 0.5 - 0.5 * sensitive_side;
+            let step = sensitive_side / 8.0;
+            let weights = [1.0, 4.0, 2.0, 4.0, 2.0, 4.0, 2.0, 4.0, 1.0];
+            let at = |i: usize| weights[i] * gaussian(low + i as f64 * step);
+            let mean = (0..9).map(at).sum::<f64>() / 24.0;
+            let peak = 1e4 * (8.0 / core::f64::consts::PI).sqrt() / 12.0;
+            // Images are f32, sums of four.
+            assert_relative_eq!(f64::from(image[(x, y)]), peak * mean, max_relative = 1e-6);
+        }
+    }
+}
+
+#[test]
+fn speckle_leaves_the_mean_and_has_the_contrast_of_its_pixels() {
+    // A line so wide that it is even.
+    let data = LineImageData {
+        size: [200, 200],
+        width: 1e5,
+        column_electrons: 1e5,
+        ..DATA
+    };
+    let lines = LineImage::new(data).unwrap();
+    let mean = f64::from(lines.mean(|_| 100.0)[(0, 0)]);
+    let expected = rectangular_pixel_contrast([1.0 / 1.6; 2]);
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for seed in 0..4 {
+        let image = lines.speckled(seed, |_| 100.0).unwrap();
+        for &value in image.values() {
+            let ratio = f64::from(value) / mean;
+            sum += ratio;
+            squares += ratio * ratio;
+        }
+    }
+    let n = 4.0 * 40_000.0;
+    // Unit phasors have the mean 1 over their period, which the image fills but for 4 % of its area:
+    // the rest has the mean 1 ± √(0.04/125²).
+    assert!((sum / n - 1.0).abs() < 3e-3, "mean {}", sum / n);
+    let contrast = (squares / n - (sum / n).powi(2)).sqrt();
+    // The spread of C² of one pattern of 125 speckles is 1.53/125; of the contrast, half of that, and
+    // again half for four patterns: 0.3 %. Six samples a speckle add 0.5 %.
+    assert_relative_eq!(contrast, expected, max_relative = 0.015);
+}
+
+#[test]
+fn pixels_of_a_column_go_together_as_their_autocovariance_says() {
+    let (hx, hy) = (2.1, 2.6);
+    let data = LineImageData {
+        size: [256, 256],
+        width: 1e5,
+        column_electrons: 1e5,
+        speckle_size: [hx, hy],
+        sensitive_side: 0.8,
+        ..DATA
+    };
+    let lines = LineImage::new(data).unwrap();
+    let mean = f64::from(lines.mean(|_| 128.0)[(0, 0)]);
+    let theory = PixelAutocovariance::new(&PixelColumn {
+        size: [0.8 / hx, 0.8 / hy],
+        pitch: [1.0 / hx, 1.0 / hy],
+        pixels: 4,
+        averaged_columns: 1,
+    });
+    let theory = theory.unwrap();
+    for lag in 0..4 {
+        let mut covariance = 0.0;
+        for seed in 0..4 {
+            let image = lines.speckled(seed, |_| 128.0).unwrap();
+            for (x, y) in (0..256).flat_map(|x| (0..256 - lag).map(move |y| (x, y))) {
+                let factor = |y| f64::from(image[(x, y)]) / mean - 1.0;
+                covariance += factor(y) * factor(y + lag) / (1024.0 * (256 - lag) as f64);
+            }
+        }
+        // 4 · 256²/(hx hy) = 48000 speckles: 3 standard errors of a product of two are 0.014 at most.
+        // Sampling and the mismatch of 1 % of the sizes add 0.01 at the steepest.
+        let expected = theory.covariance(lag);
+        assert!(
+            (covariance - expected).abs() < 0.024,
+            "{lag}: {covariance}, {expected}"
+        );
+    }
+}
+
+#[test]
+fn patterns_and_depolarisation_lower_the_contrast() {
+    let contrast = |patterns, polarisation| {
+        let data = LineImageData {
+            size: [200, 200],
+            width: 1e5,
+            column_electrons: 1e5,
+            patterns,
+            polarisation,
+            ..DATA
+        };
+        let image = LineImage::new(data)
+            .unwrap()
+            .speckled(5, |_| 100.0)
+            .unwrap();
+        let n = 40_000.0;
+        let mean = image.values().iter().map(|&v| f64::from(v)).sum::<f64>() / n;
+        let squares = image.values().iter().map(|&v| f64::from(v).powi(2));
+        (squares.sum::<f64>() / n / mean.powi(2) - 1.0).sqrt()
+    };
+    let one = contrast(1, 1.0);
+    // Each contrast has the standard error 0.6 %; four of them make a ratio of two.
+    assert_relative_eq!(contrast(4, 1.0) / one, 0.5, max_relative = 0.035);
+    assert_relative_eq!(contrast(1, 0.0) / one, 0.5_f64.sqrt(), max_relative = 0.035);
+}
+
+#[test]
+fn a_seed_gives_the_same_bits_for_any_number_of_threads() {
+    let lines = LineImage::new(DATA).unwrap();
+    let image = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap()
+            .install(|| lines.speckled(3, |_| 24.3).unwrap())
+    };
+    assert_eq!(image(1), image(3), "one thread and three");
+    assert_ne!(
+        image(1),
+        lines.speckled(4, |_| 24.3).unwrap(),
+        "another seed"
+    );
+}
+
+#[test]
+fn impossible_images_are_rejected_by_name() {
+    type Change = fn(&mut LineImageData);
+    let bad: [(&str, Change); 9] = [
+        ("size", |d| d.size = [0, 10]),
+        ("size", |d| d.size = [usize::MAX; 2]),
+        ("width", |d| d.width = f64::NAN),
+        ("column_electrons", |d| d.column_electrons = -1.0),
+        ("speckle_size", |d| d.speckle_size[1] = 0.01),
+        ("speckle_size", |d| {
+            (d.speckle_size, d.size) = ([0.07; 2], [4000, 100])
+        }),
+        ("sensitive_side", |d| d.sensitive_side = 0.0),
+        ("patterns", |d| d.patterns = 0),
+        ("polarisation", |d| d.polarisation = f64::INFINITY),
+    ];
+    for (name, change) in bad {
+        let mut data = DATA;
+        change(&mut data);
+        let error = LineImage::new(data).unwrap_err();
+        let TriangulationError::OutOfRange { parameter, .. } = error else {
+            panic!("{name}: {error:?}");
+        };
+        assert_eq!(parameter, name, "{error}");
+    }
+}

@@ -1,0 +1,203 @@
+use tem00_statistics::PixelAutocovariance;
+
+use crate::SensorDescription;
+
+/// What makes the place of a line along a column uncertain: variances, in square pixels.
+///
+/// To first order the place moves with the grey values of the column, δy = Σ gᵢ δIᵢ. With the
+/// electrons nᵢ, the gain K and the speckled part Eᵢ of the electrons:
+///
+/// ```text
+/// speckle        C² K² Σ gᵢ gⱼ Eᵢ Eⱼ cᵢⱼ      c the autocovariance of speckle in pixels
+/// shot noise     K² Σ gᵢ² nᵢ
+/// dark noise     K² Σ gᵢ² (σ_d² + I_d t)
+/// quantisation   Σ gᵢ² / 12
+/// PRNU           K² Σ gᵢ² nᵢ² s²
+/// DSNU           K² Σ gᵢ² σ²_DSNU
+/// ```
+///
+/// # References
+///
+/// - EMVA Standard 1288, release 4.0, 2021: the linear model of a sensor.
+/// - JCGM 100:2008, *Guide to the expression of uncertainty in measurement*, 5.1 and 5.2.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlaceNoise {
+    /// From speckle.
+    pub speckle: f64,
+    /// From the Poisson noise of the light.
+    pub shot: f64,
+    /// From the temporal dark noise and the noise of the dark current.
+    pub dark: f64,
+    /// From rounding to whole grey values.
+    pub quantisation: f64,
+    /// From the different response of the pixels.
+    pub prnu: f64,
+    /// From the different dark signal of the pixels.
+    pub dsnu: f64,
+}
+
+/// The light in a column, and how the place of a line depends on it.
+#[derive(Clone, Copy, Debug)]
+pub struct ColumnLight<'a> {
+    /// The electrons that light frees in each pixel, without noise.
+    pub electrons: &'a [f64],
+    /// Those of them whose light carries speckle.
+    pub coherent: &'a [f64],
+    /// How far the place moves per grey value of each pixel, in pixels per DN.
+    pub sensitivities: &'a [f64],
+}
+
+/// How the speckle in two pixels goes together.
+pub trait PixelCovariance {
+    /// Returns the covariance of the speckle factors of two pixels, a displacement in pixels apart:
+    /// C² c, at no displacement the square of the contrast in a pixel.
+    fn at(&self, displacement: [f64; 2]) -> f64;
+}
+
+impl<C: PixelCovariance> PixelCovariance for &C {
+    fn at(&self, displacement: [f64; 2]) -> f64 {
+        (**self).at(displacement)
+    }
+}
+
+impl<C: PixelCovariance> PixelCovariance for Option<C> {
+    /// Returns 0 without speckle.
+    fn at(&self, displacement: [f64; 2]) -> f64 {
+        self.as_ref()
+            .map_or(0.0, |speckle| speckle.at(displacement))
+    }
+}
+
+/// The speckle in the pixels of one column.
+#[derive(Clone, Copy, Debug)]
+pub struct ColumnSpeckle<'a> {
+    /// Its covariance for one polarised pattern.
+    pub autocovariance: &'a PixelAutocovariance,
+    /// The variance of the speckle factor in a point: (1 + P²)/2 by the number of patterns, for light of
+    /// the degree of polarisation P.
+    pub variance: f64,
+}
+
+impl PixelCovariance for ColumnSpeckle<'_> {
+    /// Returns the covariance of two pixels of the column, a whole number of rows apart.
+    fn at(&self, [_, rows]: [f64; 2]) -> f64 {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "rows are counted in whole numbers"
+        )]
+        let lag = rows.abs().round() as usize;
+        self.variance * self.autocovariance.covariance(lag)
+    }
+}
+
+impl PlaceNoise {
+    /// Returns what makes the place of a line uncertain in a column.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless the three slices of `column` have one length.
+    pub fn of_column(
+        sensor: &SensorDescription,
+        speckle: &impl PixelCovariance,
+        column: &ColumnLight<'_>,
+    ) -> Self {
+        column.check();
+        let dark =
+            sensor.dark_noise * sensor.dark_noise + sensor.dark_current * sensor.exposure_time;
+        let mut noise = Self {
+            speckle: speckle_covariance(sensor, speckle, [column, column], [0.0; 2]),
+            ..Self::default()
+        };
+        let gain_squared = sensor.gain * sensor.gain;
+        for (&g, &n) in column.sensitivities.iter().zip(column.electrons) {
+            let per_electron = gain_squared * g * g;
+            let response = sensor.prnu * n;
+            noise.shot += per_electron * n.max(0.0);
+            noise.dark += per_electron * dark;
+            noise.quantisation += g * g / 12.0;
+            noise.prnu += per_electron * response * response;
+            noise.dsnu += per_electron * sensor.dsnu * sensor.dsnu;
+        }
+        noise
+    }
+
+    /// Returns what is new in every frame and every column: shot noise, dark noise and quantisation.
+    pub const fn temporal(&self) -> f64 {
+        self.shot + self.dark + self.quantisation
+    }
+
+    /// Returns what the pixels keep from frame to frame: PRNU and DSNU.
+    pub const fn fixed_pattern(&self) -> f64 {
+        self.prnu + self.dsnu
+    }
+
+    /// Returns the variance of the place, all terms together.
+    pub const fn total(&self) -> f64 {
+        self.speckle + self.temporal() + self.fixed_pattern()
+    }
+
+    /// Returns every term, multiplied by a factor.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            speckle: factor * self.speckle,
+            shot: factor * self.shot,
+            dark: factor * self.dark,
+            quantisation: factor * self.quantisation,
+            prnu: factor * self.prnu,
+            dsnu: factor * self.dsnu,
+        }
+    }
+}
+
+/// Returns the covariance that speckle gives the places of a line in two columns, in square pixels.
+///
+/// `displacement` leads from the pattern in the first column to that in the second, in pixels to the
+/// right and down: for two columns of one image, their distance; for two frames, what the pattern has
+/// moved in between.
+///
+/// # Panics
+///
+/// Panics unless the slices of each column have one length.
+pub fn speckle_covariance(
+    sensor: &SensorDescription,
+    speckle: &impl PixelCovariance,
+    columns: [&ColumnLight<'_>; 2],
+    displacement: [f64; 2],
+) -> f64 {
+    let [first, second] = columns.map(ColumnLight::weights);
+    let sum: f64 = first
+        .iter()
+        .flat_map(|a| second.iter().map(move |b| (a, b)))
+        .map(|(&(row_a, a), &(row_b, b))| {
+            let [right, down] = displacement;
+            a * b * speckle.at([right, row_b - row_a + down])
+        })
+        .sum();
+    sensor.gain * sensor.gain * sum
+}
+
+impl ColumnLight<'_> {
+    fn check(&self) {
+        let lengths = [self.coherent.len(), self.sensitivities.len()];
+        assert!(
+            lengths.iter().all(|&length| length == self.electrons.len()),
+            "{} pixels, of which {lengths:?} have speckle and a sensitivity",
+            self.electrons.len()
+        );
+    }
+
+    /// The rows that count, and how far the place moves with the speckle factor in each.
+    ///
+    /// Those that move it by less than a millionth of the first are left out.
+    fn weights(&self) -> Vec<(f64, f64)> {
+        let products = self.sensitivities.iter().zip(self.coherent);
+        let rows = products
+            .zip(0_u32..)
+            .map(|((g, e), row)| (f64::from(row), g * e));
+        let most = rows.clone().map(|(_, weight)| weight.abs());
+        let least = 1e-6 * most.fold(0.0, f64::max);
+        rows.filter(|(_, weight)| weight.abs() > least).collect()
+    }
+}

@@ -1,0 +1,100 @@
+use glam::DVec2;
+use tem00_numerics::Grid;
+use tem00_tracer::{Camera, Frame};
+
+use crate::Sensor;
+
+/// The wavelength at which light of lamps is counted, in metres: white light has its middle there.
+pub const LAMP_WAVELENGTH: f64 = 550e-9;
+
+/// What a rendered frame frees in the pixels of a sensor, in electrons, before any noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exposure {
+    /// The mean number of electrons in each pixel.
+    pub electrons: Grid<f32>,
+    /// The same without speckle: the mean over all surfaces that look alike.
+    pub without_speckle: Grid<f32>,
+    /// The part of `without_speckle` that carries speckle.
+    pub coherent: Grid<f32>,
+}
+
+impl Exposure {
+    /// Exposes a sensor to a whole rendered frame.
+    ///
+    /// ```text
+    /// E(pixel) = L(pixel) · E/L(pixel)          irradiance on the sensor from radiance
+    /// μ_e      = Σ over the sources of η E A t λ / (h c)
+    /// ```
+    ///
+    /// The light of each laser counts at its own wavelength, and that of lamps at 550 nm, all with
+    /// the quantum efficiency of the sensor. The frame must have been rendered with the box filter of
+    /// the sensitive part of the pixel; its layers are radiances averaged over it.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless the frame is as large as the image of the camera.
+    pub fn of_frame(frame: &Frame, camera: &Camera, sensor: &Sensor) -> Self {
+        let [width, height] = [camera.width(), camera.height()];
+        assert!(
+            frame.lamps.width() == width && frame.lamps.height() == height,
+            "a frame of {} × {} pixels for a camera of {width} × {height}",
+            frame.lamps.width(),
+            frame.lamps.height()
+        );
+        let dark = || Grid::filled(width, height, 0.0_f32);
+        let mut exposure = Self {
+            electrons: dark(),
+            without_speckle: dark(),
+            coherent: dark(),
+        };
+        for y in 0..height {
+            for x in 0..width {
+                exposure.expose_pixel(frame, (x, y), camera, sensor);
+            }
+        }
+        exposure
+    }
+
+    fn expose_pixel(
+        &mut self,
+        frame: &Frame,
+        at: (usize, usize),
+        camera: &Camera,
+        sensor: &Sensor,
+    ) {
+        let per_radiance = camera.irradiance_per_radiance(centre(at));
+        let electrons = |radiance: f32, wavelength| {
+            sensor.electrons(per_radiance * f64::from(radiance), wavelength)
+        };
+        let lamps = electrons(frame.lamps[at], LAMP_WAVELENGTH);
+        let [mut total, mut mean, mut coherent] = [lamps, lamps, 0.0];
+        for laser in &frame.lasers {
+            let count = |radiance| electrons(radiance, laser.wavelength);
+            let [before, after] = [laser.coherent_before[at], laser.coherent_after[at]].map(count);
+            let incoherent = count(laser.incoherent[at]);
+            total += after + incoherent;
+            mean += before + incoherent;
+            coherent += before;
+        }
+        self.electrons[at] = single(total);
+        self.without_speckle[at] = single(mean);
+        self.coherent[at] = single(coherent);
+    }
+}
+
+/// The centre of a pixel.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "an image has at most 2²⁸ pixels"
+)]
+fn centre((x, y): (usize, usize)) -> DVec2 {
+    DVec2::new(x as f64 + 0.5, y as f64 + 0.5)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "images are stored in single precision"
+)]
+pub(super) const fn single(value: f64) -> f32 {
+    value as f32
+}

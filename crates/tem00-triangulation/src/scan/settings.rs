@@ -1,0 +1,57 @@
+use glam::DVec3;
+
+/// How the frames of a scene become the map of a part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScanSettings {
+    /// The name of the surface whose motion the points are freed from; `None` for those that move.
+    pub surface: Option<String>,
+    /// The direction in which heights are counted, of length 1: in the world, as the part stands in its
+    /// description.
+    pub height: DVec3,
+    /// The side of a square cell of the height map, in metres; `None` for a map of columns by profiles.
+    pub pitch: Option<f64>,
+    /// What is averaged.
+    pub average: Averaging,
+    /// The format of the raw frames.
+    pub raw: RawFormat,
+}
+
+/// How many profiles, and how many points of a profile, make one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Averaging {
+    /// The number of frames, one after the other, at least 1.
+    pub frames: u32,
+    /// The number of columns, one beside the other, at least 1.
+    pub columns: usize,
+}
+
+/// How raw frames are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RawFormat {
+    /// Portable network graphics.
+    #[default]
+    Png,
+    /// Tagged image file format.
+    Tiff,
+}
+
+impl Default for Averaging {
+    fn default() -> Self {
+        Self {
+            frames: 1,
+            columns: 1,
+        }
+    }
+}
+
+impl Default for ScanSettings {
+    fn default() -> Self {
+        Self {
+            surface: None,
+            height: DVec3::Z,
+            pitch: None,
+            average: Averaging::default(),
+            raw: RawFormat::default(),
+        }
+    }
+}

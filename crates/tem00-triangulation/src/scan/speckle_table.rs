@@ -1,0 +1,209 @@
+use core::f64::consts::PI;
+
+use rayon::prelude::*;
+use tem00_numerics::jinc;
+
+use crate::PixelCovariance;
+
+/// How the speckle in the pixels of a sensor goes together, for displacements that are whole pixels
+/// apart from each other.
+///
+/// ```text
+/// c(d) = C² ∫∫ Λ(u) Λ(v) |2 J₁(ρ)/ρ|² du dv      ρ = π √(((dₓ + s u)/hₓ)² + ((d_y + s v)/h_y)²)
+/// Λ(u) = 1 − |u|                                 from −1 to 1
+/// ```
+///
+/// with the side s of the sensitive part of a pixel and the speckle size h, both in pixels: the
+/// autocovariance of fully developed speckle behind a circular pupil, integrated over two pixels.
+///
+/// # References
+///
+/// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007: the autocovariance of speckle in an image,
+///   and integration over a detector.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpeckleTable {
+    /// The displacement to which whole pixels are added.
+    offset: [f64; 2],
+    /// The covariances by column and row, both from −reach to reach.
+    values: Vec<f64>,
+    reach: [usize; 2],
+}
+
+/// Speckle as the pixels of a sensor see it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorSpeckle {
+    /// The speckle size along rows and columns, in pixels.
+    pub size: [f64; 2],
+    /// The side of the sensitive part of a pixel, in pixels.
+    pub sensitive_side: f64,
+    /// The variance of the speckle factor in a point: 1 for one polarised pattern.
+    pub variance: f64,
+}
+
+/// How far covariances are kept, in speckle sizes: beyond, those of a row add up to less than 10⁻⁴ of
+/// the first.
+const REACH: f64 = 12.0;
+
+/// The most pixels to either side that are kept.
+const MOST: usize = 256;
+
+impl SpeckleTable {
+    /// Integrates the covariances for the displacements that differ from `offset`, in pixels to the right
+    /// and down, by whole pixels.
+    pub fn new(speckle: &SensorSpeckle, offset: [f64; 2]) -> Self {
+        let reach = speckle.size.map(pixels_within_reach);
+        let [columns, rows] = reach.map(|reach| 2 * reach + 1);
+        let axis = |offset: f64, reach: usize, index: usize| offset + index as f64 - reach as f64;
+        let value = |index: usize| {
+            let (column, row) = (index % columns, index / columns);
+            speckle.covariance([
+                axis(offset[0].fract(), reach[0], column),
+                axis(offset[1].fract(), reach[1], row),
+            ])
+        };
+        Self {
+            offset: offset.map(f64::fract),
+            values: (0..columns * rows).into_par_iter().map(value).collect(),
+            reach,
+        }
+    }
+
+    /// Returns the number of columns to either side beyond which covariances count as 0.
+    pub const fn columns(&self) -> usize {
+        self.reach[0]
+    }
+
+    /// The index of a displacement along one axis.
+    fn index(&self, axis: usize, displacement: f64) -> Option<usize> {
+        let steps = (displacement - self.offset[axis]).round() + self.reach[axis] as f64;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the steps lie in the table"
+        )]
+        let index = (0.0..=2.0 * self.reach[axis] as f64)
+            .contains(&steps)
+            .then_some(steps as usize);
+        index
+    }
+}
+
+impl PixelCovariance for SpeckleTable {
+    /// Returns the covariance; 0 beyond 12 speckle sizes.
+    fn at(&self, displacement: [f64; 2]) -> f64 {
+        let [column, row] = [0, 1].map(|axis| self.index(axis, displacement[axis]));
+        match (column, row) {
+            (Some(column), Some(row)) => self.values[row * (2 * self.reach[0] + 1) + column],
+            _ => 0.0,
+        }
+    }
+}
+
+impl SensorSpeckle {
+    /// Returns the covariance of the speckle factors of two pixels, a displacement in pixels apart.
+    fn covariance(&self, displacement: [f64; 2]) -> f64 {
+        let [across, down] = [0, 1].map(|axis| self.nodes(axis, displacement[axis]));
+        let sum: f64 = across
+            .iter()
+            .flat_map(|a| down.iter().map(move |d| (a, d)))
+            .map(|((x, weight_x), (y, weight_y))| {
+                let field = jinc(PI * x.hypot(*y));
+                weight_x * weight_y * field * field
+            })
+            .sum();
+        self.variance * sum
+    }
+
+    /// The distances, in speckle sizes, at which the integral along an axis takes its values, with the
+    /// weights.
+    fn nodes(&self, axis: usize, displacement: f64) -> Vec<(f64, f64)> {
+        let size = self.size[axis];
+        // Each panel is at most half a speckle wide, to either side of the kink of the triangle.
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "between 1 and 64"
+        )]
+        let panels = (2.0 * self.sensitive_side / size).ceil().clamp(1.0, 64.0) as u32;
+        let width = 1.0 / f64::from(panels);
+        let half = (0..panels).flat_map(|panel| {
+            GAUSS.map(|(node, weight)| (width * (f64::from(panel) + node), width * weight))
+        });
+        half.flat_map(|(u, weight)| [(u, weight), (-u, weight)])
+            .map(|(u, weight)| {
+                let distance = (displacement + self.sensitive_side * u) / size;
+                (distance, weight * (1.0 - u.abs()))
+            })
+            .collect()
+    }
+}
+
+/// Nodes and weights of Gauss and Legendre on [0, 1].
+const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_92),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_1),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_1),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_92),
+];
+
+/// The number of pixels to either side that are kept.
+fn pixels_within_reach(size: f64) -> usize {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 2 and 256"
+    )]
+    let pixels = (REACH * size).ceil().clamp(2.0, MOST as f64) as usize;
+    pixels
+}
+
+#[cfg(test)]
+mod tests {
+    use tem00_statistics::pixel_contrast;
+
+    use super::*;
+
+    fn speckle(size: f64, sensitive_side: f64) -> SensorSpeckle {
+        SensorSpeckle {
+            size: [size; 2],
+            sensitive_side,
+            variance: 1.0,
+        }
+    }
+
+    #[test]
+    fn a_pixel_has_the_contrast_of_integrated_speckle() {
+        for (size, side) in [(0.5, 1.0), (1.0, 0.9), (2.0, 1.0), (4.0, 0.7)] {
+            let table = SpeckleTable::new(&speckle(size, side), [0.0; 2]);
+            let contrast = pixel_contrast(side / size);
+            // Panels of half a speckle leave 10⁻⁷ to four nodes.
+            let error = table.at([0.0; 2]) - contrast * contrast;
+            assert!(error.abs() < 1e-6, "h = {size}: {error:e}");
+        }
+    }
+
+    #[test]
+    fn the_covariance_falls_on_all_sides_alike() {
+        let speckle = speckle(2.0, 1.0);
+        let table = SpeckleTable::new(&speckle, [0.0; 2]);
+        let beside = table.at([3.0, 1.0]);
+        assert!(beside < 0.1 * table.at([0.0; 2]), "{beside}");
+        for same in [[-3.0, 1.0], [3.0, -1.0], [1.0, 3.0]] {
+            let other = table.at(same);
+            assert!((beside - other).abs() < 1e-12, "{same:?}: {other}");
+        }
+        assert!(table.at([100.0, 0.0]).abs() < 1e-300, "beyond the table");
+    }
+
+    #[test]
+    fn displacements_may_be_fractions_of_a_pixel() {
+        let speckle = speckle(2.0, 1.0);
+        let offset = [7.25, -3.5];
+        let table = SpeckleTable::new(&speckle, offset);
+        for displacement in [[0.25, 0.5], [1.25, -0.5], [-0.75, 2.5]] {
+            let direct = speckle.covariance(displacement);
+            let found = table.at(displacement);
+            assert!((found - direct).abs() < 1e-14, "{displacement:?}: {found}");
+        }
+    }
+}

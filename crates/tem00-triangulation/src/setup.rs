@@ -1,0 +1,238 @@
+//! A triangulation set-up as data sheets describe it, and what follows from its geometry.
+
+mod description;
+mod imaged_line;
+mod light_level;
+mod range;
+mod scene;
+
+use glam::{DVec2, DVec3};
+use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+
+use crate::{DetectorSettings, LaserPlane, LineDetector, Sensor, TriangulationError, Triangulator};
+
+pub(crate) use self::{description::within, imaged_line::share_between};
+pub use self::{
+    description::{Averages, LaserLineData, SetupCamera, SetupDescription, SetupSurface},
+    imaged_line::ImagedLine,
+    light_level::LightLevel,
+    range::HeightRange,
+};
+
+/// The speckle sizes, in pixels, whose patterns and covariances can be computed in reasonable time.
+const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
+
+/// A laser-triangulation set-up: a laser line on a flat part, and a camera that looks from the side.
+///
+/// ```text
+///            z
+///    camera  |  laser, from above, in the plane y = 0
+///        \θ  |
+///         \  |          θ: angle between optical axis and laser plane
+///   L      \ |          camera at (0, −L sin θ, L cos θ), looking at the origin
+///           \|
+///   ---------+--------> y      the reference plane z = 0; the line runs along x
+/// ```
+///
+/// x is to the right in the image. A height z moves the line *up* in the image, to first order by
+/// `m z sin θ`; all of the geometry is taken from the camera's projection, not from that.
+///
+/// # Validity
+///
+/// The light falls straight down on a surface that lies flat, Lambertian and rough enough for fully
+/// developed speckle; the line has the same width all over the measuring range. The lens has no
+/// distortion and loses no light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setup {
+    description: SetupDescription,
+    triangulator: Triangulator,
+    sensor: Sensor,
+    detector: LineDetector,
+    line: ImagedLine,
+}
+
+impl Setup {
+    /// Creates a set-up.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a quantity is outside its range; if camera, sensor or detector are not
+    /// possible; if the line is narrower in the image than a tenth of a pixel or wider than a third of
+    /// the image; or if a speckle is smaller than 1/16 of a pixel or larger than 64 pixels.
+    pub fn new(description: SetupDescription) -> Result<Self, TriangulationError> {
+        description.check()?;
+        let camera = camera(&description)?;
+        let sensor = Sensor::new(description.sensor)?;
+        let detector = LineDetector::new(DetectorSettings {
+            saturation: description.detector.saturation.min(saturation(&sensor)),
+            ..description.detector
+        })?;
+        let line = ImagedLine::at(&description, &camera, 0.0).ok_or(NOT_SEEN)?;
+        let plane = LaserPlane::new(DVec3::ZERO, DVec3::Y)?;
+        let setup = Self {
+            description,
+            triangulator: Triangulator::new(camera, plane),
+            sensor,
+            detector,
+            line,
+        };
+        setup.check_image()?;
+        Ok(setup)
+    }
+
+    /// Returns what the set-up was created from.
+    pub const fn description(&self) -> &SetupDescription {
+        &self.description
+    }
+
+    /// Returns the camera.
+    pub const fn camera(&self) -> &Camera {
+        self.triangulator.camera()
+    }
+
+    /// Returns the sensor.
+    pub const fn sensor(&self) -> &Sensor {
+        &self.sensor
+    }
+
+    /// Returns the detector. It takes a pixel for saturated at the sensor's largest grey value, or that
+    /// of its full well if it is less.
+    pub const fn detector(&self) -> &LineDetector {
+        &self.detector
+    }
+
+    /// Returns what turns places in the image into points: the camera and the plane y = 0.
+    pub const fn triangulator(&self) -> &Triangulator {
+        &self.triangulator
+    }
+
+    /// Returns the image of the line on the reference plane.
+    pub const fn line(&self) -> &ImagedLine {
+        &self.line
+    }
+
+    /// Returns the image of the line on a flat surface at a height, in metres, or `None` where the
+    /// camera does not see it. It may lie outside of the image.
+    pub fn line_at(&self, height: f64) -> Option<ImagedLine> {
+        ImagedLine::at(&self.description, self.camera(), height)
+    }
+
+    /// Returns the height, in metres, of a line that is seen in the middle column at a place `y` along
+    /// it, in pixels, or `None` if the line of sight does not meet the laser plane.
+    pub fn height_at(&self, y: f64) -> Option<f64> {
+        let [width, _] = self.description.camera.resolution;
+        let middle = 0.5 * width as f64;
+        let point = self.triangulator.point(DVec2::new(middle, y));
+        point.map(|point| point.z)
+    }
+
+    /// Returns the magnification on the axis, `m = f / (L − f)`.
+    pub fn magnification(&self) -> f64 {
+        let SetupCamera {
+            focal_length,
+            distance,
+            ..
+        } = self.description.camera;
+        focal_length / (distance - focal_length)
+    }
+
+    /// Returns the width of the field, in metres: the length of the part of the reference line that is
+    /// in the image.
+    pub fn field_width(&self) -> f64 {
+        let [width, _] = self.description.camera.resolution;
+        width as f64 * self.description.sensor.pixel_pitch / self.magnification()
+    }
+
+    /// Returns the mean number of electrons in the brightest pixel, by light and dark current, for a
+    /// line in the middle of a pixel.
+    pub fn peak_electrons(&self) -> f64 {
+        self.line.pixel_electrons(-0.5, 0.0) + self.sensor.dark_electrons()
+    }
+
+    /// Returns the mean of the brightest pixel as a part of what the sensor can hold or tell, whichever
+    /// is less: the full well, or the range of its grey values.
+    ///
+    /// Speckle makes single pixels brighter than the mean: several times, where pixels are small
+    /// against it.
+    pub fn saturation(&self) -> f64 {
+        self.saturation_of(self.peak_electrons())
+    }
+
+    fn check_image(&self) -> Result<(), TriangulationError> {
+        let [width, height] = self.description.camera.resolution;
+        let rows = height as f64;
+        let per_pixel = self.line.speckle_size;
+        let (least, greatest) = SPECKLE_SIZES;
+        let allowed = "such that the speckle size λ F (1 + m) is from 1/16 to 64 pixels";
+        within("f_number", per_pixel[0], (least, greatest), allowed)?;
+        within("f_number", per_pixel[1], (least, greatest), allowed)?;
+        let allowed = "such that the line is from 0.1 pixel to a third of the image wide in it; its \
+                       width there, in pixels, is the value";
+        within("line_width", self.line.width, (0.1, rows / 3.0), allowed)?;
+        let window = self.description.detector.window as f64;
+        let allowed = "at most the number of rows of the image";
+        within("window", window, (1.0, rows), allowed)?;
+        let allowed = "at least 8 columns and 16 rows";
+        within("resolution", width as f64, (8.0, f64::MAX), allowed)?;
+        within("resolution", rows, (16.0, f64::MAX), allowed)
+    }
+}
+
+const NOT_SEEN: TriangulationError = TriangulationError::Direction {
+    parameter: "angle",
+    allowed: "such that the camera sees the line",
+};
+
+/// Returns the grey value from which on a pixel of the sensor is saturated.
+fn saturation(sensor: &Sensor) -> f64 {
+    let d = sensor.description();
+    let full = ((1_u64 << d.bit_depth) - 1) as f64;
+    full.min((d.black_level + d.gain * d.full_well).floor())
+}
+
+/// Returns the camera of a set-up.
+///
+/// The plane in focus of a sensor tilted by τ is turned by τ′ the other way, `tan τ′ = (L/d) tan τ`;
+/// the laser plane is a right angle less θ away from the plane across the axis, and what is higher in
+/// the image is nearer:
+///
+/// ```text
+/// tan τ = −m / tan θ
+/// ```
+fn camera(description: &SetupDescription) -> Result<Camera, TriangulationError> {
+    let SetupCamera {
+        focal_length,
+        f_number,
+        resolution,
+        distance,
+        angle,
+        scheimpflug,
+    } = description.camera;
+    let (sin, cos) = angle.sin_cos();
+    let magnification = focal_length / (distance - focal_length);
+    let tilt = if scheimpflug {
+        -libm::atan(magnification * cos / sin)
+    } else {
+        0.0
+    };
+    Ok(Camera::new(CameraDescription {
+        position: distance * DVec3::new(0.0, -sin, cos),
+        look_at: DVec3::ZERO,
+        up: DVec3::Z,
+        focal_length,
+        f_number,
+        focus_distance: distance,
+        pixel_pitch: description.sensor.pixel_pitch,
+        resolution,
+        principal_point: None,
+        tilt: SensorTilt {
+            angle: tilt,
+            azimuth: 0.0,
+        },
+        distortion: RadialDistortion::default(),
+        depth_of_field: true,
+    })?)
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

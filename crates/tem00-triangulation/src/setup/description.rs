@@ -1,0 +1,218 @@
+use crate::{DetectorSettings, SensorDescription, TriangulationError};
+
+/// What data sheets tell of a triangulation set-up.
+///
+/// The laser plane stands upright on the reference plane, the camera looks at the line from the side;
+/// see [`Setup`](crate::Setup) for the geometry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SetupDescription {
+    /// The laser and its line.
+    pub laser: LaserLineData,
+    /// The camera's lens and where it stands; the pixel pitch is that of the sensor.
+    pub camera: SetupCamera,
+    /// The camera's sensor.
+    pub sensor: SensorDescription,
+    /// What the line falls on.
+    pub surface: SetupSurface,
+    /// How the line is found.
+    pub detector: DetectorSettings,
+    /// The standard uncertainty of a height by the calibration alone, in metres.
+    pub calibration_uncertainty: f64,
+    /// What heights are averaged over.
+    pub average: Averages,
+}
+
+/// A laser line on the part: of uniform power along the line, of Gaussian profile across it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaserLineData {
+    /// The vacuum wavelength, in metres.
+    pub wavelength: f64,
+    /// The power in the line, in watts.
+    pub power: f64,
+    /// The full width of the line between the points of 1/e², on the part, in metres.
+    pub line_width: f64,
+    /// The length of the line on the part, in metres.
+    pub line_length: f64,
+}
+
+/// The lens of a camera, and where the camera stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SetupCamera {
+    /// The focal length, in metres.
+    pub focal_length: f64,
+    /// The f-number: focal length by diameter of the entrance pupil.
+    pub f_number: f64,
+    /// The numbers of pixel columns and rows.
+    pub resolution: [usize; 2],
+    /// The distance from the entrance pupil to the line on the reference plane, in metres.
+    pub distance: f64,
+    /// The angle between the optical axis and the laser plane, in radians.
+    pub angle: f64,
+    /// Whether the sensor is tilted so that the laser plane is in focus, after Scheimpflug.
+    pub scheimpflug: bool,
+}
+
+/// A surface that scatters evenly and coherently.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SetupSurface {
+    /// The Lambertian reflectance at the wavelength of the laser, from 0 to 1.
+    pub reflectance: f64,
+    /// The number of independent speckle patterns that add in each frame.
+    pub patterns: u32,
+    /// The degree of polarisation of the scattered light, from 0 to 1.
+    pub polarisation: f64,
+}
+
+/// What a height is averaged over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Averages {
+    /// The number of neighbouring columns.
+    pub columns: u32,
+    /// The number of frames.
+    pub frames: u32,
+    /// Whether each frame has speckle of its own, because the part moves on between them. On a part
+    /// that rests, speckle rests too, and does not average out.
+    pub independent_speckle: bool,
+}
+
+impl Default for Averages {
+    /// One column of one frame.
+    fn default() -> Self {
+        Self {
+            columns: 1,
+            frames: 1,
+            independent_speckle: false,
+        }
+    }
+}
+
+impl SetupSurface {
+    /// Returns the contrast of the speckle before pixels average over it.
+    ///
+    /// ```text
+    /// C = √((1 + P²) / (2 N))      P: degree of polarisation, N: independent patterns
+    /// ```
+    ///
+    /// # References
+    ///
+    /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 3.
+    pub fn contrast(&self) -> f64 {
+        let Self {
+            patterns,
+            polarisation,
+            ..
+        } = *self;
+        ((1.0 + polarisation * polarisation) / (2.0 * f64::from(patterns))).sqrt()
+    }
+}
+
+impl SetupDescription {
+    /// Checks what can be checked number by number.
+    pub(super) fn check(&self) -> Result<(), TriangulationError> {
+        self.check_lengths()?;
+        self.check_camera()?;
+        self.check_surface()?;
+        let uncertainty = self.calibration_uncertainty;
+        within(
+            "uncertainty",
+            uncertainty,
+            (0.0, 1.0),
+            "from 0 to 1 m, the standard uncertainty of the calibration",
+        )?;
+        let Averages {
+            columns, frames, ..
+        } = self.average;
+        for (parameter, count) in [("columns", columns), ("frames", frames)] {
+            let allowed = "a number from 1 to 10000 to average over";
+            within(parameter, f64::from(count), (1.0, 1e4), allowed)?;
+        }
+        let [width, _] = self.camera.resolution;
+        if columns as usize > width {
+            return Err(TriangulationError::OutOfRange {
+                parameter: "columns",
+                value: f64::from(columns),
+                allowed: "at most the number of columns of the image",
+            });
+        }
+        Ok(())
+    }
+
+    fn check_lengths(&self) -> Result<(), TriangulationError> {
+        let LaserLineData {
+            wavelength,
+            power,
+            line_width,
+            line_length,
+        } = self.laser;
+        let allowed = "from 100 nm to 100 µm (in metres)";
+        within("wavelength", wavelength, (100e-9, 100e-6), allowed)?;
+        let allowed = "positive, at most 1 kW (in watts)";
+        within("power", power, (f64::MIN_POSITIVE, 1e3), allowed)?;
+        let allowed = "from 1 µm to 1 m (in metres)";
+        within("line_width", line_width, (1e-6, 1.0), allowed)?;
+        let allowed = "from the width of the line to 100 m (in metres)";
+        within("line_length", line_length, (line_width, 100.0), allowed)?;
+        let pitch = self.sensor.pixel_pitch;
+        let allowed = "from 0.1 µm to 1 mm (in metres)";
+        within("pixel_pitch", pitch, (0.1e-6, 1e-3), allowed)
+    }
+
+    fn check_camera(&self) -> Result<(), TriangulationError> {
+        let SetupCamera {
+            focal_length,
+            f_number,
+            distance,
+            angle,
+            ..
+        } = self.camera;
+        let allowed = "from 0.1 mm to 100 m (in metres)";
+        within("focal_length", focal_length, (1e-4, 100.0), allowed)?;
+        within("f_number", f_number, (0.5, 1e3), "from 0.5 to 1000")?;
+        let allowed = "from 1.001 focal lengths to 1 km (in metres)";
+        within("distance", distance, (1.001 * focal_length, 1e3), allowed)?;
+        let degree = core::f64::consts::PI / 180.0;
+        let allowed = "from 1° to 89° (in radians)";
+        // A hair more than that, for what rounding does to the ends.
+        within(
+            "angle",
+            angle,
+            (0.999_999 * degree, 89.000_001 * degree),
+            allowed,
+        )
+    }
+
+    fn check_surface(&self) -> Result<(), TriangulationError> {
+        let SetupSurface {
+            reflectance,
+            patterns,
+            polarisation,
+        } = self.surface;
+        let allowed = "positive, at most 1";
+        within(
+            "reflectance",
+            reflectance,
+            (f64::MIN_POSITIVE, 1.0),
+            allowed,
+        )?;
+        let allowed = "from 1 to 64 independent patterns";
+        within("patterns", f64::from(patterns), (1.0, 64.0), allowed)?;
+        within("polarisation", polarisation, (0.0, 1.0), "from 0 to 1")
+    }
+}
+
+/// Checks that a quantity lies in a closed range.
+pub(crate) fn within(
+    parameter: &'static str,
+    value: f64,
+    (least, greatest): (f64, f64),
+    allowed: &'static str,
+) -> Result<(), TriangulationError> {
+    if (least..=greatest).contains(&value) {
+        return Ok(());
+    }
+    Err(TriangulationError::OutOfRange {
+        parameter,
+        value,
+        allowed,
+    })
+}

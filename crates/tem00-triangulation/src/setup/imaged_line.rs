@@ -1,0 +1,113 @@
+use core::f64::consts::{PI, SQRT_2};
+
+use glam::DVec3;
+use tem00_tracer::Camera;
+
+use super::SetupDescription;
+use crate::Sensor;
+
+/// The step in height, as a part of the distance, of central differences: they err by its square.
+const STEP: f64 = 1e-5;
+
+/// The image of the line on a flat surface.
+///
+/// Its profile along a column is a Gaussian. The squares of the widths of what makes it wide add:
+///
+/// ```text
+/// W² = W_line² + W_lens² + b²
+/// W_line   the projection of the line on the part, m · line_width · cos θ to first order
+/// W_lens   = 4√2 h / π, the Gaussian of the same curvature as the peak of the lens's Airy disc
+/// b        = D s |1/Z_focus − 1/Z|, the diameter of the disc of defocus, whose 4σ across is b
+/// ```
+///
+/// Z is the depth of the surface before the lens, `Z_focus` that in focus at this image point, s the
+/// depth of the sensor behind the lens, D the diameter of the pupil and h = λ s / D the speckle size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImagedLine {
+    /// The place along the middle column, in pixels, y down.
+    pub position: f64,
+    /// The full width between the points of 1/e², in pixels.
+    pub width: f64,
+    /// The part of the width that is the line itself, in pixels.
+    pub line_width: f64,
+    /// The part of the width by diffraction at the pupil, in pixels.
+    pub diffraction_width: f64,
+    /// The part of the width by defocus, in pixels.
+    pub blur: f64,
+    /// The speckle size along the rows and along the columns, in pixels: a sensor that is tilted
+    /// stretches the speckle along its columns.
+    pub speckle_size: [f64; 2],
+    /// By how much the height changes per pixel that the line moves in the image, in metres.
+    pub height_per_pixel: f64,
+    /// The irradiance on the sensor along the crest of the line, in W/m².
+    pub peak_irradiance: f64,
+    /// The mean number of electrons that the light frees in a column.
+    pub column_electrons: f64,
+    /// The height of the sensitive part of a pixel, in pixels.
+    pub sensitive_height: f64,
+}
+
+impl ImagedLine {
+    /// Returns the image at a height, or `None` if the camera does not see the line.
+    pub(super) fn at(description: &SetupDescription, camera: &Camera, height: f64) -> Option<Self> {
+        let laser = &description.laser;
+        let pitch = description.sensor.pixel_pitch;
+        let row = |y: f64, z: f64| camera.project(DVec3::new(0.0, y, z)).map(|pixel| pixel.y);
+        let half = 0.5 * laser.line_width;
+        let line_width = (row(half, height)? - row(-half, height)?).abs();
+        let step = STEP * description.camera.distance;
+        let moved = row(0.0, height - step)? - row(0.0, height + step)?;
+        let pixel = camera.project(DVec3::new(0.0, 0.0, height))?;
+        let geometry = camera.imaging_geometry_at(pixel, laser.wavelength).ok()?;
+        let stretch = 1.0 / camera.description().tilt.angle.cos();
+        let speckle = geometry.speckle_size() / pitch;
+        let diffraction_width = 4.0 * SQRT_2 / PI * speckle * stretch;
+        let (sin, cos) = description.camera.angle.sin_cos();
+        let depth = description.camera.distance - height * cos;
+        let defocus = geometry.defocus_at(depth).abs();
+        let disc = geometry.pupil_diameter() * geometry.principal_distance() * defocus;
+        let blur = disc * stretch / pitch;
+        let width = line_width.hypot(diffraction_width).hypot(blur);
+        let on_part = laser.power / laser.line_length * (8.0 / PI).sqrt() / laser.line_width;
+        let radiance = description.surface.reflectance * on_part / PI;
+        let unwidened = radiance * camera.irradiance_per_radiance(pixel);
+        let peak_irradiance = unwidened * line_width / width;
+        let sensor = Sensor::new(description.sensor).ok()?;
+        let line = Self {
+            position: pixel.y,
+            width,
+            line_width,
+            diffraction_width,
+            blur,
+            speckle_size: [speckle, speckle * stretch],
+            height_per_pixel: 2.0 * step / moved,
+            peak_irradiance,
+            column_electrons: sensor.electrons(peak_irradiance, laser.wavelength)
+                * width
+                * (PI / 8.0).sqrt(),
+            sensitive_height: 2.0 * sensor.sensitive_half_width(),
+        };
+        (depth > 0.0 && sin > 0.0 && line.height_per_pixel.is_finite()).then_some(line)
+    }
+
+    /// Returns the mean number of electrons that light frees in the pixel of a column that begins at
+    /// `start`, in pixels, if the line is at `centre`: the mean of the line over the sensitive part of
+    /// the pixel, of the height a about its middle.
+    ///
+    /// ```text
+    /// n = N/(2a) · (erf(√8 (y + a/2 − c)/W) − erf(√8 (y − a/2 − c)/W))    N electrons in the column
+    /// ```
+    pub fn pixel_electrons(&self, start: f64, centre: f64) -> f64 {
+        let half = 0.5 * self.sensitive_height;
+        let middle = start + 0.5;
+        let share = share_between(self.width, middle - half - centre, middle + half - centre);
+        self.column_electrons / self.sensitive_height * share
+    }
+}
+
+/// Returns the share of the light of a line of the full width `width` between two distances from its
+/// middle.
+pub(crate) fn share_between(width: f64, from: f64, to: f64) -> f64 {
+    let scale = 8.0_f64.sqrt() / width;
+    0.5 * (libm::erf(scale * to) - libm::erf(scale * from))
+}

@@ -1,0 +1,80 @@
+use super::Setup;
+
+/// A range of heights, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeightRange {
+    /// The least height.
+    pub low: f64,
+    /// The greatest height.
+    pub high: f64,
+}
+
+impl HeightRange {
+    /// Returns the length of the range, in metres; 0 if it is empty.
+    pub fn length(&self) -> f64 {
+        (self.high - self.low).max(0.0)
+    }
+
+    fn and(&self, other: &Self) -> Self {
+        Self {
+            low: self.low.max(other.low),
+            high: self.high.min(other.high),
+        }
+    }
+}
+
+impl Setup {
+    /// Returns the heights whose line is in the image, with half a window of the detector above and
+    /// below it, in metres; at most those within one camera height of the reference plane.
+    pub fn seen_range(&self) -> HeightRange {
+        let description = self.description();
+        let [_, height] = description.camera.resolution;
+        let margin = 0.5 * description.detector.window as f64;
+        let limit = description.camera.distance * description.camera.angle.cos();
+        let at = |y: f64| self.height_at(y);
+        HeightRange {
+            low: at(height as f64 - margin).unwrap_or(-limit).max(-limit),
+            high: at(margin).unwrap_or(limit).min(limit),
+        }
+    }
+
+    /// Returns the heights at which defocus makes the image of the line at most √2 times as wide as
+    /// in focus, in metres: there the disc of defocus is as wide as that line.
+    ///
+    /// ```text
+    /// D s |1/Z − 1/L| = W₀      Z = L − z cos θ
+    /// ```
+    ///
+    /// A set-up after Scheimpflug has the whole laser plane in focus: its range is without end, as is
+    /// that of a pupil so small that the disc never grows as wide as the line.
+    pub fn depth_of_field(&self) -> HeightRange {
+        if self.description().camera.scheimpflug {
+            return HeightRange {
+                low: f64::NEG_INFINITY,
+                high: f64::INFINITY,
+            };
+        }
+        let distance = self.description().camera.distance;
+        let width = self.line().width * self.description().sensor.pixel_pitch;
+        let camera = self.camera();
+        let vergence = width / (camera.pupil_diameter() * camera.image_distance());
+        let height = |inverse_depth: f64| {
+            (distance - 1.0 / inverse_depth) / self.description().camera.angle.cos()
+        };
+        let farthest = 1.0 / distance - vergence;
+        HeightRange {
+            low: if farthest > 0.0 {
+                height(farthest)
+            } else {
+                f64::NEG_INFINITY
+            },
+            high: height(1.0 / distance + vergence),
+        }
+    }
+
+    /// Returns the heights that can be measured, in metres: those that are both
+    /// [seen](Self::seen_range) and within the [depth of field](Self::depth_of_field).
+    pub fn measuring_range(&self) -> HeightRange {
+        self.seen_range().and(&self.depth_of_field())
+    }
+}

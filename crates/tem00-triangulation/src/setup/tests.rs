@@ -1,0 +1,228 @@
+use approx::assert_relative_eq;
+
+use super::*;
+use crate::{LineMethod, SensorDescription};
+
+/// A 25 mm lens at f/8 that looks from 300 mm at 30°, at a line of 0.2 mm.
+pub(crate) fn description() -> SetupDescription {
+    SetupDescription {
+        laser: LaserLineData {
+            wavelength: 650e-9,
+            power: 5e-3,
+            line_width: 0.2e-3,
+            line_length: 50e-3,
+        },
+        camera: SetupCamera {
+            focal_length: 25e-3,
+            f_number: 8.0,
+            resolution: [640, 480],
+            distance: 0.3,
+            angle: 30_f64.to_radians(),
+            scheimpflug: false,
+        },
+        sensor: SensorDescription {
+            quantum_efficiency: 0.6,
+            exposure_time: 0.1e-3,
+            pixel_pitch: 3.45e-6,
+            ..SensorDescription::typical(12)
+        },
+        surface: SetupSurface {
+            reflectance: 0.5,
+            patterns: 1,
+            polarisation: 1.0,
+        },
+        detector: DetectorSettings {
+            method: LineMethod::CentreOfGravity,
+            window: 31,
+            least_peak: 1.0,
+            most_lines: 1,
+            saturation: f64::INFINITY,
+        },
+        calibration_uncertainty: 1e-6,
+        average: Averages::default(),
+    }
+}
+
+fn setup() -> Setup {
+    Setup::new(description()).unwrap()
+}
+
+fn scheimpflug() -> Setup {
+    let mut description = description();
+    description.camera.scheimpflug = true;
+    Setup::new(description).unwrap()
+}
+
+#[test]
+fn a_tilted_sensor_has_the_laser_plane_in_focus() {
+    let (_, normal) = scheimpflug().camera().plane_in_focus();
+    // The plane y = 0, to rounding; either side of it may count as its front.
+    assert!((normal.dot(DVec3::Y).abs() - 1.0).abs() < 1e-12, "{normal}");
+    for height in [-5e-3, 0.0, 5e-3] {
+        let line = scheimpflug().line_at(height).unwrap();
+        // A hundred roundings of 1/Z = 3.3 /m, times D s = 8.5e−5 m² in pixels of 3.45 µm.
+        assert!(line.blur < 1e-11, "{height}: {}", line.blur);
+    }
+}
+
+#[test]
+fn the_height_per_pixel_is_that_of_the_pinhole() {
+    let (sin, cos) = (0.5, 0.75_f64.sqrt());
+    let (distance, focal) = (0.3, 25e-3_f64);
+    let principal = focal * distance / (distance - focal);
+    for height in [-4e-3, 0.0, 6e-3] {
+        let line = setup().line_at(height).unwrap();
+        // y = s z sin θ / (L − z cos θ), so dy/dz = s sin θ L / (L − z cos θ)².
+        let depth: f64 = distance - height * cos;
+        let slope = principal * sin * distance / (depth * depth) / 3.45e-6;
+        // Central differences of 1e−5 L err by its square.
+        assert_relative_eq!(line.height_per_pixel, 1.0 / slope, max_relative = 1e-9);
+    }
+    assert_relative_eq!(
+        setup().magnification(),
+        principal / distance,
+        max_relative = 1e-12
+    );
+}
+
+#[test]
+fn heights_come_back_from_the_places_of_the_line() {
+    for setup in [setup(), scheimpflug()] {
+        for height in [-4e-3, 0.0, 6e-3] {
+            let line = setup.line_at(height).unwrap();
+            let back = setup.height_at(line.position).unwrap();
+            // A few roundings of the camera's distance.
+            assert!((back - height).abs() < 1e-14, "{height}: {back}");
+        }
+    }
+}
+
+#[test]
+fn light_through_the_pupil_frees_the_electrons_of_a_column() {
+    let (line, d) = (*setup().line(), description());
+    // What a strip of one pixel along the line scatters into the solid angle of the pupil.
+    let strip = d.sensor.pixel_pitch / setup().magnification();
+    let scattered = d.laser.power / d.laser.line_length * strip * d.surface.reflectance;
+    let pupil = core::f64::consts::PI * (0.5_f64 * 25e-3 / 8.0).powi(2);
+    let cosine = d.camera.angle.cos();
+    let power = scattered * cosine / core::f64::consts::PI * pupil / (0.3 * 0.3);
+    let photon = 6.626_070_15e-34 * 299_792_458.0 / d.laser.wavelength;
+    let electrons = power * d.sensor.exposure_time / photon * d.sensor.quantum_efficiency;
+    // The width of the line in perspective differs by (W/2L)² from the first-order one.
+    assert_relative_eq!(line.column_electrons, electrons, max_relative = 1e-6);
+    let pixels: f64 = (-200..200)
+        .map(|y| line.pixel_electrons(f64::from(y), 0.3))
+        .sum();
+    assert_relative_eq!(pixels, line.column_electrons, max_relative = 1e-12);
+}
+
+#[test]
+fn the_line_is_as_wide_as_its_projection_the_lens_and_defocus_make_it() {
+    let line = *setup().line();
+    let magnification = setup().magnification();
+    let flat = magnification * 0.2e-3 * 0.75_f64.sqrt() / 3.45e-6;
+    // To second order in W/L = 7e−4.
+    assert_relative_eq!(line.line_width, flat, max_relative = 1e-6);
+    let speckle = 650e-9 * 8.0 * (1.0 + magnification) / 3.45e-6;
+    assert_relative_eq!(line.speckle_size[0], speckle, max_relative = 1e-12);
+    assert_relative_eq!(line.speckle_size[1], speckle, max_relative = 1e-12);
+    // 1 − v²/4 of [2 J₁(v)/v]² with v = π r/h equals 1 − r²/2σ² for σ = √2 h/π.
+    let airy = 4.0 * core::f64::consts::SQRT_2 * speckle / core::f64::consts::PI;
+    assert_relative_eq!(line.diffraction_width, airy, max_relative = 1e-12);
+    assert!(
+        line.blur < 1e-9,
+        "in focus at the reference plane: {}",
+        line.blur
+    );
+}
+
+#[test]
+fn at_the_ends_of_the_depth_of_field_the_line_is_wider_by_a_root_of_two() {
+    let setup = setup();
+    let in_focus = setup.line().width * 3.45e-6;
+    let range = setup.depth_of_field();
+    for height in [range.low, range.high] {
+        let blur = setup.line_at(height).unwrap().blur * 3.45e-6;
+        assert_relative_eq!(blur, in_focus, max_relative = 1e-9);
+    }
+    let smaller = Setup::new(SetupDescription {
+        camera: SetupCamera {
+            f_number: 16.0,
+            ..description().camera
+        },
+        ..description()
+    });
+    let smaller = smaller.unwrap().depth_of_field();
+    assert!(
+        smaller.length() > 2.0 * range.length(),
+        "{smaller:?}, {range:?}"
+    );
+    assert!(
+        scheimpflug().depth_of_field().length().is_infinite(),
+        "all is in focus"
+    );
+}
+
+#[test]
+fn the_measuring_range_is_seen_with_half_a_window_about_it() {
+    for setup in [setup(), scheimpflug()] {
+        let HeightRange { low, high } = setup.seen_range();
+        let top = setup.line_at(high).unwrap().position;
+        let bottom = setup.line_at(low).unwrap().position;
+        assert!(
+            (top - 15.5).abs() < 1e-9 && (bottom - 464.5).abs() < 1e-9,
+            "{top}, {bottom}"
+        );
+        let range = setup.measuring_range();
+        assert!(
+            range.low >= low && range.high <= high && range.length() > 0.0,
+            "{range:?}"
+        );
+    }
+}
+
+#[test]
+fn the_scene_of_a_setup_is_read_as_one() {
+    for setup in [setup(), scheimpflug()] {
+        let scene = tem00_tracer::parse_scene(&setup.scene(1e-3), std::path::Path::new("."));
+        let camera = scene.unwrap().camera;
+        let point = DVec3::new(1e-3, 0.0, 2e-3);
+        let (ours, theirs) = (setup.camera().project(point), camera.project(point));
+        let apart = ours.unwrap().distance(theirs.unwrap());
+        assert!(apart < 1e-9, "{apart}");
+    }
+}
+
+#[test]
+fn impossible_setups_are_rejected_by_name() {
+    type Change = fn(&mut SetupDescription);
+    let bad: [(&str, Change); 18] = [
+        ("wavelength", |d| d.laser.wavelength = f64::NAN),
+        ("power", |d| d.laser.power = 0.0),
+        ("line_width", |d| d.laser.line_width = f64::INFINITY),
+        ("line_width", |d| d.laser.line_width = 20e-3),
+        ("line_length", |d| d.laser.line_length = 0.1e-3),
+        ("pixel_pitch", |d| d.sensor.pixel_pitch = -1.0),
+        ("focal_length", |d| d.camera.focal_length = 0.0),
+        ("f_number", |d| d.camera.f_number = 0.1),
+        ("f_number", |d| d.camera.f_number = 900.0),
+        ("distance", |d| d.camera.distance = 25e-3),
+        ("angle", |d| d.camera.angle = 0.0),
+        ("reflectance", |d| d.surface.reflectance = 1.1),
+        ("patterns", |d| d.surface.patterns = 0),
+        ("polarisation", |d| d.surface.polarisation = -0.1),
+        ("uncertainty", |d| d.calibration_uncertainty = f64::NAN),
+        ("columns", |d| d.average.columns = 0),
+        ("columns", |d| d.average.columns = 641),
+        ("frames", |d| d.average.frames = 0),
+    ];
+    for (name, change) in bad {
+        let mut description = description();
+        change(&mut description);
+        let error = Setup::new(description).unwrap_err();
+        let TriangulationError::OutOfRange { parameter, .. } = error else {
+            panic!("{name}: {error:?}");
+        };
+        assert_eq!(parameter, name, "{error}");
+    }
+}

@@ -1,0 +1,174 @@
+//! What the example and the test of the noise of laser lines share: rendered frames of lines on a plate
+//! under speckle, and how far their columns scatter.
+
+use std::{error::Error, path::Path, sync::atomic::AtomicBool};
+
+use tem00::{
+    tracer::{Crop, RenderOptions, Scene, SpeckleModel, SpecklePlan, parse_scene, render_frame},
+    triangulation::{DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, Triangulator},
+};
+
+const WAVELENGTH: f64 = 650e-9;
+const DISTANCE: f64 = 0.3;
+
+/// A line and a camera that looks at it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LineFrames {
+    /// Full 1/e² thickness of the line on the plate, in metres.
+    pub(crate) thickness: f64,
+    pub(crate) f_number: f64,
+    /// Side of a pixel, in metres: the height of a row that is read across the line.
+    pub(crate) pixel_pitch: f64,
+    /// Between the axis of the camera and the laser, which shines squarely onto the plate, in degrees.
+    pub(crate) angle: f64,
+    pub(crate) samples_per_pixel: u32,
+    /// Length of the lines in the image, in speckle sizes: no more than the speckle pattern is wide.
+    pub(crate) length: usize,
+    /// Lines at different places of one speckle pattern.
+    pub(crate) lines: usize,
+    pub(crate) seed: u64,
+}
+
+/// What the columns of the frames tell. Lengths are in speckle sizes h in the image.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Noise {
+    /// The 1/e² half-width of the line in the image.
+    pub(crate) radius: f64,
+    /// The extent of a pixel along the line.
+    pub(crate) row_height: f64,
+    /// Standard deviation of the centroids.
+    pub(crate) deviation: f64,
+    /// Relative standard error of that.
+    pub(crate) error: f64,
+}
+
+impl LineFrames {
+    /// Returns the scene with the laser square above a place `y` of the plate, and an image of
+    /// `resolution`.
+    fn scene(&self, y: f64, resolution: [usize; 2]) -> Result<Scene, Box<dyn Error>> {
+        let (sin, cos) = self.angle.to_radians().sin_cos();
+        let text = format!(
+            r#"
+            [camera]
+            position = [0, {camera_y}, {camera_z}]
+            look_at = [0, 0, 0]
+            focal_length = 25e-3
+            f_number = {f_number}
+            pixel_pitch = {pitch}
+            resolution = {resolution:?}
+
+            [speckle]
+            size = {size}
+            diameter = {diameter}
+
+            [[laser]]
+            wavelength = {WAVELENGTH}
+            power = 5e-3
+            position = [0, {y}, 0.25]
+            look_at = [0, {y}, 0]
+            [laser.line]
+            fan_angle = "60 deg"
+            thickness = {thickness}
+            focus_curve = "plane"
+            profile = "uniform"
+
+            [[surface]]
+            rectangle = {{ centre = [0, 0, 0], normal = [0, 0, 1], size = [0.4, 0.4] }}
+            lambertian = {{ reflectance = 0.5 }}
+            "#,
+            camera_y = -DISTANCE * sin,
+            camera_z = DISTANCE * cos,
+            f_number = self.f_number,
+            pitch = self.pixel_pitch,
+            size = 2 * self.length,
+            diameter = self.length,
+            thickness = self.thickness,
+        );
+        Ok(parse_scene(&text, Path::new("."))?)
+    }
+
+    /// Renders the lines and finds them in all columns.
+    pub(crate) fn noise(&self) -> Result<Noise, Box<dyn Error>> {
+        let camera = self.scene(0.0, [1, 1])?.camera;
+        let geometry = camera.imaging_geometry(WAVELENGTH)?;
+        let speckle_size = geometry.speckle_size_in_pixels();
+        let scale = camera.image_distance() / DISTANCE / self.pixel_pitch;
+        let radius = 0.5 * self.thickness * scale * self.angle.to_radians().cos();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a few hundred pixels"
+        )]
+        let [columns, rows] =
+            [self.length as f64 * speckle_size, 4.0 * radius].map(|length| length.ceil() as usize);
+        let places = self.places([columns, rows])?;
+        let squares: f64 = places.iter().map(|place| place * place).sum();
+        // Columns hold what is independent at distances of 0.76 h, ∫ of the squared correlation of
+        // points of rows, or of the pixels themselves.
+        let row_height = speckle_size.recip();
+        let independent = (self.lines * self.length) as f64 / row_height.hypot(0.76);
+        Ok(Noise {
+            radius: radius / speckle_size,
+            row_height,
+            deviation: (squares / places.len() as f64).sqrt() / speckle_size,
+            error: (2.0 * independent).sqrt().recip(),
+        })
+    }
+
+    /// Returns how far each column of each line seems from where it is without speckle, in pixels.
+    fn places(&self, [columns, rows]: [usize; 2]) -> Result<Vec<f64>, Box<dyn Error>> {
+        let resolution = [columns, rows * self.lines];
+        let scene = self.scene(0.0, resolution)?;
+        let plate = LaserPlane::new(DVec3::ZERO, DVec3::Z)?;
+        let on_plate = Triangulator::new(scene.camera, plate);
+        let options = RenderOptions {
+            samples_per_pixel: self.samples_per_pixel,
+            seed: self.seed,
+            ..RenderOptions::default()
+        };
+        let plan = SpecklePlan::new(&scene, options.formulas, self.seed)?;
+        let model = SpeckleModel::generate(&scene, &plan)?;
+        let mut places = Vec::new();
+        for line in 0..self.lines {
+            let middle = (line as f64 + 0.5) * rows as f64;
+            let point = on_plate.point(DVec2::new(0.5 * columns as f64, middle));
+            let y = point.ok_or("the camera does not see the plate")?.y;
+            let options = RenderOptions {
+                crop: Some(Crop {
+                    x: 0,
+                    y: line * rows,
+                    width: columns,
+                    height: rows,
+                }),
+                ..options
+            };
+            let scene = self.scene(y, resolution)?;
+            let cancel = AtomicBool::new(false);
+            let frame = render_frame(&scene, Some(&model), 0, &options, |_| (), &cancel)?;
+            let layers = &frame.lasers[0];
+            let [speckled, even] = [&layers.coherent_after, &layers.coherent_before];
+            for x in 0..columns {
+                let [speckled, even] =
+                    [speckled, even].map(|image| centroid((0..rows).map(|y| image[(x, y)])));
+                places.push(speckled? - even?);
+            }
+        }
+        Ok(places)
+    }
+}
+
+/// Returns the centre of gravity of a column that is dark beyond its ends: over a window so wide that it
+/// holds the whole line wherever its brightest speckle is.
+fn centroid(column: impl ExactSizeIterator<Item = f32>) -> Result<f64, Box<dyn Error>> {
+    let rows = column.len();
+    let dark = || core::iter::repeat_n(0.0, rows);
+    let column: Vec<_> = dark().chain(column).chain(dark()).collect();
+    let detector = LineDetector::new(DetectorSettings {
+        window: 2 * rows - 1,
+        least_peak: 0.0,
+        ..DetectorSettings::default()
+    })?;
+    let points = detector.detect_column(&column);
+    let point = points.first().ok_or("a column without a line")?;
+    Ok(point.position)
+}

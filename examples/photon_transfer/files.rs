@@ -1,0 +1,79 @@
+//! The series in files: frames as PNG, and the list of them that evaluations read.
+
+use std::{error::Error, fmt::Write, fs, io::BufWriter, path::Path};
+
+use png::{BitDepth, ColorType, Encoder};
+use tem00::triangulation::{RawFrame, SensorDescription};
+
+use super::{SIZE, Series, WAVELENGTH, description};
+
+/// Writes all frames, the list of them, and what was put in.
+pub(crate) fn write(folder: &Path, series: &Series) -> Result<(), Box<dyn Error>> {
+    fs::create_dir_all(folder)?;
+    let bits = description().bit_depth;
+    let mut list = format!("v 4.0\nn {bits} {} {}\n", SIZE[0], SIZE[1]);
+    let mut add = |heading: String, name: String, frames: &[RawFrame]| {
+        writeln!(list, "{heading}")?;
+        for (index, frame) in frames.iter().enumerate() {
+            let file = format!("{name}_{index:02}.png");
+            write_frame(&folder.join(&file), frame)?;
+            writeln!(list, "i {file}")?;
+        }
+        Ok::<(), Box<dyn Error>>(())
+    };
+    for (index, at) in series.exposures.iter().enumerate() {
+        add(
+            bright(at.time, at.photons),
+            format!("bright_{index:02}"),
+            &at.bright,
+        )?;
+        add(dark(at.time), format!("dark_{index:02}"), &at.dark)?;
+    }
+    let heading = bright(series.stack_time, series.stack_photons);
+    add(heading, "stack_bright".into(), &series.bright)?;
+    add(dark(series.stack_time), "stack_dark".into(), &series.dark)?;
+    fs::write(folder.join("emva1288.txt"), list)?;
+    fs::write(
+        folder.join("sensor.json"),
+        put_in(&description(), series.irradiance),
+    )?;
+    Ok(())
+}
+
+/// Bright frames: exposure time in ns, photons per pixel.
+fn bright(time: f64, photons: f64) -> String {
+    format!("b {:.3} {photons:.6}", 1e9 * time)
+}
+
+/// Dark frames: exposure time in ns.
+fn dark(time: f64) -> String {
+    format!("d {:.3}", 1e9 * time)
+}
+
+fn write_frame(path: &Path, frame: &RawFrame) -> Result<(), Box<dyn Error>> {
+    let [width, height] = SIZE;
+    let file = BufWriter::new(fs::File::create(path)?);
+    let mut encoder = Encoder::new(file, u32::try_from(width)?, u32::try_from(height)?);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::Sixteen);
+    let values = frame.values.values().iter();
+    let bytes: Vec<u8> = values.flat_map(|value| value.to_be_bytes()).collect();
+    Ok(encoder.write_header()?.write_image_data(&bytes)?)
+}
+
+fn put_in(d: &SensorDescription, irradiance: f64) -> String {
+    let entries = [
+        ("quantum_efficiency", d.quantum_efficiency),
+        ("gain", d.gain),
+        ("dark_noise", d.dark_noise),
+        ("dark_current", d.dark_current),
+        ("full_well", d.full_well),
+        ("prnu", d.prnu),
+        ("dsnu", d.dsnu),
+        ("pixel_pitch", d.pixel_pitch),
+        ("wavelength", WAVELENGTH),
+        ("irradiance", irradiance),
+    ];
+    let lines = entries.map(|(name, value)| format!("  \"{name}\": {value:e}"));
+    format!("{{\n{}\n}}\n", lines.join(",\n"))
+}

@@ -1,0 +1,15 @@
+//! How far speckle moves a laser line: rendered frames and wave optics against the closed forms.
+
+#![expect(
+    clippy::expect_used,
+    reason = "a test stops at what it does not expect"
+)]
+
+#[path = "../../examples/line_frames/mod.rs"]
+mod line_frames;
+#[expect(dead_code, reason = "other programs look at more of the images")]
+#[path = "../../examples/line_image/mod.rs"]
+mod line_image;
+
+mod rendered;
+mod waves;

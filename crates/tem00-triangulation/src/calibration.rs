@@ -1,4 +1,5 @@
 mod board;
+mod boards;
 mod corners;
 mod covariance;
 mod estimate;
@@ -19,6 +20,7 @@ use self::{covariance::COUNT, perturbation::Perturbations};
 use crate::{LaserPlane, TriangulationError, Triangulator};
 
 pub use self::board::Checkerboard;
+pub use self::boards::{BoardPlan, calibrate_scene};
 pub use self::corners::find_corners;
 pub use self::covariance::{CalibrationCovariance, PARAMETERS, Parameter};
 pub use self::estimate::{BoardView, CameraModel, calibrate};

@@ -6,6 +6,9 @@
 #![expect(clippy::print_stdout, reason = "the program says what it has written")]
 
 mod flange;
+mod nut;
+mod ply;
+mod profile;
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -29,6 +32,9 @@ fn main() -> io::Result<()> {
         ("gauge_blocks.ply", gauge_blocks_ply()),
         ("corrugated_sheet.obj", corrugated_sheet_obj()),
         ("flange.obj", flange::flange_obj()),
+        ("step_gauge.ply", profile::step_gauge_ply()),
+        ("groove.ply", profile::groove_ply()),
+        ("hexagon_nut.ply", nut::nut_ply()),
     ] {
         fs::write(directory.join(name), &text)?;
         println!("scenes/meshes/{name}: {} bytes", text.len());

@@ -1,6 +1,6 @@
 //! `tem00 lines`.
 
-mod overlay;
+pub(crate) mod overlay;
 mod points;
 mod summary;
 

@@ -255,7 +255,7 @@ fn frames(args: &RenderArgs, scene: &Scene) -> Result<FrameRange, Failure> {
     ))
 }
 
-fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
+pub(crate) fn tracer_failure(path: &Path, error: &TracerError) -> Failure {
     let help = match error {
         TracerError::PatternMemory { needed, allowed } => format!(
             "{} needed, {} allowed: `memory` in [speckle], which all lasers share, allows more; \

@@ -1,10 +1,248 @@
-//! `tem00 triangulate`.
+//! `tem00 triangulate`: from a scene file to a measured part.
 
-use std::io::Write;
+mod files;
+mod page;
+mod record;
+mod terms;
 
-use crate::{args::TriangulateArgs, failure::Failure};
+use std::{
+    cell::Cell,
+    io::Write,
+    path::Path,
+    sync::atomic::{AtomicU64, Ordering},
+    time::Instant,
+};
 
-pub(crate) fn run(args: &TriangulateArgs, _out: &mut impl Write) -> Result<(), Failure> {
-    let _ = &args.scene;
-    Ok(())
+use tem00_tracer::{Formulas, SpeckleModel, SpecklePlan};
+use tem00_triangulation::{
+    HeightMap, MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, Scan,
+    TriangulationError,
+};
+
+use self::{
+    files::Files,
+    page::Page,
+    record::{FrameRecord, Record},
+    terms::Terms,
+};
+use crate::{
+    args::{FrameRange, TriangulateArgs},
+    failure::Failure,
+    interrupt, output,
+    progress::Progress,
+    render::tracer_failure,
+};
+
+/// What to say of a file that is no scene.
+const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface and a [sensor]";
+
+/// Measures a scene and prints what makes its heights uncertain.
+///
+/// # Errors
+///
+/// Returns a failure if the input is not valid, a file cannot be written or the user ends it.
+pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Failure> {
+    let (scene, _) = MeasurementScene::read(&args.scene)
+        .map_err(|error| Failure::file(&args.scene, &error, HELP))?;
+    let job = Job::new(args, scene)?;
+    let pool = output::thread_pool(args.threads)?;
+    let measured = pool.install(|| job.measure())?;
+    job.write(&measured)?;
+    job.print(&measured, out)
+}
+
+/// A measurement that is set up.
+struct Job<'a> {
+    args: &'a TriangulateArgs,
+    measurement: Measurement,
+    frames: FrameRange,
+    name: String,
+    files: Files,
+}
+
+/// What was measured.
+struct Measured {
+    frames: Vec<FrameRecord>,
+    profiles: Vec<Vec<MeasuredPoint>>,
+    /// The heights of several profiles.
+    map: Option<HeightMap>,
+    /// The frame that the report shows, from the middle of the scan.
+    shown: Option<MeasuredFrame>,
+    effective_frames: f64,
+    terms: Terms,
+    seconds: f64,
+}
+
+impl<'a> Job<'a> {
+    fn new(args: &'a TriangulateArgs, scene: MeasurementScene) -> Result<Self, Failure> {
+        let name = output::name(&args.scene, "scene");
+        let folder = output::folder(args.output.as_deref(), &name);
+        let scene = overruled(scene, args);
+        let raw = scene.scan.raw;
+        let measurement =
+            Measurement::new(scene).map_err(|error| measurement_failure(&args.scene, &error))?;
+        Ok(Self {
+            args,
+            frames: frames(args, measurement.scene().render.frames)?,
+            measurement,
+            name,
+            files: Files::new(folder, raw)?,
+        })
+    }
+
+    /// Measures all frames, writing raw frames on the way.
+    fn measure(&self) -> Result<Measured, Failure> {
+        let start = Instant::now();
+        let speckle = self.speckle()?;
+        let progress = FrameProgress::new(self);
+        let mut scan = Scan::new(&self.measurement);
+        let (mut frames, mut shown) = (Vec::new(), None);
+        let middle = u32::midpoint(self.frames.first, self.frames.last);
+        for number in self.frames.first..=self.frames.last {
+            let frame = self.frame(number, speckle.as_ref(), &progress)?;
+            let file = self.files.write_raw(&frame, &self.name)?;
+            frames.push(FrameRecord::of(&frame, file));
+            if number == middle {
+                shown = Some(frame.clone());
+            }
+            scan.add(frame);
+        }
+        let part = scan.finish();
+        let several = part.profiles().len() > 1;
+        let map = several.then(|| part.height_map()).transpose();
+        let profiles = part.profiles().to_vec();
+        Ok(Measured {
+            frames,
+            map: map.map_err(|error| measurement_failure(&self.args.scene, &error))?,
+            shown,
+            effective_frames: part.effective_frames(),
+            terms: Terms::of(&profiles, self.measurement.settings().height),
+            profiles,
+            seconds: start.elapsed().as_secs_f64(),
+        })
+    }
+
+    fn speckle(&self) -> Result<Option<SpeckleModel>, Failure> {
+        if self.args.no_speckle {
+            return Ok(None);
+        }
+        let scene = self.measurement.scene();
+        let refused = |error| tracer_failure(&self.args.scene, &error);
+        let plan =
+            SpecklePlan::new(scene, Formulas::Derived, scene.render.seed).map_err(refused)?;
+        let model = SpeckleModel::generate(scene, &plan).map_err(refused)?;
+        interrupt::check()?;
+        Ok(Some(model))
+    }
+
+    fn frame(
+        &self,
+        number: u32,
+        speckle: Option<&SpeckleModel>,
+        progress: &FrameProgress,
+    ) -> Result<MeasuredFrame, Failure> {
+        let advance = progress.begin(format!(
+            "{} frame {number} of {}..{}",
+            self.name, self.frames.first, self.frames.last
+        ));
+        self.measurement
+            .measure(speckle, number, advance, interrupt::flag())
+            .map_err(|error| measurement_failure(&self.args.scene, &error))
+    }
+
+    fn write(&self, measured: &Measured) -> Result<(), Failure> {
+        let height = self.measurement.settings().height;
+        self.files.write_profiles(&measured.profiles, height)?;
+        self.files.write_point_cloud(&measured.profiles)?;
+        if let Some(map) = &measured.map {
+            self.files.write_height_map(map)?;
+        }
+        let record = Record::of(self, measured);
+        self.files.write_json(&record)?;
+        Page {
+            job: self,
+            measured,
+        }
+        .write()
+    }
+
+    fn print(&self, measured: &Measured, out: &mut impl Write) -> Result<(), Failure> {
+        let text = measured.terms.text();
+        let report = self.files.path("report.html");
+        write!(out, "{text}")
+            .and_then(|()| writeln!(out, "{}", report.display()))
+            .map_err(|error| Failure::stdout(&error))
+    }
+}
+
+/// Returns the scene with what the command line overrules.
+fn overruled(mut measured: MeasurementScene, args: &TriangulateArgs) -> MeasurementScene {
+    let settings = &mut measured.scene.render;
+    settings.samples_per_pixel = args.spp.unwrap_or(settings.samples_per_pixel);
+    settings.seed = args.seed.unwrap_or(settings.seed);
+    measured
+}
+
+/// Returns the frames that the command line asks for.
+fn frames(args: &TriangulateArgs, count: u32) -> Result<FrameRange, Failure> {
+    let last = count.saturating_sub(1);
+    let asked = args.frames.unwrap_or(FrameRange { first: 0, last });
+    if asked.last <= last {
+        return Ok(asked);
+    }
+    Err(Failure::input(
+        format!(
+            "--frames {}..{}: the scene has the frames 0..{last}",
+            asked.first, asked.last
+        ),
+        "`frames` in the section [render] of the scene says how many there are",
+    ))
+}
+
+fn measurement_failure(path: &Path, error: &TriangulationError) -> Failure {
+    match error {
+        TriangulationError::Cancelled => Failure::Interrupted,
+        TriangulationError::Tracer(error) => tracer_failure(path, error),
+        TriangulationError::TooFew { what, .. } if what.contains("height map") => Failure::input(
+            format!("{}: no valid point of the line was found", path.display()),
+            "look at the raw frames: is the line in the image, neither too dark nor saturated? \
+             `exposure` in [sensor] and `power` in [[laser]] set the light",
+        ),
+        error => Failure::input(
+            format!("{}: {error}", path.display()),
+            "docs/scene_file.md lists what is allowed",
+        ),
+    }
+}
+
+/// One progress bar over all frames.
+struct FrameProgress {
+    bar: Progress,
+    samples_per_frame: u64,
+    begun: Cell<u64>,
+}
+
+impl FrameProgress {
+    fn new(job: &Job<'_>) -> Self {
+        let scene = job.measurement.scene();
+        let samples_per_frame = scene.samples_per_frame(&(&scene.render).into());
+        let frames = u64::from(job.frames.last - job.frames.first) + 1;
+        Self {
+            bar: Progress::of(frames.saturating_mul(samples_per_frame), "samples"),
+            samples_per_frame,
+            begun: Cell::new(0),
+        }
+    }
+
+    /// Begins the next frame and returns what moves the bar on.
+    fn begin(&self, name: String) -> impl Fn(u64) + Sync + use<'_> {
+        self.bar.name(name);
+        let start = self.begun.get() * self.samples_per_frame;
+        self.begun.set(self.begun.get() + 1);
+        let (bar, most, done) = (&self.bar, self.samples_per_frame, AtomicU64::new(0));
+        move |samples| {
+            let done = done.fetch_add(samples, Ordering::Relaxed) + samples;
+            bar.set(start + done.min(most));
+        }
+    }
 }

@@ -96,7 +96,7 @@ pub use interpolation::Interpolation;
 pub use light::{
     Bandwidth, CoherentBackground, Exposure, IncoherentSum, LitArea, ObjectiveSpeckle, PixelArray,
 };
-pub use npy::{NpyError, NpyReader, write_npy};
+pub use npy::{NpyError, NpyReader, write_npy, write_real_npy};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use path::SlicePath;

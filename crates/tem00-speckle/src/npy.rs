@@ -196,6 +196,15 @@ pub fn write_npy(grid: &Grid<Complex<f32>>, writer: impl Write) -> io::Result<()
     write_grid(grid, writer)
 }
 
+/// Writes real numbers as a NumPy file (NPY) of `float32`, of the shape (height, width).
+///
+/// # Errors
+///
+/// Returns an error if the writer does.
+pub fn write_real_npy(grid: &Grid<f32>, writer: impl Write) -> io::Result<()> {
+    write_grid(grid, writer)
+}
+
 impl SpecklePattern {
     /// Writes the intensity as a NumPy file (NPY) of `float32`, of the shape (height, width).
     ///

@@ -1,5 +1,17 @@
+mod board;
+mod boards;
+mod corners;
 mod covariance;
+mod estimate;
+mod flat_field;
+mod homography;
+mod lattice;
+mod least_squares;
+mod model;
 mod perturbation;
+mod plane_fit;
+mod ring;
+mod start;
 
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::SMatrix;
@@ -8,7 +20,11 @@ use tem00_tracer::{Camera, RigidMotion};
 use self::{covariance::COUNT, perturbation::Perturbations};
 use crate::{LaserPlane, TriangulationError, Triangulator};
 
+pub use self::board::Checkerboard;
+pub use self::boards::{BoardPlan, calibrate_scene};
+pub use self::corners::find_corners;
 pub use self::covariance::{CalibrationCovariance, PARAMETERS, Parameter};
+pub use self::estimate::{BoardView, CameraModel, calibrate};
 
 /// A calibrated set-up: its camera and its laser plane, and how well they are known.
 ///

@@ -32,6 +32,20 @@ pub enum TriangulationError {
         /// How many it takes.
         needed: usize,
     },
+    /// An image does not show the checkerboard that was asked for.
+    NoBoard {
+        /// The numbers of inner corners along its rows and its columns.
+        corners: [usize; 2],
+        /// How many corners of squares the image shows.
+        found: usize,
+    },
+    /// Measurements leave open what they should determine.
+    NotDetermined {
+        /// What stays open.
+        what: &'static str,
+        /// What would determine it.
+        advice: &'static str,
+    },
     /// Camera, laser or scene are not possible, or were not rendered.
     Tracer(TracerError),
     /// A speckle pattern is not possible.
@@ -53,6 +67,17 @@ impl fmt::Display for TriangulationError {
             Self::Direction { parameter, allowed } => write!(f, "{parameter} must be {allowed}"),
             Self::TooFew { what, got, needed } => {
                 write!(f, "there must be at least {needed} {what}, got {got}")
+            }
+            Self::NoBoard {
+                corners: [columns, rows],
+                found,
+            } => write!(
+                f,
+                "there must be a whole checkerboard with {columns} × {rows} inner corners, but only \
+                 {found} corners of squares that fit together are seen"
+            ),
+            Self::NotDetermined { what, advice } => {
+                write!(f, "{what} is not determined by what was measured: {advice}")
             }
             Self::Tracer(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),

@@ -1,16 +1,23 @@
 //! Sections of scene files and set-up files.
 
+mod calibration;
 mod design;
 mod detector;
 mod scan;
 mod sensor;
 mod setup;
 mod setup_text;
-#[cfg(test)]
-mod tests;
 
+pub use self::calibration::{
+    BoardSettings, CalibrationMethod, CalibrationSettings, read_calibration,
+};
 pub use self::design::read_design;
 pub use self::detector::read_detector;
 pub use self::scan::read_scan;
 pub use self::sensor::read_sensor;
 pub use self::setup::{parse_setup, parse_setup_with, read_setup, read_setup_with};
+
+#[cfg(test)]
+mod documentation;
+#[cfg(test)]
+mod tests;

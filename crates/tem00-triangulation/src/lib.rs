@@ -16,6 +16,7 @@
 
 mod calibration;
 mod budget;
+mod calibration;
 mod design;
 mod detector;
 mod dorsch;
@@ -34,6 +35,10 @@ pub use budget::{
     Budget, BudgetTerm, ErrorDistribution, Evaluation, MonteCarloEstimate, Simulation,
     SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,
 };
+pub use calibration::{
+    BoardPlan, BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel,
+    Checkerboard, PARAMETERS, Parameter, calibrate, calibrate_scene, find_corners,
+};
 pub use design::{
     Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignParameter,
     DesignQuestion, DesignSearch, Exclusion, Neighbours, Objective, Spacing, Sweep, neighbours,
@@ -43,7 +48,8 @@ pub use detector::{DetectorSettings, FilterOrder, LineDetector, LineMethod, Line
 pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
-    parse_setup, parse_setup_with, read_design, read_detector, read_scan, read_sensor, read_setup,
+    BoardSettings, CalibrationMethod, CalibrationSettings, parse_setup, parse_setup_with,
+    read_calibration, read_design, read_detector, read_scan, read_sensor, read_setup,
     read_setup_with,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
@@ -52,8 +58,10 @@ pub use place_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
 };
 pub use scan::{
-    Averaging, Exposure, LAMP_WAVELENGTH, MeasurementScene, RawFormat, ScanMotion, ScanSettings,
-    SensorSpeckle, SpeckleTable,
+    Averaging, Exposure, FrameCorrelation, HeightMap, HeightScale, LAMP_WAVELENGTH, MeasuredFrame,
+    MeasuredPoint, Measurement, MeasurementScene, Raster, RawFormat, Scan, ScanMotion,
+    ScanSettings, ScannedPart, SensorSpeckle, SpeckleChange, SpeckleCorrelation, SpeckleTable,
+    SpeckleWitness, averaged_profile, brightest_points, mean_point, write_point_cloud,
 };
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{

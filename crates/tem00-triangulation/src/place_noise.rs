@@ -54,6 +54,12 @@ pub trait PixelCovariance {
     fn at(&self, displacement: [f64; 2]) -> f64;
 }
 
+impl<C: PixelCovariance> PixelCovariance for &C {
+    fn at(&self, displacement: [f64; 2]) -> f64 {
+        (**self).at(displacement)
+    }
+}
+
 impl<C: PixelCovariance> PixelCovariance for Option<C> {
     /// Returns 0 without speckle.
     fn at(&self, displacement: [f64; 2]) -> f64 {
@@ -183,11 +189,15 @@ impl ColumnLight<'_> {
     }
 
     /// The rows that count, and how far the place moves with the speckle factor in each.
+    ///
+    /// Those that move it by less than a millionth of the first are left out.
     fn weights(&self) -> Vec<(f64, f64)> {
         let products = self.sensitivities.iter().zip(self.coherent);
         let rows = products
             .zip(0_u32..)
             .map(|((g, e), row)| (f64::from(row), g * e));
-        rows.filter(|(_, weight)| *weight != 0.0).collect()
+        let most = rows.clone().map(|(_, weight)| weight.abs());
+        let least = 1e-6 * most.fold(0.0, f64::max);
+        rows.filter(|(_, weight)| weight.abs() > least).collect()
     }
 }

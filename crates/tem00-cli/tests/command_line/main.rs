@@ -2,12 +2,14 @@
 
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
+mod calibrate;
 mod lines;
 mod budget;
 mod design;
 mod patterns;
 mod render;
 mod sequence;
+mod tutorial;
 
 use std::{
     fs,

@@ -11,7 +11,7 @@ impl Laser {
     /// no light is followed any more, the wave goes on.
     ///
     /// Returns `None` at the apex of a line and behind it.
-    pub(crate) fn wave_direction_at(&self, point: DVec3) -> Option<DVec3> {
+    pub fn wave_direction_at(&self, point: DVec3) -> Option<DVec3> {
         let offset = point - self.description.position;
         let along = |axis: [f64; 3]| offset.dot(DVec3::from_array(axis));
         let (slope, axes) = match &self.source {

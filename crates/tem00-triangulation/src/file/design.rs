@@ -5,8 +5,8 @@ use crate::{
     SetupDescription, Spacing, Sweep, TriangulationError,
 };
 
-const KEYS: &[&str] = &["objective", "most_setups", "vary", "require"];
-const VARY: &[&str] = &[
+pub(super) const KEYS: &[&str] = &["objective", "most_setups", "vary", "require"];
+pub(super) const VARY: &[&str] = &[
     "f_number",
     "angle",
     "line_width",
@@ -17,8 +17,8 @@ const VARY: &[&str] = &[
     "focal_length",
     "distance",
 ];
-const RANGE: &[&str] = &["from", "to", "steps", "scale"];
-const REQUIRE: &[&str] = &[
+pub(super) const RANGE: &[&str] = &["from", "to", "steps", "scale"];
+pub(super) const REQUIRE: &[&str] = &[
     "range",
     "depth_of_field",
     "field_width",

@@ -2,7 +2,7 @@ use tem00_tracer::document::{Document, NUMBER, Problem, Section, Value};
 
 use crate::{DetectorSettings, FilterOrder, LineDetector, LineMethod};
 
-const KEYS: &[&str] = &[
+pub(super) const KEYS: &[&str] = &[
     "method",
     "window",
     "threshold",

@@ -31,8 +31,8 @@ const SETUP: Format = Format {
     ],
     help: "setups/ has some, and docs/setup_file.md tells how to write them",
 };
-const LASER: &[&str] = &["wavelength", "power", "line_width", "line_length"];
-const CAMERA: &[&str] = &[
+pub(super) const LASER: &[&str] = &["wavelength", "power", "line_width", "line_length"];
+pub(super) const CAMERA: &[&str] = &[
     "focal_length",
     "f_number",
     "pixel_pitch",
@@ -41,9 +41,9 @@ const CAMERA: &[&str] = &[
     "angle",
     "scheimpflug",
 ];
-const SURFACE: &[&str] = &["reflectance", "patterns", "polarisation"];
-const CALIBRATION: &[&str] = &["uncertainty"];
-const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"];
+pub(super) const SURFACE: &[&str] = &["reflectance", "patterns", "polarisation"];
+pub(super) const CALIBRATION: &[&str] = &["uncertainty"];
+pub(super) const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"];
 
 /// Reads a set-up file.
 ///

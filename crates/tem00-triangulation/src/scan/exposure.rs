@@ -95,6 +95,6 @@ fn centre((x, y): (usize, usize)) -> DVec2 {
     clippy::cast_possible_truncation,
     reason = "images are stored in single precision"
 )]
-const fn single(value: f64) -> f32 {
+pub(super) const fn single(value: f64) -> f32 {
     value as f32
 }

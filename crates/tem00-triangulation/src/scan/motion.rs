@@ -49,6 +49,11 @@ impl ScanMotion {
         world.then(&self.part.pose_at(frame).inverse())
     }
 
+    /// Returns the motion of the head from where the scene describes it to a frame.
+    pub fn head_at(&self, frame: u32) -> RigidMotion {
+        self.head.pose_at(frame)
+    }
+
     /// Returns whether part and head stay where they are.
     pub fn is_still(&self) -> bool {
         self.part.is_still() && self.head.is_still()

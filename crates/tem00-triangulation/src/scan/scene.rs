@@ -3,8 +3,8 @@ use std::path::{Path, PathBuf};
 use tem00_tracer::document::{Document, Problem};
 use tem00_tracer::{Scene, SceneError, SceneFile};
 
-use crate::file::{read_detector, read_scan, read_sensor};
-use crate::{DetectorSettings, ScanSettings, SensorDescription};
+use crate::file::{read_calibration, read_detector, read_scan, read_sensor};
+use crate::{CalibrationSettings, DetectorSettings, ScanSettings, SensorDescription};
 
 /// A scene and the sensor that measures it.
 #[derive(Clone, Debug)]
@@ -15,12 +15,14 @@ pub struct MeasurementScene {
     pub sensor: SensorDescription,
     /// How lines are found in its frames.
     pub detector: DetectorSettings,
+    /// How camera and laser plane are known.
+    pub calibration: CalibrationSettings,
     /// How the frames are put together.
     pub scan: ScanSettings,
 }
 
 impl MeasurementScene {
-    /// Reads a scene file with the sections `[sensor]`, `[detector]` and `[scan]`, and returns the
+    /// Reads a scene file with the sections `[sensor]`, `[detector]`, `[calibration]` and `[scan]`, and returns the
     /// names of all files that it took.
     ///
     /// # Errors
@@ -29,24 +31,31 @@ impl MeasurementScene {
     /// value and what is allowed, and knows its place in its file.
     pub fn read(path: &Path) -> Result<(Self, Vec<PathBuf>), SceneError> {
         let (file, further) = SceneFile::read_with(path, further)?;
-        let (sensor, detector, scan) = further;
+        let (sensor, detector, calibration, scan) = further;
         let measurement = Self {
             scene: file.scene,
             sensor,
             detector,
+            calibration,
             scan,
         };
         Ok((measurement, file.files))
     }
 }
 
-type Further = (SensorDescription, DetectorSettings, ScanSettings);
+type Further = (
+    SensorDescription,
+    DetectorSettings,
+    CalibrationSettings,
+    ScanSettings,
+);
 
 fn further(document: &Document<'_>, scene: &Scene) -> Result<Further, Problem> {
     let pitch = scene.camera.description().pixel_pitch;
     Ok((
         read_sensor(document, pitch)?,
         read_detector(document)?,
+        read_calibration(document)?,
         read_scan(document, scene)?,
     ))
 }

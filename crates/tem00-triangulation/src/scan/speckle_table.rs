@@ -68,6 +68,11 @@ impl SpeckleTable {
         }
     }
 
+    /// Returns the number of columns to either side beyond which covariances count as 0.
+    pub const fn columns(&self) -> usize {
+        self.reach[0]
+    }
+
     /// The index of a displacement along one axis.
     fn index(&self, axis: usize, displacement: f64) -> Option<usize> {
         let steps = (displacement - self.offset[axis]).round() + self.reach[axis] as f64;

@@ -15,15 +15,19 @@ fn documentation() -> String {
 
 #[test]
 fn the_scenes_of_the_repository_are_read() {
-    let entries = fs::read_dir(repository().join("scenes")).unwrap();
-    let paths = entries.map(|entry| entry.unwrap().path());
+    let folders = ["scenes", "scenes/triangulation"];
+    let entries = folders.map(|folder| fs::read_dir(repository().join(folder)).unwrap());
+    let paths = entries
+        .into_iter()
+        .flatten()
+        .map(|entry| entry.unwrap().path());
     let paths: Vec<PathBuf> = paths
         .filter(|path| {
             path.extension()
                 .is_some_and(|extension| extension == "toml")
         })
         .collect();
-    assert!(paths.len() >= 6, "{paths:?}");
+    assert!(paths.len() >= 10, "{paths:?}");
     for path in paths {
         let scene = read_scene(&path).map_err(|error| error.to_string());
         assert!(scene.is_ok(), "{scene:?}");

@@ -1,0 +1,179 @@
+//! The files of a measurement.
+
+use std::{
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+use serde::Serialize;
+use tem00_numerics::Grid;
+use tem00_speckle::write_real_npy;
+use tem00_triangulation::{
+    DVec3, HeightMap, MeasuredFrame, MeasuredPoint, Raster, RawFormat, RawFrame, write_point_cloud,
+};
+
+use crate::{atomic::write_atomically, failure::Failure, image::write_raw, output};
+
+/// Where the files of a measurement go.
+pub(super) struct Files {
+    pub(super) folder: PathBuf,
+    raw: RawFormat,
+}
+
+/// The columns of a profile.
+const HEADINGS: &str = "column,line,x_pixel,y_pixel,width_pixel,intensity_dn,validity,\
+                        x_m,y_m,z_m,height_m,u_x_m,u_y_m,u_z_m,u_height_m,u_place_pixel,\
+                        u_speckle_pixel,u_shot_pixel,u_dark_pixel,u_quantisation_pixel,u_prnu_pixel,\
+                        u_dsnu_pixel,u_calibration_height_m";
+
+impl Files {
+    /// Makes sure, before the work, that files can be written.
+    pub(super) fn new(folder: PathBuf, raw: RawFormat) -> Result<Self, Failure> {
+        output::prepare(&folder)?;
+        Ok(Self { folder, raw })
+    }
+
+    /// Returns the path of a file by its name.
+    pub(super) fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    /// Writes the frame of the camera and returns the name of the file.
+    pub(super) fn write_raw(&self, frame: &MeasuredFrame, scene: &str) -> Result<String, Failure> {
+        let name = format!("raw_{:04}.{}", frame.frame, self.extension());
+        let text = [("Description", format!("{scene}, frame {}", frame.frame))];
+        let path = self.path(&name);
+        write_raw(&path, &frame.raw, &text).map_err(|error| Failure::writing(&path, error))?;
+        Ok(name)
+    }
+
+    /// Writes each profile as a table.
+    pub(super) fn write_profiles(
+        &self,
+        profiles: &[Vec<MeasuredPoint>],
+        height: DVec3,
+    ) -> Result<(), Failure> {
+        for (number, profile) in profiles.iter().enumerate() {
+            self.write(&format!("profile_{number:04}.csv"), |file| {
+                writeln!(file, "{HEADINGS}")?;
+                profile
+                    .iter()
+                    .try_for_each(|point| writeln!(file, "{}", row(point, height)))
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Writes the points of all profiles.
+    pub(super) fn write_point_cloud(&self, profiles: &[Vec<MeasuredPoint>]) -> Result<(), Failure> {
+        self.write("points.ply", |file| write_point_cloud(profiles, file))
+    }
+
+    /// Writes a height map in 16 bits and in metres, and its uncertainty.
+    pub(super) fn write_height_map(&self, map: &HeightMap) -> Result<(), Failure> {
+        let (values, scale) = map.quantised();
+        let text = [
+            ("offset", format!("{:e} m", scale.offset)),
+            ("scale", format!("{:e} m", scale.scale)),
+            (
+                "Description",
+                "height = offset + scale * value; 0 is a hole; the first row is the first profile"
+                    .to_owned(),
+            ),
+        ];
+        let path = self.path(&format!("height.{}", self.extension()));
+        let picture = RawFrame {
+            saturated: values.map(|_| false),
+            values,
+            bit_depth: 16,
+        };
+        write_raw(&path, &picture, &text).map_err(|error| Failure::writing(&path, error))?;
+        self.write_array("height.npy", &map.heights)?;
+        self.write_array("height_uncertainty.npy", &map.uncertainties)
+    }
+
+    /// Writes a record.
+    pub(super) fn write_json(&self, record: &impl Serialize) -> Result<(), Failure> {
+        let text = serde_json::to_string_pretty(record)
+            .map_err(|error| Failure::running(format!("cannot write JSON: {error}")))?;
+        self.write("measurement.json", |file| writeln!(file, "{text}"))
+    }
+
+    /// Returns the ending of raw frames and height maps.
+    pub(super) const fn extension(&self) -> &'static str {
+        match self.raw {
+            RawFormat::Png => "png",
+            RawFormat::Tiff => "tiff",
+        }
+    }
+
+    fn write_array(&self, name: &str, values: &Grid<f32>) -> Result<(), Failure> {
+        self.write(name, |file| write_real_npy(values, file))
+    }
+
+    fn write(
+        &self,
+        name: &str,
+        write: impl FnOnce(&mut io::BufWriter<std::fs::File>) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        let path: &Path = &self.path(name);
+        write_atomically(path, write).map_err(|error| Failure::writing(path, error))
+    }
+}
+
+/// One row of a profile.
+fn row(point: &MeasuredPoint, height: DVec3) -> String {
+    let (seen, noise) = (&point.seen, &point.noise);
+    let uncertainty = point.uncertainty();
+    let lengths = point.position.to_array().into_iter();
+    let lengths = lengths
+        .chain([point.position.dot(height)])
+        .chain(uncertainty.to_array())
+        .chain([point.uncertainty_along(height)]);
+    let places = [
+        noise.total(),
+        noise.speckle,
+        noise.shot,
+        noise.dark,
+        noise.quantisation,
+        noise.prnu,
+        noise.dsnu,
+    ];
+    let numbers: Vec<String> = lengths
+        .map(|length| format!("{length:.9e}"))
+        .chain(places.map(|variance| format!("{:.4e}", variance.sqrt())))
+        .chain([format!(
+            "{:.4e}",
+            point.calibration_uncertainty_along(height)
+        )])
+        .collect();
+    format!(
+        "{},{},{:.4},{:.5},{:.4},{:.2},{},{}",
+        seen.column,
+        seen.line,
+        seen.pixel.x,
+        seen.pixel.y,
+        seen.width,
+        seen.reflectance,
+        seen.validity.name(),
+        numbers.join(",")
+    )
+}
+
+/// Returns what the columns and rows of a map are, in metres where they are lengths: the ranges along
+/// both.
+pub(super) fn ranges(map: &HeightMap) -> [(f64, f64); 2] {
+    #[expect(clippy::cast_precision_loss, reason = "a map has at most 2²⁸ cells")]
+    let [columns, rows] = [map.heights.width(), map.heights.height()].map(|cells| cells as f64);
+    match map.raster {
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "an image has at most 2²⁸ columns"
+        )]
+        Raster::Image { columns: averaged } => [(0.0, columns * averaged as f64), (0.0, rows)],
+        Raster::Part { origin, pitch } => {
+            let end = |axis: usize, cells: f64| origin[axis] + cells * pitch;
+            [(origin[0], end(0, columns)), (origin[1], end(1, rows))]
+        }
+    }
+}

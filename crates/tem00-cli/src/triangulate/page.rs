@@ -1,0 +1,285 @@
+//! The report of a measurement.
+
+use tem00_triangulation::{HeightMap, MeasuredPoint, Raster};
+
+use super::{
+    Job, Measured,
+    files::ranges,
+    terms::{Terms, micrometres},
+};
+use crate::{
+    failure::Failure,
+    image::write_rgb_png,
+    lines::overlay::picture,
+    plot::{Bars, Chart, HeatMap},
+    report::{Report, Table},
+};
+
+/// A report in the making.
+pub(super) struct Page<'a> {
+    pub(super) job: &'a Job<'a>,
+    pub(super) measured: &'a Measured,
+}
+
+/// What the numbers say of each other.
+const CORRELATIONS: &str = "Speckle correlates the errors of neighbouring columns over about a speckle, and \
+    those of frames in which the surface has not moved; shot noise, dark noise and quantisation are new in \
+    every pixel and frame; PRNU and DSNU are new in every pixel and stay from frame to frame; the error of \
+    the calibration is common to all points.";
+
+impl Page<'_> {
+    /// Writes the report and its diagrams.
+    ///
+    /// # Errors
+    ///
+    /// Returns a failure if a file cannot be written.
+    pub(super) fn write(&self) -> Result<(), Failure> {
+        let mut report = Report::new(&format!("{}: measured by triangulation", self.job.name));
+        report.verdict(&self.measured.terms.verdict());
+        self.frame(&mut report)?;
+        self.profile(&mut report)?;
+        self.budget(&mut report)?;
+        if let Some(map) = &self.measured.map {
+            self.maps(&mut report, map)?;
+        }
+        self.settings(&mut report);
+        if let Ok(text) = std::fs::read_to_string(&self.job.args.scene) {
+            report.file(&self.job.args.scene.display().to_string(), &text);
+        }
+        report.save(&self.job.files.path("report.html"))
+    }
+
+    /// The raw frame with the line that was found.
+    fn frame(&self, report: &mut Report) -> Result<(), Failure> {
+        let Some(frame) = &self.measured.shown else {
+            return Ok(());
+        };
+        report.heading("Frame");
+        let marked = picture(&frame.raw.grey_values(), (&frame.lines, false));
+        let mut png = Vec::new();
+        write_rgb_png(&mut png, &marked, &[])
+            .map_err(|error| Failure::running(format!("cannot write a picture: {error}")))?;
+        let caption = format!(
+            "Frame {} as the camera gives it, brightened to its largest grey value; red: the line, magenta: \
+             points that are not valid.",
+            frame.frame
+        );
+        report.picture(&png, &caption);
+        let record = self
+            .measured
+            .frames
+            .iter()
+            .find(|r| r.number == frame.frame);
+        if let Some(record) = record {
+            report.facts(&[
+                ("points found", record.points.to_string()),
+                ("of them valid", record.valid.to_string()),
+                ("on saturated pixels", record.saturated.to_string()),
+                ("largest grey value", format!("{} DN", record.peak)),
+                ("saturated pixels", record.saturated_pixels.to_string()),
+                (
+                    "mean width of the line",
+                    record
+                        .mean_width
+                        .map_or("-".to_owned(), |width| format!("{width:.2} pixels (1/e²)")),
+                ),
+            ]);
+        }
+        Ok(())
+    }
+
+    /// The profile with its band of uncertainty.
+    fn profile(&self, report: &mut Report) -> Result<(), Failure> {
+        let profiles = &self.measured.profiles;
+        let Some(profile) = profiles.get(profiles.len() / 2) else {
+            return Ok(());
+        };
+        let [across, _, height] = self.job.measurement.axes();
+        let mut points: Vec<[f64; 3]> = profile
+            .iter()
+            .filter(|point| point.is_valid())
+            .map(|point| {
+                [
+                    1e3 * point.position.dot(across),
+                    1e3 * point.position.dot(height),
+                    1e6 * point.uncertainty_along(height),
+                ]
+            })
+            .collect();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        report.heading("Profile");
+        let band = points.iter().map(|[x, z, u]| {
+            let half = 1.96e-3 * u;
+            (*x, z - half, z + half)
+        });
+        let chart = Chart::new("profile", ["along the line (mm)", "height (mm)"])
+            .band(band)
+            .dots("height ± 1.96 u", points.iter().map(|[x, z, _]| (*x, *z)));
+        let svg = chart.draw().save(&self.job.files.folder, "profile")?;
+        report.drawing(
+            &svg,
+            "The middle profile, valid points, with their expanded uncertainty (95 %).",
+        );
+        let chart = Chart::new("uncertainty", ["along the line (mm)", "u(height) (µm)"]).line(
+            "standard uncertainty",
+            points.iter().map(|[x, _, u]| (*x, *u)),
+        );
+        let svg = chart.draw().save(&self.job.files.folder, "uncertainty")?;
+        report.drawing(&svg, "The standard uncertainty of its heights.");
+        Ok(())
+    }
+
+    /// The table of terms and what it means.
+    fn budget(&self, report: &mut Report) -> Result<(), Failure> {
+        let Terms {
+            terms,
+            combined,
+            expanded,
+            ..
+        } = &self.measured.terms;
+        report.heading("Uncertainty of a height");
+        let mut table = Table::new(
+            "Root mean squares over all valid points",
+            &["term", "place (px)", "height (µm)", "share (%)"],
+        );
+        let mut bars = Bars::new(
+            "what makes heights uncertain",
+            "u(height) (µm)",
+            &["height"],
+        );
+        for term in terms {
+            table.row(vec![
+                term.name.to_owned(),
+                term.place
+                    .map_or(String::new(), |place| format!("{place:.4}")),
+                format!("{:.3}", 1e6 * term.height),
+                format!("{:.1}", 100.0 * term.share),
+            ]);
+            bars = bars.group(term.name, &[1e6 * term.height]);
+        }
+        let total = |name: &str, value: f64| {
+            vec![
+                name.to_owned(),
+                String::new(),
+                format!("{:.3}", 1e6 * value),
+                String::new(),
+            ]
+        };
+        table.total(total("combined", *combined));
+        table.total(total("expanded, 95 %", *expanded));
+        report.table(&table);
+        let svg = bars.draw().save(&self.job.files.folder, "terms")?;
+        report.drawing(&svg, "Standard uncertainties of a height by their cause.");
+        report.paragraph(CORRELATIONS);
+        Ok(())
+    }
+
+    /// The height map and its uncertainty.
+    fn maps(&self, report: &mut Report, map: &HeightMap) -> Result<(), Failure> {
+        report.heading("Height map");
+        let (labels, factor) = match map.raster {
+            Raster::Image { .. } => (["column of the image", "profile"], 1.0),
+            Raster::Part { .. } => (["along the line (mm)", "along the scan (mm)"], 1e3),
+        };
+        let ranges = ranges(map).map(|(from, to)| (factor * from, factor * to));
+        for (name, title, unit, values) in [
+            ("height_map", "height (mm)", 1e3, &map.heights),
+            ("uncertainty_map", "u(height) (µm)", 1e6, &map.uncertainties),
+        ] {
+            let values = values.map(|&value| value * unit);
+            let picture = HeatMap {
+                title,
+                labels,
+                ranges,
+                values: &values,
+            };
+            let svg = picture.draw().save(&self.job.files.folder, name)?;
+            report.drawing(&svg, &format!("{title}; white: nothing was measured."));
+        }
+        let heights = map.range().map_or("-".to_owned(), |[low, high]| {
+            format!("{:.4} mm to {:.4} mm", 1e3 * low, 1e3 * high)
+        });
+        report.facts(&[
+            ("heights", heights),
+            (
+                "cells",
+                format!("{} × {}", map.heights.width(), map.heights.height()),
+            ),
+            ("holes", format!("{:.1} %", 100.0 * map.holes())),
+        ]);
+        Ok(())
+    }
+
+    fn settings(&self, report: &mut Report) {
+        let measurement = &self.job.measurement;
+        let scene = measurement.scene();
+        let sensor = measurement.sensor().description();
+        let speckle = measurement.speckle();
+        let detector = measurement.detector().settings();
+        let average = measurement.settings().average;
+        let place = self
+            .measured
+            .profiles
+            .iter()
+            .flatten()
+            .find(|p| p.is_valid());
+        let per_pixel = |point: &MeasuredPoint| {
+            let height = point.per_pixel.dot(measurement.settings().height).abs();
+            format!("{} per pixel", micrometres(height))
+        };
+        report.heading("Settings");
+        report.facts(&[
+            ("frames", self.measured.frames.len().to_string()),
+            (
+                "average",
+                format!(
+                    "{} frames, {} columns; {:.1} profiles of independent speckle in one",
+                    average.frames, average.columns, self.measured.effective_frames
+                ),
+            ),
+            (
+                "speckle size on the sensor",
+                if self.job.args.no_speckle {
+                    "left out, as asked".to_owned()
+                } else {
+                    format!(
+                        "{:.2} pixels, contrast {:.2}",
+                        speckle.size[0],
+                        speckle.variance.sqrt()
+                    )
+                },
+            ),
+            ("height", place.map_or("-".to_owned(), per_pixel)),
+            (
+                "detector",
+                format!(
+                    "{}, window {} pixels",
+                    detector.method.name(),
+                    detector.window
+                ),
+            ),
+            (
+                "sensor",
+                format!(
+                    "{} bits, {:.3} DN per electron, exposure {:.4} ms, full well {:.0} electrons",
+                    sensor.bit_depth,
+                    sensor.gain,
+                    1e3 * sensor.exposure_time,
+                    sensor.full_well
+                ),
+            ),
+            (
+                "calibration",
+                match measurement.calibration().quality() {
+                    None => "exact, from the scene".to_owned(),
+                    Some(quality) => format!("estimated from {} boards", quality.boards),
+                },
+            ),
+            ("seed", scene.render.seed.to_string()),
+            (
+                "samples per pixel",
+                scene.render.samples_per_pixel.to_string(),
+            ),
+        ]);
+    }
+}

@@ -1,0 +1,156 @@
+//! What makes heights uncertain, over all points.
+
+use core::fmt::Write as _;
+
+use serde::Serialize;
+use tem00_triangulation::{DVec3, MeasuredPoint, PlaceNoise};
+
+/// One term of the uncertainty.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Term {
+    /// What it comes from.
+    pub(super) name: &'static str,
+    /// The standard uncertainty of a line's place, in pixels; none of the calibration.
+    pub(super) place: Option<f64>,
+    /// The standard uncertainty of a height, in metres.
+    pub(super) height: f64,
+    /// The share of the variance of a height, from 0 to 1.
+    pub(super) share: f64,
+}
+
+/// The terms, as root mean squares over the valid points.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Terms {
+    /// The number of valid points.
+    pub(super) points: usize,
+    /// Each term.
+    pub(super) terms: Vec<Term>,
+    /// The combined standard uncertainty of a height, in metres.
+    pub(super) combined: f64,
+    /// The expanded uncertainty of a height for a level of confidence of 95 %, in metres.
+    pub(super) expanded: f64,
+}
+
+/// The coverage factor of 95 % of a normal distribution.
+const COVERAGE: f64 = 1.96;
+
+/// The terms of the noise of a place, by name.
+const NOISE: [(&str, fn(&PlaceNoise) -> f64); 6] = [
+    ("speckle", |noise| noise.speckle),
+    ("shot noise", |noise| noise.shot),
+    ("dark noise", |noise| noise.dark),
+    ("quantisation", |noise| noise.quantisation),
+    ("PRNU", |noise| noise.prnu),
+    ("DSNU", |noise| noise.dsnu),
+];
+
+impl Terms {
+    /// Sums up the terms of all valid points for heights along a direction.
+    pub(super) fn of(profiles: &[Vec<MeasuredPoint>], height: DVec3) -> Self {
+        let valid = || profiles.iter().flatten().filter(|point| point.is_valid());
+        let points = valid().count();
+        let mean = |term: &dyn Fn(&MeasuredPoint) -> f64| {
+            let sum: f64 = valid().map(term).sum();
+            #[expect(clippy::cast_precision_loss, reason = "a number of points")]
+            let count = points.max(1) as f64;
+            sum / count
+        };
+        let mut terms: Vec<Term> = NOISE
+            .iter()
+            .map(|(name, of)| {
+                let per_pixel = |point: &MeasuredPoint| point.per_pixel.dot(height).powi(2);
+                let variance = mean(&|point| of(&point.noise) * per_pixel(point));
+                Term {
+                    name,
+                    place: Some(mean(&|point| of(&point.noise)).sqrt()),
+                    height: variance.sqrt(),
+                    share: 0.0,
+                }
+            })
+            .collect();
+        let calibration = mean(&|point| point.calibration_uncertainty_along(height).powi(2));
+        terms.push(Term {
+            name: "calibration",
+            place: None,
+            height: calibration.sqrt(),
+            share: 0.0,
+        });
+        let variance: f64 = terms.iter().map(|term| term.height.powi(2)).sum();
+        for term in terms.iter_mut().filter(|_| variance > 0.0) {
+            term.share = term.height.powi(2) / variance;
+        }
+        Self {
+            points,
+            terms,
+            combined: variance.sqrt(),
+            expanded: COVERAGE * variance.sqrt(),
+        }
+    }
+
+    /// Returns the term that counts most.
+    pub(super) fn dominant(&self) -> Option<&Term> {
+        let terms = self.terms.iter();
+        terms.max_by(|a, b| a.share.total_cmp(&b.share))
+    }
+
+    /// Returns what dominates, in a sentence.
+    pub(super) fn verdict(&self) -> String {
+        match self.dominant() {
+            Some(term) if self.points > 0 && self.combined > 0.0 => format!(
+                "A height is known to {} (standard uncertainty of one point, {} points); {} makes {:.0} % \
+                 of its variance.",
+                micrometres(self.combined),
+                self.points,
+                term.name,
+                100.0 * term.share
+            ),
+            _ => "No valid point of the line was found.".to_owned(),
+        }
+    }
+
+    /// Returns the table for a terminal.
+    pub(super) fn text(&self) -> String {
+        let mut text = format!(
+            "{:<14}{:>14}{:>14}{:>9}\n",
+            "term", "place (px)", "height (µm)", "share"
+        );
+        for term in &self.terms {
+            let place = term
+                .place
+                .map_or("-".to_owned(), |place| format!("{place:.4}"));
+            // Memory takes whatever it is given.
+            let _ = writeln!(
+                text,
+                "{:<14}{place:>14}{:>14.3}{:>7.1} %",
+                term.name,
+                1e6 * term.height,
+                100.0 * term.share
+            );
+        }
+        let _ = writeln!(
+            text,
+            "{:<14}{:>14}{:>14.3}\n{:<14}{:>14}{:>14.3}",
+            "combined",
+            "",
+            1e6 * self.combined,
+            "expanded, 95 %",
+            "",
+            1e6 * self.expanded
+        );
+        let _ = writeln!(text, "{}", self.verdict());
+        text
+    }
+}
+
+/// A length in micrometres, with three digits or so.
+pub(super) fn micrometres(length: f64) -> String {
+    let value = 1e6 * length;
+    let digits = if value.abs() >= 100.0 {
+        0
+    } else if value.abs() >= 10.0 {
+        1
+    } else {
+        2
+    };
+    format!("{value:.digits$} µm")
+}

@@ -1,0 +1,119 @@
+use super::{
+    average::averaged_profile,
+    decorrelation::FrameCorrelation,
+    frame::{MeasuredFrame, MeasuredPoint},
+    height_map::HeightMap,
+    measurement::Measurement,
+};
+use crate::TriangulationError;
+
+/// Puts measured frames together to profiles, and these to the map of a part.
+#[derive(Clone, Debug)]
+pub struct Scan<'a> {
+    measurement: &'a Measurement,
+    /// The frames of the profile that is not complete.
+    pending: Vec<MeasuredFrame>,
+    profiles: Vec<Vec<MeasuredPoint>>,
+    /// That of the first profile.
+    correlation: Option<FrameCorrelation>,
+}
+
+impl<'a> Scan<'a> {
+    /// Starts a scan without frames.
+    pub const fn new(measurement: &'a Measurement) -> Self {
+        Self {
+            measurement,
+            pending: Vec::new(),
+            profiles: Vec::new(),
+            correlation: None,
+        }
+    }
+
+    /// Adds the next frame; frames come in their order.
+    pub fn add(&mut self, frame: MeasuredFrame) {
+        let frames = self.measurement.settings().average.frames;
+        self.pending.push(frame);
+        if self.pending.len() >= frames as usize {
+            self.complete();
+        }
+    }
+
+    /// Returns the profiles; the last one of fewer frames if there are too few left.
+    pub fn finish(mut self) -> ScannedPart<'a> {
+        if !self.pending.is_empty() {
+            self.complete();
+        }
+        ScannedPart {
+            measurement: self.measurement,
+            profiles: self.profiles,
+            correlation: self.correlation,
+        }
+    }
+
+    /// Averages the frames that are pending.
+    fn complete(&mut self) {
+        let averaging = self.measurement.settings().average;
+        let frames = core::mem::take(&mut self.pending);
+        let profile = match &frames[..] {
+            [frame] if averaging.columns == 1 => frame.points.clone(),
+            _ => {
+                let first = &frames[0];
+                let correlation = self.measurement.frame_correlation(first, averaging.frames);
+                let profile = averaged_profile(&frames, averaging, &correlation);
+                self.correlation.get_or_insert(correlation);
+                profile
+            }
+        };
+        self.profiles.push(profile);
+    }
+}
+
+/// The profiles of a part.
+#[derive(Clone, Debug)]
+pub struct ScannedPart<'a> {
+    measurement: &'a Measurement,
+    profiles: Vec<Vec<MeasuredPoint>>,
+    correlation: Option<FrameCorrelation>,
+}
+
+impl ScannedPart<'_> {
+    /// Returns the profiles, in the order of the frames.
+    pub fn profiles(&self) -> &[Vec<MeasuredPoint>] {
+        &self.profiles
+    }
+
+    /// Returns how many profiles of independent speckle the first profile is worth: 1 without averaging over
+    /// frames, and as many as frames if each has speckle of its own.
+    pub fn effective_frames(&self) -> f64 {
+        let frames = self.measurement.settings().average.frames;
+        let correlation = self.correlation.as_ref();
+        correlation.map_or(1.0, |correlation| correlation.effective_frames(frames))
+    }
+
+    /// Returns the heights on a grid: of squares of the part if the scan has a pitch, otherwise of columns
+    /// and profiles.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if nothing was measured or if the pitch is too small.
+    pub fn height_map(&self) -> Result<HeightMap, TriangulationError> {
+        let [across, along, height] = self.measurement.axes();
+        let settings = self.measurement.settings();
+        let valid = self.profiles.iter().flatten().any(MeasuredPoint::is_valid);
+        if !valid {
+            return Err(TriangulationError::TooFew {
+                what: "valid points for a height map",
+                got: 0,
+                needed: 1,
+            });
+        }
+        match settings.pitch {
+            Some(pitch) => HeightMap::of_points(&self.profiles, [across, along, height], pitch),
+            None => {
+                let columns = self.measurement.scene().camera.width();
+                let size = [columns, settings.average.columns];
+                Ok(HeightMap::of_profiles(&self.profiles, height, size))
+            }
+        }
+    }
+}

@@ -1,0 +1,127 @@
+use glam::DMat3;
+
+use super::{
+    frame::{MeasuredFrame, MeasuredPoint},
+    settings::Averaging,
+};
+use crate::{DVec2, DVec3, PlaceNoise};
+
+/// How speckle correlates the place of the line in two columns of two frames.
+pub trait SpeckleCorrelation {
+    /// Returns the correlation of the places in columns that lie `columns` apart, the second in the
+    /// frame `later` frames after the first.
+    fn between(&self, columns: i64, later: u32) -> f64;
+}
+
+/// Averages the profiles of consecutive frames, and neighbouring columns of them, into one.
+///
+/// Each mean takes the valid points of its columns and frames, of several in a column the brightest, and
+/// carries the uncertainty of a mean of correlated numbers:
+///
+/// ```text
+/// speckle          Σ u_a u_b ρ_ab / n²      ρ the correlation of the speckle between columns and frames
+/// shot, dark, …    Σ u_a² / n²              new in every column and frame
+/// PRNU, DSNU       the same pixels in every frame: only columns average
+/// ```
+///
+/// With one frame and one column all points are returned as they are.
+pub fn averaged_profile(
+    frames: &[MeasuredFrame],
+    averaging: Averaging,
+    speckle: &impl SpeckleCorrelation,
+) -> Vec<MeasuredPoint> {
+    if let ([frame], 1) = (frames, averaging.columns) {
+        return frame.points.clone();
+    }
+    let block = |point: &MeasuredPoint| point.seen.column / averaging.columns;
+    let mut members: Vec<Member<'_>> = frames
+        .iter()
+        .flat_map(|frame| brightest_points(frame).map(|point| (frame.frame, point)))
+        .collect();
+    members.sort_by_key(|(frame, point)| (block(point), *frame, point.seen.column));
+    members
+        .chunk_by(|(_, a), (_, b)| block(a) == block(b))
+        .filter_map(|members| mean_point(members, speckle))
+        .collect()
+}
+
+/// A point and the frame it was seen in.
+type Member<'a> = (u32, &'a MeasuredPoint);
+
+/// Returns the valid points of a frame, of several in a column the brightest.
+pub fn brightest_points(frame: &MeasuredFrame) -> impl Iterator<Item = &MeasuredPoint> {
+    let columns = frame.points.chunk_by(|a, b| a.seen.column == b.seen.column);
+    columns.filter_map(|points| {
+        let valid = points.iter().filter(|point| point.is_valid());
+        valid.max_by(|a, b| a.seen.reflectance.total_cmp(&b.seen.reflectance))
+    })
+}
+
+/// Returns the mean of points, each with the frame it was seen in, or `None` without any.
+///
+/// It carries the uncertainty of a mean of correlated numbers, as [`averaged_profile`] says; what else it
+/// has is the mean, too, or that of the middle one of the points.
+pub fn mean_point(
+    members: &[(u32, &MeasuredPoint)],
+    speckle: &impl SpeckleCorrelation,
+) -> Option<MeasuredPoint> {
+    let (_, middle) = members.get(members.len() / 2)?;
+    let count = members.len() as f64;
+    let points = || members.iter().map(|(_, point)| *point);
+    let mut mean = **middle;
+    mean.position = points().map(|point| point.position).sum::<DVec3>() / count;
+    mean.per_pixel = points().map(|point| point.per_pixel).sum::<DVec3>() / count;
+    let seen = &mut mean.seen;
+    seen.pixel = points().map(|point| point.seen.pixel).sum::<DVec2>() / count;
+    seen.width = points().map(|point| point.seen.width).sum::<f64>() / count;
+    seen.reflectance = points().map(|point| point.seen.reflectance).sum::<f64>() / count;
+    seen.point.position = points().map(|p| p.seen.point.position).sum::<DVec3>() / count;
+    mean.calibration = points().fold(DMat3::ZERO, |sum, p| sum + p.calibration) * count.recip();
+    mean.noise = mean_noise(members, speckle);
+    let place = mean.noise.total().sqrt();
+    let along = mean.per_pixel.length();
+    mean.seen.point.uncertainty = place * points().map(seen_per_pixel).sum::<DVec3>() / count;
+    mean.seen.point.along = place * along;
+    Some(mean)
+}
+
+/// How the point moves, before it is brought to the part, as the line moves by a pixel.
+fn seen_per_pixel(point: &MeasuredPoint) -> DVec3 {
+    point.per_pixel.length() * point.seen.point.direction.abs()
+}
+
+/// The noise of the mean of the places of several points.
+fn mean_noise(members: &[Member<'_>], speckle: &impl SpeckleCorrelation) -> PlaceNoise {
+    let squared_count = (members.len() as f64).powi(2);
+    let mut sum = PlaceNoise::default();
+    for (_, point) in members {
+        sum.shot += point.noise.shot;
+        sum.dark += point.noise.dark;
+        sum.quantisation += point.noise.quantisation;
+    }
+    for (frame_a, a) in members {
+        for (frame_b, b) in members {
+            let columns = signed_distance(a, b);
+            let (one, other) = (&a.noise, &b.noise);
+            let apart = if frame_b >= frame_a {
+                columns
+            } else {
+                -columns
+            };
+            let rho = speckle.between(apart, frame_a.abs_diff(*frame_b));
+            sum.speckle += rho * (one.speckle * other.speckle).sqrt();
+            if columns == 0 {
+                sum.prnu += (one.prnu * other.prnu).sqrt();
+                sum.dsnu += (one.dsnu * other.dsnu).sqrt();
+            }
+        }
+    }
+    sum.speckle = sum.speckle.max(0.0);
+    sum.scaled(1.0 / squared_count)
+}
+
+/// How many columns the second point lies to the right of the first.
+fn signed_distance(a: &MeasuredPoint, b: &MeasuredPoint) -> i64 {
+    let column = |point: &MeasuredPoint| i64::try_from(point.seen.column).unwrap_or(i64::MAX);
+    column(b) - column(a)
+}

@@ -1,0 +1,275 @@
+use glam::DMat3;
+use tem00_numerics::Grid;
+use tem00_tracer::RigidMotion;
+
+use super::{
+    decorrelation::{SpeckleChange, SpeckleWitness},
+    exposure::{Exposure, single},
+    speckle_table::SpeckleTable,
+};
+use crate::{
+    Calibration, ColumnLight, DVec3, LineDetector, LinePoint, PlaceNoise, ProfilePoint, RawFrame,
+    Sensor, TriangulationError, Validity, speckle_covariance,
+};
+
+/// What the sensor measures in one frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredFrame {
+    /// The number of the frame.
+    pub frame: u32,
+    /// What fell on the sensor.
+    pub exposure: Exposure,
+    /// The frame as the camera gives it.
+    pub raw: RawFrame,
+    /// The lines that were found in each column.
+    pub lines: Vec<Vec<LinePoint>>,
+    /// The points on them, by column and from the top.
+    pub points: Vec<MeasuredPoint>,
+    /// How speckle correlates the places of the line in columns 0, 1, 2 … apart; 1 alone without speckle.
+    pub correlation: Vec<f64>,
+    /// The point in the middle of the profile, whose speckle stands for that of all; `None` without
+    /// speckle or without points.
+    pub witness: Option<SpeckleWitness>,
+}
+
+/// A measured point of a part and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredPoint {
+    /// The point as the profile has it, before the part is brought back to where it stands in its
+    /// description.
+    pub seen: ProfilePoint,
+    /// The point on the part as the scene describes it, in metres.
+    pub position: DVec3,
+    /// How that moves as the line moves down by a pixel, in metres.
+    pub per_pixel: DVec3,
+    /// What makes the place of the line uncertain, in square pixels.
+    pub noise: PlaceNoise,
+    /// The covariance that the calibration gives to the position, in m²: common to all points.
+    pub calibration: DMat3,
+}
+
+impl MeasuredPoint {
+    /// Returns the standard uncertainties of the coordinates of the position, in metres.
+    pub fn uncertainty(&self) -> DVec3 {
+        DVec3::from_array(DVec3::AXES.map(|axis| self.uncertainty_along(axis)))
+    }
+
+    /// Returns the standard uncertainty along a direction of length 1, in metres: that of the place of the
+    /// line and that of the calibration together.
+    pub fn uncertainty_along(&self, direction: DVec3) -> f64 {
+        self.place_uncertainty_along(direction)
+            .hypot(self.calibration_uncertainty_along(direction))
+    }
+
+    /// Returns the standard uncertainty along a direction of length 1 that comes from the place of the
+    /// line, in metres.
+    pub fn place_uncertainty_along(&self, direction: DVec3) -> f64 {
+        self.noise.total().sqrt() * self.per_pixel.dot(direction).abs()
+    }
+
+    /// Returns the standard uncertainty along a direction of length 1 that comes from the calibration, in
+    /// metres. It is the same error for all points: it does not average out.
+    pub fn calibration_uncertainty_along(&self, direction: DVec3) -> f64 {
+        // A variance of rounding errors may turn out negative.
+        direction.dot(self.calibration * direction).max(0.0).sqrt()
+    }
+
+    /// Returns whether the place of the line can be trusted.
+    pub fn is_valid(&self) -> bool {
+        self.seen.validity == Validity::Valid
+    }
+}
+
+/// All that it takes to measure a frame.
+#[derive(Clone, Debug)]
+pub(super) struct Surroundings<'a> {
+    pub(super) sensor: &'a Sensor,
+    pub(super) detector: &'a LineDetector,
+    pub(super) calibration: &'a Calibration,
+    /// The covariance that is added to that of the calibration, in m², in the coordinates of the part.
+    pub(super) further: DMat3,
+    /// `None` without speckle.
+    pub(super) speckle: Option<&'a SpeckleTable>,
+    pub(super) to_part: RigidMotion,
+}
+
+impl Surroundings<'_> {
+    /// Exposes the sensor and measures what it shows.
+    pub(super) fn measure(
+        &self,
+        exposure: Exposure,
+        frame: u32,
+        seed: u64,
+    ) -> Result<MeasuredFrame, TriangulationError> {
+        let raw = self.sensor.expose(&exposure.electrons, seed)?;
+        let image = raw.grey_values();
+        let lines = self.detector.detect(&image);
+        let expected = Expected::of(self, &exposure);
+        let points = self.points(&lines, &expected);
+        let still = self.speckle.map(|table| {
+            let both = self.correlation(&exposure, &points, (SpeckleChange::NONE, table));
+            both[both.len() / 2..].to_vec()
+        });
+        Ok(MeasuredFrame {
+            frame,
+            correlation: still.unwrap_or_else(|| vec![1.0]),
+            witness: None,
+            points,
+            lines,
+            raw,
+            exposure,
+        })
+    }
+
+    fn points(&self, lines: &[Vec<LinePoint>], expected: &Expected) -> Vec<MeasuredPoint> {
+        let triangulator = self.calibration.triangulator();
+        let profile = triangulator.profile(lines, |_, _| 0.0);
+        let measured = |seen: &ProfilePoint| {
+            let [_, down] = triangulator.derivatives(seen.pixel)?;
+            let noise = expected.noise(self, seen);
+            let calibration = self.calibration.point_covariance(seen.pixel)?;
+            let turn = self.to_part.rotation();
+            let mut seen = *seen;
+            seen.point = triangulator.point_with_uncertainty(seen.pixel, noise.total().sqrt())?;
+            Some(MeasuredPoint {
+                position: self.to_part.point(seen.point.position),
+                per_pixel: self.to_part.direction(down),
+                calibration: turn * calibration * turn.transpose() + self.further,
+                noise,
+                seen,
+            })
+        };
+        profile.iter().filter_map(measured).collect()
+    }
+
+    /// Returns how speckle correlates the place of the line in neighbouring columns, as the pattern
+    /// has changed: for columns from −n to n apart.
+    ///
+    /// The middle one of the valid points stands for all. A slope of the line makes the correlation
+    /// shorter than this; it is left out.
+    pub(super) fn correlation(
+        &self,
+        exposure: &Exposure,
+        points: &[MeasuredPoint],
+        change: (SpeckleChange, &SpeckleTable),
+    ) -> Vec<f64> {
+        let (Some(middle), Some(still)) = (middle(points), self.speckle) else {
+            return vec![1.0];
+        };
+        let column = Expected::of(self, exposure).column(self, &middle.seen);
+        let light = column.light();
+        let sensor = self.sensor.description();
+        let variance = speckle_covariance(sensor, &still, [&light, &light], [0.0; 2]);
+        if variance <= 0.0 {
+            return vec![1.0];
+        }
+        let (
+            SpeckleChange {
+                displacement,
+                correlation,
+            },
+            table,
+        ) = change;
+        let covariance = |columns: f64| {
+            let apart = [columns - displacement.x, -displacement.y];
+            correlation * speckle_covariance(sensor, &table, [&light, &light], apart)
+        };
+        let reach = table.columns() as f64 + displacement.x.abs().ceil().min(FARTHEST);
+        let mut columns = -reach;
+        let mut correlations = Vec::new();
+        while columns <= reach {
+            correlations.push(covariance(columns) / variance);
+            columns += 1.0;
+        }
+        correlations
+    }
+}
+
+/// The most columns that a pattern is followed beyond its reach.
+const FARTHEST: f64 = 1024.0;
+
+/// The middle one of the valid points.
+pub(super) fn middle(points: &[MeasuredPoint]) -> Option<&MeasuredPoint> {
+    let valid: Vec<&MeasuredPoint> = points.iter().filter(|point| point.is_valid()).collect();
+    valid.get(valid.len() / 2).copied()
+}
+
+/// The frame that the sensor would give on average over all surfaces that look alike.
+struct Expected {
+    electrons: Grid<f32>,
+    coherent: Grid<f32>,
+    grey_values: Grid<f32>,
+    lines: Vec<Vec<LinePoint>>,
+}
+
+impl Expected {
+    fn of(surroundings: &Surroundings<'_>, exposure: &Exposure) -> Self {
+        let sensor = surroundings.sensor.description();
+        let dark = surroundings.sensor.dark_electrons();
+        let largest = f64::from((1_u32 << sensor.bit_depth) - 1);
+        let grey_values = exposure.without_speckle.map(|&electrons| {
+            let charge = (f64::from(electrons) + dark).min(sensor.full_well);
+            single((sensor.black_level + sensor.gain * charge).min(largest))
+        });
+        Self {
+            lines: surroundings.detector.detect(&grey_values),
+            electrons: exposure.without_speckle.clone(),
+            coherent: exposure.coherent.clone(),
+            grey_values,
+        }
+    }
+
+    /// What makes the place of a line uncertain.
+    fn noise(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> PlaceNoise {
+        let sensor = surroundings.sensor.description();
+        let column = self.column(surroundings, seen);
+        PlaceNoise::of_column(sensor, &surroundings.speckle, &column.light())
+    }
+
+    /// The light in the column of a point, and how its place depends on it: as without speckle where
+    /// there would be a line, too.
+    fn column(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> Column {
+        let take = |grid: &Grid<f32>| -> Vec<f32> {
+            (0..grid.height()).map(|y| grid[(seen.column, y)]).collect()
+        };
+        let wide = |grid: &Grid<f32>| take(grid).into_iter().map(f64::from).collect();
+        let detector = surroundings.detector;
+        let distance = |line: &LinePoint| (line.position - seen.pixel.y).abs();
+        let reach = 0.5 * detector.settings().window as f64;
+        let nearest = self.lines[seen.column]
+            .iter()
+            .filter(|line| distance(line) < reach)
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let line = nearest.copied().unwrap_or(LinePoint {
+            position: seen.pixel.y,
+            width: seen.width,
+            peak: 0.0,
+            integral: seen.reflectance,
+            background: 0.0,
+            validity: seen.validity,
+            line: seen.line,
+        });
+        Column {
+            sensitivities: detector.sensitivities(&take(&self.grey_values), &line),
+            electrons: wide(&self.electrons),
+            coherent: wide(&self.coherent),
+        }
+    }
+}
+
+/// The light in a column, and how the place of a line depends on it.
+struct Column {
+    electrons: Vec<f64>,
+    coherent: Vec<f64>,
+    sensitivities: Vec<f64>,
+}
+
+impl Column {
+    fn light(&self) -> ColumnLight<'_> {
+        ColumnLight {
+            electrons: &self.electrons,
+            coherent: &self.coherent,
+            sensitivities: &self.sensitivities,
+        }
+    }
+}

@@ -1,0 +1,219 @@
+use tem00_numerics::Grid;
+
+use super::{exposure::single, frame::MeasuredPoint};
+use crate::{DVec3, TriangulationError};
+
+/// The heights of a part on a grid.
+///
+/// Row 0 is the first profile, or the least place along the scan; holes are NaN.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeightMap {
+    /// The heights, in metres; NaN where nothing was measured.
+    pub heights: Grid<f32>,
+    /// Their standard uncertainties, in metres; NaN where nothing was measured.
+    pub uncertainties: Grid<f32>,
+    /// What columns and rows are.
+    pub raster: Raster,
+}
+
+/// What the columns and rows of a height map are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Raster {
+    /// Columns of the image, so many to a column of the map, and profiles.
+    Image {
+        /// The number of columns of the image that a column of the map is the mean of.
+        columns: usize,
+    },
+    /// Squares of the part.
+    Part {
+        /// The lengths along the first two axes at the lower edges of the first cell, in metres.
+        origin: [f64; 2],
+        /// The side of a cell, in metres.
+        pitch: f64,
+    },
+}
+
+/// The most cells of a map.
+const MOST_CELLS: f64 = 16_777_216.0;
+
+impl HeightMap {
+    /// Arranges profiles, one above the other, in the columns of an image of so many.
+    ///
+    /// `height` is the direction of heights, of length 1.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `columns` and `averaged` are positive, and if there are no profiles.
+    pub fn of_profiles(
+        profiles: &[Vec<MeasuredPoint>],
+        height: DVec3,
+        [columns, averaged]: [usize; 2],
+    ) -> Self {
+        assert!(
+            columns > 0 && averaged > 0 && !profiles.is_empty(),
+            "{} profiles of {columns} columns, {averaged} to a mean",
+            profiles.len()
+        );
+        let mut map = Self::empty(
+            [columns.div_ceil(averaged), profiles.len()],
+            Raster::Image { columns: averaged },
+        );
+        for (row, profile) in profiles.iter().enumerate() {
+            let mut valid: Vec<&MeasuredPoint> = profile.iter().filter(|p| p.is_valid()).collect();
+            // Of several points in a column the brightest comes last and stays.
+            valid.sort_by(|a, b| a.seen.reflectance.total_cmp(&b.seen.reflectance));
+            for point in valid {
+                let at = (point.seen.column / averaged, row);
+                map.heights[at] = single(point.position.dot(height));
+                map.uncertainties[at] = single(point.uncertainty_along(height));
+            }
+        }
+        map
+    }
+
+    /// Sorts points into square cells of a side of `pitch` metres along the first two axes; heights are
+    /// along the third. All are of length 1 and square to each other.
+    ///
+    /// A cell holds the mean height of its points, and the root mean square of their uncertainties: points
+    /// of one cell share their speckle, so that their mean is hardly better than one.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if there are no valid points, or if the map would have more than 2²⁴ cells.
+    pub fn of_points(
+        profiles: &[Vec<MeasuredPoint>],
+        [across, along, height]: [DVec3; 3],
+        pitch: f64,
+    ) -> Result<Self, TriangulationError> {
+        let points = || profiles.iter().flatten().filter(|point| point.is_valid());
+        let place = |point: &MeasuredPoint| [across, along].map(|axis| point.position.dot(axis));
+        let (origin, size) = extent(points().map(place), pitch)?;
+        let mut map = Self::empty(size, Raster::Part { origin, pitch });
+        let mut sums = Grid::filled(size[0], size[1], [0.0_f64; 3]);
+        for point in points() {
+            let cell = place(point);
+            let cell = [0, 1].map(|axis| index((cell[axis] - origin[axis]) / pitch, size[axis]));
+            let uncertainty = point.uncertainty_along(height);
+            let sum = &mut sums[(cell[0], cell[1])];
+            sum[0] += 1.0;
+            sum[1] += point.position.dot(height);
+            sum[2] += uncertainty * uncertainty;
+        }
+        let filled = sums.values().iter().enumerate();
+        for (i, [count, heights, squares]) in filled.filter(|(_, sum)| sum[0] > 0.0) {
+            map.heights.values_mut()[i] = single(heights / count);
+            map.uncertainties.values_mut()[i] = single((squares / count).sqrt());
+        }
+        Ok(map)
+    }
+
+    fn empty([width, height]: [usize; 2], raster: Raster) -> Self {
+        let holes = || Grid::filled(width, height, f32::NAN);
+        Self {
+            heights: holes(),
+            uncertainties: holes(),
+            raster,
+        }
+    }
+
+    /// Returns the least and the greatest height, in metres, or `None` where all are holes.
+    pub fn range(&self) -> Option<[f64; 2]> {
+        let heights = self.heights.values().iter().filter(|h| !h.is_nan());
+        heights.fold(None, |range, &height| {
+            let height = f64::from(height);
+            let [low, high] = range.unwrap_or([height; 2]);
+            Some([low.min(height), high.max(height)])
+        })
+    }
+
+    /// Returns the part of the cells that are holes, from 0 to 1.
+    pub fn holes(&self) -> f64 {
+        let values = self.heights.values();
+        let holes = values.iter().filter(|height| height.is_nan()).count();
+        holes as f64 / values.len() as f64
+    }
+
+    /// Returns the heights as whole numbers, 0 for a hole, and what they stand for.
+    ///
+    /// ```text
+    /// height = offset + scale · value        for values from 1 to 65535
+    /// ```
+    pub fn quantised(&self) -> (Grid<u16>, HeightScale) {
+        let [low, high] = self.range().unwrap_or([0.0; 2]);
+        let steps = f64::from(u16::MAX - 1);
+        // A flat map has any scale; a nanometre is finer than what is measured.
+        let scale = ((high - low) / steps).max(1e-9 / steps);
+        let offset = low - scale;
+        let values = self.heights.map(|&height| {
+            if height.is_nan() {
+                return 0;
+            }
+            let steps = ((f64::from(height) - offset) / scale).round();
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "between 1 and 65535"
+            )]
+            let value = steps.clamp(1.0, f64::from(u16::MAX)) as u16;
+            value
+        });
+        (values, HeightScale { offset, scale })
+    }
+}
+
+/// What the whole numbers of a height map stand for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeightScale {
+    /// The height of the value 0, in metres, if it were one.
+    pub offset: f64,
+    /// Metres per step.
+    pub scale: f64,
+}
+
+/// The lower corner of a grid around all places, in metres, and its number of cells.
+fn extent(
+    places: impl Iterator<Item = [f64; 2]>,
+    pitch: f64,
+) -> Result<([f64; 2], [usize; 2]), TriangulationError> {
+    let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let (low, high) = places.fold(start, |(low, high), place| {
+        let axes = [0, 1];
+        (
+            axes.map(|axis| low[axis].min(place[axis])),
+            axes.map(|axis| high[axis].max(place[axis])),
+        )
+    });
+    if low[0] > high[0] {
+        return Err(TriangulationError::TooFew {
+            what: "valid points for a height map",
+            got: 0,
+            needed: 1,
+        });
+    }
+    let cells = [0, 1].map(|axis| ((high[axis] - low[axis]) / pitch).floor() + 1.0);
+    if !(cells[0] * cells[1] <= MOST_CELLS) {
+        return Err(TriangulationError::OutOfRange {
+            parameter: "pitch",
+            value: pitch,
+            allowed: "so large that the height map has at most 2²⁴ cells (in metres)",
+        });
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "at most 2²⁴"
+    )]
+    let size = cells.map(|cells| cells as usize);
+    Ok((low, size))
+}
+
+/// The cell of a place, in cells from the first; the last one holds the upper edge.
+fn index(place: f64, size: usize) -> usize {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "places lie in the grid"
+    )]
+    let index = place.max(0.0) as usize;
+    index.min(size - 1)
+}

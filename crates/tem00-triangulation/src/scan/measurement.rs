@@ -1,0 +1,333 @@
+use core::sync::atomic::AtomicBool;
+
+use glam::DMat3;
+use tem00_tracer::{
+    BeamShape, Camera, Filter, Frame, Laser, Method, RenderOptions, Scene, SpeckleModel,
+    SurfaceSpeckle, render_frame,
+};
+
+use super::{
+    decorrelation::{FrameCorrelation, SpeckleChange, SpeckleWitness},
+    exposure::Exposure,
+    frame::{MeasuredFrame, Surroundings, middle},
+    motion::ScanMotion,
+    scene::MeasurementScene,
+    settings::ScanSettings,
+    speckle_table::{SensorSpeckle, SpeckleTable},
+};
+use crate::{
+    Calibration, DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, Sensor,
+    SensorDescription, TriangulationError,
+};
+
+/// A scene that is measured frame by frame.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    scene: Scene,
+    sensor: Sensor,
+    detector: LineDetector,
+    calibration: Calibration,
+    height_uncertainty: f64,
+    motion: ScanMotion,
+    scan: ScanSettings,
+    speckle: SensorSpeckle,
+    /// Its covariances in one image.
+    table: SpeckleTable,
+}
+
+impl Measurement {
+    /// Prepares to measure a scene, with the camera and the laser plane known exactly; for a calibration
+    /// that is estimated see [`with_calibration`](Self::with_calibration).
+    ///
+    /// The render integrates over the sensitive part of each pixel. The first laser draws the line that is
+    /// triangulated; others only add their light.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the first laser is missing or draws no line, if the line runs up and down in the
+    /// image, if the scene asks for a part of the image, another filter than the pixel or light followed
+    /// from the lasers, if a sensor or a detector is not possible, or if parts move in a way that no scan
+    /// does.
+    pub fn new(measured: MeasurementScene) -> Result<Self, TriangulationError> {
+        let MeasurementScene {
+            mut scene,
+            sensor,
+            detector,
+            calibration: settings,
+            scan,
+        } = measured;
+        let motion = ScanMotion::of_scene(&scene, scan.surface.as_deref())?;
+        let laser = line_laser(&scene)?;
+        check_direction(&scene.camera, laser)?;
+        check_render(&scene)?;
+        let calibration = Calibration::exact(scene.camera, LaserPlane::of_laser(laser)?);
+        let sensor = Sensor::new(sensor)?;
+        let speckle = speckle(&scene, laser, &motion, &sensor)?;
+        scene.render.filter = Filter::Box {
+            radius: sensor.sensitive_half_width(),
+        };
+        Ok(Self {
+            detector: LineDetector::new(DetectorSettings {
+                saturation: saturation(sensor.description()),
+                ..detector
+            })?,
+            scene,
+            sensor,
+            calibration,
+            height_uncertainty: checked_uncertainty(settings.uncertainty)?,
+            motion,
+            scan,
+            table: SpeckleTable::new(&speckle, [0.0; 2]),
+            speckle,
+        })
+    }
+
+    /// Returns the same measurement with camera and laser plane as a calibration found them.
+    ///
+    /// They stand before anything moves, in the coordinates of the scene.
+    #[must_use]
+    pub fn with_calibration(self, calibration: Calibration) -> Self {
+        Self {
+            calibration,
+            ..self
+        }
+    }
+
+    /// Returns the scene as it is rendered.
+    pub const fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Returns the sensor.
+    pub const fn sensor(&self) -> &Sensor {
+        &self.sensor
+    }
+
+    /// Returns the detector.
+    pub const fn detector(&self) -> &LineDetector {
+        &self.detector
+    }
+
+    /// Returns the camera and the laser plane that points are computed with, as they stand before
+    /// anything moves.
+    pub const fn calibration(&self) -> &Calibration {
+        &self.calibration
+    }
+
+    /// Returns what moves.
+    pub const fn motion(&self) -> &ScanMotion {
+        &self.motion
+    }
+
+    /// Returns how the frames are put together.
+    pub const fn settings(&self) -> &ScanSettings {
+        &self.scan
+    }
+
+    /// Returns the speckle as the pixels see it.
+    pub const fn speckle(&self) -> &SensorSpeckle {
+        &self.speckle
+    }
+
+    /// Returns the directions across the line of sight's column, along the scan and of height: along the
+    /// line to the right in the image, onwards, and up.
+    pub fn axes(&self) -> [DVec3; 3] {
+        let height = self.scan.height;
+        let line =
+            line_laser(&self.scene).map_or(DVec3::X, |laser| laser.description().line_direction);
+        let right = self.scene.camera.axes().x_axis;
+        let line = line * line.dot(right).signum();
+        let across = (line - line.dot(height) * height).try_normalize();
+        let across = across.unwrap_or_else(|| height.any_orthonormal_vector());
+        [across, height.cross(across), height]
+    }
+
+    /// Renders a frame, exposes the sensor, finds the line and places its points.
+    ///
+    /// Without a `speckle` model the light carries no speckle. The noise of the sensor is drawn from the
+    /// seed of the scene and the number of the frame. `progress` and `cancel` are those of
+    /// [`render_frame`]; the result has the same bits for any number of threads.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the frame cannot be rendered or if `cancel` was set.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `frame < scene.render.frames` and `speckle` belongs to the scene.
+    pub fn measure(
+        &self,
+        speckle: Option<&SpeckleModel>,
+        frame: u32,
+        progress: impl Fn(u64) + Sync,
+        cancel: &AtomicBool,
+    ) -> Result<MeasuredFrame, TriangulationError> {
+        let options = RenderOptions::from(&self.scene.render);
+        let rendered = render_frame(&self.scene, speckle, frame, &options, progress, cancel)?;
+        let exposure = Exposure::of_frame(&rendered, &self.scene.camera, &self.sensor);
+        let seed = noise_seed(self.scene.render.seed, frame);
+        let mut measured = self
+            .surroundings(frame, speckle.is_some())
+            .measure(exposure, frame, seed)?;
+        measured.witness = speckle.and_then(|_| self.witness(&measured, &rendered));
+        Ok(measured)
+    }
+
+    /// Returns how speckle correlates the places of the line between a frame and those that follow, up
+    /// to `frames` of them together, by the law of its motion and decorrelation.
+    pub fn frame_correlation(&self, first: &MeasuredFrame, frames: u32) -> FrameCorrelation {
+        let surroundings = self.surroundings(first.frame, first.witness.is_some());
+        let table = |later: u32| {
+            let Some(witness) = &first.witness else {
+                return vec![if later == 0 { 1.0 } else { 0.0 }];
+            };
+            let frames = [first.frame, first.frame.saturating_add(later)];
+            let change = SpeckleChange::between(&self.scene, witness, frames);
+            let [x, y] = change.displacement.to_array();
+            let table = SpeckleTable::new(&self.speckle, [-x, -y]);
+            surroundings.correlation(&first.exposure, &first.points, (change, &table))
+        };
+        FrameCorrelation::new((0..frames).map(table).collect())
+    }
+
+    fn surroundings(&self, frame: u32, speckled: bool) -> Surroundings<'_> {
+        Surroundings {
+            sensor: &self.sensor,
+            detector: &self.detector,
+            calibration: &self.calibration,
+            further: self.further_covariance(),
+            speckle: speckled.then_some(&self.table),
+            to_part: self.motion.to_part(frame),
+        }
+    }
+
+    /// The covariance of a further uncertainty of heights.
+    fn further_covariance(&self) -> DMat3 {
+        let height = self.height_uncertainty * self.scan.height;
+        DMat3::from_cols(height.x * height, height.y * height, height.z * height)
+    }
+
+    /// The middle point of the profile in the world, with the normal that the render has seen there.
+    fn witness(&self, measured: &MeasuredFrame, rendered: &Frame) -> Option<SpeckleWitness> {
+        let middle = middle(&measured.points)?;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "lines are found inside of the image"
+        )]
+        let row = (middle.seen.pixel.y as usize).min(rendered.lamps.height() - 1);
+        let at = (middle.seen.column, row);
+        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(rendered.normal[axis][at]));
+        let world = self.motion.head_at(measured.frame);
+        Some(SpeckleWitness {
+            surface: *self.motion.surfaces().first()?,
+            position: world.point(middle.seen.point.position),
+            normal: DVec3::new(x, y, z).try_normalize()?,
+        })
+    }
+}
+
+fn checked_uncertainty(uncertainty: f64) -> Result<f64, TriangulationError> {
+    if (0.0..f64::INFINITY).contains(&uncertainty) {
+        return Ok(uncertainty);
+    }
+    Err(TriangulationError::OutOfRange {
+        parameter: "uncertainty",
+        value: uncertainty,
+        allowed: "at least 0 and finite (in metres)",
+    })
+}
+
+/// The laser that draws the line.
+fn line_laser(scene: &Scene) -> Result<&Laser, TriangulationError> {
+    let laser = scene.lasers.first();
+    laser
+        .filter(|laser| matches!(laser.description().shape, BeamShape::Line { .. }))
+        .ok_or_else(|| {
+            let why = "the first [[laser]] of the scene must draw a line: [laser.line]";
+            TriangulationError::Scene(why.to_owned())
+        })
+}
+
+/// Makes sure that the line crosses columns.
+fn check_direction(camera: &Camera, laser: &Laser) -> Result<(), TriangulationError> {
+    /// A step along the line, in metres, small against anything that is triangulated.
+    const STEP: f64 = 1e-5;
+    let description = laser.description();
+    let along = STEP * description.line_direction.normalize_or_zero();
+    let ends = [-along, along].map(|step| camera.project(description.look_at + step));
+    let [Some(left), Some(right)] = ends else {
+        return Err(TriangulationError::Scene(
+            "the camera must see the point that the laser looks at".to_owned(),
+        ));
+    };
+    let DVec2 { x, y } = (right - left).abs();
+    if x > y {
+        return Ok(());
+    }
+    Err(TriangulationError::Scene(
+        "the laser line must run from left to right in the image: turn the camera by its `up`, or the \
+         line by its `line_direction`"
+            .to_owned(),
+    ))
+}
+
+/// Makes sure that the image is what the pixels of a sensor see.
+fn check_render(scene: &Scene) -> Result<(), TriangulationError> {
+    let render = &scene.render;
+    let wrong = if render.filter != Filter::default() {
+        "`filter` in [render] must be left out: a sensor sees the mean over the sensitive part of a pixel"
+    } else if render.crop.is_some() {
+        "`crop` in [render] must be left out: a sensor exposes all of its pixels"
+    } else if render.method != Method::Path {
+        "`method` in [render] must be \"path\", which integrates over the sensitive part of a pixel"
+    } else {
+        return Ok(());
+    };
+    Err(TriangulationError::Scene(wrong.to_owned()))
+}
+
+/// The speckle on the sensor in the middle of the image; of several surfaces of the part, that of the
+/// greatest contrast.
+fn speckle(
+    scene: &Scene,
+    laser: &Laser,
+    motion: &ScanMotion,
+    sensor: &Sensor,
+) -> Result<SensorSpeckle, TriangulationError> {
+    let camera = &scene.camera;
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "an image has at most 2²⁸ pixels"
+    )]
+    let middle = 0.5 * DVec2::new(camera.width() as f64, camera.height() as f64);
+    let geometry = camera.imaging_geometry_at(middle, laser.wavelength())?;
+    let surfaces = motion.surfaces().iter();
+    let variances = surfaces.map(|&index| variance(&scene.surfaces[index].speckle));
+    Ok(SensorSpeckle {
+        size: [geometry.speckle_size_in_pixels(); 2],
+        sensitive_side: 2.0 * sensor.sensitive_half_width(),
+        variance: variances.fold(0.0, f64::max),
+    })
+}
+
+/// The square of the contrast of the speckle of a surface: (1 + P²)/2 by the number of patterns.
+fn variance(speckle: &SurfaceSpeckle) -> f64 {
+    0.5 * (1.0 + speckle.polarisation * speckle.polarisation) / f64::from(speckle.patterns)
+}
+
+/// The grey value at which a pixel may be saturated, four standard deviations of its noise in the dark
+/// below a full well.
+fn saturation(sensor: &SensorDescription) -> f64 {
+    let noise = 4.0 * sensor.dark_noise.hypot(sensor.dsnu);
+    let full = sensor.black_level + sensor.gain * (sensor.full_well - noise);
+    let largest = f64::from((1_u32 << sensor.bit_depth) - 1);
+    // A well that holds no more than its noise is never told from a full one.
+    largest.min(full.max(1.0))
+}
+
+/// A seed for the noise of each frame: the golden ratio keeps those of one render apart.
+const fn noise_seed(seed: u64, frame: u32) -> u64 {
+    const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+    seed.wrapping_add(GOLDEN.wrapping_mul(frame as u64 + 1))
+}

@@ -104,6 +104,7 @@ pub(super) fn table(findings: &Findings<'_>) -> Vec<Vec<String>> {
         "distribution",
         "standard uncertainty",
         "sensitivity",
+        "degrees of freedom",
         "contribution (µm)",
         "share (%)",
     ]
@@ -141,6 +142,7 @@ fn cells(findings: &Findings<'_>, term: &BudgetTerm) -> Vec<String> {
         } else {
             format!("{} µm/px", micrometres(term.sensitivity.abs()))
         },
+        degrees_of_freedom(term.degrees_of_freedom),
         micrometres(term.contribution()),
         number(round(100.0 * findings.budget.share(term), 3)),
     ];
@@ -153,9 +155,18 @@ fn cells(findings: &Findings<'_>, term: &BudgetTerm) -> Vec<String> {
     cells
 }
 
+fn degrees_of_freedom(value: f64) -> String {
+    if value.is_finite() {
+        number(round(value, 3))
+    } else {
+        "∞".to_owned()
+    }
+}
+
 /// Returns the last line of the table.
 pub(super) fn combined(findings: &Findings<'_>) -> Vec<String> {
     let mut cells: Vec<String> = ["combined", "", "", "", ""].map(String::from).into();
+    cells.push(degrees_of_freedom(findings.budget.degrees_of_freedom()));
     cells.push(micrometres(findings.budget.combined()));
     cells.push("100".into());
     if let (Some(trials), Some(combined)) = (&findings.trials, findings.combined_by_trials()) {

@@ -10,10 +10,13 @@ use kuva::prelude::{
 use super::{Drawing, EMPTY, LEGEND, Panel, colour};
 use crate::table::number;
 
+/// The largest number with a place on an axis: differences and squares of such are numbers still.
+const LARGEST: f64 = 1e100;
+
 /// Points and lines over two axes, each linear or logarithmic.
 ///
-/// A point that has no place on its axes, because it is not finite or not positive on a logarithmic
-/// axis, is left out.
+/// A point that has no place on its axes, because it is not finite, beyond 1e100 or not positive on a
+/// logarithmic axis, is left out.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
     title: String,
@@ -174,7 +177,7 @@ impl Chart {
 impl Series {
     /// Leaves out the points that have no place on their axes.
     fn keep_places(&mut self, [log_x, log_y]: [bool; 2]) {
-        let on_axis = |value: f64, log: bool| value.is_finite() && (value > 0.0 || !log);
+        let on_axis = |value: f64, log: bool| value.abs() <= LARGEST && (value > 0.0 || !log);
         self.points.retain(|&[x, low, high]| {
             on_axis(x, log_x) && on_axis(low, log_y) && on_axis(high, log_y)
         });

@@ -5,7 +5,7 @@ use std::{error::Error, fmt::Write, fs, io::BufWriter, path::Path};
 use png::{BitDepth, ColorType, Encoder};
 use tem00::triangulation::{RawFrame, SensorDescription};
 
-use super::{SIZE, Series, WAVELENGTH, description};
+use super::{Exposure, SIZE, Series, WAVELENGTH, description};
 
 /// Writes all frames, the list of them, and what was put in.
 pub(crate) fn write(folder: &Path, series: &Series) -> Result<(), Box<dyn Error>> {
@@ -21,33 +21,27 @@ pub(crate) fn write(folder: &Path, series: &Series) -> Result<(), Box<dyn Error>
         }
         Ok::<(), Box<dyn Error>>(())
     };
-    for (index, at) in series.exposures.iter().enumerate() {
+    let mut add_both = |at: &Exposure, name: &str| {
+        let photons = at.photons;
+        // Exposure times in ns.
+        let time = 1e9 * at.time;
         add(
-            bright(at.time, at.photons),
-            format!("bright_{index:02}"),
+            format!("b {time:.3} {photons:.6}"),
+            format!("bright_{name}"),
             &at.bright,
         )?;
-        add(dark(at.time), format!("dark_{index:02}"), &at.dark)?;
+        add(format!("d {time:.3}"), format!("dark_{name}"), &at.dark)
+    };
+    for (index, pair) in series.pairs.iter().enumerate() {
+        add_both(pair, &format!("{index:02}"))?;
     }
-    let heading = bright(series.stack_time, series.stack_photons);
-    add(heading, "stack_bright".into(), &series.bright)?;
-    add(dark(series.stack_time), "stack_dark".into(), &series.dark)?;
+    add_both(&series.stacks, "stack")?;
     fs::write(folder.join("emva1288.txt"), list)?;
     fs::write(
         folder.join("sensor.json"),
         put_in(&description(), series.irradiance),
     )?;
     Ok(())
-}
-
-/// Bright frames: exposure time in ns, photons per pixel.
-fn bright(time: f64, photons: f64) -> String {
-    format!("b {:.3} {photons:.6}", 1e9 * time)
-}
-
-/// Dark frames: exposure time in ns.
-fn dark(time: f64) -> String {
-    format!("d {:.3}", 1e9 * time)
 }
 
 fn write_frame(path: &Path, frame: &RawFrame) -> Result<(), Box<dyn Error>> {

@@ -52,66 +52,73 @@ fn exposures() -> impl Iterator<Item = f64> {
     (1..=35).map(|step| 0.985 / 33.0 * f64::from(step))
 }
 
-/// One exposure of the series.
+/// Bright and dark frames of one exposure time, in seconds.
 struct Exposure {
     time: f64,
     photons: f64,
-    bright: [RawFrame; 2],
-    dark: [RawFrame; 2],
-}
-
-/// The frames of all exposures under one irradiance, in W/m², and the stacks in the middle of them.
-struct Series {
-    irradiance: f64,
-    exposures: Vec<Exposure>,
-    stack_time: f64,
-    stack_photons: f64,
     bright: Vec<RawFrame>,
     dark: Vec<RawFrame>,
 }
 
+/// The pairs of all exposure times under one irradiance, in W/m², and the stacks of one in the middle.
+struct Series {
+    irradiance: f64,
+    pairs: Vec<Exposure>,
+    stacks: Exposure,
+}
+
+/// A camera under even light that numbers its frames.
+struct Camera {
+    irradiance: f64,
+    frames: u64,
+}
+
+impl Camera {
+    /// Takes bright frames and as many dark ones.
+    fn take(
+        &mut self,
+        sensor: &Sensor,
+        count: u64,
+    ) -> Result<[Vec<RawFrame>; 2], TriangulationError> {
+        let electrons = sensor.electrons(self.irradiance, WAVELENGTH);
+        let first = self.frames;
+        self.frames += 2 * count;
+        let frames = |electrons, first| {
+            let seeds = first..first + count;
+            let frames = seeds.map(|seed| sensor.uniform_frame(SIZE, electrons, seed));
+            frames.collect::<Result<Vec<RawFrame>, _>>()
+        };
+        Ok([frames(electrons, first)?, frames(0.0, first + count)?])
+    }
+}
+
 fn take() -> Result<Series, TriangulationError> {
     let irradiance = Sensor::new(description())?.saturation_irradiance(WAVELENGTH);
-    let mut seed = 0;
-    let mut frames = |sensor: &Sensor, irradiance: f64, count: u64| {
-        let electrons = sensor.electrons(irradiance, WAVELENGTH);
-        seed += count;
-        (seed - count..seed)
-            .map(|seed| sensor.uniform_frame(SIZE, electrons, seed))
-            .collect::<Result<Vec<RawFrame>, _>>()
+    let mut camera = Camera {
+        irradiance,
+        frames: 0,
     };
-    let with = |fraction: f64| {
-        Sensor::new(SensorDescription {
-            exposure_time: fraction * FULL,
+    let mut exposure = |fraction: f64, count| {
+        let exposure_time = fraction * FULL;
+        let sensor = Sensor::new(SensorDescription {
+            exposure_time,
             ..description()
+        })?;
+        let [bright, dark] = camera.take(&sensor, count)?;
+        let photons = sensor.photons(irradiance, WAVELENGTH);
+        Ok::<_, TriangulationError>(Exposure {
+            time: exposure_time,
+            photons,
+            bright,
+            dark,
         })
     };
-    let mut exposures_taken = Vec::new();
-    for fraction in exposures() {
-        let sensor = with(fraction)?;
-        let mut pair = |irradiance| {
-            let pair = frames(&sensor, irradiance, 2)?.try_into();
-            pair.map_err(|_| TriangulationError::TooFew {
-                what: "frames",
-                got: 0,
-                needed: 2,
-            })
-        };
-        exposures_taken.push(Exposure {
-            time: fraction * FULL,
-            photons: sensor.photons(irradiance, WAVELENGTH),
-            bright: pair(irradiance)?,
-            dark: pair(0.0)?,
-        });
-    }
-    let half = with(0.5)?;
     Ok(Series {
         irradiance,
-        exposures: exposures_taken,
-        stack_time: half.description().exposure_time,
-        stack_photons: half.photons(irradiance, WAVELENGTH),
-        bright: frames(&half, irradiance, STACK)?,
-        dark: frames(&half, 0.0, STACK)?,
+        pairs: exposures()
+            .map(|fraction| exposure(fraction, 2))
+            .collect::<Result<_, _>>()?,
+        stacks: exposure(0.5, STACK)?,
     })
 }
 

@@ -22,9 +22,9 @@ pub(crate) struct Measured {
 
 impl Measured {
     pub(crate) fn of(series: &Series) -> Result<Self, TriangulationError> {
-        let of_pair = |[a, b]: &[RawFrame; 2]| PhotonTransferPoint::of_pair(a, b);
+        let of_pair = |pair: &[RawFrame]| PhotonTransferPoint::of_pair(&pair[0], &pair[1]);
         let (mut points, mut photons, mut dark) = (Vec::new(), Vec::new(), Vec::new());
-        for at in &series.exposures {
+        for at in &series.pairs {
             let (bright, darkness) = (of_pair(&at.bright)?, of_pair(&at.dark)?);
             points.push((
                 bright.mean - darkness.mean,
@@ -48,7 +48,10 @@ impl Measured {
         let variance = |&(time, point): &(f64, PhotonTransferPoint)| (time, point.variance);
         let (_, variance) = line(dark.iter().map(variance));
         let (current, _) = line(dark.iter().map(|(time, point)| (*time, point.mean)));
-        let (bright, darkness) = (Stack::of(&series.bright), Stack::of(&series.dark));
+        let (bright, darkness) = (
+            Stack::of(&series.stacks.bright),
+            Stack::of(&series.stacks.dark),
+        );
         let response = (bright.variance - darkness.variance).sqrt();
         Ok(Self {
             saturation: quantum_efficiency * photons[saturated],

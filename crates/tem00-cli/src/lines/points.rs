@@ -100,3 +100,125 @@ fn write_point(out: &mut impl Write, index: usize, point: &LinePoint) -> io::Res
         point.line, point.position, point.width, point.peak, point.integral, point.background
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+    use tem00_triangulation::LaserPlane;
+
+    use super::*;
+
+    const PITCH: f64 = 5e-6;
+    const DISTANCE: f64 = 0.3;
+    const ANGLE: f64 = 0.5;
+
+    /// A camera that looks at the origin under an angle from the laser plane y = 0, at magnification 1/11.
+    fn calibration() -> Calibration {
+        let camera = Camera::new(CameraDescription {
+            position: DISTANCE * DVec3::new(0.0, -ANGLE.sin(), ANGLE.cos()),
+            look_at: DVec3::ZERO,
+            up: DVec3::Z,
+            focal_length: DISTANCE / 12.0,
+            f_number: 8.0,
+            focus_distance: DISTANCE,
+            pixel_pitch: PITCH,
+            resolution: [40, 30],
+            principal_point: None,
+            tilt: SensorTilt::default(),
+            distortion: RadialDistortion::default(),
+            depth_of_field: false,
+        });
+        let plane = LaserPlane::new(DVec3::ZERO, DVec3::Y);
+        Calibration::exact(camera.expect("a camera"), plane.expect("a plane"))
+    }
+
+    fn table(lines: &[LineSummary], found: &Found, calibration: Option<&Calibration>) -> String {
+        let places = Places {
+            found,
+            rows: false,
+            lines,
+            calibration,
+        };
+        let mut out = Vec::new();
+        places.write(&mut out).expect("memory can be written");
+        String::from_utf8(out).expect("text")
+    }
+
+    /// A line in the middle of the image that jumps up and down by 0.1 pixels.
+    fn zigzag() -> Vec<Vec<LinePoint>> {
+        let point = |x: usize| LinePoint {
+            position: if x.is_multiple_of(2) { 15.1 } else { 14.9 },
+            width: 6.0,
+            peak: 500.0,
+            integral: 2_000.0,
+            background: 20.0,
+            validity: if x == 0 {
+                Validity::Cut
+            } else {
+                Validity::Valid
+            },
+            line: 0,
+        };
+        (0..40).map(|x| vec![point(x)]).collect()
+    }
+
+    #[test]
+    fn points_have_their_places_in_space_and_their_uncertainties() {
+        let found = zigzag();
+        let lines = LineSummary::of_all(&found);
+        let noise = lines[0].noise.expect("there are enough columns");
+        let table = table(&lines, &found, Some(&calibration()));
+        let row = table.lines().nth(21).expect("column 20");
+        let cells: Vec<f64> = row
+            .split(',')
+            .map(|cell| cell.parse().unwrap_or(0.0))
+            .collect();
+        // Half a column from the middle, and 0.1 rows below it, at the magnification 1/11 to first order.
+        let (x, z) = (0.5 * PITCH * 11.0, -0.1 * PITCH * 11.0 / ANGLE.sin());
+        let [.., got_x, got_y, got_z, u_x, u_y, u_z] = cells[..] else {
+            panic!("{row}")
+        };
+        // The second order is z cos θ / L of the first, 2e-5; places have nine digits behind the point.
+        assert!((got_x - x).abs() < 2e-9, "x = {got_x} for {x}");
+        assert!((got_z - z).abs() < 2e-9, "z = {got_z} for {z}");
+        assert!(
+            got_y.abs() < 1e-9,
+            "the point lies in the laser plane: {got_y}"
+        );
+        let expected = noise * PITCH * 11.0 / ANGLE.sin();
+        // Four digits are written.
+        assert!(
+            (u_z / expected - 1.0).abs() < 6e-4,
+            "u(z) = {u_z} for {expected}"
+        );
+        assert!(
+            u_x < 1e-3 * u_z && u_y < 1e-12,
+            "u(x) = {u_x}, u(y) = {u_y}"
+        );
+    }
+
+    #[test]
+    fn what_is_not_valid_says_why() {
+        let found = zigzag();
+        let table = table(&LineSummary::of_all(&found), &found, None);
+        let rows: Vec<&str> = table.lines().take(3).collect();
+        assert!(
+            rows[0].ends_with("background_DN,valid,reason"),
+            "{}",
+            rows[0]
+        );
+        assert_eq!(rows[1], "0,0,15.100000,6.000000,500,2000,20,0,cut");
+        assert_eq!(rows[2], "1,0,14.900000,6.000000,500,2000,20,1,");
+    }
+
+    #[test]
+    fn a_point_beyond_the_horizon_has_no_place() {
+        let mut found = zigzag();
+        // Far below the image, where lines of sight never meet the plane.
+        found[3][0].position = 1e6;
+        let table = table(&LineSummary::of_all(&found), &found, Some(&calibration()));
+        let row = table.lines().nth(4).expect("column 3");
+        assert!(row.ends_with(",,,,,,"), "{row}");
+        assert_eq!(row.matches(',').count(), 14, "{row}");
+    }
+}

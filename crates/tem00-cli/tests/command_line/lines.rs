@@ -13,31 +13,39 @@ fn place(x: usize) -> f64 {
     24.0 + 3.0 * (2.0 * PI * x as f64 / 60.0).sin()
 }
 
-/// Writes a PNG of 16 bits, the line of 8 pixels full width and 3000 DN over 100 DN at the places.
-fn write_line(path: &Path, place: impl Fn(usize) -> f64, [width, height]: [usize; 2]) {
-    let mut data = Vec::new();
-    for y in 0..height {
-        for x in 0..width {
-            let from_middle = y as f64 + 0.5 - place(x);
-            let value = 100.0 + 3_000.0 * (-2.0 * (from_middle / 4.0).powi(2)).exp();
-            data.extend((value.round() as u16).to_be_bytes());
-        }
-    }
-    write_png(path, [width, height], &data);
+/// The grey value in the middle of a pixel, as far from the line as told: a line of 8 pixels full width and
+/// 3000 DN over 100 DN.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the grey value lies between 100 and 3100"
+)]
+fn grey(from_middle: f64) -> u16 {
+    (100.0 + 3_000.0 * (-2.0 * (from_middle / 4.0).powi(2)).exp()).round() as u16
 }
 
-fn write_png(path: &Path, [width, height]: [usize; 2], data: &[u8]) {
+/// Writes a PNG of 16 bits.
+fn write_png(path: &Path, [width, height]: [usize; 2], value: impl Fn(usize, usize) -> u16) {
+    let size = [width, height].map(|side| u32::try_from(side).expect("a small image"));
     let file = fs::File::create(path).expect("the file");
-    let mut encoder = Encoder::new(file, width as u32, height as u32);
+    let mut encoder = Encoder::new(file, size[0], size[1]);
     encoder.set_color(ColorType::Grayscale);
     encoder.set_depth(BitDepth::Sixteen);
+    let value = &value;
+    let values = (0..height).flat_map(|y| (0..width).map(move |x| value(x, y)));
+    let data: Vec<u8> = values.flat_map(u16::to_be_bytes).collect();
     let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(data).expect("an image");
+    writer.write_image_data(&data).expect("an image");
+}
+
+/// Writes an image of a line at the places.
+fn write_line(path: &Path, place: impl Fn(usize) -> f64) {
+    write_png(path, SIZE, |x, y| grey(y as f64 + 0.5 - place(x)));
 }
 
 fn line_folder() -> tempfile::TempDir {
     let folder = folder();
-    write_line(&folder.path().join("a.png"), place, SIZE);
+    write_line(&folder.path().join("a.png"), place);
     folder
 }
 
@@ -109,7 +117,7 @@ fn saturated_points_are_not_valid() {
         "4095 is not reached"
     );
 
-    write_line(&folder.path().join("b.png"), |_| 20.5, SIZE);
+    write_line(&folder.path().join("b.png"), |_| 20.5);
     // The middle pixel has 3100 DN, which ten bits do not hold.
     let output = run(folder.path(), "lines b.png --bits 10 -o found");
     assert_eq!(output.status.code(), Some(2));
@@ -125,16 +133,10 @@ fn rows_tell_the_place_of_lines_from_top_to_bottom() {
     let folder = folder();
     let path = folder.path().join("turned.png");
     let [width, height] = SIZE;
-    let mut data = Vec::new();
-    for x in 0..width {
-        for y in 0..height {
-            let from_middle = y as f64 + 0.5 - place(x);
-            let value = 100.0 + 3_000.0 * (-2.0 * (from_middle / 4.0).powi(2)).exp();
-            data.extend((value.round() as u16).to_be_bytes());
-        }
-    }
-    write_png(&path, [height, width], &data);
-    write_line(&folder.path().join("a.png"), place, SIZE);
+    write_png(&path, [height, width], |y, x| {
+        grey(y as f64 + 0.5 - place(x))
+    });
+    write_line(&folder.path().join("a.png"), place);
     run(folder.path(), "lines a.png -o found");
     let output = run(folder.path(), "lines turned.png --rows -o found");
     assert!(output.status.success(), "{}", message(&output));
@@ -146,7 +148,7 @@ fn rows_tell_the_place_of_lines_from_top_to_bottom() {
 fn several_images_get_a_table_each() {
     let folder = line_folder();
     fs::create_dir(folder.path().join("b")).expect("a folder");
-    write_line(&folder.path().join("b/a.png"), |_| 10.0, SIZE);
+    write_line(&folder.path().join("b/a.png"), |_| 10.0);
     let output = run(folder.path(), "lines a.png b/a.png -o found");
     assert!(output.status.success(), "{}", message(&output));
     let expected = [
@@ -162,7 +164,7 @@ fn several_images_get_a_table_each() {
 #[test]
 fn an_image_without_a_line_has_none() {
     let folder = folder();
-    write_png(&folder.path().join("dark.png"), [40, 30], &vec![0; 2_400]);
+    write_png(&folder.path().join("dark.png"), [40, 30], |_, _| 0);
     let output = run(folder.path(), "lines dark.png");
     assert!(output.status.success(), "{}", message(&output));
     assert!(

@@ -137,7 +137,7 @@ Examples:
   tem00 stats photo.png --channel R --transfer srgb
   tem00 stats out/spot/spot.exr --channel speckle --json";
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("must be a positive number".into()),

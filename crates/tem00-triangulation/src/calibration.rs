@@ -1,11 +1,15 @@
 mod board;
+mod boards;
+mod corners;
 mod covariance;
 mod estimate;
 mod homography;
+mod lattice;
 mod least_squares;
 mod model;
 mod perturbation;
 mod plane_fit;
+mod ring;
 mod start;
 
 use glam::{DMat3, DVec2, DVec3};
@@ -16,6 +20,8 @@ use self::{covariance::COUNT, perturbation::Perturbations};
 use crate::{LaserPlane, TriangulationError, Triangulator};
 
 pub use self::board::Checkerboard;
+pub use self::boards::{BoardPlan, calibrate_scene};
+pub use self::corners::find_corners;
 pub use self::covariance::{CalibrationCovariance, PARAMETERS, Parameter};
 pub use self::estimate::{BoardView, CameraModel, calibrate};
 

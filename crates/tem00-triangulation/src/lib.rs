@@ -33,8 +33,8 @@ pub use budget::{
     SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,
 };
 pub use calibration::{
-    BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard,
-    PARAMETERS, Parameter, calibrate,
+    BoardPlan, BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel,
+    Checkerboard, PARAMETERS, Parameter, calibrate, calibrate_scene, find_corners,
 };
 pub use design::{
     Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignParameter,

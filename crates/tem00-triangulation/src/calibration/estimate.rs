@@ -1,9 +1,11 @@
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::{DMatrix, DVector};
+use tem00_numerics::Grid;
 use tem00_tracer::{Camera, RigidMotion};
 
 use super::{
     Calibration, CalibrationCovariance, CalibrationQuality, Checkerboard, PARAMETERS,
+    corners::find_corners,
     covariance::COUNT,
     least_squares::{LeastSquares, Solution, minimise},
     model::{Bundle, Pose, State},
@@ -11,7 +13,7 @@ use super::{
     plane_fit::{FittedPlane, correlation_factor, without_outliers},
     start::{starts, tilted},
 };
-use crate::{LaserPlane, TriangulationError};
+use crate::{LaserPlane, LineDetector, LinePoint, TriangulationError, Validity};
 
 /// The least number of boards.
 const LEAST_BOARDS: usize = 3;
@@ -48,6 +50,34 @@ pub struct BoardView {
     /// The laser line on the board in the same pose. Points beyond the board are left out. It may be
     /// empty.
     pub line: Vec<DVec2>,
+}
+
+impl BoardView {
+    /// Finds a board in its image and, if there is one, the laser line in the image of the same board
+    /// under the laser: of each column the point with the highest peak, if it is valid.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`find_corners`].
+    pub fn find(
+        lit: &Grid<f32>,
+        line: Option<&Grid<f32>>,
+        board: &Checkerboard,
+        detector: &LineDetector,
+    ) -> Result<Self, TriangulationError> {
+        let columns = line.map_or_else(Vec::new, |line| detector.detect(line));
+        let brightest = |(column, found): (usize, &Vec<LinePoint>)| {
+            let valid = found
+                .iter()
+                .filter(|point| point.validity == Validity::Valid);
+            let point = valid.max_by(|one, two| one.peak.total_cmp(&two.peak))?;
+            Some(DVec2::new(column as f64 + 0.5, point.position))
+        };
+        Ok(Self {
+            corners: find_corners(lit, board)?,
+            line: columns.iter().enumerate().filter_map(brightest).collect(),
+        })
+    }
 }
 
 /// Estimates camera and laser plane from views of a checkerboard.

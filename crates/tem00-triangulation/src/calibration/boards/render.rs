@@ -1,0 +1,159 @@
+use std::sync::atomic::AtomicBool;
+
+use tem00_numerics::Grid;
+use tem00_tracer::{Filter, RenderOptions, Scene, SpeckleModel, SpecklePlan, render_frame};
+
+use super::BoardPlan;
+use crate::{
+    BoardSettings, BoardView, Calibration, CameraModel, Exposure, LineDetector, RawFrame, Sensor,
+    TriangulationError, calibrate,
+};
+
+/// The share of the pixels that may be brighter than the brightest grey value aimed at.
+const BRIGHTER: f64 = 1e-3;
+
+/// The part of the full scale at which the exposure aims.
+const AIM: f64 = 0.7;
+
+impl BoardPlan {
+    /// Renders the images of a board, as a camera gives them: in the light of a lamp, and in that of the
+    /// laser, with its speckle. Each is exposed so that a thousandth of its pixels exceeds 70 % of the
+    /// full scale.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the images cannot be rendered or if `cancel` was set.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless there is such a pose.
+    pub fn frames(
+        &self,
+        pose: usize,
+        sensor: &Sensor,
+        progress: impl Fn(u64) + Sync,
+        cancel: &AtomicBool,
+    ) -> Result<[RawFrame; 2], TriangulationError> {
+        let scenes = self.scenes(pose)?;
+        let seed = |image: u64| {
+            self.scene
+                .render
+                .seed
+                .wrapping_add(2 * pose as u64 + image + 1)
+        };
+        let frame = |scene: &Scene, seed: u64| {
+            let electrons = electrons(scene, sensor, seed, (&progress, cancel))?;
+            sensor.expose(&scaled(&electrons, sensor), seed)
+        };
+        Ok([frame(&scenes[0], seed(0))?, frame(&scenes[1], seed(1))?])
+    }
+
+    /// Returns how many camera samples the images of all boards take.
+    pub fn samples(&self) -> u64 {
+        let camera = &self.scene.camera;
+        let pixels = camera.width() as u64 * camera.height() as u64;
+        2 * self.poses.len() as u64 * pixels * u64::from(self.scene.render.samples_per_pixel)
+    }
+
+    /// Renders all boards and calibrates with them as with photographs: corners and lines are found in the
+    /// raw frames. Camera and laser plane are those of the scene, to the errors of that.
+    ///
+    /// The tilt of the sensor is sought where the camera of the scene has one, and as many coefficients of
+    /// distortion as it has.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if an image cannot be rendered, does not show its board, or leaves the calibration
+    /// open, or if `cancel` was set.
+    pub fn calibrate(
+        &self,
+        sensor: &Sensor,
+        detector: &LineDetector,
+        progress: impl Fn(u64) + Sync,
+        cancel: &AtomicBool,
+    ) -> Result<Calibration, TriangulationError> {
+        let view = |pose: usize| {
+            let [lit, line] = self.frames(pose, sensor, &progress, cancel)?;
+            BoardView::find(
+                &lit.grey_values(),
+                Some(&line.grey_values()),
+                &self.board,
+                detector,
+            )
+        };
+        let views: Vec<_> = (0..self.poses.len()).map(view).collect::<Result<_, _>>()?;
+        calibrate(&self.board, &views, &self.model())?.moved(&self.poses[0])
+    }
+
+    fn model(&self) -> CameraModel {
+        let camera = self.scene.camera.description();
+        let distortion = [
+            camera.distortion.k3,
+            camera.distortion.k2,
+            camera.distortion.k1,
+        ];
+        let without = distortion.iter().take_while(|k| **k == 0.0).count();
+        CameraModel {
+            pixel_pitch: camera.pixel_pitch,
+            resolution: camera.resolution,
+            focal_length: Some(camera.focal_length),
+            f_number: camera.f_number,
+            tilted: camera.tilt.angle != 0.0,
+            radial: distortion.len() - without,
+        }
+    }
+}
+
+/// Estimates camera and laser plane of a scene from rendered images of boards, in the coordinates of the
+/// scene; see [`BoardPlan`].
+///
+/// # Errors
+///
+/// Returns the errors of [`BoardPlan::new`] and [`BoardPlan::calibrate`].
+pub fn calibrate_scene(
+    scene: &Scene,
+    (sensor, detector): (&Sensor, &LineDetector),
+    settings: &BoardSettings,
+    progress: impl Fn(u64) + Sync,
+    cancel: &AtomicBool,
+) -> Result<Calibration, TriangulationError> {
+    BoardPlan::new(scene, settings)?.calibrate(sensor, detector, progress, cancel)
+}
+
+/// Renders a scene and returns the mean electrons of its pixels.
+fn electrons(
+    scene: &Scene,
+    sensor: &Sensor,
+    seed: u64,
+    (progress, cancel): (&(impl Fn(u64) + Sync), &AtomicBool),
+) -> Result<Grid<f32>, TriangulationError> {
+    let options = RenderOptions {
+        seed,
+        filter: Filter::Box {
+            radius: sensor.sensitive_half_width(),
+        },
+        ..RenderOptions::from(&scene.render)
+    };
+    let plan = SpecklePlan::new(scene, options.formulas, seed)?;
+    let speckle = SpeckleModel::generate(scene, &plan)?;
+    let frame = render_frame(scene, Some(&speckle), 0, &options, progress, cancel)?;
+    Ok(Exposure::of_frame(&frame, &scene.camera, sensor).electrons)
+}
+
+/// Returns the electrons for the exposure at which the image is bright without being saturated.
+fn scaled(electrons: &Grid<f32>, sensor: &Sensor) -> Grid<f32> {
+    let mut values = electrons.values().to_vec();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a part of the number of pixels"
+    )]
+    let brighter = (BRIGHTER * values.len() as f64) as usize;
+    let (_, bright, _) = values.select_nth_unstable_by(brighter, |a, b| b.total_cmp(a));
+    let description = sensor.description();
+    let scale = f64::from(description.bit_depth).exp2() - 1.0 - description.black_level;
+    let full = description.full_well.min(scale / description.gain);
+    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
+    let factor = (AIM * full / f64::from(bright.max(f32::MIN_POSITIVE))) as f32;
+    electrons.map(|value| value * factor)
+}

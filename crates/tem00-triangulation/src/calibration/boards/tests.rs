@@ -1,0 +1,150 @@
+use std::{path::Path, sync::atomic::AtomicBool};
+
+use tem00_tracer::parse_scene;
+
+use super::*;
+use crate::{DetectorSettings, LineDetector, Sensor, SensorDescription, find_corners};
+
+/// A short lens before a vertical laser plane, at 30° from it.
+fn scene() -> Scene {
+    let text = r#"
+        [camera]
+        position = ["0 mm", "-125 mm", "216.5 mm"]
+        look_at = ["0 mm", "0 mm", "0 mm"]
+        up = [0, 0, 1]
+        focal_length = "8 mm"
+        f_number = 16
+        focus_distance = "250 mm"
+        pixel_pitch = "16 um"
+        resolution = [240, 180]
+        distortion = [-0.2, 0, 0]
+
+        [render]
+        samples_per_pixel = 16
+
+        [[laser]]
+        wavelength = "650 nm"
+        power = "5 mW"
+        position = ["0 mm", "0 mm", "300 mm"]
+        look_at = ["0 mm", "0 mm", "0 mm"]
+        line_direction = [1, 0, 0]
+        line = { fan_angle = "40 deg", thickness = "2 mm", focus_distance = "300 mm" }
+
+        [[surface]]
+        rectangle = { size = ["200 mm", "200 mm"] }
+    "#;
+    parse_scene(text, Path::new(".")).unwrap()
+}
+
+fn plan(boards: usize) -> BoardPlan {
+    let settings = BoardSettings {
+        corners: [7, 5],
+        boards,
+        ..BoardSettings::default()
+    };
+    BoardPlan::new(&scene(), &settings).unwrap()
+}
+
+fn sensor() -> Sensor {
+    Sensor::new(SensorDescription {
+        quantum_efficiency: 0.6,
+        exposure_time: 2e-3,
+        pixel_pitch: 16e-6,
+        ..SensorDescription::typical(12)
+    })
+    .unwrap()
+}
+
+#[test]
+fn rendered_corners_are_found_where_they_are_projected() {
+    let plan = plan(6);
+    let camera = scene().camera;
+    let cancel = AtomicBool::new(false);
+    let mut sum = 0.0;
+    for (i, pose) in plan.poses().iter().enumerate() {
+        let [lit, _] = plan.frames(i, &sensor(), |_| (), &cancel).unwrap();
+        let found = find_corners(&lit.grey_values(), plan.board()).unwrap();
+        for (found, corner) in found.iter().zip(plan.board().points()) {
+            let expected = camera.project(pose.point(corner)).unwrap();
+            let distance = found.distance(expected);
+            // Sampling noise of 16 samples: an edge pixel scatters by 1/8 of the contrast, 0.08 pixel per
+            // corner of the four edges of some 3 pixels each.
+            assert!(distance < 0.15, "board {i}: {found} instead of {expected}");
+            sum += distance * distance;
+        }
+    }
+    let rms = (sum / (6.0 * 35.0)).sqrt();
+    assert!(rms < 0.05, "{rms}");
+}
+
+#[test]
+fn rendered_boards_give_the_scene_back() {
+    let plan = plan(8);
+    let detector = LineDetector::new(DetectorSettings {
+        window: 15,
+        ..DetectorSettings::default()
+    })
+    .unwrap();
+    let cancel = AtomicBool::new(false);
+    let calibration = plan
+        .calibrate(&sensor(), &detector, |_| (), &cancel)
+        .unwrap();
+    let scene = scene();
+    let exact = Triangulator::new(
+        scene.camera,
+        LaserPlane::of_laser(&scene.lasers[0]).unwrap(),
+    );
+    for pixel in [
+        DVec2::new(120.0, 90.0),
+        DVec2::new(60.0, 60.0),
+        DVec2::new(180.0, 120.0),
+    ] {
+        let (found, expected) = (calibration.triangulator().point(pixel), exact.point(pixel));
+        let (found, expected) = (found.unwrap(), expected.unwrap());
+        let uncertainty = calibration.height_uncertainty(found, DVec3::Z).unwrap();
+        // Four standard uncertainties: 6e-5 for each of three points, which are hardly independent.
+        let error = (found.z - expected.z).abs();
+        assert!(
+            error < 4.0 * uncertainty,
+            "{pixel}: {error:e}, {uncertainty:e} m"
+        );
+        // A pixel is 1 mm in height; a calibration knows it to a tenth.
+        assert!(uncertainty < 1e-4, "{uncertainty:e} m");
+    }
+}
+
+#[test]
+fn boards_that_do_not_fit_are_refused() {
+    let settings = BoardSettings {
+        square: Some(0.1),
+        ..BoardSettings::default()
+    };
+    let refused = BoardPlan::new(&scene(), &settings).unwrap_err();
+    assert!(refused.to_string().contains("square_size"), "{refused}");
+    let mut dark = scene();
+    dark.lasers.clear();
+    let refused = BoardPlan::new(&dark, &settings).unwrap_err();
+    assert!(refused.to_string().contains("lasers"), "{refused}");
+    let fits = plan(6).board().square();
+    assert!((1e-3..20e-3).contains(&fits), "{fits}");
+}
+
+#[test]
+fn lines_span_the_laser_plane() {
+    let plan = plan(12);
+    let plane = LaserPlane::of_laser(&scene().lasers[0]).unwrap();
+    let offsets: Vec<_> = plan
+        .poses()
+        .iter()
+        .map(|pose| plane.distance(pose.point(plan.board().middle())))
+        .collect();
+    let height = plan.board().square() * 4.0;
+    let (low, high) = offsets.iter().fold((0.0_f64, 0.0_f64), |(low, high), &x| {
+        (low.min(x), high.max(x))
+    });
+    assert!(high - low > 0.2 * height, "{offsets:?}");
+    assert!(
+        offsets.iter().all(|x| x.abs() < 0.5 * height),
+        "{offsets:?}"
+    );
+}

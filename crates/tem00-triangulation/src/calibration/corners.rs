@@ -1,0 +1,293 @@
+use glam::{DMat2, DVec2};
+use tem00_numerics::Grid;
+
+use super::{Checkerboard, lattice::ordered, ring::corner_candidates};
+use crate::TriangulationError;
+
+/// The standard deviation of the Gaussian that smooths a corner, in sides of a square: the next edges are
+/// more than five of them away.
+const SMOOTHING: f64 = 0.18;
+
+/// How far its window reaches, in standard deviations.
+const WINDOW: f64 = 4.0;
+
+/// How often a place is refined at most.
+const MOST_STEPS: usize = 30;
+
+/// The change of a place below which it stands, in pixels.
+const LEAST_STEP: f64 = 1e-4;
+
+/// The least size of an image, in pixels, that is worth a look.
+const LEAST_SIZE: usize = 16;
+
+/// How often the image is halved if its corners are too blurred for the ring.
+const HALVINGS: u32 = 3;
+
+/// Finds the inner corners of a checkerboard in an image, in pixels: row by row from the upper left, to a
+/// small fraction of a pixel.
+///
+/// Corners are found by the bright and dark quarters around them, in the image and in coarser ones, and put
+/// in order by their neighbours. Their places are the saddles of the image that a Gaussian smooths over
+/// about a third of a square: by the symmetry of a corner neither blur nor contrast moves them.
+///
+/// ```text
+/// σ_x = √(π/8) σ_I / ΔI      σ_I: noise of a pixel, ΔI: bright less dark
+/// ```
+///
+/// is the noise of a place per axis, from the slope of the noise and the curvature ΔI / (π σ²) of a smoothed
+/// corner; it does not depend on the smoothing.
+///
+/// # Validity
+///
+/// Squares are at least about 12 pixels wide, and the whole board is seen. The grey values are in
+/// proportion to the light, or nearly so.
+///
+/// # Errors
+///
+/// Returns an error if a value is not finite or if the image does not show exactly this board.
+///
+/// # References
+///
+/// - L. Lucchese and S. K. Mitra, *Using Saddle Points for Subpixel Feature Detection in Camera Calibration
+///   Targets*, 2002.
+pub fn find_corners(
+    image: &Grid<f32>,
+    board: &Checkerboard,
+) -> Result<Vec<DVec2>, TriangulationError> {
+    if let Some(value) = image.values().iter().find(|value| !value.is_finite()) {
+        return Err(TriangulationError::OutOfRange {
+            parameter: "grey value",
+            value: f64::from(*value),
+            allowed: "finite",
+        });
+    }
+    let mut coarse = image.clone();
+    let mut found = 0;
+    for halving in 0..=HALVINGS {
+        let candidates = corner_candidates(&coarse, board.number());
+        match ordered(&candidates, board.corners()) {
+            Ok(places) => {
+                let scale = f64::from(1_u32 << halving);
+                let places: Vec<_> = places.into_iter().map(|place| scale * place).collect();
+                return refined(image, board, &places);
+            }
+            Err(number) => found = found.max(number),
+        }
+        if coarse.width().min(coarse.height()) < 2 * LEAST_SIZE {
+            break;
+        }
+        coarse = halved(&coarse);
+    }
+    Err(TriangulationError::NoBoard {
+        corners: board.corners(),
+        found,
+    })
+}
+
+/// Returns the mean of each four pixels.
+fn halved(image: &Grid<f32>) -> Grid<f32> {
+    Grid::from_fn(image.width() / 2, image.height() / 2, |x, y| {
+        let (x, y) = (2 * x, 2 * y);
+        let sum = image[(x, y)] + image[(x + 1, y)] + image[(x, y + 1)] + image[(x + 1, y + 1)];
+        0.25 * sum
+    })
+}
+
+/// Moves the places to the saddles near them.
+fn refined(
+    image: &Grid<f32>,
+    board: &Checkerboard,
+    places: &[DVec2],
+) -> Result<Vec<DVec2>, TriangulationError> {
+    let [columns, _] = board.corners();
+    let smoothing = |i: usize| {
+        let beside = if i % columns == 0 { i + 1 } else { i - 1 };
+        let above = if i < columns {
+            i + columns
+        } else {
+            i - columns
+        };
+        let side = |j: usize| places[i].distance(places[j]);
+        SMOOTHING * side(beside).min(side(above))
+    };
+    let of_place = |(i, place): (usize, &DVec2)| saddle(image, *place, smoothing(i));
+    let refined: Vec<_> = places.iter().enumerate().filter_map(of_place).collect();
+    if refined.len() < places.len() {
+        return Err(TriangulationError::NoBoard {
+            corners: board.corners(),
+            found: refined.len(),
+        });
+    }
+    Ok(refined)
+}
+
+/// Returns the place near `start` at which the image, smoothed by a Gaussian of the standard deviation
+/// `sigma`, has a saddle, or `None` if there is none within two of them.
+///
+/// ```text
+/// q ← q − H⁻¹ g      g, H: gradient and second derivatives of G ∗ I at q
+/// ```
+fn saddle(image: &Grid<f32>, start: DVec2, sigma: f64) -> Option<DVec2> {
+    let mut place = start;
+    for _ in 0..MOST_STEPS {
+        let (gradient, second) = derivatives(image, place, sigma);
+        let step = -(second.inverse() * gradient);
+        let near = (place + step).distance(start) < 2.0 * sigma;
+        if second.determinant() >= 0.0 || !step.is_finite() || !near {
+            return None;
+        }
+        place += step;
+        if step.length() < LEAST_STEP {
+            return Some(place);
+        }
+    }
+    Some(place)
+}
+
+/// Returns gradient and second derivatives of the smoothed image at a place, but for a common factor.
+///
+/// Beyond the edges of the image its mean goes on.
+fn derivatives(image: &Grid<f32>, place: DVec2, sigma: f64) -> (DVec2, DMat2) {
+    let pixels = || pixels(image, place, sigma);
+    let (sum, weights) = pixels().fold((0.0, 0.0), |(sum, weights), (_, weight, value)| {
+        (sum + weight * value, weights + weight)
+    });
+    let mean = sum / weights;
+    let mut gradient = DVec2::ZERO;
+    let mut second = DMat2::ZERO;
+    for (offset, weight, value) in pixels() {
+        let value = weight * (value - mean);
+        gradient += value * offset;
+        let outer = DMat2::from_cols(offset * offset.x, offset * offset.y);
+        second += value * (outer - DMat2::IDENTITY);
+    }
+    (gradient, second * (1.0 / sigma))
+}
+
+/// Returns the pixels about a place: their offsets in units of `sigma`, their weights and values.
+fn pixels(image: &Grid<f32>, place: DVec2, sigma: f64) -> impl Iterator<Item = (DVec2, f64, f64)> {
+    let range = move |at: f64, size: usize| {
+        let (low, high) = (at - WINDOW * sigma, at + WINDOW * sigma);
+        (0..size).filter(move |&i| (low..=high).contains(&(i as f64 + 0.5)))
+    };
+    let columns: Vec<_> = range(place.x, image.width()).collect();
+    let all = range(place.y, image.height())
+        .flat_map(move |y| columns.clone().into_iter().map(move |x| (x, y)));
+    all.map(move |(x, y)| {
+        let offset = (DVec2::new(x as f64 + 0.5, y as f64 + 0.5) - place) / sigma;
+        let weight = (-0.5 * offset.length_squared()).exp();
+        (offset, weight, f64::from(image[(x, y)]))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_core::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+
+    use super::*;
+
+    fn board() -> Checkerboard {
+        Checkerboard::new([5, 4], 1.0).unwrap()
+    }
+
+    /// Where a corner lies in the image: squares of 20 pixels, turned and in perspective.
+    fn place(board: DVec2) -> DVec2 {
+        let flat = 20.0 * DVec2::from_angle(0.2).rotate(board);
+        let nearer = 1.0 + 0.001 * flat.x - 0.0015 * flat.y;
+        flat / nearer + DVec2::new(52.3, 38.9)
+    }
+
+    /// The point of the board at an image point.
+    fn on_board(image: DVec2) -> DVec2 {
+        let offset = image - DVec2::new(52.3, 38.9);
+        // flat = offset · nearer, which is linear in flat.
+        let nearer = 1.0 / (1.0 - 0.001 * offset.x + 0.0015 * offset.y);
+        DVec2::from_angle(-0.2).rotate(offset * nearer) / 20.0
+    }
+
+    /// The means of 8 × 8 points per pixel.
+    fn image(noise: f64, blur: f64) -> Grid<f32> {
+        let grey = |point: DVec2| {
+            let on_board = on_board(point);
+            let inside = on_board.cmpgt(DVec2::splat(-1.0)).all()
+                && on_board.cmplt(DVec2::new(5.0, 4.0)).all();
+            let even = (on_board.x.floor() + on_board.y.floor()).rem_euclid(2.0) < 0.5;
+            if inside && even { 20.0 } else { 200.0 }
+        };
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let normal = Normal::new(0.0, noise).unwrap();
+        let mut image = Grid::from_fn(170, 140, |x, y| {
+            let sums = (0..64_u32).map(|i| {
+                let inside = DVec2::new(f64::from(i % 8), f64::from(i / 8)) / 8.0 + 0.0625;
+                let place = DVec2::new(x as f64, y as f64) + 0.5 + (1.0 + blur) * (inside - 0.5);
+                grey(place)
+            });
+            (sums.sum::<f64>() / 64.0) as f32
+        });
+        let values = image.values_mut().iter_mut();
+        values.for_each(|value| *value += normal.sample(&mut rng) as f32);
+        image
+    }
+
+    fn greatest_error(image: &Grid<f32>) -> f64 {
+        let found = find_corners(image, &board()).unwrap();
+        let cells = (0..4_u32).flat_map(|row| (0..5_u32).map(move |column| (column, row)));
+        let expected =
+            cells.map(|(column, row)| place(DVec2::new(f64::from(column), f64::from(row))));
+        let distances = found
+            .iter()
+            .zip(expected)
+            .map(|(found, expected)| found.distance(expected));
+        distances.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn corners_are_found_to_a_fraction_of_a_pixel() {
+        // A pixel's area aliases edges by about 1/16 pixel each; over the ten of a window 0.02.
+        let error = greatest_error(&image(0.0, 0.0));
+        assert!(error < 0.02, "{error}");
+        // √(π/8) · 2/180 = 0.007 pixel per axis; four and a half of them more for the worst of 20.
+        let error = greatest_error(&image(2.0, 0.0));
+        assert!(error < 0.05, "{error}");
+    }
+
+    #[test]
+    fn blurred_corners_are_found_too() {
+        // A box of 5 pixels, a quarter of a square, of 8 × 8 points.
+        let error = greatest_error(&image(0.0, 4.0));
+        assert!(error < 0.05, "{error}");
+    }
+
+    #[test]
+    fn images_without_the_board_are_refused() {
+        let refused = |image: &Grid<f32>, corners| {
+            let board = Checkerboard::new(corners, 1.0).unwrap();
+            find_corners(image, &board).unwrap_err()
+        };
+        let image = image(0.0, 0.0);
+        assert_eq!(
+            refused(&image, [6, 4]),
+            TriangulationError::NoBoard {
+                corners: [6, 4],
+                found: 20
+            }
+        );
+        let flat = Grid::filled(100, 80, 7.0);
+        assert!(matches!(
+            refused(&flat, [5, 4]),
+            TriangulationError::NoBoard { found: 0, .. }
+        ));
+        let tiny = Grid::filled(1, 1, 7.0);
+        assert!(matches!(
+            refused(&tiny, [5, 4]),
+            TriangulationError::NoBoard { .. }
+        ));
+        let holes = Grid::filled(100, 80, f32::NAN);
+        assert!(matches!(
+            refused(&holes, [5, 4]),
+            TriangulationError::OutOfRange { .. }
+        ));
+    }
+}

@@ -5,7 +5,9 @@ use std::{error::Error, path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
     tracer::{Crop, RenderOptions, Scene, SpeckleModel, SpecklePlan, parse_scene, render_frame},
-    triangulation::{DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, Triangulator},
+    triangulation::{
+        DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, LineMethod, Triangulator,
+    },
 };
 
 const WAVELENGTH: f64 = 650e-9;
@@ -87,8 +89,13 @@ impl LineFrames {
         Ok(parse_scene(&text, Path::new("."))?)
     }
 
-    /// Renders the lines and finds them in all columns.
+    /// Renders the lines and finds them in all columns by their wide centres of gravity.
     pub(crate) fn noise(&self) -> Result<Noise, Box<dyn Error>> {
+        Ok(self.noise_by(&[LineMethod::CentreOfGravity])?.remove(0))
+    }
+
+    /// Renders the lines and finds them in all columns by each of the methods.
+    pub(crate) fn noise_by(&self, methods: &[LineMethod]) -> Result<Vec<Noise>, Box<dyn Error>> {
         let camera = self.scene(0.0, [1, 1])?.camera;
         let geometry = camera.imaging_geometry(WAVELENGTH)?;
         let speckle_size = geometry.speckle_size_in_pixels();
@@ -101,22 +108,40 @@ impl LineFrames {
         )]
         let [columns, rows] =
             [self.length as f64 * speckle_size, 4.0 * radius].map(|length| length.ceil() as usize);
-        let places = self.places([columns, rows])?;
-        let squares: f64 = places.iter().map(|place| place * place).sum();
         // Columns hold what is independent at distances of 0.76 h, ∫ of the squared correlation of
         // points of rows, or of the pixels themselves.
         let row_height = speckle_size.recip();
         let independent = (self.lines * self.length) as f64 / row_height.hypot(0.76);
-        Ok(Noise {
-            radius: radius / speckle_size,
-            row_height,
-            deviation: (squares / places.len() as f64).sqrt() / speckle_size,
-            error: (2.0 * independent).sqrt().recip(),
-        })
+        let places = self.places([columns, rows], methods)?;
+        let noise = |places: &Vec<f64>| {
+            let squares: f64 = places.iter().map(|place| place * place).sum();
+            Noise {
+                radius: radius / speckle_size,
+                row_height,
+                deviation: (squares / places.len() as f64).sqrt() / speckle_size,
+                error: (2.0 * independent).sqrt().recip(),
+            }
+        };
+        Ok(places.iter().map(noise).collect())
     }
 
-    /// Returns how far each column of each line seems from where it is without speckle, in pixels.
-    fn places(&self, [columns, rows]: [usize; 2]) -> Result<Vec<f64>, Box<dyn Error>> {
+    /// Returns, for each method, how far each column of each line seems from where it is without
+    /// speckle, in pixels.
+    fn places(
+        &self,
+        [columns, rows]: [usize; 2],
+        methods: &[LineMethod],
+    ) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
+        let detectors = methods.iter().map(|&method| {
+            // So wide that the window holds the whole line wherever its brightest speckle is.
+            LineDetector::new(DetectorSettings {
+                method,
+                window: 2 * rows - 1,
+                least_peak: 0.0,
+                ..DetectorSettings::default()
+            })
+        });
+        let detectors = detectors.collect::<Result<Vec<_>, _>>()?;
         let resolution = [columns, rows * self.lines];
         let scene = self.scene(0.0, resolution)?;
         let plate = LaserPlane::new(DVec3::ZERO, DVec3::Z)?;
@@ -128,7 +153,7 @@ impl LineFrames {
         };
         let plan = SpecklePlan::new(&scene, options.formulas, self.seed)?;
         let model = SpeckleModel::generate(&scene, &plan)?;
-        let mut places = Vec::new();
+        let mut places = vec![Vec::new(); methods.len()];
         for line in 0..self.lines {
             let middle = (line as f64 + 0.5) * rows as f64;
             let point = on_plate.point(DVec2::new(0.5 * columns as f64, middle));
@@ -149,26 +174,25 @@ impl LineFrames {
             let [speckled, even] = [&layers.coherent_after, &layers.coherent_before];
             for x in 0..columns {
                 let [speckled, even] =
-                    [speckled, even].map(|image| centroid((0..rows).map(|y| image[(x, y)])));
-                places.push(speckled? - even?);
+                    [speckled, even].map(|image| between_dark((0..rows).map(|y| image[(x, y)])));
+                for (detector, places) in detectors.iter().zip(&mut places) {
+                    places.push(place(detector, &speckled)? - place(detector, &even)?);
+                }
             }
         }
         Ok(places)
     }
 }
 
-/// Returns the centre of gravity of a column that is dark beyond its ends: over a window so wide that it
-/// holds the whole line wherever its brightest speckle is.
-fn centroid(column: impl ExactSizeIterator<Item = f32>) -> Result<f64, Box<dyn Error>> {
+/// Returns a column with as many dark pixels before it and after it.
+fn between_dark(column: impl ExactSizeIterator<Item = f32>) -> Vec<f32> {
     let rows = column.len();
     let dark = || core::iter::repeat_n(0.0, rows);
-    let column: Vec<_> = dark().chain(column).chain(dark()).collect();
-    let detector = LineDetector::new(DetectorSettings {
-        window: 2 * rows - 1,
-        least_peak: 0.0,
-        ..DetectorSettings::default()
-    })?;
-    let points = detector.detect_column(&column);
+    dark().chain(column).chain(dark()).collect()
+}
+
+fn place(detector: &LineDetector, column: &[f32]) -> Result<f64, Box<dyn Error>> {
+    let points = detector.detect_column(column);
     let point = points.first().ok_or("a column without a line")?;
     Ok(point.position)
 }

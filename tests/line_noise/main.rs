@@ -11,5 +11,6 @@ mod line_frames;
 #[path = "../../examples/line_image/mod.rs"]
 mod line_image;
 
+mod patterns;
 mod rendered;
 mod waves;

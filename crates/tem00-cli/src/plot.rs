@@ -20,8 +20,8 @@ use crate::{atomic::write_atomically, failure::Failure};
 const PNG_SCALE: f32 = 2.0;
 
 /// The colours of series, told apart by most kinds of colour vision.
-const COLOURS: [&str; 7] = [
-    "#1f5fa8", "#d2701a", "#202020", "#a03040", "#2a8a5a", "#7a4fa0", "#808080",
+const COLOURS: [&str; 8] = [
+    "#1f5fa8", "#d2701a", "#2a8a5a", "#a03040", "#7a4fa0", "#18a0b0", "#8a6030", "#808080",
 ];
 
 /// The formats of a drawing, told apart by the end of the file's name.

@@ -98,18 +98,23 @@ pub(crate) fn write_columns(lines: &[Vec<String>], out: &mut impl Write) -> io::
 
 /// Writes a number with five significant digits, without an exponent where that is readable.
 pub(crate) fn number(value: f64) -> String {
+    rounded(value, 5)
+}
+
+/// Writes a number with so many significant digits, without an exponent where that is readable.
+pub(crate) fn rounded(value: f64, digits: u8) -> String {
     let magnitude = value.abs();
     let text = if magnitude == 0.0 {
         return "0".into();
     } else if (1e-3..1e6).contains(&magnitude) {
-        let digits = (4.0 - magnitude.log10().floor()).clamp(0.0, 9.0);
+        let decimals = f64::from(digits) - 1.0 - magnitude.log10().floor();
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "the number of digits lies in [0, 9]"
         )]
-        let digits = digits as usize;
-        format!("{value:.digits$}")
+        let decimals = decimals.clamp(0.0, 9.0) as usize;
+        format!("{value:.decimals$}")
     } else {
         return format!("{value:.2e}");
     };

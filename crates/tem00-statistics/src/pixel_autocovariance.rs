@@ -28,7 +28,7 @@ pub struct PixelColumn {
 /// ```
 ///
 /// with the size s and the pitch d of the pixels. The variance of `Σ g_i E_i`, for pixels that see the
-/// irradiances E_i without speckle, is `Σ g_i E_i g_j E_j c_|i−j|`. N incoherent patterns of equal
+/// irradiances `E_i` without speckle, is `Σ g_i E_i g_j E_j c_|i−j|`. N incoherent patterns of equal
 /// strength divide the covariance by N; light of the degree of polarisation P multiplies it by
 /// (1 + P²)/2.
 ///

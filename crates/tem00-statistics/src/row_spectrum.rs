@@ -99,6 +99,9 @@ impl Row {
     /// The density has a kink at 0 that is `kink` wide, from where on the pieces grow, and a root of
     /// the order 3/2 at the end.
     pub(crate) fn weigh(&self, density: impl Fn(f64) -> f64, kink: f64, end: f64) -> f64 {
+        if self.size.is_nan() {
+            return f64::NAN;
+        }
         if self.size.is_infinite() || end <= 0.0 {
             return 0.0;
         }
@@ -192,6 +195,10 @@ mod tests {
             assert_relative_eq!(speckle_length(p), high, max_relative = tolerance);
         }
         assert!(speckle_length(f64::INFINITY).abs() < f64::MIN_POSITIVE);
+        assert!(
+            speckle_length(f64::NAN).is_nan(),
+            "what is no number has none"
+        );
     }
 
     #[test]

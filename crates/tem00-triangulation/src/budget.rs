@@ -25,7 +25,8 @@ pub use self::{
 /// # Averages
 ///
 /// Over N columns and M frames shot noise and dark noise fall with √(N M), and so does quantisation as
-/// long as the noise exceeds 0.3 grey values, below which all frames round alike. PRNU and DSNU fall
+/// long as the noise exceeds 0.3 grey values, below which all frames round alike (and pixels that are
+/// equally dark, too: then rounding moves a line by less than said). PRNU and DSNU fall
 /// with √N: pixels stay what they are from frame to frame. Speckle of neighbouring columns goes
 /// together as far as a speckle reaches; over frames it falls with √M only if each has speckle of its
 /// own. Detector bias and calibration do not average out.

@@ -105,6 +105,9 @@ pub struct LinePoint {
     /// The place along the column, in pixels; the centre of the first pixel is at 0.5.
     pub position: f64,
     /// The full width between the points of 1/e², in pixels.
+    ///
+    /// It is twice the width between the points before which 16 and 84 % of the light of the window lie,
+    /// or that of the [fit](LineMethod::GaussianFit).
     pub width: f64,
     /// The greatest grey value above the background.
     pub peak: f64,

@@ -5,9 +5,92 @@ use std::path::PathBuf;
 use clap::Args;
 
 /// Say what height uncertainty a set-up gives, and what dominates it.
+///
+/// The set-up file holds what data sheets tell: laser line, lens, sensor, angle, surface and detector.
+/// The table on standard output is an uncertainty budget after the GUM: for each source its standard
+/// uncertainty by formulas, and beside it what trials with simulated frames find.
 #[derive(Args, Debug)]
+#[command(after_help = BUDGET_EXAMPLES)]
 pub(crate) struct BudgetArgs {
     /// The set-up file.
     #[arg(value_name = "SETUP.toml")]
     pub(crate) setup: PathBuf,
+
+    /// The folder for the files, made if it is missing [default: out/<name of the set-up>].
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// The number of trials, 10 to a million; 0 leaves them out.
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = trials)]
+    pub(crate) trials: u32,
+
+    /// The seed of the trials.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+
+    /// Threads to work with, 1 to 1024; the result does not depend on it [default: all].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+const BUDGET_EXAMPLES: &str = "\
+Examples:
+  tem00 budget setups/step_gauge.toml                 the budget, into out/step_gauge/
+  tem00 budget setups/step_gauge.toml --trials 2000   the same, with smaller standard errors
+  tem00 budget setups/step_gauge.toml --trials 0      formulas alone, at once
+
+Files:
+  budget.json             the budget, in SI units
+  budget.html             all of it in one report that opens offline
+  contributions.svg|png   what each source contributes, by formulas and by trials
+  over_range.svg|png      the uncertainty over the heights that can be measured";
+
+fn trials(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(trials @ (0 | 10..=1_000_000)) => Ok(trials),
+        _ => Err("must be 0, or from 10 to 1000000".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::args::{Cli, Command};
+
+    fn parse(line: &str) -> Result<BudgetArgs, clap::Error> {
+        let cli = Cli::try_parse_from(line.split_whitespace())?;
+        match cli.command {
+            Command::Budget(args) => Ok(args),
+            other => panic!("{other:?} is not budget"),
+        }
+    }
+
+    #[test]
+    fn every_option_of_budget_is_understood() {
+        let line = "tem00 budget a.toml -o d --trials 30 --seed 4 --threads 2 --json";
+        let args = parse(line).expect("the line is valid");
+        assert_eq!(args.setup, PathBuf::from("a.toml"));
+        assert_eq!(args.output, Some(PathBuf::from("d")));
+        assert_eq!((args.trials, args.seed), (30, 4));
+        assert_eq!(args.threads, Some(2));
+        assert!(args.json, "JSON is asked for");
+        let args = parse("tem00 budget a.toml --trials 0").expect("the line is valid");
+        assert_eq!((args.trials, args.seed, args.json), (0, 0, false));
+    }
+
+    #[test]
+    fn impossible_numbers_of_trials_are_usage_errors() {
+        for trials in ["9", "1000001", "-1", "1e9", "many"] {
+            let error = parse(&format!("tem00 budget a.toml --trials={trials}"));
+            let error = error.expect_err("the number is wrong");
+            assert_eq!(error.exit_code(), 2, "{trials}");
+            assert!(error.to_string().contains("1000000"), "{trials}: {error}");
+        }
+    }
 }

@@ -56,7 +56,7 @@ pub(super) fn verdict(design: &Design<'_>) -> String {
         Some(figures) => {
             let objective = design.objective();
             let value = units::of_figure(objective).quantity(objective.of(figures));
-            let name = objective.name().replace('_', " ");
+            let name = units::words(objective.name());
             let dominant = figures.dominant.name();
             format!("{counts}. The best: {name} {value}, most of it by {dominant}.")
         }
@@ -72,7 +72,7 @@ pub(super) fn hindrances(design: &Design<'_>) -> Vec<String> {
         let figure = exclusion.constraint.figure;
         let bound = units::of_figure(figure).quantity(exclusion.constraint.bound);
         let sign = if figure.is_gain() { "≥" } else { "≤" };
-        let name = figure.name().replace('_', " ");
+        let name = units::words(figure.name());
         format!(
             "{name} {sign} {bound} excludes {}, {} of them alone",
             exclusion.excluded, exclusion.alone

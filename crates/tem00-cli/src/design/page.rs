@@ -1,6 +1,6 @@
 //! The report of a search.
 
-use tem00_triangulation::{DesignFigure, DesignFigures, Neighbours};
+use tem00_triangulation::{DesignFigure, DesignFigures, Neighbours, Setup};
 
 use super::{
     Design, listing,
@@ -35,6 +35,10 @@ pub(super) fn report(
     if let Some(figures) = shown.possible() {
         report.heading("What makes its heights uncertain");
         report.table(&sources(figures));
+        if let Ok(setup) = Setup::new(shown.description) {
+            let level = setup.light_level();
+            report.paragraph(&format!("Light: {}; {}.", level.name(), level.advice()));
+        }
         report.paragraph(&format!(
             "Most of it is {}: {}.",
             figures.dominant.name(),
@@ -72,11 +76,11 @@ fn facts<'n>(design: &Design<'_>) -> Vec<(&'n str, String)> {
         } else {
             "at most"
         };
-        format!("{} {sign} {bound}", figure.name().replace('_', " "))
+        format!("{} {sign} {bound}", units::words(figure.name()))
     });
     vec![
         ("set-up file", design.file.display().to_string()),
-        ("made small", design.objective().name().replace('_', " ")),
+        ("made small", units::words(design.objective().name())),
         ("varied", sweeps.collect::<Vec<_>>().join("; ")),
         ("required", constraints.collect::<Vec<_>>().join("; ")),
         (
@@ -137,7 +141,7 @@ fn sensitivities(design: &Design<'_>, near: &[Neighbours]) -> Table {
     let headings: Vec<_> = headings.iter().map(String::as_str).collect();
     let mut table = Table::new("What 10 % of a parameter changes", &headings);
     for neighbour in near {
-        let mut cells = vec![neighbour.parameter.name().replace('_', " ")];
+        let mut cells = vec![units::words(neighbour.parameter.name())];
         for figure in [objective, depth] {
             let text = |figures: &DesignFigures| units::of_figure(figure).text(figure.of(figures));
             for side in [&neighbour.less, &neighbour.more] {

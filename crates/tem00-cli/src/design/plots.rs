@@ -85,7 +85,7 @@ fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
         slice.iter().map(point).collect()
     };
     let mut chart = Chart::new(
-        &format!("Uncertainty over {}", parameter.name().replace('_', " ")),
+        &format!("Uncertainty over {}", units::words(parameter.name())),
         [&label, "standard uncertainty (µm)"],
     )
     .line("combined", curve(&|figures| figures.uncertainty))
@@ -103,7 +103,7 @@ fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
         caption: format!(
             "The standard uncertainty of a height over {}, all else as in the set-up shown, and what \
              the sources contribute.",
-            parameter.name().replace('_', " ")
+            units::words(parameter.name())
         ),
         drawing: chart.log_y().draw(),
     }
@@ -171,7 +171,7 @@ fn sensitivity(design: &Design<'_>, near: &[Neighbours]) -> Named {
             100.0 * (objective.of(figures) / now - 1.0)
         })
     };
-    let name = objective.name().replace('_', " ");
+    let name = units::words(objective.name());
     let mut bars = Bars::new(
         "What 10 % of a parameter changes",
         &format!("change of the {name} (%)"),
@@ -179,7 +179,7 @@ fn sensitivity(design: &Design<'_>, near: &[Neighbours]) -> Named {
     );
     for neighbour in near {
         let changes = [&neighbour.less, &neighbour.more].map(|figures| change(figures.as_ref()));
-        bars = bars.group(&neighbour.parameter.name().replace('_', " "), &changes);
+        bars = bars.group(&units::words(neighbour.parameter.name()), &changes);
     }
     Named {
         name: "sensitivity".into(),

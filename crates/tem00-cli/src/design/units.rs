@@ -2,6 +2,8 @@
 
 use tem00_triangulation::{DesignFigure, DesignParameter};
 
+use crate::table::rounded;
+
 /// A unit in which a quantity is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Unit {
@@ -30,7 +32,7 @@ impl Unit {
 
     /// Returns a quantity's name with the unit: "range (mm)".
     pub(super) fn label(self, name: &str) -> String {
-        let name = name.replace('_', " ");
+        let name = words(name);
         if self.symbol.is_empty() {
             name
         } else {
@@ -79,24 +81,12 @@ pub(super) const fn of_figure(figure: DesignFigure) -> Unit {
 
 /// Writes a number with four significant digits.
 pub(super) fn digits(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let decimals = (3.0 - value.abs().log10().floor()).max(0.0);
-    if decimals > 9.0 || value.abs() >= 1e9 {
-        return format!("{value:.3e}");
-    }
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "from 0 to 9"
-    )]
-    let text = format!("{value:.*}", decimals as usize);
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+    rounded(value, 4)
+}
+
+/// Returns the words of a name: "depth of field", "f-number".
+pub(super) fn words(name: &str) -> String {
+    name.replace("f_number", "f-number").replace('_', " ")
 }
 
 #[cfg(test)]
@@ -117,20 +107,5 @@ mod tests {
             of_figure(DesignFigure::DepthOfField).label("depth_of_field"),
             "depth of field (mm)"
         );
-    }
-
-    #[test]
-    fn numbers_have_four_digits() {
-        for (value, text) in [
-            (0.0, "0"),
-            (1.0, "1"),
-            (12.345_6, "12.35"),
-            (0.001_234_56, "0.001235"),
-            (123_456.0, "123456"),
-            (1e-12, "1.000e-12"),
-            (-2.5, "-2.5"),
-        ] {
-            assert_eq!(digits(value), text);
-        }
     }
 }

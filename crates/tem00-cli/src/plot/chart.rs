@@ -1,15 +1,22 @@
 //! Points and lines over two axes.
 
+use std::sync::Arc;
+
 use kuva::prelude::{
     BandPlot, Layout, LegendPosition, LinePlot, LineStyle, MarkerShape, Plot, ScatterPlot,
+    TickFormat,
 };
 
 use super::{Drawing, EMPTY, LEGEND, Panel, colour};
+use crate::table::number;
+
+/// The largest number with a place on an axis: differences and squares of such are numbers still.
+const LARGEST: f64 = 1e100;
 
 /// Points and lines over two axes, each linear or logarithmic.
 ///
-/// A point that has no place on its axes, because it is not finite or not positive on a logarithmic
-/// axis, is left out.
+/// A point that has no place on its axes, because it is not finite, beyond 1e100 or not positive on a
+/// logarithmic axis, is left out.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
     title: String,
@@ -116,22 +123,31 @@ impl Chart {
         } else {
             LEGEND
         };
-        let plots: Vec<Plot> = self
-            .series
-            .into_iter()
-            .filter_map(|series| series.plot(log))
-            .collect();
+        let mut series = self.series;
+        series.iter_mut().for_each(|series| series.keep_places(log));
+        series.retain(|series| !series.points.is_empty());
+        let extents = [0, 1].map(|axis| extent(&series, axis));
+        let plots: Vec<Plot> = series.iter().map(Series::plot).collect();
         let mut layout = if plots.is_empty() {
             Layout::new(EMPTY, EMPTY)
         } else {
             Layout::auto_from_plots(&plots).with_legend_position(legend)
         };
         if log[0] && !plots.is_empty() {
-            layout = layout.with_log_x();
+            let (low, high) = log_range(extents[0]);
+            layout = layout
+                .with_log_x()
+                .with_x_axis_min(low)
+                .with_x_axis_max(high);
         }
         if log[1] && !plots.is_empty() {
-            layout = layout.with_log_y();
+            let (low, high) = log_range(extents[1]);
+            layout = layout
+                .with_log_y()
+                .with_y_axis_min(low)
+                .with_y_axis_max(high);
         }
+        layout = layout.with_tick_format(TickFormat::Custom(Arc::new(number)));
         let [x, y] = self.labels;
         let layout = layout.with_title(self.title);
         (plots, layout.with_x_label(x).with_y_label(y))
@@ -159,22 +175,22 @@ impl Chart {
 }
 
 impl Series {
-    /// Returns what is drawn, or `None` if no point has a place.
-    fn plot(mut self, [log_x, log_y]: [bool; 2]) -> Option<Plot> {
-        let on_axis = |value: f64, log: bool| value.is_finite() && (value > 0.0 || !log);
+    /// Leaves out the points that have no place on their axes.
+    fn keep_places(&mut self, [log_x, log_y]: [bool; 2]) {
+        let on_axis = |value: f64, log: bool| value.abs() <= LARGEST && (value > 0.0 || !log);
         self.points.retain(|&[x, low, high]| {
             on_axis(x, log_x) && on_axis(low, log_y) && on_axis(high, log_y)
         });
-        if self.points.is_empty() {
-            return None;
-        }
-        Some(match self.mark {
+    }
+
+    fn plot(&self) -> Plot {
+        match self.mark {
             Mark::Line => self.curve(LineStyle::Solid),
             Mark::Dashed => self.curve(LineStyle::Dashed),
             Mark::Dots => self.scatter(MarkerShape::Circle, 2.5),
             Mark::Crosses => self.scatter(MarkerShape::Cross, 3.0),
             Mark::Band => self.area(),
-        })
+        }
     }
 
     fn places(&self) -> impl Iterator<Item = (f64, f64)> {
@@ -199,6 +215,31 @@ impl Series {
         let column = |index: usize| self.points.iter().map(move |point| point[index]);
         let plot = BandPlot::new(column(0), column(1), column(2));
         plot.with_color(&self.colour).with_opacity(0.25).into()
+    }
+}
+
+/// Returns the least and the greatest number of all points on a logarithmic axis.
+fn extent(series: &[Series], axis: usize) -> (f64, f64) {
+    let points = series.iter().flat_map(|series| &series.points);
+    let numbers = points.flat_map(|point| if axis == 0 { &point[..1] } else { &point[1..] });
+    numbers.fold((f64::MAX, f64::MIN_POSITIVE), |(low, high), &number| {
+        (low.min(number), high.max(number))
+    })
+}
+
+/// Returns the range of a logarithmic axis: from 1, 2 or 5 times a power of ten below all numbers to one
+/// above them, and not the whole decades, in which a few points would be lost.
+fn log_range((low, high): (f64, f64)) -> (f64, f64) {
+    let decade = |number: f64| 10.0_f64.powf(number.log10().floor());
+    let at_most = |step: &f64| step * decade(low) <= low;
+    let at_least = |step: &f64| step * decade(high) >= high;
+    let below = [5.0, 2.0].into_iter().find(at_most).unwrap_or(1.0);
+    let above = [1.0, 2.0, 5.0].into_iter().find(at_least).unwrap_or(10.0);
+    let (from, to) = (below * decade(low), above * decade(high));
+    if to > from {
+        (from, to)
+    } else {
+        (0.5 * from, 2.0 * from)
     }
 }
 
@@ -266,5 +307,23 @@ mod tests {
             text.contains("length (mm)") && !text.contains("NaN"),
             "{text}"
         );
+    }
+
+    #[test]
+    fn logarithmic_axes_end_about_the_points() {
+        for ((low, high), expected) in [
+            ((3.0, 40.0), (2.0, 50.0)),
+            ((10.0, 100.0), (10.0, 100.0)),
+            ((0.7, 0.7), (0.5, 1.0)),
+            ((2.0, 2.0), (1.0, 4.0)),
+        ] {
+            let (from, to) = log_range((low, high));
+            // Powers of ten are rounded.
+            let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+            assert!(
+                near(from, expected.0) && near(to, expected.1),
+                "{from} … {to}"
+            );
+        }
     }
 }

@@ -2,6 +2,8 @@
 
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
+mod budget;
+mod design;
 mod lines;
 mod patterns;
 mod render;

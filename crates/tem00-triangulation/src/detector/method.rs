@@ -66,15 +66,15 @@ pub enum LineMethod {
     },
     /// The Gaussian on a constant background that fits best, by least squares.
     ///
-    /// The fitted Gaussian is integrated over the pixels, as a sensor without gaps does it. Width, peak
-    /// and background of the point are those of the fit.
+    /// The fitted Gaussian is integrated over the pixels, as a sensor without gaps does it: the estimate is
+    /// exact, and so is the [width](crate::LinePoint::width), which is that of the fit.
     GaussianFit,
     /// The ridge by Steger (*An unbiased detector of curvilinear structures*, IEEE PAMI 20, 113, 1998),
     /// with derivatives of a Gaussian.
     ///
     /// In an image it looks along the normal of the ridge and needs the neighbours of the column; in a
-    /// single column it looks along the column. A line of the 1/e² radius w keeps one ridge in its middle
-    /// for σ ≥ w / (2√3) or more.
+    /// single column it looks along the column. Of a line with a flat top, such as a saturated one, of
+    /// the half width a there is one ridge in the middle for σ ≥ a/√3.
     Steger {
         /// The standard deviation σ of the Gaussian, in pixels.
         sigma: f64,

@@ -160,7 +160,7 @@ fn impossible_images_are_rejected_by_name() {
         ("column_electrons", |d| d.column_electrons = -1.0),
         ("speckle_size", |d| d.speckle_size[1] = 0.01),
         ("speckle_size", |d| {
-            (d.speckle_size, d.size) = ([0.07; 2], [4000, 100])
+            (d.speckle_size, d.size) = ([0.07; 2], [4000, 100]);
         }),
         ("sensitive_side", |d| d.sensitive_side = 0.0),
         ("patterns", |d| d.patterns = 0),

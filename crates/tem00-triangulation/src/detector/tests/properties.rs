@@ -31,7 +31,7 @@ fn ragged(values: &[f32], before: usize) -> Vec<f32> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(150))]
+    #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
     fn any_column_gives_finite_points_inside_of_it(column in prop::collection::vec(any_value(), 0..80)) {
@@ -45,6 +45,17 @@ proptest! {
                 prop_assert!(inside.contains(&point.position), "{method}: {point:?}");
                 let sensitivities = detector.sensitivities(&column, &point);
                 prop_assert!(sensitivities.iter().all(|g| g.is_finite()), "{method}: {sensitivities:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn any_image_gives_finite_points_inside_of_it(values in prop::collection::vec(any_value(), 12 * 40)) {
+        let image = Grid::from_vec(12, 40, values).unwrap();
+        for method in [LineMethod::CentreOfGravity, LineMethod::Steger { sigma: 1.0 }] {
+            for point in finder(method).detect(&image).into_iter().flatten() {
+                prop_assert!((0.0..=40.0).contains(&point.position), "{method}: {point:?}");
+                prop_assert!(point.line < 12 * 3, "{method}: {point:?}");
             }
         }
     }
@@ -81,18 +92,17 @@ proptest! {
 
     #[test]
     fn brighter_lines_are_found_in_the_same_place(
-        values in prop::collection::vec(1.0_f32..200.0, 12..30), scale in 1e-3_f32..1e3,
+        values in prop::collection::vec(1.0_f32..200.0, 12..30), power in -10_i32..10,
     ) {
-        let scaled: Vec<f32> = values.iter().map(|value| value * scale).collect();
+        // A power of two changes no digit.
+        let scaled: Vec<f32> = values.iter().map(|value| value * f32::powi(2.0, power)).collect();
         for method in methods() {
             let here = finder(method).detect_column(&ragged(&values, 60));
             let there = finder(method).detect_column(&ragged(&scaled, 60));
             prop_assert_eq!(here.len(), there.len());
             for (a, b) in here.iter().zip(&there) {
-                // 6e−8 of rounding, over curvatures that are a small part of the peak.
-                if a.validity == Validity::Valid && b.validity == Validity::Valid {
-                    prop_assert!((a.position - b.position).abs() < 1e-3, "{method}: {a:?} {b:?}");
-                }
+                // Only logarithms round anew.
+                prop_assert!((a.position - b.position).abs() < 1e-9, "{method}: {a:?} {b:?}");
             }
         }
     }

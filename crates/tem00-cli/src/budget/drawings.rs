@@ -1,0 +1,50 @@
+//! The drawings of a budget.
+
+use super::Findings;
+use crate::plot::{Bars, Chart, Drawing};
+
+const METRES_TO_MICROMETRES: f64 = 1e6;
+const METRES_TO_MILLIMETRES: f64 = 1e3;
+
+/// What each source contributes, by formulas and, unless they were left out, by trials.
+pub(super) fn contributions(findings: &Findings<'_>) -> Drawing {
+    let series: &[&str] = match findings.trials {
+        Some(_) => &["formulas", "trials"],
+        None => &["formulas"],
+    };
+    let label = "standard uncertainty of a height (µm)";
+    let mut bars = Bars::new("What makes a height uncertain", label, series);
+    let trials = findings.trials.as_ref();
+    for term in findings.budget.terms() {
+        let mut values = vec![term.contribution() * METRES_TO_MICROMETRES];
+        if let Some(trials) = trials {
+            let found = trials.term(term.source);
+            values.push(found.map_or(f64::NAN, |found| found.uncertainty * METRES_TO_MICROMETRES));
+        }
+        bars = bars.group(term.source.name(), &values);
+    }
+    let mut combined = vec![findings.budget.combined() * METRES_TO_MICROMETRES];
+    combined.extend(
+        findings
+            .combined_by_trials()
+            .map(|found| found * METRES_TO_MICROMETRES),
+    );
+    bars.group("combined", &combined).draw()
+}
+
+/// The combined uncertainty over the heights that can be measured.
+pub(super) fn over_range(findings: &Findings<'_>) -> Drawing {
+    let heights = findings.over_range.iter();
+    let points = heights.map(|&(height, uncertainty)| {
+        (
+            height * METRES_TO_MILLIMETRES,
+            uncertainty * METRES_TO_MICROMETRES,
+        )
+    });
+    Chart::new(
+        "Uncertainty over the measuring range",
+        ["height (mm)", "standard uncertainty (µm)"],
+    )
+    .line("combined", points.collect::<Vec<_>>())
+    .draw()
+}

@@ -1,0 +1,56 @@
+//! The report of a budget.
+
+use super::{Findings, words};
+use crate::report::{Report, Table};
+
+/// Returns the report, with the drawings as SVG.
+pub(super) fn report(findings: &Findings<'_>, contributions: &str, over_range: &str) -> Report {
+    let mut report = Report::new("Uncertainty budget of a laser-triangulation set-up");
+    report.verdict(&words::verdict(findings));
+    for line in words::verdicts(findings).iter().skip(1) {
+        report.paragraph(&sentence(line));
+    }
+    report.heading("The set-up");
+    report.facts(&words::facts(findings));
+    report.heading("The budget");
+    report.table(&table(findings));
+    report.paragraph(
+        "Types after the GUM: A by statistics, B by models and data sheets. Formulas are first order in \
+         the noise. Trials expose simulated frames and find the line in them: errors of a single source \
+         against the place without noise, those of all at once against the true place; ± is a standard \
+         error.",
+    );
+    report.drawing(
+        contributions,
+        "The standard uncertainty of a height by each source alone, and by all.",
+    );
+    report.drawing(
+        over_range,
+        "The combined standard uncertainty, by formulas, over the heights that are in the image and in \
+         the depth of field.",
+    );
+    report.heading("Files");
+    report.file(&findings.file.display().to_string(), &findings.text);
+    report
+}
+
+fn table(findings: &Findings<'_>) -> Table {
+    let lines = words::table(findings);
+    let headings: Vec<&str> = lines[0].iter().map(String::as_str).collect();
+    let last = lines.len() - 1;
+    let mut table = Table::new("Standard uncertainties of a height", &headings);
+    for row in &lines[1..last] {
+        table.row(row.clone());
+    }
+    table.total(words::combined(findings));
+    table
+}
+
+/// Begins a line as a sentence, and ends it as one.
+fn sentence(line: &str) -> String {
+    let mut letters = line.chars();
+    let first = letters
+        .next()
+        .map(|letter| letter.to_uppercase().to_string());
+    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
+}

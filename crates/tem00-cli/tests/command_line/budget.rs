@@ -1,0 +1,161 @@
+use std::fs;
+
+use serde_json::Value;
+
+use super::{files, folder, message, run, text};
+
+/// A set-up of the usual parts, with few rows.
+const SETUP: &str = r#"
+[laser]
+wavelength = "650 nm"
+power = "5 mW"
+line_width = "0.2 mm"
+line_length = "50 mm"
+
+[camera]
+focal_length = "25 mm"
+f_number = 8
+pixel_pitch = "3.45 um"
+resolution = [640, 64]
+distance = "300 mm"
+angle = "30 deg"
+
+[sensor]
+quantum_efficiency = 0.6
+exposure = "0.1 ms"
+
+[surface]
+reflectance = 0.5
+
+[detector]
+window = 21
+
+[calibration]
+uncertainty = "2 um"
+"#;
+
+fn setup_folder(from: &str, to: &str) -> tempfile::TempDir {
+    assert!(SETUP.contains(from), "{from} is in the set-up");
+    let folder = folder();
+    let text = SETUP.replacen(from, to, 1);
+    fs::write(folder.path().join("a.toml"), text).expect("the set-up is written");
+    folder
+}
+
+fn json(bytes: &[u8]) -> Value {
+    serde_json::from_slice(bytes).expect("it is JSON")
+}
+
+#[test]
+fn a_budget_is_a_table_and_five_files() {
+    let folder = setup_folder("[laser]", "[laser]");
+    let output = run(folder.path(), "budget a.toml --trials 10");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let table = text(&output.stdout);
+    for part in [
+        "speckle dominates",
+        "by trials",
+        "quantisation",
+        "calibration",
+        "k = 1.96",
+        "Dorsch",
+        "budget.html",
+    ] {
+        assert!(table.contains(part), "{part} is not in\n{table}");
+    }
+    let out = folder.path().join("out/a");
+    let expected = [
+        "budget.html",
+        "budget.json",
+        "contributions.png",
+        "contributions.svg",
+        "over_range.png",
+        "over_range.svg",
+    ];
+    assert_eq!(files(&out), expected, "nothing else");
+    let record = json(&fs::read(out.join("budget.json")).expect("the record"));
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let terms = record["terms"].as_array().expect("terms");
+    let squares = terms
+        .iter()
+        .map(|term| number(&term["contribution"]).powi(2));
+    let combined = squares.sum::<f64>().sqrt();
+    assert!(
+        (number(&record["combined"]) / combined - 1.0).abs() < 1e-12,
+        "{record}"
+    );
+    assert!(number(&terms[0]["by_trials"]) > 0.0, "{record}");
+    assert!(
+        terms[7]["by_trials"].is_null(),
+        "the calibration is not tried: {record}"
+    );
+    let page = fs::read_to_string(out.join("budget.html")).expect("the report");
+    assert!(
+        page.contains("<svg") && page.contains("line_width = &quot;0.2 mm&quot;"),
+        "{page}"
+    );
+}
+
+#[test]
+fn json_is_the_same_for_any_number_of_threads() {
+    let folder = setup_folder("[laser]", "[laser]");
+    let with = |threads: u32| {
+        let line = format!("budget a.toml --json --trials 10 --seed 3 -o x --threads {threads}");
+        run(folder.path(), &line).stdout
+    };
+    let one = with(1);
+    assert_eq!(json(&one)["trials"]["seed"], 3, "{}", text(&one));
+    assert_eq!(text(&one), text(&with(3)), "one thread and three");
+}
+
+#[test]
+fn trials_can_be_left_out() {
+    let folder = setup_folder("[laser]", "[laser]");
+    let output = run(folder.path(), "budget a.toml --trials 0");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let table = text(&output.stdout);
+    assert!(!table.contains("by trials"), "{table}");
+}
+
+#[test]
+fn what_is_wrong_with_a_setup_is_told_at_its_place() {
+    for (from, to, part) in [
+        ("wavelength", "wavelenght", "did you mean `wavelength`?"),
+        ("\"650 nm\"", "\"650 m\"", "from 100 nm to 100 µm"),
+        ("power = \"5 mW\"", "power = 1e300", "at most"),
+        ("window = 21", "window = 20", "odd"),
+        ("window = 21", "window = 101", "rows of the image"),
+        ("[surface]\nreflectance = 0.5", "", "[surface]"),
+        ("power = \"5 mW\"", "power = 1e-9", "too dark"),
+    ] {
+        let folder = setup_folder(from, to);
+        let output = run(folder.path(), "budget a.toml --trials 0");
+        let told = message(&output);
+        assert_eq!(output.status.code(), Some(2), "{to}: {told}");
+        assert!(
+            told.contains(part) && told.contains("a.toml"),
+            "{to}: {told}"
+        );
+        assert!(output.stdout.is_empty(), "{to}");
+    }
+    let output = run(folder().path(), "budget missing.toml");
+    assert_eq!(output.status.code(), Some(2), "{}", message(&output));
+    assert!(
+        message(&output).contains("missing.toml"),
+        "{}",
+        message(&output)
+    );
+}
+
+#[test]
+fn a_saturated_setup_says_what_to_change() {
+    let folder = setup_folder("\"0.1 ms\"", "\"10 ms\"");
+    let output = run(folder.path(), "budget a.toml --trials 10");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let table = text(&output.stdout);
+    assert!(
+        table.contains("saturated") && table.contains("lower the exposure"),
+        "{table}"
+    );
+    assert!(table.contains("no line that can be trusted"), "{table}");
+}

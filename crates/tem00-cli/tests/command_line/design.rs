@@ -1,0 +1,178 @@
+//! `tem00 design`: searches among set-ups.
+
+use std::{fs, path::Path};
+
+use tem00_triangulation::{Budget, read_setup};
+
+use super::{assert_code, files, folder, message, run, text};
+
+const SETUP: &str = r#"
+[laser]
+wavelength = "660 nm"
+power = "10 mW"
+line_width = "0.2 mm"
+line_length = "60 mm"
+
+[camera]
+focal_length = "25 mm"
+f_number = 8
+pixel_pitch = "3.45 um"
+resolution = [640, 480]
+distance = "300 mm"
+angle = "30 deg"
+
+[sensor]
+quantum_efficiency = 0.6
+exposure = "0.05 ms"
+
+[surface]
+reflectance = 0.4
+
+[detector]
+window = 21
+
+[design.vary]
+f_number = { from = 4, to = 16, steps = 3, scale = "log" }
+angle = ["25 deg", "40 deg"]
+"#;
+
+fn setup_folder(require: &str) -> tempfile::TempDir {
+    let folder = folder();
+    let text = format!("{SETUP}\n[design.require]\n{require}\n");
+    fs::write(folder.path().join("a.toml"), text).expect("the set-up is written");
+    folder
+}
+
+fn json(path: &Path) -> serde_json::Value {
+    let text = fs::read_to_string(path).expect("the file is there");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+#[test]
+fn a_search_writes_its_files_and_a_winner_that_reads_back() {
+    let folder = setup_folder("saturation = 0.9\ndepth_of_field = \"15 mm\"");
+    let output = run(folder.path(), "design a.toml --best 2");
+    assert_code(&output, 0);
+    let table = text(&output.stdout);
+    for part in [
+        "6 set-ups tried",
+        "f-number",
+        "depth of field (mm)",
+        "out/a/best.toml",
+    ] {
+        assert!(table.contains(part), "{part}: {table}");
+    }
+    let out = folder.path().join("out/a");
+    let mut expected = vec!["best.toml", "design.csv", "design.html", "design.json"];
+    let drawings = [
+        "over_angle.png",
+        "over_angle.svg",
+        "over_f_number.png",
+        "over_f_number.svg",
+        "sensitivity.png",
+        "sensitivity.svg",
+        "trade_off.png",
+        "trade_off.svg",
+    ];
+    expected.extend(drawings);
+    assert_eq!(files(&out), expected);
+
+    // The winner is a set-up file, and its budget is what the search says of it, bit by bit.
+    let winner = read_setup(&out.join("best.toml")).expect("a set-up file");
+    let budget = Budget::new(&winner).expect("the line is found");
+    let found = json(&out.join("design.json"));
+    let best = found["best"].as_array().expect("a list");
+    assert_eq!(best.len(), 2, "{found}");
+    let uncertainty = best[0]["figures"]["uncertainty"].as_f64();
+    assert_eq!(uncertainty, Some(budget.combined()), "{found}");
+    assert_code(&run(folder.path(), "budget out/a/best.toml"), 0);
+
+    let csv = fs::read_to_string(out.join("design.csv")).expect("text");
+    assert_eq!(csv.lines().count(), 7, "a line of headings and six set-ups");
+    let columns: Vec<_> = csv.lines().map(|line| line.split(',').count()).collect();
+    assert!(columns.iter().all(|&count| count == columns[0]), "{csv}");
+}
+
+#[test]
+fn the_files_do_not_depend_on_the_number_of_threads() {
+    let folder = setup_folder("saturation = 0.9");
+    for threads in [1, 3] {
+        let line = format!("design a.toml -o {threads} --threads {threads}");
+        assert_code(&run(folder.path(), &line), 0);
+    }
+    for name in [
+        "best.toml",
+        "design.csv",
+        "trade_off.png",
+        "sensitivity.png",
+    ] {
+        let read = |threads: &str| fs::read(folder.path().join(threads).join(name));
+        let [one, three] = ["1", "3"].map(|threads| read(threads).expect("the file is there"));
+        assert!(one == three, "{name} is the same");
+    }
+}
+
+#[test]
+fn where_no_set_up_will_do_the_hindrance_and_the_nearest_are_told() {
+    let folder = setup_folder("field_width = \"2 m\"");
+    let output = run(folder.path(), "design a.toml");
+    assert_code(&output, 0);
+    let table = text(&output.stdout);
+    for part in [
+        "0 keep every constraint",
+        "field width ≥ 2000 mm excludes 6",
+        "nearest",
+    ] {
+        assert!(table.contains(part), "{part}: {table}");
+    }
+    let best = fs::read_to_string(folder.path().join("out/a/best.toml")).expect("text");
+    assert!(
+        best.starts_with("# No set-up keeps every constraint"),
+        "{best}"
+    );
+    let printed = run(folder.path(), "design a.toml --json");
+    let printed: serde_json::Value = serde_json::from_slice(&printed.stdout).expect("JSON");
+    assert_eq!(printed["allowed"], 0, "{printed}");
+    assert!(printed["nearest"].is_object(), "{printed}");
+}
+
+#[test]
+fn bad_searches_are_one_message_and_no_file() {
+    let folder = setup_folder("rnage = \"2 mm\"");
+    let plain = SETUP.split("[design").next().unwrap_or_default();
+    let write = |name: &str, text: &str| {
+        fs::write(folder.path().join(name), text).expect("the set-up is written");
+    };
+    write("plain.toml", plain);
+    write(
+        "none.toml",
+        &format!("{plain}\n[design.vary]\ndistance = [\"20 mm\"]\n"),
+    );
+    write(
+        "many.toml",
+        &format!("{SETUP}exposure = {{ from = 1, to = 2, steps = 9999 }}\n"),
+    );
+    let before = files(folder.path());
+    for (line, part) in [
+        ("design missing.toml", "missing.toml"),
+        ("design a.toml", "did you mean `range`?"),
+        ("design plain.toml", "no section [design]"),
+        ("design many.toml", "59994"),
+        ("design a.toml --best 0", "--best"),
+    ] {
+        let output = run(folder.path(), line);
+        assert_code(&output, 2);
+        assert!(
+            message(&output).contains(part),
+            "{line}: {}",
+            message(&output)
+        );
+        assert!(output.stdout.is_empty(), "{line}: nothing is data");
+        assert_eq!(files(folder.path()), before, "{line}");
+    }
+    let output = run(folder.path(), "design none.toml");
+    assert_code(&output, 2);
+    let told = message(&output);
+    assert!(told.contains("none of the 1 set-ups is possible"), "{told}");
+    assert!(told.contains("distance"), "{told}");
+}

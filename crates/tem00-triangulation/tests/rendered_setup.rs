@@ -1,0 +1,93 @@
+//! What a set-up says of its image, against the path tracer's rendering of its scene.
+
+#![expect(clippy::expect_used, reason = "a test fails by panicking")]
+
+use std::{path::Path, sync::atomic::AtomicBool};
+
+use tem00_tracer::{Crop, RenderOptions, parse_scene, render_frame};
+use tem00_triangulation::{DVec2, Setup, parse_setup};
+
+fn setup(scheimpflug: bool) -> Setup {
+    let text = format!(
+        r#"
+        laser = {{ wavelength = "650 nm", power = "5 mW", line_width = "0.4 mm", line_length = "50 mm" }}
+        surface = {{ reflectance = 0.5 }}
+        sensor = {{ quantum_efficiency = 0.6, exposure = "0.1 ms" }}
+        [camera]
+        focal_length = "25 mm"
+        f_number = 4
+        pixel_pitch = "3.45 um"
+        resolution = [640, 480]
+        distance = "200 mm"
+        angle = "35 deg"
+        scheimpflug = {scheimpflug}
+        "#
+    );
+    parse_setup(&text).expect("a set-up")
+}
+
+/// The line as rendered in the middle columns: the electrons of a column, the place and the full width.
+fn rendered(setup: &Setup, height: f64) -> [f64; 3] {
+    const COLUMNS: usize = 24;
+    let line = setup.line_at(height).expect("the line is seen");
+    let scene = parse_scene(&setup.scene(height), Path::new(".")).expect("a scene");
+    let top = (line.position - 30.0).max(0.0).floor();
+    let crop = Crop {
+        x: 320 - COLUMNS / 2,
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "in the image"
+        )]
+        y: top as usize,
+        width: COLUMNS,
+        height: 60,
+    };
+    let options = RenderOptions {
+        samples_per_pixel: 256,
+        crop: Some(crop),
+        ..RenderOptions::default()
+    };
+    let frame = render_frame(&scene, None, 0, &options, |_| (), &AtomicBool::new(false));
+    let frame = frame.expect("it renders");
+    let [mut sum, mut first, mut second] = [0.0; 3];
+    for (row, y) in frame.lasers[0].coherent_before.rows().zip(0_u32..) {
+        let place = top + f64::from(y) + 0.5;
+        let radiance: f64 = row.iter().map(|&value| f64::from(value)).sum();
+        let pixel = DVec2::new(320.0, place);
+        let irradiance = radiance * scene.camera.irradiance_per_radiance(pixel) / COLUMNS as f64;
+        let electrons = setup.sensor().electrons(irradiance, 650e-9);
+        sum += electrons;
+        first += electrons * place;
+        second += electrons * place * place;
+    }
+    let place = first / sum;
+    [sum, place, 4.0 * (second / sum - place * place).sqrt()]
+}
+
+#[test]
+fn a_setup_predicts_what_is_rendered_of_it() {
+    for (scheimpflug, height) in [(false, 0.0), (false, 6e-3), (true, 6e-3)] {
+        let setup = setup(scheimpflug);
+        let line = setup.line_at(height).expect("the line is seen");
+        let [electrons, place, width] = rendered(&setup, height);
+        let case = format!("Scheimpflug {scheimpflug}, height {height}");
+        // 256 samples in each of 24 · 20 pixels of the line: the rms of their spread, 1 or less, by
+        // √123000 is 0.3 %; four times that. At 6 mm the fan is 3 % nearer and the line as much shorter.
+        let shorter = 1.0 - height / 0.2;
+        let ratio = electrons * shorter / line.column_electrons;
+        assert!((ratio - 1.0).abs() < 0.012, "{case}: {ratio}");
+        // The same samples leave W/4 · 0.3 % of the place. Perspective and, out of focus, the disc across
+        // the tilted plate shift the centroid of a line of 0.4 mm by some (W/L) W.
+        let shift = place - line.position;
+        assert!(shift.abs() < 0.1, "{case}: {shift} pixels");
+        // The tracer knows no diffraction, a pixel widens σ² by 1/12, and 1 % is chance. The waist of the
+        // laser's line is at the height 0, 3 % wider it is at no height here.
+        let pixel = 4.0 / 12.0_f64.sqrt();
+        let expected = line.line_width.hypot(line.blur).hypot(pixel);
+        assert!(
+            (width / expected - 1.0).abs() < 0.02,
+            "{case}: {width}, {expected}"
+        );
+    }
+}

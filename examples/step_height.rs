@@ -11,7 +11,6 @@
 #![expect(clippy::expect_used, reason = "an example ends where something fails")]
 
 mod plot;
-#[expect(dead_code, reason = "the test of the same name looks at more")]
 mod step;
 
 use std::error::Error;

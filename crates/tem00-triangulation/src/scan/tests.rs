@@ -1,3 +1,5 @@
+#![expect(clippy::float_cmp, reason = "what is stored comes back as it was")]
+
 use ply_rs_bw::{parser::Parser, ply::DefaultElement, ply::Property};
 use tem00_tracer::{Environment, Lamp, Rotation, Trajectory};
 

@@ -12,6 +12,10 @@ mod point_cloud;
 mod scene;
 mod settings;
 mod speckle_table;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
 
 pub use self::{
     assembly::{Scan, ScannedPart},

@@ -34,8 +34,11 @@ pub(super) struct Terms {
 /// The coverage factor of 95 % of a normal distribution.
 const COVERAGE: f64 = 1.96;
 
+/// A term of the noise of a place, in square pixels.
+type Variance = fn(&PlaceNoise) -> f64;
+
 /// The terms of the noise of a place, by name.
-const NOISE: [(&str, fn(&PlaceNoise) -> f64); 6] = [
+const NOISE: [(&str, Variance); 6] = [
     ("speckle", |noise| noise.speckle),
     ("shot noise", |noise| noise.shot),
     ("dark noise", |noise| noise.dark),

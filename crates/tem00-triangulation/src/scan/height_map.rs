@@ -191,7 +191,8 @@ fn extent(
         });
     }
     let cells = [0, 1].map(|axis| ((high[axis] - low[axis]) / pitch).floor() + 1.0);
-    if !(cells[0] * cells[1] <= MOST_CELLS) {
+    let count = cells[0] * cells[1];
+    if count.is_nan() || count > MOST_CELLS {
         return Err(TriangulationError::OutOfRange {
             parameter: "pitch",
             value: pitch,

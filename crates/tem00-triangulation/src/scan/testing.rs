@@ -1,0 +1,42 @@
+//! Points for tests.
+
+use glam::DMat3;
+
+use super::frame::MeasuredPoint;
+use crate::{DVec2, DVec3, PlaceNoise, ProfilePoint, UncertainPoint, Validity};
+
+/// A point in a column whose place moves it by 10 µm per pixel along z.
+pub(super) fn point(column: usize, position: DVec3) -> MeasuredPoint {
+    MeasuredPoint {
+        seen: ProfilePoint {
+            column,
+            line: 0,
+            pixel: DVec2::new(column as f64 + 0.5, 20.0),
+            point: UncertainPoint {
+                position,
+                uncertainty: DVec3::ZERO,
+                along: 0.0,
+                direction: DVec3::Z,
+            },
+            width: 6.0,
+            reflectance: 1000.0,
+            validity: Validity::Valid,
+        },
+        position,
+        per_pixel: -1e-5 * DVec3::Z,
+        noise: PlaceNoise {
+            speckle: 0.04,
+            shot: 0.0025,
+            prnu: 0.01,
+            ..PlaceNoise::default()
+        },
+        calibration: DMat3::ZERO,
+    }
+}
+
+/// The same, but not to be trusted.
+pub(super) fn doubtful(column: usize, position: DVec3) -> MeasuredPoint {
+    let mut point = point(column, position);
+    point.seen.validity = Validity::Saturated;
+    point
+}

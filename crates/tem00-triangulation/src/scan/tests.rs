@@ -1,0 +1,272 @@
+#![expect(clippy::float_cmp, reason = "what is stored comes back as it was")]
+
+use ply_rs_bw::{parser::Parser, ply::DefaultElement, ply::Property};
+use tem00_tracer::{Environment, Lamp, Rotation, Trajectory};
+
+use super::{
+    average::{SpeckleCorrelation, mean_point},
+    testing::{doubtful, point},
+    *,
+};
+use crate::{DVec3, Sensor, SensorDescription, TriangulationError};
+
+mod scenes;
+
+use scenes::{SCENE, measured, scene_of};
+
+#[test]
+fn an_even_radiance_frees_the_electrons_that_the_aperture_tells() {
+    let mut measured = measured(SCENE);
+    measured.scene.surfaces.truncate(1);
+    measured.scene.lasers.truncate(1);
+    measured.scene.surfaces[0].shape = measured.scene.surfaces[0]
+        .shape
+        .translated(DVec3::new(1.0, 1.0, -1.0));
+    let radiance = 2.5;
+    let sky = Environment::constant(radiance).unwrap();
+    measured.scene.lamps = vec![Lamp::Environment(sky)];
+    let camera = measured.scene.camera;
+    let measurement = Measurement::new(measured).unwrap();
+    let frame = measurement
+        .measure(None, 0, |_| (), &core::sync::atomic::AtomicBool::new(false))
+        .unwrap();
+
+    // On the axis E = π L / (4 F²) with the working f-number, at 550 nm for a lamp.
+    let f_number = 8.0 * camera.image_distance() / 25e-3;
+    let irradiance = core::f64::consts::PI * radiance / (4.0 * f_number * f_number);
+    let energy = irradiance * 3.45e-6 * 3.45e-6 * 1e-4;
+    let photons = energy * 550e-9 / (6.626_070_15e-34 * 299_792_458.0);
+    let found = f64::from(frame.exposure.electrons[(16, 12)]);
+    // The middle of the image is half a pixel off the axis: cos⁴θ differs by 1e-8; f32 by 6e-8.
+    assert!((found / (0.6 * photons) - 1.0).abs() < 1e-6, "{found}");
+    assert_eq!(
+        frame.exposure.coherent[(16, 12)],
+        0.0,
+        "lamps have no speckle"
+    );
+}
+
+#[test]
+fn the_part_is_brought_back_along_its_motion() {
+    let mut measured = measured(SCENE);
+    let turn = Rotation {
+        axis: DVec3::Z,
+        angle: 0.1,
+    };
+    let moving = Trajectory::turning(DVec3::X, turn, DVec3::new(0.0, 1e-3, 2e-4)).unwrap();
+    for surface in &mut measured.scene.surfaces {
+        surface.trajectory = moving.clone();
+    }
+    measured.scene.render.frames = 8;
+    let motion = ScanMotion::of_scene(&measured.scene, None).unwrap();
+    assert_eq!(motion.surfaces(), [0, 1]);
+    let on_part = DVec3::new(0.01, -0.02, 0.03);
+    for frame in 0..8 {
+        let seen = moving.pose_at(frame).point(on_part);
+        assert!(
+            motion.to_part(frame).point(seen).distance(on_part) < 1e-15,
+            "{frame}"
+        );
+    }
+}
+
+#[test]
+fn a_head_that_moves_sees_what_a_part_that_moves_the_other_way_shows() {
+    let by = DVec3::new(0.0, 1e-3, 0.0);
+    let mut head = measured(SCENE).scene;
+    head.camera_trajectory = Trajectory::steady(-by).unwrap();
+    head.lasers[0] = head.lasers[0]
+        .clone()
+        .with_trajectory(head.camera_trajectory.clone());
+    let mut part = measured(SCENE).scene;
+    for surface in &mut part.surfaces {
+        surface.trajectory = Trajectory::steady(by).unwrap();
+    }
+    let [head, part] = [head, part].map(|mut scene| {
+        scene.render.frames = 4;
+        ScanMotion::of_scene(&scene, None).unwrap()
+    });
+    let seen = DVec3::new(1e-3, 2e-3, 3e-3);
+    let [a, b] = [&head, &part].map(|motion| motion.to_part(3).point(seen));
+    assert!(a.distance(b) < 1e-17, "{a} and {b}");
+    assert!(!head.is_still() && !part.is_still());
+}
+
+#[test]
+fn scenes_that_cannot_be_measured_say_why() {
+    let spot = SCENE.replace(
+        "line = { fan_angle = \"20 deg\", thickness = \"0.3 mm\" }",
+        "spot.waist_radius = \"1 mm\"",
+    );
+    let upright = SCENE.replace("line_direction = [1, 0, 0]", "line_direction = [0, 1, 0]");
+    let filter = SCENE.replace("[render]", "[render]\nfilter = \"tent\"");
+    let crop = SCENE.replace("[render]", "[render]\ncrop = [0, 0, 8, 8]");
+    let light = SCENE.replace("[render]", "[render]\nmethod = \"light\"");
+    for (text, why) in [
+        (spot, "must draw a line"),
+        (upright, "from left to right"),
+        (filter, "`filter`"),
+        (crop, "`crop`"),
+        (light, "`method`"),
+    ] {
+        let error = Measurement::new(measured(&text)).unwrap_err();
+        assert!(matches!(error, TriangulationError::Scene(_)), "{error}");
+        assert!(error.to_string().contains(why), "{error}");
+    }
+    let mut apart = measured(SCENE);
+    apart.scene.render.frames = 2;
+    apart.scene.surfaces[0].trajectory = Trajectory::steady(DVec3::X).unwrap();
+    apart.scene.surfaces[1].trajectory = Trajectory::steady(DVec3::Y).unwrap();
+    let error = Measurement::new(apart.clone()).unwrap_err().to_string();
+    assert!(
+        error.contains("\"low\" and \"high\" move differently"),
+        "{error}"
+    );
+    apart.scan.surface = Some("high".to_owned());
+    assert!(
+        Measurement::new(apart.clone()).is_ok(),
+        "one of them is named"
+    );
+    apart.scene.camera_trajectory = Trajectory::steady(DVec3::X).unwrap();
+    let error = Measurement::new(apart).unwrap_err().to_string();
+    assert!(error.contains("one head"), "{error}");
+}
+
+#[test]
+fn files_with_mistakes_in_the_scan_are_placed() {
+    for (bad, message) in [
+        ("[scan]\nsurfaec = \"low\"", "did you mean `surface`?"),
+        ("[scan]\nsurface = \"lid\"", "\"low\", \"high\""),
+        ("[scan]\npitch = \"-1 mm\"", "`pitch` must be"),
+        ("[scan]\naverage = { frames = 2 }", "from 1 to 1"),
+        ("[scan]\naverage = { columns = 0 }", "from 1 to 65536"),
+        ("[scan]\nraw = \"gif\"", "one of \"png\", \"tiff\""),
+        ("[scan]\nheight = [0, 0, 0]", "not all zero"),
+    ] {
+        let error = scene_of(&format!("{SCENE}\n{bad}")).unwrap_err();
+        assert!(error.line_column().is_some(), "{error}");
+        assert!(error.message().contains(message), "{error}");
+    }
+    let whole = "[scan]\nsurface = \"low\"\npitch = \"0.1 mm\"\nraw = \"tiff\"\n\
+                 height = [0, 2, 0]\naverage = { columns = 3 }";
+    let scan = measured(&format!("{SCENE}\n{whole}")).scan;
+    assert_eq!(scan.surface.as_deref(), Some("low"));
+    assert_eq!(
+        (scan.pitch, scan.raw, scan.height),
+        (Some(1e-4), RawFormat::Tiff, DVec3::Y)
+    );
+    assert_eq!(
+        scan.average,
+        Averaging {
+            frames: 1,
+            columns: 3
+        }
+    );
+}
+
+/// A correlation that falls to a half from column to column, and to a quarter from frame to frame.
+struct Halving;
+
+impl SpeckleCorrelation for Halving {
+    fn between(&self, columns: i64, later: u32) -> f64 {
+        0.5_f64.powi(i32::try_from(columns.abs()).unwrap() + 2 * i32::try_from(later).unwrap())
+    }
+}
+
+#[test]
+fn a_mean_is_as_uncertain_as_its_correlations_say() {
+    let points = [point(0, DVec3::ZERO), point(1, 2e-3 * DVec3::Z)];
+    let members: Vec<_> = [0, 1]
+        .iter()
+        .flat_map(|&f| points.iter().map(move |p| (f, p)))
+        .collect();
+    let mean = mean_point(&members, &Halving).unwrap();
+    assert!((mean.position - 1e-3 * DVec3::Z).length() < 1e-18);
+    // Sum of ρ: (2 + 2 · 1/2) within a frame, twice, and as much times 1/4 between them, twice.
+    assert!((mean.noise.speckle - 0.04 * 7.5 / 16.0).abs() < 1e-15);
+    assert!((mean.noise.shot - 0.0025 / 4.0).abs() < 1e-15);
+    // The response of a pixel stays over frames: two columns average.
+    assert!((mean.noise.prnu - 0.01 / 2.0).abs() < 1e-15);
+    let up = mean.uncertainty_along(DVec3::Z);
+    assert!(
+        (up - 1e-5 * mean.noise.total().sqrt()).abs() < 1e-18,
+        "{up}"
+    );
+}
+
+#[test]
+fn a_map_of_profiles_has_holes_where_nothing_is_valid() {
+    let profiles = [
+        vec![point(0, 1e-3 * DVec3::Z), doubtful(2, 5e-3 * DVec3::Z)],
+        vec![point(1, 2e-3 * DVec3::Z)],
+    ];
+    let map = HeightMap::of_profiles(&profiles, DVec3::Z, [3, 1]);
+    let holes: Vec<bool> = map.heights.values().iter().map(|h| h.is_nan()).collect();
+    assert_eq!(holes, [false, true, true, true, false, true]);
+    assert_eq!(map.heights[(1, 1)], 2e-3);
+    assert!((map.holes() - 4.0 / 6.0).abs() < 1e-15);
+    let (values, scale) = map.quantised();
+    assert_eq!(values.values()[2], 0, "a hole");
+    for (&value, &height) in values.values().iter().zip(map.heights.values()) {
+        let back = scale.offset + scale.scale * f64::from(value);
+        // Half a step of 1 mm / 65534, and the rounding of f32.
+        assert!(
+            height.is_nan() || (back - f64::from(height)).abs() < 0.8e-8,
+            "{back}"
+        );
+    }
+}
+
+#[test]
+fn a_map_of_the_part_has_square_cells() {
+    let at = |x: f64, y: f64, z: f64| point(0, 1e-3 * DVec3::new(x, y, z));
+    let profiles = [
+        vec![at(0.0, 0.0, 1.0), at(0.4, 0.3, 3.0)],
+        vec![at(2.2, 1.1, 7.0)],
+    ];
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    let map = HeightMap::of_points(&profiles, axes, 1e-3).unwrap();
+    assert_eq!((map.heights.width(), map.heights.height()), (3, 2));
+    assert_eq!(map.heights[(0, 0)], 2e-3, "the mean of two");
+    assert_eq!(map.heights[(2, 1)], 7e-3);
+    assert!((map.holes() - 4.0 / 6.0).abs() < 1e-15);
+    assert!(
+        HeightMap::of_points(&profiles, axes, 1e-12).is_err(),
+        "too fine"
+    );
+    assert!(HeightMap::of_points(&[], axes, 1e-3).is_err(), "nothing");
+}
+
+#[test]
+fn point_clouds_are_read_by_another_program() {
+    let position = DVec3::new(1e-3, -2e-3, 0.123_456_789_012_345);
+    let profiles = [vec![], vec![point(4, position), doubtful(5, DVec3::ONE)]];
+    let mut file = Vec::new();
+    write_point_cloud(&profiles, &mut file).unwrap();
+    let ply = Parser::<DefaultElement>::new()
+        .read_ply(&mut file.as_slice())
+        .unwrap();
+    let [vertex] = &ply.payload["vertex"][..] else {
+        panic!("one valid point");
+    };
+    assert!(matches!(vertex["z"], Property::Double(z) if z == position.z));
+    assert!(matches!(vertex["frame"], Property::Int(1)));
+    let sigma = 1e-5 * (0.04_f64 + 0.0025 + 0.01).sqrt();
+    for name in ["sigma_z", "sigma"] {
+        assert!(
+            matches!(vertex[name], Property::Float(found) if (f64::from(found) / sigma - 1.0).abs() < 1e-6),
+            "{name}: {:?}",
+            vertex[name]
+        );
+    }
+}
+
+#[test]
+fn a_sensor_that_is_not_possible_is_refused() {
+    let mut measured = measured(SCENE);
+    measured.sensor = SensorDescription {
+        gain: -1.0,
+        ..*Sensor::new(measured.sensor).unwrap().description()
+    };
+    assert!(Measurement::new(measured).is_err(), "a negative gain");
+}

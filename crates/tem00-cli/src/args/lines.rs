@@ -61,16 +61,16 @@ pub(crate) struct DetectorArgs {
     #[arg(long, value_name = "N")]
     window: Option<usize>,
 
-    /// The threshold of thresholded_centre_of_gravity, a fraction of the peak from 0 to below 1
+    /// The threshold of `thresholded_centre_of_gravity`, a fraction of the peak from 0 to below 1
     /// [default: 0.2].
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     threshold: Option<f64>,
 
-    /// The number of taps of blais_rioux: 2, 4 or 8 [default: 4].
+    /// The number of taps of `blais_rioux`: 2, 4 or 8 [default: 4].
     #[arg(long, value_name = "N")]
     order: Option<usize>,
 
-    /// The standard deviation of the Gaussian of steger, in pixels [default: 2].
+    /// The standard deviation of the Gaussian of `steger`, in pixels [default: 2].
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     sigma: Option<f64>,
 

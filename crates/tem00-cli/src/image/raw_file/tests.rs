@@ -7,10 +7,10 @@ use tiff::encoder::{TiffEncoder, colortype};
 use super::*;
 
 fn frame(bit_depth: u32) -> RawFrame {
-    let full = ((1_u32 << bit_depth) - 1) as u16;
+    let full = u16::MAX >> (16 - bit_depth);
     let values = Grid::from_fn(7, 5, |x, y| match (x, y) {
         (6, 4) => full,
-        _ => ((x * 37 + y * 101) as u16) % full,
+        _ => u16::try_from(x * 37 + y * 101).expect("a small number") % full,
     });
     RawFrame {
         saturated: values.map(|&value| value == full),

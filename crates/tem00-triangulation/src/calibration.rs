@@ -3,6 +3,7 @@ mod boards;
 mod corners;
 mod covariance;
 mod estimate;
+mod flat_field;
 mod homography;
 mod lattice;
 mod least_squares;

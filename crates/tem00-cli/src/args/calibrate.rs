@@ -69,10 +69,10 @@ Examples:
   tem00 lines frame.png --calibration photos/calibration.json";
 
 fn corners(text: &str) -> Result<[usize; 2], String> {
-    let number = |text: &str| text.trim().parse().ok().filter(|n| (3..=200).contains(n));
+    let number = |text: &str| text.trim().parse().ok().filter(|n| (3..=50).contains(n));
     text.split_once(['x', '×'])
         .and_then(|(columns, rows)| Some([number(columns)?, number(rows)?]))
-        .ok_or_else(|| "must be two numbers from 3 to 200, such as 9x6".into())
+        .ok_or_else(|| "must be two numbers from 3 to 50, such as 9x6".into())
 }
 
 /// Reads a length as scene files have it: a number of metres, or a number and a unit.
@@ -108,7 +108,7 @@ mod tests {
     fn boards_and_lengths_are_understood() {
         assert_eq!(corners("9x6"), Ok([9, 6]));
         assert_eq!(corners("12 × 7"), Ok([12, 7]));
-        for bad in ["9", "9x", "2x6", "9x6x3", "-9x6", "9x201"] {
+        for bad in ["9", "9x", "2x6", "9x6x3", "-9x6", "9x51"] {
             assert!(corners(bad).is_err(), "{bad}");
         }
         for (text, expected) in [("5 mm", 5e-3), ("3.45 um", 3.45e-6), ("0.025", 0.025)] {

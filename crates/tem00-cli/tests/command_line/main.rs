@@ -3,6 +3,7 @@
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
 mod budget;
+mod calibrate;
 mod design;
 mod lines;
 mod patterns;

@@ -3,7 +3,7 @@ use glam::DVec3;
 use crate::TriangulationError;
 
 /// The most corners along a side of a board.
-const MOST: usize = 200;
+const MOST: usize = 50;
 
 /// A checkerboard, by its inner corners: where four squares meet.
 ///
@@ -21,7 +21,7 @@ impl Checkerboard {
     ///
     /// # Errors
     ///
-    /// Returns an error if a number is below 3 or above 200, or if the side is not positive and finite.
+    /// Returns an error if a number is below 3 or above 50, or if the side is not positive and finite.
     pub fn new(corners: [usize; 2], square: f64) -> Result<Self, TriangulationError> {
         if !(square > 0.0 && square.is_finite()) {
             return Err(TriangulationError::OutOfRange {
@@ -36,7 +36,7 @@ impl Checkerboard {
             Some(number) => Err(TriangulationError::OutOfRange {
                 parameter: "corners",
                 value: number as f64,
-                allowed: "from 3 to 200 inner corners per side",
+                allowed: "from 3 to 50 inner corners per side",
             }),
         }
     }

@@ -13,8 +13,11 @@ use tem00_tracer::{
 use super::Checkerboard;
 use crate::{BoardSettings, LaserPlane, TriangulationError, Triangulator};
 
-/// The largest tilt of a board, in radians: 25°.
-const LARGEST_TILT: f64 = 0.436;
+/// The tilts of the boards, in radians: 25°, 19° and 13°.
+const TILTS: [f64; 3] = [0.436, 0.327, 0.218];
+
+/// The golden ratio less one.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// The turn of the axis of tilt from board to board, in radians: the golden angle, which never repeats.
 const TURN: f64 = 2.399_963_229_728_653;
@@ -131,7 +134,7 @@ fn surface(
         if bright != (parity == 0) {
             continue;
         }
-        // A board of at most 203 squares per side has fewer than 2³² vertices.
+        // A board of at most 53 squares per side has fewer than 2³² vertices.
         let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
         let corner = |di: usize, dj: usize| {
             let [right, up] = [i + di, j + dj].map(|n| n as f64 - 2.0);
@@ -211,18 +214,11 @@ impl Stage {
     ) -> Result<RigidMotion, tem00_decorrelation::DecorrelationError> {
         let step = number as f64;
         let angle = TURN * step;
-        // The first board is not tilted; half of the others are by more than three quarters.
-        let tilt = LARGEST_TILT * [0.0, 1.0, 0.75, 0.5][(number % 4).min(number)];
-        let tilt = if number > 0 && tilt == 0.0 {
-            LARGEST_TILT
-        } else {
-            tilt
-        };
-        // From −1 to 1, in the order of the multiples of an irrational number.
-        let depth = if number == 0 {
-            0.0
-        } else {
-            2.0 * (0.618_033_988_749_895 * step).fract() - 1.0
+        // The first board is not tilted and stands in the middle. The depths of the others, from −1 to 1, go
+        // by the multiples of an irrational number.
+        let (tilt, depth) = match number {
+            0 => (0.0, 0.0),
+            _ => (TILTS[number % 3], 2.0 * (GOLDEN * step).fract() - 1.0),
         };
         let tilted = DMat3::from_axis_angle(DVec3::new(angle.cos(), angle.sin(), 0.0), tilt);
         let middle = self.middle + depth * self.largest_shift(board) * self.view;

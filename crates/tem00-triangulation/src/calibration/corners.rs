@@ -1,7 +1,7 @@
 use glam::{DMat2, DVec2};
 use tem00_numerics::Grid;
 
-use super::{Checkerboard, lattice::ordered, ring::corner_candidates};
+use super::{Checkerboard, flat_field::flattened, lattice::ordered, ring::corner_candidates};
 use crate::TriangulationError;
 
 /// The standard deviation of the Gaussian that smooths a corner, in sides of a square: the next edges are
@@ -28,7 +28,8 @@ const HALVINGS: u32 = 3;
 ///
 /// Corners are found by the bright and dark quarters around them, in the image and in coarser ones, and put
 /// in order by their neighbours. Their places are the saddles of the image that a Gaussian smooths over
-/// about a third of a square: by the symmetry of a corner neither blur nor contrast moves them.
+/// about a third of a square: by the symmetry of a corner neither blur nor contrast moves them. Uneven light would: it is estimated from
+/// the bright squares and divided out.
 ///
 /// ```text
 /// σ_x = √(π/8) σ_I / ΔI      σ_I: noise of a pixel, ΔI: bright less dark
@@ -69,7 +70,8 @@ pub fn find_corners(
             Ok(places) => {
                 let scale = f64::from(1_u32 << halving);
                 let places: Vec<_> = places.into_iter().map(|place| scale * place).collect();
-                return refined(image, board, &places);
+                let flat = flattened(image, board.corners(), &places);
+                return refined(&flat, board, &places);
             }
             Err(number) => found = found.max(number),
         }

@@ -5,6 +5,9 @@ use glam::DVec2;
 /// How far a corner may lie from where its neighbours expect it, in squares.
 const TOLERANCE: f64 = 0.3;
 
+/// The number of points with which a lattice begins.
+const SEED_CELLS: usize = 3;
+
 /// The sine of the least angle between the two directions of a lattice.
 const LEAST_SINE: f64 = 0.5;
 
@@ -22,8 +25,16 @@ type Cells = HashMap<(i32, i32), usize>;
 /// Returns the number of points of the largest lattice if none has the size that is asked for.
 pub(super) fn ordered(points: &[DVec2], corners: [usize; 2]) -> Result<Vec<DVec2>, usize> {
     let mut largest = 0;
+    let mut covered = vec![false; points.len()];
     for seed in 0..points.len() {
+        // From within a lattice that does not fit, the same one would grow.
+        if covered[seed] {
+            continue;
+        }
         let cells = grown(points, seed);
+        if cells.len() > SEED_CELLS {
+            cells.values().for_each(|&point| covered[point] = true);
+        }
         if let Some(places) = placed(points, &cells, corners) {
             return Ok(places);
         }

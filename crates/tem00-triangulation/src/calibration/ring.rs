@@ -24,6 +24,9 @@ const RING: [(i32, i32); 16] = [
 /// How far the ring reaches, in pixels.
 pub(super) const REACH: usize = 5;
 
+/// How many candidates are kept per corner that is expected.
+const MOST_CANDIDATES: usize = 3;
+
 /// The part of the response of a typical corner below which a pixel is none.
 const LEAST_RESPONSE: f64 = 0.2;
 
@@ -43,7 +46,7 @@ pub(super) fn corner_candidates(image: &Grid<f32>, number: usize) -> Vec<DVec2> 
     peaks
         .into_iter()
         .take_while(|peak| peak.0 > LEAST_RESPONSE * typical)
-        .take(8 * number)
+        .take(MOST_CANDIDATES * number)
         .map(|peak| peak.1)
         .collect()
 }

@@ -96,8 +96,8 @@ fn boards(section: &Section<'_>) -> Result<BoardSettings, Problem> {
         Some(value) => {
             let [columns, rows] = value.elements("two numbers of inner corners, such as [9, 6]")?;
             [
-                number(columns.integer(3..=200)?),
-                number(rows.integer(3..=200)?),
+                number(columns.integer(3..=50)?),
+                number(rows.integer(3..=50)?),
             ]
         }
         None => default.corners,

@@ -57,7 +57,7 @@ fn sensor() -> Sensor {
 
 #[test]
 fn rendered_corners_are_found_where_they_are_projected() {
-    let plan = plan(6);
+    let plan = plan(2);
     let camera = scene().camera;
     let cancel = AtomicBool::new(false);
     let mut sum = 0.0;
@@ -67,19 +67,21 @@ fn rendered_corners_are_found_where_they_are_projected() {
         for (found, corner) in found.iter().zip(plan.board().points()) {
             let expected = camera.project(pose.point(corner)).unwrap();
             let distance = found.distance(expected);
-            // Sampling noise of 16 samples: an edge pixel scatters by 1/8 of the contrast, 0.08 pixel per
-            // corner of the four edges of some 3 pixels each.
-            assert!(distance < 0.15, "board {i}: {found} instead of {expected}");
             sum += distance * distance;
+            // Four deviations per axis.
+            assert!(distance < 0.15, "board {i}: {found} instead of {expected}");
         }
     }
-    let rms = (sum / (6.0 * 35.0)).sqrt();
+    // Sampling noise: the pixels on the edges scatter by √(1/6 / 16) of the contrast. By a saddle of the
+    // curvature 1 / (π σ²) a place scatters by its square times √π / (8 σ): 0.025 pixel per axis for a
+    // smoothing of 3.5 pixels.
+    let rms = (sum / (2.0 * 35.0)).sqrt();
     assert!(rms < 0.05, "{rms}");
 }
 
 #[test]
 fn rendered_boards_give_the_scene_back() {
-    let plan = plan(8);
+    let plan = plan(6);
     let detector = LineDetector::new(DetectorSettings {
         window: 15,
         ..DetectorSettings::default()
@@ -108,8 +110,8 @@ fn rendered_boards_give_the_scene_back() {
             error < 4.0 * uncertainty,
             "{pixel}: {error:e}, {uncertainty:e} m"
         );
-        // A pixel is 1 mm in height; a calibration knows it to a tenth.
-        assert!(uncertainty < 1e-4, "{uncertainty:e} m");
+        // A pixel is 1 mm in height; six boards know it to a fifth.
+        assert!(uncertainty < 2e-4, "{uncertainty:e} m");
     }
 }
 

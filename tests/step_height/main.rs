@@ -3,60 +3,35 @@
 
 #![expect(clippy::expect_used, reason = "a test ends where something fails")]
 
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
+#[path = "../../examples/step/mod.rs"]
+mod step_artefact;
 
-use tem00::tracer::{Formulas, SpeckleModel, SpecklePlan};
+use step_artefact::{PLATES, STEP, measure, measured_frame, prepare, scene, step};
+use tem00::tracer::Trajectory;
 use tem00::triangulation::{
-    FrameCorrelation, MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, mean_point,
+    Averaging, DVec3, MeasuredFrame, MeasuredPoint, MeasurementScene, Scan, SpeckleCorrelation,
 };
 
-/// The height of the step, in metres.
-const STEP: f64 = 1e-3;
-
-/// The columns of the lower and of the upper plate: as many, clear of the edge by a window's worth.
-const PLATES: [core::ops::Range<usize>; 2] = [4..40, 56..92];
-
-fn scene() -> MeasurementScene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/step_height/step.toml");
-    MeasurementScene::read(&path).expect("the scene is one").0
+/// The scene, with both plates moving by so many metres per frame.
+fn moving(by: DVec3, frames: u32) -> MeasurementScene {
+    let mut scene = scene();
+    scene.scene.render.frames = frames;
+    for surface in &mut scene.scene.surfaces {
+        surface.trajectory = Trajectory::steady(by).expect("a motion");
+    }
+    scene
 }
 
-/// Measures the first frame of a scene with its own seed.
-fn measure(scene: &MeasurementScene) -> (Measurement, MeasuredFrame) {
-    let plan = SpecklePlan::new(&scene.scene, Formulas::Derived, scene.scene.render.seed);
-    let plan = plan.expect("the patterns fit");
-    let speckle = SpeckleModel::generate(&scene.scene, &plan).expect("the patterns fit");
-    let measurement = Measurement::new(scene.clone()).expect("the scene can be measured");
-    let frame = measurement.measure(Some(&speckle), 0, |_| (), &AtomicBool::new(false));
-    let frame = frame.expect("the frame is rendered");
-    (measurement, frame)
+/// How far a point lies above its plate, in metres.
+fn height_error(point: &MeasuredPoint) -> f64 {
+    let plate = if point.seen.pixel.x < 48.0 { 0.0 } else { STEP };
+    point.position.z - plate
 }
 
-/// The mean over the columns of a plate.
-fn plate(
-    (measurement, frame): &(Measurement, MeasuredFrame),
-    columns: &core::ops::Range<usize>,
-) -> MeasuredPoint {
-    let correlation: FrameCorrelation = measurement.frame_correlation(frame, 1);
-    let points: Vec<_> = frame
-        .points
-        .iter()
-        .filter(|point| point.is_valid() && columns.contains(&point.seen.column))
-        .map(|point| (frame.frame, point))
-        .collect();
-    mean_point(&points, &correlation).expect("the line crosses the plate")
-}
-
-/// The height of the step and its standard uncertainty, in metres.
-fn step(measured: &(Measurement, MeasuredFrame)) -> [f64; 2] {
-    let [lower, upper] = PLATES.map(|columns| plate(measured, &columns));
-    let up = measured.0.settings().height;
-    // Plates far apart share no speckle.
-    let uncertainty = lower
-        .uncertainty_along(up)
-        .hypot(upper.uncertainty_along(up));
-    [(upper.position - lower.position).dot(up), uncertainty]
+/// Whether a column lies on a plate, clear of the edge.
+fn is_clear(point: &MeasuredPoint) -> bool {
+    let on_plate = |plate: &core::ops::Range<usize>| plate.contains(&point.seen.column);
+    point.is_valid() && PLATES.iter().any(on_plate)
 }
 
 /// Of 60 correct 95 % intervals fewer than 51 hold the height with a probability of 7e-4.
@@ -82,4 +57,76 @@ fn a_step_comes_back_within_its_uncertainty() {
         MEAN_SQUARES.contains(&mean_square),
         "{mean_square}: {scores:.2?}"
     );
+}
+
+/// With 160 degrees of freedom χ²/160 leaves this range with a probability of 1e-4.
+const MEAN_SQUARES_OF_A_SCAN: core::ops::Range<f64> = 0.62..1.50;
+
+#[test]
+fn a_part_that_moves_and_rises_keeps_its_heights() {
+    // The plates rise by a fifth of the step in all; their own heights must not.
+    let mut scene = moving(DVec3::new(0.0, 1e-4, 1e-5), 21);
+    scene.scan.average = Averaging {
+        frames: 3,
+        columns: 3,
+    };
+    let prepared = prepare(&scene);
+    let mut scan = Scan::new(&prepared.0);
+    for frame in 0..21 {
+        scan.add(measured_frame(&prepared, frame));
+    }
+    let part = scan.finish();
+    assert_eq!(part.profiles().len(), 7, "three frames to a profile");
+    let independent = part.effective_frames();
+    // Speckle that has moved by a good part of the width of the line moves it the other way.
+    assert!((1.0..4.0).contains(&independent), "{independent}");
+
+    let points = part.profiles().iter().flatten().filter(|p| is_clear(p));
+    let squares: Vec<f64> = points
+        .map(|point| (height_error(point) / point.uncertainty_along(DVec3::Z)).powi(2))
+        .collect();
+    let mean_square = squares.iter().sum::<f64>() / squares.len() as f64;
+    // 7 · 22 blocks of columns, hardly correlated.
+    assert!(squares.len() >= 150, "{}", squares.len());
+    assert!(
+        MEAN_SQUARES_OF_A_SCAN.contains(&mean_square),
+        "{mean_square}"
+    );
+}
+
+#[test]
+fn errors_of_consecutive_frames_correlate_as_the_law_of_speckle_motion_says() {
+    // 50 µm are 1.1 pixels across the line, of a width of 6.8, and a tenth of that to the side. Speckle
+    // that has moved by half of that width moves the line the other way.
+    let scene = moving(DVec3::new(5e-6, 5e-5, 0.0), 24);
+    let prepared = prepare(&scene);
+    let frames: Vec<MeasuredFrame> = (0..24).map(|f| measured_frame(&prepared, f)).collect();
+    let errors = |frame: &MeasuredFrame| {
+        let mut errors = [f64::NAN; 96];
+        for point in frame.points.iter().filter(|p| is_clear(p)) {
+            errors[point.seen.column] = height_error(point);
+        }
+        errors
+    };
+    let correlation = prepared.0.frame_correlation(&frames[0], 4);
+    for later in [1_u32, 3] {
+        let pairs: Vec<[f64; 2]> = frames
+            .windows(later as usize + 1)
+            .flat_map(|window| {
+                errors(&window[0])
+                    .into_iter()
+                    .zip(errors(&window[later as usize]))
+            })
+            .map(|(a, b)| [a, b])
+            .filter(|pair| pair.iter().all(|error| error.is_finite()))
+            .collect();
+        let mean = |of: &dyn Fn(&[f64; 2]) -> f64| pairs.iter().map(of).sum::<f64>();
+        let found = mean(&|[a, b]| a * b) / mean(&|[a, b]| 0.5 * (a * a + b * b));
+        let expected = correlation.between(0, later);
+        println!("{later}: {found} {expected} {}", pairs.len());
+        assert!(
+            (found - expected).abs() < 0.12,
+            "{later}: {found} {expected}"
+        );
+    }
 }

@@ -1,5 +1,6 @@
 //! `tem00 triangulate`: from a scene file to a measured part.
 
+mod calibration;
 mod files;
 mod page;
 mod record;
@@ -44,8 +45,11 @@ const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface
 pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Failure> {
     let (scene, _) = MeasurementScene::read(&args.scene)
         .map_err(|error| Failure::file(&args.scene, &error, HELP))?;
-    let job = Job::new(args, scene)?;
+    let settings = scene.calibration.clone();
+    let mut job = Job::new(args, scene)?;
     let pool = output::thread_pool(args.threads)?;
+    job.measurement =
+        pool.install(|| calibration::calibrated(job.measurement.clone(), &settings, &args.scene))?;
     let measured = pool.install(|| job.measure())?;
     job.write(&measured)?;
     job.print(&measured, out)

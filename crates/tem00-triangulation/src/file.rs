@@ -20,4 +20,6 @@ pub use self::setup::{parse_setup, parse_setup_with, read_setup, read_setup_with
 #[cfg(test)]
 mod documentation;
 #[cfg(test)]
+mod scene_page;
+#[cfg(test)]
 mod tests;

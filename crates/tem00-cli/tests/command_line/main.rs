@@ -9,6 +9,7 @@ mod lines;
 mod patterns;
 mod render;
 mod sequence;
+mod triangulate;
 mod tutorial;
 
 use std::{
@@ -99,7 +100,7 @@ fn help_teaches_by_examples() {
         text(&output.stdout).contains("tem00 pattern -o speckle.png"),
         "examples are shown"
     );
-    for command in ["render", "pattern", "stats"] {
+    for command in ["render", "pattern", "stats", "triangulate"] {
         let output = run(folder.path(), &format!("{command} --help"));
         assert_code(&output, 0);
         assert!(

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use tem00_tracer::document::{Document, LENGTH, Problem, Section};
 
 /// The keys of the section `[calibration]`.
-const KEYS: &[&str] = &[
+pub(super) const KEYS: &[&str] = &[
     "method",
     "uncertainty",
     "corners",

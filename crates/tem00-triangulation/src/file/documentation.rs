@@ -21,7 +21,7 @@ fn in_backticks(text: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Returns the keys that the first cells of a section's tables name; quoted ones are values.
-fn documented<'a>(page: &'a str, heading: &str) -> BTreeSet<&'a str> {
+pub(super) fn documented<'a>(page: &'a str, heading: &str) -> BTreeSet<&'a str> {
     let rows = section(page, heading).lines();
     let cells = rows.filter_map(|line| line.strip_prefix("| ")?.split(" |").next());
     let keys = cells.flat_map(in_backticks);

@@ -3,8 +3,8 @@ use tem00_tracer::document::{Document, LENGTH, Problem, Section, Value};
 
 use crate::{Averaging, RawFormat, ScanSettings};
 
-const KEYS: &[&str] = &["surface", "height", "pitch", "average", "raw"];
-const AVERAGE_KEYS: &[&str] = &["frames", "columns"];
+pub(super) const KEYS: &[&str] = &["surface", "height", "pitch", "average", "raw"];
+pub(super) const AVERAGE_KEYS: &[&str] = &["frames", "columns"];
 
 const RAW_FORMATS: &[(&str, RawFormat)] = &[("png", RawFormat::Png), ("tiff", RawFormat::Tiff)];
 

@@ -159,7 +159,7 @@ fn pixels_within_reach(size: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use tem00_statistics::pixel_contrast;
+    use tem00_statistics::{PixelAutocovariance, PixelColumn, pixel_contrast};
 
     use super::*;
 
@@ -179,6 +179,30 @@ mod tests {
             // Panels of half a speckle leave 10⁻⁷ to four nodes.
             let error = table.at([0.0; 2]) - contrast * contrast;
             assert!(error.abs() < 1e-6, "h = {size}: {error:e}");
+        }
+    }
+
+    #[test]
+    fn rows_and_averaged_columns_have_the_covariances_of_the_spectrum() {
+        for (size, side) in [(1.15, 1.0), (2.5, 0.8)] {
+            let table = SpeckleTable::new(&speckle(size, side), [0.0; 2]);
+            let of_columns = |averaged_columns| {
+                PixelAutocovariance::new(&PixelColumn {
+                    size: [side / size; 2],
+                    pitch: [1.0 / size; 2],
+                    pixels: 6,
+                    averaged_columns,
+                })
+                .unwrap()
+            };
+            let (one, three) = (of_columns(1), of_columns(3));
+            for lag in 0..6 {
+                let at = |column: f64| table.at([column, lag as f64]);
+                let mean = (3.0 * at(0.0) + 4.0 * at(1.0) + 2.0 * at(2.0)) / 9.0;
+                // Panels of half a speckle leave 10⁻⁷ to four nodes.
+                let errors = [at(0.0) - one.covariance(lag), mean - three.covariance(lag)];
+                assert!(errors.iter().all(|e| e.abs() < 1e-6), "{lag}: {errors:?}");
+            }
         }
     }
 

@@ -1,0 +1,187 @@
+//! `tem00 triangulate`.
+
+use std::{fs, path::Path};
+
+use serde_json::Value;
+
+use super::{assert_code, files, folder, message, run, text};
+
+/// Two plates, a millimetre apart, that move under a line in four frames.
+const SCAN: &str = r#"
+[camera]
+position = [0, "-150 mm", "259.8 mm"]
+look_at = [0, 0, "0.5 mm"]
+up = [0, 0, 1]
+f_number = 5.6
+resolution = [48, 56]
+[[laser]]
+wavelength = "650 nm"
+power = "5 mW"
+position = [0, 0, "300 mm"]
+line_direction = [1, 0, 0]
+line = { fan_angle = "20 deg", thickness = "0.3 mm", profile = "uniform" }
+[[surface]]
+displacement_per_frame = [0, "0.2 mm", 0]
+rectangle = { centre = ["-10 mm", 0, 0], size = ["20 mm", "20 mm"] }
+lambertian.reflectance = 0.5
+[[surface]]
+displacement_per_frame = [0, "0.2 mm", 0]
+rectangle = { centre = ["10 mm", 0, "1 mm"], size = ["20 mm", "20 mm"] }
+lambertian.reflectance = 0.5
+[sensor]
+quantum_efficiency = 0.6
+exposure = "0.1 ms"
+[detector]
+window = 25
+[render]
+samples_per_pixel = 4
+frames = 4
+"#;
+
+fn written(scene: &str) -> tempfile::TempDir {
+    let folder = folder();
+    fs::write(folder.path().join("a.toml"), scene).expect("the scene is written");
+    folder
+}
+
+fn record(folder: &Path) -> Value {
+    let text = fs::read_to_string(folder.join("measurement.json")).expect("the record is there");
+    serde_json::from_str(&text).expect("the record is JSON")
+}
+
+#[test]
+fn a_scan_leaves_all_its_files() {
+    let folder = written(SCAN);
+    let output = run(folder.path(), "triangulate a.toml");
+    assert_code(&output, 0);
+    let table = text(&output.stdout);
+    for part in ["speckle", "calibration", "combined", "out/a/report.html"] {
+        assert!(table.contains(part), "{part}: {table}");
+    }
+    let results = folder.path().join("out/a");
+    let found = files(&results);
+    for name in [
+        "height.npy",
+        "height.png",
+        "height_map.svg",
+        "height_uncertainty.npy",
+        "measurement.json",
+        "points.ply",
+        "profile.png",
+        "profile_0003.csv",
+        "raw_0003.png",
+        "report.html",
+        "uncertainty_map.png",
+    ] {
+        assert!(found.iter().any(|file| file == name), "{name}: {found:?}");
+    }
+    let record = record(&results);
+    assert_eq!(record["frames"].as_array().map(Vec::len), Some(4));
+    let range = record["height_map"]["range"].as_array().expect("heights");
+    let height = |i: usize| range[i].as_f64().expect("a number");
+    // One millimetre, and the noise of single points: 35 µm of standard deviation.
+    assert!(
+        height(0).abs() < 2e-4 && (height(1) - 1e-3).abs() < 2e-4,
+        "{range:?}"
+    );
+}
+
+#[test]
+fn profiles_are_tables_with_uncertainties() {
+    let folder = written(SCAN);
+    let output = run(folder.path(), "triangulate a.toml --frames 1 -o r --spp 8");
+    assert_code(&output, 0);
+    let path = folder.path().join("r/profile_0000.csv");
+    let table = fs::read_to_string(path).expect("the profile is there");
+    let mut lines = table.lines();
+    let headings: Vec<&str> = lines.next().expect("headings").split(',').collect();
+    let column = |name: &str| headings.iter().position(|heading| *heading == name);
+    let (height, u) = (column("height_m"), column("u_height_m"));
+    let (height, u) = (height.expect("heights"), u.expect("uncertainties"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    assert!(rows.len() >= 40, "{} of 48 columns", rows.len());
+    for row in rows {
+        assert_eq!(row.len(), headings.len(), "{row:?}");
+        let number = |index: usize| row[index].parse::<f64>().expect("a number");
+        assert!((1e-5..1e-4).contains(&number(u)), "{row:?}");
+        assert!((-2e-4..1.2e-3).contains(&number(height)), "{row:?}");
+    }
+    let found = files(&folder.path().join("r"));
+    assert!(
+        !found.iter().any(|name| name.starts_with("height")),
+        "one profile is no map"
+    );
+}
+
+#[test]
+fn results_do_not_depend_on_the_threads_but_on_the_seed() {
+    let folder = written(SCAN);
+    let cloud = |line: &str, out: &str| {
+        assert_code(
+            &run(
+                folder.path(),
+                &format!("triangulate a.toml --frames 0..1 {line} -o {out}"),
+            ),
+            0,
+        );
+        fs::read(folder.path().join(out).join("points.ply")).expect("the cloud is there")
+    };
+    let one = cloud("--threads 1", "one");
+    assert_eq!(one, cloud("--threads 3", "three"));
+    assert_ne!(one, cloud("--seed 5", "other"));
+    assert_ne!(one, cloud("--no-speckle", "quiet"));
+}
+
+#[test]
+fn scenes_that_cannot_be_measured_are_refused_in_words() {
+    for (good, bad, part) in [
+        ("[sensor]", "[sensr]", "did you mean `sensor`?"),
+        ("quantum_efficiency = 0.6", "", "quantum_efficiency"),
+        ("window = 25", "window = 24", "window"),
+        (
+            "line_direction = [1, 0, 0]",
+            "line_direction = [0, 1, 0]",
+            "left to right",
+        ),
+        (
+            "[render]",
+            "[scan]\nsurface = \"lid\"\n[render]",
+            "\"surface 1\", \"surface 2\"",
+        ),
+        ("[render]", "[scan]\npitch = \"1 nm\"\n[render]", "pitch"),
+        ("\"5 mW\"", "\"1e-9 mW\"", "no valid point"),
+        ("frames = 4", "frames = 4\ncrop = [0, 0, 9, 9]", "`crop`"),
+    ] {
+        let folder = written(&SCAN.replace(good, bad));
+        let output = run(folder.path(), "triangulate a.toml");
+        assert_code(&output, 2);
+        assert!(
+            message(&output).contains(part),
+            "{bad}: {}",
+            message(&output)
+        );
+    }
+    let folder = written(SCAN);
+    let output = run(folder.path(), "triangulate a.toml --frames 2..9");
+    assert_code(&output, 2);
+    assert!(message(&output).contains("0..3"), "{}", message(&output));
+}
+
+#[test]
+fn height_maps_may_be_tiff_and_square() {
+    let scan = "[scan]\npitch = \"0.3 mm\"\nraw = \"tiff\"\naverage = { frames = 2, columns = 2 }\n[render]";
+    let folder = written(&SCAN.replace("[render]", scan));
+    assert_code(&run(folder.path(), "triangulate a.toml"), 0);
+    let results = folder.path().join("out/a");
+    let found = files(&results);
+    for name in ["height.tiff", "raw_0000.tiff", "profile_0001.csv"] {
+        assert!(found.iter().any(|file| file == name), "{name}: {found:?}");
+    }
+    let record = record(&results);
+    assert_eq!(record["profiles"], 2);
+    assert_eq!(record["height_map"]["pitch"], 3e-4);
+    assert!(
+        record["average"]["effective_frames"].as_f64() > Some(1.0),
+        "{record}"
+    );
+}

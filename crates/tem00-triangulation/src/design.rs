@@ -88,7 +88,7 @@ pub struct DesignSearch {
 
 impl DesignSearch {
     /// The most set-ups that any search may try.
-    pub const MOST_SETUPS: usize = 1_000_000;
+    pub const MOST_SETUPS: usize = 200_000;
 
     /// Creates a search.
     ///
@@ -231,6 +231,6 @@ fn too_many(sweeps: &[Sweep]) -> TriangulationError {
             .iter()
             .map(|sweep| sweep.values().len() as f64)
             .product(),
-        allowed: "at least the number of combinations, and at most 1000000; try fewer steps",
+        allowed: "at least the number of combinations, and at most 200000; try fewer steps",
     }
 }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use tem00_triangulation::{Candidate, DesignFigure, DesignFigures};
+use tem00_triangulation::{Candidate, DesignFigure, DesignFigures, Exclusion};
 
 use super::{Design, units};
 use crate::{failure::Failure, table::write_columns};
@@ -64,21 +64,39 @@ pub(super) fn verdict(design: &Design<'_>) -> String {
     }
 }
 
-/// Returns what keeps set-ups out: a line for each constraint that excludes any.
+/// Returns what keeps set-ups out: a line for those that are not possible, and one for each constraint
+/// that excludes any.
 pub(super) fn hindrances(design: &Design<'_>) -> Vec<String> {
-    let exclusions = design.outcome.exclusions();
-    let some = exclusions.iter().filter(|exclusion| exclusion.excluded > 0);
-    some.map(|exclusion| {
-        let figure = exclusion.constraint.figure;
-        let bound = units::of_figure(figure).quantity(exclusion.constraint.bound);
-        let sign = if figure.is_gain() { "≥" } else { "≤" };
-        let name = units::words(figure.name());
-        format!(
-            "{name} {sign} {bound} excludes {}, {} of them alone",
-            exclusion.excluded, exclusion.alone
-        )
-    })
-    .collect()
+    let exclusions = design.outcome.exclusions().into_iter();
+    let some = exclusions.filter(|exclusion| exclusion.excluded > 0);
+    impossible(design)
+        .into_iter()
+        .chain(some.map(line))
+        .collect()
+}
+
+fn line(exclusion: Exclusion) -> String {
+    let figure = exclusion.constraint.figure;
+    let bound = units::of_figure(figure).quantity(exclusion.constraint.bound);
+    let sign = if figure.is_gain() { "≥" } else { "≤" };
+    let name = units::words(figure.name());
+    format!(
+        "{name} {sign} {bound} excludes {}, {} of them alone",
+        exclusion.excluded, exclusion.alone
+    )
+}
+
+/// Returns how many set-ups are not possible, with the reason of the first.
+fn impossible(design: &Design<'_>) -> Option<String> {
+    let candidates = design.outcome.candidates().iter();
+    let mut why =
+        candidates.filter_map(|candidate| Some((candidate, candidate.figures.as_ref().err()?)));
+    let (first, error) = why.next()?;
+    let count = 1 + why.count();
+    Some(format!(
+        "{count} not possible; the first, number {}: {error}",
+        first.index
+    ))
 }
 
 /// Returns the headings of a listing.

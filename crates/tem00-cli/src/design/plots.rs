@@ -11,6 +11,9 @@ use super::{
 };
 use crate::plot::{Bars, Chart, Drawing};
 
+/// The most dots in a diagram.
+const MOST_DOTS: usize = 4_000;
+
 const FAINT: &str = "#b8bec6";
 const ALLOWED: &str = "#1f5fa8";
 const FRONT: &str = "#d2701a";
@@ -39,22 +42,18 @@ fn trade_off(design: &Design<'_>) -> Named {
     let (objective, depth) = (design.objective(), DesignFigure::DepthOfField);
     let [x, y] = [depth, objective].map(units::of_figure);
     let place = |figures: &DesignFigures| (x.of(depth.of(figures)), y.of(objective.of(figures)));
-    let candidates = design.outcome.candidates().iter();
-    let excluded = candidates
-        .clone()
-        .filter(|candidate| !candidate.broken.is_empty());
+    let dots = |allowed: bool| {
+        let candidates = design.outcome.candidates().iter();
+        let kind = candidates.filter(move |candidate| candidate.broken.is_empty() == allowed);
+        let thinned = kind.filter(|candidate| is_drawn(candidate.index, design.search.count()));
+        thinned.filter_map(Candidate::possible).map(place)
+    };
     let front = design.outcome.front(depth);
     let labels = [x.label(depth.name()), y.label(objective.name())];
     let chart = Chart::new("What depth of field costs", [&labels[0], &labels[1]])
-        .dots(
-            "break a constraint",
-            excluded.filter_map(Candidate::possible).map(place),
-        )
+        .dots("break a constraint", dots(false))
         .coloured(FAINT)
-        .dots(
-            "keep every constraint",
-            candidates.filter_map(Candidate::allowed).map(place),
-        )
+        .dots("keep every constraint", dots(true))
         .coloured(ALLOWED)
         .line(
             "front",
@@ -66,11 +65,20 @@ fn trade_off(design: &Design<'_>) -> Named {
         .coloured(FRONT);
     Named {
         name: "trade_off".into(),
-        caption: "Every set-up that is possible; on the front, more depth of field costs more \
-                  uncertainty."
-            .into(),
+        caption:
+            "The set-ups that are possible, 4000 of them at most; on the front, more depth of \
+                  field costs more uncertainty."
+                .into(),
         drawing: chart.log_x().log_y().draw(),
     }
+}
+
+/// Returns whether a set-up is among the dots of a diagram: all are if they are few, and of many a part
+/// that is even over all parameters, which multiples of the golden ratio are.
+#[expect(clippy::cast_precision_loss, reason = "far below 2⁵²")]
+fn is_drawn(index: usize, count: usize) -> bool {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    (GOLDEN * index as f64).fract() * count as f64 <= MOST_DOTS as f64
 }
 
 /// The uncertainty over one parameter, by source, the others as in the set-up that is shown.
@@ -188,5 +196,26 @@ fn sensitivity(design: &Design<'_>, near: &[Neighbours]) -> Named {
              parameter alone; without a bar, that is not possible or nothing changes."
         ),
         drawing: bars.draw(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_set_ups_are_all_drawn_and_of_many_an_even_part() {
+        assert!(
+            (0..MOST_DOTS).all(|index| is_drawn(index, MOST_DOTS)),
+            "few"
+        );
+        let count = 200_000;
+        // Of each tenth, as a parameter of ten values has them, a tenth: to a few by the discrepancy
+        // of the golden ratio, 1 + log₂ of the number.
+        for remainder in 0..10 {
+            let tenth = (0..count).filter(|index| index % 10 == remainder);
+            let drawn = tenth.filter(|&index| is_drawn(index, count)).count();
+            assert!(drawn.abs_diff(MOST_DOTS / 10) <= 18, "{remainder}: {drawn}");
+        }
     }
 }

@@ -85,7 +85,7 @@ fn a_search_writes_its_files_and_a_winner_that_reads_back() {
     assert_eq!(best.len(), 2, "{found}");
     let uncertainty = best[0]["figures"]["uncertainty"].as_f64();
     assert_eq!(uncertainty, Some(budget.combined()), "{found}");
-    assert_code(&run(folder.path(), "budget out/a/best.toml"), 0);
+    assert_code(&run(folder.path(), "budget out/a/best.toml --trials 20"), 0);
 
     let csv = fs::read_to_string(out.join("design.csv")).expect("text");
     assert_eq!(csv.lines().count(), 7, "a line of headings and six set-ups");
@@ -170,6 +170,15 @@ fn bad_searches_are_one_message_and_no_file() {
         assert!(output.stdout.is_empty(), "{line}: nothing is data");
         assert_eq!(files(folder.path()), before, "{line}");
     }
+    let some = plain.to_owned() + "\n[design.vary]\ndistance = [\"20 mm\", \"300 mm\"]\n";
+    write("some.toml", &some);
+    let output = run(folder.path(), "design some.toml");
+    assert_code(&output, 0);
+    let told = text(&output.stdout);
+    assert!(
+        told.contains("1 not possible; the first, number 0: distance"),
+        "{told}"
+    );
     let output = run(folder.path(), "design none.toml");
     assert_code(&output, 2);
     let told = message(&output);

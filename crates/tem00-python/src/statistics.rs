@@ -5,6 +5,7 @@ mod hypotheses;
 mod images;
 mod joint;
 mod laws;
+mod lines;
 mod objective;
 mod phasors;
 mod rounded;
@@ -37,6 +38,10 @@ pub(crate) mod statistics {
         laws::{
             CoherentBackground, GammaIntensity, PartiallyPolarised, WeightedSum,
             exponential_cumulative, exponential_density,
+        },
+        lines::{
+            disc_spot_centroid_deviation, gaussian_spot_centroid_deviation,
+            imaged_line_centroid_deviation, line_centroid_deviation, speckle_length,
         },
         objective::{LitArea, ObjectiveSpeckle},
         phasors::{PhasorSum, contrast_of_phasor_sum, moment_of_phasor_sum},

@@ -158,6 +158,29 @@ def test_the_contrast_of_pixels_is_a_double_integral(size: tuple[float, float]) 
         assert abs(st.pixel_contrast(size[0]) - contrast) < 1e-8
 
 
+@pytest.mark.parametrize("row_height", [0.0, 0.5, 3.0])
+def test_the_noise_of_lines_is_an_integral(row_height: float) -> None:
+    def spectrum(f: float) -> float:
+        return float(8 / np.pi * overlap(f) * np.sinc(row_height * f) ** 2)
+
+    length = integrate.quad(spectrum, 0, 1, limit=200)[0]
+    # The nested quadrature of the overlap is good to 1e-7.
+    assert abs(st.speckle_length(row_height) - length) < 1e-6
+    radii = np.array([0.5, 2.0, 16.0])
+    law = np.sqrt(radii * length / (8 * math.sqrt(np.pi)))
+    np.testing.assert_allclose(st.line_centroid_deviation(radii, row_height), law, rtol=1e-6)
+    # What a lens images joins the law as the cube of the width: 0.9 % are missing at 1.
+    imaged = st.imaged_line_centroid_deviation(radii, row_height) / law
+    np.testing.assert_allclose(imaged[1:], 1.0, atol=0.002)
+    assert 0.9 < imaged[0] < 0.96
+
+
+def test_wide_spots_scatter_by_the_pupil_alone() -> None:
+    # Next are h/w of a Gaussian and ln(a)/a of a disc.
+    assert abs(st.gaussian_spot_centroid_deviation(1e4) - 1 / (np.pi * math.sqrt(2))) < 1e-4
+    assert abs(st.disc_spot_centroid_deviation(1e5) - 1 / np.pi) < 1e-4
+
+
 @pytest.mark.parametrize("amount", [0.3, 1.0, 2.5])
 def test_the_contrast_of_exposures_and_filters_is_an_integral(amount: float) -> None:
     def exposure(gamma: Callable[[float], float]) -> float:

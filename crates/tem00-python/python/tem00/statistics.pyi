@@ -45,11 +45,15 @@ __all__ = [
     "contrast_of_phasor_sum",
     "contrast_squared_spread",
     "decorrelated_samples",
+    "disc_spot_centroid_deviation",
     "exponential_cumulative",
     "exponential_density",
     "gaussian_filter_contrast",
+    "gaussian_spot_centroid_deviation",
+    "imaged_line_centroid_deviation",
     "kolmogorov_smirnov",
     "level_crossings",
+    "line_centroid_deviation",
     "local_contrast",
     "moment_of_phasor_sum",
     "path_spread_of_reflection",
@@ -60,6 +64,7 @@ __all__ = [
     "radial_average",
     "rectangular_pixel_contrast",
     "size_before_pixels",
+    "speckle_length",
     "t_test_mean",
     "translation_contrast",
 ]
@@ -115,6 +120,26 @@ def level_crossings(level: RealArray) -> FloatArray: ...
 def area_fraction_above(level: float) -> float: ...
 @overload
 def area_fraction_above(level: RealArray) -> FloatArray: ...
+@overload
+def speckle_length(row_height: float) -> float: ...
+@overload
+def speckle_length(row_height: RealArray) -> FloatArray: ...
+@overload
+def gaussian_spot_centroid_deviation(radius: float) -> float: ...
+@overload
+def gaussian_spot_centroid_deviation(radius: RealArray) -> FloatArray: ...
+@overload
+def disc_spot_centroid_deviation(radius: float) -> float: ...
+@overload
+def disc_spot_centroid_deviation(radius: RealArray) -> FloatArray: ...
+@overload
+def line_centroid_deviation(radius: float, row_height: float) -> float: ...
+@overload
+def line_centroid_deviation(radius: Numbers, row_height: Numbers) -> FloatArray: ...
+@overload
+def imaged_line_centroid_deviation(radius: float, row_height: float) -> float: ...
+@overload
+def imaged_line_centroid_deviation(radius: Numbers, row_height: Numbers) -> FloatArray: ...
 @overload
 def rectangular_pixel_contrast(pixel_size: tuple[float, float]) -> float: ...
 @overload

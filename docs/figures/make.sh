@@ -21,3 +21,13 @@ for example in beam_caustic correlated_slices defocus focus_by_lens interpolatio
 done
 cargo run --locked --release --example decorrelation_curves
 cp out/decorrelation_both.svg docs/figures/
+# What the tutorial shows.
+tem00() { cargo run --locked --release -- "$@"; }
+tem00 design setups/design.toml -o "$work/design"
+cp "$work/design/trade_off.svg" docs/figures/triangulation_trade_off.svg
+tem00 triangulate scenes/triangulation/step_gauge.toml -o "$work/gauge"
+cp "$work/gauge/profile.svg" docs/figures/triangulation_profile.svg
+tem00 lines "$work/gauge/raw_0000.png" --window 21 -o "$work/lines"
+cp "$work/lines/raw_0000_lines.png" docs/figures/triangulation_lines.png
+tem00 triangulate scenes/triangulation/hexagon_nut.toml -o "$work/nut"
+cp "$work/nut/height_map.png" docs/figures/triangulation_nut.png

@@ -14,7 +14,6 @@
 //! - Widths of lines are full widths between the points of 1/e², four standard deviations of a Gaussian.
 //! - Uncertainties are standard uncertainties unless called expanded.
 
-mod calibration;
 mod budget;
 mod calibration;
 mod design;
@@ -29,8 +28,6 @@ mod scan;
 mod sensor;
 mod setup;
 
-pub use calibration::{
-    Calibration, CalibrationCovariance, CalibrationQuality, PARAMETERS, Parameter,
 pub use budget::{
     Budget, BudgetTerm, ErrorDistribution, Evaluation, MonteCarloEstimate, Simulation,
     SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,

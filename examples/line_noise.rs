@@ -10,17 +10,17 @@
 
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 
-mod line_frames;
 #[expect(dead_code, reason = "other programs look at more of the images")]
 mod line_image;
 mod plot;
+mod rendered_lines;
 
 use core::f64::consts::FRAC_1_PI;
 use std::error::Error;
 
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
-use line_frames::LineFrames;
 use line_image::{by_wave_optics, positions};
+use rendered_lines::LineFrames;
 use tem00::statistics::{
     SpeckledLine, imaged_line_centroid_deviation, line_centroid_deviation, speckle_length,
 };

@@ -5,11 +5,11 @@
     reason = "a test stops at what it does not expect"
 )]
 
-#[path = "../../examples/line_frames/mod.rs"]
-mod line_frames;
 #[expect(dead_code, reason = "other programs look at more of the images")]
 #[path = "../../examples/line_image/mod.rs"]
 mod line_image;
+#[path = "../../examples/rendered_lines/mod.rs"]
+mod rendered_lines;
 
 mod patterns;
 mod rendered;

@@ -3,7 +3,7 @@ use tem00::{
     triangulation::{FilterOrder, LineMethod},
 };
 
-use crate::line_frames::LineFrames;
+use crate::rendered_lines::LineFrames;
 
 const LINE: LineFrames = LineFrames {
     thickness: 1e-3,

@@ -2,10 +2,10 @@
 
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
-mod calibrate;
-mod lines;
 mod budget;
+mod calibrate;
 mod design;
+mod lines;
 mod patterns;
 mod render;
 mod sequence;

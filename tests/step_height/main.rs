@@ -123,10 +123,9 @@ fn errors_of_consecutive_frames_correlate_as_the_law_of_speckle_motion_says() {
         let mean = |of: &dyn Fn(&[f64; 2]) -> f64| pairs.iter().map(of).sum::<f64>();
         let found = mean(&|[a, b]| a * b) / mean(&|[a, b]| 0.5 * (a * a + b * b));
         let expected = correlation.between(0, later);
-        println!("{later}: {found} {expected} {}", pairs.len());
-        assert!(
-            (found - expected).abs() < 0.12,
-            "{later}: {found} {expected}"
-        );
+        // Some 1500 pairs, of which neighbours in either direction are correlated, are worth 400: a
+        // standard error of 0.05 at most.
+        let difference = found - expected;
+        assert!(difference.abs() < 0.16, "{later}: {found}, {expected}");
     }
 }

@@ -81,10 +81,11 @@ def check_corners(verdict: Verdict, folder: Path) -> tuple[list[Places], list[Pl
         found = by_opencv(folder / f"board_{number:02}.png", expected)
         theirs.append(found)
         projected.append(expected)
-        # Rendered with 16 samples per pixel and in 8 bits, both scatter by some hundredths.
+        # 16 samples per pixel and 8 bits leave some hundredths; the gradients at which OpenCV looks
+        # take their noise from the edges alone, and four times as much.
         verdict.within(f"board {number}: ours, projected / pixel", rms(ours - expected), 0.05)
-        verdict.within(f"board {number}: OpenCV's, projected / pixel", rms(found - expected), 0.1)
-        verdict.within(f"board {number}: ours, OpenCV's / pixel", rms(ours - found), 0.1)
+        verdict.within(f"board {number}: OpenCV's, projected / pixel", rms(found - expected), 0.15)
+        verdict.within(f"board {number}: ours, OpenCV's / pixel", rms(ours - found), 0.15)
     return theirs, projected
 
 

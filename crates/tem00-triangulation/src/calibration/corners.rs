@@ -103,7 +103,11 @@ fn refined(
 ) -> Result<Vec<DVec2>, TriangulationError> {
     let [columns, _] = board.corners();
     let smoothing = |i: usize| {
-        let beside = if i % columns == 0 { i + 1 } else { i - 1 };
+        let beside = if i.is_multiple_of(columns) {
+            i + 1
+        } else {
+            i - 1
+        };
         let above = if i < columns {
             i + columns
         } else {
@@ -210,6 +214,7 @@ mod tests {
     }
 
     /// The means of 8 × 8 points per pixel.
+    #[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]
     fn image(noise: f64, blur: f64) -> Grid<f32> {
         let grey = |point: DVec2| {
             let on_board = on_board(point);

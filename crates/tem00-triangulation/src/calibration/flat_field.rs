@@ -96,6 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]
     fn uneven_light_is_divided_out() {
         let light = |x: f64, y: f64| 100.0 + 0.3 * x - 0.2 * y - 0.002 * x * y;
         let image = Grid::from_fn(120, 100, |x, y| {

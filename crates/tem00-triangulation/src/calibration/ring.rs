@@ -37,7 +37,7 @@ const LEAST_RESPONSE: f64 = 0.2;
 ///
 /// # References
 ///
-/// - S. Bennett and J. Lasenby, *ChESS – Quick and Robust Detection of Chess-board Features*, 2014.
+/// - S. Bennett and J. Lasenby, *`ChESS` – Quick and Robust Detection of Chess-board Features*, 2014.
 pub(super) fn corner_candidates(image: &Grid<f32>, number: usize) -> Vec<DVec2> {
     let responses = Grid::from_fn(image.width(), image.height(), |x, y| response(image, x, y));
     let mut peaks = peaks(&responses);

@@ -79,6 +79,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "rand_core",
             "rand_distr",
             "rayon",
+            "statrs",
         ],
     ),
     (
@@ -91,6 +92,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-triangulation",
         ],
         &[
+            "base64",
             "clap",
             "ctrlc",
             "exr",

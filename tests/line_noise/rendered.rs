@@ -12,7 +12,7 @@ const LINE: LineFrames = LineFrames {
     angle: 0.0,
     samples_per_pixel: 8,
     length: 512,
-    lines: 5,
+    lines: 4,
     seed: 1,
 };
 

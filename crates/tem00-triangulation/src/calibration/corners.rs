@@ -4,9 +4,15 @@ use tem00_numerics::Grid;
 use super::{Checkerboard, flat_field::flattened, lattice::ordered, ring::corner_candidates};
 use crate::TriangulationError;
 
-/// The standard deviation of the Gaussian that smooths a corner, in sides of a square: the next edges are
-/// more than five of them away.
+/// The standard deviation of the Gaussian that smooths a corner at first, in sides of a square: the next
+/// edges are more than five of them away.
 const SMOOTHING: f64 = 0.18;
+
+/// That of the last one. What uneven light and curved edges do to a place grows with its square.
+const LAST_SMOOTHING: f64 = 0.06;
+
+/// The least standard deviation of the last one, in pixels: steps between pixels hardly show in it.
+const LEAST_SMOOTHING: f64 = 2.0;
 
 /// How far its window reaches, in standard deviations.
 const WINDOW: f64 = 4.0;
@@ -27,16 +33,19 @@ const HALVINGS: u32 = 3;
 /// small fraction of a pixel.
 ///
 /// Corners are found by the bright and dark quarters around them, in the image and in coarser ones, and put
-/// in order by their neighbours. Their places are the saddles of the image that a Gaussian smooths over
-/// about a third of a square: by the symmetry of a corner neither blur nor contrast moves them. Uneven light would: it is estimated from
-/// the bright squares and divided out.
+/// in order by their neighbours. Their places are the saddles of the image that a Gaussian smooths, first over
+/// about a third of a square, then over a third of that: by the symmetry of a corner neither blur nor contrast moves
+/// them. Uneven light would: it is estimated from the bright squares and divided out. What is left of it
+/// moves a place, and so does a lens that bends the edges:
 ///
 /// ```text
-/// σ_x = √(π/8) σ_I / ΔI      σ_I: noise of a pixel, ΔI: bright less dark
+/// σ_x = √(π/8) σ_I / ΔI      by noise: σ_I of a pixel, ΔI bright less dark
+/// δ   = π σ² g Ī / ΔI        by light of the relative slope g per pixel, Ī the mean of bright and dark
+/// δ   = 2 σ² k₁ r / d²       by distortion, at the distance r from the axis, d the image distance in pixels
 /// ```
 ///
-/// is the noise of a place per axis, from the slope of the noise and the curvature ΔI / (π σ²) of a smoothed
-/// corner; it does not depend on the smoothing.
+/// The first, per axis, follows from the slope of the noise and the curvature ΔI / (π σ²) of a smoothed
+/// corner; it does not depend on the smoothing σ. The others do, by its square.
 ///
 /// # Validity
 ///
@@ -102,7 +111,7 @@ fn refined(
     places: &[DVec2],
 ) -> Result<Vec<DVec2>, TriangulationError> {
     let [columns, _] = board.corners();
-    let smoothing = |i: usize| {
+    let side = |i: usize| {
         let beside = if i.is_multiple_of(columns) {
             i + 1
         } else {
@@ -113,10 +122,15 @@ fn refined(
         } else {
             i - columns
         };
-        let side = |j: usize| places[i].distance(places[j]);
-        SMOOTHING * side(beside).min(side(above))
+        let to = |j: usize| places[i].distance(places[j]);
+        to(beside).min(to(above))
     };
-    let of_place = |(i, place): (usize, &DVec2)| saddle(image, *place, smoothing(i));
+    let of_place = |(i, place): (usize, &DVec2)| {
+        let side = side(i);
+        let about = saddle(image, *place, SMOOTHING * side)?;
+        let last = (LAST_SMOOTHING * side).max(LEAST_SMOOTHING);
+        saddle(image, about, last.min(SMOOTHING * side))
+    };
     let refined: Vec<_> = places.iter().enumerate().filter_map(of_place).collect();
     if refined.len() < places.len() {
         return Err(TriangulationError::NoBoard {
@@ -188,6 +202,8 @@ fn pixels(image: &Grid<f32>, place: DVec2, sigma: f64) -> impl Iterator<Item = (
 
 #[cfg(test)]
 mod tests {
+    use core::f64::consts::PI;
+
     use rand_chacha::ChaCha8Rng;
     use rand_core::SeedableRng;
     use rand_distr::{Distribution, Normal};
@@ -252,9 +268,10 @@ mod tests {
 
     #[test]
     fn corners_are_found_to_a_fraction_of_a_pixel() {
-        // A pixel's area aliases edges by about 1/16 pixel each; over the ten of a window 0.02.
+        // 8 × 8 points place an edge to a uniform 1/8 pixel, 0.036 of standard deviation; over the 2 √π σ = 7
+        // pixels of a smoothing by 2 pixels 0.014 per axis, and three times that for the worst of 20.
         let error = greatest_error(&image(0.0, 0.0));
-        assert!(error < 0.02, "{error}");
+        assert!(error < 0.042, "{error}");
         // √(π/8) · 2/180 = 0.007 pixel per axis; four and a half of them more for the worst of 20.
         let error = greatest_error(&image(2.0, 0.0));
         assert!(error < 0.05, "{error}");
@@ -265,6 +282,47 @@ mod tests {
         // A box of 5 pixels, a quarter of a square, of 8 × 8 points.
         let error = greatest_error(&image(0.0, 4.0));
         assert!(error < 0.05, "{error}");
+    }
+
+    #[test]
+    fn uneven_light_moves_corners_by_little() {
+        // Too few bright squares to tell the light from.
+        let board = Checkerboard::new([3, 3], 1.0).unwrap();
+        let turned = DVec2::from_angle(0.2);
+        let middle = DVec2::new(52.3, 48.9);
+        let slope = 2e-3;
+        #[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]
+        let image = Grid::from_fn(110, 100, |x, y| {
+            let sums = (0..256_u32).map(|i| {
+                let inside = DVec2::new(f64::from(i % 16), f64::from(i / 16)) / 16.0 + 0.03125;
+                let offset = DVec2::new(x as f64, y as f64) + inside - middle;
+                let squares = (DVec2::from_angle(-0.2).rotate(offset) / 20.0 + 1.0).floor();
+                let inside = squares.cmpge(DVec2::splat(-1.0)).all()
+                    && squares.cmplt(DVec2::splat(3.0)).all();
+                let even = (squares.x + squares.y).rem_euclid(2.0) < 0.5;
+                let grey = if inside && even { 20.0 } else { 200.0 };
+                grey * (1.0 + slope * offset.x)
+            });
+            (sums.sum::<f64>() / 256.0) as f32
+        });
+        let found = find_corners(&image, &board).unwrap();
+        let corners = (0..9_u32).map(|i| DVec2::new(f64::from(i % 3), f64::from(i / 3)) - 1.0);
+        // Where bright and dark are swapped, so is the shift.
+        let shifts = found
+            .iter()
+            .zip(corners)
+            .zip([1.0, -1.0].into_iter().cycle());
+        let mean = shifts
+            .map(|((found, corner), sign)| sign * (*found - middle - 20.0 * turned.rotate(corner)))
+            .sum::<DVec2>()
+            / 9.0;
+        // π σ² g Ī/ΔI with a σ of 2 pixels. Points of 1/16 pixel alias by 0.007 per corner, a third of that
+        // in the mean.
+        let expected = PI * 4.0 * slope * 110.0 / 180.0;
+        assert!(
+            (mean.length() - expected).abs() < 0.005,
+            "{mean}, {expected}"
+        );
     }
 
     #[test]

@@ -19,10 +19,15 @@ pub trait SpeckleCorrelation {
 /// carries the uncertainty of a mean of correlated numbers:
 ///
 /// ```text
-/// speckle          Σ u_a u_b ρ_ab / n²      ρ the correlation of the speckle between columns and frames
+/// speckle          Σ u_a u_b ρ_ab / n²      ρ the correlation of the speckle between columns and frames,
+///                                           between frames at least 0
 /// shot, dark, …    Σ u_a² / n²              new in every column and frame
 /// PRNU, DSNU       the same pixels in every frame: only columns average
 /// ```
+///
+/// A pattern that has moved across the line by about its width moves it the other way: the law has ρ < 0 for
+/// such frames, and a mean over them is better than one over as many independent patterns. Nothing is counted on
+/// that, for it needs a motion known to a part of the line's width.
 ///
 /// With one frame and one column all points are returned as they are.
 pub fn averaged_profile(
@@ -108,7 +113,9 @@ fn mean_noise(members: &[Member<'_>], speckle: &impl SpeckleCorrelation) -> Plac
             } else {
                 -columns
             };
-            let rho = speckle.between(apart, frame_a.abs_diff(*frame_b));
+            let later = frame_a.abs_diff(*frame_b);
+            let law = speckle.between(apart, later);
+            let rho = if later == 0 { law } else { law.max(0.0) };
             sum.speckle += rho * (one.speckle * other.speckle).sqrt();
             if columns == 0 {
                 sum.prnu += (one.prnu * other.prnu).sqrt();

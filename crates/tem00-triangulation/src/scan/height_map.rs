@@ -79,12 +79,14 @@ impl HeightMap {
     ///
     /// # Errors
     ///
-    /// Returns an error if there are no valid points, or if the map would have more than 2²⁴ cells.
+    /// Returns an error if there are no valid points, if the pitch is not positive and finite, or if the map
+    /// would have more than 2²⁴ cells.
     pub fn of_points(
         profiles: &[Vec<MeasuredPoint>],
         [across, along, height]: [DVec3; 3],
         pitch: f64,
     ) -> Result<Self, TriangulationError> {
+        check_pitch(pitch)?;
         let points = || profiles.iter().flatten().filter(|point| point.is_valid());
         let place = |point: &MeasuredPoint| [across, along].map(|axis| point.position.dot(axis));
         let (origin, size) = extent(points().map(place), pitch)?;
@@ -168,6 +170,18 @@ pub struct HeightScale {
     pub offset: f64,
     /// Metres per step.
     pub scale: f64,
+}
+
+/// Makes sure that cells have a size.
+pub(super) fn check_pitch(pitch: f64) -> Result<(), TriangulationError> {
+    if pitch > 0.0 && pitch.is_finite() {
+        return Ok(());
+    }
+    Err(TriangulationError::OutOfRange {
+        parameter: "pitch",
+        value: pitch,
+        allowed: "positive and finite (in metres)",
+    })
 }
 
 /// The lower corner of a grid around all places, in metres, and its number of cells.

@@ -46,8 +46,8 @@ impl Measurement {
     ///
     /// Returns an error if the first laser is missing or draws no line, if the line runs up and down in the
     /// image, if the scene asks for a part of the image, another filter than the pixel or light followed
-    /// from the lasers, if a sensor or a detector is not possible, or if parts move in a way that no scan
-    /// does.
+    /// from the lasers, if a sensor, a detector or the settings of the scan are not possible, or if parts
+    /// move in a way that no scan does.
     pub fn new(measured: MeasurementScene) -> Result<Self, TriangulationError> {
         let MeasurementScene {
             mut scene,
@@ -56,6 +56,7 @@ impl Measurement {
             calibration: settings,
             scan,
         } = measured;
+        scan.check()?;
         let motion = ScanMotion::of_scene(&scene, scan.surface.as_deref())?;
         let laser = line_laser(&scene)?;
         check_direction(&scene.camera, laser)?;

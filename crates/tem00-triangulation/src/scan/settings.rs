@@ -1,5 +1,8 @@
 use glam::DVec3;
 
+use super::height_map::check_pitch;
+use crate::TriangulationError;
+
 /// How the frames of a scene become the map of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScanSettings {
@@ -41,6 +44,30 @@ impl Default for Averaging {
             frames: 1,
             columns: 1,
         }
+    }
+}
+
+impl ScanSettings {
+    /// Checks what does not depend on a scene.
+    pub(super) fn check(&self) -> Result<(), TriangulationError> {
+        let counts = [
+            ("frames", f64::from(self.average.frames)),
+            ("columns", self.average.columns as f64),
+        ];
+        if let Some((parameter, value)) = counts.into_iter().find(|(_, count)| *count < 1.0) {
+            return Err(TriangulationError::OutOfRange {
+                parameter,
+                value,
+                allowed: "at least 1 to average over",
+            });
+        }
+        if !self.height.is_normalized() {
+            return Err(TriangulationError::Direction {
+                parameter: "height",
+                allowed: "a direction of length 1",
+            });
+        }
+        self.pitch.map_or(Ok(()), check_pitch)
     }
 }
 

@@ -194,6 +194,56 @@ fn a_mean_is_as_uncertain_as_its_correlations_say() {
     );
 }
 
+/// Frames whose errors are opposite.
+struct Opposite;
+
+impl SpeckleCorrelation for Opposite {
+    fn between(&self, columns: i64, later: u32) -> f64 {
+        let same = if columns == 0 { 1.0 } else { 0.0 };
+        if later == 0 { same } else { -0.9 * same }
+    }
+}
+
+#[test]
+fn a_mean_is_not_better_than_one_over_independent_frames() {
+    let points = point(0, DVec3::ZERO);
+    let mean = mean_point(&[(0, &points), (1, &points)], &Opposite).unwrap();
+    assert!((mean.noise.speckle - 0.04 / 2.0).abs() < 1e-15);
+    let law = FrameCorrelation::new(vec![vec![1.0], vec![-0.9], vec![0.5]]);
+    // Three frames, of which the first and the last go together: 9 / (3 + 2 · 1/2).
+    assert!((law.effective_frames(3) - 9.0 / 4.0).abs() < 1e-15);
+    assert_eq!(law.effective_frames(2), 2.0, "both count");
+    assert_eq!(law.between(0, 1), -0.9, "the law is told as it is");
+}
+
+#[test]
+fn settings_that_no_scan_has_are_refused() {
+    let refused = |change: fn(&mut ScanSettings)| {
+        let mut measured = measured(SCENE);
+        change(&mut measured.scan);
+        matches!(
+            Measurement::new(measured),
+            Err(TriangulationError::OutOfRange { .. } | TriangulationError::Direction { .. })
+        )
+    };
+    assert!(refused(|scan| scan.average.frames = 0), "no frames");
+    assert!(refused(|scan| scan.average.columns = 0), "no columns");
+    for pitch in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
+        let mut measured = measured(SCENE);
+        measured.scan.pitch = Some(pitch);
+        assert!(Measurement::new(measured).is_err(), "a pitch of {pitch}");
+    }
+    assert!(refused(|scan| scan.height = DVec3::ZERO), "no direction");
+    assert!(
+        refused(|scan| scan.height = DVec3::splat(f64::NAN)),
+        "no numbers"
+    );
+    assert!(
+        refused(|scan| scan.height = 2.0 * DVec3::Z),
+        "a length of 2"
+    );
+}
+
 #[test]
 fn a_map_of_profiles_has_holes_where_nothing_is_valid() {
     let profiles = [
@@ -235,6 +285,10 @@ fn a_map_of_the_part_has_square_cells() {
         "too fine"
     );
     assert!(HeightMap::of_points(&[], axes, 1e-3).is_err(), "nothing");
+    for pitch in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let refused = HeightMap::of_points(&profiles, axes, pitch);
+        assert!(refused.is_err(), "{pitch}");
+    }
 }
 
 #[test]

@@ -68,15 +68,15 @@ fn rendered_corners_are_found_where_they_are_projected() {
             let expected = camera.project(pose.point(corner)).unwrap();
             let distance = found.distance(expected);
             sum += distance * distance;
-            // Four deviations per axis.
-            assert!(distance < 0.15, "board {i}: {found} instead of {expected}");
+            // Four deviations, along both axes.
+            assert!(distance < 0.19, "board {i}: {found} instead of {expected}");
         }
     }
     // Sampling noise: the pixels on the edges scatter by √(1/6 / 16) of the contrast. By a saddle of the
-    // curvature 1 / (π σ²) a place scatters by its square times √π / (8 σ): 0.025 pixel per axis for a
-    // smoothing of 3.5 pixels.
+    // curvature 1 / (π σ²) a place scatters by its square times √π / (8 σ): 0.033 pixel per axis for a
+    // smoothing of 2 pixels. With 140 coordinates the root mean square is 25 % more with 1e-5.
     let rms = (sum / (2.0 * 35.0)).sqrt();
-    assert!(rms < 0.05, "{rms}");
+    assert!(rms < 0.06, "{rms}");
 }
 
 #[test]

@@ -27,11 +27,17 @@ Examples:
   tem00 render scenes/line_with_speckle.toml          render a scene into out/line_with_speckle/
   tem00 pattern -o speckle.png                        write a speckle pattern and check it
   tem00 stats photo.png                               measure the speckle in an image
+  tem00 budget setups/data_sheet.toml                 how well will this set-up measure heights?
+  tem00 design setups/design.toml                     search for a better one
+  tem00 triangulate scenes/triangulation/groove.toml  see a part as such a sensor sees it
+  tem00 lines frame.png                               find the laser line in a camera frame
+  tem00 calibrate photos --corners 9x6 --square \"5 mm\" --pixel-pitch \"3.45 um\"
+                                                      calibrate camera and laser plane
 
 Data goes to standard output, everything else to standard error.
 Exit codes: 0 fine, 1 failure while running, 2 bad input or usage, 130 interrupted.";
 
-/// Laser light with speckle, from scene file to image.
+/// Laser light with speckle, from scene file to image, and from data sheet to height uncertainty.
 #[derive(Debug, Parser)]
 #[command(name = "tem00", version, max_term_width = 100, after_help = EXAMPLES)]
 pub(crate) struct Cli {

@@ -1,5 +1,6 @@
 //! `tem00 lines`.
 
+mod notes;
 pub(crate) mod overlay;
 mod points;
 mod summary;
@@ -44,19 +45,18 @@ pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure>
 
     let progress = Progress::of(args.images.len() as u64, "images");
     let mut names = Names::default();
-    let mut summaries = Vec::new();
+    let (mut summaries, mut notes) = (Vec::new(), Vec::new());
     for path in &args.images {
         interrupt::check()?;
         progress.name(path.display().to_string());
         let target = folder.join(names.unused(path));
-        summaries.push(image(
-            path,
-            &target,
-            (args, settings, calibration.as_ref()),
-        )?);
+        let (summary, remarks) = image(path, &target, (args, settings, calibration.as_ref()))?;
+        summaries.push(summary);
+        notes.extend(remarks);
         progress.advance(1);
     }
     drop(progress);
+    notes::tell(&notes);
     let record = summary::json(&settings, &summaries);
     write_whole(&folder.join("lines.json"), record.as_bytes())?;
     let shown = if args.json {
@@ -83,12 +83,13 @@ fn settings(args: &LinesArgs) -> Result<DetectorSettings, Failure> {
     Ok(settings)
 }
 
-/// Finds the lines of one image and writes its files, whose names begin with `target`.
+/// Finds the lines of one image and writes its files, whose names begin with `target`; returns what was
+/// found, and what the user should know of it.
 fn image(
     path: &Path,
     target: &Path,
     (args, settings, calibration): (&LinesArgs, DetectorSettings, Option<&Calibration>),
-) -> Result<ImageSummary, Failure> {
+) -> Result<(ImageSummary, Vec<String>), Failure> {
     let image = read(path, args)?;
     if let Some(calibration) = calibration {
         check_size(path, &image, calibration)?;
@@ -119,10 +120,17 @@ fn image(
         &image.values,
         (&found, args.rows),
     )?;
-    Ok(ImageSummary::new(path, &image, lines))
+    let notes = notes::of(path, &image, (&found, args));
+    Ok((ImageSummary::new(path, &image, lines), notes))
 }
 
 fn read(path: &Path, args: &LinesArgs) -> Result<RawImage, Failure> {
+    if path.is_dir() {
+        return Err(Failure::input(
+            format!("{} is a folder", path.display()),
+            format!("name its images, as in {}", path.join("*.png").display()),
+        ));
+    }
     let unreadable = |error: ImageError| {
         Failure::input(
             format!("cannot read {}: {error}", path.display()),
@@ -131,7 +139,12 @@ fn read(path: &Path, args: &LinesArgs) -> Result<RawImage, Failure> {
     };
     let image = read_raw(path, args.channel.as_deref()).map_err(unreadable)?;
     match args.bits {
-        Some(bits) => image.with_bit_depth(bits).map_err(unreadable),
+        Some(bits) => image.with_bit_depth(bits).map_err(|error| {
+            Failure::input(
+                format!("--bits {bits}: {}: {error}", path.display()),
+                "give the bits of the camera, or leave --bits out",
+            )
+        }),
         None => Ok(image),
     }
 }

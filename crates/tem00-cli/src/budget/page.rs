@@ -6,9 +6,12 @@ use crate::report::{Report, Table};
 /// Returns the report, with the drawings as SVG.
 pub(super) fn report(findings: &Findings<'_>, contributions: &str, over_range: &str) -> Report {
     let mut report = Report::new("Uncertainty budget of a laser-triangulation set-up");
-    report.verdict(&words::verdict(findings));
-    for line in words::verdicts(findings).iter().skip(1) {
-        report.paragraph(&sentence(line));
+    for (number, line) in words::verdicts(findings).iter().enumerate() {
+        if number == 0 {
+            report.verdict(&sentence(line));
+        } else {
+            report.paragraph(&sentence(line));
+        }
     }
     report.heading("The set-up");
     report.facts(&words::facts(findings));

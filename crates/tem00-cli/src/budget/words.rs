@@ -196,8 +196,13 @@ pub(super) fn verdicts(findings: &Findings<'_>) -> Vec<String> {
         ),
     ];
     let level = findings.setup.light_level();
-    if level != LightLevel::Good {
-        lines.push(format!("the light is not right: {}", level.advice()));
+    match level {
+        LightLevel::Good => (),
+        // Nothing else counts before this is repaired.
+        LightLevel::Saturated => {
+            lines.insert(0, format!("no set-up to measure with: {}", level.advice()))
+        }
+        _ => lines.push(format!("the light is not right: {}", level.advice())),
     }
     lines.extend(of_trials(findings));
     lines

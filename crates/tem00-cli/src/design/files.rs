@@ -7,7 +7,7 @@ use std::{
 
 use tem00_triangulation::{Candidate, DesignFigure, Neighbours};
 
-use super::{Design, page, plots, record::Record};
+use super::{Design, page, plots, record::Record, units};
 use crate::{atomic::write_atomically, failure::Failure};
 
 /// Writes all files into the folder, and returns the names of those that one opens first.
@@ -58,7 +58,7 @@ fn best(design: &Design<'_>) -> Result<String, Failure> {
     ))
 }
 
-/// Writes all set-ups, in SI units, a line for each.
+/// Writes all set-ups, in SI units that the headings end with, a line for each.
 fn write_csv(design: &Design<'_>, out: &mut impl Write) -> io::Result<()> {
     let sweeps = || {
         design
@@ -70,7 +70,7 @@ fn write_csv(design: &Design<'_>, out: &mut impl Write) -> io::Result<()> {
     };
     write!(out, "number")?;
     for parameter in sweeps() {
-        write!(out, ",{parameter}")?;
+        write!(out, ",{parameter}{}", units::si_of_parameter(parameter))?;
     }
     // What is varied may be a figure as well, and has its column already.
     let figures: Vec<_> = DesignFigure::ALL
@@ -78,7 +78,7 @@ fn write_csv(design: &Design<'_>, out: &mut impl Write) -> io::Result<()> {
         .filter(|figure| sweeps().all(|parameter| parameter.name() != figure.name()))
         .collect();
     for figure in &figures {
-        write!(out, ",{figure}")?;
+        write!(out, ",{figure}{}", units::si_of_figure(*figure))?;
     }
     writeln!(out, ",dominant,allowed,why_not")?;
     for candidate in design.outcome.candidates() {

@@ -79,6 +79,27 @@ pub(super) const fn of_figure(figure: DesignFigure) -> Unit {
     }
 }
 
+/// Returns the SI unit of a parameter, as headings of files end with it.
+pub(super) const fn si_of_parameter(parameter: DesignParameter) -> &'static str {
+    match parameter {
+        DesignParameter::Angle => "_rad",
+        DesignParameter::Power => "_W",
+        DesignParameter::Exposure => "_s",
+        DesignParameter::FNumber => "",
+        _ => "_m",
+    }
+}
+
+/// Returns the SI unit of a figure, as headings of files end with it.
+pub(super) const fn si_of_figure(figure: DesignFigure) -> &'static str {
+    match figure {
+        DesignFigure::Power => "_W",
+        DesignFigure::Exposure => "_s",
+        DesignFigure::Saturation => "",
+        _ => "_m",
+    }
+}
+
 /// Writes a number with four significant digits.
 pub(super) fn digits(value: f64) -> String {
     rounded(value, 4)

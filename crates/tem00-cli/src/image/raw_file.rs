@@ -39,6 +39,8 @@ pub(crate) struct RawImage {
     pub(crate) saturated: usize,
     /// What was taken from the file, in words.
     pub(crate) interpretation: String,
+    /// Whether the file has images after this one.
+    pub(crate) has_further_images: bool,
     /// The largest grey value of a chosen channel, in DN.
     largest: u16,
 }
@@ -153,6 +155,7 @@ struct Samples {
     bit_depth: u32,
     /// What else is to be said of the file.
     remark: &'static str,
+    has_further_images: bool,
 }
 
 impl Samples {
@@ -176,6 +179,7 @@ impl Samples {
             values: grid(self.width, self.height, pixels().map(mean).collect())?,
             bit_depth,
             interpretation: format!("{}, {bit_depth} bits{}", selection.description, self.remark),
+            has_further_images: self.has_further_images,
             largest,
         })
     }

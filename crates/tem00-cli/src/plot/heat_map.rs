@@ -24,6 +24,8 @@ pub(crate) struct HeatMap<'a> {
     pub(crate) labels: [&'a str; 2],
     /// Where the axes begin and end.
     pub(crate) ranges: [(f64, f64); 2],
+    /// Whether both axes are lengths: they get one scale, and circles are circles.
+    pub(crate) to_scale: bool,
     /// The values; the first row is at the *bottom*, where the axis up begins.
     pub(crate) values: &'a Grid<f32>,
 }
@@ -49,7 +51,14 @@ impl HeatMap<'_> {
             (Vec::new(), Layout::new(EMPTY, EMPTY))
         };
         let layout = layout.with_title(self.title).with_x_label(self.labels[0]);
-        (plots, layout.with_y_label(self.labels[1]))
+        let layout = layout.with_y_label(self.labels[1]);
+        let to_scale = self.to_scale && !plots.is_empty();
+        let layout = if to_scale {
+            layout.with_equal_aspect()
+        } else {
+            layout
+        };
+        (plots, layout)
     }
 
     /// Returns what is drawn, from the bottom up.
@@ -101,6 +110,7 @@ mod tests {
             title: "height (mm)",
             labels: ["x (mm)", "frame"],
             ranges: [(-5.0, 5.0), (0.0, 10.0)],
+            to_scale: false,
             values,
         }
     }

@@ -21,6 +21,12 @@ pub(super) struct Page<'a> {
     pub(super) measured: &'a Measured,
 }
 
+/// The colour of a profile.
+const POINTS: &str = "#d2701a";
+
+/// The colour of its uncertainty.
+const BAND: &str = "#1f5fa8";
+
 /// What the numbers say of each other.
 const CORRELATIONS: &str = "Speckle correlates the errors of neighbouring columns over about a speckle, and \
     those of frames in which the surface has not moved; shot noise, dark noise and quantisation are new in \
@@ -60,8 +66,8 @@ impl Page<'_> {
         write_rgb_png(&mut png, &marked, &[])
             .map_err(|error| Failure::running(format!("cannot write a picture: {error}")))?;
         let caption = format!(
-            "Frame {} as the camera gives it, brightened to its largest grey value; red: the line, magenta: \
-             points that are not valid.",
+            "Frame {} as the camera gives it, brightened to its largest grey value; a colour for each \
+             piece of the line, magenta for points that are not valid.",
             frame.frame
         );
         report.picture(&png, &caption);
@@ -108,19 +114,22 @@ impl Page<'_> {
             .collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         report.heading("Profile");
-        let band = points.iter().map(|[x, z, u]| {
-            let half = 1.96e-3 * u;
-            (*x, z - half, z + half)
-        });
-        let chart = Chart::new("profile", ["along the line (mm)", "height (mm)"])
-            .band(band)
-            .dots("height ± 1.96 u", points.iter().map(|[x, z, _]| (*x, *z)));
+        let chart = Chart::new("Profile", ["along the line (mm)", "height (mm)"]);
+        let chart =
+            pieces(&points).fold(chart, |chart, piece| chart.band(band(piece)).coloured(BAND));
+        let chart = chart
+            .dots("height ± 1.96 u", points.iter().map(|[x, z, _]| (*x, *z)))
+            .coloured(POINTS);
         let svg = chart.draw().save(&self.job.files.folder, "profile")?;
         report.drawing(
             &svg,
             "The middle profile, valid points, with their expanded uncertainty (95 %).",
         );
-        let chart = Chart::new("uncertainty", ["along the line (mm)", "u(height) (µm)"]).line(
+        let chart = Chart::new(
+            "Standard uncertainty of the profile",
+            ["along the line (mm)", "u(height) (µm)"],
+        )
+        .line(
             "standard uncertainty",
             points.iter().map(|[x, _, u]| (*x, *u)),
         );
@@ -143,7 +152,7 @@ impl Page<'_> {
             &["term", "place (px)", "height (µm)", "share (%)"],
         );
         let mut bars = Bars::new(
-            "what makes heights uncertain",
+            "What makes heights uncertain",
             "u(height) (µm)",
             &["height"],
         );
@@ -177,9 +186,9 @@ impl Page<'_> {
     /// The height map and its uncertainty.
     fn maps(&self, report: &mut Report, map: &HeightMap) -> Result<(), Failure> {
         report.heading("Height map");
-        let (labels, factor) = match map.raster {
-            Raster::Image { .. } => (["column of the image", "profile"], 1.0),
-            Raster::Part { .. } => (["along the line (mm)", "along the scan (mm)"], 1e3),
+        let (labels, factor, to_scale) = match map.raster {
+            Raster::Image { .. } => (["column of the image", "profile"], 1.0, false),
+            Raster::Part { .. } => (["along the line (mm)", "along the scan (mm)"], 1e3, true),
         };
         let ranges = ranges(map).map(|(from, to)| (factor * from, factor * to));
         for (name, title, unit, values) in [
@@ -191,6 +200,7 @@ impl Page<'_> {
                 title,
                 labels,
                 ranges,
+                to_scale,
                 values: &values,
             };
             let svg = picture.draw().save(&self.job.files.folder, name)?;
@@ -217,6 +227,12 @@ impl Page<'_> {
         let speckle = measurement.speckle();
         let detector = measurement.detector().settings();
         let average = measurement.settings().average;
+        let averages = format!(
+            "{} frames, {} columns; {}",
+            average.frames,
+            average.columns,
+            independent(self.measured.effective_frames, average.frames)
+        );
         let place = self
             .measured
             .profiles
@@ -230,13 +246,7 @@ impl Page<'_> {
         report.heading("Settings");
         report.facts(&[
             ("frames", self.measured.frames.len().to_string()),
-            (
-                "average",
-                format!(
-                    "{} frames, {} columns; {:.1} profiles of independent speckle in one",
-                    average.frames, average.columns, self.measured.effective_frames
-                ),
-            ),
+            ("average", averages),
             (
                 "speckle size on the sensor",
                 if self.job.args.no_speckle {
@@ -281,5 +291,65 @@ impl Page<'_> {
                 scene.render.samples_per_pixel.to_string(),
             ),
         ]);
+    }
+}
+
+/// Splits the points of a profile, along the line, where several columns are missing.
+fn pieces(points: &[[f64; 3]]) -> impl Iterator<Item = &[[f64; 3]]> {
+    const GAP: f64 = 4.0;
+    let mut steps: Vec<f64> = points
+        .windows(2)
+        .map(|pair| pair[1][0] - pair[0][0])
+        .collect();
+    steps.sort_by(f64::total_cmp);
+    let usual = steps.get(steps.len() / 2).copied().unwrap_or_default();
+    points.chunk_by(move |a, b| b[0] - a[0] <= GAP * usual)
+}
+
+/// Returns x, lower and upper end of the expanded uncertainty of the points.
+fn band(points: &[[f64; 3]]) -> impl Iterator<Item = (f64, f64, f64)> {
+    points.iter().map(|[x, z, u]| {
+        let half = 1.96e-3 * u;
+        (*x, z - half, z + half)
+    })
+}
+
+/// Says how many profiles of independent speckle a mean over frames is worth.
+fn independent(effective: f64, frames: u32) -> String {
+    let more = if effective > 1.05 * f64::from(frames) {
+        ": more than the frames, as speckle that crosses the line pulls it first to one side, then to the \
+         other"
+    } else {
+        ""
+    };
+    format!("worth {effective:.1} profiles of independent speckle{more}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_end_at_gaps() {
+        let points: Vec<[f64; 3]> = (0..20_u8)
+            .filter(|x| !(8..13).contains(x))
+            .map(|x| [f64::from(x), 1.0, 2.0])
+            .collect();
+        let found: Vec<usize> = pieces(&points).map(<[_]>::len).collect();
+        assert_eq!(found, [8, 7]);
+        assert_eq!(pieces(&[]).count(), 0);
+        assert_eq!(pieces(&points[..1]).count(), 1);
+    }
+
+    #[test]
+    fn more_independent_profiles_than_frames_are_explained() {
+        assert!(
+            independent(8.9, 8).contains("pulls it first to one side"),
+            "more"
+        );
+        assert_eq!(
+            independent(3.0, 4),
+            "worth 3.0 profiles of independent speckle"
+        );
     }
 }

@@ -3,7 +3,7 @@
 use core::fmt::Write as _;
 
 use serde::Serialize;
-use tem00_triangulation::{DVec3, MeasuredPoint, PlaceNoise};
+use tem00_triangulation::{DVec3, MeasuredPoint, PlaceNoise, UncertaintySource};
 
 /// One term of the uncertainty.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -53,7 +53,8 @@ impl Terms {
         let valid = || profiles.iter().flatten().filter(|point| point.is_valid());
         let points = valid().count();
         let mean = |term: &dyn Fn(&MeasuredPoint) -> f64| {
-            let sum: f64 = valid().map(term).sum();
+            // From 0: the sum of nothing would be −0.
+            let sum = valid().map(term).fold(0.0, |sum, value| sum + value);
             #[expect(clippy::cast_precision_loss, reason = "a number of points")]
             let count = points.max(1) as f64;
             sum / count
@@ -96,18 +97,21 @@ impl Terms {
         terms.max_by(|a, b| a.share.total_cmp(&b.share))
     }
 
-    /// Returns what dominates, in a sentence.
+    /// Returns how well heights are known, what dominates and what lowers it.
     pub(super) fn verdict(&self) -> String {
         match self.dominant() {
             Some(term) if self.points > 0 && self.combined > 0.0 => format!(
-                "A height is known to {} (standard uncertainty of one point, {} points); {} makes {:.0} % \
-                 of its variance.",
-                micrometres(self.combined),
+                "Expanded uncertainty of the height of a point: U = {} (95 %, k = {COVERAGE}), as root mean \
+                 square of {} points. What dominates is {}, with {:.0} % of the variance: {}.",
+                micrometres(self.expanded),
                 self.points,
                 term.name,
-                100.0 * term.share
+                100.0 * term.share,
+                remedy(term.name)
             ),
-            _ => "No valid point of the line was found.".to_owned(),
+            _ => "No valid point of the line was found. Look at the raw frames: is the line in the image, \
+                  neither too dark nor saturated, and farther from the edges than half a `window`?"
+                .to_owned(),
         }
     }
 
@@ -145,6 +149,13 @@ impl Terms {
     }
 }
 
+/// Returns what lowers a term.
+fn remedy(name: &str) -> &'static str {
+    let mut sources = UncertaintySource::ALL.into_iter();
+    let source = sources.find(|source| source.name() == name);
+    source.map_or("", UncertaintySource::remedy)
+}
+
 /// A length in micrometres, with three digits or so.
 pub(super) fn micrometres(length: f64) -> String {
     let value = 1e6 * length;
@@ -156,4 +167,27 @@ pub(super) fn micrometres(length: f64) -> String {
         2
     };
     format!("{value:.digits$} µm")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_a_point_there_is_advice_and_no_negative_zero() {
+        let terms = Terms::of(&[], DVec3::Z);
+        assert!(
+            terms.verdict().contains("Look at the raw frames"),
+            "{}",
+            terms.verdict()
+        );
+        assert!(!terms.text().contains("-0.0"), "{}", terms.text());
+    }
+
+    #[test]
+    fn every_term_has_a_remedy() {
+        for term in Terms::of(&[], DVec3::Z).terms {
+            assert!(!remedy(term.name).is_empty(), "{}", term.name);
+        }
+    }
 }

@@ -159,3 +159,19 @@ fn a_saturated_setup_says_what_to_change() {
     );
     assert!(table.contains("no line that can be trusted"), "{table}");
 }
+
+#[test]
+fn a_set_up_that_saturates_is_told_before_its_numbers() {
+    let folder = setup_folder("power = \"5 mW\"", "power = \"5 W\"");
+    let output = run(folder.path(), "budget a.toml --trials 0");
+    assert!(output.status.success(), "{}", message(&output));
+    let table = text(&output.stdout);
+    let [no, uncertainty] = ["no set-up to measure with", "expanded uncertainty"]
+        .map(|part| table.find(part).expect(part));
+    assert!(no < uncertainty, "{table}");
+    let page = fs::read_to_string(folder.path().join("out/a/budget.html")).expect("the report");
+    assert!(
+        page.contains("class=\"verdict\">No set-up to measure with"),
+        "{page}"
+    );
+}

@@ -89,6 +89,10 @@ fn a_search_writes_its_files_and_a_winner_that_reads_back() {
 
     let csv = fs::read_to_string(out.join("design.csv")).expect("text");
     assert_eq!(csv.lines().count(), 7, "a line of headings and six set-ups");
+    assert!(
+        csv.starts_with("number,f_number,angle_rad,uncertainty_m,"),
+        "{csv}"
+    );
     let columns: Vec<_> = csv.lines().map(|line| line.split(',').count()).collect();
     assert!(columns.iter().all(|&count| count == columns[0]), "{csv}");
 }

@@ -179,8 +179,45 @@ fn an_image_without_a_line_has_none() {
 }
 
 #[test]
+fn what_is_doubtful_is_told_with_what_helps() {
+    let folder = line_folder();
+    let path = |name: &str| folder.path().join(name);
+    write_png(&path("dark.png"), [40, 30], |_, _| 0);
+    // A line from top to bottom.
+    write_png(&path("down.png"), [48, 60], |x, y| {
+        grey(x as f64 + 0.5 - place(y))
+    });
+    write_png(&path("white.png"), SIZE, |x, y| {
+        grey(y as f64 + 0.5 - place(x)).saturating_mul(30)
+    });
+    for (line, part) in [
+        (
+            "lines dark.png",
+            "a line in 0 of 40 columns only: give --rows",
+        ),
+        (
+            "lines down.png --rows --least-peak 5000",
+            "leave --rows out",
+        ),
+        ("lines a.png --window 61", "a smaller --window helps"),
+        ("lines white.png", "pixels are saturated"),
+    ] {
+        let output = run(folder.path(), line);
+        assert!(output.status.success(), "{line}: {}", message(&output));
+        assert!(
+            message(&output).contains(part),
+            "{line}: {}",
+            message(&output)
+        );
+    }
+    let fine = run(folder.path(), "lines a.png");
+    assert!(!message(&fine).contains("note"), "{}", message(&fine));
+}
+
+#[test]
 fn mistakes_are_told_in_words() {
     let folder = line_folder();
+    fs::create_dir(folder.path().join("frames")).expect("a folder");
     fs::write(folder.path().join("text.png"), "no image").expect("a file");
     fs::write(folder.path().join("c.json"), "{}").expect("a file");
     for (line, part) in [
@@ -206,6 +243,7 @@ fn mistakes_are_told_in_words() {
         ("lines a.png --channel R", "no channel R"),
         ("lines text.png", "text.png: not a readable PNG"),
         ("lines none.png", "none.png: No such file"),
+        ("lines frames", "frames is a folder"),
         ("lines a.jpg", "a.jpg"),
         (
             "lines a.png --calibration c.json",

@@ -37,6 +37,7 @@ pub(super) fn read(reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
         values,
         bit_depth: bits.depth,
         remark: bits.remark,
+        has_further_images: false,
     })
 }
 

@@ -41,6 +41,7 @@ pub(super) fn read(reader: impl Read + Seek) -> Result<Samples, ImageError> {
             (Some(_), _) => ", as the file says",
             _ => "",
         },
+        has_further_images: decoder.more_images(),
     })
 }
 

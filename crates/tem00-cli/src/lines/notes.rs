@@ -1,0 +1,117 @@
+//! What the user should know of lines that were found, or not.
+
+use std::{
+    io::{self, Write},
+    path::Path,
+};
+
+use tem00_triangulation::Validity;
+
+use super::Found;
+use crate::{args::LinesArgs, image::RawImage};
+
+/// The most notes that are told one by one.
+const TOLD: usize = 8;
+
+/// The share of points that may be doubtful without a word.
+const DOUBTFUL: f64 = 0.1;
+
+/// The share of columns in which there should be a line.
+const LIT: f64 = 0.25;
+
+/// Writes notes to standard error, if there is anybody to read it.
+pub(super) fn tell(notes: &[String]) {
+    let mut out = io::stderr().lock();
+    for note in notes.iter().take(TOLD) {
+        let _ = writeln!(out, "note: {note}");
+    }
+    if notes.len() > TOLD {
+        let _ = writeln!(out, "note: and {} more of this kind", notes.len() - TOLD);
+    }
+}
+
+/// Returns what should be known of the lines of an image.
+pub(super) fn of(
+    path: &Path,
+    image: &RawImage,
+    (found, args): (&Found, &LinesArgs),
+) -> Vec<String> {
+    let name = path.display();
+    let several = image
+        .has_further_images
+        .then(|| "the file has several images, and only the first was read".to_owned());
+    let of_lines = too_few(found, args).or_else(|| doubtful(found));
+    let notes = several.into_iter().chain(of_lines);
+    notes.map(|note| format!("{name}: {note}")).collect()
+}
+
+/// Tells that there is no line, or hardly any.
+#[expect(clippy::cast_precision_loss, reason = "a number of columns")]
+fn too_few(found: &Found, args: &LinesArgs) -> Option<String> {
+    let lit = found.iter().filter(|points| !points.is_empty()).count();
+    if lit as f64 >= LIT * found.len() as f64 {
+        return None;
+    }
+    let (unit, turned) = if args.rows {
+        ("rows", "leave --rows out if it runs from left to right")
+    } else {
+        ("columns", "give --rows if it runs from top to bottom")
+    };
+    Some(format!(
+        "a line in {lit} of {} {unit} only: {turned}, and lower --least-peak if it is faint",
+        found.len()
+    ))
+}
+
+/// Tells why many points cannot be trusted.
+#[expect(clippy::cast_precision_loss, reason = "a number of points")]
+fn doubtful(found: &Found) -> Option<String> {
+    let points = found.iter().map(Vec::len).sum::<usize>();
+    let of = |validity: Validity| {
+        let points = found.iter().flatten();
+        points.filter(|point| point.validity == validity).count()
+    };
+    let share = |count: usize| count as f64 / points.max(1) as f64;
+    let doubtful = points - of(Validity::Valid);
+    if share(doubtful) <= DOUBTFUL {
+        return None;
+    }
+    let (count, why, help) = REASONS
+        .iter()
+        .map(|&(validity, why, help)| (of(validity), why, help))
+        .max_by_key(|&(count, ..)| count)?;
+    Some(format!(
+        "{:.0} % of the points are not valid, {:.0} % because {why}: {help}",
+        100.0 * share(doubtful),
+        100.0 * share(count)
+    ))
+}
+
+/// What a doubtful point suffers from, and what helps.
+const REASONS: [(Validity, &str, &str); 5] = [
+    (
+        Validity::Saturated,
+        "pixels are saturated",
+        "expose shorter",
+    ),
+    (
+        Validity::Cut,
+        "the window reaches beyond the image",
+        "a smaller --window helps",
+    ),
+    (
+        Validity::Crowded,
+        "the window reaches into the next line",
+        "a smaller --window helps",
+    ),
+    (
+        Validity::Missing,
+        "pixels are no numbers",
+        "look at the image",
+    ),
+    (
+        Validity::Failed,
+        "the estimate does not converge",
+        "try another --detector or a wider --window",
+    ),
+];

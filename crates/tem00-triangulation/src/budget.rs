@@ -33,10 +33,10 @@ pub use self::{
 ///
 /// # Validity
 ///
-/// First order. Speckle is as strong as the light itself: a centre of gravity scatters up to 7 % less
-/// than first order says, what looks at three pixels up to half as much again less, and Steger's detector,
-/// which also looks at neighbouring columns, half as much. [`simulate`] tells, and whether all columns
-/// have a line that can be trusted. Pixels count as linear, also where the mean exceeds the sensor's range; see
+/// First order. Speckle is as strong as the light itself, and first order says too much of it: up to 7 % for a
+/// centre of gravity, about a third for what looks at three pixels, and half for Steger's detector, which also
+/// looks at neighbouring columns. The stated uncertainty is then on the safe side. [`simulate`] tells how far,
+/// and whether all columns have a line that can be trusted. Pixels count as linear, also where the mean exceeds the sensor's range; see
 /// [`Setup::light_level`].
 ///
 /// # Examples

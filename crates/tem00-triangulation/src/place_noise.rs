@@ -16,6 +16,11 @@ use crate::SensorDescription;
 /// DSNU           K² Σ gᵢ² σ²_DSNU
 /// ```
 ///
+/// # Validity
+///
+/// First order. For speckle it is an upper limit: it says up to 7 % too much for a centre of gravity, about a third
+/// for detectors that look at three pixels, and half for Steger's.
+///
 /// # References
 ///
 /// - EMVA Standard 1288, release 4.0, 2021: the linear model of a sensor.

@@ -63,9 +63,10 @@ impl Setup {
         description.check()?;
         let camera = camera(&description)?;
         let sensor = Sensor::new(description.sensor)?;
+        let detector = LineDetector::new(description.detector)?;
         let detector = LineDetector::new(DetectorSettings {
-            saturation: description.detector.saturation.min(saturation(&sensor)),
-            ..description.detector
+            saturation: detector.settings().saturation.min(saturation(&sensor)),
+            ..*detector.settings()
         })?;
         let line = ImagedLine::at(&description, &camera, 0.0).ok_or(NOT_SEEN)?;
         let plane = LaserPlane::new(DVec3::ZERO, DVec3::Y)?;

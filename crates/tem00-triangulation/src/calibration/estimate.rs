@@ -92,8 +92,10 @@ impl BoardView {
 ///
 /// # Validity
 ///
-/// The covariance is that of random errors in the images, to first order. A board that is not flat, a
-/// wrong square or a lens with other than radial distortion is not part of it.
+/// The covariance is that of random errors in the images, to first order, as large as the residuals say. A board
+/// that is not flat, a wrong square or a lens with other than radial distortion is not part of it, nor is what
+/// uneven light and bent edges do to corners, see [`find_corners`]: those errors go together over a board, and
+/// the residuals hardly show them.
 ///
 /// # Errors
 ///

@@ -70,7 +70,7 @@ impl Measurement {
         Ok(Self {
             detector: LineDetector::new(DetectorSettings {
                 saturation: saturation(sensor.description()),
-                ..detector
+                ..*LineDetector::new(detector)?.settings()
             })?,
             scene,
             sensor,

@@ -75,20 +75,19 @@ fn corners(text: &str) -> Result<[usize; 2], String> {
         .ok_or_else(|| "must be two numbers from 3 to 50, such as 9x6".into())
 }
 
-/// Reads a length as scene files have it: a number of metres, or a number and a unit.
+/// Reads a length as scene files have it, with its unit: a bare number would be in metres there, and hardly
+/// meant so.
 fn length(text: &str) -> Result<f64, String> {
     const FORMAT: Format = Format {
         noun: "length",
         keys: &["option"],
         help: "",
     };
-    let words = || "must be a positive length, such as \"5 mm\"".to_owned();
-    let quoted = if text.parse::<f64>().is_ok() {
-        text.to_owned()
-    } else {
-        format!("{text:?}")
-    };
-    let document = format!("[option]\nlength = {quoted}");
+    let words = || "must be a positive length with its unit, such as \"5 mm\"".to_owned();
+    if text.parse::<f64>().is_ok() {
+        return Err(words());
+    }
+    let document = format!("[option]\nlength = {text:?}");
     parse_document(&document, Path::new("."), FORMAT, |document| {
         let section = document.table("option", &["length"])?;
         section
@@ -111,13 +110,12 @@ mod tests {
         for bad in ["9", "9x", "2x6", "9x6x3", "-9x6", "9x51"] {
             assert!(corners(bad).is_err(), "{bad}");
         }
-        for (text, expected) in [("5 mm", 5e-3), ("3.45 um", 3.45e-6), ("0.025", 0.025)] {
+        for (text, expected) in [("5 mm", 5e-3), ("3.45 um", 3.45e-6), ("0.025m", 0.025)] {
             let found = length(text).expect(text);
             assert!((found / expected - 1.0).abs() < 1e-15, "{text}: {found}");
         }
         for bad in ["5", "-5 mm", "5 parsec", "", "nan", "5 mm\"\n"] {
-            // Five metres are a length.
-            assert_eq!(length(bad).is_ok(), bad == "5", "{bad}");
+            assert!(length(bad).is_err(), "{bad}");
         }
     }
 }

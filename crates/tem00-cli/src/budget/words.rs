@@ -200,7 +200,7 @@ pub(super) fn verdicts(findings: &Findings<'_>) -> Vec<String> {
         LightLevel::Good => (),
         // Nothing else counts before this is repaired.
         LightLevel::Saturated => {
-            lines.insert(0, format!("no set-up to measure with: {}", level.advice()))
+            lines.insert(0, format!("no set-up to measure with: {}", level.advice()));
         }
         _ => lines.push(format!("the light is not right: {}", level.advice())),
     }

@@ -10,7 +10,7 @@ use tem00_triangulation::{DVec3, LaserPlane};
 use super::{folder, run};
 
 const SQUARE: f64 = 12e-3;
-const OPTIONS: &str = "--corners 6x4 --square 0.012 --pixel-pitch 16e-6 --radial 0";
+const OPTIONS: &str = "--corners 6x4 --square 12mm --pixel-pitch 16um --radial 0";
 
 fn camera() -> Camera {
     Camera::new(CameraDescription {
@@ -153,9 +153,12 @@ fn what_cannot_be_calibrated_with_is_told_in_words() {
     };
     refused(&format!("calibrate nowhere {OPTIONS}"), "nowhere");
     refused(&format!("calibrate . {OPTIONS}"), "0 images of boards");
-    refused("calibrate . --corners 9 --square 1 --pixel-pitch 1", "9x6");
     refused(
-        "calibrate . --corners 9x6 --square soon --pixel-pitch 1",
+        "calibrate . --corners 9 --square 1m --pixel-pitch 1mm",
+        "9x6",
+    );
+    refused(
+        "calibrate . --corners 9x6 --square soon --pixel-pitch 1mm",
         "5 mm",
     );
     photograph(&folder.path().join("board_1.png"), &pose(0), |_| 100.0);

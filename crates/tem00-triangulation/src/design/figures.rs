@@ -56,7 +56,7 @@ impl DesignFigures {
         let budget = Budget::new(&setup).ok_or(TriangulationError::OutOfRange {
             parameter: "exposure",
             value: description.sensor.exposure_time,
-            allowed: "long enough that the line rises above the least peak of the detector",
+            allowed: "long enough that the line rises above the least peak of the detector, in seconds",
         })?;
         Ok(Self {
             uncertainty: budget.combined(),

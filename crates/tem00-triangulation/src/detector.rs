@@ -138,11 +138,14 @@ pub enum Validity {
     Missing,
     /// The estimate did not converge or lies outside of the window; the place is that of the peak.
     Failed,
+    /// An edge of the part cuts the line, of which but a sliver is seen: its place is that of the edge. Only
+    /// who knows the line without noise can tell; a detector does not.
+    Sliver,
 }
 
 impl Validity {
-    /// Returns what to write into a table: `valid`, `saturated`, `cut`, `crowded`, `missing` or
-    /// `failed`.
+    /// Returns what to write into a table: `valid`, `saturated`, `cut`, `crowded`, `missing`,
+    /// `failed` or `sliver`.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Valid => "valid",
@@ -151,6 +154,7 @@ impl Validity {
             Self::Crowded => "crowded",
             Self::Missing => "missing",
             Self::Failed => "failed",
+            Self::Sliver => "sliver",
         }
     }
 }

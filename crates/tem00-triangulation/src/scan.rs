@@ -29,5 +29,5 @@ pub use self::{
     point_cloud::write_point_cloud,
     scene::MeasurementScene,
     settings::{Averaging, RawFormat, ScanSettings},
-    speckle_table::{SensorSpeckle, SpeckleTable},
+    speckle_table::SensorSpeckle,
 };

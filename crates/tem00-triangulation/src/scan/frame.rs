@@ -121,6 +121,11 @@ impl Surroundings<'_> {
         })
     }
 
+    /// How far, in pixels, a line may be from where it would be without noise.
+    fn reach(&self) -> f64 {
+        0.5 * self.detector.settings().window as f64
+    }
+
     fn points(&self, lines: &[Vec<LinePoint>], expected: &Expected) -> Vec<MeasuredPoint> {
         let triangulator = self.calibration.triangulator();
         let profile = triangulator.profile(lines, |_, _| 0.0);
@@ -130,6 +135,9 @@ impl Surroundings<'_> {
             let calibration = self.calibration.point_covariance(seen.pixel)?;
             let turn = self.to_part.rotation();
             let mut seen = *seen;
+            if seen.validity == Validity::Valid && expected.is_sliver(&seen, self.reach()) {
+                seen.validity = Validity::Sliver;
+            }
             seen.point = triangulator.point_with_uncertainty(seen.pixel, noise.total().sqrt())?;
             Some(MeasuredPoint {
                 position: self.to_part.point(seen.point.position),
@@ -200,7 +208,13 @@ struct Expected {
     coherent: Grid<f32>,
     grey_values: Grid<f32>,
     lines: Vec<Vec<LinePoint>>,
+    /// The median of the widths of the lines, in pixels; 0 without any.
+    usual_width: f64,
 }
+
+/// The part of the usual width below which an edge must have cut the line: slopes of the part make it
+/// narrower, too, but seldom by as much.
+const SLIVER: f64 = 1.0 / 3.0;
 
 impl Expected {
     fn of(surroundings: &Surroundings<'_>, exposure: &Exposure) -> Self {
@@ -211,8 +225,10 @@ impl Expected {
             let charge = (f64::from(electrons) + dark).min(sensor.full_well);
             single((sensor.black_level + sensor.gain * charge).min(largest))
         });
+        let lines = surroundings.detector.detect(&grey_values);
         Self {
-            lines: surroundings.detector.detect(&grey_values),
+            usual_width: median_width(&lines),
+            lines,
             electrons: exposure.without_speckle.clone(),
             coherent: exposure.coherent.clone(),
             grey_values,
@@ -226,6 +242,24 @@ impl Expected {
         PlaceNoise::of_column(sensor, &surroundings.speckle, &column.light())
     }
 
+    /// The line that there would be without noise at the place of a point, if any.
+    fn nearest(&self, seen: &ProfilePoint, reach: f64) -> Option<&LinePoint> {
+        let distance = |line: &LinePoint| (line.position - seen.pixel.y).abs();
+        self.lines[seen.column]
+            .iter()
+            .filter(|line| distance(line) < reach)
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+
+    /// Whether an edge of the part cuts the line at a point.
+    ///
+    /// First order would say that such a place is known very well, as little light moves little; it is the
+    /// place of the edge, and not of the line.
+    fn is_sliver(&self, seen: &ProfilePoint, reach: f64) -> bool {
+        self.nearest(seen, reach)
+            .is_some_and(|line| line.width < SLIVER * self.usual_width)
+    }
+
     /// The light in the column of a point, and how its place depends on it: as without speckle where
     /// there would be a line, too.
     fn column(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> Column {
@@ -234,12 +268,7 @@ impl Expected {
         };
         let wide = |grid: &Grid<f32>| take(grid).into_iter().map(f64::from).collect();
         let detector = surroundings.detector;
-        let distance = |line: &LinePoint| (line.position - seen.pixel.y).abs();
-        let reach = 0.5 * detector.settings().window as f64;
-        let nearest = self.lines[seen.column]
-            .iter()
-            .filter(|line| distance(line) < reach)
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let nearest = self.nearest(seen, surroundings.reach());
         let line = nearest.copied().unwrap_or(LinePoint {
             position: seen.pixel.y,
             width: seen.width,
@@ -255,6 +284,13 @@ impl Expected {
             coherent: wide(&self.coherent),
         }
     }
+}
+
+/// The median of the widths of all points of lines; 0 without any.
+fn median_width(lines: &[Vec<LinePoint>]) -> f64 {
+    let mut widths: Vec<f64> = lines.iter().flatten().map(|line| line.width).collect();
+    widths.sort_by(f64::total_cmp);
+    widths.get(widths.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The light in a column, and how the place of a line depends on it.

@@ -21,7 +21,7 @@ use crate::PixelCovariance;
 /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007: the autocovariance of speckle in an image,
 ///   and integration over a detector.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SpeckleTable {
+pub(super) struct SpeckleTable {
     /// The displacement to which whole pixels are added.
     offset: [f64; 2],
     /// The covariances by column and row, both from −reach to reach.
@@ -50,7 +50,7 @@ const MOST: usize = 256;
 impl SpeckleTable {
     /// Integrates the covariances for the displacements that differ from `offset`, in pixels to the right
     /// and down, by whole pixels.
-    pub fn new(speckle: &SensorSpeckle, offset: [f64; 2]) -> Self {
+    pub(super) fn new(speckle: &SensorSpeckle, offset: [f64; 2]) -> Self {
         let reach = speckle.size.map(pixels_within_reach);
         let [columns, rows] = reach.map(|reach| 2 * reach + 1);
         let axis = |offset: f64, reach: usize, index: usize| offset + index as f64 - reach as f64;
@@ -69,7 +69,7 @@ impl SpeckleTable {
     }
 
     /// Returns the number of columns to either side beyond which covariances count as 0.
-    pub const fn columns(&self) -> usize {
+    pub(super) const fn columns(&self) -> usize {
         self.reach[0]
     }
 

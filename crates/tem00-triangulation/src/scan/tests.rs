@@ -8,7 +8,7 @@ use super::{
     testing::{doubtful, point},
     *,
 };
-use crate::{DVec3, Sensor, SensorDescription, TriangulationError};
+use crate::{DVec3, Sensor, SensorDescription, TriangulationError, Validity};
 
 mod scenes;
 
@@ -323,4 +323,37 @@ fn a_sensor_that_is_not_possible_is_refused() {
         ..*Sensor::new(measured.sensor).unwrap().description()
     };
     assert!(Measurement::new(measured).is_err(), "a negative gain");
+}
+
+/// A plate whose edge crosses the line from one side to the other.
+fn frame_with_slivers() -> MeasuredFrame {
+    let plate = "rectangle = { centre = [\"-3.162 mm\", \"9.487 mm\", 0], up = [-0.333, 1, 0], \
+                 size = [\"20 mm\", \"20 mm\"] }";
+    let first = "rectangle = { centre = [\"-10 mm\", 0, 0], size = [\"20 mm\", \"20 mm\"] }";
+    assert!(SCENE.contains(first), "the scene has two plates");
+    let mut measured = measured(&SCENE.replace(first, plate));
+    measured.scene.surfaces.truncate(1);
+    measured.scene.render.samples_per_pixel = 64;
+    let measurement = Measurement::new(measured).unwrap();
+    let cancel = core::sync::atomic::AtomicBool::new(false);
+    measurement.measure(None, 0, |_| (), &cancel).unwrap()
+}
+
+#[test]
+fn slivers_of_a_line_are_no_places_of_the_line() {
+    let points = frame_with_slivers().points;
+    let widest = points.iter().map(|p| p.seen.width).fold(0.0, f64::max);
+    let slivers: Vec<&MeasuredPoint> = points
+        .iter()
+        .filter(|point| point.seen.validity == Validity::Sliver)
+        .collect();
+    assert!(!slivers.is_empty(), "of {} points", points.len());
+    for sliver in &slivers {
+        assert!(sliver.seen.width < 0.5 * widest, "{:?}", sliver.seen);
+    }
+    let valid = points.iter().filter(|point| point.is_valid());
+    assert!(valid.clone().count() > slivers.len(), "most are no slivers");
+    for point in valid {
+        assert!(point.seen.width > 0.25 * widest, "{:?}", point.seen);
+    }
 }

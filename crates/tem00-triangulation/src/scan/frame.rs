@@ -212,9 +212,9 @@ struct Expected {
     usual_width: f64,
 }
 
-/// The part of the usual width below which an edge must have cut the line: slopes of the part make it
-/// narrower, too, but seldom by as much.
-const SLIVER: f64 = 1.0 / 3.0;
+/// The width, in pixels and in usual widths, below both of which an edge must have cut the line: two
+/// pixels of equal light are 2.7 wide, and slopes of the part seldom halve a line.
+const SLIVER: (f64, f64) = (3.0, 0.5);
 
 impl Expected {
     fn of(surroundings: &Surroundings<'_>, exposure: &Exposure) -> Self {
@@ -256,8 +256,10 @@ impl Expected {
     /// First order would say that such a place is known very well, as little light moves little; it is the
     /// place of the edge, and not of the line.
     fn is_sliver(&self, seen: &ProfilePoint, reach: f64) -> bool {
+        let (pixels, usual) = SLIVER;
+        let narrow = pixels.min(usual * self.usual_width);
         self.nearest(seen, reach)
-            .is_some_and(|line| line.width < SLIVER * self.usual_width)
+            .is_some_and(|line| line.width < narrow)
     }
 
     /// The light in the column of a point, and how its place depends on it: as without speckle where

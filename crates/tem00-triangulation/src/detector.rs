@@ -138,8 +138,8 @@ pub enum Validity {
     Missing,
     /// The estimate did not converge or lies outside of the window; the place is that of the peak.
     Failed,
-    /// An edge of the part cuts the line, of which but a sliver is seen: its place is that of the edge. Only
-    /// who knows the line without noise can tell; a detector does not.
+    /// An edge of the part cuts the line, of which but a sliver is seen: its place is that of the edge. Or
+    /// there is no line but by noise. Only who knows the line without noise can tell; a detector does not.
     Sliver,
 }
 

@@ -251,7 +251,7 @@ impl Expected {
             .min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// Whether an edge of the part cuts the line at a point.
+    /// Whether an edge of the part cuts the line at a point, or there would be none without noise.
     ///
     /// First order would say that such a place is known very well, as little light moves little; it is the
     /// place of the edge, and not of the line.
@@ -259,7 +259,7 @@ impl Expected {
         let (pixels, usual) = SLIVER;
         let narrow = pixels.min(usual * self.usual_width);
         self.nearest(seen, reach)
-            .is_some_and(|line| line.width < narrow)
+            .is_none_or(|line| line.width < narrow)
     }
 
     /// The light in the column of a point, and how its place depends on it: as without speckle where

@@ -1,5 +1,10 @@
 //! The progress bar on standard error.
 
+use std::{
+    cell::Cell,
+    sync::atomic::{AtomicU64, Ordering},
+};
+
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 /// A bar with percent, speed and time left.
@@ -46,6 +51,38 @@ impl Progress {
     /// Moves the bar on, from any thread.
     pub(crate) fn advance(&self, done: u64) {
         self.0.inc(done);
+    }
+}
+
+/// One progress bar over all frames.
+pub(crate) struct FrameProgress {
+    bar: Progress,
+    /// What each frame counts, and how many have begun.
+    samples_per_frame: u64,
+    begun: Cell<u64>,
+}
+
+impl FrameProgress {
+    /// Starts a bar over frames that count so many samples each.
+    pub(crate) fn new(frames: u64, samples_per_frame: u64) -> Self {
+        Self {
+            bar: Progress::of(frames.saturating_mul(samples_per_frame), "samples"),
+            samples_per_frame,
+            begun: Cell::new(0),
+        }
+    }
+
+    /// Begins the next frame and returns what moves the bar on. Samples beyond those that a frame
+    /// counts do not, which a target error can take.
+    pub(crate) fn begin(&self, name: String) -> impl Fn(u64) + Sync + use<'_> {
+        self.bar.name(name);
+        let start = self.begun.get() * self.samples_per_frame;
+        self.begun.set(self.begun.get() + 1);
+        let (bar, most, done) = (&self.bar, self.samples_per_frame, AtomicU64::new(0));
+        move |samples| {
+            let done = done.fetch_add(samples, Ordering::Relaxed) + samples;
+            bar.set(start + done.min(most));
+        }
     }
 }
 

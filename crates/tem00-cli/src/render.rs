@@ -118,7 +118,7 @@ impl<'a> Render<'a> {
         let choices = (options, plan.is_some(), args.white_level);
         let render = Self {
             args,
-            frames: frames(args, &scene)?,
+            frames: frames(args.frames, scene.render.frames)?,
             fingerprint: Fingerprint::of(&scene, files, &choices)?,
             scene,
             name,
@@ -239,10 +239,11 @@ fn options(args: &RenderArgs, scene: &Scene) -> RenderOptions {
     }
 }
 
-/// Returns the frames that the command line asks for.
-fn frames(args: &RenderArgs, scene: &Scene) -> Result<FrameRange, Failure> {
-    let last = scene.render.frames - 1;
-    let asked = args.frames.unwrap_or(FrameRange { first: 0, last });
+/// Returns the frames that the command line asks for, of the `count` that the scene has; all of them if
+/// it asks for none.
+pub(crate) fn frames(asked: Option<FrameRange>, count: u32) -> Result<FrameRange, Failure> {
+    let last = count.saturating_sub(1);
+    let asked = asked.unwrap_or(FrameRange { first: 0, last });
     if asked.last <= last {
         return Ok(asked);
     }

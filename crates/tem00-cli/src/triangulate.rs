@@ -6,13 +6,7 @@ mod page;
 mod record;
 mod terms;
 
-use std::{
-    cell::Cell,
-    io::Write,
-    path::Path,
-    sync::atomic::{AtomicU64, Ordering},
-    time::Instant,
-};
+use std::{io::Write, path::Path, time::Instant};
 
 use tem00_tracer::{Formulas, SpeckleModel, SpecklePlan};
 use tem00_triangulation::{
@@ -30,8 +24,8 @@ use crate::{
     args::{FrameRange, TriangulateArgs},
     failure::Failure,
     interrupt, output,
-    progress::Progress,
-    render::tracer_failure,
+    progress::FrameProgress,
+    render::{frames, tracer_failure},
 };
 
 /// What to say of a file that is no scene.
@@ -87,18 +81,25 @@ impl<'a> Job<'a> {
             Measurement::new(scene).map_err(|error| measurement_failure(&args.scene, &error))?;
         Ok(Self {
             args,
-            frames: frames(args, measurement.scene().render.frames)?,
+            frames: frames(args.frames, measurement.scene().render.frames)?,
             measurement,
             name,
             files: Files::new(folder, raw)?,
         })
     }
 
+    fn progress(&self) -> FrameProgress {
+        let scene = self.measurement.scene();
+        let samples_per_frame = scene.samples_per_frame(&(&scene.render).into());
+        let frames = u64::from(self.frames.last - self.frames.first) + 1;
+        FrameProgress::new(frames, samples_per_frame)
+    }
+
     /// Measures all frames, writing raw frames on the way.
     fn measure(&self) -> Result<Measured, Failure> {
         let start = Instant::now();
         let speckle = self.speckle()?;
-        let progress = FrameProgress::new(self);
+        let progress = self.progress();
         let mut scan = Scan::new(&self.measurement);
         let (mut frames, mut shown) = (Vec::new(), None);
         let middle = u32::midpoint(self.frames.first, self.frames.last);
@@ -187,22 +188,6 @@ fn overruled(mut measured: MeasurementScene, args: &TriangulateArgs) -> Measurem
     measured
 }
 
-/// Returns the frames that the command line asks for.
-fn frames(args: &TriangulateArgs, count: u32) -> Result<FrameRange, Failure> {
-    let last = count.saturating_sub(1);
-    let asked = args.frames.unwrap_or(FrameRange { first: 0, last });
-    if asked.last <= last {
-        return Ok(asked);
-    }
-    Err(Failure::input(
-        format!(
-            "--frames {}..{}: the scene has the frames 0..{last}",
-            asked.first, asked.last
-        ),
-        "`frames` in the section [render] of the scene says how many there are",
-    ))
-}
-
 fn measurement_failure(path: &Path, error: &TriangulationError) -> Failure {
     match error {
         TriangulationError::Cancelled => Failure::Interrupted,
@@ -216,37 +201,5 @@ fn measurement_failure(path: &Path, error: &TriangulationError) -> Failure {
             format!("{}: {error}", path.display()),
             "docs/scene_file.md lists what is allowed",
         ),
-    }
-}
-
-/// One progress bar over all frames.
-struct FrameProgress {
-    bar: Progress,
-    samples_per_frame: u64,
-    begun: Cell<u64>,
-}
-
-impl FrameProgress {
-    fn new(job: &Job<'_>) -> Self {
-        let scene = job.measurement.scene();
-        let samples_per_frame = scene.samples_per_frame(&(&scene.render).into());
-        let frames = u64::from(job.frames.last - job.frames.first) + 1;
-        Self {
-            bar: Progress::of(frames.saturating_mul(samples_per_frame), "samples"),
-            samples_per_frame,
-            begun: Cell::new(0),
-        }
-    }
-
-    /// Begins the next frame and returns what moves the bar on.
-    fn begin(&self, name: String) -> impl Fn(u64) + Sync + use<'_> {
-        self.bar.name(name);
-        let start = self.begun.get() * self.samples_per_frame;
-        self.begun.set(self.begun.get() + 1);
-        let (bar, most, done) = (&self.bar, self.samples_per_frame, AtomicU64::new(0));
-        move |samples| {
-            let done = done.fetch_add(samples, Ordering::Relaxed) + samples;
-            bar.set(start + done.min(most));
-        }
     }
 }

@@ -1,10 +1,6 @@
 //! The frames of a render, one after the other.
 
-use std::{
-    cell::Cell,
-    sync::atomic::{AtomicU64, Ordering},
-    time::Instant,
-};
+use std::time::Instant;
 
 use tem00_tracer::{
     Filter, Frame, Method, RenderError, SpeckleModel, SurfaceSpeckle, render_frame,
@@ -20,7 +16,7 @@ use crate::{
     failure::Failure,
     frame_files::{FramePaths, automatic_exposure, picture_of, write_layers, write_preview},
     interrupt,
-    progress::Progress,
+    progress::FrameProgress,
     summary::{Exposure, FrameLaser, FrameSummary},
 };
 
@@ -63,7 +59,7 @@ impl Render<'_> {
         let model = self.speckle()?;
         let needs_first = exposure.is_none() && missing.first() != Some(&0);
         let count = missing.len() as u64 + u64::from(needs_first);
-        let progress = SequenceProgress::new(self, count);
+        let progress = FrameProgress::new(count, self.samples_per_frame());
         if needs_first {
             note(
                 "exposure: frame 0, which sets that of all, is rendered for it; --white-level saves \
@@ -144,7 +140,7 @@ impl Render<'_> {
         &self,
         number: u32,
         model: Option<&SpeckleModel>,
-        progress: &SequenceProgress,
+        progress: &FrameProgress,
     ) -> Result<Frame, Failure> {
         let advance = progress.begin(match self.scene.render.frames {
             1 => self.name.clone(),
@@ -249,38 +245,6 @@ impl Render<'_> {
                 "{} of {frames} frames are finished; the same command with --resume goes on",
                 self.finished().len()
             ));
-        }
-    }
-}
-
-/// One progress bar over all frames.
-struct SequenceProgress {
-    bar: Progress,
-    /// What each frame counts, and how many have begun.
-    samples_per_frame: u64,
-    begun: Cell<u64>,
-}
-
-impl SequenceProgress {
-    fn new(render: &Render<'_>, frames: u64) -> Self {
-        let samples_per_frame = render.samples_per_frame();
-        Self {
-            bar: Progress::of(frames.saturating_mul(samples_per_frame), "samples"),
-            samples_per_frame,
-            begun: Cell::new(0),
-        }
-    }
-
-    /// Begins the next frame and returns what moves the bar on. Samples beyond those that a frame
-    /// counts do not, which a target error can take.
-    fn begin(&self, name: String) -> impl Fn(u64) + Sync + use<'_> {
-        self.bar.name(name);
-        let start = self.begun.get() * self.samples_per_frame;
-        self.begun.set(self.begun.get() + 1);
-        let (bar, most, done) = (&self.bar, self.samples_per_frame, AtomicU64::new(0));
-        move |samples| {
-            let done = done.fetch_add(samples, Ordering::Relaxed) + samples;
-            bar.set(start + done.min(most));
         }
     }
 }

@@ -228,10 +228,8 @@ impl Page<'_> {
         let detector = measurement.detector().settings();
         let average = measurement.settings().average;
         let averages = format!(
-            "{} frames, {} columns; {}",
-            average.frames,
-            average.columns,
-            independent(self.measured.effective_frames, average.frames)
+            "{} frames, {} columns; worth {:.1} profiles of independent speckle",
+            average.frames, average.columns, self.measured.effective_frames
         );
         let place = self
             .measured
@@ -314,17 +312,6 @@ fn band(points: &[[f64; 3]]) -> impl Iterator<Item = (f64, f64, f64)> {
     })
 }
 
-/// Says how many profiles of independent speckle a mean over frames is worth.
-fn independent(effective: f64, frames: u32) -> String {
-    let more = if effective > 1.05 * f64::from(frames) {
-        ": more than the frames, as speckle that crosses the line pulls it first to one side, then to the \
-         other"
-    } else {
-        ""
-    };
-    format!("worth {effective:.1} profiles of independent speckle{more}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -339,17 +326,5 @@ mod tests {
         assert_eq!(found, [8, 7]);
         assert_eq!(pieces(&[]).count(), 0);
         assert_eq!(pieces(&points[..1]).count(), 1);
-    }
-
-    #[test]
-    fn more_independent_profiles_than_frames_are_explained() {
-        assert!(
-            independent(8.9, 8).contains("pulls it first to one side"),
-            "more"
-        );
-        assert_eq!(
-            independent(3.0, 4),
-            "worth 3.0 profiles of independent speckle"
-        );
     }
 }

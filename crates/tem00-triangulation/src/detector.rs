@@ -200,8 +200,9 @@ impl LineDetector {
     /// Points of neighbouring columns that continue each other belong to the same
     /// [line](LinePoint::line). The straight line through the last 16 points of a line tells where it
     /// goes on; a point belongs to the nearest one within a quarter of a window of that, and 2 pixels at
-    /// least. A line may miss points for two windows; behind a longer gap, or a step higher than a
-    /// quarter of a window, it is another one. Lines that cross keep their numbers: where they come
+    /// least, of the lines that were seen in the column before; else to one that was seen earlier. A line may
+    /// miss points for two windows; behind a longer gap, or a step higher than a quarter of a window, it is
+    /// another one. Lines that cross keep their numbers: where they come
     /// close they go on as they came. Near the crossing both are seen as one, and a point belongs to the
     /// one that it is nearer to. Lines are numbered from the top, by their mean places; those of less than
     /// a tenth of the points of the longest come after all others.

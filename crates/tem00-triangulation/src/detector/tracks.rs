@@ -6,6 +6,8 @@ use super::LinePoint;
 struct Track {
     /// The last column with a point.
     last: usize,
+    /// The last column up to which it was seen, or hidden by another line.
+    followed_to: usize,
     /// The last points that tell where the line goes on: column and place.
     recent: VecDeque<(f64, f64)>,
     points: usize,
@@ -20,17 +22,19 @@ pub(super) fn number(columns: &mut [Vec<LinePoint>], window: usize) {
     let mut active: Vec<usize> = Vec::new();
     for (x, points) in columns.iter_mut().enumerate() {
         active.retain(|&track| x - tracks[track].last <= most_missing + 1);
-        let near = near(&tracks, &active, x, points, gate);
+        let expected = Expected::of(&tracks, &active, x);
+        let near = near(&expected, points, gate);
         let owners = owners(&near, points.len());
+        for track in hidden(&expected, points, &owners, window) {
+            tracks[track].followed_to = x;
+        }
         for (i, (point, owner)) in points.iter_mut().zip(owners).enumerate() {
             let track = owner.unwrap_or(tracks.len());
             if owner.is_none() {
                 tracks.push(Track::new());
                 active.push(track);
             }
-            // Where two lines come close, a point may be of both: it does not tell where one goes.
-            let is_clear = near.iter().filter(|pair| pair.point == i).count() < 2;
-            tracks[track].add(x, point.position, is_clear);
+            tracks[track].add(x, point.position, is_clear(&near, i));
             point.line = track;
         }
     }
@@ -39,41 +43,112 @@ pub(super) fn number(columns: &mut [Vec<LinePoint>], window: usize) {
     points.for_each(|point| point.line = numbers[point.line]);
 }
 
-/// A point that may continue a track.
-struct Pair {
-    distance: f64,
+/// Where a track is expected in a column.
+struct Expected {
     track: usize,
-    point: usize,
+    position: f64,
+    /// The number of columns since it was seen.
+    since: usize,
+    /// Whether it was seen in the column before, or has been hidden by others ever since it was.
+    is_followed: bool,
 }
 
-/// All points of a column that may continue a track, the nearest first.
-fn near(
-    tracks: &[Track],
-    active: &[usize],
-    x: usize,
-    points: &[LinePoint],
-    gate: f64,
-) -> Vec<Pair> {
-    let mut pairs = Vec::new();
-    for &track in active {
-        let expected = tracks[track].at(x as f64);
-        let pairs_of = points.iter().enumerate().map(|(point, found)| Pair {
-            distance: (found.position - expected).abs(),
+impl Expected {
+    fn of(tracks: &[Track], active: &[usize], x: usize) -> Vec<Self> {
+        let expected = |&track: &usize| Self {
             track,
-            point,
-        });
-        pairs.extend(pairs_of.filter(|pair| pair.distance <= gate));
+            position: tracks[track].at(x as f64),
+            since: x - tracks[track].last,
+            is_followed: tracks[track].followed_to + 1 == x,
+        };
+        active.iter().map(expected).collect()
     }
-    pairs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+}
+
+/// A point that may continue a track.
+struct Pair<'a> {
+    expected: &'a Expected,
+    point: usize,
+    /// The distance between the two, in pixels, times the columns since the line was seen: the straight line
+    /// through its last points is the less certain the farther it leads.
+    distance: f64,
+}
+
+/// All points of a column that may continue a track: first those of tracks that were seen in the column
+/// before, then the nearest.
+///
+/// Where a line has ended, the straight line through its last points leads anywhere, and often over
+/// another line.
+fn near<'a>(expected: &'a [Expected], points: &[LinePoint], gate: f64) -> Vec<Pair<'a>> {
+    let mut pairs = Vec::new();
+    for expected in expected {
+        let distances = points
+            .iter()
+            .map(|found| (found.position - expected.position).abs());
+        let within = distances
+            .enumerate()
+            .filter(|(_, distance)| *distance <= gate);
+        pairs.extend(within.map(|(point, distance)| Pair {
+            expected,
+            point,
+            distance: distance * expected.since as f64,
+        }));
+    }
+    pairs.sort_by(|a, b| {
+        let [a_unseen, b_unseen] = [a, b].map(|pair| pair.expected.since > 1);
+        a_unseen
+            .cmp(&b_unseen)
+            .then(a.distance.total_cmp(&b.distance))
+    });
     pairs
 }
 
+/// The tracks without a point that may be hidden: lines closer than half a window are seen as one, which
+/// goes on as another of them. A line that begins hides none.
+fn hidden(
+    expected: &[Expected],
+    points: &[LinePoint],
+    owners: &[Option<usize>],
+    window: usize,
+) -> Vec<usize> {
+    let reach = (window / 2 + 1) as f64;
+    let followed = || expected.iter().filter(|expected| expected.is_followed);
+    let goes_on = |owner: &Option<usize>| followed().any(|other| *owner == Some(other.track));
+    let of_others: Vec<f64> = points
+        .iter()
+        .zip(owners)
+        .filter(|(_, owner)| goes_on(owner))
+        .map(|(point, _)| point.position)
+        .collect();
+    let is_hidden = |hidden: &&Expected| {
+        of_others
+            .iter()
+            .any(|position| (position - hidden.position).abs() <= reach)
+    };
+    followed()
+        .filter(is_hidden)
+        .map(|hidden| hidden.track)
+        .collect()
+}
+
+/// Whether a point is of one line alone. Where two lines come close it may be of both, and does not tell
+/// where one goes; lines that have ended do not count beside one that has not.
+fn is_clear(near: &[Pair<'_>], point: usize) -> bool {
+    let of_point = || near.iter().filter(|pair| pair.point == point);
+    let followed = of_point().filter(|pair| pair.expected.is_followed).count();
+    match followed {
+        0 => of_point().count() < 2,
+        _ => followed < 2,
+    }
+}
+
 /// The track of each point, each of at most one.
-fn owners(near: &[Pair], points: usize) -> Vec<Option<usize>> {
+fn owners(near: &[Pair<'_>], points: usize) -> Vec<Option<usize>> {
     let mut owners = vec![None; points];
     for pair in near {
-        if owners[pair.point].is_none() && !owners.contains(&Some(pair.track)) {
-            owners[pair.point] = Some(pair.track);
+        let track = Some(pair.expected.track);
+        if owners[pair.point].is_none() && !owners.contains(&track) {
+            owners[pair.point] = track;
         }
     }
     owners
@@ -106,6 +181,7 @@ impl Track {
     const fn new() -> Self {
         Self {
             last: 0,
+            followed_to: 0,
             recent: VecDeque::new(),
             points: 0,
             sum: 0.0,
@@ -114,6 +190,7 @@ impl Track {
 
     fn add(&mut self, x: usize, position: f64, is_clear: bool) {
         self.last = x;
+        self.followed_to = x;
         self.points += 1;
         self.sum += position;
         if is_clear || self.recent.len() < Self::FEWEST {

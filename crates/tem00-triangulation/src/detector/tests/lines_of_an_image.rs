@@ -98,6 +98,45 @@ fn lines_that_cross_go_on_as_they_came() {
     assert_eq!(crowded.count(), 4, "windows end where the next line begins");
 }
 
+/// A number from −½ to ½ for each column, by multiplicative hashing (Knuth, *The Art of Computer
+/// Programming*, vol. 3, § 6.4).
+fn scatter(x: f64) -> f64 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a column of a small image"
+    )]
+    let column = x as u32;
+    let hashed = column.wrapping_mul(2_654_435_761).rotate_right(15);
+    f64::from(hashed.wrapping_mul(2_654_435_761) >> 16) / 65_536.0 - 0.5
+}
+
+#[test]
+fn a_line_that_has_ended_takes_no_points_of_one_that_goes_on() {
+    // The first ends at column 80; the straight line through its end crosses the second at column 104, for
+    // whose points it is within reach from the second column on. Both scatter as lines under speckle do.
+    let ended = |x: f64| (x < 80.0).then(|| 60.0 + 0.5 * x + 0.8 * scatter(x));
+    for seen_in in [
+        |_: f64| true,
+        |x: f64| !scatter(7.0 * x).is_sign_positive() || x < 92.0,
+    ] {
+        let second = |x: f64| (x >= 90.0 && seen_in(x)).then(|| 112.0 + 0.8 * scatter(3.0 * x));
+        let image = image(150, 200, &[&ended, &second]);
+        let points = finder(LineMethod::CentreOfGravity, 2).detect(&image);
+        assert_eq!(count(&points), 2, "two lines");
+        for (x, points) in points.iter().enumerate() {
+            let at = x as f64 + 0.5;
+            let expected: Vec<usize> = [ended(at), second(at)]
+                .into_iter()
+                .zip(0..)
+                .filter_map(|(place, line)| place.map(|_| line))
+                .collect();
+            let found: Vec<usize> = points.iter().map(|point| point.line).collect();
+            assert_eq!(found, expected, "column {x}");
+        }
+    }
+}
+
 #[test]
 fn a_step_starts_another_line_and_the_upper_one_comes_first() {
     let step = |x: f64| Some(if x < 80.0 { 120.0 } else { 100.0 });

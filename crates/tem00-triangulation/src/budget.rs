@@ -7,7 +7,7 @@ mod term;
 
 use tem00_statistics::imaged_line_centroid_deviation;
 
-use crate::{Dorsch, Setup};
+use crate::{Dorsch, ImagedLine, LightLevel, Setup, TriangulationError};
 
 pub use self::{
     coverage::{coverage_factor, effective_degrees_of_freedom},
@@ -36,8 +36,8 @@ pub use self::{
 /// First order. Speckle is as strong as the light itself, and first order says too much of it: up to 7 % for a
 /// centre of gravity, about a third for what looks at three pixels, and half for Steger's detector, which also
 /// looks at neighbouring columns. The stated uncertainty is then on the safe side. [`simulate`] tells how far,
-/// and whether all columns have a line that can be trusted. Pixels count as linear, also where the mean exceeds the sensor's range; see
-/// [`Setup::light_level`].
+/// and whether all columns have a line that can be trusted. Pixels count as linear, also where bright grains of
+/// speckle exceed the sensor's range; see [`Setup::light_level`].
 ///
 /// # Examples
 ///
@@ -58,7 +58,7 @@ pub use self::{
 ///     angle = "30 deg"
 ///     "#,
 /// )?;
-/// let budget = Budget::new(&setup).ok_or("the detector finds no line")?;
+/// let budget = Budget::new(&setup)?;
 /// assert_eq!(budget.dominant().source, UncertaintySource::Speckle);
 /// let micrometres = budget.combined() * 1e6;
 /// assert!((10.0..40.0).contains(&micrometres), "{micrometres}");
@@ -77,17 +77,35 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Returns the budget of a height at the reference plane, or `None` if the detector finds no line
-    /// there even without noise.
-    pub fn new(setup: &Setup) -> Option<Self> {
+    /// Returns the budget of a height at the reference plane.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`TriangulationError::NothingMeasured`] if the line
+    /// [saturates](LightLevel::Saturated) the sensor, or if the detector finds none even without noise.
+    pub fn new(setup: &Setup) -> Result<Self, TriangulationError> {
         Self::at(setup, 0.0)
     }
 
-    /// Returns the budget of a height of about `height`, in metres, or `None` if the camera does not see
-    /// the line there or the detector finds none even without noise.
-    pub fn at(setup: &Setup, height: f64) -> Option<Self> {
-        let line = setup.line_at(height)?;
-        let terms = first_order::terms(setup, &line)?;
+    /// Returns the budget of a height of about `height`, in metres.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`new`](Self::new), also if the camera does not see the line there.
+    pub fn at(setup: &Setup, height: f64) -> Result<Self, TriangulationError> {
+        let line = setup.line_at(height).ok_or(NOT_SEEN)?;
+        let level = setup.light_level_of(&line);
+        if level == LightLevel::Saturated {
+            return Err(TriangulationError::NothingMeasured {
+                why: "the line saturates the sensor",
+                advice: level.advice(),
+            });
+        }
+        Self::of_line(setup, &line, height).ok_or_else(|| no_line(level))
+    }
+
+    fn of_line(setup: &Setup, line: &ImagedLine, height: f64) -> Option<Self> {
+        let terms = first_order::terms(setup, line)?;
         let d = setup.description();
         let contrast = d.surface.contrast();
         let [along, across] = line.speckle_size;
@@ -184,6 +202,22 @@ impl Budget {
     /// Herrmann, in metres: the classical reference. It knows no averages.
     pub const fn dorsch(&self) -> f64 {
         self.dorsch
+    }
+}
+
+const NOT_SEEN: TriangulationError = TriangulationError::NothingMeasured {
+    why: "the camera does not see the line",
+    advice: "take a height between camera and horizon",
+};
+
+/// The error that the detector finds no line even without noise.
+const fn no_line(level: LightLevel) -> TriangulationError {
+    TriangulationError::NothingMeasured {
+        why: "the detector finds no line even without noise",
+        advice: match level {
+            LightLevel::Dark => level.advice(),
+            _ => "the line does not stand out of its column: try more rows, or another `window`",
+        },
     }
 }
 

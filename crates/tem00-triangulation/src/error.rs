@@ -46,6 +46,13 @@ pub enum TriangulationError {
         /// What would determine it.
         advice: &'static str,
     },
+    /// A set-up is possible, but measures nothing.
+    NothingMeasured {
+        /// Why it does not.
+        why: &'static str,
+        /// What to change.
+        advice: &'static str,
+    },
     /// Camera, laser or scene are not possible, or were not rendered.
     Tracer(TracerError),
     /// A speckle pattern is not possible.
@@ -78,6 +85,9 @@ impl fmt::Display for TriangulationError {
             ),
             Self::NotDetermined { what, advice } => {
                 write!(f, "{what} is not determined by what was measured: {advice}")
+            }
+            Self::NothingMeasured { why, advice } => {
+                write!(f, "nothing can be measured: {why}; {advice}")
             }
             Self::Tracer(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),

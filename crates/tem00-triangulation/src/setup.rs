@@ -144,21 +144,6 @@ impl Setup {
         width as f64 * self.description.sensor.pixel_pitch / self.magnification()
     }
 
-    /// Returns the mean number of electrons in the brightest pixel, by light and dark current, for a
-    /// line in the middle of a pixel.
-    pub fn peak_electrons(&self) -> f64 {
-        self.line.pixel_electrons(-0.5, 0.0) + self.sensor.dark_electrons()
-    }
-
-    /// Returns the mean of the brightest pixel as a part of what the sensor can hold or tell, whichever
-    /// is less: the full well, or the range of its grey values.
-    ///
-    /// Speckle makes single pixels brighter than the mean: several times, where pixels are small
-    /// against it.
-    pub fn saturation(&self) -> f64 {
-        self.saturation_of(self.peak_electrons())
-    }
-
     fn check_image(&self) -> Result<(), TriangulationError> {
         let [width, height] = self.description.camera.resolution;
         let rows = height as f64;

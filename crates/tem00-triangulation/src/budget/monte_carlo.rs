@@ -49,26 +49,31 @@ pub struct MonteCarloEstimate {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
     options: SimulationOptions,
-    terms: Vec<(UncertaintySource, MonteCarloEstimate)>,
-    total: MonteCarloEstimate,
+    terms: Vec<(UncertaintySource, Option<MonteCarloEstimate>)>,
+    total: Option<MonteCarloEstimate>,
     invalid: f64,
 }
 
 impl Simulation {
+    /// The greatest share of columns without a line that can be trusted from which an uncertainty is still
+    /// estimated: those that are left are the dark half of the speckle.
+    pub const MOST_INVALID: f64 = 0.5;
+
     /// Returns how the set-up was simulated.
     pub const fn options(&self) -> SimulationOptions {
         self.options
     }
 
     /// Returns the standard uncertainty by one source alone, or `None` for the calibration, which is
-    /// not simulated.
+    /// not simulated, and where fewer than half of the columns have a line that can be trusted.
     pub fn term(&self, source: UncertaintySource) -> Option<MonteCarloEstimate> {
         let found = self.terms.iter().find(|(of, _)| *of == source);
-        found.map(|(_, estimate)| *estimate)
+        found.and_then(|(_, estimate)| *estimate)
     }
 
-    /// Returns the standard uncertainty by everything at once but the calibration.
-    pub const fn total(&self) -> MonteCarloEstimate {
+    /// Returns the standard uncertainty by everything at once but the calibration, or `None` where fewer
+    /// than half of the columns have a line that can be trusted.
+    pub const fn total(&self) -> Option<MonteCarloEstimate> {
         self.total
     }
 
@@ -79,11 +84,15 @@ impl Simulation {
     }
 }
 
-/// What trials add up to, source by source; the last is everything at once.
-#[derive(Clone, Copy, Debug, Default)]
-struct Trial {
-    /// The mean square deviation, in square pixels.
-    squares: [f64; SIMULATED.len() + 1],
+/// What a trial adds up to, source by source; the last is everything at once.
+type Trial = [Outcome; SIMULATED.len() + 1];
+
+/// What a trial finds with the noise of one source, or of all.
+#[derive(Clone, Copy, Debug)]
+struct Outcome {
+    /// The mean square deviation, in square pixels; `None` without a line that can be trusted.
+    square: Option<f64>,
+    /// The share of the columns without one.
     invalid: f64,
 }
 
@@ -102,7 +111,8 @@ const SIMULATED: [UncertaintySource; 7] = [
 /// the sensor, in which the detector finds the line; and frames with one source of noise alone.
 ///
 /// Errors of a single source are counted from the place without noise, those of all at once from the
-/// true place. Columns without a trusted line are left out and [counted](Simulation::invalid).
+/// true place. Columns without a trusted line are left out and [counted](Simulation::invalid); where that
+/// are more than half, there is no estimate.
 /// `progress` is told the number of trials that are done; setting `cancel` ends the work.
 ///
 /// The same seed gives the same bits for any number of threads.
@@ -179,27 +189,30 @@ impl<'a> Simulator<'a> {
         let place = self.noise_free_place(phase)?;
         let frames = Frames::new(self.setup, &self.image, phase, random.next_u64());
         let centre = frames.centre();
-        let mut trial = Trial::default();
-        for (square, source) in trial.squares.iter_mut().zip(SIMULATED) {
-            *square = match source {
-                UncertaintySource::DetectorBias => (place - centre).powi(2),
-                source => {
-                    let found = places(&self.unlimited, &frames.of(source)?);
-                    let reference = match source {
-                        UncertaintySource::Quantisation => {
-                            places(&self.unlimited, &frames.unrounded())
-                        }
-                        _ => Places::uniform(place),
-                    };
-                    self.mean_square(&found, &reference).unwrap_or(0.0)
-                }
+        let bias = Outcome {
+            square: Some((place - centre).powi(2)),
+            invalid: 0.0,
+        };
+        let mut trial = [bias; SIMULATED.len() + 1];
+        for (outcome, source) in trial.iter_mut().zip(SIMULATED) {
+            let reference = match source {
+                UncertaintySource::DetectorBias => continue,
+                UncertaintySource::Quantisation => places(&self.unlimited, &frames.unrounded()),
+                _ => Places::uniform(place),
             };
+            let found = places(&self.unlimited, &frames.of(source)?);
+            *outcome = self.outcome(&found, &reference);
         }
         let found = places(self.setup.detector(), &frames.exposed()?);
-        let truth = Places::uniform(centre);
-        trial.squares[SIMULATED.len()] = self.mean_square(&found, &truth).unwrap_or(0.0);
-        trial.invalid = found.invalid();
+        trial[SIMULATED.len()] = self.outcome(&found, &Places::uniform(centre));
         Ok(trial)
+    }
+
+    fn outcome(&self, found: &Places, reference: &Places) -> Outcome {
+        Outcome {
+            square: self.mean_square(found, reference),
+            invalid: found.invalid(),
+        }
     }
 
     /// Returns the mean square of the deviations, each averaged over a group of columns and all frames;
@@ -228,14 +241,13 @@ impl<'a> Simulator<'a> {
 
     fn summary(&self, options: SimulationOptions, outcomes: &[Trial]) -> Simulation {
         let per_pixel = self.setup.line().height_per_pixel.abs();
-        let estimate =
-            |index: usize| estimate(outcomes.iter().map(|t| t.squares[index]), per_pixel);
-        let trials = outcomes.len() as f64;
+        let of = |index: usize| outcomes.iter().map(move |trial: &Trial| trial[index]);
+        let estimate = |index: usize| estimate(of(index), per_pixel);
         Simulation {
             options,
             terms: SIMULATED.into_iter().zip((0..).map(estimate)).collect(),
             total: estimate(SIMULATED.len()),
-            invalid: outcomes.iter().map(|trial| trial.invalid).sum::<f64>() / trials,
+            invalid: invalid(of(SIMULATED.len())),
         }
     }
 }
@@ -270,14 +282,29 @@ fn places(detector: &LineDetector, frames: &[Grid<f32>]) -> Places {
     Places(frames.iter().map(of_frame).collect())
 }
 
-/// Returns the root of the mean of independent mean squares, and its standard error by the scatter.
-fn estimate(squares: impl Iterator<Item = f64> + Clone, per_pixel: f64) -> MonteCarloEstimate {
+/// Returns the mean share of columns without a line that can be trusted.
+fn invalid(outcomes: impl Iterator<Item = Outcome> + Clone) -> f64 {
+    let trials = outcomes.clone().count() as f64;
+    outcomes.map(|outcome| outcome.invalid).sum::<f64>() / trials
+}
+
+/// Returns the root of the mean of independent mean squares, and its standard error by the scatter;
+/// `None` where fewer than half of the columns have a line that can be trusted.
+fn estimate(
+    outcomes: impl Iterator<Item = Outcome> + Clone,
+    per_pixel: f64,
+) -> Option<MonteCarloEstimate> {
+    let squares = outcomes.clone().filter_map(|outcome| outcome.square);
     let count = squares.clone().count() as f64;
+    // A scatter takes two.
+    if count < 2.0 || invalid(outcomes) > Simulation::MOST_INVALID {
+        return None;
+    }
     let mean = squares.clone().sum::<f64>() / count;
     let scatter = squares.map(|square| (square - mean).powi(2)).sum::<f64>();
     let error_of_mean = (scatter / (count * (count - 1.0))).sqrt();
     let root = mean.sqrt();
-    MonteCarloEstimate {
+    Some(MonteCarloEstimate {
         uncertainty: per_pixel * root,
         // δ√m = δm / (2√m)
         standard_error: if root > 0.0 {
@@ -285,5 +312,5 @@ fn estimate(squares: impl Iterator<Item = f64> + Clone, per_pixel: f64) -> Monte
         } else {
             0.0
         },
-    }
+    })
 }

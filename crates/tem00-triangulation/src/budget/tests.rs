@@ -294,7 +294,7 @@ fn trials_of_everything_at_once_are_the_sum_of_their_terms() {
         .map(|term| term.uncertainty.powi(2))
         .sum::<f64>()
         .sqrt();
-    let total = trials.total();
+    let total = trials.total().unwrap();
     // Four standard errors of both, and 3 %: noise on top of speckle is not first order either.
     let allowed = 4.0 * 2.0_f64.sqrt() * total.standard_error + 0.03 * sum;
     assert!(
@@ -307,17 +307,65 @@ fn trials_of_everything_at_once_are_the_sum_of_their_terms() {
     assert!(apart < 0.1, "{total:?}, {first:?}");
 }
 
+/// Returns the share of columns in which a pixel is saturated, in frames that are drawn without a
+/// detector: speckle, and no noise.
+fn clipped_columns(setup: &Setup) -> f64 {
+    let size = [128, 47];
+    let image = crate::LineImage::of_setup(setup, size).unwrap();
+    let sensor = setup.description().sensor;
+    let full = sensor
+        .full_well
+        .min((4095.0 - sensor.black_level) / sensor.gain);
+    let frames = 0..8_u32;
+    let clipped = |seed: u32| -> usize {
+        let frame = image.speckled(seed.into(), |_| 23.3).unwrap();
+        let column = |x: usize| (0..size[1]).any(|y| f64::from(frame[(x, y)]) >= full);
+        (0..size[0]).filter(|&x| column(x)).count()
+    };
+    frames.clone().map(clipped).sum::<usize>() as f64 / (frames.len() * size[0]) as f64
+}
+
 #[test]
-fn trials_of_saturated_setups_tell_how_many_columns_are_lost() {
-    let setup = setup_of(|d| d.laser.power *= 5.0);
-    assert_eq!(
-        setup.light_level(),
-        crate::LightLevel::Saturated,
-        "{}",
-        setup.saturation()
-    );
-    let trials = simulated(&setup, 10);
-    assert!(trials.invalid() > 0.5, "{}", trials.invalid());
+fn there_is_no_uncertainty_by_trials_below_half_of_the_columns() {
+    let mut none = [0, 0];
+    for factor in [1.0, 2.0, 3.0, 5.0] {
+        let setup = setup_of(|d| d.laser.power *= factor);
+        let (trials, clipped) = (simulated(&setup, 10), clipped_columns(&setup));
+        // 10 · 128 columns of which six go together, and as many here: four standard errors of a half.
+        let apart = (trials.invalid() - clipped).abs();
+        assert!(
+            apart < 4.0 * 0.5 / 213.0_f64.sqrt() * 2.0_f64.sqrt(),
+            "{factor}: {clipped}"
+        );
+        let is_none = trials.total().is_none();
+        assert_eq!(is_none, trials.invalid() > 0.5, "{factor}: {trials:?}");
+        none[usize::from(is_none)] += 1;
+        // A single source alone saturates nothing.
+        assert!(
+            trials.term(UncertaintySource::ShotNoise).is_some(),
+            "{trials:?}"
+        );
+    }
+    assert!(none[0] > 0 && none[1] > 0, "both kinds are there: {none:?}");
+}
+
+#[test]
+fn a_line_that_saturates_has_no_budget() {
+    // The crest of a Gaussian line of N electrons and the full width W is N √(8/π)/W.
+    let setup = setup_of(|_| ());
+    let (line, full) = (setup.line(), setup.description().sensor.full_well);
+    let crest = line.column_electrons * (8.0 / PI).sqrt() / line.width;
+    for (factor, measures) in [(0.9 * full / crest, true), (1.2 * full / crest, false)] {
+        let setup = setup_of(|d| d.laser.power *= factor);
+        match Budget::new(&setup) {
+            Ok(budget) => assert!(measures && budget.combined() > 0.0, "{factor}: {budget:?}"),
+            Err(error) => {
+                assert!(!measures, "{factor}: {error}");
+                let why = matches!(error, TriangulationError::NothingMeasured { .. });
+                assert!(why && error.to_string().contains("saturates"), "{error}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -360,17 +408,18 @@ fn a_line_that_is_not_found_has_no_budget() {
     });
     assert_eq!(
         dark.light_level(),
-        crate::LightLevel::Dark,
+        LightLevel::Dark,
         "{}",
         dark.saturation()
     );
-    assert_eq!(Budget::new(&dark), None, "no line");
+    let error = Budget::new(&dark).unwrap_err();
+    assert!(error.to_string().contains("raise the exposure"), "{error}");
     let options = SimulationOptions::default();
     let error = simulate(&dark, options, |_| (), &AtomicBool::new(false)).unwrap_err();
     assert!(error.to_string().contains("lines"), "{error}");
-    assert_eq!(
-        Budget::at(&setup_of(|_| ()), 1e3),
-        None,
-        "behind the camera"
+    let error = Budget::at(&setup_of(|_| ()), 1e3).unwrap_err();
+    assert!(
+        error.to_string().contains("does not see"),
+        "behind the camera: {error}"
     );
 }

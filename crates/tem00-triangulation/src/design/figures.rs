@@ -48,16 +48,12 @@ impl DesignFigures {
     /// # Errors
     ///
     /// Returns an error if the set-up is not possible, if its line is too fine to be a beam at all, or
-    /// too dark to be found.
+    /// the errors of [`Budget::new`].
     pub fn of(description: &SetupDescription) -> Result<Self, TriangulationError> {
         let setup = Setup::new(*description)?;
         let waist = waist_range(description)?;
         let in_focus = setup.depth_of_field();
-        let budget = Budget::new(&setup).ok_or(TriangulationError::OutOfRange {
-            parameter: "exposure",
-            value: description.sensor.exposure_time,
-            allowed: "long enough that the line rises above the least peak of the detector, in seconds",
-        })?;
+        let budget = Budget::new(&setup)?;
         Ok(Self {
             uncertainty: budget.combined(),
             expanded_uncertainty: budget.expanded(),

@@ -23,7 +23,7 @@ fn base() -> SetupDescription {
         angle = "30 deg"
         [sensor]
         quantum_efficiency = 0.6
-        exposure = "1 ms"
+        exposure = "0.05 ms"
         [surface]
         reflectance = 0.5
         [detector]
@@ -180,6 +180,7 @@ fn speckle_grows_as_the_root_of_the_f_number_for_fine_pixels() {
     // and the law for wide lines is off by less than 1e-3.
     let mut description = base();
     description.laser.line_width = 4e-3;
+    description.sensor.exposure_time = 1e-3;
     description.sensor.pixel_pitch = 4.0e-6;
     description.camera.resolution = [64, 600];
     description.detector.window = 251;
@@ -198,6 +199,7 @@ fn speckle_and_shot_noise_grow_as_the_f_number_for_coarse_pixels() {
     // A pixel of 11 speckles, a line of 24 pixels.
     let mut description = base();
     description.laser.line_width = 6e-3;
+    description.sensor.exposure_time = 0.01e-3;
     description.sensor.pixel_pitch = 20e-6;
     description.camera.resolution = [64, 480];
     description.detector.window = 99;
@@ -218,6 +220,7 @@ fn speckle_and_shot_noise_grow_as_the_f_number_for_coarse_pixels() {
 fn without_light_the_widest_pupil_is_best_and_shot_or_dark_noise_dominates() {
     let mut question = question(vec![list(DesignParameter::FNumber, &[4.0, 8.0, 16.0])], &[]);
     question.base.laser.power = 1e-6;
+    question.base.sensor.exposure_time = 1e-3;
     question.base.detector.least_peak = 0.0;
     let found = outcome(question);
     let best = found.best(1)[0];

@@ -103,6 +103,12 @@ impl ImagedLine {
         let share = share_between(self.width, middle - half - centre, middle + half - centre);
         self.column_electrons / self.sensitive_height * share
     }
+
+    /// Returns the mean number of electrons that light frees in the brightest pixel, for a line in the
+    /// middle of it.
+    pub(super) fn peak_electrons(&self) -> f64 {
+        self.pixel_electrons(-0.5, 0.0)
+    }
 }
 
 /// Returns the share of the light of a line of the full width `width` between two distances from its

@@ -1,6 +1,6 @@
 use tem00_statistics::rectangular_pixel_contrast;
 
-use super::Setup;
+use super::{ImagedLine, Setup};
 
 /// Whether the sensor gets the light that it needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +49,8 @@ impl LightLevel {
 
 /// By how many times its noise a line must stand out of the dark.
 const LEAST_SIGNAL: f64 = 10.0;
+/// The part of what the sensor can hold that bright grains may fill.
+const MOST_GRAIN_SATURATION: f64 = 1.0;
 /// How many standard deviations of speckle above the mean bright grains are: of fully developed speckle
 /// in small pixels 2 % are brighter.
 const BRIGHT_GRAINS: f64 = 3.0;
@@ -56,20 +58,23 @@ const BRIGHT_GRAINS: f64 = 3.0;
 impl Setup {
     /// Returns whether the sensor gets the light that it needs.
     ///
-    /// A line is too dark below ten times the dark noise of a pixel, or the detector's least peak. Its
-    /// bright grains are those at three standard deviations of speckle above the mean.
+    /// A line is too dark if its [signal](Self::signal) is below 10, or its peak below the detector's least.
+    /// Bright grains saturate if they fill [more](Self::grain_saturation) than the sensor can hold.
     pub fn light_level(&self) -> LightLevel {
-        let d = &self.description().sensor;
-        let dark = self.sensor().dark_electrons();
-        let signal = self.peak_electrons() - dark;
-        let noise = (d.dark_noise.powi(2) + dark + d.dsnu.powi(2)).sqrt();
-        let least = self.description().detector.least_peak;
-        let grains = self.saturation_of(dark + signal * (1.0 + BRIGHT_GRAINS * self.contrast()));
-        if self.saturation() >= 1.0 {
+        self.light_level_of(self.line())
+    }
+
+    /// Returns the level of the light of an image of the line.
+    pub(crate) fn light_level_of(&self, line: &ImagedLine) -> LightLevel {
+        let signal = line.peak_electrons();
+        let grey_values = self.description().sensor.gain * signal;
+        if self.saturation_of(signal + self.sensor().dark_electrons()) >= 1.0 {
             LightLevel::Saturated
-        } else if signal < LEAST_SIGNAL * noise || d.gain * signal < least {
+        } else if self.signal_of(line) < LEAST_SIGNAL
+            || grey_values < self.description().detector.least_peak
+        {
             LightLevel::Dark
-        } else if grains >= 1.0 {
+        } else if self.grain_saturation_of(line) > MOST_GRAIN_SATURATION {
             LightLevel::SaturatedGrains
         } else {
             LightLevel::Good
@@ -78,14 +83,56 @@ impl Setup {
 
     /// Returns the contrast of the speckle in the pixels, which average over it.
     pub fn contrast(&self) -> f64 {
-        let line = self.line();
+        self.contrast_of(self.line())
+    }
+
+    fn contrast_of(&self, line: &ImagedLine) -> f64 {
         let side = |size: f64| line.sensitive_height / size;
         let pixel = rectangular_pixel_contrast(line.speckle_size.map(side));
         self.description().surface.contrast() * pixel
     }
 
+    /// Returns the mean number of electrons in the brightest pixel, by light and dark current, for a
+    /// line in the middle of a pixel.
+    pub fn peak_electrons(&self) -> f64 {
+        self.line().peak_electrons() + self.sensor().dark_electrons()
+    }
+
+    /// Returns the mean of the brightest pixel as a part of what the sensor can hold or tell, whichever
+    /// is less: the full well, or the range of its grey values.
+    ///
+    /// Speckle makes single pixels brighter than the mean: several times, where pixels are small
+    /// against it. See [`grain_saturation`](Self::grain_saturation).
+    pub fn saturation(&self) -> f64 {
+        self.saturation_of(self.peak_electrons())
+    }
+
+    /// Returns the bright grains of speckle as a part of what the sensor can hold or tell: the brightest
+    /// pixel at three standard deviations of speckle above its mean.
+    pub fn grain_saturation(&self) -> f64 {
+        self.grain_saturation_of(self.line())
+    }
+
+    fn grain_saturation_of(&self, line: &ImagedLine) -> f64 {
+        let grains = line.peak_electrons() * (1.0 + BRIGHT_GRAINS * self.contrast_of(line));
+        self.saturation_of(self.sensor().dark_electrons() + grains)
+    }
+
+    /// Returns the mean light in the brightest pixel in units of the standard deviation of a pixel in the
+    /// dark: by dark noise, dark current and DSNU.
+    pub fn signal(&self) -> f64 {
+        self.signal_of(self.line())
+    }
+
+    fn signal_of(&self, line: &ImagedLine) -> f64 {
+        let d = &self.description().sensor;
+        let dark = self.sensor().dark_electrons();
+        let noise = (d.dark_noise.powi(2) + dark + d.dsnu.powi(2)).sqrt();
+        line.peak_electrons() / noise
+    }
+
     /// Returns a number of electrons as a part of what the sensor can hold or tell.
-    pub(super) fn saturation_of(&self, electrons: f64) -> f64 {
+    fn saturation_of(&self, electrons: f64) -> f64 {
         let sensor = &self.description().sensor;
         let full = ((1_u64 << sensor.bit_depth) - 1) as f64;
         let grey = (sensor.black_level + sensor.gain * electrons) / full;

@@ -77,7 +77,7 @@ fn a_part_that_moves_and_rises_keeps_its_heights() {
     }
     let part = scan.finish();
     assert_eq!(part.profiles().len(), 7, "three frames to a profile");
-    let independent = part.effective_frames();
+    let independent = part.effective_frames().expect("points are valid");
     // Speckle that has moved by a good part of the width of the line moves it the other way.
     assert!((1.0..4.0).contains(&independent), "{independent}");
 

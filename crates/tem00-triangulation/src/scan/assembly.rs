@@ -14,7 +14,7 @@ pub struct Scan<'a> {
     /// The frames of the profile that is not complete.
     pending: Vec<MeasuredFrame>,
     profiles: Vec<Vec<MeasuredPoint>>,
-    /// That of the first profile.
+    /// That of the first profile with valid points.
     correlation: Option<FrameCorrelation>,
 }
 
@@ -60,7 +60,9 @@ impl<'a> Scan<'a> {
                 let first = &frames[0];
                 let correlation = self.measurement.frame_correlation(first, averaging.frames);
                 let profile = averaged_profile(&frames, averaging, &correlation);
-                self.correlation.get_or_insert(correlation);
+                if !profile.is_empty() {
+                    self.correlation.get_or_insert(correlation);
+                }
                 profile
             }
         };
@@ -82,12 +84,17 @@ impl ScannedPart<'_> {
         &self.profiles
     }
 
-    /// Returns how many profiles of independent speckle the first profile is worth: 1 without averaging over
-    /// frames, and as many as frames if each has speckle of its own.
-    pub fn effective_frames(&self) -> f64 {
+    /// Returns how many profiles of independent speckle the first profile with valid points is worth: 1
+    /// without averaging over frames, and as many as frames if each has speckle of its own; `None` if no
+    /// profile has any.
+    pub fn effective_frames(&self) -> Option<f64> {
         let frames = self.measurement.settings().average.frames;
-        let correlation = self.correlation.as_ref();
-        correlation.map_or(1.0, |correlation| correlation.effective_frames(frames))
+        if frames > 1 {
+            let correlation = self.correlation.as_ref();
+            return correlation.map(|correlation| correlation.effective_frames(frames));
+        }
+        let mut points = self.profiles.iter().flatten();
+        points.any(MeasuredPoint::is_valid).then_some(1.0)
     }
 
     /// Returns the heights on a grid: of squares of the part if the scan has a pitch, otherwise of columns

@@ -135,13 +135,14 @@ impl HeightMap {
         holes as f64 / values.len() as f64
     }
 
-    /// Returns the heights as whole numbers, 0 for a hole, and what they stand for.
+    /// Returns the heights as whole numbers, 0 for a hole, and what they stand for, or `None` where all are
+    /// holes.
     ///
     /// ```text
     /// height = offset + scale · value        for values from 1 to 65535
     /// ```
-    pub fn quantised(&self) -> (Grid<u16>, HeightScale) {
-        let [low, high] = self.range().unwrap_or([0.0; 2]);
+    pub fn quantised(&self) -> Option<(Grid<u16>, HeightScale)> {
+        let [low, high] = self.range()?;
         let steps = f64::from(u16::MAX - 1);
         // A flat map has any scale; a nanometre is finer than what is measured.
         let scale = ((high - low) / steps).max(1e-9 / steps);
@@ -159,7 +160,7 @@ impl HeightMap {
             let value = steps.clamp(1.0, f64::from(u16::MAX)) as u16;
             value
         });
-        (values, HeightScale { offset, scale })
+        Some((values, HeightScale { offset, scale }))
     }
 }
 

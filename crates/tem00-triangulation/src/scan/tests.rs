@@ -255,7 +255,7 @@ fn a_map_of_profiles_has_holes_where_nothing_is_valid() {
     assert_eq!(holes, [false, true, true, true, false, true]);
     assert_eq!(map.heights[(1, 1)], 2e-3);
     assert!((map.holes() - 4.0 / 6.0).abs() < 1e-15);
-    let (values, scale) = map.quantised();
+    let (values, scale) = map.quantised().unwrap();
     assert_eq!(values.values()[2], 0, "a hole");
     for (&value, &height) in values.values().iter().zip(map.heights.values()) {
         let back = scale.offset + scale.scale * f64::from(value);
@@ -265,6 +265,14 @@ fn a_map_of_profiles_has_holes_where_nothing_is_valid() {
             "{back}"
         );
     }
+}
+
+#[test]
+fn where_nothing_is_valid_there_is_no_height_and_no_scale() {
+    let profiles = [vec![], vec![doubtful(2, 5e-3 * DVec3::Z)]];
+    let map = HeightMap::of_profiles(&profiles, DVec3::Z, [3, 1]);
+    assert_eq!(map.holes(), 1.0);
+    assert_eq!((map.range(), map.quantised()), (None, None));
 }
 
 #[test]

@@ -35,7 +35,8 @@ Examples:
                                                       calibrate camera and laser plane
 
 Data goes to standard output, everything else to standard error.
-Exit codes: 0 fine, 1 failure while running, 2 bad input or usage, 130 interrupted.";
+Exit codes: 0 fine, 1 failure while running, 2 bad input or usage, 3 nothing measured or found,
+130 interrupted.";
 
 /// Laser light with speckle, from scene file to image, and from data sheet to height uncertainty.
 #[derive(Debug, Parser)]

@@ -11,8 +11,8 @@ use std::{
 };
 
 use tem00_triangulation::{
-    Budget, Setup, Simulation, SimulationOptions, TriangulationError, UncertaintySource,
-    read_setup, simulate,
+    Budget, LightLevel, Setup, Simulation, SimulationOptions, TriangulationError,
+    UncertaintySource, read_setup, simulate,
 };
 
 use crate::{
@@ -28,6 +28,12 @@ struct Findings<'a> {
     file: &'a Path,
     text: String,
     setup: Setup,
+    /// The uncertainty of a height, or why there is none.
+    answer: Result<Answer, Refusal>,
+}
+
+/// The uncertainty of a height.
+struct Answer {
     budget: Budget,
     /// What trials found, unless they were left out.
     trials: Option<Simulation>,
@@ -35,12 +41,20 @@ struct Findings<'a> {
     over_range: Vec<(f64, f64)>,
 }
 
+/// Why a set-up measures nothing.
+struct Refusal {
+    why: String,
+    advice: &'static str,
+    /// What trials found, if it came to that.
+    trials: Option<Simulation>,
+}
+
 /// Prints the budget of a set-up and writes its files.
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, if there is no line to be found, if a file cannot be
-/// written or the user ends it.
+/// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or, with
+/// all files written, if the set-up measures nothing.
 pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
     let setup =
         read_setup(&args.setup).map_err(|error| Failure::file(&args.setup, &error, HELP))?;
@@ -57,43 +71,71 @@ pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure
         print(&findings, out)
             .and_then(|()| paths.try_for_each(|path| writeln!(out, "{}", path.display())))
     };
-    printed.map_err(|error| Failure::stdout(&error))
+    printed.map_err(|error| Failure::stdout(&error))?;
+    findings.answer.map(drop).map_err(|refusal| {
+        let message = format!("{}: no uncertainty: {}", args.setup.display(), refusal.why);
+        Failure::no_result(message, refusal.advice)
+    })
 }
 
 impl<'a> Findings<'a> {
     fn new(args: &'a BudgetArgs, setup: Setup) -> Result<Self, Failure> {
         let text = std::fs::read_to_string(&args.setup)
             .map_err(|error| Failure::input(format!("{}: {error}", args.setup.display()), HELP))?;
-        let budget = Budget::new(&setup).ok_or_else(|| no_line(args, &setup))?;
-        let trials = (args.trials > 0).then(|| tried(args, &setup)).transpose()?;
+        let answer = match Budget::new(&setup) {
+            Ok(budget) => Answer::new(args, &setup, budget)?,
+            Err(TriangulationError::NothingMeasured { why, advice }) => Err(Refusal {
+                why: why.to_owned(),
+                advice,
+                trials: None,
+            }),
+            Err(error) => {
+                let message = format!("{}: {error}", args.setup.display());
+                return Err(Failure::input(message, HELP));
+            }
+        };
         Ok(Self {
             file: &args.setup,
             text,
-            over_range: over_range(&setup),
             setup,
+            answer,
+        })
+    }
+}
+
+impl Answer {
+    fn new(
+        args: &BudgetArgs,
+        setup: &Setup,
+        budget: Budget,
+    ) -> Result<Result<Self, Refusal>, Failure> {
+        let trials = (args.trials > 0).then(|| tried(args, setup)).transpose()?;
+        if let Some(found) = trials.as_ref().filter(|found| found.total().is_none()) {
+            return Ok(Err(Refusal {
+                why: format!(
+                    "{} % of the columns have no line that can be trusted",
+                    words::percent(found.invalid())
+                ),
+                advice: match setup.light_level() {
+                    LightLevel::Good => "try another method or `window` in [detector]",
+                    level => level.advice(),
+                },
+                trials,
+            }));
+        }
+        Ok(Ok(Self {
+            over_range: over_range(setup),
             budget,
             trials,
-        })
+        }))
     }
 
     /// Returns the combined standard uncertainty that trials found, with the calibration, in metres.
     fn combined_by_trials(&self) -> Option<f64> {
-        let total = self.trials.as_ref()?.total().uncertainty;
+        let total = self.trials.as_ref()?.total()?.uncertainty;
         let calibration = self.budget.contribution(UncertaintySource::Calibration);
         Some(total.hypot(calibration))
     }
-}
-
-fn no_line(args: &BudgetArgs, setup: &Setup) -> Failure {
-    let name = args.setup.display();
-    let level = setup.light_level();
-    Failure::input(
-        format!(
-            "{name}: the detector finds no line even without noise; the light is {}",
-            level.name()
-        ),
-        level.advice(),
-    )
 }
 
 fn tried(args: &BudgetArgs, setup: &Setup) -> Result<Simulation, Failure> {
@@ -119,7 +161,7 @@ fn over_range(setup: &Setup) -> Vec<(f64, f64)> {
     let step = range.length() / f64::from(HEIGHTS);
     let heights = (0..=HEIGHTS).map(|i| range.low + f64::from(i) * step);
     heights
-        .filter_map(|height| Some((height, Budget::at(setup, height)?.combined())))
+        .filter_map(|height| Some((height, Budget::at(setup, height).ok()?.combined())))
         .collect()
 }
 
@@ -128,12 +170,15 @@ fn print(findings: &Findings<'_>, out: &mut impl Write) -> std::io::Result<()> {
         writeln!(out, "{name}: {value}")?;
     }
     writeln!(out)?;
-    write_columns(&words::table(findings), out)?;
-    writeln!(out)?;
-    for line in words::verdicts(findings) {
-        writeln!(out, "{line}")?;
+    if let Ok(answer) = &findings.answer {
+        write_columns(&words::table(answer), out)?;
+        writeln!(out)?;
+        for line in words::verdicts(answer, findings.setup.light_level()) {
+            writeln!(out, "{line}")?;
+        }
+        writeln!(out)?;
     }
-    writeln!(out)
+    Ok(())
 }
 
 /// Writes all files into the folder, and returns the names of those that one opens first.
@@ -142,9 +187,22 @@ fn write(findings: &Findings<'_>, record: &str, folder: &Path) -> Result<Vec<Pat
     let json = path("budget.json");
     write_atomically(&json, |file| writeln!(file, "{record}"))
         .map_err(|error| Failure::writing(&json, error))?;
-    let contributions = drawings::contributions(findings).save(folder, "contributions")?;
-    let over_range = drawings::over_range(findings).save(folder, "over_range")?;
+    let drawn = match &findings.answer {
+        Ok(answer) => vec![
+            drawings::contributions(answer).save(folder, CONTRIBUTIONS)?,
+            drawings::over_range(answer).save(folder, OVER_RANGE)?,
+        ],
+        // Those of another run would be taken for those of this one.
+        Err(_) => {
+            output::remove(folder, &[CONTRIBUTIONS, OVER_RANGE], &["svg", "png"])?;
+            Vec::new()
+        }
+    };
     let html = path("budget.html");
-    page::report(findings, &contributions, &over_range).save(&html)?;
+    page::report(findings, &drawn).save(&html)?;
     Ok(vec![json, html])
 }
+
+/// The names of the drawings.
+const CONTRIBUTIONS: &str = "contributions";
+const OVER_RANGE: &str = "over_range";

@@ -13,6 +13,8 @@ pub(crate) enum Failure {
     Input(Report),
     /// The work itself failed. Exit code 1.
     Running(Report),
+    /// The work was done and has no result: nothing was measured, or nothing found. Exit code 3.
+    NoResult(Report),
     /// The user asked for the end. Exit code 130, as shells count it.
     Interrupted,
     /// Nobody reads standard output any more, as after `| head`. Exit code 0: they had enough.
@@ -23,6 +25,16 @@ impl Failure {
     /// Returns a complaint about the input: what is wrong with which value, and what is allowed.
     pub(crate) fn input(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Input(Report::new(Problem {
+            message: message.into(),
+            help: Some(help.into()),
+            source_code: None,
+            span: None,
+        }))
+    }
+
+    /// Returns why work that was done has no result, and what to change.
+    pub(crate) fn no_result(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::NoResult(Report::new(Problem {
             message: message.into(),
             help: Some(help.into()),
             source_code: None,
@@ -92,6 +104,7 @@ impl Failure {
             Self::NoReader => 0,
             Self::Running(_) => 1,
             Self::Input(_) => 2,
+            Self::NoResult(_) => 3,
             Self::Interrupted => 130,
         }
     }
@@ -99,7 +112,9 @@ impl Failure {
     /// Returns what to print on standard error, if anything.
     pub(crate) fn report(&self) -> Option<String> {
         match self {
-            Self::Input(report) | Self::Running(report) => Some(format!("{report:?}")),
+            Self::Input(report) | Self::Running(report) | Self::NoResult(report) => {
+                Some(format!("{report:?}"))
+            }
             Self::Interrupted => Some("tem00: interrupted\n".into()),
             Self::NoReader => None,
         }

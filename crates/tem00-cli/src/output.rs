@@ -33,6 +33,30 @@ pub(crate) fn prepare(folder: &Path) -> Result<(), Failure> {
     })
 }
 
+/// Removes files of an earlier run that this one does not write: each of the names with each ending.
+///
+/// # Errors
+///
+/// Returns a failure if one is there and cannot be removed.
+pub(crate) fn remove(folder: &Path, names: &[&str], endings: &[&str]) -> Result<(), Failure> {
+    for (name, ending) in names
+        .iter()
+        .flat_map(|name| endings.iter().map(move |e| (name, e)))
+    {
+        let path = folder.join(format!("{name}.{ending}"));
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(Failure::running(format!(
+                    "cannot remove {}: {error}",
+                    path.display()
+                )));
+            }
+            _ => (),
+        }
+    }
+    Ok(())
+}
+
 /// Starts the threads that were asked for, or one per core.
 ///
 /// # Errors

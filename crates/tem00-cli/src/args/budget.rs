@@ -9,6 +9,9 @@ use clap::Args;
 /// The set-up file holds what data sheets tell: laser line, lens, sensor, angle, surface and detector.
 /// The table on standard output is an uncertainty budget after the GUM: for each source its standard
 /// uncertainty by formulas, and beside it what trials with simulated frames find.
+///
+/// A set-up whose line saturates the sensor or is not found, or whose trials trust the line in fewer than
+/// half of the columns, measures nothing: there is no number, and the exit code is 3.
 #[derive(Args, Debug)]
 #[command(after_help = BUDGET_EXAMPLES)]
 pub(crate) struct BudgetArgs {

@@ -1,21 +1,21 @@
 //! The drawings of a budget.
 
-use super::Findings;
+use super::Answer;
 use crate::plot::{Bars, Chart, Drawing};
 
 const METRES_TO_MICROMETRES: f64 = 1e6;
 const METRES_TO_MILLIMETRES: f64 = 1e3;
 
 /// What each source contributes, by formulas and, unless they were left out, by trials.
-pub(super) fn contributions(findings: &Findings<'_>) -> Drawing {
-    let series: &[&str] = match findings.trials {
+pub(super) fn contributions(answer: &Answer) -> Drawing {
+    let series: &[&str] = match answer.trials {
         Some(_) => &["formulas", "trials"],
         None => &["formulas"],
     };
     let label = "standard uncertainty of a height (µm)";
     let mut bars = Bars::new("What makes a height uncertain", label, series);
-    let trials = findings.trials.as_ref();
-    for term in findings.budget.terms() {
+    let trials = answer.trials.as_ref();
+    for term in answer.budget.terms() {
         let mut values = vec![term.contribution() * METRES_TO_MICROMETRES];
         if let Some(trials) = trials {
             let found = trials.term(term.source);
@@ -23,9 +23,9 @@ pub(super) fn contributions(findings: &Findings<'_>) -> Drawing {
         }
         bars = bars.group(term.source.name(), &values);
     }
-    let mut combined = vec![findings.budget.combined() * METRES_TO_MICROMETRES];
+    let mut combined = vec![answer.budget.combined() * METRES_TO_MICROMETRES];
     combined.extend(
-        findings
+        answer
             .combined_by_trials()
             .map(|found| found * METRES_TO_MICROMETRES),
     );
@@ -33,8 +33,8 @@ pub(super) fn contributions(findings: &Findings<'_>) -> Drawing {
 }
 
 /// The combined uncertainty over the heights that can be measured.
-pub(super) fn over_range(findings: &Findings<'_>) -> Drawing {
-    let heights = findings.over_range.iter();
+pub(super) fn over_range(answer: &Answer) -> Drawing {
+    let heights = answer.over_range.iter();
     let points = heights.map(|&(height, uncertainty)| {
         (
             height * METRES_TO_MILLIMETRES,

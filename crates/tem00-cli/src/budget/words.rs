@@ -2,7 +2,7 @@
 
 use tem00_triangulation::{BudgetTerm, LightLevel, UncertaintySource};
 
-use super::Findings;
+use super::{Answer, Findings, Refusal};
 use crate::table::number;
 
 /// Writes a length in micrometres, without the unit.
@@ -22,6 +22,11 @@ fn round(value: f64, digits: i32) -> f64 {
     let magnitude = value.abs().log10().floor() as i32;
     let unit = 10_f64.powi(magnitude + 1 - digits);
     (value / unit).round() * unit
+}
+
+/// Writes a share in per cent, without the sign.
+pub(super) fn percent(share: f64) -> String {
+    number(round(100.0 * share, 2))
 }
 
 /// Returns what follows from the set-up.
@@ -97,7 +102,7 @@ fn averages(findings: &Findings<'_>) -> String {
 }
 
 /// Returns the budget as the lines of a table, headings first.
-pub(super) fn table(findings: &Findings<'_>) -> Vec<Vec<String>> {
+pub(super) fn table(answer: &Answer) -> Vec<Vec<String>> {
     let mut headings: Vec<String> = [
         "source",
         "type",
@@ -110,23 +115,17 @@ pub(super) fn table(findings: &Findings<'_>) -> Vec<Vec<String>> {
     ]
     .map(String::from)
     .into();
-    if findings.trials.is_some() {
+    if answer.trials.is_some() {
         headings.push("by trials (µm)".into());
         headings.push("± (µm)".into());
     }
     let mut lines = vec![headings];
-    lines.extend(
-        findings
-            .budget
-            .terms()
-            .iter()
-            .map(|term| cells(findings, term)),
-    );
-    lines.push(combined(findings));
+    lines.extend(answer.budget.terms().iter().map(|term| cells(answer, term)));
+    lines.push(combined(answer));
     lines
 }
 
-fn cells(findings: &Findings<'_>, term: &BudgetTerm) -> Vec<String> {
+fn cells(answer: &Answer, term: &BudgetTerm) -> Vec<String> {
     let is_length = term.source == UncertaintySource::Calibration;
     let mut cells = vec![
         term.source.name().to_owned(),
@@ -144,9 +143,9 @@ fn cells(findings: &Findings<'_>, term: &BudgetTerm) -> Vec<String> {
         },
         degrees_of_freedom(term.degrees_of_freedom),
         micrometres(term.contribution()),
-        number(round(100.0 * findings.budget.share(term), 3)),
+        number(round(100.0 * answer.budget.share(term), 3)),
     ];
-    if let Some(trials) = &findings.trials {
+    if let Some(trials) = &answer.trials {
         let found = trials.term(term.source);
         let text = |length: Option<f64>| length.map_or_else(|| "-".to_owned(), micrometres);
         cells.push(text(found.map(|found| found.uncertainty)));
@@ -164,24 +163,28 @@ fn degrees_of_freedom(value: f64) -> String {
 }
 
 /// Returns the last line of the table.
-pub(super) fn combined(findings: &Findings<'_>) -> Vec<String> {
+pub(super) fn combined(answer: &Answer) -> Vec<String> {
     let mut cells: Vec<String> = ["combined", "", "", "", ""].map(String::from).into();
-    cells.push(degrees_of_freedom(findings.budget.degrees_of_freedom()));
-    cells.push(micrometres(findings.budget.combined()));
+    cells.push(degrees_of_freedom(answer.budget.degrees_of_freedom()));
+    cells.push(micrometres(answer.budget.combined()));
     cells.push("100".into());
-    if let (Some(trials), Some(combined)) = (&findings.trials, findings.combined_by_trials()) {
+    if let (Some(trials), Some(combined)) = (&answer.trials, answer.combined_by_trials()) {
         cells.push(micrometres(combined));
-        cells.push(micrometres(trials.total().standard_error));
+        cells.push(
+            trials
+                .total()
+                .map_or_else(|| "-".to_owned(), |total| micrometres(total.standard_error)),
+        );
     }
     cells
 }
 
 /// Returns what the budget comes to.
-pub(super) fn verdicts(findings: &Findings<'_>) -> Vec<String> {
-    let budget = &findings.budget;
+pub(super) fn verdicts(answer: &Answer, level: LightLevel) -> Vec<String> {
+    let budget = &answer.budget;
     let dominant = budget.dominant();
     let mut lines = vec![
-        verdict(findings),
+        verdict(answer),
         format!(
             "{} dominates, with {} % of the variance: {}",
             dominant.source,
@@ -195,23 +198,25 @@ pub(super) fn verdicts(findings: &Findings<'_>) -> Vec<String> {
             micrometres(budget.dorsch())
         ),
     ];
-    let level = findings.setup.light_level();
-    match level {
-        LightLevel::Good => (),
-        // Nothing else counts before this is repaired.
-        LightLevel::Saturated => {
-            lines.insert(0, format!("no set-up to measure with: {}", level.advice()));
-        }
-        _ => lines.push(format!("the light is not right: {}", level.advice())),
+    if level != LightLevel::Good {
+        lines.push(format!("the light is not right: {}", level.advice()));
     }
-    lines.extend(of_trials(findings));
+    lines.extend(of_trials(answer));
     lines
 }
 
+/// Returns why there is no budget, and what to change.
+pub(super) fn refusal(refusal: &Refusal) -> Vec<String> {
+    vec![
+        format!("nothing can be measured with this set-up: {}", refusal.why),
+        refusal.advice.to_owned(),
+    ]
+}
+
 /// Returns the result, with the expanded uncertainty.
-pub(super) fn verdict(findings: &Findings<'_>) -> String {
-    let budget = &findings.budget;
-    let by_trials = findings
+pub(super) fn verdict(answer: &Answer) -> String {
+    let budget = &answer.budget;
+    let by_trials = answer
         .combined_by_trials()
         .map_or_else(String::new, |found| {
             format!(
@@ -227,13 +232,12 @@ pub(super) fn verdict(findings: &Findings<'_>) -> String {
 }
 
 /// Returns what trials tell that formulas do not.
-fn of_trials(findings: &Findings<'_>) -> Vec<String> {
-    let Some((trials, combined)) = findings.trials.as_ref().zip(findings.combined_by_trials())
-    else {
+fn of_trials(answer: &Answer) -> Vec<String> {
+    let Some((trials, combined)) = answer.trials.as_ref().zip(answer.combined_by_trials()) else {
         return Vec::new();
     };
     let mut lines = Vec::new();
-    let ratio = combined / findings.budget.combined();
+    let ratio = combined / answer.budget.combined();
     if !(0.9..=1.1).contains(&ratio) {
         lines.push(format!(
             "trials find {} times the uncertainty of the formulas, which are first order: this \
@@ -244,7 +248,7 @@ fn of_trials(findings: &Findings<'_>) -> Vec<String> {
     if trials.invalid() > 0.01 {
         lines.push(format!(
             "{} % of the columns have no line that can be trusted; the trials leave them out",
-            number(round(100.0 * trials.invalid(), 2))
+            percent(trials.invalid())
         ));
     }
     lines

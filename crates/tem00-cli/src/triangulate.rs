@@ -4,6 +4,7 @@ mod calibration;
 mod files;
 mod page;
 mod record;
+mod refusal;
 mod terms;
 
 use std::{io::Write, path::Path, time::Instant};
@@ -18,6 +19,7 @@ use self::{
     files::Files,
     page::Page,
     record::{FrameRecord, Record},
+    refusal::Refusal,
     terms::Terms,
 };
 use crate::{
@@ -35,7 +37,8 @@ const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, a file cannot be written or the user ends it.
+/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or, with all
+/// files written, if no point is valid.
 pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Failure> {
     let (scene, _) = MeasurementScene::read(&args.scene)
         .map_err(|error| Failure::file(&args.scene, &error, HELP))?;
@@ -66,8 +69,9 @@ struct Measured {
     map: Option<HeightMap>,
     /// The frame that the report shows, from the middle of the scan.
     shown: Option<MeasuredFrame>,
-    effective_frames: f64,
-    terms: Terms,
+    effective_frames: Option<f64>,
+    /// What makes heights uncertain, or why there is none.
+    terms: Result<Terms, Refusal>,
     seconds: f64,
 }
 
@@ -113,15 +117,16 @@ impl<'a> Job<'a> {
             scan.add(frame);
         }
         let part = scan.finish();
-        let several = part.profiles().len() > 1;
-        let map = several.then(|| part.height_map()).transpose();
         let profiles = part.profiles().to_vec();
+        let terms = Terms::of(&profiles, self.measurement.settings().height);
+        let has_map = profiles.len() > 1 && terms.is_some();
+        let map = has_map.then(|| part.height_map()).transpose();
         Ok(Measured {
-            frames,
             map: map.map_err(|error| measurement_failure(&self.args.scene, &error))?,
             shown,
             effective_frames: part.effective_frames(),
-            terms: Terms::of(&profiles, self.measurement.settings().height),
+            terms: terms.ok_or_else(|| Refusal::of(&frames)),
+            frames,
             profiles,
             seconds: start.elapsed().as_secs_f64(),
         })
@@ -159,9 +164,7 @@ impl<'a> Job<'a> {
         let height = self.measurement.settings().height;
         self.files.write_profiles(&measured.profiles, height)?;
         self.files.write_point_cloud(&measured.profiles)?;
-        if let Some(map) = &measured.map {
-            self.files.write_height_map(map)?;
-        }
+        self.files.write_height_map(measured.map.as_ref())?;
         let record = Record::of(self, measured);
         self.files.write_json(&record)?;
         Page {
@@ -172,11 +175,19 @@ impl<'a> Job<'a> {
     }
 
     fn print(&self, measured: &Measured, out: &mut impl Write) -> Result<(), Failure> {
-        let text = measured.terms.text();
+        let text = measured
+            .terms
+            .as_ref()
+            .map_or_else(|_| String::new(), Terms::text);
         let report = self.files.path("report.html");
         write!(out, "{text}")
             .and_then(|()| writeln!(out, "{}", report.display()))
-            .map_err(|error| Failure::stdout(&error))
+            .map_err(|error| Failure::stdout(&error))?;
+        measured.terms.as_ref().map(drop).map_err(|refusal| {
+            let scene = self.args.scene.display();
+            let message = format!("{scene}: nothing was measured: {}", refusal.why);
+            Failure::no_result(message, refusal.advice)
+        })
     }
 }
 
@@ -192,11 +203,6 @@ fn measurement_failure(path: &Path, error: &TriangulationError) -> Failure {
     match error {
         TriangulationError::Cancelled => Failure::Interrupted,
         TriangulationError::Tracer(error) => tracer_failure(path, error),
-        TriangulationError::TooFew { what, .. } if what.contains("height map") => Failure::input(
-            format!("{}: no valid point of the line was found", path.display()),
-            "look at the raw frames: is the line in the image, neither too dark nor saturated? \
-             `exposure` in [sensor] and `power` in [[laser]] set the light",
-        ),
         error => Failure::input(
             format!("{}: {error}", path.display()),
             "docs/scene_file.md lists what is allowed",

@@ -12,6 +12,9 @@ use super::FrameRange;
 /// [detector], [calibration] and [scan]. Its first laser draws the line. Every frame is rendered, exposed,
 /// searched for the line and turned into points with their uncertainties; the frames together make a
 /// point cloud and, if there are several, a height map.
+///
+/// If no point of the line is valid, the frames and the report are written, but there is no number, and the
+/// exit code is 3.
 #[derive(Args, Debug)]
 #[command(after_help = TRIANGULATE_EXAMPLES)]
 pub(crate) struct TriangulateArgs {

@@ -70,8 +70,14 @@ impl Files {
     }
 
     /// Writes a height map in 16 bits and in metres, and its uncertainty.
-    pub(super) fn write_height_map(&self, map: &HeightMap) -> Result<(), Failure> {
-        let (values, scale) = map.quantised();
+    ///
+    /// One that is not there, or has nothing but holes, leaves none of an earlier run.
+    pub(super) fn write_height_map(&self, map: Option<&HeightMap>) -> Result<(), Failure> {
+        let quantised = map.and_then(|map| Some((map, map.quantised()?)));
+        let Some((map, (values, scale))) = quantised else {
+            let endings = ["npy", self.extension()];
+            return output::remove(&self.folder, &["height", "height_uncertainty"], &endings);
+        };
         let text = [
             ("offset", format!("{:e} m", scale.offset)),
             ("scale", format!("{:e} m", scale.scale)),

@@ -11,6 +11,7 @@ use crate::{
     failure::Failure,
     image::write_rgb_png,
     lines::overlay::picture,
+    output,
     plot::{Bars, Chart, HeatMap},
     report::{Report, Table},
 };
@@ -27,6 +28,15 @@ const POINTS: &str = "#d2701a";
 /// The colour of its uncertainty.
 const BAND: &str = "#1f5fa8";
 
+/// The diagrams of what was measured.
+const DRAWINGS: [&str; 5] = [
+    "profile",
+    "uncertainty",
+    "terms",
+    "height_map",
+    "uncertainty_map",
+];
+
 /// What the numbers say of each other.
 const CORRELATIONS: &str = "Speckle correlates the errors of neighbouring columns over about a speckle, and \
     those of frames in which the surface has not moved; shot noise, dark noise and quantisation are new in \
@@ -41,10 +51,20 @@ impl Page<'_> {
     /// Returns a failure if a file cannot be written.
     pub(super) fn write(&self) -> Result<(), Failure> {
         let mut report = Report::new(&format!("{}: measured by triangulation", self.job.name));
-        report.verdict(&self.measured.terms.verdict());
-        self.frame(&mut report)?;
-        self.profile(&mut report)?;
-        self.budget(&mut report)?;
+        match &self.measured.terms {
+            Ok(terms) => {
+                report.verdict(&terms.verdict());
+                self.frame(&mut report)?;
+                self.profile(&mut report)?;
+                self.budget(&mut report, terms)?;
+            }
+            Err(refusal) => {
+                report.verdict(&format!("Nothing was measured: {}.", refusal.why));
+                report.paragraph(&format!("What helps: {}.", refusal.advice));
+                self.frame(&mut report)?;
+                output::remove(&self.job.files.folder, &DRAWINGS, &["svg", "png"])?;
+            }
+        }
         if let Some(map) = &self.measured.map {
             self.maps(&mut report, map)?;
         }
@@ -139,13 +159,13 @@ impl Page<'_> {
     }
 
     /// The table of terms and what it means.
-    fn budget(&self, report: &mut Report) -> Result<(), Failure> {
+    fn budget(&self, report: &mut Report, terms: &Terms) -> Result<(), Failure> {
         let Terms {
             terms,
             combined,
             expanded,
             ..
-        } = &self.measured.terms;
+        } = terms;
         report.heading("Uncertainty of a height");
         let mut table = Table::new(
             "Root mean squares over all valid points",
@@ -227,9 +247,15 @@ impl Page<'_> {
         let speckle = measurement.speckle();
         let detector = measurement.detector().settings();
         let average = measurement.settings().average;
+        let worth = self
+            .measured
+            .effective_frames
+            .map_or_else(String::new, |frames| {
+                format!("; worth {frames:.1} profiles of independent speckle")
+            });
         let averages = format!(
-            "{} frames, {} columns; worth {:.1} profiles of independent speckle",
-            average.frames, average.columns, self.measured.effective_frames
+            "{} frames, {} columns{worth}",
+            average.frames, average.columns
         );
         let place = self
             .measured

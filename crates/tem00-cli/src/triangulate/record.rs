@@ -1,11 +1,17 @@
 //! What `measurement.json` says.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 use tem00_triangulation::{
     Averaging, CalibrationQuality, LineMethod, MeasuredFrame, Raster, SensorDescription, Validity,
 };
 
-use super::{Job, Measured, terms::Terms};
+use super::{
+    Job, Measured,
+    refusal::Refusal,
+    terms::{Term, Terms},
+};
 
 /// All that a program wants to know of a measurement; lengths in metres, places in pixels.
 #[derive(Debug, Serialize)]
@@ -21,9 +27,21 @@ pub(super) struct Record {
     frames: Vec<FrameRecord>,
     profiles: usize,
     average: AverageRecord,
-    uncertainty: Terms,
+    uncertainty: UncertaintyRecord,
     height_map: Option<MapRecord>,
     seconds: f64,
+}
+
+/// How uncertain heights are, or why nothing is known of them.
+#[derive(Debug, Serialize)]
+struct UncertaintyRecord {
+    /// The number of valid points.
+    points: usize,
+    terms: Vec<Term>,
+    combined: Option<f64>,
+    expanded: Option<f64>,
+    /// Why there is no valid point, if there is none.
+    reason: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -73,7 +91,7 @@ struct AverageRecord {
     frames: u32,
     columns: usize,
     /// How many profiles of independent speckle an averaged one is worth.
-    effective_frames: f64,
+    effective_frames: Option<f64>,
 }
 
 #[derive(Debug, Serialize)]
@@ -103,6 +121,8 @@ pub(super) struct FrameRecord {
     pub(super) valid: usize,
     /// How many of them lie on saturated pixels.
     pub(super) saturated: usize,
+    /// How many of them are not valid, by reason.
+    pub(super) not_valid: BTreeMap<&'static str, usize>,
     pub(super) saturated_pixels: usize,
     /// The largest grey value.
     pub(super) peak: u16,
@@ -116,6 +136,10 @@ impl FrameRecord {
             points.filter(|p| p.seen.validity == validity).count()
         };
         let valid = count(Validity::Valid);
+        let mut not_valid = BTreeMap::new();
+        for point in frame.points.iter().filter(|point| !point.is_valid()) {
+            *not_valid.entry(point.seen.validity.name()).or_default() += 1;
+        }
         let widths = frame.points.iter().filter(|point| point.is_valid());
         let width: f64 = widths.map(|point| point.seen.width).sum();
         #[expect(clippy::cast_precision_loss, reason = "a number of points")]
@@ -126,6 +150,7 @@ impl FrameRecord {
             points: frame.points.len(),
             valid,
             saturated: count(Validity::Saturated),
+            not_valid,
             saturated_pixels: frame.raw.saturated_pixels(),
             peak: frame.raw.values.values().iter().copied().max().unwrap_or(0),
             mean_width,
@@ -158,9 +183,30 @@ impl Record {
                 columns,
                 effective_frames: measured.effective_frames,
             },
-            uncertainty: measured.terms.clone(),
-            height_map: measured.map.as_ref().map(MapRecord::of),
+            uncertainty: UncertaintyRecord::of(&measured.terms),
+            height_map: measured.map.as_ref().and_then(MapRecord::of),
             seconds: measured.seconds,
+        }
+    }
+}
+
+impl UncertaintyRecord {
+    fn of(terms: &Result<Terms, Refusal>) -> Self {
+        match terms {
+            Ok(terms) => Self {
+                points: terms.points,
+                terms: terms.terms.clone(),
+                combined: Some(terms.combined),
+                expanded: Some(terms.expanded),
+                reason: None,
+            },
+            Err(refusal) => Self {
+                points: 0,
+                terms: Vec::new(),
+                combined: None,
+                expanded: None,
+                reason: Some(refusal.why.clone()),
+            },
         }
     }
 }
@@ -215,13 +261,13 @@ impl CalibrationRecord {
 }
 
 impl MapRecord {
-    fn of(map: &tem00_triangulation::HeightMap) -> Self {
-        let (_, scale) = map.quantised();
+    fn of(map: &tem00_triangulation::HeightMap) -> Option<Self> {
+        let (_, scale) = map.quantised()?;
         let (origin, pitch) = match map.raster {
             Raster::Image { .. } => (None, None),
             Raster::Part { origin, pitch } => (Some(origin), Some(pitch)),
         };
-        Self {
+        Some(Self {
             width: map.heights.width(),
             height: map.heights.height(),
             origin,
@@ -230,6 +276,6 @@ impl MapRecord {
             scale: scale.scale,
             range: map.range(),
             holes: map.holes(),
-        }
+        })
     }
 }

@@ -47,17 +47,21 @@ const NOISE: [(&str, Variance); 6] = [
     ("DSNU", |noise| noise.dsnu),
 ];
 
+/// The term that is not one of a place.
+const CALIBRATION: &str = "calibration";
+
 impl Terms {
-    /// Sums up the terms of all valid points for heights along a direction.
-    pub(super) fn of(profiles: &[Vec<MeasuredPoint>], height: DVec3) -> Self {
+    /// Sums up the terms of all valid points for heights along a direction; `None` if there is none.
+    pub(super) fn of(profiles: &[Vec<MeasuredPoint>], height: DVec3) -> Option<Self> {
         let valid = || profiles.iter().flatten().filter(|point| point.is_valid());
         let points = valid().count();
+        if points == 0 {
+            return None;
+        }
         let mean = |term: &dyn Fn(&MeasuredPoint) -> f64| {
-            // From 0: the sum of nothing would be −0.
-            let sum = valid().map(term).fold(0.0, |sum, value| sum + value);
             #[expect(clippy::cast_precision_loss, reason = "a number of points")]
-            let count = points.max(1) as f64;
-            sum / count
+            let count = points as f64;
+            valid().map(term).sum::<f64>() / count
         };
         let mut terms: Vec<Term> = NOISE
             .iter()
@@ -74,7 +78,7 @@ impl Terms {
             .collect();
         let calibration = mean(&|point| point.calibration_uncertainty_along(height).powi(2));
         terms.push(Term {
-            name: "calibration",
+            name: CALIBRATION,
             place: None,
             height: calibration.sqrt(),
             share: 0.0,
@@ -83,12 +87,12 @@ impl Terms {
         for term in terms.iter_mut().filter(|_| variance > 0.0) {
             term.share = term.height.powi(2) / variance;
         }
-        Self {
+        Some(Self {
             points,
             terms,
             combined: variance.sqrt(),
             expanded: COVERAGE * variance.sqrt(),
-        }
+        })
     }
 
     /// Returns the term that counts most.
@@ -99,20 +103,20 @@ impl Terms {
 
     /// Returns how well heights are known, what dominates and what lowers it.
     pub(super) fn verdict(&self) -> String {
-        match self.dominant() {
-            Some(term) if self.points > 0 && self.combined > 0.0 => format!(
-                "Expanded uncertainty of the height of a point: U = {} (95 %, k = {COVERAGE}), as root mean \
-                 square of {} points. What dominates is {}, with {:.0} % of the variance: {}.",
-                micrometres(self.expanded),
-                self.points,
+        let dominant = self.dominant().map_or_else(String::new, |term| {
+            format!(
+                " What dominates is {}, with {:.0} % of the variance: {}.",
                 term.name,
                 100.0 * term.share,
                 remedy(term.name)
-            ),
-            _ => "No valid point of the line was found. Look at the raw frames: is the line in the image, \
-                  neither too dark nor saturated, and farther from the edges than half a `window`?"
-                .to_owned(),
-        }
+            )
+        });
+        format!(
+            "Expanded uncertainty of the height of a point: U = {} (95 %, k = {COVERAGE}), as root mean \
+             square of {} points.{dominant}",
+            micrometres(self.expanded),
+            self.points,
+        )
     }
 
     /// Returns the table for a terminal.
@@ -174,20 +178,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn without_a_point_there_is_advice_and_no_negative_zero() {
-        let terms = Terms::of(&[], DVec3::Z);
-        assert!(
-            terms.verdict().contains("Look at the raw frames"),
-            "{}",
-            terms.verdict()
-        );
-        assert!(!terms.text().contains("-0.0"), "{}", terms.text());
+    fn without_a_valid_point_there_are_no_terms() {
+        assert_eq!(Terms::of(&[], DVec3::Z), None);
+        assert_eq!(Terms::of(&[vec![], vec![]], DVec3::Z), None);
     }
 
     #[test]
     fn every_term_has_a_remedy() {
-        for term in Terms::of(&[], DVec3::Z).terms {
-            assert!(!remedy(term.name).is_empty(), "{}", term.name);
+        for (name, _) in NOISE {
+            assert!(!remedy(name).is_empty(), "{name}");
         }
+        assert!(!remedy(CALIBRATION).is_empty(), "{CALIBRATION}");
     }
 }

@@ -149,7 +149,6 @@ fn scenes_that_cannot_be_measured_are_refused_in_words() {
             "\"surface 1\", \"surface 2\"",
         ),
         ("[render]", "[scan]\npitch = \"1 nm\"\n[render]", "pitch"),
-        ("\"5 mW\"", "\"1e-9 mW\"", "no valid point"),
         ("frames = 4", "frames = 4\ncrop = [0, 0, 9, 9]", "`crop`"),
     ] {
         let folder = written(&SCAN.replace(good, bad));
@@ -165,6 +164,80 @@ fn scenes_that_cannot_be_measured_are_refused_in_words() {
     let output = run(folder.path(), "triangulate a.toml --frames 2..9");
     assert_code(&output, 2);
     assert!(message(&output).contains("0..3"), "{}", message(&output));
+}
+
+#[test]
+fn without_a_valid_point_there_is_no_number() {
+    let folder = written(SCAN);
+    assert_code(&run(folder.path(), "triangulate a.toml"), 0);
+    for (exposure, frames, parts) in [
+        ("1 ns", "0..3", ["no line was found", "raise `exposure`"]),
+        ("5 ms", "0..3", ["saturated pixels", "lower `exposure`"]),
+        ("1 ns", "2", ["no line was found", "raise `exposure`"]),
+    ] {
+        fs::write(
+            folder.path().join("a.toml"),
+            SCAN.replace("0.1 ms", exposure),
+        )
+        .expect("written");
+        let output = run(
+            folder.path(),
+            &format!("triangulate a.toml --frames {frames}"),
+        );
+        assert_code(&output, 3);
+        let told = message(&output);
+        assert!(
+            parts.iter().all(|part| told.contains(part)),
+            "{exposure}: {told}"
+        );
+        let table = text(&output.stdout);
+        assert!(
+            !table.contains("0.000") && !table.contains("expanded"),
+            "{table}"
+        );
+
+        let results = folder.path().join("out/a");
+        let found = files(&results);
+        for name in [
+            "raw_0002.png",
+            "report.html",
+            "points.ply",
+            "profile_0000.csv",
+        ] {
+            assert!(found.iter().any(|file| file == name), "{name}: {found:?}");
+        }
+        for name in [
+            "height.png",
+            "height.npy",
+            "height_map.svg",
+            "terms.png",
+            "profile.svg",
+        ] {
+            assert!(
+                !found.iter().any(|file| file == name),
+                "{name} of before: {found:?}"
+            );
+        }
+        let page = fs::read_to_string(results.join("report.html")).expect("the report");
+        assert!(
+            page.contains("Nothing was measured") && !page.contains("U ="),
+            "{page}"
+        );
+        let record = record(&results);
+        let uncertainty = &record["uncertainty"];
+        for key in ["combined", "expanded"] {
+            assert!(uncertainty[key].is_null(), "{key}: {uncertainty}");
+        }
+        assert_eq!(uncertainty["points"], 0, "{uncertainty}");
+        assert!(
+            uncertainty["reason"]
+                .as_str()
+                .is_some_and(|reason| told.contains(reason)),
+            "{uncertainty}"
+        );
+        assert!(record["average"]["effective_frames"].is_null(), "{record}");
+        assert!(record["height_map"].is_null(), "{record}");
+    }
 }
 
 #[test]

@@ -1,0 +1,131 @@
+//! Why a measurement has no valid point, and what to change.
+
+use tem00_triangulation::Validity;
+
+use super::record::FrameRecord;
+
+/// Why nothing was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Refusal {
+    pub(super) why: String,
+    pub(super) advice: &'static str,
+}
+
+impl Refusal {
+    /// Returns why no point of the frames is valid.
+    pub(super) fn of(frames: &[FrameRecord]) -> Self {
+        let points: usize = frames.iter().map(|frame| frame.points).sum();
+        let count = |reason: &Reason| -> usize {
+            let counts = frames
+                .iter()
+                .map(|frame| frame.not_valid.get(reason.0.name()));
+            counts.flatten().sum()
+        };
+        let most = REASONS
+            .iter()
+            .map(|reason| (count(reason), reason))
+            .max_by_key(|(count, _)| *count)
+            .filter(|(count, _)| *count > 0);
+        match most {
+            Some((count, (_, what, advice))) => Self {
+                why: format!("none of {points} points of the line is valid: {count} {what}"),
+                advice,
+            },
+            None => Self::without_points(frames),
+        }
+    }
+
+    fn without_points(frames: &[FrameRecord]) -> Self {
+        let peak = frames.iter().map(|frame| frame.peak).max().unwrap_or(0);
+        let is_saturated = frames.iter().any(|frame| frame.saturated_pixels > 0);
+        Self {
+            why: format!("no line was found; the largest grey value is {peak} DN"),
+            advice: if is_saturated {
+                BRIGHT
+            } else {
+                "look at the raw frames: is the line in the image? If it is too dark, raise `exposure` in \
+                 [sensor] or `power` in [[laser]]"
+            },
+        }
+    }
+}
+
+/// What makes a point doubtful, in words, and what helps.
+type Reason = (Validity, &'static str, &'static str);
+
+const BRIGHT: &str = "pixels are saturated: lower `exposure` in [sensor] or `power` in [[laser]]";
+
+const REASONS: [Reason; 6] = [
+    (Validity::Saturated, "lie on saturated pixels", BRIGHT),
+    (
+        Validity::Cut,
+        "lie closer to an edge of the image than half a window",
+        "lower `window` in [detector], or show more of the part",
+    ),
+    (
+        Validity::Crowded,
+        "lie within a window of another line",
+        "lower `window` or `most_lines` in [detector]",
+    ),
+    (
+        Validity::Sliver,
+        "are slivers of a line at the edge of the part, or noise",
+        "look at the raw frames: does the line fall on the part?",
+    ),
+    (
+        Validity::Failed,
+        "have no estimate of their place",
+        "try another `method` or a wider `window` in [detector]",
+    ),
+    (
+        Validity::Missing,
+        "have pixels without a value",
+        "look at the raw frames",
+    ),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(points: usize, not_valid: &[(&'static str, usize)]) -> FrameRecord {
+        FrameRecord {
+            number: 0,
+            file: String::new(),
+            points,
+            valid: 0,
+            saturated: 0,
+            not_valid: not_valid.iter().copied().collect(),
+            saturated_pixels: 0,
+            peak: 90,
+            mean_width: None,
+        }
+    }
+
+    #[test]
+    fn the_most_frequent_reason_is_told_with_what_helps() {
+        let frames = [
+            frame(5, &[("saturated", 2), ("cut", 3)]),
+            frame(4, &[("saturated", 4)]),
+        ];
+        let found = Refusal::of(&frames);
+        assert!(
+            found.why.contains("9 points") && found.why.contains("6 lie on saturated pixels"),
+            "{found:?}"
+        );
+        assert!(found.advice.contains("lower `exposure`"), "{found:?}");
+        let dark = Refusal::of(&[frame(0, &[])]);
+        assert!(
+            dark.why.contains("90 DN") && dark.advice.contains("raise `exposure`"),
+            "{dark:?}"
+        );
+    }
+
+    #[test]
+    fn every_reason_has_its_words() {
+        for frames in REASONS.map(|(validity, ..)| [frame(1, &[(validity.name(), 1)])]) {
+            let found = Refusal::of(&frames);
+            assert!(found.why.contains("1 points of the line"), "{found:?}");
+        }
+    }
+}

@@ -33,6 +33,12 @@ use self::{
 /// The lines of an image: for each column, or row, the points on them.
 type Found = [Vec<LinePoint>];
 
+/// Finds the lines of all images, and prints their summary.
+///
+/// # Errors
+///
+/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or, with all
+/// files written, if no image has a valid point.
 pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure> {
     let settings = settings(args)?;
     let calibration = args
@@ -72,7 +78,20 @@ pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure>
             )
         })
     };
-    shown.map_err(|error| Failure::stdout(&error))
+    shown.map_err(|error| Failure::stdout(&error))?;
+    if summaries.iter().any(ImageSummary::has_valid_points) {
+        return Ok(());
+    }
+    Err(Failure::no_result(
+        match &summaries[..] {
+            [_] => "the image has no point of a line that is valid".to_owned(),
+            several => format!(
+                "none of the {} images has a point of a line that is valid",
+                several.len()
+            ),
+        },
+        "the notes above tell why; the pictures show what was found",
+    ))
 }
 
 fn settings(args: &LinesArgs) -> Result<DetectorSettings, Failure> {

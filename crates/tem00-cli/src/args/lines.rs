@@ -11,7 +11,7 @@ use tem00_triangulation::{DetectorSettings, LineMethod};
 /// left to right, and each column tells its place (with --rows from top to bottom). For every image
 /// there is a table of all points and a picture of the image with the lines drawn on it; the summary
 /// on standard output says how much of each line was found, how much it scatters from column to column
-/// and how wide it is.
+/// and how wide it is. If no image has a valid point of a line, the exit code is 3.
 #[derive(Args, Debug)]
 #[command(after_help = LINES_EXAMPLES)]
 pub(crate) struct LinesArgs {

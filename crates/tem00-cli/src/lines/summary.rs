@@ -122,6 +122,11 @@ impl ImageSummary {
         }
     }
 
+    /// Returns whether any of its lines can be trusted anywhere.
+    pub(super) fn has_valid_points(&self) -> bool {
+        self.lines.iter().any(|line| line.valid > 0)
+    }
+
     /// Returns the rows of the table: one per line, or one that says that there is none.
     pub(super) fn rows(&self) -> Vec<Vec<String>> {
         if self.lines.is_empty() {

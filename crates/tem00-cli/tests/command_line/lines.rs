@@ -4,7 +4,7 @@ use std::{f64::consts::PI, fs, path::Path};
 
 use png::{BitDepth, ColorType, Encoder};
 
-use super::{files, folder, message, run, text};
+use super::{assert_code, files, folder, message, run, text};
 
 const SIZE: [usize; 2] = [60, 48];
 
@@ -165,8 +165,21 @@ fn several_images_get_a_table_each() {
 fn an_image_without_a_line_has_none() {
     let folder = folder();
     write_png(&folder.path().join("dark.png"), [40, 30], |_, _| 0);
+    let output = run(folder.path(), "lines dark.png --json");
+    assert_code(&output, 3);
+    let record: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(
+        record["images"][0]["lines"],
+        serde_json::json!([]),
+        "{record}"
+    );
     let output = run(folder.path(), "lines dark.png");
-    assert!(output.status.success(), "{}", message(&output));
+    assert_code(&output, 3);
+    assert!(
+        message(&output).contains("no point of a line"),
+        "{}",
+        message(&output)
+    );
     assert!(
         text(&output.stdout).contains("none"),
         "{}",
@@ -203,13 +216,15 @@ fn what_is_doubtful_is_told_with_what_helps() {
         ("lines white.png", "pixels are saturated"),
     ] {
         let output = run(folder.path(), line);
-        assert!(output.status.success(), "{line}: {}", message(&output));
+        assert_code(&output, 3);
         assert!(
             message(&output).contains(part),
             "{line}: {}",
             message(&output)
         );
     }
+    // One image with a line is a result.
+    assert_code(&run(folder.path(), "lines dark.png a.png"), 0);
     let fine = run(folder.path(), "lines a.png");
     assert!(!message(&fine).contains("note"), "{}", message(&fine));
 }

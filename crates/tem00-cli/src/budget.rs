@@ -37,8 +37,9 @@ struct Answer {
     budget: Budget,
     /// What trials found, unless they were left out.
     trials: Option<Simulation>,
-    /// The heights that can be measured, and the combined standard uncertainty there, in metres.
-    over_range: Vec<(f64, f64)>,
+    /// The heights that can be measured, and the combined standard uncertainty there, in metres; none where
+    /// no line is found.
+    over_range: Vec<(f64, Option<f64>)>,
 }
 
 /// Why a set-up measures nothing.
@@ -155,13 +156,16 @@ fn tried(args: &BudgetArgs, setup: &Setup) -> Result<Simulation, Failure> {
 }
 
 /// Returns the combined standard uncertainty at heights over the measuring range.
-fn over_range(setup: &Setup) -> Vec<(f64, f64)> {
+fn over_range(setup: &Setup) -> Vec<(f64, Option<f64>)> {
     const HEIGHTS: u32 = 24;
     let range = setup.measuring_range();
     let step = range.length() / f64::from(HEIGHTS);
     let heights = (0..=HEIGHTS).map(|i| range.low + f64::from(i) * step);
     heights
-        .filter_map(|height| Some((height, Budget::at(setup, height).ok()?.combined())))
+        .map(|height| {
+            let budget = Budget::at(setup, height).ok();
+            (height, budget.map(|budget| budget.combined()))
+        })
         .collect()
 }
 

@@ -10,7 +10,6 @@ mod units;
 use std::{
     io::Write,
     path::{Path, PathBuf},
-    time::Instant,
 };
 
 use tem00_triangulation::{
@@ -32,7 +31,6 @@ struct Design<'a> {
     outcome: DesignOutcome,
     /// The most set-ups that are listed.
     most: usize,
-    seconds: f64,
 }
 
 /// Searches, prints the best and writes the files.
@@ -74,7 +72,6 @@ impl<'a> Design<'a> {
             .map_err(|error| Failure::input(format!("{}: {error}", args.setup.display()), HELP))?;
         let bar = Progress::of(search.count() as u64, "set-ups");
         bar.name("searching".into());
-        let start = Instant::now();
         let outcome = search
             .run(|done| bar.advance(done), interrupt::flag())
             .map_err(|error| match error {
@@ -87,7 +84,6 @@ impl<'a> Design<'a> {
             search,
             outcome,
             most: args.best.into(),
-            seconds: start.elapsed().as_secs_f64(),
         })
     }
 

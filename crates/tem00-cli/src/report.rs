@@ -1,5 +1,6 @@
 //! Reports: one HTML file that opens offline.
 
+mod cloud;
 mod escape;
 mod style;
 mod table;
@@ -10,17 +11,19 @@ use std::{io::Write as _, path::Path};
 use base64::{Engine, engine::general_purpose::STANDARD};
 
 use self::escape::escaped;
-pub(crate) use self::table::Table;
+pub(crate) use self::{cloud::Cloud, table::Table};
 use crate::{atomic::write_atomically, failure::Failure};
 
 /// A report in the making: one HTML file with everything in it, for screens and paper.
 ///
-/// It refers to nothing outside of itself: no scripts, no styles, no fonts, no pictures. Whatever it is
-/// given as text appears as that text.
+/// It refers to nothing outside of itself: scripts, styles, fonts or pictures; a browser is told to load
+/// none. Whatever it is given as text appears as that text. The same calls give the same bytes.
 #[derive(Clone, Debug)]
 pub(crate) struct Report {
     title: String,
     body: String,
+    /// Whether there are points to turn.
+    turns: bool,
 }
 
 impl Report {
@@ -29,6 +32,7 @@ impl Report {
         let mut report = Self {
             title: title.to_owned(),
             body: String::new(),
+            turns: false,
         };
         report.element("h1", title);
         report
@@ -64,19 +68,48 @@ impl Report {
         table.write(&mut self.body);
     }
 
-    /// Adds a drawing with its caption. `svg` is the text of an SVG file of this program.
-    pub(crate) fn drawing(&mut self, svg: &str, caption: &str) {
-        // A declaration may only begin a file.
-        let start = svg.find("<svg").unwrap_or(svg.len());
-        self.figure(&svg[start..], caption);
+    /// Adds drawings with their captions, side by side where there is room.
+    pub(crate) fn drawings<'a>(&mut self, drawings: impl IntoIterator<Item = (&'a str, &'a str)>) {
+        self.body.push_str("<div class=\"drawings\">\n");
+        for (svg, caption) in drawings {
+            self.drawing(svg, caption);
+        }
+        self.body.push_str("</div>\n");
     }
 
-    /// Adds a picture with its caption. `png` is the content of a PNG file.
-    pub(crate) fn picture(&mut self, png: &[u8], caption: &str) {
+    /// Adds a drawing with its caption. `svg` is the text of an SVG file of this program.
+    pub(crate) fn drawing(&mut self, svg: &str, caption: &str) {
+        let label = format!("<svg role=\"img\" aria-label=\"{}\"", escaped(caption));
+        // A declaration may only begin a file.
+        let start = svg.find("<svg").unwrap_or(svg.len());
+        self.figure(&svg[start..].replacen("<svg", &label, 1), caption);
+    }
+
+    /// Adds points in space that the reader may turn, if there are any.
+    pub(crate) fn cloud(&mut self, cloud: Cloud<'_>) {
+        if let Some((svg, caption)) = cloud.draw() {
+            self.turns = true;
+            self.drawing(&svg, &caption);
+        }
+    }
+
+    /// Adds a picture with its caption, a small one enlarged. `png` is the content of a PNG file of so many
+    /// columns.
+    pub(crate) fn picture(&mut self, png: &[u8], columns: usize, caption: &str) {
+        /// About the width of the page.
+        const WIDTH: usize = 900;
         let data = STANDARD.encode(png);
         let text = escaped(caption);
+        let shown = (WIDTH / columns.max(1)).max(1) * columns;
+        let class = if shown > columns {
+            " class=\"enlarged\""
+        } else {
+            ""
+        };
         self.figure(
-            &format!("<img alt=\"{text}\" src=\"data:image/png;base64,{data}\">"),
+            &format!(
+                "<img{class} width=\"{shown}\" alt=\"{text}\" src=\"data:image/png;base64,{data}\">"
+            ),
             caption,
         );
     }
@@ -93,11 +126,18 @@ impl Report {
     pub(crate) fn html(&self) -> String {
         let (title, style, body) = (escaped(&self.title), style::CSS, &self.body);
         let version = env!("CARGO_PKG_VERSION");
+        let dark = style::dark();
+        let script = if self.turns {
+            format!("<script>\n{}</script>\n", cloud::SCRIPT)
+        } else {
+            String::new()
+        };
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>\n{body}\
-             <footer>tem00 {version}</footer>\n</main>\n</body>\n</html>\n"
+             <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; \
+             style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <title>{title}</title>\n<style>\n{style}{dark}</style>\n</head>\n<body>\n<main>\n{body}\
+             <footer>tem00 {version}</footer>\n</main>\n{script}</body>\n</html>\n"
         )
     }
 

@@ -1,16 +1,19 @@
 //! The drawings of a budget.
 
 use super::Answer;
-use crate::plot::{Bars, Chart, Drawing};
+use crate::plot::{
+    Bars, Chart, Colour, Drawing,
+    colours::{FORMULAS, TRIALS},
+};
 
 const METRES_TO_MICROMETRES: f64 = 1e6;
 const METRES_TO_MILLIMETRES: f64 = 1e3;
 
 /// What each source contributes, by formulas and, unless they were left out, by trials.
 pub(super) fn contributions(answer: &Answer) -> Drawing {
-    let series: &[&str] = match answer.trials {
-        Some(_) => &["formulas", "trials"],
-        None => &["formulas"],
+    let series: &[(&str, Colour)] = match answer.trials {
+        Some(_) => &[("formulas", FORMULAS), ("trials", TRIALS)],
+        None => &[("formulas", FORMULAS)],
     };
     let label = "standard uncertainty of a height (µm)";
     let mut bars = Bars::new("What makes a height uncertain", label, series);
@@ -38,13 +41,14 @@ pub(super) fn over_range(answer: &Answer) -> Drawing {
     let points = heights.map(|&(height, uncertainty)| {
         (
             height * METRES_TO_MILLIMETRES,
-            uncertainty * METRES_TO_MICROMETRES,
+            uncertainty.map_or(f64::NAN, |found| found * METRES_TO_MICROMETRES),
         )
     });
     Chart::new(
         "Uncertainty over the measuring range",
         ["height (mm)", "standard uncertainty (µm)"],
     )
-    .line("combined", points.collect::<Vec<_>>())
+    .line("", points.collect::<Vec<_>>())
+    .coloured(FORMULAS)
     .draw()
 }

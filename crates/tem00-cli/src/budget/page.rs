@@ -13,11 +13,11 @@ pub(super) fn report(findings: &Findings<'_>, drawings: &[String]) -> Report {
         ),
         Err(refusal) => verdicts(&mut report, &words::refusal(refusal)),
     }
-    report.heading("The set-up");
-    report.facts(&words::facts(findings));
     if let Ok(answer) = &findings.answer {
         budget(&mut report, answer, drawings);
     }
+    report.heading("The set-up");
+    report.facts(&words::facts(findings));
     report.heading("Files");
     report.file(&findings.file.display().to_string(), &findings.text);
     report
@@ -47,9 +47,8 @@ fn budget(report: &mut Report, answer: &Answer, drawings: &[String]) {
          against the place without noise, those of all at once against the true place; ± is a standard \
          error.",
     );
-    for (drawing, caption) in drawings.iter().zip(CAPTIONS) {
-        report.drawing(drawing, caption);
-    }
+    let drawings = drawings.iter().map(String::as_str);
+    report.drawings(drawings.zip(CAPTIONS));
 }
 
 fn table(answer: &Answer) -> Table {

@@ -9,14 +9,14 @@ use super::{
     Design,
     units::{self, MICROMETRES},
 };
-use crate::plot::{Bars, Chart, Drawing};
+use crate::plot::{
+    Bars, Chart, Drawing,
+    colours::{self, BROKEN, COMBINED, FRONT, KEPT, LESS, MORE},
+    is_drawn,
+};
 
 /// The most dots in a diagram.
 const MOST_DOTS: usize = 4_000;
-
-const FAINT: &str = "#b8bec6";
-const ALLOWED: &str = "#1f5fa8";
-const FRONT: &str = "#d2701a";
 
 /// A drawing with the name of its file and its caption.
 pub(super) struct Named {
@@ -45,16 +45,17 @@ fn trade_off(design: &Design<'_>) -> Named {
     let dots = |allowed: bool| {
         let candidates = design.outcome.candidates().iter();
         let kind = candidates.filter(move |candidate| candidate.broken.is_empty() == allowed);
-        let thinned = kind.filter(|candidate| is_drawn(candidate.index, design.search.count()));
+        let thinned =
+            kind.filter(|candidate| is_drawn(candidate.index, design.search.count(), MOST_DOTS));
         thinned.filter_map(Candidate::possible).map(place)
     };
     let front = design.outcome.front(depth);
     let labels = [x.label(depth.name()), y.label(objective.name())];
     let chart = Chart::new("What depth of field costs", [&labels[0], &labels[1]])
         .dots("break a constraint", dots(false))
-        .coloured(FAINT)
+        .coloured(BROKEN)
         .dots("keep every constraint", dots(true))
-        .coloured(ALLOWED)
+        .coloured(KEPT)
         .line(
             "front",
             front
@@ -73,14 +74,6 @@ fn trade_off(design: &Design<'_>) -> Named {
     }
 }
 
-/// Returns whether a set-up is among the dots of a diagram: all are if they are few, and of many a part
-/// that is even over all parameters, which multiples of the golden ratio are.
-#[expect(clippy::cast_precision_loss, reason = "far below 2⁵²")]
-fn is_drawn(index: usize, count: usize) -> bool {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    (GOLDEN * index as f64).fract() * count as f64 <= MOST_DOTS as f64
-}
-
 /// The uncertainty over one parameter, by source, the others as in the set-up that is shown.
 fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
     let parameter = sweep.parameter();
@@ -88,8 +81,10 @@ fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
     let label = unit.label(parameter.name());
     let slice = slice(design, parameter);
     let curve = |value: &dyn Fn(&DesignFigures) -> f64| -> Vec<(f64, f64)> {
-        let point =
-            |(x, figures): &(f64, &DesignFigures)| (unit.of(*x), MICROMETRES.of(value(figures)));
+        let height = |figures: &DesignFigures| MICROMETRES.of(value(figures));
+        let point = |(x, figures): &(f64, Option<&DesignFigures>)| {
+            (unit.of(*x), figures.map_or(f64::NAN, height))
+        };
         slice.iter().map(point).collect()
     };
     let mut chart = Chart::new(
@@ -97,9 +92,11 @@ fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
         [&label, "standard uncertainty (µm)"],
     )
     .line("combined", curve(&|figures| figures.uncertainty))
-    .coloured("#202020");
+    .coloured(COMBINED);
     for source in sources(&slice) {
-        chart = chart.line(source.name(), curve(&|figures| figures_of(figures, source)));
+        chart = chart
+            .line(source.name(), curve(&|figures| figures_of(figures, source)))
+            .coloured(colours::of_source(source));
     }
     let chart = if spacing(sweep) == Spacing::Logarithmic {
         chart.log_x()
@@ -117,8 +114,12 @@ fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
     }
 }
 
-/// Returns the set-ups that differ from the one shown in this parameter alone, in its order.
-fn slice<'a>(design: &'a Design<'_>, parameter: DesignParameter) -> Vec<(f64, &'a DesignFigures)> {
+/// Returns the set-ups that differ from the one shown in this parameter alone, in its order; those that
+/// are not possible have no figures.
+fn slice<'a>(
+    design: &'a Design<'_>,
+    parameter: DesignParameter,
+) -> Vec<(f64, Option<&'a DesignFigures>)> {
     let Ok(shown) = design.shown() else {
         return Vec::new();
     };
@@ -128,20 +129,21 @@ fn slice<'a>(design: &'a Design<'_>, parameter: DesignParameter) -> Vec<(f64, &'
     };
     let candidates = design.outcome.candidates().iter().filter(same);
     let mut slice: Vec<_> = candidates
-        .filter_map(|candidate| Some((parameter.of(&candidate.description), candidate.possible()?)))
+        .map(|candidate| (parameter.of(&candidate.description), candidate.possible()))
         .collect();
     slice.sort_by(|a, b| a.0.total_cmp(&b.0));
     slice
 }
 
 /// Returns the sources that matter: those that are somewhere a hundredth of the combined uncertainty.
-fn sources(slice: &[(f64, &DesignFigures)]) -> Vec<UncertaintySource> {
-    let Some((_, first)) = slice.first() else {
+fn sources(slice: &[(f64, Option<&DesignFigures>)]) -> Vec<UncertaintySource> {
+    let possible = || slice.iter().filter_map(|(_, figures)| *figures);
+    let Some(first) = possible().next() else {
         return Vec::new();
     };
     let matters = |&source: &UncertaintySource| {
         let share = |figures: &DesignFigures| figures_of(figures, source) / figures.uncertainty;
-        slice.iter().any(|(_, figures)| share(figures) > 0.01)
+        possible().any(|figures| share(figures) > 0.01)
     };
     let sources = first.contributions.iter().map(|&(source, _)| source);
     sources.filter(matters).collect()
@@ -183,7 +185,7 @@ fn sensitivity(design: &Design<'_>, near: &[Neighbours]) -> Named {
     let mut bars = Bars::new(
         "What 10 % of a parameter changes",
         &format!("change of the {name} (%)"),
-        &["10 % less", "10 % more"],
+        &[("10 % less", LESS), ("10 % more", MORE)],
     );
     for neighbour in near {
         let changes = [&neighbour.less, &neighbour.more].map(|figures| change(figures.as_ref()));
@@ -196,26 +198,5 @@ fn sensitivity(design: &Design<'_>, near: &[Neighbours]) -> Named {
              parameter alone; without a bar, that is not possible or nothing changes."
         ),
         drawing: bars.draw(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn few_set_ups_are_all_drawn_and_of_many_an_even_part() {
-        assert!(
-            (0..MOST_DOTS).all(|index| is_drawn(index, MOST_DOTS)),
-            "few"
-        );
-        let count = 200_000;
-        // Of each tenth, as a parameter of ten values has them, a tenth: to a few by the discrepancy
-        // of the golden ratio, 1 + log₂ of the number.
-        for remainder in 0..10 {
-            let tenth = (0..count).filter(|index| index % 10 == remainder);
-            let drawn = tenth.filter(|&index| is_drawn(index, count)).count();
-            assert!(drawn.abs_diff(MOST_DOTS / 10) <= 18, "{remainder}: {drawn}");
-        }
     }
 }

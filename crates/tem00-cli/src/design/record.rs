@@ -25,7 +25,6 @@ pub(super) struct Record {
     nearest: Option<Value>,
     /// The numbers of the set-ups that trade uncertainty for depth of field.
     front: Vec<usize>,
-    seconds: f64,
 }
 
 impl Record {
@@ -52,7 +51,6 @@ impl Record {
                 .collect(),
             nearest: nearest.map(|found| candidate(design, found)),
             front: front.iter().map(|candidate| candidate.index).collect(),
-            seconds: design.seconds,
         }
     }
 

@@ -2,24 +2,28 @@
 
 use kuva::prelude::{BarPlot, Layout, Plot};
 
-use super::{Drawing, EMPTY, LEGEND, Panel, colour};
+use super::{Colour, Drawing, EMPTY, Panel, styled};
 
 /// Bars over categories, one bar per series in each.
 #[derive(Clone, Debug)]
 pub(crate) struct Bars {
     title: String,
     value_label: String,
-    series: Vec<String>,
+    series: Vec<(String, Colour)>,
     groups: Vec<(String, Vec<f64>)>,
 }
 
 impl Bars {
-    /// Starts bars of the series with the label of the axis of values; one series needs no name.
-    pub(crate) fn new(title: &str, value_label: &str, series: &[&str]) -> Self {
+    /// Starts bars of the series, each of a name and a colour, with the label of the axis of values; one
+    /// series needs no name.
+    pub(crate) fn new(title: &str, value_label: &str, series: &[(&str, Colour)]) -> Self {
         Self {
             title: title.to_owned(),
             value_label: value_label.to_owned(),
-            series: series.iter().copied().map(String::from).collect(),
+            series: series
+                .iter()
+                .map(|&(name, colour)| (name.to_owned(), colour))
+                .collect(),
             groups: Vec::new(),
         }
     }
@@ -41,11 +45,11 @@ impl Bars {
         let empty = self.groups.is_empty();
         let mut bars = BarPlot::new();
         for (name, values) in self.groups {
-            let coloured = (0..).map(colour);
-            bars = bars.with_group(name, values.into_iter().zip(coloured));
+            let colours = self.series.iter().map(|(_, colour)| colour.light);
+            bars = bars.with_group(name, values.into_iter().zip(colours));
         }
         if self.series.len() > 1 {
-            bars = bars.with_legend(self.series.iter().map(String::as_str).collect());
+            bars = bars.with_legend(self.series.iter().map(|(name, _)| name.as_str()).collect());
         }
         let plots = if empty {
             Vec::new()
@@ -55,9 +59,11 @@ impl Bars {
         let layout = if empty {
             Layout::new(EMPTY, EMPTY)
         } else {
-            Layout::auto_from_plots(&plots).with_legend_position(LEGEND)
+            Layout::auto_from_plots(&plots)
         };
-        let layout = layout.with_title(self.title).with_y_label(self.value_label);
+        let layout = styled(layout)
+            .with_title(self.title)
+            .with_y_label(self.value_label);
         (plots, layout.with_x_tick_rotate(-35.0))
     }
 }
@@ -65,12 +71,15 @@ impl Bars {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::colours::{FORMULAS, TRIALS};
 
     #[test]
     fn bars_show_their_words() {
-        let bars = Bars::new("contributions", "u (µm)", &["analytic", "Monte Carlo"]);
+        let series = [("analytic", FORMULAS), ("Monte Carlo", TRIALS)];
+        let bars = Bars::new("contributions", "u (µm)", &series);
         let bars = bars.group("speckle", &[3.0, 3.1]);
-        let svg = bars.group("shot noise", &[0.2, f64::NAN]).draw().svg();
+        let drawing = bars.group("shot noise", &[0.2, f64::NAN]).draw();
+        let svg = drawing.svg();
         for word in [
             "contributions",
             "u (µm)",
@@ -86,7 +95,7 @@ mod tests {
 
     #[test]
     fn no_bars_are_no_panic() {
-        let svg = Bars::new("nothing", "u (µm)", &[""]).draw().svg();
-        assert!(svg.contains("nothing"), "{svg}");
+        let drawing = Bars::new("nothing", "u (µm)", &[("", FORMULAS)]).draw();
+        assert!(drawing.svg().contains("nothing"), "{}", drawing.svg());
     }
 }

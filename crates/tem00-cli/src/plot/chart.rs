@@ -7,7 +7,7 @@ use kuva::prelude::{
     TickFormat,
 };
 
-use super::{Drawing, EMPTY, LEGEND, Panel, colour};
+use super::{Colour, Drawing, EMPTY, Panel, colours::COMBINED, styled};
 use crate::table::number;
 
 /// The largest number with a place on an axis: differences and squares of such are numbers still.
@@ -16,7 +16,7 @@ const LARGEST: f64 = 1e100;
 /// Points and lines over two axes, each linear or logarithmic.
 ///
 /// A point that has no place on its axes, because it is not finite, beyond 1e100 or not positive on a
-/// logarithmic axis, is left out.
+/// logarithmic axis, is left out, and breaks the line or the band that it is of.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
     title: String,
@@ -30,9 +30,9 @@ pub(crate) struct Chart {
 struct Series {
     name: String,
     mark: Mark,
-    colour: String,
-    /// x, y and, for bands, the upper y.
-    points: Vec<[f64; 3]>,
+    colour: Colour,
+    /// The pieces between points without a place: x, y and, for bands, the upper y.
+    pieces: Vec<Vec<[f64; 3]>>,
 }
 
 /// How a series is drawn.
@@ -85,10 +85,10 @@ impl Chart {
         self
     }
 
-    /// Draws the series added last in a colour of CSS.
-    pub(crate) fn coloured(mut self, colour: &str) -> Self {
+    /// Draws the series added last in a colour.
+    pub(crate) fn coloured(mut self, colour: Colour) -> Self {
         if let Some(series) = self.series.last_mut() {
-            colour.clone_into(&mut series.colour);
+            series.colour = colour;
         }
         self
     }
@@ -118,21 +118,21 @@ impl Chart {
 
     pub(super) fn panel(self) -> Panel {
         let log = self.log;
-        let legend = if self.legend_inside {
-            LegendPosition::InsideTopRight
-        } else {
-            LEGEND
-        };
         let mut series = self.series;
         series.iter_mut().for_each(|series| series.keep_places(log));
-        series.retain(|series| !series.points.is_empty());
+        series.retain(|series| !series.pieces.is_empty());
         let extents = [0, 1].map(|axis| extent(&series, axis));
-        let plots: Vec<Plot> = series.iter().map(Series::plot).collect();
-        let mut layout = if plots.is_empty() {
+        let plots: Vec<Plot> = series.iter().flat_map(Series::plots).collect();
+        let mut layout = styled(if plots.is_empty() {
             Layout::new(EMPTY, EMPTY)
         } else {
-            Layout::auto_from_plots(&plots).with_legend_position(legend)
-        };
+            Layout::auto_from_plots(&plots)
+        });
+        if self.legend_inside {
+            layout = layout
+                .with_legend_position(LegendPosition::InsideTopRight)
+                .with_legend_box(true);
+        }
         if log[0] && !plots.is_empty() {
             let (low, high) = log_range(extents[0]);
             layout = layout
@@ -168,8 +168,8 @@ impl Chart {
         self.series.push(Series {
             name: name.to_owned(),
             mark,
-            colour: colour(self.series.len()).to_owned(),
-            points,
+            colour: COMBINED,
+            pieces: vec![points],
         });
     }
 }
@@ -178,49 +178,71 @@ impl Series {
     /// Leaves out the points that have no place on their axes.
     fn keep_places(&mut self, [log_x, log_y]: [bool; 2]) {
         let on_axis = |value: f64, log: bool| value.abs() <= LARGEST && (value > 0.0 || !log);
-        self.points.retain(|&[x, low, high]| {
+        let has_place = |&[x, low, high]: &[f64; 3]| {
             on_axis(x, log_x) && on_axis(low, log_y) && on_axis(high, log_y)
-        });
+        };
+        let pieces = self.pieces.iter();
+        let pieces = pieces.flat_map(|points| points.split(|point| !has_place(point)));
+        let pieces = pieces.filter(|piece| !piece.is_empty());
+        self.pieces = match self.mark {
+            Mark::Line | Mark::Dashed | Mark::Band => pieces.map(<[_]>::to_vec).collect(),
+            Mark::Dots | Mark::Crosses => {
+                let points: Vec<_> = pieces.flatten().copied().collect();
+                Vec::from_iter((!points.is_empty()).then_some(points))
+            }
+        };
     }
 
-    fn plot(&self) -> Plot {
+    /// Returns what is drawn of each piece; only the first is in the legend.
+    fn plots(&self) -> Vec<Plot> {
+        let pieces = self.pieces.iter().enumerate();
+        let names = pieces.map(|(index, piece)| (if index == 0 { &*self.name } else { "" }, piece));
+        names.map(|(name, piece)| self.plot(name, piece)).collect()
+    }
+
+    fn plot(&self, name: &str, piece: &[[f64; 3]]) -> Plot {
         match self.mark {
-            Mark::Line => self.curve(LineStyle::Solid),
-            Mark::Dashed => self.curve(LineStyle::Dashed),
-            Mark::Dots => self.scatter(MarkerShape::Circle, 2.5),
-            Mark::Crosses => self.scatter(MarkerShape::Cross, 3.0),
-            Mark::Band => self.area(),
+            Mark::Band => self.area(piece),
+            Mark::Crosses => self.scatter(name, piece, MarkerShape::Cross, 3.0),
+            Mark::Dots => self.scatter(name, piece, MarkerShape::Circle, 2.5),
+            // No line goes through a point alone.
+            _ if piece.len() == 1 => self.scatter(name, piece, MarkerShape::Circle, 1.5),
+            Mark::Line => self.curve(name, piece, LineStyle::Solid),
+            Mark::Dashed => self.curve(name, piece, LineStyle::Dashed),
         }
     }
 
-    fn places(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.points.iter().map(|&[x, y, _]| (x, y))
-    }
-
-    fn curve(&self, style: LineStyle) -> Plot {
-        let plot = LinePlot::new().with_data(self.places());
+    fn curve(&self, name: &str, piece: &[[f64; 3]], style: LineStyle) -> Plot {
+        let plot = LinePlot::new().with_data(places(piece));
         let plot = plot.with_line_style(style).with_stroke_width(1.4);
-        let plot = plot.with_color(&self.colour);
-        named(&self.name, plot, LinePlot::with_legend).into()
+        let plot = plot.with_color(self.colour.light);
+        named(name, plot, LinePlot::with_legend).into()
     }
 
-    fn scatter(&self, marker: MarkerShape, size: f64) -> Plot {
-        let plot = ScatterPlot::new().with_data(self.places());
+    fn scatter(&self, name: &str, piece: &[[f64; 3]], marker: MarkerShape, size: f64) -> Plot {
+        let plot = ScatterPlot::new().with_data(places(piece));
         let plot = plot.with_marker(marker).with_size(size);
-        let plot = plot.with_color(&self.colour);
-        named(&self.name, plot, ScatterPlot::with_legend).into()
+        let plot = plot.with_color(self.colour.light);
+        named(name, plot, ScatterPlot::with_legend).into()
     }
 
-    fn area(&self) -> Plot {
-        let column = |index: usize| self.points.iter().map(move |point| point[index]);
+    fn area(&self, piece: &[[f64; 3]]) -> Plot {
+        let column = |index: usize| piece.iter().map(move |point| point[index]);
         let plot = BandPlot::new(column(0), column(1), column(2));
-        plot.with_color(&self.colour).with_opacity(0.25).into()
+        let plot = plot.with_color(self.colour.light).with_opacity(0.25);
+        plot.into()
     }
+}
+
+fn places(piece: &[[f64; 3]]) -> impl Iterator<Item = (f64, f64)> {
+    piece.iter().map(|&[x, y, _]| (x, y))
 }
 
 /// Returns the least and the greatest number of all points on a logarithmic axis.
 fn extent(series: &[Series], axis: usize) -> (f64, f64) {
-    let points = series.iter().flat_map(|series| &series.points);
+    let points = series
+        .iter()
+        .flat_map(|series| series.pieces.iter().flatten());
     let numbers = points.flat_map(|point| if axis == 0 { &point[..1] } else { &point[1..] });
     numbers.fold((f64::MAX, f64::MIN_POSITIVE), |(low, high), &number| {
         (low.min(number), high.max(number))
@@ -257,7 +279,7 @@ mod tests {
     use super::*;
 
     fn svg(chart: Chart) -> String {
-        chart.draw().svg()
+        chart.draw().svg().to_owned()
     }
 
     fn chart() -> Chart {
@@ -298,6 +320,56 @@ mod tests {
             2,
             "two points have a place"
         );
+    }
+
+    /// Returns the ends of the strokes of a drawing: the first and the last x of each.
+    fn strokes(svg: &str) -> Vec<[f64; 2]> {
+        let paths = svg.split("<path d=\"").skip(1);
+        let paths = paths.filter_map(|rest| Some(rest.split_once('"')?.0));
+        let ends = paths.map(|path| {
+            let number = |word: &str| word.parse::<f64>().ok();
+            let numbers: Vec<_> = path.split([' ', 'M', 'L']).filter_map(number).collect();
+            [numbers[0], numbers[numbers.len() - 2]]
+        });
+        ends.collect()
+    }
+
+    #[test]
+    fn a_missing_point_breaks_a_curve() {
+        let curve = |gap: f64| {
+            let height = move |x: f64| if (x - gap).abs() < 1.5 { f64::NAN } else { x };
+            (0..20_u8).map(move |x| (f64::from(x), height(f64::from(x))))
+        };
+        for gap in [f64::INFINITY, 9.0] {
+            let text = svg(chart()
+                .line("u", curve(gap))
+                .coloured(super::super::colours::UNCERTAINTY));
+            let found = strokes(&text);
+            assert_eq!(found.len(), if gap.is_finite() { 2 } else { 1 }, "{text}");
+            if let [left, right] = found[..] {
+                // Of 19 steps, three have no line: from 7 to 11 there is none.
+                let step = (right[1] - left[0]) / 19.0;
+                assert!(
+                    (right[0] - left[1] - 4.0 * step).abs() < 0.1 * step,
+                    "{found:?}"
+                );
+            }
+            assert_eq!(text.matches(">u</text>").count(), 1, "once in the legend");
+        }
+        let bands = svg(chart().band((0..9_u8).map(|x| {
+            let x = f64::from(x);
+            (x, if (x - 4.0).abs() < 0.5 { f64::NAN } else { x }, x + 1.0)
+        })));
+        assert_eq!(strokes(&bands).len(), 2, "{bands}");
+        let alone = [(0.0, 1.0), (1.0, f64::NAN), (2.0, 1.0), (3.0, 2.0)];
+        let text = svg(chart().line("", alone));
+        assert_eq!(text.matches("<circle").count(), 1, "a point alone is a dot");
+    }
+
+    #[test]
+    fn a_chart_scales() {
+        let text = svg(chart().line("u", [(0.0, 1.0), (1.0, 2.0)]));
+        assert!(text.starts_with("<svg viewBox=\"0 0 480 "), "{text}");
     }
 
     #[test]

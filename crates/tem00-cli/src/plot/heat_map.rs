@@ -5,13 +5,13 @@ use std::sync::Arc;
 use kuva::prelude::{ColorMap, Heatmap, Layout, Plot};
 use tem00_numerics::Grid;
 
-use super::{Drawing, EMPTY, Panel};
+use super::{Drawing, EMPTY, Panel, styled};
 
 /// The most cells that are drawn along an axis.
 const MOST_CELLS: usize = 200;
 
 /// The colour of what has no value.
-const HOLE: &str = "#ffffff";
+pub(super) const HOLE: &str = "#ffffff";
 
 /// Values over a plane, as colours beside a scale; a value that is not finite is a hole.
 ///
@@ -26,8 +26,19 @@ pub(crate) struct HeatMap<'a> {
     pub(crate) ranges: [(f64, f64); 2],
     /// Whether both axes are lengths: they get one scale, and circles are circles.
     pub(crate) to_scale: bool,
+    /// What the values are: each quantity has colours of its own.
+    pub(crate) scale: Scale,
     /// The values; the first row is at the *bottom*, where the axis up begins.
     pub(crate) values: &'a Grid<f32>,
+}
+
+/// The colours of a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scale {
+    /// Viridis.
+    Height,
+    /// Magma.
+    Uncertainty,
 }
 
 impl HeatMap<'_> {
@@ -42,7 +53,9 @@ impl HeatMap<'_> {
         let [x, y] = self.ranges;
         let spans = [x, y].iter().all(|(from, to)| to - from > 0.0);
         let (plots, layout) = if finite && spans {
-            let mut map = Heatmap::new().with_data(rows).with_color_map(colours());
+            let mut map = Heatmap::new()
+                .with_data(rows)
+                .with_color_map(self.scale.colours());
             (map.cell_size, map.x_range, map.y_range) = (1.0, Some(x), Some(y));
             let plots = vec![Plot::from(map)];
             let layout = Layout::auto_from_plots(&plots);
@@ -50,7 +63,9 @@ impl HeatMap<'_> {
         } else {
             (Vec::new(), Layout::new(EMPTY, EMPTY))
         };
-        let layout = layout.with_title(self.title).with_x_label(self.labels[0]);
+        let layout = styled(layout)
+            .with_title(self.title)
+            .with_x_label(self.labels[0]);
         let layout = layout.with_y_label(self.labels[1]);
         let to_scale = self.to_scale && !plots.is_empty();
         let layout = if to_scale {
@@ -80,15 +95,26 @@ impl HeatMap<'_> {
     }
 }
 
-/// Viridis, and a colour of its own for holes.
-fn colours() -> ColorMap {
-    ColorMap::Custom(Arc::new(|value: f64| {
-        if value.is_finite() {
-            ColorMap::Viridis.map(value)
-        } else {
-            HOLE.to_owned()
-        }
-    }))
+impl Scale {
+    /// Returns the colours, and one of its own for holes.
+    fn colours(self) -> ColorMap {
+        let colours = match self {
+            Self::Height => ColorMap::Viridis,
+            Self::Uncertainty => ColorMap::Magma,
+        };
+        ColorMap::Custom(Arc::new(move |value: f64| {
+            if value.is_finite() {
+                colours.map(value)
+            } else {
+                HOLE.to_owned()
+            }
+        }))
+    }
+}
+
+/// Returns the colour of a height, from 0 for the least to 1 for the greatest.
+pub(crate) fn height_colour(height: f64) -> String {
+    ColorMap::Viridis.map(height)
 }
 
 /// Returns the mean of the finite values of a block, or the NaN of 0 / 0, a hole, without any.
@@ -111,6 +137,7 @@ mod tests {
             labels: ["x (mm)", "frame"],
             ranges: [(-5.0, 5.0), (0.0, 10.0)],
             to_scale: false,
+            scale: Scale::Height,
             values,
         }
     }
@@ -133,7 +160,8 @@ mod tests {
     #[test]
     fn holes_have_a_colour_of_their_own() {
         let values = Grid::from_fn(2, 2, |x, y| if x + y == 0 { f32::NAN } else { 1.0 });
-        let svg = map(&values).draw().svg();
+        let drawing = map(&values).draw();
+        let svg = drawing.svg();
         assert!(
             svg.contains("height (mm)") && svg.contains("frame"),
             "{svg}"
@@ -143,7 +171,39 @@ mod tests {
 
     #[test]
     fn a_map_of_holes_only_has_axes_all_the_same() {
-        let svg = map(&Grid::from_fn(2, 2, |_, _| f32::NAN)).draw().svg();
+        let drawing = map(&Grid::from_fn(2, 2, |_, _| f32::NAN)).draw();
+        let svg = drawing.svg();
         assert!(svg.contains("x (mm)") && !svg.contains("NaN"), "{svg}");
+    }
+
+    /// Returns the colours of the pixels of the picture in a drawing, row by row from the top.
+    fn pixels(svg: &str) -> Vec<Vec<[u8; 4]>> {
+        use base64::{Engine, engine::general_purpose::STANDARD};
+        let (_, data) = svg.split_once("base64,").expect("a picture");
+        let (data, _) = data.split_once('"').expect("it ends");
+        let bytes = STANDARD.decode(data).expect("base64");
+        let decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+        let mut reader = decoder.read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+        let info = reader.next_frame(&mut pixels).expect("an image");
+        let row = |row: &[u8]| row.chunks(4).map(|p| [p[0], p[1], p[2], p[3]]).collect();
+        pixels.chunks(info.line_size).map(row).collect()
+    }
+
+    #[test]
+    fn cells_are_a_picture_that_shows_the_first_row_below() {
+        // The ends of viridis after its authors: #440154 and #fde725.
+        let (low, high, hole) = ([0x44, 0x01, 0x54, 255], [0xfd, 0xe7, 0x25, 255], [0; 4]);
+        let values = Grid::from_fn(3, 2, |x, y| match (x, y) {
+            (1, 0) => f32::NAN,
+            (0, 0) => 1.0,
+            _ => 4.0,
+        });
+        let drawing = map(&values).draw();
+        let expected = vec![vec![high; 3], vec![low, hole, high]];
+        assert_eq!(pixels(drawing.svg()), expected);
+        let large = map(&Grid::from_fn(200, 200, |x, y| (x * y) as f32)).draw();
+        let length = large.svg().len();
+        assert!(length < 200_000, "{length} bytes for 40,000 cells");
     }
 }

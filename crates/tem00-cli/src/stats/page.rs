@@ -3,13 +3,10 @@
 use tem00_statistics::airy_autocovariance;
 
 use super::curves::{Bin, Curves, Frequency, Lag, chat};
-use crate::plot::{Chart, Drawing};
-
-/// What was measured, what theory says and what was fitted.
-const MEASURED: &str = "#1f5fa8";
-const MEASURED_TOO: &str = "#d2701a";
-const THEORY: &str = "#202020";
-const FITTED: &str = "#a03040";
+use crate::plot::{
+    Chart, Drawing,
+    colours::{ALONG_X, ALONG_Y, FITTED, MEASURED, THEORY},
+};
 
 /// The content of the page.
 #[derive(Clone, Copy, Debug)]
@@ -60,13 +57,11 @@ impl Page<'_> {
             |along: fn(&Lag) -> f64| lags.iter().map(move |lag| (f64_of(lag.lag), along(lag)));
         let axes = ["lag in pixels", "autocovariance"];
         let chart = Chart::new("Autocovariance", axes);
-        let chart = chart.dots("along x", cut(|lag| lag.x)).coloured(MEASURED);
-        let mut chart = chart
-            .crosses("along y", cut(|lag| lag.y))
-            .coloured(MEASURED_TOO);
+        let chart = chart.dots("along x", cut(|lag| lag.x)).coloured(ALONG_X);
+        let mut chart = chart.crosses("along y", cut(|lag| lag.y)).coloured(ALONG_Y);
         if let Some([x, y]) = self.curves.speckle_size {
             let end = lags.last().map_or(0.0, |lag| f64_of(lag.lag));
-            for (axis, size, colour) in [("x", x, MEASURED), ("y", y, MEASURED_TOO)] {
+            for (axis, size, colour) in [("x", x, ALONG_X), ("y", y, ALONG_Y)] {
                 let airy = sampled(end, |lag| airy_autocovariance(lag / size));
                 let label = format!("Airy, {axis}: {size:.2} pixels");
                 chart = chart.line(&label, airy).coloured(colour);
@@ -152,7 +147,8 @@ mod tests {
 
     #[test]
     fn a_page_has_three_panels_and_its_title() {
-        let svg = page(&curves()).draw().svg();
+        let drawing = page(&curves()).draw();
+        let svg = drawing.svg();
         for text in [
             "speckle &amp; &lt;light&gt;",
             "Histogram",
@@ -167,7 +163,8 @@ mod tests {
 
     #[test]
     fn a_page_without_a_size_has_no_theory_of_it() {
-        let svg = page(&curves()).draw().svg();
+        let drawing = page(&curves()).draw();
+        let svg = drawing.svg();
         assert!(!svg.contains("Airy") && !svg.contains("pupil"), "no size");
     }
 

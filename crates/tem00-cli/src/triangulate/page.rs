@@ -12,8 +12,11 @@ use crate::{
     image::write_rgb_png,
     lines::overlay::picture,
     output,
-    plot::{Bars, Chart, HeatMap},
-    report::{Report, Table},
+    plot::{
+        Bars, Chart, HeatMap, Scale,
+        colours::{HEIGHT, UNCERTAINTY},
+    },
+    report::{Cloud, Report, Table},
 };
 
 /// A report in the making.
@@ -21,12 +24,6 @@ pub(super) struct Page<'a> {
     pub(super) job: &'a Job<'a>,
     pub(super) measured: &'a Measured,
 }
-
-/// The colour of a profile.
-const POINTS: &str = "#d2701a";
-
-/// The colour of its uncertainty.
-const BAND: &str = "#1f5fa8";
 
 /// The diagrams of what was measured.
 const DRAWINGS: [&str; 5] = [
@@ -54,20 +51,19 @@ impl Page<'_> {
         match &self.measured.terms {
             Ok(terms) => {
                 report.verdict(&terms.verdict());
-                self.frame(&mut report)?;
+                if let Some(map) = &self.measured.map {
+                    self.maps(&mut report, map)?;
+                }
                 self.profile(&mut report)?;
                 self.budget(&mut report, terms)?;
             }
             Err(refusal) => {
                 report.verdict(&format!("Nothing was measured: {}.", refusal.why));
                 report.paragraph(&format!("What helps: {}.", refusal.advice));
-                self.frame(&mut report)?;
                 output::remove(&self.job.files.folder, &DRAWINGS, &["svg", "png"])?;
             }
         }
-        if let Some(map) = &self.measured.map {
-            self.maps(&mut report, map)?;
-        }
+        self.frame(&mut report)?;
         self.settings(&mut report);
         if let Ok(text) = std::fs::read_to_string(&self.job.args.scene) {
             report.file(&self.job.args.scene.display().to_string(), &text);
@@ -90,7 +86,7 @@ impl Page<'_> {
              piece of the line, magenta for points that are not valid.",
             frame.frame
         );
-        report.picture(&png, &caption);
+        report.picture(&png, marked.width(), &caption);
         let record = self
             .measured
             .frames
@@ -135,26 +131,26 @@ impl Page<'_> {
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         report.heading("Profile");
         let chart = Chart::new("Profile", ["along the line (mm)", "height (mm)"]);
-        let chart =
-            pieces(&points).fold(chart, |chart, piece| chart.band(band(piece)).coloured(BAND));
         let chart = chart
+            .band(with_gaps(&points).map(band))
+            .coloured(UNCERTAINTY)
             .dots("height ± 1.96 u", points.iter().map(|[x, z, _]| (*x, *z)))
-            .coloured(POINTS);
-        let svg = chart.draw().save(&self.job.files.folder, "profile")?;
-        report.drawing(
-            &svg,
-            "The middle profile, valid points, with their expanded uncertainty (95 %).",
-        );
+            .coloured(HEIGHT);
+        let profile = chart.draw().save(&self.job.files.folder, "profile")?;
         let chart = Chart::new(
             "Standard uncertainty of the profile",
             ["along the line (mm)", "u(height) (µm)"],
         )
-        .line(
-            "standard uncertainty",
-            points.iter().map(|[x, _, u]| (*x, *u)),
-        );
-        let svg = chart.draw().save(&self.job.files.folder, "uncertainty")?;
-        report.drawing(&svg, "The standard uncertainty of its heights.");
+        .line("", with_gaps(&points).map(|[x, _, u]| (x, u)))
+        .coloured(UNCERTAINTY);
+        let uncertainty = chart.draw().save(&self.job.files.folder, "uncertainty")?;
+        report.drawings([
+            (
+                &*profile,
+                "The middle profile, valid points, with their expanded uncertainty (95 %).",
+            ),
+            (&*uncertainty, "The standard uncertainty of its heights."),
+        ]);
         Ok(())
     }
 
@@ -174,7 +170,7 @@ impl Page<'_> {
         let mut bars = Bars::new(
             "What makes heights uncertain",
             "u(height) (µm)",
-            &["height"],
+            &[("", UNCERTAINTY)],
         );
         for term in terms {
             table.row(vec![
@@ -198,7 +194,8 @@ impl Page<'_> {
         table.total(total("expanded, 95 %", *expanded));
         report.table(&table);
         let svg = bars.draw().save(&self.job.files.folder, "terms")?;
-        report.drawing(&svg, "Standard uncertainties of a height by their cause.");
+        let caption = "Standard uncertainties of a height by their cause.";
+        report.drawings([(&*svg, caption)]);
         report.paragraph(CORRELATIONS);
         Ok(())
     }
@@ -211,9 +208,22 @@ impl Page<'_> {
             Raster::Part { .. } => (["along the line (mm)", "along the scan (mm)"], 1e3, true),
         };
         let ranges = ranges(map).map(|(from, to)| (factor * from, factor * to));
-        for (name, title, unit, values) in [
-            ("height_map", "height (mm)", 1e3, &map.heights),
-            ("uncertainty_map", "u(height) (µm)", 1e6, &map.uncertainties),
+        let mut drawings = Vec::new();
+        for (name, title, scale, unit, values) in [
+            (
+                "height_map",
+                "height (mm)",
+                Scale::Height,
+                1e3,
+                &map.heights,
+            ),
+            (
+                "uncertainty_map",
+                "u(height) (µm)",
+                Scale::Uncertainty,
+                1e6,
+                &map.uncertainties,
+            ),
         ] {
             let values = values.map(|&value| value * unit);
             let picture = HeatMap {
@@ -221,11 +231,20 @@ impl Page<'_> {
                 labels,
                 ranges,
                 to_scale,
+                scale,
                 values: &values,
             };
-            let svg = picture.draw().save(&self.job.files.folder, name)?;
-            report.drawing(&svg, &format!("{title}; white: nothing was measured."));
+            drawings.push((
+                picture.draw().save(&self.job.files.folder, name)?,
+                format!("{title}; without colour: nothing was measured."),
+            ));
         }
+        report.drawings(drawings.iter().map(|(svg, caption)| (&**svg, &**caption)));
+        report.cloud(Cloud {
+            labels: [labels[0], labels[1], "height (mm)"],
+            to_scale,
+            points: self.points(to_scale),
+        });
         let heights = map.range().map_or("-".to_owned(), |[low, high]| {
             format!("{:.4} mm to {:.4} mm", 1e3 * low, 1e3 * high)
         });
@@ -238,6 +257,29 @@ impl Page<'_> {
             ("holes", format!("{:.1} %", 100.0 * map.holes())),
         ]);
         Ok(())
+    }
+
+    /// Returns the valid points along the axes of the part in millimetres or, where they do not move on, of
+    /// the image: columns, profiles and millimetres.
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "an image has at most 2²⁸ pixels"
+    )]
+    fn points(&self, of_part: bool) -> Vec<[f64; 3]> {
+        let axes = self.job.measurement.axes();
+        let profiles = self.measured.profiles.iter().enumerate();
+        let points = profiles.flat_map(|(number, profile)| {
+            let valid = profile.iter().filter(|point| point.is_valid());
+            valid.map(move |point| {
+                let [x, y, z] = axes.map(|axis| 1e3 * point.position.dot(axis));
+                if of_part {
+                    [x, y, z]
+                } else {
+                    [point.seen.column as f64, number as f64, z]
+                }
+            })
+        });
+        points.collect()
     }
 
     fn settings(&self, report: &mut Report) {
@@ -318,8 +360,9 @@ impl Page<'_> {
     }
 }
 
-/// Splits the points of a profile, along the line, where several columns are missing.
-fn pieces(points: &[[f64; 3]]) -> impl Iterator<Item = &[[f64; 3]]> {
+/// Returns the points of a profile, along the line, with one that is not a number where several columns
+/// are missing.
+fn with_gaps(points: &[[f64; 3]]) -> impl Iterator<Item = [f64; 3]> {
     const GAP: f64 = 4.0;
     let mut steps: Vec<f64> = points
         .windows(2)
@@ -327,15 +370,14 @@ fn pieces(points: &[[f64; 3]]) -> impl Iterator<Item = &[[f64; 3]]> {
         .collect();
     steps.sort_by(f64::total_cmp);
     let usual = steps.get(steps.len() / 2).copied().unwrap_or_default();
-    points.chunk_by(move |a, b| b[0] - a[0] <= GAP * usual)
+    let pieces = points.chunk_by(move |a, b| b[0] - a[0] <= GAP * usual);
+    pieces.flat_map(|piece| piece.iter().copied().chain([[f64::NAN; 3]]))
 }
 
-/// Returns x, lower and upper end of the expanded uncertainty of the points.
-fn band(points: &[[f64; 3]]) -> impl Iterator<Item = (f64, f64, f64)> {
-    points.iter().map(|[x, z, u]| {
-        let half = 1.96e-3 * u;
-        (*x, z - half, z + half)
-    })
+/// Returns x, lower and upper end of the expanded uncertainty of a point.
+fn band([x, z, u]: [f64; 3]) -> (f64, f64, f64) {
+    let half = 1.96e-3 * u;
+    (x, z - half, z + half)
 }
 
 #[cfg(test)]
@@ -343,14 +385,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bands_end_at_gaps() {
+    fn curves_end_at_gaps() {
         let points: Vec<[f64; 3]> = (0..20_u8)
             .filter(|x| !(8..13).contains(x))
             .map(|x| [f64::from(x), 1.0, 2.0])
             .collect();
-        let found: Vec<usize> = pieces(&points).map(<[_]>::len).collect();
-        assert_eq!(found, [8, 7]);
-        assert_eq!(pieces(&[]).count(), 0);
-        assert_eq!(pieces(&points[..1]).count(), 1);
+        let found: Vec<_> = with_gaps(&points).collect();
+        let pieces = found.split(|point| point[0].is_nan());
+        let lengths: Vec<_> = pieces.map(<[_]>::len).collect();
+        assert_eq!(lengths, [8, 7, 0], "each piece is closed");
+        assert_eq!(with_gaps(&[]).count(), 0);
+        assert_eq!(with_gaps(&points[..1]).count(), 2);
     }
 }

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::{assert_code, files, folder, message, run, text};
 
 /// A set-up of the usual parts, with few rows.
-const SETUP: &str = r#"
+pub(super) const SETUP: &str = r#"
 [laser]
 wavelength = "650 nm"
 power = "5 mW"

@@ -6,7 +6,7 @@ use tem00_triangulation::{Budget, read_setup};
 
 use super::{assert_code, files, folder, message, run, text};
 
-const SETUP: &str = r#"
+pub(super) const SETUP: &str = r#"
 [laser]
 wavelength = "660 nm"
 power = "10 mW"

@@ -8,6 +8,7 @@ mod design;
 mod lines;
 mod patterns;
 mod render;
+mod reports;
 mod sequence;
 mod triangulate;
 mod tutorial;

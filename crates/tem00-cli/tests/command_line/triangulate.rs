@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::{assert_code, files, folder, message, run, text};
 
 /// Two plates, a millimetre apart, that move under a line in four frames.
-const SCAN: &str = r#"
+pub(super) const SCAN: &str = r#"
 [camera]
 position = [0, "-150 mm", "259.8 mm"]
 look_at = [0, 0, "0.5 mm"]

@@ -44,6 +44,10 @@ Exit codes: 0 fine, 1 failure while running, 2 bad input or usage, 3 nothing mea
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+
+    /// Print no notes and no progress: results and errors alone.
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Subcommand)]

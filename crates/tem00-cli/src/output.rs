@@ -1,6 +1,10 @@
 //! What the commands share: where their files go, and the threads that they work on.
 
-use std::path::{Path, PathBuf};
+use std::{
+    io::{self, Write},
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -45,7 +49,7 @@ pub(crate) fn remove(folder: &Path, names: &[&str], endings: &[&str]) -> Result<
     {
         let path = folder.join(format!("{name}.{ending}"));
         match std::fs::remove_file(&path) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
                 return Err(Failure::running(format!(
                     "cannot remove {}: {error}",
                     path.display()
@@ -55,6 +59,25 @@ pub(crate) fn remove(folder: &Path, names: &[&str], endings: &[&str]) -> Result<
         }
     }
     Ok(())
+}
+
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Leaves out all notes and all progress from now on.
+pub(crate) fn be_quiet() {
+    QUIET.store(true, Ordering::Relaxed);
+}
+
+/// Returns whether notes and progress are left out.
+pub(crate) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Writes a line to standard error, unless notes are left out or there is nobody to read it.
+pub(crate) fn note(text: &str) {
+    if !is_quiet() {
+        let _ = writeln!(io::stderr(), "{text}");
+    }
 }
 
 /// Starts the threads that were asked for, or one per core.

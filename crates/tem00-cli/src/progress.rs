@@ -1,21 +1,33 @@
-//! The progress bar on standard error.
+//! The progress on standard error: a bar on a terminal, lines elsewhere.
+
+mod lines;
 
 use std::{
     cell::Cell,
+    io::IsTerminal,
     sync::atomic::{AtomicU64, Ordering},
 };
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-/// A bar with percent, speed and time left.
-///
-/// It is drawn only if standard error is a terminal.
-pub(crate) struct Progress(ProgressBar);
+use self::lines::Lines;
+use crate::output::{is_quiet, note};
+
+/// Percent, speed and time left: a bar if standard error is a terminal, else a line now and then.
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    lines: Option<Lines>,
+}
 
 impl Progress {
     /// Starts a bar that is full after `total` of something, in the plural: "samples".
     pub(crate) fn of(total: u64, what: &'static str) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
+        let target = if is_quiet() {
+            ProgressDrawTarget::hidden()
+        } else {
+            ProgressDrawTarget::stderr()
+        };
+        let bar = ProgressBar::with_draw_target(Some(total), target);
         let template = "{msg} {wide_bar} {percent:>3} %  {rate}  {left} left";
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(
@@ -35,22 +47,39 @@ impl Progress {
                     ),
             );
         }
-        Self(bar)
+        let lines = (!std::io::stderr().is_terminal()).then(|| Lines::new(total, what));
+        Self { bar, lines }
     }
 
     /// Says what the work belongs to from now on.
     pub(crate) fn name(&self, message: String) {
-        self.0.set_message(message);
+        if let Some(lines) = &self.lines {
+            lines.name(message.clone());
+        }
+        self.bar.set_message(message);
     }
 
     /// Moves the bar to `done`.
     pub(crate) fn set(&self, done: u64) {
-        self.0.set_position(done);
+        self.bar.set_position(done);
+        self.tell();
     }
 
     /// Moves the bar on, from any thread.
     pub(crate) fn advance(&self, done: u64) {
-        self.0.inc(done);
+        self.bar.inc(done);
+        self.tell();
+    }
+
+    /// Writes a line, where that is how progress is told and it is time to.
+    fn tell(&self) {
+        if let Some(line) = self
+            .lines
+            .as_ref()
+            .and_then(|lines| lines.due(self.bar.position()))
+        {
+            note(&line);
+        }
     }
 }
 
@@ -88,7 +117,7 @@ impl FrameProgress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }
 
@@ -129,6 +158,6 @@ mod tests {
         progress.name("frame 1 of 1".into());
         progress.set(3);
         progress.advance(2);
-        assert_eq!(progress.0.position(), 5);
+        assert_eq!(progress.bar.position(), 5);
     }
 }

@@ -16,7 +16,7 @@ use tem00_tracer::{
 use self::{
     record::{Fingerprint, write_json},
     report::{
-        hint_at_what_is_not_seen, note, note_invisible_lasers, note_missing_light, note_roughness,
+        hint_at_what_is_not_seen, note_invisible_lasers, note_missing_light, note_roughness,
         report,
     },
     sequence::Sequence,
@@ -25,7 +25,8 @@ use crate::{
     args::{FrameRange, RenderArgs},
     failure::Failure,
     frame_files::FramePaths,
-    interrupt, output,
+    interrupt,
+    output::{self, note},
     summary::{LaserSummary, Summary},
 };
 

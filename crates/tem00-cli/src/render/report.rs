@@ -1,15 +1,8 @@
 //! What a render tells on standard error.
 
-use std::io::{self, Write};
-
 use tem00_tracer::{LaserEvents, RoughnessNote, Scene};
 
-use crate::{colour::xyz_of_wavelength, progress::si_prefixed, summary::Summary};
-
-/// Writes a line to standard error, if there is anybody to read it.
-pub(super) fn note(text: &str) {
-    let _ = writeln!(io::stderr(), "{text}");
-}
+use crate::{colour::xyz_of_wavelength, output::note, progress::si_prefixed, summary::Summary};
 
 /// Tells which lasers the eye would not see.
 pub(super) fn note_invisible_lasers(scene: &Scene) {
@@ -86,10 +79,12 @@ pub(super) fn report(summary: &Summary) {
         for (index, laser) in frame.lasers.iter().enumerate() {
             let ratio = 100.0 * laser.power_ratio;
             let watts = laser.power_on_target_w;
-            note(&format!(
-                "{}: laser {index}: {watts:.4e} W on target, {ratio:.2} % of its power",
-                frame.preview
-            ));
+            let found = if watts > 0.0 {
+                format!("{watts:.4e} W on target, {ratio:.2} % of its power")
+            } else {
+                "no light on target".into()
+            };
+            note(&format!("{}: laser {index}: {found}", frame.preview));
             if let Some(contrast) = laser.contrast {
                 note(&format!(
                     "{}: laser {index}: speckle contrast {:.3} ± {:.3}, expected {:.3}",

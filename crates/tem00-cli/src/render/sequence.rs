@@ -9,13 +9,13 @@ use tem00_tracer::{
 use super::{
     Render,
     record::{Found, Record, forget},
-    report::note,
     tracer_failure,
 };
 use crate::{
     failure::Failure,
     frame_files::{FramePaths, automatic_exposure, picture_of, write_layers, write_preview},
     interrupt,
+    output::note,
     progress::FrameProgress,
     summary::{Exposure, FrameLaser, FrameSummary},
 };

@@ -6,6 +6,7 @@ mod budget;
 mod calibrate;
 mod design;
 mod lines;
+mod manners;
 mod patterns;
 mod render;
 mod reports;
@@ -101,7 +102,12 @@ fn help_teaches_by_examples() {
         text(&output.stdout).contains("tem00 pattern -o speckle.png"),
         "examples are shown"
     );
-    for command in ["render", "pattern", "stats", "triangulate"] {
+    for command in [
+        "render",
+        "pattern",
+        "stats",
+        "triangulate",
+    ] {
         let output = run(folder.path(), &format!("{command} --help"));
         assert_code(&output, 0);
         assert!(

@@ -122,6 +122,11 @@ impl Material {
         )
     }
 
+    /// Returns whether only the side of the normal scatters light.
+    pub(crate) const fn is_one_sided(&self) -> bool {
+        self.one_sided
+    }
+
     /// Checks that the material is known at a wavelength, in metres.
     ///
     /// Whoever brings a material and a light together does so once; the other methods take the

@@ -1,6 +1,6 @@
 use glam::DVec2;
 
-use crate::{Intersector, Ray, Scene, TracerError};
+use crate::{Intersector, Ray, Scene, TracerError, spread::even};
 
 /// Image points on each side of the grid that is looked through.
 const SIDE: u32 = 64;
@@ -47,10 +47,4 @@ impl Scene {
         let mut seen = grid.map(|cell| camera.ray((cell + 0.5) / f64::from(SIDE) * size));
         Ok(emitted.any(is_specular) && seen.any(is_specular))
     }
-}
-
-/// Returns the point `index` of an even spread over the four-dimensional unit cube.
-fn even(index: u32) -> [f64; 4] {
-    // Square roots of primes have no period in common.
-    [2.0_f64, 3.0, 5.0, 7.0].map(|prime| (f64::from(index) * prime.sqrt() + 0.5).fract())
 }

@@ -10,6 +10,7 @@ mod design;
 mod failure;
 mod frame_files;
 mod image;
+mod inspection;
 mod interrupt;
 mod lines;
 mod output;

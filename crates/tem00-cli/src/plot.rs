@@ -58,7 +58,8 @@ impl Drawing {
         Self::of_scene(render_multiple(plots, layout))
     }
 
-    fn of_scene(mut scene: Scene) -> Self {
+    /// Takes what was drawn element by element.
+    pub(crate) fn of_scene(mut scene: Scene) -> Self {
         scene.height = scene.height.max(lowest_text(&scene) + MARGIN);
         let svg = svg(&mut scene);
         Self { scene, svg }

@@ -15,16 +15,14 @@ use tem00_tracer::{
 
 use self::{
     record::{Fingerprint, write_json},
-    report::{
-        hint_at_what_is_not_seen, note_invisible_lasers, note_missing_light, note_roughness,
-        report,
-    },
+    report::{note_invisible_lasers, note_missing_light, note_roughness, report},
     sequence::Sequence,
 };
 use crate::{
     args::{FrameRange, RenderArgs},
     failure::Failure,
     frame_files::FramePaths,
+    inspection::Inspection,
     interrupt,
     output::{self, note},
     summary::{LaserSummary, Summary},
@@ -43,14 +41,18 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
             "a scene needs a laser, a camera and a surface",
         )
     })?;
-    let render = Render::new(args, overruled(scene, args)?, &files)?;
+    let scene = overruled(scene, args)?;
+    if args.check {
+        return check(args, &scene, out);
+    }
+    let render = Render::new(args, scene, &files)?;
     note_invisible_lasers(&render.scene);
     note_missing_light(&render.scene);
+    render.warn_of_darkness()?;
     let pool = output::thread_pool(args.threads)?;
     let sequence = pool.install(|| render.sequence())?;
     let summary = pool.install(|| render.summary(sequence));
     report(&summary);
-    hint_at_what_is_not_seen(&render.scene, &summary);
     let path = render.summary_path();
     write_json(&path, &summary)?;
     let asked = |number: u32| (render.frames.first..=render.frames.last).contains(&number);
@@ -60,6 +62,29 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
             .map_err(|error| Failure::stdout(&error))?;
     }
     writeln!(out, "{}", path.display()).map_err(|error| Failure::stdout(&error))
+}
+
+/// Says what the camera will see of the lasers, and draws the scene.
+fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), Failure> {
+    let frames = frames(args.frames, scene.render.frames)?;
+    let found =
+        Inspection::new(scene, frames).map_err(|error| tracer_failure(&args.scene, &error))?;
+    let name = output::name(&args.scene, "scene");
+    let folder = output::folder(args.output.as_deref(), &name);
+    output::prepare(&folder)?;
+    let drawing = format!("{name}_overview");
+    found.draw(&folder, &drawing)?;
+    let mut lines = found.lines();
+    lines.push(folder.join(format!("{drawing}.svg")).display().to_string());
+    writeln!(out, "{}", lines.join("\n")).map_err(|error| Failure::stdout(&error))?;
+    if found.sees_all_lasers() {
+        Ok(())
+    } else {
+        Err(Failure::no_result(
+            "the camera will see no light of a laser",
+            "the lines above say which, and why",
+        ))
+    }
 }
 
 /// Returns the scene with what the command line overrules.
@@ -153,6 +178,23 @@ impl<'a> Render<'a> {
 
     fn summary_path(&self) -> PathBuf {
         self.folder.join(format!("{}.json", self.name))
+    }
+
+    /// Says, before the work, of which lasers the camera will see no light, and draws the scene then.
+    fn warn_of_darkness(&self) -> Result<(), Failure> {
+        let found = Inspection::new(&self.scene, self.frames)
+            .map_err(|error| tracer_failure(&self.args.scene, &error))?;
+        let warnings = found.warnings();
+        if warnings.is_empty() {
+            return Ok(());
+        }
+        warnings.iter().for_each(|line| note(line));
+        let name = format!("{}_overview", self.name);
+        note(&format!(
+            "drawn in {}",
+            self.folder.join(format!("{name}.svg")).display()
+        ));
+        found.draw(&self.folder, &name)
     }
 
     fn speckle(&self) -> Result<Option<SpeckleModel>, Failure> {

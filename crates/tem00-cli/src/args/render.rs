@@ -67,6 +67,11 @@ pub(crate) struct RenderArgs {
     #[arg(long)]
     pub(crate) paper: bool,
 
+    /// Render nothing: say what the camera will see of each laser and why, and draw camera, lasers and
+    /// parts. Ends with the exit code 3 if it will see no light of a laser.
+    #[arg(long)]
+    pub(crate) check: bool,
+
     /// The radiance in W/(m² sr) that the preview shows as white [default: from the first frame].
     #[arg(long, value_name = "RADIANCE", value_parser = radiance)]
     pub(crate) white_level: Option<f64>,
@@ -75,6 +80,7 @@ pub(crate) struct RenderArgs {
 const RENDER_EXAMPLES: &str = "\
 Examples:
   tem00 render scenes/spot.toml                       quick look, into out/spot/
+  tem00 render scenes/spot.toml --check               will the camera see the laser? at once
   tem00 render scenes/spot.toml --spp 256 -o good     slower, with less noise
   tem00 render scenes/spot.toml --paper -o printed    the formulas as printed, to lay beside
   tem00 render scenes/spot.toml --no-speckle          the same light without interference
@@ -86,7 +92,9 @@ Files:
   <scene>.exr     layers per laser: coherent_before, speckle, coherent_after, incoherent, in W/(m² sr),
                   and variance; lamps, depth, normal, samples
   <scene>.json    power on the target, speckle size, contrast, exposure, speed; and one per frame of
-                  several, which --resume goes by";
+                  several, which --resume goes by
+  <scene>_overview.svg|png  camera, lasers and parts from three sides; with --check, and where the camera
+                  sees no light of a laser";
 
 /// A range of frames, counted from 0, with both ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,13 +181,16 @@ mod tests {
     fn every_option_of_render_is_understood() {
         let line = "tem00 render a.toml -o d --spp 3 --seed 4 --threads 2 --no-speckle --paper \
                     --white-level 1e3 --frames 2..7 --resume --crop 1,2,30,40 --method light \
-                    --max-depth 5 --target-error 0.01";
+                    --max-depth 5 --target-error 0.01 --check";
         let args = parse(line).expect("the line is valid");
         assert_eq!(args.scene, PathBuf::from("a.toml"));
         assert_eq!(args.output, Some(PathBuf::from("d")));
         assert_eq!((args.spp, args.seed), (Some(3), Some(4)));
         assert_eq!(args.threads, Some(2));
-        assert!(args.no_speckle && args.paper && args.resume, "all are on");
+        assert!(
+            args.no_speckle && args.paper && args.resume && args.check,
+            "all are on"
+        );
         assert_eq!(args.white_level, Some(1e3));
         assert_eq!(args.frames, Some(FrameRange { first: 2, last: 7 }));
         let crop = Crop {
@@ -201,7 +212,10 @@ mod tests {
             args.output.is_none() && args.spp.is_none() && args.seed.is_none(),
             "{args:?}"
         );
-        assert!(!args.no_speckle && !args.paper && !args.resume, "{args:?}");
+        assert!(
+            !args.no_speckle && !args.paper && !args.resume && !args.check,
+            "{args:?}"
+        );
         assert!(args.frames.is_none() && args.crop.is_none(), "{args:?}");
     }
 

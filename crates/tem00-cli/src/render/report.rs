@@ -37,42 +37,6 @@ pub(super) fn note_missing_light(scene: &Scene) {
     }
 }
 
-/// Where a laser lights nothing in the image, tells what that shows and where things stand.
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "an image has fewer than 2⁵³ pixels"
-)]
-pub(super) fn hint_at_what_is_not_seen(scene: &Scene, summary: &Summary) {
-    let mut lasers = summary
-        .frames
-        .iter()
-        .flat_map(|f| f.lasers.iter().enumerate());
-    let Some((laser, _)) = lasers.find(|(_, laser)| laser.power_on_target_w <= 0.0) else {
-        return;
-    };
-    let camera = &scene.camera;
-    let focus_distance = camera.description().focus_distance;
-    let pitch = camera.description().pixel_pitch * focus_distance / camera.image_distance();
-    let [width, height] =
-        [camera.width(), camera.height()].map(|pixels| 1e3 * pitch * pixels as f64);
-    note(&format!(
-        "hint: the camera sees no light of laser {laser}; at a distance of {:.1} mm the image shows {width:.1} × \
-         {height:.1} mm; the surfaces stand at",
-        1e3 * focus_distance
-    ));
-    for surface in &scene.surfaces {
-        let (low, high) = surface.shape.bounds();
-        let span = |low: f64, high: f64| format!("{:.1} … {:.1} mm", 1e3 * low, 1e3 * high);
-        note(&format!(
-            "  {}: x {}, y {}, z {}",
-            surface.name,
-            span(low.x, high.x),
-            span(low.y, high.y),
-            span(low.z, high.z)
-        ));
-    }
-}
-
 /// Tells what was found.
 pub(super) fn report(summary: &Summary) {
     for frame in &summary.frames {

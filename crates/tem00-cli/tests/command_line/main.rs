@@ -5,6 +5,7 @@
 mod budget;
 mod calibrate;
 mod design;
+mod inspection;
 mod lines;
 mod manners;
 mod patterns;

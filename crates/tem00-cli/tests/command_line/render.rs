@@ -161,21 +161,6 @@ fn ctrl_c_ends_a_render_cleanly() {
 }
 
 #[test]
-fn a_picture_without_laser_light_says_where_things_stand() {
-    let folder = folder();
-    let away = SCENE.replace("centre = [0, 0, 0]", "centre = [\"70 mm\", 0, 0]");
-    fs::write(folder.path().join("a.toml"), away).expect("written");
-    let output = run(folder.path(), "render a.toml --spp 1");
-    assert_code(&output, 0);
-    let notes = text(&output.stderr);
-    assert!(notes.contains("sees no light of laser 0"), "{notes}");
-    // 48 × 40 pixels of 3.45 µm at a magnification of 25/275.
-    let field = "at a distance of 300.0 mm the image shows 1.8 × 1.5 mm";
-    assert!(notes.contains(field), "{notes}");
-    assert!(notes.contains("surface 1: x 60.0 … 80.0 mm"), "{notes}");
-}
-
-#[test]
 fn too_little_memory_for_speckle_is_told_with_what_helps() {
     let folder = folder();
     let scene = format!("{SCENE}\n[speckle]\nmemory = \"2 KiB\"\n");

@@ -1,0 +1,116 @@
+//! What the camera will see of the lasers, found before anything is rendered.
+
+mod overview;
+mod words;
+
+use std::path::Path;
+
+use tem00_tracer::{LaserInspection, Scene, TracerError};
+
+use crate::{args::FrameRange, failure::Failure};
+
+/// The most frames that are looked at.
+const MOST_FRAMES: u32 = 8;
+
+/// What the camera sees of each laser in frames spread over those that were asked for.
+pub(crate) struct Inspection<'a> {
+    scene: &'a Scene,
+    /// The number of each frame, and its lasers.
+    frames: Vec<(u32, Vec<LaserInspection>)>,
+}
+
+impl<'a> Inspection<'a> {
+    /// Looks at frames spread over those that were asked for.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the geometry cannot be built.
+    pub(crate) fn new(scene: &'a Scene, frames: FrameRange) -> Result<Self, TracerError> {
+        let frames = spread(frames).map(|frame| Ok((frame, scene.inspect_lasers(frame)?)));
+        Ok(Self {
+            scene,
+            frames: frames.collect::<Result<_, TracerError>>()?,
+        })
+    }
+
+    /// Returns whether the camera sees each laser in one of the frames at least.
+    pub(crate) fn sees_all_lasers(&self) -> bool {
+        (0..self.scene.lasers.len()).all(|laser| self.is_seen(laser))
+    }
+
+    /// Returns what is to be told of every laser, line by line.
+    pub(crate) fn lines(&self) -> Vec<String> {
+        let lasers = 0..self.scene.lasers.len();
+        lasers.flat_map(|laser| self.words(laser)).collect()
+    }
+
+    /// Returns what is to be told of the lasers that the camera does not see in any frame.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let lasers = (0..self.scene.lasers.len()).filter(|&laser| !self.is_seen(laser));
+        lasers.flat_map(|laser| self.words(laser)).collect()
+    }
+
+    /// Draws camera, lasers and parts as they stand in the first frame in which a laser is not seen, or
+    /// else in the first.
+    ///
+    /// # Errors
+    ///
+    /// Returns a failure if a file cannot be written.
+    pub(crate) fn draw(&self, folder: &Path, name: &str) -> Result<(), Failure> {
+        let dark = |(_, lasers): &&(u32, Vec<LaserInspection>)| {
+            !lasers.iter().all(LaserInspection::is_seen)
+        };
+        let frame = self.frames.iter().find(dark).or(self.frames.first());
+        if let Some((frame, lasers)) = frame {
+            overview::draw(self.scene, *frame, lasers).save(folder, name)?;
+        }
+        Ok(())
+    }
+
+    fn is_seen(&self, laser: usize) -> bool {
+        let mut frames = self.frames.iter();
+        frames.any(|(_, lasers)| lasers[laser].is_seen())
+    }
+
+    fn words(&self, laser: usize) -> Vec<String> {
+        let in_frames = |seen: bool| {
+            let frames = self.frames.iter();
+            let frames = frames.filter(move |(_, lasers)| lasers[laser].is_seen() == seen);
+            frames.collect::<Vec<_>>()
+        };
+        let (seen, dark) = (in_frames(true), in_frames(false));
+        let mut lines = Vec::new();
+        if let Some((_, lasers)) = seen.first() {
+            lines.push(words::seen(self.scene, laser, &lasers[laser]));
+        }
+        if let Some((frame, lasers)) = dark.first() {
+            let which = (self.scene.render.frames > 1).then_some(*frame);
+            lines.extend(words::dark(self.scene, laser, which, &lasers[laser]));
+        }
+        lines
+    }
+}
+
+/// Returns frames spread over a range, both ends among them.
+fn spread(FrameRange { first, last }: FrameRange) -> impl Iterator<Item = u32> {
+    let steps = (last - first).min(MOST_FRAMES - 1);
+    let length = u64::from(last - first);
+    (0..=steps).map(move |step| {
+        let offset = length * u64::from(step) / u64::from(steps.max(1));
+        first + u32::try_from(offset).unwrap_or(0)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_spread_over_the_range() {
+        let of = |first, last| spread(FrameRange { first, last }).collect::<Vec<_>>();
+        assert_eq!(of(3, 3), [3]);
+        assert_eq!(of(0, 2), [0, 1, 2]);
+        assert_eq!(of(10, 80), [10, 20, 30, 40, 50, 60, 70, 80]);
+        assert_eq!(of(0, u32::MAX).last(), Some(&u32::MAX));
+    }
+}

@@ -85,6 +85,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     (
         "tem00-cli",
         &[
+            "tem00-decorrelation",
             "tem00-numerics",
             "tem00-speckle",
             "tem00-statistics",

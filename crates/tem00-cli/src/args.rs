@@ -5,12 +5,14 @@ mod calibrate;
 mod design;
 mod lines;
 mod render;
+mod speckle;
 mod triangulate;
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use tem00_speckle::Pupil;
+use tem00_tracer::document::LENGTH;
 
 pub(crate) use self::{
     budget::BudgetArgs,
@@ -18,6 +20,7 @@ pub(crate) use self::{
     design::DesignArgs,
     lines::LinesArgs,
     render::{FrameRange, RenderArgs},
+    speckle::SpeckleArgs,
     triangulate::TriangulateArgs,
 };
 use crate::image::Transfer;
@@ -27,6 +30,8 @@ Examples:
   tem00 render scenes/line_with_speckle.toml          render a scene into out/line_with_speckle/
   tem00 pattern -o speckle.png                        write a speckle pattern and check it
   tem00 stats photo.png                               measure the speckle in an image
+  tem00 speckle --wavelength 650nm --focal-length 25mm --f-number 8 --distance 300mm
+                                                      how large is the speckle?
   tem00 budget setups/data_sheet.toml                 how well will this set-up measure heights?
   tem00 design setups/design.toml                     search for a better one
   tem00 triangulate scenes/triangulation/groove.toml  see a part as such a sensor sees it
@@ -58,6 +63,7 @@ pub(crate) enum Command {
     Lines(LinesArgs),
     Calibrate(CalibrateArgs),
     Triangulate(TriangulateArgs),
+    Speckle(SpeckleArgs),
     Budget(BudgetArgs),
     Design(DesignArgs),
 }
@@ -155,6 +161,15 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Reads a length as scene files have it, with its unit: a bare number would be in metres there, and
+/// hardly meant so.
+pub(crate) fn length(text: &str) -> Result<f64, String> {
+    const ALLOWED: core::ops::RangeInclusive<f64> = 1e-12..=1e9;
+    (LENGTH.parse(text))
+        .filter(|length| ALLOWED.contains(length))
+        .ok_or_else(|| "must be a positive length with its unit, such as \"5 mm\"".into())
+}
+
 fn pupil(text: &str) -> Result<Pupil, String> {
     let (name, proportion) = match text.split_once(':') {
         Some((name, proportion)) => (name, Some(positive(proportion)?)),
@@ -185,6 +200,19 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn lengths_have_a_unit() {
+        for (text, expected) in [("5 mm", 5e-3), ("3.45 um", 3.45e-6), ("0.025m", 0.025)] {
+            let found = length(text).expect(text);
+            assert!((found / expected - 1.0).abs() < 1e-15, "{text}: {found}");
+        }
+        for bad in [
+            "5", "-5 mm", "0 mm", "1e-20 m", "5 parsec", "", "nan", "nan m", "5 mm\"\n",
+        ] {
+            assert!(length(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

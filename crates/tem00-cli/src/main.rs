@@ -20,6 +20,7 @@ mod preview;
 mod progress;
 mod render;
 mod report;
+mod speckle;
 mod stats;
 mod summary;
 mod table;
@@ -64,6 +65,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Lines(args) => lines::run(args, &mut out),
         Command::Calibrate(args) => calibrate::run(args, &mut out),
         Command::Triangulate(args) => triangulate::run(args, &mut out),
+        Command::Speckle(args) => speckle::run(args, &mut out),
         Command::Budget(args) => budget::run(args, &mut out),
         Command::Design(args) => design::run(args, &mut out),
     }?;

@@ -1,11 +1,10 @@
 //! The command line of `tem00 calibrate`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use tem00_tracer::document::{Format, LENGTH, parse_document};
 
-use super::lines::DetectorArgs;
+use super::{length, lines::DetectorArgs};
 
 /// Calibrate camera and laser plane from photographs of a checkerboard and of the line on it.
 ///
@@ -75,47 +74,16 @@ fn corners(text: &str) -> Result<[usize; 2], String> {
         .ok_or_else(|| "must be two numbers from 3 to 50, such as 9x6".into())
 }
 
-/// Reads a length as scene files have it, with its unit: a bare number would be in metres there, and hardly
-/// meant so.
-fn length(text: &str) -> Result<f64, String> {
-    const FORMAT: Format = Format {
-        noun: "length",
-        keys: &["option"],
-        help: "",
-    };
-    let words = || "must be a positive length with its unit, such as \"5 mm\"".to_owned();
-    if text.parse::<f64>().is_ok() {
-        return Err(words());
-    }
-    let document = format!("[option]\nlength = {text:?}");
-    parse_document(&document, Path::new("."), FORMAT, |document| {
-        let section = document.table("option", &["length"])?;
-        section
-            .map(|section| section.required("length", "")?.positive(&LENGTH))
-            .transpose()
-    })
-    .ok()
-    .flatten()
-    .ok_or_else(words)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn boards_and_lengths_are_understood() {
+    fn boards_are_understood() {
         assert_eq!(corners("9x6"), Ok([9, 6]));
         assert_eq!(corners("12 × 7"), Ok([12, 7]));
         for bad in ["9", "9x", "2x6", "9x6x3", "-9x6", "9x51"] {
             assert!(corners(bad).is_err(), "{bad}");
-        }
-        for (text, expected) in [("5 mm", 5e-3), ("3.45 um", 3.45e-6), ("0.025m", 0.025)] {
-            let found = length(text).expect(text);
-            assert!((found / expected - 1.0).abs() < 1e-15, "{text}: {found}");
-        }
-        for bad in ["5", "-5 mm", "5 parsec", "", "nan", "5 mm\"\n"] {
-            assert!(length(bad).is_err(), "{bad}");
         }
     }
 }

@@ -12,6 +12,7 @@ mod patterns;
 mod render;
 mod reports;
 mod sequence;
+mod speckle;
 mod triangulate;
 mod tutorial;
 
@@ -108,6 +109,7 @@ fn help_teaches_by_examples() {
         "pattern",
         "stats",
         "triangulate",
+        "speckle",
     ] {
         let output = run(folder.path(), &format!("{command} --help"));
         assert_code(&output, 0);

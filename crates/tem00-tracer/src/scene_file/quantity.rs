@@ -143,8 +143,8 @@ impl Dimension {
     }
 
     /// Returns the value, in SI units, of a string such as "650 nm", or `None` if it is no quantity
-    /// of this kind.
-    pub(super) fn parse(&self, text: &str) -> Option<f64> {
+    /// of this kind; a number without a unit is none.
+    pub fn parse(&self, text: &str) -> Option<f64> {
         let text = text.trim();
         // The unit begins at the first letter that is not part of an exponent.
         let is_number = |c: char| c.is_ascii_digit() || "+-.".contains(c);

@@ -1,0 +1,121 @@
+//! The command line of `tem00 speckle`.
+
+use clap::Args;
+use tem00_tracer::document::ANGLE;
+
+use super::{length, positive};
+
+/// Say how large the speckle of a camera is, how much of it a pixel sees, and what changes it.
+///
+/// Nothing but the lens, the distance and the wavelength is needed: the surface is rough, and lit over
+/// more than a resolution cell. The size h, wavelength times working f-number, is the period of the finest
+/// fringes that the pupil lets through.
+#[derive(Args, Debug)]
+#[command(after_help = SPECKLE_EXAMPLES)]
+pub(crate) struct SpeckleArgs {
+    /// The vacuum wavelength, as in "650 nm".
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) wavelength: f64,
+
+    /// The focal length of the lens, as in "25 mm".
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) focal_length: f64,
+
+    /// The f-number as engraved on the lens, for focus at infinity.
+    #[arg(long, value_name = "F", value_parser = positive)]
+    pub(crate) f_number: f64,
+
+    /// The distance from the surface in focus to the entrance pupil, as in "300 mm"; to the lens, if it
+    /// is thin.
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) distance: f64,
+
+    /// The pixel pitch of the sensor, as in "3.45 um", for the contrast in a pixel.
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) pixel_pitch: Option<f64>,
+
+    /// The diameter of the exit pupil over that of the entrance pupil; 1 for a thin lens.
+    #[arg(long, value_name = "RATIO", default_value_t = 1.0, value_parser = positive)]
+    pub(crate) pupil_magnification: f64,
+
+    /// The angle between the light, which is collimated, and the line of sight, as in "30 deg"; the
+    /// surface faces the camera.
+    #[arg(long, value_name = "ANGLE", default_value = "0 deg", value_parser = angle)]
+    pub(crate) angle: f64,
+
+    /// Print JSON, in SI units, instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+const SPECKLE_EXAMPLES: &str = "\
+Examples:
+  tem00 speckle --wavelength \"650 nm\" --focal-length \"25 mm\" --f-number 8 --distance \"300 mm\"
+  tem00 speckle --wavelength 532nm --focal-length 50mm --f-number 4 --distance 0.4m \\
+    --pixel-pitch 3.45um --angle 30deg --json";
+
+/// Reads an angle below a right angle, with its unit.
+fn angle(text: &str) -> Result<f64, String> {
+    let allowed = 0.0..core::f64::consts::FRAC_PI_2;
+    (ANGLE.parse(text))
+        .filter(|angle| allowed.contains(angle))
+        .ok_or_else(|| {
+            "must be an angle from 0 to below 90 deg with its unit, such as \"30 deg\"".into()
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::args::{Cli, Command};
+
+    fn parse(line: &str) -> Result<SpeckleArgs, clap::Error> {
+        let cli = Cli::try_parse_from(line.split_whitespace())?;
+        match cli.command {
+            Command::Speckle(args) => Ok(args),
+            other => panic!("{other:?} is not speckle"),
+        }
+    }
+
+    const LENS: &str = "tem00 speckle --wavelength 650nm --focal-length 25mm --f-number 8 \
+                        --distance 0.3m";
+
+    #[test]
+    fn every_option_of_speckle_is_understood() {
+        let line =
+            format!("{LENS} --pixel-pitch 3.45um --pupil-magnification 0.8 --angle 30deg --json");
+        let args = parse(&line).expect("the line is valid");
+        let found = [args.wavelength, args.distance, args.focal_length];
+        let numbers = [args.f_number, args.pupil_magnification];
+        assert_eq!(
+            format!("{found:?} {numbers:?}"),
+            "[6.5e-7, 0.3, 0.025] [8.0, 0.8]"
+        );
+        assert_eq!(args.pixel_pitch, Some(3.45e-6));
+        assert!((args.angle - core::f64::consts::FRAC_PI_6).abs() < 1e-15);
+        assert!(args.json, "JSON is asked for");
+        let least = parse(LENS).expect("the line is valid");
+        assert_eq!(
+            (least.pixel_pitch, least.angle, least.json),
+            (None, 0.0, false)
+        );
+    }
+
+    #[test]
+    fn bad_values_are_usage_errors_that_name_them() {
+        for (line, part) in [
+            (LENS.replace("650nm", "650"), "with its unit"),
+            (LENS.replace("650nm", "0nm"), "positive"),
+            (LENS.replace("--f-number 8", "--f-number 0"), "positive"),
+            (LENS.replace("--distance 0.3m", ""), "--distance"),
+            (format!("{LENS} --angle 90deg"), "below 90"),
+            (format!("{LENS} --angle 30"), "with its unit"),
+        ] {
+            let error = parse(&line).expect_err("it is wrong");
+            assert_eq!(error.exit_code(), 2, "{line}");
+            assert!(error.to_string().contains(part), "{line}: {error}");
+        }
+    }
+}

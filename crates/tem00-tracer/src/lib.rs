@@ -73,6 +73,7 @@ mod environment_file;
 mod error;
 mod film;
 mod filter;
+mod finish;
 mod inspection;
 mod integrator;
 mod intersector;
@@ -104,6 +105,7 @@ pub use environment_file::{RadianceMapError, read_radiance_map};
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use filter::{Filter, FilterSample, FilterSampler};
+pub use finish::FinishingProcess;
 pub use inspection::{LaserInspection, LightFate, LightPart};
 pub use intersector::{Intersector, Segment};
 pub use lamp::{Lamp, LampSample};
@@ -129,8 +131,9 @@ pub use tem00_beam::{FanGeometry, LineProfile};
 /// Files in the syntax of scene files, section by section: for what reads more than a scene.
 pub mod document {
     pub use crate::scene_file::{
-        ANGLE, Choice, DURATION, Dimension, Document, Format, LENGTH, MEMORY, NUMBER, POWER,
-        Problem, RADIANCE, Section, Value, parse_document, read_document,
+        ANGLE, Choice, DURATION, Dimension, Document, Format, LENGTH, MATERIALS,
+        MEMORY, NUMBER, POWER, Problem, RADIANCE, Section, Value, kind_of_document, parse_document,
+        read_document,
     };
 }
 

@@ -81,6 +81,38 @@ pub enum Metal {
 }
 
 impl Metal {
+    /// The metals that were measured, by the names that scene files use.
+    pub const NAMED: &'static [(&'static str, Self)] = &[
+        ("aluminium", Self::Aluminium),
+        ("silver", Self::Silver),
+        ("gold", Self::Gold),
+        ("copper", Self::Copper),
+        ("iron", Self::Iron),
+        ("chromium", Self::Chromium),
+        ("nickel", Self::Nickel),
+        ("titanium", Self::Titanium),
+        ("tungsten", Self::Tungsten),
+        ("platinum", Self::Platinum),
+        ("brass", Self::Brass),
+        ("stainless_steel", Self::StainlessSteel),
+    ];
+
+    /// Returns who measured the metal: the authors and the year of the source, with what was measured
+    /// where the name leaves it open.
+    pub const fn source(self) -> &'static str {
+        match self {
+            Self::Aluminium => "Rakić 1995",
+            Self::Silver | Self::Gold | Self::Copper => "Johnson and Christy 1972",
+            Self::Iron | Self::Chromium | Self::Nickel | Self::Titanium => {
+                "Johnson and Christy 1974"
+            }
+            Self::Tungsten | Self::Platinum => "Rakić et al. 1998",
+            Self::Brass => "Querry 1985: 70 % copper, 30 % zinc",
+            Self::StainlessSteel => "Karlsson and Ribbing 1982: ferritic, 13.5 % chromium",
+            Self::Custom { .. } => "given",
+        }
+    }
+
     /// Returns `n` and `k` at a vacuum wavelength in metres.
     ///
     /// # Errors

@@ -2,32 +2,20 @@ use super::error::Problem;
 use super::placement::rejected;
 use super::quantity::{ANGLE, NUMBER};
 use super::section::{Choice, Section};
-use super::value::Value;
-use crate::{Laser, Material, Metal, TracerError};
+use super::value::{Value, nearest};
+use crate::{FinishingProcess, Laser, Material, Metal, TracerError};
 
-pub(super) const MATERIALS: &[Choice] = &[
+/// The materials of a surface, and the keys that each may have.
+pub const MATERIALS: &[Choice] = &[
     ("lambertian", &["reflectance"]),
     ("oren_nayar", &["reflectance", "roughness"]),
-    ("conductor", &["metal", "refractive_index", "roughness"]),
+    (
+        "conductor",
+        &["metal", "refractive_index", "finish", "roughness"],
+    ),
     ("plastic", &["reflectance", "index", "roughness"]),
     ("mirror", &["reflectance", "metal", "refractive_index"]),
     ("dielectric", &["index"]),
-];
-
-/// The names of the metals, as files have them.
-pub(super) const METALS: &[(&str, Metal)] = &[
-    ("aluminium", Metal::Aluminium),
-    ("silver", Metal::Silver),
-    ("gold", Metal::Gold),
-    ("copper", Metal::Copper),
-    ("iron", Metal::Iron),
-    ("chromium", Metal::Chromium),
-    ("nickel", Metal::Nickel),
-    ("titanium", Metal::Titanium),
-    ("tungsten", Metal::Tungsten),
-    ("platinum", Metal::Platinum),
-    ("brass", Metal::Brass),
-    ("stainless_steel", Metal::StainlessSteel),
 ];
 
 const REFLECTANCE: f64 = 0.8;
@@ -39,8 +27,15 @@ const INDEX: f64 = 1.5;
 /// The roughness of a satin coat.
 const COAT_ROUGHNESS: f64 = 0.1;
 
+/// A material, and the rms height in metres that its finish usually has.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Finished {
+    pub(super) material: Material,
+    pub(super) rms_height: Option<f64>,
+}
+
 /// Reads the material of a surface, which the lasers must be able to light.
-pub(super) fn read(surface: &Section<'_>, lasers: &[Laser]) -> Result<Material, Problem> {
+pub(super) fn read(surface: &Section<'_>, lasers: &[Laser]) -> Result<Finished, Problem> {
     let given = surface.at_most_one_of("material", MATERIALS)?;
     let section = given.as_ref().map_or(surface, |(_, section)| section);
     let kind = given.as_ref().map(|(kind, _)| *kind);
@@ -55,10 +50,16 @@ pub(super) fn read(surface: &Section<'_>, lasers: &[Laser]) -> Result<Material, 
             .map_err(|error| section.problem_with("metal", error))?;
     }
     let one_sided = surface.or("one_sided", false, Value::boolean)?;
-    Ok(if one_sided {
-        material.one_sided()
-    } else {
-        material
+    let finish = (kind == Some("conductor"))
+        .then(|| section.or("finish", None, |value| finish(value).map(Some)))
+        .transpose()?;
+    Ok(Finished {
+        material: if one_sided {
+            material.one_sided()
+        } else {
+            material
+        },
+        rms_height: finish.flatten().map(|(process, _)| process.rms_height()),
     })
 }
 
@@ -117,22 +118,49 @@ fn index(section: &Section<'_>) -> Result<f64, Problem> {
 }
 
 fn metal(section: &Section<'_>) -> Result<Metal, Problem> {
-    match (
-        section.optional("metal"),
-        section.optional("refractive_index"),
-    ) {
-        (Some(name), None) => name.one_of(METALS),
-        (None, Some(index)) => {
+    let given = ["metal", "refractive_index", "finish"].into_iter();
+    match *given.filter(|key| section.has(key)).collect::<Vec<_>>() {
+        [] => section
+            .required("metal", "\"aluminium\"")?
+            .one_of(Metal::NAMED),
+        ["metal"] => section.required("metal", "")?.one_of(Metal::NAMED),
+        ["finish"] => Ok(finish(&section.required("finish", "")?)?.1),
+        [_] => {
+            let index = section.required("refractive_index", "")?;
             let [n, k] = index.elements("two numbers [n, k], such as [1.37, 7.6]")?;
             Ok(Metal::Custom {
                 n: n.positive(&NUMBER)?,
                 k: k.within(&NUMBER, 0.0.., "zero or positive")?,
             })
         }
-        (None, None) => section.required("metal", "\"aluminium\"")?.one_of(METALS),
-        (Some(_), Some(_)) => Err(section.problem_with(
-            "refractive_index",
-            "`refractive_index` takes the place of `metal`: give one of them",
+        [first, second, ..] => Err(section.problem_with(
+            second,
+            format_args!("`{second}` takes the place of `{first}`: give one of them"),
         )),
     }
+}
+
+/// Reads the name of a finished surface, such as "milled steel".
+fn finish(value: &Value<'_>) -> Result<(FinishingProcess, Metal), Problem> {
+    let name = value.string()?;
+    if let Some(found) = FinishingProcess::of_surface(name) {
+        return Ok(found);
+    }
+    let metals = Metal::NAMED.iter().map(|(name, _)| name.replace('_', " "));
+    let metals: Vec<_> = metals.chain(["steel".to_owned()]).collect();
+    let known = FinishingProcess::ALL.iter().flat_map(|process| {
+        let metals = metals.iter();
+        metals.map(move |metal| format!("{} {metal}", process.name))
+    });
+    let known: Vec<_> = known.collect();
+    let known: Vec<_> = known.iter().map(String::as_str).collect();
+    let problem = value.must_be("a process and a metal, such as \"milled steel\"");
+    Err(problem.with_help(match nearest(name, &known) {
+        Some(meant) => format!("did you mean \"{meant}\"?"),
+        None => format!(
+            "processes: {}; metals: {}",
+            FinishingProcess::ALL.map(|process| process.name).join(", "),
+            metals.join(", ")
+        ),
+    }))
 }

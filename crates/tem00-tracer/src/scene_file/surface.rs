@@ -3,7 +3,7 @@ use glam::DVec3;
 use super::assets::Assets;
 use super::document::Document;
 use super::error::Problem;
-use super::material;
+use super::material::{self, Finished};
 use super::motion::{pivot, rotation, trajectory};
 use super::placement::rejected;
 use super::quantity::{LENGTH, NUMBER};
@@ -69,7 +69,10 @@ fn surface(
     assets: &mut Assets,
     lasers: &[Laser],
 ) -> Result<PlacedSurface, Problem> {
-    let material = material::read(section, lasers)?;
+    let Finished {
+        material,
+        rms_height,
+    } = material::read(section, lasers)?;
     let PlacedShape { shape, place } = shape::read(section, assets)?;
     let pivot = pivot(section, place)?;
     let surface = Surface {
@@ -78,7 +81,7 @@ fn surface(
         material,
         trajectory: trajectory(section, pivot)?,
         speckle: speckle(section)?,
-        rms_height: section.or("rms_height", None, |value| {
+        rms_height: section.or("rms_height", rms_height, |value| {
             value.positive(&LENGTH).map(Some)
         })?,
     };

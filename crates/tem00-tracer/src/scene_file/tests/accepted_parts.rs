@@ -122,6 +122,22 @@ fn materials_have_the_values_of_the_file_or_usual_ones() {
 }
 
 #[test]
+fn a_finish_names_the_metal_and_its_height() {
+    let milled = surface("conductor.finish = \"milled steel\"");
+    let iron = Material::conductor(Metal::Iron, 0.3);
+    assert_eq!(milled.material, iron.unwrap(), "steel");
+    // √(π/2) √(0.8 · 6.3) µm.
+    let height = milled.rms_height.unwrap();
+    assert!((height - 2.8137e-6).abs() < 1e-10, "{height}");
+    let given = "rms_height = \"1 um\"\n\
+                 conductor = { finish = \"ground stainless steel\", roughness = 0.1 }";
+    let ground = surface(given);
+    let steel = Material::conductor(Metal::StainlessSteel, 0.1);
+    assert_eq!(ground.material, steel.unwrap(), "stainless steel");
+    assert_eq!(ground.rms_height, Some(1e-6), "the one that is given");
+}
+
+#[test]
 fn surfaces_tell_what_their_speckle_is_made_of() {
     let plain = surface("");
     assert_eq!(plain.speckle, SurfaceSpeckle::default(), "one pattern");

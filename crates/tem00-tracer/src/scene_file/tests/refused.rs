@@ -266,6 +266,11 @@ fn names_of_metals_and_profiles_must_be_known() {
     assert_eq!(error.help(), Some("did you mean \"aluminium\"?"), "{error}");
     let both = "conductor = { metal = \"gold\", refractive_index = [1, 2] }";
     assert_refused(&surface(both), 10, &["`refractive_index`", "`metal`"]);
+    let both = "conductor = { metal = \"gold\", finish = \"milled brass\" }";
+    assert_refused(&surface(both), 10, &["`finish`", "`metal`"]);
+    let error = parse(&surface("conductor.finish = \"miled steel\"")).unwrap_err();
+    assert!(error.message().contains("got \"miled steel\""), "{error}");
+    assert_eq!(error.help(), Some("did you mean \"milled steel\"?"));
     assert_refused(
         &surface("conductor.roughness = 0.2"),
         10,

@@ -118,7 +118,7 @@ fn the_schema_refuses_what_an_editor_should_mark() {
 #[test]
 fn values_that_the_reader_writes_down_are_in_the_schema() {
     let text = schema().text();
-    for (name, _) in material::METALS {
+    for (name, _) in crate::Metal::NAMED {
         assert!(text.contains(&format!("\"{name}\"")), "{name}");
     }
     for dimension in super::super::quantity::ALL {

@@ -4,6 +4,7 @@ mod budget;
 mod calibrate;
 mod design;
 mod lines;
+mod list;
 mod render;
 mod speckle;
 mod triangulate;
@@ -19,6 +20,7 @@ pub(crate) use self::{
     calibrate::CalibrateArgs,
     design::DesignArgs,
     lines::LinesArgs,
+    list::{ListArgs, Listed},
     render::{FrameRange, RenderArgs},
     speckle::SpeckleArgs,
     triangulate::TriangulateArgs,
@@ -66,6 +68,7 @@ pub(crate) enum Command {
     Speckle(SpeckleArgs),
     Budget(BudgetArgs),
     Design(DesignArgs),
+    List(ListArgs),
 }
 
 /// Generate a speckle pattern and compare it with the theory.

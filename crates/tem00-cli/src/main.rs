@@ -13,6 +13,7 @@ mod image;
 mod inspection;
 mod interrupt;
 mod lines;
+mod list;
 mod output;
 mod pattern;
 mod plot;
@@ -65,6 +66,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Lines(args) => lines::run(args, &mut out),
         Command::Calibrate(args) => calibrate::run(args, &mut out),
         Command::Triangulate(args) => triangulate::run(args, &mut out),
+        Command::List(args) => list::run(args, &mut out),
         Command::Speckle(args) => speckle::run(args, &mut out),
         Command::Budget(args) => budget::run(args, &mut out),
         Command::Design(args) => design::run(args, &mut out),

@@ -110,6 +110,7 @@ fn help_teaches_by_examples() {
         "stats",
         "triangulate",
         "speckle",
+        "list",
     ] {
         let output = run(folder.path(), &format!("{command} --help"));
         assert_code(&output, 0);

@@ -1,4 +1,6 @@
-//! `tem00 speckle`: what is known without a scene.
+//! `tem00 speckle` and `tem00 list`: what is known without a scene.
+
+use std::fs;
 
 use serde_json::Value;
 
@@ -75,4 +77,57 @@ fn impossible_lenses_are_bad_input() {
         );
         assert!(output.stdout.is_empty(), "{option}: nothing is data");
     }
+}
+
+#[test]
+fn lists_name_what_scenes_can_name_with_its_source() {
+    for (what, parts) in [
+        (
+            "metals",
+            &["stainless_steel", "Johnson and Christy 1972"][..],
+        ),
+        (
+            "materials",
+            &["conductor", "metal, refractive_index, finish, roughness"],
+        ),
+        (
+            "surfaces",
+            &["milled", "0.8 … 6.3", "typical", "Machinery's Handbook"],
+        ),
+        ("detectors", &["blais_rioux", "Steger 1998"]),
+        ("sensors", &["full_well (electrons)", "10500", "Typical"]),
+    ] {
+        let output = tem00_with(&["list", what]);
+        assert_code(&output, 0);
+        let table = text(&output.stdout);
+        for part in parts {
+            assert!(table.contains(part), "{part} is not in\n{table}");
+        }
+    }
+    // Gold is yellow because it hardly reflects blue.
+    let output = tem00_with(&["list", "metals", "--wavelength", "450 nm"]);
+    let table = text(&output.stdout);
+    let gold = table
+        .lines()
+        .find(|line| line.starts_with("gold"))
+        .expect("gold");
+    let reflectance: f64 = gold
+        .split_whitespace()
+        .nth(3)
+        .expect("a column")
+        .parse()
+        .expect("a number");
+    assert!(reflectance < 0.42, "{gold}");
+    assert_code(&tem00_with(&["list", "metals", "--wavelength", "10 um"]), 2);
+}
+
+#[test]
+fn a_listed_surface_can_be_rendered() {
+    let folder = folder();
+    let milled = SCENE.replace(
+        "[[surface]]",
+        "[[surface]]\nconductor.finish = \"milled steel\"",
+    );
+    fs::write(folder.path().join("a.toml"), milled).expect("written");
+    assert_code(&run(folder.path(), "render a.toml --spp 1"), 0);
 }

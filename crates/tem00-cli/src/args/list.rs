@@ -1,0 +1,41 @@
+//! The command line of `tem00 list`.
+
+use clap::{Args, ValueEnum};
+
+use super::length;
+
+/// List what scenes and set-ups can name: metals, materials, surfaces, detectors, sensors.
+///
+/// Each comes with its source, and typical values are called so.
+#[derive(Args, Debug)]
+#[command(after_help = LIST_EXAMPLES)]
+pub(crate) struct ListArgs {
+    /// What to list.
+    #[arg(value_name = "WHAT")]
+    pub(crate) what: Listed,
+
+    /// The vacuum wavelength for metals, as in "650 nm".
+    #[arg(long, value_name = "LENGTH", default_value = "650 nm", value_parser = length)]
+    pub(crate) wavelength: f64,
+}
+
+const LIST_EXAMPLES: &str = "\
+Examples:
+  tem00 list metals --wavelength 532nm    n, k and reflectance, and who measured them
+  tem00 list surfaces                     finishes such as \"milled steel\"
+  tem00 list detectors                    how a line is found";
+
+/// What can be listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Listed {
+    /// Metals with their complex refractive index.
+    Metals,
+    /// Materials of surfaces, and their keys.
+    Materials,
+    /// Finished surfaces by name.
+    Surfaces,
+    /// Methods that find a line in a column.
+    Detectors,
+    /// What a sensor is where a file leaves it open.
+    Sensors,
+}

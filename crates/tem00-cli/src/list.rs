@@ -1,0 +1,173 @@
+//! `tem00 list`: what scenes and set-ups can name.
+
+use std::io::Write;
+
+use tem00_tracer::{FinishingProcess, Metal, TracerError, document::MATERIALS};
+use tem00_triangulation::{LineMethod, SensorDescription};
+
+use crate::{
+    args::{ListArgs, Listed},
+    failure::Failure,
+    table::{rounded, write_columns},
+};
+
+/// Prints what was asked for, with its sources.
+///
+/// # Errors
+///
+/// Returns a failure if a metal was not measured at the wavelength, or nobody reads.
+pub(crate) fn run(args: &ListArgs, out: &mut impl Write) -> Result<(), Failure> {
+    let (lines, note) = match args.what {
+        Listed::Metals => (metals(args.wavelength)?, METALS),
+        Listed::Materials => (materials(), MATERIALS_NOTE),
+        Listed::Surfaces => (surfaces(), SURFACES),
+        Listed::Detectors => (detectors(), DETECTORS),
+        Listed::Sensors => (sensors(), SENSORS),
+    };
+    write_columns(&lines, out)
+        .and_then(|()| writeln!(out, "\n{note}"))
+        .map_err(|error| Failure::stdout(&error))
+}
+
+const METALS: &str = "\
+In a scene: conductor.metal = \"gold\", or mirror.metal = \"gold\". Reflectance at normal incidence, from n
+and k, which were measured on clean, smooth surfaces, mostly films.";
+
+fn metals(wavelength: f64) -> Result<Vec<Vec<String>>, Failure> {
+    let mut lines = vec![line(["metal", "n", "k", "reflectance", "source"])];
+    for (name, metal) in Metal::NAMED {
+        let refused = |error: TracerError| Failure::input(error.to_string(), "--wavelength 650nm");
+        let (n, k) = metal.refractive_index(wavelength).map_err(refused)?;
+        let reflectance = metal.normal_reflectance(wavelength).map_err(refused)?;
+        let [n, k, reflectance] = [n, k, reflectance].map(|x| rounded(x, 3));
+        lines.push(line([name, &n, &k, &reflectance, metal.source()]));
+    }
+    Ok(lines)
+}
+
+const MATERIALS_NOTE: &str = "\
+In a scene: lambertian.reflectance = 0.5 in [[surface]]. docs/scene_file.md has ranges and defaults.";
+
+fn materials() -> Vec<Vec<String>> {
+    let mut lines = vec![line(["material", "keys", "what it is"])];
+    for (name, keys) in MATERIALS {
+        lines.push(line([name, &keys.join(", "), what_it_is(name)]));
+    }
+    lines
+}
+
+fn what_it_is(material: &str) -> &'static str {
+    match material {
+        "lambertian" => "diffuse, as paper; what a surface is without a material",
+        "oren_nayar" => "rough and diffuse, as plaster, clay or a sandblasted casting",
+        "conductor" => "rough metal",
+        "plastic" => "a diffuse base under a clear coat, as plastic, lacquer or glaze",
+        "mirror" => "a mirror, or polished metal; makes no speckle",
+        "dielectric" => "clear glass; makes no speckle",
+        _ => "",
+    }
+}
+
+const SURFACES: &str = "\
+In a scene: conductor.finish = \"milled steel\", a process and a metal: steel (which counts as iron, with
+much the same reflectance) or one of `tem00 list metals`. It sets the metal and the rms height.
+
+Ra is a typical range and no measurement: that of average application in the table \"Surface Roughness
+Produced by Common Production Methods\", Machinery's Handbook, 26th edition, 2000. The rms height is that
+of Gaussian heights in the geometric middle, 1.253 Ra. `roughness`, which makes the width of the lobe, does
+not follow from Ra: without it, it is 0.3. The lay that a tool leaves is not modelled. Set-ups have no
+finish: their reflectance is that towards the camera, which Ra and metal do not tell.";
+
+fn surfaces() -> Vec<Vec<String>> {
+    let mut lines = vec![line(["process", "Ra, typical (µm)", "rms height (µm)"])];
+    for process in FinishingProcess::ALL {
+        let [least, greatest] = process.mean_deviation.map(|ra| rounded(1e6 * ra, 3));
+        let height = rounded(1e6 * process.rms_height(), 3);
+        lines.push(line([
+            process.name,
+            &format!("{least} … {greatest}"),
+            &height,
+        ]));
+    }
+    lines
+}
+
+const DETECTORS: &str = "\
+In [detector]: method = \"parabola\". --method of `tem00 lines` takes the same names.";
+
+fn detectors() -> Vec<Vec<String>> {
+    let mut lines = vec![line(["method", "least window", "place of the line"])];
+    for method in LineMethod::ALL {
+        let window = method.least_window().to_string();
+        lines.push(line([method.name(), &window, place_of_line(&method)]));
+    }
+    lines
+}
+
+fn place_of_line(method: &LineMethod) -> &'static str {
+    match method {
+        LineMethod::CentreOfGravity => "centre of gravity over the window",
+        LineMethod::ThresholdedCentreOfGravity { .. } => {
+            "of what lies above `threshold` of the peak (Thomas et al. 2006)"
+        }
+        LineMethod::IteratedCentreOfGravity => "over a window that is moved onto its result",
+        LineMethod::Parabola => {
+            "vertex of a parabola through the greatest pixel and its neighbours"
+        }
+        LineMethod::LogGaussian => {
+            "vertex through their logarithms; exact for points of a Gaussian"
+        }
+        LineMethod::LinearInterpolation => "straight flanks of equal slope (Naidu and Fisher 1991)",
+        LineMethod::BlaisRioux { .. } => {
+            "zero of a derivative filter of `order` taps (Blais and Rioux 1986)"
+        }
+        LineMethod::GaussianFit => "the Gaussian on a background that fits best, over pixels",
+        LineMethod::Steger { .. } => "ridge of the image smoothed by `sigma` (Steger 1998)",
+        _ => "",
+    }
+}
+
+const SENSORS: &str = "\
+Typical values and no measurement: an industrial CMOS sensor with global shutter and pixels of 3.45 µm, as
+data sheets after EMVA 1288 have them around 2020. [sensor] takes them where it has no value of its own,
+with `bit_depth` = 12 unless it says otherwise; `quantum_efficiency` and `exposure` must be given.";
+
+fn sensors() -> Vec<Vec<String>> {
+    type Value = fn(&SensorDescription) -> f64;
+    let rows: [(&str, Value); 7] = [
+        ("full_well (electrons)", |sensor| sensor.full_well),
+        ("dark_noise (electrons)", |sensor| sensor.dark_noise),
+        ("dark_current (electrons/s)", |sensor| sensor.dark_current),
+        ("prnu", |sensor| sensor.prnu),
+        ("dsnu (electrons)", |sensor| sensor.dsnu),
+        ("black_level (DN)", |sensor| sensor.black_level),
+        ("gain (DN/electron)", |sensor| sensor.gain),
+    ];
+    let sensors = [8, 10, 12, 14, 16].map(SensorDescription::typical);
+    let bits = sensors.iter().map(|sensor| sensor.bit_depth.to_string());
+    let mut lines = vec![["bit_depth".to_owned()].into_iter().chain(bits).collect()];
+    for (name, value) in rows {
+        let values = sensors.iter().map(|sensor| rounded(value(sensor), 4));
+        lines.push([name.to_owned()].into_iter().chain(values).collect());
+    }
+    lines
+}
+
+fn line<const N: usize>(cells: [&str; N]) -> Vec<String> {
+    cells.map(String::from).to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_listed_without_words() {
+        for (name, _) in MATERIALS {
+            assert!(!what_it_is(name).is_empty(), "{name}");
+        }
+        for method in LineMethod::ALL {
+            assert!(!place_of_line(&method).is_empty(), "{method}");
+        }
+    }
+}

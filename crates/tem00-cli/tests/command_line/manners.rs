@@ -8,6 +8,33 @@ use std::{
 use super::*;
 
 #[test]
+fn numbers_come_back_in_the_unit_that_was_typed() {
+    for (from, to, part) in [
+        ("\"25 mm\"", "\"0 mm\"", "at least 1e-9 mm, got \"0 mm\""),
+        ("\"25 mm\"", "\"1e20 mm\"", "at most 1e12 mm"),
+        // The focus, 300 mm away, must lie beyond the focal length.
+        (
+            "f_number = 8",
+            "f_number = 8\nfocus_distance = \"20 mm\"",
+            "greater than the focal length, got 20 mm",
+        ),
+        (
+            "\"0.2 mm\"",
+            "\"0.1 um\"",
+            "0.4138 um to be paraxial, got 0.1 um",
+        ),
+    ] {
+        let folder = folder();
+        assert!(SCENE.contains(from), "{from} is in the scene");
+        fs::write(folder.path().join("a.toml"), SCENE.replacen(from, to, 1)).expect("written");
+        let output = run(folder.path(), "render a.toml");
+        assert_code(&output, 2);
+        let told = message(&output);
+        assert!(told.contains(part), "{to}: {told}");
+    }
+}
+
+#[test]
 fn darkness_is_called_so() {
     let folder = folder();
     let away = SCENE.replace("centre = [0, 0, 0]", "centre = [\"70 mm\", 0, 0]");

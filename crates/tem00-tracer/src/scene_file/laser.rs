@@ -131,7 +131,7 @@ fn line(section: &Section<'_>, distance: f64, wavelength: f64) -> Result<BeamSha
     let focus = GaussianBeam::from_waist(wavelength, waist_radius)
         .and_then(|beam| beam.with_m_squared(m_squared))
         .map_err(|error| {
-            Problem::new(error.to_string())
+            Problem::new(thickness.retyped(&error.to_string()))
                 .at(thickness.place())
                 .with_help("the waist radius of a line is half its thickness")
         })?;

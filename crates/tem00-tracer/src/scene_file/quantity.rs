@@ -25,6 +25,29 @@ struct Unit {
     divisor: f64,
 }
 
+impl Unit {
+    /// Returns whether it is the SI unit itself.
+    fn is_si(&self) -> bool {
+        self.multiplier.to_bits() == self.divisor.to_bits()
+    }
+}
+
+/// Returns a word without the punctuation behind it.
+fn bare(word: &str) -> &str {
+    word.trim_end_matches([',', ';', ':', '.', ')'])
+}
+
+/// Writes a number with four significant digits at most.
+fn digits(value: f64) -> String {
+    // Reading it back drops the zeros at its end.
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    if (1e-3..1e6).contains(&rounded.abs()) || rounded == 0.0 {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
 const fn unit(symbol: &'static str, multiplier: f64, divisor: f64) -> Unit {
     Unit {
         symbol,
@@ -132,7 +155,6 @@ pub const MEMORY: Dimension = Dimension {
 };
 
 /// All kinds that have units.
-#[cfg(test)]
 pub(super) const ALL: [&Dimension; 6] = [&LENGTH, &ANGLE, &POWER, &RADIANCE, &DURATION, &MEMORY];
 
 impl Dimension {
@@ -145,6 +167,12 @@ impl Dimension {
     /// Returns the value, in SI units, of a string such as "650 nm", or `None` if it is no quantity
     /// of this kind; a number without a unit is none.
     pub fn parse(&self, text: &str) -> Option<f64> {
+        let (number, unit) = self.split(text)?;
+        Some(number * unit.multiplier / unit.divisor)
+    }
+
+    /// Returns the number and the unit of a string, or `None` if it is no quantity of this kind.
+    fn split(&self, text: &str) -> Option<(f64, &Unit)> {
         let text = text.trim();
         // The unit begins at the first letter that is not part of an exponent.
         let is_number = |c: char| c.is_ascii_digit() || "+-.".contains(c);
@@ -156,9 +184,55 @@ impl Dimension {
             _ => digits,
         };
         let (number, symbol) = text.split_at(text.len() - rest.len());
-        let value: f64 = number.parse().ok()?;
-        let unit = self.unit(symbol)?;
-        Some(value * unit.multiplier / unit.divisor)
+        Some((number.parse().ok()?, self.unit(symbol)?))
+    }
+
+    /// Writes a value in SI units in the unit of `typed`, a quantity as somebody has typed it.
+    pub(super) fn written_as(&self, value: f64, typed: &str) -> Option<String> {
+        let (_, unit) = self.split(typed)?;
+        Some(format!(
+            "{} {}",
+            digits(value * unit.divisor / unit.multiplier),
+            unit.symbol
+        ))
+    }
+
+    /// Returns a message about `typed` with its lengths, or whatever it is, in the unit that was typed; or
+    /// `None` if it is no quantity of this kind.
+    pub(super) fn retyped(&self, message: &str, typed: &str) -> Option<String> {
+        let value = self.parse(typed)?;
+        let si = self.units.iter().find(|unit| unit.is_si())?;
+        let mut words: Vec<String> = Vec::new();
+        let mut rest = message.split(' ').peekable();
+        while let Some(word) = rest.next() {
+            let Ok(number) = bare(word).parse::<f64>() else {
+                words.push(word.to_owned());
+                continue;
+            };
+            let written = if number.to_bits() == value.to_bits() {
+                typed.trim().to_owned()
+            } else {
+                self.written_as(number, typed)?
+            };
+            let in_si = rest.next_if(|next| bare(next) == si.symbol || bare(next) == self.si_unit);
+            let is_it = number.to_bits() == value.to_bits()
+                && words.last().is_some_and(|last| last == "got");
+            match in_si {
+                Some(unit) => words.push(format!("{written}{}", &unit[bare(unit).len()..])),
+                None if is_it => words.push(format!("{written}{}", &word[bare(word).len()..])),
+                None => words.push(word.to_owned()),
+            }
+        }
+        let asides = [
+            format!(" (in {})", self.si_unit),
+            format!(", in {}", self.si_unit),
+        ];
+        let message = words.join(" ");
+        Some(
+            asides
+                .iter()
+                .fold(message, |text, aside| text.replace(aside, "")),
+        )
     }
 
     /// Returns the size of a unit in SI units, or `None` if it is no unit of this kind.
@@ -217,6 +291,48 @@ mod tests {
         for (dimension, text, expected) in cases {
             assert_eq!(dimension.parse(text), Some(expected), "{text:?}");
         }
+    }
+
+    #[test]
+    fn messages_come_back_in_the_unit_that_was_typed() {
+        for (dimension, typed, message, expected) in [
+            (
+                &LENGTH,
+                "20 mm",
+                "focus_distance must be greater than the focal length (in metres), got 0.02",
+                "focus_distance must be greater than the focal length, got 20 mm",
+            ),
+            (
+                &LENGTH,
+                "0.1 um",
+                "waist radius 5e-8 m is below the limit of 4.138e-7 m",
+                "waist radius 0.05 um is below the limit of 0.4138 um",
+            ),
+            (
+                &LENGTH,
+                "10 um",
+                "wavelength must be from 368e-9 m to 1088e-9 m, where it was measured, got 0.00001",
+                "wavelength must be from 0.368 um to 1.088 um, where it was measured, got 10 um",
+            ),
+            (
+                &POWER,
+                "0 W",
+                "power must be at least 0.5, got 0",
+                "power must be at least 0.5, got 0 W",
+            ),
+            (&ANGLE, "180 deg", "at most 1 rad", "at most 57.3 deg"),
+        ] {
+            assert_eq!(
+                dimension.retyped(message, typed).unwrap(),
+                expected,
+                "{typed}"
+            );
+        }
+        assert_eq!(
+            LENGTH.retyped("got 5", "5"),
+            None,
+            "a bare number is in SI units"
+        );
     }
 
     #[test]

@@ -201,11 +201,15 @@ impl<'a> Section<'a> {
     }
 
     /// Returns a problem that was found when an object was made of the section, placed at the value
-    /// of `key` if the file gives one.
+    /// of `key` if the file gives one, and in its unit.
     pub fn problem_with(&self, key: &str, message: impl Display) -> Problem {
-        let value = self.table.get(key);
-        let place = value.map_or(self.place.clone(), |value| self.source.place(value.span()));
-        Problem::new(message.to_string()).at(place)
+        match self.table.get(key) {
+            Some(item) => {
+                let value = Value::new(key, item, self.source);
+                Problem::new(value.retyped(&message.to_string())).at(value.place())
+            }
+            None => self.problem(message),
+        }
     }
 
     fn open(

@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::error::{Place, Problem};
-use super::quantity::{Dimension, LENGTH, NUMBER};
+use super::quantity::{ALL, Dimension, LENGTH, NUMBER};
 use super::source::Source;
 
 /// A value of the file, with what it takes to complain about it: its name, its text and its place.
@@ -66,11 +66,8 @@ impl<'a> Value<'a> {
         if value.abs() <= greatest {
             return Ok(value);
         }
-        let allowed = format!(
-            "a finite number of at most {greatest:e} {}",
-            dimension.si_unit
-        );
-        Err(self.must_be(allowed.trim_end()))
+        let greatest = self.in_its_unit(greatest, dimension);
+        Err(self.must_be(format_args!("a finite number of at most {greatest}")))
     }
 
     fn not_a(&self, dimension: &Dimension) -> Problem {
@@ -89,8 +86,30 @@ impl<'a> Value<'a> {
     /// Returns a problem, placed at the value, if it is anything else.
     pub fn positive(&self, dimension: &Dimension) -> Result<f64, Problem> {
         let (least, _) = dimension.magnitudes;
-        let allowed = format!("positive, at least {least:e} {}", dimension.si_unit);
-        self.within(dimension, least.., allowed.trim_end())
+        let allowed = self.in_its_unit(least, dimension);
+        self.within(dimension, least.., &format!("positive, at least {allowed}"))
+    }
+
+    /// Writes a quantity in SI units in the unit of this value.
+    fn in_its_unit(&self, quantity: f64, dimension: &Dimension) -> String {
+        let typed = self.item.get_ref().as_str();
+        typed
+            .and_then(|typed| dimension.written_as(quantity, typed))
+            .unwrap_or_else(|| {
+                let text = format!("{quantity:e} {}", dimension.si_unit);
+                text.trim_end().to_owned()
+            })
+    }
+
+    /// Returns a message about this value with its quantities in the unit of this value.
+    pub(super) fn retyped(&self, message: &str) -> String {
+        let typed = self.item.get_ref().as_str();
+        typed
+            .and_then(|typed| {
+                ALL.iter()
+                    .find_map(|dimension| dimension.retyped(message, typed))
+            })
+            .unwrap_or_else(|| message.to_owned())
     }
 
     /// Returns a quantity in `range`, which `allowed` describes.

@@ -16,8 +16,14 @@ use tem00_triangulation::{
 };
 
 use crate::{
-    args::BudgetArgs, atomic::write_atomically, failure::Failure, interrupt, output,
-    progress::Progress, table::write_columns,
+    args::BudgetArgs,
+    atomic::write_atomically,
+    failure::Failure,
+    interrupt,
+    kind::{Kind, wrong_or},
+    output,
+    progress::Progress,
+    table::write_columns,
 };
 
 const HELP: &str = "setups/ has set-up files, and docs/setup_file.md tells how to write them";
@@ -57,8 +63,11 @@ struct Refusal {
 /// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or, with
 /// all files written, if the set-up measures nothing.
 pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let setup =
-        read_setup(&args.setup).map_err(|error| Failure::file(&args.setup, &error, HELP))?;
+    let setup = read_setup(&args.setup).map_err(|error| {
+        wrong_or(&args.setup, Kind::Setup, || {
+            Failure::file(&args.setup, &error, HELP)
+        })
+    })?;
     let folder = output::folder(args.output.as_deref(), &output::name(&args.setup, "set-up"));
     output::prepare(&folder)?;
     let pool = output::thread_pool(args.threads)?;

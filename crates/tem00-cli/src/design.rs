@@ -17,7 +17,14 @@ use tem00_triangulation::{
     read_design, read_setup_with,
 };
 
-use crate::{args::DesignArgs, failure::Failure, interrupt, output, progress::Progress};
+use crate::{
+    args::DesignArgs,
+    failure::Failure,
+    interrupt,
+    kind::{Kind, wrong_or},
+    output,
+    progress::Progress,
+};
 
 /// By which part each parameter of the best set-up is changed.
 const PART: f64 = 0.1;
@@ -43,7 +50,11 @@ pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure
     let (_, search) = read_setup_with(&args.setup, |document, setup| {
         read_design(document, setup.description())
     })
-    .map_err(|error| Failure::file(&args.setup, &error, HELP))?;
+    .map_err(|error| {
+        wrong_or(&args.setup, Kind::Setup, || {
+            Failure::file(&args.setup, &error, HELP)
+        })
+    })?;
     let name = output::name(&args.setup, "design");
     let folder = output::folder(args.output.as_deref(), &name);
     output::prepare(&folder)?;

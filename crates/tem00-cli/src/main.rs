@@ -12,6 +12,7 @@ mod frame_files;
 mod image;
 mod inspection;
 mod interrupt;
+mod kind;
 mod lines;
 mod list;
 mod output;

@@ -24,6 +24,7 @@ use crate::{
     frame_files::FramePaths,
     inspection::Inspection,
     interrupt,
+    kind::{Kind, wrong_or},
     output::{self, note},
     summary::{LaserSummary, Summary},
 };
@@ -35,11 +36,10 @@ use crate::{
 /// Returns a failure if the input is not valid, a file cannot be written or the user ends it.
 pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure> {
     let SceneFile { scene, files, .. } = SceneFile::read(&args.scene).map_err(|error| {
-        Failure::file(
-            &args.scene,
-            &error,
-            "a scene needs a laser, a camera and a surface",
-        )
+        wrong_or(&args.scene, Kind::Scene, || {
+            let needed = "a scene needs a laser, a camera and a surface";
+            Failure::file(&args.scene, &error, needed)
+        })
     })?;
     let scene = overruled(scene, args)?;
     if args.check {

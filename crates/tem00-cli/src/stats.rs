@@ -13,6 +13,7 @@ use crate::{
     args::StatsArgs,
     failure::Failure,
     image::{LoadedImage, read_image},
+    kind::{Kind, wrong_or},
     plot::Format,
     table::{Row, write_table},
 };
@@ -45,8 +46,11 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
         Failure::input(format!("{}: {error}", args.image.display()), help)
     };
     let plot = args.plot.as_deref().map(plot_file).transpose()?;
-    let image = read_image(&args.image, args.channel.as_deref(), args.transfer)
-        .map_err(|error| cannot(&error, "give a .png, .exr or .npy image of light"))?;
+    let image =
+        read_image(&args.image, args.channel.as_deref(), args.transfer).map_err(|error| {
+            let help = "give a .png, .exr or .npy image of light";
+            wrong_or(&args.image, Kind::Image, || cannot(&error, help))
+        })?;
     let (width, height) = (image.values.width(), image.values.height());
     if width.min(height) < FEWEST_PIXELS {
         let error = format!("the image has {width} × {height} pixels");

@@ -25,7 +25,9 @@ use self::{
 use crate::{
     args::{FrameRange, TriangulateArgs},
     failure::Failure,
-    interrupt, output,
+    interrupt,
+    kind::{Kind, wrong_or},
+    output,
     progress::FrameProgress,
     render::{frames, tracer_failure},
 };
@@ -40,8 +42,11 @@ const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface
 /// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or, with all
 /// files written, if no point is valid.
 pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (scene, _) = MeasurementScene::read(&args.scene)
-        .map_err(|error| Failure::file(&args.scene, &error, HELP))?;
+    let (scene, _) = MeasurementScene::read(&args.scene).map_err(|error| {
+        wrong_or(&args.scene, Kind::Scene, || {
+            Failure::file(&args.scene, &error, HELP)
+        })
+    })?;
     let settings = scene.calibration.clone();
     let mut job = Job::new(args, scene)?;
     let pool = output::thread_pool(args.threads)?;

@@ -7,6 +7,47 @@ use std::{
 
 use super::*;
 
+const SETUP: &str = "[laser]\nwavelength = \"650 nm\"\n[camera]\n[surface]\nreflectance = 0.5\n";
+
+#[test]
+fn a_file_of_another_kind_is_told_with_the_command_that_takes_it() {
+    let folder = scene_folder();
+    let path = folder.path();
+    fs::write(path.join("b.toml"), SETUP).expect("written");
+    assert_code(&run(path, "pattern -o c.png --size 64"), 0);
+    for (line, parts) in [
+        (
+            "render b.toml",
+            ["this is a set-up file", "tem00 budget b.toml"],
+        ),
+        (
+            "triangulate b.toml",
+            ["this is a set-up file", "tem00 budget b.toml"],
+        ),
+        (
+            "budget a.toml",
+            ["this is a scene file", "tem00 render a.toml"],
+        ),
+        (
+            "design a.toml",
+            ["this is a scene file", "tem00 render a.toml"],
+        ),
+        ("render c.png", ["this is an image", "tem00 stats c.png"]),
+        ("budget c.png", ["this is an image", "tem00 stats c.png"]),
+        (
+            "stats a.toml",
+            ["this is a scene file", "tem00 render a.toml"],
+        ),
+    ] {
+        let output = run(path, line);
+        assert_code(&output, 2);
+        let told = message(&output);
+        for part in parts {
+            assert!(told.contains(part), "{line}: {told}");
+        }
+    }
+}
+
 #[test]
 fn numbers_come_back_in_the_unit_that_was_typed() {
     for (from, to, part) in [

@@ -29,7 +29,7 @@ use source::Sources;
 
 pub use document::Document;
 pub use error::{Problem, SceneError};
-pub use format::Format;
+pub use format::{DocumentKind, Format, kind_of_document};
 pub use material::MATERIALS;
 pub use quantity::{ANGLE, DURATION, Dimension, LENGTH, MEMORY, NUMBER, POWER, RADIANCE};
 pub use section::{Choice, Section};

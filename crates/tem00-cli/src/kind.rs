@@ -1,0 +1,80 @@
+//! What kind of file the user has given, where a command wants another.
+
+use std::{fs::File, io::Read, path::Path};
+
+use tem00_tracer::document::{DocumentKind, kind_of_document};
+
+use crate::failure::Failure;
+
+/// As much of a file as tells its kind.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// A kind of file that a command takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Scene,
+    Setup,
+    Image,
+}
+
+impl Kind {
+    const fn noun(self) -> &'static str {
+        match self {
+            Self::Scene => "a scene file",
+            Self::Setup => "a set-up file",
+            Self::Image => "an image",
+        }
+    }
+
+    /// Returns the command that takes such a file.
+    const fn command(self) -> &'static str {
+        match self {
+            Self::Scene => "render",
+            Self::Setup => "budget",
+            Self::Image => "stats",
+        }
+    }
+
+    /// Returns the kind of a file, if it is known.
+    fn of(path: &Path) -> Option<Self> {
+        let is_file = path.metadata().is_ok_and(|found| found.is_file());
+        let file = is_file.then(|| File::open(path).ok()).flatten()?;
+        let mut bytes = Vec::new();
+        file.take(MAX_BYTES).read_to_end(&mut bytes).ok()?;
+        if IMAGES.iter().any(|magic| bytes.starts_with(magic)) {
+            return Some(Self::Image);
+        }
+        match kind_of_document(core::str::from_utf8(&bytes).ok()?)? {
+            DocumentKind::Scene => Some(Self::Scene),
+            DocumentKind::Setup => Some(Self::Setup),
+            _ => None,
+        }
+    }
+}
+
+/// How files begin that hold an image: PNG, OpenEXR, NumPy, JPEG, TIFF in both orders of bytes, PGM.
+const IMAGES: [&[u8]; 8] = [
+    b"\x89PNG",
+    b"\x76\x2f\x31\x01",
+    b"\x93NUMPY",
+    b"\xff\xd8\xff",
+    b"II*\0",
+    b"MM\0*",
+    b"P5\n",
+    b"P2\n",
+];
+
+/// Returns the failure that a file is of another kind than a command needs, with the command that takes
+/// it; or `otherwise`, if it is of that kind or of none that is known.
+pub(crate) fn wrong_or(path: &Path, needed: Kind, otherwise: impl FnOnce() -> Failure) -> Failure {
+    match Kind::of(path).filter(|kind| *kind != needed) {
+        None => otherwise(),
+        Some(kind) => {
+            let name = path.display();
+            Failure::input(
+                format!("{name}: this is {}, not {}", kind.noun(), needed.noun()),
+                format!("try `tem00 {} {name}`", kind.command()),
+            )
+        }
+    }
+}

@@ -95,6 +95,8 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &[
             "base64",
             "clap",
+            "clap_complete",
+            "clap_mangen",
             "ctrlc",
             "exr",
             "glam",

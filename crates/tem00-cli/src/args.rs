@@ -6,6 +6,7 @@ mod design;
 mod lines;
 mod list;
 mod render;
+mod shell;
 mod speckle;
 mod triangulate;
 
@@ -22,6 +23,7 @@ pub(crate) use self::{
     lines::LinesArgs,
     list::{ListArgs, Listed},
     render::{FrameRange, RenderArgs},
+    shell::{CompletionsArgs, ManArgs},
     speckle::SpeckleArgs,
     triangulate::TriangulateArgs,
 };
@@ -69,6 +71,8 @@ pub(crate) enum Command {
     Budget(BudgetArgs),
     Design(DesignArgs),
     List(ListArgs),
+    Completions(CompletionsArgs),
+    Man(ManArgs),
 }
 
 /// Generate a speckle pattern and compare it with the theory.

@@ -22,6 +22,7 @@ mod preview;
 mod progress;
 mod render;
 mod report;
+mod shell;
 mod speckle;
 mod stats;
 mod summary;
@@ -67,6 +68,8 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Lines(args) => lines::run(args, &mut out),
         Command::Calibrate(args) => calibrate::run(args, &mut out),
         Command::Triangulate(args) => triangulate::run(args, &mut out),
+        Command::Completions(args) => shell::completions(args, &mut out),
+        Command::Man(args) => shell::man(args, &mut out),
         Command::List(args) => list::run(args, &mut out),
         Command::Speckle(args) => speckle::run(args, &mut out),
         Command::Budget(args) => budget::run(args, &mut out),

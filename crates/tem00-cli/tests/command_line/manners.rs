@@ -125,3 +125,42 @@ fn progress_is_told_in_lines_where_there_is_no_terminal() {
         "{line}"
     );
 }
+
+#[test]
+fn shells_and_man_know_every_command_and_option() {
+    let folder = folder();
+    for shell in ["bash", "zsh", "fish"] {
+        let output = run(folder.path(), &format!("completions {shell}"));
+        assert_code(&output, 0);
+        let script = text(&output.stdout);
+        for word in [
+            "triangulate",
+            "speckle",
+            "white-level",
+            "pupil-magnification",
+        ] {
+            assert!(
+                script.contains(word),
+                "{word} is not in the script for {shell}"
+            );
+        }
+    }
+    let output = run(folder.path(), "man pages");
+    assert_code(&output, 0);
+    let pages = files(&folder.path().join("pages"));
+    for page in [
+        "tem00.1",
+        "tem00-render.1",
+        "tem00-speckle.1",
+        "tem00-man.1",
+    ] {
+        assert!(
+            pages.contains(&page.to_owned()),
+            "{page} is not in {pages:?}"
+        );
+    }
+    let render = fs::read_to_string(folder.path().join("pages/tem00-render.1")).expect("a page");
+    // Hyphens are escaped in troff.
+    assert!(render.contains("white\\-level"), "{render}");
+    assert!(render.contains("tem00\\-render"), "{render}");
+}

@@ -31,6 +31,7 @@
 //! - Estimators: [`Moments`], [`Contrast`], [`local_contrast`], [`GammaFit`],
 //!   [`pearson_correlation`], [`autocovariance`], [`power_spectrum`], [`radial_average`],
 //!   [`SpeckleSize`], [`phase_singularities`], [`VortexDensity`], [`decorrelated_samples`].
+//! - Uneven light: [`UnevenLight`] finds it, [`FlatImage`] divides by it.
 //! - Hypothesis tests: [`kolmogorov_smirnov`], [`chi_squared`], [`t_test_mean`], and for images that
 //!   are rounded to few [`GreyLevels`]: [`GoodnessOfFit`].
 //!
@@ -87,6 +88,7 @@ mod speckle_size;
 mod sums;
 #[cfg(test)]
 mod synthetic;
+mod uneven_light;
 
 pub use autocovariance::{
     Boundary, Ring, autocovariance, decorrelated_samples, power_spectrum, radial_average,
@@ -127,3 +129,4 @@ pub use spatial::{
 };
 pub use speckle_size::{Axis, SpeckleSize};
 pub use sums::WeightedSum;
+pub use uneven_light::{FlatImage, UnevenLight};

@@ -1,0 +1,415 @@
+use core::f64::consts::{PI, SQRT_2};
+
+use tem00_numerics::Grid;
+
+use crate::{COHERENCE_AREA, SpeckleSize, StatisticsError, autocovariance::single, moments};
+
+/// The inner radius of the first ring of lags, in speckle sizes: beyond the speckle itself.
+const FIRST_RING: f64 = 1.5;
+
+/// How many standard deviations of chance count as chance.
+const SIGMAS: f64 = 4.5;
+
+/// What the side lobes of a pupil leave in the first ring; it falls with the radius. A circle leaves
+/// 0.005, an annulus with an opening of one half 0.03, of nine tenths 0.07.
+const SIDE_LOBES: f64 = 0.08;
+
+/// Light that is not even over an image: the autocovariance of the image does not fall to zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnevenLight {
+    /// The inner and the outer radius of the ring of lags that shows it most, in speckle sizes.
+    pub lags: [f64; 2],
+    /// The mean autocovariance over that ring, in units of the variance of the image: about the share
+    /// of the variance that the shape of the light makes.
+    pub covariance: f64,
+    /// The most that side lobes and chance make of speckle in even light there.
+    pub limit: f64,
+}
+
+impl UnevenLight {
+    /// Looks for uneven light in the autocovariance of a finite image, with zero lag at `(0, 0)`:
+    /// nothing is found where the light is even or its shape cannot be told from chance.
+    ///
+    /// The lags are averaged over rings from 1.5 to 3 speckle sizes, from 3 to 6, and so on up to half
+    /// of the image. In even light that average is 0, with the standard deviation
+    ///
+    /// ```text
+    /// √2 (4/π) / √(n a)         n the speckle sizes h² in the image, a the ring's area in h²
+    /// ```
+    ///
+    /// and 4.5 of them count as chance, on top of what side lobes of a pupil may leave, 0.08 in the
+    /// first ring and half as much in each further one. `size` is the speckle size, or `None` where
+    /// pixels are larger than speckles.
+    ///
+    /// # Validity
+    ///
+    /// Speckle of one size all over the image. Images of less than six speckle sizes have no ring, and
+    /// nothing is found.
+    pub fn find(lags: &Grid<f32>, size: Option<SpeckleSize>) -> Option<Self> {
+        // Independent pixels have a coherence area of one of them.
+        let size = size.map_or([COHERENCE_AREA.sqrt().recip(); 2], |s| [s.x(), s.y()]);
+        // The grid of lags of a finite image is twice as large as the image.
+        let image = [lags.width(), lags.height()].map(|lags| 0.5 * lags as f64);
+        let speckles = image[0] * image[1] / (size[0] * size[1]);
+        // Farther than half of the image the average is that of pixels near its edges.
+        let farthest = (0.5 * image[0] / size[0]).min(0.5 * image[1] / size[1]);
+        let radii = core::iter::successors(Some(FIRST_RING), |inner| Some(2.0 * inner));
+        let rings = radii
+            .take_while(|inner| 2.0 * inner <= farthest)
+            .map(|inner| {
+                let spread = SQRT_2 * COHERENCE_AREA / (speckles * 3.0 * PI * inner * inner).sqrt();
+                Self {
+                    lags: [inner, 2.0 * inner],
+                    // The mean that was taken from the image lowers all lags.
+                    covariance: mean_over_ring(lags, size, inner) + COHERENCE_AREA / speckles,
+                    limit: SIGMAS * spread + SIDE_LOBES * FIRST_RING / inner,
+                }
+            });
+        let excess = |ring: &Self| ring.covariance - ring.limit;
+        rings
+            .filter(|ring| excess(ring) > 0.0)
+            .max_by(|a, b| excess(a).total_cmp(&excess(b)))
+    }
+}
+
+/// Returns the mean over lags from `inner` to twice that, in speckle sizes.
+fn mean_over_ring(lags: &Grid<f32>, size: [f64; 2], inner: f64) -> f64 {
+    let [reach_x, reach_y] = size.map(|size| whole(2.0 * inner * size));
+    let (mut sum, mut cells) = (0.0, 0_u32);
+    // Opposite lags hold the same: half of the ring is enough.
+    for y in 0..=reach_y {
+        for x in -reach_x..=reach_x {
+            let radius = (f64::from(x) / size[0]).hypot(f64::from(y) / size[1]);
+            if (inner..2.0 * inner).contains(&radius) {
+                sum += f64::from(*lags.wrapped(x.into(), y.into()));
+                cells += 1;
+            }
+        }
+    }
+    sum / f64::from(cells)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a lag is at most half the size of the image"
+)]
+const fn whole(lag: f64) -> i32 {
+    lag as i32
+}
+
+/// An image divided by its mean over a square about each pixel: speckle in uneven light, without the
+/// light.
+///
+/// ```text
+/// R(x) = I(x) / m(x)        m the mean over window × window pixels about x, as far as they exist
+/// ```
+///
+/// # Bias
+///
+/// The local mean follows the pattern, the more the smaller the window is, and takes from it the share
+///
+/// ```text
+/// s = (4/π) h² ⟨1/n⟩        ⟨1/n⟩ the average over the image of 1 by the pixels in the window
+/// ```
+///
+/// of the variance. With δ = I − 1 and η = m − 1 of a sum of fully developed patterns, whose cumulants
+/// are ⟨δη⟩ = ⟨η²⟩ = C² s and ⟨δ²η⟩ = 2 C⁴ s, the contrast of R is
+///
+/// ```text
+/// C' = C (1 − (1 + C²) s / 2)        to first order in s
+/// ```
+///
+/// and its autocovariance falls from 1 to −s, which makes the speckle size too small by the share
+/// 0.675 s. [`contrast_before`](Self::contrast_before) and
+/// [`speckle_size_before`](Self::speckle_size_before) undo both.
+///
+/// # Validity
+///
+/// Windows of six speckle sizes and more, s ≤ 0.035, over which the light varies little: what it bends
+/// is left, `w² e″ / 24 e` along each axis for a light e and a window of the width w.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlatImage {
+    values: Grid<f32>,
+    /// The average of 1 by the pixels in the window.
+    inverse_count: f64,
+    darkest: f64,
+}
+
+impl FlatImage {
+    /// Divides `image` by its mean over `window` × `window` pixels; an even window counts as one pixel
+    /// wider.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the window is smaller than two pixels or larger than the image, a pixel is
+    /// not finite, or a local mean is not positive.
+    pub fn new(image: &Grid<f32>, window: usize) -> Result<Self, StatisticsError> {
+        let size = (image.width(), image.height());
+        if window < 2 || window > size.0.min(size.1) {
+            return Err(StatisticsError::Window {
+                window,
+                image: size,
+            });
+        }
+        moments::check_finite(image.values())?;
+        let means = local_means(image, window / 2);
+        let of =
+            |pick: fn(f64, f64) -> f64, start| means.values().iter().copied().fold(start, pick);
+        let (lowest, highest) = (of(f64::min, f64::INFINITY), of(f64::max, 0.0));
+        // A mean that is below the rounding of the sums is none.
+        if lowest <= f64::EPSILON * highest * (size.0 + size.1) as f64 {
+            return Err(StatisticsError::Mean(lowest));
+        }
+        let flat = |x, y| single(f64::from(image[(x, y)]) / means[(x, y)]);
+        Ok(Self {
+            values: Grid::from_fn(size.0, size.1, flat),
+            inverse_count: inverse_count(size.0, window / 2) * inverse_count(size.1, window / 2),
+            darkest: lowest / highest,
+        })
+    }
+
+    /// Returns the values R.
+    pub const fn values(&self) -> &Grid<f32> {
+        &self.values
+    }
+
+    /// Returns the smallest local mean by the largest.
+    pub const fn darkest(&self) -> f64 {
+        self.darkest
+    }
+
+    /// Returns the share s of the variance that was taken, for a speckle size in pixels.
+    pub fn lost_share(&self, speckle_size: f64) -> f64 {
+        COHERENCE_AREA * speckle_size * speckle_size * self.inverse_count
+    }
+
+    /// Returns the contrast of evenly lit speckle that becomes `contrast` here.
+    pub fn contrast_before(&self, contrast: f64, speckle_size: f64) -> f64 {
+        contrast * (1.0 + 0.5 * (1.0 + contrast * contrast) * self.lost_share(speckle_size))
+    }
+
+    /// Returns the speckle size that becomes `speckle_size` here, along one axis or both.
+    pub fn speckle_size_before(&self, speckle_size: f64) -> f64 {
+        speckle_size * (1.0 + 0.675 * self.lost_share(speckle_size))
+    }
+}
+
+/// Returns the means over squares that reach so many pixels to each side.
+fn local_means(image: &Grid<f32>, reach: usize) -> Grid<f64> {
+    let (width, height) = (image.width(), image.height());
+    let mut means = Grid::filled(width, height, 0.0);
+    for y in 0..height {
+        let row: Vec<f64> = image.row(y).iter().map(|&value| value.into()).collect();
+        for (x, mean) in running_means(&row, reach).into_iter().enumerate() {
+            means[(x, y)] = mean;
+        }
+    }
+    for x in 0..width {
+        let column: Vec<f64> = (0..height).map(|y| means[(x, y)]).collect();
+        for (y, mean) in running_means(&column, reach).into_iter().enumerate() {
+            means[(x, y)] = mean;
+        }
+    }
+    means
+}
+
+/// Returns the means over neighbours up to `reach` away, as far as they exist.
+fn running_means(values: &[f64], reach: usize) -> Vec<f64> {
+    let mut sums = Vec::with_capacity(values.len() + 1);
+    sums.push(0.0);
+    for value in values {
+        sums.push(sums[sums.len() - 1] + value);
+    }
+    let mean = |index: usize| {
+        let [start, end] = neighbours(index, values.len(), reach);
+        (sums[end] - sums[start]) / (end - start) as f64
+    };
+    (0..values.len()).map(mean).collect()
+}
+
+fn neighbours(index: usize, length: usize, reach: usize) -> [usize; 2] {
+    [index.saturating_sub(reach), (index + reach + 1).min(length)]
+}
+
+/// Returns the average of 1 by the number of neighbours.
+fn inverse_count(length: usize, reach: usize) -> f64 {
+    let inverse = |index: usize| {
+        let [start, end] = neighbours(index, length, reach);
+        ((end - start) as f64).recip()
+    };
+    (0..length).map(inverse).sum::<f64>() / length as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::{Boundary, Contrast, Moments, autocovariance, synthetic::speckle_tile};
+
+    fn found(image: &Grid<f32>) -> Option<UnevenLight> {
+        let lags = autocovariance(image, Boundary::Finite).unwrap();
+        UnevenLight::find(&lags, SpeckleSize::from_autocovariance(&lags).ok())
+    }
+
+    fn window(tile: &Grid<f32>, [width, height]: [usize; 2]) -> Grid<f32> {
+        Grid::from_fn(width, height, |x, y| tile[(x, y)])
+    }
+
+    /// A Gaussian spot of the 1/e² radius `radius` in the middle.
+    fn lit(image: &Grid<f32>, radius: f64) -> Grid<f32> {
+        let middle = [image.width() as f64 / 2.0, image.height() as f64 / 2.0];
+        Grid::from_fn(image.width(), image.height(), |x, y| {
+            let distance = (x as f64 - middle[0]).hypot(y as f64 - middle[1]) / radius;
+            image[(x, y)] * single((-2.0 * distance * distance).exp())
+        })
+    }
+
+    #[test]
+    fn even_light_is_not_called_uneven() {
+        for (size, diameter, part, seeds) in [
+            (64, 8, [64, 64], 120),
+            (128, 16, [128, 96], 60),
+            (128, 32, [100, 120], 60),
+            (128, 64, [128, 64], 60),
+            (256, 128, [256, 256], 10),
+        ] {
+            for seed in 0..seeds {
+                let (tile, _) = speckle_tile(size, diameter, seed);
+                let light = found(&window(&tile, part));
+                assert_eq!(light, None, "{size}, {diameter}, seed {seed}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_spot_is_found_with_the_share_of_variance_that_it_makes() {
+        let (tile, _) = speckle_tile(512, 128, 1);
+        let spot = lit(&window(&tile, [320, 240]), 53.0);
+        let light = found(&spot).expect("a spot that is a sixth of the image wide");
+        // ⟨e²⟩ = 17.4 ⟨e⟩², by ∫e² = π w²/4 and ∫e = π w²/2 over 320 × 240 pixels: the light makes
+        // (17.4 − 1) of the variance of 2 · 17.4 − 1, times exp(−r²/w²) at the lag r.
+        assert!((0.1..0.49).contains(&light.covariance), "{light:?}");
+        assert!(light.covariance > 2.0 * light.limit, "{light:?}");
+    }
+
+    #[test]
+    fn light_that_falls_off_to_one_side_is_found() {
+        let (tile, _) = speckle_tile(256, 128, 2);
+        // A ramp from 0.2 to 1 has 0.148 of the mean as its deviation squared.
+        let ramp = |x: usize| single(0.2 + 0.8 * x as f64 / 256.0);
+        let image = Grid::from_fn(256, 256, |x, y| tile[(x, y)] * ramp(x));
+        let light = found(&image).expect("a ramp");
+        assert!((0.02..0.15).contains(&light.covariance), "{light:?}");
+    }
+
+    #[test]
+    fn pixels_larger_than_speckles_need_no_size() {
+        let (tile, _) = speckle_tile(512, 256, 3);
+        let sparse = Grid::from_fn(100, 100, |x, y| tile[(5 * x, 5 * y)]);
+        assert_eq!(found(&sparse), None, "even");
+        assert!(found(&lit(&sparse, 40.0)).is_some(), "a spot");
+    }
+
+    #[test]
+    fn images_of_few_speckles_are_not_judged() {
+        let (tile, _) = speckle_tile(256, 16, 4);
+        assert_eq!(found(&lit(&window(&tile, [80, 80]), 30.0)), None);
+    }
+
+    #[test]
+    fn a_flat_image_has_lost_what_is_stated() {
+        const TILES: u64 = 24;
+        for (window_size, patterns) in [(24, 1), (40, 1), (24, 2)] {
+            let mut changes = [Vec::new(), Vec::new()];
+            for seed in 0..TILES {
+                let tile = |k| speckle_tile(256, 64, 100 * seed + k).0;
+                let tiles: Vec<_> = (0..patterns).map(tile).collect();
+                let image = Grid::from_fn(256, 256, |x, y| tiles.iter().map(|t| t[(x, y)]).sum());
+                let flat = FlatImage::new(&image, window_size).unwrap();
+                let of = |image: &Grid<f32>, boundary| {
+                    let contrast = Contrast::of(image.values()).unwrap().value();
+                    [contrast, SpeckleSize::of(image, boundary).unwrap().mean()]
+                };
+                // The whole tile knows its mean.
+                let [contrast, size] = of(&image, Boundary::Periodic);
+                let [flat_contrast, flat_size] = of(flat.values(), Boundary::Finite);
+                changes[0].push(flat.contrast_before(flat_contrast, size) / contrast - 1.0);
+                changes[1].push(flat.speckle_size_before(flat_size) / size - 1.0);
+                assert!(
+                    flat_contrast < contrast && flat_size < size,
+                    "both are lost"
+                );
+            }
+            for change in changes {
+                let change = Moments::of(&change).unwrap();
+                // Windows of 6 and 10 speckle sizes, cut at the edges: s is 0.045 and 0.019, and the
+                // second order some 2 s².
+                let second_order = if window_size == 24 { 4e-3 } else { 1.5e-3 };
+                let tolerance = 4.0 * change.standard_error() + second_order;
+                assert!(
+                    change.mean().abs() < tolerance && tolerance < 9e-3,
+                    "{window_size}: {} ± {tolerance}",
+                    change.mean()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_flat_image_is_the_image_by_its_local_mean() {
+        let image = Grid::from_fn(7, 5, |x, y| (1 + x * y) as f32);
+        let flat = FlatImage::new(&image, 3).unwrap();
+        let nine = [1, 2, 3, 2, 4, 6, 3, 6, 9].map(|xy| f64::from(1 + xy));
+        let mean = nine.iter().sum::<f64>() / 9.0;
+        assert_relative_eq!(
+            f64::from(flat.values()[(2, 2)]),
+            5.0 / mean,
+            max_relative = 1e-6
+        );
+        // In the corner four pixels are left, all 1 but the last.
+        assert_relative_eq!(flat.values()[(0, 0)], 0.8, max_relative = 1e-6);
+        let ends = |n: f64| (2.0 / 2.0 + (n - 2.0) / 3.0) / n;
+        assert_relative_eq!(
+            flat.lost_share(1.0),
+            COHERENCE_AREA * ends(7.0) * ends(5.0),
+            max_relative = 1e-12
+        );
+        assert_relative_eq!(flat.darkest(), 1.25 / 20.25, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn uneven_light_is_taken_out() {
+        let (tile, _) = speckle_tile(512, 256, 6);
+        let uneven = lit(&window(&tile, [300, 300]), 300.0);
+        assert!(found(&uneven).is_some(), "the light is not even");
+        let flat = FlatImage::new(&uneven, 41).unwrap();
+        assert_eq!(found(flat.values()), None);
+        // Speckle of two pixels: 0.77 / 150 of it at 4 σ.
+        let contrast = Contrast::of(flat.values().values()).unwrap().value();
+        let before = flat.contrast_before(contrast, 2.0);
+        assert_relative_eq!(before, 1.0, epsilon = 0.02);
+    }
+
+    #[test]
+    fn windows_and_light_that_cannot_be_are_refused() {
+        let image = Grid::filled(8, 6, 1.0);
+        for window in [0, 1, 7] {
+            assert_eq!(
+                FlatImage::new(&image, window),
+                Err(StatisticsError::Window {
+                    window,
+                    image: (8, 6)
+                })
+            );
+        }
+        let half = Grid::from_fn(20, 6, |x, _| if x < 10 { 1.0 } else { 0.0 });
+        let dark = FlatImage::new(&half, 3);
+        assert!(matches!(dark, Err(StatisticsError::Mean(_))), "{dark:?}");
+        let hole = FlatImage::new(&Grid::filled(8, 6, f32::NAN), 3);
+        assert!(
+            matches!(hole, Err(StatisticsError::NotFinite { .. })),
+            "{hole:?}"
+        );
+    }
+}

@@ -29,6 +29,27 @@ pub(crate) enum Expectation {
     Open,
 }
 
+impl Expectation {
+    /// Returns in words whether a measured value is what theory says, if it says anything.
+    fn verdict(self, measured: f64) -> Option<String> {
+        let agrees = match self {
+            Self::Near { value, tolerance } => (measured - value).abs() <= tolerance,
+            Self::AtLeast { at_least } => measured >= at_least,
+            Self::AtMost { at_most } => measured <= at_most,
+            Self::Open => return None,
+        };
+        Some(match self {
+            _ if agrees => "agrees".into(),
+            Self::Near { value, .. } => {
+                let side = if measured < value { "low" } else { "high" };
+                format!("{side} by {}", rounded((measured - value).abs(), 2))
+            }
+            Self::AtLeast { .. } => "too low".into(),
+            _ => "too high".into(),
+        })
+    }
+}
+
 /// One line of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Row {
@@ -38,6 +59,8 @@ pub(crate) struct Row {
     pub(crate) measured: f64,
     /// What theory says of it.
     pub(crate) theory: Expectation,
+    /// Whether that agrees, in words.
+    pub(crate) verdict: Option<String>,
 }
 
 impl Row {
@@ -46,10 +69,11 @@ impl Row {
             quantity: quantity.into(),
             measured,
             theory,
+            verdict: theory.verdict(measured),
         }
     }
 
-    fn cells(&self) -> [String; 4] {
+    fn cells(&self) -> [String; 5] {
         let (theory, tolerance) = match self.theory {
             Expectation::Near { value, tolerance } => {
                 (number(value), format!("± {}", number(tolerance)))
@@ -65,13 +89,14 @@ impl Row {
             number(self.measured),
             theory,
             tolerance,
+            self.verdict.clone().unwrap_or_else(|| "-".into()),
         ]
     }
 }
 
 /// Writes the rows as columns, two spaces apart, under a line of headings.
 pub(crate) fn write_table(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
-    let headings = ["quantity", "measured", "theory", "tolerance"].map(String::from);
+    let headings = ["quantity", "measured", "theory", "tolerance", "verdict"].map(String::from);
     let rows = rows.iter().map(|row| row.cells().to_vec());
     let lines: Vec<_> = core::iter::once(headings.to_vec()).chain(rows).collect();
     write_columns(&lines, out)
@@ -157,6 +182,28 @@ mod tests {
     }
 
     #[test]
+    fn verdicts_say_on_which_side_a_value_lies() {
+        let near = Expectation::Near {
+            value: 2.0,
+            tolerance: 0.1,
+        };
+        let least = Expectation::AtLeast { at_least: 1e-3 };
+        let most = Expectation::AtMost { at_most: 1e-3 };
+        for (theory, measured, expected) in [
+            (near, 2.09, Some("agrees")),
+            (near, 2.25, Some("high by 0.25")),
+            (near, 1.666, Some("low by 0.33")),
+            (least, 1e-3, Some("agrees")),
+            (least, 1e-9, Some("too low")),
+            (most, 0.2, Some("too high")),
+            (Expectation::Open, 0.2, None),
+        ] {
+            let row = Row::new("quantity", measured, theory);
+            assert_eq!(row.verdict.as_deref(), expected, "{measured} of {theory:?}");
+        }
+    }
+
+    #[test]
     fn columns_line_up() {
         let rows = [
             Row::new(
@@ -170,15 +217,24 @@ mod tests {
             Row::new("speckle size", 4.05, Expectation::Open),
             Row::new("p-value", 0.37, Expectation::AtLeast { at_least: 0.001 }),
             Row::new("beyond", 0.0, Expectation::AtMost { at_most: 0.01 }),
+            Row::new(
+                "contrast",
+                0.79,
+                Expectation::Near {
+                    value: 1.0,
+                    tolerance: 0.05,
+                },
+            ),
         ];
         let mut out = Vec::new();
         write_table(&rows, &mut out).expect("memory can be written");
         let expected = "\
-quantity      measured  theory   tolerance
-mean          1         1        ± 1.00e-5
-speckle size  4.05      -        -
-p-value       0.37      ≥ 0.001  -
-beyond        0         ≤ 0.01   -
+quantity      measured  theory   tolerance  verdict
+mean          1         1        ± 1.00e-5  agrees
+speckle size  4.05      -        -          -
+p-value       0.37      ≥ 0.001  -          agrees
+beyond        0         ≤ 0.01   -          agrees
+contrast      0.79      1        ± 0.05     low by 0.21
 ";
         assert_eq!(String::from_utf8_lossy(&out), expected);
     }

@@ -14,6 +14,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use tem00_speckle::Pupil;
+use tem00_tracer::Crop;
 use tem00_tracer::document::LENGTH;
 
 pub(crate) use self::{
@@ -127,21 +128,32 @@ Examples:
 
 /// Measure the speckle in an image, and compare it with the theory.
 ///
-/// The image may come from a camera, a simulation or this program: a PNG of 8 or 16 bits, an OpenEXR
-/// channel, or a two-dimensional NumPy array. The light should be even over the image: crop it to a
-/// uniformly lit part first.
+/// The image may come from a camera, a simulation or this program: grey or RGB of 8 or 16 bits, an
+/// OpenEXR channel, or a two-dimensional NumPy array. The light should be even over the image: take a
+/// part of it with --crop, or divide by its local mean with --flatten. Where it is not, its own shape
+/// counts as contrast, and a warning says so.
 #[derive(Args, Debug)]
 #[command(after_help = STATS_EXAMPLES)]
 pub(crate) struct StatsArgs {
-    /// The image: .png, .exr or .npy.
+    /// The image: .png, .tif, .jpg, .bmp, .pgm, .exr or .npy.
     pub(crate) image: PathBuf,
+
+    /// Only this part of the image, in pixels from the upper left corner.
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = crop)]
+    pub(crate) crop: Option<Crop>,
+
+    /// Divide the image by its mean over PIXELS × PIXELS around each pixel, and correct contrast and
+    /// speckle size for what that takes from them [default: 20 speckle sizes, at most a third of the
+    /// image].
+    #[arg(long, value_name = "PIXELS", num_args = 0..=1, require_equals = true)]
+    pub(crate) flatten: Option<Option<usize>>,
 
     /// The channel to take: R, G, B, or `channel` or `layer.channel` of an OpenEXR file [default:
     /// the mean of R, G and B, or the first one].
     #[arg(long, value_name = "NAME")]
     pub(crate) channel: Option<String>,
 
-    /// How the grey values of a PNG relate to light [default: as the file says, else linear].
+    /// How grey values relate to light [default: as the file says, else linear].
     #[arg(long, value_name = "CURVE")]
     pub(crate) transfer: Option<Transfer>,
 
@@ -157,6 +169,8 @@ pub(crate) struct StatsArgs {
 const STATS_EXAMPLES: &str = "\
 Examples:
   tem00 stats photo.png
+  tem00 stats photo.tif --crop 100,80,400,300
+  tem00 stats photo.jpg --transfer srgb --flatten
   tem00 stats photo.png --plot page.svg
   tem00 stats photo.png --channel R --transfer srgb
   tem00 stats out/spot/spot.exr --channel speckle --json";
@@ -175,6 +189,19 @@ pub(crate) fn length(text: &str) -> Result<f64, String> {
     (LENGTH.parse(text))
         .filter(|length| ALLOWED.contains(length))
         .ok_or_else(|| "must be a positive length with its unit, such as \"5 mm\"".into())
+}
+
+fn crop(text: &str) -> Result<Crop, String> {
+    let numbers: Option<Vec<usize>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, width, height]) if width > 0 && height > 0 => Ok(Crop {
+            x,
+            y,
+            width,
+            height,
+        }),
+        _ => Err("must be four numbers of pixels, X,Y,WIDTH,HEIGHT, such as 0,0,64,48".into()),
+    }
 }
 
 fn pupil(text: &str) -> Result<Pupil, String> {

@@ -18,7 +18,7 @@ use crate::{
     atomic::probe_writable,
     calibration_file::write_calibration,
     failure::Failure,
-    image::{ImageError, RawImage, read_raw},
+    image::{ImageError, RawFormat, RawImage, read_raw},
     interrupt,
     progress::Progress,
     table::write_columns,
@@ -89,7 +89,7 @@ fn pairs(folder: &Path) -> Result<Vec<Pair>, Failure> {
     let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
     let mut lines = Vec::new();
     let mut boards = Vec::new();
-    for path in paths.filter(|path| is_image(path)) {
+    for path in paths.filter(|path| RawFormat::of_path(path).is_some()) {
         match path
             .file_stem()
             .and_then(|stem| stem.to_str())
@@ -127,15 +127,6 @@ fn pairs(folder: &Path) -> Result<Vec<Pair>, Failure> {
         ));
     }
     Ok(pairs)
-}
-
-fn is_image(path: &Path) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    ending.is_some_and(|ending| {
-        ["png", "tif", "tiff"]
-            .iter()
-            .any(|known| ending.eq_ignore_ascii_case(known))
-    })
 }
 
 /// Finds boards and lines in all images, which are of one size.
@@ -196,7 +187,7 @@ fn read(
     let unreadable = |error: ImageError| {
         Failure::input(
             format!("cannot read {}: {error}", path.display()),
-            "images are PNG or TIFF files of 8 to 16 bits, grey or RGB",
+            "images are PNG, TIFF, JPEG, BMP, PGM or PPM files of 8 to 16 bits, grey or RGB",
         )
     };
     let image = read_raw(path, args.channel.as_deref()).map_err(unreadable)?;

@@ -199,7 +199,7 @@ fn layer<'a, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::read_image;
+    use crate::image::{Reading, read_image};
 
     #[test]
     fn a_bright_lamp_does_not_burn_out_a_thin_line() {
@@ -285,7 +285,11 @@ mod tests {
         let frame = frame();
         write_layers(&path, &frame, &picture_of(&frame), [20, 10]).expect("written");
         let read = |name| {
-            read_image(&path, Some(name), None)
+            let reading = Reading {
+                channel: Some(name),
+                ..Reading::default()
+            };
+            read_image(&path, &reading)
                 .expect("the channel is there")
                 .values
         };
@@ -318,9 +322,11 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("a.png");
         write_preview(&path, &picture_of(&frame()), 27.0, "").expect("written");
-        let red = read_image(&path, Some("R"), None)
-            .expect("a preview")
-            .values;
+        let reading = Reading {
+            channel: Some("R"),
+            ..Reading::default()
+        };
+        let red = read_image(&path, &reading).expect("a preview").values;
         // 27 W/(m² sr) first reached where 7.5 + 3 i ≥ 27, at i = 7; half a step of 2.27/65535.
         assert!((red[(0, 0)] - 7.5 / 27.0).abs() < 2e-5, "{}", red[(0, 0)]);
         assert!(

@@ -1,4 +1,4 @@
-//! Image files: PNG, OpenEXR and NumPy for light, PNG and TIFF for grey values.
+//! Image files: OpenEXR and NumPy for light, and what cameras write for grey values.
 
 mod exr_file;
 mod npy_file;
@@ -10,16 +10,17 @@ use std::{fs::File, io::BufReader, path::Path};
 
 use num_complex::Complex;
 use tem00_numerics::Grid;
+use tem00_tracer::Crop;
 use thiserror::Error;
 
 pub(crate) use exr_file::{Layer, Window, write_exr};
 pub(crate) use png_file::{write_grey_png, write_rgb_png};
-pub(crate) use raw_file::{RawImage, read_raw, write_raw};
+pub(crate) use raw_file::{RawFormat, RawImage, read_raw, write_raw};
 
 /// The most pixels that are read from a file: 2²⁸, which is 1 GiB of `f32`.
 const MAXIMUM_PIXELS: u64 = 1 << 28;
 
-/// The image formats, told apart by the end of the file's name.
+/// The formats of patterns, told apart by the end of the file's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Format {
     /// 16-bit grey or colour, for the eye.
@@ -41,13 +42,24 @@ impl Format {
     }
 }
 
-/// How the grey values of a PNG file relate to light.
+/// How grey values relate to light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Transfer {
     /// In proportion, as sensors deliver them.
     Linear,
     /// By the sRGB curve, as pictures for the screen are stored.
     Srgb,
+}
+
+/// What is wanted of an image.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Reading<'a> {
+    /// One channel of several; without it the mean of R, G and B is taken, or the first channel.
+    pub(crate) channel: Option<&'a str>,
+    /// How grey values relate to light, whatever the file says.
+    pub(crate) transfer: Option<Transfer>,
+    /// A part of the image.
+    pub(crate) crop: Option<Crop>,
 }
 
 /// An image in proportion to the light, and how it was understood.
@@ -76,10 +88,18 @@ pub(crate) enum ImageError {
     Exr(#[from] exr::error::Error),
     #[error("{0}")]
     Npy(#[from] tem00_speckle::NpyError),
-    #[error("{0} is not supported: use .png, .exr or .npy")]
+    #[error("not a readable JPEG file: {0}")]
+    Jpeg(#[from] zune_jpeg::errors::DecodeErrors),
+    #[error("not a readable BMP file: {0}")]
+    Bmp(&'static str),
+    #[error("not a readable PGM or PPM file: {0}")]
+    Pnm(&'static str),
+    #[error("{0} is not supported: use .png, .tif, .jpg, .bmp, .pgm, .exr or .npy")]
     Format(String),
-    #[error("{0} is no raw frame: use .png, .tif or .tiff")]
+    #[error("{0} is not supported: use .png, .tif, .jpg, .bmp or .pgm")]
     RawFormat(String),
+    #[error("{0} cannot hold a frame: use .png or .tif")]
+    FrameFormat(String),
     #[error("pixels of {0} are not supported: use grey or RGB of 8 or 16 bits, not in planes")]
     Pixels(String),
     #[error("grey values of the file have {found} bits, not {told}")]
@@ -88,6 +108,15 @@ pub(crate) enum ImageError {
     Bits { told: u32, found: u16 },
     #[error("the image has {width} × {height} pixels; between 1 and {MAXIMUM_PIXELS} are allowed")]
     Size { width: u64, height: u64 },
+    #[error(
+        "--crop {},{},{},{} must lie in the image of {width} × {height} pixels",
+        crop.x, crop.y, crop.width, crop.height
+    )]
+    Crop {
+        crop: Crop,
+        width: usize,
+        height: usize,
+    },
     #[error("the array has the shape {0:?}; two dimensions, height × width, are needed")]
     Shape(Vec<u64>),
     #[error("values of the type {0} are not supported: use f4, f8, u1, u2, c8 or c16")]
@@ -103,32 +132,71 @@ pub(crate) enum ImageError {
 
 /// Reads an image of any of the formats as one value per pixel, in proportion to the light.
 ///
-/// `channel` picks one channel of a file that has several; without it the mean of R, G and B is
-/// taken, or the first channel. `transfer` overrides what a PNG file says about its values.
-///
 /// # Errors
 ///
-/// Returns an error if the file cannot be read, is none of the formats, is empty or too large, or
-/// holds a value that is no amount of light.
-pub(crate) fn read_image(
-    path: &Path,
-    channel: Option<&str>,
-    transfer: Option<Transfer>,
-) -> Result<LoadedImage, ImageError> {
-    let format = Format::of_path(path).ok_or_else(|| {
-        ImageError::Format(path.file_name().map_or_else(
-            || path.display().to_string(),
-            |name| name.to_string_lossy().into_owned(),
-        ))
-    })?;
-    let reader = BufReader::new(File::open(path)?);
-    let image = match format {
-        Format::Png => png_file::read(reader, channel, transfer),
-        Format::Exr => exr_file::read(reader, channel),
-        Format::Npy => npy_file::read(reader),
+/// Returns an error if the file cannot be read, is none of the formats, is empty or too large, does not
+/// have the part or the channel wanted, or holds a value that is no amount of light.
+pub(crate) fn read_image(path: &Path, reading: &Reading<'_>) -> Result<LoadedImage, ImageError> {
+    let image = match Format::of_path(path) {
+        Some(Format::Exr) => cropped(exr_file::read(open(path)?, reading.channel)?, reading.crop),
+        Some(Format::Npy) => cropped(npy_file::read(open(path)?)?, reading.crop),
+        Some(Format::Png) | None => grey_values(path, reading),
     }?;
     check_values(&image.values)?;
     Ok(image)
+}
+
+/// Reads an image of grey values.
+fn grey_values(path: &Path, reading: &Reading<'_>) -> Result<LoadedImage, ImageError> {
+    let format = RawFormat::of_path(path).ok_or_else(|| ImageError::Format(name_of(path)))?;
+    let whole = raw_file::read_samples(path, format)?;
+    let part = match reading.crop {
+        Some(crop) => whole.cropped(crop)?,
+        None => whole,
+    };
+    part.light(reading.channel, reading.transfer)
+}
+
+/// Returns the part of an image in a rectangle.
+fn cropped(image: LoadedImage, crop: Option<Crop>) -> Result<LoadedImage, ImageError> {
+    let Some(crop) = crop else {
+        return Ok(image);
+    };
+    let values = &image.values;
+    check_inside(crop, [values.width(), values.height()])?;
+    let at = |x: usize, y: usize| values[(crop.x + x, crop.y + y)];
+    Ok(LoadedImage {
+        values: Grid::from_fn(crop.width, crop.height, at),
+        ..image
+    })
+}
+
+/// Makes sure that a rectangle lies in an image.
+pub(crate) fn check_inside(crop: Crop, [width, height]: [usize; 2]) -> Result<(), ImageError> {
+    let inside = |start: usize, length: usize, size: usize| {
+        start.checked_add(length).is_some_and(|end| end <= size)
+    };
+    if inside(crop.x, crop.width, width) && inside(crop.y, crop.height, height) {
+        return Ok(());
+    }
+    Err(ImageError::Crop {
+        crop,
+        width,
+        height,
+    })
+}
+
+/// Opens a file of an image.
+fn open(path: &Path) -> Result<BufReader<File>, ImageError> {
+    Ok(BufReader::new(File::open(path)?))
+}
+
+/// Returns the name of a file, for messages.
+fn name_of(path: &Path) -> String {
+    path.file_name().map_or_else(
+        || path.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    )
 }
 
 /// Returns the number of pixels, or an error if there are none or too many.
@@ -203,14 +271,14 @@ mod tests {
     #[test]
     fn a_file_that_is_not_what_its_name_says_is_an_error() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        for name in ["a.png", "a.exr", "a.npy", "a.txt"] {
+        for name in [
+            "a.png", "a.tif", "a.jpg", "a.bmp", "a.pgm", "a.exr", "a.npy", "a.txt",
+        ] {
             let path = folder.path().join(name);
             std::fs::write(&path, "no image at all").expect("the file is written");
-            assert!(read_image(&path, None, None).is_err(), "{name}");
+            assert!(read_image(&path, &Reading::default()).is_err(), "{name}");
         }
-        assert!(
-            read_image(&folder.path().join("b.png"), None, None).is_err(),
-            "missing"
-        );
+        let missing = read_image(&folder.path().join("b.png"), &Reading::default());
+        assert!(missing.is_err(), "missing");
     }
 }

@@ -153,7 +153,7 @@ fn read(path: &Path, args: &LinesArgs) -> Result<RawImage, Failure> {
     let unreadable = |error: ImageError| {
         Failure::input(
             format!("cannot read {}: {error}", path.display()),
-            "images are PNG or TIFF files of 8 to 16 bits, grey or RGB",
+            "images are PNG, TIFF, JPEG, BMP, PGM or PPM files of 8 to 16 bits, grey or RGB",
         )
     };
     let image = read_raw(path, args.channel.as_deref()).map_err(unreadable)?;

@@ -10,7 +10,7 @@ use std::{
 };
 
 use tem00_tracer::{
-    Crop, Formulas, Method, RenderOptions, Scene, SceneFile, SpeckleModel, SpecklePlan, TracerError,
+    Formulas, Method, RenderOptions, Scene, SceneFile, SpeckleModel, SpecklePlan, TracerError,
 };
 
 use self::{
@@ -22,6 +22,7 @@ use crate::{
     args::{FrameRange, RenderArgs},
     failure::Failure,
     frame_files::FramePaths,
+    image::check_inside,
     inspection::Inspection,
     interrupt,
     kind::{Kind, wrong_or},
@@ -97,26 +98,14 @@ fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
     settings.target_error = args.target_error.or(settings.target_error);
     settings.crop = args.crop.or(settings.crop);
     if let Some(crop) = settings.crop {
-        check_inside(crop, [scene.camera.width(), scene.camera.height()])?;
+        check_inside(crop, [scene.camera.width(), scene.camera.height()]).map_err(|error| {
+            Failure::input(
+                error.to_string(),
+                "the first two numbers are the upper left pixel, the others the size",
+            )
+        })?;
     }
     Ok(scene)
-}
-
-/// Makes sure that the crop lies in the image.
-fn check_inside(crop: Crop, [width, height]: [usize; 2]) -> Result<(), Failure> {
-    let inside = |start: usize, length: usize, size: usize| {
-        start.checked_add(length).is_some_and(|end| end <= size)
-    };
-    if inside(crop.x, crop.width, width) && inside(crop.y, crop.height, height) {
-        return Ok(());
-    }
-    Err(Failure::input(
-        format!(
-            "--crop {},{},{},{} must lie in the image of {width} × {height} pixels",
-            crop.x, crop.y, crop.width, crop.height
-        ),
-        "the first two numbers are the upper left pixel, the others the size",
-    ))
 }
 
 /// A render that is set up.

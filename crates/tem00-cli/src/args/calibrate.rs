@@ -9,8 +9,8 @@ use super::{length, lines::DetectorArgs};
 /// Calibrate camera and laser plane from photographs of a checkerboard and of the line on it.
 ///
 /// The folder holds pairs of images of the same camera, of 8 to 16 bits: `board_01.png` shows a whole
-/// checkerboard in ordinary light, and `line_01.png` the laser line on it in the same pose; .tif and .tiff
-/// are taken, too. Tilt the board by 15° to 30° about different axes and hold it at different heights. The
+/// checkerboard in ordinary light, and `line_01.png` the laser line on it in the same pose; .tif, .jpg,
+/// .bmp, .pgm and .ppm are taken, too. Tilt the board by 15° to 30° about different axes and hold it at different heights. The
 /// first board, by name, is the reference: heights are counted from it.
 ///
 /// The table on standard output lists what was found and its standard uncertainty.

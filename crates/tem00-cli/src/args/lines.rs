@@ -15,7 +15,7 @@ use tem00_triangulation::{DetectorSettings, LineMethod};
 #[derive(Args, Debug)]
 #[command(after_help = LINES_EXAMPLES)]
 pub(crate) struct LinesArgs {
-    /// The images: .png, .tif or .tiff, of 8 to 16 bits.
+    /// The images: .png, .tif, .jpg, .bmp, .pgm or .ppm, of 8 to 16 bits.
     #[arg(required = true, value_name = "IMAGE")]
     pub(crate) images: Vec<PathBuf>,
 

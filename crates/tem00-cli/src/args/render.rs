@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use tem00_tracer::{Crop, Method};
 
-use super::positive;
+use super::{crop, positive};
 
 /// Render a scene: PNG preview, OpenEXR layers and a JSON summary.
 ///
@@ -131,19 +131,6 @@ impl From<MethodName> for Method {
             MethodName::Path => Self::Path,
             MethodName::Light => Self::Light,
         }
-    }
-}
-
-fn crop(text: &str) -> Result<Crop, String> {
-    let numbers: Option<Vec<usize>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[x, y, width, height]) if width > 0 && height > 0 => Ok(Crop {
-            x,
-            y,
-            width,
-            height,
-        }),
-        _ => Err("must be four numbers of pixels, X,Y,WIDTH,HEIGHT, such as 0,0,64,48".into()),
     }
 }
 

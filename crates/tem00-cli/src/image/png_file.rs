@@ -1,13 +1,10 @@
-use std::io::{BufRead, Seek, Write};
+use std::io::Write;
 
-use png::{
-    BitDepth, ColorType, Decoder, Encoder, ScaledFloat, SrgbRenderingIntent, Transformations,
-};
+use png::{BitDepth, ColorType, Encoder, ScaledFloat, SrgbRenderingIntent};
 use tem00_numerics::Grid;
 
-use super::selection::Selection;
-use super::{ImageError, LoadedImage, Transfer, checked_area, grid};
-use crate::colour::{srgb_decoded, srgb_encoded};
+use super::ImageError;
+use crate::colour::srgb_encoded;
 
 /// Writes linear sRGB components in [0, 1] as 16-bit sRGB; larger ones become 1.
 ///
@@ -77,147 +74,26 @@ fn sixteen_bits(value: f64) -> u16 {
     (value.clamp(0.0, 1.0) * f64::from(u16::MAX)).round() as u16
 }
 
-/// Reads a PNG file of any colour type and depth.
-pub(super) fn read(
-    reader: impl BufRead + Seek,
-    channel: Option<&str>,
-    transfer: Option<Transfer>,
-) -> Result<LoadedImage, ImageError> {
-    let mut decoder = Decoder::new(reader);
-    decoder.set_transformations(Transformations::EXPAND);
-    let mut reader = decoder.read_info()?;
-    let (width, height) = (reader.info().width, reader.info().height);
-    let area = checked_area(width.into(), height.into())?;
-    let (colour, depth) = reader.output_color_type();
-    let selection = Selection::new(colour.into(), channel)?;
-    let curve = Curve::new(reader.info(), transfer);
-    let full = if depth == BitDepth::Sixteen {
-        u16::MAX
-    } else {
-        u8::MAX.into()
-    };
-
-    let mut pixels = Pixels {
-        values: Vec::with_capacity(area),
-        saturated: 0,
-        coloured: false,
-    };
-    let mut line = vec![0; reader.output_line_size(width).unwrap_or(0)];
-    if reader.info().interlaced {
-        line.resize(reader.output_buffer_size().unwrap_or(0), 0);
-        reader.next_frame(&mut line)?;
-        pixels.extend(&line, &selection, &curve, full);
-    } else {
-        while reader.read_row(&mut line)?.is_some() {
-            pixels.extend(&line, &selection, &curve, full);
-        }
-    }
-    Ok(LoadedImage {
-        values: grid(width as usize, height as usize, pixels.values)?,
-        interpretation: interpretation(&selection, pixels.coloured, &curve),
-        saturated: Some(share(pixels.saturated, area)),
-    })
-}
-
-fn interpretation(selection: &Selection, coloured: bool, curve: &Curve) -> String {
-    let channels = &selection.description;
-    let differ = if coloured {
-        ", which differ: light of one colour may want one channel"
-    } else {
-        ""
-    };
-    format!("{channels}{differ}, {}", curve.description())
-}
-
-#[expect(clippy::cast_precision_loss, reason = "there are at most 2²⁸ pixels")]
-fn share(part: usize, whole: usize) -> f64 {
-    part as f64 / whole as f64
-}
-
-/// The pixels read so far.
-struct Pixels {
-    values: Vec<f32>,
-    saturated: usize,
-    /// Whether the chosen channels differ anywhere.
-    coloured: bool,
-}
-
-impl Pixels {
-    #[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]
-    fn extend(&mut self, data: &[u8], selection: &Selection, curve: &Curve, full: u16) {
-        let bytes = if full > u8::MAX.into() { 2 } else { 1 };
-        let component = |pixel: &[u8], index: usize| match pixel[bytes * index..][..bytes] {
-            [high, low] => u16::from_be_bytes([high, low]),
-            [value] => value.into(),
-            _ => 0,
-        };
-        for pixel in data.chunks_exact(bytes * selection.components) {
-            let chosen = || {
-                selection
-                    .chosen
-                    .clone()
-                    .map(|index| component(pixel, index))
-            };
-            let linear: f64 = chosen()
-                .map(|value| curve.linear(f64::from(value) / f64::from(full)))
-                .sum();
-            let count = u32::try_from(selection.chosen.len()).map_or(1.0, f64::from);
-            self.coloured |= chosen().any(|value| Some(value) != chosen().next());
-            self.saturated += usize::from(chosen().any(|value| value == full));
-            self.values.push((linear / count) as f32);
-        }
-    }
-}
-
-/// How the stored values relate to the light, and who says so.
-enum Curve {
-    Linear { told: bool },
-    Srgb { told: bool },
-    Gamma(f64),
-}
-
-impl Curve {
-    fn new(info: &png::Info<'_>, transfer: Option<Transfer>) -> Self {
-        match (transfer, info.srgb, info.gama_chunk) {
-            (Some(Transfer::Linear), ..) => Self::Linear { told: true },
-            (Some(Transfer::Srgb), ..) => Self::Srgb { told: true },
-            (None, Some(_), _) => Self::Srgb { told: false },
-            (None, None, Some(gamma)) if gamma.into_scaled() > 0 => {
-                Self::Gamma(f64::from(gamma.into_scaled()) / 1e5)
-            }
-            (None, None, _) => Self::Linear { told: false },
-        }
-    }
-
-    fn linear(&self, stored: f64) -> f64 {
-        match self {
-            Self::Linear { .. } => stored,
-            Self::Srgb { .. } => srgb_decoded(stored),
-            Self::Gamma(gamma) => stored.powf(1.0 / gamma),
-        }
-    }
-
-    fn description(&self) -> String {
-        match self {
-            Self::Linear { told: true } => "linear, as told".into(),
-            Self::Linear { told: false } => "taken as linear, the file does not say".into(),
-            Self::Srgb { told: true } => "sRGB curve undone, as told".into(),
-            Self::Srgb { told: false } => "sRGB curve undone, as the file says".into(),
-            Self::Gamma(gamma) => format!("gamma {gamma} undone, as the file says"),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::io::Cursor;
 
     use approx::assert_abs_diff_eq;
+    use png::Decoder;
 
+    use super::super::{LoadedImage, RawFormat, Transfer, raw_file::decode};
     use super::*;
 
+    fn read(
+        file: &[u8],
+        channel: Option<&str>,
+        transfer: Option<Transfer>,
+    ) -> Result<LoadedImage, ImageError> {
+        decode(Cursor::new(file), RawFormat::Png)?.light(channel, transfer)
+    }
+
     fn read_back(file: Vec<u8>, channel: Option<&str>, transfer: Option<Transfer>) -> LoadedImage {
-        read(Cursor::new(file), channel, transfer).expect("the file is a PNG")
+        read(&file, channel, transfer).expect("the file is a PNG")
     }
 
     fn text_of(file: &[u8]) -> Vec<(String, String)> {
@@ -272,7 +148,7 @@ mod tests {
         assert_abs_diff_eq!(stored.values[(0, 1)], 0.735_357, epsilon = 1e-5);
         assert!(
             matches!(
-                read(Cursor::new(file), Some("Z"), None),
+                read(&file, Some("Z"), None),
                 Err(ImageError::Channel { .. })
             ),
             "there is no channel Z"
@@ -325,10 +201,7 @@ mod tests {
         let image = Grid::from_fn(50, 50, |x, y| ((x * y) % 7) as f32);
         write_grey_png(&mut file, &image, 7.0, &[]).expect("written");
         for length in [0, 20, file.len() / 2] {
-            assert!(
-                read(Cursor::new(&file[..length]), None, None).is_err(),
-                "{length} bytes"
-            );
+            assert!(read(&file[..length], None, None).is_err(), "{length} bytes");
         }
     }
 }

@@ -1,25 +1,34 @@
-//! Frames of cameras: grey values in DN, as the converter gave them, in PNG and TIFF files.
+//! Images of cameras: grey values in DN, as the converter gave them, in PNG, TIFF, JPEG, BMP, PGM and PPM
+//! files. Frames are written as PNG or TIFF.
 //!
 //! Files have 8 or 16 bits per value. Values of 10, 12 and 14 bits stand in files of 16 bits as they
 //! are, not scaled up; a text entry `bit_depth` says so. The chunk sBIT of PNG means the opposite,
 //! values scaled up to 16 bits, and is undone in the files of others.
 
+mod bmp_frame;
+#[cfg(test)]
+mod camera_formats;
+mod jpeg_frame;
 mod png_frame;
+mod pnm_frame;
+mod samples;
 #[cfg(test)]
 mod tests;
 mod tiff_frame;
 
 use std::{
     fs::File,
-    io::{BufReader, BufWriter},
+    io::{BufRead, BufWriter, Seek},
     path::Path,
 };
 
 use tem00_numerics::Grid;
 use tem00_triangulation::RawFrame;
 
-use super::selection::{Components, Selection};
-use super::{ImageError, checked_area, grid};
+pub(super) use self::samples::Samples;
+use self::samples::StoredCurve;
+use super::selection::Components;
+use super::{ImageError, checked_area, name_of, open};
 use crate::atomic::write_atomically;
 
 /// The text entry that holds the bits of a grey value.
@@ -81,30 +90,36 @@ impl RawImage {
 }
 
 /// The formats of frames, told apart by the end of the file's name.
-#[derive(Clone, Copy)]
-enum RawFormat {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RawFormat {
     Png,
     Tiff,
+    Jpeg,
+    Bmp,
+    Pnm,
 }
 
 impl RawFormat {
-    fn of_path(path: &Path) -> Result<Self, ImageError> {
-        let extension = path.extension().and_then(|extension| extension.to_str());
-        let known = [
-            ("png", Self::Png),
-            ("tif", Self::Tiff),
-            ("tiff", Self::Tiff),
-        ];
+    const KNOWN: [(&str, Self); 10] = [
+        ("png", Self::Png),
+        ("tif", Self::Tiff),
+        ("tiff", Self::Tiff),
+        ("jpg", Self::Jpeg),
+        ("jpeg", Self::Jpeg),
+        ("bmp", Self::Bmp),
+        ("dib", Self::Bmp),
+        ("pgm", Self::Pnm),
+        ("ppm", Self::Pnm),
+        ("pnm", Self::Pnm),
+    ];
+
+    /// Returns the format that the name of `path` asks for.
+    pub(crate) fn of_path(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?;
+        let mut known = Self::KNOWN.into_iter();
         known
-            .into_iter()
-            .find(|(name, _)| extension.is_some_and(|e| e.eq_ignore_ascii_case(name)))
+            .find(|(name, _)| extension.eq_ignore_ascii_case(name))
             .map(|(_, format)| format)
-            .ok_or_else(|| {
-                ImageError::RawFormat(path.file_name().map_or_else(
-                    || path.display().to_string(),
-                    |name| name.to_string_lossy().into_owned(),
-                ))
-            })
     }
 }
 
@@ -115,16 +130,30 @@ impl RawFormat {
 ///
 /// # Errors
 ///
-/// Returns an error if the file cannot be read, is no PNG or TIFF, is cut, empty or too large, or has
+/// Returns an error if the file cannot be read, is none of the formats, is cut, empty or too large, or has
 /// pixels that are not supported.
 pub(crate) fn read_raw(path: &Path, channel: Option<&str>) -> Result<RawImage, ImageError> {
-    let format = RawFormat::of_path(path)?;
-    let reader = BufReader::new(File::open(path)?);
-    let samples = match format {
+    let format = RawFormat::of_path(path).ok_or_else(|| ImageError::RawFormat(name_of(path)))?;
+    read_samples(path, format)?.image(channel)
+}
+
+/// Reads all components of all pixels.
+pub(super) fn read_samples(path: &Path, format: RawFormat) -> Result<Samples, ImageError> {
+    decode(open(path)?, format)
+}
+
+/// Decodes a file.
+pub(super) fn decode(
+    reader: impl BufRead + Seek,
+    format: RawFormat,
+) -> Result<Samples, ImageError> {
+    match format {
         RawFormat::Png => png_frame::read(reader),
         RawFormat::Tiff => tiff_frame::read(reader),
-    }?;
-    samples.image(channel)
+        RawFormat::Jpeg => jpeg_frame::read(reader),
+        RawFormat::Bmp => bmp_frame::read(reader),
+        RawFormat::Pnm => pnm_frame::read(reader),
+    }
 }
 
 /// Writes a frame as PNG or TIFF, as the name says. Each pair of `text` becomes a text entry.
@@ -137,63 +166,12 @@ pub(crate) fn write_raw(
     frame: &RawFrame,
     text: &[(&str, String)],
 ) -> Result<(), ImageError> {
-    let format = RawFormat::of_path(path)?;
+    let format = RawFormat::of_path(path);
     write_atomically(path, |writer: &mut BufWriter<File>| match format {
-        RawFormat::Png => png_frame::write(writer, frame, text),
-        RawFormat::Tiff => tiff_frame::write(writer, frame, text),
+        Some(RawFormat::Png) => png_frame::write(writer, frame, text),
+        Some(RawFormat::Tiff) => tiff_frame::write(writer, frame, text),
+        _ => Err(ImageError::FrameFormat(name_of(path))),
     })
-}
-
-/// What a file holds before a channel is chosen.
-struct Samples {
-    width: usize,
-    height: usize,
-    components: Components,
-    /// All components of all pixels, in DN.
-    values: Vec<u16>,
-    /// The bits of a grey value, as the file says or as it stores them.
-    bit_depth: u32,
-    /// What else is to be said of the file.
-    remark: &'static str,
-    has_further_images: bool,
-}
-
-impl Samples {
-    fn image(self, channel: Option<&str>) -> Result<RawImage, ImageError> {
-        let selection = Selection::new(self.components, channel)?;
-        let pixels = || {
-            let pixels = self.values.chunks_exact(selection.components);
-            pixels.map(|pixel| &pixel[selection.chosen.clone()])
-        };
-        let largest_of = |pixel: &[u16]| pixel.iter().copied().max().unwrap_or(0);
-        let largest = pixels().map(largest_of).max().unwrap_or(0);
-        // A file that claims fewer bits than its values have does not know them.
-        let bit_depth = match self.bit_depth {
-            told if u32::from(largest) < 1 << told => told,
-            _ => 16,
-        };
-        let full = (1_u32 << bit_depth) - 1;
-        let saturated = pixels().filter(|pixel| u32::from(largest_of(pixel)) == full);
-        Ok(RawImage {
-            saturated: saturated.count(),
-            values: grid(self.width, self.height, pixels().map(mean).collect())?,
-            bit_depth,
-            interpretation: format!("{}, {bit_depth} bits{}", selection.description, self.remark),
-            has_further_images: self.has_further_images,
-            largest,
-        })
-    }
-}
-
-/// The mean of a few values of 16 bits.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
-    reason = "there are up to three values of 16 bits"
-)]
-fn mean(values: &[u16]) -> f32 {
-    let sum: f64 = values.iter().map(|&value| f64::from(value)).sum();
-    (sum / values.len() as f64) as f32
 }
 
 /// The bit depth that a text entry states, if it is one.

@@ -2,8 +2,9 @@
 
 use tem00_numerics::Grid;
 use tem00_statistics::{
-    AIRY_FIRST_ZERO, Contrast, GammaFit, GoodnessOfFit, GreyLevels, SpeckleSize, StatisticsError,
-    decorrelated_samples, exponential_cumulative, pixel_contrast, size_before_pixels,
+    AIRY_FIRST_ZERO, Contrast, FlatImage, GammaFit, GoodnessOfFit, GreyLevels, SpeckleSize,
+    StatisticsError, UnevenLight, decorrelated_samples, exponential_cumulative, pixel_contrast,
+    size_before_pixels,
 };
 
 use crate::table::{Expectation, Row};
@@ -27,13 +28,19 @@ const COARSE: f64 = 5.0;
 /// Rounding of a mean of more grey levels than this shows in nothing that is measured here.
 const FINE: f64 = 100.0;
 
+/// The smallest local mean by the largest below which noise may show in the quotient.
+const DARK: f64 = 0.1;
+
 /// What was found so far.
 pub(super) struct Findings<'a> {
     pub(super) values: &'a Grid<f32>,
+    /// The image that the values are of, if it was divided by its local mean.
+    pub(super) flat: Option<&'a FlatImage>,
     pub(super) levels: Option<&'a GreyLevels>,
     pub(super) mean: f64,
     pub(super) contrast: Contrast,
     pub(super) rows: Vec<Row>,
+    pub(super) warnings: Vec<String>,
     pub(super) assumptions: Vec<String>,
 }
 
@@ -46,8 +53,14 @@ impl Findings<'_> {
         self.assumptions.push(assumption.into());
     }
 
-    pub(super) fn brightness(&mut self, saturated: Option<f64>) {
-        self.row("mean", self.mean, Expectation::Open);
+    /// Describes the light of the image; `levels` are those of the image as it was read.
+    pub(super) fn brightness(
+        &mut self,
+        mean: f64,
+        saturated: Option<f64>,
+        levels: Option<&GreyLevels>,
+    ) {
+        self.row("mean", mean, Expectation::Open);
         if let Some(mean) = self.mean_level() {
             self.row("mean (grey levels)", mean, Expectation::Open);
             if mean < FINE {
@@ -57,15 +70,53 @@ impl Findings<'_> {
                 );
             }
         }
-        if let Some(share) = saturated.or_else(|| self.share_of_largest()) {
+        // Sensors of fewer bits than the file saturate below its largest value.
+        let at_largest = levels
+            .filter(|levels| mean / levels.step() >= COARSE)
+            .map(GreyLevels::share_of_largest);
+        if let Some(share) = saturated.into_iter().chain(at_largest).reduce(f64::max) {
             let theory = Expectation::AtMost {
                 at_most: GreyLevels::CLIPPED_SHARE,
             };
             self.row("saturated share of pixels", share, theory);
         }
-        self.assume(
-            "the light is taken as even over the image: its own shape would count as contrast",
-        );
+    }
+
+    /// Says whether the light is even over the image.
+    pub(super) fn evenness(&mut self, lags: &Grid<f32>, size: Option<SpeckleSize>) {
+        if let Some(flat) = self.flat {
+            let lost = 100.0 * flat.lost_share(size.map_or(1.0, |size| size.mean()));
+            self.assume(format!(
+                "the image is divided by its local mean, which takes {lost:.2} % of the variance: contrast \
+                 and speckle size are corrected for it, to first order, and no other number is"
+            ));
+            if flat.darkest() < DARK {
+                self.assume(format!(
+                    "the local mean falls to {:.2} % of its largest value: noise counts as contrast there; \
+                     take a brighter part with --crop",
+                    100.0 * flat.darkest()
+                ));
+            }
+        }
+        let Some(uneven) = UnevenLight::find(lags, size) else {
+            self.assume(
+                "the autocovariance falls to zero: the light counts as even over the image",
+            );
+            return;
+        };
+        let scale = size.map_or(1.0, |size| size.mean());
+        let [from, to] = uneven.lags.map(|lag| scale * lag);
+        let help = if self.flat.is_some() {
+            "take an evenly lit part with --crop, or a smaller window with --flatten=PIXELS"
+        } else {
+            "take an evenly lit part with --crop, or divide by the light with --flatten"
+        };
+        self.warnings.push(format!(
+            "the light is not even over the image, and its shape counts as contrast and as speckle \
+             size: {from:.0} to {to:.0} pixels apart the autocovariance is {:.3}, where speckle in even \
+             light has less than {:.3}; {help}",
+            uneven.covariance, uneven.limit
+        ));
     }
 
     /// Returns the mean of a rounded image in steps of its levels.
@@ -76,13 +127,6 @@ impl Findings<'_> {
     /// Tells whether rounding changes more than the error of what is measured.
     fn is_coarse(&self) -> bool {
         self.mean_level().is_some_and(|mean| mean < COARSE)
-    }
-
-    /// Returns the share of the pixels at the largest of many levels, which few pixels reach unless
-    /// the sensor saturates there.
-    fn share_of_largest(&self) -> Option<f64> {
-        let levels = self.levels.filter(|_| !self.is_coarse());
-        levels.map(GreyLevels::share_of_largest)
     }
 
     /// Returns the speckle size, unless the pixels are too coarse for it.
@@ -109,8 +153,14 @@ impl Findings<'_> {
             Some(size) => self.contrast.with_speckle_size(size.mean())?,
             None => self.contrast,
         };
-        let value = contrast.value();
-        let tolerance = SIGMAS * contrast.standard_error();
+        let restored = match (self.flat, size) {
+            (Some(flat), Some(size)) => flat.contrast_before(contrast.value(), size.mean()),
+            (Some(flat), None) => flat.contrast_before(contrast.value(), 1.0),
+            (None, _) => contrast.value(),
+        };
+        let factor = restored / contrast.value();
+        let value = restored;
+        let tolerance = SIGMAS * contrast.standard_error() * factor;
         let theory = self
             .levels
             .map_or(1.0, |levels| levels.exponential_contrast(self.mean));
@@ -120,8 +170,8 @@ impl Findings<'_> {
         };
         self.row("contrast", value, near);
         let [low, high] = contrast.confidence_interval(CONFIDENCE)?;
-        self.row("contrast, from (95 %)", low, Expectation::Open);
-        self.row("contrast, to (95 %)", high, Expectation::Open);
+        self.row("contrast, from (95 %)", factor * low, Expectation::Open);
+        self.row("contrast, to (95 %)", factor * high, Expectation::Open);
         self.assume(
             "contrast 1 and the exponential law are those of one fully developed, polarised \
              pattern, seen through pixels much smaller than a speckle",
@@ -151,9 +201,14 @@ impl Findings<'_> {
 
     pub(super) fn size_rows(&mut self, size: Option<SpeckleSize>) {
         if let Some(size) = size {
-            self.row("speckle size x (pixels)", size.x(), Expectation::Open);
-            self.row("speckle size y (pixels)", size.y(), Expectation::Open);
-            if let Some(before) = size_before_pixels(size.mean()) {
+            let restored = |size| match self.flat {
+                Some(flat) => flat.speckle_size_before(size),
+                None => size,
+            };
+            let [x, y, mean] = [size.x(), size.y(), size.mean()].map(restored);
+            self.row("speckle size x (pixels)", x, Expectation::Open);
+            self.row("speckle size y (pixels)", y, Expectation::Open);
+            if let Some(before) = size_before_pixels(mean) {
                 let quantity = "mean size, if pixels have no gaps";
                 self.row(quantity, before, Expectation::Open);
             }

@@ -250,3 +250,117 @@ fn ctrl_c_ends_a_pattern_without_a_file() {
     assert!(output.stdout.is_empty(), "nothing was measured");
     assert_eq!(files(folder.path()), ["field.npy", "pipe"]);
 }
+
+/// Writes a pattern of 400 × 320 pixels with speckles of four, lit by a Gaussian spot of the radius
+/// `radius` in pixels, as a map of 16 bits.
+fn write_spot(folder: &Path, name: &str, radius: f64) {
+    let pattern = run(
+        folder,
+        "pattern -o even.npy --size 512 --diameter 128 --seed 5",
+    );
+    assert_code(&pattern, 0);
+    let file = fs::read(folder.join("even.npy")).expect("the pattern");
+    let values: Vec<f64> = file[file.len() - 4 * 512 * 512..]
+        .chunks_exact(4)
+        .map(|bytes| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])))
+        .collect();
+    let (width, height) = (400_u16, 320_u16);
+    let mut map = format!("P5 {width} {height} 65535\n").into_bytes();
+    for y in 0..height {
+        for x in 0..width {
+            let off = (f64::from(x) - 200.0).hypot(f64::from(y) - 160.0) / radius;
+            let value = values[512 * usize::from(y) + usize::from(x)] * (-2.0 * off * off).exp();
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "rounded to 16 bits"
+            )]
+            let stored = (3_000.0 * value).round().min(65_535.0) as u16;
+            map.extend(stored.to_be_bytes());
+        }
+    }
+    fs::write(folder.join(name), map).expect("the spot");
+}
+
+/// Returns the JSON of `tem00 stats`.
+fn stats(folder: &Path, arguments: &str) -> Value {
+    let output = run(folder, &format!("stats {arguments} --json"));
+    assert_code(&output, 0);
+    serde_json::from_slice(&output.stdout).expect("JSON and nothing else")
+}
+
+fn row<'a>(found: &'a Value, quantity: &str) -> &'a Value {
+    let mut rows = found["rows"].as_array().expect("rows").iter();
+    rows.find(|row| row["quantity"] == quantity)
+        .expect("the row is there")
+}
+
+#[test]
+fn uneven_light_is_warned_of_and_taken_out() {
+    let folder = folder();
+    let path = folder.path();
+    write_spot(path, "spot.pgm", 120.0);
+    let whole = stats(path, "spot.pgm");
+    let warning = whole["warnings"][0].as_str().expect("a warning");
+    assert!(
+        warning.contains("--crop") && warning.contains("--flatten"),
+        "{warning}"
+    );
+    let verdict = row(&whole, "contrast")["verdict"]
+        .as_str()
+        .expect("a verdict");
+    assert!(verdict.starts_with("high by"), "{verdict}");
+
+    // The same pattern in even light is the oracle.
+    let crop = "--crop 120,80,160,160";
+    let flat = stats(path, &format!("spot.pgm {crop} --flatten"));
+    let even = stats(path, &format!("even.npy {crop}"));
+    for found in [&flat, &even] {
+        assert_eq!(found["warnings"], serde_json::json!([]));
+        assert_eq!(row(found, "contrast")["verdict"], "agrees");
+    }
+    for quantity in [
+        "contrast",
+        "speckle size x (pixels)",
+        "speckle size y (pixels)",
+    ] {
+        let of = |found| {
+            let measured = &row(found, quantity)["measured"];
+            measured.as_f64().expect("a number")
+        };
+        let ratio: f64 = of(&flat) / of(&even);
+        // Light that falls to 0.41 at the edges weighs the speckles otherwise: a third of the spread
+        // from image to image, 0.77 / 40, at 3 σ.
+        assert!((ratio - 1.0).abs() < 0.02, "{quantity}: {ratio}");
+    }
+    let cropped = stats(path, "even.npy --crop 10,20,100,90");
+    assert_eq!(
+        (&cropped["width"], &cropped["height"]),
+        (&100.into(), &90.into())
+    );
+}
+
+#[test]
+fn crops_and_windows_that_cannot_be_are_refused() {
+    let folder = folder();
+    assert_code(&run(folder.path(), "pattern -o a.npy --size 64"), 0);
+    for (arguments, part) in [
+        (
+            "--crop 0,0,65,10",
+            "must lie in the image of 64 × 64 pixels",
+        ),
+        (
+            "--crop 60,0,10,10",
+            "must lie in the image of 64 × 64 pixels",
+        ),
+        ("--crop 0,0,4,30", "4 × 30 pixels"),
+        ("--flatten=1", "window must be at least 2 pixels"),
+        ("--flatten=9", "6 speckle sizes"),
+        ("--flatten=65", "got 65"),
+    ] {
+        let output = run(folder.path(), &format!("stats a.npy {arguments}"));
+        assert_code(&output, 2);
+        let said = message(&output);
+        assert!(said.contains(part), "{arguments}: {said}");
+    }
+}

@@ -3,7 +3,9 @@ use std::io::{BufRead, Seek, Write};
 use png::{BitDepth, ColorType, Decoder, Encoder, Transformations};
 use tem00_triangulation::RawFrame;
 
-use super::{BIT_DEPTH, Components, ImageError, Samples, checked_area, stated_bit_depth};
+use super::{
+    BIT_DEPTH, Components, ImageError, Samples, StoredCurve, checked_area, stated_bit_depth,
+};
 
 pub(super) fn read(reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
     let mut decoder = Decoder::new(reader);
@@ -36,6 +38,7 @@ pub(super) fn read(reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
         components,
         values,
         bit_depth: bits.depth,
+        curve: curve(reader.info()),
         remark: bits.remark,
         has_further_images: false,
     })
@@ -47,6 +50,16 @@ fn extend(values: &mut Vec<u16>, data: &[u8], stored: u32) {
         values.extend(pairs.map(|pair| u16::from_be_bytes([pair[0], pair[1]])));
     } else {
         values.extend(data.iter().map(|&value| u16::from(value)));
+    }
+}
+
+fn curve(info: &png::Info<'_>) -> StoredCurve {
+    match (info.srgb, info.gama_chunk) {
+        (Some(_), _) => StoredCurve::Srgb,
+        (None, Some(gamma)) if gamma.into_scaled() > 0 => {
+            StoredCurve::Gamma(f64::from(gamma.into_scaled()) / 1e5)
+        }
+        _ => StoredCurve::Unknown,
     }
 }
 

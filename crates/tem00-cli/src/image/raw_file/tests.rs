@@ -172,7 +172,7 @@ fn what_is_no_frame_is_refused_in_words() {
         read_raw(&path, None).expect_err(name).to_string()
     };
     assert!(
-        file("a.jpg", b"").contains("use .png, .tif or .tiff"),
+        file("a.gif", b"").contains("use .png, .tif, .jpg, .bmp or .pgm"),
         "another format"
     );
     assert!(

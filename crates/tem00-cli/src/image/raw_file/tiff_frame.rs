@@ -9,7 +9,9 @@ use tiff::{
     tags::Tag,
 };
 
-use super::{BIT_DEPTH, Components, ImageError, Samples, checked_area, stated_bit_depth};
+use super::{
+    BIT_DEPTH, Components, ImageError, Samples, StoredCurve, checked_area, stated_bit_depth,
+};
 
 pub(super) fn read(reader: impl Read + Seek) -> Result<Samples, ImageError> {
     let mut decoder = Decoder::new(reader)?;
@@ -36,6 +38,7 @@ pub(super) fn read(reader: impl Read + Seek) -> Result<Samples, ImageError> {
         components,
         values,
         bit_depth: told.unwrap_or(stored),
+        curve: StoredCurve::Unknown,
         remark: match (told, decoder.more_images()) {
             (_, true) => ", the first of several images in the file",
             (Some(_), _) => ", as the file says",

@@ -1,0 +1,217 @@
+//! Tests of the formats that cameras and their programs write, made byte by byte or by another program.
+
+use std::io::Cursor;
+
+use super::super::{LoadedImage, Transfer};
+use super::{RawFormat, RawImage, decode};
+use crate::image::ImageError;
+
+const GREY_JPEG: &[u8] = include_bytes!("../../../tests/data/grey.jpg");
+const COLOUR_JPEG: &[u8] = include_bytes!("../../../tests/data/colour.jpg");
+
+fn raw(file: &[u8], format: RawFormat, channel: Option<&str>) -> Result<RawImage, ImageError> {
+    decode(Cursor::new(file), format)?.image(channel)
+}
+
+fn light(file: &[u8], format: RawFormat) -> LoadedImage {
+    let samples = decode(Cursor::new(file), format).expect("the file is read");
+    samples.light(None, None).expect("the file is light")
+}
+
+/// A bitmap of so many bits and rows from the bottom up, with its rows given as they stand in the file.
+fn bitmap(size: [i32; 2], bits: u16, palette: &[[u8; 4]], rows: &[u8]) -> Vec<u8> {
+    let offset = 54 + 4 * u32::try_from(palette.len()).expect("a palette");
+    let mut file = b"BM\0\0\0\0\0\0\0\0".to_vec();
+    file.extend(offset.to_le_bytes());
+    file.extend(40_u32.to_le_bytes());
+    file.extend(size.iter().flat_map(|side| side.to_le_bytes()));
+    file.extend(1_u16.to_le_bytes());
+    file.extend(bits.to_le_bytes());
+    file.extend([0; 24]);
+    file.extend(palette.iter().flatten());
+    file.extend(rows);
+    file
+}
+
+#[test]
+fn bitmaps_stand_upside_down_in_rows_of_whole_words() {
+    // Blue, green and red, two pixels and two bytes of padding.
+    let rows = [1, 2, 3, 4, 5, 6, 0, 0, 7, 8, 9, 10, 11, 12, 0, 0];
+    let of = |height, channel| {
+        let file = bitmap([2, height], 24, &[], &rows);
+        raw(&file, RawFormat::Bmp, Some(channel))
+            .expect("a bitmap")
+            .values
+    };
+    assert_eq!(of(2, "R").values(), [9.0, 12.0, 3.0, 6.0]);
+    assert_eq!(of(2, "B").values(), [7.0, 10.0, 1.0, 4.0]);
+    assert_eq!(of(-2, "R").values(), [3.0, 6.0, 9.0, 12.0], "top down");
+    let wide = bitmap([1, 2], 32, &[], &[1, 2, 3, 99, 4, 5, 6, 99]);
+    let green = raw(&wide, RawFormat::Bmp, Some("G")).expect("a bitmap");
+    assert_eq!(green.values.values(), [5.0, 2.0]);
+}
+
+#[test]
+fn grey_palettes_make_grey_bitmaps() {
+    let palette: Vec<_> = (0..=255).map(|grey| [grey, grey, grey, 0]).collect();
+    let grey = raw(
+        &bitmap([3, 1], 8, &palette, &[7, 200, 255, 0]),
+        RawFormat::Bmp,
+        None,
+    );
+    let grey = grey.expect("a bitmap");
+    assert_eq!(grey.values.values(), [7.0, 200.0, 255.0]);
+    assert!(
+        grey.interpretation.starts_with("grey, 8 bits"),
+        "{}",
+        grey.interpretation
+    );
+    assert_eq!(grey.saturated, 1);
+    // Blue, green, red.
+    let colours = bitmap([2, 1], 8, &[[1, 2, 6, 0], [5, 5, 5, 0]], &[0, 1, 0, 0]);
+    let mean = raw(&colours, RawFormat::Bmp, None).expect("a bitmap");
+    assert_eq!(mean.values.values(), [3.0, 5.0]);
+}
+
+#[test]
+fn maps_of_twelve_bits_know_their_bits() {
+    let mut file = b"P5 # a camera\n# of 12 bits\n3 1\n4095\n".to_vec();
+    file.extend([0x00, 0x07, 0x0a, 0xbc, 0x0f, 0xff]);
+    let image = raw(&file, RawFormat::Pnm, None).expect("a map");
+    assert_eq!(image.values.values(), [7.0, 2_748.0, 4_095.0]);
+    assert_eq!((image.bit_depth, image.saturated), (12, 1));
+    let light = light(&file, RawFormat::Pnm);
+    assert_eq!(light.saturated, Some(1.0 / 3.0));
+    assert!(
+        (light.values[(1, 0)] - 2_748.0 / 4_095.0).abs() < 1e-7,
+        "in proportion"
+    );
+}
+
+#[test]
+fn maps_are_read_as_text_and_in_colour() {
+    let grey = raw(b"P2\n2 2\n255\n1 2\n30 #four\n 255", RawFormat::Pnm, None);
+    assert_eq!(
+        grey.expect("a map").values.values(),
+        [1.0, 2.0, 30.0, 255.0]
+    );
+    let colour = raw(b"P6 1 1 255\n\x01\x02\x06", RawFormat::Pnm, None).expect("a map");
+    assert_eq!(colour.values.values(), [3.0]);
+    let text = raw(b"P3 1 1 65535 1 2 60000\n", RawFormat::Pnm, Some("b")).expect("a map");
+    assert_eq!(
+        (text.values.values(), text.bit_depth),
+        (&[60_000.0][..], 16)
+    );
+}
+
+#[test]
+fn photographs_have_the_grey_values_of_another_reader() {
+    let grey = raw(GREY_JPEG, RawFormat::Jpeg, None).expect("a photograph");
+    assert_eq!((grey.values.width(), grey.values.height()), (24, 16));
+    let expected = |x: usize, y: usize| (20 + 6 * x + 4 * y) as f32;
+    for (y, row) in grey.values.rows().enumerate() {
+        for (x, &value) in row.iter().enumerate() {
+            // Decoders may round the cosine transform by one.
+            assert!(
+                (value - expected(x, y)).abs() <= 1.0,
+                "({x}, {y}) is {value}"
+            );
+        }
+    }
+    for (channel, at) in [("R", 20.0), ("G", 235.0), ("B", 60.0)] {
+        let image = raw(COLOUR_JPEG, RawFormat::Jpeg, Some(channel)).expect("a photograph");
+        let value = image.values[(0, 0)];
+        assert!((value - at).abs() <= 3.0, "{channel} is {value}");
+    }
+    let light = light(GREY_JPEG, RawFormat::Jpeg);
+    assert!(
+        light.interpretation.contains("losses"),
+        "{}",
+        light.interpretation
+    );
+    // 0.006995 is the linear value of 20 / 255 by the sRGB curve.
+    let samples = decode(Cursor::new(GREY_JPEG), RawFormat::Jpeg).expect("a photograph");
+    let dark = samples
+        .light(None, Some(Transfer::Srgb))
+        .expect("light")
+        .values[(0, 0)];
+    assert!((dark - 0.006_995).abs() < 1e-3, "{dark}");
+}
+
+#[test]
+fn cut_and_mutated_files_are_errors_or_images_and_no_panics() {
+    let files = [
+        (GREY_JPEG.to_vec(), RawFormat::Jpeg),
+        (COLOUR_JPEG.to_vec(), RawFormat::Jpeg),
+        (bitmap([2, 2], 24, &[], &[7; 16]), RawFormat::Bmp),
+        (
+            bitmap([3, 1], 8, &[[1, 1, 1, 0]; 4], &[0, 1, 2, 0]),
+            RawFormat::Bmp,
+        ),
+        (b"P5 3 2 255\n123456".to_vec(), RawFormat::Pnm),
+        (b"P3 1 2 99 1 2 3 4 5 6\n".to_vec(), RawFormat::Pnm),
+    ];
+    for (file, format) in files {
+        assert!(raw(&file, format, None).is_ok(), "{format:?}");
+        for length in 0..file.len().saturating_sub(2) {
+            let cut = raw(&file[..length], format, None);
+            assert!(cut.is_err(), "{format:?} of {length} bytes");
+        }
+        let mut state = 1_u32;
+        for _ in 0..2_000 {
+            let mut mutated = file.clone();
+            for _ in 0..2 {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let place = (state >> 8) as usize % mutated.len();
+                mutated[place] = state.to_le_bytes()[3];
+            }
+            // Any answer will do.
+            let _ = raw(&mutated, format, None);
+        }
+    }
+}
+
+#[test]
+fn what_these_formats_cannot_hold_is_said() {
+    let said = |file: &[u8], format| {
+        let refused = raw(file, format, None);
+        refused.expect_err("the file is wrong").to_string()
+    };
+    for (file, part) in [
+        (&b"P4 1 1\n"[..], "P2, P3, P5 and P6"),
+        (b"P5 1 1 70000\n12", "1 to 65535"),
+        (b"P5 1 1 0\n12", "1 to 65535"),
+        (b"P2 1 1 9 10", "above the largest"),
+        (b"P2 2 1 9 1", "before its last pixel"),
+        (b"P5 99999999 99999999 255\n", "99999999 × 99999999 pixels"),
+        (b"P5 1 x 255\n", "where a number should be"),
+        (b"P5 99999999999 1 255\n", "too large"),
+    ] {
+        let said = said(file, RawFormat::Pnm);
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let compressed = |bits, method: u8| {
+        let mut file = bitmap([1, 1], bits, &[], &[0; 4]);
+        file[30] = method;
+        said(&file, RawFormat::Bmp)
+    };
+    assert!(
+        compressed(16, 0).contains("16 bits"),
+        "{}",
+        compressed(16, 0)
+    );
+    assert!(
+        compressed(24, 1).contains("method 1"),
+        "{}",
+        compressed(24, 1)
+    );
+    assert!(
+        said(&bitmap([1, 1], 8, &[], &[0; 4]), RawFormat::Bmp).contains("palette"),
+        "none"
+    );
+    let large = bitmap([i32::MAX, i32::MIN], 24, &[], &[]);
+    assert!(
+        said(&large, RawFormat::Bmp).contains("2147483648 pixels"),
+        "too large"
+    );
+}

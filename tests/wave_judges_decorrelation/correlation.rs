@@ -5,8 +5,8 @@ use core::f64::consts::{PI, TAU};
 use tem00::{
     decorrelation::{
         self, CameraFrame, Configuration, ConfigurationData, CorrelationLaw, ImageOrientation,
-        ImagingGeometry, Motion, PupilDistances, SpeckleMotion, axial_correlation, paper,
-        pupil_overlap_correlation,
+        ImagingGeometry, LineOfSight, Motion, PupilDistances, SpeckleMotion, SurfacePoint,
+        Wavefront, axial_correlation, paper, pupil_overlap_correlation,
     },
     numerics::Fft2,
     wave::{
@@ -71,8 +71,8 @@ impl Bench {
         .expect("a camera")
     }
 
-    /// How far defocus moves the pattern beside the projected surface, in metres.
-    fn defocus_displacement(&self, motion: &Motion) -> DVec2 {
+    /// The laws of small motions and of any.
+    fn laws(&self, motion: &Motion) -> [SpeckleMotion; 2] {
         let eye = v(0.0, 0.0, DISTANCE);
         let before = Configuration::new(ConfigurationData {
             wavelength: WAVELENGTH,
@@ -84,8 +84,14 @@ impl Bench {
         })
         .expect("a configuration");
         let after = States::from(*motion).after(&before);
+        let sight = LineOfSight::new(before.sight().camera(), eye).expect("a line of sight");
+        let wave = Wavefront::plane(self.to_source).expect("a plane wave");
+        let point = SurfacePoint::new(sight, DVec3::Z, wave).expect("a point");
         let upright = ImageOrientation::ScreenUpright;
-        SpeckleMotion::between(&self.geometry(), &before, &after, upright).defocus_displacement
+        [
+            SpeckleMotion::new(&self.geometry(), &point, motion, upright),
+            SpeckleMotion::between(&self.geometry(), &before, &after, upright),
+        ]
     }
 
     fn camera(&self) -> Camera {
@@ -313,7 +319,7 @@ fn motion_along_the_axis_leaves_a_squared_sinc_with_its_zero_at_twice_the_printe
 }
 
 #[test]
-fn motion_aside_and_along_the_axis_leaves_the_integrals_and_not_the_product() {
+fn motion_aside_and_along_the_axis_leaves_what_the_law_of_its_displacement_says() {
     let bench = Bench {
         pupil_diameter: 30e-3,
         to_source: DVec3::Z,
@@ -324,17 +330,19 @@ fn motion_aside_and_along_the_axis_leaves_the_integrals_and_not_the_product() {
         surface: v(s * bench.pupil_diameter, 0.0, x * length),
         ..Motion::default()
     };
-    let moved = bench.defocus_displacement(&motion) / bench.speckle_size();
-    // The pattern of an approaching surface moves against its displacement on the pupil, by 4 s x.
-    assert!(
-        (moved - DVec2::new(-4.0 * s * x, 0.0)).length() < 0.02,
-        "{moved}"
-    );
-    let states = [DVec2::ZERO, moved].map(|aside| State { motion, aside });
+    let laws = bench.laws(&motion);
+    let asides = laws.map(|law| law.defocus_displacement / bench.speckle_size());
+    // The pattern of an approaching surface moves against its displacement on the pupil, by 4 s x:
+    // at second order.
+    let expected = [DVec2::ZERO, DVec2::new(-4.0 * s * x, 0.0)];
+    for (aside, expected) in asides.into_iter().zip(expected) {
+        assert!((aside - expected).length() < 0.02, "{aside}");
+    }
+    let states = asides.map(|aside| State { motion, aside });
     let measured = bench.intensity_correlations(&states, 16);
-    let laws = [CorrelationLaw::AtImageDisplacement, CorrelationLaw::AtPeak];
-    for (law, measured) in laws.into_iter().zip(&measured) {
-        assert_agrees(&format!("{law:?}"), *measured, law.correlation(s, x));
+    let names = ["first order", "any motion"];
+    for ((name, law), measured) in names.into_iter().zip(laws).zip(&measured) {
+        assert_agrees(name, *measured, law.correlation);
     }
     let product = CorrelationLaw::Product.correlation(s, x);
     assert_refutes("product at the peak", measured[1], product);

@@ -3,7 +3,7 @@ use core::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use crate::{
-    Configuration, GRAZING_COSINE, ImageOrientation, ImagingGeometry, SpeckleMotion, correlation,
+    Configuration, CorrelationLaw, GRAZING_COSINE, ImageOrientation, ImagingGeometry, SpeckleMotion,
 };
 
 /// The law of speckle motion between two states, however far apart.
@@ -182,7 +182,7 @@ impl SpeckleMotion {
     /// pupil     A = pupil_point_after(0)
     /// defocus   ∓ C A (W + W') / 2         W = 1/Z − 1/L
     /// along     Z − Z'
-    /// left      γ of |A| / D and of (W'/λ' − W/λ) D²/8
+    /// left      γ of |A| / D and of (W'/λ' − W/λ) D²/8, at the peak
     /// ```
     ///
     /// For small translations this is [`new`](Self::new) up to terms of second order. There the
@@ -263,7 +263,7 @@ impl SpeckleMotion {
             pupil_displacement: pupil,
             axial_displacement: depths[0] - depths[1],
             correlation: pupil.map_or(0.0, |pupil| {
-                correlation(pupil.length() / diameter, axial_shift)
+                CorrelationLaw::AtPeak.correlation(pupil.length() / diameter, axial_shift)
             }),
         }
     }

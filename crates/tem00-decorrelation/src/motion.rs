@@ -1,7 +1,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
-    DecorrelationError, GRAZING_COSINE, ImagingGeometry, LineOfSight, Wavefront, correlation,
+    CorrelationLaw, DecorrelationError, GRAZING_COSINE, ImagingGeometry, LineOfSight, Wavefront,
     finite::defocus_displacement,
 };
 
@@ -220,8 +220,13 @@ pub struct SpeckleMotion {
     pub pupil_displacement: Option<DVec2>,
     /// Motion of the surface towards the camera along the optical axis, `(a − c)·b3`, in metres.
     pub axial_displacement: f64,
-    /// What is left of the old pattern as a correlation of intensity, in [0, 1]:
-    /// [`correlation`].
+    /// What is left of the old pattern as a correlation of intensity, in [0, 1], where the pattern is
+    /// looked up at the [`speckle_displacement`](Self::speckle_displacement).
+    ///
+    /// That displacement decides on the [`CorrelationLaw`]: it is
+    /// [`AtImageDisplacement`](CorrelationLaw::AtImageDisplacement) in [`new`](Self::new), which keeps
+    /// the defocus of the reference state, and [`AtPeak`](CorrelationLaw::AtPeak) in
+    /// [`between`](Self::between), which takes the mean of both states.
     pub correlation: f64,
 }
 
@@ -255,10 +260,8 @@ impl SpeckleMotion {
             axial_displacement / geometry.axial_decorrelation_length_at(sight.depth());
         let pupil_displacement = point.pupil_displacement(motion);
         let correlation = pupil_displacement.map_or(0.0, |displacement| {
-            correlation(
-                displacement.length() / geometry.pupil_diameter(),
-                axial_shift,
-            )
+            let pupil_shift = displacement.length() / geometry.pupil_diameter();
+            CorrelationLaw::AtImageDisplacement.correlation(pupil_shift, axial_shift)
         });
         let defocus = geometry.defocus_at(sight.depth());
         let defocus = defocus_displacement(geometry, defocus, pupil_displacement);

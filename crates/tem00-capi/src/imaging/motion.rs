@@ -84,7 +84,8 @@ pub struct SpeckleMotion {
     pub pupil_displacement: [f64; 2],
     /// Motion of the surface towards the camera along the optical axis, in metres.
     pub axial_displacement: f64,
-    /// What is left of the old pattern as a correlation of intensity, in [0, 1].
+    /// What is left of the old pattern as a correlation of intensity, in [0, 1], where it is looked up
+    /// at the sum of both displacements in the image.
     pub correlation: f64,
 }
 

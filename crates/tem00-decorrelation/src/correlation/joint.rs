@@ -17,7 +17,8 @@ use super::correlation;
 /// has come nearer, along it where it has gone away. Whether that shift is followed decides what is
 /// left: a renderer that looks the pattern up at the projected displacement of the surface point
 /// needs [`AtImageDisplacement`](Self::AtImageDisplacement), one that adds Δr needs
-/// [`AtPeak`](Self::AtPeak). Without defocus, or without pupil displacement, all three are the same.
+/// [`AtPeak`](Self::AtPeak). [`SpeckleMotion`](crate::SpeckleMotion) returns the one that belongs to
+/// its displacement. Without defocus, or without pupil displacement, all three are the same.
 ///
 /// Both integrals run over the lens ℓ that two discs of radius 1, with centres at ±s, share:
 ///
@@ -65,7 +66,8 @@ pub enum CorrelationLaw {
     #[default]
     Product,
     /// The correlation at the displacement of the projected surface point, with the reference state
-    /// (or the moved one) in focus.
+    /// (or the moved one) in focus; out of focus, at the displacement that the defocus of that state
+    /// alone gives.
     AtImageDisplacement,
     /// The correlation at Δr from the displacement of the projected point, where it is largest as
     /// long as it is large: around the first zero the field of correlation breaks up, and there is
@@ -85,14 +87,17 @@ impl CorrelationLaw {
     /// and in a time proportional to the displacement beyond a few lengths. Farther out the product
     /// is returned, since all three laws are below 4/β² = 1e−8 there.
     pub fn correlation(self, pupil_shift: f64, axial_shift: f64) -> f64 {
-        let s = pupil_shift.abs();
-        let x = axial_shift.abs();
-        if self == Self::Product || x >= LARGEST_AXIAL_SHIFT {
-            return correlation(s, x);
+        let (s, x) = (pupil_shift.abs(), axial_shift.abs());
+        // Where one of the two is zero, the product is exact. NaN counts as decorrelated in it.
+        let both = s > 0.0 && s < 1.0 && x > 0.0 && x < LARGEST_AXIAL_SHIFT;
+        match self {
+            Self::AtImageDisplacement | Self::AtPeak if both => self.integral(s, x),
+            _ => correlation(s, x),
         }
-        if s >= 1.0 {
-            return 0.0;
-        }
+    }
+
+    /// γ by the integral over the lens, for s in [0, 1] and x from 0 to the largest shift.
+    pub(super) fn integral(self, s: f64, x: f64) -> f64 {
         let beta = TAU * x;
         let [re, im] = match self {
             Self::AtImageDisplacement => sum(arc(s, beta, 0.0), arc(s, beta, 2.0 * s)),

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::*;
-use crate::{LensData, LineOfSight, SpeckleMotion, SurfacePoint, Wavefront, slice_coordinate};
+use crate::{LensData, LineOfSight, SurfacePoint, Wavefront, correlation, slice_coordinate};
 
 const EYE: DVec3 = DVec3::new(0.02, -0.01, 0.3);
 const SOURCE: DVec3 = DVec3::new(0.1, 0.05, 0.25);
@@ -118,7 +118,13 @@ fn by_calls(setup: &FieldSetup, light: Light, shared: &Motion, row: &Row) -> Res
     let pupil = point.pupil_displacement(&motion).unwrap();
     let image = point.image_displacement(geometry, &motion, setup.orientation)
         + beside(geometry, sight.depth(), setup.orientation) * pupil;
-    let left = SpeckleMotion::new(geometry, &point, &motion, setup.orientation).correlation;
+    let axial = motion
+        .surface_seen_by_camera()
+        .dot(setup.camera.towards_camera());
+    let left = correlation(
+        pupil.length() / geometry.pupil_diameter(),
+        axial / geometry.axial_decorrelation_length_at(sight.depth()),
+    );
     let pixel = DVec2::new(row[9], row[10]);
     let pattern = geometry.pattern_coordinate(pixel, image, setup.pattern_speckle_size);
     let slice = slice_coordinate(left, setup.half_period);

@@ -1,10 +1,12 @@
+use core::f64::consts::PI;
+
 use glam::EulerRot;
 use proptest::{prelude::*, test_runner::RngSeed};
 
 use super::*;
 use crate::{
     CameraFrame, ConfigurationData, DMat3, Illumination, LensData, LineOfSight, Motion,
-    RigidMotion, RigidMotions, SurfacePoint, Wavefront,
+    PupilDistances, RigidMotion, RigidMotions, SurfacePoint, Wavefront,
 };
 
 const UPRIGHT: ImageOrientation = ImageOrientation::ScreenUpright;
@@ -66,6 +68,93 @@ fn speckle_that_leaves_elsewhere_is_decorrelated() {
     // Less far, there is speckle at the edge of the world.
     let found = before.pupil_point_after(&after_surface(&before, turned(40.0)), DVec2::ZERO);
     assert!(found.is_some_and(|p| p.x > 0.5), "{found:?}");
+}
+
+/// What two states of defocus leave of a pattern that is looked up `beside` the image of the
+/// surface: a sum over a lattice of pupil points, with the phases of both lenses as they are.
+fn pupil_sum(
+    geometry: &ImagingGeometry,
+    defocus: [f64; 2],
+    displacement: DVec2,
+    beside: DVec2,
+) -> f64 {
+    const POINTS: i32 = 500;
+    let diameter = geometry.pupil_diameter();
+    let inside = |p: DVec2| p.length() <= 0.5 * diameter;
+    let half_wave_number = PI / geometry.wavelength();
+    let (mut count, mut sum) = (0.0, DVec2::ZERO);
+    for (i, j) in (0..POINTS).flat_map(|i| (0..POINTS).map(move |j| (i, j))) {
+        let place = |i: i32| ((f64::from(i) + 0.5) / f64::from(POINTS) - 0.5) * diameter;
+        let after = DVec2::new(place(i), place(j));
+        let before = after - displacement;
+        count += f64::from(u8::from(inside(after)));
+        if inside(after) && inside(before) {
+            let lenses = defocus[1] * after.length_squared() - defocus[0] * before.length_squared();
+            let tilt = 2.0 * after.dot(beside) / geometry.principal_distance();
+            sum += DVec2::from_angle(half_wave_number * (lenses + tilt));
+        }
+    }
+    (sum / count).length_squared()
+}
+
+#[test]
+fn the_correlation_belongs_to_the_displacement_returned_with_it() {
+    let geometry = ImagingGeometry::from_distances(PupilDistances {
+        wavelength: 633e-9,
+        surface_to_pupil: 0.2,
+        pupil_to_image: 0.05,
+        pupil_diameter: 10e-3,
+        pixel_pitch: 3.45e-6,
+    })
+    .unwrap();
+    let motion = Motion {
+        surface: DVec3::new(2e-3, 0.0, 1e-3),
+        ..Motion::default()
+    };
+    // In focus, before it and behind.
+    for depth in [0.2, 0.1985, 0.203] {
+        let eye = DVec3::new(0.0, 0.0, depth);
+        let camera = CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y).unwrap();
+        let before = Configuration::new(ConfigurationData {
+            wavelength: 633e-9,
+            point: DVec3::ZERO,
+            normal: DVec3::Z,
+            illumination: Illumination::collimated(DVec3::Z).unwrap(),
+            camera,
+            pupil: eye,
+        })
+        .unwrap();
+        let after = after_surface(&before, RigidMotion::along(motion.surface).unwrap());
+        let sight = LineOfSight::new(&camera, eye).unwrap();
+        let wave = Wavefront::plane(DVec3::Z).unwrap();
+        let point = SurfacePoint::new(sight, DVec3::Z, wave).unwrap();
+
+        let w0 = 1.0 / depth - 1.0 / 0.2;
+        let first_order = w0 + 1e-3 / (depth * depth);
+        let exact = 1.0 / (depth - 1e-3) - 1.0 / 0.2;
+        for (name, speckle, w1) in [
+            (
+                "new",
+                SpeckleMotion::new(&geometry, &point, &motion, UPRIGHT),
+                first_order,
+            ),
+            (
+                "between",
+                SpeckleMotion::between(&geometry, &before, &after, UPRIGHT),
+                exact,
+            ),
+        ] {
+            let beside = speckle.speckle_displacement() - speckle.image_displacement;
+            let across = speckle.pupil_displacement.unwrap();
+            let left = pupil_sum(&geometry, [w0, w1], across, beside);
+            // 500 points across count the area of a disc to 1e−4.
+            assert!(
+                (speckle.correlation - left).abs() < 1e-3,
+                "{name} at {depth} m: {}, not {left}",
+                speckle.correlation
+            );
+        }
+    }
 }
 
 #[test]

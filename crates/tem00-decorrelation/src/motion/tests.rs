@@ -143,20 +143,6 @@ fn camera_in_curved_light_keeps_what_the_surface_does_not() {
 }
 
 #[test]
-fn correlation_is_that_of_pupil_and_axial_displacement() {
-    let motion = Motion {
-        surface: DVec3::new(0.78125e-3, 0.0, 12e-3),
-        ..Motion::default()
-    };
-    let moved = speckle(&point(DVec3::Z, collimated()), &motion);
-    // A quarter of the pupil of 3.125 mm, and 12 mm of 8 λ (L/D)² = 8 · 650 nm · 96².
-    let chat = 0.685_037_642_474_293_f64;
-    let x = 12e-3 / (8.0 * 650e-9 * 96.0 * 96.0) * core::f64::consts::PI;
-    let expected = chat * chat * (x.sin() / x).powi(2);
-    assert_relative_eq!(moved.correlation, expected, max_relative = 1e-13);
-}
-
-#[test]
 fn grazing_view_in_curved_light_is_decorrelated() {
     let spherical = Wavefront::spherical(DVec3::new(1.0, 0.2, 1.0), 5.0).unwrap();
     let motion = Motion {

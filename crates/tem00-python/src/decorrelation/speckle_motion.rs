@@ -100,6 +100,9 @@ impl SpeckleMotion {
     }
 
     /// What is left of the old pattern as a correlation of intensity, in [0, 1].
+    ///
+    /// It is that of the pattern looked up at the `speckle_displacement`: by the law
+    /// `CorrelationLaw.at_image_displacement()` in `new`, `CorrelationLaw.at_peak()` in `between`.
     #[getter]
     fn correlation(&self) -> f64 {
         self.0.correlation

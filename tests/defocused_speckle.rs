@@ -10,7 +10,9 @@
 )]
 
 use tem00::{
-    decorrelation::CorrelationLaw, numerics::Grid, speckle::PupilField,
+    decorrelation::{CorrelationLaw, axial_correlation},
+    numerics::Grid,
+    speckle::PupilField,
     statistics::pearson_correlation,
 };
 
@@ -18,13 +20,13 @@ const SIZE: usize = 384;
 const SPECKLE_SIZE: usize = 2;
 const SEEDS: u64 = 16;
 
-/// Displacements in pupil diameters and defocus `a_O`, such that the peak lies at a whole number of
-/// pixels: 2 s `a_O` speckles of 2 pixels.
+/// Displacements in pupil diameters and defocus in axial decorrelation lengths, such that the peak
+/// lies at a whole number of pixels: 4 s x speckles of 2 pixels.
 const CASES: [(f64, f64, usize); 4] = [
-    (0.2, 1.25, 1),
-    (0.125, 2.0, 1),
-    (0.25, 2.0, 2),
-    (0.1, 2.5, 1),
+    (0.2, 0.625, 1),
+    (0.125, 1.0, 1),
+    (0.25, 1.0, 2),
+    (0.1, 1.25, 1),
 ];
 
 /// The grid with each row turned to the left by `shift` pixels.
@@ -54,10 +56,10 @@ const T_LIMIT: f64 = 6.5;
 fn patterns_correlate_by_the_integral_at_the_image_displacement() {
     for (offset, defocus, _) in CASES {
         let [gamma, error] = measured(offset, defocus, 0);
-        let expected = CorrelationLaw::AtImageDisplacement.correlation(offset, 0.5 * defocus);
+        let expected = CorrelationLaw::AtImageDisplacement.correlation(offset, defocus);
         assert!(
             (gamma - expected).abs() < T_LIMIT * error,
-            "s = {offset}, a_O = {defocus}: {gamma} ± {error} instead of {expected}"
+            "s = {offset}, x = {defocus}: {gamma} ± {error} instead of {expected}"
         );
         assert!(error < 0.002, "the test would see nothing: ±{error}");
     }
@@ -68,11 +70,25 @@ fn patterns_correlate_by_the_integral_at_the_peak() {
     for (offset, defocus, shift) in CASES {
         let backwards = SIZE - shift;
         let [gamma, error] = measured(offset, defocus, backwards);
-        let expected = CorrelationLaw::AtPeak.correlation(offset, 0.5 * defocus);
+        let expected = CorrelationLaw::AtPeak.correlation(offset, defocus);
         assert!(
             (gamma - expected).abs() < T_LIMIT * error,
-            "s = {offset}, a_O = {defocus}: {gamma} ± {error} instead of {expected}"
+            "s = {offset}, x = {defocus}: {gamma} ± {error} instead of {expected}"
         );
         assert!(error < 0.002, "the test would see nothing: ±{error}");
+    }
+}
+
+#[test]
+fn patterns_out_of_focus_follow_the_law_of_motion_along_the_axis() {
+    for defocus in [0.25, 0.5, 1.0, 1.43] {
+        let [gamma, error] = measured(0.0, defocus, 0);
+        let expected = axial_correlation(defocus);
+        // Unit phasors lower a covariance by up to 1/N.
+        let tolerance = T_LIMIT * error + 1.0 / 28_000.0;
+        assert!(
+            (gamma - expected).abs() < tolerance,
+            "x = {defocus}: {gamma} ± {error} instead of {expected}"
+        );
     }
 }

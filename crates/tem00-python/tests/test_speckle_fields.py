@@ -43,7 +43,7 @@ def transformed(
     centre = [side * diameter for side, diameter in zip(offset, DIAMETER, strict=True)]
     px, py = (x - centre[0]) / DIAMETER[0], (y - centre[1]) / DIAMETER[1]
     radius = np.hypot(px, py)
-    lens = np.exp(1j * np.pi * defocus * (2 * radius) ** 2)
+    lens = np.exp(2j * np.pi * defocus * (2 * radius) ** 2)
     seen = np.where(radius <= 0.5 + 1e-12, samples * lens, 0)
     # The pupil about k = 0, wherever it stands.
     kx, ky = (points - round(c) for points, c in zip((x, y), centre, strict=True))

@@ -18,7 +18,7 @@ use crate::{
 /// `c = offset · C`, and their Fourier transform is the speckle field on Q × Q samples:
 ///
 /// ```text
-/// U(r) = Σ t(p) P(k + c₀) exp(iπ a |2p|²) exp(−2πi k·r / Q) / √(Σ |t|²)      p = (k + c₀ − c) / C
+/// U(r) = Σ t(p) P(k + c₀) exp(2πi a |2p|²) exp(−2πi k·r / Q) / √(Σ |t|²)     p = (k + c₀ − c) / C
 /// I(r) = |U(r)|²
 /// ```
 ///
@@ -31,13 +31,13 @@ use crate::{
 ///
 /// # Defocus
 ///
-/// The defocus a adds half a turn of phase per unit from the centre of the pupil to its rim. Speckle
-/// in focus and out of it correlate by `γ = sinc²(a/2)`, whose first zero is at a = 2. A surface that
-/// moves by `d` along the line of sight, at the distance L from a pupil of diameter D, is out of focus
-/// by `a = d D² / (4 λ L²)`.
+/// The defocus a is counted in axial decorrelation lengths: it adds a turn of phase per unit from the
+/// centre of the pupil to its rim. Speckle in focus and out of it correlate by `γ = sinc²(π a)`, whose
+/// first zero is at a = 1. A surface that moves by `d` along the line of sight, at the distance L from
+/// a pupil of diameter D, is out of focus by `a = d D² / (8 λ L²)`.
 ///
 /// Displacement and defocus together also move the pattern: against the pattern in focus of the pupil
-/// at rest, in the frame of the lattice, by `−2 a · offset` speckle sizes.
+/// at rest, in the frame of the lattice, by `−4 a · offset` speckle sizes.
 ///
 /// # Validity
 ///

@@ -1,6 +1,9 @@
 //! Patterns and fields behind a pupil that stands anywhere and is out of focus.
 
-use core::{f64::consts::PI, ops::Range};
+use core::{
+    f64::consts::{PI, TAU},
+    ops::Range,
+};
 use std::borrow::Cow;
 
 use num_complex::Complex;
@@ -130,7 +133,7 @@ impl PupilField {
     /// use tem00_speckle::PupilField;
     ///
     /// let field = PupilField::new(256, 128, 3)?;
-    /// let (a, b) = (field.speckle([0.0, 0.0], 0.0), field.speckle([0.0, 0.0], 1.0));
+    /// let (a, b) = (field.speckle([0.0, 0.0], 0.0), field.speckle([0.0, 0.0], 0.5));
     /// let pairs = a.values().values().iter().zip(b.values().values());
     /// let mean = pairs.map(|(a, b)| a * b.conj()).sum::<tem00_speckle::Complex<f32>>() / 65_536.0;
     ///
@@ -265,14 +268,14 @@ impl PupilField {
         }))
     }
 
-    /// exp(iπ a (2p)²) along one axis.
+    /// exp(2πi a (2p)²) along one axis.
     fn lens(&self, view: &View<'_>, axis: usize) -> Vec<Complex<f32>> {
         let corner = from_i64(view.mask.corner()[axis]) - view.fraction[axis];
         (0..view.mask.extent()[axis])
             .map(|i| {
                 let rho = 2.0 * (corner + to_f64(i)) / self.diameter()[axis];
-                // Half turns; whole turns are taken off before π rounds what is left.
-                to_c32(Complex::cis(PI * (view.defocus * rho * rho % 2.0)))
+                // Whole turns are taken off before 2π rounds what is left.
+                to_c32(Complex::cis(TAU * (view.defocus * rho * rho % 1.0)))
             })
             .collect()
     }

@@ -35,7 +35,7 @@ fn checksums() -> Result<[u64; 5], SpeckleError> {
     let oblong = PupilField::from_speckle_size([90, 77], 2.3, 2_016)?
         .with_pupil(Pupil::Annulus { inner: 0.3 })?
         .with_phasors(Phasors::Gaussian);
-    let displaced = oblong.pattern_at([5.3, -2.25], 0.7);
+    let displaced = oblong.pattern_at([5.3, -2.25], 0.35);
     let straight = SlicePath::Straight {
         half_period: 2,
         length: 3,

@@ -90,7 +90,8 @@ impl Exposure {
     /// offset : (float, float)
     ///     Displacement of the pupil in its diameters.
     /// defocus : float
-    ///     Half turns of phase from the centre of the pupil to its rim.
+    ///     In axial decorrelation lengths: at 1 the correlation first vanishes. Turns of phase from the
+    ///     centre of the pupil to its rim.
     fn pattern_at(
         &self,
         py: Python<'_>,

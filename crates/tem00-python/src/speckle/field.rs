@@ -284,7 +284,8 @@ impl PupilField {
     /// offset : (float, float)
     ///     Displacement of the pupil in its diameters.
     /// defocus : float
-    ///     Half turns of phase from the centre of the pupil to its rim.
+    ///     In axial decorrelation lengths: at 1 the correlation first vanishes. Turns of phase from the
+    ///     centre of the pupil to its rim.
     fn pattern_at(
         &self,
         py: Python<'_>,
@@ -309,7 +310,8 @@ impl PupilField {
     /// offset : (float, float)
     ///     Displacement of the pupil in its diameters.
     /// defocus : float
-    ///     Half turns of phase from the centre of the pupil to its rim.
+    ///     In axial decorrelation lengths: at 1 the correlation first vanishes. Turns of phase from the
+    ///     centre of the pupil to its rim.
     fn speckle(&self, py: Python<'_>, offset: [f64; 2], defocus: f64) -> PyResult<SpeckleField> {
         let (offset, defocus) = (finite_pair("offset", offset)?, finite("defocus", defocus)?);
         check_room(self.0.size(), 8)?;

@@ -1,4 +1,4 @@
-use tem00_decorrelation::{DVec3, FieldSlices, MotionField};
+use tem00_decorrelation::{DVec3, DecorrelationError, FieldSlices, MotionField};
 
 use super::{
     Imaging,
@@ -34,7 +34,7 @@ pub struct FieldSetup {
     pub orientation: u32,
     /// Speckle size of the pattern, in samples.
     pub pattern_speckle_size: f64,
-    /// Number of slices of a circular stack to the first uncorrelated one.
+    /// Number of slices of a circular stack to the first uncorrelated one, at least 1.
     pub half_period: usize,
     /// Motion of camera, source and all surfaces, added to those of the points.
     pub shared_motion: Motion,
@@ -85,6 +85,10 @@ impl FieldSetup {
             orientation: orientation(self.orientation)?,
             pattern_speckle_size: self.pattern_speckle_size,
             half_period: self.half_period,
+        })
+        .map_err(|error| match error {
+            DecorrelationError::Scale(_) => Failure::argument("imaging", error),
+            other => other.into(),
         })?;
         Ok(field.with_shared_motion(&self.shared_motion.motion()?))
     }

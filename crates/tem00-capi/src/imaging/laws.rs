@@ -25,9 +25,9 @@ pub unsafe extern "C" fn tem00_correlation(
     })
 }
 
-/// Computes the distance between two slices of a circular stack that have a given intensity
-/// correlation: 0 for 1 or more, and `half_period` for 0 or less. The stack has twice `half_period`
-/// slices.
+/// Computes the coordinate u of a circular stack at which the intensity has a given correlation to that
+/// at u = 0: 0 for 1 or more, and `half_period` for 0 or less. The stack has twice `half_period` slices,
+/// at least 2.
 ///
 /// # Safety
 ///
@@ -40,6 +40,9 @@ pub unsafe extern "C" fn tem00_slice_coordinate(
 ) -> Status {
     call(|| {
         check_finite("correlation", &[correlation])?;
+        if half_period == 0 {
+            return Err(tem00_decorrelation::DecorrelationError::HalfPeriod.into());
+        }
         let result = tem00_decorrelation::slice_coordinate(correlation, half_period);
         // SAFETY: by the contract of this function.
         unsafe { write("coordinate", coordinate, result) }

@@ -117,14 +117,14 @@ pub(super) fn correlation<'py>(
     map(py, named, |[s, x]| physics::correlation(s, x))
 }
 
-/// Return the distance between two slices of a circular stack that have a correlation.
+/// Return the coordinate of a circular stack at which a look-up has a correlation to that at 0.
 ///
 /// Parameters
 /// ----------
 /// correlation : float or array
 ///     Intensity correlation.
 /// half_period : int
-///     Number of slices to the first uncorrelated one; the stack has twice as many.
+///     Number of slices to the first uncorrelated one, at least 1; the stack has twice as many.
 ///
 /// Returns
 /// -------
@@ -136,7 +136,7 @@ pub(super) fn slice_coordinate<'py>(
     correlation: Numbers<'py>,
     half_period: Count,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let half_period = half_period.value("half_period")?;
+    let half_period = half_period.within("half_period", [1, usize::MAX])?;
     map(py, [("correlation", &correlation)], |[left]| {
         physics::slice_coordinate(left, half_period)
     })

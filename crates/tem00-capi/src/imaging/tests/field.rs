@@ -205,6 +205,56 @@ fn fields_are_refused_by_the_name_of_what_is_wrong() {
     assert_eq!(refused(setup(), points), argument("curvature"), "infinite");
 }
 
+/// A camera of extreme numbers.
+fn extreme(wavelength: f64, pixel_pitch: f64) -> Option<Owned> {
+    let mut handle = ptr::null_mut();
+    let distances = PupilDistances {
+        wavelength,
+        pixel_pitch,
+        ..DISTANCES
+    };
+    // SAFETY: the pointers are valid.
+    let status = unsafe { tem00_imaging_create_distances(&raw const distances, &raw mut handle) };
+    (status == Status::Ok).then_some(Owned(handle))
+}
+
+#[test]
+fn no_field_is_nan_and_cameras_out_of_scale_are_refused() {
+    let inputs = inputs();
+    let points = points(&inputs, FieldLight::Collimated);
+    let setup = FieldSetup {
+        shared_motion: Motion::default(),
+        ..setup()
+    };
+    for (wavelength, pixel_pitch, refused) in [
+        (650e-9, 1e308, true),
+        (5e-324, 3.45e-6, true),
+        (650e-9, 5e-324, false),
+        (1e-200, 1e-200, false),
+        (1e-290, 1e290, true),
+        (1e-100, 1e100, false),
+    ] {
+        let imaging = extreme(wavelength, pixel_pitch).unwrap();
+        let mut out = room();
+        let results = results(&mut out);
+        // SAFETY: the pointers are valid.
+        let status = unsafe {
+            let (setup, points, results) =
+                (&raw const setup, &raw const points, &raw const results);
+            tem00_imaging_motion_field(imaging.0, setup, points, COUNT, results)
+        };
+        let case = format!("{wavelength:e} m, {pixel_pitch:e} m");
+        if refused {
+            assert_eq!(refusal(status), argument("imaging"), "{case}");
+            assert_eq!(out, room(), "{case}: nothing is written");
+        } else {
+            assert_eq!(status, Status::Ok, "{case}");
+        }
+        let numbers = out.iter().flatten().all(|number| !number.is_nan());
+        assert!(numbers, "{case}: {out:?}");
+    }
+}
+
 #[test]
 fn results_in_one_place_are_refused() {
     let inputs = inputs();

@@ -94,7 +94,7 @@ fn opposite_slices_are_uncorrelated() {
                 correlation.abs() < 4.0 * standard_error(),
                 "slice {index}: {correlation}"
             );
-            let law = stack.correlation_between(index, index + HALF_PERIOD);
+            let law = stack.correlation_between(index as f64, (index + HALF_PERIOD) as f64);
             // The rounding of the centres to the lattice leaves a sliver of a lens at most.
             assert!(law < 1e-3, "slice {index}: {law}");
         }

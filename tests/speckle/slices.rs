@@ -167,7 +167,7 @@ proptest! {
                 // By Parseval, but for the rounding of f32.
                 prop_assert!((measured - overlap).norm() < 2e-6, "{measured} | {overlap}");
             }
-            let gamma = stack.correlation_between(first, second);
+            let gamma = stack.correlation_between(first as f64, second as f64);
             prop_assert!((gamma - overlap.norm_sqr()).abs() < 1e-6, "γ = {gamma} | {overlap}");
             if first == second {
                 continue;
@@ -221,7 +221,7 @@ proptest! {
         for second in 0..stack.slice_count() {
             let distance = second as f64 - first as f64;
             let (law, exact) =
-                (stack.correlation_at(distance), stack.correlation_between(first, second));
+                (stack.correlation_at(distance), stack.correlation_between(first as f64, second as f64));
             // Rounded centres move the distance by up to √2 points; the overlap falls by 4/π per
             // diameter, by 1/(1 − ε) of that behind an annulus. γ is its square.
             let slope = match case.shape {

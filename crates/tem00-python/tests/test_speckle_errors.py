@@ -68,7 +68,7 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: STACK.coefficients(4), "index", "4"),
     (lambda: STACK.slice_law(-5), "index", "-5"),
     (lambda: STACK.offset(10**30), "index", "1" + 30 * "0"),
-    (lambda: STACK.correlation_between(0, 4), "j", "4"),
+    (lambda: STACK.correlation_between(0, np.nan), "v", "NaN"),
     (lambda: STACK.intensity_at([0.0, np.nan], 0.0, 0.0), "x", "NaN"),
     (lambda: STACK.intensity_at(0.0, 0.0, np.inf), "u", "inf"),
     (lambda: STACK.intensity_at([0.0, 1.0], [0.0, 1.0, 2.0], 0.0), "y", "3"),

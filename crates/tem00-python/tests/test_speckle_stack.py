@@ -1,5 +1,6 @@
 """Stacks and their look-up against splines of SciPy, sums over the pupil and closed forms."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Literal
 
@@ -205,14 +206,25 @@ def straight_law(rho: NDArray[np.float64]) -> NDArray[np.float64]:
     return (2 / np.pi * (np.arccos(rho) - rho * np.sqrt(1 - rho**2))) ** 2
 
 
+def blended(
+    law: Callable[[NDArray[np.float64]], NDArray[np.float64]], u: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the correlation of slice 0 with the blend of the slices about u, of norm 1."""
+    slices, f = np.floor(u), u - np.floor(u)
+    overlap = (1 - f) * np.sqrt(law(slices / 4)) + f * np.sqrt(law((slices + 1) / 4))
+    neighbours = np.sqrt(law(np.asarray(0.25)))
+    return overlap**2 / ((1 - f) ** 2 + f**2 + 2 * f * (1 - f) * neighbours)
+
+
 def test_correlations_have_the_closed_forms(field: PupilField, stack: SpeckleStack) -> None:
-    u = np.linspace(0, 4, 41)
-    np.testing.assert_allclose(stack.correlation_at(u), circle_law(u / 4), atol=1e-12)
+    u = np.linspace(0, 3.99, 41)
+    np.testing.assert_allclose(stack.correlation_at(u), blended(circle_law, u), atol=1e-12)
     straight = SpeckleStack.generate(field, STRAIGHT)
-    np.testing.assert_allclose(straight.correlation_at(u), straight_law(u / 4), atol=1e-12)
+    np.testing.assert_allclose(straight.correlation_at(u), blended(straight_law, u), atol=1e-12)
     for gamma in (0.05, 0.3, 0.8):
-        s = optimize.brentq(lambda s: float(circle_law(np.asarray(s))) - gamma, 0, 1, xtol=1e-13)
-        assert stack.coordinate_of(gamma) == pytest.approx(4 * s, abs=1e-9)
+        law = lambda u, gamma=gamma: float(blended(circle_law, np.asarray(u))) - gamma  # noqa: E731
+        u_of_gamma = optimize.brentq(law, 0, 3.99, xtol=1e-13)
+        assert stack.coordinate_of(gamma) == pytest.approx(u_of_gamma, abs=1e-9)
     assert stack.coordinate_of([2.0, 1.0, 0.0, -1.0]).tolist() == [0.0, 0.0, 4.0, 4.0]
 
 

@@ -145,72 +145,154 @@ pub(crate) struct PathLaw {
     pub(crate) pupil: Pupil,
 }
 
+/// What a blend of two neighbouring slices has in common with a slice before them: all as overlaps
+/// of pupils.
+///
+/// ```text
+/// overlap(f) = [(1 − f) a + f b] / √(1 − 2 f (1 − f) (1 − ρ))
+/// ```
+///
+/// with the overlaps a and b of that slice with each of the two, and their own, ρ: the blend is divided
+/// by its root mean square.
+struct Blend {
+    overlaps: [f64; 2],
+    /// 1 − ρ.
+    apart: f64,
+}
+
+impl Blend {
+    fn overlap(&self, fraction: f64) -> f64 {
+        let [a, b] = self.overlaps;
+        let power = 1.0 - 2.0 * fraction * (1.0 - fraction) * self.apart;
+        (a + fraction * (b - a)) / power.sqrt()
+    }
+
+    /// The fraction at which the overlap has fallen to `overlap`, which lies between those of both
+    /// slices: the smaller root of A f² + 2 B f + C, whose discriminant has the factor `overlap`².
+    fn fraction(&self, overlap: f64) -> f64 {
+        let ([a, b], k, g) = (self.overlaps, self.apart, overlap);
+        let step = b - a;
+        let half_slope = a * step + k * g * g;
+        let rest = ((a - g) * (a + g)).max(0.0);
+        let inner = step * step + 2.0 * k * a * b - k * (2.0 - k) * g * g;
+        let root = g * inner.max(0.0).sqrt();
+        // Both are zero where nothing has fallen.
+        (rest / (root - half_slope + f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+    }
+}
+
 impl PathLaw {
-    /// The amplitude correlation of the coordinates 0 and `u`.
+    /// The amplitude correlation of look-ups at the coordinates 0 and `u`.
     pub(crate) fn overlap_at(&self, u: f64) -> f64 {
+        if self.path == SlicePath::Still {
+            return 1.0;
+        }
+        let u = u.rem_euclid(to_f64(self.path.slice_count()));
+        self.blend_after(u.floor()).overlap(u - u.floor())
+    }
+
+    /// The smallest u ≥ 0 at which the overlap has fallen to `overlap`.
+    pub(crate) fn coordinate_of(&self, overlap: f64) -> f64 {
+        if self.path == SlicePath::Still || overlap >= 1.0 {
+            return 0.0;
+        }
+        let overlap = overlap.max(0.0); // NaN counts as no correlation, too
+        let Some(slice) = self.first_slice_below(overlap) else {
+            return to_f64(self.path.slice_count() / 2);
+        };
+        let before = to_f64(slice - 1);
+        before + self.blend_after(before).fraction(overlap)
+    }
+
+    /// The blend of slice `index` and the next, beside slice 0.
+    fn blend_after(&self, index: f64) -> Blend {
+        let [here, next] = [index, index + 1.0];
+        Blend {
+            overlaps: [self.between(0.0, here), self.between(0.0, next)],
+            apart: 1.0 - self.between(here, next),
+        }
+    }
+
+    /// The overlap of the pupils of two slices.
+    fn between(&self, i: f64, j: f64) -> f64 {
         match self.path {
             SlicePath::Still => 1.0,
             SlicePath::Circle { half_period } => {
-                let half_turns = u / to_f64(half_period);
+                let half_period = to_f64(half_period);
                 if self.pupil == Pupil::Circle {
-                    return circular_path_overlap(half_turns);
+                    return circular_path_overlap((j - i) / half_period);
                 }
-                let (sin, cos) = (PI * half_turns.rem_euclid(2.0)).sin_cos();
-                self.pupil.overlap([0.5 * (1.0 - cos), 0.5 * sin])
+                let [(y0, x0), (y1, x1)] = [i, j].map(|slice| (PI * slice / half_period).sin_cos());
+                self.pupil.overlap([0.5 * (x1 - x0), 0.5 * (y1 - y0)])
             }
             SlicePath::Straight {
                 half_period,
                 length,
             } => {
                 let period = to_f64(2 * half_period);
-                let steps = u.rem_euclid(period);
+                let steps = (j - i).rem_euclid(period);
                 let steps = steps.min(period - steps);
                 self.pupil.overlap([steps * to_f64(length) / period, 0.0])
             }
         }
     }
 
-    /// The smallest u ≥ 0 at which the overlap has fallen to `overlap`.
-    pub(crate) fn coordinate_of(&self, overlap: f64) -> f64 {
-        match (self.path, &self.pupil) {
-            (SlicePath::Still, _) => 0.0,
-            (SlicePath::Circle { half_period }, Pupil::Circle) => {
-                to_f64(half_period) * circular_path_overlap_inverse(overlap)
-            }
-            (
-                SlicePath::Straight {
-                    half_period,
-                    length,
-                },
-                Pupil::Circle,
-            ) => to_f64(2 * half_period) / to_f64(length) * disc_overlap_inverse(overlap),
-            (SlicePath::Circle { half_period } | SlicePath::Straight { half_period, .. }, _) => {
-                self.first_crossing(overlap, to_f64(half_period))
+    /// The first slice whose overlap with slice 0 is `overlap` or less, up to the half period.
+    fn first_slice_below(&self, overlap: f64) -> Option<usize> {
+        let last = self.path.slice_count() / 2;
+        let fallen = |slice: usize| self.between(0.0, to_f64(slice)) <= overlap;
+        let mut slice = match self.guess(overlap) {
+            Some(guess) => guess.clamp(1, last),
+            None => scan(last, fallen),
+        };
+        while slice > 1 && fallen(slice - 1) {
+            slice -= 1;
+        }
+        while !fallen(slice) {
+            slice += 1;
+            if slice > last {
+                return None;
             }
         }
+        Some(slice)
     }
 
-    /// Scan and bisection, for pupils whose overlap has no closed inverse or is not monotonic.
-    fn first_crossing(&self, overlap: f64, half_period: f64) -> f64 {
-        const STEPS: u32 = 256;
-        if overlap >= 1.0 {
-            return 0.0;
-        }
-        let overlap = overlap.max(0.0); // NaN counts as no correlation, too
-        let step = half_period / f64::from(STEPS);
-        let fallen = |u: f64| self.overlap_at(u) <= overlap;
-        let Some(end) = (1..STEPS).map(|i| f64::from(i) * step).find(|&u| fallen(u)) else {
-            return half_period;
-        };
-        let (mut low, mut high) = (end - step, end);
-        for _ in 0..52 {
-            let middle = 0.5 * (low + high);
-            if fallen(middle) {
-                high = middle;
-            } else {
-                low = middle;
+    /// The same for a circular pupil in closed form, but for rounding.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a slice of the stack"
+    )]
+    fn guess(&self, overlap: f64) -> Option<usize> {
+        let slices = match self.path {
+            _ if self.pupil != Pupil::Circle => return None,
+            SlicePath::Still => return None,
+            SlicePath::Circle { half_period } => {
+                to_f64(half_period) * circular_path_overlap_inverse(overlap)
             }
-        }
-        high
+            SlicePath::Straight {
+                half_period,
+                length,
+            } => to_f64(2 * half_period) / to_f64(length) * disc_overlap_inverse(overlap),
+        };
+        Some(slices.ceil() as usize)
     }
+}
+
+/// The first of the slices 1 to `last` that has `fallen`, or the last: for pupils whose overlap has no
+/// closed inverse or is not monotonic, to within 1/256 of the way.
+fn scan(last: usize, fallen: impl Fn(usize) -> bool) -> usize {
+    let stride = last.div_ceil(256);
+    let coarse = (stride..last).step_by(stride).find(|&slice| fallen(slice));
+    let mut high = coarse.unwrap_or(last);
+    let mut low = (high - 1) / stride * stride;
+    while high - low > 1 {
+        let middle = low.midpoint(high);
+        if fallen(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    high
 }

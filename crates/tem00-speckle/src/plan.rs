@@ -29,8 +29,8 @@ pub struct StackNeeds {
 /// - The pattern has twice that size, `Q = 2 C`: the intensity's Nyquist limit.
 /// - The slices lie on a straight path. For two frames it is two diameters long: what has left the
 ///   pupil is new, wherever it is looked up. More frames ask for a path that ends clear of its start.
-/// - Their number is the largest of 32, 16, 8 or 4 per diameter that fits the memory. The blend
-///   between them exceeds the correlation law by up to 0.06, 0.11, 0.2 or 0.4.
+/// - Their number is the largest of 32, 16, 8 or 4 per diameter that fits the memory. Blended
+///   look-ups exceed the correlation law by up to 0.04, 0.08, 0.14 or 0.23.
 ///
 /// What does not fit so is shortened: a path that is too short for the motion gives speckle of some
 /// late frames to others, which [`holds_motion`](Self::holds_motion) tells.

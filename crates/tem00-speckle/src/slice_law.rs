@@ -33,7 +33,7 @@ use crate::{
 /// let law = stack.slice_law(3);
 ///
 /// // At a sample only the terms without p are left: near 1, and near the overlap of the two pupils.
-/// let overlap = stack.correlation_between(3, 4).sqrt();
+/// let overlap = stack.correlation_between(3.0, 4.0).sqrt();
 /// assert!((law.mean_square[0][0] - 1.0).abs() < 2e-3);
 /// assert!((f64::from(law.covariance[0][0]) - overlap).abs() < 2e-3);
 /// # Ok::<(), tem00_speckle::SpeckleError>(())

@@ -183,8 +183,8 @@ pub unsafe extern "C" fn tem00_stack_average(
     }
 }
 
-/// Computes the distance in u, in slices, after which the correlation of the intensity has fallen to
-/// `correlation`: 0 for 1 or more, and the first coordinate of no correlation for 0 or less.
+/// Computes the coordinate u, in slices, at which the intensity has a given `correlation` to that at
+/// u = 0: 0 for 1 or more, and the first slice of no correlation for 0 or less.
 ///
 /// # Safety
 ///
@@ -225,7 +225,7 @@ pub unsafe extern "C" fn tem00_stack_correlation_at(
     }
 }
 
-/// Computes the correlation of the intensities of two slices, exactly.
+/// Computes the correlation of the intensities at two coordinates u and v, on slices or between, exactly.
 ///
 /// # Safety
 ///
@@ -233,16 +233,16 @@ pub unsafe extern "C" fn tem00_stack_correlation_at(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tem00_stack_correlation_between(
     stack: *const Stack,
-    first: usize,
-    second: usize,
+    u: f64,
+    v: f64,
     correlation: *mut f64,
 ) -> Status {
     // SAFETY: by the contract of this function.
     unsafe {
-        ask(stack, ("correlation", correlation), |stack| {
-            let first = check_slice("first", stack, first)?;
-            let second = check_slice("second", stack, second)?;
-            Ok(stack.0.correlation_between(first, second))
+        ask(stack, ("correlation", correlation), |Stack(stack)| {
+            check_coordinates("u", &[u])?;
+            check_coordinates("v", &[v])?;
+            Ok(stack.correlation_between(u, v))
         })
     }
 }

@@ -286,16 +286,26 @@ impl SpeckleStack {
         })
     }
 
-    /// Return the correlation of the intensities of two slices, exactly.
+    /// Return the correlation of the intensities looked up at two coordinates, exactly.
     ///
     /// Parameters
     /// ----------
-    /// i, j : int
-    ///     Slices; negative ones count from the last.
-    fn correlation_between(&self, i: Whole<'_>, j: Whole<'_>) -> PyResult<f64> {
-        let count = self.0.slice_count();
-        let (i, j) = (index("i", &i, count)?, index("j", &j, count)?);
-        Ok(self.0.correlation_between(i, j))
+    /// u, v : `array_like`
+    ///     Coordinates in slices, on slices or between.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    ///     Correlation between 0 and 1.
+    fn correlation_between<'py>(
+        &self,
+        py: Python<'py>,
+        u: Numbers<'py>,
+        v: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        map(py, [("u", &u), ("v", &v)], |[u, v]| {
+            self.0.correlation_between(u, v)
+        })
     }
 
     /// Return the correlation of the intensities at u = 0 and u = distance, in closed form.
@@ -319,12 +329,12 @@ impl SpeckleStack {
         })
     }
 
-    /// Return the distance in u after which the correlation has fallen to a value.
+    /// Return the coordinate u at which a look-up has a given correlation to that at u = 0.
     ///
     /// Parameters
     /// ----------
     /// correlation : `array_like`
-    ///     Correlation; 1 and more give 0, 0 and less the first coordinate of no correlation.
+    ///     Correlation; 1 and more give 0, 0 and less the first slice of no correlation.
     ///
     /// Returns
     /// -------

@@ -46,9 +46,9 @@ fn the_stack_is_that_of_the_plan() {
     let stack = plan.stack(3, StackOptions::default()).unwrap();
     assert_eq!(stack.memory_bytes(), plan.memory_bytes());
     assert_eq!((stack.size(), stack.path()), (plan.size(), plan.path()));
-    // A motion by a fifth of the diameter leaves chat(0.2)² of the correlation.
-    let u = 0.2 * plan.slices_per_diameter();
-    let expected = tem00_numerics::disc_overlap(0.2).powi(2);
+    // A motion by a quarter of the diameter leads to the next slice, and leaves chat(0.25)².
+    let u = 0.25 * plan.slices_per_diameter();
+    let expected = tem00_numerics::disc_overlap(0.25).powi(2);
     assert!((stack.correlation_at(u) - expected).abs() < 1e-12, "at {u}");
 }
 

@@ -1,5 +1,5 @@
 use glam::DVec2;
-use tem00_decorrelation::{ImagingGeometry, paper as printed};
+use tem00_decorrelation::{ImagingGeometry, paper as printed, pupil_overlap_correlation};
 use tem00_speckle::{IncoherentSum, SpeckleStack, paper::BilinearStack};
 
 use super::{
@@ -188,7 +188,7 @@ impl SpeckleFrame<'_> {
         for part in &place.parts {
             match &pattern.stacks[part.stack] {
                 Stack::Derived(stack) => {
-                    let mut block = self.coordinates(laser, pattern, stack.speckle_size(), points);
+                    let mut block = self.coordinates(laser, pattern, stack, points);
                     block.shift(part, stack.size());
                     block.add(stack, part.share, factors);
                 }
@@ -208,7 +208,7 @@ impl SpeckleFrame<'_> {
         &self,
         laser: usize,
         pattern: &Pattern,
-        speckle_size: f64,
+        stack: &SpeckleStack,
         points: &[SpecklePoint],
     ) -> Block {
         let geometry = &self.model.lasers[laser].geometry;
@@ -224,9 +224,13 @@ impl SpeckleFrame<'_> {
         for (i, point) in points.iter().enumerate() {
             let drift = self.change.drift(laser, geometry, point);
             let pixel = self.change.perspective().point(point.pixel) - drift.displacement;
-            let c = geometry.pattern_coordinate(upright(pixel), DVec2::ZERO, speckle_size);
+            let c = geometry.pattern_coordinate(upright(pixel), DVec2::ZERO, stack.speckle_size());
             // Beyond the reach the speckle is new to the reference frame, wherever the pupil stands.
-            block.u[i] = sign * drift.shift.min(reach) * pattern.slices_per_diameter;
+            let shift = drift.shift.min(reach);
+            // Where the blend of two slices has kept as much of the reference frame as that shift, and
+            // on along the path once nothing is left.
+            let u = stack.coordinate_of(pupil_overlap_correlation(shift));
+            block.u[i] = sign * u.max(shift * pattern.slices_per_diameter);
             [block.x[i], block.y[i]] = c.to_array();
         }
         block

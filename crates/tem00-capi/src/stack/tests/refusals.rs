@@ -177,12 +177,12 @@ fn look_ups_are_refused_by_the_name_of_what_is_wrong() {
                 refusal(tem00_stack_correlation_at(handle, nan, out)),
             ),
             (
-                "first",
-                refusal(tem00_stack_correlation_between(handle, 12, 0, out)),
+                "u",
+                refusal(tem00_stack_correlation_between(handle, nan, 0.0, out)),
             ),
             (
-                "second",
-                refusal(tem00_stack_correlation_between(handle, 0, 12, out)),
+                "v",
+                refusal(tem00_stack_correlation_between(handle, 0.0, nan, out)),
             ),
             (
                 "slice",

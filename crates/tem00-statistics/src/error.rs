@@ -27,6 +27,9 @@ pub enum StatisticsError {
     },
     /// None of this many patterns in a sum has an intensity.
     NoWeight(usize),
+    /// This many patterns of a sum differ in intensity, more than
+    /// [`WeightedSum::MAX_DIFFERENT`](crate::WeightedSum::MAX_DIFFERENT).
+    DifferentWeights(usize),
     /// The number of phasors in a sum lies outside the supported range.
     Phasors(usize),
     /// The wavelength, in metres, is not positive and finite.
@@ -171,7 +174,7 @@ impl StatisticsError {
             Self::AmplitudeCorrelation(..) => "amplitude_correlation",
             Self::BeamRatio(..) => "beam_ratio",
             Self::Weight { .. } => "weights",
-            Self::NoWeight(..) => "weights",
+            Self::NoWeight(..) | Self::DifferentWeights(..) => "weights",
             Self::Phasors(..) => "count",
             Self::Wavelength(..) => "wavelength",
             Self::Linewidth { .. } => "linewidth",
@@ -225,6 +228,11 @@ impl fmt::Display for StatisticsError {
             Self::NoWeight(count) => {
                 write!(f, "weights must not all be zero, got {count} of them")
             }
+            Self::DifferentWeights(got) => write!(
+                f,
+                "weights must have at most {} different values, got {got}",
+                crate::WeightedSum::MAX_DIFFERENT
+            ),
             Self::Phasors(got) => write!(
                 f,
                 "phasors must number between 8 and 1000000 for their law, got {got}"
@@ -372,6 +380,10 @@ mod tests {
             (
                 StatisticsError::NoWeight(2),
                 "weights must not all be zero, got 2 of them",
+            ),
+            (
+                StatisticsError::DifferentWeights(70_000),
+                "weights must have at most 65536 different values, got 70000",
             ),
             (
                 StatisticsError::Phasors(3),

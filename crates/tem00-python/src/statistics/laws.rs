@@ -175,8 +175,8 @@ impl WeightedSum {
     /// Parameters
     /// ----------
     /// weights : array of shape (n,)
-    ///     Mean intensities of the patterns, in any unit, none negative and not all zero. The time
-    ///     of a density grows with n³.
+    ///     Mean intensities of the patterns, in any unit, none negative and not all zero, of at most
+    ///     65,536 different values. Each of these takes some 10 µs of the time of a density.
     #[staticmethod]
     fn new(weights: Numbers<'_>) -> PyResult<Self> {
         let weights = weights.values()?.to_vec();

@@ -13,7 +13,7 @@ use crate::{
 /// Parameters
 /// ----------
 /// pixel_size : float or array
-///     Side of the pixels in units of the speckle size.
+///     Side of the pixels in units of the speckle size, 0 or more.
 ///
 /// Returns
 /// -------
@@ -24,6 +24,7 @@ pub(super) fn pixel_contrast<'py>(
     py: Python<'py>,
     pixel_size: Numbers<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    pixel_size.not_negative("pixel_size")?;
     map(py, [("pixel_size", &pixel_size)], |[q]| {
         physics::pixel_contrast(q)
     })
@@ -34,13 +35,15 @@ pub(super) fn pixel_contrast<'py>(
 /// Parameters
 /// ----------
 /// pixel_size : pair of floats or arrays
-///     Width and height in units of the speckle size, broadcast together.
+///     Width and height in units of the speckle size, 0 or more, broadcast together.
 #[pyfunction]
 pub(super) fn rectangular_pixel_contrast<'py>(
     py: Python<'py>,
     pixel_size: [Numbers<'py>; 2],
 ) -> PyResult<Bound<'py, PyAny>> {
     let [width, height] = &pixel_size;
+    width.not_negative("pixel_size")?;
+    height.not_negative("pixel_size")?;
     let named = [("pixel_size", width), ("pixel_size", height)];
     map(py, named, physics::rectangular_pixel_contrast)
 }
@@ -50,12 +53,13 @@ pub(super) fn rectangular_pixel_contrast<'py>(
 /// Parameters
 /// ----------
 /// spread : float or array
-///     Standard deviation of the filter along either axis, in units of the speckle size.
+///     Standard deviation of the filter along either axis, in units of the speckle size, 0 or more.
 #[pyfunction]
 pub(super) fn gaussian_filter_contrast<'py>(
     py: Python<'py>,
     spread: Numbers<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    spread.not_negative("spread")?;
     map(py, [("spread", &spread)], |[s]| {
         physics::gaussian_filter_contrast(s)
     })
@@ -66,12 +70,14 @@ pub(super) fn gaussian_filter_contrast<'py>(
 /// Parameters
 /// ----------
 /// drift : float or array
-///     Shift of the light across a circular pupil during the exposure, in pupil diameters.
+///     Shift of the light across a circular pupil during the exposure, in pupil diameters, 0 or
+///     more.
 #[pyfunction]
 pub(super) fn boiling_contrast<'py>(
     py: Python<'py>,
     drift: Numbers<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    drift.not_negative("drift")?;
     map(py, [("drift", &drift)], |[s]| physics::boiling_contrast(s))
 }
 
@@ -80,12 +86,13 @@ pub(super) fn boiling_contrast<'py>(
 /// Parameters
 /// ----------
 /// drift : float or array
-///     Motion of the pattern during the exposure, in units of the speckle size.
+///     Motion of the pattern during the exposure, in units of the speckle size, 0 or more.
 #[pyfunction]
 pub(super) fn translation_contrast<'py>(
     py: Python<'py>,
     drift: Numbers<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    drift.not_negative("drift")?;
     map(py, [("drift", &drift)], |[s]| {
         physics::translation_contrast(s)
     })
@@ -134,9 +141,7 @@ pub(super) fn contrast_squared_spread<'py>(
     speckles_across: Numbers<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let name = "speckles_across";
-    if let Some(bad) = speckles_across.values()?.iter().find(|&&n| n <= 0.0) {
-        return Err(refused(name, format!("{name} must be positive, got {bad}")));
-    }
+    speckles_across.positive(name)?;
     map(py, [(name, &speckles_across)], |[n]| {
         physics::contrast_squared_spread(n)
     })

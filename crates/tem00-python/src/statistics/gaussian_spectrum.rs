@@ -1,3 +1,5 @@
+use core::f64::consts::FRAC_PI_2;
+
 use pyo3::{prelude::*, types::PyAny};
 use tem00_statistics as physics;
 
@@ -53,13 +55,14 @@ impl GaussianSpectrum {
     /// shift : float or array
     ///     By how much the other wavelength is longer, in metres.
     /// path_spread : float or array
-    ///     Standard deviation of the optical path, in metres.
+    ///     Standard deviation of the optical path, in metres, 0 or more.
     fn correlation<'py>(
         &self,
         py: Python<'py>,
         shift: Numbers<'py>,
         path_spread: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        path_spread.not_negative("path_spread")?;
         let named = [("shift", &shift), ("path_spread", &path_spread)];
         map(py, named, |[shift, spread]| {
             self.0.correlation(shift, spread)
@@ -71,12 +74,13 @@ impl GaussianSpectrum {
     /// Parameters
     /// ----------
     /// path_spread : float or array
-    ///     Standard deviation of the optical path, in metres.
+    ///     Standard deviation of the optical path, in metres, 0 or more.
     fn contrast<'py>(
         &self,
         py: Python<'py>,
         path_spread: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        path_spread.not_negative("path_spread")?;
         map(py, [("path_spread", &path_spread)], |[spread]| {
             self.0.contrast(spread)
         })
@@ -97,9 +101,9 @@ impl GaussianSpectrum {
 /// Parameters
 /// ----------
 /// height_spread : float or array
-///     Standard deviation of the height of the surface, in metres.
+///     Standard deviation of the height of the surface, in metres, 0 or more.
 /// angles : pair of floats or arrays
-///     Angles of incidence and of observation to the normal, in radians.
+///     Angles of incidence and of observation to the normal, in radians, from −π/2 to π/2.
 ///
 /// Returns
 /// -------
@@ -111,7 +115,12 @@ pub(super) fn path_spread_of_reflection<'py>(
     height_spread: Numbers<'py>,
     angles: [Numbers<'py>; 2],
 ) -> PyResult<Bound<'py, PyAny>> {
+    height_spread.not_negative("height_spread")?;
     let [incidence, observation] = &angles;
+    for angle in &angles {
+        let before_the_surface = |angle: f64| angle.abs() <= FRAC_PI_2;
+        angle.check("angles", "between -π/2 and π/2", before_the_surface)?;
+    }
     let named = [
         ("height_spread", &height_spread),
         ("angles", incidence),

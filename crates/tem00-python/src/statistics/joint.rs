@@ -63,6 +63,7 @@ impl JointIntensity {
         intensity: Numbers<'py>,
         given: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        given.not_negative("given")?;
         let named = [("intensity", &intensity), ("given", &given)];
         map(py, named, |[i, g]| self.0.conditional_density(i, g))
     }
@@ -79,6 +80,7 @@ impl JointIntensity {
         intensity: Numbers<'py>,
         given: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        given.not_negative("given")?;
         let named = [("intensity", &intensity), ("given", &given)];
         map(py, named, |[i, g]| self.0.conditional_cumulative(i, g))
     }
@@ -89,6 +91,7 @@ impl JointIntensity {
         py: Python<'py>,
         given: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        given.not_negative("given")?;
         map(py, [("given", &given)], |[g]| self.0.conditional_mean(g))
     }
 
@@ -98,6 +101,7 @@ impl JointIntensity {
         py: Python<'py>,
         given: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        given.not_negative("given")?;
         map(py, [("given", &given)], |[g]| {
             self.0.conditional_variance(g)
         })

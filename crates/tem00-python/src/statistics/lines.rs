@@ -11,12 +11,13 @@ use crate::arrays::{Numbers, map};
 /// Parameters
 /// ----------
 /// row_height : float or array
-///     Extent of a pixel along the line in units of the speckle size.
+///     Extent of a pixel along the line in units of the speckle size, 0 or more.
 #[pyfunction]
 pub(super) fn speckle_length<'py>(
     py: Python<'py>,
     row_height: Numbers<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    row_height.not_negative("row_height")?;
     map(py, [("row_height", &row_height)], |[p]| {
         physics::speckle_length(p)
     })
@@ -28,13 +29,15 @@ pub(super) fn speckle_length<'py>(
 /// ----------
 /// radius, row_height : float or array
 ///     1/e² half-width of the line and extent of a pixel along it, in units of the speckle size as the
-///     result. They are broadcast together.
+///     result, 0 or more. They are broadcast together.
 #[pyfunction]
 pub(super) fn line_centroid_deviation<'py>(
     py: Python<'py>,
     radius: Numbers<'py>,
     row_height: Numbers<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    radius.not_negative("radius")?;
+    row_height.not_negative("row_height")?;
     let named = [("radius", &radius), ("row_height", &row_height)];
     map(py, named, |[w, p]| physics::line_centroid_deviation(w, p))
 }
@@ -47,13 +50,15 @@ pub(super) fn line_centroid_deviation<'py>(
 /// ----------
 /// radius, row_height : float or array
 ///     1/e² half-width of the line and extent of a pixel along it, in units of the speckle size as the
-///     result. They are broadcast together.
+///     result, 0 or more. They are broadcast together.
 #[pyfunction]
 pub(super) fn imaged_line_centroid_deviation<'py>(
     py: Python<'py>,
     radius: Numbers<'py>,
     row_height: Numbers<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    radius.not_negative("radius")?;
+    row_height.not_negative("row_height")?;
     let named = [("radius", &radius), ("row_height", &row_height)];
     map(py, named, |[w, p]| {
         physics::imaged_line_centroid_deviation(w, p)
@@ -65,12 +70,13 @@ pub(super) fn imaged_line_centroid_deviation<'py>(
 /// Parameters
 /// ----------
 /// radius : float or array
-///     1/e² radius in units of the speckle size, as the result.
+///     1/e² radius in units of the speckle size, as the result, 0 or more.
 #[pyfunction]
 pub(super) fn gaussian_spot_centroid_deviation<'py>(
     py: Python<'py>,
     radius: Numbers<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    radius.not_negative("radius")?;
     map(py, [("radius", &radius)], |[w]| {
         physics::gaussian_spot_centroid_deviation(w)
     })
@@ -81,12 +87,13 @@ pub(super) fn gaussian_spot_centroid_deviation<'py>(
 /// Parameters
 /// ----------
 /// radius : float or array
-///     Radius in units of the speckle size, as the result.
+///     Radius in units of the speckle size, as the result, 0 or more.
 #[pyfunction]
 pub(super) fn disc_spot_centroid_deviation<'py>(
     py: Python<'py>,
     radius: Numbers<'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    radius.not_negative("radius")?;
     map(py, [("radius", &radius)], |[a]| {
         physics::disc_spot_centroid_deviation(a)
     })

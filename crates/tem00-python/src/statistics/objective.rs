@@ -3,7 +3,7 @@ use tem00_statistics as physics;
 
 use crate::{
     arrays::{Numbers, map},
-    error::OrRaise,
+    error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
 
@@ -16,20 +16,23 @@ pub(crate) struct LitArea(physics::LitArea);
 impl LitArea {
     /// Return a uniformly lit disc of a diameter in metres.
     #[staticmethod]
-    fn disc(diameter: f64) -> Self {
-        Self(physics::LitArea::Disc { diameter })
+    fn disc(diameter: f64) -> PyResult<Self> {
+        let diameter = length("diameter", diameter)?;
+        Ok(Self(physics::LitArea::Disc { diameter }))
     }
 
     /// Return a uniformly lit rectangle of a width along x and a height along y, in metres.
     #[staticmethod]
-    fn rectangle(width: f64, height: f64) -> Self {
-        Self(physics::LitArea::Rectangle { width, height })
+    fn rectangle(width: f64, height: f64) -> PyResult<Self> {
+        let (width, height) = (length("width", width)?, length("height", height)?);
+        Ok(Self(physics::LitArea::Rectangle { width, height }))
     }
 
     /// Return a Gaussian spot of a 1/e² radius in metres.
     #[staticmethod]
-    fn gaussian_spot(radius: f64) -> Self {
-        Self(physics::LitArea::GaussianSpot { radius })
+    fn gaussian_spot(radius: f64) -> PyResult<Self> {
+        let radius = length("radius", radius)?;
+        Ok(Self(physics::LitArea::GaussianSpot { radius }))
     }
 
     fn __repr__(&self) -> String {
@@ -140,4 +143,13 @@ impl ObjectiveSpeckle {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         by_constructor::<Self>(py, "new", (self.wavelength, self.distance, self.area))
     }
+}
+
+/// Returns a length in metres that is positive and finite.
+fn length(name: &'static str, value: f64) -> PyResult<f64> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(value);
+    }
+    let message = format!("{name} must be positive and finite, got {value} m");
+    Err(refused(name, message))
 }

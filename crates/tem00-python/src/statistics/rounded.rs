@@ -85,7 +85,7 @@ impl GreyLevels {
         py: Python<'py>,
         rounded: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        check_positive("rounded", &rounded)?;
+        rounded.positive("rounded")?;
         map(py, [("rounded", &rounded)], |[mean]| {
             self.0.exponential_mean(mean)
         })
@@ -102,7 +102,7 @@ impl GreyLevels {
         py: Python<'py>,
         rounded: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        check_positive("rounded", &rounded)?;
+        rounded.positive("rounded")?;
         map(py, [("rounded", &rounded)], |[mean]| {
             self.0.exponential_contrast(mean)
         })
@@ -121,13 +121,6 @@ impl GreyLevels {
     fn __repr__(&self) -> String {
         let (count, step) = (self.0.count(), self.0.step());
         format!("GreyLevels(count={count}, step={step:?})")
-    }
-}
-
-fn check_positive(name: &'static str, values: &Numbers<'_>) -> PyResult<()> {
-    match values.values()?.iter().find(|&&value| value <= 0.0) {
-        Some(bad) => Err(refused(name, format!("{name} must be positive, got {bad}"))),
-        None => Ok(()),
     }
 }
 

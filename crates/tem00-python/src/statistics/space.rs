@@ -80,8 +80,8 @@ pub(super) fn area_fraction_above<'py>(
 /// `None` if it was below 0.95 pixels, where the pixels hide it.
 #[pyfunction]
 pub(super) fn size_before_pixels(measured: f64) -> PyResult<Option<f64>> {
-    if !measured.is_finite() {
-        let message = format!("measured must be finite, got {measured} pixels");
+    if !(measured > 0.0 && measured.is_finite()) {
+        let message = format!("measured must be positive and finite, got {measured} pixels");
         return Err(refused("measured", message));
     }
     Ok(physics::size_before_pixels(measured))

@@ -10,6 +10,7 @@ use pyo3::{
     types::{PyFloat, PyInt},
 };
 
+use super::results::check_copy;
 use crate::error::refused;
 
 /// A number, or an array of real numbers of any shape, as an argument of a function.
@@ -68,6 +69,44 @@ impl Numbers<'_> {
                 format!("{name} is {value}, but must be finite everywhere"),
             )),
             None => Ok(values),
+        }
+    }
+
+    /// Checks that all values are 0 or more.
+    ///
+    /// # Errors
+    ///
+    /// Refuses the argument of this name if one is not.
+    pub(crate) fn not_negative(&self, name: &'static str) -> PyResult<()> {
+        self.check(name, "0 or more", |value| value >= 0.0)
+    }
+
+    /// Checks that all values are positive.
+    ///
+    /// # Errors
+    ///
+    /// Refuses the argument of this name if one is not.
+    pub(crate) fn positive(&self, name: &'static str) -> PyResult<()> {
+        self.check(name, "positive", |value| value > 0.0)
+    }
+
+    /// Checks that all values are as the words of `allowed` say.
+    ///
+    /// # Errors
+    ///
+    /// Refuses the argument of this name if one is not.
+    pub(crate) fn check(
+        &self,
+        name: &'static str,
+        allowed: &str,
+        is_allowed: impl Fn(f64) -> bool,
+    ) -> PyResult<()> {
+        match self.values()?.iter().find(|&&value| !is_allowed(value)) {
+            Some(bad) => Err(refused(
+                name,
+                format!("{name} must be {allowed}, got {bad}"),
+            )),
+            None => Ok(()),
         }
     }
 
@@ -155,6 +194,8 @@ pub(super) fn row_by_row<'py, T: Element>(
         let message = format!("expected numbers, got {dtype}");
         return Err(PyTypeError::new_err(message));
     }
+    // A broadcast array has more elements than bytes.
+    check_copy(any.cast::<PyUntypedArray>()?.shape(), size_of::<T>())?;
     let wanted = (any, numpy::dtype::<T>(py), ["C_CONTIGUOUS", "ALIGNED"]);
     let array = numpy.call_method1("require", wanted)?;
     Ok(array.cast::<PyArrayDyn<T>>()?.try_readonly()?)

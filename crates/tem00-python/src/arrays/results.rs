@@ -2,7 +2,7 @@ use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::{exceptions::PyMemoryError, prelude::*, types::PyFloat};
 use tem00_numerics::available_memory;
 
-/// Results below this many bytes are made without asking how much memory is left.
+/// Arrays below this many bytes are made without asking how much memory is left.
 const SMALL: usize = 1 << 24;
 
 /// Returns the number of elements of an array.
@@ -18,6 +18,24 @@ pub(super) fn element_count(shape: &[usize]) -> PyResult<usize> {
         .iter()
         .try_fold(1_usize, |count, &side| count.checked_mul(side))
         .ok_or_else(|| PyMemoryError::new_err(format!("no memory holds the shape {shape:?}")))
+}
+
+/// Refuses to copy an array of this shape if memory does not hold it.
+///
+/// # Errors
+///
+/// Returns a `MemoryError` then.
+pub(super) fn check_copy(shape: &[usize], bytes_each: usize) -> PyResult<()> {
+    let bytes = element_count(shape)?.saturating_mul(bytes_each);
+    if is_too_much(bytes) {
+        let message = format!("memory does not hold the {bytes} bytes of a copy of the argument");
+        return Err(PyMemoryError::new_err(message));
+    }
+    Ok(())
+}
+
+fn is_too_much(bytes: usize) -> bool {
+    bytes > SMALL && available_memory().is_some_and(|available| bytes as u64 > available)
 }
 
 /// Returns `M` arrays of zeros of this shape.
@@ -50,7 +68,7 @@ pub(super) fn zeros_of<T: Copy + Default, const M: usize>(
             "memory does not hold the {bytes} bytes of the result"
         ))
     };
-    if bytes > SMALL && available_memory().is_some_and(|available| bytes as u64 > available) {
+    if is_too_much(bytes) {
         return Err(refusal());
     }
     let mut out = [const { Vec::new() }; M];

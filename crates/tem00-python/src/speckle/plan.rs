@@ -8,7 +8,7 @@ use super::{
     arguments::Whole, field::PupilField, options::StackOptions, path::SlicePath,
     stack::SpeckleStack,
 };
-use crate::error::OrRaise;
+use crate::error::{OrRaise, refused};
 
 /// What a stack is to be looked up for.
 ///
@@ -124,6 +124,9 @@ impl StackNeeds {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StackPlan(physics::StackPlan);
 
+/// The largest number of plans to choose from: the longest list of candidates has a hundred.
+const MOST_PLANS: usize = 1 << 16;
+
 #[pymethods]
 impl StackPlan {
     /// Return the first of the `candidates` that fits the memory.
@@ -161,11 +164,17 @@ impl StackPlan {
     /// Parameters
     /// ----------
     /// plans : sequence of `StackPlan`
-    ///     Plans in the order of their worth.
+    ///     Plans in the order of their worth, at most 65,536.
     /// `memory_limit` : int
     ///     Bytes that the slices may take.
     #[staticmethod]
-    fn first_within(plans: Vec<PyRef<'_, Self>>, memory_limit: Whole<'_>) -> PyResult<Self> {
+    fn first_within(plans: &Bound<'_, PyAny>, memory_limit: Whole<'_>) -> PyResult<Self> {
+        let count = plans.len()?;
+        if count > MOST_PLANS {
+            let message = format!("plans must be at most {MOST_PLANS}, got {count}");
+            return Err(refused("plans", message));
+        }
+        let plans: Vec<PyRef<'_, Self>> = plans.extract()?;
         let plans = plans.iter().map(|plan| plan.0);
         let limit = memory_limit.unsigned("memory_limit")?;
         Ok(Self(

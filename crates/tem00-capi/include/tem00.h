@@ -6,8 +6,9 @@
  *
  * STATUS: what can fail returns a tem00_status and writes its results only where it succeeds. After a
  * failure tem00_last_error() says what is wrong, with the name of the parameter, its value and what is
- * allowed, and tem00_last_error_parameter() names the parameter. Both are kept for each thread. NaN,
- * infinite and senseless numbers are refused: no NaN comes out.
+ * allowed, and tem00_last_error_parameter() names the parameter. Each thread has one place for both, which
+ * stays where it is as long as the thread lives and is overwritten by the next failure on that thread: copy
+ * what is to be kept. NaN, infinite and senseless numbers are refused: no NaN comes out.
  *
  * POINTERS must be valid and aligned. Null is refused with a status, as are results that overlap with
  * what is read; columns of no numbers may be null. What is written is never read before.
@@ -673,6 +674,11 @@ typedef struct {
      * Bytes that the slices may take; `UINT64_MAX` for all the machine has.
      */
     uint64_t memory_limit;
+    /**
+     * Number of threads that generate it, at most 1024; 0 for all the cores of the machine. The stack is
+     * the same, to the last bit, for any number.
+     */
+    uint32_t threads;
 } tem00_stack_description;
 
 /**
@@ -982,7 +988,8 @@ typedef struct {
      */
     double axial_displacement;
     /**
-     * What is left of the old pattern as a correlation of intensity, in [0, 1].
+     * What is left of the old pattern as a correlation of intensity, in [0, 1], where it is looked up
+     * at the sum of both displacements in the image.
      */
     double correlation;
 } tem00_speckle_motion;
@@ -1008,7 +1015,7 @@ typedef struct {
      */
     double pattern_speckle_size;
     /**
-     * Number of slices of a circular stack to the first uncorrelated one.
+     * Number of slices of a circular stack to the first uncorrelated one, at least 1.
      */
     size_t half_period;
     /**
@@ -1090,7 +1097,9 @@ const char *tem00_version(void);
  * Returns why the last call that failed on this thread failed, in UTF-8, with the parameter, its
  * value and what is allowed; empty if none has failed.
  *
- * Valid until the next call that fails on this thread, and until the thread ends. Not to be freed.
+ * The text stays in one place for as long as the thread lives: the pointer never dangles meanwhile, and
+ * after the next call that fails on this thread it has the text of that one. Copy what is to be kept
+ * longer. Not to be freed. Messages are cut off after 2047 bytes.
  */
 const char *tem00_last_error(void);
 
@@ -1098,7 +1107,7 @@ const char *tem00_last_error(void);
  * Returns the name of the parameter that the last call that failed on this thread refused; empty
  * if it was none.
  *
- * Valid until the next call that fails on this thread, and until the thread ends. Not to be freed.
+ * It stays in one place as the text of `tem00_last_error` does. Not to be freed.
  */
 const char *tem00_last_error_parameter(void);
 
@@ -1341,17 +1350,18 @@ tem00_status tem00_light_plain_data(const tem00_light *light, tem00_light_data *
 void tem00_stack_destroy(tem00_stack *stack);
 
 /**
- * Generates a stack, 8 bytes for each sample of each slice, with all the cores of the machine.
+ * Generates a stack, 8 bytes for each sample of each slice, on the threads that its description asks for.
  *
  * On failure `*stack` is null.
  *
  * The pointers are null or valid.
  */
-tem00_status tem00_stack_create(const tem00_stack_description *description, tem00_stack **stack);
+tem00_status tem00_stack_create(const tem00_stack_description *description,
+                                tem00_stack **stack);
 
 /**
  * Chooses a stack that repeats nothing in the region and takes no more memory than allowed: writes
- * its description, with the seed 0, for `tem00_stack_create`.
+ * its description, with the seed 0 and all the cores of the machine, for `tem00_stack_create`.
  *
  * The pointers are null or valid.
  */
@@ -1361,11 +1371,15 @@ tem00_status tem00_stack_plan(const tem00_stack_needs *needs, tem00_stack_descri
  * Reads a stack that `tem00_stack_write` or the library in another language has written, if its
  * slices take no more than `memory_limit` bytes.
  *
- * `path` is a file name in UTF-8. On failure `*stack` is null.
+ * `path` is a file name in UTF-8, `threads` the number of threads as in `tem00_stack_description`. On
+ * failure `*stack` is null.
  *
  * The pointers are null or valid, `path` for a string that ends with a zero.
  */
-tem00_status tem00_stack_read(const char *path, uint64_t memory_limit, tem00_stack **stack);
+tem00_status tem00_stack_read(const char *path,
+                              uint64_t memory_limit,
+                              uint32_t threads,
+                              tem00_stack **stack);
 
 /**
  * Writes a stack as a file, which keeps its bits.
@@ -1425,8 +1439,8 @@ tem00_status tem00_stack_average(const tem00_stack *stack,
                                  double *average);
 
 /**
- * Computes the distance in u, in slices, after which the correlation of the intensity has fallen to
- * `correlation`: 0 for 1 or more, and the first coordinate of no correlation for 0 or less.
+ * Computes the coordinate u, in slices, at which the intensity has a given `correlation` to that at
+ * u = 0: 0 for 1 or more, and the first slice of no correlation for 0 or less.
  *
  * The pointers are null or valid.
  */
@@ -1443,13 +1457,13 @@ tem00_status tem00_stack_correlation_at(const tem00_stack *stack,
                                         double *correlation);
 
 /**
- * Computes the correlation of the intensities of two slices, exactly.
+ * Computes the correlation of the intensities at two coordinates u and v, on slices or between, exactly.
  *
  * The pointers are null or valid.
  */
 tem00_status tem00_stack_correlation_between(const tem00_stack *stack,
-                                             size_t first,
-                                             size_t second,
+                                             double u,
+                                             double v,
                                              double *correlation);
 
 /**
@@ -1572,13 +1586,15 @@ tem00_status tem00_imaging_motion_field(const tem00_imaging *imaging,
 tem00_status tem00_correlation(double pupil_shift, double axial_shift, double *correlation);
 
 /**
- * Computes the distance between two slices of a circular stack that have a given intensity
- * correlation: 0 for 1 or more, and `half_period` for 0 or less. The stack has twice `half_period`
- * slices.
+ * Computes the coordinate u of a circular stack at which the intensity has a given correlation to that
+ * at u = 0: 0 for 1 or more, and `half_period` for 0 or less. The stack has twice `half_period` slices,
+ * at least 2.
  *
  * The pointer is null or valid.
  */
-tem00_status tem00_slice_coordinate(double correlation, size_t half_period, double *coordinate);
+tem00_status tem00_slice_coordinate(double correlation,
+                                    size_t half_period,
+                                    double *coordinate);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -204,10 +204,12 @@ public:
         handle_.reset(handle);
     }
 
-    /** Reads a stack from a file, if its slices take no more than `memory_limit` bytes. */
-    static stack read(const std::string &path, std::uint64_t memory_limit) {
+    /** Reads a stack from a file, if its slices take no more than `memory_limit` bytes, on `threads`
+        threads or, for 0, on all the cores of the machine. */
+    static stack read(const std::string &path, std::uint64_t memory_limit,
+                      std::uint32_t threads = 0) {
         tem00_stack *handle = nullptr;
-        check(tem00_stack_read(path.c_str(), memory_limit, &handle));
+        check(tem00_stack_read(path.c_str(), memory_limit, threads, &handle));
         return stack(handle);
     }
 
@@ -241,7 +243,7 @@ public:
         return average;
     }
 
-    /** Distance in u after which the correlation has fallen to `correlation`. */
+    /** The coordinate u at which the intensity has a given `correlation` to that at u = 0. */
     double coordinate_of(double correlation) const {
         double u = 0;
         check(tem00_stack_coordinate_of(get(), correlation, &u));
@@ -255,10 +257,10 @@ public:
         return correlation;
     }
 
-    /** Correlation of the intensities of two slices, exactly. */
-    double correlation_between(std::size_t first, std::size_t second) const {
+    /** Correlation of the intensities at two coordinates u and v, on slices or between, exactly. */
+    double correlation_between(double u, double v) const {
         double correlation = 0;
-        check(tem00_stack_correlation_between(get(), first, second, &correlation));
+        check(tem00_stack_correlation_between(get(), u, v, &correlation));
         return correlation;
     }
 

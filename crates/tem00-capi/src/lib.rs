@@ -21,6 +21,7 @@ mod numbers;
 mod pointers;
 #[cfg(test)]
 mod testing;
+mod threads;
 
 // The order of the header.
 mod status;

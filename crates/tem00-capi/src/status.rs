@@ -1,7 +1,7 @@
 use std::{
     any::Any,
-    cell::RefCell,
-    ffi::{CStr, CString, c_char},
+    cell::Cell,
+    ffi::c_char,
     fmt::Display,
     panic::{AssertUnwindSafe, catch_unwind},
 };
@@ -102,15 +102,44 @@ impl From<StackFileError> for Failure {
     }
 }
 
-/// The last failure of a thread, as C reads it.
-#[derive(Default)]
-struct LastError {
-    message: CString,
-    parameter: CString,
+/// The bytes of a message, its final zero included. Longer ones end with "…".
+const MESSAGE_SIZE: usize = 2048;
+/// The bytes of a parameter's name.
+const PARAMETER_SIZE: usize = 64;
+
+/// A text of a thread that stays where it is as long as the thread lives, for C to read.
+struct Text<const SIZE: usize>(Cell<[u8; SIZE]>);
+
+impl<const SIZE: usize> Text<SIZE> {
+    const fn empty() -> Self {
+        Self(Cell::new([0; SIZE]))
+    }
+
+    /// Replaces the text. A zero would end it.
+    fn keep(&self, text: &str) {
+        const CUT: &str = "…";
+        let mut bytes = [0; SIZE];
+        let (kept, end) = if text.len() < SIZE {
+            (text.len(), "")
+        } else {
+            (text.floor_char_boundary(SIZE - 1 - CUT.len()), CUT)
+        };
+        let characters = text[..kept].bytes().chain(end.bytes());
+        for (place, byte) in bytes.iter_mut().zip(characters) {
+            *place = if byte == 0 { b' ' } else { byte };
+        }
+        self.0.set(bytes);
+    }
+
+    const fn pointer(&self) -> *const c_char {
+        self.0.as_ptr().cast_const().cast()
+    }
 }
 
 thread_local! {
-    static LAST_ERROR: RefCell<LastError> = RefCell::default();
+    // Without a destructor they outlive every call that a thread makes, on its way out too.
+    static MESSAGE: Text<MESSAGE_SIZE> = const { Text::empty() };
+    static PARAMETER: Text<PARAMETER_SIZE> = const { Text::empty() };
 }
 
 /// Runs the body of a function of the interface: no panic leaves it, and its failure is kept for
@@ -126,39 +155,29 @@ pub(crate) fn call(body: impl FnOnce() -> Result<(), Failure>) -> Status {
 
 #[cold]
 fn keep(failure: &Failure) -> Status {
-    let text = |text: &str| CString::new(text.replace('\0', " ")).unwrap_or_default();
-    let last = LastError {
-        message: text(&failure.message),
-        parameter: text(&failure.parameter),
-    };
-    // A thread on its way out has no place for the text left, but still returns the status.
-    let _ = LAST_ERROR.try_with(|place| place.replace(last));
+    MESSAGE.with(|text| text.keep(&failure.message));
+    PARAMETER.with(|text| text.keep(&failure.parameter));
     failure.status
-}
-
-/// A pointer into the thread's last error, or to an empty string on a thread on its way out.
-fn text_of(part: impl Fn(&LastError) -> &CStr) -> *const c_char {
-    LAST_ERROR
-        .try_with(|last| part(&last.borrow()).as_ptr())
-        .unwrap_or(c"".as_ptr())
 }
 
 /// Returns why the last call that failed on this thread failed, in UTF-8, with the parameter, its
 /// value and what is allowed; empty if none has failed.
 ///
-/// Valid until the next call that fails on this thread, and until the thread ends. Not to be freed.
+/// The text stays in one place for as long as the thread lives: the pointer never dangles meanwhile, and
+/// after the next call that fails on this thread it has the text of that one. Copy what is to be kept
+/// longer. Not to be freed. Messages are cut off after 2047 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn tem00_last_error() -> *const c_char {
-    text_of(|last| &last.message)
+    MESSAGE.with(Text::pointer)
 }
 
 /// Returns the name of the parameter that the last call that failed on this thread refused; empty
 /// if it was none.
 ///
-/// Valid until the next call that fails on this thread, and until the thread ends. Not to be freed.
+/// It stays in one place as the text of `tem00_last_error` does. Not to be freed.
 #[unsafe(no_mangle)]
 pub extern "C" fn tem00_last_error_parameter() -> *const c_char {
-    text_of(|last| &last.parameter)
+    PARAMETER.with(Text::pointer)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use crate::{
     numbers::code,
     pointers::{borrow, create, write},
     status::{Failure, Status, call},
+    threads::on_threads,
 };
 
 /// The way the pupil takes from slice to slice of a stack.
@@ -58,6 +59,9 @@ pub struct StackDescription {
     pub interpolation: u32,
     /// Bytes that the slices may take; `UINT64_MAX` for all the machine has.
     pub memory_limit: u64,
+    /// Number of threads that generate it, at most 1024; 0 for all the cores of the machine. The stack is
+    /// the same, to the last bit, for any number.
+    pub threads: u32,
 }
 
 /// What a stack is to be looked up for.
@@ -83,12 +87,11 @@ pub struct StackNeeds {
 
 impl StackDescription {
     fn stack(&self) -> Result<Stack, Failure> {
-        let (path, options) = (self.slice_path()?, self.options()?);
-        Ok(Stack(SpeckleStack::generate_with(
-            &self.field()?,
-            path,
-            options,
-        )?))
+        let (path, options, field) = (self.slice_path()?, self.options()?, self.field()?);
+        let stack = on_threads(self.threads, || {
+            SpeckleStack::generate_with(&field, path, options)
+        })?;
+        Ok(Stack(stack?))
     }
 
     /// The field; a refusal names what the description says.
@@ -165,6 +168,7 @@ impl StackNeeds {
             length,
             interpolation: Interpolation::CubicSpline as u32,
             memory_limit: self.memory_limit,
+            threads: 0,
         })
     }
 }
@@ -191,7 +195,7 @@ pub(super) fn path_numbers(path: tem00_speckle::SlicePath) -> (SlicePath, usize,
     }
 }
 
-/// Generates a stack, 8 bytes for each sample of each slice, with all the cores of the machine.
+/// Generates a stack, 8 bytes for each sample of each slice, on the threads that its description asks for.
 ///
 /// On failure `*stack` is null.
 ///
@@ -212,7 +216,7 @@ pub unsafe extern "C" fn tem00_stack_create(
 }
 
 /// Chooses a stack that repeats nothing in the region and takes no more memory than allowed: writes
-/// its description, with the seed 0, for `tem00_stack_create`.
+/// its description, with the seed 0 and all the cores of the machine, for `tem00_stack_create`.
 ///
 /// # Safety
 ///

@@ -10,6 +10,7 @@ use super::Stack;
 use crate::{
     pointers::{borrow, create},
     status::{Failure, Status, call},
+    threads::on_threads,
 };
 
 /// Reads the name of a file, in UTF-8.
@@ -30,12 +31,12 @@ fn file_failure(path: &str, error: &io::Error) -> Failure {
     Failure::new(Status::Io, "path", format!("path {path:?}: {error}"))
 }
 
-fn read(path: &str, memory_limit: u64) -> Result<Stack, Failure> {
+fn read(path: &str, memory_limit: u64, threads: u32) -> Result<Stack, Failure> {
     let file = File::open(path).map_err(|error| file_failure(path, &error))?;
-    Ok(Stack(SpeckleStack::read_from(
-        BufReader::new(file),
-        memory_limit,
-    )?))
+    let stack = on_threads(threads, || {
+        SpeckleStack::read_from(BufReader::new(file), memory_limit)
+    })?;
+    Ok(Stack(stack?))
 }
 
 fn save(stack: &Stack, path: &str) -> Result<(), Failure> {
@@ -47,7 +48,8 @@ fn save(stack: &Stack, path: &str) -> Result<(), Failure> {
 /// Reads a stack that `tem00_stack_write` or the library in another language has written, if its
 /// slices take no more than `memory_limit` bytes.
 ///
-/// `path` is a file name in UTF-8. On failure `*stack` is null.
+/// `path` is a file name in UTF-8, `threads` the number of threads as in `tem00_stack_description`. On
+/// failure `*stack` is null.
 ///
 /// # Safety
 ///
@@ -56,10 +58,15 @@ fn save(stack: &Stack, path: &str) -> Result<(), Failure> {
 pub unsafe extern "C" fn tem00_stack_read(
     path: *const c_char,
     memory_limit: u64,
+    threads: u32,
     stack: *mut *mut Stack,
 ) -> Status {
     // SAFETY: by the contract of this function.
-    call(|| unsafe { create("stack", stack, || read(file_name(path)?, memory_limit)) })
+    call(|| unsafe {
+        create("stack", stack, || {
+            read(file_name(path)?, memory_limit, threads)
+        })
+    })
 }
 
 /// Writes a stack as a file, which keeps its bits.

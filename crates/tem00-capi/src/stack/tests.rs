@@ -25,6 +25,7 @@ const DESCRIPTION: StackDescription = StackDescription {
     length: 3,
     interpolation: Interpolation::CubicSpline as u32,
     memory_limit: 1 << 20,
+    threads: 1,
 };
 
 const NEEDS: StackNeeds = StackNeeds {

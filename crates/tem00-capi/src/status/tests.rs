@@ -1,4 +1,4 @@
-use std::{sync::Barrier, thread};
+use std::{ffi::CStr, sync::Barrier, thread};
 
 use tem00_beam::GaussianBeam;
 use tem00_decorrelation::{ImagingGeometry, LensData};
@@ -61,6 +61,34 @@ fn a_failure_stays_until_the_next_one() {
     assert_eq!(last(), ["x is wrong", "x"], "after a success");
     refuse("y", "y is wrong");
     assert_eq!(last(), ["y is wrong", "y"], "after the next failure");
+}
+
+/// What a program does that keeps the pointer of one failure while others follow.
+#[test]
+fn the_pointer_of_a_failure_stays_valid_and_shows_the_next_one() {
+    refuse("x", "x is wrong");
+    let kept = [tem00_last_error(), tem00_last_error_parameter()];
+    for length in [1, 10, 100, 1_000, 3_000] {
+        let name = "y".repeat(length.min(60));
+        let message = "z".repeat(length);
+        refuse(&name, &message);
+        assert_eq!(kept, [tem00_last_error(), tem00_last_error_parameter()]);
+        let [text, parameter] = kept.map(read);
+        assert_eq!(parameter, name, "at {length} bytes");
+        assert!(text.starts_with(&message[..length.min(2_000)]), "{text}");
+    }
+}
+
+#[test]
+fn long_messages_end_between_characters() {
+    for shift in 0..3 {
+        refuse(
+            "path",
+            &format!("{}{}", "a".repeat(shift), "€".repeat(2_000)),
+        );
+        let [text, _] = last();
+        assert!(text.len() < 2_048 && text.ends_with("€…"), "{text}");
+    }
 }
 
 #[test]

@@ -36,7 +36,7 @@ const STRUCTS: [(&str, usize, &str, usize); 28] = structs![
     NextEventColumns "next_event_columns" e_perp,
     NextEventColumnsF32 "next_event_columns_f32" e_perp,
     LightData "light_data" fields,
-    StackDescription "stack_description" memory_limit,
+    StackDescription "stack_description" threads,
     StackNeeds "stack_needs" memory_limit,
     StackInfo "stack_info" memory_bytes,
     LensDescription "lens_description" pixel_pitch,

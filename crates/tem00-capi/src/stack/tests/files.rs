@@ -13,7 +13,7 @@ fn file(name: &str) -> (PathBuf, CString) {
 fn read_file(path: *const c_char, memory_limit: u64) -> (Owned, Status) {
     let mut stack = ptr::dangling_mut();
     // SAFETY: the pointers are valid.
-    let status = unsafe { tem00_stack_read(path, memory_limit, &raw mut stack) };
+    let status = unsafe { tem00_stack_read(path, memory_limit, 1, &raw mut stack) };
     (Owned(stack), status)
 }
 

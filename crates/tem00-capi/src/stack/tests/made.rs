@@ -104,6 +104,18 @@ fn a_description_from_a_plan_makes_the_stack_of_the_plan() {
 }
 
 #[test]
+fn a_stack_is_the_same_for_any_number_of_threads() {
+    let one = Owned::new(&DESCRIPTION);
+    for threads in [0, 2, 5] {
+        let other = Owned::new(&StackDescription {
+            threads,
+            ..DESCRIPTION
+        });
+        assert!(one.library() == other.library(), "{threads} threads");
+    }
+}
+
+#[test]
 fn a_stack_tells_what_it_is() {
     let stack = Owned::new(&DESCRIPTION);
     let info = StackInfo {

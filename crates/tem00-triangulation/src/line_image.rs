@@ -1,7 +1,13 @@
-use tem00_numerics::Grid;
-use tem00_speckle::{IncoherentSum, PupilField, SpecklePattern};
+mod strip;
 
-use crate::{Setup, TriangulationError, setup::share_between, setup::within};
+use tem00_numerics::Grid;
+use tem00_speckle::{IncoherentSum, PupilField};
+
+use self::strip::Strip;
+use crate::{
+    Setup, TriangulationError,
+    setup::{LineProfile, within},
+};
 
 /// How many samples a speckle has at least, along each axis.
 ///
@@ -13,12 +19,15 @@ const SAMPLES_PER_SPECKLE: f64 = 6.0;
 /// The most samples of a pattern.
 const MAXIMUM_SAMPLES: usize = 1 << 25;
 
+/// How many speckle sizes of darkness lie between the images of a pattern that repeats.
+const DARK: f64 = 8.0;
+
 /// What determines a [`LineImage`]. Lengths are in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineImageData {
     /// The numbers of columns and rows.
     pub size: [usize; 2],
-    /// The full width of the line between the points of 1/e².
+    /// The full width of the line between the points of 1/e², before the lens blurs it.
     pub width: f64,
     /// The mean number of electrons that light frees in a column.
     pub column_electrons: f64,
@@ -32,26 +41,33 @@ pub struct LineImageData {
     pub polarisation: f64,
 }
 
-/// Images of a speckled laser line, fast: a Gaussian line times a pattern, summed over the pixels.
+/// Images of a laser line on a rough surface, fast: the light of a thin strip of independent
+/// scatterers behind a round pupil.
 ///
 /// ```text
-/// n(x, y) = N/a² ∫∫ G(v − c(u)) I(u, v) du dv      over the sensitive square, of the side a
+/// A(x, y) = ∫∫ √G(v − c(u)) n(u, v) p(x − u, y − v) du dv      p the transform of the pupil
+/// n(x, y) = N/a² ∫∫ |A|² dx dy                                 over the sensitive square, of the side a
 /// ```
 ///
-/// Each pixel is a sum over whole samples of the pattern; the line is integrated exactly over each of
-/// them, the pattern is taken as even over it.
+/// G is the Gaussian line about its place c(u) and n normal white noise. The lens blurs the line and
+/// lets its light interfere at once, so that lines of any width have the speckle of waves: for wide
+/// ones a pattern times the blurred line, for thin ones grains that are the image of the line itself.
 ///
 /// # Validity
 ///
-/// The pattern multiplies the line, which holds for lines wider than a speckle. Samples are so fine
-/// that a speckle has six at least. Speckle that the tilt of the sensor stretches along the columns is
-/// matched by unequal numbers of samples along and across, which leaves at most 2 % of its size.
+/// Fully developed speckle of a surface in focus. Each pixel is a sum over whole samples, of which a
+/// speckle has six at least. Speckle that the tilt of the sensor stretches along the columns is
+/// matched by unequal numbers of samples along and across, which leaves at most 2 % of its size. The
+/// place of the line changes little over a speckle along the rows.
 #[derive(Clone, Debug)]
 pub struct LineImage {
     data: LineImageData,
     samples: [usize; 2],
     light: IncoherentSum,
-    field: PupilField,
+    /// The numbers of samples after which the image repeats.
+    period: [usize; 2],
+    /// The speckle size in samples.
+    speckle: f64,
 }
 
 impl LineImage {
@@ -59,15 +75,15 @@ impl LineImage {
     ///
     /// # Errors
     ///
-    /// Returns an error if a quantity is outside its range, or if the pattern would have more than
+    /// Returns an error if a quantity is outside its range, or if the image would have more than
     /// 2²⁵ samples.
     pub fn new(data: LineImageData) -> Result<Self, TriangulationError> {
         check(&data)?;
         let samples = samples_per_pixel(data.speckle_size);
         let [sx, sy] = [0, 1].map(|axis| data.speckle_size[axis] * samples[axis] as f64);
         let speckle = (sx * sy).sqrt();
-        let size = [0, 1].map(|axis| pattern_side(data.size[axis] * samples[axis], speckle));
-        if size[0].saturating_mul(size[1]) > MAXIMUM_SAMPLES {
+        let period = [0, 1].map(|axis| pattern_side(data.size[axis] * samples[axis], speckle));
+        if period[0].saturating_mul(period[1]) > MAXIMUM_SAMPLES {
             return Err(TriangulationError::OutOfRange {
                 parameter: "speckle_size",
                 value: data.speckle_size[0],
@@ -79,7 +95,8 @@ impl LineImage {
             data,
             samples,
             light: IncoherentSum::equal(data.patterns as usize)?.and(&polarised)?,
-            field: PupilField::from_speckle_size(size, speckle, 0)?,
+            period,
+            speckle,
         })
     }
 
@@ -93,7 +110,7 @@ impl LineImage {
         let (line, surface) = (setup.line(), &setup.description().surface);
         Self::new(LineImageData {
             size,
-            width: line.width,
+            width: line.line_width.hypot(line.blur),
             column_electrons: line.column_electrons,
             speckle_size: line.speckle_size,
             sensitive_side: line.sensitive_height,
@@ -107,65 +124,84 @@ impl LineImage {
         &self.data
     }
 
-    /// Returns the mean numbers of electrons without speckle. `centre` gives the place of the line
+    /// Returns the mean numbers of electrons, without speckle. `centre` gives the place of the line
     /// along the column at a place along the rows, both in pixels.
+    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     pub fn mean(&self, centre: impl Fn(f64) -> f64 + Sync) -> Grid<f32> {
-        self.integrated(None, centre)
+        let LineImageData {
+            size: [columns, rows],
+            width,
+            speckle_size: [_, across],
+            sensitive_side,
+            column_electrons,
+            ..
+        } = self.data;
+        let profile = LineProfile::new(width, across, sensitive_side, rows as f64);
+        let centres: Vec<f64> = (0..columns).map(|x| centre(x as f64 + 0.5)).collect();
+        let mut image = Grid::filled(columns, rows, 0.0_f32);
+        image.for_each_row_mut(|y, pixels| {
+            for (pixel, centre) in pixels.iter_mut().zip(&centres) {
+                *pixel = (column_electrons * profile.at(y as f64 + 0.5 - centre)) as f32;
+            }
+        });
+        image
     }
 
     /// Returns the mean numbers of electrons with the speckle of a seed.
     ///
     /// # Errors
     ///
-    /// None for patterns that [`new`](Self::new) accepted.
+    /// None for images that [`new`](Self::new) accepted.
     pub fn speckled(
         &self,
         seed: u64,
         centre: impl Fn(f64) -> f64 + Sync,
     ) -> Result<Grid<f32>, TriangulationError> {
-        let field = self.field.clone().with_seed(seed);
-        let pattern = self.light.pattern(&field, PupilField::pattern)?;
-        Ok(self.integrated(Some(&pattern), centre))
+        let period = [0, 1].map(|axis| self.period[axis] as f64 / self.samples[axis] as f64);
+        let strip = Strip {
+            width: self.data.width,
+            size: self.data.size.map(|side| side as f64),
+            period,
+            speckle_size: [0, 1].map(|axis| self.speckle / self.samples[axis] as f64),
+            first_sample: self.samples.map(|samples| 0.5 / samples as f64),
+        };
+        let places = strip.places(centre);
+        let [columns, rows] = self.data.size;
+        let mut image = Grid::filled(columns, rows, 0.0_f32);
+        for (share, part) in self.light.shares().iter().zip(0..) {
+            let (pupil, lit) = strip.pupil(&places, seed, part);
+            let field = PupilField::from_samples(pupil, self.period, self.speckle)?;
+            // The pattern is 1 in the mean over its period, in which this much of the light lies.
+            let electrons = share * lit * self.data.column_electrons / period[1];
+            self.add_pixels(&mut image, field.pattern().values(), electrons);
+        }
+        Ok(image)
     }
 
-    /// Sums line times pattern over the samples of each pixel.
+    /// Adds the mean of a pattern over the sensitive part of each pixel, times `scale`.
     #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
-    fn integrated(
-        &self,
-        pattern: Option<&SpecklePattern>,
-        centre: impl Fn(f64) -> f64 + Sync,
-    ) -> Grid<f32> {
-        let [columns, rows] = self.data.size;
+    fn add_pixels(&self, image: &mut Grid<f32>, pattern: &Grid<f32>, scale: f64) {
         let [nx, ny] = self.samples;
-        let across = cells(nx, self.data.sensitive_side);
-        let along = cells(ny, self.data.sensitive_side);
         let side = self.data.sensitive_side;
-        let scale = self.data.column_electrons / (side * side);
-        let centres: Vec<f64> = (0..columns).map(|x| centre(x as f64 + 0.5)).collect();
-        let mut image = Grid::filled(columns, rows, 0.0_f32);
+        let [across, along] = [nx, ny].map(|samples| cells(samples, side));
         image.for_each_row_mut(|y, pixels| {
-            for (j, &(from, to)) in along.iter().enumerate() {
-                let row = pattern.map(|pattern| pattern.values().row(y * ny + j));
-                for (x, pixel) in pixels.iter_mut().enumerate() {
-                    let offset = y as f64 - centres[x];
-                    let share = share_between(self.data.width, offset + from, offset + to);
-                    let speckle = row.map_or(side, |row| {
-                        let samples = row[x * nx..].iter().zip(&across);
-                        samples.map(|(&i, (a, b))| f64::from(i) * (b - a)).sum()
-                    });
-                    *pixel += (scale * share * speckle) as f32;
+            for (j, height) in along.iter().enumerate() {
+                let row = pattern.row(y * ny + j);
+                for (pixel, samples) in pixels.iter_mut().zip(row.chunks_exact(nx)) {
+                    let sum = samples.iter().zip(&across);
+                    let sum: f64 = sum.map(|(&i, width)| f64::from(i) * width).sum();
+                    *pixel += (scale / (side * side) * sum * height) as f32;
                 }
             }
         });
-        image
     }
 }
 
-/// Returns where the samples of a pixel begin and end within its sensitive part.
-fn cells(samples: usize, side: f64) -> Vec<(f64, f64)> {
+/// Returns how much of each sample of a pixel lies within its sensitive part.
+fn cells(samples: usize, side: f64) -> Vec<f64> {
     let [low, high] = [0.5 - 0.5 * side, 0.5 + 0.5 * side];
     let edge = |index: usize| (index as f64 / samples as f64).clamp(low, high);
-    (0..samples).map(|i| (edge(i), edge(i + 1))).collect()
+    (0..samples).map(|i| edge(i + 1) - edge(i)).collect()
 }
 
 /// Returns the numbers of samples per pixel along the rows and the columns for which a speckle has
@@ -188,15 +224,15 @@ fn samples_per_pixel([along, across]: [f64; 2]) -> [usize; 2] {
     [nx as usize, ny as usize]
 }
 
-/// Returns the side of a pattern of at least `needed` samples and 8 speckles that is fast to transform:
-/// the least number without prime factors above 5.
+/// Returns the side of a pattern of `needed` samples, and darkness beside them, that is fast to
+/// transform: the least number without prime factors above 5.
 fn pattern_side(needed: usize, speckle: f64) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a valid speckle is some hundred samples wide at most"
     )]
-    let least = needed.max((8.0 * speckle).ceil() as usize);
+    let least = needed.saturating_add((DARK * speckle).ceil() as usize);
     let smooth = |&n: &usize| {
         let mut rest = n;
         for factor in [2, 3, 5] {

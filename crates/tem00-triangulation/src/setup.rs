@@ -3,6 +3,7 @@
 mod description;
 mod imaged_line;
 mod light_level;
+mod line_profile;
 mod range;
 mod scene;
 
@@ -11,7 +12,7 @@ use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 
 use crate::{DetectorSettings, LaserPlane, LineDetector, Sensor, TriangulationError, Triangulator};
 
-pub(crate) use self::{description::within, imaged_line::share_between};
+pub(crate) use self::{description::within, line_profile::LineProfile};
 pub use self::{
     description::{Averages, LaserLineData, SetupCamera, SetupDescription, SetupSurface},
     imaged_line::ImagedLine,

@@ -33,8 +33,9 @@ impl NoiseFreeColumn {
         let centre = (rows / 2) as f64 + phase;
         let sensor = setup.description().sensor;
         let dark = setup.sensor().dark_electrons();
+        let profile = line.profile(rows as f64);
         let electrons: Vec<f64> = (0..rows)
-            .map(|y| line.pixel_electrons(y as f64, centre))
+            .map(|y| line.column_electrons * profile.at(y as f64 + 0.5 - centre))
             .collect();
         let grey = |&e: &f64| (sensor.black_level + sensor.gain * (e + dark)) as f32;
         Self {
@@ -174,7 +175,7 @@ fn autocovariance(d: &SetupDescription, line: &ImagedLine) -> Option<(PixelAutoc
     let [along, across] = line.speckle_size;
     let side = line.sensitive_height;
     let most = |size: f64| (LONGEST * size).floor().max(1.0) as usize;
-    // Farther apart, one of two pixels has less than 10⁻⁵ of the light of the crest.
+    // Farther apart, both see little light or hardly the same speckle: 10⁻³ of its variance or less.
     let reach = (2.5 * line.width).ceil() as usize + 2;
     let columns = d.average.columns as usize;
     let together = columns.min(most(along));

@@ -3,7 +3,7 @@ use core::f64::consts::{PI, SQRT_2};
 use glam::DVec3;
 use tem00_tracer::Camera;
 
-use super::SetupDescription;
+use super::{SetupDescription, line_profile::LineProfile};
 use crate::Sensor;
 
 /// The step in height, as a part of the distance, of central differences: they err by its square.
@@ -11,7 +11,9 @@ const STEP: f64 = 1e-5;
 
 /// The image of the line on a flat surface.
 ///
-/// Its profile along a column is a Gaussian. The squares of the widths of what makes it wide add:
+/// Its profile along a column is a Gaussian, of the line and of defocus, blurred by the Airy pattern of
+/// the lens, whose wings fall as 1/y²: outside of ±Y lie 4h/(π³Y) of the light. For its width the
+/// squares of what makes it wide add:
 ///
 /// ```text
 /// W² = W_line² + W_lens² + b²
@@ -22,11 +24,12 @@ const STEP: f64 = 1e-5;
 ///
 /// Z is the depth of the surface before the lens, `Z_focus` that in focus at this image point, s the
 /// depth of the sensor behind the lens, D the diameter of the pupil and h = λ s / D the speckle size.
+/// Defocus counts as a Gaussian of 4σ = b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImagedLine {
     /// The place along the middle column, in pixels, y down.
     pub position: f64,
-    /// The full width between the points of 1/e², in pixels.
+    /// The full width between the points of 1/e², in pixels, as of a Gaussian.
     pub width: f64,
     /// The part of the width that is the line itself, in pixels.
     pub line_width: f64,
@@ -70,10 +73,11 @@ impl ImagedLine {
         let width = line_width.hypot(diffraction_width).hypot(blur);
         let on_part = laser.power / laser.line_length * (8.0 / PI).sqrt() / laser.line_width;
         let radiance = description.surface.reflectance * on_part / PI;
+        // Of a line as it is on the part; the lens spreads what a column gets.
         let unwidened = radiance * camera.irradiance_per_radiance(pixel);
-        let peak_irradiance = unwidened * line_width / width;
+        let column = unwidened * line_width * (PI / 8.0).sqrt();
         let sensor = Sensor::new(description.sensor).ok()?;
-        let line = Self {
+        let mut line = Self {
             position: pixel.y,
             width,
             line_width,
@@ -81,12 +85,11 @@ impl ImagedLine {
             blur,
             speckle_size: [speckle, speckle * stretch],
             height_per_pixel: 2.0 * step / moved,
-            peak_irradiance,
-            column_electrons: sensor.electrons(peak_irradiance, laser.wavelength)
-                * width
-                * (PI / 8.0).sqrt(),
+            peak_irradiance: 0.0,
+            column_electrons: sensor.electrons(column, laser.wavelength),
             sensitive_height: 2.0 * sensor.sensitive_half_width(),
         };
+        line.peak_irradiance = column * line.profile_over(0.0, 0.0).at(0.0);
         (depth > 0.0 && sin > 0.0 && line.height_per_pixel.is_finite()).then_some(line)
     }
 
@@ -95,13 +98,23 @@ impl ImagedLine {
     /// the pixel, of the height a about its middle.
     ///
     /// ```text
-    /// n = N/(2a) · (erf(√8 (y + a/2 − c)/W) − erf(√8 (y − a/2 − c)/W))    N electrons in the column
+    /// n = N ∫ exp(−π² (W_line² + b²) f²/8) chat(h f) sinc(π a f) cos(2π f (y − c)) df
     /// ```
+    ///
+    /// with N electrons in the column and the middle y of the pixel.
     pub fn pixel_electrons(&self, start: f64, centre: f64) -> f64 {
-        let half = 0.5 * self.sensitive_height;
-        let middle = start + 0.5;
-        let share = share_between(self.width, middle - half - centre, middle + half - centre);
-        self.column_electrons / self.sensitive_height * share
+        let distance = start + 0.5 - centre;
+        self.column_electrons * self.profile(distance.abs()).at(distance)
+    }
+
+    /// Returns the profile in pixels, for places up to `reach` from the middle of the line.
+    pub(crate) fn profile(&self, reach: f64) -> LineProfile {
+        self.profile_over(self.sensitive_height, reach)
+    }
+
+    fn profile_over(&self, pixel: f64, reach: f64) -> LineProfile {
+        let gaussian = self.line_width.hypot(self.blur);
+        LineProfile::new(gaussian, self.speckle_size[1], pixel, reach)
     }
 
     /// Returns the mean number of electrons that light frees in the brightest pixel, for a line in the
@@ -109,11 +122,4 @@ impl ImagedLine {
     pub(super) fn peak_electrons(&self) -> f64 {
         self.pixel_electrons(-0.5, 0.0)
     }
-}
-
-/// Returns the share of the light of a line of the full width `width` between two distances from its
-/// middle.
-pub(crate) fn share_between(width: f64, from: f64, to: f64) -> f64 {
-    let scale = 8.0_f64.sqrt() / width;
-    0.5 * (libm::erf(scale * to) - libm::erf(scale * from))
 }

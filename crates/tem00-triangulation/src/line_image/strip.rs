@@ -1,0 +1,169 @@
+use core::f64::consts::TAU;
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use tem00_numerics::{Fft2, Grid};
+use tem00_speckle::Complex;
+
+/// How far from its middle a line has scatterers, in half-widths: 10⁻⁸ of the light lie beyond.
+const REACH: f64 = 3.0;
+
+/// A strip of a rough surface under a laser line, as the pupil of a camera sees it. Lengths are in
+/// pixels of the image; the first of two is along the line.
+pub(super) struct Strip {
+    /// The full width of the line between the points of 1/e².
+    pub(super) width: f64,
+    /// The size of the image.
+    pub(super) size: [f64; 2],
+    /// The size of the image with the darkness beside it, after which it repeats.
+    pub(super) period: [f64; 2],
+    pub(super) speckle_size: [f64; 2],
+    /// Where the first sample of the image lies.
+    pub(super) first_sample: [f64; 2],
+}
+
+impl Strip {
+    /// Returns the places of the line where scatterers lie along it: no farther apart than a speckle.
+    ///
+    /// Beside the image the line goes on as it ends, to the half of what is there from either side.
+    pub(super) fn places(&self, centre: impl Fn(f64) -> f64) -> Vec<f64> {
+        let count = self.lattice(0);
+        let step = self.period[0] / count as f64;
+        let [end, _] = self.size;
+        let along = |index: usize| {
+            let place = self.first_sample[0] + index as f64 * step;
+            if place < 0.5 * (end + self.period[0]) {
+                place.min(end)
+            } else {
+                0.0
+            }
+        };
+        (0..count).map(|index| centre(along(index))).collect()
+    }
+
+    /// Returns the odd number of lattice points that cover the pupil along an axis.
+    fn lattice(&self, axis: usize) -> usize {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "speckles in an image, at most some ten thousand"
+        )]
+        let half = (0.5 * self.period[axis] / self.speckle_size[axis]).ceil() as usize;
+        2 * half + 1
+    }
+
+    /// Returns the amplitude in the pupil, and the share of the light of the line that the period of
+    /// the image holds.
+    ///
+    /// Scatterers are half a line or half a speckle apart across the line, from where a sum of normal
+    /// amplitudes is the integral to 10⁻⁸. Those beyond the darkness beside the image are left out.
+    pub(super) fn pupil(&self, places: &[f64], seed: u64, part: u64) -> (Grid<Complex<f32>>, f64) {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(1 << 63 | part);
+        let across = self.across(places);
+        let rows = self.lattice(1);
+        let waves = self.waves(rows, across.iter().map(|(distance, _)| *distance));
+        let mut columns = Grid::filled(places.len(), rows, Complex::new(0.0, 0.0));
+        let mut power = 0.0;
+        for (x, &place) in places.iter().enumerate() {
+            let lit: Vec<_> = across
+                .iter()
+                .map(|&(distance, irradiance)| {
+                    let amplitude = if self.holds(place + distance) {
+                        power += irradiance;
+                        (0.5 * irradiance).sqrt()
+                    } else {
+                        0.0
+                    };
+                    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+                    Complex::new(normal(), normal()) * amplitude
+                })
+                .collect();
+            for (y, waves) in waves.chunks_exact(across.len().max(1)).enumerate() {
+                let sum: Complex<f64> = waves.iter().zip(&lit).map(|(w, a)| w * a).sum();
+                columns[(x, y)] = sum * self.wave(rows, y, place - self.first_sample[1]);
+            }
+        }
+        (along(&columns), power / places.len() as f64)
+    }
+
+    /// Returns the distances of scatterers from the middle of the line, and their irradiances.
+    fn across(&self, places: &[f64]) -> Vec<(f64, f64)> {
+        let radius = 0.5 * self.width;
+        let spacing = 0.5 * radius.min(self.speckle_size[1]);
+        let range = |start: f64, f: fn(f64, f64) -> f64| places.iter().copied().fold(start, f);
+        let [low, high] = self.dark();
+        let from = (low - range(f64::NEG_INFINITY, f64::max)).max(-REACH * radius);
+        let to = (high - range(f64::INFINITY, f64::min)).min(REACH * radius);
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "scatterers in the period of an image, at most some ten thousand"
+        )]
+        let [first, last] = [(from / spacing).ceil(), (to / spacing).floor()].map(|end| end as i64);
+        let share = spacing / radius * core::f64::consts::FRAC_2_PI.sqrt();
+        let scatterer = |index: i64| {
+            let distance = index as f64 * spacing;
+            (distance, share * (-2.0 * (distance / radius).powi(2)).exp())
+        };
+        (first..=last).map(scatterer).collect()
+    }
+
+    /// Where the period of the image begins and ends across the line.
+    fn dark(&self) -> [f64; 2] {
+        let margin = 0.5 * (self.period[1] - self.size[1]);
+        [-margin, self.size[1] + margin]
+    }
+
+    fn holds(&self, place: f64) -> bool {
+        let [low, high] = self.dark();
+        (low..high).contains(&place)
+    }
+
+    /// Returns the wave of a scatterer at a distance across the line in a row of the pupil.
+    fn wave(&self, rows: usize, row: usize, distance: f64) -> Complex<f64> {
+        let frequency = row as f64 - (rows / 2) as f64;
+        Complex::from_polar(1.0, TAU * frequency * distance / self.period[1])
+    }
+
+    fn waves(
+        &self,
+        rows: usize,
+        distances: impl Iterator<Item = f64> + Clone,
+    ) -> Vec<Complex<f64>> {
+        let of_row = |row| {
+            let distances = distances.clone();
+            distances.map(move |distance| self.wave(rows, row, distance))
+        };
+        (0..rows).flat_map(of_row).collect()
+    }
+}
+
+/// Transforms each row, with the frequency zero in the middle: places along the line become those in
+/// the pupil.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the transform works in f32"
+)]
+fn along(columns: &Grid<Complex<f64>>) -> Grid<Complex<f32>> {
+    let (width, height) = (columns.width(), columns.height());
+    let mut pupil = Grid::filled(width, height, Complex::default());
+    let Ok(transform) = Fft2::new(width, 1) else {
+        return pupil;
+    };
+    let transform = transform.on_one_thread();
+    for (row, amplitudes) in columns
+        .rows()
+        .zip(pupil.values_mut().chunks_exact_mut(width))
+    {
+        let of_row = Grid::from_fn(width, 1, |x, _| {
+            Complex::new(row[x].re as f32, row[x].im as f32)
+        });
+        let spectrum = transform.forward(&of_row, |_, _, value| value);
+        for (x, amplitude) in amplitudes.iter_mut().enumerate() {
+            // The image is the transform of the pupil: this is the inverse one, of the other sign.
+            *amplitude = spectrum[((width / 2 + width - x) % width, 0)];
+        }
+    }
+    pupil
+}

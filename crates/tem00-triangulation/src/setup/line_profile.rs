@@ -1,0 +1,155 @@
+use core::f64::consts::PI;
+
+use tem00_numerics::{disc_overlap, sinc};
+
+/// The period of the sum, in units of what is looked at: copies of the line stay that far away.
+const PERIOD: f64 = 4.0;
+
+/// The profile of the image of a laser line along a column of pixels: a Gaussian that a round pupil
+/// blurs and pixels integrate.
+///
+/// ```text
+/// m(y) = ∫ exp(−π² W² f²/8) chat(h f) sinc(π a f) cos(2π f y) df        from −1/h to 1/h
+/// m(y) → 2h / (π³ y²)                                                   far from the line
+/// ```
+///
+/// W is the full width of the Gaussian between the points of 1/e², h the speckle size along the column
+/// and a the height of the sensitive part of a pixel; the integral of m is 1. The wings are those of
+/// the lens: they hold 4h/(π³ Y) of the light outside of ±Y.
+///
+/// The integral is a sum over equal steps of the frequency. Its copies of the line, a period apart, are
+/// so far away that they are but wings, whose sum is known and taken off.
+#[derive(Clone, Debug)]
+pub(crate) struct LineProfile {
+    period: f64,
+    speckle_size: f64,
+    /// The spectrum at whole multiples of 1/period, the first halved.
+    spectrum: Vec<f64>,
+}
+
+impl LineProfile {
+    /// Creates the profile for places up to `reach` from the middle of the line. All lengths are in
+    /// pixels.
+    pub(crate) fn new(width: f64, speckle_size: f64, pixel: f64, reach: f64) -> Self {
+        let period = PERIOD * reach.max(4.0 * (width + speckle_size));
+        // Beyond 5.5/W the Gaussian is 10⁻¹⁶.
+        let end = speckle_size.recip().min(5.5 / width);
+        let at = |index: u32| {
+            let f = f64::from(index) / period;
+            let gaussian = (-(PI * width * f).powi(2) / 8.0).exp();
+            let half = if index == 0 { 0.5 } else { 1.0 };
+            2.0 / period * half * gaussian * disc_overlap(speckle_size * f) * sinc(PI * pixel * f)
+        };
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a positive number of steps, at most 2^31"
+        )]
+        let steps = (end * period).ceil() as u32;
+        Self {
+            period,
+            speckle_size,
+            spectrum: (0..=steps).map(at).collect(),
+        }
+    }
+
+    /// Returns the share of the light per pixel, averaged over the sensitive part of a pixel whose
+    /// middle is `distance` from that of the line.
+    pub(crate) fn at(&self, distance: f64) -> f64 {
+        let angle = 2.0 * PI * distance / self.period;
+        let (double, mut before, mut now) = (2.0 * angle.cos(), angle.cos(), 1.0);
+        let mut sum = 0.0;
+        for amplitude in &self.spectrum {
+            sum += amplitude * now;
+            // cos((k + 1) a) = 2 cos a cos(k a) − cos((k − 1) a)
+            (before, now) = (now, double * now - before);
+        }
+        (sum - self.copies(0.5 * angle)).max(0.0)
+    }
+
+    /// The wings of all copies: Σ 2h/(π³ (y + k P)²) over k ≠ 0, at `angle` = π y/P.
+    fn copies(&self, angle: f64) -> f64 {
+        let sum = if angle.abs() < 1e-3 {
+            1.0 / 3.0
+        } else {
+            angle.sin().powi(-2) - angle.powi(-2)
+        };
+        2.0 * self.speckle_size / (PI * self.period * self.period) * sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+    use tem00_numerics::jinc;
+
+    use super::*;
+
+    /// The profile in space: the Airy pattern summed along the line, then over line and pixel by the
+    /// midpoint rule.
+    fn in_space(width: f64, speckle_size: f64, pixel: f64, distance: f64) -> f64 {
+        const STEPS: u32 = 400;
+        const ALONG: f64 = 200.0;
+        let middle =
+            |step: u32, end: f64| ((f64::from(step) + 0.5) / f64::from(STEPS) * 2.0 - 1.0) * end;
+        // Beyond 200 h the mean of the pattern, 4/(π⁴ r³) in units of h, goes on.
+        let of_point = |x: f64| {
+            let airy = |step: u32| {
+                let y = f64::from(step) / 8.0;
+                let half = if step == 0 { 0.5 } else { 1.0 };
+                half * jinc(PI * x.hypot(y)).powi(2)
+            };
+            let sum = (0..1600).map(airy).sum::<f64>() / 4.0;
+            PI / 4.0 * (sum + 4.0 / (PI.powi(4) * ALONG * ALONG))
+        };
+        let mut sum = 0.0;
+        let mut weights = 0.0;
+        for step in 0..STEPS {
+            let s = middle(step, 1.3 * width + 0.5 * pixel);
+            // The line, averaged over a pixel that is s away.
+            let scale = 8.0_f64.sqrt() / width;
+            let line = libm::erf(scale * (s + 0.5 * pixel)) - libm::erf(scale * (s - 0.5 * pixel));
+            sum += line * of_point((distance - s) / speckle_size) / speckle_size;
+            weights += line;
+        }
+        sum / weights
+    }
+
+    #[test]
+    fn it_is_the_line_blurred_by_the_airy_pattern_and_the_pixel() {
+        for (width, speckle_size) in [(0.5, 1.6), (4.6, 1.67), (12.0, 4.0)] {
+            let profile = LineProfile::new(width, speckle_size, 0.9, 30.0);
+            for distance in [0.0, 0.7, 3.1, 9.0, 29.5] {
+                let expected = in_space(width, speckle_size, 0.9, distance);
+                // The rings of the copies are left, a tenth of their wings of 10⁻⁵ and below.
+                assert_relative_eq!(
+                    profile.at(distance),
+                    expected,
+                    max_relative = 1e-5,
+                    epsilon = 1e-6
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn all_light_is_in_the_pixels_and_the_wings_beyond() {
+        let (width, speckle_size) = (4.0, 1.6);
+        let profile = LineProfile::new(width, speckle_size, 1.0, 200.0);
+        let inside: f64 = (-200..200).map(|y| profile.at(f64::from(y) + 0.2)).sum();
+        let outside = 4.0 * speckle_size / (PI.powi(3) * 200.0);
+        // The next order of the wings is 3σ²/Y² of them.
+        assert_relative_eq!(inside + outside, 1.0, epsilon = 1e-6);
+    }
+
+    #[test]
+    fn a_sharp_lens_leaves_the_gaussian() {
+        let profile = LineProfile::new(8.0, 1e-3, 1.0, 30.0);
+        for distance in [0.0_f64, 1.3, 5.0] {
+            let scale = 8.0_f64.sqrt() / 8.0;
+            let of = |edge: f64| 0.5 * libm::erf(scale * (distance + edge));
+            // The wings hold 10⁻⁴ of the light.
+            assert_relative_eq!(profile.at(distance), of(0.5) - of(-0.5), epsilon = 1e-4);
+        }
+    }
+}

@@ -12,6 +12,8 @@ pub(super) struct Column {
     pub(super) background_pixels: Vec<usize>,
     /// The lines from the top.
     pub(super) lines: Vec<Sighting>,
+    /// The column in which they were looked for.
+    pub(super) smooth: Smoothed,
 }
 
 /// A line that stands out of a column, before its place is estimated.
@@ -31,6 +33,16 @@ impl Sighting {
     /// Returns whether the window reaches beyond a column of `length` pixels.
     pub(super) const fn is_cut(&self, half: usize, length: usize) -> bool {
         self.centre < half || self.centre + half >= length
+    }
+
+    /// Returns the same line with the window about another pixel.
+    pub(super) fn about(&self, centre: usize, half: usize, length: usize) -> Self {
+        let window = uncut(centre, half, length);
+        Self {
+            centre,
+            window: window.start.max(self.zone.start)..window.end.min(self.zone.end),
+            ..self.clone()
+        }
     }
 
     /// Returns whether the window was cut where another line begins.
@@ -82,6 +94,7 @@ impl Column {
             above,
             background,
             background_pixels,
+            smooth,
         }
     }
 }
@@ -155,8 +168,10 @@ fn zones(smoothed: &[f64], centres: &[usize]) -> Vec<Range<usize>> {
 }
 
 /// A column after a triangular filter.
-struct Smoothed {
+pub(super) struct Smoothed {
     values: Vec<f64>,
+    /// The number of pixels in each half of the triangle.
+    width: usize,
     /// A maximum must be greater than this.
     least: f64,
 }
@@ -184,7 +199,31 @@ impl Smoothed {
         Self {
             least: level + Self::STAND_OUT * gain * noise,
             values,
+            width,
         }
+    }
+
+    /// Returns by how much the maximum at `centre` moves per grey value of each pixel that it is made of: the
+    /// vertex of the parabola through it and its neighbours, which it follows in the mean. Nothing at the
+    /// ends of a column.
+    pub(super) fn motion(&self, centre: usize) -> Vec<(usize, f64)> {
+        let neighbours = centre.checked_sub(1).zip(self.values.get(centre + 1));
+        let Some((before, &s_after)) = neighbours else {
+            return Vec::new();
+        };
+        let (s_before, s) = (self.values[before], self.values[centre]);
+        let curvature = s_before - 2.0 * s + s_after;
+        let vertex = 0.5 * (s_before - s_after) / curvature;
+        let m = self.width as f64;
+        let weight = |i: usize, at: usize| (m - i.abs_diff(at) as f64).max(0.0) / (m * m);
+        let moves = |i: usize| {
+            let [k_before, k, k_after] = [before, centre, centre + 1].map(|at| weight(i, at));
+            let tilt = 0.5 * (k_before - k_after) - vertex * (k_before - 2.0 * k + k_after);
+            (i, tilt / curvature)
+        };
+        uncut(centre, self.width, self.values.len())
+            .map(moves)
+            .collect()
     }
 
     /// The greatest maxima, at least `apart` pixels from each other, from the top.

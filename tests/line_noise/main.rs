@@ -11,6 +11,7 @@ mod line_image;
 #[path = "../../examples/rendered_lines/mod.rs"]
 mod rendered_lines;
 
+mod budget;
 mod patterns;
 mod rendered;
 mod waves;

@@ -33,11 +33,13 @@ pub use self::{
 ///
 /// # Validity
 ///
-/// First order. Speckle is as strong as the light itself, and first order says too much of it: up to 7 % for a
-/// centre of gravity, about a third for what looks at three pixels, and half for Steger's detector, which also
-/// looks at neighbouring columns. The stated uncertainty is then on the safe side. [`simulate`] tells how far,
-/// and whether all columns have a line that can be trusted. Pixels count as linear, also where bright grains of
-/// speckle exceed the sensor's range; see [`Setup::light_level`].
+/// First order, and speckle as a pattern times the line as the lens blurs it. Against images that were
+/// summed wave by wave this is within 2 % for a centre of gravity of lines of at least one speckle in full
+/// width. It says too much of thinner lines, by 9 % at 0.8 speckles and half at 0.4, about a third too much
+/// of detectors that look at three pixels, and half of Steger's, which also looks at neighbouring columns:
+/// on the safe side. [`simulate`], whose light interferes as waves do, tells how far, and whether all
+/// columns have a line that can be trusted. Pixels count as linear, also where bright grains of speckle
+/// exceed the sensor's range; see [`Setup::light_level`].
 ///
 /// # Examples
 ///
@@ -193,7 +195,7 @@ impl Budget {
     ///
     /// See [`imaged_line_centroid_deviation`]; columns that are averaged make the rows higher. The
     /// budget's own term is that of the detector with its window and of pixels, on a line blurred by the
-    /// lens times speckle, which agrees with waves for lines from 1.5 speckles in full width on.
+    /// lens times speckle, which agrees with waves for lines from one speckle in full width on.
     pub const fn line_law(&self) -> f64 {
         self.line_law
     }

@@ -18,8 +18,9 @@ use crate::SensorDescription;
 ///
 /// # Validity
 ///
-/// First order. For speckle it is an upper limit: it says up to 7 % too much for a centre of gravity, about a third
-/// for detectors that look at three pixels, and half for Steger's.
+/// First order, and speckle as a pattern times the line as the lens blurs it. Against waves it is within 2 % for a
+/// centre of gravity of lines of at least one speckle in full width, 9 % too much at 0.8 speckles and half too much at
+/// 0.4; it says about a third too much for detectors that look at three pixels, and half for Steger's.
 ///
 /// # References
 ///

@@ -27,8 +27,8 @@ use crate::{quadrature::integrate, row_spectrum::Row};
 /// Circular pupil, a Gaussian line in focus on a surface of many scatterers in a speckle, and a detector
 /// that sees all of the line's image; what it cuts off of the rings that a lens leaves beside a line
 /// has a long lever. Beyond the first order, the power of a row fluctuates: simulations of lines as
-/// wide as two speckles and more scatter by up to 3 % less than this law says, those of lines
-/// narrower than a speckle by far more, as the centroids of weak rows are nearly free.
+/// wide as two speckles and more scatter by up to 3 % less than this law says. Lines narrower than a
+/// speckle scatter by far more, as the centroids of weak rows are nearly free: by a quarter at w = 0.4 h.
 ///
 /// # Examples
 ///

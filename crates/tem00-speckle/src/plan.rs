@@ -87,6 +87,19 @@ impl StackPlan {
         Self::first_within(Self::candidates(needs)?, needs.memory_limit)
     }
 
+    /// Creates the plan of known sizes: of the pattern in samples, of the pupil in lattice points along each
+    /// axis, and of the path.
+    ///
+    /// Whether a pattern can have them is what [`field`](Self::field) says, as for the
+    /// [candidates](Self::candidates).
+    pub const fn from_sizes(size: [usize; 2], diameter: [usize; 2], path: SlicePath) -> Self {
+        Self {
+            diameter,
+            size,
+            path,
+        }
+    }
+
     /// Returns the plans for `needs` in the order of their worth, whatever memory they take: all that
     /// is asked for with fewer and fewer slices, then for the image alone, then on a shorter path.
     ///

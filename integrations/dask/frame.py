@@ -135,7 +135,7 @@ def surface_points(parameters: Parameters, camera: ImagingGeometry) -> tuple[Flo
 
 def laser_line(thickness: float) -> LineLight:
     """Return the laser, in focus at the origin."""
-    line = LaserLine.new(
+    line = LaserLine(
         GaussianBeam.from_waist(WAVELENGTH, 0.5 * thickness),
         FanGeometry(fan_angle=0.5, apex_offset=5e-3, focus_distance=DISTANCE),
         LineProfile.uniform_angle(),
@@ -158,9 +158,9 @@ def speckle_of_pixels(parameters: Parameters, speckle_size: float) -> Floats:
         frames=1,
         memory_limit=1 << 30,
     )
-    pattern = StackPlan.new(needs).field(parameters.seed).pattern()
+    pattern = StackPlan(needs).field(parameters.seed).pattern()
     samples = pattern.speckle_size / speckle_size
-    pixels = PixelArray.new((parameters.columns, parameters.rows), (samples, samples))
+    pixels = PixelArray((parameters.columns, parameters.rows), (samples, samples))
     return pixels.image(pattern).astype(np.float64)
 
 

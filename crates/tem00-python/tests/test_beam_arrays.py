@@ -16,7 +16,7 @@ ELLIPTIC = beam.AstigmaticBeam.from_divergences(650e-9, (1e-3, 2e-3))
 GENERAL = beam.GeneralAstigmaticBeam.from_astigmatic(ELLIPTIC)
 PLACEMENT = beam.Placement((0.1, 0.2, 0.3), (0, 0.1, -1), (1, 0, 0))
 SPOT = beam.SpotLight.place(LASER, 0.1, PLACEMENT, 1e-3)
-LINE = beam.LaserLine.new(LASER, beam.FanGeometry(0.5, 2e-3, 0.2), beam.LineProfile.gaussian_tan())
+LINE = beam.LaserLine(LASER, beam.FanGeometry(0.5, 2e-3, 0.2), beam.LineProfile.gaussian_tan())
 SECTION = LASER.cross_section_at(0.1)
 
 # Functions of three numbers, and the number of components of their values.
@@ -79,7 +79,7 @@ def test_extreme_arguments_give_numbers_or_an_error(name: str) -> None:
 @pytest.mark.parametrize("profile", ["gaussian_tan", "gaussian_sin", "uniform_angle"])
 def test_extreme_points_of_lights_give_numbers_or_an_error(profile: str) -> None:
     made = getattr(beam.LineProfile, profile)()
-    line = beam.LaserLine.new(LASER, beam.FanGeometry(3.0, 2e-3, 0.2), made)
+    line = beam.LaserLine(LASER, beam.FanGeometry(3.0, 2e-3, 0.2), made)
     values = (0.0, 1e-300, 1e-30, -1.0, 1e30, -1e30)
     for light in (SPOT, beam.LineLight.place(line, PLACEMENT, 1e100)):
         x, y, z = (a.ravel() for a in np.meshgrid(values, values, values))

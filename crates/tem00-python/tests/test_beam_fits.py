@@ -36,7 +36,7 @@ def test_relative_errors_fit_the_logarithm() -> None:
     found, covariance = optimize.curve_fit(
         model, Z, np.log(radii), p0=[0.8, 3, 6], ftol=1e-15, xtol=1e-15
     )
-    fit = beam.CausticFit.new(WAVELENGTH, Z, radii)
+    fit = beam.CausticFit(WAVELENGTH, Z, radii)
     estimates = (fit.waist_radius, fit.waist_position, fit.divergence)
     # Both stop where the sum of squares is flat to rounding, half the digits.
     np.testing.assert_allclose([e.value for e in estimates], found * scale, rtol=1e-6)
@@ -86,7 +86,7 @@ def test_knife_edges_fit_the_error_function(floor: float, sign: int) -> None:
         return knife(sign * x, power, centre * 1e-4, radius * 1e-4, *rest)
 
     found, covariance = optimize.curve_fit(model, x, powers, p0=start, ftol=1e-15, xtol=1e-15)
-    new = beam.KnifeEdgeFit.with_background if floor else beam.KnifeEdgeFit.new
+    new = beam.KnifeEdgeFit.with_background if floor else beam.KnifeEdgeFit
     fit = new(x, powers)
     values = [fit.power.value, sign * fit.centre.value / 1e-4, fit.radius.value / 1e-4]
     errors = [e.standard_error for e in (fit.power, fit.centre, fit.radius)]
@@ -101,9 +101,9 @@ def test_knife_edges_fit_the_error_function(floor: float, sign: int) -> None:
 
 def test_data_without_a_beam_are_a_fit_error() -> None:
     with pytest.raises(beam.FitError, match="determine|converge"):
-        beam.CausticFit.new(WAVELENGTH, [0, 1, 2, 3], [1e-3] * 4)
+        beam.CausticFit(WAVELENGTH, [0, 1, 2, 3], [1e-3] * 4)
     with pytest.raises(beam.FitError, match="change"):
-        beam.KnifeEdgeFit.new([0, 1, 2, 3], [1, 1, 1, 1])
+        beam.KnifeEdgeFit([0, 1, 2, 3], [1, 1, 1, 1])
     assert issubclass(beam.FitError, RuntimeError)
 
 
@@ -136,7 +136,7 @@ def test_bad_data_are_refused_by_name(parameter: str, change: dict[str, object])
 
 def test_bad_traces_are_refused_by_name() -> None:
     with pytest.raises(ParameterError) as refusal:
-        beam.KnifeEdgeFit.new([0, 1, 2, 3], [0, 1, np.inf, 1])
+        beam.KnifeEdgeFit([0, 1, 2, 3], [0, 1, np.inf, 1])
     assert refusal.value.parameter == "powers"
     with pytest.raises(ParameterError) as refusal:
         beam.KnifeEdgeFit.with_background([0, 1, 2, 3], [0, 1, 2, 3])

@@ -19,7 +19,7 @@ PROFILES = {
     "uniform_angle": beam.LineProfile.uniform_angle(),
     "powell": beam.LineProfile.powell(0.1),
     "table": beam.LineProfile.tabulated(
-        beam.AngularProfile.new([-0.2, -0.1, 0.05, 0.2], [0.5, 1, 0.8, 0])
+        beam.AngularProfile([-0.2, -0.1, 0.05, 0.2], [0.5, 1, 0.8, 0])
     ),
 }
 
@@ -44,7 +44,7 @@ def twisted() -> beam.AstigmaticLight:
 
 def laser_line(profile: str) -> beam.LaserLine:
     fan = beam.FanGeometry(fan_angle=0.4, apex_offset=2e-3, focus_distance=0.2)
-    return beam.LaserLine.new(beam.GaussianBeam.from_waist(650e-9, 60e-6), fan, PROFILES[profile])
+    return beam.LaserLine(beam.GaussianBeam.from_waist(650e-9, 60e-6), fan, PROFILES[profile])
 
 
 def line(profile: str) -> beam.Emitter:
@@ -285,7 +285,7 @@ def test_the_waist_of_a_line_lies_on_its_focus_curve() -> None:
     focus = beam.GaussianBeam.from_waist(650e-9, 60e-6)
     fans = (beam.FanGeometry(0.4, 2e-3, 0.2), beam.FanGeometry(0.4, 2e-3, 0.2, "equal_plane"))
     for fan, length in zip(fans, (0.202, 0.202 * np.hypot(1, 0.2)), strict=True):
-        laser = beam.LaserLine.new(focus, fan, beam.LineProfile.gaussian_sin())
+        laser = beam.LaserLine(focus, fan, beam.LineProfile.gaussian_sin())
         assert laser.waist_slant_distance_at(0.2) == pytest.approx(length, rel=1e-15)
         z = length / np.hypot(1, 0.2) - 2e-3
         assert laser.half_thickness_at_angle(z, np.arctan(0.2)) == pytest.approx(60e-6, rel=1e-12)

@@ -40,7 +40,7 @@ def test_the_printed_radiance_divides_by_the_cosine() -> None:
 
 
 def test_the_printed_fan_has_the_power_it_states() -> None:
-    fan = paper.PrintedFan.new(LASER, 0.5, 0.2)
+    fan = paper.PrintedFan(LASER, 0.5, 0.2)
     x, step_x = np.linspace(-0.3, 0.3, 801, retstep=True)
     y, step_y = np.linspace(-5e-3, 5e-3, 801, retstep=True)
     plane = fan.irradiance_per_watt(x[:, None], y, 0.3)
@@ -48,7 +48,7 @@ def test_the_printed_fan_has_the_power_it_states() -> None:
     assert plane.sum() * step_x * step_y == pytest.approx(fan.power_per_watt(0.3), rel=1e-9)
     w = LASER.radius_at(0.1)
     assert fan.power_per_watt(0.3) == pytest.approx(np.tan(0.25) * 0.3 / w, rel=1e-14)
-    line = beam.LaserLine.new(
+    line = beam.LaserLine(
         LASER, beam.FanGeometry(0.5, 2e-3, 0.2), beam.LineProfile.gaussian_tan()
     )
     light = beam.LineLight.place(line, PLACEMENT, 2e-3)
@@ -59,7 +59,7 @@ def test_the_printed_fan_has_the_power_it_states() -> None:
 
 
 def test_the_printed_sampler_fills_disc_and_cone() -> None:
-    sampler = paper.DiscConeSampler.new(LASER, 0.1, 1e-2)
+    sampler = paper.DiscConeSampler(LASER, 0.1, 1e-2)
     rays = sampler.sample(np.random.default_rng(1).random((20_000, 4)))
     radius = np.hypot(rays.origin[:, 0], rays.origin[:, 1])
     assert sampler.aperture_radius == LASER.radius_at(0.1)

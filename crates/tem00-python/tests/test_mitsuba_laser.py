@@ -91,7 +91,7 @@ def library_light(properties: Properties) -> Any:
         return beam.LineLight.place(library_line(properties), placement, properties["power"])
     axes = [located(properties, suffix) for suffix in ("", "_y")]
     return beam.SpotLight.place_astigmatic(
-        beam.AstigmaticBeam.new(*axes), placement, properties["power"]
+        beam.AstigmaticBeam(*axes), placement, properties["power"]
     )
 
 
@@ -99,7 +99,7 @@ def located(spot: Properties, suffix: str) -> Any:
     first = {"waist_distance": 0.0, "m_squared": 1.0, **spot}
     own = {name: first.get(name + suffix, value) for name, value in first.items()}
     focus = beam.GaussianBeam.from_waist(own["wavelength"], own["waist_radius"])
-    return beam.LocatedBeam.new(focus.with_m_squared(own["m_squared"]), own["waist_distance"])
+    return beam.LocatedBeam(focus.with_m_squared(own["m_squared"]), own["waist_distance"])
 
 
 def library_line(line: Properties) -> Any:
@@ -117,7 +117,7 @@ def library_line(line: Properties) -> Any:
         profile = beam.LineProfile.powell(line.get("edge", 0.05))
     else:
         profile = PROFILES[line.get("profile", "gaussian")]
-    return beam.LaserLine.new(focus, fan, profile)
+    return beam.LaserLine(focus, fan, profile)
 
 
 def frame_of(light: Any) -> Array:

@@ -106,7 +106,7 @@ def stack_of(number: int = 0, seed: int = 0, image: tuple[int, int] = (WIDTH, HE
         memory_limit=1 << 30,
     )
     step = 0x9E3779B97F4A7C15
-    field = speckle.StackPlan.new(needs).field((seed + (number + 1) * step) % 2**64)
+    field = speckle.StackPlan(needs).field((seed + (number + 1) * step) % 2**64)
     return speckle.SpeckleStack.generate(field, speckle.SlicePath.still())
 
 

@@ -50,7 +50,7 @@ def test_arrays_of_any_real_type_and_layout_are_read_alike() -> None:
 )
 def test_arguments_broadcast_as_in_numpy(first: tuple[int, ...], second: tuple[int, ...]) -> None:
     random = np.random.default_rng(1)
-    law = st.JointIntensity.new(0.6)
+    law = st.JointIntensity(0.6)
     a, b = random.exponential(size=first), random.exponential(size=second)
     whole = [np.ascontiguousarray(x) for x in np.broadcast_arrays(a, b)]
     result = law.conditional_density(a, b)
@@ -60,7 +60,7 @@ def test_arguments_broadcast_as_in_numpy(first: tuple[int, ...], second: tuple[i
 
 
 def test_shapes_that_do_not_fit_name_the_argument() -> None:
-    law = st.JointIntensity.new(0.5)
+    law = st.JointIntensity(0.5)
     with pytest.raises(tem00.ParameterError, match=r"given has the shape \[4\]") as caught:
         law.conditional_density(np.ones(3), np.ones(4))
     assert caught.value.parameter == "given"
@@ -83,7 +83,7 @@ def test_what_is_no_real_number_is_a_type_error_that_names_the_argument(bad: obj
 
 
 def test_results_that_memory_does_not_hold_are_a_memory_error() -> None:
-    law = st.JointIntensity.new(0.5)
+    law = st.JointIntensity(0.5)
     wide = np.ones(1 << 20)
     # 2⁴⁰ results of 8 bytes.
     with pytest.raises(MemoryError, match="8796093022208 bytes"):
@@ -102,7 +102,7 @@ def test_arrays_with_many_axes_are_read() -> None:
 
 
 def test_finite_arguments_without_a_result_are_refused() -> None:
-    spectrum = st.GaussianSpectrum.new(650e-9, 1e-9)
+    spectrum = st.GaussianSpectrum(650e-9, 1e-9)
     with pytest.raises(tem00.ParameterError, match=r"path_spread = 1e308.* less extreme"):
         spectrum.correlation(0.0, 1e308)
 
@@ -146,24 +146,24 @@ def test_the_interpreter_is_free_while_a_function_works() -> None:
 
 def test_errors_survive_pickling() -> None:
     with pytest.raises(ValueError, match="shape") as caught:
-        st.GammaIntensity.new(0.5)
+        st.GammaIntensity(0.5)
     again = pickle.loads(pickle.dumps(caught.value))
     assert isinstance(again, tem00.ParameterError)
     assert (str(again), again.parameter) == (str(caught.value), "shape")
 
 
 LAWS = [
-    st.GammaIntensity.new(2.5),
-    st.PartiallyPolarised.new(0.3),
-    st.WeightedSum.new([2.0, 1.0, 0.1]),
+    st.GammaIntensity(2.5),
+    st.PartiallyPolarised(0.3),
+    st.WeightedSum([2.0, 1.0, 0.1]),
     st.CoherentBackground.from_contrast(0.7),
-    st.PhasorSum.new(12),
-    st.JointIntensity.new(0.3),
-    st.GaussianSpectrum.new(650e-9, 1e-9),
+    st.PhasorSum(12),
+    st.JointIntensity(0.3),
+    st.GaussianSpectrum(650e-9, 1e-9),
     st.LitArea.disc(1e-3),
     st.LitArea.rectangle(1e-3, 2e-3),
     st.LitArea.gaussian_spot(1e-3),
-    st.ObjectiveSpeckle.new(650e-9, 2.0, st.LitArea.gaussian_spot(1e-3)),
+    st.ObjectiveSpeckle(650e-9, 2.0, st.LitArea.gaussian_spot(1e-3)),
 ]
 
 

@@ -26,7 +26,7 @@ from tem00.speckle import (
 )
 from tem00.speckle.paper import BilinearStack
 
-FIELD = PupilField.new(64, 16, 7)
+FIELD = PupilField(64, 16, 7)
 STACK = SpeckleStack.generate(FIELD, SlicePath.circle(half_period=2))
 MEASURED = PupilField.from_samples(np.ones((40, 40)), (160, 160), 4.0)
 NEEDS = StackNeeds((64, 48), (64, 48), 2.5, 0.33, frames=10, memory_limit=2**30)
@@ -39,10 +39,10 @@ def needs(**changes: object) -> StackNeeds:
 
 
 REFUSED: list[tuple[Callable[[], object], str, str]] = [
-    (lambda: PupilField.new(-1, 16, 0), "size", "-1"),
-    (lambda: PupilField.new(2**20, 16, 0), "size", "32768"),
-    (lambda: PupilField.new(64, 33, 0), "diameter", "33"),
-    (lambda: PupilField.new(64, 16, 2**64), "seed", "18446744073709551616"),
+    (lambda: PupilField(-1, 16, 0), "size", "-1"),
+    (lambda: PupilField(2**20, 16, 0), "size", "32768"),
+    (lambda: PupilField(64, 33, 0), "diameter", "33"),
+    (lambda: PupilField(64, 16, 2**64), "seed", "18446744073709551616"),
     (lambda: PupilField.from_speckle_size((64, 64), 1.5, 0), "speckle_size", "1.5"),
     (lambda: PupilField.from_speckle_size((64, 64), np.nan, 0), "speckle_size", "NaN"),
     (lambda: PupilField.from_samples([[np.inf]], (64, 64), 4.0), "samples", "finite"),
@@ -59,7 +59,7 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: Pupil.rectangle(height=0.0), "height", "0"),
     (lambda: Pupil.gaussian(radius=-1.0), "radius", "-1"),
     (lambda: Pupil.circle().overlap(np.nan, 0.0), "x", "NaN"),
-    (lambda: Transmission.new([[1.5]]), "amplitude", "1.5"),
+    (lambda: Transmission([[1.5]]), "amplitude", "1.5"),
     (lambda: Transmission.from_complex(np.array([[2j]])), "amplitude", "2"),
     (lambda: SlicePath.circle(half_period=0), "half_period", "0"),
     (lambda: SlicePath.straight(half_period=4, length=1), "length", "1"),
@@ -75,13 +75,13 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: STACK.average_over(0.0, 0.0, (1.0, -2.0), 0.0), "size", "-2"),
     (lambda: STACK.correlation_at(np.nan), "distance", "NaN"),
     (lambda: STACK.coordinate_of(np.nan), "correlation", "NaN"),
-    (lambda: StackPlan.new(needs(image=(0.0, 1.0))), "image", "0"),
-    (lambda: StackPlan.new(needs(region=(1.0, np.inf))), "region", "inf"),
-    (lambda: StackPlan.new(needs(speckle_size=-2.0)), "speckle_size", "-2"),
-    (lambda: StackPlan.new(needs(motion=np.nan)), "motion", "NaN"),
+    (lambda: StackPlan(needs(image=(0.0, 1.0))), "image", "0"),
+    (lambda: StackPlan(needs(region=(1.0, np.inf))), "region", "inf"),
+    (lambda: StackPlan(needs(speckle_size=-2.0)), "speckle_size", "-2"),
+    (lambda: StackPlan(needs(motion=np.nan)), "motion", "NaN"),
     (lambda: needs(frames=2**32), "frames", "4294967296"),
-    (lambda: StackPlan.new(NEEDS).with_half_period(0), "half_period", "0"),
-    (lambda: StackPlan.new(NEEDS).with_square(64, 33), "diameter", "33"),
+    (lambda: StackPlan(NEEDS).with_half_period(0), "half_period", "0"),
+    (lambda: StackPlan(NEEDS).with_square(64, 33), "diameter", "33"),
     (lambda: IncoherentSum.equal(0), "count", "0"),
     (lambda: IncoherentSum.weighted([1.0, -1.5]), "weights", "-1.5"),
     (lambda: IncoherentSum.partially_polarised(1.5), "degree", "1.5"),
@@ -89,27 +89,27 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: IncoherentSum.polychromatic(Bandwidth(-1e-6, 0, 0)), "wavelength", "-1e-6"),
     (lambda: IncoherentSum.polychromatic(Bandwidth(1e-6, 0, -1)), "path_spread", "-1"),
     (lambda: IncoherentSum.equal(2).fields(MEASURED), "field", "seed"),
-    (lambda: CoherentBackground.new(-3.0, 0.0), "beam_ratio", "-3"),
-    (lambda: CoherentBackground.new(1.0, np.inf), "phase", "inf"),
-    (lambda: CoherentBackground.new(1.0, 0.0).intensity(1e300), "amplitude", "1e300"),
+    (lambda: CoherentBackground(-3.0, 0.0), "beam_ratio", "-3"),
+    (lambda: CoherentBackground(1.0, np.inf), "phase", "inf"),
+    (lambda: CoherentBackground(1.0, 0.0).intensity(1e300), "amplitude", "1e300"),
     (lambda: Exposure().with_image_drift((2e6, 0.0)), "drift", "2000000"),
     (lambda: Exposure().with_pupil_drift((0.0, 129.0)), "drift", "129"),
     (lambda: Exposure().pattern_at(FIELD, (0.0, np.nan), 0.0), "offset", "NaN"),
-    (lambda: PixelArray.new((0, 1), (1.0, 1.0)), "count", "0"),
-    (lambda: PixelArray.new((1, 1), (-1.0, 1.0)), "pitch", "-1"),
-    (lambda: PixelArray.new((1, 1), (1.0, 1.0)).with_size((-1.0, 1.0)), "size", "-1"),
-    (lambda: PixelArray.new((1, 1), (1.0, 1.0)).with_origin((2e12, 0.0)), "origin", "2000000000"),
-    (lambda: ObjectiveSpeckle.new(-1.0, 1.0, LitArea.disc(1.0)), "wavelength", "-1"),
-    (lambda: ObjectiveSpeckle.new(1.0, 0.0, LitArea.disc(1.0)), "distance", "0"),
-    (lambda: ObjectiveSpeckle.new(1.0, 1.0, LitArea.disc(-1.0)), "area", "-1"),
-    (lambda: ObjectiveSpeckle.new(1.0, 1.0, LitArea.ring(1.0, 2.0)), "inner", "2"),
+    (lambda: PixelArray((0, 1), (1.0, 1.0)), "count", "0"),
+    (lambda: PixelArray((1, 1), (-1.0, 1.0)), "pitch", "-1"),
+    (lambda: PixelArray((1, 1), (1.0, 1.0)).with_size((-1.0, 1.0)), "size", "-1"),
+    (lambda: PixelArray((1, 1), (1.0, 1.0)).with_origin((2e12, 0.0)), "origin", "2000000000"),
+    (lambda: ObjectiveSpeckle(-1.0, 1.0, LitArea.disc(1.0)), "wavelength", "-1"),
+    (lambda: ObjectiveSpeckle(1.0, 0.0, LitArea.disc(1.0)), "distance", "0"),
+    (lambda: LitArea.ring(1.0, -1.0), "inner", "-1"),
+    (lambda: ObjectiveSpeckle(1.0, 1.0, LitArea.ring(1.0, 2.0)), "inner", "2"),
     (
-        lambda: ObjectiveSpeckle.new(1.0, 1.0, LitArea.disc(1.0)).field((64, 64), 0.0, 0),
+        lambda: ObjectiveSpeckle(1.0, 1.0, LitArea.disc(1.0)).field((64, 64), 0.0, 0),
         "sample_pitch",
         "0",
     ),
     (
-        lambda: ObjectiveSpeckle.new(1.0, 1.0, LitArea.disc(1e-300)).offset((1e300, 0.0)),
+        lambda: ObjectiveSpeckle(1.0, 1.0, LitArea.disc(1e-300)).offset((1e300, 0.0)),
         "displacement",
         "inf",
     ),
@@ -137,13 +137,13 @@ def test_errors_name_the_argument_and_its_value(
 
 TOO_LARGE: list[Callable[[], object]] = [
     lambda: SpeckleStack.generate(
-        PupilField.new(2**15, 8, 0), SlicePath.circle(half_period=2**15)
+        PupilField(2**15, 8, 0), SlicePath.circle(half_period=2**15)
     ),
-    lambda: SpeckleStack.generate_with(
+    lambda: SpeckleStack.generate(
         FIELD, SlicePath.circle(half_period=4), StackOptions(memory_limit=1000)
     ),
-    lambda: StackPlan.new(needs(memory_limit=1000)),
-    lambda: BilinearStack.generate(PupilField.new(2**15, 8, 0), 2**15),
+    lambda: StackPlan(needs(memory_limit=1000)),
+    lambda: BilinearStack.generate(PupilField(2**15, 8, 0), 2**15),
     lambda: STACK.intensity_at(
         np.zeros((10**6, 1, 1)), np.zeros((1, 10**6, 1)), np.zeros((1, 1, 100))
     ),
@@ -161,7 +161,7 @@ def no_pattern(part: PupilField) -> None:
 
 
 WRONG_TYPES: list[Callable[[], object]] = [
-    lambda: PupilField.new(64.0, 16, 0),  # type: ignore[arg-type]
+    lambda: PupilField(64.0, 16, 0),  # type: ignore[arg-type]
     lambda: PupilField.from_speckle_size(64, 4.0, 0),  # type: ignore[arg-type]
     lambda: STACK.intensity_at("1", 0.0, 0.0),  # type: ignore[arg-type]
     lambda: IncoherentSum.equal(2).pattern(FIELD, no_pattern),  # type: ignore[arg-type]
@@ -178,10 +178,10 @@ def test_arguments_of_another_type_are_type_errors(call: Callable[[], object]) -
 def test_errors_of_a_part_come_through_a_sum() -> None:
     light = IncoherentSum.equal(3)
     with pytest.raises(ZeroDivisionError):
-        light.pattern(FIELD, lambda part: PupilField.new(1 // 0, 16, 0).pattern())
+        light.pattern(FIELD, lambda part: PupilField(1 // 0, 16, 0).pattern())
     sizes = iter([64, 128, 64])
     with pytest.raises(tem00.ParameterError, match=r"\[64, 64\], got \[128, 128\]") as caught:
-        light.pattern(FIELD, lambda part: PupilField.new(next(sizes), 16, 0).pattern())
+        light.pattern(FIELD, lambda part: PupilField(next(sizes), 16, 0).pattern())
     assert caught.value.parameter == "part"
 
 

@@ -70,14 +70,14 @@ def test_a_field_is_the_fourier_transform_of_its_pupil(
 
 
 def test_patterns_in_focus_are_those_at_no_offset() -> None:
-    field = PupilField.new(64, 32, 3)
+    field = PupilField(64, 32, 3)
     assert field.pattern() == field.pattern_at((0.0, 0.0), 0.0)
     assert field.field() == field.speckle((0.0, 0.0), 0.0)
     assert field.pattern() != field.with_seed(4).pattern()
 
 
 def test_unit_phasors_fill_the_pupil_and_nothing_else() -> None:
-    field = PupilField.new(128, 41, 9)
+    field = PupilField(128, 41, 9)
     pupil = fft.ifft2(field.field().values) * np.sqrt(field.phasor_count)
     k = fft.fftfreq(128, 1 / 128)
     inside = np.hypot(k, k[:, np.newaxis]) <= 20.5
@@ -114,7 +114,7 @@ def test_contrast_and_width_are_those_of_pyspeckle() -> None:
     # Half the maximum of the autocovariance lies 0.515 speckle sizes away: 2 of 4 samples.
     for seed in range(40):
         theirs.append(window_statistics(pyspeckle.create_Exponential(64, 4), 2))
-        pattern = PupilField.new(256, 64, seed).pattern().values[:64, :64]
+        pattern = PupilField(256, 64, seed).pattern().values[:64, :64]
         ours.append(window_statistics(pattern, 2))
     for name, a, b in zip(("contrast", "width"), zip(*theirs), zip(*ours), strict=True):
         # Welch's test that both have the same mean, each at 5e-4.
@@ -134,7 +134,7 @@ def autocovariance(pattern: SpecklePattern) -> NDArray[np.float64]:
     ids=repr,
 )
 def test_autocovariances_have_the_closed_form(pupil: Pupil) -> None:
-    field = PupilField.new(128, 32, 0).with_pupil(pupil)
+    field = PupilField(128, 32, 0).with_pupil(pupil)
     seeds = 100
     measured = np.mean(
         [autocovariance(field.with_seed(seed).pattern()) for seed in range(seeds)], axis=0
@@ -166,7 +166,7 @@ def test_amplitude_correlations_are_sums_over_the_pupil() -> None:
 
 def test_decorrelated_samples_are_exponential() -> None:
     # Beyond 1.22 speckle sizes, the first zero of the autocovariance: 4.88 samples.
-    field = PupilField.new(512, 128, 0).with_phasors("gaussian")
+    field = PupilField(512, 128, 0).with_phasors("gaussian")
     samples = np.concatenate(
         [field.with_seed(seed).pattern().values[::5, ::5].ravel() for seed in range(4)]
     )
@@ -210,7 +210,7 @@ def test_sampled_pupils_transmit_what_they_were_given() -> None:
     amplitude = np.where(np.hypot(x, y) <= 1, np.exp(3j * x**3 - y**2), 0)
     transmission = Transmission.from_complex(amplitude)
     np.testing.assert_array_equal(transmission.values, amplitude.astype(np.complex64))
-    open_pupil = PupilField.new(128, 60, 2)
+    open_pupil = PupilField(128, 60, 2)
     seen = fft.ifft2(open_pupil.with_pupil(Pupil.sampled(transmission)).field().values)
     phasors = fft.ifft2(open_pupil.field().values)
     # The lattice point k lies in the cell k + 30; well inside the disc, where both have light.
@@ -219,7 +219,7 @@ def test_sampled_pupils_transmit_what_they_were_given() -> None:
     ratio = seen[k[:, np.newaxis], k] / phasors[k[:, np.newaxis], k]
     # Relative to the rounding of a single point, 1e-6 of the sum of all 2800.
     np.testing.assert_allclose(ratio / ratio[20, 20], cells / cells[20, 20], atol=1e-4)
-    assert Transmission.new(np.ones((3, 4))).values.shape == (3, 4)
+    assert Transmission(np.ones((3, 4))).values.shape == (3, 4)
 
 
 def test_fields_say_what_they_are_made_of() -> None:

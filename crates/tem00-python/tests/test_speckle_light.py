@@ -25,7 +25,7 @@ SINGLE = 1e-5
 
 @pytest.fixture(scope="module")
 def field() -> PupilField:
-    return PupilField.new(128, 48, 21)
+    return PupilField(128, 48, 21)
 
 
 def test_a_sum_adds_its_patterns_in_their_shares(field: PupilField) -> None:
@@ -62,7 +62,7 @@ def test_sums_have_the_contrast_of_their_shares() -> None:
 
 
 def test_equal_sums_have_the_gamma_law() -> None:
-    field = PupilField.new(256, 64, 0).with_phasors("gaussian")
+    field = PupilField(256, 64, 0).with_phasors("gaussian")
     light = IncoherentSum.equal(3)
     # Beyond the first zero of the autocovariance, 1.22 speckle sizes of 4 samples.
     samples = np.concatenate(
@@ -85,7 +85,7 @@ def test_a_spectrum_has_the_contrast_of_its_coherence() -> None:
 
 
 def test_a_background_interferes(field: PupilField) -> None:
-    background = CoherentBackground.new(2.5, 0.7)
+    background = CoherentBackground(2.5, 0.7)
     assert background.contrast == pytest.approx(np.sqrt(6) / 3.5, rel=1e-14)
     amplitude = field.field()
     expected = np.abs(amplitude.values + np.sqrt(2.5) * np.exp(0.7j)) ** 2 / 3.5
@@ -118,7 +118,7 @@ def test_a_drift_over_the_pupil_is_a_mean_of_moments(field: PupilField) -> None:
 
 
 def test_pixels_are_integrals_of_the_interpolated_pattern(field: PupilField) -> None:
-    pixels = PixelArray.new((5, 4), (3.3, 2.9)).with_size((2.4, 1.7)).with_origin((-7.0, 120.3))
+    pixels = PixelArray((5, 4), (3.3, 2.9)).with_size((2.4, 1.7)).with_origin((-7.0, 120.3))
     pattern = field.pattern()
     spectrum = fft.fft2(pattern.values.astype(float)) / pattern.values.size
     k = fft.fftfreq(128)
@@ -139,7 +139,7 @@ def test_pixels_are_integrals_of_the_interpolated_pattern(field: PupilField) -> 
 
 
 def test_a_lit_area_is_a_pupil_without_a_lens() -> None:
-    spot = ObjectiveSpeckle.new(650e-9, 2.0, LitArea.disc(diameter=1e-3))
+    spot = ObjectiveSpeckle(650e-9, 2.0, LitArea.disc(diameter=1e-3))
     assert spot.speckle_size == pytest.approx(650e-9 * 2.0 / 1e-3, rel=1e-14)
     field = spot.field((256, 192), 0.5e-3, 1)
     assert field == PupilField.from_speckle_size((256, 192), field.speckle_size, 1)
@@ -157,7 +157,7 @@ def test_a_lit_area_is_a_pupil_without_a_lens() -> None:
     ids=repr,
 )
 def test_lit_areas_have_the_shape_of_a_pupil(area: LitArea, width: float, pupil: Pupil) -> None:
-    speckle = ObjectiveSpeckle.new(500e-9, 1.0, area)
+    speckle = ObjectiveSpeckle(500e-9, 1.0, area)
     assert speckle.speckle_size == pytest.approx(500e-9 / width, rel=1e-14)
     field = speckle.field((256, 256), speckle.speckle_size / 2, 1)
     assert field.pupil == pupil

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tem00 import speckle
 from tem00.speckle import (
     Bandwidth,
     CoherentBackground,
@@ -31,7 +32,7 @@ from tem00.speckle import (
 )
 from tem00.statistics import autocovariance
 
-FIELD = PupilField.new(64, 16, 7)
+FIELD = PupilField(64, 16, 7)
 STACK = SpeckleStack.generate(FIELD, SlicePath.circle(half_period=2))
 NEEDS = StackNeeds(
     image=(640, 480),
@@ -42,7 +43,7 @@ NEEDS = StackNeeds(
     memory_limit=256 << 20,
 )
 MEASURED = PupilField.from_samples(np.full((40, 40), 1 + 2j), (160, 160), 4.0)
-TRANSMISSION = Transmission.new(np.ones((4, 4)))
+TRANSMISSION = Transmission(np.ones((4, 4)))
 
 VIEWS: list[Callable[[], tuple[object, NDArray[np.generic] | None]]] = [
     lambda: (pattern := FIELD.pattern(), pattern.values),
@@ -85,7 +86,7 @@ def test_views_share_their_memory_and_keep_it_alive() -> None:
 
 
 def test_views_are_given_while_another_thread_reads_them() -> None:
-    pattern = PupilField.new(1024, 256, 1).pattern()
+    pattern = PupilField(1024, 256, 1).pattern()
     worker = threading.Thread(target=lambda: autocovariance(pattern.values, "periodic"))
     worker.start()
     while worker.is_alive():
@@ -102,7 +103,7 @@ def resident_bytes() -> int:
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="Linux tells its memory there")
 def test_views_of_a_large_stack_take_no_memory() -> None:
-    stack = SpeckleStack.generate(PupilField.new(1024, 64, 1), SlicePath.circle(half_period=4))
+    stack = SpeckleStack.generate(PupilField(1024, 64, 1), SlicePath.circle(half_period=4))
     assert stack.memory_bytes == 64 << 20
     gc.collect()
     before = resident_bytes()
@@ -115,7 +116,7 @@ def test_views_of_a_large_stack_take_no_memory() -> None:
 PICKLED = [
     FIELD,
     FIELD.with_phasors("gaussian").with_pupil(Pupil.annulus(inner=0.3)),
-    PupilField.new(100, 30, 2**64 - 1),
+    PupilField(100, 30, 2**64 - 1),
     PupilField.from_speckle_size((640, 480), 3.3, 7),
     MEASURED.with_pupil(Pupil.sampled(TRANSMISSION)),
     PupilField.from_scatterers(3, (64, 64), 2.0, 5),
@@ -128,15 +129,21 @@ PICKLED = [
     SlicePath.straight(half_period=8, length=4),
     StackOptions("bilinear", memory_limit=10**9),
     NEEDS,
+    StackPlan(NEEDS),
+    *StackPlan.candidates(NEEDS),
+    StackPlan(NEEDS).with_square(64, 16).with_half_period(2),
+    STACK,
+    SpeckleStack.generate(FIELD, SlicePath.straight(half_period=2, length=3)),
+    SpeckleStack.generate(MEASURED, SlicePath.still(), StackOptions("nearest")),
     Bandwidth(650e-9, 20e-9, 10e-6),
-    CoherentBackground.new(1.5, 0.25),
+    CoherentBackground(1.5, 0.25),
     Exposure().with_image_drift((1.0, 2.0)).with_pupil_drift((0.1, 0.2)),
-    PixelArray.new((4, 5), (1.5, 2.0)).with_size((1.0, 1.0)).with_origin((3.0, -4.0)),
+    PixelArray((4, 5), (1.5, 2.0)).with_size((1.0, 1.0)).with_origin((3.0, -4.0)),
     LitArea.disc(diameter=1e-3),
     LitArea.ring(outer=2e-3, inner=1e-3),
     LitArea.rectangle(width=2e-3, height=1e-3),
     LitArea.gaussian_spot(radius=1e-3),
-    ObjectiveSpeckle.new(650e-9, 2.0, LitArea.disc(diameter=1e-3)),
+    ObjectiveSpeckle(650e-9, 2.0, LitArea.disc(diameter=1e-3)),
 ]
 
 
@@ -145,6 +152,15 @@ def test_pickles_are_equal_to_what_was_pickled(thing: object) -> None:
     again = pickle.loads(pickle.dumps(thing))
     assert again == thing
     assert repr(again) == repr(thing)
+    if "<" not in repr(thing):
+        assert eval(repr(thing), vars(speckle)) == thing
+
+
+def test_what_numbers_make_has_a_repr_that_makes_it() -> None:
+    # What holds samples or slices is shown in angle brackets.
+    shown = [thing for thing in PICKLED if "<" in repr(thing)]
+    assert {type(thing) for thing in shown} == {PupilField, Transmission, SpeckleStack}
+    assert all(thing.samples is not None for thing in shown if isinstance(thing, PupilField))
 
 
 def test_pickled_fields_have_the_same_bits_in_another_process() -> None:
@@ -164,7 +180,7 @@ def test_a_field_on_a_closed_lattice_refuses_to_be_pickled() -> None:
 
 
 def test_long_work_leaves_the_interpreter_free() -> None:
-    field = PupilField.new(1024, 512, 1)
+    field = PupilField(1024, 512, 1)
     done = threading.Event()
 
     def work() -> None:
@@ -185,7 +201,7 @@ def test_long_work_leaves_the_interpreter_free() -> None:
 
 
 def test_plans_have_the_sizes_of_their_needs() -> None:
-    plan = StackPlan.new(NEEDS)
+    plan = StackPlan(NEEDS)
     # 640 / 2.5 and 480 / 2.5 speckles, two samples each, and 32 slices per diameter.
     assert (plan.diameter, plan.size) == ((256, 192), (512, 384))
     assert plan.path == SlicePath.straight(half_period=32, length=2)
@@ -203,8 +219,8 @@ def test_plans_have_the_sizes_of_their_needs() -> None:
 
 
 def test_objects_know_their_equals() -> None:
-    assert FIELD == PupilField.new(64, 16, 7)
-    assert FIELD != PupilField.new(64, 16, 8)
+    assert FIELD == PupilField(64, 16, 7)
+    assert FIELD != PupilField(64, 16, 8)
     assert FIELD.pattern() == FIELD.pattern()
     assert STACK.slice_law(0) == STACK.slice_law(0)
     assert STACK.path != SlicePath.still()

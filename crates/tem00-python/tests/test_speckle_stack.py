@@ -22,7 +22,7 @@ SINGLE = 2e-5
 
 @pytest.fixture(scope="module")
 def field() -> PupilField:
-    return PupilField.new(SIZE, DIAMETER, 12)
+    return PupilField(SIZE, DIAMETER, 12)
 
 
 @pytest.fixture(scope="module")
@@ -112,7 +112,7 @@ def test_look_ups_between_slices_blend_amplitudes(field: PupilField) -> None:
 def test_look_ups_without_a_spline_interpolate_samples(
     field: PupilField, interpolation: Literal["bilinear", "nearest"]
 ) -> None:
-    stack = SpeckleStack.generate_with(field, CIRCLE, StackOptions(interpolation))
+    stack = SpeckleStack.generate(field, CIRCLE, StackOptions(interpolation))
     assert stack.interpolation == interpolation
     np.testing.assert_allclose(stack.coefficients(0), field.speckle((0.5, 0), 0).values, atol=1e-5)
     x, y = points(200)
@@ -149,7 +149,7 @@ def test_slices_are_the_fields_behind_the_displaced_pupil(
     field: PupilField, stack: SpeckleStack
 ) -> None:
     columns, rows = np.arange(SIZE), np.arange(SIZE)[:, np.newaxis]
-    nearest = SpeckleStack.generate_with(field, CIRCLE, StackOptions("nearest"))
+    nearest = SpeckleStack.generate(field, CIRCLE, StackOptions("nearest"))
     for index in range(stack.slice_count):
         expected = field.pattern_at(stack.offset(index), 0.0).values
         intensity = nearest.intensity_at(columns, rows, index)
@@ -234,7 +234,7 @@ def test_slices_are_correlated_as_counted_and_as_by_the_law() -> None:
     options = StackOptions("nearest")
     found = []
     for seed in range(seeds):
-        stack = SpeckleStack.generate_with(PupilField.new(256, diameter, seed), path, options)
+        stack = SpeckleStack.generate(PupilField(256, diameter, seed), path, options)
         intensities = [np.abs(stack.coefficients(i)).ravel() ** 2 for i in range(5)]
         found.append(np.corrcoef(intensities))
     mean = np.mean(found, axis=0)
@@ -252,7 +252,7 @@ def test_samples_of_a_look_up_are_exponential_at_every_coordinate() -> None:
     # pattern that lie beyond the first zero of the autocovariance.
     grid = np.arange(0, 64, 9.0)[:7]
     values = np.array([
-        SpeckleStack.generate(PupilField.new(64, 16, seed).with_phasors("gaussian"), CIRCLE)
+        SpeckleStack.generate(PupilField(64, 16, seed).with_phasors("gaussian"), CIRCLE)
         .intensity_at(grid + 0.5, grid[:, np.newaxis] + 0.5, 2.5)
         .ravel()
         for seed in range(300)

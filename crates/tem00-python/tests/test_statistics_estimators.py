@@ -67,7 +67,7 @@ def test_gamma_fits_are_those_of_scipy() -> None:
     assert math.isclose(fit.mean, shape * scale, rel_tol=1e-7)
     by_moments = st.GammaFit.by_moments(SAMPLES)
     assert math.isclose(by_moments.shape, (SAMPLES.mean() / SAMPLES.std(ddof=1)) ** 2)
-    assert fit.law() == st.GammaIntensity.new(fit.shape)
+    assert fit.law() == st.GammaIntensity(fit.shape)
     # Information of the shape: n (ψ′(M) − 1/M).
     from scipy.special import polygamma
 
@@ -216,7 +216,7 @@ def test_rounded_samples_are_compared_at_the_edges_of_their_levels() -> None:
     # The edges are few, the distance at them no larger than that of the light itself.
     assert fit.kolmogorov_smirnov().p_value >= scipy_stats.kstest(light, law).pvalue - 0.02
     assert fit.chi_squared(1).p_value > 1e-3
-    plain = st.GoodnessOfFit.new(light, law)
+    plain = st.GoodnessOfFit(light, law)
     assert plain.kolmogorov_smirnov() == st.kolmogorov_smirnov(light, law)
     # Mean and contrast of a rounded exponential, summed.
     n = np.arange(400)

@@ -48,12 +48,12 @@ def test_speckle_has_the_exponential_law() -> None:
 @pytest.mark.parametrize("shape", [1.0, 1.5, 4.0, 37.0, 1e3])
 def test_averaged_speckle_has_the_gamma_law(shape: float) -> None:
     # M ln M is good to an ulp of itself: 1e3 · 7 · 2e-16 · the density of 13.
-    check(st.GammaIntensity.new(shape), scipy_stats.gamma(shape, scale=1 / shape), 1e-10)
+    check(st.GammaIntensity(shape), scipy_stats.gamma(shape, scale=1 / shape), 1e-10)
 
 
 @pytest.mark.parametrize("degree", [0.2, 0.5, 0.9])
 def test_polarised_parts_add_up_to_their_hypoexponential_law(degree: float) -> None:
-    law = st.PartiallyPolarised.new(degree)
+    law = st.PartiallyPolarised(degree)
     means = [(1 + degree) / 2, (1 - degree) / 2]
     expected = sum(
         sign * np.exp(-INTENSITIES / mean) for sign, mean in zip((1, -1), means)
@@ -61,12 +61,12 @@ def test_polarised_parts_add_up_to_their_hypoexponential_law(degree: float) -> N
     # Cancellation of two terms of the size 1/degree.
     np.testing.assert_allclose(law.density(INTENSITIES), expected, atol=1e-14)
     np.testing.assert_allclose(
-        st.WeightedSum.new(means).density(INTENSITIES), expected, atol=1e-14
+        st.WeightedSum(means).density(INTENSITIES), expected, atol=1e-14
     )
 
 
 def test_equal_patterns_add_up_to_a_gamma_law() -> None:
-    check(st.WeightedSum.new([3.0] * 5), scipy_stats.gamma(5, scale=1 / 5), 1e-12)
+    check(st.WeightedSum([3.0] * 5), scipy_stats.gamma(5, scale=1 / 5), 1e-12)
 
 
 @pytest.mark.parametrize("beam_ratio", [0.0, 0.5, 4.0, 50.0])
@@ -74,7 +74,7 @@ def test_speckle_on_a_background_has_a_non_central_chi_squared_law(beam_ratio: f
     # |√r + gaussian|²: twice its value, in means of the speckle, has two degrees of freedom.
     scale = 1 / (2 * (1 + beam_ratio))
     law = scipy_stats.ncx2(2, 2 * beam_ratio, scale=scale)
-    check(st.CoherentBackground.new(beam_ratio), law, 1e-9)
+    check(st.CoherentBackground(beam_ratio), law, 1e-9)
 
 
 def test_a_phasor_sum_has_the_moments_of_drawn_phasors() -> None:
@@ -87,13 +87,13 @@ def test_a_phasor_sum_has_the_moments_of_drawn_phasors() -> None:
         error = moments.std() / math.sqrt(moments.size)
         # Four standard errors: α = 6e-5.
         assert abs(moments.mean() - st.moment_of_phasor_sum(count, order)) < 4 * error
-    law = st.PhasorSum.new(count)
+    law = st.PhasorSum(count)
     assert scipy_stats.kstest(intensity[:2_000], law.cumulative).pvalue > 1e-3
 
 
 @pytest.mark.parametrize("correlation", [0.0, 0.4, 0.95])
 def test_two_correlated_intensities_have_a_non_central_chi_squared_law(correlation: float) -> None:
-    law = st.JointIntensity.new(correlation)
+    law = st.JointIntensity(correlation)
     share = 1 - correlation**2
     for given in (0.0, 0.7, 5.0):
         noncentrality = 2 * correlation**2 * given / share
@@ -198,7 +198,7 @@ def test_the_contrast_of_exposures_and_filters_is_an_integral(amount: float) -> 
 
 
 def test_a_broad_spectrum_lowers_the_contrast_as_its_wavelengths_average() -> None:
-    spectrum = st.GaussianSpectrum.new(650e-9, 20e-9)
+    spectrum = st.GaussianSpectrum(650e-9, 20e-9)
     spread = st.path_spread_of_reflection(5e-6, (0.2, 0.5))
     assert math.isclose(spread, (math.cos(0.2) + math.cos(0.5)) * 5e-6, rel_tol=1e-15)
     # C² averages the correlation over the difference of two wavelengths, of √2 times the spread.
@@ -214,7 +214,7 @@ def test_a_broad_spectrum_lowers_the_contrast_as_its_wavelengths_average() -> No
 def test_objective_speckle_is_the_transform_of_the_lit_area() -> None:
     wavelength, distance = 650e-9, 2.0
     lags = np.linspace(0, 3e-3, 7)
-    spot = st.ObjectiveSpeckle.new(wavelength, distance, st.LitArea.gaussian_spot(0.5e-3))
+    spot = st.ObjectiveSpeckle(wavelength, distance, st.LitArea.gaussian_spot(0.5e-3))
     w = 0.5e-3
     expected = []
     for lag in lags:
@@ -225,7 +225,7 @@ def test_objective_speckle_is_the_transform_of_the_lit_area() -> None:
         expected.append((field / (w * math.sqrt(math.pi / 2))) ** 2)
     # exp(−32) of the light lies beyond four radii.
     np.testing.assert_allclose(spot.autocovariance((lags, 0.0)), expected, atol=1e-10)
-    sheet = st.ObjectiveSpeckle.new(wavelength, distance, st.LitArea.rectangle(1e-3, 2e-3))
+    sheet = st.ObjectiveSpeckle(wavelength, distance, st.LitArea.rectangle(1e-3, 2e-3))
     # NumPy's sinc has the factor π.
     across = np.sinc(lags / 1.3e-3) ** 2 * np.sinc(lags / 0.65e-3) ** 2
     np.testing.assert_allclose(sheet.autocovariance((lags, lags)), across, atol=1e-14)
@@ -247,25 +247,25 @@ def test_levels_and_sizes_follow_their_formulas() -> None:
 
 SPECKLE = (650e-9, 1.0)
 REFUSALS: list[tuple[Callable[[], object], str]] = [
-    (lambda: st.GammaIntensity.new(0.5), "shape"),
+    (lambda: st.GammaIntensity(0.5), "shape"),
     (lambda: st.GammaIntensity.from_contrast(math.nan), "contrast"),
-    (lambda: st.PartiallyPolarised.new(1.5), "degree"),
-    (lambda: st.WeightedSum.new([1.0, -1.0]), "weights"),
-    (lambda: st.WeightedSum.new([]), "weights"),
-    (lambda: st.CoherentBackground.new(-1.0), "beam_ratio"),
+    (lambda: st.PartiallyPolarised(1.5), "degree"),
+    (lambda: st.WeightedSum([1.0, -1.0]), "weights"),
+    (lambda: st.WeightedSum([]), "weights"),
+    (lambda: st.CoherentBackground(-1.0), "beam_ratio"),
     (lambda: st.CoherentBackground.from_contrast(2.0), "contrast"),
-    (lambda: st.PhasorSum.new(3), "count"),
-    (lambda: st.PhasorSum.new(-3), "count"),
+    (lambda: st.PhasorSum(3), "count"),
+    (lambda: st.PhasorSum(-3), "count"),
     (lambda: st.contrast_of_phasor_sum(0), "count"),
     (lambda: st.moment_of_phasor_sum(0, 1), "count"),
     (lambda: st.moment_of_phasor_sum(4, 21), "order"),
-    (lambda: st.JointIntensity.new(1.0), "amplitude_correlation"),
-    (lambda: st.JointIntensity.new(0.5).moment((2, 21)), "orders"),
-    (lambda: st.GaussianSpectrum.new(0.0, 1e-9), "wavelength"),
-    (lambda: st.GaussianSpectrum.new(1e-9, 650e-9), "linewidth"),
-    (lambda: st.ObjectiveSpeckle.new(0.0, 1.0, st.LitArea.disc(1.0)), "wavelength"),
-    (lambda: st.ObjectiveSpeckle.new(650e-9, math.inf, st.LitArea.disc(1.0)), "distance"),
-    (lambda: st.ObjectiveSpeckle.new(*SPECKLE, st.LitArea.rectangle(1.0, 0.0)), "area"),
+    (lambda: st.JointIntensity(1.0), "amplitude_correlation"),
+    (lambda: st.JointIntensity(0.5).moment((2, 21)), "orders"),
+    (lambda: st.GaussianSpectrum(0.0, 1e-9), "wavelength"),
+    (lambda: st.GaussianSpectrum(1e-9, 650e-9), "linewidth"),
+    (lambda: st.ObjectiveSpeckle(0.0, 1.0, st.LitArea.disc(1.0)), "wavelength"),
+    (lambda: st.ObjectiveSpeckle(650e-9, math.inf, st.LitArea.disc(1.0)), "distance"),
+    (lambda: st.LitArea.rectangle(1.0, 0.0), "height"),
     (lambda: st.contrast_squared_spread(0.0), "speckles_across"),
     (lambda: st.contrast_squared_spread([1.0, -1.0]), "speckles_across"),
     (lambda: st.size_before_pixels(math.nan), "measured"),

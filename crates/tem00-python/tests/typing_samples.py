@@ -15,7 +15,7 @@ INTENSITIES = np.linspace(0.0, 3.0, 7)
 
 def numbers_and_arrays() -> None:
     """Numbers give numbers, arrays give arrays."""
-    law = statistics.GammaIntensity.new(2.0)
+    law = statistics.GammaIntensity(2.0)
     assert_type(law.density(1.0), float)
     assert_type(law.density(INTENSITIES), FloatArray)
     assert_type(law.density([0.5, 1]), FloatArray)
@@ -25,7 +25,7 @@ def numbers_and_arrays() -> None:
     law.density(1j)  # type: ignore[call-overload]
     law.density(None)  # type: ignore[call-overload]
     law.shape = 3.0  # type: ignore[misc]
-    statistics.GammaIntensity(2.0)  # type: ignore[call-arg]
+    statistics.Moments(2.0)  # type: ignore[call-arg]
     statistics.rectangular_pixel_contrast(1.0)  # type: ignore[call-overload]
 
 
@@ -40,7 +40,7 @@ def literals() -> None:
 
 def callbacks() -> None:
     """Distribution functions take an array, correlations a number."""
-    law = statistics.GammaIntensity.new(2.0)
+    law = statistics.GammaIntensity(2.0)
     statistics.kolmogorov_smirnov(INTENSITIES, law.cumulative)
     statistics.kolmogorov_smirnov(INTENSITIES, lambda x: 1 - np.exp(-x))
     statistics.kolmogorov_smirnov(INTENSITIES, 0.5)  # type: ignore[arg-type]
@@ -80,6 +80,6 @@ def structures() -> None:
 def errors() -> None:
     """The error says which parameter it refuses."""
     try:
-        statistics.GammaIntensity.new(0.0)
+        statistics.GammaIntensity(0.0)
     except ParameterError as error:
         assert_type(error.parameter, str)

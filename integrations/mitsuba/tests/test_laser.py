@@ -127,7 +127,7 @@ def placed_line(laser: Any, properties: Scene) -> beam.LineLight:
     profile = profiles[properties.get("profile", "gaussian")]
     origin, axes = frame(laser)
     placement = beam.Placement(origin=origin, direction=axes[2], fan_axis=axes[0])
-    return beam.LineLight.place(beam.LaserLine.new(focus, fan, profile), placement, POWER)
+    return beam.LineLight.place(beam.LaserLine(focus, fan, profile), placement, POWER)
 
 
 @pytest.mark.parametrize(

@@ -48,7 +48,7 @@ def stack(seed: int, speckle_size: float = 4.0) -> patterns.SpeckleStack:
         image=size, region=size, speckle_size=speckle_size, motion=None, frames=1,
         memory_limit=1 << 30,
     )
-    return patterns.StackPlan.new(needs).stack(seed, patterns.StackOptions())
+    return patterns.StackPlan(needs).stack(seed, patterns.StackOptions())
 
 
 def test_without_speckle_it_is_mitsubas_path_tracer() -> None:
@@ -148,14 +148,14 @@ def test_between_two_slices_the_pattern_is_that_of_the_stack(
     ],
 )
 def test_a_pattern_of_a_given_size_is_square(words: Scene, sizes: tuple[int, int]) -> None:
-    field = patterns.PupilField.new(*sizes, seed=SEED_STEP)
+    field = patterns.PupilField(*sizes, seed=SEED_STEP)
     pattern = patterns.SpeckleStack.generate(field, patterns.SlicePath.still())
     expected = look_up(pattern)
     np.testing.assert_allclose(factor(integrator=speckle(**words)), expected, atol=TOLERANCE)
 
 
 def test_a_stack_from_a_file_is_that_of_the_first_laser(tmp_path: Path) -> None:
-    field = patterns.PupilField.new(96, 40, seed=11)
+    field = patterns.PupilField(96, 40, seed=11)
     pattern = patterns.SpeckleStack.generate(field, patterns.SlicePath.circle(half_period=3))
     file = tmp_path / "pattern.stack"
     pattern.write_to(file)
@@ -176,7 +176,7 @@ def test_each_laser_has_a_pattern_of_its_own() -> None:
 
 
 def test_lasers_that_share_a_file_look_it_up_far_apart(tmp_path: Path) -> None:
-    field = patterns.PupilField.new(96, 40, seed=11)
+    field = patterns.PupilField(96, 40, seed=11)
     pattern = patterns.SpeckleStack.generate(field, patterns.SlicePath.still())
     pattern.write_to(tmp_path / "pattern.stack")
     second = scenes.spot(to_world=scenes.looking([-0.1, 0, 0.1732], [0, 0, 0], [0, 1, 0]))

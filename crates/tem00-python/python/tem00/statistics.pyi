@@ -165,8 +165,7 @@ def t_test_mean(samples: RealArray, mean: float) -> TestOutcome: ...
 
 @final
 class GammaIntensity:
-    @staticmethod
-    def new(shape: float) -> GammaIntensity: ...
+    def __new__(cls, shape: float) -> GammaIntensity: ...
     @staticmethod
     def from_contrast(contrast: float) -> GammaIntensity: ...
     @property
@@ -187,8 +186,7 @@ class GammaIntensity:
 
 @final
 class PartiallyPolarised:
-    @staticmethod
-    def new(degree: float) -> PartiallyPolarised: ...
+    def __new__(cls, degree: float) -> PartiallyPolarised: ...
     @property
     def degree(self) -> float: ...
     @property
@@ -207,8 +205,7 @@ class PartiallyPolarised:
 
 @final
 class WeightedSum:
-    @staticmethod
-    def new(weights: Vector) -> WeightedSum: ...
+    def __new__(cls, weights: Vector) -> WeightedSum: ...
     @property
     def contrast(self) -> float: ...
     @overload
@@ -225,8 +222,7 @@ class WeightedSum:
 
 @final
 class CoherentBackground:
-    @staticmethod
-    def new(beam_ratio: float) -> CoherentBackground: ...
+    def __new__(cls, beam_ratio: float) -> CoherentBackground: ...
     @staticmethod
     def from_contrast(contrast: float) -> CoherentBackground: ...
     @property
@@ -247,8 +243,7 @@ class CoherentBackground:
 
 @final
 class PhasorSum:
-    @staticmethod
-    def new(count: int) -> PhasorSum: ...
+    def __new__(cls, count: int) -> PhasorSum: ...
     @property
     def count(self) -> int: ...
     @property
@@ -267,8 +262,7 @@ class PhasorSum:
 
 @final
 class JointIntensity:
-    @staticmethod
-    def new(amplitude_correlation: float) -> JointIntensity: ...
+    def __new__(cls, amplitude_correlation: float) -> JointIntensity: ...
     @property
     def amplitude_correlation(self) -> float: ...
     @property
@@ -300,8 +294,7 @@ class JointIntensity:
 
 @final
 class GaussianSpectrum:
-    @staticmethod
-    def new(wavelength: float, linewidth: float) -> GaussianSpectrum: ...
+    def __new__(cls, wavelength: float, linewidth: float) -> GaussianSpectrum: ...
     @property
     def wavelength(self) -> float: ...
     @property
@@ -334,8 +327,7 @@ class LitArea:
 
 @final
 class ObjectiveSpeckle:
-    @staticmethod
-    def new(wavelength: float, distance: float, area: LitArea) -> ObjectiveSpeckle: ...
+    def __new__(cls, wavelength: float, distance: float, area: LitArea) -> ObjectiveSpeckle: ...
     @property
     def size(self) -> tuple[float, float]: ...
     @property
@@ -494,8 +486,7 @@ class GreyLevels:
 
 @final
 class GoodnessOfFit:
-    @staticmethod
-    def new(samples: RealArray, cumulative: _Cumulative) -> GoodnessOfFit: ...
+    def __new__(cls, samples: RealArray, cumulative: _Cumulative) -> GoodnessOfFit: ...
     @staticmethod
     def of_rounded(
         samples: RealArray, levels: GreyLevels, cumulative: _Cumulative

@@ -104,7 +104,7 @@ impl Numbers<'_> {
         match self.values()?.iter().find(|&&value| !is_allowed(value)) {
             Some(bad) => Err(refused(
                 name,
-                format!("{name} must be {allowed}, got {bad}"),
+                format!("{name} must be {allowed}, got {bad:?}"),
             )),
             None => Ok(()),
         }
@@ -125,6 +125,19 @@ impl Numbers<'_> {
             .try_into()
             .map_err(|_| PyValueError::new_err("a component is missing"))
     }
+}
+
+/// Returns a length in metres that is positive and finite.
+///
+/// # Errors
+///
+/// Refuses the argument of this name if it is not.
+pub(crate) fn length(name: &'static str, value: f64) -> PyResult<f64> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(value);
+    }
+    let message = format!("{name} must be positive and finite, got {value:?} m");
+    Err(refused(name, message))
 }
 
 /// A number of things, as an argument of a function.

@@ -105,23 +105,18 @@ impl ThickLens {
 /// ... )
 /// >>> round(expander.a, 12)
 /// -4.0
+///
+/// Parameters
+/// ----------
+/// a, b, c, d : float
+///     Entries of the matrix; ``b`` is in metres and ``c`` in 1/m.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AbcdMatrix(pub(super) physics::AbcdMatrix);
 
 #[pymethods]
 impl AbcdMatrix {
-    /// Return the matrix with the rows (a, b) and (c, d).
-    ///
-    /// Parameters
-    /// ----------
-    /// a, b, c, d : float
-    ///     Entries of the matrix; ``b`` is in metres and ``c`` in 1/m.
-    ///
-    /// Returns
-    /// -------
-    /// AbcdMatrix
-    #[staticmethod]
+    #[new]
     fn new(a: f64, b: f64, c: f64, d: f64) -> PyResult<Self> {
         for (name, entry) in [("a", a), ("b", b), ("c", c), ("d", d)] {
             if !entry.is_finite() {

@@ -20,23 +20,18 @@ use crate::{
 ///
 /// Two principal axes at right angles, each with its own waist, place of the waist and M². The beam
 /// travels along +z from the reference plane z = 0, the aperture.
+///
+/// Parameters
+/// ----------
+/// x, y : LocatedBeam
+///     The beams along x and along y, of one wavelength.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AstigmaticBeam(pub(super) physics::AstigmaticBeam);
 
 #[pymethods]
 impl AstigmaticBeam {
-    /// Return the beam of two axes, the first one along x and the second one along y.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y : LocatedBeam
-    ///     The beams along x and along y, of one wavelength.
-    ///
-    /// Returns
-    /// -------
-    /// AstigmaticBeam
-    #[staticmethod]
+    #[new]
     fn new(x: &LocatedBeam, y: &LocatedBeam) -> PyResult<Self> {
         let beam = physics::AstigmaticBeam::new(x.0, y.0);
         Ok(Self(beam.or_raise_as(&[("wavelength", "y")])?))
@@ -295,7 +290,7 @@ impl AstigmaticBeam {
     fn __repr__(&self) -> String {
         let (x, y) = self.axes();
         let (x, y, rotation) = (x.__repr__(), y.__repr__(), self.0.rotation());
-        format!("AstigmaticBeam(x={x}, y={y}, rotation={rotation:?})")
+        format!("AstigmaticBeam(x={x}, y={y}).with_rotation({rotation:?})")
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {

@@ -16,24 +16,19 @@ use crate::{arrays::Numbers, error::OrRaise};
 ///
 /// A ray enters at the position ``x = (x, y)``, in metres, with the slope ``s = (s_x, s_y)`` and leaves
 /// with ``x' = A x + B s`` and ``s' = C x + D s``. Slopes are not multiplied by a refractive index.
+///
+/// Parameters
+/// ----------
+/// blocks : array_like, shape (2, 2, 2, 2)
+///     The blocks ``[[A, B], [C, D]]``, each 2 × 2; ``B`` is in metres, ``C`` in 1/m. Together they
+///     must be symplectic up to the ratio of the refractive indices.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AstigmaticSystem(pub(super) physics::AstigmaticSystem);
 
 #[pymethods]
 impl AstigmaticSystem {
-    /// Return the system of the blocks of its matrix.
-    ///
-    /// Parameters
-    /// ----------
-    /// blocks : array_like, shape (2, 2, 2, 2)
-    ///     The blocks ``[[A, B], [C, D]]``, each 2 × 2; ``B`` is in metres, ``C`` in 1/m. Together they
-    ///     must be symplectic up to the ratio of the refractive indices.
-    ///
-    /// Returns
-    /// -------
-    /// AstigmaticSystem
-    #[staticmethod]
+    #[new]
     fn new(blocks: [[[[f64; 2]; 2]; 2]; 2]) -> PyResult<Self> {
         let blocks = blocks.map(|row| row.map(matrix_of));
         let system = physics::AstigmaticSystem::new(blocks);

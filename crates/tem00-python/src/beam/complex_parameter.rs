@@ -17,6 +17,13 @@ use crate::{
 ///
 /// It knows neither wavelength nor M²; together with the effective wavelength ``M² λ`` it also says
 /// how wide the beam is.
+///
+/// Parameters
+/// ----------
+/// distance_from_waist : float
+///     Signed distance past the waist, in metres, within ±1e30; negative where the beam converges.
+/// rayleigh_range : float
+///     Rayleigh range, in metres, from 1e-100 to 1e100.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ComplexBeamParameter(pub(super) physics::ComplexBeamParameter);
@@ -24,19 +31,7 @@ pub(crate) struct ComplexBeamParameter(pub(super) physics::ComplexBeamParameter)
 #[expect(clippy::wrong_self_convention, reason = "Python objects are borrowed")]
 #[pymethods]
 impl ComplexBeamParameter {
-    /// Return the parameter ``z + i z_R``.
-    ///
-    /// Parameters
-    /// ----------
-    /// distance_from_waist : float
-    ///     Signed distance past the waist, in metres, within ±1e30; negative where the beam converges.
-    /// rayleigh_range : float
-    ///     Rayleigh range, in metres, from 1e-100 to 1e100.
-    ///
-    /// Returns
-    /// -------
-    /// ComplexBeamParameter
-    #[staticmethod]
+    #[new]
     fn new(distance_from_waist: f64, rayleigh_range: f64) -> PyResult<Self> {
         let parameter = physics::ComplexBeamParameter::new(distance_from_waist, rayleigh_range);
         let names = [("waist_distance", "distance_from_waist")];
@@ -152,6 +147,6 @@ impl ComplexBeamParameter {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         let parts = (self.0.distance_from_waist(), self.0.rayleigh_range());
-        by_constructor::<Self>(py, "new", parts)
+        by_constructor::<Self>(py, "__call__", parts)
     }
 }

@@ -14,23 +14,18 @@ use crate::{
 ///
 /// The principal axes of the distribution are x and y, its centre is the origin. Powers are fractions
 /// of the whole, from 0 to 1; an aperture of negative size holds nothing.
+///
+/// Parameters
+/// ----------
+/// radii : (float, float)
+///     Principal radii (1/e²) along x and y, in metres, from 1e-30 to 1e30.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CrossSection(pub(super) physics::CrossSection);
 
 #[pymethods]
 impl CrossSection {
-    /// Return the cross-section of two principal radii.
-    ///
-    /// Parameters
-    /// ----------
-    /// radii : (float, float)
-    ///     Principal radii (1/e²) along x and y, in metres, from 1e-30 to 1e30.
-    ///
-    /// Returns
-    /// -------
-    /// CrossSection
-    #[staticmethod]
+    #[new]
     fn new(radii: [f64; 2]) -> PyResult<Self> {
         let section = physics::CrossSection::new(radii);
         Ok(Self(section.or_raise_as(&[("radius", "radii")])?))
@@ -257,6 +252,6 @@ impl CrossSection {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.0.radii(),))
+        by_constructor::<Self>(py, "__call__", (self.0.radii(),))
     }
 }

@@ -60,32 +60,27 @@ impl From<physics::Estimate> for Estimate {
 /// The model is ``w(z) = √(w₀² + δ² (z − z₀)²)``, and ``M² = π w₀ δ / λ``. The radii count with errors
 /// proportional to the radius; ``with_errors`` takes other assumptions. M² is not confined to 1 and
 /// above: noise may bring it below.
+///
+/// Parameters
+/// ----------
+/// wavelength : float
+///     Wavelength in metres.
+/// positions : array_like, shape (n,)
+///     Positions along the beam, in metres; at least 4.
+/// radii : array_like, shape (n,)
+///     Second-moment radii there, half of D4σ, in metres.
+///
+/// Raises
+/// ------
+/// FitError
+///     If the data do not determine a beam.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CausticFit(physics::CausticFit);
 
 #[pymethods]
 impl CausticFit {
-    /// Return the fit with errors proportional to the radius.
-    ///
-    /// Parameters
-    /// ----------
-    /// wavelength : float
-    ///     Wavelength in metres.
-    /// positions : array_like, shape (n,)
-    ///     Positions along the beam, in metres; at least 4.
-    /// radii : array_like, shape (n,)
-    ///     Second-moment radii there, half of D4σ, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// CausticFit
-    ///
-    /// Raises
-    /// ------
-    /// FitError
-    ///     If the data do not determine a beam.
-    #[staticmethod]
+    #[new]
     fn new(wavelength: f64, positions: Numbers<'_>, radii: Numbers<'_>) -> PyResult<Self> {
         Self::with_errors(wavelength, positions, radii, Errors::Relative)
     }
@@ -210,30 +205,25 @@ impl CausticFit {
 /// A Gaussian beam fitted to the power that passes a knife edge moved across it.
 ///
 /// The model is ``P(x) = P₀/2 · erfc(±√2 (x − x₀) / w)``; ``with_background`` adds a constant.
+///
+/// Parameters
+/// ----------
+/// positions : array_like, shape (n,)
+///     Positions of the edge, in metres; at least 4.
+/// powers : array_like, shape (n,)
+///     Power that passes there, in any unit.
+///
+/// Raises
+/// ------
+/// FitError
+///     If the data do not determine a beam.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct KnifeEdgeFit(physics::KnifeEdgeFit);
 
 #[pymethods]
 impl KnifeEdgeFit {
-    /// Return the fit without a background.
-    ///
-    /// Parameters
-    /// ----------
-    /// positions : array_like, shape (n,)
-    ///     Positions of the edge, in metres; at least 4.
-    /// powers : array_like, shape (n,)
-    ///     Power that passes there, in any unit.
-    ///
-    /// Returns
-    /// -------
-    /// KnifeEdgeFit
-    ///
-    /// Raises
-    /// ------
-    /// FitError
-    ///     If the data do not determine a beam.
-    #[staticmethod]
+    #[new]
     fn new(positions: Numbers<'_>, powers: Numbers<'_>) -> PyResult<Self> {
         let (positions, powers) = (list("positions", &positions)?, list("powers", &powers)?);
         let fit = physics::KnifeEdgeFit::new(positions, powers);

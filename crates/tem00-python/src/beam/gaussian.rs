@@ -316,8 +316,8 @@ impl GaussianBeam {
     /// Parameters
     /// ----------
     /// radius, z : float or array_like
-    ///     Distance from the axis and signed distance from the waist, in metres; they broadcast
-    ///     together.
+    ///     Distance from the axis, 0 or more, and signed distance from the waist, in metres; they
+    ///     broadcast together.
     ///
     /// Returns
     /// -------
@@ -329,6 +329,7 @@ impl GaussianBeam {
         radius: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        radius.not_negative("radius")?;
         map(py, [("radius", &radius), ("z", &z)], |[radius, z]| {
             self.0.encircled_power(radius, z)
         })
@@ -336,10 +337,13 @@ impl GaussianBeam {
 
     pub(super) fn __repr__(&self) -> String {
         let (wavelength, waist_radius) = (self.0.wavelength(), self.0.waist_radius());
-        let m_squared = self.0.m_squared();
+        let m_squared = match self.0.m_squared() {
+            1.0 => String::new(),
+            m_squared => format!(".with_m_squared({m_squared:?})"),
+        };
         format!(
-            "GaussianBeam(wavelength={wavelength:?}, waist_radius={waist_radius:?}, \
-             m_squared={m_squared:?})"
+            "GaussianBeam.from_waist(wavelength={wavelength:?}, \
+             waist_radius={waist_radius:?}){m_squared}"
         )
     }
 

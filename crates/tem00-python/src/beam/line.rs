@@ -121,26 +121,21 @@ impl<'py> FromPyObject<'_, 'py> for FocusCurve {
 ///
 /// The light travels along +z, z = 0 is the lens, the fan opens along x and its plane has the normal
 /// y. The fan diverges from a virtual apex behind the lens. Points at z < 0 receive nothing.
+///
+/// Parameters
+/// ----------
+/// focus : GaussianBeam
+///     The beam across the fan.
+/// fan : FanGeometry
+/// profile : LineProfile
+///     How the power is spread along the fan.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LaserLine(pub(super) physics::LaserLine);
 
 #[pymethods]
 impl LaserLine {
-    /// Return the line of a beam, a fan and a profile.
-    ///
-    /// Parameters
-    /// ----------
-    /// focus : GaussianBeam
-    ///     The beam across the fan.
-    /// fan : FanGeometry
-    /// profile : LineProfile
-    ///     How the power is spread along the fan.
-    ///
-    /// Returns
-    /// -------
-    /// LaserLine
-    #[staticmethod]
+    #[new]
     fn new(focus: &GaussianBeam, fan: &FanGeometry, profile: &LineProfile) -> PyResult<Self> {
         let line = physics::LaserLine::new(focus.0, fan.0, profile.0.clone());
         Ok(Self(line.or_raise()?))
@@ -385,7 +380,7 @@ impl LaserLine {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.focus(), self.fan(), self.profile()))
+        by_constructor::<Self>(py, "__call__", (self.focus(), self.fan(), self.profile()))
     }
 }
 

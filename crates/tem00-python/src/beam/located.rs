@@ -20,24 +20,19 @@ use crate::{
 /// The beam travels along +z, z = 0 is the reference plane, and the waist lies at
 /// ``z = waist_distance``: positive where it is still to come, negative where it has been passed or
 /// is virtual.
+///
+/// Parameters
+/// ----------
+/// beam : GaussianBeam
+/// waist_distance : float
+///     Signed distance from the reference plane to the waist, in metres, within ±1e30.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LocatedBeam(pub(super) physics::LocatedBeam);
 
 #[pymethods]
 impl LocatedBeam {
-    /// Return the beam whose waist lies at a distance from the reference plane.
-    ///
-    /// Parameters
-    /// ----------
-    /// beam : GaussianBeam
-    /// waist_distance : float
-    ///     Signed distance from the reference plane to the waist, in metres, within ±1e30.
-    ///
-    /// Returns
-    /// -------
-    /// LocatedBeam
-    #[staticmethod]
+    #[new]
     fn new(beam: &GaussianBeam, waist_distance: f64) -> PyResult<Self> {
         Ok(Self(
             physics::LocatedBeam::new(beam.0, waist_distance).or_raise()?,
@@ -128,6 +123,6 @@ impl LocatedBeam {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.beam(), self.0.waist_distance()))
+        by_constructor::<Self>(py, "__call__", (self.beam(), self.0.waist_distance()))
     }
 }

@@ -276,26 +276,21 @@ fn printed_events(
 ///
 /// The factor that a change of variable brings is missing, so that the power on a plane is
 /// ``power_per_watt`` instead of 1.
+///
+/// Parameters
+/// ----------
+/// focus : GaussianBeam
+/// fan_angle : float
+///     Full fan angle, in radians, in (0, π).
+/// focus_distance : float
+///     Distance from the emitter to the waist, in metres.
 #[pyclass(frozen, eq, module = "tem00.beam.paper")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PrintedFan(physics::paper::PrintedFan);
 
 #[pymethods]
 impl PrintedFan {
-    /// Return the fan of a beam.
-    ///
-    /// Parameters
-    /// ----------
-    /// focus : GaussianBeam
-    /// fan_angle : float
-    ///     Full fan angle, in radians, in (0, π).
-    /// focus_distance : float
-    ///     Distance from the emitter to the waist, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// PrintedFan
-    #[staticmethod]
+    #[new]
     fn new(focus: &GaussianBeam, fan_angle: f64, focus_distance: f64) -> PyResult<Self> {
         let fan = physics::paper::PrintedFan::new(focus.0, fan_angle, focus_distance);
         Ok(Self(fan.or_raise()?))
@@ -345,26 +340,21 @@ impl PrintedFan {
 ///
 /// It does not sample the beam: taken literally its mean on a plane has the unit W·sr, and light is
 /// lost.
+///
+/// Parameters
+/// ----------
+/// beam : GaussianBeam
+/// waist_distance : float
+///     Signed distance from the aperture to the waist, in metres.
+/// l : float
+///     Fraction of the peak that the cone reaches down to, in (0, 1).
 #[pyclass(frozen, eq, module = "tem00.beam.paper")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct DiscConeSampler(physics::paper::DiscConeSampler);
 
 #[pymethods]
 impl DiscConeSampler {
-    /// Return the sampler of a beam.
-    ///
-    /// Parameters
-    /// ----------
-    /// beam : GaussianBeam
-    /// waist_distance : float
-    ///     Signed distance from the aperture to the waist, in metres.
-    /// l : float
-    ///     Fraction of the peak that the cone reaches down to, in (0, 1).
-    ///
-    /// Returns
-    /// -------
-    /// DiscConeSampler
-    #[staticmethod]
+    #[new]
     fn new(beam: &GaussianBeam, waist_distance: f64, l: f64) -> PyResult<Self> {
         let sampler = physics::paper::DiscConeSampler::new(&beam.0, waist_distance, l);
         Ok(Self(sampler.or_raise()?))

@@ -122,7 +122,7 @@ impl Axis {
             z0,
             ..
         } = self.0;
-        format!("Axis(w0_sq={w0_sq:?}, theta_sq={theta_sq:?}, z0={z0:?})")
+        format!("<Axis: w0_sq={w0_sq:?}, theta_sq={theta_sq:?}, z0={z0:?}>")
     }
 }
 
@@ -153,6 +153,6 @@ impl Ellipse {
 
     fn __repr__(&self) -> String {
         let physics::Ellipse { xx, xy, yy, .. } = self.0;
-        format!("Ellipse(xx={xx:?}, xy={xy:?}, yy={yy:?})")
+        format!("<Ellipse: xx={xx:?}, xy={xy:?}, yy={yy:?}>")
     }
 }

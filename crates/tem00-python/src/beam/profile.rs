@@ -118,25 +118,20 @@ impl LineProfile {
 ///
 /// Between the angles of the table the power per angle is linear, outside them there is none. Its
 /// integral is normalised to 1.
+///
+/// Parameters
+/// ----------
+/// angles : array_like, shape (n,)
+///     Ascending angles from the axis, in radians, in (-π/2, π/2); at least 2.
+/// powers : array_like, shape (n,)
+///     Power per angle at each of them, in any unit; not negative, and not all 0.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct AngularProfile(pub(super) physics::AngularProfile);
 
 #[pymethods]
 impl AngularProfile {
-    /// Return the profile of a table.
-    ///
-    /// Parameters
-    /// ----------
-    /// angles : array_like, shape (n,)
-    ///     Ascending angles from the axis, in radians, in (-π/2, π/2); at least 2.
-    /// powers : array_like, shape (n,)
-    ///     Power per angle at each of them, in any unit; not negative, and not all 0.
-    ///
-    /// Returns
-    /// -------
-    /// AngularProfile
-    #[staticmethod]
+    #[new]
     fn new(angles: Numbers<'_>, powers: Numbers<'_>) -> PyResult<Self> {
         let (angles, powers) = (list("angles", &angles)?, list("powers", &powers)?);
         let profile = physics::AngularProfile::new(angles, powers);
@@ -204,7 +199,7 @@ impl AngularProfile {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", self.columns())
+        by_constructor::<Self>(py, "__call__", self.columns())
     }
 }
 

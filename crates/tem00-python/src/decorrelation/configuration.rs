@@ -12,29 +12,28 @@ use crate::{arrays::Numbers, error::OrRaise};
 /// A point of a rough surface, its light and its camera, all in the world: one state of a scene.
 ///
 /// One state is made with `new`, the other from it, by moving the bodies or changing the light.
+///
+/// Parameters
+/// ----------
+/// wavelength : float
+///     Vacuum wavelength of the light in metres.
+/// point : array of shape (3,)
+///     Position of the surface point in metres.
+/// normal : array of shape (3,)
+///     Normal of the surface, of any length and to either side.
+/// illumination : Illumination
+///     The light on the surface.
+/// camera : CameraFrame
+///     Orientation of the camera.
+/// pupil : array of shape (3,)
+///     Position of the centre of the entrance pupil in metres.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Configuration(pub(super) physics::Configuration);
 
 #[pymethods]
 impl Configuration {
-    /// Return a state of the scene.
-    ///
-    /// Parameters
-    /// ----------
-    /// wavelength : float
-    ///     Vacuum wavelength of the light in metres.
-    /// point : array of shape (3,)
-    ///     Position of the surface point in metres.
-    /// normal : array of shape (3,)
-    ///     Normal of the surface, of any length and to either side.
-    /// illumination : Illumination
-    ///     The light on the surface.
-    /// camera : CameraFrame
-    ///     Orientation of the camera.
-    /// pupil : array of shape (3,)
-    ///     Position of the centre of the entrance pupil in metres.
-    #[staticmethod]
+    #[new]
     #[pyo3(signature = (*, wavelength, point, normal, illumination, camera, pupil))]
     fn new(
         wavelength: f64,
@@ -149,7 +148,7 @@ impl Configuration {
     fn __repr__(&self) -> String {
         let (point, pupil) = (shown(self.0.point()), shown(self.0.pupil()));
         format!(
-            "Configuration(wavelength={:?}, point={point}, pupil={pupil})",
+            "<Configuration: wavelength={:?}, point={point}, pupil={pupil}>",
             self.0.wavelength()
         )
     }

@@ -157,7 +157,7 @@ impl FieldLight {
             Light::PointSource(position) => {
                 format!("FieldLight.point_source({})", shown(*position))
             }
-            Light::Curvature(_) => "FieldLight.curvature(...)".to_owned(),
+            Light::Curvature(_) => "<FieldLight: curvature tensors>".to_owned(),
         }
     }
 }
@@ -210,11 +210,16 @@ impl FieldSlices {
     }
 
     fn __repr__(&self) -> String {
-        format!("FieldSlices(correlation={})", self.0[4])
+        format!("<FieldSlices: correlation={}>", self.0[4])
     }
 }
 
 /// What motions do to the speckle at many surface points, such as those behind the pixels.
+///
+/// Parameters
+/// ----------
+/// setup : `FieldSetup`
+///     What all points share; the surface moves alone.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MotionField {
@@ -224,8 +229,7 @@ pub(crate) struct MotionField {
 
 #[pymethods]
 impl MotionField {
-    /// Return a field in which the surface moves alone.
-    #[staticmethod]
+    #[new]
     fn new(setup: PyRef<'_, FieldSetup>) -> PyResult<Self> {
         let field = physics::MotionField::new(setup.setup).or_raise()?;
         let setup = *setup;
@@ -292,7 +296,7 @@ impl MotionField {
     }
 
     fn __repr__(&self) -> String {
-        format!("MotionField.new({})", self.setup.__repr__())
+        format!("MotionField({})", self.setup.__repr__())
     }
 }
 

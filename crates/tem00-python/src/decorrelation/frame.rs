@@ -73,21 +73,20 @@ impl CameraFrame {
 }
 
 /// The line from a surface point to the centre of the pupil, in the frame of the camera.
+///
+/// Parameters
+/// ----------
+/// camera : CameraFrame
+///     Orientation of the camera.
+/// to_pupil : array of shape (3,)
+///     Vector from the surface point to the centre of the pupil, in metres.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LineOfSight(pub(super) physics::LineOfSight);
 
 #[pymethods]
 impl LineOfSight {
-    /// Return the line of sight along the vector from the surface point to the pupil.
-    ///
-    /// Parameters
-    /// ----------
-    /// camera : CameraFrame
-    ///     Orientation of the camera.
-    /// to_pupil : array of shape (3,)
-    ///     Vector from the surface point to the centre of the pupil, in metres.
-    #[staticmethod]
+    #[new]
     fn new(camera: PyRef<'_, CameraFrame>, to_pupil: Numbers<'_>) -> PyResult<Self> {
         let sight = physics::LineOfSight::new(&camera.0, vec3("to_pupil", &to_pupil)?);
         Ok(Self(sight.or_raise()?))
@@ -136,7 +135,7 @@ impl LineOfSight {
     fn __repr__(&self) -> String {
         let direction = shown(self.0.direction());
         format!(
-            "LineOfSight(direction={direction}, distance={:?})",
+            "<LineOfSight: direction={direction}, distance={:?}>",
             self.0.distance()
         )
     }

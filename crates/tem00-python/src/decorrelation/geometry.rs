@@ -4,7 +4,7 @@ use tem00_decorrelation::{self as physics, DVec2};
 use super::lens::{LensData, PupilDistances, ThickLensData};
 use crate::{
     arrays::{Numbers, map, map_many},
-    error::{OrRaise, refused},
+    error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
 
@@ -192,12 +192,13 @@ impl ImagingGeometry {
         self.geometry.sensor_depth_of_focus()
     }
 
-    /// Return the axial decorrelation length of points at depths before the pupil, in metres.
+    /// Return the axial decorrelation length of points at positive depths before the pupil, in metres.
     fn axial_decorrelation_length_at<'py>(
         &self,
         py: Python<'py>,
         depth: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        depth.positive("depth")?;
         map(py, [("depth", &depth)], |[z]| {
             self.geometry.axial_decorrelation_length_at(z)
         })
@@ -210,10 +211,7 @@ impl ImagingGeometry {
     /// depth : float or array
     ///     Depth in metres, positive.
     fn defocus_at<'py>(&self, py: Python<'py>, depth: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        if let Some(bad) = depth.values()?.iter().find(|&&depth| depth <= 0.0) {
-            let message = format!("depth must be positive, got {bad:e} m");
-            return Err(refused("depth", message));
-        }
+        depth.positive("depth")?;
         map(py, [("depth", &depth)], |[z]| self.geometry.defocus_at(z))
     }
 

@@ -83,23 +83,22 @@ impl Motion {
 }
 
 /// A point of a rough surface, as the camera sees it and as the laser lights it.
+///
+/// Parameters
+/// ----------
+/// sight : LineOfSight
+///     Line of sight to the point.
+/// normal : array of shape (3,)
+///     Normal of the surface, of any length and to either side.
+/// wavefront : Wavefront
+///     The light on the point.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SurfacePoint(pub(super) physics::SurfacePoint);
 
 #[pymethods]
 impl SurfacePoint {
-    /// Return the point of a line of sight, a normal and the light.
-    ///
-    /// Parameters
-    /// ----------
-    /// sight : LineOfSight
-    ///     Line of sight to the point.
-    /// normal : array of shape (3,)
-    ///     Normal of the surface, of any length and to either side.
-    /// wavefront : Wavefront
-    ///     The light on the point.
-    #[staticmethod]
+    #[new]
     fn new(
         sight: PyRef<'_, LineOfSight>,
         normal: Numbers<'_>,

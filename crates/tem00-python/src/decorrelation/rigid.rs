@@ -10,6 +10,13 @@ use crate::{
 };
 
 /// A rotation and a translation of a rigid body, in world coordinates: x' = R x + t.
+///
+/// Parameters
+/// ----------
+/// rotation : array of shape (3, 3)
+///     Rotation matrix.
+/// translation : array of shape (3,)
+///     Translation in metres.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RigidMotion(pub(super) physics::RigidMotion);
@@ -22,8 +29,7 @@ impl RigidMotion {
         Self(physics::RigidMotion::IDENTITY)
     }
 
-    /// Return the motion of a rotation matrix of shape (3, 3) and a translation in metres.
-    #[staticmethod]
+    #[new]
     fn new(rotation: Numbers<'_>, translation: Numbers<'_>) -> PyResult<Self> {
         let rotation = mat3("rotation", &rotation)?;
         let motion = physics::RigidMotion::new(rotation, vec3("translation", &translation)?);
@@ -94,18 +100,14 @@ impl RigidMotion {
 
     fn __repr__(&self) -> String {
         let (rotation, translation) = (self.0.rotation(), self.0.translation());
-        format!(
-            "RigidMotion.new({}, {})",
-            shown33(rotation),
-            shown(translation)
-        )
+        format!("RigidMotion({}, {})", shown33(rotation), shown(translation))
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         let rows = self.0.rotation().transpose().to_cols_array_2d();
         let rows = rows.map(Vec::from).to_vec();
         let translation = Vec::from(self.0.translation().to_array());
-        by_constructor::<Self>(py, "new", (rows, translation))
+        by_constructor::<Self>(py, "__call__", (rows, translation))
     }
 }
 

@@ -10,25 +10,24 @@ use super::{
 use crate::error::refused;
 
 /// What a motion does to the speckle at one surface point.
+///
+/// Parameters
+/// ----------
+/// geometry : ImagingGeometry
+///     The camera.
+/// point : SurfacePoint
+///     The surface point in the reference state.
+/// motion : Motion
+///     What moved since.
+/// orientation : {"screen_upright", "sensor_inverted"}
+///     Which way up image displacements are counted.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SpeckleMotion(physics::SpeckleMotion);
 
 #[pymethods]
 impl SpeckleMotion {
-    /// Return the motion of the speckle after small translations.
-    ///
-    /// Parameters
-    /// ----------
-    /// geometry : ImagingGeometry
-    ///     The camera.
-    /// point : SurfacePoint
-    ///     The surface point in the reference state.
-    /// motion : Motion
-    ///     What moved since.
-    /// orientation : {"screen_upright", "sensor_inverted"}
-    ///     Which way up image displacements are counted.
-    #[staticmethod]
+    #[new]
     fn new(
         geometry: PyRef<'_, ImagingGeometry>,
         point: PyRef<'_, SurfacePoint>,
@@ -111,7 +110,9 @@ impl SpeckleMotion {
     fn __repr__(&self) -> String {
         let displacement = self.0.speckle_displacement().to_array();
         let correlation = self.0.correlation;
-        format!("SpeckleMotion(speckle_displacement={displacement:?}, correlation={correlation:?})")
+        format!(
+            "<SpeckleMotion: speckle_displacement={displacement:?}, correlation={correlation:?}>"
+        )
     }
 }
 

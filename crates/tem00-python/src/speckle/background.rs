@@ -13,6 +13,13 @@ use crate::{
 };
 
 /// A uniform wave that interferes with the speckle: partially developed speckle.
+///
+/// Parameters
+/// ----------
+/// `beam_ratio` : float
+///     Intensity of the background over the mean of the speckle, 0 to `MAX_BEAM_RATIO`.
+/// phase : float
+///     Phase in radians.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CoherentBackground(physics::CoherentBackground);
@@ -23,15 +30,7 @@ impl CoherentBackground {
     #[classattr]
     const MAX_BEAM_RATIO: f64 = physics::CoherentBackground::MAX_BEAM_RATIO;
 
-    /// Return the background of a beam ratio and a phase.
-    ///
-    /// Parameters
-    /// ----------
-    /// `beam_ratio` : float
-    ///     Intensity of the background over the mean of the speckle, 0 to `MAX_BEAM_RATIO`.
-    /// phase : float
-    ///     Phase in radians.
-    #[staticmethod]
+    #[new]
     fn new(beam_ratio: f64, phase: f64) -> PyResult<Self> {
         let background = physics::CoherentBackground::new(beam_ratio, phase);
         Ok(Self(background.or_raise()?))
@@ -100,11 +99,11 @@ impl CoherentBackground {
 
     fn __repr__(&self) -> String {
         let (ratio, phase) = (self.0.beam_ratio(), self.0.phase());
-        format!("CoherentBackground.new(beam_ratio={ratio}, phase={phase})")
+        format!("CoherentBackground(beam_ratio={ratio}, phase={phase})")
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.0.beam_ratio(), self.0.phase()))
+        by_constructor::<Self>(py, "__call__", (self.0.beam_ratio(), self.0.phase()))
     }
 }
 

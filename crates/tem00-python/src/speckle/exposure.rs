@@ -108,7 +108,7 @@ impl Exposure {
 
     fn __repr__(&self) -> String {
         format!(
-            "<Exposure: image_drift={:?}, pupil_drift={:?}>",
+            "Exposure().with_image_drift({:?}).with_pupil_drift({:?})",
             self.image_drift(),
             self.pupil_drift()
         )

@@ -22,6 +22,15 @@ use parts::{Parts, Source};
 ///
 /// A pupil of C lattice points in diameter selects the points about its centre; their Fourier
 /// transform, with the sign exp(-2 pi i k r / Q), is the speckle field on Q x Q samples.
+///
+/// Parameters
+/// ----------
+/// size : int
+///     Side Q of the pattern in samples.
+/// diameter : int
+///     Diameter C of the pupil in lattice points, 8 to size / 2. Speckles are Q / C samples wide.
+/// seed : int
+///     Seed of the phasors, 0 to 2**64 - 1.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PupilField(pub(super) physics::PupilField);
@@ -38,17 +47,7 @@ impl PupilField {
     #[classattr]
     const MIN_PHASORS: usize = physics::PupilField::MIN_PHASORS;
 
-    /// Return a square field of unit phasors behind a circular pupil.
-    ///
-    /// Parameters
-    /// ----------
-    /// size : int
-    ///     Side Q of the pattern in samples.
-    /// diameter : int
-    ///     Diameter C of the pupil in lattice points, 8 to size / 2. Speckles are Q / C samples wide.
-    /// seed : int
-    ///     Seed of the phasors, 0 to 2**64 - 1.
-    #[staticmethod]
+    #[new]
     fn new(size: Whole<'_>, diameter: Whole<'_>, seed: Whole<'_>) -> PyResult<Self> {
         let (size, diameter) = (size.unsigned("size")?, diameter.unsigned("diameter")?);
         let field = physics::PupilField::new(size, diameter, seed.unsigned("seed")?);
@@ -319,16 +318,32 @@ impl PupilField {
     }
 
     pub(super) fn __repr__(&self) -> String {
-        let source = match self.0.seed() {
-            Some(seed) => format!("seed={seed}, phasors='{}'", self.phasors().unwrap_or("")),
-            None => "samples from outside".to_owned(),
+        let pupil = self.pupil().__repr__();
+        let seeded = self
+            .0
+            .seed()
+            .and_then(|seed| Some((seed, Parts::of(&self.0)?)));
+        let Some((seed, parts)) = seeded else {
+            let (size, diameter) = (self.size(), self.diameter());
+            return format!("<PupilField: size={size:?}, diameter={diameter:?}, pupil={pupil}>");
         };
-        format!(
-            "<PupilField: size={:?}, diameter={:?}, {source}, pupil={}>",
-            self.size(),
-            self.diameter(),
-            self.pupil().__repr__()
-        )
+        let ([width, height], speckle_size) = (parts.size, parts.speckle_size);
+        let mut made = match parts.diameter {
+            Some(diameter) => {
+                format!("PupilField(size={width}, diameter={diameter}, seed={seed})")
+            }
+            None => format!(
+                "PupilField.from_speckle_size(size=({width}, {height}), \
+                 speckle_size={speckle_size:?}, seed={seed})"
+            ),
+        };
+        if let Some(phasors) = self.phasors().filter(|&phasors| phasors != "unit") {
+            made += &format!(".with_phasors('{phasors}')");
+        }
+        if *self.0.pupil() != physics::Pupil::Circle {
+            made += &format!(".with_pupil({pupil})");
+        }
+        made
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Recipe<'py>> {

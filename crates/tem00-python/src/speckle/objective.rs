@@ -6,6 +6,7 @@ use super::{
     field::PupilField,
 };
 use crate::{
+    arrays::length,
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -24,8 +25,9 @@ impl LitArea {
     /// diameter : float
     ///     Diameter in metres.
     #[staticmethod]
-    const fn disc(diameter: f64) -> Self {
-        Self(physics::LitArea::Disc { diameter })
+    fn disc(diameter: f64) -> PyResult<Self> {
+        let diameter = length("diameter", diameter)?;
+        Ok(Self(physics::LitArea::Disc { diameter }))
     }
 
     /// Return a uniformly lit ring.
@@ -35,8 +37,9 @@ impl LitArea {
     /// outer, inner : float
     ///     Outer and inner diameter in metres.
     #[staticmethod]
-    const fn ring(outer: f64, inner: f64) -> Self {
-        Self(physics::LitArea::Ring { outer, inner })
+    fn ring(outer: f64, inner: f64) -> PyResult<Self> {
+        let (outer, inner) = (length("outer", outer)?, length("inner", inner)?);
+        Ok(Self(physics::LitArea::Ring { outer, inner }))
     }
 
     /// Return a uniformly lit rectangle, longer along x than along y or as long.
@@ -46,8 +49,9 @@ impl LitArea {
     /// width, height : float
     ///     Length along x and along y in metres.
     #[staticmethod]
-    const fn rectangle(width: f64, height: f64) -> Self {
-        Self(physics::LitArea::Rectangle { width, height })
+    fn rectangle(width: f64, height: f64) -> PyResult<Self> {
+        let (width, height) = (length("width", width)?, length("height", height)?);
+        Ok(Self(physics::LitArea::Rectangle { width, height }))
     }
 
     /// Return a Gaussian spot, cut off at 2.5 of its radii.
@@ -57,8 +61,9 @@ impl LitArea {
     /// radius : float
     ///     Radius in metres at which the irradiance has fallen to 1/e².
     #[staticmethod]
-    const fn gaussian_spot(radius: f64) -> Self {
-        Self(physics::LitArea::GaussianSpot { radius })
+    fn gaussian_spot(radius: f64) -> PyResult<Self> {
+        let radius = length("radius", radius)?;
+        Ok(Self(physics::LitArea::GaussianSpot { radius }))
     }
 
     fn __repr__(&self) -> String {
@@ -93,23 +98,22 @@ impl LitArea {
 }
 
 /// Speckle without a lens: what a lit area of a rough surface makes on a screen or sensor.
+///
+/// Parameters
+/// ----------
+/// wavelength : float
+///     Wavelength in metres.
+/// distance : float
+///     Distance of the screen in metres.
+/// area : `LitArea`
+///     Area of the surface that is lit.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ObjectiveSpeckle(physics::ObjectiveSpeckle);
 
 #[pymethods]
 impl ObjectiveSpeckle {
-    /// Return the speckle of a wavelength, a distance and a lit area.
-    ///
-    /// Parameters
-    /// ----------
-    /// wavelength : float
-    ///     Wavelength in metres.
-    /// distance : float
-    ///     Distance of the screen in metres.
-    /// area : `LitArea`
-    ///     Area of the surface that is lit.
-    #[staticmethod]
+    #[new]
     fn new(wavelength: f64, distance: f64, area: &LitArea) -> PyResult<Self> {
         let speckle = physics::ObjectiveSpeckle::new(wavelength, distance, area.0);
         Ok(Self(speckle.or_raise()?))
@@ -174,7 +178,7 @@ impl ObjectiveSpeckle {
 
     fn __repr__(&self) -> String {
         format!(
-            "ObjectiveSpeckle.new(wavelength={:e}, distance={}, area={})",
+            "ObjectiveSpeckle(wavelength={:e}, distance={}, area={})",
             self.0.wavelength(),
             self.0.distance(),
             self.area().__repr__()
@@ -183,6 +187,6 @@ impl ObjectiveSpeckle {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         let arguments = (self.0.wavelength(), self.0.distance(), self.area());
-        by_constructor::<Self>(py, "new", arguments)
+        by_constructor::<Self>(py, "__call__", arguments)
     }
 }

@@ -14,6 +14,13 @@ use crate::{
 };
 
 /// The pixels of a sensor on a pattern: boxes of any size at any pitch, in samples.
+///
+/// Parameters
+/// ----------
+/// count : (int, int)
+///     Number of pixels along x and y.
+/// pitch : (float, float)
+///     Distance of neighbours along x and y in samples.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PixelArray(physics::PixelArray);
@@ -27,15 +34,7 @@ impl PixelArray {
     #[classattr]
     const MAX_LENGTH: f64 = physics::PixelArray::MAX_LENGTH;
 
-    /// Return an array of pixels of the size of their pitch, the first about the sample (0, 0).
-    ///
-    /// Parameters
-    /// ----------
-    /// count : (int, int)
-    ///     Number of pixels along x and y.
-    /// pitch : (float, float)
-    ///     Distance of neighbours along x and y in samples.
-    #[staticmethod]
+    #[new]
     fn new(count: [Whole<'_>; 2], pitch: [f64; 2]) -> PyResult<Self> {
         let count = counts("count", &count)?;
         Ok(Self(physics::PixelArray::new(count, pitch).or_raise()?))
@@ -109,7 +108,7 @@ impl PixelArray {
 
     fn __repr__(&self) -> String {
         format!(
-            "<PixelArray: count={:?}, pitch={:?}, size={:?}, origin={:?}>",
+            "PixelArray(count={:?}, pitch={:?}).with_size({:?}).with_origin({:?})",
             self.count(),
             self.pitch(),
             self.size(),

@@ -5,10 +5,16 @@ use pyo3::{
 use tem00_speckle as physics;
 
 use super::{
-    arguments::Whole, field::PupilField, options::StackOptions, path::SlicePath,
+    arguments::{Whole, counts},
+    field::PupilField,
+    options::StackOptions,
+    path::SlicePath,
     stack::SpeckleStack,
 };
-use crate::error::{OrRaise, refused};
+use crate::{
+    error::{OrRaise, refused},
+    pickling::{Recipe, by_constructor},
+};
 
 /// What a stack is to be looked up for.
 ///
@@ -120,6 +126,18 @@ impl StackNeeds {
 
 /// Sizes of a stack that repeats nothing where it is looked up and takes no more memory than that
 /// needs.
+///
+/// Parameters
+/// ----------
+/// needs : `StackNeeds`
+///     What the stack is to be looked up for.
+///
+/// Raises
+/// ------
+/// `ParameterError`
+///     If a value of `needs` is out of range.
+/// `MemoryError`
+///     If not even the smallest stack fits the memory limit.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StackPlan(physics::StackPlan);
@@ -129,22 +147,31 @@ const MOST_PLANS: usize = 1 << 16;
 
 #[pymethods]
 impl StackPlan {
-    /// Return the first of the `candidates` that fits the memory.
+    #[new]
+    fn new(needs: &StackNeeds) -> PyResult<Self> {
+        Ok(Self(physics::StackPlan::new(&needs.0).or_raise()?))
+    }
+
+    /// Return the plan of known sizes.
+    ///
+    /// Whether a pattern can have them is seen by its `field`, as for the `candidates`.
     ///
     /// Parameters
     /// ----------
-    /// needs : `StackNeeds`
-    ///     What the stack is to be looked up for.
-    ///
-    /// Raises
-    /// ------
-    /// `ParameterError`
-    ///     If a value of `needs` is out of range.
-    /// `MemoryError`
-    ///     If not even the smallest stack fits the memory limit.
+    /// size : (int, int)
+    ///     Width and height of the pattern in samples.
+    /// diameter : (int, int)
+    ///     Diameter of the pupil along each axis in lattice points.
+    /// path : `SlicePath`
+    ///     Path of the slices.
     #[staticmethod]
-    fn new(needs: &StackNeeds) -> PyResult<Self> {
-        Ok(Self(physics::StackPlan::new(&needs.0).or_raise()?))
+    fn from_sizes(
+        size: [Whole<'_>; 2],
+        diameter: [Whole<'_>; 2],
+        path: &SlicePath,
+    ) -> PyResult<Self> {
+        let (size, diameter) = (counts("size", &size)?, counts("diameter", &diameter)?);
+        Ok(Self(physics::StackPlan::from_sizes(size, diameter, path.0)))
     }
 
     /// Return the plans for `needs` in the order of their worth, whatever memory they take.
@@ -295,10 +322,15 @@ impl StackPlan {
 
     fn __repr__(&self) -> String {
         format!(
-            "<StackPlan: size={:?}, diameter={:?}, path={}>",
+            "StackPlan.from_sizes(size={:?}, diameter={:?}, path={})",
             self.size(),
             self.diameter(),
             self.path().__repr__()
         )
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        let sizes = (self.size(), self.diameter(), self.path());
+        by_constructor::<Self>(py, "from_sizes", sizes)
     }
 }

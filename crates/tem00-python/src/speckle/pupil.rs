@@ -141,19 +141,18 @@ impl Pupil {
 }
 
 /// The amplitude transmission of a pupil of any shape, on a grid over its bounding square.
+///
+/// Parameters
+/// ----------
+/// amplitude : `array_like`, shape (rows, columns)
+///     0 where the pupil is opaque, 1 where it is open.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Transmission(physics::Transmission);
 
 #[pymethods]
 impl Transmission {
-    /// Return the transmission of an amplitude without phase.
-    ///
-    /// Parameters
-    /// ----------
-    /// amplitude : `array_like`, shape (rows, columns)
-    ///     0 where the pupil is opaque, 1 where it is open.
-    #[staticmethod]
+    #[new]
     fn new(amplitude: Image<'_>) -> PyResult<Self> {
         let amplitude = amplitude.grid("amplitude")?;
         Ok(Self(physics::Transmission::new(&amplitude).or_raise()?))

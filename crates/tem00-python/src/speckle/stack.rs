@@ -5,14 +5,14 @@ use std::{
 };
 
 use numpy::{Complex32, PyArray2};
-use pyo3::prelude::*;
+use pyo3::{prelude::*, types::PyBytes};
 use tem00_speckle as physics;
 
 use super::{
     arguments::{INTERPOLATIONS, Whole, finite_pair, index, name_of},
     field::PupilField,
     files::OrRaiseFile,
-    images::view,
+    images::{check_bytes, view},
     options::StackOptions,
     path::SlicePath,
     slice_law::SliceLaw,
@@ -20,6 +20,7 @@ use super::{
 use crate::{
     arrays::{Numbers, fill, map},
     error::{OrRaise, refused},
+    pickling::{Recipe, by_constructor},
 };
 
 /// Speckle that moves and decorrelates: slices of one random field behind a wandering pupil.
@@ -32,25 +33,6 @@ pub(crate) struct SpeckleStack(pub(super) physics::SpeckleStack);
 
 #[pymethods]
 impl SpeckleStack {
-    /// Generate the slices of a field along a path, for look-ups by cubic splines.
-    ///
-    /// Parameters
-    /// ----------
-    /// field : `PupilField`
-    ///     Field that the slices are cut from.
-    /// path : `SlicePath`
-    ///     Path of the pupil over the field.
-    ///
-    /// Raises
-    /// ------
-    /// `MemoryError`
-    ///     If the machine does not have `memory_bytes`.
-    #[staticmethod]
-    fn generate(py: Python<'_>, field: &PupilField, path: &SlicePath) -> PyResult<Self> {
-        let stack = py.detach(|| physics::SpeckleStack::generate(&field.0, path.0));
-        Ok(Self(stack.or_raise()?))
-    }
-
     /// Generate the slices of a field along a path.
     ///
     /// Parameters
@@ -59,21 +41,23 @@ impl SpeckleStack {
     ///     Field that the slices are cut from.
     /// path : `SlicePath`
     ///     Path of the pupil over the field.
-    /// options : `StackOptions`
-    ///     Interpolation and memory limit.
+    /// options : `StackOptions`, optional
+    ///     Interpolation and memory limit; by default cubic splines and all that the machine has.
     ///
     /// Raises
     /// ------
     /// `MemoryError`
     ///     If the slices take more than the limit, or than the machine has.
     #[staticmethod]
-    fn generate_with(
+    #[pyo3(signature = (field, path, options = None))]
+    fn generate(
         py: Python<'_>,
         field: &PupilField,
         path: &SlicePath,
-        options: &StackOptions,
+        options: Option<&StackOptions>,
     ) -> PyResult<Self> {
-        let (field, path, options) = (&field.0, path.0, options.0);
+        let (field, path) = (&field.0, path.0);
+        let options = options.map_or_else(physics::StackOptions::default, |options| options.0);
         let stack = py.detach(|| physics::SpeckleStack::generate_with(field, path, options));
         Ok(Self(stack.or_raise()?))
     }
@@ -348,6 +332,23 @@ impl SpeckleStack {
         map(py, [("correlation", &correlation)], |[correlation]| {
             self.0.coordinate_of(correlation)
         })
+    }
+
+    /// Makes a stack again from the bytes of its file.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, file: &[u8]) -> PyResult<Self> {
+        let stack = py.detach(|| physics::SpeckleStack::read_from(file, u64::MAX));
+        Ok(Self(stack.or_raise_file()?))
+    }
+
+    /// A stack is pickled as its file.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        check_bytes(self.0.memory_bytes().saturating_mul(2))?;
+        let file = py.detach(|| {
+            let mut file = Vec::new();
+            self.0.write_to(&mut file).map(|()| file)
+        })?;
+        by_constructor::<Self>(py, "_restore", (PyBytes::new(py, &file),))
     }
 
     fn __repr__(&self) -> String {

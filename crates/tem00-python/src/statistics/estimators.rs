@@ -54,7 +54,7 @@ impl Moments {
     fn __repr__(&self) -> String {
         let (count, mean) = (self.0.count(), self.0.mean());
         let deviation = self.0.standard_deviation();
-        format!("Moments(count={count}, mean={mean:?}, standard_deviation={deviation:?})")
+        format!("<Moments: count={count}, mean={mean:?}, standard_deviation={deviation:?}>")
     }
 }
 
@@ -112,7 +112,7 @@ impl Contrast {
 
     fn __repr__(&self) -> String {
         let (value, error) = (self.0.value(), self.0.standard_error());
-        format!("Contrast(value={value:?}, standard_error={error:?})")
+        format!("<Contrast: value={value:?}, standard_error={error:?}>")
     }
 }
 
@@ -165,7 +165,7 @@ impl GammaFit {
     fn __repr__(&self) -> String {
         let (mean, shape) = (self.0.mean(), self.0.shape());
         let error = self.0.standard_error();
-        format!("GammaFit(mean={mean:?}, shape={shape:?}, standard_error={error:?})")
+        format!("<GammaFit: mean={mean:?}, shape={shape:?}, standard_error={error:?}>")
     }
 }
 

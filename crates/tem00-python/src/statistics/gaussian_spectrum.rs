@@ -10,21 +10,20 @@ use crate::{
 };
 
 /// Light of a narrow Gaussian spectrum, and the contrast of the speckle it makes.
+///
+/// Parameters
+/// ----------
+/// wavelength : float
+///     Central wavelength in metres.
+/// linewidth : float
+///     Full width at half maximum in metres, at most a tenth of the wavelength.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct GaussianSpectrum(physics::GaussianSpectrum);
 
 #[pymethods]
 impl GaussianSpectrum {
-    /// Return the spectrum of a wavelength and a linewidth.
-    ///
-    /// Parameters
-    /// ----------
-    /// wavelength : float
-    ///     Central wavelength in metres.
-    /// linewidth : float
-    ///     Full width at half maximum in metres, at most a tenth of the wavelength.
-    #[staticmethod]
+    #[new]
     fn new(wavelength: f64, linewidth: f64) -> PyResult<Self> {
         let spectrum = physics::GaussianSpectrum::new(wavelength, linewidth).or_raise()?;
         Ok(Self(spectrum))
@@ -88,11 +87,11 @@ impl GaussianSpectrum {
 
     fn __repr__(&self) -> String {
         let (wavelength, linewidth) = (self.0.wavelength(), self.0.linewidth());
-        format!("GaussianSpectrum.new(wavelength={wavelength:?}, linewidth={linewidth:?})")
+        format!("GaussianSpectrum(wavelength={wavelength:?}, linewidth={linewidth:?})")
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.0.wavelength(), self.0.linewidth()))
+        by_constructor::<Self>(py, "__call__", (self.0.wavelength(), self.0.linewidth()))
     }
 }
 

@@ -29,7 +29,7 @@ impl TestOutcome {
 
     fn __repr__(&self) -> String {
         let physics::TestOutcome { statistic, p_value } = self.0;
-        format!("TestOutcome(statistic={statistic:?}, p_value={p_value:?})")
+        format!("<TestOutcome: statistic={statistic:?}, p_value={p_value:?}>")
     }
 }
 

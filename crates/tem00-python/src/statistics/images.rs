@@ -87,7 +87,7 @@ impl Ring {
             mean,
             count,
         } = self.0;
-        format!("Ring(radius={radius:?}, mean={mean:?}, count={count})")
+        format!("<Ring: radius={radius:?}, mean={mean:?}, count={count}>")
     }
 }
 
@@ -242,7 +242,7 @@ impl SpeckleSize {
     }
 
     fn __repr__(&self) -> String {
-        format!("SpeckleSize(x={:?}, y={:?})", self.0.x(), self.0.y())
+        format!("<SpeckleSize: x={:?}, y={:?}>", self.0.x(), self.0.y())
     }
 }
 

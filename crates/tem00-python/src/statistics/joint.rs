@@ -10,14 +10,18 @@ use crate::{
 
 /// The joint law of the intensities at two points of fully developed speckle, or at one point of two
 /// correlated patterns.
+///
+/// Parameters
+/// ----------
+/// `amplitude_correlation` : float
+///     Magnitude of the correlation of the two amplitudes, from 0 to below 1.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct JointIntensity(physics::JointIntensity);
 
 #[pymethods]
 impl JointIntensity {
-    /// Return the law of a magnitude of the correlation of the two amplitudes, from 0 to below 1.
-    #[staticmethod]
+    #[new]
     fn new(amplitude_correlation: f64) -> PyResult<Self> {
         let law = physics::JointIntensity::new(amplitude_correlation).or_raise()?;
         Ok(Self(law))
@@ -116,10 +120,10 @@ impl JointIntensity {
 
     fn __repr__(&self) -> String {
         let correlation = self.0.amplitude_correlation();
-        format!("JointIntensity.new(amplitude_correlation={correlation:?})")
+        format!("JointIntensity(amplitude_correlation={correlation:?})")
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.0.amplitude_correlation(),))
+        by_constructor::<Self>(py, "__call__", (self.0.amplitude_correlation(),))
     }
 }

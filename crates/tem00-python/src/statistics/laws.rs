@@ -50,14 +50,18 @@ pub(super) fn exponential_cumulative<'py>(
 }
 
 /// The law of the intensity after speckle has been averaged: a Gamma distribution of mean 1.
+///
+/// Parameters
+/// ----------
+/// shape : float
+///     Number of degrees of freedom, from 1 to 10⁶.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct GammaIntensity(pub(super) physics::GammaIntensity);
 
 #[pymethods]
 impl GammaIntensity {
-    /// Return the law of a shape, the number of degrees of freedom, between 1 and 10⁶.
-    #[staticmethod]
+    #[new]
     fn new(shape: f64) -> PyResult<Self> {
         Ok(Self(physics::GammaIntensity::new(shape).or_raise()?))
     }
@@ -100,23 +104,27 @@ impl GammaIntensity {
     }
 
     fn __repr__(&self) -> String {
-        format!("GammaIntensity.new(shape={:?})", self.0.shape())
+        format!("GammaIntensity(shape={:?})", self.0.shape())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.0.shape(),))
+        by_constructor::<Self>(py, "__call__", (self.0.shape(),))
     }
 }
 
 /// The law of the intensity of partially polarised speckle.
+///
+/// Parameters
+/// ----------
+/// degree : float
+///     Degree of polarisation, from 0 to 1.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PartiallyPolarised(physics::PartiallyPolarised);
 
 #[pymethods]
 impl PartiallyPolarised {
-    /// Return the law of a degree of polarisation between 0 and 1.
-    #[staticmethod]
+    #[new]
     fn new(degree: f64) -> PyResult<Self> {
         Ok(Self(physics::PartiallyPolarised::new(degree).or_raise()?))
     }
@@ -152,15 +160,21 @@ impl PartiallyPolarised {
     }
 
     fn __repr__(&self) -> String {
-        format!("PartiallyPolarised.new(degree={:?})", self.0.degree())
+        format!("PartiallyPolarised(degree={:?})", self.0.degree())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.0.degree(),))
+        by_constructor::<Self>(py, "__call__", (self.0.degree(),))
     }
 }
 
 /// The law of the intensity of a sum of independent speckle patterns of any mean intensities.
+///
+/// Parameters
+/// ----------
+/// weights : array of shape (n,)
+///     Mean intensities of the patterns, in any unit, none negative and not all zero, of at most
+///     65,536 different values. Each of these takes some 10 µs of the time of a density.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct WeightedSum {
@@ -170,14 +184,7 @@ pub(crate) struct WeightedSum {
 
 #[pymethods]
 impl WeightedSum {
-    /// Return the law of the sum of patterns.
-    ///
-    /// Parameters
-    /// ----------
-    /// weights : array of shape (n,)
-    ///     Mean intensities of the patterns, in any unit, none negative and not all zero, of at most
-    ///     65,536 different values. Each of these takes some 10 µs of the time of a density.
-    #[staticmethod]
+    #[new]
     fn new(weights: Numbers<'_>) -> PyResult<Self> {
         let weights = weights.values()?.to_vec();
         let law = physics::WeightedSum::new(&weights).or_raise()?;
@@ -211,23 +218,27 @@ impl WeightedSum {
     }
 
     fn __repr__(&self) -> String {
-        format!("WeightedSum.new(weights={:?})", self.weights)
+        format!("WeightedSum(weights={:?})", self.weights)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.weights.clone(),))
+        by_constructor::<Self>(py, "__call__", (self.weights.clone(),))
     }
 }
 
 /// The law of the intensity of speckle on a coherent background, such as a specular reflection.
+///
+/// Parameters
+/// ----------
+/// `beam_ratio` : float
+///     Background over mean of the speckle, finite and not negative.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CoherentBackground(physics::CoherentBackground);
 
 #[pymethods]
 impl CoherentBackground {
-    /// Return the law of a beam ratio, background over mean of the speckle, finite and not negative.
-    #[staticmethod]
+    #[new]
     fn new(beam_ratio: f64) -> PyResult<Self> {
         let law = physics::CoherentBackground::new(beam_ratio).or_raise()?;
         Ok(Self(law))
@@ -271,13 +282,10 @@ impl CoherentBackground {
     }
 
     fn __repr__(&self) -> String {
-        format!(
-            "CoherentBackground.new(beam_ratio={:?})",
-            self.0.beam_ratio()
-        )
+        format!("CoherentBackground(beam_ratio={:?})", self.0.beam_ratio())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.0.beam_ratio(),))
+        by_constructor::<Self>(py, "__call__", (self.0.beam_ratio(),))
     }
 }

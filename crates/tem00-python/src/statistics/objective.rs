@@ -2,8 +2,8 @@ use pyo3::{prelude::*, types::PyAny};
 use tem00_statistics as physics;
 
 use crate::{
-    arrays::{Numbers, map},
-    error::{OrRaise, refused},
+    arrays::{Numbers, length, map},
+    error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
 
@@ -61,6 +61,15 @@ impl LitArea {
 }
 
 /// Speckle without a lens: the pattern that a lit area of a rough surface makes in a distant plane.
+///
+/// Parameters
+/// ----------
+/// wavelength : float
+///     Wavelength in metres.
+/// distance : float
+///     Distance of the plane from the surface, in metres.
+/// area : LitArea
+///     The lit area.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ObjectiveSpeckle {
@@ -78,17 +87,7 @@ impl PartialEq for ObjectiveSpeckle {
 
 #[pymethods]
 impl ObjectiveSpeckle {
-    /// Return the speckle of a lit area.
-    ///
-    /// Parameters
-    /// ----------
-    /// wavelength : float
-    ///     Wavelength in metres.
-    /// distance : float
-    ///     Distance of the plane from the surface, in metres.
-    /// area : LitArea
-    ///     The lit area.
-    #[staticmethod]
+    #[new]
     fn new(wavelength: f64, distance: f64, area: PyRef<'_, LitArea>) -> PyResult<Self> {
         Ok(Self {
             speckle: physics::ObjectiveSpeckle::new(wavelength, distance, area.0).or_raise()?,
@@ -135,21 +134,10 @@ impl ObjectiveSpeckle {
             ..
         } = self;
         let area = area.__repr__();
-        format!(
-            "ObjectiveSpeckle.new(wavelength={wavelength:?}, distance={distance:?}, area={area})"
-        )
+        format!("ObjectiveSpeckle(wavelength={wavelength:?}, distance={distance:?}, area={area})")
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.wavelength, self.distance, self.area))
+        by_constructor::<Self>(py, "__call__", (self.wavelength, self.distance, self.area))
     }
-}
-
-/// Returns a length in metres that is positive and finite.
-fn length(name: &'static str, value: f64) -> PyResult<f64> {
-    if value > 0.0 && value.is_finite() {
-        return Ok(value);
-    }
-    let message = format!("{name} must be positive and finite, got {value} m");
-    Err(refused(name, message))
 }

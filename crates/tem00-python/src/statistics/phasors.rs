@@ -11,14 +11,18 @@ use crate::{
 const LARGEST_ORDER: usize = 20;
 
 /// The law of the intensity of a sum of few phasors of equal length and random phase.
+///
+/// Parameters
+/// ----------
+/// count : int
+///     Number of phasors, from 8 to 10⁶.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PhasorSum(physics::PhasorSum);
 
 #[pymethods]
 impl PhasorSum {
-    /// Return the law of the sum of `count` phasors, between 8 and 10⁶ of them.
-    #[staticmethod]
+    #[new]
     fn new(py: Python<'_>, count: Count) -> PyResult<Self> {
         let count = count.value("count")?;
         let law = py.detach(|| physics::PhasorSum::new(count)).or_raise()?;
@@ -56,11 +60,11 @@ impl PhasorSum {
     }
 
     fn __repr__(&self) -> String {
-        format!("PhasorSum.new(count={})", self.0.count())
+        format!("PhasorSum(count={})", self.0.count())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "new", (self.0.count(),))
+        by_constructor::<Self>(py, "__call__", (self.0.count(),))
     }
 }
 

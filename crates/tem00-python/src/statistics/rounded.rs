@@ -120,27 +120,26 @@ impl GreyLevels {
 
     fn __repr__(&self) -> String {
         let (count, step) = (self.0.count(), self.0.step());
-        format!("GreyLevels(count={count}, step={step:?})")
+        format!("<GreyLevels: count={count}, step={step:?}>")
     }
 }
 
 /// How well samples agree with a law, whether they were rounded or not.
+///
+/// Parameters
+/// ----------
+/// samples : array
+///     Independent samples, in any shape.
+/// cumulative : callable
+///     The distribution function. It is called once with an array of shape (n,) and returns
+///     probabilities in the same shape.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct GoodnessOfFit(physics::GoodnessOfFit);
 
 #[pymethods]
 impl GoodnessOfFit {
-    /// Compare samples that were not rounded with a law.
-    ///
-    /// Parameters
-    /// ----------
-    /// samples : array
-    ///     Independent samples, in any shape.
-    /// cumulative : callable
-    ///     The distribution function. It is called once with an array of shape (n,) and returns
-    ///     probabilities in the same shape.
-    #[staticmethod]
+    #[new]
     fn new(samples: Numbers<'_>, cumulative: Bound<'_, PyAny>) -> PyResult<Self> {
         let places = probabilities(&cumulative, checked(samples.values()?)?)?;
         let fit = physics::GoodnessOfFit::new(&places, |place| place);
@@ -190,8 +189,8 @@ impl GoodnessOfFit {
 
     fn __repr__(&self) -> String {
         match self.0.kolmogorov_smirnov() {
-            Ok(test) => format!("GoodnessOfFit(kolmogorov_smirnov={:?})", test.p_value),
-            Err(_) => "GoodnessOfFit()".to_owned(),
+            Ok(test) => format!("<GoodnessOfFit: kolmogorov_smirnov={:?}>", test.p_value),
+            Err(_) => "<GoodnessOfFit: too few samples>".to_owned(),
         }
     }
 }

@@ -31,7 +31,7 @@ impl Singularity {
 
     fn __repr__(&self) -> String {
         let physics::Singularity { x, y, charge } = self.0;
-        format!("Singularity(x={x}, y={y}, charge={charge})")
+        format!("<Singularity: x={x}, y={y}, charge={charge}>")
     }
 }
 
@@ -104,6 +104,6 @@ impl VortexDensity {
     fn __repr__(&self) -> String {
         let (count, value) = (self.0.count(), self.0.value());
         let error = self.0.standard_error();
-        format!("VortexDensity(count={count}, value={value:?}, standard_error={error:?})")
+        format!("<VortexDensity: count={count}, value={value:?}, standard_error={error:?}>")
     }
 }

@@ -81,7 +81,7 @@ pub(super) fn area_fraction_above<'py>(
 #[pyfunction]
 pub(super) fn size_before_pixels(measured: f64) -> PyResult<Option<f64>> {
     if !(measured > 0.0 && measured.is_finite()) {
-        let message = format!("measured must be positive and finite, got {measured} pixels");
+        let message = format!("measured must be positive and finite, got {measured:?} pixels");
         return Err(refused("measured", message));
     }
     Ok(physics::size_before_pixels(measured))

@@ -57,8 +57,7 @@ _Vectors = Vector | Sequence[Sequence[float]]
 
 @final
 class AbcdMatrix:
-    @staticmethod
-    def new(a: float, b: float, c: float, d: float) -> AbcdMatrix: ...
+    def __new__(cls, a: float, b: float, c: float, d: float) -> AbcdMatrix: ...
     @staticmethod
     def identity() -> AbcdMatrix: ...
     @staticmethod
@@ -116,8 +115,7 @@ class AbcdMatrix:
 
 @final
 class AngularProfile:
-    @staticmethod
-    def new(angles: Vector, powers: Vector) -> AngularProfile: ...
+    def __new__(cls, angles: Vector, powers: Vector) -> AngularProfile: ...
     @staticmethod
     def from_pairs(pairs: _Rows) -> AngularProfile: ...
     def to_f32(self) -> NDArray[np.float32]: ...
@@ -129,8 +127,7 @@ class AngularProfile:
 
 @final
 class AstigmaticBeam:
-    @staticmethod
-    def new(x: LocatedBeam, y: LocatedBeam) -> AstigmaticBeam: ...
+    def __new__(cls, x: LocatedBeam, y: LocatedBeam) -> AstigmaticBeam: ...
     @staticmethod
     def stigmatic(beam: LocatedBeam) -> AstigmaticBeam: ...
     @staticmethod
@@ -189,8 +186,7 @@ class AstigmaticLight(Emitter):
 
 @final
 class AstigmaticSystem:
-    @staticmethod
-    def new(blocks: _Nested | FloatArray) -> AstigmaticSystem: ...
+    def __new__(cls, blocks: _Nested | FloatArray) -> AstigmaticSystem: ...
     @staticmethod
     def from_axes(
         axes: tuple[AbcdMatrix, AbcdMatrix] | Sequence[AbcdMatrix], rotation: float
@@ -250,8 +246,7 @@ class Bounds:
 
 @final
 class CausticFit:
-    @staticmethod
-    def new(wavelength: float, positions: Vector, radii: Vector) -> CausticFit: ...
+    def __new__(cls, wavelength: float, positions: Vector, radii: Vector) -> CausticFit: ...
     @staticmethod
     def with_errors(
         wavelength: float, positions: Vector, radii: Vector, errors: _Errors
@@ -281,8 +276,7 @@ class CausticFit:
 
 @final
 class ComplexBeamParameter:
-    @staticmethod
-    def new(distance_from_waist: float, rayleigh_range: float) -> ComplexBeamParameter: ...
+    def __new__(cls, distance_from_waist: float, rayleigh_range: float) -> ComplexBeamParameter: ...
     @staticmethod
     def from_radius_and_curvature(
         radius: Numbers, curvature: float, effective_wavelength: Numbers
@@ -308,8 +302,7 @@ class ComplexBeamParameter:
 
 @final
 class CrossSection:
-    @staticmethod
-    def new(radii: Vector) -> CrossSection: ...
+    def __new__(cls, radii: Vector) -> CrossSection: ...
     @overload
     def irradiance_per_watt(self, x: float, y: float) -> float: ...
     @overload
@@ -548,8 +541,7 @@ class GeneralAstigmaticBeam:
 
 @final
 class KnifeEdgeFit:
-    @staticmethod
-    def new(positions: Vector, powers: Vector) -> KnifeEdgeFit: ...
+    def __new__(cls, positions: Vector, powers: Vector) -> KnifeEdgeFit: ...
     @staticmethod
     def with_background(positions: Vector, powers: Vector) -> KnifeEdgeFit: ...
     @overload
@@ -572,8 +564,7 @@ class KnifeEdgeFit:
 
 @final
 class LaserLine:
-    @staticmethod
-    def new(focus: GaussianBeam, fan: FanGeometry, profile: LineProfile) -> LaserLine: ...
+    def __new__(cls, focus: GaussianBeam, fan: FanGeometry, profile: LineProfile) -> LaserLine: ...
     @overload
     def waist_slant_distance_at(self, slope: float) -> float: ...
     @overload
@@ -670,8 +661,7 @@ class LineProfile:
 
 @final
 class LocatedBeam:
-    @staticmethod
-    def new(beam: GaussianBeam, waist_distance: float) -> LocatedBeam: ...
+    def __new__(cls, beam: GaussianBeam, waist_distance: float) -> LocatedBeam: ...
     @overload
     def radius_at(self, z: float) -> float: ...
     @overload

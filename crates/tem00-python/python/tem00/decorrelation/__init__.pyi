@@ -262,8 +262,7 @@ class CameraFrame:
 
 @final
 class LineOfSight:
-    @staticmethod
-    def new(camera: CameraFrame, to_pupil: Vector) -> LineOfSight: ...
+    def __new__(cls, camera: CameraFrame, to_pupil: Vector) -> LineOfSight: ...
     @property
     def camera(self) -> CameraFrame: ...
     @property
@@ -319,8 +318,7 @@ class Illumination:
 class RigidMotion:
     @staticmethod
     def identity() -> RigidMotion: ...
-    @staticmethod
-    def new(rotation: _Matrix, translation: Vector) -> RigidMotion: ...
+    def __new__(cls, rotation: _Matrix, translation: Vector) -> RigidMotion: ...
     @staticmethod
     def along(translation: Vector) -> RigidMotion: ...
     @staticmethod
@@ -382,8 +380,7 @@ class Motion:
 
 @final
 class SurfacePoint:
-    @staticmethod
-    def new(sight: LineOfSight, normal: Vector, wavefront: Wavefront) -> SurfacePoint: ...
+    def __new__(cls, sight: LineOfSight, normal: Vector, wavefront: Wavefront) -> SurfacePoint: ...
     @property
     def sight(self) -> LineOfSight: ...
     @property
@@ -400,8 +397,8 @@ class SurfacePoint:
 
 @final
 class Configuration:
-    @staticmethod
-    def new(
+    def __new__(
+        cls,
         *,
         wavelength: float,
         point: Vector,
@@ -435,8 +432,8 @@ class Configuration:
 
 @final
 class SpeckleMotion:
-    @staticmethod
-    def new(
+    def __new__(
+        cls,
         geometry: ImagingGeometry,
         point: SurfacePoint,
         motion: Motion,
@@ -517,8 +514,7 @@ class FieldSlices:
 
 @final
 class MotionField:
-    @staticmethod
-    def new(setup: FieldSetup) -> MotionField: ...
+    def __new__(cls, setup: FieldSetup) -> MotionField: ...
     def with_shared_motion(self, motion: Motion) -> MotionField: ...
     @property
     def setup(self) -> FieldSetup: ...

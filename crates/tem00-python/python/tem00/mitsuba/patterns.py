@@ -117,7 +117,7 @@ def _plan(
             frames=1,
             memory_limit=memory,
         )
-        plan = StackPlan.new(needs)
+        plan = StackPlan(needs)
         size, diameter = settings.pattern_size, settings.pattern_diameter
         if size is None and diameter is None:
             return plan
@@ -133,7 +133,7 @@ def _stack(settings: PatternSettings, plan: StackPlan, number: int, memory: int)
     seed = (settings.seed + (number + 1) * _SEED_STEP) % 2**64
     try:
         options = StackOptions(memory_limit=memory)
-        return SpeckleStack.generate_with(plan.field(seed), _path(settings), options)
+        return SpeckleStack.generate(plan.field(seed), _path(settings), options)
     except MemoryError as error:
         name = "pattern_size" if settings.path == "still" else "half_period"
         raise refused(name, f"too large: {error}") from error

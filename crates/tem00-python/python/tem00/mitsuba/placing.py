@@ -80,7 +80,7 @@ def _spot(numbers: Mapping[str, float]) -> Spot:
     axes = _located(numbers, ""), _located(numbers, "_y")
     with _named({"dtype": "waist_radius"}):
         light = beam.SpotLight.place_astigmatic(
-            beam.AstigmaticBeam.new(*axes), _AT_THE_ORIGIN, numbers["power"]
+            beam.AstigmaticBeam(*axes), _AT_THE_ORIGIN, numbers["power"]
         )
         rows = light.to_rows(np.float32)
     return Spot(x=_axis(rows[4]), y=_axis(rows[5]), cutoff=opaque(rows[1][3]))
@@ -94,7 +94,7 @@ def _located(numbers: Mapping[str, float], suffix: str) -> beam.LocatedBeam:
     )
     with _named({name: name + suffix for name in names}):
         focus = beam.GaussianBeam.from_waist(numbers["wavelength"], waist_radius)
-        return beam.LocatedBeam.new(focus.with_m_squared(m_squared), waist_distance)
+        return beam.LocatedBeam(focus.with_m_squared(m_squared), waist_distance)
 
 
 def _line(description: Description) -> Line:
@@ -105,7 +105,7 @@ def _line(description: Description) -> Line:
         focus = focus.with_m_squared(numbers["m_squared"])
     fan = _fan(description, focus)
     with _named({"dtype": "thickness"}):
-        line = beam.LaserLine.new(focus, fan, _profile(description))
+        line = beam.LaserLine(focus, fan, _profile(description))
         rows = beam.LineLight.place(line, _AT_THE_ORIGIN, numbers["power"]).to_rows(np.float32)
     return Line(
         across=_axis(rows[4]),

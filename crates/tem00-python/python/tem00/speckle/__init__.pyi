@@ -53,8 +53,7 @@ class Bandwidth:
 @final
 class CoherentBackground:
     MAX_BEAM_RATIO: ClassVar[float]
-    @staticmethod
-    def new(beam_ratio: float, phase: float) -> CoherentBackground: ...
+    def __new__(cls, beam_ratio: float, phase: float) -> CoherentBackground: ...
     @property
     def beam_ratio(self) -> float: ...
     @property
@@ -128,8 +127,7 @@ class LitArea:
 
 @final
 class ObjectiveSpeckle:
-    @staticmethod
-    def new(wavelength: float, distance: float, area: LitArea) -> ObjectiveSpeckle: ...
+    def __new__(cls, wavelength: float, distance: float, area: LitArea) -> ObjectiveSpeckle: ...
     @property
     def wavelength(self) -> float: ...
     @property
@@ -147,8 +145,7 @@ class ObjectiveSpeckle:
 class PixelArray:
     MAX_COUNT: ClassVar[int]
     MAX_LENGTH: ClassVar[float]
-    @staticmethod
-    def new(count: _Counts, pitch: _Lengths) -> PixelArray: ...
+    def __new__(cls, count: _Counts, pitch: _Lengths) -> PixelArray: ...
     def with_size(self, size: _Lengths) -> PixelArray: ...
     def with_origin(self, origin: _Lengths) -> PixelArray: ...
     @property
@@ -189,8 +186,7 @@ class PupilField:
     MAX_SIZE: ClassVar[int]
     MIN_DIAMETER: ClassVar[int]
     MIN_PHASORS: ClassVar[int]
-    @staticmethod
-    def new(size: SupportsIndex, diameter: SupportsIndex, seed: SupportsIndex) -> PupilField: ...
+    def __new__(cls, size: SupportsIndex, diameter: SupportsIndex, seed: SupportsIndex) -> PupilField: ...
     @staticmethod
     def from_speckle_size(
         size: _Counts, speckle_size: float, seed: SupportsIndex
@@ -300,10 +296,8 @@ class SpecklePattern:
 @final
 class SpeckleStack:
     @staticmethod
-    def generate(field: PupilField, path: SlicePath) -> SpeckleStack: ...
-    @staticmethod
-    def generate_with(
-        field: PupilField, path: SlicePath, options: StackOptions
+    def generate(
+        field: PupilField, path: SlicePath, options: StackOptions | None = None
     ) -> SpeckleStack: ...
     @staticmethod
     def read_from(file: _Path, memory_limit: SupportsIndex) -> SpeckleStack: ...
@@ -399,8 +393,11 @@ class StackOptions:
 
 @final
 class StackPlan:
+    def __new__(cls, needs: StackNeeds) -> StackPlan: ...
     @staticmethod
-    def new(needs: StackNeeds) -> StackPlan: ...
+    def from_sizes(
+        size: _Counts, diameter: _Counts, path: SlicePath
+    ) -> StackPlan: ...
     @staticmethod
     def candidates(needs: StackNeeds) -> list[StackPlan]: ...
     @staticmethod
@@ -429,8 +426,7 @@ class StackPlan:
 
 @final
 class Transmission:
-    @staticmethod
-    def new(amplitude: RealArray) -> Transmission: ...
+    def __new__(cls, amplitude: RealArray) -> Transmission: ...
     @staticmethod
     def from_complex(amplitude: ComplexArray) -> Transmission: ...
     @property

@@ -35,7 +35,7 @@ impl Parts {
             pupil: field.pupil().clone(),
         };
         // The constructors round the diameter or the speckle size.
-        [None, Some(whole(field.diameter()[0]))]
+        [Some(whole(field.diameter()[0])), None]
             .map(parts)
             .into_iter()
             .find(|parts| parts.clone().build().as_ref() == Ok(field))

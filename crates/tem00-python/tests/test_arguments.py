@@ -1,0 +1,137 @@
+"""Arguments outside what is allowed are refused by name, in every function that takes sizes."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import tem00
+from numpy.lib.stride_tricks import as_strided
+from tem00 import beam
+from tem00 import decorrelation as dc
+from tem00 import speckle as sp
+from tem00 import statistics as st
+
+SPECTRUM = st.GaussianSpectrum(650e-9, 1e-9)
+PAIR = st.JointIntensity(0.5)
+LEVELS = st.GreyLevels.of([0.0, 1.0, 2.0, 1.0] * 20)
+assert LEVELS is not None
+
+LENS = dc.LensData(
+    wavelength=650e-9,
+    focal_length=25e-3,
+    f_number=8.0,
+    surface_to_pupil=0.3,
+    pixel_pitch=3.45e-6,
+)
+
+# What has a size, as a function of that size, and the name of the argument.
+SIZES: list[tuple[str, Callable[[float], object]]] = [
+    ("pixel_size", st.pixel_contrast),
+    ("pixel_size", lambda x: st.rectangular_pixel_contrast((x, 1.0))),
+    ("pixel_size", lambda x: st.rectangular_pixel_contrast((1.0, x))),
+    ("spread", st.gaussian_filter_contrast),
+    ("drift", st.boiling_contrast),
+    ("drift", st.translation_contrast),
+    ("speckles_across", st.contrast_squared_spread),
+    ("row_height", st.speckle_length),
+    ("radius", lambda x: st.line_centroid_deviation(x, 1.0)),
+    ("row_height", lambda x: st.line_centroid_deviation(1.0, x)),
+    ("radius", lambda x: st.imaged_line_centroid_deviation(x, 1.0)),
+    ("row_height", lambda x: st.imaged_line_centroid_deviation(1.0, x)),
+    ("radius", st.gaussian_spot_centroid_deviation),
+    ("radius", st.disc_spot_centroid_deviation),
+    ("path_spread", SPECTRUM.contrast),
+    ("path_spread", lambda x: SPECTRUM.correlation(0.0, x)),
+    ("height_spread", lambda x: st.path_spread_of_reflection(x, (0.0, 0.0))),
+    ("measured", st.size_before_pixels),
+    ("given", PAIR.conditional_mean),
+    ("given", PAIR.conditional_variance),
+    ("given", lambda x: PAIR.conditional_density(1.0, x)),
+    ("given", lambda x: PAIR.conditional_cumulative(1.0, x)),
+    ("rounded", LEVELS.exponential_mean),
+    ("rounded", LEVELS.exponential_contrast),
+    ("diameter", st.LitArea.disc),
+    ("width", lambda x: st.LitArea.rectangle(x, 1.0)),
+    ("height", lambda x: st.LitArea.rectangle(1.0, x)),
+    ("radius", st.LitArea.gaussian_spot),
+    ("diameter", sp.LitArea.disc),
+    ("radius", sp.LitArea.gaussian_spot),
+    ("depth", lambda x: dc.ImagingGeometry.from_lens(LENS).defocus_at(x)),
+    ("depth", lambda x: dc.ImagingGeometry.from_lens(LENS).axial_decorrelation_length_at(x)),
+    ("radius", lambda x: beam.GaussianBeam.from_waist(650e-9, 1e-4).encircled_power(x, 0.0)),
+]
+
+
+@pytest.mark.parametrize(("name", "function"), SIZES, ids=range(len(SIZES)))
+@pytest.mark.parametrize("bad", [-1.0, -0.5, -1e-300, np.nan, np.inf])
+def test_sizes_below_zero_are_refused_by_name(
+    name: str, function: Callable[[float], object], bad: float
+) -> None:
+    with pytest.raises(tem00.ParameterError, match=name) as caught:
+        function(bad)
+    assert caught.value.parameter == name
+
+
+@pytest.mark.parametrize("function", [function for _, function in SIZES], ids=range(len(SIZES)))
+def test_sizes_above_zero_are_taken(function: Callable[[float], object]) -> None:
+    function(1.0)
+    function(3.0)
+
+
+def test_one_bad_element_refuses_an_array() -> None:
+    sizes = np.ones((3, 5))
+    sizes[1, 2] = -0.25
+    with pytest.raises(tem00.ParameterError, match=r"pixel_size must be 0 or more, got -0.25"):
+        st.pixel_contrast(sizes)
+    np.testing.assert_allclose(st.pixel_contrast(np.zeros(2)), 1.0, atol=1e-12)
+
+
+def test_angles_behind_the_surface_are_refused() -> None:
+    for angles in ((2.0, 0.0), (0.0, -1.6)):
+        with pytest.raises(tem00.ParameterError, match="angles must be between"):
+            st.path_spread_of_reflection(1e-6, angles)
+
+
+def test_a_stack_without_slices_is_refused() -> None:
+    with pytest.raises(tem00.ParameterError, match="half_period must lie between 1"):
+        dc.slice_coordinate(0.5, 0)
+
+
+def test_arrays_too_large_to_copy_are_a_memory_error() -> None:
+    # 2⁴⁰ times the same number, of which a copy would take 8 TiB.
+    wide = np.broadcast_to(np.float64(1.0), 1 << 40)
+    calls: list[Callable[[], object]] = [
+        lambda: st.pixel_contrast(wide),
+        lambda: st.WeightedSum(wide),
+        lambda: st.t_test_mean(wide, 1.0),
+        lambda: st.Moments.of(wide),
+        lambda: dc.pupil_overlap_correlation(wide),
+    ]
+    for call in calls:
+        with pytest.raises(MemoryError, match="8796093022208 bytes"):
+            call()
+    image = as_strided(np.ones((1, 1), np.float32), (1 << 20, 1 << 20), (0, 0))
+    with pytest.raises(MemoryError, match="4398046511104 bytes"):
+        st.autocovariance(image, "periodic")
+
+
+def test_as_many_plans_as_no_list_holds_are_refused() -> None:
+    plan = sp.StackPlan.from_sizes((64, 64), (32, 32), sp.SlicePath.still())
+    plans = np.broadcast_to(np.array(plan, dtype=object), 1 << 40)
+    with pytest.raises(tem00.ParameterError, match="plans must be at most 65536, got 1099511627776"):
+        sp.StackPlan.first_within(plans, 1 << 20)  # type: ignore[arg-type]
+    assert sp.StackPlan.first_within([plan], 1 << 20) == plan
+    # Those that numpy holds are taken as a list is.
+    few = np.broadcast_to(np.array(plan, dtype=object), 3)
+    assert sp.StackPlan.first_within(few, 1 << 20) == plan  # type: ignore[arg-type]
+
+
+def test_sums_of_many_patterns_are_those_of_the_gamma_law() -> None:
+    weights = 1 + 1e-14 * np.arange(1000)
+    law, gamma = st.WeightedSum(weights), st.GammaIntensity(1000.0)
+    intensity = np.array([0.9, 1.0, 1.1])
+    np.testing.assert_allclose(law.cumulative(intensity), gamma.cumulative(intensity), rtol=1e-10)
+    equal = st.WeightedSum(np.ones(1 << 20))
+    assert equal.cumulative(1.0) == pytest.approx(0.5 + 1 / (3 * np.sqrt(2 * np.pi) * 1024), abs=1e-9)
+    with pytest.raises(tem00.ParameterError, match="at most 65536 different values, got 65537"):
+        st.WeightedSum(np.arange(1.0, 65538.0))

@@ -122,7 +122,9 @@ pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle}
 pub use scene_file::{SceneError, SceneFile, parse_scene, read_scene};
 
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
-pub use speckle::{PatternPlan, RoughnessNote, SpeckleModel, SpecklePlan};
+pub use speckle::{
+    PatternPlan, ReferencePoint, RoughnessNote, SpeckleChange, SpeckleModel, SpecklePlan,
+};
 pub use trajectory::{Keyframe, Rotation, Trajectory};
 
 /// The beam types that a scene is described with.

@@ -1,6 +1,7 @@
 //! From the camera and the motion in a scene to the speckle factor of a camera sample.
 
 mod allotment;
+mod between_frames;
 mod change;
 mod model;
 mod notes;
@@ -11,6 +12,7 @@ mod survey;
 
 use glam::{DVec2, DVec3};
 
+pub use between_frames::{ReferencePoint, SpeckleChange};
 pub(crate) use model::SpeckleFrame;
 pub use model::SpeckleModel;
 pub use notes::RoughnessNote;

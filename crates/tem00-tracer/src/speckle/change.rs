@@ -82,8 +82,13 @@ impl BodyChange {
 }
 
 impl Change {
+    /// What has moved since the reference frame of a render.
     pub(super) fn new(scene: &Scene, frame: u32) -> Self {
-        let reference = scene.render.reference_frame;
+        Self::between(scene, [scene.render.reference_frame, frame])
+    }
+
+    /// What has moved from one frame, which is the reference, to another.
+    pub(super) fn between(scene: &Scene, [reference, frame]: [u32; 2]) -> Self {
         let body = |trajectory: &crate::Trajectory| {
             BodyChange::between(trajectory.pose_at(reference), trajectory.pose_at(frame))
         };
@@ -190,15 +195,24 @@ impl Change {
         geometry: &ImagingGeometry,
         point: &SpecklePoint,
     ) -> Drift {
-        if self.is_still(laser, point.surface) {
-            return Drift::default();
-        }
-        let drift = self.law(laser, geometry, point);
         let new = Drift {
             displacement: DVec2::ZERO,
             shift: self.frames.abs(),
         };
-        drift.filter(Drift::is_finite).unwrap_or(new)
+        self.known_drift(laser, geometry, point).unwrap_or(new)
+    }
+
+    /// Returns what has become of the speckle of a laser at a point, if the theory has a value.
+    pub(super) fn known_drift(
+        &self,
+        laser: usize,
+        geometry: &ImagingGeometry,
+        point: &SpecklePoint,
+    ) -> Option<Drift> {
+        if self.is_still(laser, point.surface) {
+            return Some(Drift::default());
+        }
+        self.law(laser, geometry, point).filter(Drift::is_finite)
     }
 
     /// The law of speckle motion between two states, however far apart.

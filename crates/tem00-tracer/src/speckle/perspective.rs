@@ -1,4 +1,4 @@
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use tem00_decorrelation::ImagingGeometry;
 
 use crate::{Camera, RadialDistortion, SensorTilt};
@@ -43,6 +43,19 @@ impl Perspective {
         if point.is_finite() { point } else { pixel }
     }
 
+    /// Returns the image point of a point in perspective, both in pixels, or `None` where the sensor is
+    /// not met.
+    pub(super) fn pixel(&self, point: DVec2) -> Option<DVec2> {
+        if self.plain {
+            return Some(point);
+        }
+        let pitch = self.camera.description().pixel_pitch;
+        let tangent = (point - 0.5 * self.size()) * (pitch / self.camera.image_distance());
+        let local = DVec3::new(tangent.x, -tangent.y, -1.0);
+        let in_space = self.camera.position() + self.camera.axes() * local;
+        self.camera.project(in_space)
+    }
+
     /// Returns the lowest and the highest corner of the image in perspective, in pixels.
     pub(super) fn image(&self) -> [DVec2; 2] {
         let size = self.size();
@@ -83,8 +96,6 @@ impl Perspective {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::CameraDescription;
 
@@ -132,6 +143,8 @@ mod tests {
             assert!(error < 1e-8, "{point}: {error:e} pixels");
             let moved = perspective.distance(sensor);
             assert!(moved > 1e-3, "{point}: the sensor sees the perspective");
+            let back = bent.pixel(perspective).unwrap().distance(sensor);
+            assert!(back < 1e-8, "{point}: {back:e} pixels off on the way back");
             let inside = sensor.cmpge(DVec2::ZERO).all() && sensor.cmple(bent.size()).all();
             let held = perspective.cmpge(low).all() && perspective.cmple(high).all();
             assert!(held || !inside, "{perspective} beyond {low} to {high}");
@@ -143,6 +156,7 @@ mod tests {
         let plain = Perspective::of(Camera::new(description()).unwrap());
         let pixel = DVec2::new(12.3, 400.7);
         assert_eq!(plain.point(pixel), pixel);
+        assert_eq!(plain.pixel(pixel), Some(pixel));
         assert_eq!(plain.image(), [DVec2::ZERO, DVec2::new(640.0, 480.0)]);
     }
 

@@ -1,0 +1,125 @@
+use glam::{DVec2, DVec3};
+use tem00_decorrelation::pupil_overlap_correlation;
+
+use super::{SpecklePoint, change::Change};
+use crate::Scene;
+
+/// A point of a surface whose speckle is followed from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReferencePoint {
+    /// The index of the surface in the scene.
+    pub surface: usize,
+    /// Where the point is in the first of the frames, in metres.
+    pub position: DVec3,
+    /// The unit normal of the surface there.
+    pub normal: DVec3,
+}
+
+/// How speckle changes from one frame to another: it moves in the image, and only a part of it is left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeckleChange {
+    /// How far the pattern has moved on the sensor, in pixels to the right and down.
+    pub displacement: DVec2,
+    /// The correlation of intensity of what is left, from 0 to 1.
+    pub correlation: f64,
+}
+
+impl SpeckleChange {
+    /// Nothing has changed.
+    pub const NONE: Self = Self {
+        displacement: DVec2::ZERO,
+        correlation: 1.0,
+    };
+
+    /// Returns what becomes of the speckle of a laser at a point between two frames, by the law that
+    /// frames are [rendered](crate::render_frame) with, the first of the two as their reference.
+    ///
+    /// ```text
+    /// x' = P⁻¹(P(x) + a)        from the image point x in the first frame to x' in the second
+    /// γ  = chat²(s)             s the shift of the pupil over the speckle, in its diameters
+    /// ```
+    ///
+    /// P leads from the sensor, which may be tilted, behind a lens that may distort, to the plane across
+    /// the axis in which the law gives the displacement a. What is in focus is that at the image point,
+    /// not that on the axis.
+    ///
+    /// A head that moves over a still part changes speckle as the part does that moves under it.
+    ///
+    /// Returns `None` where the law has no value, as for a point that one of the frames does not see:
+    /// each frame then has speckle of its own.
+    ///
+    /// # Validity
+    ///
+    /// Two later frames of a render, neither of them its reference, have both changed from a third one.
+    /// Their displacement is the difference of two; they correlate as said here where the pupil has
+    /// moved across its speckle steadily, and else only about so.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `laser < scene.lasers.len()` and `point.surface < scene.surfaces.len()`.
+    ///
+    /// # Examples
+    ///
+    /// A plate 0.3 m away moves by 11 pixel pitches where the lens images at 1:11:
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use tem00_tracer::{ReferencePoint, SpeckleChange, parse_scene};
+    ///
+    /// let scene = parse_scene(
+    ///     r#"
+    ///     [render]
+    ///     frames = 2
+    ///     [camera]
+    ///     position = [0, 0, "300 mm"]
+    ///     focal_length = "25 mm"
+    ///     f_number = 8
+    ///     pixel_pitch = "3.45 um"
+    ///     resolution = [64, 48]
+    ///     [[laser]]
+    ///     wavelength = "650 nm"
+    ///     power = "1 mW"
+    ///     position = [0, 0, "200 mm"]
+    ///     spot.waist_radius = "4 mm"
+    ///     [[surface]]
+    ///     displacement_per_frame = ["37.95 um", 0, 0]
+    ///     rectangle.size = ["20 mm", "20 mm"]
+    ///     "#,
+    ///     std::path::Path::new("."),
+    /// )?;
+    /// let point = ReferencePoint { surface: 0, position: DVec3::ZERO, normal: DVec3::Z };
+    ///
+    /// let change = SpeckleChange::between(&scene, 0, &point, [0, 1]).unwrap();
+    /// assert!((change.displacement.x - 1.0).abs() < 1e-3);
+    /// assert!((0.95..1.0).contains(&change.correlation));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn between(
+        scene: &Scene,
+        laser: usize,
+        point: &ReferencePoint,
+        frames: [u32; 2],
+    ) -> Option<Self> {
+        let wavelength = scene.lasers[laser].wavelength();
+        let surface = &scene.surfaces[point.surface];
+        let [before, now] = frames.map(|frame| surface.trajectory.pose_at(frame));
+        let carried = before.inverse().then(&now);
+        let position = carried.point(point.position);
+        let change = Change::between(scene, frames);
+        let pixel = change.camera().project(position)?;
+        let seen = SpecklePoint {
+            pixel,
+            position,
+            normal: carried.direction(point.normal),
+            surface: point.surface,
+        };
+        let geometry = scene.camera.imaging_geometry(wavelength).ok()?;
+        let drift = change.known_drift(laser, &geometry, &seen)?;
+        let perspective = change.perspective();
+        let old = perspective.pixel(perspective.point(pixel) - drift.displacement)?;
+        Some(Self {
+            displacement: pixel - old,
+            correlation: pupil_overlap_correlation(drift.shift),
+        })
+    }
+}

@@ -57,8 +57,8 @@ pub use place_noise::{
 pub use scan::{
     Averaging, Exposure, FrameCorrelation, HeightMap, HeightScale, LAMP_WAVELENGTH, MeasuredFrame,
     MeasuredPoint, Measurement, MeasurementScene, Raster, RawFormat, Scan, ScanMotion,
-    ScanSettings, ScannedPart, SensorSpeckle, SpeckleChange, SpeckleCorrelation, SpeckleWitness,
-    averaged_profile, brightest_points, mean_point, write_point_cloud,
+    ScanSettings, ScannedPart, SensorSpeckle, SpeckleCorrelation, averaged_profile,
+    brightest_points, mean_point, write_point_cloud,
 };
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{

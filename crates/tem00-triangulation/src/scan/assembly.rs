@@ -1,7 +1,9 @@
+use tem00_tracer::SpeckleChange;
+
 use super::{
     average::averaged_profile,
-    decorrelation::FrameCorrelation,
     frame::{MeasuredFrame, MeasuredPoint},
+    frame_correlation::FrameCorrelation,
     height_map::HeightMap,
     measurement::Measurement,
 };
@@ -16,6 +18,8 @@ pub struct Scan<'a> {
     profiles: Vec<Vec<MeasuredPoint>>,
     /// That of the first profile with valid points.
     correlation: Option<FrameCorrelation>,
+    /// That from the first frame to the next.
+    speckle_change: Option<SpeckleChange>,
 }
 
 impl<'a> Scan<'a> {
@@ -26,12 +30,17 @@ impl<'a> Scan<'a> {
             pending: Vec::new(),
             profiles: Vec::new(),
             correlation: None,
+            speckle_change: None,
         }
     }
 
     /// Adds the next frame; frames come in their order.
     pub fn add(&mut self, frame: MeasuredFrame) {
         let frames = self.measurement.settings().average.frames;
+        let is_followed = frame.frame + 1 < self.measurement.scene().render.frames;
+        if self.speckle_change.is_none() && is_followed {
+            self.speckle_change = self.measurement.speckle_change(&frame, 1);
+        }
         self.pending.push(frame);
         if self.pending.len() >= frames as usize {
             self.complete();
@@ -47,6 +56,7 @@ impl<'a> Scan<'a> {
             measurement: self.measurement,
             profiles: self.profiles,
             correlation: self.correlation,
+            speckle_change: self.speckle_change,
         }
     }
 
@@ -76,6 +86,7 @@ pub struct ScannedPart<'a> {
     measurement: &'a Measurement,
     profiles: Vec<Vec<MeasuredPoint>>,
     correlation: Option<FrameCorrelation>,
+    speckle_change: Option<SpeckleChange>,
 }
 
 impl ScannedPart<'_> {
@@ -95,6 +106,12 @@ impl ScannedPart<'_> {
         }
         let mut points = self.profiles.iter().flatten();
         points.any(MeasuredPoint::is_valid).then_some(1.0)
+    }
+
+    /// Returns what becomes of the speckle of the line from one frame to the next: of the first frame for
+    /// which the law has a value, or `None` without speckle and without such a frame.
+    pub const fn speckle_change(&self) -> Option<&SpeckleChange> {
+        self.speckle_change.as_ref()
     }
 
     /// Returns the heights on a grid: of squares of the part if the scan has a pitch, otherwise of columns

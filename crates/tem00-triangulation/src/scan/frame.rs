@@ -1,15 +1,17 @@
+use std::borrow::Cow;
+
 use glam::DMat3;
 use tem00_numerics::Grid;
-use tem00_tracer::RigidMotion;
+use tem00_tracer::{ReferencePoint, RigidMotion, SpeckleChange};
 
 use super::{
-    decorrelation::{SpeckleChange, SpeckleWitness},
     exposure::{Exposure, single},
+    sensor_speckle::ImageSpeckle,
     speckle_table::SpeckleTable,
 };
 use crate::{
-    Calibration, ColumnLight, DVec3, LineDetector, LinePoint, PlaceNoise, ProfilePoint, RawFrame,
-    Sensor, TriangulationError, Validity, speckle_covariance,
+    Calibration, ColumnLight, DVec2, DVec3, LineDetector, LinePoint, PlaceNoise, ProfilePoint,
+    RawFrame, Sensor, TriangulationError, Validity, speckle_covariance,
 };
 
 /// What the sensor measures in one frame.
@@ -29,7 +31,7 @@ pub struct MeasuredFrame {
     pub correlation: Vec<f64>,
     /// The point in the middle of the profile, whose speckle stands for that of all; `None` without
     /// speckle or without points.
-    pub witness: Option<SpeckleWitness>,
+    pub reference_point: Option<ReferencePoint>,
 }
 
 /// A measured point of a part and how well it is known.
@@ -89,7 +91,7 @@ pub(super) struct Surroundings<'a> {
     /// The covariance that is added to that of the calibration, in m², in the coordinates of the part.
     pub(super) further: DMat3,
     /// `None` without speckle.
-    pub(super) speckle: Option<&'a SpeckleTable>,
+    pub(super) speckle: Option<&'a ImageSpeckle>,
     pub(super) to_part: RigidMotion,
 }
 
@@ -106,14 +108,11 @@ impl Surroundings<'_> {
         let lines = self.detector.detect(&image);
         let expected = Expected::of(self, &exposure);
         let points = self.points(&lines, &expected);
-        let still = self.speckle.map(|table| {
-            let both = self.correlation(&exposure, &points, (SpeckleChange::NONE, table));
-            both[both.len() / 2..].to_vec()
-        });
+        let both = self.correlation(&exposure, &points, &SpeckleChange::NONE);
         Ok(MeasuredFrame {
             frame,
-            correlation: still.unwrap_or_else(|| vec![1.0]),
-            witness: None,
+            correlation: both[both.len() / 2..].to_vec(),
+            reference_point: None,
             points,
             lines,
             raw,
@@ -159,30 +158,32 @@ impl Surroundings<'_> {
         &self,
         exposure: &Exposure,
         points: &[MeasuredPoint],
-        change: (SpeckleChange, &SpeckleTable),
+        change: &SpeckleChange,
     ) -> Vec<f64> {
-        let (Some(middle), Some(still)) = (middle(points), self.speckle) else {
+        let (Some(middle), Some(speckle)) = (middle(points), self.speckle) else {
             return vec![1.0];
         };
+        let pixel = middle.seen.pixel;
         let column = Expected::of(self, exposure).column(self, &middle.seen);
         let light = column.light();
         let sensor = self.sensor.description();
-        let variance = speckle_covariance(sensor, &still, [&light, &light], [0.0; 2]);
+        let still = speckle.column(pixel);
+        let variance = speckle_covariance(sensor, still.as_ref(), [&light, &light], [0.0; 2]);
         if variance <= 0.0 {
             return vec![1.0];
         }
-        let (
-            SpeckleChange {
-                displacement,
-                correlation,
-            },
-            table,
-        ) = change;
-        let covariance = |columns: f64| {
-            let apart = [columns - displacement.x, -displacement.y];
-            correlation * speckle_covariance(sensor, &table, [&light, &light], apart)
+        let moved = change.displacement;
+        let table = if moved == DVec2::ZERO {
+            speckle.table(pixel)
+        } else {
+            Cow::Owned(SpeckleTable::new(&speckle.at(pixel), [-moved.x, -moved.y]))
         };
-        let reach = table.columns() as f64 + displacement.x.abs().ceil().min(FARTHEST);
+        let covariance = |columns: f64| {
+            let apart = [columns - moved.x, -moved.y];
+            let left = speckle_covariance(sensor, table.as_ref(), [&light, &light], apart);
+            change.correlation * left
+        };
+        let reach = table.columns() as f64 + moved.x.abs().ceil().min(FARTHEST);
         let mut columns = -reach;
         let mut correlations = Vec::new();
         while columns <= reach {
@@ -239,7 +240,10 @@ impl Expected {
     fn noise(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> PlaceNoise {
         let sensor = surroundings.sensor.description();
         let column = self.column(surroundings, seen);
-        PlaceNoise::of_column(sensor, &surroundings.speckle, &column.light())
+        let speckle = surroundings
+            .speckle
+            .map(|speckle| speckle.column(seen.pixel));
+        PlaceNoise::of_column(sensor, &speckle.as_deref(), &column.light())
     }
 
     /// The line that there would be without noise at the place of a point, if any.

@@ -2,18 +2,18 @@ use core::sync::atomic::AtomicBool;
 
 use glam::DMat3;
 use tem00_tracer::{
-    BeamShape, Camera, Filter, Frame, Laser, Method, RenderOptions, Scene, SpeckleModel,
-    SurfaceSpeckle, render_frame,
+    BeamShape, Camera, Filter, Frame, Laser, Method, ReferencePoint, RenderOptions, Scene,
+    SpeckleChange, SpeckleModel, SurfaceSpeckle, render_frame,
 };
 
 use super::{
-    decorrelation::{FrameCorrelation, SpeckleChange, SpeckleWitness},
     exposure::Exposure,
     frame::{MeasuredFrame, Surroundings, middle},
+    frame_correlation::FrameCorrelation,
     motion::ScanMotion,
     scene::MeasurementScene,
+    sensor_speckle::{ImageSpeckle, SensorSpeckle},
     settings::ScanSettings,
-    speckle_table::{SensorSpeckle, SpeckleTable},
 };
 use crate::{
     Calibration, DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, Sensor,
@@ -30,9 +30,7 @@ pub struct Measurement {
     height_uncertainty: f64,
     motion: ScanMotion,
     scan: ScanSettings,
-    speckle: SensorSpeckle,
-    /// Its covariances in one image.
-    table: SpeckleTable,
+    speckle: ImageSpeckle,
 }
 
 impl Measurement {
@@ -78,7 +76,6 @@ impl Measurement {
             height_uncertainty: checked_uncertainty(settings.uncertainty)?,
             motion,
             scan,
-            table: SpeckleTable::new(&speckle, [0.0; 2]),
             speckle,
         })
     }
@@ -125,9 +122,9 @@ impl Measurement {
         &self.scan
     }
 
-    /// Returns the speckle as the pixels see it.
+    /// Returns the speckle as the pixels in the middle of the image see it.
     pub const fn speckle(&self) -> &SensorSpeckle {
-        &self.speckle
+        self.speckle.middle()
     }
 
     /// Returns the directions across the line of sight's column, along the scan and of height: along the
@@ -170,25 +167,33 @@ impl Measurement {
         let mut measured = self
             .surroundings(frame, speckle.is_some())
             .measure(exposure, frame, seed)?;
-        measured.witness = speckle.and_then(|_| self.witness(&measured, &rendered));
+        measured.reference_point = speckle.and_then(|_| self.reference_point(&measured, &rendered));
         Ok(measured)
     }
 
     /// Returns how speckle correlates the places of the line between a frame and those that follow, up
     /// to `frames` of them together, by the law of its motion and decorrelation.
     pub fn frame_correlation(&self, first: &MeasuredFrame, frames: u32) -> FrameCorrelation {
-        let surroundings = self.surroundings(first.frame, first.witness.is_some());
-        let table = |later: u32| {
-            let Some(witness) = &first.witness else {
-                return vec![if later == 0 { 1.0 } else { 0.0 }];
-            };
-            let frames = [first.frame, first.frame.saturating_add(later)];
-            let change = SpeckleChange::between(&self.scene, witness, frames);
-            let [x, y] = change.displacement.to_array();
-            let table = SpeckleTable::new(&self.speckle, [-x, -y]);
-            surroundings.correlation(&first.exposure, &first.points, (change, &table))
+        let surroundings = self.surroundings(first.frame, first.reference_point.is_some());
+        let table = |later: u32| match self.speckle_change(first, later) {
+            Some(change) => surroundings.correlation(&first.exposure, &first.points, &change),
+            None if later == 0 => vec![1.0],
+            None => vec![0.0],
         };
         FrameCorrelation::new((0..frames).map(table).collect())
+    }
+
+    /// Returns what has become of the speckle of the line a number of frames later, by the law that
+    /// frames are rendered with; `None` without speckle and where that law has no value, so that each
+    /// frame has speckle of its own.
+    ///
+    /// The point in the middle of the profile stands for all.
+    pub fn speckle_change(&self, first: &MeasuredFrame, later: u32) -> Option<SpeckleChange> {
+        /// The laser of the line.
+        const LASER: usize = 0;
+        let point = first.reference_point.as_ref()?;
+        let frames = [first.frame, first.frame.saturating_add(later)];
+        SpeckleChange::between(&self.scene, LASER, point, frames)
     }
 
     fn surroundings(&self, frame: u32, speckled: bool) -> Surroundings<'_> {
@@ -197,7 +202,7 @@ impl Measurement {
             detector: &self.detector,
             calibration: &self.calibration,
             further: self.further_covariance(),
-            speckle: speckled.then_some(&self.table),
+            speckle: speckled.then_some(&self.speckle),
             to_part: self.motion.to_part(frame),
         }
     }
@@ -209,7 +214,11 @@ impl Measurement {
     }
 
     /// The middle point of the profile in the world, with the normal that the render has seen there.
-    fn witness(&self, measured: &MeasuredFrame, rendered: &Frame) -> Option<SpeckleWitness> {
+    fn reference_point(
+        &self,
+        measured: &MeasuredFrame,
+        rendered: &Frame,
+    ) -> Option<ReferencePoint> {
         let middle = middle(&measured.points)?;
         #[expect(
             clippy::cast_possible_truncation,
@@ -220,7 +229,7 @@ impl Measurement {
         let at = (middle.seen.column, row);
         let [x, y, z] = [0, 1, 2].map(|axis| f64::from(rendered.normal[axis][at]));
         let world = self.motion.head_at(measured.frame);
-        Some(SpeckleWitness {
+        Some(ReferencePoint {
             surface: *self.motion.surfaces().first()?,
             position: world.point(middle.seen.point.position),
             normal: DVec3::new(x, y, z).try_normalize()?,
@@ -288,28 +297,18 @@ fn check_render(scene: &Scene) -> Result<(), TriangulationError> {
     Err(TriangulationError::Scene(wrong.to_owned()))
 }
 
-/// The speckle on the sensor in the middle of the image; of several surfaces of the part, that of the
-/// greatest contrast.
+/// The speckle on the sensor; of several surfaces of the part, that of the greatest contrast.
 fn speckle(
     scene: &Scene,
     laser: &Laser,
     motion: &ScanMotion,
     sensor: &Sensor,
-) -> Result<SensorSpeckle, TriangulationError> {
-    let camera = &scene.camera;
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "an image has at most 2²⁸ pixels"
-    )]
-    let middle = 0.5 * DVec2::new(camera.width() as f64, camera.height() as f64);
-    let geometry = camera.imaging_geometry_at(middle, laser.wavelength())?;
+) -> Result<ImageSpeckle, TriangulationError> {
     let surfaces = motion.surfaces().iter();
     let variances = surfaces.map(|&index| variance(&scene.surfaces[index].speckle));
-    Ok(SensorSpeckle {
-        size: [geometry.speckle_size_in_pixels(); 2],
-        sensitive_side: 2.0 * sensor.sensitive_half_width(),
-        variance: variances.fold(0.0, f64::max),
-    })
+    let sensitive_side = 2.0 * sensor.sensitive_half_width();
+    let variance = variances.fold(0.0, f64::max);
+    ImageSpeckle::new(scene.camera, laser.wavelength(), (sensitive_side, variance))
 }
 
 /// The square of the contrast of the speckle of a surface: (1 + P²)/2 by the number of patterns.

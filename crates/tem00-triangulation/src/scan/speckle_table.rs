@@ -1,20 +1,17 @@
-use core::f64::consts::PI;
-
 use rayon::prelude::*;
-use tem00_numerics::jinc;
 
+use super::sensor_speckle::SensorSpeckle;
 use crate::PixelCovariance;
 
 /// How the speckle in the pixels of a sensor goes together, for displacements that are whole pixels
 /// apart from each other.
 ///
 /// ```text
-/// c(d) = C² ∫∫ Λ(u) Λ(v) |2 J₁(ρ)/ρ|² du dv      ρ = π √(((dₓ + s u)/hₓ)² + ((d_y + s v)/h_y)²)
-/// Λ(u) = 1 − |u|                                 from −1 to 1
+/// c(d) = ∫∫ Λ(u) Λ(v) c(dₓ + s u, d_y + s v) du dv      Λ(u) = 1 − |u| from −1 to 1
 /// ```
 ///
-/// with the side s of the sensitive part of a pixel and the speckle size h, both in pixels: the
-/// autocovariance of fully developed speckle behind a circular pupil, integrated over two pixels.
+/// with the side s of the sensitive part of a pixel: the autocovariance of [`SensorSpeckle`],
+/// integrated over two pixels.
 ///
 /// # References
 ///
@@ -29,17 +26,6 @@ pub(super) struct SpeckleTable {
     reach: [usize; 2],
 }
 
-/// Speckle as the pixels of a sensor see it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SensorSpeckle {
-    /// The speckle size along rows and columns, in pixels.
-    pub size: [f64; 2],
-    /// The side of the sensitive part of a pixel, in pixels.
-    pub sensitive_side: f64,
-    /// The variance of the speckle factor in a point: 1 for one polarised pattern.
-    pub variance: f64,
-}
-
 /// How far covariances are kept, in speckle sizes: beyond, those of a row add up to less than 10⁻⁴ of
 /// the first.
 const REACH: f64 = 12.0;
@@ -51,18 +37,27 @@ impl SpeckleTable {
     /// Integrates the covariances for the displacements that differ from `offset`, in pixels to the right
     /// and down, by whole pixels.
     pub(super) fn new(speckle: &SensorSpeckle, offset: [f64; 2]) -> Self {
-        let reach = speckle.size.map(pixels_within_reach);
+        Self::within(speckle, offset, speckle.size().map(pixels_within_reach))
+    }
+
+    /// Integrates the covariances of the pixels of one column.
+    pub(super) fn of_column(speckle: &SensorSpeckle) -> Self {
+        let [_, down] = speckle.size().map(pixels_within_reach);
+        Self::within(speckle, [0.0; 2], [0, down])
+    }
+
+    fn within(speckle: &SensorSpeckle, offset: [f64; 2], reach: [usize; 2]) -> Self {
+        let offset = offset.map(f64::fract);
         let [columns, rows] = reach.map(|reach| 2 * reach + 1);
-        let axis = |offset: f64, reach: usize, index: usize| offset + index as f64 - reach as f64;
         let value = |index: usize| {
-            let (column, row) = (index % columns, index / columns);
-            speckle.covariance([
-                axis(offset[0].fract(), reach[0], column),
-                axis(offset[1].fract(), reach[1], row),
-            ])
+            let steps = [index % columns, index / columns];
+            speckle.covariance([0, 1].map(|axis| {
+                let whole = steps[axis] as f64 - reach[axis] as f64;
+                offset[axis] + whole
+            }))
         };
         Self {
-            offset: offset.map(f64::fract),
+            offset,
             values: (0..columns * rows).into_par_iter().map(value).collect(),
             reach,
         }
@@ -99,54 +94,6 @@ impl PixelCovariance for SpeckleTable {
     }
 }
 
-impl SensorSpeckle {
-    /// Returns the covariance of the speckle factors of two pixels, a displacement in pixels apart.
-    fn covariance(&self, displacement: [f64; 2]) -> f64 {
-        let [across, down] = [0, 1].map(|axis| self.nodes(axis, displacement[axis]));
-        let sum: f64 = across
-            .iter()
-            .flat_map(|a| down.iter().map(move |d| (a, d)))
-            .map(|((x, weight_x), (y, weight_y))| {
-                let field = jinc(PI * x.hypot(*y));
-                weight_x * weight_y * field * field
-            })
-            .sum();
-        self.variance * sum
-    }
-
-    /// The distances, in speckle sizes, at which the integral along an axis takes its values, with the
-    /// weights.
-    fn nodes(&self, axis: usize, displacement: f64) -> Vec<(f64, f64)> {
-        let size = self.size[axis];
-        // Each panel is at most half a speckle wide, to either side of the kink of the triangle.
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "between 1 and 64"
-        )]
-        let panels = (2.0 * self.sensitive_side / size).ceil().clamp(1.0, 64.0) as u32;
-        let width = 1.0 / f64::from(panels);
-        let half = (0..panels).flat_map(|panel| {
-            GAUSS.map(|(node, weight)| (width * (f64::from(panel) + node), width * weight))
-        });
-        half.flat_map(|(u, weight)| [(u, weight), (-u, weight)])
-            .map(|(u, weight)| {
-                let distance = (displacement + self.sensitive_side * u) / size;
-                (distance, weight * (1.0 - u.abs()))
-            })
-            .collect()
-    }
-}
-
-/// Nodes and weights of Gauss and Legendre on [0, 1].
-const GAUSS: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_92),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_1),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_1),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_92),
-];
-
-/// The number of pixels to either side that are kept.
 fn pixels_within_reach(size: f64) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
@@ -159,13 +106,15 @@ fn pixels_within_reach(size: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use glam::DMat2;
     use tem00_statistics::{PixelAutocovariance, PixelColumn, pixel_contrast};
 
     use super::*;
+    use crate::DVec2;
 
     fn speckle(size: f64, sensitive_side: f64) -> SensorSpeckle {
         SensorSpeckle {
-            size: [size; 2],
+            speckles_per_pixel: DMat2::from_diagonal(DVec2::splat(size.recip())),
             sensitive_side,
             variance: 1.0,
         }

@@ -9,9 +9,9 @@ mod terms;
 
 use std::{io::Write, path::Path, time::Instant};
 
-use tem00_tracer::{Formulas, SpeckleModel, SpecklePlan};
+use tem00_tracer::{Formulas, SpeckleChange, SpeckleModel, SpecklePlan};
 use tem00_triangulation::{
-    HeightMap, MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, Scan,
+    Averaging, HeightMap, MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, Scan,
     TriangulationError,
 };
 
@@ -75,6 +75,8 @@ struct Measured {
     /// The frame that the report shows, from the middle of the scan.
     shown: Option<MeasuredFrame>,
     effective_frames: Option<f64>,
+    /// What becomes of speckle from frame to frame, where there is any.
+    speckle_change: Option<SpeckleChange>,
     /// What makes heights uncertain, or why there is none.
     terms: Result<Terms, Refusal>,
     seconds: f64,
@@ -130,6 +132,7 @@ impl<'a> Job<'a> {
             map: map.map_err(|error| measurement_failure(&self.args.scene, &error))?,
             shown,
             effective_frames: part.effective_frames(),
+            speckle_change: part.speckle_change().copied(),
             terms: terms.ok_or_else(|| Refusal::of(&frames)),
             frames,
             profiles,
@@ -184,8 +187,9 @@ impl<'a> Job<'a> {
             .terms
             .as_ref()
             .map_or_else(|_| String::new(), Terms::text);
+        let speckle = measured.speckle_sentence(self.measurement.settings().average);
         let report = self.files.path("report.html");
-        write!(out, "{text}")
+        write!(out, "{text}{speckle}")
             .and_then(|()| writeln!(out, "{}", report.display()))
             .map_err(|error| Failure::stdout(&error))?;
         measured.terms.as_ref().map(drop).map_err(|refusal| {
@@ -194,6 +198,34 @@ impl<'a> Job<'a> {
             Failure::no_result(message, refusal.advice)
         })
     }
+}
+
+impl Measured {
+    /// What becomes of speckle from frame to frame, as a line of text; nothing where that is not known.
+    fn speckle_sentence(&self, average: Averaging) -> String {
+        let Some(change) = &self.speckle_change else {
+            return String::new();
+        };
+        let worth = match self.effective_frames {
+            Some(worth) if average.frames > 1 => format!(
+                "; a mean over {} frames is worth {worth:.1} of independent speckle",
+                average.frames
+            ),
+            _ => String::new(),
+        };
+        format!(
+            "Speckle from frame to frame: {}{worth}.\n",
+            in_words(change)
+        )
+    }
+}
+
+/// How speckle has moved and how much of it is left.
+fn in_words(change: &SpeckleChange) -> String {
+    format!(
+        "{:+.2} pixels to the right, {:+.2} down; correlation {:.2}",
+        change.displacement.x, change.displacement.y, change.correlation
+    )
 }
 
 /// Returns the scene with what the command line overrules.

@@ -5,6 +5,7 @@ use tem00_triangulation::{HeightMap, MeasuredPoint, Raster};
 use super::{
     Job, Measured,
     files::ranges,
+    in_words,
     terms::{Terms, micrometres},
 };
 use crate::{
@@ -318,12 +319,19 @@ impl Page<'_> {
                 if self.job.args.no_speckle {
                     "left out, as asked".to_owned()
                 } else {
+                    let [across, down] = speckle.size();
                     format!(
-                        "{:.2} pixels, contrast {:.2}",
-                        speckle.size[0],
+                        "{across:.2} × {down:.2} pixels, contrast {:.2}",
                         speckle.variance.sqrt()
                     )
                 },
+            ),
+            (
+                "speckle from frame to frame",
+                self.measured
+                    .speckle_change
+                    .as_ref()
+                    .map_or("-".to_owned(), in_words),
             ),
             ("height", place.map_or("-".to_owned(), per_pixel)),
             (

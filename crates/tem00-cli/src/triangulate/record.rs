@@ -46,10 +46,20 @@ struct UncertaintyRecord {
 
 #[derive(Debug, Serialize)]
 struct SpeckleRecord {
-    /// The speckle size, in pixels.
-    size: f64,
+    /// The speckle size in the middle of the image, along rows and columns, in pixels.
+    size: [f64; 2],
     /// The contrast in a point of the image.
     contrast: f64,
+    /// What becomes of it from a frame to the next; none where that is not known.
+    between_frames: Option<ChangeRecord>,
+}
+
+#[derive(Debug, Serialize)]
+struct ChangeRecord {
+    /// How far the pattern moves, in pixels to the right and down.
+    displacement: [f64; 2],
+    /// The correlation of what is left of it.
+    correlation: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -170,8 +180,12 @@ impl Record {
             seed: render.seed,
             samples_per_pixel: render.samples_per_pixel,
             speckle: (!job.args.no_speckle).then(|| SpeckleRecord {
-                size: speckle.size[0],
+                size: speckle.size(),
                 contrast: speckle.variance.sqrt(),
+                between_frames: measured.speckle_change.map(|change| ChangeRecord {
+                    displacement: change.displacement.to_array(),
+                    correlation: change.correlation,
+                }),
             }),
             sensor: SensorRecord::of(measurement.sensor().description()),
             detector: DetectorRecord::of(job),

@@ -77,6 +77,13 @@ fn a_scan_leaves_all_its_files() {
     }
     let record = record(&results);
     assert_eq!(record["frames"].as_array().map(Vec::len), Some(4));
+    assert!(table.contains("Speckle from frame to frame: "), "{table}");
+    let speckle = &record["speckle"]["between_frames"];
+    let moved = |axis: usize| speckle["displacement"][axis].as_f64().expect("pixels");
+    // The camera looks down at 30° to the vertical and images 0.2 mm · cos 30° at 1:11, upwards.
+    let expected = -0.2e-3 * 0.75_f64.sqrt() / 11.0 / 3.45e-6;
+    assert!(moved(0).abs() < 0.05, "{speckle}");
+    assert!((moved(1) - expected).abs() < 0.05, "{speckle}");
     let range = record["height_map"]["range"].as_array().expect("heights");
     let height = |i: usize| range[i].as_f64().expect("a number");
     // One millimetre, and the noise of single points: 35 µm of standard deviation.
@@ -130,6 +137,7 @@ fn results_do_not_depend_on_the_threads_but_on_the_seed() {
     assert_eq!(one, cloud("--threads 3", "three"));
     assert_ne!(one, cloud("--seed 5", "other"));
     assert_ne!(one, cloud("--no-speckle", "quiet"));
+    assert!(record(&folder.path().join("quiet"))["speckle"].is_null());
 }
 
 #[test]

@@ -222,9 +222,14 @@ impl Measured {
 
 /// How speckle has moved and how much of it is left.
 fn in_words(change: &SpeckleChange) -> String {
+    // Adding 0 takes the sign off −0.
+    let [right, down] = change
+        .displacement
+        .to_array()
+        .map(|pixels| (100.0 * pixels).round() / 100.0 + 0.0);
     format!(
-        "{:+.2} pixels to the right, {:+.2} down; correlation {:.2}",
-        change.displacement.x, change.displacement.y, change.correlation
+        "{right:+.2} pixels to the right, {down:+.2} down; correlation {:.2}",
+        change.correlation
     )
 }
 

@@ -25,13 +25,6 @@ struct Unit {
     divisor: f64,
 }
 
-impl Unit {
-    /// Returns whether it is the SI unit itself.
-    fn is_si(&self) -> bool {
-        self.multiplier.to_bits() == self.divisor.to_bits()
-    }
-}
-
 /// Returns a word without the punctuation behind it.
 fn bare(word: &str) -> &str {
     word.trim_end_matches([',', ';', ':', '.', ')'])
@@ -53,6 +46,48 @@ const fn unit(symbol: &'static str, multiplier: f64, divisor: f64) -> Unit {
         symbol,
         multiplier,
         divisor,
+    }
+}
+
+/// A number as it is written.
+#[derive(Debug)]
+struct Written {
+    digits: usize,
+    text: String,
+}
+
+impl Unit {
+    /// Returns whether it is the SI unit itself.
+    fn is_si(&self) -> bool {
+        self.multiplier.to_bits() == self.divisor.to_bits()
+    }
+
+    /// Returns a number of units in SI units.
+    fn si(&self, number: f64) -> f64 {
+        number * self.multiplier / self.divisor
+    }
+
+    /// Returns a value in SI units in this unit.
+    fn of(&self, value: f64) -> f64 {
+        value * self.divisor / self.multiplier
+    }
+
+    /// Returns the shortest number, without an exponent, that reads back as the same bits; `None` if it
+    /// would be long.
+    fn shortest(&self, value: f64) -> Option<Written> {
+        const MOST_DIGITS: usize = 9;
+        let number = self.of(value);
+        if !(1e-3..1e6).contains(&number.abs()) {
+            return None;
+        }
+        (1..=MOST_DIGITS).find_map(|digits| {
+            let rounded: f64 = format!("{number:.*e}", digits - 1).parse().ok()?;
+            let is_same = self.si(rounded).to_bits() == value.to_bits();
+            is_same.then(|| Written {
+                digits,
+                text: rounded.to_string(),
+            })
+        })
     }
 }
 
@@ -168,7 +203,7 @@ impl Dimension {
     /// of this kind; a number without a unit is none.
     pub fn parse(&self, text: &str) -> Option<f64> {
         let (number, unit) = self.split(text)?;
-        Some(number * unit.multiplier / unit.divisor)
+        Some(unit.si(number))
     }
 
     /// Returns the number and the unit of a string, or `None` if it is no quantity of this kind.
@@ -192,7 +227,7 @@ impl Dimension {
         let (_, unit) = self.split(typed)?;
         Some(format!(
             "{} {}",
-            digits(value * unit.divisor / unit.multiplier),
+            digits(unit.of(value)),
             unit.symbol
         ))
     }
@@ -235,9 +270,44 @@ impl Dimension {
         )
     }
 
+    /// Returns a value in SI units as one would write it into a file: in the unit that takes the fewest
+    /// digits, in the `usual` one of several, or else as a bare number. It reads back as the same bits.
+    pub fn text(&self, value: f64, usual: &str) -> String {
+        // Symbols beyond ASCII are second names of units.
+        let units = self.units.iter().filter(|unit| unit.symbol.is_ascii());
+        let written = units.filter_map(|unit| Some((unit, unit.shortest(value)?)));
+        let shortest = written.min_by_key(|(unit, number)| (number.digits, unit.symbol != usual));
+        match shortest {
+            Some((unit, number)) => format!("\"{} {}\"", number.text, unit.symbol),
+            None if value == 0.0 || (1e-3..1e6).contains(&value.abs()) => value.to_string(),
+            None => format!("{value:e}"),
+        }
+    }
+
+    /// Returns the value nearest to one in SI units that is written with few digits in a unit: rounded to
+    /// the power of ten at or below `step`, which is in SI units, too. It is the value that its text reads
+    /// back as.
+    pub fn rounded(&self, value: f64, step: f64, symbol: &str) -> f64 {
+        const MOST_DECIMALS: f64 = 15.0;
+        const ONE: Unit = unit("", 1.0, 1.0);
+        let unit = self.unit(symbol).unwrap_or(&ONE);
+        let decimals = -libm::floor(libm::log10(unit.of(step)));
+        if decimals.is_nan() || decimals > MOST_DECIMALS {
+            return value;
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "from 0 to 15"
+        )]
+        let decimals = decimals.max(0.0) as usize;
+        let text = format!("{:.decimals$}", unit.of(value));
+        text.parse().map_or(value, |number| unit.si(number))
+    }
+
     /// Returns the size of a unit in SI units, or `None` if it is no unit of this kind.
     pub(super) fn size_of(&self, symbol: &str) -> Option<f64> {
-        self.unit(symbol).map(|unit| unit.multiplier / unit.divisor)
+        self.unit(symbol).map(|unit| unit.si(1.0))
     }
 
     fn unit(&self, symbol: &str) -> Option<&Unit> {
@@ -357,6 +427,45 @@ mod tests {
         ];
         for text in not_lengths {
             assert_eq!(LENGTH.parse(text), None, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn values_are_written_as_a_person_writes_them() {
+        // The text that is read, and that which is written: as short, in the usual unit if it may be.
+        for (dimension, usual, text, expected) in [
+            (&DURATION, "ms", "0.16 ms", "0.16 ms"),
+            (&DURATION, "ms", "20 us", "0.02 ms"),
+            (&ANGLE, "deg", "40 deg", "40 deg"),
+            (&ANGLE, "deg", "0.25 rad", "250 mrad"),
+            (&LENGTH, "nm", "0.66 um", "660 nm"),
+            (&LENGTH, "um", "3.45 um", "3.45 um"),
+            (&LENGTH, "mm", "0.3 m", "300 mm"),
+            (&POWER, "mW", "1e1 mW", "10 mW"),
+        ] {
+            let value = dimension.parse(text).unwrap();
+            assert_eq!(dimension.text(value, usual), format!("\"{expected}\""));
+            let read = dimension.parse(expected).unwrap();
+            assert_eq!(read.to_bits(), value.to_bits(), "{text} is {expected}");
+        }
+        assert_eq!(NUMBER.text(5.6, ""), "5.6");
+        assert_eq!(NUMBER.text(1e-9, ""), "1e-9");
+        // No unit makes this short.
+        assert_eq!(ANGLE.text(0.1 + 0.2, "deg"), "0.30000000000000004");
+    }
+
+    #[test]
+    fn values_are_rounded_to_what_reads_back() {
+        // A third of the way from 0.02 ms to 0.64 ms on a logarithmic scale, and its neighbours.
+        let value = 0.02e-3 * 32.0_f64.powf(3.0 / 5.0);
+        let rounded = DURATION.rounded(value, 0.8e-6, "ms");
+        assert_eq!(Some(rounded), DURATION.parse("0.16 ms"));
+        assert_eq!(DURATION.text(rounded, "ms"), "\"0.16 ms\"");
+        let rounded = |value, step| Some(NUMBER.rounded(value, step, ""));
+        assert_eq!(rounded(5.039_68, 0.0104), Some(5.04));
+        assert_eq!(rounded(123.4, 30.0), Some(123.0), "no step is so wide");
+        for step in [0.0, f64::NAN, 1e-30] {
+            assert_eq!(rounded(5.039_68, step), Some(5.039_68), "{step}");
         }
     }
 

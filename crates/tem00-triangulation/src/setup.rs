@@ -12,7 +12,11 @@ use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 
 use crate::{DetectorSettings, LaserPlane, LineDetector, Sensor, TriangulationError, Triangulator};
 
-pub(crate) use self::{description::within, line_profile::LineProfile};
+pub(crate) use self::{
+    description::within,
+    light_level::{LEAST_SIGNAL, MOST_GRAIN_SATURATION},
+    line_profile::LineProfile,
+};
 pub use self::{
     description::{Averages, LaserLineData, SetupCamera, SetupDescription, SetupSurface},
     imaged_line::ImagedLine,
@@ -55,12 +59,27 @@ pub struct Setup {
 impl Setup {
     /// Creates a set-up.
     ///
+    /// With [`auto_exposure`](SetupDescription::auto_exposure) the exposure time is the longest of two
+    /// digits with which bright grains of speckle, at three standard deviations above the mean of the
+    /// brightest pixel, fill at most 0.9 of what the sensor can hold; [`description`](Self::description)
+    /// has it.
+    ///
     /// # Errors
     ///
     /// Returns an error if a quantity is outside its range; if camera, sensor or detector are not
     /// possible; if the line is narrower in the image than a tenth of a pixel or wider than a third of
     /// the image; or if a speckle is smaller than 1/16 of a pixel or larger than 64 pixels.
-    pub fn new(description: SetupDescription) -> Result<Self, TriangulationError> {
+    pub fn new(mut description: SetupDescription) -> Result<Self, TriangulationError> {
+        if description.auto_exposure {
+            description.sensor.exposure_time = 1.0;
+            let exposed = Self::exposed(description)?;
+            description.sensor.exposure_time = exposed.grain_exposure()?;
+        }
+        Self::exposed(description)
+    }
+
+    /// Creates a set-up with the exposure time of its description.
+    fn exposed(description: SetupDescription) -> Result<Self, TriangulationError> {
         description.check()?;
         let camera = camera(&description)?;
         let sensor = Sensor::new(description.sensor)?;

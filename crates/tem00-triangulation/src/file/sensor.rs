@@ -1,7 +1,7 @@
 #[cfg(test)]
 mod tests;
 
-use tem00_tracer::document::{DURATION, Document, NUMBER, Problem, Section};
+use tem00_tracer::document::{DURATION, Document, NUMBER, Problem, Section, Value};
 
 use crate::{Sensor, SensorDescription, TriangulationError};
 
@@ -33,14 +33,35 @@ pub fn read_sensor(
     document: &Document<'_>,
     pixel_pitch: f64,
 ) -> Result<SensorDescription, Problem> {
+    let (description, auto) = read_sensor_or_auto(document, pixel_pitch)?;
+    match auto {
+        None => Ok(description),
+        Some(value) => Err(value.must_be("a duration").with_help(
+            "\"auto\" is for set-up files: of a scene the light is known only when it is rendered. \
+             `tem00 budget` of the set-up tells the time that it chooses",
+        )),
+    }
+}
+
+/// Reads the section `[sensor]` of a set-up file, in which the exposure may be "auto": that value is
+/// returned, too, and the exposure time is the typical one.
+pub(super) fn read_sensor_or_auto<'a>(
+    document: &Document<'a>,
+    pixel_pitch: f64,
+) -> Result<(SensorDescription, Option<Value<'a>>), Problem> {
     let section = document.table("sensor", KEYS)?.ok_or_else(|| {
         Problem::new("the file needs a sensor: a section [sensor]").with_help(
             "for example `quantum_efficiency = 0.6` and `exposure = \"2 ms\"` below `[sensor]`",
         )
     })?;
-    let description = description(&section, pixel_pitch)?;
+    let exposure = section.required("exposure", "\"2 ms\"")?;
+    let auto = exposure.string().is_ok_and(|text| text == "auto");
+    let mut description = description(&section, pixel_pitch)?;
+    if !auto {
+        description.exposure_time = exposure.positive(&DURATION)?;
+    }
     match Sensor::new(description) {
-        Ok(_) => Ok(description),
+        Ok(_) => Ok((description, auto.then_some(exposure))),
         Err(error) => Err(section.problem_with(key_of(&error), &error)),
     }
 }
@@ -58,9 +79,7 @@ fn description(section: &Section<'_>, pixel_pitch: f64) -> Result<SensorDescript
     );
     Ok(SensorDescription {
         quantum_efficiency: quantum_efficiency.quantity(&NUMBER)?,
-        exposure_time: section
-            .required("exposure", "\"2 ms\"")?
-            .positive(&DURATION)?,
+        exposure_time: typical.exposure_time,
         full_well,
         black_level,
         gain: number(

@@ -8,7 +8,7 @@ use tem00_tracer::{
     },
 };
 
-use super::{read_detector, read_sensor};
+use super::{read_detector, sensor::read_sensor_or_auto};
 use crate::{
     Averages, LaserLineData, Setup, SetupCamera, SetupDescription, SetupSurface, TriangulationError,
 };
@@ -144,10 +144,12 @@ fn setup(document: &Document<'_>) -> Result<Setup, Problem> {
         .required("pixel_pitch", "\"3.45 um\"")?
         .positive(&LENGTH)?;
     let sections = [&laser, &camera, &surface];
+    let (sensor, auto) = read_sensor_or_auto(document, pitch)?;
     let description = SetupDescription {
         laser: read_laser(&laser)?,
         camera: read_camera(&camera)?,
-        sensor: read_sensor(document, pitch)?,
+        sensor,
+        auto_exposure: auto.is_some(),
         surface: read_surface(&surface)?,
         detector: read_detector(document)?,
         calibration_uncertainty: match &calibration {

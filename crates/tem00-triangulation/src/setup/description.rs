@@ -12,6 +12,9 @@ pub struct SetupDescription {
     pub camera: SetupCamera,
     /// The camera's sensor.
     pub sensor: SensorDescription,
+    /// Whether the exposure time is chosen such that the light fits the sensor, as
+    /// [`Setup::new`](crate::Setup::new) says, and that of the sensor is not read.
+    pub auto_exposure: bool,
     /// What the line falls on.
     pub surface: SetupSurface,
     /// How the line is found.

@@ -1,6 +1,8 @@
 use tem00_statistics::rectangular_pixel_contrast;
+use tem00_tracer::document::DURATION;
 
 use super::{ImagedLine, Setup};
+use crate::TriangulationError;
 
 /// Whether the sensor gets the light that it needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,12 +50,15 @@ impl LightLevel {
 }
 
 /// By how many times its noise a line must stand out of the dark.
-const LEAST_SIGNAL: f64 = 10.0;
+pub(crate) const LEAST_SIGNAL: f64 = 10.0;
 /// The part of what the sensor can hold that bright grains may fill.
-const MOST_GRAIN_SATURATION: f64 = 1.0;
+pub(crate) const MOST_GRAIN_SATURATION: f64 = 1.0;
 /// How many standard deviations of speckle above the mean bright grains are: of fully developed speckle
 /// in small pixels 2 % are brighter.
 const BRIGHT_GRAINS: f64 = 3.0;
+/// The part of what the sensor can hold that bright grains fill with an exposure that is chosen: it leaves
+/// room for shot noise and for the different response of the pixels.
+const CHOSEN_GRAIN_SATURATION: f64 = 0.9;
 
 impl Setup {
     /// Returns whether the sensor gets the light that it needs.
@@ -116,6 +121,32 @@ impl Setup {
     fn grain_saturation_of(&self, line: &ImagedLine) -> f64 {
         let grains = line.peak_electrons() * (1.0 + BRIGHT_GRAINS * self.contrast_of(line));
         self.saturation_of(self.sensor().dark_electrons() + grains)
+    }
+
+    /// Returns the exposure time, in seconds, with which bright grains fill 0.9 of what the sensor can hold
+    /// or tell, rounded down to two digits.
+    ///
+    /// Light and dark current grow with the time, the black level does not.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the black level is above 0.9 of the largest grey value.
+    pub(super) fn grain_exposure(&self) -> Result<f64, TriangulationError> {
+        let sensor = &self.description().sensor;
+        let grains = self.line().peak_electrons() * (1.0 + BRIGHT_GRAINS * self.contrast());
+        let rate = (grains + self.sensor().dark_electrons()) / sensor.exposure_time;
+        let full = ((1_u64 << sensor.bit_depth) - 1) as f64;
+        if sensor.black_level >= CHOSEN_GRAIN_SATURATION * full {
+            return Err(TriangulationError::OutOfRange {
+                parameter: "black_level",
+                value: sensor.black_level,
+                allowed: "below 0.9 of the largest grey value, for an exposure that is \"auto\"",
+            });
+        }
+        let digital = (CHOSEN_GRAIN_SATURATION * full - sensor.black_level) / sensor.gain;
+        let longest = digital.min(CHOSEN_GRAIN_SATURATION * sensor.full_well) / rate;
+        let step = libm::exp10(libm::floor(libm::log10(longest)) - 1.0);
+        Ok(DURATION.rounded((longest / step).floor() * step, step, "ms"))
     }
 
     /// Returns the mean light in the brightest pixel in units of the standard deviation of a pixel in the

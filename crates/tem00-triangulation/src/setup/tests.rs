@@ -26,6 +26,7 @@ pub(crate) fn description() -> SetupDescription {
             pixel_pitch: 3.45e-6,
             ..SensorDescription::typical(12)
         },
+        auto_exposure: false,
         surface: SetupSurface {
             reflectance: 0.5,
             patterns: 1,
@@ -194,6 +195,50 @@ fn the_scene_of_a_setup_is_read_as_one() {
         let apart = ours.unwrap().distance(theirs.unwrap());
         assert!(apart < 1e-9, "{apart}");
     }
+}
+
+#[test]
+fn a_chosen_exposure_leaves_room_for_bright_grains_and_not_much_more() {
+    let mut chosen = 0;
+    for (f_number, power, bits) in [
+        (2.8, 5e-3, 12),
+        (8.0, 5e-3, 10),
+        (11.0, 1.0, 8),
+        (5.6, 1e-6, 12),
+    ] {
+        let mut description = description();
+        description.camera.f_number = f_number;
+        description.laser.power = power;
+        description.sensor = SensorDescription {
+            exposure_time: f64::NAN,
+            ..SensorDescription::typical(bits)
+        };
+        description.auto_exposure = true;
+        let setup = Setup::new(description).unwrap();
+        // Grains three standard deviations above the mean, as drawn by nobody: in electrons, and in DN.
+        let d = setup.description().sensor;
+        let dark = d.dark_current * d.exposure_time;
+        let mean = setup.line().pixel_electrons(-0.5, 0.0);
+        let grains = dark + mean * (1.0 + 3.0 * setup.contrast());
+        let full = f64::from((1_u32 << bits) - 1);
+        let part = (grains / d.full_well).max((d.black_level + d.gain * grains) / full);
+        // Rounding down to two digits takes a tenth at most.
+        assert!(
+            part <= 0.9 && part > 0.9 * 0.9 - 0.1 / 64.0,
+            "f/{f_number}: {part}"
+        );
+        if setup.light_level() == LightLevel::Good {
+            chosen += 1;
+        }
+        // What was chosen is a time like any other.
+        let mut fixed = *setup.description();
+        fixed.auto_exposure = false;
+        assert_eq!(Setup::new(fixed).unwrap().line(), setup.line());
+        let milliseconds: f64 = format!("{:.1e}", 1e3 * d.exposure_time).parse().unwrap();
+        let two_digits = (milliseconds / 1e3).to_bits();
+        assert_eq!(d.exposure_time.to_bits(), two_digits, "{milliseconds} ms");
+    }
+    assert!(chosen >= 3, "{chosen} of them are good");
 }
 
 #[test]

@@ -80,6 +80,10 @@ fn mistakes_are_named_at_their_place() {
             ":3:12: `exposure` must be a duration",
         ),
         (
+            "[sensor]\nquantum_efficiency = 0.6\nexposure = \"auto\"",
+            ":3:12: `exposure` must be a duration, got \"auto\"",
+        ),
+        (
             &format!("{usual}bit_depth = 9"),
             ":4:13: bit_depth must be 8, 10, 12, 14 or 16, got 9",
         ),

@@ -1,53 +1,36 @@
 use core::fmt::Write;
 
-use crate::{LineMethod, SetupDescription};
+use tem00_tracer::document::{ANGLE, DURATION, Dimension, LENGTH, NUMBER, POWER};
+
+use crate::{Averages, DetectorSettings, LineMethod, SensorDescription, SetupDescription};
 
 impl SetupDescription {
-    /// Returns the text of a set-up file with this description, in SI units. Every number in it reads
-    /// back as the same bits.
+    /// Returns the text of a set-up file with this description, as a person would write it: with units, and
+    /// without what is as it is by default. Every number in it reads back as the same bits.
     ///
-    /// What is left out is the saturation of the detector: a set-up takes it from its sensor.
+    /// What is left out as well is the saturation of the detector: a set-up takes it from its sensor.
     pub fn to_toml(&self) -> String {
-        let (laser, camera, sensor) = (&self.laser, &self.camera, &self.sensor);
-        let [width, height] = camera.resolution;
         let mut text = Sections(String::new());
-        text.section("laser")
-            .number("wavelength", laser.wavelength)
-            .number("power", laser.power)
-            .number("line_width", laser.line_width)
-            .number("line_length", laser.line_length);
-        text.section("camera")
-            .number("focal_length", camera.focal_length)
-            .number("f_number", camera.f_number)
-            .number("pixel_pitch", sensor.pixel_pitch)
-            .value("resolution", format_args!("[{width}, {height}]"))
-            .number("distance", camera.distance)
-            .number("angle", camera.angle)
-            .value("scheimpflug", camera.scheimpflug);
-        text.section("sensor")
-            .number("quantum_efficiency", sensor.quantum_efficiency)
-            .number("exposure", sensor.exposure_time)
-            .value("bit_depth", sensor.bit_depth)
-            .number("gain", sensor.gain)
-            .number("black_level", sensor.black_level)
-            .number("full_well", sensor.full_well)
-            .number("dark_noise", sensor.dark_noise)
-            .number("dark_current", sensor.dark_current)
-            .number("prnu", sensor.prnu)
-            .number("dsnu", sensor.dsnu)
-            .number("fill_factor", sensor.fill_factor)
-            .value("serial_number", sensor.serial_number);
+        text.laser(self);
+        text.camera(self);
+        text.sensor(self);
         text.section("surface")
             .number("reflectance", self.surface.reflectance)
             .value("patterns", self.surface.patterns)
+            .note("independent speckle patterns that add up")
             .number("polarisation", self.surface.polarisation);
-        text.detector(self);
-        text.section("calibration")
-            .number("uncertainty", self.calibration_uncertainty);
-        text.section("average")
-            .value("columns", self.average.columns)
-            .value("frames", self.average.frames)
-            .value("independent_speckle", self.average.independent_speckle);
+        text.detector(&self.detector);
+        if self.calibration_uncertainty > 0.0 {
+            text.section("calibration")
+                .length("uncertainty", self.calibration_uncertainty, "um")
+                .note("standard uncertainty of a height");
+        }
+        if self.average != Averages::default() {
+            text.section("average")
+                .value("columns", self.average.columns)
+                .value("frames", self.average.frames)
+                .value("independent_speckle", self.average.independent_speckle);
+        }
         text.0
     }
 }
@@ -56,33 +39,68 @@ impl SetupDescription {
 struct Sections(String);
 
 impl Sections {
-    fn section(&mut self, name: &str) -> &mut Self {
-        let gap = if self.0.is_empty() { "" } else { "\n" };
-        self.add(format_args!("{gap}[{name}]"))
+    fn laser(&mut self, description: &SetupDescription) {
+        let laser = &description.laser;
+        self.section("laser")
+            .length("wavelength", laser.wavelength, "nm")
+            .quantity("power", laser.power, (&POWER, "mW"))
+            .length("line_width", laser.line_width, "mm")
+            .note("between the points of 1/e², on the part")
+            .length("line_length", laser.line_length, "mm");
     }
 
-    /// A number with as many digits as it takes to read it back.
-    fn number(&mut self, key: &str, value: f64) -> &mut Self {
-        let plain = value == 0.0 || (1e-3..1e6).contains(&value.abs());
-        if plain {
-            self.value(key, value)
-        } else {
-            self.value(key, format_args!("{value:e}"))
+    fn camera(&mut self, description: &SetupDescription) {
+        let camera = &description.camera;
+        let [width, height] = camera.resolution;
+        self.section("camera")
+            .length("focal_length", camera.focal_length, "mm")
+            .number("f_number", camera.f_number)
+            .length("pixel_pitch", description.sensor.pixel_pitch, "um")
+            .value("resolution", format_args!("[{width}, {height}]"))
+            .note("columns, rows")
+            .length("distance", camera.distance, "mm")
+            .note("from the lens to the line")
+            .quantity("angle", camera.angle, (&ANGLE, "deg"))
+            .note("between the optical axis and the plane of the laser");
+        if camera.scheimpflug {
+            self.value("scheimpflug", true).note("the sensor is tilted");
         }
     }
 
-    fn value(&mut self, key: &str, value: impl core::fmt::Display) -> &mut Self {
-        self.add(format_args!("{key} = {value}"))
+    fn sensor(&mut self, description: &SetupDescription) {
+        let sensor = &description.sensor;
+        let typical = SensorDescription::typical(sensor.bit_depth);
+        let (bits, black, well) = (sensor.bit_depth, sensor.black_level, sensor.full_well);
+        let filling = SensorDescription::filling_gain(bits, black, well);
+        let time = DURATION.text(sensor.exposure_time, "ms");
+        self.section("sensor")
+            .number("quantum_efficiency", sensor.quantum_efficiency)
+            .note("at the wavelength of the laser");
+        if description.auto_exposure {
+            let time = time.trim_matches('"');
+            self.value("exposure", "\"auto\"").note(time);
+        } else {
+            self.value("exposure", time);
+        }
+        self.value("bit_depth", sensor.bit_depth)
+            .number("full_well", sensor.full_well)
+            .note("electrons")
+            .unless("black_level", sensor.black_level, typical.black_level)
+            .unless("gain", sensor.gain, filling)
+            .number("dark_noise", sensor.dark_noise)
+            .note("electrons")
+            .number("dark_current", sensor.dark_current)
+            .note("electrons per second")
+            .number("prnu", sensor.prnu)
+            .number("dsnu", sensor.dsnu)
+            .note("electrons")
+            .unless("fill_factor", sensor.fill_factor, typical.fill_factor);
+        if sensor.serial_number != typical.serial_number {
+            self.value("serial_number", sensor.serial_number);
+        }
     }
 
-    fn add(&mut self, line: core::fmt::Arguments<'_>) -> &mut Self {
-        // Writing to memory does not fail.
-        let _ = writeln!(self.0, "{line}");
-        self
-    }
-
-    fn detector(&mut self, description: &SetupDescription) {
-        let detector = &description.detector;
+    fn detector(&mut self, detector: &DetectorSettings) {
         let section = self.section("detector");
         section.value("method", format_args!("\"{}\"", detector.method.name()));
         match detector.method {
@@ -93,13 +111,62 @@ impl Sections {
                 section.value("order", order.taps());
             }
             LineMethod::Steger { sigma } => {
-                section.number("sigma", sigma);
+                section.number("sigma", sigma).note("pixels");
             }
             _ => {}
         }
         section
             .value("window", detector.window)
+            .note("pixels")
             .number("least_peak", detector.least_peak)
+            .note("grey values")
             .value("most_lines", detector.most_lines);
+    }
+
+    fn section(&mut self, name: &str) -> &mut Self {
+        let gap = if self.0.is_empty() { "" } else { "\n" };
+        self.add(format_args!("{gap}[{name}]"))
+    }
+
+    fn length(&mut self, key: &str, value: f64, usual: &str) -> &mut Self {
+        self.quantity(key, value, (&LENGTH, usual))
+    }
+
+    /// A quantity with its unit, if that is short the `usual` one.
+    fn quantity(
+        &mut self,
+        key: &str,
+        value: f64,
+        (dimension, usual): (&Dimension, &str),
+    ) -> &mut Self {
+        self.value(key, dimension.text(value, usual))
+    }
+
+    fn number(&mut self, key: &str, value: f64) -> &mut Self {
+        self.quantity(key, value, (&NUMBER, ""))
+    }
+
+    /// A number that is not the default.
+    fn unless(&mut self, key: &str, value: f64, default: f64) -> &mut Self {
+        if value.to_bits() == default.to_bits() {
+            return self;
+        }
+        self.number(key, value)
+    }
+
+    fn value(&mut self, key: &str, value: impl core::fmt::Display) -> &mut Self {
+        self.add(format_args!("{key} = {value}"))
+    }
+
+    /// A comment at the end of the last line.
+    fn note(&mut self, comment: &str) -> &mut Self {
+        self.0.truncate(self.0.trim_end().len());
+        self.add(format_args!(" # {comment}"))
+    }
+
+    fn add(&mut self, line: core::fmt::Arguments<'_>) -> &mut Self {
+        // Writing to memory does not fail.
+        let _ = writeln!(self.0, "{line}");
+        self
     }
 }

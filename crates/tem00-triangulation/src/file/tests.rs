@@ -2,11 +2,110 @@ use crate::{
     FilterOrder, LineMethod, Setup, SetupDescription, parse_setup, setup::tests::description,
 };
 
-/// A set-up file with one line in place of another.
+/// A set-up file with all keys, in SI units.
+const SETUP: &str = r#"[laser]
+wavelength = 6.5e-7
+power = 0.005
+line_width = 2e-4
+line_length = 0.05
+
+[camera]
+focal_length = 0.025
+f_number = 8
+pixel_pitch = 3.45e-6
+resolution = [640, 480]
+distance = 0.3
+angle = 0.5235987755982988
+scheimpflug = false
+
+[sensor]
+quantum_efficiency = 0.6
+exposure = 1e-4
+bit_depth = 12
+gain = 0.3839047619047619
+black_level = 64
+full_well = 10500
+dark_noise = 2.3
+dark_current = 3
+prnu = 0.005
+dsnu = 1
+fill_factor = 1
+serial_number = 0
+
+[surface]
+reflectance = 0.5
+patterns = 1
+polarisation = 1
+
+[detector]
+method = "centre_of_gravity"
+window = 31
+least_peak = 1
+most_lines = 1
+
+[calibration]
+uncertainty = 1e-6
+
+[average]
+columns = 1
+frames = 1
+independent_speckle = false
+"#;
+
+/// The set-up file with one line in place of another.
 fn with(line: &str, instead: &str) -> String {
-    let text = description().to_toml();
-    assert!(text.contains(line), "{line} is not in\n{text}");
-    text.replacen(line, instead, 1)
+    assert!(SETUP.contains(line), "{line} is not in\n{SETUP}");
+    SETUP.replacen(line, instead, 1)
+}
+
+#[test]
+fn the_set_up_of_the_tests_is_that_of_the_file() {
+    assert_eq!(*parse_setup(SETUP).unwrap().description(), description());
+}
+
+#[test]
+fn a_written_set_up_is_what_a_person_would_write() {
+    let mut description = description();
+    description.sensor.exposure_time = 0.16 / 1e3;
+    description.camera.angle = 40.0 * core::f64::consts::PI / 180.0;
+    description.average.columns = 16;
+    let text = description.to_toml();
+    for line in [
+        "wavelength = \"650 nm\"",
+        "power = \"5 mW\"",
+        "line_width = \"0.2 mm\" # between the points of 1/e², on the part",
+        "f_number = 8",
+        "pixel_pitch = \"3.45 um\"",
+        "angle = \"40 deg\" # between the optical axis and the plane of the laser",
+        "exposure = \"0.16 ms\"",
+        "uncertainty = \"1 um\" # standard uncertainty of a height",
+        "columns = 16",
+    ] {
+        assert!(
+            text.lines().any(|found| found == line),
+            "{line} is not in\n{text}"
+        );
+    }
+    // What follows from the rest, or is as always, is not written.
+    for key in [
+        "gain",
+        "black_level",
+        "serial_number",
+        "fill_factor",
+        "scheimpflug",
+    ] {
+        assert!(!text.contains(key), "{key} is in\n{text}");
+    }
+    description.auto_exposure = true;
+    let chosen = Setup::new(description).unwrap();
+    let text = chosen.description().to_toml();
+    let time = chosen.description().sensor.exposure_time * 1e3;
+    let line = format!("exposure = \"auto\" # {time} ms");
+    assert!(
+        text.lines().any(|found| found == line),
+        "{line} is not in\n{text}"
+    );
+    assert_eq!(parse_setup(&text).unwrap(), chosen);
 }
 
 #[test]
@@ -27,6 +126,9 @@ fn a_written_description_reads_back_as_the_same_bits() {
         written.laser.power = 1.0 / 3.0;
         written.camera.scheimpflug = true;
         written.average.columns = 7;
+        written.sensor.gain = 0.3;
+        written.sensor.black_level = 17.0;
+        written.sensor.serial_number = 4;
         let read = parse_setup(&written.to_toml()).unwrap();
         assert_eq!(*read.description(), written, "{}", written.to_toml());
     }
@@ -34,8 +136,7 @@ fn a_written_description_reads_back_as_the_same_bits() {
 
 #[test]
 fn what_may_be_left_out_has_defaults() {
-    let text = description().to_toml();
-    let needed: Vec<&str> = text
+    let needed: Vec<&str> = SETUP
         .split_inclusive("\n\n")
         .filter(|section| {
             !["[detector]", "[calibration]", "[average]"]

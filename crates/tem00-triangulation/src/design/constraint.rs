@@ -3,6 +3,7 @@ use core::fmt;
 use tem00_tracer::document::{DURATION, Dimension, LENGTH, NUMBER, POWER};
 
 use super::DesignFigures;
+use crate::setup::{LEAST_SIGNAL, MOST_GRAIN_SATURATION};
 
 /// A figure of merit of a set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -24,11 +25,15 @@ pub enum DesignFigure {
     Exposure,
     /// The mean of the brightest pixel as a part of what the sensor can hold.
     Saturation,
+    /// The bright grains of speckle as a part of what the sensor can hold.
+    GrainSaturation,
+    /// The mean of the brightest pixel by its noise in the dark.
+    Signal,
 }
 
 impl DesignFigure {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Uncertainty,
         Self::ExpandedUncertainty,
         Self::Range,
@@ -37,6 +42,8 @@ impl DesignFigure {
         Self::Power,
         Self::Exposure,
         Self::Saturation,
+        Self::GrainSaturation,
+        Self::Signal,
     ];
 
     /// Returns the name, as set-up files have it.
@@ -50,6 +57,8 @@ impl DesignFigure {
             Self::Power => "power",
             Self::Exposure => "exposure",
             Self::Saturation => "saturation",
+            Self::GrainSaturation => "grain_saturation",
+            Self::Signal => "signal",
         }
     }
 
@@ -64,12 +73,17 @@ impl DesignFigure {
             Self::Power => figures.power,
             Self::Exposure => figures.exposure,
             Self::Saturation => figures.saturation,
+            Self::GrainSaturation => figures.grain_saturation,
+            Self::Signal => figures.signal,
         }
     }
 
     /// Returns whether more of it is better: such a figure is bounded from below, others from above.
     pub const fn is_gain(self) -> bool {
-        matches!(self, Self::Range | Self::DepthOfField | Self::FieldWidth)
+        matches!(
+            self,
+            Self::Range | Self::DepthOfField | Self::FieldWidth | Self::Signal
+        )
     }
 
     /// Returns what kind of quantity it is.
@@ -77,7 +91,7 @@ impl DesignFigure {
         match self {
             Self::Power => &POWER,
             Self::Exposure => &DURATION,
-            Self::Saturation => &NUMBER,
+            Self::Saturation | Self::GrainSaturation | Self::Signal => &NUMBER,
             _ => &LENGTH,
         }
     }
@@ -99,7 +113,28 @@ pub struct Constraint {
     pub bound: f64,
 }
 
+/// The part of what the sensor can hold that the mean of the brightest pixel may fill: it leaves room for
+/// noise where there is hardly any speckle.
+const MOST_SATURATION: f64 = 0.9;
+
 impl Constraint {
+    /// The constraints of a search that names none: set-ups that keep them get the light that they need,
+    /// by [`Setup::light_level`](crate::Setup::light_level), whose bounds two of them are.
+    pub const LIGHT: [Self; 3] = [
+        Self {
+            figure: DesignFigure::Saturation,
+            bound: MOST_SATURATION,
+        },
+        Self {
+            figure: DesignFigure::GrainSaturation,
+            bound: MOST_GRAIN_SATURATION,
+        },
+        Self {
+            figure: DesignFigure::Signal,
+            bound: LEAST_SIGNAL,
+        },
+    ];
+
     /// Returns whether the bound is kept. To reach it is to keep it.
     pub fn is_kept(&self, figures: &DesignFigures) -> bool {
         let value = self.figure.of(figures);

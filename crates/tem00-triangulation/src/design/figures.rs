@@ -28,6 +28,11 @@ pub struct DesignFigures {
     pub exposure: f64,
     /// The mean of the brightest pixel as a part of what the sensor can hold.
     pub saturation: f64,
+    /// The bright grains of speckle as a part of what the sensor can hold; see
+    /// [`Setup::grain_saturation`].
+    pub grain_saturation: f64,
+    /// The mean of the brightest pixel by its noise in the dark; see [`Setup::signal`].
+    pub signal: f64,
     /// The full width of the line in the image between the points of 1/e², in pixels.
     pub line_width: f64,
     /// The speckle size along rows and columns, in pixels.
@@ -67,8 +72,10 @@ impl DesignFigures {
             depth_of_field: shared(&[in_focus, waist]),
             field_width: setup.field_width(),
             power: description.laser.power,
-            exposure: description.sensor.exposure_time,
+            exposure: setup.description().sensor.exposure_time,
             saturation: setup.saturation(),
+            grain_saturation: setup.grain_saturation(),
+            signal: setup.signal(),
             line_width: setup.line().width,
             speckle_size: setup.line().speckle_size,
         })

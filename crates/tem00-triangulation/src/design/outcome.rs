@@ -26,6 +26,11 @@ impl Candidate {
     }
 }
 
+/// Rounds to three significant digits, one more than uncertainties are stated with.
+fn three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
 /// What a constraint excludes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exclusion {
@@ -66,14 +71,20 @@ impl DesignOutcome {
         (possible.count(), allowed.count())
     }
 
-    /// Returns the best set-ups that keep every constraint, at most `count`, the best first; of equals
-    /// the one that was tried first.
+    /// Returns the best set-ups that keep every constraint, at most `count`, the best first.
+    ///
+    /// Set-ups whose objectives agree in three digits are as good as each other: of these the one whose
+    /// bright grains fill less of the sensor comes first, then the one that was tried first.
     pub fn best(&self, count: usize) -> Vec<&Candidate> {
         let allowed = self.candidates.iter();
         let mut allowed: Vec<_> = allowed
-            .filter_map(|candidate| Some((candidate, self.objective.of(candidate.allowed()?))))
+            .filter_map(|candidate| {
+                let figures = candidate.allowed()?;
+                let objective = three_digits(self.objective.of(figures));
+                Some((candidate, [objective, figures.grain_saturation]))
+            })
             .collect();
-        allowed.sort_by(|a, b| a.1.total_cmp(&b.1));
+        allowed.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
         allowed.truncate(count);
         allowed
             .into_iter()

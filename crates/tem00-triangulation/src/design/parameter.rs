@@ -63,10 +63,12 @@ impl DesignParameter {
         *self.place(&mut description)
     }
 
-    /// Returns the set-up with another value, in SI units, whether or not it is possible then.
+    /// Returns the set-up with another value, in SI units, whether or not it is possible then. An exposure
+    /// that is set is no longer chosen by the light.
     #[must_use]
     pub fn set(self, description: &SetupDescription, value: f64) -> SetupDescription {
         let mut description = *description;
+        description.auto_exposure &= self != Self::Exposure;
         *self.place(&mut description) = value;
         description
     }
@@ -83,6 +85,19 @@ impl DesignParameter {
             | Self::PixelPitch
             | Self::FocalLength
             | Self::Distance => &LENGTH,
+        }
+    }
+
+    /// Returns the symbol of the unit that it is usually written in.
+    pub(crate) const fn unit(self) -> &'static str {
+        match self {
+            Self::FNumber => "",
+            Self::Angle => "deg",
+            Self::Power => "mW",
+            Self::Exposure => "ms",
+            Self::Wavelength => "nm",
+            Self::PixelPitch => "um",
+            Self::LineWidth | Self::FocalLength | Self::Distance => "mm",
         }
     }
 

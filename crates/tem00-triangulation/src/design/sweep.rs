@@ -45,6 +45,9 @@ impl Sweep {
     /// logarithmic   x_i = a (b / a)^(i / (n − 1))
     /// ```
     ///
+    /// Values between the ends are rounded, in the unit that they are usually written in, to less than a
+    /// hundredth of a step: 5.04 instead of 5.0397.
+    ///
     /// # Errors
     ///
     /// Returns an error if an end is not positive and finite, or if there are less than two steps.
@@ -72,7 +75,8 @@ impl Sweep {
                 from * libm::exp(libm::log(to / from) * f64::from(step) / last)
             }
         };
-        Self::list(parameter, (0..steps).map(value).collect())
+        let exact: Vec<f64> = (0..steps).map(value).collect();
+        Self::list(parameter, rounded(parameter, &exact))
     }
 
     /// Returns what is varied.
@@ -84,6 +88,19 @@ impl Sweep {
     pub fn values(&self) -> &[f64] {
         &self.values
     }
+}
+
+/// Rounds the values between the ends to a hundredth of the step to the nearer neighbour.
+fn rounded(parameter: DesignParameter, exact: &[f64]) -> Vec<f64> {
+    let mut values = exact.to_vec();
+    for (value, around) in values[1..].iter_mut().zip(exact.windows(3)) {
+        let step = (around[1] - around[0])
+            .abs()
+            .min((around[2] - around[1]).abs());
+        let dimension = parameter.dimension();
+        *value = dimension.rounded(around[1], 0.01 * step, parameter.unit());
+    }
+    values
 }
 
 fn check(parameter: &'static str, value: f64) -> Result<(), TriangulationError> {
@@ -115,17 +132,21 @@ mod tests {
         for values in [&linear, &log] {
             assert_eq!((values[0], values[3]), (2.8, 22.4), "{values:?}");
         }
-        // A few roundings.
-        let tolerance = 4.0 * f64::EPSILON;
-        for pair in linear.windows(2) {
-            assert_relative_eq!(
-                pair[1] - pair[0],
-                19.6 / 3.0,
-                max_relative = 4.0 * tolerance
+        // 2.8 + 19.6/3 = 9.333… is rounded to hundredths, as steps are 6.5 wide.
+        assert_eq!(linear, [2.8, 9.33, 15.87, 22.4]);
+        assert_eq!(log, [2.8, 5.6, 11.2, 22.4]);
+        for steps in [2_u32, 3, 50, 1000] {
+            let values = Sweep::between(
+                DesignParameter::Exposure,
+                (1e-3, 1.1e-3),
+                steps,
+                Spacing::Linear,
             );
-        }
-        for pair in log.windows(2) {
-            assert_relative_eq!(pair[1] / pair[0], 2.0, max_relative = tolerance);
+            for pair in values.unwrap().values().windows(2) {
+                // Half a hundredth of a step at either end.
+                let step = 0.1e-3 / f64::from(steps - 1);
+                assert_relative_eq!(pair[1] - pair[0], step, max_relative = 0.0101);
+            }
         }
     }
 

@@ -132,6 +132,108 @@ fn the_best_are_the_least_uncertain_that_keep_every_constraint() {
     assert_eq!(found.counts(), (9, expected.len()));
 }
 
+/// Returns the share of columns with a pixel beyond the full well, in frames drawn without a detector.
+fn clipped_columns(description: &SetupDescription) -> f64 {
+    let setup = crate::Setup::new(*description).expect("possible");
+    let size = [128, 47];
+    let image = crate::LineImage::of_setup(&setup, size).expect("a line");
+    let full = setup.description().sensor.full_well;
+    let clipped = |seed: u64| -> usize {
+        let frame = image.speckled(seed, |_| 23.3).expect("a pattern");
+        let is_clipped = |x: usize| (0..size[1]).any(|y| f64::from(frame[(x, y)]) > full);
+        (0..size[0]).filter(|&x| is_clipped(x)).count()
+    };
+    let columns: usize = (0..8).map(clipped).sum();
+    columns as f64 / (8 * size[0]) as f64
+}
+
+#[test]
+fn a_search_allows_only_what_a_budget_finds_in_good_light() {
+    // On metal, f-number by exposure: from too dark to saturated.
+    let sweeps = vec![
+        list(DesignParameter::FNumber, &[4.0, 8.0, 11.0, 16.0]),
+        list(
+            DesignParameter::Exposure,
+            &[1e-6, 1e-5, 3e-5, 5e-5, 1e-4, 2e-4, 5e-4, 2e-3],
+        ),
+    ];
+    let mut asked = question(sweeps, &[]);
+    asked.base.laser.line_width = 0.2e-3;
+    asked.constraints = Constraint::LIGHT.to_vec();
+    let found = outcome(asked);
+    let mut levels = Vec::new();
+    for candidate in found.candidates() {
+        let setup = crate::Setup::new(candidate.description).expect("possible");
+        let measures = crate::Budget::new(&setup).is_ok();
+        let level = setup.light_level();
+        let good = measures && level == crate::LightLevel::Good;
+        assert_eq!(
+            candidate.allowed().is_some(),
+            good,
+            "{level:?}: {candidate:?}"
+        );
+        levels.push(level);
+        if good {
+            // Of the pixels at the crest of the line 2 % have brighter grains, and a column has some ten.
+            let clipped = clipped_columns(&candidate.description);
+            assert!(clipped < 0.1, "{clipped}: {candidate:?}");
+        }
+    }
+    for level in [
+        crate::LightLevel::Dark,
+        crate::LightLevel::Good,
+        crate::LightLevel::SaturatedGrains,
+        crate::LightLevel::Saturated,
+    ] {
+        assert!(levels.contains(&level), "{level:?} is among them");
+    }
+}
+
+#[test]
+fn of_equals_the_one_with_more_room_for_bright_grains_is_best() {
+    // Speckle alone: light hardly counts, and the most would win by a hair.
+    let exposures = [40e-6, 20e-6, 10e-6];
+    let mut asked = question(vec![list(DesignParameter::Exposure, &exposures)], &[]);
+    asked.base.sensor.dark_noise = 0.0;
+    asked.base.sensor.dsnu = 0.0;
+    asked.base.calibration_uncertainty = 1e-3;
+    let found = outcome(asked);
+    let of = |index: usize| figures(&found.candidates()[index].description);
+    assert!(of(0).uncertainty < of(2).uncertainty, "by a hair");
+    assert_relative_eq!(of(0).uncertainty, of(2).uncertainty, max_relative = 1e-3);
+    let order: Vec<usize> = found.best(3).iter().map(|best| best.index).collect();
+    assert_eq!(order, [2, 1, 0], "the darkest first");
+}
+
+#[test]
+fn an_exposure_that_is_chosen_follows_what_is_varied() {
+    let mut asked = question(vec![list(DesignParameter::FNumber, &[4.0, 8.0, 16.0])], &[]);
+    asked.base.auto_exposure = true;
+    asked.constraints = Constraint::LIGHT.to_vec();
+    let found = outcome(asked);
+    for candidate in found.candidates() {
+        let figures = candidate.allowed().expect("the light is right");
+        assert!(
+            (0.75..=0.9).contains(&figures.grain_saturation),
+            "{figures:?}"
+        );
+    }
+    let exposure = |index: usize| {
+        found.candidates()[index]
+            .possible()
+            .expect("possible")
+            .exposure
+    };
+    // The light falls as F², the contrast rises, and the image of the line becomes wider.
+    assert!(
+        (8.0..20.0).contains(&(exposure(2) / exposure(0))),
+        "{}",
+        exposure(2)
+    );
+    let fixed = DesignParameter::Exposure.set(&found.candidates()[0].description, 1e-5);
+    assert_relative_eq!(figures(&fixed).exposure, 1e-5);
+}
+
 #[test]
 fn a_smaller_pupil_has_more_depth_of_field_and_more_speckle() {
     let numbers = [4.0, 5.6, 8.0, 11.0, 16.0];

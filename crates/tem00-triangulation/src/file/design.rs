@@ -25,16 +25,14 @@ pub(super) const REQUIRE: &[&str] = &[
     "power",
     "exposure",
     "saturation",
+    "grain_saturation",
+    "signal",
     "uncertainty",
     "expanded_uncertainty",
 ];
 
 /// The most set-ups that are tried if the file does not say.
 const MOST_SETUPS: u64 = 20_000;
-
-/// The part of what the sensor can hold that the mean of the brightest pixel may fill if the file does
-/// not say.
-const SATURATION: f64 = 0.9;
 
 /// Reads the section `[design]` of a set-up file: a search that begins with the set-up.
 ///
@@ -50,6 +48,8 @@ const SATURATION: f64 = 0.9;
 /// range = "20 mm"
 /// saturation = 0.9
 /// ```
+///
+/// Where the file does not bound the light, [`Constraint::LIGHT`] does.
 ///
 /// # Errors
 ///
@@ -139,22 +139,21 @@ fn between(range: &Section<'_>, parameter: DesignParameter) -> Result<Sweep, Pro
 }
 
 fn constraints(section: &Section<'_>) -> Result<Vec<Constraint>, Problem> {
-    let saturation = Constraint {
-        figure: DesignFigure::Saturation,
-        bound: SATURATION,
-    };
-    let Some(require) = section.table("require", REQUIRE)? else {
-        return Ok(vec![saturation]);
+    let require = section.table("require", REQUIRE)?;
+    let given = |figure: DesignFigure| require.as_ref()?.optional(figure.name());
+    let usual = |figure| {
+        Constraint::LIGHT
+            .into_iter()
+            .find(|light| light.figure == figure)
     };
     let mut constraints = Vec::new();
     for figure in DesignFigure::ALL {
-        match require.optional(figure.name()) {
+        match given(figure) {
             Some(value) => constraints.push(Constraint {
                 figure,
                 bound: value.positive(figure.dimension())?,
             }),
-            None if figure == DesignFigure::Saturation => constraints.push(saturation),
-            None => {}
+            None => constraints.extend(usual(figure)),
         }
     }
     Ok(constraints)

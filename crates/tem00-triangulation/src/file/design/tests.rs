@@ -65,6 +65,8 @@ fn lists_and_ranges_are_read_with_their_units() {
         (DesignFigure::Range, 20e-3),
         (DesignFigure::Power, 5e-3),
         (DesignFigure::Saturation, 0.9),
+        (DesignFigure::GrainSaturation, 1.0),
+        (DesignFigure::Signal, 10.0),
     ];
     assert_eq!(bounds, expected);
 }

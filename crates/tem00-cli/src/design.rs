@@ -13,7 +13,7 @@ use std::{
 };
 
 use tem00_triangulation::{
-    Candidate, DesignFigure, DesignOutcome, DesignSearch, TriangulationError, neighbours,
+    Candidate, DesignFigure, DesignOutcome, DesignSearch, Setup, TriangulationError, neighbours,
     read_design, read_setup_with,
 };
 
@@ -44,8 +44,8 @@ struct Design<'a> {
 ///
 /// # Errors
 ///
-/// Returns a failure if the input is not valid, no set-up is possible at all, a file cannot be written
-/// or the user ends it.
+/// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or if no set-up
+/// keeps every constraint; all files but `best.toml` are written then, if any set-up is possible.
 pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure> {
     let (_, search) = read_setup_with(&args.setup, |document, setup| {
         read_design(document, setup.description())
@@ -60,19 +60,24 @@ pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure
     output::prepare(&folder)?;
     let pool = output::thread_pool(args.threads)?;
     let design = pool.install(|| Design::search(args, search))?;
-    let shown = design.shown()?.description;
+    if design.winner().is_none() {
+        // That of another search would be taken for the winner of this one.
+        output::remove(&folder, &["best"], &["toml"])?;
+    }
+    let shown = *design.shown_setup()?.description();
     let near = pool.install(|| neighbours(&shown, PART));
     let written = files::write(&design, &near, &folder)?;
     if args.json {
-        record::print(&design, out)
+        record::print(&design, out)?;
     } else {
         listing::print(&design, out)?;
         let line = |path: &PathBuf| writeln!(out, "{}", path.display());
         written
             .iter()
             .try_for_each(line)
-            .map_err(|error| Failure::stdout(&error))
+            .map_err(|error| Failure::stdout(&error))?;
     }
+    design.winner().map(|_| ()).ok_or_else(|| design.nothing())
 }
 
 const HELP: &str = "a set-up file for a search has a section [design]; setups/design.toml is one";
@@ -98,25 +103,46 @@ impl<'a> Design<'a> {
         })
     }
 
+    /// Returns the best set-up that keeps every constraint.
+    fn winner(&self) -> Option<&Candidate> {
+        self.outcome.best(1).into_iter().next()
+    }
+
     /// Returns the best set-up, or the nearest if none keeps every constraint.
     ///
     /// # Errors
     ///
     /// Returns a failure if none is possible at all.
     fn shown(&self) -> Result<&Candidate, Failure> {
-        let best = self.outcome.best(1).into_iter().next();
-        best.or_else(|| self.outcome.nearest()).ok_or_else(|| {
-            let first = self.outcome.candidates().first();
-            let why = first.and_then(|candidate| candidate.figures.as_ref().err());
-            let why = why.map_or_else(String::new, |why| format!("; the first: {why}"));
-            Failure::input(
+        let shown = self.winner().or_else(|| self.outcome.nearest());
+        shown.ok_or_else(|| self.nothing())
+    }
+
+    /// Returns the set-up that is shown, with an exposure that the light chooses as it is then.
+    fn shown_setup(&self) -> Result<Setup, Failure> {
+        Setup::new(self.shown()?.description).map_err(|error| Failure::running(error.to_string()))
+    }
+
+    /// Returns why the search has no result.
+    fn nothing(&self) -> Failure {
+        let name = self.file.display();
+        let why = listing::hindrances(self).join("; ");
+        let (possible, _) = self.outcome.counts();
+        if possible == 0 {
+            return Failure::no_result(
                 format!(
-                    "none of the {} set-ups is possible{why}",
+                    "{name}: none of the {} set-ups is possible: {why}",
                     self.search.count()
                 ),
                 "change the values in [design.vary], or the set-up that the search begins with",
-            )
-        })
+            );
+        }
+        Failure::no_result(
+            format!(
+                "{name}: none of the {possible} set-ups that are possible keeps every constraint: {why}"
+            ),
+            "relax [design.require] or widen [design.vary]; design.html shows the set-up that comes nearest",
+        )
     }
 
     /// Returns the figure that is made small.

@@ -8,7 +8,8 @@ use clap::Args;
 ///
 /// The section [design] of the set-up file says what is varied, what a set-up must keep and what is
 /// made small. All combinations are tried; the table on standard output lists the best that keep every
-/// constraint. If there is none, it says which constraint excludes most, and the nearest set-up.
+/// constraint. If there is none, it says which constraint excludes how many and the nearest set-up, no
+/// best.toml is written, and the exit code is 3.
 #[derive(Args, Debug)]
 #[command(after_help = DESIGN_EXAMPLES)]
 pub(crate) struct DesignArgs {
@@ -41,7 +42,7 @@ Examples:
   tem00 budget out/design/best.toml                   the budget of the winner
 
 Files:
-  best.toml           the best set-up, or the nearest if none keeps every constraint
+  best.toml           the best set-up that keeps every constraint
   design.csv          every set-up that was tried, in SI units
   design.json         the search, its best set-ups, the front, and what constraints exclude
   design.html         all of it in one report that opens offline

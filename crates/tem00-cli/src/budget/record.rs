@@ -141,6 +141,8 @@ fn of_image(findings: &Findings<'_>) -> Map<String, Value> {
         ("peak_electrons", json!(setup.peak_electrons())),
         ("column_electrons", json!(line.column_electrons)),
         ("saturation", json!(setup.saturation())),
+        ("grain_saturation", json!(setup.grain_saturation())),
+        ("exposure", json!(setup.description().sensor.exposure_time)),
         ("light", json!(setup.light_level().name())),
         ("measuring_range", json!([range.low, range.high])),
         ("field_width", json!(setup.field_width())),

@@ -65,6 +65,18 @@ pub(super) fn facts(findings: &Findings<'_>) -> Vec<(&'static str, String)> {
             ),
         ),
         (
+            "exposure",
+            format!(
+                "{} ms{}",
+                pixels(1e3 * d.sensor.exposure_time),
+                if d.auto_exposure {
+                    ", chosen so that bright grains fill nine tenths of the range"
+                } else {
+                    ""
+                }
+            ),
+        ),
+        (
             "height per pixel",
             format!("{} µm", micrometres(line.height_per_pixel.abs())),
         ),

@@ -18,7 +18,11 @@ pub(super) fn write(
 ) -> Result<Vec<PathBuf>, Failure> {
     let path = |name: &str| folder.join(name);
     let best = best(design)?;
-    save(&path("best.toml"), |file| file.write_all(best.as_bytes()))?;
+    let mut names = vec!["design.csv", "design.json", "design.html"];
+    if let Some(best) = &best {
+        save(&path("best.toml"), |file| file.write_all(best.as_bytes()))?;
+        names.insert(0, "best.toml");
+    }
     save(&path("design.csv"), |file| write_csv(design, file))?;
     let record = Record::of(design).text()?;
     save(&path("design.json"), |file| writeln!(file, "{record}"))?;
@@ -27,11 +31,9 @@ pub(super) fn write(
         let svg = named.drawing.save(folder, &named.name)?;
         figures.push((svg, named.caption));
     }
-    let report = page::report(design, near, &figures, &best)?;
+    let report = page::report(design, near, &figures, best.as_deref())?;
     report.save(&path("design.html"))?;
-    Ok(["best.toml", "design.csv", "design.json", "design.html"]
-        .map(path)
-        .into())
+    Ok(names.into_iter().map(path).collect())
 }
 
 fn save(
@@ -41,21 +43,29 @@ fn save(
     write_atomically(path, write).map_err(|error| Failure::writing(path, error))
 }
 
-/// Returns the set-up that is shown as the text of a set-up file.
-fn best(design: &Design<'_>) -> Result<String, Failure> {
-    let shown = design.shown()?;
-    let kind = if shown.allowed().is_some() {
-        "The best set-up"
-    } else {
-        "No set-up keeps every constraint; the nearest"
+/// Returns the best set-up as the text of a set-up file, if there is one.
+fn best(design: &Design<'_>) -> Result<Option<String>, Failure> {
+    let Some((winner, figures)) = design.winner().and_then(|w| Some((w, w.allowed()?))) else {
+        return Ok(None);
     };
-    let (index, file) = (shown.index, design.file.display().to_string());
     // A name may hold what would end the line of a comment.
-    let file = file.replace(char::is_control, " ");
-    let text = shown.description.to_toml();
-    Ok(format!(
-        "# {kind} of the search in {file}: number {index}. SI units.\n\n{text}"
-    ))
+    let file = design
+        .file
+        .display()
+        .to_string()
+        .replace(char::is_control, " ");
+    let expanded = units::of_figure(DesignFigure::ExpandedUncertainty);
+    let text = design.shown_setup()?.description().to_toml();
+    Ok(Some(format!(
+        "# The best of the {} set-ups that `tem00 design {file}` tried: number {}.\n\
+         # A height on the reference plane is known to ±{} (95 %).\n\
+         #\n\
+         #     tem00 budget best.toml\n\n\
+         {text}",
+        design.search.count(),
+        winner.index,
+        expanded.quantity(figures.expanded_uncertainty),
+    )))
 }
 
 /// Writes all set-ups, in SI units that the headings end with, a line for each.

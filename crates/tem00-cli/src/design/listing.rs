@@ -8,10 +8,11 @@ use super::{Design, units};
 use crate::{failure::Failure, table::write_columns};
 
 /// The figures of a listing, beside the objective.
-const FIGURES: [DesignFigure; 3] = [
+const FIGURES: [DesignFigure; 4] = [
     DesignFigure::Range,
     DesignFigure::DepthOfField,
     DesignFigure::Saturation,
+    DesignFigure::GrainSaturation,
 ];
 
 /// Prints the best set-ups, or why there are none.

@@ -1,6 +1,6 @@
 //! The report of a search.
 
-use tem00_triangulation::{DesignFigure, DesignFigures, Neighbours, Setup};
+use tem00_triangulation::{DesignFigure, DesignFigures, Neighbours};
 
 use super::{
     Design, listing,
@@ -16,7 +16,7 @@ pub(super) fn report(
     design: &Design<'_>,
     near: &[Neighbours],
     drawings: &[(String, String)],
-    best: &str,
+    best: Option<&str>,
 ) -> Result<Report, Failure> {
     let mut report = Report::new("Design of a laser-triangulation set-up");
     report.verdict(&listing::verdict(design));
@@ -30,10 +30,8 @@ pub(super) fn report(
     if let Some(figures) = shown.possible() {
         report.heading("What makes its heights uncertain");
         report.table(&sources(figures));
-        if let Ok(setup) = Setup::new(shown.description) {
-            let level = setup.light_level();
-            report.paragraph(&format!("Light: {}; {}.", level.name(), level.advice()));
-        }
+        let level = design.shown_setup()?.light_level();
+        report.paragraph(&format!("Light: {}; {}.", level.name(), level.advice()));
         report.paragraph(&format!(
             "Most of it is {}: {}.",
             figures.dominant.name(),
@@ -49,7 +47,9 @@ pub(super) fn report(
         report.paragraph(&line);
     }
     report.heading("Files");
-    report.file("best.toml", best);
+    if let Some(best) = best {
+        report.file("best.toml", best);
+    }
     report.file(&design.file.display().to_string(), &design.text);
     Ok(report)
 }

@@ -74,7 +74,7 @@ pub(super) const fn of_figure(figure: DesignFigure) -> Unit {
         DesignFigure::Range | DesignFigure::DepthOfField | DesignFigure::FieldWidth => MILLIMETRES,
         DesignFigure::Power => MILLIWATTS,
         DesignFigure::Exposure => MILLISECONDS,
-        DesignFigure::Saturation => unit("%", 0.01),
+        DesignFigure::Saturation | DesignFigure::GrainSaturation => unit("%", 0.01),
         _ => NUMBER,
     }
 }
@@ -95,7 +95,7 @@ pub(super) const fn si_of_figure(figure: DesignFigure) -> &'static str {
     match figure {
         DesignFigure::Power => "_W",
         DesignFigure::Exposure => "_s",
-        DesignFigure::Saturation => "",
+        DesignFigure::Saturation | DesignFigure::GrainSaturation | DesignFigure::Signal => "",
         _ => "_m",
     }
 }

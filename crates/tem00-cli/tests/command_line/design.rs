@@ -77,6 +77,11 @@ fn a_search_writes_its_files_and_a_winner_that_reads_back() {
     expected.extend(drawings);
     assert_eq!(files(&out), expected);
 
+    let written = fs::read_to_string(out.join("best.toml")).expect("text");
+    assert!(
+        written.contains("exposure = \"0.05 ms\"\n") && written.contains("angle = \"40 deg\" #"),
+        "{written}"
+    );
     // The winner is a set-up file, and its budget is what the search says of it, bit by bit.
     let winner = read_setup(&out.join("best.toml")).expect("a set-up file");
     let budget = Budget::new(&winner).expect("the line is found");
@@ -117,27 +122,70 @@ fn the_files_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn where_no_set_up_will_do_the_hindrance_and_the_nearest_are_told() {
+fn where_no_set_up_will_do_there_is_no_winner() {
     let folder = setup_folder("field_width = \"2 m\"");
+    fs::create_dir_all(folder.path().join("out/a")).expect("a folder");
+    let best = folder.path().join("out/a/best.toml");
+    fs::write(&best, "the winner of another search").expect("written");
     let output = run(folder.path(), "design a.toml");
-    assert_code(&output, 0);
-    let table = text(&output.stdout);
+    assert_code(&output, 3);
+    let told = message(&output);
     for part in [
-        "0 keep every constraint",
+        "a.toml: none of the 6 set-ups that are possible keeps every constraint",
         "field width ≥ 2000 mm excludes 6",
-        "nearest",
+        "relax [design.require]",
     ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    let table = text(&output.stdout);
+    for part in ["0 keep every constraint", "nearest", "design.html"] {
         assert!(table.contains(part), "{part}: {table}");
     }
-    let best = fs::read_to_string(folder.path().join("out/a/best.toml")).expect("text");
-    assert!(
-        best.starts_with("# No set-up keeps every constraint"),
-        "{best}"
-    );
+    assert!(!table.contains("best.toml") && !best.exists(), "{table}");
+    let page = fs::read_to_string(folder.path().join("out/a/design.html")).expect("text");
+    assert!(!page.contains("best.toml"), "{page}");
     let printed = run(folder.path(), "design a.toml --json");
+    assert_code(&printed, 3);
     let printed: serde_json::Value = serde_json::from_slice(&printed.stdout).expect("JSON");
     assert_eq!(printed["allowed"], 0, "{printed}");
+    assert_eq!(printed["best"], serde_json::json!([]), "{printed}");
     assert!(printed["nearest"].is_object(), "{printed}");
+}
+
+#[test]
+fn what_a_search_finds_best_has_good_light_in_its_budget() {
+    // Steel: f-number by exposure, without a word on the light.
+    let vary = "f_number = [4, 5.6, 8, 11]\n\
+                exposure = { from = \"0.02 ms\", to = \"0.64 ms\", steps = 6, scale = \"log\" }";
+    let (setup, _) = SETUP.split_once("[design.vary]").expect("the set-up");
+    let folder = folder();
+    let text_of = |exposure: &str, vary: &str| {
+        let setup = setup.replace("\"0.05 ms\"", exposure);
+        format!("{setup}[design.vary]\n{vary}\n")
+    };
+    for (name, exposure, vary) in [
+        ("fixed", "\"0.05 ms\"", vary),
+        ("auto", "\"auto\"", "f_number = [4, 5.6, 8, 11]"),
+    ] {
+        let file = folder.path().join(format!("{name}.toml"));
+        fs::write(file, text_of(exposure, vary)).expect("written");
+        assert_code(&run(folder.path(), &format!("design {name}.toml")), 0);
+        let line = format!("budget out/{name}/best.toml --trials 20 -o {name}");
+        let output = run(folder.path(), &line);
+        assert_code(&output, 0);
+        let told = text(&output.stdout);
+        assert!(told.contains("of the range: good\n"), "{told}");
+        assert!(!told.contains("the light is not right"), "{told}");
+        // The frames of the trials are drawn and exposed: few columns lose their line to bright grains.
+        let record = json(&folder.path().join(name).join("budget.json"));
+        assert!(record["trials"]["invalid"].as_f64() < Some(0.1), "{record}");
+        let best = fs::read_to_string(folder.path().join(format!("out/{name}/best.toml")));
+        let best = best.expect("text");
+        let chosen = best.contains("exposure = \"auto\" # ");
+        assert_eq!(chosen, name == "auto", "{best}");
+        let is_long = |word: &str| word.bytes().filter(u8::is_ascii_digit).count() > 6;
+        assert!(!best.split_whitespace().any(is_long), "{best}");
+    }
 }
 
 #[test]
@@ -184,7 +232,7 @@ fn bad_searches_are_one_message_and_no_file() {
         "{told}"
     );
     let output = run(folder.path(), "design none.toml");
-    assert_code(&output, 2);
+    assert_code(&output, 3);
     let told = message(&output);
     assert!(told.contains("none of the 1 set-ups is possible"), "{told}");
     assert!(told.contains("distance"), "{told}");

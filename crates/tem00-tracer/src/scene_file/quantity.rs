@@ -225,11 +225,7 @@ impl Dimension {
     /// Writes a value in SI units in the unit of `typed`, a quantity as somebody has typed it.
     pub(super) fn written_as(&self, value: f64, typed: &str) -> Option<String> {
         let (_, unit) = self.split(typed)?;
-        Some(format!(
-            "{} {}",
-            digits(unit.of(value)),
-            unit.symbol
-        ))
+        Some(format!("{} {}", digits(unit.of(value)), unit.symbol))
     }
 
     /// Returns a message about `typed` with its lengths, or whatever it is, in the unit that was typed; or

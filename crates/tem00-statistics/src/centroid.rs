@@ -23,7 +23,7 @@ pub use spot::{disc_spot_centroid_deviation, gaussian_spot_centroid_deviation};
 /// σ = √(w ℓ(p) / (8 √π))      w = radius, p = row_height along the line, ℓ the speckle length
 /// ```
 ///
-/// The noise grows with the root of the line's width: a wider line averages over more speckles, but
+/// The function is even in both. The noise grows with the root of the line's width: a wider line averages over more speckles, but
 /// these have a longer lever. Sums of N equal patterns divide it by √N, light of the degree of
 /// polarisation P multiplies it by √((1 + P²)/2): it is proportional to the contrast.
 ///

@@ -12,7 +12,8 @@ use crate::quadrature::{integrate, integrate_from_root};
 /// σ  = 1 / (π √2) = 0.2251      radius → ∞
 /// ```
 ///
-/// However wide the spot is, its centroid is no more certain: first order in the fluctuations.
+/// However wide the spot is, its centroid is no more certain: first order in the fluctuations. The
+/// function is even.
 ///
 /// # Examples
 ///
@@ -47,7 +48,7 @@ pub fn gaussian_spot_centroid_deviation(radius: f64) -> f64 {
 ///
 /// The limit is the uncertainty of Dorsch: on the surface, `h/π = λ / (2π sin u)`. Spots of a few
 /// speckles are better off by their blurred edge, as much as 23 % at a radius of two. First order in
-/// the fluctuations.
+/// the fluctuations. The function is even.
 ///
 /// # Examples
 ///

@@ -5,7 +5,7 @@
 The variant scalar_rgb takes the C++ plugins from the folder in TEM00_MITSUBA_PLUGINS.
 
 The scene is that of figure 11, by default on 512 x 512 pixels and with 256 samples for each: a
-plate, a thin lens, a laser, direct light. Every row renders it in turns with the others, once as a
+plate, a thin lens, a laser, direct light, in millimetres. Every row renders it in turns with the others, once as a
 warm-up that compiles the kernel (which Dr.Jit keeps on disk) and makes the patterns, and N times that
 count. The table has the medians in seconds, the throughput, and the median and the quartiles of the
 ratios to the first row, turn by turn.
@@ -22,19 +22,21 @@ FIELD_OF_VIEW = 2.31901652169468
 BUILT_IN = {"type": "spot", "cutoff_angle": 3.0, "beam_width": 0.1}
 SPOT = {
     "type": "laser",
-    "wavelength": 650e-9,
+    "unit": "mm",
+    "wavelength": 650e-6,
     "power": 5e-3,
-    "waist_radius": 2e-3,
-    "waist_distance": 0.2,
+    "waist_radius": 2,
+    "waist_distance": 200,
 }
 LINE = {
     "type": "laser",
     "shape": "line",
-    "wavelength": 650e-9,
+    "unit": "mm",
+    "wavelength": 650e-6,
     "power": 5e-3,
     "fan_angle": 30.0,
-    "thickness": 2e-4,
-    "focus_distance": 0.2,
+    "thickness": 0.2,
+    "focus_distance": 200,
 }
 DIRECT = {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0}
 PLAIN = {"type": "speckle", "max_depth": 2, "speckle": False}
@@ -61,18 +63,18 @@ def scene(integrator, emitter, width, height):
     sensor = {
         "type": "thinlens",
         "fov": FIELD_OF_VIEW,
-        "aperture_radius": 0.025 / 22 / 2,
-        "focus_distance": 0.3,
-        "to_world": look_at([0, 0, 0.3], [0, 0, 0], [0, 1, 0]),
+        "aperture_radius": 25 / 22 / 2,
+        "focus_distance": 300,
+        "to_world": look_at([0, 0, 300], [0, 0, 0], [0, 1, 0]),
         "film": film,
         "sampler": {"type": "independent"},
     }
     plate = {
         "type": "rectangle",
-        "to_world": mi.ScalarTransform4f().scale([0.02, 0.015, 1]),
+        "to_world": mi.ScalarTransform4f().scale([20, 15, 1]),
         "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.8}},
     }
-    to_world = look_at([0.1, 0, 0.1732], [0, 0, 0], [0, 1, 0])
+    to_world = look_at([100, 0, 173.2], [0, 0, 0], [0, 1, 0])
     return mi.load_dict(
         {
             "type": "scene",

@@ -49,7 +49,7 @@ public:
         ds.d    = vector(event->wi);
         ds.dist = (Float) event->distance;
         ds.pdf  = 1.f;
-        return { ds, m_color * (Float) event->e_perp };
+        return { ds, m_color * per_square_metre(event->e_perp) };
     }
 
     Float pdf_direction(const Interaction3f &, const DirectionSample3f &, Mask) const override {
@@ -59,7 +59,7 @@ public:
     Spectrum eval_direction(const Interaction3f &it, const DirectionSample3f &,
                             Mask) const override {
         const auto event = event_at(it.p);
-        return event ? m_color * (Float) event->e_perp : Spectrum(0.f);
+        return event ? m_color * per_square_metre(event->e_perp) : Spectrum(0.f);
     }
 
     std::pair<Ray3f, Spectrum> sample_ray(Float time, Float, const Point2f &slope,
@@ -67,7 +67,7 @@ public:
         const tem00_ray_sample ray =
             m_light->sample_ray({ position.x(), position.y(), slope.x(), slope.y() });
         return { Ray3f(Point3f(vector(ray.origin)), vector(ray.direction), time, Wavelength()),
-                 m_color * (Float) ray.flux };
+                 m_color * per_square_metre(ray.flux) };
     }
 
     std::pair<PositionSample3f, Float> sample_position(Float time, const Point2f &,
@@ -131,6 +131,11 @@ private:
 
     static Vector3f vector(const double (&v)[3]) {
         return Vector3f((Float) v[0], (Float) v[1], (Float) v[2]);
+    }
+
+    /// Light per squared unit of length of the scene, per square metre.
+    Float per_square_metre(double light) const {
+        return (Float) (light * m_source.per_square_metre);
     }
 
     /// The direction of travel.

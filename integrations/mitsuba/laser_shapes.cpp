@@ -17,6 +17,10 @@ constexpr std::array<std::string_view, 6> PROFILES{ "gaussian", "gaussian_angle"
 /// In the order of `tem00_focus_curve`.
 constexpr std::array<std::string_view, 2> FOCUS_CURVES{ "distance", "plane" };
 
+/// The scene's unit of length, and watts per square metre in one watt per squared unit.
+constexpr std::array<std::string_view, 4> UNITS{ "m", "cm", "mm", "um" };
+constexpr std::array<double, 4> PER_SQUARE_METRE{ 1.0, 1e4, 1e6, 1e12 };
+
 /// The library's names of what stands in `to_world`, and of other properties.
 Names with_placement(Names names) {
     for (const char *part : { "origin", "direction", "fan_axis" })
@@ -50,7 +54,8 @@ void expose(TraversalCallback *callback, const char *name, double &value) {
 } // namespace
 
 Source::Source(const Properties &props)
-    : wavelength(props.get<double>("wavelength")), power(props.get<double>("power")) {}
+    : wavelength(props.get<double>("wavelength")), power(props.get<double>("power")),
+      per_square_metre(PER_SQUARE_METRE[choice(props, "unit", UNITS)]) {}
 
 void Source::traverse(TraversalCallback *callback) {
     expose(callback, "wavelength", wavelength);

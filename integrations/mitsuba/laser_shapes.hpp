@@ -23,6 +23,8 @@ struct Source {
     double wavelength;
     /// In watts.
     double power;
+    /// Watts per square metre in one watt per squared unit of length of the scene.
+    double per_square_metre;
 };
 
 /// A round or elliptic Gaussian beam; lengths in the scene's unit.

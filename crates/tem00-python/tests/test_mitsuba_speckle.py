@@ -427,6 +427,8 @@ def test_a_thin_lens_determines_the_speckle_size() -> None:
         ("speckle", 1),
         ("hide_emitters", "no"),
         ("speckle_sise", 4.5),
+        ("memory", 0),
+        ("memory", 0.5),
     ],
 )
 def test_a_refused_property_is_named(name: str, value: Any) -> None:
@@ -457,6 +459,25 @@ def test_what_takes_too_much_memory_is_named(name: str, properties: dict[str, An
     with pytest.raises(ParameterError, match="bytes|GiB") as caught:
         generate(settings(**properties), [SPECKLE_SIZE], (32, 24))
     assert caught.value.parameter == name
+
+
+def test_the_table_takes_no_more_than_it_may() -> None:
+    # 128**2 speckles of 512 bytes are 8 MiB.
+    sizes = {"pattern_size": 256, "pattern_diameter": 128}
+    generate(settings(**sizes, memory=9), [4.0], (256, 256))
+    with pytest.raises(ParameterError, match="8 MiB, and `memory` allows 7 MiB") as caught:
+        generate(settings(**sizes, memory=7), [4.0], (256, 256))
+    assert caught.value.parameter == "speckle_size"
+
+
+@pytest.mark.parametrize("outer", ["aov", "moment"])
+def test_it_is_refused_inside_another_integrator_by_name(outer: str) -> None:
+    around: Node = {"type": outer, "inner": DIRECT}
+    if outer == "aov":
+        around["aovs"] = "dd.y:depth"
+    with pytest.raises(RuntimeError) as caught:
+        picture(around, 1)
+    assert "speckle: cannot stand inside another integrator" in text_of(caught.value)
 
 
 def test_a_file_refuses_what_it_determines(tmp_path: Path) -> None:

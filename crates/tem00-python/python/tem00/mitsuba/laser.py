@@ -70,7 +70,8 @@ def laser_class(variant: str) -> type[mi.Emitter]:
 
         def _spectrum(self, scale: Float | float, active: Bool | bool) -> mi.Spectrum:
             color = self.color if mi.is_rgb else mi.luminance(self.color)
-            value = mi.UnpolarizedSpectrum(color) * (self.numbers["power"] * scale)
+            power = self.numbers["power"] * self.description.per_square_metre
+            value = mi.UnpolarizedSpectrum(color) * (power * scale)
             return _depolarized(dr.select(active, value, 0.0))
 
         def sample_direction(
@@ -145,6 +146,7 @@ def laser_class(variant: str) -> type[mi.Emitter]:
         def to_string(self) -> str:
             properties = {"shape": self.description.shape, **self.description.choices}
             properties |= {name: f"{x:.7g}" for name, x in self.description.numbers.items()}
+            properties["unit"] = self.description.unit
             lines = ",\n".join(f"  {name} = {value}" for name, value in properties.items())
             return f"Laser[\n{lines}\n]"
 

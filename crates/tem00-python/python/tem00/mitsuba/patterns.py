@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 
 # Steps of Weyl's sequence: they keep the seeds of the lasers apart. The same in `tem00 render`.
 _SEED_STEP = 0x9E37_79B9_7F4A_7C15
-# What the patterns of a laser may take, in bytes, and the tables of all.
-_PATTERN_MEMORY = 1 << 30
-_TABLE_MEMORY = 1 << 30
 _BYTES_PER_NODE = 8
 # What the library's arguments are called here.
 _PROPERTIES = {"size": "pattern_size", "diameter": "pattern_diameter", "image": "speckle_size"}
@@ -92,15 +89,15 @@ def generate(
     """Return the pattern of each laser, by its speckle size in an image of so many pixels."""
     sizes = speckle_sizes
     if settings.file is not None:
-        stack = _read(settings.file)
-        _check_table([stack])
+        stack = _read(settings.file, settings.memory_bytes)
+        _check_table([stack], settings)
         return [Pattern(stack, size, _place(number)) for number, size in enumerate(sizes)]
-    memory = _PATTERN_MEMORY // max(len(sizes), 1)
+    memory = settings.memory_bytes // max(len(sizes), 1)
     stacks = []
     for number, size in enumerate(sizes):
         plan = _plan(settings, size, image, memory)
         stacks.append(_stack(settings, plan, number, memory))
-    _check_table(stacks)
+    _check_table(stacks, settings)
     return [Pattern(stack, size, (0.0, 0.0)) for stack, size in zip(stacks, sizes, strict=True)]
 
 
@@ -153,10 +150,10 @@ def _path(settings: PatternSettings) -> SlicePath:
     return SlicePath.still()
 
 
-def _read(file: str) -> SpeckleStack:
+def _read(file: str, memory: int) -> SpeckleStack:
     path = mi.file_resolver().resolve(file)
     try:
-        return SpeckleStack.read_from(str(path), memory_limit=_PATTERN_MEMORY)
+        return SpeckleStack.read_from(str(path), memory_limit=memory)
     except OSError as error:
         raise refused("file", f"{path} cannot be read: {error}") from error
 
@@ -165,14 +162,14 @@ def _place(number: int) -> tuple[float, float]:
     return number / _PLASTIC % 1.0, number / _PLASTIC**2 % 1.0
 
 
-def _check_table(stacks: list[SpeckleStack]) -> None:
+def _check_table(stacks: list[SpeckleStack], settings: PatternSettings) -> None:
     needed = sum(
         _BYTES_PER_NODE * stack.size[0] * stack.size[1] * nodes_per_sample(stack) ** 2
         for stack in stacks
     )
-    if needed > _TABLE_MEMORY:
+    if needed > settings.memory_bytes:
         raise refused(
             "speckle_size",
             f"so small that the image holds too many speckles: their table would take "
-            f"{needed / 2**30:.1f} GiB, and {_TABLE_MEMORY / 2**30:.0f} GiB are allowed",
+            f"{needed / 2**20:.0f} MiB, and `memory` allows {settings.memory} MiB",
         )

@@ -11,9 +11,13 @@ from tem00 import ParameterError
 
 SHAPES = ("spot", "line")
 FOCUS_CURVES = ("distance", "plane")
+# Metres per unit of length.
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
 PROFILES = ("gaussian", "gaussian_angle", "gaussian_sin", "uniform", "uniform_angle", "powell")
 
 _COMMON = ("wavelength", "power")
+# What passes for the wavelength of a laser, in metres.
+_WAVELENGTHS = (1e-9, 1e-3)
 _REQUIRED = {
     "spot": (*_COMMON, "waist_radius"),
     "line": (*_COMMON, "fan_angle", "thickness", "focus_distance"),
@@ -51,11 +55,18 @@ class Description:
 
     ``numbers`` are the properties that are numbers, in the units of the scene and in degrees, and
     ``choices`` those that are words. Properties that follow from others are absent unless given.
+    ``unit`` is the scene's unit of length.
     """
 
     shape: str
     numbers: dict[str, float]
     choices: dict[str, str]
+    unit: str
+
+    @property
+    def per_square_metre(self) -> float:
+        """The factor from watts per squared unit of length to watts per square metre."""
+        return UNITS[self.unit] ** -2
 
 
 def read(props: mi.Properties) -> Description:
@@ -72,7 +83,21 @@ def read(props: mi.Properties) -> Description:
         raise refused("edge", "belongs to the profile 'powell'")
     if choices.get("profile") == "powell":
         numbers.setdefault("edge", 0.05)
-    return Description(shape, numbers, choices)
+    return Description(shape, numbers, choices, _unit(props, numbers["wavelength"]))
+
+
+def _unit(props: mi.Properties, wavelength: float) -> str:
+    """Read the unit of length, in which the wavelength must be that of light."""
+    if "unit" not in props:
+        # Whoever keeps to a unit of their own gets light per area of that unit.
+        return "m"
+    unit = _choice(props, "unit", tuple(UNITS))
+    metres = wavelength * UNITS[unit]
+    low, high = _WAVELENGTHS
+    if metres > 0.0 and not low <= metres <= high:
+        why = f"must lie between {low:g} and {high:g} m, got {wavelength:g} {unit}"
+        raise refused("wavelength", f"{why}: all lengths are in the unit of the scene")
+    return unit
 
 
 def read_color(props: mi.Properties) -> tuple[float, float, float]:
@@ -97,7 +122,8 @@ def refuse_unknown(props: mi.Properties, shape: str) -> None:
     """Refuse properties that nobody asked for."""
     unknown = [name for name in props.unqueried() if name != "sampling_weight"]
     if unknown:
-        known = (*_REQUIRED[shape], *_OPTIONAL[shape], *_CHOICES[shape], "color", "to_world")
+        own = (*_REQUIRED[shape], *_OPTIONAL[shape], *_CHOICES[shape])
+        known = (*own, "color", "to_world", "unit")
         names = ", ".join(sorted(known))
         raise refused(unknown[0], f"no property of the shape {shape!r}; those are {names}")
 

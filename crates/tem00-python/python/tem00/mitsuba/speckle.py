@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from math import radians, tan
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import drjit as dr
 import mitsuba as mi
@@ -99,6 +99,13 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
                 walk = tracer.trace(exposure.sampler, rays.ray)
                 exposure.add(rays, walk.radiance, walk.hit)
             return exposure.finish(develop, evaluate)
+
+        def sample(self, *arguments: object, **named: object) -> NoReturn:
+            """Refuse to serve another integrator: a ray does not say where on the film it arrives."""
+            raise RuntimeError(
+                "speckle: cannot stand inside another integrator, such as `aov` or `moment`: it must "
+                "know where on the film each ray arrives; render the two one after the other"
+            )
 
         def _factor(self, scene: mi.Scene, sensor: mi.Sensor) -> Callable[[mi.Point2f], Factor]:
             """Return the factor on light from an emitter, for camera samples on the film."""

@@ -17,6 +17,7 @@ _OF_THE_FILE = ("seed", "pattern_size", "pattern_diameter", "path", "half_period
 _LARGEST_SEED = 2**63 - 1
 _LARGEST_SIDE = 2**15
 _SMALLEST_DIAMETER = 8
+_MEBIBYTE = 2**20
 
 
 def refused(name: str, why: str) -> ParameterError:
@@ -38,6 +39,12 @@ class PatternSettings:
     half_period: int
     length: int
     file: str | None
+    memory: int
+
+    @property
+    def memory_bytes(self) -> int:
+        """What the patterns of all lasers may take, and their tables once more."""
+        return self.memory * _MEBIBYTE
 
     @classmethod
     def read(cls, props: mi.Properties) -> PatternSettings:
@@ -55,6 +62,7 @@ class PatternSettings:
             half_period=whole(props, "half_period", 64, (1, _LARGEST_SIDE)),
             length=whole(props, "length", 2, (1, _LARGEST_SIDE)),
             file=file,
+            memory=whole(props, "memory", 1024, (1, 2**20)),
         )
 
 

@@ -50,8 +50,13 @@ pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Fa
     let settings = scene.calibration.clone();
     let mut job = Job::new(args, scene)?;
     let pool = output::thread_pool(args.threads)?;
-    job.measurement =
-        pool.install(|| calibration::calibrated(job.measurement.clone(), &settings, &args.scene))?;
+    job.measurement = pool.install(|| {
+        calibration::calibrated(
+            job.measurement.clone(),
+            &settings,
+            (&args.scene, &job.files),
+        )
+    })?;
     let measured = pool.install(|| job.measure())?;
     job.write(&measured)?;
     job.print(&measured, out)

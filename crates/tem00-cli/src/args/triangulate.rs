@@ -62,6 +62,7 @@ Files:
   points.ply               the point cloud: x y z in metres, their standard uncertainties, intensity
   height.png, height.npy   the height map of several profiles: 16 bits with scale and offset, 0 a hole;
                            and in metres, NaN a hole; height_uncertainty.npy beside it
+  boards/                  photographs of boards, if the calibration is estimated: for `tem00 calibrate`
   profile, uncertainty, height_map, uncertainty_map: diagrams, each .svg and .png";
 
 #[cfg(test)]

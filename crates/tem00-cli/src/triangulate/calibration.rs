@@ -7,19 +7,19 @@ use std::{
 
 use tem00_triangulation::{BoardPlan, CalibrationMethod, CalibrationSettings, Measurement};
 
-use super::measurement_failure;
+use super::{files::Files, measurement_failure};
 use crate::{failure::Failure, interrupt, progress::Progress};
 
 /// Returns the measurement with the calibration that the scene asks for: exact, or estimated from boards
-/// that are rendered and photographed with the same sensor.
+/// that are rendered and photographed with the same sensor. The photographs are written, for `tem00 calibrate`.
 ///
 /// # Errors
 ///
-/// Returns a failure if the boards do not give a calibration or the user ends it.
+/// Returns a failure if the boards do not give a calibration, a file cannot be written or the user ends it.
 pub(super) fn calibrated(
     measurement: Measurement,
     settings: &CalibrationSettings,
-    scene: &Path,
+    (scene, files): (&Path, &Files),
 ) -> Result<Measurement, Failure> {
     let CalibrationMethod::Estimated(boards) = &settings.method else {
         return Ok(measurement);
@@ -39,13 +39,14 @@ pub(super) fn calibrated(
     bar.name(format!("calibration, {} boards", boards.boards));
     let done = AtomicU64::new(0);
     let advance = |samples| bar.set(done.fetch_add(samples, Ordering::Relaxed) + samples);
-    let calibration = plan
-        .calibrate(
-            measurement.sensor(),
-            measurement.detector(),
-            advance,
-            interrupt::flag(),
-        )
-        .map_err(refused)?;
+    let mut frames = Vec::new();
+    for pose in 0..plan.poses().len() {
+        let pair = plan.frames(pose, measurement.sensor(), advance, interrupt::flag());
+        let pair = pair.map_err(refused)?;
+        files.write_board(pose, &pair)?;
+        frames.push(pair);
+    }
+    let calibration = plan.calibration(&frames, measurement.detector());
+    let calibration = calibration.map_err(refused)?;
     Ok(measurement.with_calibration(calibration))
 }

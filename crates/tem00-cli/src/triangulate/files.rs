@@ -1,6 +1,7 @@
 //! The files of a measurement.
 
 use std::{
+    fs,
     io::{self, Write},
     path::{Path, PathBuf},
 };
@@ -45,6 +46,17 @@ impl Files {
         let path = self.path(&name);
         write_raw(&path, &frame.raw, &text).map_err(|error| Failure::writing(&path, error))?;
         Ok(name)
+    }
+
+    /// Writes the photographs of a board, in ordinary light and under the laser.
+    pub(super) fn write_board(&self, number: usize, pair: &[RawFrame; 2]) -> Result<(), Failure> {
+        let folder = self.path("boards");
+        fs::create_dir_all(&folder).map_err(|error| Failure::writing(&folder, error))?;
+        for (kind, frame) in ["board", "line"].iter().zip(pair) {
+            let path = folder.join(format!("{kind}_{number:02}.{}", self.extension()));
+            write_raw(&path, frame, &[]).map_err(|error| Failure::writing(&path, error))?;
+        }
+        Ok(())
     }
 
     /// Writes each profile as a table.
@@ -120,7 +132,7 @@ impl Files {
     fn write(
         &self,
         name: &str,
-        write: impl FnOnce(&mut io::BufWriter<std::fs::File>) -> io::Result<()>,
+        write: impl FnOnce(&mut io::BufWriter<fs::File>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         let path: &Path = &self.path(name);
         write_atomically(path, write).map_err(|error| Failure::writing(path, error))

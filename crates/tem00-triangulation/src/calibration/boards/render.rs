@@ -55,11 +55,8 @@ impl BoardPlan {
         2 * self.poses.len() as u64 * pixels * u64::from(self.scene.render.samples_per_pixel)
     }
 
-    /// Renders all boards and calibrates with them as with photographs: corners and lines are found in the
-    /// raw frames. Camera and laser plane are those of the scene, to the errors of that.
-    ///
-    /// The tilt of the sensor is sought where the camera of the scene has one, and as many coefficients of
-    /// distortion as it has.
+    /// Renders all boards and calibrates with their images; see [`frames`](Self::frames) and
+    /// [`calibration`](Self::calibration).
     ///
     /// # Errors
     ///
@@ -72,16 +69,33 @@ impl BoardPlan {
         progress: impl Fn(u64) + Sync,
         cancel: &AtomicBool,
     ) -> Result<Calibration, TriangulationError> {
-        let view = |pose: usize| {
-            let [lit, line] = self.frames(pose, sensor, &progress, cancel)?;
-            BoardView::find(
-                &lit.grey_values(),
-                Some(&line.grey_values()),
-                &self.board,
-                detector,
-            )
+        let frames = |pose: usize| self.frames(pose, sensor, &progress, cancel);
+        let frames: Vec<_> = (0..self.poses.len())
+            .map(frames)
+            .collect::<Result<_, _>>()?;
+        self.calibration(&frames, detector)
+    }
+
+    /// Calibrates with the images of all boards, in the order of the poses, as with photographs: corners and
+    /// lines are found in the raw frames. Camera and laser plane are those of the scene, to the errors of
+    /// that.
+    ///
+    /// The tilt of the sensor is sought where the camera of the scene has one, and as many coefficients of
+    /// distortion as it has.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if an image does not show its board or leaves the calibration open.
+    pub fn calibration(
+        &self,
+        frames: &[[RawFrame; 2]],
+        detector: &LineDetector,
+    ) -> Result<Calibration, TriangulationError> {
+        let view = |[lit, line]: &[RawFrame; 2]| {
+            let (lit, line) = (lit.grey_values(), line.grey_values());
+            BoardView::find(&lit, Some(&line), &self.board, detector)
         };
-        let views: Vec<_> = (0..self.poses.len()).map(view).collect::<Result<_, _>>()?;
+        let views: Vec<_> = frames.iter().map(view).collect::<Result<_, _>>()?;
         calibrate(&self.board, &views, &self.model())?.moved(&self.poses[0])
     }
 

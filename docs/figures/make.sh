@@ -31,3 +31,6 @@ tem00 lines "$work/gauge/raw_0000.png" --window 21 -o "$work/lines"
 cp "$work/lines/raw_0000_lines.png" docs/figures/triangulation_lines.png
 tem00 triangulate scenes/triangulation/hexagon_nut.toml -o "$work/nut"
 cp "$work/nut/height_map.png" docs/figures/triangulation_nut.png
+# What they were made from: a test compares it.
+cksum scenes/triangulation/{step_gauge,hexagon_nut}.toml scenes/meshes/{step_gauge,hexagon_nut}.ply \
+    > docs/figures/made_from.txt

@@ -33,7 +33,7 @@ mod vectorised;
 #[cfg(feature = "fft")]
 pub use fft::{Fft2, Fft2Error, Fft2Scratch};
 pub use grid::{Grid, GridError, wrap_coordinate};
-pub use memory::available_memory;
+pub use memory::{MemoryError, available_memory, check_memory};
 pub use pupil::{
     circular_path_overlap, circular_path_overlap_inverse, disc_overlap, disc_overlap_inverse, jinc,
     sinc, sinc_inverse,

@@ -1,20 +1,76 @@
+use core::{error, fmt};
 use std::fs;
 
-/// Returns the bytes that the system can give without swapping, where it says so (Linux).
+/// Not as much memory can be had as is needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MemoryError {
+    /// The bytes that are needed.
+    pub needed: u64,
+    /// The bytes that are available.
+    pub available: u64,
+}
+
+impl fmt::Display for MemoryError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} MiB of memory are needed, and {} MiB are available",
+            self.needed.div_ceil(1 << 20),
+            self.available >> 20
+        )
+    }
+}
+
+impl error::Error for MemoryError {}
+
+/// Checks that so many bytes are available, where the system says what is (Linux).
+///
+/// # Errors
+///
+/// Returns an error if they are not.
+pub fn check_memory(needed: u64) -> Result<(), MemoryError> {
+    check_against(needed, available_memory())
+}
+
+fn check_against(needed: u64, available: Option<u64>) -> Result<(), MemoryError> {
+    match available {
+        Some(available) if needed > available => Err(MemoryError { needed, available }),
+        _ => Ok(()),
+    }
+}
+
+/// Returns the bytes that the system can give without swapping and that the limits of the process
+/// (`ulimit -v`) allow, where it says so (Linux).
 ///
 /// Many systems grant any memory that is asked for and end the program when it is used, so whoever is
 /// about to use much asks first. A container may have less than its system.
 pub fn available_memory() -> Option<u64> {
-    available(&fs::read_to_string("/proc/meminfo").ok()?)
+    let read = |path| fs::read_to_string(path).ok();
+    let system = read("/proc/meminfo").and_then(|text| bytes_of(&text, "MemAvailable:"));
+    let limit = read("/proc/self/limits").and_then(|text| address_space_limit(&text));
+    let taken = || read("/proc/self/status").and_then(|text| bytes_of(&text, "VmSize:"));
+    let process = limit.and_then(|limit| Some(left(limit, taken()?)));
+    [system, process].into_iter().flatten().min()
 }
 
-/// The bytes available by a Linux system's description of its memory.
-fn available(described: &str) -> Option<u64> {
-    let line = described
-        .lines()
-        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
+/// The bytes that a line of `text` states in kibibytes after `name`.
+fn bytes_of(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes = line.trim().strip_suffix("kB")?.trim_end();
     kibibytes.parse::<u64>().ok()?.checked_mul(1024)
+}
+
+/// The bytes of addresses that a process may take by a Linux system's description of its limits.
+fn address_space_limit(limits: &str) -> Option<u64> {
+    let mut lines = limits.lines();
+    let line = lines.find_map(|line| line.strip_prefix("Max address space"))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+/// What a limit leaves: an eighth of it is kept for stacks, and for the addresses that threads set aside
+/// for their small allocations.
+const fn left(limit: u64, taken: u64) -> u64 {
+    limit.saturating_sub(limit / 8).saturating_sub(taken)
 }
 
 #[cfg(test)]
@@ -24,6 +80,7 @@ mod tests {
     #[test]
     fn the_available_memory_is_read_where_it_is_told() {
         let described = "MemTotal:       24000000 kB\nMemAvailable:   20000001 kB\nBuffers: 5 kB\n";
+        let available = |text| bytes_of(text, "MemAvailable:");
         assert_eq!(available(described), Some(20_000_001 * 1024));
         for other in [
             "",
@@ -34,5 +91,32 @@ mod tests {
         ] {
             assert_eq!(available(other), None, "{other}");
         }
+    }
+
+    #[test]
+    fn a_limit_of_the_process_is_read_where_there_is_one() {
+        let limits = |soft: &str| {
+            format!(
+                "Limit                     Soft Limit           Hard Limit           Units\n\
+                 Max resident set          unlimited            unlimited            bytes\n\
+                 Max address space         {soft}            unlimited            bytes\n"
+            )
+        };
+        assert_eq!(address_space_limit(&limits("307200000")), Some(307_200_000));
+        assert_eq!(address_space_limit(&limits("unlimited")), None);
+        assert_eq!(address_space_limit(""), None);
+        assert_eq!(left(800, 100), 600);
+        assert_eq!(left(800, 900), 0);
+    }
+
+    #[test]
+    fn more_than_what_is_available_is_refused() {
+        assert!(check_against(5 << 20, Some(5 << 20)).is_ok(), "all of it");
+        assert!(check_against(u64::MAX, None).is_ok(), "nothing is known");
+        let error = check_against((5 << 20) + 1, Some(5 << 20));
+        assert_eq!(
+            error.map_err(|error| error.to_string()),
+            Err("6 MiB of memory are needed, and 5 MiB are available".to_owned())
+        );
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use tem00::tracer::{Formulas, SpeckleModel, SpecklePlan};
+use tem00::tracer::{Formulas, SpeckleModel, SpecklePlan, document::FileAccess};
 use tem00::triangulation::{
     MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, mean_point,
 };
@@ -16,7 +16,9 @@ pub(crate) const PLATES: [core::ops::Range<usize>; 2] = [4..40, 56..92];
 
 pub(crate) fn scene() -> MeasurementScene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/step/step.toml");
-    MeasurementScene::read(&path).expect("the scene is one").0
+    MeasurementScene::read(&path, FileAccess::WithinFolder)
+        .expect("the scene is one")
+        .0
 }
 
 /// Generates the speckle of a scene with its own seed, and prepares to measure it.

@@ -2,14 +2,14 @@ mod open_exr;
 mod pfm;
 
 use core::{error, fmt};
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use tem00_numerics::Grid;
 
-use crate::MAXIMUM_PIXELS;
+use crate::{
+    MAXIMUM_PIXELS,
+    input_file::{MAX_ASSET_BYTES, read_input},
+};
 
 /// The parts of red, green and blue in the luminance, for the primaries of Rec. 709.
 const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
@@ -65,7 +65,8 @@ fn read(path: &Path, scale: f64) -> Result<Grid<f32>, RadianceMapError> {
         "" => return Err(RadianceMapError::Extension(String::new())),
         other => return Err(RadianceMapError::Extension(format!(".{other}"))),
     };
-    let content = fs::read(path).map_err(|error| RadianceMapError::Read(error.to_string()))?;
+    let content = read_input(path, MAX_ASSET_BYTES)
+        .map_err(|error| RadianceMapError::Read(error.to_string()))?;
     Ok(parse(&content)?.map(|value| (f64::from(*value) * scale) as f32))
 }
 

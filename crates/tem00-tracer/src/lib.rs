@@ -75,6 +75,7 @@ mod film;
 mod filter;
 mod finish;
 mod inspection;
+mod input_file;
 mod integrator;
 mod intersector;
 mod lamp;
@@ -84,6 +85,7 @@ mod material;
 mod mesh;
 mod mesh_file;
 mod metal;
+mod printable;
 mod ray;
 mod render;
 mod sampler;
@@ -136,6 +138,12 @@ pub mod document {
         ANGLE, Choice, DURATION, Dimension, Document, DocumentKind, Format, LENGTH, MATERIALS,
         MEMORY, NUMBER, POWER, Problem, RADIANCE, Section, Value, kind_of_document, parse_document,
         read_document,
+    };
+
+    pub use crate::printable::{is_hazard, printable, printable_line};
+
+    pub use crate::input_file::{
+        FileAccess, MAX_ASSET_BYTES, MAX_TEXT_BYTES, is_standard_input, open_input, read_input,
     };
 }
 

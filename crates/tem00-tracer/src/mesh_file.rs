@@ -3,11 +3,15 @@ mod obj;
 mod ply;
 mod stl;
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use glam::DVec3;
+use tem00_numerics::check_memory;
 
-use crate::{MeshError, TriangleMesh};
+use crate::{
+    MeshError, TriangleMesh,
+    input_file::{FileAccess, MAX_ASSET_BYTES, read_input},
+};
 
 /// A format of files that hold triangle meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -51,7 +55,8 @@ impl MeshFormat {
 ///
 /// Polygons are halved again and again by chords between their corners, which is right for convex
 /// ones. Normals of vertices are kept as they are, also where they point to the back of a triangle;
-/// STL has none. Everything else is passed over: colours, materials, textures, skins, animations.
+/// STL has none. Everything else is passed over: colours, materials, textures, skins, animations. Files with
+/// the data of a glTF file lie below its folder. No file has more than [4 GiB](crate::document::MAX_ASSET_BYTES).
 ///
 /// # Errors
 ///
@@ -73,7 +78,16 @@ impl MeshFormat {
 /// );
 /// ```
 pub fn read_mesh(path: &Path, scale: f64) -> Result<TriangleMesh, MeshError> {
-    read(path, scale).map_err(|source| MeshError::File {
+    read_mesh_with(path, scale, FileAccess::WithinFolder)
+}
+
+/// Reads a triangle mesh as [`read_mesh`] does; the data of a glTF file may lie where `access` says.
+pub(crate) fn read_mesh_with(
+    path: &Path,
+    scale: f64,
+    access: FileAccess,
+) -> Result<TriangleMesh, MeshError> {
+    read(path, scale, access).map_err(|source| MeshError::File {
         path: path.to_owned(),
         source: Box::new(source),
     })
@@ -105,11 +119,18 @@ pub fn read_mesh_bytes(
     parse(content, format, None)?.into_mesh(scale)
 }
 
-fn read(path: &Path, scale: f64) -> Result<TriangleMesh, MeshError> {
+/// The bytes that a mesh takes for each of its file: vertices, triangles and the hierarchy of boxes around them.
+const BYTES_PER_BYTE: u64 = 8;
+
+fn read(path: &Path, scale: f64, access: FileAccess) -> Result<TriangleMesh, MeshError> {
     check_scale(scale)?;
     let format = MeshFormat::from_path(path)?;
-    let content = fs::read(path).map_err(|error| MeshError::Read(error.to_string()))?;
-    parse(&content, format, path.parent())?.into_mesh(scale)
+    let content =
+        read_input(path, MAX_ASSET_BYTES).map_err(|error| MeshError::Read(error.to_string()))?;
+    check_memory(content.len() as u64 * BYTES_PER_BYTE)
+        .map_err(|error| MeshError::Read(error.to_string()))?;
+    let folder = path.parent().map(|folder| (folder, access));
+    parse(&content, format, folder)?.into_mesh(scale)
 }
 
 fn check_scale(scale: f64) -> Result<(), MeshError> {
@@ -119,8 +140,12 @@ fn check_scale(scale: f64) -> Result<(), MeshError> {
     Err(MeshError::Scale(scale))
 }
 
-/// Reads a file; others that it refers to are looked for in `folder`.
-fn parse(content: &[u8], format: MeshFormat, folder: Option<&Path>) -> Result<Polygons, MeshError> {
+/// Reads a file; others that it refers to are looked for in a folder, or below it.
+fn parse(
+    content: &[u8],
+    format: MeshFormat,
+    folder: Option<(&Path, FileAccess)>,
+) -> Result<Polygons, MeshError> {
     match format {
         MeshFormat::Gltf => gltf::parse(content, folder),
         MeshFormat::Obj => obj::parse(content),

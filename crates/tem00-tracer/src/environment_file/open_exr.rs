@@ -1,7 +1,7 @@
 use std::io::Cursor;
 
 use exr::prelude::{FlatSamples, MetaData, ReadChannels, ReadLayers};
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, check_memory};
 
 use super::{RadianceMapError, checked_size, luminance};
 
@@ -11,10 +11,13 @@ pub(super) fn parse(content: &[u8]) -> Result<Grid<f32>, RadianceMapError> {
     let meta =
         MetaData::read_from_buffered(content, false).map_err(|error| format_error(&error))?;
     for header in &meta.headers {
-        checked_size(
+        let (width, height) = checked_size(
             header.layer_size.width() as u64,
             header.layer_size.height() as u64,
         )?;
+        let channels = header.channels.list.len() as u64 + 2;
+        check_memory(((width * height) as u64).saturating_mul(4 * channels))
+            .map_err(|error| RadianceMapError::Read(error.to_string()))?;
     }
     let image = exr::prelude::read()
         .no_deep_data()

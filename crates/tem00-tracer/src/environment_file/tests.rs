@@ -1,3 +1,5 @@
+use std::fs;
+
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, Layer, LayerAttributes,
     WritableImage,

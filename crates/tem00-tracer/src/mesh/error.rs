@@ -64,6 +64,23 @@ pub enum MeshError {
     },
 }
 
+impl MeshError {
+    /// Returns the error without what stands in the file.
+    pub(crate) fn unquoted(self) -> Self {
+        match self {
+            Self::Format { line, .. } => Self::Format {
+                line,
+                message: "it breaks the rules of its format".to_owned(),
+            },
+            Self::File { path, source } => Self::File {
+                path,
+                source: Box::new(source.unquoted()),
+            },
+            error => error,
+        }
+    }
+}
+
 impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

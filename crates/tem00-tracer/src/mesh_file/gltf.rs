@@ -1,4 +1,4 @@
-use std::{fs, path::Path};
+use std::path::Path;
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use glam::{DMat3, DMat4, DQuat, DVec3};
@@ -11,13 +11,22 @@ use gltf::{
     scene::Transform,
 };
 
+use tem00_numerics::check_memory;
+
 use super::Polygons;
-use crate::MeshError;
+use crate::{
+    MeshError,
+    input_file::{FileAccess, MAX_ASSET_BYTES, read_input},
+    scene_file::SceneFolder,
+};
 
 /// Reads all triangles of the scene of a glTF 2.0 file, text or binary, each where its nodes put it.
 ///
-/// Buffers in files of their own are looked for in `folder`.
-pub(super) fn parse(content: &[u8], folder: Option<&Path>) -> Result<Polygons, MeshError> {
+/// Buffers in files of their own are looked for in a folder.
+pub(super) fn parse(
+    content: &[u8],
+    folder: Option<(&Path, FileAccess)>,
+) -> Result<Polygons, MeshError> {
     // The parser subtracts the length of the header from the length that a binary file announces.
     if content.starts_with(b"glTF") && announced_length(content) < 12 {
         return Err(wrong("the glTF header is cut off"));
@@ -27,6 +36,7 @@ pub(super) fn parse(content: &[u8], folder: Option<&Path>) -> Result<Polygons, M
     let document = Document::from_json(document.into_json()).map_err(describe)?;
     let mut reader = Reader {
         buffers: read_buffers(&document, blob.as_deref(), folder)?,
+        room: 0,
         polygons: Polygons::default(),
     };
     let scene = document
@@ -90,7 +100,7 @@ fn check_positions(root: &Root) -> Result<(), MeshError> {
 fn read_buffers(
     document: &Document,
     blob: Option<&[u8]>,
-    folder: Option<&Path>,
+    folder: Option<(&Path, FileAccess)>,
 ) -> Result<Vec<Vec<u8>>, MeshError> {
     document
         .buffers()
@@ -105,7 +115,7 @@ fn read_buffers(
         .collect()
 }
 
-fn read_uri(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
+fn read_uri(uri: &str, folder: Option<(&Path, FileAccess)>) -> Result<Vec<u8>, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (_, encoded) = data
             .split_once(";base64,")
@@ -115,9 +125,16 @@ fn read_uri(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
     if uri.contains(':') {
         return Err(format!("the URI must be a relative path, got {uri:?}"));
     }
-    let folder = folder.ok_or_else(|| format!("{uri:?} is another file"))?;
+    let (folder, access) = folder.ok_or_else(|| format!("{uri:?} is another file"))?;
     let path = folder.join(decode_percent(uri));
-    fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))
+    let named = |why: &dyn core::fmt::Display| format!("{}: {why}", path.display());
+    let canonical = path.canonicalize().map_err(|error| named(&error))?;
+    let own = SceneFolder::new(folder, access);
+    if access == FileAccess::WithinFolder && !own.holds(&canonical) {
+        let why = "it lies outside of the folder of the glTF file; --allow-outside allows it";
+        return Err(named(&why));
+    }
+    read_input(&canonical, MAX_ASSET_BYTES).map_err(|error| named(&error))
 }
 
 /// Replaces `%20` by a space, and so on; what is no such code stays.
@@ -155,8 +172,14 @@ fn local_placement(node: &Node<'_>) -> DMat4 {
     }
 }
 
+/// The bytes that a vertex takes with its normal, in the file's data and in the mesh: more than the corners
+/// of a triangle.
+const BYTES_PER_ELEMENT: u64 = 2 * 2 * size_of::<DVec3>() as u64;
+
 struct Reader {
     buffers: Vec<Vec<u8>>,
+    /// The vertices and triangles that there is memory for.
+    room: u64,
     polygons: Polygons,
 }
 
@@ -182,7 +205,10 @@ impl Reader {
             return Err(format!("its primitives must be triangles, got {mode:?}"));
         }
         let positions = primitive.get(&Semantic::Positions);
-        let positions = self.vectors(&positions.ok_or("it has no positions")?)?;
+        let positions = positions.ok_or("it has no positions")?;
+        let corners = primitive.indices().map_or(0, |indices| indices.count());
+        self.check_room(positions.count(), corners)?;
+        let positions = self.vectors(&positions)?;
         let normals = match primitive.get(&Semantic::Normals) {
             Some(normals) => self.vectors(&normals)?,
             None => vec![DVec3::ZERO; positions.len()],
@@ -197,6 +223,20 @@ impl Reader {
         };
         self.add_triangles(&corners, placement)?;
         self.add_vertices(&positions, &normals, placement);
+        Ok(())
+    }
+
+    /// Checks that there is memory for so many more vertices and corners. Few bytes can ask for many: nodes
+    /// and primitives may share their data.
+    fn check_room(&mut self, vertices: usize, corners: usize) -> Result<(), String> {
+        let held = self.polygons.vertices.len() + self.polygons.triangles.len();
+        let needed = held.saturating_add(vertices).saturating_add(corners) as u64;
+        if needed > self.room {
+            let room = needed.checked_next_power_of_two().unwrap_or(u64::MAX);
+            check_memory(room.saturating_mul(BYTES_PER_ELEMENT))
+                .map_err(|error| error.to_string())?;
+            self.room = room;
+        }
         Ok(())
     }
 

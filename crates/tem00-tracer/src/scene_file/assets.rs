@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use tem00_numerics::Grid;
 
-use crate::{MeshError, RadianceMapError, TriangleMesh, read_mesh, read_radiance_map};
+use super::source::SceneFolder;
+use crate::mesh_file::read_mesh_with;
+use crate::{MeshError, RadianceMapError, TriangleMesh, read_radiance_map};
 
 /// Which normals light is scattered by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,14 +18,24 @@ pub(super) enum Shading {
 }
 
 /// The files other than text that a scene is made of.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Assets {
+    folder: SceneFolder,
     files: Vec<PathBuf>,
     /// The meshes by canonical path, in the unit of their files.
     meshes: HashMap<(PathBuf, Shading), Arc<TriangleMesh>>,
 }
 
 impl Assets {
+    /// Begins without files, for a scene in a folder.
+    pub(super) fn new(folder: &SceneFolder) -> Self {
+        Self {
+            folder: folder.clone(),
+            files: Vec::new(),
+            meshes: HashMap::new(),
+        }
+    }
+
     /// Reads a mesh in the unit of its file, once for all surfaces that are made of it.
     pub(super) fn mesh(
         &mut self,
@@ -34,7 +46,13 @@ impl Assets {
         if let Some(mesh) = self.meshes.get(&(canonical.clone(), shading)) {
             return Ok(Arc::clone(mesh));
         }
-        let mesh = read_mesh(path, 1.0)?;
+        let mesh = read_mesh_with(path, 1.0, self.folder.access).map_err(|error| {
+            if self.folder.holds(&canonical) {
+                error
+            } else {
+                error.unquoted()
+            }
+        })?;
         let mesh = match shading {
             Shading::Flat if !mesh.normals().is_empty() => {
                 TriangleMesh::new(mesh.vertices().to_vec(), mesh.triangles().to_vec())?

@@ -13,6 +13,11 @@ impl<'a> Document<'a> {
         Self { files }
     }
 
+    /// Returns the text of the file that includes the others.
+    pub fn text(&self) -> &'a str {
+        self.files.last().map_or("", Section::text)
+    }
+
     /// Opens the table of a key, which one of the files may have.
     ///
     /// # Errors

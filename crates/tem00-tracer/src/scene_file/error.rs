@@ -1,6 +1,11 @@
 use core::{error, fmt, ops::Range};
 use std::path::{Path, PathBuf};
 
+use crate::printable::printable_line;
+
+/// The most characters of a message.
+const MAX_CHARS: usize = 1000;
+
 /// Why a scene could not be read, and where its file, or one that it includes, says so.
 ///
 /// The message names the key, its value and what is allowed. [`Display`](fmt::Display) puts file,
@@ -102,10 +107,11 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Creates a problem without a place.
+    /// Creates a problem without a place. What cannot be printed is escaped, and a long message is cut: it
+    /// may quote the file.
     pub fn new(message: impl Into<String>) -> Self {
         Self {
-            message: message.into(),
+            message: printable_line(&message.into(), MAX_CHARS),
             place: None,
             help: None,
         }
@@ -120,7 +126,7 @@ impl Problem {
     /// Adds how to put it right.
     #[must_use]
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+        self.help = Some(printable_line(&help.into(), MAX_CHARS));
         self
     }
 }

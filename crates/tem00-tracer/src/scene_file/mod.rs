@@ -33,14 +33,16 @@ pub use format::{DocumentKind, Format, kind_of_document};
 pub use material::MATERIALS;
 pub use quantity::{ANGLE, DURATION, Dimension, LENGTH, MEMORY, NUMBER, POWER, RADIANCE};
 pub use section::{Choice, Section};
+pub(crate) use source::SceneFolder;
 pub use value::Value;
 
-use crate::Scene;
+use crate::{Scene, input_file::FileAccess};
 
 /// Reads a scene file, and with it the files that it includes.
 ///
 /// The format is TOML. Lengths, angles and powers are numbers in SI units, or strings with a unit.
-/// Files are looked for beside the one that names them.
+/// Files are looked for beside the one that names them; those that it includes lie below its folder, see
+/// [`FileAccess::WithinFolder`].
 ///
 /// # Errors
 ///
@@ -56,8 +58,8 @@ pub fn read_scene(path: &Path) -> Result<Scene, SceneError> {
 pub struct SceneFile {
     /// The scene.
     pub scene: Scene,
-    /// Everything that was read: the scene file, the files that it includes, then meshes and
-    /// environments, each once.
+    /// Everything that was read: the scene file unless it was standard input, the files that it includes,
+    /// then meshes and environments, each once.
     pub files: Vec<PathBuf>,
 }
 
@@ -68,22 +70,23 @@ impl SceneFile {
     ///
     /// Returns the errors of [`read_scene`].
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        Self::read_with(path, |_, _| Ok(())).map(|(file, ())| file)
+        Self::read_with(path, FileAccess::WithinFolder, |_, _| Ok(())).map(|(file, ())| file)
     }
 
     /// Reads a scene file, and with `further` those of its sections that say what becomes of the image:
-    /// `[sensor]`, `[detector]`, `[calibration]` and `[scan]`.
+    /// `[sensor]`, `[detector]`, `[calibration]` and `[scan]`. The path `-` is standard input.
     ///
     /// # Errors
     ///
     /// Returns the errors of [`read_scene`], and those of `further`, placed in the file.
     pub fn read_with<T>(
         path: &Path,
+        access: FileAccess,
         further: impl FnOnce(&Document<'_>, &Scene) -> Result<T, Problem>,
     ) -> Result<(Self, T), SceneError> {
-        let sources = Sources::of_file(path, SCENE)?;
+        let sources = Sources::of_file(path, access, SCENE)?;
         let mut files = sources.files();
-        let mut assets = Assets::default();
+        let mut assets = Assets::new(sources.folder());
         let read = with_document(&sources, |root| {
             let scene = scene(root, &mut assets)?;
             let further = further(root, &scene)?;
@@ -135,12 +138,16 @@ impl SceneFile {
 /// # Ok::<(), tem00_tracer::SceneError>(())
 /// ```
 pub fn parse_scene(text: &str, base_directory: &Path) -> Result<Scene, SceneError> {
-    let sources = Sources::of_text(text.to_owned(), None, base_directory, SCENE)?;
-    with_document(&sources, |root| scene(root, &mut Assets::default()))
-        .map_err(|problem| sources.locate(problem))
+    let place = (base_directory, FileAccess::WithinFolder);
+    let sources = Sources::of_text(text.to_owned(), None, place, SCENE)?;
+    with_document(&sources, |root| {
+        scene(root, &mut Assets::new(sources.folder()))
+    })
+    .map_err(|problem| sources.locate(problem))
 }
 
-/// Reads a file of another kind, in the syntax and with the units of scene files.
+/// Reads a file of another kind, in the syntax and with the units of scene files. The path `-` is standard
+/// input.
 ///
 /// # Errors
 ///
@@ -148,10 +155,11 @@ pub fn parse_scene(text: &str, base_directory: &Path) -> Result<Scene, SceneErro
 /// does not know, and the errors of `read`, placed in the file.
 pub fn read_document<T>(
     path: &Path,
+    access: FileAccess,
     format: Format,
     read: impl FnOnce(&Document<'_>) -> Result<T, Problem>,
 ) -> Result<T, SceneError> {
-    let sources = Sources::of_file(path, format)?;
+    let sources = Sources::of_file(path, access, format)?;
     with_document(&sources, read).map_err(|problem| sources.locate(problem))
 }
 
@@ -166,7 +174,8 @@ pub fn parse_document<T>(
     format: Format,
     read: impl FnOnce(&Document<'_>) -> Result<T, Problem>,
 ) -> Result<T, SceneError> {
-    let sources = Sources::of_text(text.to_owned(), None, base_directory, format)?;
+    let place = (base_directory, FileAccess::WithinFolder);
+    let sources = Sources::of_text(text.to_owned(), None, place, format)?;
     with_document(&sources, read).map_err(|problem| sources.locate(problem))
 }
 

@@ -177,6 +177,11 @@ impl<'a> Section<'a> {
         })
     }
 
+    /// Returns the text of the file that the section stands in.
+    pub(super) fn text(&self) -> &'a str {
+        self.source.text()
+    }
+
     /// Returns the path of a file that the section names.
     pub fn beside(&self, name: &str) -> PathBuf {
         self.source.beside(name)

@@ -3,6 +3,10 @@ use std::path::{Path, PathBuf};
 
 use toml::de::DeTable;
 
+use crate::input_file::{
+    FileAccess, MAX_TEXT_BYTES, is_standard_input, read_input, read_text as read_text_file,
+};
+
 use super::error::{Place, Problem, SceneError, line_column};
 use super::format::Format;
 use super::section::Section;
@@ -21,6 +25,8 @@ pub(super) struct Source {
     path: Option<PathBuf>,
     directory: PathBuf,
     text: String,
+    /// Whether it lies outside of the folder of the scene file, and is therefore not quoted.
+    is_outside: bool,
 }
 
 impl Source {
@@ -67,6 +73,7 @@ impl Source {
 #[derive(Debug)]
 pub(super) struct Sources {
     format: Format,
+    folder: SceneFolder,
     all: Vec<Source>,
     /// The order in which they are put together: what is included stands before what includes it.
     order: Vec<usize>,
@@ -78,21 +85,26 @@ pub(super) struct Sources {
 
 impl Sources {
     /// Reads a scene file and all that it includes.
-    pub(super) fn of_file(path: &Path, format: Format) -> Result<Self, SceneError> {
+    pub(super) fn of_file(
+        path: &Path,
+        access: FileAccess,
+        format: Format,
+    ) -> Result<Self, SceneError> {
         let text = read_text(path, &format)?;
         let directory = path.parent().unwrap_or(Path::new(""));
-        Self::of_text(text, Some(path), directory, format)
+        Self::of_text(text, Some(path), (directory, access), format)
     }
 
     /// Reads all that a text includes.
     pub(super) fn of_text(
         text: String,
         path: Option<&Path>,
-        directory: &Path,
+        (directory, access): (&Path, FileAccess),
         format: Format,
     ) -> Result<Self, SceneError> {
         let mut sources = Self {
             format,
+            folder: SceneFolder::new(directory, access),
             all: Vec::new(),
             order: Vec::new(),
             open: Vec::new(),
@@ -104,6 +116,7 @@ impl Sources {
             path: path.map(Path::to_path_buf),
             directory: directory.to_path_buf(),
             text,
+            is_outside: false,
         };
         match sources.add(source, canonical) {
             Ok(()) => Ok(sources),
@@ -121,12 +134,10 @@ impl Sources {
         &self.format
     }
 
-    /// Returns the files that were read, the scene file first.
+    /// Returns the files that were read, the scene file first; standard input is none.
     pub(super) fn files(&self) -> Vec<PathBuf> {
-        self.all
-            .iter()
-            .filter_map(|source| source.path.clone())
-            .collect()
+        let paths = self.all.iter().filter_map(|source| source.path.clone());
+        paths.filter(|path| !is_standard_input(path)).collect()
     }
 
     /// Turns a problem into an error that knows its file.
@@ -134,7 +145,17 @@ impl Sources {
         let index = problem.place.as_ref().map_or(0, |place| place.source);
         let source = self.all.get(index);
         let path = source.and_then(|source| source.path.as_deref());
-        SceneError::new(path, source.map_or("", Source::text), problem)
+        match source {
+            Some(source) if source.is_outside => {
+                SceneError::new(path, "", unquoted(source, &problem))
+            }
+            source => SceneError::new(path, source.map_or("", Source::text), problem),
+        }
+    }
+
+    /// Returns the folder of the scene file.
+    pub(super) const fn folder(&self) -> &SceneFolder {
+        &self.folder
     }
 
     fn add(&mut self, source: Source, canonical: Option<PathBuf>) -> Result<(), Problem> {
@@ -161,8 +182,17 @@ impl Sources {
         let Include { path, .. } = &include;
         let unreadable = |error| include.problem(format_args!("cannot be read: {error}"));
         let canonical = fs::canonicalize(path).map_err(unreadable)?;
+        let is_outside = !self.folder.holds(&canonical);
+        if is_outside && self.folder.access == FileAccess::WithinFolder {
+            return Err(include
+                .problem(format_args!(
+                    "lies outside of the folder of the {} file",
+                    self.format.noun
+                ))
+                .with_help(OUTSIDE));
+        }
         self.check_new(&canonical, &include)?;
-        let bytes = fs::read(path).map_err(unreadable)?;
+        let bytes = read_input(path, MAX_TEXT_BYTES).map_err(unreadable)?;
         let text =
             String::from_utf8(bytes).map_err(|_| include.problem("must be text in UTF-8"))?;
         let source = Source {
@@ -170,6 +200,7 @@ impl Sources {
             directory: path.parent().unwrap_or(Path::new("")).to_path_buf(),
             path: Some(include.path),
             text,
+            is_outside,
         };
         self.add(source, Some(canonical))
     }
@@ -188,6 +219,53 @@ impl Sources {
             None => Ok(()),
         }
     }
+}
+
+/// What to say of a file that lies elsewhere than it may.
+pub(super) const OUTSIDE: &str =
+    "put it below that folder, or allow files from everywhere with --allow-outside";
+
+/// The folder of a scene file, below which the files lie that are a scene's own.
+#[derive(Clone, Debug)]
+pub(crate) struct SceneFolder {
+    /// Its canonical path; `None` if there is no such folder.
+    canonical: Option<PathBuf>,
+    /// From where files may be read.
+    pub(super) access: FileAccess,
+}
+
+impl SceneFolder {
+    /// Finds a folder, of which an empty path is the current one.
+    pub(crate) fn new(directory: &Path, access: FileAccess) -> Self {
+        let is_current = directory.as_os_str().is_empty();
+        let directory = if is_current {
+            Path::new(".")
+        } else {
+            directory
+        };
+        Self {
+            canonical: fs::canonicalize(directory).ok(),
+            access,
+        }
+    }
+
+    /// Returns whether a canonical path lies below the folder.
+    pub(crate) fn holds(&self, canonical: &Path) -> bool {
+        let folder = self.canonical.as_ref();
+        folder.is_some_and(|folder| canonical.starts_with(folder))
+    }
+}
+
+/// A problem in a file that is not the scene's own, without what stands there.
+fn unquoted(source: &Source, problem: &Problem) -> Problem {
+    let place = problem.place.as_ref();
+    let place = place.and_then(|place| line_column(&source.text, place.span.start));
+    let place = place.map_or_else(String::new, |(line, column)| {
+        format!(" in line {line}, column {column}")
+    });
+    Problem::new(format!(
+        "there is a mistake{place}; the file lies outside of the scene's folder and is not quoted"
+    ))
 }
 
 /// A file that another one includes, and where it says so.
@@ -228,10 +306,7 @@ fn read_text(path: &Path, format: &Format) -> Result<String, SceneError> {
             .with_help(format.help);
         SceneError::new(Some(path), "", problem)
     };
-    if path.is_dir() {
-        return Err(unreadable(&"it is a directory"));
-    }
-    let bytes = fs::read(path).map_err(|why| unreadable(&why))?;
+    let bytes = read_text_file(path).map_err(|why| unreadable(&why))?;
     String::from_utf8(bytes).map_err(|not_utf8| {
         let valid = not_utf8.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(&not_utf8.as_bytes()[..valid]);

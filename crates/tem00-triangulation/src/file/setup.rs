@@ -3,8 +3,8 @@ use std::path::Path;
 use tem00_tracer::{
     SceneError,
     document::{
-        ANGLE, Document, Format, LENGTH, NUMBER, POWER, Problem, Section, Value, parse_document,
-        read_document,
+        ANGLE, Document, FileAccess, Format, LENGTH, NUMBER, POWER, Problem, Section, Value,
+        parse_document, read_document,
     },
 };
 
@@ -54,19 +54,23 @@ pub(super) const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"
 /// Returns an error if the file cannot be read, is not valid TOML, or does not describe a set-up. It
 /// names key, value and what is allowed, and knows its place in the file.
 pub fn read_setup(path: &Path) -> Result<Setup, SceneError> {
-    read_setup_with(path, |_, _| Ok(())).map(|(setup, ())| setup)
+    read_setup_with(path, FileAccess::WithinFolder, |_, _| Ok(())).map(|(setup, ())| setup)
 }
 
-/// Reads a set-up file, and with `further` what else it has to say: `[design]`.
+/// Reads a set-up file, and with `further` what else it has to say: `[design]`. The path `-` is standard
+/// input.
 ///
 /// # Errors
 ///
 /// Returns the errors of [`read_setup`], and those of `further`, placed in the file.
 pub fn read_setup_with<T>(
     path: &Path,
+    access: FileAccess,
     further: impl FnOnce(&Document<'_>, &Setup) -> Result<T, Problem>,
 ) -> Result<(Setup, T), SceneError> {
-    read_document(path, SETUP, |document| with_further(document, further))
+    read_document(path, access, SETUP, |document| {
+        with_further(document, further)
+    })
 }
 
 /// Reads a set-up from text in the format of set-up files.

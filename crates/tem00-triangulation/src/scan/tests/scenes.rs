@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use tem00_tracer::SceneError;
+use tem00_tracer::{SceneError, document::FileAccess};
 
 use crate::MeasurementScene;
 
@@ -35,7 +35,7 @@ samples_per_pixel = 4
 pub(super) fn scene_of(text: &str) -> Result<MeasurementScene, SceneError> {
     let mut file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
     file.write_all(text.as_bytes()).unwrap();
-    MeasurementScene::read(file.path()).map(|(scene, _)| scene)
+    MeasurementScene::read(file.path(), FileAccess::WithinFolder).map(|(scene, _)| scene)
 }
 
 /// Reads a scene that is one.

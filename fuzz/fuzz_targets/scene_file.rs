@@ -10,6 +10,10 @@ use tem00_tracer::parse_scene;
 fuzz_target!(|text: &str| {
     if let Err(error) = parse_scene(text, Path::new("/nowhere")) {
         assert!(!error.to_string().is_empty());
-        assert!(error.span().is_none_or(|span| error.source_text().get(span).is_some()));
+        assert!(
+            error
+                .span()
+                .is_none_or(|span| error.source_text().get(span).is_some())
+        );
     }
 });

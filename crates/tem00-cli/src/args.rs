@@ -3,6 +3,7 @@
 mod budget;
 mod calibrate;
 mod design;
+mod files;
 mod lines;
 mod list;
 mod render;
@@ -21,6 +22,7 @@ pub(crate) use self::{
     budget::BudgetArgs,
     calibrate::CalibrateArgs,
     design::DesignArgs,
+    files::FileArgs,
     lines::LinesArgs,
     list::{ListArgs, Listed},
     render::{FrameRange, RenderArgs},

@@ -12,7 +12,7 @@ use std::{
 
 use tem00_triangulation::{
     Budget, LightLevel, Setup, Simulation, SimulationOptions, TriangulationError,
-    UncertaintySource, read_setup, simulate,
+    UncertaintySource, read_setup_with, simulate,
 };
 
 use crate::{
@@ -63,15 +63,18 @@ struct Refusal {
 /// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or, with
 /// all files written, if the set-up measures nothing.
 pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let setup = read_setup(&args.setup).map_err(|error| {
+    let (setup, text) = read_setup_with(&args.setup, args.files.access(), |document, _| {
+        Ok(document.text().to_owned())
+    })
+    .map_err(|error| {
         wrong_or(&args.setup, Kind::Setup, || {
             Failure::file(&args.setup, &error, HELP)
         })
     })?;
     let folder = output::folder(args.output.as_deref(), &output::name(&args.setup, "set-up"));
-    output::prepare(&folder)?;
+    let _lock = output::prepare(&folder)?;
     let pool = output::thread_pool(args.threads)?;
-    let findings = pool.install(|| Findings::new(args, setup))?;
+    let findings = pool.install(|| Findings::new(args, setup, text))?;
     let record = record::text(&findings)?;
     let written = write(&findings, &record, &folder)?;
     let printed = if args.json {
@@ -89,9 +92,7 @@ pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure
 }
 
 impl<'a> Findings<'a> {
-    fn new(args: &'a BudgetArgs, setup: Setup) -> Result<Self, Failure> {
-        let text = std::fs::read_to_string(&args.setup)
-            .map_err(|error| Failure::input(format!("{}: {error}", args.setup.display()), HELP))?;
+    fn new(args: &'a BudgetArgs, setup: Setup, text: String) -> Result<Self, Failure> {
         let answer = match Budget::new(&setup) {
             Ok(budget) => Answer::new(args, &setup, budget)?,
             Err(TriangulationError::NothingMeasured { why, advice }) => Err(Refusal {

@@ -1,10 +1,13 @@
 //! Calibrations as JSON files.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
-use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+use tem00_tracer::{
+    Camera, CameraDescription, RadialDistortion, SensorTilt,
+    document::{MAX_TEXT_BYTES, read_input},
+};
 use tem00_triangulation::{
     Calibration, CalibrationCovariance, CalibrationQuality, LaserPlane, PARAMETERS,
     TriangulationError,
@@ -92,14 +95,14 @@ pub(crate) fn read_calibration(path: &Path) -> Result<Calibration, Failure> {
             "`tem00 calibrate FOLDER … -o FILE.json` writes one",
         )
     };
-    let text = fs::read_to_string(path).map_err(|error| {
+    let content = read_input(path, MAX_TEXT_BYTES).map_err(|error| {
         Failure::input(
             format!("cannot read {}: {error}", path.display()),
             "a calibration is a JSON file of `tem00 calibrate`",
         )
     })?;
     let record: CalibrationRecord =
-        serde_json::from_str(&text).map_err(|error| refused(error.to_string()))?;
+        serde_json::from_slice(&content).map_err(|error| refused(error.to_string()))?;
     record.calibration().map_err(refused)
 }
 
@@ -250,6 +253,8 @@ impl QualityRecord {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn calibration() -> Calibration {

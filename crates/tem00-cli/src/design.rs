@@ -47,19 +47,21 @@ struct Design<'a> {
 /// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or if no set-up
 /// keeps every constraint; all files but `best.toml` are written then, if any set-up is possible.
 pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (_, search) = read_setup_with(&args.setup, |document, setup| {
-        read_design(document, setup.description())
-    })
-    .map_err(|error| {
-        wrong_or(&args.setup, Kind::Setup, || {
-            Failure::file(&args.setup, &error, HELP)
+    let (_, (search, text)) =
+        read_setup_with(&args.setup, args.files.access(), |document, setup| {
+            let search = read_design(document, setup.description())?;
+            Ok((search, document.text().to_owned()))
         })
-    })?;
+        .map_err(|error| {
+            wrong_or(&args.setup, Kind::Setup, || {
+                Failure::file(&args.setup, &error, HELP)
+            })
+        })?;
     let name = output::name(&args.setup, "design");
     let folder = output::folder(args.output.as_deref(), &name);
-    output::prepare(&folder)?;
+    let _lock = output::prepare(&folder)?;
     let pool = output::thread_pool(args.threads)?;
-    let design = pool.install(|| Design::search(args, search))?;
+    let design = pool.install(|| Design::search(args, search, text))?;
     if design.winner().is_none() {
         // That of another search would be taken for the winner of this one.
         output::remove(&folder, &["best"], &["toml"])?;
@@ -83,9 +85,7 @@ pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure
 const HELP: &str = "a set-up file for a search has a section [design]; setups/design.toml is one";
 
 impl<'a> Design<'a> {
-    fn search(args: &'a DesignArgs, search: DesignSearch) -> Result<Self, Failure> {
-        let text = std::fs::read_to_string(&args.setup)
-            .map_err(|error| Failure::input(format!("{}: {error}", args.setup.display()), HELP))?;
+    fn search(args: &'a DesignArgs, search: DesignSearch, text: String) -> Result<Self, Failure> {
         let bar = Progress::of(search.count() as u64, "set-ups");
         bar.name("searching".into());
         let outcome = search

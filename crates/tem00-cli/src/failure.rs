@@ -2,9 +2,11 @@
 
 use std::{io, path::Path};
 
-use miette::{Diagnostic, NamedSource, Report, SourceSpan};
-use tem00_tracer::SceneError;
+use miette::{Diagnostic, Report, SourceSpan};
+use tem00_tracer::{SceneError, document::printable_line};
 use thiserror::Error;
+
+use crate::excerpt::Excerpt;
 
 /// Why the program ends before its work is done.
 #[derive(Debug)]
@@ -24,12 +26,7 @@ pub(crate) enum Failure {
 impl Failure {
     /// Returns a complaint about the input: what is wrong with which value, and what is allowed.
     pub(crate) fn input(message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self::Input(Report::new(Problem {
-            message: message.into(),
-            help: Some(help.into()),
-            source_code: None,
-            span: None,
-        }))
+        Self::Input(Report::new(Problem::new(message.into(), Some(help.into()))))
     }
 
     /// Returns why work that was done has no result, and what to change.
@@ -49,14 +46,11 @@ impl Failure {
         (file, text): (&Path, &str),
         span: core::ops::Range<usize>,
     ) -> Self {
+        let (excerpt, span) = Excerpt::around(file, text, &span);
         Self::Input(Report::new(Problem {
-            message: message.into(),
-            help,
-            source_code: Some(NamedSource::new(
-                file.display().to_string(),
-                text.to_owned(),
-            )),
+            source_code: Some(excerpt),
             span: Some(span.into()),
+            ..Problem::new(message.into(), help)
         }))
     }
 
@@ -76,12 +70,7 @@ impl Failure {
 
     /// Returns a failure of the work itself.
     pub(crate) fn running(message: impl Into<String>) -> Self {
-        Self::Running(Report::new(Problem {
-            message: message.into(),
-            help: None,
-            source_code: None,
-            span: None,
-        }))
+        Self::Running(Report::new(Problem::new(message.into(), None)))
     }
 
     /// Returns the failure to write a file.
@@ -129,7 +118,23 @@ struct Problem {
     #[help]
     help: Option<String>,
     #[source_code]
-    source_code: Option<NamedSource<String>>,
+    source_code: Option<Excerpt>,
     #[label("here")]
     span: Option<SourceSpan>,
+}
+
+impl Problem {
+    /// The most characters of a message.
+    const MAX_CHARS: usize = 2000;
+
+    /// Returns a problem without a place. What it quotes may be long and hold anything.
+    fn new(message: String, help: Option<String>) -> Self {
+        let shown = |text: String| printable_line(&text, Self::MAX_CHARS);
+        Self {
+            message: shown(message),
+            help: help.map(shown),
+            source_code: None,
+            span: None,
+        }
+    }
 }

@@ -40,11 +40,6 @@ impl FramePaths {
         }
     }
 
-    /// Returns whether preview and layers are there.
-    pub(crate) fn images_exist(&self) -> bool {
-        self.preview.is_file() && self.layers.is_file()
-    }
-
     /// Returns the name of a file without its folder.
     pub(crate) fn name_of(path: &Path) -> String {
         path.file_name()

@@ -6,11 +6,15 @@ mod png_file;
 mod raw_file;
 mod selection;
 
-use std::{fs::File, io::BufReader, path::Path};
+use std::{
+    fs::File,
+    io::{self, BufReader},
+    path::Path,
+};
 
 use num_complex::Complex;
 use tem00_numerics::Grid;
-use tem00_tracer::Crop;
+use tem00_tracer::{Crop, document::open_input};
 use thiserror::Error;
 
 pub(crate) use exr_file::{Layer, Window, write_exr};
@@ -19,6 +23,9 @@ pub(crate) use raw_file::{RawFormat, RawImage, read_raw, write_raw};
 
 /// The most pixels that are read from a file: 2²⁸, which is 1 GiB of `f32`.
 const MAXIMUM_PIXELS: u64 = 1 << 28;
+
+/// The most bytes of an image file: 8 GiB, which hold as many complex numbers and a header.
+const MAX_IMAGE_BYTES: u64 = 8 << 30;
 
 /// The formats of patterns, told apart by the end of the file's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,7 +84,7 @@ pub(crate) struct LoadedImage {
 #[derive(Debug, Error)]
 pub(crate) enum ImageError {
     #[error("{0}")]
-    Io(#[from] std::io::Error),
+    Io(#[from] io::Error),
     #[error("not a readable PNG file: {0}")]
     PngDecoding(#[from] png::DecodingError),
     #[error("{0}")]
@@ -187,8 +194,8 @@ pub(crate) fn check_inside(crop: Crop, [width, height]: [usize; 2]) -> Result<()
 }
 
 /// Opens a file of an image.
-fn open(path: &Path) -> Result<BufReader<File>, ImageError> {
-    Ok(BufReader::new(File::open(path)?))
+pub(crate) fn open(path: &Path) -> io::Result<BufReader<File>> {
+    open_input(path, MAX_IMAGE_BYTES).map(BufReader::new)
 }
 
 /// Returns the name of a file, for messages.

@@ -1,10 +1,20 @@
-//! Ctrl-C: the first asks for a clean end, the second ends at once.
+//! Ctrl-C and the termination signals: the first asks for a clean end, which has less than a second; the
+//! second ends at once.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    io::{self, Write},
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+    time::Duration,
+};
 
 use crate::{atomic, failure::Failure};
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// The time for a clean end. What cannot be interrupted, such as drawing, compressing an image or waiting
+/// for input, is cut off after it.
+const GRACE: Duration = Duration::from_millis(800);
 
 /// Takes over Ctrl-C and the termination signals.
 ///
@@ -13,12 +23,27 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// Returns an error if the operating system refuses.
 pub(crate) fn install() -> Result<(), Failure> {
     ctrlc::set_handler(|| {
-        if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            atomic::discard_pending();
-            std::process::exit(i32::from(Failure::Interrupted.exit_code()));
+        let waiting = !INTERRUPTED.swap(true, Ordering::Relaxed)
+            && thread::Builder::new().spawn(end_after_grace).is_ok();
+        if !waiting {
+            end();
         }
     })
     .map_err(|error| Failure::running(format!("cannot listen for Ctrl-C: {error}")))
+}
+
+fn end_after_grace() {
+    thread::sleep(GRACE);
+    end();
+}
+
+/// Ends the process. Files that are being written disappear; those that are finished stay.
+fn end() -> ! {
+    atomic::discard_pending();
+    let told = Failure::Interrupted.report().unwrap_or_default();
+    // Without standard error there is nobody left to tell.
+    let _ = write!(io::stderr(), "{told}");
+    std::process::exit(i32::from(Failure::Interrupted.exit_code()));
 }
 
 /// Returns the flag that is set once the user asked the program to end.

@@ -47,7 +47,7 @@ pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure>
         .map(read_calibration)
         .transpose()?;
     let folder = output::folder(args.output.as_deref(), "lines");
-    output::prepare(&folder)?;
+    let _lock = output::prepare(&folder)?;
 
     let progress = Progress::of(args.images.len() as u64, "images");
     let mut names = Names::default();

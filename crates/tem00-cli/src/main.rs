@@ -7,7 +7,9 @@ mod calibrate;
 mod calibration_file;
 mod colour;
 mod design;
+mod excerpt;
 mod failure;
+mod folder_lock;
 mod frame_files;
 mod image;
 mod inspection;
@@ -30,19 +32,22 @@ mod table;
 mod triangulate;
 
 use std::{
+    env,
     io::{self, Write},
-    process::ExitCode,
+    process::{self, ExitCode},
 };
 
 use clap::Parser;
+use tem00_tracer::document::is_hazard;
 
 use crate::{
     args::{Cli, Command},
     failure::Failure,
+    output::Printable,
 };
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = Cli::try_parse().unwrap_or_else(|error| refuse(&error));
     if cli.quiet {
         output::be_quiet();
     }
@@ -58,9 +63,19 @@ fn main() -> ExitCode {
     }
 }
 
+/// Tells what is wrong with the command line, or what was asked for with `--help`, and ends.
+fn refuse(error: &clap::Error) -> ! {
+    // Names of files that a shell fills in may hold anything.
+    if env::args_os().all(|argument| !argument.to_string_lossy().contains(is_hazard)) {
+        error.exit();
+    }
+    let _ = write!(Printable(io::stderr()), "{}", error.render());
+    process::exit(error.exit_code());
+}
+
 fn run(command: &Command) -> Result<(), Failure> {
     interrupt::install()?;
-    let mut out = io::stdout().lock();
+    let mut out = Printable(io::stdout().lock());
     match command {
         Command::Render(args) => render::run(args, &mut out),
         Command::Pattern(args) => pattern::run(args, &mut out),

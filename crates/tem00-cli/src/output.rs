@@ -1,17 +1,27 @@
 //! What the commands share: where their files go, and the threads that they work on.
 
 use std::{
+    fmt::Arguments,
     io::{self, Write},
     path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
 };
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use tem00_tracer::document::{is_standard_input, printable};
 
-use crate::{atomic::create_writable_folder, failure::Failure};
+use crate::{
+    atomic::{create_writable_folder, remove_abandoned},
+    failure::Failure,
+    folder_lock::{FolderLock, Refused},
+};
 
-/// Returns the name of an input file without folder and ending, or `otherwise` if it has none.
+/// Returns the name of an input file without folder and ending, or `otherwise` if it has none; that of
+/// standard input, `-`, is `standard_input`.
 pub(crate) fn name(input: &Path, otherwise: &str) -> String {
+    if is_standard_input(input) {
+        return "standard_input".to_owned();
+    }
     input.file_stem().map_or_else(
         || otherwise.to_owned(),
         |stem| stem.to_string_lossy().into_owned(),
@@ -23,18 +33,83 @@ pub(crate) fn folder(asked: Option<&Path>, name: &str) -> PathBuf {
     asked.map_or_else(|| Path::new("out").join(name), Path::to_path_buf)
 }
 
-/// Makes sure, before the work, that files can be written into the folder, and makes it if need be.
+/// Makes sure, before the work, that files can be written into the folder and that no other process does,
+/// for as long as what is returned lives. Makes the folder if need be, and removes the temporary files
+/// that a process left there when it was killed.
 ///
 /// # Errors
 ///
-/// Returns a failure if they cannot.
-pub(crate) fn prepare(folder: &Path) -> Result<(), Failure> {
-    create_writable_folder(folder).map_err(|error| {
+/// Returns a failure if they cannot, or if another process has taken the folder.
+pub(crate) fn prepare(folder: &Path) -> Result<FolderLock, Failure> {
+    take(folder, FolderLock::alone)
+}
+
+/// As [`prepare`], but lets others into the folder that do parts of the same `work`.
+///
+/// # Errors
+///
+/// Returns the failures of [`prepare`].
+pub(crate) fn prepare_for_part(folder: &Path, work: &str) -> Result<FolderLock, Failure> {
+    take(folder, |folder| FolderLock::shared(folder, work))
+}
+
+fn take(
+    folder: &Path,
+    lock: impl FnOnce(&Path) -> Result<FolderLock, Refused>,
+) -> Result<FolderLock, Failure> {
+    let name = folder.display();
+    let refused = |error: io::Error| {
         Failure::input(
-            format!("cannot write into the folder {}: {error}", folder.display()),
+            format!("cannot write into the folder {name}: {error}"),
             "name a folder that may be written with -o",
         )
-    })
+    };
+    create_writable_folder(folder).map_err(refused)?;
+    let lock = lock(folder).map_err(|why| match why {
+        Refused::InUse(process) => in_use(folder, process),
+        Refused::Io(error) => refused(error),
+    })?;
+    if !lock.is_held() {
+        note(&format!(
+            "the file system of {name} has no locks: let no other tem00 write there meanwhile"
+        ));
+    }
+    remove_abandoned(folder);
+    Ok(lock)
+}
+
+fn in_use(folder: &Path, process: Option<u32>) -> Failure {
+    let process = process.map_or_else(String::new, |process| format!(", process {process},"));
+    Failure::input(
+        format!(
+            "another tem00{process} is writing into the folder {}",
+            folder.display()
+        ),
+        "wait until it has ended, or name another folder with -o; only parts of one render, chosen by \
+         --frames, may share a folder",
+    )
+}
+
+/// Writes text for a terminal or a file: what would do something to a terminal is escaped, as names of
+/// files and of surfaces may hold anything.
+#[derive(Debug)]
+pub(crate) struct Printable<W>(pub(crate) W);
+
+impl<W: Write> Write for Printable<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let text = String::from_utf8_lossy(bytes);
+        self.0.write_all(printable(&text).as_bytes())?;
+        Ok(bytes.len())
+    }
+
+    /// Formats all of it first, so that no character is written in two pieces.
+    fn write_fmt(&mut self, arguments: Arguments<'_>) -> io::Result<()> {
+        self.write_all(arguments.to_string().as_bytes())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
 }
 
 /// Removes files of an earlier run that this one does not write: each of the names with each ending.
@@ -76,7 +151,7 @@ pub(crate) fn is_quiet() -> bool {
 /// Writes a line to standard error, unless notes are left out or there is nobody to read it.
 pub(crate) fn note(text: &str) {
     if !is_quiet() {
-        let _ = writeln!(io::stderr(), "{text}");
+        let _ = writeln!(io::stderr(), "{}", printable(text));
     }
 }
 

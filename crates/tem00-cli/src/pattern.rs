@@ -4,8 +4,7 @@ mod theory;
 
 use std::{
     borrow::Cow,
-    fs::File,
-    io::{self, BufReader, Write},
+    io::{self, Write},
     path::Path,
 };
 
@@ -17,8 +16,9 @@ use crate::{
     args::PatternArgs,
     atomic::{probe_writable, write_atomically},
     failure::Failure,
-    image::{Format, ImageError, Layer, write_exr, write_grey_png},
+    image::{Format, ImageError, Layer, open, write_exr, write_grey_png},
     interrupt,
+    output::note,
     table::write_table,
 };
 
@@ -56,10 +56,8 @@ pub(crate) fn run(args: &PatternArgs, out: &mut impl Write) -> Result<(), Failur
         write(file, format, &values, &description(args, &field))
     })
     .map_err(|error| Failure::writing(&args.output, error))?;
-    let mut notes = io::stderr().lock();
-    for note in &table.notes {
-        // Notes that cannot be shown are no reason to withhold the data.
-        let _ = writeln!(notes, "note: {note}");
+    for remark in &table.notes {
+        note(&format!("note: {remark}"));
     }
     write_table(&table.rows, out).map_err(|error| Failure::stdout(&error))
 }
@@ -120,10 +118,8 @@ fn behind(
 }
 
 fn read_field(path: &Path) -> Result<Grid<Complex<f32>>, Failure> {
-    let read = || -> Result<_, NpyError> {
-        let file = BufReader::new(File::open(path)?);
-        NpyReader::new(file)?.into_complex(FIELD_MEMORY)
-    };
+    let read =
+        || -> Result<_, NpyError> { NpyReader::new(open(path)?)?.into_complex(FIELD_MEMORY) };
     read().map_err(|error| {
         Failure::input(
             format!("--field {}: {error}", path.display()),

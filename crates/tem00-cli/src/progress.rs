@@ -9,6 +9,7 @@ use std::{
 };
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use tem00_tracer::document::printable_line;
 
 use self::lines::Lines;
 use crate::output::{is_quiet, note};
@@ -53,6 +54,7 @@ impl Progress {
 
     /// Says what the work belongs to from now on.
     pub(crate) fn name(&self, message: String) {
+        let message = printable_line(&message, 60);
         if let Some(lines) = &self.lines {
             lines.name(message.clone());
         }

@@ -21,6 +21,7 @@ use self::{
 use crate::{
     args::{FrameRange, RenderArgs},
     failure::Failure,
+    folder_lock::FolderLock,
     frame_files::FramePaths,
     image::check_inside,
     inspection::Inspection,
@@ -36,7 +37,10 @@ use crate::{
 ///
 /// Returns a failure if the input is not valid, a file cannot be written or the user ends it.
 pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let SceneFile { scene, files, .. } = SceneFile::read(&args.scene).map_err(|error| {
+    let read = SceneFile::read_with(&args.scene, args.files.access(), |document, _| {
+        Ok(document.text().to_owned())
+    });
+    let (SceneFile { scene, files, .. }, text) = read.map_err(|error| {
         wrong_or(&args.scene, Kind::Scene, || {
             let needed = "a scene needs a laser, a camera and a surface";
             Failure::file(&args.scene, &error, needed)
@@ -46,7 +50,7 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
     if args.check {
         return check(args, &scene, out);
     }
-    let render = Render::new(args, scene, &files)?;
+    let render = Render::new(args, scene, (&text, &files))?;
     note_invisible_lasers(&render.scene);
     note_missing_light(&render.scene);
     render.warn_of_darkness()?;
@@ -119,10 +123,15 @@ struct Render<'a> {
     options: RenderOptions,
     plan: Option<SpecklePlan>,
     fingerprint: Fingerprint,
+    _lock: FolderLock,
 }
 
 impl<'a> Render<'a> {
-    fn new(args: &'a RenderArgs, scene: Scene, files: &[PathBuf]) -> Result<Self, Failure> {
+    fn new(
+        args: &'a RenderArgs,
+        scene: Scene,
+        (text, files): (&str, &[PathBuf]),
+    ) -> Result<Self, Failure> {
         let name = output::name(&args.scene, "scene");
         let folder = output::folder(args.output.as_deref(), &name);
         let options = options(args, &scene);
@@ -130,24 +139,32 @@ impl<'a> Render<'a> {
             .then(|| SpecklePlan::new(&scene, options.formulas, options.seed))
             .transpose()
             .map_err(|error| tracer_failure(&args.scene, &error))?;
-        let choices = (options, plan.is_some(), args.white_level);
+        // The text as well: standard input is none of the files.
+        let choices = (options, plan.is_some(), args.white_level, text);
+
+        let frames = frames(args.frames, scene.render.frames)?;
+        let fingerprint = Fingerprint::of(&scene, files, &choices)?;
+        let lock = match args.frames {
+            Some(_) => output::prepare_for_part(&folder, &fingerprint.to_string()),
+            None => output::prepare(&folder),
+        }?;
         let render = Self {
             args,
-            frames: frames(args.frames, scene.render.frames)?,
-            fingerprint: Fingerprint::of(&scene, files, &choices)?,
+            frames,
+            fingerprint,
+            _lock: lock,
             scene,
             name,
             folder,
             options,
             plan,
         };
-        render.prepare_folder()?;
+        render.check_targets()?;
         Ok(render)
     }
 
-    /// Makes sure, before the work, that the files can be written.
-    fn prepare_folder(&self) -> Result<(), Failure> {
-        output::prepare(&self.folder)?;
+    /// Makes sure, before the work, that no folder stands where a file goes.
+    fn check_targets(&self) -> Result<(), Failure> {
         let frames = self.scene.render.frames;
         let of_frames = (self.frames.first..=self.frames.last).flat_map(|number| {
             let paths = FramePaths::new(&self.folder, &self.name, number, frames);

@@ -18,6 +18,7 @@ use crate::{
     failure::Failure,
     image::{LoadedImage, Reading, read_image},
     kind::{Kind, wrong_or},
+    output::note,
     plot::Format,
     table::{Row, write_table},
 };
@@ -130,18 +131,15 @@ fn print(measurement: &Measurement, json: bool, out: &mut impl Write) -> Result<
             .map_err(|error| Failure::running(format!("cannot write JSON: {error}")))?;
         return writeln!(out, "{text}").map_err(|error| Failure::stdout(&error));
     }
-    let mut notes = std::io::stderr().lock();
-    // Notes that cannot be shown are no reason to withhold the data.
-    let _ = writeln!(
-        notes,
+    note(&format!(
         "{}: {}",
         measurement.image, measurement.interpretation
-    );
+    ));
     for warning in &measurement.warnings {
-        let _ = writeln!(notes, "warning: {warning}");
+        note(&format!("warning: {warning}"));
     }
     for assumption in &measurement.assumptions {
-        let _ = writeln!(notes, "note: {assumption}");
+        note(&format!("note: {assumption}"));
     }
     write_table(&measurement.rows, out).map_err(|error| Failure::stdout(&error))
 }

@@ -130,6 +130,9 @@ pub(crate) struct FrameSummary {
     pub(crate) number: u32,
     pub(crate) preview: String,
     pub(crate) layers: String,
+    /// The hashes of both files, by which they are known to belong to this record.
+    pub(crate) preview_fnv1a: String,
+    pub(crate) layers_fnv1a: String,
     pub(crate) lasers: Vec<FrameLaser>,
     /// The camera samples, the rays followed from the camera and towards light, and the time that they
     /// took.

@@ -7,7 +7,7 @@ mod record;
 mod refusal;
 mod terms;
 
-use std::{io::Write, path::Path, time::Instant};
+use std::{io::Write, path::Path};
 
 use tem00_tracer::{Formulas, SpeckleChange, SpeckleModel, SpecklePlan};
 use tem00_triangulation::{
@@ -42,7 +42,7 @@ const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface
 /// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or, with all
 /// files written, if no point is valid.
 pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (scene, _) = MeasurementScene::read(&args.scene).map_err(|error| {
+    let (scene, _) = MeasurementScene::read(&args.scene, args.files.access()).map_err(|error| {
         wrong_or(&args.scene, Kind::Scene, || {
             Failure::file(&args.scene, &error, HELP)
         })
@@ -84,7 +84,6 @@ struct Measured {
     speckle_change: Option<SpeckleChange>,
     /// What makes heights uncertain, or why there is none.
     terms: Result<Terms, Refusal>,
-    seconds: f64,
 }
 
 impl<'a> Job<'a> {
@@ -113,7 +112,6 @@ impl<'a> Job<'a> {
 
     /// Measures all frames, writing raw frames on the way.
     fn measure(&self) -> Result<Measured, Failure> {
-        let start = Instant::now();
         let speckle = self.speckle()?;
         let progress = self.progress();
         let mut scan = Scan::new(&self.measurement);
@@ -141,7 +139,6 @@ impl<'a> Job<'a> {
             terms: terms.ok_or_else(|| Refusal::of(&frames)),
             frames,
             profiles,
-            seconds: start.elapsed().as_secs_f64(),
         })
     }
 

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::FileArgs;
+
 /// Say what height uncertainty a set-up gives, and what dominates it.
 ///
 /// The set-up file holds what data sheets tell: laser line, lens, sensor, angle, surface and detector.
@@ -15,9 +17,12 @@ use clap::Args;
 #[derive(Args, Debug)]
 #[command(after_help = BUDGET_EXAMPLES)]
 pub(crate) struct BudgetArgs {
-    /// The set-up file.
+    /// The set-up file, or - for standard input.
     #[arg(value_name = "SETUP.toml")]
     pub(crate) setup: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) files: FileArgs,
 
     /// The folder for the files, made if it is missing [default: out/<name of the set-up>].
     #[arg(short, long, value_name = "DIR")]

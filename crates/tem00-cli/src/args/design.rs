@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::FileArgs;
+
 /// Search set-ups for the least height uncertainty under constraints.
 ///
 /// The section [design] of the set-up file says what is varied, what a set-up must keep and what is
@@ -13,9 +15,12 @@ use clap::Args;
 #[derive(Args, Debug)]
 #[command(after_help = DESIGN_EXAMPLES)]
 pub(crate) struct DesignArgs {
-    /// The set-up file, with the section [design].
+    /// The set-up file, with the section [design], or - for standard input.
     #[arg(value_name = "SETUP.toml")]
     pub(crate) setup: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) files: FileArgs,
 
     /// The folder for the files, made if it is missing [default: out/<name of the set-up>].
     #[arg(short, long, value_name = "DIR")]

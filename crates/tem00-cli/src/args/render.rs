@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use tem00_tracer::{Crop, Method};
 
-use super::{crop, positive};
+use super::{FileArgs, crop, positive};
 
 /// Render a scene: PNG preview, OpenEXR layers and a JSON summary.
 ///
@@ -14,9 +14,12 @@ use super::{crop, positive};
 #[derive(Args, Debug)]
 #[command(after_help = RENDER_EXAMPLES)]
 pub(crate) struct RenderArgs {
-    /// The scene file.
+    /// The scene file, or - for standard input.
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) files: FileArgs,
 
     /// The folder for the images, made if it is missing [default: out/<name of the scene>].
     #[arg(short, long, value_name = "DIR")]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::FrameRange;
+use super::{FileArgs, FrameRange};
 
 /// Render what a triangulation sensor sees, and measure the part from it.
 ///
@@ -18,9 +18,12 @@ use super::FrameRange;
 #[derive(Args, Debug)]
 #[command(after_help = TRIANGULATE_EXAMPLES)]
 pub(crate) struct TriangulateArgs {
-    /// The scene file, with a section [sensor].
+    /// The scene file, with a section [sensor], or - for standard input.
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) files: FileArgs,
 
     /// The folder for the results, made if it is missing [default: out/<name of the scene>].
     #[arg(short, long, value_name = "DIR")]

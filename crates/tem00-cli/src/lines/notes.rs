@@ -1,14 +1,11 @@
 //! What the user should know of lines that were found, or not.
 
-use std::{
-    io::{self, Write},
-    path::Path,
-};
+use std::path::Path;
 
 use tem00_triangulation::Validity;
 
 use super::Found;
-use crate::{args::LinesArgs, image::RawImage};
+use crate::{args::LinesArgs, image::RawImage, output::note};
 
 /// The most notes that are told one by one.
 const TOLD: usize = 8;
@@ -21,12 +18,14 @@ const LIT: f64 = 0.25;
 
 /// Writes notes to standard error, if there is anybody to read it.
 pub(super) fn tell(notes: &[String]) {
-    let mut out = io::stderr().lock();
-    for note in notes.iter().take(TOLD) {
-        let _ = writeln!(out, "note: {note}");
+    for remark in notes.iter().take(TOLD) {
+        note(&format!("note: {remark}"));
     }
     if notes.len() > TOLD {
-        let _ = writeln!(out, "note: and {} more of this kind", notes.len() - TOLD);
+        note(&format!(
+            "note: and {} more of this kind",
+            notes.len() - TOLD
+        ));
     }
 }
 

@@ -3,14 +3,17 @@
 use std::{
     collections::HashSet,
     fmt::{self, Debug},
-    fs::{self, File},
+    fs,
     io::{self, Read, Write},
     path::{Path, PathBuf},
     sync::Arc,
 };
 
 use serde::{Deserialize, Serialize};
-use tem00_tracer::{Scene, Shape, TriangleMesh};
+use tem00_tracer::{
+    Scene, Shape, TriangleMesh,
+    document::{MAX_TEXT_BYTES, open_input, read_input},
+};
 
 use crate::{
     atomic::write_atomically,
@@ -51,8 +54,19 @@ impl Fingerprint {
                 hash.add_mesh(mesh);
             }
         }
-        Ok(Self(format!("{:016x}", hash.0)))
+        Ok(Self(hash.text()))
     }
+}
+
+/// Returns the hash of the bytes of a file and of their number.
+///
+/// # Errors
+///
+/// Returns an error if the file cannot be read.
+pub(super) fn hash_of_file(path: &Path) -> io::Result<String> {
+    let mut hash = Fnv::default();
+    hash.add_file(path)?;
+    Ok(hash.text())
 }
 
 fn meshes(scene: &Scene) -> impl Iterator<Item = &Arc<TriangleMesh>> {
@@ -87,6 +101,10 @@ impl Fnv {
         self.bytes(&(bytes.len() as u64).to_le_bytes());
     }
 
+    fn text(&self) -> String {
+        format!("{:016x}", self.0)
+    }
+
     fn add_mesh(&mut self, mesh: &TriangleMesh) {
         for vector in mesh.vertices().iter().chain(mesh.normals()) {
             for component in vector.to_array() {
@@ -99,7 +117,7 @@ impl Fnv {
     }
 
     fn add_file(&mut self, path: &Path) -> io::Result<()> {
-        let (mut file, mut length) = (File::open(path)?, 0_u64);
+        let (mut file, mut length) = (open_input(path, u64::MAX)?, 0_u64);
         let mut buffer = vec![0; 1 << 16];
         loop {
             match file.read(&mut buffer)? {
@@ -140,7 +158,7 @@ pub(super) enum Found {
 impl Record {
     /// Reads the record of the frame `number`, if there is one of the render `fingerprint`.
     pub(super) fn find(path: &Path, number: u32, fingerprint: &Fingerprint) -> Found {
-        let Ok(text) = fs::read(path) else {
+        let Ok(text) = read_input(path, MAX_TEXT_BYTES) else {
             return Found::Nothing;
         };
         let Ok(record) = serde_json::from_slice::<Self>(&text) else {
@@ -278,6 +296,8 @@ mod tests {
             number: 3,
             preview: "a.png".into(),
             layers: "a.exr".into(),
+            preview_fnv1a: String::new(),
+            layers_fnv1a: String::new(),
             lasers: Vec::new(),
             samples: 7,
             rays: 14,

@@ -1,6 +1,6 @@
 //! The frames of a render, one after the other.
 
-use std::time::Instant;
+use std::{path::Path, time::Instant};
 
 use tem00_tracer::{
     Filter, Frame, Method, RenderError, SpeckleModel, SurfaceSpeckle, render_frame,
@@ -8,7 +8,7 @@ use tem00_tracer::{
 
 use super::{
     Render,
-    record::{Found, Record, forget},
+    record::{Found, Record, forget, hash_of_file},
     tracer_failure,
 };
 use crate::{
@@ -105,7 +105,7 @@ impl Render<'_> {
     /// Returns the finished frames of this render that the folder holds, in order.
     fn finished(&self) -> Vec<FrameSummary> {
         let frame = |number| match self.find(number) {
-            Found::Ours { frame, .. } if self.paths(number).images_exist() => Some(frame),
+            Found::Ours { frame, .. } if belong_to(&frame, &self.paths(number)) => Some(frame),
             _ => None,
         };
         (0..self.scene.render.frames).filter_map(frame).collect()
@@ -179,7 +179,7 @@ impl Render<'_> {
         let record = Record {
             fingerprint: self.fingerprint.clone(),
             exposure: exposure.clone(),
-            frames: vec![self.measure(number, frame, seconds, &paths)],
+            frames: vec![self.measure(number, frame, seconds, &paths)?],
         };
         record.write(&paths.record)
     }
@@ -190,7 +190,7 @@ impl Render<'_> {
         frame: &Frame,
         seconds: f64,
         paths: &FramePaths,
-    ) -> FrameSummary {
+    ) -> Result<FrameSummary, Failure> {
         let plans = self.plan.as_ref().filter(|_| self.knows_contrast());
         let plans = plans.map(|plan| plan.patterns());
         let lasers = frame.lasers.iter().zip(&self.scene.lasers).enumerate();
@@ -198,15 +198,22 @@ impl Render<'_> {
             let plan = plans.and_then(|plans| plans.get(index));
             FrameLaser::measure(layers, laser.power(), plan, self.options.samples_per_pixel)
         });
-        FrameSummary {
+        let hash = |path: &Path| {
+            hash_of_file(path).map_err(|error| {
+                Failure::running(format!("cannot read {}: {error}", path.display()))
+            })
+        };
+        Ok(FrameSummary {
             number,
             preview: FramePaths::name_of(&paths.preview),
             layers: FramePaths::name_of(&paths.layers),
+            preview_fnv1a: hash(&paths.preview)?,
+            layers_fnv1a: hash(&paths.layers)?,
             lasers: lasers.collect(),
             samples: self.samples_of(frame),
             rays: frame.rays,
             seconds,
-        }
+        })
     }
 
     /// Returns whether the expected contrast is that of one pattern, averaged over the area of a pixel
@@ -247,4 +254,10 @@ impl Render<'_> {
             ));
         }
     }
+}
+
+/// Returns whether the images that stand beside a record are those that it was written for.
+fn belong_to(frame: &FrameSummary, paths: &FramePaths) -> bool {
+    let is = |path: &Path, hash: &String| hash_of_file(path).is_ok_and(|found| found == *hash);
+    is(&paths.preview, &frame.preview_fnv1a) && is(&paths.layers, &frame.layers_fnv1a)
 }

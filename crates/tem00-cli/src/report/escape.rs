@@ -2,11 +2,14 @@
 
 use std::borrow::Cow;
 
+use tem00_tracer::document::is_hazard;
+
 /// Returns text as HTML shows it, between tags and in quoted attributes.
 ///
-/// Control characters, which no HTML file may have, become the replacement character.
+/// Control characters, which no HTML file may have, and those that turn the direction of writing become the
+/// replacement character.
 pub(super) fn escaped(text: &str) -> Cow<'_, str> {
-    let special = |c: char| matches!(c, '&' | '<' | '>' | '"' | '\'') || is_control(c);
+    let special = |c: char| matches!(c, '&' | '<' | '>' | '"' | '\'') || is_hazard(c);
     if !text.contains(special) {
         return Cow::Borrowed(text);
     }
@@ -18,15 +21,11 @@ pub(super) fn escaped(text: &str) -> Cow<'_, str> {
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
-            c if is_control(c) => out.push(char::REPLACEMENT_CHARACTER),
+            c if is_hazard(c) => out.push(char::REPLACEMENT_CHARACTER),
             c => out.push(c),
         }
     }
     Cow::Owned(out)
-}
-
-fn is_control(c: char) -> bool {
-    c.is_control() && !matches!(c, '\n' | '\t')
 }
 
 #[cfg(test)]
@@ -43,6 +42,7 @@ mod tests {
             ),
             ("a & \"b\"", "a &amp; &quot;b&quot;"),
             ("two\nlines\tand \u{1b}[0m", "two\nlines\tand \u{fffd}[0m"),
+            ("\u{202e}fdp.exe", "\u{fffd}fdp.exe"),
         ] {
             assert_eq!(escaped(text), expected);
         }

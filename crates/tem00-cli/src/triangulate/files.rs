@@ -13,12 +13,15 @@ use tem00_triangulation::{
     DVec3, HeightMap, MeasuredFrame, MeasuredPoint, Raster, RawFormat, RawFrame, write_point_cloud,
 };
 
-use crate::{atomic::write_atomically, failure::Failure, image::write_raw, output};
+use crate::{
+    atomic::write_atomically, failure::Failure, folder_lock::FolderLock, image::write_raw, output,
+};
 
 /// Where the files of a measurement go.
 pub(super) struct Files {
     pub(super) folder: PathBuf,
     raw: RawFormat,
+    _lock: FolderLock,
 }
 
 /// The columns of a profile.
@@ -30,8 +33,12 @@ const HEADINGS: &str = "column,line,x_pixel,y_pixel,width_pixel,intensity_dn,val
 impl Files {
     /// Makes sure, before the work, that files can be written.
     pub(super) fn new(folder: PathBuf, raw: RawFormat) -> Result<Self, Failure> {
-        output::prepare(&folder)?;
-        Ok(Self { folder, raw })
+        let lock = output::prepare(&folder)?;
+        Ok(Self {
+            folder,
+            raw,
+            _lock: lock,
+        })
     }
 
     /// Returns the path of a file by its name.

@@ -29,7 +29,6 @@ pub(super) struct Record {
     average: AverageRecord,
     uncertainty: UncertaintyRecord,
     height_map: Option<MapRecord>,
-    seconds: f64,
 }
 
 /// How uncertain heights are, or why nothing is known of them.
@@ -199,7 +198,6 @@ impl Record {
             },
             uncertainty: UncertaintyRecord::of(&measured.terms),
             height_map: measured.map.as_ref().and_then(MapRecord::of),
-            seconds: measured.seconds,
         }
     }
 }

@@ -5,6 +5,8 @@
 mod budget;
 mod calibrate;
 mod design;
+mod folders;
+mod hostile;
 mod inspection;
 mod lines;
 mod manners;

@@ -8,7 +8,7 @@ use super::{
     SCENE, assert_code, files, folder, interrupt, message, render::exposure, run, tem00, text,
 };
 
-const FRAMES: u32 = 3;
+pub(crate) const FRAMES: u32 = 3;
 
 /// A scene whose surface moves, with a mesh in a file of its own that an included file names.
 fn moving(samples_per_pixel: u32, frames: u32) -> String {
@@ -29,7 +29,7 @@ const PART: &str =
     "[[surface]]\nmesh = { file = \"part.obj\", position = [0, \"1 mm\", \"1 mm\"] }\n";
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-fn moving_folder(samples_per_pixel: u32, frames: u32) -> tempfile::TempDir {
+pub(crate) fn moving_folder(samples_per_pixel: u32, frames: u32) -> tempfile::TempDir {
     let folder = folder();
     let write = |name: &str, content: &str| {
         fs::write(folder.path().join(name), content).expect("written");
@@ -41,7 +41,7 @@ fn moving_folder(samples_per_pixel: u32, frames: u32) -> tempfile::TempDir {
 }
 
 /// Returns the bytes of the images of all frames in `folder`.
-fn images(folder: &Path) -> Vec<Vec<u8>> {
+pub(crate) fn images(folder: &Path) -> Vec<Vec<u8>> {
     (0..FRAMES)
         .flat_map(|number| ["png", "exr"].map(|end| format!("a_{number:04}.{end}")))
         .map(|name| fs::read(folder.join(&name)).unwrap_or_else(|error| panic!("{name}: {error}")))

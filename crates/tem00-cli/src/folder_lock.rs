@@ -1,0 +1,221 @@
+//! One process at a time writes into a folder.
+
+use std::{
+    fs::{self, File, OpenOptions, TryLockError},
+    io::{self, Read, Seek, Write},
+    path::{Path, PathBuf},
+    thread::sleep,
+    time::Duration,
+};
+
+/// The file in the folder that is locked. The operating system lets go of the lock with the process,
+/// however it ends.
+const NAME: &str = ".tem00.lock";
+
+/// How often a lock that is shared is tried for, and the time between. Those who take it hold it alone
+/// for a moment, to write down what they share.
+const TRIES: u32 = 40;
+const PAUSE: Duration = Duration::from_millis(25);
+
+/// The right to write into a folder, for as long as it lives.
+#[derive(Debug)]
+pub(crate) struct FolderLock {
+    path: PathBuf,
+    /// The locked file; `None` where the file system has no locks.
+    file: Option<File>,
+}
+
+/// Why the right to write into a folder is not had.
+#[derive(Debug)]
+pub(crate) enum Refused {
+    /// Another process has it, with this number if it is known.
+    InUse(Option<u32>),
+    /// The file system refuses.
+    Io(io::Error),
+}
+
+impl From<io::Error> for Refused {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl FolderLock {
+    /// Takes a folder for this process alone.
+    pub(crate) fn alone(folder: &Path) -> Result<Self, Refused> {
+        let path = folder.join(NAME);
+        loop {
+            let mut file = open(&path)?;
+            match file.try_lock() {
+                Ok(()) if is_at(&file, &path) => {
+                    write_holder(&mut file, "")?;
+                    return Ok(Self::new(path, Some(file)));
+                }
+                // The file was removed between opening and locking it.
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => return Err(in_use(&mut file)),
+                Err(TryLockError::Error(error)) => return without_lock(path, error),
+            }
+        }
+    }
+
+    /// Takes a folder for this process and others that do parts of the same `work`, a single line.
+    pub(crate) fn shared(folder: &Path, work: &str) -> Result<Self, Refused> {
+        let path = folder.join(NAME);
+        for _ in 0..TRIES {
+            let mut file = open(&path)?;
+            match file.try_lock() {
+                Ok(()) if is_at(&file, &path) => {
+                    write_holder(&mut file, work)?;
+                    file.unlock()?;
+                }
+                Ok(()) => continue,
+                Err(TryLockError::WouldBlock) => {}
+                Err(TryLockError::Error(error)) => return without_lock(path, error),
+            }
+            // Only who holds it alone writes to the file: what it says holds for as long as it is shared.
+            match file.try_lock_shared() {
+                Ok(()) if !is_at(&file, &path) => {}
+                Ok(()) if holder(&mut file).1 == work => return Ok(Self::new(path, Some(file))),
+                Ok(()) => return Err(in_use(&mut file)),
+                Err(TryLockError::WouldBlock) => sleep(PAUSE),
+                Err(TryLockError::Error(error)) => return without_lock(path, error),
+            }
+        }
+        Err(in_use(&mut open(&path)?))
+    }
+
+    const fn new(path: PathBuf, file: Option<File>) -> Self {
+        Self { path, file }
+    }
+
+    /// Returns whether the file system has locks.
+    pub(crate) const fn is_held(&self) -> bool {
+        self.file.is_some()
+    }
+}
+
+/// Removes the file, unless others share it.
+impl Drop for FolderLock {
+    fn drop(&mut self) {
+        if let Some(file) = &self.file {
+            // A file that stays hinders nobody: it is not locked any more.
+            let alone = file.unlock().is_ok() && file.try_lock().is_ok();
+            if alone && is_at(file, &self.path) {
+                let _ = fs::remove_file(&self.path);
+            }
+        }
+    }
+}
+
+fn open(path: &Path) -> io::Result<File> {
+    OpenOptions::new()
+        .read(true)
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(path)
+        .map_err(|error| error.kind().into())
+}
+
+/// Returns whether the open file is the one that stands at `path`.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |found: fs::Metadata| (found.dev(), found.ino());
+    match (file.metadata(), fs::metadata(path)) {
+        (Ok(open), Ok(there)) => identity(open) == identity(there),
+        _ => false,
+    }
+}
+
+/// Elsewhere an open file cannot be replaced by another.
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> bool {
+    path.exists()
+}
+
+/// Writes the number of this process, and the work that it shares.
+fn write_holder(file: &mut File, work: &str) -> io::Result<()> {
+    file.set_len(0)?;
+    file.rewind()?;
+    write!(file, "{}\n{work}\n", std::process::id())
+}
+
+/// Returns the number of the process that wrote into the file, and the work that it shares.
+fn holder(file: &mut File) -> (Option<u32>, String) {
+    const LONGEST: u64 = 256;
+    let mut text = String::new();
+    let read = file
+        .rewind()
+        .and_then(|()| file.take(LONGEST).read_to_string(&mut text));
+    let mut lines = text.lines();
+    let process = lines.next().and_then(|line| line.parse().ok());
+    match read {
+        Ok(_) => (process, lines.next().unwrap_or_default().to_owned()),
+        Err(_) => (None, String::new()),
+    }
+}
+
+fn in_use(file: &mut File) -> Refused {
+    Refused::InUse(holder(file).0)
+}
+
+/// Goes on without a lock where there are none.
+fn without_lock(path: PathBuf, error: io::Error) -> Result<FolderLock, Refused> {
+    if error.kind() == io::ErrorKind::Unsupported {
+        return Ok(FolderLock::new(path, None));
+    }
+    Err(error.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lock_file(folder: &Path) -> bool {
+        folder.join(NAME).exists()
+    }
+
+    #[test]
+    fn a_folder_is_taken_once_and_given_back() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path();
+        let held = FolderLock::alone(path).expect("nobody has it");
+        let own = Some(std::process::id());
+        for second in [FolderLock::alone(path), FolderLock::shared(path, "a")] {
+            assert!(
+                matches!(second, Err(Refused::InUse(process)) if process == own),
+                "{second:?}"
+            );
+        }
+        drop(held);
+        assert!(!lock_file(path), "nothing is left");
+        FolderLock::alone(path).expect("nobody has it any more");
+    }
+
+    #[test]
+    fn parts_of_the_same_work_share_a_folder_and_others_do_not() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path();
+        let first = FolderLock::shared(path, "a").expect("nobody has it");
+        let second = FolderLock::shared(path, "a").expect("the same work");
+        assert!(FolderLock::shared(path, "b").is_err(), "other work");
+        assert!(FolderLock::alone(path).is_err(), "all of it");
+        drop(first);
+        assert!(lock_file(path), "the second still has it");
+        assert!(FolderLock::alone(path).is_err(), "the second still has it");
+        drop(second);
+        assert!(!lock_file(path), "nothing is left");
+        FolderLock::shared(path, "b").expect("nobody has it any more");
+    }
+
+    #[test]
+    fn what_a_killed_process_leaves_hinders_nobody() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        fs::write(folder.path().join(NAME), "4000000000\nb\n").expect("written");
+        FolderLock::alone(folder.path()).expect("nobody has it");
+        fs::write(folder.path().join(NAME), [0xff; 300]).expect("written");
+        FolderLock::shared(folder.path(), "a").expect("nobody has it");
+    }
+}

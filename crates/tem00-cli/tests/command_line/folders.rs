@@ -1,0 +1,188 @@
+//! Folders that several processes write into, and what killed ones leave there.
+
+use std::{fs, path::Path, process::Child, process::Stdio, thread::sleep, time::Duration};
+
+use super::{assert_code, files, folder, message, run, scene_folder, sequence, tem00, triangulate};
+
+/// A process that is killed when the test is done with it, or fails.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // The process may have ended.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Starts a command and waits until `there` exists.
+fn start(folder: &Path, line: &str, there: &str) -> Running {
+    let mut command = tem00(folder, line);
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    let running = Running(command.spawn().expect("the program starts"));
+    let started = (0..6_000).any(|_| {
+        sleep(Duration::from_millis(5));
+        folder.join(there).exists()
+    });
+    assert!(started, "{line} has written {there}");
+    running
+}
+
+const SETUP: &str = r#"
+[laser]
+wavelength = "650 nm"
+power = "5 mW"
+line_width = "0.2 mm"
+line_length = "50 mm"
+
+[camera]
+focal_length = "25 mm"
+f_number = 8
+pixel_pitch = "3.45 um"
+resolution = [640, 480]
+distance = "300 mm"
+angle = "30 deg"
+
+[sensor]
+quantum_efficiency = 0.6
+exposure = "1 ms"
+
+[surface]
+reflectance = 0.5
+
+[design.vary]
+f_number = [8, 11]
+"#;
+
+#[test]
+fn a_folder_that_another_process_writes_into_is_refused() {
+    let folder = scene_folder();
+    let path = folder.path();
+    fs::write(path.join("setup.toml"), SETUP).expect("written");
+    fs::write(path.join("scene.toml"), triangulate::SCAN).expect("written");
+    assert_code(&run(path, "pattern -o frame.png --size 64"), 0);
+    let mut first = start(path, "render a.toml -o out --spp 100000", "out/.tem00.lock");
+    let process = format!("process {}", first.0.id());
+    for line in [
+        "render a.toml -o out",
+        "render a.toml -o out --resume",
+        "render a.toml -o out --frames 0",
+        "triangulate scene.toml -o out",
+        "lines frame.png -o out",
+        "budget setup.toml -o out --trials 0",
+        "design setup.toml -o out",
+    ] {
+        let output = run(path, line);
+        assert_code(&output, 2);
+        let said = message(&output);
+        assert!(
+            said.contains(&process) && said.contains("folder out"),
+            "{line}: {said}"
+        );
+        assert_eq!(files(&path.join("out")), [".tem00.lock"], "{line}");
+    }
+    assert!(
+        matches!(first.0.try_wait(), Ok(None)),
+        "the first render goes on"
+    );
+    // A process that is killed leaves nothing that hinders the next.
+    drop(first);
+    let output = run(path, "budget setup.toml -o out --trials 0");
+    assert_code(&output, 0);
+    let hidden = files(&path.join("out")).into_iter();
+    assert_eq!(hidden.filter(|name| name.starts_with('.')).count(), 0);
+}
+
+#[test]
+fn parts_of_one_render_may_share_a_folder() {
+    let folder = sequence::moving_folder(4, 1_000);
+    let path = folder.path();
+    let line = "render a.toml -o out --frames 1..999";
+    let mut first = start(path, line, "out/a_0001.json");
+    assert_code(&run(path, "render a.toml -o out --frames 0"), 0);
+    for other in ["--frames 0 --seed 1", "--resume", ""] {
+        let output = run(path, &format!("render a.toml -o out {other}"));
+        assert_code(&output, 2);
+        let said = message(&output);
+        assert!(said.contains("another tem00"), "{other}: {said}");
+    }
+    assert!(
+        matches!(first.0.try_wait(), Ok(None)),
+        "the first render goes on"
+    );
+}
+
+#[test]
+fn frames_whose_files_do_not_belong_together_are_rendered_again() {
+    let folder = sequence::moving_folder(4, sequence::FRAMES);
+    let path = folder.path();
+    assert_code(&run(path, "render a.toml -o whole"), 0);
+    assert_code(&run(path, "render a.toml -o other --seed 1"), 0);
+    assert_code(&run(path, "render a.toml -o mixed"), 0);
+    // What two processes in one folder left: each frame has a file of the other.
+    for name in ["a_0000.png", "a_0002.exr"] {
+        let [from, to] = ["other", "mixed"].map(|folder| path.join(folder).join(name));
+        fs::copy(from, to).expect("copied");
+    }
+    assert_code(&run(path, "render a.toml -o mixed --resume"), 0);
+    let [whole, mixed] = ["whole", "mixed"].map(|name| sequence::images(&path.join(name)));
+    assert!(whole == mixed, "the images differ");
+}
+
+#[test]
+fn what_a_killed_process_was_writing_is_removed() {
+    let folder = scene_folder();
+    let path = folder.path();
+    fs::write(path.join("setup.toml"), SETUP).expect("written");
+    assert_code(&run(path, "render a.toml -o out"), 0);
+    for (line, beside) in [
+        ("render a.toml -o out --resume", "out"),
+        ("budget setup.toml -o out --trials 0", "out"),
+        ("pattern -o a.png --size 64", "."),
+    ] {
+        let left = path.join(beside).join(".tem00-8zIFJM.part");
+        fs::write(&left, "half of an image").expect("written");
+        assert_code(&run(path, line), 0);
+        assert!(!left.exists(), "{line}");
+    }
+}
+
+#[test]
+fn a_folder_without_permission_is_refused_in_words() {
+    let folder = folder();
+    fs::write(folder.path().join("setup.toml"), SETUP).expect("written");
+    fs::create_dir_all(folder.path().join("out/.tem00.lock")).expect("a folder in the way");
+    let output = run(folder.path(), "budget setup.toml -o out");
+    assert_code(&output, 2);
+    let said = message(&output);
+    assert!(said.contains("cannot write into the folder out"), "{said}");
+}
+
+#[test]
+fn the_same_run_writes_the_same_bytes() {
+    let folder = folder();
+    let path = folder.path();
+    fs::write(path.join("setup.toml"), SETUP).expect("written");
+    fs::write(path.join("scene.toml"), triangulate::SCAN).expect("written");
+    for command in [
+        "design setup.toml",
+        "budget setup.toml --trials 20",
+        "triangulate scene.toml",
+    ] {
+        for (run_number, threads) in [(0, 1), (1, 3)] {
+            let line = format!("{command} -o {run_number} --threads {threads}");
+            assert_code(&run(path, &line), 0);
+        }
+        let [first, second] = ["0", "1"].map(|folder| path.join(folder));
+        let names = files(&first);
+        assert_eq!(names, files(&second), "{command}");
+        for name in names {
+            let [one, other] = [&first, &second].map(|folder| fs::read(folder.join(&name)));
+            let same = one.expect("a file") == other.expect("a file");
+            assert!(same, "{command}: {name} differs");
+        }
+        for folder in [first, second] {
+            fs::remove_dir_all(folder).expect("removed");
+        }
+    }
+}

@@ -3,15 +3,38 @@
 use std::path::{Path, PathBuf};
 
 use tem00_numerics::Grid;
-use tem00_tracer::{Frame, LaserLayers};
+use tem00_tracer::{Frame, LaserLayers, Scene};
 
 use crate::{
     atomic::write_atomically,
     failure::Failure,
     image::{Layer, Window, write_exr, write_rgb_png},
+    output,
     preview::Picture,
     summary::Exposure,
 };
+
+/// Makes sure, before the work, that there is memory for the frames of the scene in a file: for their layers,
+/// once more to write them, and for the picture.
+///
+/// # Errors
+///
+/// Returns a failure if the system says that there is not so much.
+pub(crate) fn check_room(path: &Path, scene: &Scene) -> Result<(), Failure> {
+    let camera = &scene.camera;
+    let whole = [camera.width(), camera.height()];
+    let [width, height] = scene
+        .render
+        .crop
+        .map_or(whole, |crop| [crop.width, crop.height]);
+    let values = 2 * (5 * scene.lasers.len() as u64 + 8) + 10;
+    let bytes = (width as u64 * height as u64).saturating_mul(values * size_of::<f32>() as u64);
+    output::check_room(
+        &path.display().to_string(),
+        bytes,
+        "--crop renders a part of the image; `resolution` in [camera] makes it smaller",
+    )
+}
 
 /// Where the files of a frame go.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -13,7 +13,7 @@ use std::{
 };
 
 use num_complex::Complex;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, MemoryError, check_memory};
 use tem00_tracer::{Crop, document::open_input};
 use thiserror::Error;
 
@@ -124,6 +124,10 @@ pub(crate) enum ImageError {
         width: usize,
         height: usize,
     },
+    #[error("{0}")]
+    Memory(#[from] MemoryError),
+    #[error("the image has {width} × {height} pixels, which the file of {bytes} bytes cannot hold")]
+    Cut { width: u64, height: u64, bytes: u64 },
     #[error("the array has the shape {0:?}; two dimensions, height × width, are needed")]
     Shape(Vec<u64>),
     #[error("values of the type {0} are not supported: use f4, f8, u1, u2, c8 or c16")]
@@ -213,6 +217,13 @@ fn checked_area(width: u64, height: u64) -> Result<usize, ImageError> {
         .filter(|area| (1..=MAXIMUM_PIXELS).contains(area))
         .and_then(|area| usize::try_from(area).ok())
         .ok_or(ImageError::Size { width, height })
+}
+
+/// Makes sure that there is memory for so many bytes of each of the pixels.
+fn check_room(area: usize, bytes_per_pixel: usize) -> Result<(), ImageError> {
+    Ok(check_memory(
+        (area as u64).saturating_mul(bytes_per_pixel as u64),
+    )?)
 }
 
 /// Returns the grid of values whose number was checked against the size before.

@@ -2,12 +2,14 @@
 
 use std::{
     fmt::Arguments,
+    fs,
     io::{self, Write},
     path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
 };
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use tem00_numerics::check_memory;
 use tem00_tracer::document::{is_standard_input, printable};
 
 use crate::{
@@ -123,7 +125,7 @@ pub(crate) fn remove(folder: &Path, names: &[&str], endings: &[&str]) -> Result<
         .flat_map(|name| endings.iter().map(move |e| (name, e)))
     {
         let path = folder.join(format!("{name}.{ending}"));
-        match std::fs::remove_file(&path) {
+        match fs::remove_file(&path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
                 return Err(Failure::running(format!(
                     "cannot remove {}: {error}",
@@ -153,6 +155,15 @@ pub(crate) fn note(text: &str) {
     if !is_quiet() {
         let _ = writeln!(io::stderr(), "{}", printable(text));
     }
+}
+
+/// Makes sure, before the work, that there is memory for `what`.
+///
+/// # Errors
+///
+/// Returns a failure if the system says that there is not so much.
+pub(crate) fn check_room(what: &str, bytes: u64, help: &str) -> Result<(), Failure> {
+    check_memory(bytes).map_err(|error| Failure::input(format!("{what}: {error}"), help))
 }
 
 /// Starts the threads that were asked for, or one per core.

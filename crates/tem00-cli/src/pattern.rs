@@ -18,12 +18,15 @@ use crate::{
     failure::Failure,
     image::{Format, ImageError, Layer, open, write_exr, write_grey_png},
     interrupt,
-    output::note,
-    table::write_table,
+    output::{self, note},
+    table::{Row, write_table},
 };
 
 /// The largest size Q: 2²⁸ samples, the most that [`read_image`](crate::image::read_image) takes.
 const MAXIMUM_SIZE: usize = 1 << 14;
+
+/// The bytes that it takes to make a sample, to measure it and to write it; its amplitude takes more.
+const BYTES_PER_SAMPLE: u64 = 36;
 
 /// The memory that a field from outside may take: as much as the largest pattern of amplitudes.
 const FIELD_MEMORY: u64 = 8 << 28;
@@ -34,6 +37,13 @@ const FIELD_MEMORY: u64 = 8 << 28;
 ///
 /// Returns a failure if the input is not valid or the file cannot be written.
 pub(crate) fn run(args: &PatternArgs, out: &mut impl Write) -> Result<(), Failure> {
+    output::thread_pool(None)?
+        .install(|| write_and_compare(args))
+        .and_then(|rows| write_table(&rows, out).map_err(|error| Failure::stdout(&error)))
+}
+
+/// Writes the pattern and returns the rows of the table.
+fn write_and_compare(args: &PatternArgs) -> Result<Vec<Row>, Failure> {
     let format = output_format(&args.output, args.amplitude)?;
     let field = pupil_field(args)?;
     probe_writable(&args.output).map_err(|error| cannot_write(&args.output, &error))?;
@@ -59,7 +69,7 @@ pub(crate) fn run(args: &PatternArgs, out: &mut impl Write) -> Result<(), Failur
     for remark in &table.notes {
         note(&format!("note: {remark}"));
     }
-    write_table(&table.rows, out).map_err(|error| Failure::stdout(&error))
+    Ok(table.rows)
 }
 
 fn output_format(path: &Path, amplitude: bool) -> Result<Format, Failure> {
@@ -88,6 +98,13 @@ fn pupil_field(args: &PatternArgs) -> Result<PupilField, Failure> {
             "choose a smaller --size: the pattern repeats without a seam",
         ));
     }
+    let samples_of_pattern = (size * size) as u64;
+    let each = if args.amplitude { 8 } else { 0 } + BYTES_PER_SAMPLE;
+    output::check_room(
+        &format!("a pattern of {size} × {size} samples"),
+        samples_of_pattern * each,
+        "choose a smaller --size: the pattern repeats without a seam",
+    )?;
     let diameter = args.diameter.or(side).unwrap_or(size / 4);
     let field = match samples {
         None => PupilField::new(size, diameter, args.seed),

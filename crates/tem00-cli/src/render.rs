@@ -22,7 +22,7 @@ use crate::{
     args::{FrameRange, RenderArgs},
     failure::Failure,
     folder_lock::FolderLock,
-    frame_files::FramePaths,
+    frame_files::{FramePaths, check_room},
     image::check_inside,
     inspection::Inspection,
     interrupt,
@@ -143,6 +143,7 @@ impl<'a> Render<'a> {
         let choices = (options, plan.is_some(), args.white_level, text);
 
         let frames = frames(args.frames, scene.render.frames)?;
+        check_room(&args.scene, &scene)?;
         let fingerprint = Fingerprint::of(&scene, files, &choices)?;
         let lock = match args.frames {
             Some(_) => output::prepare_for_part(&folder, &fingerprint.to_string()),

@@ -18,7 +18,7 @@ use crate::{
     failure::Failure,
     image::{LoadedImage, Reading, read_image},
     kind::{Kind, wrong_or},
-    output::note,
+    output::{self, note},
     plot::Format,
     table::{Row, write_table},
 };
@@ -37,6 +37,9 @@ const LEAST_WINDOW: f64 = 8.0;
 
 /// The smallest window in speckle sizes for which what is taken is known.
 const SMALLEST_WINDOW: f64 = 6.0;
+/// The bytes that it takes to measure a pixel, most of them for the lags of the autocovariance, of which
+/// there are four for each.
+const BYTES_PER_PIXEL: u64 = 100;
 
 /// What was found in an image.
 #[derive(Debug, Serialize)]
@@ -77,6 +80,23 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
         let help = format!("speckle needs at least {FEWEST_PIXELS} pixels along either axis");
         return Err(cannot(&error, &help));
     }
+    let pixels = (width * height) as u64;
+    let name = args.image.display().to_string();
+    let help = "--crop takes a part, which shows the same speckle";
+    output::check_room(&name, pixels * BYTES_PER_PIXEL, help)?;
+    let pool = output::thread_pool(None)?;
+    let measurement = pool.install(|| measurement(args, &image))?;
+    if let Some((path, format)) = plot {
+        draw(&measurement, path, format)?;
+    }
+    print(&measurement, args.json, out)
+}
+
+/// Measures an image, flattened if that was asked for.
+fn measurement(args: &StatsArgs, image: &LoadedImage) -> Result<Measurement, Failure> {
+    let cannot = |error: &dyn core::fmt::Display, help: &str| {
+        Failure::input(format!("{}: {error}", args.image.display()), help)
+    };
     let help = "give an image that light and speckle fill, or a part of one with --crop";
     let flat = match args.flatten {
         Some(window) => Some(flattened(&image.values, window).map_err(|error| {
@@ -87,12 +107,7 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
         })?),
         None => None,
     };
-    let measurement =
-        measure(&args.image, &image, flat.as_ref()).map_err(|error| cannot(&error, help))?;
-    if let Some((path, format)) = plot {
-        draw(&measurement, path, format)?;
-    }
-    print(&measurement, args.json, out)
+    measure(&args.image, image, flat.as_ref()).map_err(|error| cannot(&error, help))
 }
 
 /// Returns the file of the page and its format, if it can be written.

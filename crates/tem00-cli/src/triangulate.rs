@@ -25,6 +25,7 @@ use self::{
 use crate::{
     args::{FrameRange, TriangulateArgs},
     failure::Failure,
+    frame_files::check_room,
     interrupt,
     kind::{Kind, wrong_or},
     output,
@@ -92,6 +93,7 @@ impl<'a> Job<'a> {
         let folder = output::folder(args.output.as_deref(), &name);
         let scene = overruled(scene, args);
         let raw = scene.scan.raw;
+        check_room(&args.scene, &scene.scene)?;
         let measurement =
             Measurement::new(scene).map_err(|error| measurement_failure(&args.scene, &error))?;
         Ok(Self {

@@ -1,5 +1,5 @@
-use core::{error, fmt};
-use std::fs;
+use core::{error, fmt, num::NonZero};
+use std::{fs, thread};
 
 /// Not as much memory can be had as is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +49,8 @@ pub fn available_memory() -> Option<u64> {
     let system = read("/proc/meminfo").and_then(|text| bytes_of(&text, "MemAvailable:"));
     let limit = read("/proc/self/limits").and_then(|text| address_space_limit(&text));
     let taken = || read("/proc/self/status").and_then(|text| bytes_of(&text, "VmSize:"));
-    let process = limit.and_then(|limit| Some(left(limit, taken()?)));
+    let threads = || thread::available_parallelism().map_or(1, NonZero::get) as u64 + 1;
+    let process = limit.and_then(|limit| Some(left(limit, taken()?, threads())));
     [system, process].into_iter().flatten().min()
 }
 
@@ -67,10 +68,16 @@ fn address_space_limit(limits: &str) -> Option<u64> {
     line.split_whitespace().next()?.parse().ok()
 }
 
-/// What a limit leaves: an eighth of it is kept for stacks, and for the addresses that threads set aside
-/// for their small allocations.
-const fn left(limit: u64, taken: u64) -> u64 {
-    limit.saturating_sub(limit / 8).saturating_sub(taken)
+/// The addresses that the C library of Linux systems sets aside for the small allocations of a thread.
+const ARENA: u64 = 64 << 20;
+
+/// What is kept for all that is too small to be looked for.
+const SMALL: u64 = 16 << 20;
+
+/// What a limit leaves beside what `threads` set aside, as many of them as can.
+fn left(limit: u64, taken: u64, threads: u64) -> u64 {
+    let rest = limit.saturating_sub(taken).saturating_sub(SMALL);
+    rest - threads.min(rest / ARENA) * ARENA
 }
 
 #[cfg(test)]
@@ -105,8 +112,9 @@ mod tests {
         assert_eq!(address_space_limit(&limits("307200000")), Some(307_200_000));
         assert_eq!(address_space_limit(&limits("unlimited")), None);
         assert_eq!(address_space_limit(""), None);
-        assert_eq!(left(800, 100), 600);
-        assert_eq!(left(800, 900), 0);
+        assert_eq!(left(400 << 20, 100 << 20, 3), 92 << 20);
+        assert_eq!(left(200 << 20, 100 << 20, 3), 20 << 20);
+        assert_eq!(left(800, 900, 3), 0);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use exr::prelude::{
 };
 use tem00_numerics::Grid;
 
-use super::{ImageError, LoadedImage, checked_area, grid};
+use super::{ImageError, LoadedImage, check_room, checked_area, grid};
 
 /// Named channels of the same size, stored as one part of an OpenEXR file.
 #[derive(Debug)]
@@ -114,12 +114,17 @@ pub(super) fn read(
     mut reader: impl BufRead + Seek,
     channel: Option<&str>,
 ) -> Result<LoadedImage, ImageError> {
+    let (mut pixels, mut bytes) = (0_usize, 0_usize);
     for header in MetaData::read_from_buffered(&mut reader, false)?.headers {
-        checked_area(
-            header.layer_size.width() as u64,
-            header.layer_size.height() as u64,
-        )?;
+        let [width, height] = [header.layer_size.width(), header.layer_size.height()];
+        let area = checked_area(width as u64, height as u64)?;
+        let channels = header.channels.list.iter();
+        let of_pixel: usize = channels.map(|c| c.sample_type.bytes_per_sample()).sum();
+        pixels = pixels.max(area);
+        bytes = bytes.saturating_add(area.saturating_mul(of_pixel));
     }
+    // All channels of all layers are read, and a sum is taken of the chosen ones.
+    check_room(bytes, 1).and_then(|()| check_room(pixels, size_of::<f32>()))?;
     reader.seek(SeekFrom::Start(0))?;
     let image = exr::prelude::read()
         .no_deep_data()

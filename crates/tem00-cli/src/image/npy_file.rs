@@ -2,7 +2,7 @@ use std::io::Read;
 
 use tem00_speckle::{NpyError, NpyReader};
 
-use super::{ImageError, LoadedImage, MAXIMUM_PIXELS, checked_area, intensity};
+use super::{ImageError, LoadedImage, MAXIMUM_PIXELS, check_room, checked_area, intensity};
 
 /// The bytes of the largest image, of complex numbers that are turned once.
 const MEMORY: u64 = 16 * MAXIMUM_PIXELS;
@@ -13,7 +13,11 @@ pub(super) fn read(reader: impl Read) -> Result<LoadedImage, ImageError> {
     let &[height, width] = file.shape() else {
         return Err(ImageError::Shape(file.shape().to_vec()));
     };
-    checked_area(width, height)?;
+    // Values are turned where the file has the columns one after the other.
+    check_room(
+        checked_area(width, height)?,
+        if file.is_complex() { 20 } else { 8 },
+    )?;
     let element_type = file.element_type().to_owned();
     let (values, interpretation) = if file.is_complex() {
         let amplitude = file.into_complex(MEMORY)?;

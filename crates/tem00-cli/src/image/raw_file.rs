@@ -28,7 +28,7 @@ use tem00_triangulation::RawFrame;
 pub(super) use self::samples::Samples;
 use self::samples::StoredCurve;
 use super::selection::Components;
-use super::{ImageError, checked_area, name_of, open};
+use super::{ImageError, check_room, checked_area, name_of, open};
 use crate::atomic::write_atomically;
 
 /// The text entry that holds the bits of a grey value.
@@ -36,6 +36,9 @@ const BIT_DEPTH: &str = "bit_depth";
 
 /// The bits that a grey value may have.
 const BIT_DEPTHS: [u32; 5] = [8, 10, 12, 14, 16];
+
+/// The bytes that it takes to keep a pixel as a number, to find lines there and to draw them.
+const BYTES_PER_PIXEL: usize = 24;
 
 /// A frame as a file holds it.
 #[derive(Clone, Debug, PartialEq)]

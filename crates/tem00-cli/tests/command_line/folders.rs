@@ -45,7 +45,7 @@ angle = "30 deg"
 
 [sensor]
 quantum_efficiency = 0.6
-exposure = "1 ms"
+exposure = "0.06 ms"
 
 [surface]
 reflectance = 0.5

@@ -101,7 +101,7 @@ fn a_text_has_at_most_16_mebibytes() {
         format!("include = [\"long.toml\"]\n{SCENE}"),
     )
     .expect("written");
-    for line in ["render long.toml", "budget long.toml", "render b.toml"] {
+    for line in ["render long.toml", "render b.toml"] {
         let output = run(path, line);
         assert_code(&output, 2);
         let said = message(&output);

@@ -10,6 +10,8 @@ mod hostile;
 mod inspection;
 mod lines;
 mod manners;
+#[cfg(target_os = "linux")]
+mod memory;
 mod patterns;
 mod render;
 mod reports;

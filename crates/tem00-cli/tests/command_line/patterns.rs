@@ -1,11 +1,6 @@
 //! `tem00 pattern` and `tem00 stats`.
 
-use std::{
-    fs,
-    io::Write,
-    path::Path,
-    process::{Command, Stdio},
-};
+use std::{fs, path::Path, process::Stdio};
 
 use serde_json::Value;
 
@@ -221,34 +216,37 @@ fn nobody_reading_is_no_failure() {
     assert_eq!(files(folder.path()), ["a.npy"]);
 }
 
-#[cfg(unix)]
+#[cfg(target_os = "linux")]
 #[test]
 fn ctrl_c_ends_a_pattern_without_a_file() {
     use std::{thread::sleep, time::Duration};
 
     let folder = folder();
-    write_field(&folder.path().join("field.npy"), 20, 20);
-    // The program waits for the field of a pipe, so that the signal meets it before any pass.
-    let made = Command::new("mkfifo")
-        .arg(folder.path().join("pipe"))
-        .status();
-    assert!(made.expect("mkfifo").success(), "a pipe is made");
-    let child = tem00(folder.path(), "pattern -o a.npy --field pipe")
+    let child = tem00(folder.path(), "pattern -o a.npy --size 4096")
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program starts");
-    let mut pipe = fs::File::create(folder.path().join("pipe")).expect("the program opens it");
+    // As soon as it listens, long before the pattern is made.
+    let status = format!("/proc/{}/status", child.id());
+    let listens = || {
+        let text = fs::read_to_string(&status).unwrap_or_default();
+        let caught = text.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        let caught = caught.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+        // Signal 2, the second bit.
+        caught.is_some_and(|mask| mask & 2 != 0)
+    };
+    let listening = (0..6_000).any(|_| {
+        sleep(Duration::from_millis(5));
+        listens()
+    });
+    assert!(listening, "the program listens");
     interrupt(&child);
-    sleep(Duration::from_millis(200));
-    let field = fs::read(folder.path().join("field.npy")).expect("the field");
-    pipe.write_all(&field).expect("the program reads on");
-    drop(pipe);
 
     let output = child.wait_with_output().expect("the program ends");
     assert_code(&output, 130);
     assert!(output.stdout.is_empty(), "nothing was measured");
-    assert_eq!(files(folder.path()), ["field.npy", "pipe"]);
+    assert!(files(folder.path()).is_empty(), "nothing is left");
 }
 
 /// Writes a pattern of 400 × 320 pixels with speckles of four, lit by a Gaussian spot of the radius

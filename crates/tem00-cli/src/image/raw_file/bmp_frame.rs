@@ -4,7 +4,9 @@
 
 use std::io::{BufRead, Read};
 
-use super::{Components, ImageError, Samples, StoredCurve, checked_area};
+use super::{
+    BYTES_PER_PIXEL, Components, ImageError, Samples, StoredCurve, check_room, checked_area,
+};
 
 /// The bytes before the header that describes the pixels.
 const FILE_HEADER: u32 = 14;
@@ -27,7 +29,9 @@ struct Header {
 
 pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
     let header = Header::read(&mut reader)?;
-    checked_area(header.width.into(), header.height.into())?;
+    let area = checked_area(header.width.into(), header.height.into())?;
+    // Up to three components of 16 bits.
+    check_room(area, 6 + BYTES_PER_PIXEL)?;
     let (width, height) = (header.width as usize, header.height as usize);
     let colours = header.colours(&mut reader)?;
     let bytes = usize::from(header.bits / 8);

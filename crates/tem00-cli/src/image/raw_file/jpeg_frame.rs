@@ -3,7 +3,9 @@ use std::io::Read;
 use zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
 use zune_jpeg::JpegDecoder;
 
-use super::{Components, ImageError, Samples, StoredCurve, checked_area};
+use super::{
+    BYTES_PER_PIXEL, Components, ImageError, Samples, StoredCurve, check_room, checked_area,
+};
 
 /// The most pixels along a side: what the format can say.
 const LONGEST_SIDE: usize = 65_535;
@@ -33,6 +35,7 @@ pub(super) fn read(mut reader: impl Read) -> Result<Samples, ImageError> {
         Some(ColorSpace::YCbCr | ColorSpace::RGB) => (Components::Rgb, ColorSpace::RGB),
         other => return Err(ImageError::Pixels(format!("the type {other:?}"))),
     };
+    check_room(area, 3 * components.names().len() + BYTES_PER_PIXEL)?;
     decoder.set_options(options.jpeg_set_out_colorspace(colours));
     let values: Vec<_> = decoder.decode()?.into_iter().map(u16::from).collect();
     if values.len() != area * components.names().len() {

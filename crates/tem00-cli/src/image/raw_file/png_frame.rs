@@ -1,18 +1,16 @@
-use std::io::{BufRead, Seek, Write};
+use std::io::{BufRead, Seek, SeekFrom, Write};
 
-use png::{BitDepth, ColorType, Decoder, Encoder, Transformations};
+use png::{BitDepth, ColorType, Decoder, Encoder, Reader, Transformations};
 use tem00_triangulation::RawFrame;
 
 use super::{
-    BIT_DEPTH, Components, ImageError, Samples, StoredCurve, checked_area, stated_bit_depth,
+    BIT_DEPTH, BYTES_PER_PIXEL, Components, ImageError, Samples, StoredCurve, check_room,
+    checked_area, stated_bit_depth,
 };
 
 pub(super) fn read(reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
-    let mut decoder = Decoder::new(reader);
-    decoder.set_transformations(Transformations::EXPAND);
-    let mut reader = decoder.read_info()?;
+    let (mut reader, area) = decoder(reader, [size_of::<u16>(), BYTES_PER_PIXEL])?;
     let (width, height) = (reader.info().width, reader.info().height);
-    let area = checked_area(width.into(), height.into())?;
     let (colour, depth) = reader.output_color_type();
     let components = Components::from(colour);
     let stored = if depth == BitDepth::Sixteen { 16 } else { 8 };
@@ -42,6 +40,43 @@ pub(super) fn read(reader: impl BufRead + Seek) -> Result<Samples, ImageError> {
         remark: bits.remark,
         has_further_images: false,
     })
+}
+
+/// A byte of compressed data stands for at most so many (zlib, Technical Details).
+const MAX_DEFLATION: u64 = 1032;
+
+/// Returns the reader of a PNG file of any colour type and depth, and its number of pixels, once it is known
+/// that the file can have as many and that there is memory for them: what the reader needs, and so many bytes
+/// of each component and of each pixel.
+fn decoder<R: BufRead + Seek>(
+    mut source: R,
+    [per_component, per_pixel]: [usize; 2],
+) -> Result<(Reader<R>, usize), ImageError> {
+    let bytes = source.seek(SeekFrom::End(0))?;
+    source.rewind()?;
+    let mut decoder = Decoder::new(source);
+    decoder.set_transformations(Transformations::EXPAND);
+    let reader = decoder.read_info()?;
+    let info = reader.info();
+    let (width, height) = (u64::from(info.width), u64::from(info.height));
+    let area = checked_area(width, height)?;
+    let bits = info.color_type.samples() as u64 * u64::from(info.bit_depth as u8);
+    if width * height * bits / 8 / MAX_DEFLATION > bytes {
+        return Err(ImageError::Cut {
+            width,
+            height,
+            bytes,
+        });
+    }
+    let (colour, depth) = reader.output_color_type();
+    // Interlaced rows come in no order: all of them are held.
+    let held = if info.interlaced {
+        (depth as usize).div_ceil(8)
+    } else {
+        0
+    };
+    check_room(area, (held + per_component) * colour.samples() + per_pixel)?;
+    Ok((reader, area))
 }
 
 fn extend(values: &mut Vec<u16>, data: &[u8], stored: u32) {

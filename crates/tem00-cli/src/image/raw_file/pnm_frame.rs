@@ -5,7 +5,9 @@
 
 use std::io::{BufRead, Read};
 
-use super::{Components, ImageError, Samples, StoredCurve, checked_area};
+use super::{
+    BYTES_PER_PIXEL, Components, ImageError, Samples, StoredCurve, check_room, checked_area,
+};
 
 pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
     let mut magic = [0; 2];
@@ -27,6 +29,7 @@ pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
             "its largest grey value is not from 1 to 65535",
         ))?;
     let length = area * components.names().len();
+    check_room(area, 2 * components.names().len() + BYTES_PER_PIXEL)?;
     let values = if binary {
         binary_values(&mut reader, length, largest)?
     } else {

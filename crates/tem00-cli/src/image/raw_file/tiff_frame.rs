@@ -10,7 +10,8 @@ use tiff::{
 };
 
 use super::{
-    BIT_DEPTH, Components, ImageError, Samples, StoredCurve, checked_area, stated_bit_depth,
+    BIT_DEPTH, BYTES_PER_PIXEL, Components, ImageError, Samples, StoredCurve, check_room,
+    checked_area, stated_bit_depth,
 };
 
 pub(super) fn read(reader: impl Read + Seek) -> Result<Samples, ImageError> {
@@ -19,6 +20,8 @@ pub(super) fn read(reader: impl Read + Seek) -> Result<Samples, ImageError> {
     let area = checked_area(width.into(), height.into())?;
     let (components, stored) = pixels(decoder.colortype()?)?;
     let length = area * components.names().len();
+    // Grey values of 8 bits, then of 16, then the mean of the channels.
+    check_room(area, 3 * components.names().len() + BYTES_PER_PIXEL)?;
     let mut limits = Limits::default();
     limits.decoding_buffer_size = 2 * length;
     let mut decoder = decoder.with_limits(limits);

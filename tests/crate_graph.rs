@@ -59,6 +59,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "rayon",
             "strsim",
             "toml",
+            "toml_edit",
         ],
     ),
     (

@@ -63,7 +63,7 @@ struct Refusal {
 /// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or, with
 /// all files written, if the set-up measures nothing.
 pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (setup, text) = read_setup_with(&args.setup, args.files.access(), |document, _| {
+    let (setup, text) = read_setup_with(&args.setup, args.files.reading(), |document, _| {
         Ok(document.text().to_owned())
     })
     .map_err(|error| {

@@ -48,7 +48,7 @@ struct Design<'a> {
 /// keeps every constraint; all files but `best.toml` are written then, if any set-up is possible.
 pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure> {
     let (_, (search, text)) =
-        read_setup_with(&args.setup, args.files.access(), |document, setup| {
+        read_setup_with(&args.setup, args.files.reading(), |document, setup| {
             let search = read_design(document, setup.description())?;
             Ok((search, document.text().to_owned()))
         })

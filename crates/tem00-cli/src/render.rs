@@ -37,7 +37,7 @@ use crate::{
 ///
 /// Returns a failure if the input is not valid, a file cannot be written or the user ends it.
 pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let read = SceneFile::read_with(&args.scene, args.files.access(), |document, _| {
+    let read = SceneFile::read_with(&args.scene, args.files.reading(), |document, _| {
         Ok(document.text().to_owned())
     });
     let (SceneFile { scene, files, .. }, text) = read.map_err(|error| {
@@ -140,7 +140,8 @@ impl<'a> Render<'a> {
             .transpose()
             .map_err(|error| tracer_failure(&args.scene, &error))?;
         // The text as well: standard input is none of the files.
-        let choices = (options, plan.is_some(), args.white_level, text);
+        let changes = args.files.reading().changes;
+        let choices = (options, plan.is_some(), args.white_level, text, changes);
 
         let frames = frames(args.frames, scene.render.frames)?;
         check_room(&args.scene, &scene)?;

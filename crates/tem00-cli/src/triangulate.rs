@@ -26,6 +26,7 @@ use crate::{
     args::{FrameRange, TriangulateArgs},
     failure::Failure,
     frame_files::check_room,
+    inspection::Inspection,
     interrupt,
     kind::{Kind, wrong_or},
     output,
@@ -43,13 +44,15 @@ const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface
 /// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or, with all
 /// files written, if no point is valid.
 pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (scene, _) = MeasurementScene::read(&args.scene, args.files.access()).map_err(|error| {
-        wrong_or(&args.scene, Kind::Scene, || {
-            Failure::file(&args.scene, &error, HELP)
-        })
-    })?;
+    let (scene, _) =
+        MeasurementScene::read(&args.scene, args.files.reading()).map_err(|error| {
+            wrong_or(&args.scene, Kind::Scene, || {
+                Failure::file(&args.scene, &error, HELP)
+            })
+        })?;
     let settings = scene.calibration.clone();
     let mut job = Job::new(args, scene)?;
+    job.warn_of_darkness()?;
     let pool = output::thread_pool(args.threads)?;
     job.measurement = pool.install(|| {
         calibration::calibrated(
@@ -103,6 +106,14 @@ impl<'a> Job<'a> {
             name,
             files: Files::new(folder, raw)?,
         })
+    }
+
+    /// Says, before the work, of which lasers the camera will see no light.
+    fn warn_of_darkness(&self) -> Result<(), Failure> {
+        let found = Inspection::new(self.measurement.scene(), self.frames)
+            .map_err(|error| tracer_failure(&self.args.scene, &error))?;
+        found.warnings().iter().for_each(|line| output::note(line));
+        Ok(())
     }
 
     fn progress(&self) -> FrameProgress {

@@ -135,9 +135,9 @@ pub use tem00_beam::{FanGeometry, LineProfile};
 /// Files in the syntax of scene files, section by section: for what reads more than a scene.
 pub mod document {
     pub use crate::scene_file::{
-        ANGLE, Choice, DURATION, Dimension, Document, DocumentKind, Format, LENGTH, MATERIALS,
-        MEMORY, NUMBER, POWER, Problem, RADIANCE, Section, Value, kind_of_document, parse_document,
-        read_document,
+        ANGLE, Change, Choice, DURATION, Dimension, Document, DocumentKind, Format, LENGTH,
+        MATERIALS, MEMORY, NUMBER, POWER, Problem, RADIANCE, Reading, Section, Value,
+        kind_of_document, parse_document, read_document,
     };
 
     pub use crate::printable::{is_hazard, printable, printable_line};

@@ -1,24 +1,32 @@
 //! What the commands share that read scene files and set-up files.
 
 use clap::Args;
-use tem00_tracer::document::FileAccess;
+use tem00_tracer::document::{Change, FileAccess, Reading};
 
-/// From where files may be read that a scene file or a set-up file names.
-#[derive(Args, Clone, Copy, Debug)]
+/// How a scene file or a set-up file is read.
+#[derive(Args, Clone, Debug)]
 pub(crate) struct FileArgs {
     /// Let the file include files that lie outside of its folder, and glTF meshes take data from outside
     /// of theirs.
     #[arg(long)]
     allow_outside: bool,
+
+    /// A value instead of that in the file, such as `camera.f_number=8` or, counted from 0,
+    /// `laser[0].power=2mW`; may be given several times.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    changes: Vec<Change>,
 }
 
 impl FileArgs {
-    /// Returns from where files may be read.
-    pub(crate) const fn access(self) -> FileAccess {
-        if self.allow_outside {
-            FileAccess::Anywhere
-        } else {
-            FileAccess::WithinFolder
+    /// Returns how the file is read.
+    pub(crate) fn reading(&self) -> Reading<'_> {
+        Reading {
+            access: if self.allow_outside {
+                FileAccess::Anywhere
+            } else {
+                FileAccess::WithinFolder
+            },
+            changes: &self.changes,
         }
     }
 }

@@ -4,6 +4,7 @@
 
 mod budget;
 mod calibrate;
+mod changes;
 mod design;
 mod folders;
 mod hostile;

@@ -2,6 +2,7 @@
 
 mod assets;
 mod camera;
+mod change;
 mod document;
 mod error;
 mod filter;
@@ -27,6 +28,7 @@ use assets::Assets;
 use format::SCENE;
 use source::Sources;
 
+pub use change::{Change, Reading};
 pub use document::Document;
 pub use error::{Problem, SceneError};
 pub use format::{DocumentKind, Format, kind_of_document};
@@ -79,12 +81,12 @@ impl SceneFile {
     /// # Errors
     ///
     /// Returns the errors of [`read_scene`], and those of `further`, placed in the file.
-    pub fn read_with<T>(
+    pub fn read_with<'a, T>(
         path: &Path,
-        access: FileAccess,
+        reading: impl Into<Reading<'a>>,
         further: impl FnOnce(&Document<'_>, &Scene) -> Result<T, Problem>,
     ) -> Result<(Self, T), SceneError> {
-        let sources = Sources::of_file(path, access, SCENE)?;
+        let sources = Sources::of_file(path, reading.into(), SCENE)?;
         let mut files = sources.files();
         let mut assets = Assets::new(sources.folder());
         let read = with_document(&sources, |root| {
@@ -153,13 +155,13 @@ pub fn parse_scene(text: &str, base_directory: &Path) -> Result<Scene, SceneErro
 ///
 /// Returns an error if the file cannot be read or is not valid TOML, if it has a key that its `format`
 /// does not know, and the errors of `read`, placed in the file.
-pub fn read_document<T>(
+pub fn read_document<'a, T>(
     path: &Path,
-    access: FileAccess,
+    reading: impl Into<Reading<'a>>,
     format: Format,
     read: impl FnOnce(&Document<'_>) -> Result<T, Problem>,
 ) -> Result<T, SceneError> {
-    let sources = Sources::of_file(path, access, format)?;
+    let sources = Sources::of_file(path, reading.into(), format)?;
     with_document(&sources, read).map_err(|problem| sources.locate(problem))
 }
 

@@ -7,6 +7,7 @@ use crate::input_file::{
     FileAccess, MAX_TEXT_BYTES, is_standard_input, read_input, read_text as read_text_file,
 };
 
+use super::change::{self, Change, Reading};
 use super::error::{Place, Problem, SceneError, line_column};
 use super::format::Format;
 use super::section::Section;
@@ -87,12 +88,32 @@ impl Sources {
     /// Reads a scene file and all that it includes.
     pub(super) fn of_file(
         path: &Path,
-        access: FileAccess,
+        reading: Reading<'_>,
         format: Format,
     ) -> Result<Self, SceneError> {
         let text = read_text(path, &format)?;
         let directory = path.parent().unwrap_or(Path::new(""));
-        Self::of_text(text, Some(path), (directory, access), format)
+        let mut sources = Self::of_text(text, Some(path), (directory, reading.access), format)?;
+        match sources.change(reading.changes) {
+            Ok(()) => Ok(sources),
+            Err(problem) => Err(sources.locate(problem)),
+        }
+    }
+
+    /// Puts values in the place of those that the texts have.
+    fn change(&mut self, changes: &[Change]) -> Result<(), Problem> {
+        if changes.is_empty() {
+            return Ok(());
+        }
+        let in_order = self.order.iter().filter_map(|&index| self.all.get(index));
+        let mut texts: Vec<String> = in_order.map(|source| source.text.clone()).collect();
+        // What is included stands before the scene file.
+        let main = texts.len().saturating_sub(1);
+        change::apply(changes, &mut texts, main)?;
+        for (&index, text) in self.order.iter().zip(texts) {
+            self.all[index].text = text;
+        }
+        Ok(())
     }
 
     /// Reads all that a text includes.

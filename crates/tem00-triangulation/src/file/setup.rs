@@ -3,8 +3,8 @@ use std::path::Path;
 use tem00_tracer::{
     SceneError,
     document::{
-        ANGLE, Document, FileAccess, Format, LENGTH, NUMBER, POWER, Problem, Section, Value,
-        parse_document, read_document,
+        ANGLE, Document, FileAccess, Format, LENGTH, NUMBER, POWER, Problem, Reading, Section,
+        Value, parse_document, read_document,
     },
 };
 
@@ -63,12 +63,12 @@ pub fn read_setup(path: &Path) -> Result<Setup, SceneError> {
 /// # Errors
 ///
 /// Returns the errors of [`read_setup`], and those of `further`, placed in the file.
-pub fn read_setup_with<T>(
+pub fn read_setup_with<'a, T>(
     path: &Path,
-    access: FileAccess,
+    reading: impl Into<Reading<'a>>,
     further: impl FnOnce(&Document<'_>, &Setup) -> Result<T, Problem>,
 ) -> Result<(Setup, T), SceneError> {
-    read_document(path, access, SETUP, |document| {
+    read_document(path, reading, SETUP, |document| {
         with_further(document, further)
     })
 }

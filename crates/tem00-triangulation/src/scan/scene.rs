@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use tem00_tracer::document::{Document, FileAccess, Problem};
+use tem00_tracer::document::{Document, Problem, Reading};
 use tem00_tracer::{Scene, SceneError, SceneFile};
 
 use crate::file::{read_calibration, read_detector, read_scan, read_sensor};
@@ -29,8 +29,11 @@ impl MeasurementScene {
     ///
     /// Returns an error if a file cannot be read or does not describe a scene and a sensor. It names key,
     /// value and what is allowed, and knows its place in its file.
-    pub fn read(path: &Path, access: FileAccess) -> Result<(Self, Vec<PathBuf>), SceneError> {
-        let (file, further) = SceneFile::read_with(path, access, further)?;
+    pub fn read<'a>(
+        path: &Path,
+        reading: impl Into<Reading<'a>>,
+    ) -> Result<(Self, Vec<PathBuf>), SceneError> {
+        let (file, further) = SceneFile::read_with(path, reading, further)?;
         let (sensor, detector, calibration, scan) = further;
         let measurement = Self {
             scene: file.scene,

@@ -2,7 +2,8 @@
 
     mitsuba_server.py VARIANT
 
-The tasks are `load scene.xml`, `render SAMPLES SEED`, `write image.raw` and `peak`.
+The tasks are `load scene.xml SAMPLER`, `render SAMPLES SEED`, `write image.raw`, `peak` and `samples`: the
+samples per pixel that were taken, which some samplers round up.
 """
 
 import resource
@@ -25,9 +26,9 @@ def render(samples, seed):
     dr.sync_thread()
 
 
-def load(path):
+def load(path, sampler):
     global scene
-    scene = mi.load_file(path)
+    scene = mi.load_file(path, sampler=sampler)
 
 
 for line in sys.stdin:
@@ -42,5 +43,8 @@ for line in sys.stdin:
         np.array(image)[:, :, 0].astype("<f4").tofile(*arguments)
     elif task == "peak":
         print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, flush=True)
+        continue
+    elif task == "samples":
+        print(scene.sensors()[0].sampler().sample_count(), flush=True)
         continue
     print(time.perf_counter() - start, flush=True)

@@ -1,12 +1,14 @@
 """The same scenes by tem00 and Mitsuba, in turns.
 
-    render_peers.py SERVER [--rounds N] [--only WORD] [--variants A,B]
+    render_peers.py SERVER [--rounds N] [--only WORD] [--variants A,B] [--samplers A,B]
 
 SERVER is the example `render_server`. Each scene is loaded by a fresh process of every program; then
-they render in turns, one image that does not count and N that do, each with a seed of its own. The
-table has medians: seconds to load, seconds to render, ours by theirs, samples per second, the variance of
-a pixel between seeds relative to the squared mean, averaged over the image, and ours by theirs of
-time × variance: what equal noise costs. `mean` is the mean of our image by theirs.
+they render in turns, one image that does not count and N that do, each with a seed of its own. Mitsuba
+does so with each of the samplers, of which some take more samples than they are asked for. The table has
+medians: seconds to load, seconds to render, samples per second; the squared error of a pixel, which is the
+variance between seeds since all estimates are unbiased: its mean over the image and its median; and ours by
+theirs of time, and of the time that an equal error takes, by the mean and by the median, if errors fell with
+the samples. `mean` is the mean of our image by theirs.
 """
 
 import argparse
@@ -23,8 +25,10 @@ from render_scenes import ROOT, SAMPLES, write_scenes
 class Program:
     """A process that renders."""
 
-    def __init__(self, name, command):
+    def __init__(self, name, command, sampler=""):
         self.name = name
+        self.sampler = sampler
+        self.samples = SAMPLES
         self.process = subprocess.Popen(
             command,
             stdin=subprocess.PIPE,
@@ -52,6 +56,8 @@ class Program:
             self.first_seconds = seconds
 
     def finish(self):
+        if self.sampler:
+            self.samples = int(self.ask("samples"))
         self.peak = self.ask("peak")
         self.process.stdin.close()
         self.process.wait()
@@ -62,28 +68,31 @@ class Program:
     def mean_image(self):
         return np.mean(self.images, axis=0)
 
-    def variance(self):
-        """The variance of a pixel by its squared mean, averaged over the pixels that are lit."""
-        mean = self.mean_image()
-        variance = np.var(self.images, axis=0, ddof=1)
-        lit = mean > 0.1 * mean.mean()
-        return np.mean(variance[lit] / mean[lit] ** 2)
+    def squared_errors(self):
+        """The squared error of each pixel."""
+        return np.var(self.images, axis=0, ddof=1)
 
 
 def report(name, ours, theirs):
     pixels = len(ours.images[0])
     print(f"{name}")
+    own = ours.squared_errors()
     for program in [ours, *theirs]:
-        time, variance = program.median(), program.variance()
+        time, errors = program.median(), program.squared_errors()
+        rate = pixels * program.samples / time / 1e6
         line = (
-            f"  {program.name:12} load {program.load_seconds:6.3f} s  first {program.first_seconds:6.3f} s"
-            f"  render {time:6.3f} s  {pixels * SAMPLES / time / 1e6:6.2f} Msamples/s"
-            f"  variance {variance:.2e}  peak {program.peak:5.0f} MiB"
+            f"  {program.name:24} load {program.load_seconds:6.3f} s  first {program.first_seconds:6.3f} s"
+            f"  render {time:6.3f} s  {program.samples} samples  {rate:6.2f} Msamples/s"
+            f"  error {errors.mean():.2e}  median {np.median(errors):.2e}  peak {program.peak:5.0f} MiB"
         )
         if program is not ours:
-            cost = ours.median() * ours.variance() / (time * variance) if variance else float("nan")
+            ratio = ours.median() / time
             mean = ours.mean_image().mean() / program.mean_image().mean()
-            line += f"  ours/theirs: time {ours.median() / time:5.2f} cost {cost:5.2f} mean {mean:.4f}"
+            costs = ratio * own.mean() / errors.mean(), ratio * np.median(own) / np.median(errors)
+            line += (
+                f"  ours/theirs: time {ratio:5.2f} cost {costs[0]:6.3f}, median {costs[1]:6.3f}"
+                f" mean {mean:.4f}"
+            )
         print(line, flush=True)
 
 
@@ -92,14 +101,15 @@ def compare(row, arguments, folder):
     here = pathlib.Path(__file__).parent
     ours = Program("tem00", [arguments.server])
     theirs = [
-        Program(variant, [sys.executable, here / "mitsuba_server.py", variant])
+        Program(f"{variant} {sampler}", [sys.executable, here / "mitsuba_server.py", variant], sampler)
         for variant in arguments.variants.split(",")
+        for sampler in arguments.samplers.split(",")
     ]
     # Mitsuba's integrator of direct light makes no use of the directions that materials draw.
     ours.task = "connect" if name.startswith("direct") else "render"
     ours.load(f"{'lamps' if lamps_only else 'load'} {our_file}")
     for program in theirs:
-        program.load(f"load {their_file}")
+        program.load(f"load {their_file} {program.sampler}")
     for seed in range(arguments.rounds + 1):
         for program in [ours, *theirs]:
             program.render(seed, seed > 0, folder / "image.raw")
@@ -114,6 +124,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--only", default="")
     parser.add_argument("--variants", default="scalar_rgb,llvm_ad_rgb")
+    parser.add_argument("--samplers", default="independent,multijitter,orthogonal")
     arguments = parser.parse_args()
     folder = ROOT / "target/peers/scenes"
     for row in write_scenes(folder):

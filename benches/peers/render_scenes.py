@@ -111,12 +111,13 @@ MITSUBA_DIFFUSE = '<bsdf type="diffuse"><rgb name="reflectance" value="{}"/></bs
 def mitsuba_film(width, height, tangent, position, integrator):
     fov = math.degrees(2 * math.atan(tangent))
     return f"""<scene version="3.0.0">
+<default name="sampler" value="independent"/>
 {integrator}
 <sensor type="perspective">
   <string name="fov_axis" value="x"/><float name="fov" value="{fov}"/>
   <float name="near_clip" value="0.001"/>
   <transform name="to_world"><lookat origin="{position}" target="0, 0, 0" up="0, 1, 0"/></transform>
-  <sampler type="independent"/>
+  <sampler type="$sampler"/>
   <film type="hdrfilm">
     <integer name="width" value="{width}"/><integer name="height" value="{height}"/>
     <rfilter type="box"/>

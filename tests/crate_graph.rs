@@ -112,6 +112,8 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tempfile",
             "thiserror",
             "tiff",
+            "zune-core",
+            "zune-jpeg",
         ],
     ),
     (

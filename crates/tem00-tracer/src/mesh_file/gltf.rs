@@ -206,7 +206,11 @@ impl Reader {
         }
         let positions = primitive.get(&Semantic::Positions);
         let positions = positions.ok_or("it has no positions")?;
-        let corners = primitive.indices().map_or(0, |indices| indices.count());
+        self.elements(&positions).map(drop)?;
+        let corners = match primitive.indices() {
+            Some(indices) => self.elements(&indices).map(|_| indices.count())?,
+            None => 0,
+        };
         self.check_room(positions.count(), corners)?;
         let positions = self.vectors(&positions)?;
         let normals = match primitive.get(&Semantic::Normals) {

@@ -23,8 +23,9 @@ use crate::Metal;
 ///
 /// # References
 ///
-/// - E. Oberg et al., *Machinery's Handbook*, 26th edition, 2000, table *Surface Roughness Produced by
-///   Common Production Methods*: the ranges of average application.
+/// - E. Oberg et al., *Machinery's Handbook*, 25th edition, 1996, p. 708, *Surface Roughness Produced by
+///   Common Production Methods*: a drawn chart, whose ranges of average application are read as CalQlata
+///   (*Surface Finish (machining)*) and MEADinfo (*Surface Finish – Roughness (Ra)*, 2009) list them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FinishingProcess {

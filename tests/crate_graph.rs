@@ -119,7 +119,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     (
         "tem00-capi",
         &["tem00-beam", "tem00-decorrelation", "tem00-speckle"],
-        &[],
+        &["rayon"],
     ),
     (
         "tem00-python",

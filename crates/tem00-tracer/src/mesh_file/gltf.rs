@@ -205,14 +205,7 @@ impl Reader {
             return Err(format!("its primitives must be triangles, got {mode:?}"));
         }
         let positions = primitive.get(&Semantic::Positions);
-        let positions = positions.ok_or("it has no positions")?;
-        self.elements(&positions).map(drop)?;
-        let corners = match primitive.indices() {
-            Some(indices) => self.elements(&indices).map(|_| indices.count())?,
-            None => 0,
-        };
-        self.check_room(positions.count(), corners)?;
-        let positions = self.vectors(&positions)?;
+        let positions = self.vectors(&positions.ok_or("it has no positions")?)?;
         let normals = match primitive.get(&Semantic::Normals) {
             Some(normals) => self.vectors(&normals)?,
             None => vec![DVec3::ZERO; positions.len()],
@@ -225,6 +218,7 @@ impl Reader {
             Some(indices) => self.indices(&indices, positions.len())?,
             None => (0_u32..).take(positions.len()).collect(),
         };
+        self.check_room(positions.len(), corners.len())?;
         self.add_triangles(&corners, placement)?;
         self.add_vertices(&positions, &normals, placement);
         Ok(())

@@ -50,7 +50,7 @@ pub use self::{
 ///     r#"
 ///     laser = { wavelength = "650 nm", power = "5 mW", line_width = "0.2 mm", line_length = "50 mm" }
 ///     surface = { reflectance = 0.5 }
-///     sensor = { quantum_efficiency = 0.6, exposure = "1 ms" }
+///     sensor = { quantum_efficiency = 0.6, exposure = "auto" }
 ///     [camera]
 ///     focal_length = "25 mm"
 ///     f_number = 8

@@ -52,16 +52,19 @@ impl Kind {
     }
 }
 
-/// How files begin that hold an image: PNG, OpenEXR, NumPy, JPEG, TIFF in both orders of bytes, PGM.
-const IMAGES: [&[u8]; 8] = [
+/// How files begin that hold an image: PNG, OpenEXR, NumPy, JPEG, TIFF in both orders of bytes, BMP, PGM and PPM.
+const IMAGES: [&[u8]; 11] = [
     b"\x89PNG",
     b"\x76\x2f\x31\x01",
     b"\x93NUMPY",
     b"\xff\xd8\xff",
     b"II*\0",
     b"MM\0*",
+    b"BM",
     b"P5\n",
     b"P2\n",
+    b"P6\n",
+    b"P3\n",
 ];
 
 /// Returns the failure that a file is of another kind than a command needs, with the command that takes

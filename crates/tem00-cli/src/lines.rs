@@ -20,7 +20,9 @@ use crate::{
     calibration_file::read_calibration,
     failure::Failure,
     image::{ImageError, RawImage, read_raw, write_rgb_png},
-    interrupt, output,
+    interrupt,
+    kind::{Kind, wrong_or},
+    output,
     progress::Progress,
     table::write_columns,
 };
@@ -151,10 +153,12 @@ fn read(path: &Path, args: &LinesArgs) -> Result<RawImage, Failure> {
         ));
     }
     let unreadable = |error: ImageError| {
-        Failure::input(
-            format!("cannot read {}: {error}", path.display()),
-            "images are PNG, TIFF, JPEG, BMP, PGM or PPM files of 8 to 16 bits, grey or RGB",
-        )
+        wrong_or(path, Kind::Image, || {
+            Failure::input(
+                format!("cannot read {}: {error}", path.display()),
+                "images are PNG, TIFF, JPEG, BMP, PGM or PPM files of 8 to 16 bits, grey or RGB",
+            )
+        })
     };
     let image = read_raw(path, args.channel.as_deref()).map_err(unreadable)?;
     match args.bits {

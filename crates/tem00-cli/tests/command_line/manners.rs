@@ -38,6 +38,10 @@ fn a_file_of_another_kind_is_told_with_the_command_that_takes_it() {
             "stats a.toml",
             ["this is a scene file", "tem00 render a.toml"],
         ),
+        (
+            "lines a.toml",
+            ["this is a scene file", "tem00 render a.toml"],
+        ),
     ] {
         let output = run(path, line);
         assert_code(&output, 2);

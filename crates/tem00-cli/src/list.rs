@@ -73,8 +73,8 @@ In a scene: conductor.finish = \"milled steel\", a process and a metal: steel (w
 much the same reflectance) or one of `tem00 list metals`. It sets the metal and the rms height.
 
 Ra is a typical range and no measurement: that of average application in the chart \"Surface Roughness
-Produced by Common Production Methods\", Machinery's Handbook, 25th edition, p. 708, as CalQlata and MEADinfo
-list its numbers. The rms height is that of Gaussian heights in the geometric middle, 1.253 Ra. `roughness`, which makes the width of the lobe, does
+Produced by Common Production Methods\", Machinery's Handbook, 25th edition, p. 708, as calqlata.com and
+meadinfo.org list its numbers. The rms height is that of Gaussian heights in the geometric middle, 1.253 Ra. `roughness`, which makes the width of the lobe, does
 not follow from Ra: without it, it is 0.3. The lay that a tool leaves is not modelled. Set-ups have no
 finish: their reflectance is that towards the camera, which Ra and metal do not tell.";
 

@@ -24,8 +24,8 @@ use crate::Metal;
 /// # References
 ///
 /// - E. Oberg et al., *Machinery's Handbook*, 25th edition, 1996, p. 708, *Surface Roughness Produced by
-///   Common Production Methods*: a drawn chart, whose ranges of average application are read as CalQlata
-///   (*Surface Finish (machining)*) and MEADinfo (*Surface Finish – Roughness (Ra)*, 2009) list them.
+///   Common Production Methods*: a drawn chart, whose ranges of average application are read as they are
+///   listed in *Surface Finish (machining)*, calqlata.com, and *Surface Finish*, meadinfo.org, 2009.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FinishingProcess {

@@ -74,9 +74,10 @@ much the same reflectance) or one of `tem00 list metals`. It sets the metal and 
 
 Ra is a typical range and no measurement: that of average application in the chart \"Surface Roughness
 Produced by Common Production Methods\", Machinery's Handbook, 25th edition, p. 708, as calqlata.com and
-meadinfo.org list its numbers. The rms height is that of Gaussian heights in the geometric middle, 1.253 Ra. `roughness`, which makes the width of the lobe, does
-not follow from Ra: without it, it is 0.3. The lay that a tool leaves is not modelled. Set-ups have no
-finish: their reflectance is that towards the camera, which Ra and metal do not tell.";
+meadinfo.org list its numbers. The rms height is that of Gaussian heights in the geometric middle, 1.253 Ra.
+`roughness`, which makes the width of the lobe, does not follow from Ra: without it, it is 0.3. The lay that
+a tool leaves is not modelled. Set-ups have no finish: their reflectance is that towards the camera, which Ra
+and metal do not tell.";
 
 fn surfaces() -> Vec<Vec<String>> {
     let mut lines = vec![line(["process", "Ra, typical (µm)", "rms height (µm)"])];

@@ -82,14 +82,15 @@ impl CorrelationLaw {
     /// Returns the intensity correlation γ in [0, 1] left after a displacement across the pupil, in
     /// pupil diameters, and along the axis, in axial decorrelation lengths.
     ///
-    /// It is even in both. The integrals are exact to 1e−8. Up to an axial displacement of 3200
-    /// lengths they are found by Gauss–Legendre quadrature: in half a microsecond to one at first,
-    /// and in a time proportional to the displacement beyond a few lengths. Farther out the product
-    /// is returned, since all three laws are below 4/β² = 1e−8 there.
+    /// It is even in both. The integrals are exact to 1e−8. From an axial displacement of 3e−5 lengths
+    /// up to one of 3200 they are found by Gauss–Legendre quadrature: in half a microsecond to one at first,
+    /// and in a time proportional to the displacement beyond a few lengths. The product is returned for
+    /// less, where all three laws agree, and farther out, where they are below 4/β² = 1e−8.
     pub fn correlation(self, pupil_shift: f64, axial_shift: f64) -> f64 {
         let (s, x) = (pupil_shift.abs(), axial_shift.abs());
-        // Where one of the two is zero, the product is exact. NaN counts as decorrelated in it.
-        let both = s > 0.0 && s < 1.0 && x > 0.0 && x < LARGEST_AXIAL_SHIFT;
+        // Elsewhere the product is as exact. NaN counts as decorrelated in it.
+        let axial = x > SMALLEST_AXIAL_SHIFT && x < LARGEST_AXIAL_SHIFT;
+        let both = s > 0.0 && s < 1.0 && axial;
         match self {
             Self::AtImageDisplacement | Self::AtPeak if both => self.integral(s, x),
             _ => correlation(s, x),
@@ -107,6 +108,10 @@ impl CorrelationLaw {
         (re * re + im * im).min(1.0)
     }
 }
+
+/// Up to here the product is exact to 1e−8, too: the phase of the defocus lies between 0 and β over the
+/// pupil, so that its variance over any part of it, which is what γ loses, is at most β²/4.
+const SMALLEST_AXIAL_SHIFT: f64 = 3e-5;
 
 /// From here on γ ≤ (2/β)² < 1e−8: |E(z)| ≤ 2/z, and the arcs are seen from c under 2π at most.
 const LARGEST_AXIAL_SHIFT: f64 = 3_200.0;

@@ -155,6 +155,19 @@ fn one_displacement_alone_leaves_the_integrals_to_the_closed_forms() {
 }
 
 #[test]
+fn the_product_is_as_exact_for_little_defocus() {
+    for (law, reference) in INTEGRALS {
+        for s in [1e-6, 0.03, 0.4, 0.7, 0.97] {
+            for x in [1e-9, 1e-5, 3e-5, 3.1e-5, 2.9e-4] {
+                let gamma = law.correlation(s, x);
+                let error = gamma - area_integral(s, 2.0 * PI * x, reference);
+                assert!(error.abs() < 1e-8, "{law:?} at {s}, {x}: {error:e} off");
+            }
+        }
+    }
+}
+
+#[test]
 fn integrals_are_steady_where_the_product_takes_over() {
     for (law, _) in INTEGRALS {
         for s in [0.0, 1e-6, 0.03, 0.4, 0.5, 0.7, 0.97] {

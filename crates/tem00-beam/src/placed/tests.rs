@@ -264,6 +264,30 @@ fn bounds_hold_all_that_is_lit() {
 }
 
 #[test]
+fn bounds_are_those_of_the_corners_of_the_light() {
+    const EXTENT: f64 = 0.4;
+    let (spot, line) = (spot(), line());
+    let lights: [(&dyn Emitter<f64>, [f64; 2]); 2] = [
+        (&spot, spot.reach(EXTENT).half_width),
+        (&line, line.reach(EXTENT).half_width),
+    ];
+    for (light, [x, y]) in lights {
+        let corners = (0..8).map(|corner| {
+            let side = |bit: i32| if corner & bit == 0 { -1.0 } else { 1.0 };
+            let z = 0.5 * EXTENT * (1.0 + side(4));
+            DVec3::from(world(DVec3::new(side(1) * x, side(2) * y, z)))
+        });
+        let (low, high) = corners.fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), corner| (low.min(corner), high.max(corner)),
+        );
+        let bounds = light.bounds(EXTENT);
+        assert!(low.abs_diff_eq(DVec3::from(bounds.min), 1e-14), "{low}");
+        assert!(high.abs_diff_eq(DVec3::from(bounds.max), 1e-14), "{high}");
+    }
+}
+
+#[test]
 fn the_corner_of_a_fan_lies_on_its_bounds() {
     const EXTENT: f64 = 0.4;
     let line = line();

@@ -13,10 +13,10 @@ use tem00_numerics::Grid;
 
 use crate::{
     Interpolation, PupilField,
-    lattice::to_i64,
-    mask::{Row, Span},
+    pupil::lattice::to_i64,
+    pupil::mask::{Row, Span},
+    pupil::transmission::to_c64,
     spline::{Variance, lag_products, response},
-    transmission::to_c64,
 };
 
 /// Powers of p for the part that is even about the middle.
@@ -312,8 +312,8 @@ impl Fit {
 
 /// Chebyshev's points of [0, ¼], where p lies.
 fn nodes<const N: usize>() -> [f64; N] {
-    let step = core::f64::consts::PI / (2.0 * crate::mask::to_f64(N));
-    core::array::from_fn(|n| 0.125 * (1.0 - (step * crate::mask::to_f64(2 * n + 1)).cos()))
+    let step = core::f64::consts::PI / (2.0 * crate::pupil::mask::to_f64(N));
+    core::array::from_fn(|n| 0.125 * (1.0 - (step * crate::pupil::mask::to_f64(2 * n + 1)).cos()))
 }
 
 /// The fractions below ½ at the nodes of the even part, then at those of the odd.

@@ -68,16 +68,12 @@
 
 mod covariance;
 mod error;
-mod field;
 mod interpolation;
-mod lattice;
 mod light;
 mod look_up;
-mod mask;
 mod npy;
 pub mod paper;
 mod path;
-mod pattern;
 mod plan;
 mod pupil;
 mod quadrature;
@@ -86,12 +82,9 @@ mod spline;
 mod stack;
 mod stack_file;
 mod taps;
-mod transmission;
-mod view;
 mod workers;
 
 pub use error::SpeckleError;
-pub use field::PupilField;
 pub use interpolation::Interpolation;
 pub use light::{
     Bandwidth, CoherentBackground, Exposure, IncoherentSum, LitArea, ObjectiveSpeckle, PixelArray,
@@ -100,11 +93,10 @@ pub use npy::{NpyError, NpyReader, write_npy, write_real_npy};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use path::SlicePath;
-pub use pattern::{SpeckleField, SpecklePattern};
 pub use plan::{StackNeeds, StackPlan};
-pub use pupil::{Phasors, Pupil};
+pub use pupil::{
+    Phasors, Pupil, PupilField, SpeckleField, SpecklePattern, SpeckleScratch, Transmission,
+};
 pub use slice_law::SliceLaw;
 pub use stack::{SpeckleStack, StackOptions};
 pub use stack_file::StackFileError;
-pub use transmission::Transmission;
-pub use view::SpeckleScratch;

@@ -4,7 +4,6 @@ mod background;
 mod exposure;
 mod objective;
 mod pixels;
-mod scatterers;
 mod sum;
 mod transform;
 

@@ -4,7 +4,7 @@ use tem00_numerics::vectorised;
 
 use crate::{
     Interpolation, SpeckleStack,
-    mask::to_f64,
+    pupil::mask::to_f64,
     quadrature::{Node, mean_nodes},
     taps::{Kernel, Taps},
 };

@@ -4,8 +4,8 @@ use tem00_numerics::{circular_path_overlap, circular_path_overlap_inverse, disc_
 
 use crate::{
     Pupil, PupilField, SpeckleError,
-    lattice::{Lattice, to_i64},
-    mask::{from_i64, to_f64},
+    pupil::lattice::{Lattice, to_i64},
+    pupil::mask::{from_i64, to_f64},
 };
 
 /// The way the pupil takes over the lattice from slice to slice of a stack.

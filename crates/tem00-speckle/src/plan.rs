@@ -1,4 +1,4 @@
-use crate::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackOptions, mask::to_f64};
+use crate::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackOptions, pupil::mask::to_f64};
 
 /// What a stack is to be looked up for.
 #[derive(Clone, Copy, Debug, PartialEq)]

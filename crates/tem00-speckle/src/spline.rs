@@ -7,10 +7,10 @@ use tem00_numerics::Grid;
 
 use crate::{
     Interpolation,
-    field::PupilField,
-    lattice::to_i64,
-    mask::{Mask, from_i64, to_f64},
-    transmission::to_c64,
+    pupil::PupilField,
+    pupil::lattice::to_i64,
+    pupil::mask::{Mask, from_i64, to_f64},
+    pupil::transmission::to_c64,
 };
 
 /// What the pupil point k is multiplied with: the reciprocal of the spline's Fourier transform,

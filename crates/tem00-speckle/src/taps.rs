@@ -3,7 +3,7 @@
 use num_complex::Complex;
 use tem00_numerics::Grid;
 
-use crate::mask::to_f64;
+use crate::pupil::mask::to_f64;
 
 /// The period of a stack along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

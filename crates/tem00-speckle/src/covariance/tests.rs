@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use super::*;
 use crate::{
     Pupil, Transmission,
-    mask::{from_i64, to_f64},
+    pupil::mask::{from_i64, to_f64},
 };
 
 const ALL: [Interpolation; 3] = [

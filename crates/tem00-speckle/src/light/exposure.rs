@@ -4,7 +4,7 @@ use num_complex::Complex;
 use tem00_numerics::{Fft2, Grid, sinc};
 
 use super::transform::{frequency, plan, to_c32, to_complex, to_f32, wave};
-use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch, mask::to_f64};
+use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch, pupil::mask::to_f64};
 
 /// An exposure during which the pattern moves, or changes, or both, at a constant rate.
 ///

@@ -4,7 +4,7 @@ use num_complex::Complex;
 use tem00_numerics::{Fft2Scratch, Grid, sinc};
 
 use super::transform::{frequency, plan, to_c32, to_f32, wave};
-use crate::{SpeckleError, SpecklePattern, mask::to_f64};
+use crate::{SpeckleError, SpecklePattern, pupil::mask::to_f64};
 
 /// The pixels of a sensor on a pattern: boxes of any size at any pitch.
 ///

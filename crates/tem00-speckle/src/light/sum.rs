@@ -1,7 +1,7 @@
 use core::f64::consts::{LN_2, PI};
 
 use super::transform::to_f32;
-use crate::{PupilField, SpeckleError, SpecklePattern, mask::to_f64};
+use crate::{PupilField, SpeckleError, SpecklePattern, pupil::mask::to_f64};
 
 /// Independent speckle patterns whose intensities add, each with its share of the light.
 ///

@@ -3,7 +3,7 @@
 use num_complex::Complex;
 use tem00_numerics::{Fft2, Grid};
 
-use crate::{lattice::to_i64, mask::from_i64};
+use crate::{pupil::lattice::to_i64, pupil::mask::from_i64};
 
 /// Plans the transform of a pattern, or of part of one.
 pub(super) fn plan([width, height]: [usize; 2]) -> Fft2 {

@@ -3,7 +3,7 @@
 use crate::{
     SpeckleStack,
     covariance::even_at,
-    lattice::unit_phasor,
+    pupil::lattice::unit_phasor,
     stack::Slice,
     taps::{Taps, amplitudes},
 };

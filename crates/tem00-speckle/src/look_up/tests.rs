@@ -4,7 +4,10 @@ use tem00_numerics::Grid;
 use tem00_statistics::{exponential_cumulative, kolmogorov_smirnov, rectangular_pixel_contrast};
 
 use super::*;
-use crate::{Phasors, PupilField, SlicePath, StackOptions, lattice::unit_phasor, mask::from_i64};
+use crate::{
+    Phasors, PupilField, SlicePath, StackOptions, pupil::lattice::unit_phasor,
+    pupil::mask::from_i64,
+};
 
 const ALL: [Interpolation; 3] = [
     Interpolation::CubicSpline,

@@ -3,7 +3,7 @@
 use num_complex::Complex;
 use tem00_numerics::{Fft2, Fft2Scratch, Grid};
 
-use crate::{Interpolation, lattice::to_i64, mask::to_f64, spline::prefilter};
+use crate::{Interpolation, pupil::lattice::to_i64, pupil::mask::to_f64, spline::prefilter};
 
 /// The filter that turns samples of a band-limited field into the coefficients of its spline.
 ///

@@ -10,7 +10,8 @@ use super::{
     spline::SplineFilter, write_values,
 };
 use crate::{
-    PupilField, SlicePath, SpeckleStack, StackOptions, mask::to_f64, transmission::to_c64,
+    PupilField, SlicePath, SpeckleStack, StackOptions, pupil::mask::to_f64,
+    pupil::transmission::to_c64,
 };
 
 /// What the mean square of a slice may be: that of few Gaussian phasors strays from 1.

@@ -6,10 +6,10 @@ use tem00_numerics::Grid;
 use crate::{
     Interpolation, PupilField, SlicePath,
     covariance::{Covariance, Even, Responses, mean_square},
-    lattice::to_i64,
-    mask::{from_i64, to_f64},
+    pupil::lattice::to_i64,
+    pupil::mask::{from_i64, to_f64},
+    pupil::transmission::to_c64,
     spline::Variance,
-    transmission::to_c64,
     workers::map_with_scratch,
 };
 

@@ -6,7 +6,7 @@ use tem00_numerics::wrap_coordinate;
 use super::*;
 use crate::{
     Phasors, Pupil,
-    mask::{from_i64, to_f64},
+    pupil::mask::{from_i64, to_f64},
 };
 
 fn stack(size: usize, diameter: usize, path: SlicePath) -> SpeckleStack {

@@ -3,7 +3,7 @@
 use super::{StackFileError, fields::Writer};
 use crate::{
     Interpolation, Phasors, Pupil, PupilField, SlicePath, SpeckleStack,
-    lattice::{Lattice, Seeded},
+    pupil::lattice::{Lattice, Seeded},
 };
 
 #[derive(Clone, Copy, Debug)]

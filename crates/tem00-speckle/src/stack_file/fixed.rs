@@ -7,7 +7,7 @@ use super::{
     codes::{PupilKind, SourceKind, interpolation_of, path_of, period, pupil_of, source_of, zero},
     fields::Reader,
 };
-use crate::{Interpolation, PupilField, SlicePath, SpeckleError, field::Layout};
+use crate::{Interpolation, PupilField, SlicePath, SpeckleError, pupil::Layout};
 
 /// The version that this library writes, and the newest that it reads.
 pub(super) const VERSION: u32 = 1;

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     Interpolation, Pupil, PupilField, SlicePath, SpeckleStack, Transmission,
-    lattice::{Lattice, Source},
+    pupil::lattice::{Lattice, Source},
 };
 
 /// A header whose checksum is right.

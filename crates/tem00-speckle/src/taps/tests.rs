@@ -59,7 +59,7 @@ proptest! {
     fn whole_periods_are_taken_off_exactly(
         mantissa in -(1_i64 << 53)..1 << 53, exponent in -52_i32..17, cells in 1_usize..40_000,
     ) {
-        let x = crate::mask::from_i64(mantissa) * 2.0_f64.powi(exponent);
+        let x = crate::pupil::mask::from_i64(mantissa) * 2.0_f64.powi(exponent);
         let (got, expected) = place(x, cells);
         if let Some(expected) = expected {
             // Sums of a negative x and the period are rounded to a number of f64, and only these.

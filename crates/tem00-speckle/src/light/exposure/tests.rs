@@ -3,7 +3,7 @@ use tem00_numerics::disc_overlap;
 use tem00_statistics::{boiling_contrast, t_test_mean, translation_contrast};
 
 use super::*;
-use crate::{Phasors, lattice::to_i64, mask::from_i64};
+use crate::{Phasors, pupil::lattice::to_i64, pupil::mask::from_i64};
 
 fn exposure(image_drift: [f64; 2], pupil_drift: [f64; 2]) -> Exposure {
     let exposure = Exposure::default().with_image_drift(image_drift).unwrap();

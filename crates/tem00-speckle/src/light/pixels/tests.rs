@@ -2,7 +2,7 @@ use proptest::{prelude::*, test_runner::RngSeed};
 use tem00_statistics::{pixel_contrast, rectangular_pixel_contrast, t_test_mean};
 
 use super::*;
-use crate::{PupilField, lattice::to_i64, mask::from_i64};
+use crate::{PupilField, pupil::lattice::to_i64, pupil::mask::from_i64};
 
 fn mean(image: &Grid<f32>, of: impl Fn(f64) -> f64) -> f64 {
     let values = image.values();

@@ -5,8 +5,8 @@ use tem00_numerics::Grid;
 
 use crate::{
     Pupil, PupilField, SpeckleError,
-    lattice::{to_i64, unit_phasor},
-    mask::{Mask, to_f64},
+    pupil::lattice::{to_i64, unit_phasor},
+    pupil::mask::{Mask, to_f64},
 };
 
 /// What the key of the generator holds beside the seed; a new value would be a new family.

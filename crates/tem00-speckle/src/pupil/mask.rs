@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use num_complex::Complex;
 use tem00_numerics::Grid;
 
-use crate::{Pupil, lattice::to_i64, transmission::to_c64};
+use crate::{Pupil, pupil::lattice::to_i64, pupil::transmission::to_c64};
 
 /// The lattice points of a pupil about a point of the lattice, and what they transmit.
 #[derive(Clone, Debug, PartialEq)]

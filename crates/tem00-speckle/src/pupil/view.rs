@@ -11,8 +11,8 @@ use tem00_numerics::{Fft2Scratch, Grid};
 
 use crate::{
     PupilField, SpeckleField, SpecklePattern,
-    lattice::{Lattice, Source, to_i64},
-    mask::{Mask, Span, from_i64, to_f64},
+    pupil::lattice::{Lattice, Source, to_i64},
+    pupil::mask::{Mask, Span, from_i64, to_f64},
 };
 
 const ZERO: Complex<f32> = Complex::new(0.0, 0.0);

@@ -6,8 +6,8 @@ use tem00_numerics::{Fft2, Grid};
 
 use crate::{
     Phasors, Pupil, SpeckleError,
-    lattice::{Lattice, Seeded, Source},
-    mask::{Mask, to_f64},
+    pupil::lattice::{Lattice, Seeded, Source},
+    pupil::mask::{Mask, to_f64},
 };
 
 /// A field on the lattice of pupil points, random or measured, seen through the pupil.

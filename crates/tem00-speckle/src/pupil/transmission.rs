@@ -3,7 +3,7 @@ use std::sync::Arc;
 use num_complex::Complex;
 use tem00_numerics::Grid;
 
-use crate::{SpeckleError, lattice::to_i64, mask::to_f64};
+use crate::{SpeckleError, pupil::lattice::to_i64, pupil::mask::to_f64};
 
 /// The amplitude transmission of a pupil of any shape, on a grid over the pupil's bounding square.
 ///

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{SpecklePattern, lattice::to_i64, mask::from_i64};
+use crate::{SpecklePattern, pupil::lattice::to_i64, pupil::mask::from_i64};
 
 fn fields(size: usize, diameter: usize, seeds: u64) -> Vec<PupilField> {
     (0..seeds)

@@ -1,0 +1,330 @@
+use core::f64::consts::PI;
+
+use num_complex::Complex;
+use tem00_numerics::disc_overlap;
+
+use crate::{SpeckleError, Transmission};
+
+/// The shape of the camera's pupil.
+///
+/// Lengths are in units of the pupil diameter D, which is C lattice points: the outer diameter of an
+/// annulus and the width of a rectangle. A point at the position p from the pupil's centre, in
+/// diameters, belongs to it where
+///
+/// ```text
+/// circle, Gaussian:  |p| ≤ ½
+/// annulus:           inner / 2 ≤ |p| ≤ ½
+/// rectangle:         |x| ≤ ½,  |y| ≤ height / 2
+/// sampled:           |x| ≤ ½,  |y| ≤ ½
+/// ```
+///
+/// Points on the rim belong to the pupil, those within 10⁻¹² of a diameter of it too.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Pupil {
+    /// A full disc.
+    #[default]
+    Circle,
+    /// A disc with a central obstruction, as of a mirror telescope.
+    Annulus {
+        /// Diameter of the obstruction in units of the outer diameter, inside (0, 1).
+        inner: f64,
+    },
+    /// A rectangular stop.
+    Rectangle {
+        /// Height in units of the width, inside (0, 1].
+        height: f64,
+    },
+    /// A disc whose amplitude transmission falls off as `exp(−p²/radius²)`.
+    Gaussian {
+        /// The radius, in units of the diameter, at which 1/e² of the power is transmitted; positive
+        /// and finite.
+        radius: f64,
+    },
+    /// Any amplitude transmission over the bounding square, with phase if there are aberrations.
+    Sampled(Transmission),
+}
+
+impl Pupil {
+    /// What a radius on the rim may exceed it by: the rounding of coordinates.
+    pub(crate) const RIM: f64 = 1.0 + 1e-12;
+
+    /// Returns the overlap of the pupil with itself, displaced by `shift` diameters, in [0, 1].
+    ///
+    /// It is the common power of both over the power of one: the amplitude correlation of two
+    /// speckle fields whose pupils are displaced by `shift`.
+    ///
+    /// ```text
+    /// circle:     chat(ρ)                                       ρ = |shift|
+    /// annulus:    [A(1, 1) − 2 A(1, ε) + A(ε, ε)] / (1 − ε²)    A: common area of two discs over π/4
+    /// rectangle:  (1 − |x|)₊ (1 − |y| / height)₊
+    /// Gaussian:   exp(−ρ²/2R²) ∫lens exp(−2q²/R²) d²q / ∫disc   R = radius, by quadrature
+    /// sampled:    |∫ t(p) t*(p − shift) d²p| / ∫ |t|² d²p       exact
+    /// ```
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_speckle::Pupil;
+    ///
+    /// assert!((Pupil::Circle.overlap([0.5, 0.0]) - 0.391_002).abs() < 1e-6);
+    /// assert_eq!(Pupil::Rectangle { height: 0.5 }.overlap([0.5, 0.25]), 0.25);
+    /// ```
+    pub fn overlap(&self, [x, y]: [f64; 2]) -> f64 {
+        match self {
+            Self::Circle => disc_overlap(x.hypot(y)),
+            &Self::Annulus { inner } => {
+                let rho = x.hypot(y);
+                let solid = disc_overlap(rho) - 2.0 * lens(inner, rho)
+                    + inner * inner * disc_overlap(rho / inner);
+                (solid / (1.0 - inner * inner)).clamp(0.0, 1.0)
+            }
+            Self::Rectangle { height } => {
+                (1.0 - x.abs()).max(0.0) * (1.0 - y.abs() / height).max(0.0)
+            }
+            Self::Gaussian { radius } => gaussian_overlap(x.hypot(y), *radius),
+            Self::Sampled(transmission) => transmission.overlap([x, y]),
+        }
+    }
+
+    /// Tells whether the proportions of the pupil are possible.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if one lies outside the range that its variant states.
+    pub fn check(&self) -> Result<(), SpeckleError> {
+        match *self {
+            Self::Annulus { inner } if !(inner > 0.0 && inner < 1.0) => {
+                Err(SpeckleError::InnerDiameter(inner))
+            }
+            Self::Rectangle { height } if !(height > 0.0 && height <= 1.0) => {
+                Err(SpeckleError::Height(height))
+            }
+            Self::Gaussian { radius } if !(radius > 0.0 && radius.is_finite()) => {
+                Err(SpeckleError::GaussianRadius(radius))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The width and the height of the pupil, in diameters.
+    pub(crate) const fn reach(&self) -> [f64; 2] {
+        match self {
+            Self::Rectangle { height } => [1.0, *height],
+            _ => [1.0, 1.0],
+        }
+    }
+
+    /// Whether the point at `p` diameters from the centre belongs to the pupil.
+    pub(crate) fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        let rim = 0.5 * Self::RIM;
+        match self {
+            Self::Circle | Self::Gaussian { .. } => x * x + y * y <= rim * rim,
+            Self::Annulus { inner } => {
+                let (square, hole) = (x * x + y * y, 0.5 * inner / Self::RIM);
+                square <= rim * rim && square >= hole * hole
+            }
+            Self::Rectangle { height } => x.abs() <= rim && y.abs() <= height * rim,
+            Self::Sampled(_) => x.abs() <= rim && y.abs() <= rim,
+        }
+    }
+
+    /// Whether the transmission is other than 0 or 1.
+    pub(crate) const fn is_weighted(&self) -> bool {
+        matches!(self, Self::Gaussian { .. } | Self::Sampled(_))
+    }
+
+    /// The amplitude transmission at `p` diameters from the centre.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "transmissions are stored as f32"
+    )]
+    pub(crate) fn transmission(&self, [x, y]: [f64; 2]) -> Complex<f32> {
+        let amplitude = match self {
+            _ if !self.contains([x, y]) => 0.0,
+            Self::Gaussian { radius } => (-(x.hypot(y) / radius).powi(2)).exp() as f32,
+            Self::Sampled(transmission) => return transmission.at([x, y]),
+            _ => 1.0,
+        };
+        Complex::new(amplitude, 0.0)
+    }
+}
+
+/// The overlap of two apodised discs of diameter 1 at the distance `rho`.
+///
+/// About the middle between the centres the product of both transmissions is a Gaussian again, and
+/// the rim of the lens they share lies at b(φ) = √(¼ − ¼ρ² sin²φ) − ½ρ cos φ. In polar coordinates the
+/// radial integral is elementary; the quadrants are alike.
+fn gaussian_overlap(rho: f64, radius: f64) -> f64 {
+    const INTERVALS: u32 = 256;
+    if rho >= 1.0 || rho.is_nan() {
+        return 0.0;
+    }
+    // (1 − exp(−2b²/R²)) / (2/R²), in a form that neither a wide nor a narrow Gaussian spoils.
+    let wide = radius > 1.0;
+    let radial = |b: f64| {
+        let x = 2.0 * (b / radius).powi(2);
+        match wide {
+            true if x < 1e-8 => b * b * (1.0 - 0.5 * x),
+            true => b * b * -(-x).exp_m1() / x,
+            false => -(-x).exp_m1(),
+        }
+    };
+    // Simpson's rule; the integrand is smooth, and more so for a smaller rho.
+    let step = 0.5 * PI / f64::from(INTERVALS);
+    let sum: f64 = (0..=INTERVALS)
+        .map(|i| {
+            let (sin, cos) = (f64::from(i) * step).sin_cos();
+            let rim = 0.5 * (1.0 - (rho * sin).powi(2)).sqrt() - 0.5 * rho * cos;
+            let weight = match i {
+                0 | INTERVALS => 1.0,
+                i if i % 2 == 1 => 4.0,
+                _ => 2.0,
+            };
+            weight * radial(rim.max(0.0))
+        })
+        .sum();
+    let whole = radial(0.5) * 3.0 * f64::from(INTERVALS);
+    (-0.5 * (rho / radius).powi(2)).exp() * sum / whole
+}
+
+/// The common area of discs of diameters 1 and `inner` < 1 at the distance `rho`, over π/4.
+fn lens(inner: f64, rho: f64) -> f64 {
+    // Radii 1 and e and the distance d in units of the larger radius.
+    let (e, d) = (inner, 2.0 * rho);
+    if d >= 1.0 + e {
+        return 0.0;
+    }
+    if d <= 1.0 - e {
+        return e * e;
+    }
+    let cos_large = ((d * d + 1.0 - e * e) / (2.0 * d)).clamp(-1.0, 1.0);
+    let cos_small = ((d * d + e * e - 1.0) / (2.0 * d * e)).clamp(-1.0, 1.0);
+    let kite = ((1.0 + e - d) * (d + e - 1.0) * (d + 1.0 - e) * (d + 1.0 + e)).max(0.0);
+    (cos_large.acos() + e * e * cos_small.acos() - 0.5 * kite.sqrt()) / PI
+}
+
+/// The law of the random phasors in the pupil.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Phasors {
+    /// Magnitude 1 and uniform phase, as in the paper.
+    ///
+    /// By Parseval the mean intensity of every pattern is exactly 1. The squared contrast is
+    /// `1 − 1/N` and the autocovariance `|μ|² − 1/N` for N phasors of equal weight, in general for
+    /// the effective count [`PupilField::effective_phasor_count`].
+    ///
+    /// [`PupilField::effective_phasor_count`]: crate::PupilField::effective_phasor_count
+    #[default]
+    Unit,
+    /// Circular complex Gaussian with mean square 1.
+    ///
+    /// Every sample is exactly exponential and the autocovariance exactly `|μ|²` over the ensemble
+    /// of seeds. Patterns are normalised by the *expected* mean: the mean of a single one
+    /// fluctuates by `1/√N`.
+    Gaussian,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{PupilField, pupil::mask::Mask};
+
+    #[test]
+    fn the_closed_overlap_is_the_share_of_a_fine_lattice() {
+        const DIAMETER: f64 = 600.0;
+        for pupil in [
+            Pupil::Circle,
+            Pupil::Annulus { inner: 0.3 },
+            Pupil::Annulus { inner: 0.8 },
+            Pupil::Rectangle { height: 0.25 },
+            Pupil::Gaussian { radius: 0.2 },
+            Pupil::Gaussian { radius: 0.6 },
+            Pupil::Gaussian { radius: 3.0 },
+        ] {
+            let mask = Mask::new(&pupil, [DIAMETER; 2], [0.0; 2]);
+            for shift in [[0, 0], [60, 0], [300, 100], [0, 90], [420, -30], [550, 0]] {
+                #[expect(clippy::cast_precision_loss, reason = "small integers")]
+                let diameters = shift.map(|s| s as f64 / DIAMETER);
+                let share = mask.overlap(shift).re / mask.power();
+                // A rectangle of 151 rows instead of 150 is off by 1/150; rims of discs average out.
+                // So much more so against the area of a thin ring.
+                let tolerance = match pupil {
+                    Pupil::Rectangle { .. } => 1.0 / 150.0,
+                    Pupil::Annulus { inner } => 2e-4 / (1.0 - inner * inner),
+                    _ => 2e-4,
+                };
+                let difference = share - pupil.overlap(diameters);
+                assert!(
+                    difference.abs() < tolerance,
+                    "{pupil:?} at {shift:?}: {difference}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_overlap_of_a_gaussian_pupil_has_its_limits() {
+        for shift in [0.0, 0.1, 0.35, 0.7, 0.99, 1.0, 2.0] {
+            // A wide one is a disc but for 1/R² of its transmission.
+            let wide = Pupil::Gaussian { radius: 1e4 }.overlap([0.0, shift]);
+            let disc = Pupil::Circle.overlap([shift, 0.0]);
+            // Simpson's rule leaves 1e-9 where the corner of the lens is sharp.
+            assert!((wide - disc).abs() < 2e-8, "{wide} | {disc} at {shift}");
+            // A narrow one never meets the rim.
+            let narrow = Pupil::Gaussian { radius: 0.05 }.overlap([shift, 0.0]);
+            let gaussian = (-0.5 * (shift / 0.05_f64).powi(2)).exp();
+            assert!((narrow - gaussian).abs() < 1e-9, "{narrow} | {gaussian}");
+        }
+        for radius in [1e-300, 1e-30, 1e-3, 1.0, 1e30, 1e300] {
+            let pupil = Pupil::Gaussian { radius };
+            assert!(
+                (pupil.overlap([0.0, 0.0]) - 1.0).abs() < 1e-12,
+                "{radius:e}"
+            );
+            assert!(pupil.overlap([0.3, 0.0]).is_finite(), "{radius:e}");
+        }
+    }
+
+    #[test]
+    fn the_overlap_of_an_annulus_with_a_vanishing_hole_is_that_of_a_disc() {
+        for shift in [0.0, 0.1, 0.4999, 0.5, 0.7, 1.0, 1.3] {
+            // The hole takes and gives at most 2 ε² = 2e−8.
+            let annulus = Pupil::Annulus { inner: 1e-4 }.overlap([shift, 0.0]);
+            let disc = Pupil::Circle.overlap([shift, 0.0]);
+            assert!(
+                (annulus - disc).abs() < 3e-8,
+                "{annulus} and {disc} at {shift}"
+            );
+        }
+    }
+
+    #[test]
+    fn proportions_outside_their_range_are_refused() {
+        let field = PupilField::new(64, 32, 0).unwrap();
+        for bad in [0.0, 1.0, -0.5, f64::NAN, f64::INFINITY] {
+            let annulus = field.clone().with_pupil(Pupil::Annulus { inner: bad });
+            assert!(
+                matches!(annulus, Err(SpeckleError::InnerDiameter(_))),
+                "inner = {bad}"
+            );
+        }
+        for bad in [0.0, 1.5, -0.5, f64::NAN, f64::INFINITY] {
+            let rectangle = field.clone().with_pupil(Pupil::Rectangle { height: bad });
+            assert!(
+                matches!(rectangle, Err(SpeckleError::Height(_))),
+                "height = {bad}"
+            );
+        }
+        for bad in [0.0, -0.5, f64::NAN, f64::INFINITY] {
+            let gaussian = field.clone().with_pupil(Pupil::Gaussian { radius: bad });
+            assert!(
+                matches!(gaussian, Err(SpeckleError::GaussianRadius(_))),
+                "radius = {bad}"
+            );
+        }
+        let narrow = field.clone().with_pupil(Pupil::Gaussian { radius: 0.1 });
+        // π R² C² phasors of equal weight would fluctuate as these do.
+        assert_eq!(narrow, Err(SpeckleError::PhasorCount(32)));
+        let thin = field.with_pupil(Pupil::Rectangle { height: 0.01 });
+        assert_eq!(thin, Err(SpeckleError::PhasorCount(33)));
+    }
+}

@@ -66,7 +66,6 @@
 //! # Ok::<(), tem00_speckle::SpeckleError>(())
 //! ```
 
-mod covariance;
 mod error;
 mod interpolation;
 mod light;
@@ -78,10 +77,8 @@ mod plan;
 mod pupil;
 mod quadrature;
 mod slice_law;
-mod spline;
 mod stack;
 mod stack_file;
-mod taps;
 mod workers;
 
 pub use error::SpeckleError;

@@ -4,9 +4,9 @@ use tem00_numerics::vectorised;
 
 use crate::{
     Interpolation, SpeckleStack,
+    interpolation::taps::{Kernel, Taps},
     pupil::mask::to_f64,
     quadrature::{Node, mean_nodes},
-    taps::{Kernel, Taps},
 };
 
 mod layer;

@@ -1,6 +1,6 @@
 use crate::{
     SpeckleStack,
-    covariance::{EVEN, SHAPES},
+    interpolation::covariance::{EVEN, SHAPES},
 };
 
 /// The closed forms of a slice, for look-ups that run where no library can be called.

@@ -3,9 +3,9 @@ use tem00_numerics::Grid;
 
 use crate::{
     Interpolation, PupilField, SlicePath, SpeckleError,
+    interpolation::spline::{Variance, prefilters},
+    interpolation::taps::Period,
     path::PathLaw,
-    spline::{Variance, prefilters},
-    taps::Period,
     workers::map_with_scratch,
 };
 

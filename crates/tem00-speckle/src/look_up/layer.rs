@@ -2,10 +2,10 @@
 
 use crate::{
     SpeckleStack,
-    covariance::even_at,
+    interpolation::covariance::even_at,
+    interpolation::taps::{Taps, amplitudes},
     pupil::lattice::unit_phasor,
     stack::Slice,
-    taps::{Taps, amplitudes},
 };
 
 /// A slice, or the blend of two.

@@ -3,7 +3,9 @@
 use num_complex::Complex;
 use tem00_numerics::{Fft2, Fft2Scratch, Grid};
 
-use crate::{Interpolation, pupil::lattice::to_i64, pupil::mask::to_f64, spline::prefilter};
+use crate::{
+    Interpolation, interpolation::spline::prefilter, pupil::lattice::to_i64, pupil::mask::to_f64,
+};
 
 /// The filter that turns samples of a band-limited field into the coefficients of its spline.
 ///

@@ -5,11 +5,11 @@ use tem00_numerics::Grid;
 
 use crate::{
     Interpolation, PupilField, SlicePath,
-    covariance::{Covariance, Even, Responses, mean_square},
+    interpolation::covariance::{Covariance, Even, Responses, mean_square},
+    interpolation::spline::Variance,
     pupil::lattice::to_i64,
     pupil::mask::{from_i64, to_f64},
     pupil::transmission::to_c64,
-    spline::Variance,
     workers::map_with_scratch,
 };
 

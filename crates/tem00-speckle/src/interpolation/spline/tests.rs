@@ -1,5 +1,5 @@
 use super::*;
-use crate::covariance::{even_at, mean_square};
+use crate::interpolation::covariance::{even_at, mean_square};
 
 /// The cubic B-spline by its definition (Unser 1999, eq. 5).
 fn kernel(x: f64) -> f64 {

@@ -13,10 +13,10 @@ use tem00_numerics::Grid;
 
 use crate::{
     Interpolation, PupilField,
+    interpolation::spline::{Variance, lag_products, response},
     pupil::lattice::to_i64,
     pupil::mask::{Row, Span},
     pupil::transmission::to_c64,
-    spline::{Variance, lag_products, response},
 };
 
 /// Powers of p for the part that is even about the middle.

@@ -69,17 +69,10 @@
 mod error;
 mod interpolation;
 mod light;
-mod look_up;
 mod npy;
 pub mod paper;
-mod path;
-mod plan;
 mod pupil;
-mod quadrature;
-mod slice_law;
 mod stack;
-mod stack_file;
-mod workers;
 
 pub use error::SpeckleError;
 pub use interpolation::Interpolation;
@@ -89,11 +82,9 @@ pub use light::{
 pub use npy::{NpyError, NpyReader, write_npy, write_real_npy};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
-pub use path::SlicePath;
-pub use plan::{StackNeeds, StackPlan};
 pub use pupil::{
     Phasors, Pupil, PupilField, SpeckleField, SpecklePattern, SpeckleScratch, Transmission,
 };
-pub use slice_law::SliceLaw;
-pub use stack::{SpeckleStack, StackOptions};
-pub use stack_file::StackFileError;
+pub use stack::{
+    SliceLaw, SlicePath, SpeckleStack, StackFileError, StackNeeds, StackOptions, StackPlan,
+};

@@ -2,20 +2,31 @@ use num_complex::Complex;
 use tem00_numerics::Grid;
 
 use crate::{
-    Interpolation, PupilField, SlicePath, SpeckleError,
+    Interpolation, PupilField, SpeckleError,
     interpolation::spline::{Variance, prefilters},
     interpolation::taps::Period,
-    path::PathLaw,
-    workers::map_with_scratch,
 };
 
+mod file;
 mod join;
+mod look_up;
 mod memory;
+mod path;
+mod plan;
+mod quadrature;
+mod slice_law;
+pub(crate) mod workers;
 
+pub use file::StackFileError;
 pub(crate) use join::Slice;
 use join::join_all;
 pub use memory::StackOptions;
 pub(crate) use memory::{check_limit, filled, reserve};
+use path::PathLaw;
+pub use path::SlicePath;
+pub use plan::{StackNeeds, StackPlan};
+pub use slice_law::SliceLaw;
+use workers::map_with_scratch;
 
 /// Speckle that moves and decorrelates: slices of one random field behind a wandering pupil.
 ///

@@ -10,7 +10,7 @@ use crate::{
     pupil::lattice::to_i64,
     pupil::mask::{from_i64, to_f64},
     pupil::transmission::to_c64,
-    workers::map_with_scratch,
+    stack::workers::map_with_scratch,
 };
 
 /// The interpolation's coefficients of one slice, and how it joins the next.

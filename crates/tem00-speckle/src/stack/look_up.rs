@@ -6,7 +6,7 @@ use crate::{
     Interpolation, SpeckleStack,
     interpolation::taps::{Kernel, Taps},
     pupil::mask::to_f64,
-    quadrature::{Node, mean_nodes},
+    stack::quadrature::{Node, mean_nodes},
 };
 
 mod layer;

@@ -5,7 +5,11 @@
     reason = "a test stops at what it does not expect"
 )]
 
-use std::{collections::BTreeSet, fs, path::Path};
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
 
 use toml::de::{DeTable, DeValue};
 
@@ -146,9 +150,18 @@ const PHYSICS: &[&str] = &[
     "tem00-wave",
 ];
 
-fn manifest(name: &str) -> String {
+/// The folder of a crate: bindings are named after their language.
+fn folder(name: &str) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let path = root.join("crates").join(name).join("Cargo.toml");
+    match name {
+        "tem00-capi" => root.join("bindings/c"),
+        "tem00-python" => root.join("bindings/python"),
+        _ => root.join("crates").join(name),
+    }
+}
+
+fn manifest(name: &str) -> String {
+    let path = folder(name).join("Cargo.toml");
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
@@ -162,16 +175,13 @@ fn keys(manifest: &str, section: &str) -> BTreeSet<String> {
 
 #[test]
 fn every_crate_of_the_workspace_has_its_place_in_the_graph() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates");
-    let found: BTreeSet<_> = fs::read_dir(folder)
-        .expect("the workspace has crates")
-        .map(|entry| entry.expect("a readable folder").file_name())
-        .map(|name| name.to_string_lossy().into_owned())
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let found: BTreeSet<_> = ["bindings", "crates"]
+        .into_iter()
+        .flat_map(|parent| fs::read_dir(root.join(parent)).expect("the workspace has crates"))
+        .map(|entry| entry.expect("a readable folder").path())
         .collect();
-    let placed = ALLOWED
-        .iter()
-        .map(|(name, ..)| (*name).to_owned())
-        .collect();
+    let placed = ALLOWED.iter().map(|(name, ..)| folder(name)).collect();
     assert_eq!(found, placed, "crates in the workspace and in the graph");
 }
 

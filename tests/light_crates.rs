@@ -92,7 +92,7 @@ fn no_threads_come_along_unless_asked_for() {
 fn the_documentation_names_functions_that_the_header_has() {
     let (page, header) = (
         read("docs/integration.md"),
-        read("crates/tem00-capi/include/tem00.h"),
+        read("bindings/c/include/tem00.h"),
     );
     let names = page.split('`').filter(|word| {
         let kinds = ["tem00_light_", "tem00_stack_", "tem00_imaging_"];

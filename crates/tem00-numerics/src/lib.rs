@@ -1,5 +1,5 @@
-//! The ground floor of tem00: grids, a pruned two-dimensional Fourier transform, and the special
-//! functions of circular pupils.
+//! The ground floor of tem00: grids, a pruned two-dimensional Fourier transform, quadrature, and the
+//! special functions of circular pupils.
 //!
 //! # Conventions
 //!
@@ -28,6 +28,7 @@ mod fft;
 mod grid;
 mod memory;
 mod pupil;
+pub mod quadrature;
 mod vectorised;
 
 #[cfg(feature = "fft")]

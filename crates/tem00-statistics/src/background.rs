@@ -120,9 +120,8 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::{
-        exponential_cumulative, exponential_density, kolmogorov_smirnov, quadrature::integrate,
-    };
+    use crate::{exponential_cumulative, exponential_density, kolmogorov_smirnov};
+    use tem00_numerics::quadrature::integrate;
 
     #[test]
     fn density_has_mean_one_and_the_stated_contrast() {

@@ -131,7 +131,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::quadrature::integrate;
+    use tem00_numerics::quadrature::integrate;
 
     fn spectrum() -> GaussianSpectrum {
         GaussianSpectrum::new(650e-9, 3e-9).unwrap()

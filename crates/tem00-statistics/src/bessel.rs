@@ -1,6 +1,6 @@
 use core::f64::consts::TAU;
 
-use crate::quadrature::integrate;
+use tem00_numerics::quadrature::integrate;
 
 /// From here on the asymptotic series is exact: its smallest term is exp(−2x).
 const ASYMPTOTIC_FROM: f64 = 25.0;

@@ -2,9 +2,10 @@ use core::f64::consts::PI;
 
 use libm::erf;
 
+use tem00_numerics::quadrature::integrate;
+
 use crate::{
     StatisticsError, airy_autocovariance,
-    quadrature::integrate,
     rectangular_pixel::{AVERAGED_FROM, averaged_autocovariance},
     speckle_length,
 };

@@ -1,8 +1,8 @@
 use core::f64::consts::PI;
 
-use tem00_numerics::disc_overlap;
+use tem00_numerics::{disc_overlap, quadrature::integrate};
 
-use crate::{airy_autocovariance, quadrature::integrate};
+use crate::airy_autocovariance;
 
 /// Returns the contrast of an exposure during which the pattern changes, where `correlation(t)` is
 /// the correlation of the intensities at two moments the share t of the exposure apart.

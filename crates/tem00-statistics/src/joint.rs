@@ -156,7 +156,8 @@ mod tests {
     use proptest::{prelude::*, test_runner::RngSeed};
 
     use super::*;
-    use crate::{airy_autocovariance, quadrature::integrate, synthetic};
+    use crate::{airy_autocovariance, synthetic};
+    use tem00_numerics::quadrature::integrate;
 
     fn law(amplitude_correlation: f64) -> JointIntensity {
         JointIntensity::new(amplitude_correlation).unwrap()

@@ -78,7 +78,6 @@ mod pixel;
 mod pixel_autocovariance;
 mod pixel_widening;
 mod polarisation;
-mod quadrature;
 mod rectangular_pixel;
 mod row_spectrum;
 mod second_order;

@@ -141,7 +141,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::quadrature::{integrate, integrate_from_root};
+    use tem00_numerics::quadrature::{integrate, integrate_from_root};
 
     const WAVELENGTH: f64 = 633e-9;
     const DISTANCE: f64 = 0.8;

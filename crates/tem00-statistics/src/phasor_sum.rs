@@ -216,9 +216,8 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::{
-        exponential_cumulative, exponential_density, kolmogorov_smirnov, quadrature::integrate,
-    };
+    use crate::{exponential_cumulative, exponential_density, kolmogorov_smirnov};
+    use tem00_numerics::quadrature::integrate;
 
     #[test]
     fn moments_of_the_law_are_those_of_the_phasors() {

@@ -1,6 +1,8 @@
 use core::f64::consts::{FRAC_PI_4, PI, SQRT_2};
 
-use crate::{airy_autocovariance, quadrature::integrate};
+use tem00_numerics::quadrature::integrate;
+
+use crate::airy_autocovariance;
 
 /// Returns the contrast of fully developed speckle seen by square pixels that integrate over
 /// their whole area, `pixel_size` being their side in units of the speckle size h.

@@ -1,8 +1,8 @@
 use core::f64::consts::PI;
 
-use tem00_numerics::sinc;
+use tem00_numerics::{quadrature::for_each_node, sinc};
 
-use crate::{StatisticsError, quadrature::for_each_node, row_spectrum::Row};
+use crate::{StatisticsError, row_spectrum::Row};
 
 /// A column of pixels that see speckle.
 ///

@@ -113,7 +113,8 @@ mod tests {
     use proptest::{prelude::*, test_runner::RngSeed};
 
     use super::*;
-    use crate::{GammaIntensity, quadrature::integrate};
+    use crate::GammaIntensity;
+    use tem00_numerics::quadrature::integrate;
 
     #[test]
     fn density_has_mean_one_and_the_stated_contrast() {

@@ -1,12 +1,11 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use tem00_numerics::disc_overlap;
-
-use crate::{
-    airy_autocovariance,
+use tem00_numerics::{
+    disc_overlap,
     quadrature::{integrate, integrate_from_root},
-    translation_contrast,
 };
+
+use crate::{airy_autocovariance, translation_contrast};
 
 /// Returns the contrast of fully developed speckle seen by rectangular pixels that integrate over
 /// their area, `pixel_size` being their width and height in units of the speckle size h.

@@ -1,11 +1,11 @@
 use core::f64::consts::PI;
 
-use tem00_numerics::sinc;
-
-use crate::{
-    airy_power_spectrum,
+use tem00_numerics::{
     quadrature::{integrate, integrate_from_root},
+    sinc,
 };
+
+use crate::airy_power_spectrum;
 
 /// Returns the speckle length of rows: the integral over all distances across the rows of the
 /// autocovariance of speckle that is averaged over `row_height` along the line; both lengths are in

@@ -1,6 +1,6 @@
 use core::f64::consts::{PI, TAU};
 
-use tem00_numerics::sinc;
+use tem00_numerics::{quadrature::for_each_node, sinc};
 
 use super::correlation;
 
@@ -121,24 +121,15 @@ const LARGEST_AXIAL_SHIFT: f64 = 3_200.0;
 fn arc(s: f64, beta: f64, k: f64) -> [f64; 2] {
     let end = s.acos();
     // The phase changes along the arc at most at the rate of its end or, short of it, a right angle.
-    let phase = beta * 2.0 * k * end.sin() * end;
-    let panels = (phase / PHASE_PER_PANEL).ceil().max(1.0);
-    let half_width = 0.5 * end / panels;
+    let longest = PHASE_PER_PANEL / (beta * 2.0 * k * end.sin());
     let mut total = [0.0; 2];
-    let mut panel = 0.0;
-    while panel < panels {
-        let middle = (2.0 * panel + 1.0) * half_width;
-        for (node, weight) in GAUSS_LEGENDRE {
-            for t in [middle - half_width * node, middle + half_width * node] {
-                let cosine = t.cos();
-                let factor = weight * (1.0 - k * cosine);
-                let [re, im] = mean_phasor(beta * (1.0 + k * k - 2.0 * k * cosine));
-                total = sum(total, [factor * re, factor * im]);
-            }
-        }
-        panel += 1.0;
-    }
-    total.map(|part| part * half_width / PI)
+    for_each_node([0.0, end], longest, |t, weight| {
+        let cosine = t.cos();
+        let factor = weight * (1.0 - k * cosine);
+        let [re, im] = mean_phasor(beta * (1.0 + k * k - 2.0 * k * cosine));
+        total = sum(total, [factor * re, factor * im]);
+    });
+    total.map(|part| part / PI)
 }
 
 /// E(z) = (exp(iz) − 1)/(iz) = exp(iz/2) sinc(z/2), the mean of the phasors from 0 to z.
@@ -154,16 +145,3 @@ fn sum(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 
 /// Sixteen nodes integrate exp(iωt) over [−1, 1] to 2e−16 up to ω = 8.
 const PHASE_PER_PANEL: f64 = 16.0;
-
-/// The nodes in (0, 1) of the 16-point Gauss–Legendre rule and their weights (M. Abramowitz and
-/// I. A. Stegun, *Handbook of Mathematical Functions*, 1964, table 25.4).
-const GAUSS_LEGENDRE: [(f64, f64); 8] = [
-    (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
-    (0.281_603_550_779_258_9, 0.182_603_415_044_923_6),
-    (0.458_016_777_657_227_4, 0.169_156_519_395_002_54),
-    (0.617_876_244_402_643_7, 0.149_595_988_816_576_73),
-    (0.755_404_408_355_003, 0.124_628_971_255_533_87),
-    (0.865_631_202_387_831_7, 0.095_158_511_682_492_78),
-    (0.944_575_023_073_232_6, 0.062_253_523_938_647_89),
-    (0.989_400_934_991_649_9, 0.027_152_459_411_754_095),
-];

@@ -1,8 +1,9 @@
 use core::f64::consts::PI;
 
-use tem00_numerics::disc_overlap;
-
-use crate::quadrature::{integrate, integrate_from_root};
+use tem00_numerics::{
+    disc_overlap,
+    quadrature::{integrate, integrate_from_root},
+};
 
 /// Returns the standard deviation of the centroid of a round Gaussian spot of the 1/e² radius `radius`
 /// along one axis, under speckle; both are in units of the speckle size h.

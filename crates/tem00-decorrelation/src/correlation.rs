@@ -9,6 +9,8 @@ pub use inverse::{
 };
 pub use joint::CorrelationLaw;
 
+use tem00_numerics::{disc_overlap, sinc_pi_squared};
+
 /// Returns the intensity correlation left when the speckle slides across a circular pupil.
 ///
 /// ```text
@@ -35,7 +37,7 @@ pub use joint::CorrelationLaw;
 /// - S. Bergmann et al. 2016, §6.4.
 #[inline]
 pub fn pupil_overlap_correlation(shift: f64) -> f64 {
-    let overlap = series::disc_overlap(shift);
+    let overlap = disc_overlap(shift);
     overlap * overlap
 }
 
@@ -69,7 +71,7 @@ pub fn pupil_overlap_correlation(shift: f64) -> f64 {
 /// - D. W. Li and F. P. Chiang, *Decorrelation functions in laser speckle photography*, 1986.
 #[inline]
 pub fn axial_correlation(shift: f64) -> f64 {
-    series::sinc_squared(shift)
+    sinc_pi_squared(shift)
 }
 
 /// Returns the intensity correlation left after a pupil displacement and an axial displacement

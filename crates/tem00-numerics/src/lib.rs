@@ -37,6 +37,6 @@ pub use grid::{Grid, GridError, wrap_coordinate};
 pub use memory::{MemoryError, available_memory, check_memory};
 pub use pupil::{
     circular_path_overlap, circular_path_overlap_inverse, disc_overlap, disc_overlap_inverse, jinc,
-    sinc, sinc_inverse,
+    sinc, sinc_inverse, sinc_pi_squared,
 };
 pub use vectorised::vectorised;

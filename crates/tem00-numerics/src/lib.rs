@@ -23,6 +23,7 @@
 //! assert!((disc_overlap_inverse(overlap) - 0.5).abs() < 1e-12);
 //! ```
 
+pub mod cast;
 #[cfg(feature = "fft")]
 mod fft;
 mod grid;

@@ -22,7 +22,6 @@ use tem00::{
 
 /// A Weyl sequence: an even spread without a generator.
 fn weyl(i: u32) -> f32 {
-    #[expect(clippy::cast_precision_loss, reason = "a 24-bit number")]
     let value = (i.wrapping_mul(2_654_435_769) >> 8) as f32;
     value / 16_777_216.0
 }
@@ -47,7 +46,6 @@ impl Dense {
                 }
             }
         }
-        #[expect(clippy::cast_precision_loss, reason = "a normalisation in f32")]
         let scale = 1.0 / count as f32;
         Self {
             size,

@@ -93,7 +93,6 @@ impl Case {
             let shift = displacement_between(&middle(&before), &middle(&after));
             shift.expect("a maximum").offset * STEP
         };
-        #[expect(clippy::cast_precision_loss, reason = "a few surfaces")]
         let count = seeds as f64;
         (1..=seeds).map(shift).sum::<DVec2>() / count
     }

@@ -191,7 +191,6 @@ impl Scene {
             let rough = self.measured_from(states, seed, states.window)?;
             sum += self.measured_from(states, seed, rough)?;
         }
-        #[expect(clippy::cast_precision_loss, reason = "a few surfaces")]
         let count = seeds as f64;
         Some(sum / count)
     }

@@ -13,7 +13,6 @@ const STEP: f64 = 5.0;
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
     reason = "the row lies in [0, 80]"
 )]
 pub(crate) fn xyz_of_wavelength(wavelength: f64) -> Option<[f64; 3]> {

@@ -129,7 +129,6 @@ fn behind(
     if diameter < PupilField::MIN_DIAMETER || diameter > size / 2 {
         return Err(SpeckleError::Diameter { diameter, size });
     }
-    #[expect(clippy::cast_precision_loss, reason = "sizes are far below 2⁵³")]
     let speckle_size = size as f64 / diameter as f64;
     PupilField::from_samples(samples, [size; 2], speckle_size)
 }

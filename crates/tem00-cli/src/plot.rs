@@ -159,7 +159,6 @@ fn svg(scene: &mut Scene) -> String {
 
 /// Returns whether an item is among the `most` of `count` that are drawn: all are if they are few, and of
 /// many a part that is even over all of them, which multiples of the golden ratio are.
-#[expect(clippy::cast_precision_loss, reason = "far below 2⁵²")]
 pub(crate) fn is_drawn(index: usize, count: usize, most: usize) -> bool {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     (GOLDEN * index as f64).fract() * count as f64 <= most as f64

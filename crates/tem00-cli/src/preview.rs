@@ -83,7 +83,6 @@ impl Picture {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            clippy::cast_precision_loss,
             reason = "the index lies in [0, 2²⁸]"
         )]
         let index = (levels.len() as f64 * BELOW_WHITE) as usize;

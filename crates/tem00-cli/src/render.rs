@@ -226,7 +226,6 @@ impl<'a> Render<'a> {
         let seconds: f64 = frames.iter().map(|frame| frame.seconds).sum();
         let samples: u64 = frames.iter().map(|frame| frame.samples).sum();
         let rays: u64 = frames.iter().map(|frame| frame.rays).sum();
-        #[expect(clippy::cast_precision_loss, reason = "shown to a few digits")]
         let per_second = |count: u64| count as f64 / seconds.max(1e-9);
         Summary {
             program: concat!("tem00 ", env!("CARGO_PKG_VERSION")),

@@ -243,7 +243,6 @@ impl error::Error for GridError {}
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
     reason = "the reduced cell lies in [0, period)"
 )]
 pub fn wrap_coordinate(x: f64, period: usize) -> (usize, f64) {
@@ -323,7 +322,6 @@ mod tests {
         fn wrapping_keeps_the_coordinate_up_to_whole_periods(x in -1e12_f64..1e12, period in 1_usize..5_000) {
             let (cell, fraction) = wrap_coordinate(x, period);
             prop_assert!(cell < period && (0.0..1.0).contains(&fraction), "{cell} + {fraction}");
-            #[expect(clippy::cast_precision_loss, reason = "cells are below 5000")]
             let turns = (x - (cell as f64 + fraction)) / period as f64;
             // x carries 12 digits before the point: 1e12 · 2⁻⁵³ ≈ 1.1e−4 of absolute rounding.
             prop_assert!((turns - turns.round()).abs() < 2.5e-4, "{turns} turns");

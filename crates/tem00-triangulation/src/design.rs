@@ -223,7 +223,6 @@ fn check_sweeps(sweeps: &[Sweep]) -> Result<(), TriangulationError> {
     Ok(())
 }
 
-#[expect(clippy::cast_precision_loss, reason = "it is shown, not counted with")]
 fn too_many(sweeps: &[Sweep]) -> TriangulationError {
     TriangulationError::OutOfRange {
         parameter: "most_setups",

@@ -27,7 +27,6 @@ impl Field {
             return self.amplitude.map(|_| 0.0);
         }
         let relative = |value: &Complex<f64>| (value / largest).norm_sqr();
-        #[expect(clippy::cast_precision_loss, reason = "a number of samples")]
         let count = values.len() as f64;
         let scale = count / values.iter().map(relative).sum::<f64>();
         #[expect(

@@ -96,7 +96,6 @@ impl Noise {
             reason = "a node of the grid, whatever the rounding of a position far from the origin"
         )]
         let first = (at.floor().max(0.0) as usize).min(nodes - TAPS);
-        #[expect(clippy::cast_precision_loss, reason = "far below 2⁵³")]
         let before = at - first as f64 + REACH as f64;
         let mut weights = [0.0; TAPS];
         for (offset, weight) in (0_u32..).zip(&mut weights) {

@@ -230,7 +230,6 @@ impl PupilLattice {
     fn new(camera: &Camera, sampling: &ImageSampling, tau: DVec2) -> Self {
         let lens = camera.lens();
         let tau2 = tau.length_squared();
-        #[expect(clippy::cast_precision_loss, reason = "at most 2¹³")]
         let extent = sampling.samples as f64 * sampling.step;
         let on_axis = sampling.wavelength * lens.pupil_to_image / extent;
         let outer = DMat2::from_cols(tau * tau.x, tau * tau.y);
@@ -262,7 +261,6 @@ impl PupilLattice {
 
 /// The phases that move the origin of a transform from index 0 to index `middle`.
 fn origin(middle: usize, size: usize) -> Vec<Complex<f64>> {
-    #[expect(clippy::cast_precision_loss, reason = "below 2²⁶")]
     let turns = |k: usize| (middle * k % size) as f64 / size as f64;
     (0..size)
         .map(|k| Complex::from_polar(1.0, TAU * turns(k)))

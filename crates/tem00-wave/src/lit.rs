@@ -69,7 +69,6 @@ impl Progress {
     /// assert_eq!(progress.remaining(Duration::from_secs(3)), Some(Duration::from_secs(12)));
     /// ```
     pub fn remaining(&self, elapsed: Duration) -> Option<Duration> {
-        #[expect(clippy::cast_precision_loss, reason = "an estimate")]
         let factor = self.total.saturating_sub(self.done) as f64 / self.done as f64;
         Duration::try_from_secs_f64(elapsed.as_secs_f64() * factor).ok()
     }

@@ -117,7 +117,6 @@ impl SamplePlane {
 
     /// Where sample `(x, y)` lies from the centre, in metres.
     pub(crate) fn offset(&self, x: usize, y: usize) -> DVec3 {
-        #[expect(clippy::cast_precision_loss, reason = "at most 2²⁸")]
         let from_middle = |i: usize, n: usize| i as f64 - (n / 2) as f64;
         from_middle(x, self.samples[0]) * self.steps[0]
             + from_middle(y, self.samples[1]) * self.steps[1]

@@ -34,7 +34,6 @@ impl Random {
     /// Uniform in [0, 1), a multiple of 2⁻⁵³.
     pub(crate) fn uniform(&mut self) -> f64 {
         const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
-        #[expect(clippy::cast_precision_loss, reason = "53 bits fit")]
         let value = (self.generator.next_u64() >> 11) as f64;
         value * STEP
     }

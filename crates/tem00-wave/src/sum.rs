@@ -134,7 +134,6 @@ mod tests {
     #[test]
     fn parity_holds_up_to_the_largest_phase() {
         for whole in [0_u64, 1, 1_000_001, (1 << 50) + 1, (1 << 51) - 1] {
-            #[expect(clippy::cast_precision_loss, reason = "below 2⁵³")]
             let (_, cos) = sin_cos_half_turns(whole as f64);
             let expected = if whole % 2 == 0 { 1.0 } else { -1.0 };
             assert!((cos - expected).abs() < 1e-15, "{cos} at {whole}");
@@ -157,7 +156,6 @@ mod tests {
             assert_eq!(sources.x.len(), count.next_multiple_of(LANES));
             // Two wavelengths away: all in phase.
             let wave = sources.wave_at(DVec3::ZERO, 0.5);
-            #[expect(clippy::cast_precision_loss, reason = "small counts")]
             let expected = 2.0 * count as f64;
             assert!((wave - expected).norm() < 1e-10, "{wave} for {count}");
         }

@@ -238,7 +238,6 @@ impl PatchFrame {
             checked_length(side, |_| WaveError::Size(patch.size))?;
         }
         checked_direction(patch.normal, WaveError::Normal)?;
-        #[expect(clippy::cast_precision_loss, reason = "at most 2²⁸")]
         let spacing = [0, 1].map(|i| patch.size[i] / patch.scatterers[i] as f64);
         Ok(Self {
             centre: checked_position(patch.centre, WaveError::Centre)?,
@@ -274,7 +273,6 @@ impl PatchFrame {
         arrangement: Arrangement,
         random: &mut Random,
     ) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "at most 2²⁸")]
         let start = cell as f64 * self.spacing[i];
         let from_edge = match arrangement {
             Arrangement::Stratified => start + random.uniform() * self.spacing[i],

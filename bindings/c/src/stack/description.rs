@@ -174,10 +174,6 @@ impl StackNeeds {
 }
 
 /// A number of lattice points, which a double holds exactly.
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "larger ones are refused as a size"
-)]
 fn lattice(points: usize) -> f64 {
     points as f64
 }

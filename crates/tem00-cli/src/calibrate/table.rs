@@ -92,10 +92,6 @@ fn height(calibration: &Calibration) -> Option<String> {
     ))
 }
 
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "an image has at most 2²⁸ pixels"
-)]
 fn middle(calibration: &Calibration) -> DVec2 {
     let camera = calibration.camera();
     DVec2::new(camera.width() as f64, camera.height() as f64) / 2.0

@@ -265,10 +265,6 @@ fn aperture(laser: &LaserInspection) -> Option<DVec3> {
 
 /// Returns the eye of the camera and the corners of what it shows at the distance in focus, in metres.
 fn pyramid(camera: &Camera) -> [DVec3; 5] {
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "an image has fewer than 2⁵³ pixels"
-    )]
     let [width, height] = [camera.width(), camera.height()].map(|pixels| pixels as f64);
     let distance = camera.description().focus_distance;
     let corner = |x: f64, y: f64| {

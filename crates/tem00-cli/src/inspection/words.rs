@@ -114,10 +114,6 @@ fn shown(scene: &Scene, part: &LightPart) -> String {
         description.focus_distance
     };
     let pitch = description.pixel_pitch * distance / camera.image_distance();
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "an image has fewer than 2⁵³ pixels"
-    )]
     let [width, height] =
         [camera.width(), camera.height()].map(|pixels| 1e3 * pitch * pixels as f64);
     let middle = camera.position() - distance * camera.axes().z_axis;

@@ -45,7 +45,6 @@ pub(super) fn of(
 }
 
 /// Tells that there is no line, or hardly any.
-#[expect(clippy::cast_precision_loss, reason = "a number of columns")]
 fn too_few(found: &Found, args: &LinesArgs) -> Option<String> {
     let lit = found.iter().filter(|points| !points.is_empty()).count();
     if lit as f64 >= LIT * found.len() as f64 {
@@ -63,7 +62,6 @@ fn too_few(found: &Found, args: &LinesArgs) -> Option<String> {
 }
 
 /// Tells why many points cannot be trusted.
-#[expect(clippy::cast_precision_loss, reason = "a number of points")]
 fn doubtful(found: &Found) -> Option<String> {
     let points = found.iter().map(Vec::len).sum::<usize>();
     let of = |validity: Validity| {

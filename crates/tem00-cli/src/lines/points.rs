@@ -50,10 +50,6 @@ impl Places<'_> {
         calibration: &Calibration,
         (index, point): (usize, &LinePoint),
     ) -> io::Result<()> {
-        #[expect(
-            clippy::cast_precision_loss,
-            reason = "an image has at most 2²⁸ columns"
-        )]
         let pixel = DVec2::new(index as f64 + 0.5, point.position);
         let line = self.lines.iter().find(|line| line.line == point.line);
         let noise = line.and_then(|line| line.noise);

@@ -84,7 +84,6 @@ fn noise_about_parabola(values: &[Option<f64>]) -> Option<f64> {
 }
 
 fn parabola_weights() -> [f64; 2 * REACH + 1] {
-    #[expect(clippy::cast_precision_loss, reason = "a few columns")]
     let (m, at) = (REACH as f64, |i: usize| i as f64 - REACH as f64);
     let sum = (2.0 * m - 1.0) * (2.0 * m + 1.0) * (2.0 * m + 3.0);
     let weight = |i: f64| 3.0 * (3.0 * m * m + 3.0 * m - 1.0 - 5.0 * i * i) / sum;
@@ -155,10 +154,6 @@ impl ImageSummary {
     }
 }
 
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "an image has at most 2²⁸ columns"
-)]
 fn valid_share(line: &LineSummary) -> String {
     format!(
         "{:.1} %",

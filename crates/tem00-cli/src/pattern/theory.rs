@@ -250,7 +250,6 @@ const fn near(value: f64, tolerance: f64) -> Expectation {
     Expectation::Near { value, tolerance }
 }
 
-#[expect(clippy::cast_precision_loss, reason = "counts here are far below 2⁵²")]
 const fn to_f64(count: usize) -> f64 {
     count as f64
 }

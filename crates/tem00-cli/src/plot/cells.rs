@@ -91,7 +91,6 @@ fn png(columns: usize, rows: usize, pixels: &[u8]) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-#[expect(clippy::cast_precision_loss, reason = "a few hundred cells")]
 const fn f64_of(cells: usize) -> f64 {
     cells as f64
 }

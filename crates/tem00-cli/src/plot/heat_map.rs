@@ -142,7 +142,6 @@ mod tests {
         }
     }
 
-    #[expect(clippy::cast_precision_loss, reason = "a few hundred rows")]
     #[test]
     fn large_maps_are_drawn_as_means_of_blocks() {
         let values = Grid::from_fn(450, 3, |x, y| if x == 0 { f32::NAN } else { y as f32 });

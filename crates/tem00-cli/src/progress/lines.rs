@@ -65,7 +65,6 @@ impl Lines {
         Some(self.line(&state.name, elapsed, done))
     }
 
-    #[expect(clippy::cast_precision_loss, reason = "shown to a few digits")]
     fn line(&self, name: &str, elapsed: Duration, done: u64) -> String {
         let share = done as f64 / self.total.max(1) as f64;
         let rate = done as f64 / elapsed.as_secs_f64().max(1e-9);

@@ -255,7 +255,6 @@ fn push(places: &mut String, [x, y, z]: [f64; 3]) {
 }
 
 /// Returns the middle of the heights of a colour, from 0 to 1.
-#[expect(clippy::cast_precision_loss, reason = "a few colours")]
 fn middle(colour: usize) -> f64 {
     (colour as f64 + 0.5) / COLOURS as f64
 }

@@ -175,7 +175,6 @@ fn hann(size: usize) -> Vec<f64> {
     (0..size).map(at).collect()
 }
 
-#[expect(clippy::cast_precision_loss, reason = "there are at most 2²⁸ pixels")]
 const fn to_f64(count: usize) -> f64 {
     count as f64
 }

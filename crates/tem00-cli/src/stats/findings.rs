@@ -339,7 +339,6 @@ fn first_zero(speckle_size: f64) -> usize {
     (AIRY_FIRST_ZERO * speckle_size).ceil() as usize
 }
 
-#[expect(clippy::cast_precision_loss, reason = "there are at most 2²⁸ samples")]
 fn count(samples: usize) -> f64 {
     samples as f64
 }

@@ -98,7 +98,6 @@ fn sampled(end: f64, function: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-#[expect(clippy::cast_precision_loss, reason = "lags are far below 2⁵²")]
 const fn f64_of(lag: usize) -> f64 {
     lag as f64
 }

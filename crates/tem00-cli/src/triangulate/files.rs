@@ -188,13 +188,8 @@ fn row(point: &MeasuredPoint, height: DVec3) -> String {
 /// Returns what the columns and rows of a map are, in metres where they are lengths: the ranges along
 /// both.
 pub(super) fn ranges(map: &HeightMap) -> [(f64, f64); 2] {
-    #[expect(clippy::cast_precision_loss, reason = "a map has at most 2²⁸ cells")]
     let [columns, rows] = [map.heights.width(), map.heights.height()].map(|cells| cells as f64);
     match map.raster {
-        #[expect(
-            clippy::cast_precision_loss,
-            reason = "an image has at most 2²⁸ columns"
-        )]
         Raster::Image { columns: averaged } => [(0.0, columns * averaged as f64), (0.0, rows)],
         Raster::Part { origin, pitch } => {
             let end = |axis: usize, cells: f64| origin[axis] + cells * pitch;

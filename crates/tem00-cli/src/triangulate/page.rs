@@ -262,10 +262,6 @@ impl Page<'_> {
 
     /// Returns the valid points along the axes of the part in millimetres or, where they do not move on, of
     /// the image: columns, profiles and millimetres.
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "an image has at most 2²⁸ pixels"
-    )]
     fn points(&self, of_part: bool) -> Vec<[f64; 3]> {
         let axes = self.job.measurement.axes();
         let profiles = self.measured.profiles.iter().enumerate();

@@ -151,7 +151,6 @@ impl FrameRecord {
         }
         let widths = frame.points.iter().filter(|point| point.is_valid());
         let width: f64 = widths.map(|point| point.seen.width).sum();
-        #[expect(clippy::cast_precision_loss, reason = "a number of points")]
         let mean_width = (valid > 0).then(|| width / valid as f64);
         Self {
             number: frame.frame,

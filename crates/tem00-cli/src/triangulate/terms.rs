@@ -59,7 +59,6 @@ impl Terms {
             return None;
         }
         let mean = |term: &dyn Fn(&MeasuredPoint) -> f64| {
-            #[expect(clippy::cast_precision_loss, reason = "a number of points")]
             let count = points as f64;
             valid().map(term).sum::<f64>() / count
         };

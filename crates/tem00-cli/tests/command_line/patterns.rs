@@ -48,7 +48,6 @@ fn a_pattern_in_every_format_has_the_same_statistics() {
 
 /// Writes an array of `c8` as NumPy does: a wave that is spread over all of the image.
 fn write_field(path: &Path, width: usize, height: usize) {
-    #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
     let phase = |i: usize| 0.1 * (i % width).pow(2) as f32 + 0.2 * (i / width).pow(2) as f32;
     let values: Vec<f32> = (0..width * height)
         .flat_map(|i| [phase(i).cos(), phase(i).sin()])

@@ -126,7 +126,6 @@ fn short_length(length: usize, aperture: usize) -> usize {
 /// exp(−2πi n / length), rounded once.
 #[expect(
     clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
     reason = "lengths are below 2⁵³ and the transform runs in f32"
 )]
 fn root_of_unity(n: usize, length: usize) -> Complex<f32> {

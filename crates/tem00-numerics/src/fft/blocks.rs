@@ -138,7 +138,6 @@ mod tests {
 
     const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 
-    #[expect(clippy::cast_precision_loss, reason = "small integers")]
     fn place(x: usize, y: usize) -> Complex<f32> {
         Complex::new(x as f32, y as f32)
     }

@@ -11,7 +11,6 @@ const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 fn aperture(width: usize, height: usize) -> Grid<Complex<f32>> {
     let walk = |i: usize| {
         let i = u32::try_from(i).unwrap();
-        #[expect(clippy::cast_precision_loss, reason = "a 24-bit number")]
         let value = (i.wrapping_mul(2_654_435_769) >> 8) as f32 / 16_777_216.0;
         value - 0.5
     };
@@ -22,7 +21,6 @@ fn aperture(width: usize, height: usize) -> Grid<Complex<f32>> {
 
 /// The definition, in `f64`.
 fn naive(width: usize, height: usize, aperture: &Grid<Complex<f32>>) -> Grid<Complex<f64>> {
-    #[expect(clippy::cast_precision_loss, reason = "small integers")]
     let wave = |n: usize, length: usize| {
         Complex::from_polar(1.0, -2.0 * PI * (n % length) as f64 / length as f64)
     };
@@ -78,7 +76,6 @@ fn transform_is_the_definition_for_any_size() {
         let size = norm(expected.values().iter().map(Complex::norm_sqr));
         // Higham 2002, theorem 24.2: log₂ n · 7 u in norm for powers of two, with u = 2⁻²⁴;
         // other lengths take three transforms of up to four times the length.
-        #[expect(clippy::cast_precision_loss, reason = "small integers")]
         let levels = ((width * height) as f64).log2() + 4.0;
         let tolerance = 3.0 * levels * 7.0 * 2.0_f64.powi(-24);
         assert!(
@@ -96,7 +93,6 @@ fn the_mean_square_of_the_transform_is_the_sum_of_the_squares() {
         let transform = Fft2::with_aperture(size, size, aperture_size, aperture_size).unwrap();
         let squares = transform.forward(&input, |_, _, value| f64::from(value.norm_sqr()));
         let sum: f64 = input.values().iter().map(|x| f64::from(x.norm_sqr())).sum();
-        #[expect(clippy::cast_precision_loss, reason = "small integers")]
         let mean = squares.values().iter().sum::<f64>() / (size * size) as f64;
         // Rounding errors of 2⁻²⁴ times a few per level are random over 10⁴ values.
         assert!((mean / sum - 1.0).abs() < 1e-6, "{size}: {mean} for {sum}");

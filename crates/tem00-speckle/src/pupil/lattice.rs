@@ -184,7 +184,6 @@ fn to_index(n: i64) -> usize {
 #[inline(always)]
 #[expect(
     clippy::cast_possible_wrap,
-    clippy::cast_precision_loss,
     reason = "the remainder is a signed 30-bit number, rounded to the 24 bits of f32 on purpose"
 )]
 pub(crate) fn unit_phasor(word: u32) -> Complex<f32> {
@@ -401,7 +400,6 @@ mod tests {
 
     #[test]
     fn samples_lie_about_the_origin_with_nothing_around_them() {
-        #[expect(clippy::cast_precision_loss, reason = "small integers")]
         let sample = |x: usize, y: usize| Complex::new(1.0 + x as f32, 1.0 + y as f32);
         for (width, height) in [(4, 3), (5, 4)] {
             let samples = Arc::new(Grid::from_fn(width, height, sample));

@@ -263,18 +263,10 @@ fn nearest(x: f64, period: f64) -> f64 {
     x - period * (x / period).round()
 }
 
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "lattice sizes and counts are far below 2⁵³"
-)]
 pub(crate) const fn to_f64(n: usize) -> f64 {
     n as f64
 }
 
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "lattice points of a pupil about its centre are far below 2⁵³"
-)]
 pub(crate) const fn from_i64(n: i64) -> f64 {
     n as f64
 }

@@ -116,7 +116,6 @@ fn points_of(mask: &Mask) -> Vec<[i64; 2]> {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
     reason = "the product is a non-negative number below `end`"
 )]
 fn below(end: usize, generator: &mut ChaCha8Rng) -> usize {

@@ -242,7 +242,6 @@ mod tests {
         ] {
             let mask = Mask::new(&pupil, [DIAMETER; 2], [0.0; 2]);
             for shift in [[0, 0], [60, 0], [300, 100], [0, 90], [420, -30], [550, 0]] {
-                #[expect(clippy::cast_precision_loss, reason = "small integers")]
                 let diameters = shift.map(|s| s as f64 / DIAMETER);
                 let share = mask.overlap(shift).re / mask.power();
                 // A rectangle of 151 rows instead of 150 is off by 1/150; rims of discs average out.

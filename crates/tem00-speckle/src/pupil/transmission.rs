@@ -196,7 +196,6 @@ mod tests {
 
     #[test]
     fn cells_hold_from_their_left_to_their_right() {
-        #[expect(clippy::cast_precision_loss, reason = "small integers")]
         let grid = Grid::from_fn(4, 2, |x, y| (x + 4 * y) as f32 / 8.0);
         let pupil = Transmission::new(&grid).unwrap();
         for (point, index) in [

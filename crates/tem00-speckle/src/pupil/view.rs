@@ -360,11 +360,7 @@ impl Selection<'_> {
 }
 
 /// The lattice point nearest to `offset` diameters, and the way from there.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
-    reason = "the product is below 2⁴⁶"
-)]
+#[expect(clippy::cast_possible_truncation, reason = "the product is below 2⁴⁶")]
 fn lattice_point(offset: f64, diameter: f64) -> (i64, f64) {
     // So many diameters are a number of rounds of the lattice, which the remainder takes off exactly.
     let place = offset % Lattice::SIDE as f64 * diameter;

@@ -153,10 +153,6 @@ impl CameraDescription {
     }
 
     /// Returns the width and the height of the image, in pixels.
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "an image has at most 2²⁸ pixels"
-    )]
     pub(super) fn size(&self) -> DVec2 {
         DVec2::new(self.resolution[0] as f64, self.resolution[1] as f64)
     }

@@ -71,10 +71,6 @@ impl Draws {
 }
 
 /// Returns the leading 53 bits as a number in [0, 1).
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "53 bits are exactly representable"
-)]
 fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 * (0.5 * f64::EPSILON)
 }

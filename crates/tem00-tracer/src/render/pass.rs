@@ -142,10 +142,6 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         Ok(())
     }
 
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "an image has at most 2²⁸ pixels"
-    )]
     fn camera_sample(
         &self,
         slot: usize,

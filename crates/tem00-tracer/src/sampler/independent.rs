@@ -16,10 +16,6 @@ impl Sampler {
     }
 
     /// Returns a number in [0, 1) with 53 random bits.
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "53 bits are exactly representable"
-    )]
     pub(crate) fn uniform(&mut self) -> f64 {
         (self.generator.next_u64() >> 11) as f64 * (0.5 * f64::EPSILON)
     }

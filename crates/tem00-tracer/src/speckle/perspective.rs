@@ -85,10 +85,6 @@ impl Perspective {
         tilted.flatten().unwrap_or(*on_axis)
     }
 
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "an image has at most 2²⁸ pixels"
-    )]
     fn size(&self) -> DVec2 {
         DVec2::new(self.camera.width() as f64, self.camera.height() as f64)
     }

@@ -220,10 +220,6 @@ fn pixels(size: DVec2) -> impl Iterator<Item = DVec2> {
     })
 }
 
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "an image has at most 2²⁸ pixels"
-)]
 fn image_size(camera: &Camera) -> DVec2 {
     DVec2::new(camera.width() as f64, camera.height() as f64)
 }

@@ -56,10 +56,6 @@ impl Triangulator {
 }
 
 /// Returns the place of the middle of a column, in pixels.
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "an image has at most 2²⁸ columns"
-)]
 fn middle_of(column: usize) -> f64 {
     column as f64 + 0.5
 }

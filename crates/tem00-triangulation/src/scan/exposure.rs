@@ -83,10 +83,6 @@ impl Exposure {
 }
 
 /// The centre of a pixel.
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "an image has at most 2²⁸ pixels"
-)]
 fn centre((x, y): (usize, usize)) -> DVec2 {
     DVec2::new(x as f64 + 0.5, y as f64 + 0.5)
 }

@@ -72,10 +72,6 @@ impl PhotonTransferPoint {
         Ok(Self::of_sums(of(a), sum, difference, squares))
     }
 
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "the sums are far below 2⁵³ for any image"
-    )]
     fn of_sums(pixels: usize, sum: u64, difference: i64, squares: u64) -> Self {
         let n = pixels as f64;
         let apart = difference as f64 / n;

@@ -157,7 +157,6 @@ fn mean(values: &[u16]) -> f32 {
     single(sum / count(values.len()))
 }
 
-#[expect(clippy::cast_precision_loss, reason = "there are at most 2²⁸ pixels")]
 const fn count(number: usize) -> f64 {
     number as f64
 }

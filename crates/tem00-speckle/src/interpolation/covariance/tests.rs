@@ -146,7 +146,6 @@ fn mean_square_of_look_ups(field: &PupilField, place: &Place) -> f64 {
     ((1.0 - f).powi(2) + f * f) * own + 2.0 * f * (1.0 - f) * both
 }
 
-#[expect(clippy::cast_precision_loss, reason = "small integers")]
 fn fields() -> Vec<PupilField> {
     let slanted = Grid::from_fn(13, 13, |x, y| (40 + x + x * y) as f32 / 208.0);
     // Coma: an odd phase, so that no two halves are alike.

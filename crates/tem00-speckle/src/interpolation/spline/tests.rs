@@ -82,7 +82,6 @@ fn variance_at(variance: &Variance, interpolation: Interpolation, [x, y]: [f64; 
 }
 
 #[test]
-#[expect(clippy::cast_precision_loss, reason = "small integers")]
 fn the_closed_variance_is_the_mean_square_gain() {
     let slanted = Grid::from_fn(9, 9, |x, y| (40 + x + x * y) as f32 / 112.0);
     let slanted = crate::Transmission::new(&slanted).unwrap();

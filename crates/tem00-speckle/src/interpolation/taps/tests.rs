@@ -38,7 +38,6 @@ fn remainder(x: f64, period: i128) -> Option<i128> {
     Some(units.rem_euclid(period << 60))
 }
 
-#[expect(clippy::cast_precision_loss, reason = "compared as f64")]
 fn place(x: f64, cells: usize) -> (f64, Option<f64>) {
     let ([cell], [f]) = Period::new(cells).split(&[x]);
     assert!(cell < cells && (0.0..=1.0).contains(&f), "{cell} + {f}");

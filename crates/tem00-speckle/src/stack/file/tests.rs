@@ -21,7 +21,6 @@ fn small() -> SpeckleStack {
 }
 
 fn gradient(width: usize, height: usize) -> Grid<f32> {
-    #[expect(clippy::cast_precision_loss, reason = "small integers")]
     Grid::from_fn(width, height, |x, y| (x + 3 * y) as f32 / 100.0)
 }
 

@@ -46,7 +46,6 @@ fn measured(size: [usize; 2], speckle_size: f64) -> PupilField {
         let word = u32::try_from(x * 48 + y)
             .unwrap()
             .wrapping_mul(2_654_435_769);
-        #[expect(clippy::cast_precision_loss, reason = "small integers")]
         let envelope = (x + 4) as f32 / 52.0;
         unit_phasor(word.rotate_left(13).wrapping_mul(0x9E37_79B1)) * envelope
     });

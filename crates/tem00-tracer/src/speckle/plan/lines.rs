@@ -53,7 +53,6 @@ impl PatternPlan {
         }
     }
 
-    #[expect(clippy::cast_precision_loss, reason = "shown to three digits")]
     fn line(&self, allotment: &Allotment, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Allotment { stack, needs, .. } = allotment;
         let [width, height] = needs.region;

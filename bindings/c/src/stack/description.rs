@@ -116,7 +116,7 @@ impl StackDescription {
         if self.width == self.height {
             return PupilField::new(self.width, self.diameter, self.seed);
         }
-        let speckle_size = lattice(self.width) / lattice(self.diameter);
+        let speckle_size = self.width as f64 / self.diameter as f64;
         PupilField::from_speckle_size(size, speckle_size, self.seed)
     }
 
@@ -171,11 +171,6 @@ impl StackNeeds {
             threads: 0,
         })
     }
-}
-
-/// A number of lattice points, which a double holds exactly.
-fn lattice(points: usize) -> f64 {
-    points as f64
 }
 
 /// The path, its half period and its length as C counts them.

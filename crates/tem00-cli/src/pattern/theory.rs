@@ -74,7 +74,7 @@ pub(super) fn compare(field: &PupilField, pattern: &SpecklePattern) -> Result<Co
             .push("the theory is that of random phases in even light over the pupil".to_owned());
         let [width, height] = [samples.width(), samples.height()];
         let diameter = field.diameter()[0].round();
-        if diameter > to_f64(width.min(height)) {
+        if diameter > width.min(height) as f64 {
             found.notes.push(format!(
                 "the pupil of {diameter} samples reaches beyond the field of {width} × {height}: \
                  there it is dark"
@@ -90,7 +90,7 @@ fn mean_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, StatisticsErr
     let rounding = 1e-5;
     let spread = match field.phasors() {
         Some(Phasors::Unit) | None => rounding,
-        Some(Phasors::Gaussian) => SIGMAS / to_f64(field.phasor_count()).sqrt(),
+        Some(Phasors::Gaussian) => SIGMAS / (field.phasor_count() as f64).sqrt(),
     };
     Ok(Row::new("mean", mean, near(1.0, spread)))
 }
@@ -102,7 +102,7 @@ fn contrast_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, Statistic
         Some(_) => contrast_of_phasor_sum(field.phasor_count()),
         // Between the 1 − 1/N of equal magnitudes and the 1 − 2/N of exponential powers, squared.
         None => {
-            tolerance += to_f64(field.phasor_count()).recip();
+            tolerance += (field.phasor_count() as f64).recip();
             1.0
         }
     };
@@ -118,7 +118,7 @@ fn contrast_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, Statistic
 /// The rows of a rectangle may be few, so that the sum stays one.
 fn contrast_squared_spread(field: &PupilField) -> f64 {
     const STEPS: u32 = 200;
-    let (count, [diameter, _]) = (to_f64(field.phasor_count()), field.diameter());
+    let (count, [diameter, _]) = (field.phasor_count() as f64, field.diameter());
     if let Pupil::Rectangle { .. } = field.pupil() {
         let columns = 2.0 * (0.5 * diameter).floor() + 1.0;
         // Σ (n − |m|)² over all lags m.
@@ -172,8 +172,8 @@ fn exact_autocovariance(field: &PupilField, axis: Axis, size: f64) -> Grid<f32> 
     let lags = ((8.0 * size).ceil() as usize + 8).min(field.size()[0]);
     let covariance = |lag: usize| {
         let lag = match axis {
-            Axis::X => [to_f64(lag), 0.0],
-            Axis::Y => [0.0, to_f64(lag)],
+            Axis::X => [lag as f64, 0.0],
+            Axis::Y => [0.0, lag as f64],
         };
         field.amplitude_correlation(lag).norm_sqr() as f32
     };
@@ -187,7 +187,7 @@ fn exact_autocovariance(field: &PupilField, axis: Axis, size: f64) -> Grid<f32> 
 fn distribution_rows(field: &PupilField, values: &Grid<f32>) -> Result<[Row; 2], StatisticsError> {
     let samples = decorrelated_samples(values, stride(field))?;
     let outcome = kolmogorov_smirnov(&samples, exponential_cumulative)?;
-    let critical = CRITICAL_DISTANCE / to_f64(samples.len()).sqrt();
+    let critical = CRITICAL_DISTANCE / (samples.len() as f64).sqrt();
     Ok([
         Row::new(
             "KS distance to exponential",
@@ -223,7 +223,7 @@ fn stride(field: &PupilField) -> usize {
 fn support_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, StatisticsError> {
     let spectrum = power_spectrum(values)?;
     let ([size, _], [diameter, _]) = (field.size(), field.diameter());
-    let frequency = |index: usize| to_f64(index.min(size - index));
+    let frequency = |index: usize| index.min(size - index) as f64;
     let beyond = |x: f64, y: f64| match field.pupil() {
         Pupil::Rectangle { .. } => x.max(y) > diameter,
         _ => x.hypot(y) > diameter,
@@ -248,10 +248,6 @@ fn support_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, Statistics
 
 const fn near(value: f64, tolerance: f64) -> Expectation {
     Expectation::Near { value, tolerance }
-}
-
-const fn to_f64(count: usize) -> f64 {
-    count as f64
 }
 
 #[cfg(test)]
@@ -317,7 +313,7 @@ mod tests {
             let Ok(field) = field else { continue };
             let lags = (-40..40_i64).flat_map(|y| (-40..40_i64).map(move |x| [x, y]));
             let squares: f64 = lags.map(|lag| field.overlap(lag).norm_sqr()).sum();
-            let exact = 2.0 * squares.sqrt() / to_f64(field.phasor_count());
+            let exact = 2.0 * squares.sqrt() / field.phasor_count() as f64;
             let spread = contrast_squared_spread(&field);
             assert_relative_eq!(spread, exact, max_relative = 1e-12);
         }

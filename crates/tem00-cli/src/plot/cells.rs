@@ -63,7 +63,7 @@ fn image(element: &Primitive) -> Option<String> {
     let pixels = fills.chunks(columns).rev().flatten().flat_map(rgba);
     let data = STANDARD.encode(png(columns, rows, &pixels.collect::<Vec<_>>())?);
     let (width, height) = (w.first()? - OVERLAP, h.first()? - OVERLAP);
-    let (width, height) = (width * f64_of(columns), height * f64_of(rows));
+    let (width, height) = (width * columns as f64, height * rows as f64);
     let (x, y) = (x.first()?, y.last()?);
     Some(format!(
         "<image x=\"{x:.2}\" y=\"{y:.2}\" width=\"{width:.2}\" height=\"{height:.2}\" \
@@ -89,8 +89,4 @@ fn png(columns: usize, rows: usize, pixels: &[u8]) -> Option<Vec<u8>> {
     writer.write_image_data(pixels).ok()?;
     writer.finish().ok()?;
     Some(bytes)
-}
-
-const fn f64_of(cells: usize) -> f64 {
-    cells as f64
 }

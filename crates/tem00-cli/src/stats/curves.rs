@@ -95,7 +95,7 @@ impl Measured<'_> {
             Bin {
                 from,
                 to,
-                density: to_f64(count) / to_f64(self.values.values().len()) / (to - from),
+                density: count as f64 / self.values.values().len() as f64 / (to - from),
                 exponential: over_bin(&exponential_cumulative),
                 gamma: self.gamma.map(|law| over_bin(&|x| law.cumulative(x))),
             }
@@ -131,11 +131,11 @@ impl Measured<'_> {
             x: lags[(lag, 0)].into(),
             y: lags[(0, lag)].into(),
             airy: self.size.map(|size| {
-                [size.x(), size.y()].map(|size| airy_autocovariance(to_f64(lag) / size))
+                [size.x(), size.y()].map(|size| airy_autocovariance(lag as f64 / size))
             }),
         };
         (0..shorter)
-            .take_while(|&lag| to_f64(lag) <= reach.max(8.0))
+            .take_while(|&lag| (lag as f64) <= reach.max(8.0))
             .map(at)
             .collect()
     }
@@ -154,7 +154,7 @@ impl Measured<'_> {
         let stretch = self.size.map_or([1.0; 2], |size| {
             [size.x() / size.mean(), size.y() / size.mean()]
         });
-        let step = [stretch[0] / to_f64(width), stretch[1] / to_f64(height)];
+        let step = [stretch[0] / width as f64, stretch[1] / height as f64];
         let rings = radial_average(&spectrum, step)?;
         let frequencies = rings.iter().skip(2).map(|ring| Frequency {
             frequency: ring.radius,
@@ -171,12 +171,8 @@ pub(super) fn chat(size: f64, frequency: f64) -> f64 {
 }
 
 fn hann(size: usize) -> Vec<f64> {
-    let at = |index: usize| 0.5 - 0.5 * (TAU * (to_f64(index) + 0.5) / to_f64(size)).cos();
+    let at = |index: usize| 0.5 - 0.5 * (TAU * (index as f64 + 0.5) / size as f64).cos();
     (0..size).map(at).collect()
-}
-
-const fn to_f64(count: usize) -> f64 {
-    count as f64
 }
 
 #[expect(

@@ -190,7 +190,7 @@ impl Findings<'_> {
     /// Returns the contrast behind pixels without gaps, and how much the error of the measured size
     /// may change it.
     fn gapless_contrast(&self, size: SpeckleSize) -> Option<[f64; 2]> {
-        let area = count(self.values.values().len());
+        let area = self.values.values().len() as f64;
         // From image to image the size spreads by the share 0.62 / n in n × n speckles.
         let spread = 0.62 * size.mean() / area.sqrt();
         let wider = size.mean() * (1.0 + SIGMAS * spread);
@@ -235,7 +235,7 @@ impl Findings<'_> {
         }
         self.row(
             "independent samples",
-            count(samples.len()),
+            samples.len() as f64,
             Expectation::Open,
         );
         let mean = match self.levels {
@@ -269,7 +269,7 @@ impl Findings<'_> {
             fit => fit?,
         };
         // The fit is too large by a share below 3/n.
-        let bias = 3.0 / count(samples.len());
+        let bias = 3.0 / samples.len() as f64;
         let theory = Expectation::Near {
             value: 1.0,
             tolerance: SIGMAS * fit.standard_error() + bias,
@@ -337,8 +337,4 @@ impl Findings<'_> {
 )]
 fn first_zero(speckle_size: f64) -> usize {
     (AIRY_FIRST_ZERO * speckle_size).ceil() as usize
-}
-
-fn count(samples: usize) -> f64 {
-    samples as f64
 }

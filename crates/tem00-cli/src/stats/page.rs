@@ -53,14 +53,13 @@ impl Page<'_> {
 
     fn autocovariance(&self) -> Chart {
         let lags = &self.curves.autocovariance;
-        let cut =
-            |along: fn(&Lag) -> f64| lags.iter().map(move |lag| (f64_of(lag.lag), along(lag)));
+        let cut = |along: fn(&Lag) -> f64| lags.iter().map(move |lag| (lag.lag as f64, along(lag)));
         let axes = ["lag in pixels", "autocovariance"];
         let chart = Chart::new("Autocovariance", axes);
         let chart = chart.dots("along x", cut(|lag| lag.x)).coloured(ALONG_X);
         let mut chart = chart.crosses("along y", cut(|lag| lag.y)).coloured(ALONG_Y);
         if let Some([x, y]) = self.curves.speckle_size {
-            let end = lags.last().map_or(0.0, |lag| f64_of(lag.lag));
+            let end = lags.last().map_or(0.0, |lag| lag.lag as f64);
             for (axis, size, colour) in [("x", x, ALONG_X), ("y", y, ALONG_Y)] {
                 let airy = sampled(end, |lag| airy_autocovariance(lag / size));
                 let label = format!("Airy, {axis}: {size:.2} pixels");
@@ -98,10 +97,6 @@ fn sampled(end: f64, function: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-const fn f64_of(lag: usize) -> f64 {
-    lag as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,8 +117,8 @@ mod tests {
             autocovariance: (0..9)
                 .map(|lag| Lag {
                     lag,
-                    x: 1.0 - 0.1 * f64_of(lag),
-                    y: 1.0 - 0.1 * f64_of(lag),
+                    x: 1.0 - 0.1 * lag as f64,
+                    y: 1.0 - 0.1 * lag as f64,
                     airy: None,
                 })
                 .collect(),

@@ -312,8 +312,8 @@ impl Fit {
 
 /// Chebyshev's points of [0, ¼], where p lies.
 fn nodes<const N: usize>() -> [f64; N] {
-    let step = core::f64::consts::PI / (2.0 * crate::pupil::mask::to_f64(N));
-    core::array::from_fn(|n| 0.125 * (1.0 - (step * crate::pupil::mask::to_f64(2 * n + 1)).cos()))
+    let step = core::f64::consts::PI / (2.0 * N as f64);
+    core::array::from_fn(|n| 0.125 * (1.0 - (step * (2 * n + 1) as f64).cos()))
 }
 
 /// The fractions below ½ at the nodes of the even part, then at those of the odd.

@@ -7,19 +7,14 @@ use tem00_numerics::Grid;
 
 use crate::{
     Interpolation,
-    pupil::PupilField,
-    pupil::lattice::to_i64,
-    pupil::mask::{Mask, from_i64, to_f64},
-    pupil::transmission::to_c64,
+    pupil::{PupilField, lattice::to_i64, mask::Mask, transmission::to_c64},
 };
 
 /// What the pupil point k is multiplied with: the reciprocal of the spline's Fourier transform,
 /// `sinc⁻⁴(π k / Q)`. The other interpolations go through the samples themselves.
 pub(crate) fn prefilter(k: i64, size: usize, interpolation: Interpolation) -> f64 {
     match interpolation {
-        Interpolation::CubicSpline => {
-            tem00_numerics::sinc(PI * from_i64(k) / to_f64(size)).powi(-4)
-        }
+        Interpolation::CubicSpline => tem00_numerics::sinc(PI * k as f64 / size as f64).powi(-4),
         Interpolation::Bilinear | Interpolation::Nearest => 1.0,
     }
 }
@@ -131,7 +126,7 @@ fn weighted_cosines(
 ) -> Vec<[f64; 4]> {
     let size = field.size()[axis];
     let weighted = |k: i64| {
-        let angle = 2.0 * PI * from_i64(k) / to_f64(size);
+        let angle = 2.0 * PI * k as f64 / size as f64;
         let filter = prefilter(k, size, interpolation).powi(2);
         [0.0, 1.0, 2.0, 3.0].map(|lag: f64| (lag * angle).cos() * filter)
     };
@@ -171,7 +166,7 @@ pub(crate) fn response(interpolation: Interpolation, k: i64, f: f64, size: usize
     if interpolation == Interpolation::Nearest {
         return Complex::new(1.0, 0.0);
     }
-    let angle = 2.0 * PI * from_i64(k) / to_f64(size);
+    let angle = 2.0 * PI * k as f64 / size as f64;
     let taps = weights(interpolation, f)
         .into_iter()
         .zip([-1.0, 0.0, 1.0, 2.0]);

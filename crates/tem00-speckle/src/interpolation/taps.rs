@@ -3,8 +3,6 @@
 use num_complex::Complex;
 use tem00_numerics::Grid;
 
-use crate::pupil::mask::to_f64;
-
 /// The period of a stack along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Period {
@@ -21,7 +19,7 @@ const NEAR: f64 = (1_u64 << 50) as f64;
 
 impl Period {
     pub(crate) fn new(cells: usize) -> Self {
-        let length = to_f64(cells);
+        let length = cells as f64;
         Self {
             cells,
             length,
@@ -157,7 +155,7 @@ impl<const L: usize> Kernel<L> for Taps<1, L> {
             first: cells,
             weights: [[1.0; L]],
             fractions: [0.0; L],
-            places: cells.map(to_f64),
+            places: cells.map(|n| n as f64),
         }
     }
 }
@@ -176,7 +174,7 @@ fn single<const L: usize>(x: &[f64; L]) -> [f32; L] {
 fn places<const L: usize>(cells: &[usize; L], fractions: &[f64; L]) -> [f64; L] {
     let mut places = [0.0; L];
     for (place, (cell, f)) in places.iter_mut().zip(cells.iter().zip(fractions)) {
-        *place = to_f64(*cell) + f;
+        *place = *cell as f64 + f;
     }
     places
 }

@@ -4,7 +4,7 @@ use num_complex::Complex;
 use tem00_numerics::{Fft2, Grid, sinc};
 
 use super::transform::{frequency, plan, to_c32, to_complex, to_f32, wave};
-use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch, pupil::mask::to_f64};
+use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch};
 
 /// An exposure during which the pattern moves, or changes, or both, at a constant rate.
 ///
@@ -133,7 +133,7 @@ impl Exposure {
             }
         }
         let mut sum = smear.map_or(sum, |smear| smear.into_values());
-        let share = to_f32(to_f64(self.moments()).recip());
+        let share = to_f32((self.moments() as f64).recip());
         sum.values_mut()
             .iter_mut()
             .for_each(|value| *value *= share);
@@ -143,7 +143,7 @@ impl Exposure {
     /// The middles of equal parts of the time from −½ to ½.
     fn times(&self) -> impl Iterator<Item = f64> + use<> {
         let count = self.moments();
-        (0..count).map(move |i| (to_f64(i) + 0.5) / to_f64(count) - 0.5)
+        (0..count).map(move |i| (i as f64 + 0.5) / count as f64 - 0.5)
     }
 
     fn smear(&self, field: &PupilField) -> Option<Smear> {
@@ -166,7 +166,7 @@ impl Smear {
     fn new([width, height]: [usize; 2], samples: [f64; 2], moments: usize) -> Self {
         Self {
             transform: plan([width, height]),
-            drift: [samples[0] / to_f64(width), samples[1] / to_f64(height)],
+            drift: [samples[0] / width as f64, samples[1] / height as f64],
             moments,
             sum: Grid::filled(width, height, Complex::new(0.0, 0.0)),
         }
@@ -188,7 +188,7 @@ impl Smear {
         };
         let [x, y] = [turns(0), turns(1)];
         let [shift_x, shift_y] = [shift(&x), shift(&y)];
-        let part = PI / to_f64(self.moments);
+        let part = PI / self.moments as f64;
         let spectrum = self
             .transform
             .forward(&to_complex(pattern), |kx, ky, value| {
@@ -201,7 +201,7 @@ impl Smear {
     /// The inverse transform: that of the conjugate is the conjugate of the transform.
     fn into_values(self) -> Grid<f32> {
         let [width, height] = [self.sum.width(), self.sum.height()];
-        let norm = to_f32((to_f64(width) * to_f64(height)).recip());
+        let norm = to_f32((width as f64 * height as f64).recip());
         let conjugate = self.sum.map(Complex::conj);
         self.transform
             .forward(&conjugate, |_, _, value| norm * value.re)

@@ -4,7 +4,7 @@ use num_complex::Complex;
 use tem00_numerics::{Fft2Scratch, Grid, sinc};
 
 use super::transform::{frequency, plan, to_c32, to_f32, wave};
-use crate::{SpeckleError, SpecklePattern, pupil::mask::to_f64};
+use crate::{SpeckleError, SpecklePattern};
 
 /// The pixels of a sensor on a pattern: boxes of any size at any pitch.
 ///
@@ -66,7 +66,7 @@ impl PixelArray {
             if !(1..=Self::MAX_COUNT).contains(&count[axis]) {
                 return Err(SpeckleError::PixelCount(count[axis]));
             }
-            let maximum = Self::MAX_LENGTH / to_f64(count[axis]);
+            let maximum = Self::MAX_LENGTH / count[axis] as f64;
             if !(pitch[axis] > 0.0 && pitch[axis] <= maximum) {
                 return Err(SpeckleError::PixelPitch(pitch[axis]));
             }
@@ -161,7 +161,7 @@ impl PixelArray {
     /// The real part is taken: at K = Q/2, where samples hold a cosine only, it is what they hold.
     fn weights(&self, axis: usize, period: usize) -> Grid<f32> {
         let transform = plan([period, 1]);
-        let length = to_f64(period);
+        let length = period as f64;
         let box_spectrum: Vec<f64> = (0..period)
             .map(|k| sinc(PI * frequency(k, period) * (self.size[axis] / length)) / length)
             .collect();
@@ -170,7 +170,7 @@ impl PixelArray {
         let mut scratch = Fft2Scratch::default();
         let mut weights = Grid::filled(period, self.count[axis], 0.0);
         for (i, row) in weights.values_mut().chunks_exact_mut(period).enumerate() {
-            let place = self.origin[axis] + to_f64(i) * self.pitch[axis];
+            let place = self.origin[axis] + i as f64 * self.pitch[axis];
             let turns = place.rem_euclid(length) / length;
             for (k, value) in spectrum.values_mut().iter_mut().enumerate() {
                 *value = to_c32(wave(frequency(k, period) * turns) * box_spectrum[k]);

@@ -1,7 +1,7 @@
 use core::f64::consts::{LN_2, PI};
 
 use super::transform::to_f32;
-use crate::{PupilField, SpeckleError, SpecklePattern, pupil::mask::to_f64};
+use crate::{PupilField, SpeckleError, SpecklePattern};
 
 /// Independent speckle patterns whose intensities add, each with its share of the light.
 ///
@@ -82,7 +82,7 @@ impl IncoherentSum {
             return Err(SpeckleError::PatternCount(count));
         }
         Ok(Self {
-            shares: vec![to_f64(count).recip(); count],
+            shares: vec![(count as f64).recip(); count],
         })
     }
 
@@ -187,7 +187,7 @@ impl IncoherentSum {
             true => (NEGLIGIBLE_SHARE.ln() / ratio.ln()).ceil(),
             false => 1.0,
         };
-        if modes > to_f64(Self::MAX_PATTERNS) {
+        if modes > Self::MAX_PATTERNS as f64 {
             return Err(SpeckleError::PatternCount(whole(modes)));
         }
         let powers = core::iter::successors(Some(1.0), |power| Some(power * ratio));

@@ -3,7 +3,7 @@
 use num_complex::Complex;
 use tem00_numerics::{Fft2, Grid};
 
-use crate::{pupil::lattice::to_i64, pupil::mask::from_i64};
+use crate::pupil::lattice::to_i64;
 
 /// Plans the transform of a pattern, or of part of one.
 pub(super) fn plan([width, height]: [usize; 2]) -> Fft2 {
@@ -13,11 +13,12 @@ pub(super) fn plan([width, height]: [usize; 2]) -> Fft2 {
 /// The frequency at `index` in a spectrum of `size` points, in periods per pattern.
 pub(super) fn frequency(index: usize, size: usize) -> f64 {
     let (index, size) = (to_i64(index), to_i64(size));
-    from_i64(if 2 * index > size {
+    let signed = if 2 * index > size {
         index - size
     } else {
         index
-    })
+    };
+    signed as f64
 }
 
 /// A real grid as a complex one.

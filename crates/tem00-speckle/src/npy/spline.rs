@@ -3,9 +3,7 @@
 use num_complex::Complex;
 use tem00_numerics::{Fft2, Fft2Scratch, Grid};
 
-use crate::{
-    Interpolation, interpolation::spline::prefilter, pupil::lattice::to_i64, pupil::mask::to_f64,
-};
+use crate::{Interpolation, interpolation::spline::prefilter, pupil::lattice::to_i64};
 
 /// The filter that turns samples of a band-limited field into the coefficients of its spline.
 ///
@@ -49,7 +47,7 @@ impl SplineFilter {
 
     fn filter(&mut self, grid: &mut Grid<Complex<f32>>, power: impl Fn(f64) -> f64 + Sync) {
         let [x, y] = &self.factors;
-        let count = to_f64(grid.values().len());
+        let count = grid.values().len() as f64;
         // The inverse transform is the conjugate of that of the conjugate, over the number of values.
         let factor = |i: usize, j: usize| to_f32(power(x[i] * y[j]) / count);
         let spectrum = self

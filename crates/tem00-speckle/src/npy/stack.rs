@@ -9,10 +9,7 @@ use super::{
     CHUNK, NpyError, NpyReader, check_finite, element::Element, grid, header::Header,
     spline::SplineFilter, write_values,
 };
-use crate::{
-    PupilField, SlicePath, SpeckleStack, StackOptions, pupil::mask::to_f64,
-    pupil::transmission::to_c64,
-};
+use crate::{PupilField, SlicePath, SpeckleStack, StackOptions, pupil::transmission::to_c64};
 
 /// What the mean square of a slice may be: that of few Gaussian phasors strays from 1.
 const BRIGHTNESS: core::ops::RangeInclusive<f64> = 0.1..=10.0;
@@ -140,7 +137,7 @@ impl<R: Read> NpyReader<R> {
 fn check_brightness(slice: &Grid<Complex<f32>>, index: usize) -> Result<(), NpyError> {
     let square = |z: &Complex<f32>| to_c64(*z).norm_sqr();
     let sum: f64 = slice.values().iter().map(square).sum();
-    let mean = sum / to_f64(slice.values().len());
+    let mean = sum / slice.values().len() as f64;
     // A pupil that sees nothing of a field from outside makes a dark slice.
     if sum > 0.0 && !BRIGHTNESS.contains(&mean) {
         return Err(NpyError::Brightness { slice: index, mean });

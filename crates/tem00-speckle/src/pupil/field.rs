@@ -7,7 +7,7 @@ use tem00_numerics::{Fft2, Grid};
 use crate::{
     Phasors, Pupil, SpeckleError,
     pupil::lattice::{Lattice, Seeded, Source},
-    pupil::mask::{Mask, to_f64},
+    pupil::mask::Mask,
 };
 
 /// A field on the lattice of pupil points, random or measured, seen through the pupil.
@@ -122,8 +122,8 @@ impl PupilField {
         }
         let layout = Layout {
             size: [size; 2],
-            diameter: [to_f64(diameter); 2],
-            speckle_size: to_f64(size) / to_f64(diameter),
+            diameter: [diameter as f64; 2],
+            speckle_size: size as f64 / diameter as f64,
         };
         Self::build(seeded(seed), layout, Pupil::Circle)
     }
@@ -253,7 +253,7 @@ impl PupilField {
         if !(agrees(x, layout.diameter[0]) && agrees(y, layout.diameter[1])) {
             return Err(SpeckleError::SpeckleSize {
                 speckle_size: layout.speckle_size,
-                largest: to_f64(layout.size[0]) / layout.diameter[0],
+                largest: layout.size[0] as f64 / layout.diameter[0],
             });
         }
         Self::build(lattice, layout, pupil)
@@ -264,7 +264,7 @@ impl PupilField {
         let mask = Mask::new(&pupil, diameter, [0.0; 2]);
         // (Σ|t|²)² / Σ|t|⁴ is a whole number of equal phasors but for its rounding.
         let effective = mask.effective_count() * (1.0 + 1e-12);
-        if effective < to_f64(Self::MIN_PHASORS) {
+        if effective < Self::MIN_PHASORS as f64 {
             return Err(SpeckleError::PhasorCount(whole(effective)));
         }
         let [columns, rows] = mask.extent();
@@ -360,7 +360,7 @@ impl PupilField {
     /// C = 32, and within 3e−4 at C = 128. With the nominal C these are 4.1e−3 and 6e−4. For a pattern
     /// that is not square it is the geometric mean over both axes.
     pub fn effective_diameter(&self) -> f64 {
-        2.0 * (to_f64(self.phasor_count()) / PI).sqrt()
+        2.0 * (self.phasor_count() as f64 / PI).sqrt()
     }
 
     /// Returns the exact amplitude correlation μ of two samples that are `lag` samples apart.
@@ -422,7 +422,7 @@ impl Layout {
         if let Some(&side) = size.iter().find(|&&side| side > PupilField::MAX_SIZE) {
             return Err(SpeckleError::Size(side));
         }
-        let largest = to_f64(size[0].min(size[1])) / to_f64(PupilField::MIN_DIAMETER);
+        let largest = size[0].min(size[1]) as f64 / PupilField::MIN_DIAMETER as f64;
         if !(speckle_size >= 2.0 && speckle_size <= largest) {
             return Err(SpeckleError::SpeckleSize {
                 speckle_size,
@@ -431,7 +431,7 @@ impl Layout {
         }
         Ok(Self {
             size,
-            diameter: size.map(|side| to_f64(side) / speckle_size),
+            diameter: size.map(|side| side as f64 / speckle_size),
             speckle_size,
         })
     }

@@ -92,7 +92,7 @@ impl Mask {
         let corner = [along(0), along(1)];
         let position = |axis: usize| -> Vec<f64> {
             (0..extent[axis])
-                .map(|i| (from_i64(corner[axis] + to_i64(i)) - fraction[axis]) / diameter[axis])
+                .map(|i| ((corner[axis] + to_i64(i)) as f64 - fraction[axis]) / diameter[axis])
                 .collect()
         };
         let (x, y) = (position(0), position(1));
@@ -175,14 +175,14 @@ impl Mask {
 
     /// Σ |t|² `exp(−2πi k·lag/size)` over Σ |t|².
     pub(crate) fn correlation(&self, lag: [f64; 2], size: [usize; 2]) -> Complex<f64> {
-        let turns = |axis: usize| nearest(lag[axis], to_f64(size[axis])) / to_f64(size[axis]);
+        let turns = |axis: usize| nearest(lag[axis], size[axis] as f64) / size[axis] as f64;
         let (x, y) = (PI * turns(0), -2.0 * PI * turns(1));
         let sum: Complex<f64> = match &self.weights {
             None => self.sum_rows(y, |_, row| {
                 self.span_sum(row.outer, x) - self.span_sum(row.hole, x)
             }),
             Some(_) => {
-                let wave = |i| Complex::cis(-2.0 * x * from_i64(self.corner[0] + to_i64(i)));
+                let wave = |i| Complex::cis(-2.0 * x * (self.corner[0] + to_i64(i)) as f64);
                 let waves: Vec<_> = (0..self.extent[0]).map(wave).collect();
                 self.sum_rows(y, |j, _| {
                     self.powers(j).map(|(i, power)| waves[i] * power).sum()
@@ -196,7 +196,7 @@ impl Mask {
     fn sum_rows(&self, angle: f64, sum: impl Fn(usize, Row) -> Complex<f64>) -> Complex<f64> {
         let rows = self.rows.iter().enumerate();
         rows.map(|(y, row)| {
-            let ky = from_i64(self.corner[1] + to_i64(y));
+            let ky = (self.corner[1] + to_i64(y)) as f64;
             sum(y, *row) * Complex::cis(angle * ky)
         })
         .sum()
@@ -206,7 +206,7 @@ impl Mask {
     fn span_sum(&self, span: Span, theta: f64) -> Complex<f64> {
         // First and last point lie as far to either side of half their sum.
         let twice_middle = 2 * self.corner[0] + to_i64(span.start + span.end) - 1;
-        Complex::cis(-theta * from_i64(twice_middle)) * dirichlet(span.count(), theta)
+        Complex::cis(-theta * twice_middle as f64) * dirichlet(span.count(), theta)
     }
 
     /// Σ t(k) t*(k − shift), complex.
@@ -219,7 +219,7 @@ impl Mask {
             };
             sum += match (self.weights(y), self.weights(other)) {
                 (Some(a), Some(b)) => shared_weights(a, b, dx),
-                _ => Complex::new(to_f64(shared_points(*row, *there, dx)), 0.0),
+                _ => Complex::new(shared_points(*row, *there, dx) as f64, 0.0),
             };
         }
         sum
@@ -250,7 +250,7 @@ fn shared_weights(a: &[Complex<f32>], b: &[Complex<f32>], shift: i64) -> Complex
 
 /// The sum of exp(2ikθ) over `count` points in unit steps, symmetric about k = 0.
 fn dirichlet(count: usize, theta: f64) -> f64 {
-    let points = to_f64(count);
+    let points = count as f64;
     let sin = theta.sin();
     if sin.abs() < f64::MIN_POSITIVE {
         return points;
@@ -261,14 +261,6 @@ fn dirichlet(count: usize, theta: f64) -> f64 {
 /// The representative of x modulo `period` in [−period/2, period/2].
 fn nearest(x: f64, period: f64) -> f64 {
     x - period * (x / period).round()
-}
-
-pub(crate) const fn to_f64(n: usize) -> f64 {
-    n as f64
-}
-
-pub(crate) const fn from_i64(n: i64) -> f64 {
-    n as f64
 }
 
 /// The first lattice point at or after `x`.

@@ -6,7 +6,7 @@ use tem00_numerics::Grid;
 use crate::{
     Pupil, PupilField, SpeckleError,
     pupil::lattice::{to_i64, unit_phasor},
-    pupil::mask::{Mask, to_f64},
+    pupil::mask::Mask,
 };
 
 /// What the key of the generator holds beside the seed; a new value would be a new family.
@@ -121,7 +121,7 @@ fn points_of(mask: &Mask) -> Vec<[i64; 2]> {
 fn below(end: usize, generator: &mut ChaCha8Rng) -> usize {
     const UNIT: f64 = 1.0 / (1_u64 << 53) as f64;
     let uniform = (generator.next_u64() >> 11) as f64 * UNIT;
-    ((uniform * to_f64(end)) as usize).min(end - 1)
+    ((uniform * end as f64) as usize).min(end - 1)
 }
 
 fn generator(seed: u64) -> ChaCha8Rng {

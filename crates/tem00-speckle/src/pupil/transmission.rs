@@ -3,7 +3,7 @@ use std::sync::Arc;
 use num_complex::Complex;
 use tem00_numerics::Grid;
 
-use crate::{SpeckleError, pupil::lattice::to_i64, pupil::mask::to_f64};
+use crate::{SpeckleError, pupil::lattice::to_i64};
 
 /// The amplitude transmission of a pupil of any shape, on a grid over the pupil's bounding square.
 ///
@@ -91,8 +91,8 @@ impl Transmission {
         if !(x.abs() < 1.0 && y.abs() < 1.0) {
             return 0.0;
         }
-        let (column, fx) = split(x * to_f64(self.values.width()));
-        let (row, fy) = split(y * to_f64(self.values.height()));
+        let (column, fx) = split(x * self.values.width() as f64);
+        let (row, fy) = split(y * self.values.height() as f64);
         let mut sum = Complex::new(0.0, 0.0);
         for (dx, wx) in [(0, 1.0 - fx), (1, fx)] {
             for (dy, wy) in [(0, 1.0 - fy), (1, fy)] {
@@ -132,7 +132,7 @@ pub(crate) fn to_c64(z: Complex<f32>) -> Complex<f64> {
     reason = "the cast saturates at the rim"
 )]
 fn cell(x: f64, count: usize) -> usize {
-    (((x + 0.5) * to_f64(count)) as usize).min(count - 1)
+    (((x + 0.5) * count as f64) as usize).min(count - 1)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "a number of cells")]
@@ -146,9 +146,9 @@ mod tests {
     use crate::Pupil;
 
     fn disc(cells: usize) -> Grid<f32> {
-        let centre = 0.5 * to_f64(cells) - 0.5;
+        let centre = 0.5 * cells as f64 - 0.5;
         Grid::from_fn(cells, cells, |x, y| {
-            let inside = (to_f64(x) - centre).hypot(to_f64(y) - centre) <= 0.5 * to_f64(cells);
+            let inside = (x as f64 - centre).hypot(y as f64 - centre) <= 0.5 * cells as f64;
             if inside { 1.0 } else { 0.0 }
         })
     }

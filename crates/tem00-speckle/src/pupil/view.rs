@@ -12,7 +12,7 @@ use tem00_numerics::{Fft2Scratch, Grid};
 use crate::{
     PupilField, SpeckleField, SpecklePattern,
     pupil::lattice::{Lattice, Source, to_i64},
-    pupil::mask::{Mask, Span, from_i64, to_f64},
+    pupil::mask::{Mask, Span},
 };
 
 const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
@@ -270,10 +270,10 @@ impl PupilField {
 
     /// exp(2πi a (2p)²) along one axis.
     fn lens(&self, view: &View<'_>, axis: usize) -> Vec<Complex<f32>> {
-        let corner = from_i64(view.mask.corner()[axis]) - view.fraction[axis];
+        let corner = view.mask.corner()[axis] as f64 - view.fraction[axis];
         (0..view.mask.extent()[axis])
             .map(|i| {
-                let rho = 2.0 * (corner + to_f64(i)) / self.diameter()[axis];
+                let rho = 2.0 * (corner + i as f64) / self.diameter()[axis];
                 // Whole turns are taken off before 2π rounds what is left.
                 to_c32(Complex::cis(TAU * (view.defocus * rho * rho % 1.0)))
             })
@@ -287,7 +287,7 @@ impl PupilField {
         let corner = view.mask.corner()[axis];
         (0..size)
             .map(|x| {
-                let turns = from_i64((-corner * x).rem_euclid(size)) / from_i64(size);
+                let turns = (-corner * x).rem_euclid(size) as f64 / size as f64;
                 to_c32(Complex::from_polar(scale, 2.0 * PI * turns))
             })
             .collect()

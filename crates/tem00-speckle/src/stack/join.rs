@@ -8,7 +8,6 @@ use crate::{
     interpolation::covariance::{Covariance, Even, Responses, mean_square},
     interpolation::spline::Variance,
     pupil::lattice::to_i64,
-    pupil::mask::{from_i64, to_f64},
     pupil::transmission::to_c64,
     stack::workers::map_with_scratch,
 };
@@ -96,11 +95,11 @@ impl Joiner<'_> {
     }
 
     fn with(&self, shift: [i64; 2], overlap: f64, covariance: Covariance) -> Join {
-        let step = shift.map(from_i64);
+        let step = shift.map(|n| n as f64);
         let size = self.field.size();
         Join {
             step,
-            turns: [0, 1].map(|axis| -step[axis] / to_f64(size[axis])),
+            turns: [0, 1].map(|axis| -step[axis] / size[axis] as f64),
             overlap,
             covariance,
         }

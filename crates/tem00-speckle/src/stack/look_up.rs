@@ -5,7 +5,6 @@ use tem00_numerics::vectorised;
 use crate::{
     Interpolation, SpeckleStack,
     interpolation::taps::{Kernel, Taps},
-    pupil::mask::to_f64,
     stack::quadrature::{Node, mean_nodes},
 };
 
@@ -104,7 +103,7 @@ impl SpeckleStack {
         let places = self.places(&[u]);
         let layer = self.layer(places.slices[0], places.between[0]);
         let nodes = [0, 1].map(|axis| {
-            let period = to_f64(self.size()[axis]);
+            let period = self.size()[axis] as f64;
             let finest = layer.finest(axis, period, self.speckle_size());
             mean_nodes(centre[axis], size[axis], period, finest)
         });

@@ -5,7 +5,6 @@ use tem00_numerics::{circular_path_overlap, circular_path_overlap_inverse, disc_
 use crate::{
     Pupil, PupilField, SpeckleError,
     pupil::lattice::{Lattice, to_i64},
-    pupil::mask::{from_i64, to_f64},
 };
 
 /// The way the pupil takes over the lattice from slice to slice of a stack.
@@ -92,7 +91,7 @@ impl SlicePath {
     /// The pupil's centre for slice `index`, in its diameters.
     pub(crate) fn offset(self, index: usize, field: &PupilField) -> [f64; 2] {
         let centre = self.centre(index, field);
-        [0, 1].map(|axis| from_i64(centre[axis]) / field.diameter()[axis])
+        [0, 1].map(|axis| centre[axis] as f64 / field.diameter()[axis])
     }
 
     /// The field on the lattice that the path closes on.
@@ -112,7 +111,7 @@ impl SlicePath {
         match self {
             Self::Still => [0, 0],
             Self::Circle { half_period } => {
-                let angle = PI * to_f64(index) / to_f64(half_period);
+                let angle = PI * index as f64 / half_period as f64;
                 let [x, y] = field.diameter().map(|diameter| 0.5 * diameter);
                 [round(x * angle.cos()), round(y * angle.sin())]
             }
@@ -130,7 +129,7 @@ impl SlicePath {
 
 /// The lattice points along a path of `length` diameters.
 fn points_along(length: usize, field: &PupilField) -> i64 {
-    round(to_f64(length) * field.diameter()[0])
+    round(length as f64 * field.diameter()[0])
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "lattice points are small")]
@@ -187,7 +186,7 @@ impl PathLaw {
         if self.path == SlicePath::Still {
             return 1.0;
         }
-        let u = u.rem_euclid(to_f64(self.path.slice_count()));
+        let u = u.rem_euclid(self.path.slice_count() as f64);
         self.blend_after(u.floor()).overlap(u - u.floor())
     }
 
@@ -198,9 +197,9 @@ impl PathLaw {
         }
         let overlap = overlap.max(0.0); // NaN counts as no correlation, too
         let Some(slice) = self.first_slice_below(overlap) else {
-            return to_f64(self.path.slice_count() / 2);
+            return (self.path.slice_count() / 2) as f64;
         };
-        let before = to_f64(slice - 1);
+        let before = (slice - 1) as f64;
         before + self.blend_after(before).fraction(overlap)
     }
 
@@ -218,7 +217,7 @@ impl PathLaw {
         match self.path {
             SlicePath::Still => 1.0,
             SlicePath::Circle { half_period } => {
-                let half_period = to_f64(half_period);
+                let half_period = half_period as f64;
                 if self.pupil == Pupil::Circle {
                     return circular_path_overlap((j - i) / half_period);
                 }
@@ -229,10 +228,10 @@ impl PathLaw {
                 half_period,
                 length,
             } => {
-                let period = to_f64(2 * half_period);
+                let period = (2 * half_period) as f64;
                 let steps = (j - i).rem_euclid(period);
                 let steps = steps.min(period - steps);
-                self.pupil.overlap([steps * to_f64(length) / period, 0.0])
+                self.pupil.overlap([steps * length as f64 / period, 0.0])
             }
         }
     }
@@ -240,7 +239,7 @@ impl PathLaw {
     /// The first slice whose overlap with slice 0 is `overlap` or less, up to the half period.
     fn first_slice_below(&self, overlap: f64) -> Option<usize> {
         let last = self.path.slice_count() / 2;
-        let fallen = |slice: usize| self.between(0.0, to_f64(slice)) <= overlap;
+        let fallen = |slice: usize| self.between(0.0, slice as f64) <= overlap;
         let mut slice = match self.guess(overlap) {
             Some(guess) => guess.clamp(1, last),
             None => scan(last, fallen),
@@ -268,12 +267,12 @@ impl PathLaw {
             _ if self.pupil != Pupil::Circle => return None,
             SlicePath::Still => return None,
             SlicePath::Circle { half_period } => {
-                to_f64(half_period) * circular_path_overlap_inverse(overlap)
+                half_period as f64 * circular_path_overlap_inverse(overlap)
             }
             SlicePath::Straight {
                 half_period,
                 length,
-            } => to_f64(2 * half_period) / to_f64(length) * disc_overlap_inverse(overlap),
+            } => (2 * half_period) as f64 / length as f64 * disc_overlap_inverse(overlap),
         };
         Some(slices.ceil() as usize)
     }

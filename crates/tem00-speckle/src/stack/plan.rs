@@ -1,4 +1,4 @@
-use crate::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackOptions, pupil::mask::to_f64};
+use crate::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackOptions};
 
 /// What a stack is to be looked up for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -229,11 +229,11 @@ impl StackPlan {
     pub fn slices_per_diameter(&self) -> f64 {
         match self.path {
             SlicePath::Still => 1.0,
-            SlicePath::Circle { half_period } => to_f64(half_period),
+            SlicePath::Circle { half_period } => half_period as f64,
             SlicePath::Straight {
                 half_period,
                 length,
-            } => 2.0 * to_f64(half_period) / to_f64(length),
+            } => 2.0 * half_period as f64 / length as f64,
         }
     }
 
@@ -243,13 +243,13 @@ impl StackPlan {
         match self.path {
             SlicePath::Still => 0.0,
             SlicePath::Circle { .. } => 1.0,
-            SlicePath::Straight { length, .. } => to_f64(length) - 1.0,
+            SlicePath::Straight { length, .. } => length as f64 - 1.0,
         }
     }
 
     /// Whether the pattern repeats nothing within the region.
     pub fn holds_region(&self, needs: &StackNeeds) -> bool {
-        (0..2).all(|axis| to_f64(self.diameter[axis]) >= needs.region[axis] / needs.speckle_size)
+        (0..2).all(|axis| self.diameter[axis] as f64 >= needs.region[axis] / needs.speckle_size)
     }
 
     /// Whether each frame has the speckle of its own motion. With two frames it always has: what is
@@ -268,7 +268,7 @@ impl StackPlan {
         if self.size[0] == self.size[1] {
             return PupilField::new(self.size[0], self.diameter[0], seed);
         }
-        let speckle_size = to_f64(self.size[0]) / to_f64(self.diameter[0]);
+        let speckle_size = self.size[0] as f64 / self.diameter[0] as f64;
         PupilField::from_speckle_size(self.size, speckle_size, seed)
     }
 

@@ -4,10 +4,7 @@ use proptest::{prelude::*, test_runner::RngSeed};
 use tem00_numerics::wrap_coordinate;
 
 use super::*;
-use crate::{
-    Phasors, Pupil,
-    pupil::mask::{from_i64, to_f64},
-};
+use crate::{Phasors, Pupil};
 
 fn stack(size: usize, diameter: usize, path: SlicePath) -> SpeckleStack {
     let field = PupilField::new(size, diameter, 17).unwrap();
@@ -31,17 +28,17 @@ fn amplitude_by_definition(field: &PupilField, centre: [i64; 2], r: [f64; 2]) ->
     let mut sum = Complex::new(0.0, 0.0);
     for ky in -64..=64 {
         for kx in -64..=64 {
-            if (from_i64(kx) / cx).hypot(from_i64(ky) / cy) <= 0.5 + 1e-9 {
+            if (kx as f64 / cx).hypot(ky as f64 / cy) <= 0.5 + 1e-9 {
                 let k = [kx + centre[0], ky + centre[1]];
                 let p = field.phasor(k);
-                let turns = [0, 1].map(|i| from_i64(k[i]) * r[i] / to_f64(field.size()[i]));
+                let turns = [0, 1].map(|i| k[i] as f64 * r[i] / field.size()[i] as f64);
                 let turns = turns[0] + turns[1];
                 sum += Complex::new(f64::from(p.re), f64::from(p.im))
                     * Complex::from_polar(1.0, -2.0 * PI * turns);
             }
         }
     }
-    sum / to_f64(field.phasor_count()).sqrt()
+    sum / (field.phasor_count() as f64).sqrt()
 }
 
 /// Mean and squared contrast of the look-up over all cells, at one fraction of each.
@@ -270,7 +267,7 @@ fn neighbours_are_correlated_by_the_closed_form() {
                 let exact = field.overlap(shift).norm_sqr();
                 let closed = law.overlap_at(u.into()).powi(2);
                 assert!(
-                    (exact - closed).abs() < tolerance(to_f64(diameter)),
+                    (exact - closed).abs() < tolerance(diameter as f64),
                     "{path:?}, C = {diameter}: γ({i}, {j}) = {exact}, law {closed}"
                 );
             }
@@ -400,7 +397,7 @@ fn a_coordinate_has_the_correlation_asked_for_in_look_ups() {
 fn the_pattern_is_continuous_across_every_wrap() {
     for path in [circle(4), straight(3)] {
         let stack = stack(64, 32, path);
-        let (q, period) = (64.0, to_f64(stack.slice_count()));
+        let (q, period) = (64.0, stack.slice_count() as f64);
         let e = 1e-6;
         for (a, b) in [(0.3, 0.2), (17.5, 40.1), (33.2, 63.6)] {
             let pairs = [

@@ -94,7 +94,7 @@ impl Samples {
             .collect();
         let mean_light = |pixel: &[u16]| {
             let sum: f64 = pixel.iter().map(|&value| light[usize::from(value)]).sum();
-            single(sum / count(pixel.len()))
+            single(sum / pixel.len() as f64)
         };
         let values = self.pixels(&selection).map(mean_light).collect();
         let coloured = self
@@ -114,7 +114,7 @@ impl Samples {
                 self.remark,
                 curve.description()
             ),
-            saturated: Some(count(saturated) / count(self.width * self.height)),
+            saturated: Some(saturated as f64 / (self.width * self.height) as f64),
         })
     }
 
@@ -154,11 +154,7 @@ fn largest_of(pixel: &[u16]) -> u16 {
 /// The mean of a few values of 16 bits.
 fn mean(values: &[u16]) -> f32 {
     let sum: f64 = values.iter().map(|&value| f64::from(value)).sum();
-    single(sum / count(values.len()))
-}
-
-const fn count(number: usize) -> f64 {
-    number as f64
+    single(sum / values.len() as f64)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]

@@ -2,10 +2,7 @@ use core::f64::consts::PI;
 use std::collections::BTreeMap;
 
 use super::*;
-use crate::{
-    Pupil, Transmission,
-    pupil::mask::{from_i64, to_f64},
-};
+use crate::{Pupil, Transmission};
 
 const ALL: [Interpolation; 3] = [
     Interpolation::CubicSpline,
@@ -69,8 +66,8 @@ struct Place {
 
 /// exp(−2πi k·r / Q).
 fn wave(field: &PupilField, k: [i64; 2], r: [f64; 2]) -> Complex<f64> {
-    let size = field.size().map(to_f64);
-    let turns = from_i64(k[0]) * r[0] / size[0] + from_i64(k[1]) * r[1] / size[1];
+    let size = field.size().map(|n| n as f64);
+    let turns = k[0] as f64 * r[0] / size[0] + k[1] as f64 * r[1] / size[1];
     Complex::cis(-2.0 * PI * turns)
 }
 
@@ -101,10 +98,10 @@ fn interpolated(field: &PupilField, place: &Place, cell: [f64; 2]) -> Vec<Comple
     let frame = wave(field, place.shift, stand) * wave(field, place.shift, cell);
     blended(field, place, frame, |k| {
         let along = |axis: usize| {
-            let size = to_f64(field.size()[axis]);
+            let size = field.size()[axis] as f64;
             looked_up(
                 place.interpolation,
-                from_i64(k[axis]),
+                k[axis] as f64,
                 place.fractions[axis],
                 size,
             )
@@ -244,7 +241,7 @@ fn between_slices_correlations_deviate_as_documented() {
         (Interpolation::Nearest, [0.81, 0.52, 0.25]),
     ] {
         for ((size, lag), stated) in [(48, 2.0), (96, 3.0), (192, 5.0)].into_iter().zip(stated) {
-            let field = PupilField::from_speckle_size([size; 2], to_f64(size) / 24.0, 0).unwrap();
+            let field = PupilField::from_speckle_size([size; 2], size as f64 / 24.0, 0).unwrap();
             // Neighbours of 4 and 32 slices.
             let worst = [[12, 12], [1, 0]]
                 .map(|shift| deviation(&field, interpolation, shift, lag))

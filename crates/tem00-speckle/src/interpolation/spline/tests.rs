@@ -13,7 +13,7 @@ fn kernel(x: f64) -> f64 {
 
 /// What interpolation at the fraction `f` makes of the wave `exp(−2πi k x / Q)`, over the wave.
 fn gain(interpolation: Interpolation, k: f64, f: f64, size: usize) -> Complex<f64> {
-    let angle = 2.0 * PI * k / to_f64(size);
+    let angle = 2.0 * PI * k / size as f64;
     let taps = match interpolation {
         Interpolation::CubicSpline => {
             let filter = (0.5 * angle / (0.5 * angle).sin()).powi(4);
@@ -39,7 +39,7 @@ fn points(mask: &Mask) -> Vec<([f64; 2], f64)> {
     (0..mask.extent()[1])
         .flat_map(|y| mask.powers(y).map(move |(x, power)| (x, y, power)))
         .map(|(x, y, power)| {
-            let k = [from_i64(x0 + to_i64(x)), from_i64(y0 + to_i64(y))];
+            let k = [(x0 + to_i64(x)) as f64, (y0 + to_i64(y)) as f64];
             (k, power)
         })
         .collect()
@@ -119,7 +119,7 @@ fn the_closed_variance_is_the_mean_square_gain() {
 /// and over lags that include the steepest.
 fn deviation(field: &PupilField, interpolation: Interpolation, cells: &[[f64; 2]]) -> f64 {
     const STEPS: [f64; 6] = [0.0, 0.25, 0.499_99, 0.5, 0.625, 0.75];
-    let size = to_f64(field.size()[0]);
+    let size = field.size()[0] as f64;
     let wave =
         |[kx, ky]: [f64; 2], [x, y]: [f64; 2]| Complex::cis(-2.0 * PI * (kx * x + ky * y) / size);
     let points: Vec<_> = points(&field.mask).into_iter().map(|(k, _)| k).collect();
@@ -159,7 +159,7 @@ fn the_error_of_each_interpolation_is_as_documented() {
         (Interpolation::Nearest, [0.75, 0.48, 0.25]),
     ] {
         for ((size, lag), stated) in [(48, 2.0), (96, 3.0), (192, 5.0)].into_iter().zip(stated) {
-            let field = field([size; 2], to_f64(size) / 24.0, crate::Pupil::Circle);
+            let field = field([size; 2], size as f64 / 24.0, crate::Pupil::Circle);
             let worst = deviation(&field, interpolation, &cells(lag));
             assert!(
                 worst < stated && worst > 0.8 * stated,
@@ -173,7 +173,7 @@ fn the_error_of_each_interpolation_is_as_documented() {
 #[test]
 fn the_field_of_the_spline_is_as_documented() {
     for (size, stated) in [(64, 4.3e-3), (128, 2e-4)] {
-        let field = field([size; 2], to_f64(size) / 32.0, crate::Pupil::Circle);
+        let field = field([size; 2], size as f64 / 32.0, crate::Pupil::Circle);
         let mut rms = 0.0_f64;
         for [fx, fy] in FRACTIONS {
             let along = |k, f| gain(Interpolation::CubicSpline, k, f, size);

@@ -43,7 +43,7 @@ fn place(x: f64, cells: usize) -> (f64, Option<f64>) {
     assert!(cell < cells && (0.0..=1.0).contains(&f), "{cell} + {f}");
     let units = (1_i128 << 60) as f64;
     let expected = remainder(x, i128::try_from(cells).unwrap());
-    (to_f64(cell) + f, expected.map(|n| n as f64 / units))
+    (cell as f64 + f, expected.map(|n| n as f64 / units))
 }
 
 proptest! {
@@ -58,11 +58,11 @@ proptest! {
     fn whole_periods_are_taken_off_exactly(
         mantissa in -(1_i64 << 53)..1 << 53, exponent in -52_i32..17, cells in 1_usize..40_000,
     ) {
-        let x = crate::pupil::mask::from_i64(mantissa) * 2.0_f64.powi(exponent);
+        let x = mantissa as f64 * 2.0_f64.powi(exponent);
         let (got, expected) = place(x, cells);
         if let Some(expected) = expected {
             // Sums of a negative x and the period are rounded to a number of f64, and only these.
-            let rounding = if x < 0.0 { 0.5 * f64::EPSILON * to_f64(cells) } else { 0.0 };
+            let rounding = if x < 0.0 { 0.5 * f64::EPSILON * cells as f64 } else { 0.0 };
             prop_assert!((got - expected).abs() <= rounding, "{x}: {got} | {expected}");
         }
     }
@@ -71,7 +71,7 @@ proptest! {
 #[test]
 fn the_ends_of_the_period_are_met_exactly() {
     for cells in [1, 16, 1_000, 32_768] {
-        let q = to_f64(cells);
+        let q = cells as f64;
         for n in [-1e12, -3.0, -1.0, 0.0, 1.0, 7.0, 1e12] {
             let ([cell], [f]) = Period::new(cells).split(&[n * q]);
             assert!(cell == 0 && f.abs() <= 0.0, "{n} · {cells}: {cell} + {f}");

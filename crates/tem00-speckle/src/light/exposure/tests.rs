@@ -3,7 +3,7 @@ use tem00_numerics::disc_overlap;
 use tem00_statistics::{boiling_contrast, t_test_mean, translation_contrast};
 
 use super::*;
-use crate::{Phasors, pupil::lattice::to_i64, pupil::mask::from_i64};
+use crate::{Phasors, pupil::lattice::to_i64};
 
 fn exposure(image_drift: [f64; 2], pupil_drift: [f64; 2]) -> Exposure {
     let exposure = Exposure::default().with_image_drift(image_drift).unwrap();
@@ -12,7 +12,7 @@ fn exposure(image_drift: [f64; 2], pupil_drift: [f64; 2]) -> Exposure {
 
 fn mean(pattern: &SpecklePattern, of: impl Fn(f64) -> f64) -> f64 {
     let values = pattern.values().values();
-    values.iter().map(|&i| of(f64::from(i))).sum::<f64>() / to_f64(values.len())
+    values.iter().map(|&i| of(f64::from(i))).sum::<f64>() / values.len() as f64
 }
 
 /// The intensity at any point, by the sum over the lattice points of the displaced circle.
@@ -21,17 +21,14 @@ fn direct_intensity(field: &PupilField, offset: [f64; 2], r: [f64; 2]) -> f64 {
     let [c_x, c_y] = field.diameter();
     let reach = to_i64(field.size()[0]);
     for (kx, ky) in (-reach..=reach).flat_map(|kx| (-reach..=reach).map(move |ky| (kx, ky))) {
-        let [x, y] = [
-            from_i64(kx) / c_x - offset[0],
-            from_i64(ky) / c_y - offset[1],
-        ];
+        let [x, y] = [kx as f64 / c_x - offset[0], ky as f64 / c_y - offset[1]];
         if x.hypot(y) > 0.5 {
             continue;
         }
-        let [width, height] = field.size().map(to_f64);
+        let [width, height] = field.size().map(|n| n as f64);
         let phasor = field.phasor([kx, ky]);
         let phasor = Complex::new(f64::from(phasor.re), f64::from(phasor.im));
-        sum += phasor * wave(-(from_i64(kx) * r[0] / width + from_i64(ky) * r[1] / height));
+        sum += phasor * wave(-(kx as f64 * r[0] / width + ky as f64 * r[1] / height));
         count += 1.0;
     }
     sum.norm_sqr() / count
@@ -66,21 +63,21 @@ fn exposures_are_the_integral_of_the_moving_intensity() {
         let pattern = exposure.pattern_at(&field, offset, 0.0);
         for r in [[3, 4], [19, 0]] {
             let mut sum = 0.0;
-            let count = to_f64(exposure.moments());
+            let count = exposure.moments() as f64;
             for moment in 0..exposure.moments() {
                 // The middles of equal parts of the time, and the middle of all at 0.
-                let time = (2.0 * to_f64(moment) + 1.0 - count) / (2.0 * count);
+                let time = (2.0 * moment as f64 + 1.0 - count) / (2.0 * count);
                 let place = [0, 1].map(|axis| offset[axis] + pupil_drift[axis] * time);
                 for step in 0..STEPS {
-                    let part = (to_f64(step) + 0.5) / to_f64(STEPS) - 0.5;
+                    let part = (step as f64 + 0.5) / STEPS as f64 - 0.5;
                     let moment = time + part / count;
                     let at = [0, 1].map(|axis| {
-                        to_f64(r[axis]) - image_drift[axis] * field.speckle_size() * moment
+                        r[axis] as f64 - image_drift[axis] * field.speckle_size() * moment
                     });
                     sum += direct_intensity(&field, place, at);
                 }
             }
-            let expected = sum / (to_f64(STEPS) * count);
+            let expected = sum / (STEPS as f64 * count);
             let got = f64::from(pattern.values()[(r[0], r[1])]);
             // The midpoint rule: (2π T/STEPS)²/24 = 1.3e−3 of the parts of highest frequency, which
             // hold a hundredth of the intensity.
@@ -137,7 +134,7 @@ fn the_quadrature_exceeds_the_law_of_boiling_as_stated() {
     for drift in [1e-6, 1e-3, 0.02, 0.1, 0.3, 0.9, 1.0, 2.5, 10.0] {
         let exposure = exposure([0.0; 2], [drift, 0.0]);
         let times: Vec<f64> = exposure.times().collect();
-        let count = to_f64(times.len());
+        let count = times.len() as f64;
         let pairs = times.iter().flat_map(|a| times.iter().map(move |b| a - b));
         let squared: f64 = pairs.map(|t| disc_overlap(t * drift).powi(2)).sum();
         let excess = squared / (count * count) - boiling_contrast(drift).powi(2);

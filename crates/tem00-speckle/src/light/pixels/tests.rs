@@ -2,11 +2,11 @@ use proptest::{prelude::*, test_runner::RngSeed};
 use tem00_statistics::{pixel_contrast, rectangular_pixel_contrast, t_test_mean};
 
 use super::*;
-use crate::{PupilField, pupil::lattice::to_i64, pupil::mask::from_i64};
+use crate::{PupilField, pupil::lattice::to_i64};
 
 fn mean(image: &Grid<f32>, of: impl Fn(f64) -> f64) -> f64 {
     let values = image.values();
-    values.iter().map(|&i| of(f64::from(i))).sum::<f64>() / to_f64(values.len())
+    values.iter().map(|&i| of(f64::from(i))).sum::<f64>() / values.len() as f64
 }
 
 /// The intensity at any point, by the sum over the lattice points of the circle.
@@ -15,13 +15,13 @@ fn direct_intensity(field: &PupilField, r: [f64; 2]) -> f64 {
     let [c_x, c_y] = field.diameter();
     let reach = to_i64(field.size()[0] / 2);
     for (kx, ky) in (-reach..=reach).flat_map(|kx| (-reach..=reach).map(move |ky| (kx, ky))) {
-        if (from_i64(kx) / c_x).hypot(from_i64(ky) / c_y) > 0.5 {
+        if (kx as f64 / c_x).hypot(ky as f64 / c_y) > 0.5 {
             continue;
         }
-        let [width, height] = field.size().map(to_f64);
+        let [width, height] = field.size().map(|n| n as f64);
         let phasor = field.phasor([kx, ky]);
         let phasor = Complex::new(f64::from(phasor.re), f64::from(phasor.im));
-        sum += phasor * wave(-(from_i64(kx) * r[0] / width + from_i64(ky) * r[1] / height));
+        sum += phasor * wave(-(kx as f64 * r[0] / width + ky as f64 * r[1] / height));
         count += 1.0;
     }
     sum.norm_sqr() / count
@@ -37,8 +37,8 @@ fn box_mean(centre: [f64; 2], size: [f64; 2], f: impl Fn([f64; 2]) -> f64) -> f6
             _ => 2.0,
         };
         (
-            to_f64(i) / to_f64(INTERVALS) - 0.5,
-            weight / (3.0 * to_f64(INTERVALS)),
+            i as f64 / INTERVALS as f64 - 0.5,
+            weight / (3.0 * INTERVALS as f64),
         )
     };
     let mut sum = 0.0;
@@ -62,8 +62,8 @@ fn pixels_are_the_mean_of_the_exact_intensity_over_their_box() {
     let image = pixels.image(&pattern);
     for (i, j) in [(0, 0), (4, 0), (2, 3), (1, 2)] {
         let centre = [
-            origin[0] + to_f64(i) * pitch[0],
-            origin[1] + to_f64(j) * pitch[1],
+            origin[0] + i as f64 * pitch[0],
+            origin[1] + j as f64 * pitch[1],
         ];
         let expected = box_mean(centre, size, |r| direct_intensity(&field, r));
         let got = f64::from(image[(i, j)]);
@@ -89,7 +89,7 @@ fn point_pixels_are_the_samples() {
 fn all_light_of_the_pattern_falls_on_pixels_without_gaps() {
     let pattern = PupilField::new(60, 20, 4).unwrap().pattern();
     for count in [[1, 1], [7, 60], [60, 13], [120, 90]] {
-        let pitch = count.map(|count| 60.0 / to_f64(count));
+        let pitch = count.map(|count| 60.0 / count as f64);
         let image = PixelArray::new(count, pitch).unwrap().image(&pattern);
         // The mean of the pattern is 1 by Parseval; weights in f32.
         assert!((mean(&image, |i| i) - 1.0).abs() < 2e-6, "{count:?}");
@@ -130,7 +130,7 @@ fn contrasts_follow_the_law_of_integrating_pixels() {
             let pixels = PixelArray::new([64, 64], [1.0, 1.0]).unwrap();
             let image = pixels.with_size(size).unwrap().image(&field.pattern());
             // The autocovariance of unit phasors is lower by 1/N at every lag.
-            let bias = to_f64(field.phasor_count()).recip();
+            let bias = (field.phasor_count() as f64).recip();
             mean(&image, |i| (i - 1.0).powi(2)) + bias
         });
         let squares: Vec<f64> = squares.collect();
@@ -180,7 +180,7 @@ proptest! {
         let pixels = pixels.with_size([10.0_f64.powf(size), 0.3]).unwrap();
         let image = pixels.with_origin([origin, -origin]).unwrap().image(&field.pattern());
         // N phasors in step.
-        let greatest = to_f32(to_f64(field.phasor_count()));
+        let greatest = to_f32(field.phasor_count() as f64);
         prop_assert!(image.values().iter().all(|&i| i > -1e-5 && i <= greatest));
     }
 }

@@ -27,7 +27,7 @@ fn sums() -> Vec<IncoherentSum> {
 
 fn mean(values: &Grid<f32>, of: impl Fn(f64) -> f64) -> f64 {
     let sum: f64 = values.values().iter().map(|&i| of(f64::from(i))).sum();
-    sum / to_f64(values.values().len())
+    sum / values.values().len() as f64
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn a_spectrum_has_the_second_and_third_moment_of_its_wavelengths() {
 fn means_are_one_and_contrasts_follow_the_shares() {
     const TILES: u64 = 16;
     const DIAMETER: usize = 32;
-    let bias = 1.0 / to_f64(PupilField::new(64, DIAMETER, 0).unwrap().phasor_count());
+    let bias = 1.0 / PupilField::new(64, DIAMETER, 0).unwrap().phasor_count() as f64;
     for sum in sums() {
         let mut squared = 0.0;
         for seed in 0..TILES {
@@ -116,7 +116,7 @@ fn means_are_one_and_contrasts_follow_the_shares() {
             let powers = sum.shares().iter().map(|share| share.powi(power));
             powers.sum::<f64>()
         });
-        let spread = contrast_squared_spread(to_f64(DIAMETER));
+        let spread = contrast_squared_spread(DIAMETER as f64);
         let spread = spread * (0.5 * (squares * squares + fourths)).sqrt();
         let tolerance = 4.0 * spread / (TILES as f64).sqrt();
         let expected = squares * (1.0 - bias);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{SpecklePattern, pupil::lattice::to_i64, pupil::mask::from_i64};
+use crate::{SpecklePattern, pupil::lattice::to_i64};
 
 fn fields(size: usize, diameter: usize, seeds: u64) -> Vec<PupilField> {
     (0..seeds)
@@ -8,7 +8,7 @@ fn fields(size: usize, diameter: usize, seeds: u64) -> Vec<PupilField> {
 }
 
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = to_f64(values.len());
+    let count = values.len() as f64;
     values.sum::<f64>() / count
 }
 
@@ -39,10 +39,10 @@ fn squared_contrast_is_one_less_one_over_the_phasor_count() {
     const TILES: u32 = 24;
     for (size, diameter) in [(48, 8), (64, 32), (128, 32)] {
         let fields = fields(size, diameter, u64::from(TILES));
-        let expected = 1.0 - 1.0 / to_f64(fields[0].phasor_count());
+        let expected = 1.0 - 1.0 / fields[0].phasor_count() as f64;
         let squared = mean(fields.iter().map(|f| autocovariance(&f.pattern(), [0, 0])));
         // One tile's squared contrast has the standard deviation 1.53/C; α = 6e−5.
-        let tolerance = 4.0 * 1.53 / to_f64(diameter) / f64::from(TILES).sqrt();
+        let tolerance = 4.0 * 1.53 / diameter as f64 / f64::from(TILES).sqrt();
         assert!(
             (squared - expected).abs() < tolerance,
             "{squared} for {expected}"
@@ -85,7 +85,7 @@ fn autocovariance_is_the_squared_mask_transform_at_every_lag() {
         for y in 0..24 {
             for x in 0..28 {
                 let covariance = mean(patterns.iter().map(|p| autocovariance(p, [x, y])));
-                let mu = field.amplitude_correlation([from_i64(x), from_i64(y)]);
+                let mu = field.amplitude_correlation([x as f64, y as f64]);
                 let difference = covariance - (mu.norm_sqr() - fixed_mean);
                 assert!(
                     difference.abs() < tolerance,
@@ -140,11 +140,11 @@ fn displaced_pupils_share_the_phasors_of_their_overlap() {
         let field = field.with_pupil(pupil).unwrap();
         let here = field.speckle([0.0; 2], 0.0);
         for shift in [[3, 0], [-4, 9], [20, 0], [24, -11]] {
-            let there = field.speckle(shift.map(|s| from_i64(s) / 20.0), 0.0);
+            let there = field.speckle(shift.map(|s| s as f64 / 20.0), 0.0);
             let mut sum = Complex::new(0.0, 0.0);
             for y in 0..48 {
                 for x in 0..48 {
-                    let turns = from_i64(shift[0] * to_i64(x) + shift[1] * to_i64(y)) / 48.0;
+                    let turns = (shift[0] * to_i64(x) + shift[1] * to_i64(y)) as f64 / 48.0;
                     let frame = Complex::cis(-2.0 * PI * turns);
                     let (a, b) = (here.values()[(x, y)], there.values()[(x, y)]);
                     let product = a * b.conj();

@@ -6,7 +6,7 @@ use crate::Transmission;
 fn pupils() -> Vec<Pupil> {
     // Without any symmetry, and with a phase.
     let drawn = Grid::from_fn(13, 11, |x, y| {
-        let place = to_f64(x * x + 3 * y);
+        let place = (x * x + 3 * y) as f64;
         let magnitude = if (x + 2 * y).is_multiple_of(5) {
             0.0
         } else {
@@ -29,12 +29,12 @@ fn pupils() -> Vec<Pupil> {
 /// The definition of the pupils, point by point, for whole diameters in whole numbers.
 fn inside(pupil: &Pupil, diameter: i64, [x, y]: [i64; 2]) -> bool {
     let (r2, c2) = (4 * (x * x + y * y), diameter * diameter);
-    let c = from_i64(diameter);
+    let c = diameter as f64;
     match pupil {
         Pupil::Circle | Pupil::Gaussian { .. } => r2 <= c2,
-        Pupil::Annulus { inner } => r2 <= c2 && from_i64(r2) >= (inner * c).powi(2),
+        Pupil::Annulus { inner } => r2 <= c2 && r2 as f64 >= (inner * c).powi(2),
         Pupil::Rectangle { height } => {
-            2 * x.abs() <= diameter && from_i64(2 * y.abs()) <= height * c
+            2 * x.abs() <= diameter && ((2 * y.abs()) as f64) <= height * c
         }
         Pupil::Sampled(_) => 2 * x.abs() <= diameter && 2 * y.abs() <= diameter,
     }
@@ -59,7 +59,7 @@ fn points(mask: &Mask) -> Vec<([i64; 2], Complex<f64>)> {
 fn the_mask_holds_the_points_of_the_definition() {
     for pupil in pupils() {
         for diameter in [8, 9, 13, 32, 33] {
-            let mask = Mask::new(&pupil, [from_i64(diameter); 2], [0.0; 2]);
+            let mask = Mask::new(&pupil, [diameter as f64; 2], [0.0; 2]);
             let expected: Vec<_> = (-diameter..=diameter)
                 .flat_map(|y| (-diameter..=diameter).map(move |x| [x, y]))
                 .filter(|&k| inside(&pupil, diameter, k))
@@ -77,7 +77,7 @@ fn the_number_of_points_of_a_disc_is_that_of_the_gauss_circle_problem() {
         let mask = Mask::new(&Pupil::Circle, [diameter; 2], [0.0; 2]);
         assert_eq!(mask.count(), count, "diameter {diameter}");
         assert!(
-            (mask.effective_count() - to_f64(count)).abs() < 1e-9,
+            (mask.effective_count() - count as f64).abs() < 1e-9,
             "all equal"
         );
     }
@@ -105,7 +105,7 @@ proptest! {
         let pupil = &pupils()[index];
         let mask = Mask::new(pupil, [cx, cy], [fx, fy]);
         let got: Vec<_> = points(&mask).iter().map(|(k, _)| *k).collect();
-        let position = |[x, y]: [i64; 2]| [(from_i64(x) - fx) / cx, (from_i64(y) - fy) / cy];
+        let position = |[x, y]: [i64; 2]| [(x as f64 - fx) / cx, (y as f64 - fy) / cy];
         let expected: Vec<_> = (-12..=12)
             .flat_map(|y| (-12..=12).map(move |x| [x, y]))
             .filter(|&k| {
@@ -139,7 +139,7 @@ proptest! {
         let size = [25, 31];
         let mask = Mask::new(&pupils()[index], [11.0, 13.0], [fx, fy]);
         let term = |(k, weight): &([i64; 2], Complex<f64>)| {
-            let turns = from_i64(k[0]) * x / 25.0 + from_i64(k[1]) * y / 31.0;
+            let turns = k[0] as f64 * x / 25.0 + k[1] as f64 * y / 31.0;
             weight.norm_sqr() * Complex::cis(-2.0 * PI * turns)
         };
         let points = points(&mask);

@@ -16,7 +16,7 @@ fn moment(field: &PupilField, order: i32) -> f64 {
     let pattern = field.pattern();
     let values = pattern.values().values();
     let powers = values.iter().map(|&i| f64::from(i).powi(order));
-    powers.sum::<f64>() / to_f64(values.len())
+    powers.sum::<f64>() / values.len() as f64
 }
 
 #[test]
@@ -50,7 +50,7 @@ fn means_are_one_and_no_point_is_brighter_than_all_in_step() {
             let mean = moment(&field, 1);
             assert!((mean - 1.0).abs() < 1e-6, "mean {mean} of {count}");
             let pattern = field.pattern();
-            let limit = to_f64(count) * (1.0 + 1e-6);
+            let limit = count as f64 * (1.0 + 1e-6);
             let brightest = pattern
                 .values()
                 .values()
@@ -110,7 +110,7 @@ fn all_points_of_the_pupil_are_equally_probable() {
         let lit = |&[kx, ky]: &[i64; 2]| samples.wrapped(x + kx, y + ky).norm_sqr() > 0.5;
         counts[points.iter().position(lit).unwrap()] += 1;
     }
-    let expected = vec![4900.0 / to_f64(points.len()); points.len()];
+    let expected = vec![4900.0 / points.len() as f64; points.len()];
     // The total is given. α = 1e−4.
     let outcome = chi_squared(&counts, &expected, 1).unwrap();
     assert!(outcome.p_value > 1e-4, "{outcome:?}");

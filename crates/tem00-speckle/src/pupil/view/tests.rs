@@ -41,9 +41,9 @@ fn amplitude_by_definition(
         for kx in -20..=20 {
             let k = [kx, ky];
             let at = [0, 1].map(|i| nearest[i] + k[i]);
-            let p = [0, 1].map(|i| (from_i64(at[i]) - centre[i]) / field.diameter()[i]);
+            let p = [0, 1].map(|i| (at[i] as f64 - centre[i]) / field.diameter()[i]);
             let t = to_c64(field.pupil().transmission(p));
-            let turns = [0, 1].map(|i| from_i64(k[i]) * to_f64(r[i]) / to_f64(field.size()[i]));
+            let turns = [0, 1].map(|i| k[i] as f64 * r[i] as f64 / field.size()[i] as f64);
             let rho2 = 4.0 * (p[0] * p[0] + p[1] * p[1]);
             let turns = defocus * rho2 - (turns[0] + turns[1]);
             sum += t * to_c64(field.phasor(at)) * Complex::cis(TAU * turns);
@@ -84,7 +84,7 @@ proptest! {
         seed: u64, width in 16_usize..90, height in 16_usize..90, share in 0.0_f64..1.0,
         x in -1e6_f64..1e6, y in -1e6_f64..1e6, defocus in -50.0_f64..50.0, pupil in pupils(),
     ) {
-        let largest = to_f64(width.min(height)) / 8.0;
+        let largest = width.min(height) as f64 / 8.0;
         let speckle_size = 2.0 + share * (largest - 2.0);
         let field = PupilField::from_speckle_size([width, height], speckle_size, seed).unwrap();
         // A small pupil may hold too few phasors for some shapes.
@@ -112,7 +112,7 @@ proptest! {
         let spectrum = plan.forward(&intensity, |kx, ky, value| {
             let along = |k: usize, axis: usize| {
                 let size = field.size()[axis];
-                to_f64(k.min(size - k)) / field.diameter()[axis]
+                k.min(size - k) as f64 / field.diameter()[axis]
             };
             (along(kx, 0).hypot(along(ky, 1)), value.norm() / 5_120.0)
         });
@@ -153,7 +153,7 @@ proptest! {
 }
 
 fn mean(values: &[f32]) -> f64 {
-    values.iter().map(|&i| f64::from(i)).sum::<f64>() / to_f64(values.len())
+    values.iter().map(|&i| f64::from(i)).sum::<f64>() / values.len() as f64
 }
 
 /// Mean of (a(r) − 1)(b(r + lag) − 1) over the tile.
@@ -166,7 +166,7 @@ fn covariance(a: &SpecklePattern, b: &SpecklePattern, [x, y]: [i64; 2]) -> f64 {
             sum += (f64::from(a.values()[(i, j)]) - 1.0) * (f64::from(*there) - 1.0);
         }
     }
-    sum / to_f64(width * height)
+    sum / (width * height) as f64
 }
 
 /// |∫ over the lens of two unit discs, 2s apart, of exp(2πi a |p|²)|² / π², p about its middle: the
@@ -176,7 +176,7 @@ fn tracked_correlation(s: f64, a: f64) -> f64 {
     let end = (1.0 - s * s).sqrt();
     let sum: Complex<f64> = (0..STEPS)
         .map(|i| {
-            let rho = (to_f64(i) + 0.5) / to_f64(STEPS) * end;
+            let rho = (i as f64 + 0.5) / STEPS as f64 * end;
             let share = if rho <= 1.0 - s {
                 1.0
             } else {
@@ -188,7 +188,7 @@ fn tracked_correlation(s: f64, a: f64) -> f64 {
             2.0 * rho * share * Complex::cis(TAU * a * rho * rho)
         })
         .sum();
-    (sum * end / to_f64(STEPS)).norm_sqr()
+    (sum * end / STEPS as f64).norm_sqr()
 }
 
 #[test]
@@ -252,7 +252,7 @@ fn the_correlation_of_displaced_fields_is_the_lens_of_their_pupils() {
         let mut sum = Complex::new(0.0, 0.0);
         for y in 0..192 {
             for x in 0..256 {
-                let turns = c0[0] * to_f64(x) / 256.0 + c0[1] * to_f64(y) / 192.0;
+                let turns = c0[0] * x as f64 / 256.0 + c0[1] * y as f64 / 192.0;
                 let common = to_c64(there.values()[(x, y)]) * Complex::cis(-2.0 * PI * turns);
                 sum += to_c64(here.values()[(x, y)]) * common.conj();
             }
@@ -283,7 +283,7 @@ fn a_pupil_that_has_moved_far_meets_new_phasors() {
 fn offsets_of_whole_lattice_points_are_on_the_lattice() {
     for diameter in [49.0, 50.0, 64.0, 57.6, 333.25] {
         for point in (-3_000..3_000).chain([1 << 35, (1 << 35) + 1]) {
-            let offset = from_i64(point) / diameter;
+            let offset = point as f64 / diameter;
             assert_eq!(
                 lattice_point(offset, diameter),
                 (point, 0.0),

@@ -4,10 +4,7 @@ use tem00_numerics::Grid;
 use tem00_statistics::{exponential_cumulative, kolmogorov_smirnov, rectangular_pixel_contrast};
 
 use super::*;
-use crate::{
-    Phasors, PupilField, SlicePath, StackOptions, pupil::lattice::unit_phasor,
-    pupil::mask::from_i64,
-};
+use crate::{Phasors, PupilField, SlicePath, StackOptions, pupil::lattice::unit_phasor};
 
 const ALL: [Interpolation; 3] = [
     Interpolation::CubicSpline,
@@ -202,8 +199,8 @@ proptest! {
         let field = PupilField::from_speckle_size([width, height], 2.0, 9).unwrap();
         let stack = stack(&field, PATHS[path], ALL[kind]);
         let periods = [width, height, stack.slice_count()];
-        let [x, y, u] = [x, y, u].map(|n| from_i64(n) / 1_048_576.0);
-        let [nx, ny, nu] = [0, 1, 2].map(|i| from_i64(turns[i]) * to_f64(periods[i]));
+        let [x, y, u] = [x, y, u].map(|n| n as f64 / 1_048_576.0);
+        let [nx, ny, nu] = [0, 1, 2].map(|i| turns[i] as f64 * periods[i] as f64);
         let (here, there) = (stack.intensity_at(x, y, u), stack.intensity_at(x + nx, y + ny, u + nu));
         prop_assert_eq!(here.to_bits(), there.to_bits(), "{} and {}", here, there);
     }
@@ -311,8 +308,8 @@ fn slices_of_unlike_light_are_blended_in_one_frame() {
     let [a, b] = [index, index + 1].map(|i| stack.field().speckle(stack.offset(i), 0.0));
     let step = stack.slices[index].join.step;
     let frame = |x: usize, y: usize| {
-        let turns = step[0] * (to_f64(x) + fractions[0]) / to_f64(size[0])
-            + step[1] * (to_f64(y) + fractions[1]) / to_f64(size[1]);
+        let turns = step[0] * (x as f64 + fractions[0]) / size[0] as f64
+            + step[1] * (y as f64 + fractions[1]) / size[1] as f64;
         Complex::cis(-2.0 * core::f64::consts::PI * turns)
     };
     let between = |field: &crate::SpeckleField, x: usize, y: usize| {
@@ -328,10 +325,10 @@ fn slices_of_unlike_light_are_blended_in_one_frame() {
         (between(&a, x, y) * (1.0 - f) + between(&b, x, y) * frame(x, y) * f).norm_sqr()
     };
     let cells = || (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
-    let mean_square = cells().map(|(x, y)| blend(x, y)).sum::<f64>() / to_f64(size[0] * size[1]);
+    let mean_square = cells().map(|(x, y)| blend(x, y)).sum::<f64>() / (size[0] * size[1]) as f64;
     for (x, y) in cells().step_by(7) {
         let expected = blend(x, y) / mean_square;
-        let got = stack.intensity_at(to_f64(x) + 0.5, to_f64(y) + 0.25, to_f64(index) + f);
+        let got = stack.intensity_at(x as f64 + 0.5, y as f64 + 0.25, index as f64 + f);
         // Rounding of f32 in some ten operations.
         let error = (got - expected).abs() / (1.0 + expected);
         assert!(error < 1e-5, "({x}, {y}): {got} | {expected}");

@@ -29,7 +29,7 @@ fn each_axis_holds_the_speckles_of_its_own_side() {
     assert_eq!(plan.size(), [400, 288]);
     assert_eq!(plan.memory_bytes(), 8 * 400 * 288, "one slice");
     let field = plan.field(1).unwrap();
-    let off = (0..2).map(|axis| field.diameter()[axis] - to_f64(plan.diameter()[axis]));
+    let off = (0..2).map(|axis| field.diameter()[axis] - plan.diameter()[axis] as f64);
     assert!(off.sum::<f64>().abs() < 1e-12, "{:?}", field.diameter());
 }
 
@@ -221,7 +221,7 @@ proptest! {
                 // No more than needed: the next smaller smooth multiple of 8 is at most 1/4 below.
                 for (side, diameter) in region.into_iter().zip(plan.diameter()) {
                     let speckles = (side / speckle_size).max(32.0);
-                    let diameter = to_f64(diameter);
+                    let diameter = diameter as f64;
                     prop_assert!(diameter < 1.25 * speckles + 8.0, "{diameter} for {speckles}");
                 }
             }

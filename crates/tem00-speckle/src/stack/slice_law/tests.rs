@@ -111,7 +111,7 @@ fn look_ups_follow_from_coefficients_and_closed_forms_alone() {
                 let (x, y) = (1.0 + (7.37 * t) % 44.0, 1.0 + (11.71 * t) % 44.0);
                 let f = (0.37 * t) % 1.0;
                 let index = usize::try_from(step).unwrap() % stack.slice_count();
-                let u = f + crate::pupil::mask::from_i64(to_i64(index));
+                let u = f + to_i64(index) as f64;
                 let expected = stack.intensity_at(x, y, u);
                 let got = documented(&stack, [x, y], (index, f));
                 // Sums of 16 taps in f32: 1e-6 of the brightest samples, whose intensity is ~10.

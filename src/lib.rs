@@ -9,6 +9,7 @@
 //! | [`beam`] | `tem00-beam` | Gaussian beams and laser lines as lights to evaluate and sample |
 //! | [`speckle`] | `tem00-speckle` | pupil field → pattern → stack → look-up |
 //! | [`decorrelation`] | `tem00-decorrelation` | imaging geometry → displacement → correlation |
+//! | [`camera`] | `tem00-camera` | lens and sensor: projection, focus, tilt, distortion |
 //! | [`wave`] | `tem00-wave` | scalar wave optics of rough surfaces, the judge of the others |
 //! | [`statistics`] | `tem00-statistics` | closed forms, estimators, hypothesis tests |
 //! | [`numerics`] | `tem00-numerics` | grids, pruned Fourier transform, pupil functions |
@@ -22,6 +23,7 @@
 )]
 
 pub use tem00_beam as beam;
+pub use tem00_camera as camera;
 pub use tem00_decorrelation as decorrelation;
 pub use tem00_numerics as numerics;
 pub use tem00_speckle as speckle;

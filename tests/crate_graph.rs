@@ -37,6 +37,11 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     ),
     ("tem00-decorrelation", &["tem00-numerics"], &["glam"]),
     (
+        "tem00-camera",
+        &["tem00-decorrelation", "tem00-numerics"],
+        &["glam", "libm"],
+    ),
+    (
         "tem00-wave",
         &["tem00-numerics"],
         &["glam", "num-complex", "rand_chacha", "rand_core"],
@@ -45,6 +50,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         "tem00-tracer",
         &[
             "tem00-beam",
+            "tem00-camera",
             "tem00-decorrelation",
             "tem00-numerics",
             "tem00-speckle",
@@ -70,6 +76,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         "tem00-triangulation",
         &[
             "tem00-beam",
+            "tem00-camera",
             "tem00-decorrelation",
             "tem00-numerics",
             "tem00-speckle",
@@ -90,6 +97,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     (
         "tem00-cli",
         &[
+            "tem00-camera",
             "tem00-decorrelation",
             "tem00-numerics",
             "tem00-speckle",

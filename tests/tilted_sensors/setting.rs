@@ -1,10 +1,11 @@
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
+    camera::{Camera, CameraDescription, RadialDistortion, SensorTilt},
     numerics::Grid,
     tracer::{
-        Camera, CameraDescription, Formulas, RadialDistortion, Rectangle, RenderOptions,
-        SensorTilt, Shape, SpeckleModel, SpecklePlan, Trajectory, parse_scene, render_frame,
+        Formulas, Rectangle, RenderOptions, Shape, SpeckleModel, SpecklePlan, Trajectory,
+        parse_scene, render_frame,
     },
     triangulation::{
         CalibrationSettings, DVec2, DVec3, DetectorSettings, MeasuredFrame, Measurement,

@@ -3,9 +3,10 @@
 use core::f64::consts::PI;
 
 use tem00::{
+    camera::{RadialDistortion, SensorTilt},
     decorrelation::equivalent_pupil_shift,
     numerics::{Grid, jinc},
-    tracer::{RadialDistortion, ReferencePoint, SensorTilt, SpeckleChange},
+    tracer::{ReferencePoint, SpeckleChange},
     triangulation::{DVec2, DVec3, SensorSpeckle},
     wave::displacement_between,
 };

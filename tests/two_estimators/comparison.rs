@@ -3,11 +3,12 @@
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
+    camera::{Camera, CameraDescription},
     numerics::Grid,
     statistics::{kolmogorov_smirnov, t_test_mean},
     tracer::{
-        Camera, CameraDescription, Frame, LaserEvents, LaserLayers, Material, Method,
-        RenderOptions, Scene, SpeckleModel, parse_scene, render_frame,
+        Frame, LaserEvents, LaserLayers, Material, Method, RenderOptions, Scene, SpeckleModel,
+        parse_scene, render_frame,
     },
 };
 

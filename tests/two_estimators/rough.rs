@@ -1,6 +1,7 @@
 //! Rough surfaces only: both methods find all the light.
 
-use tem00::tracer::{Camera, CameraDescription, LaserEvents, Material, Method, Scene, SensorTilt};
+use tem00::camera::{Camera, CameraDescription, SensorTilt};
+use tem00::tracer::{LaserEvents, Material, Method, Scene};
 
 use super::comparison::{Series, assert_agree, assert_mean, paint, scene_of, sharp_scene};
 

@@ -24,6 +24,7 @@
 //! ```
 
 pub mod cast;
+mod circle;
 #[cfg(feature = "fft")]
 mod fft;
 mod grid;
@@ -32,6 +33,7 @@ mod pupil;
 pub mod quadrature;
 mod vectorised;
 
+pub use circle::{circle_point_at_eighth, circle_point_at_turn};
 #[cfg(feature = "fft")]
 pub use fft::{Fft2, Fft2Error, Fft2Scratch};
 pub use grid::{Grid, GridError, wrap_coordinate};

@@ -3,11 +3,11 @@ mod map;
 use core::f64::consts::PI;
 use std::sync::Arc;
 
-use glam::DVec3;
-use tem00_numerics::Grid;
+use glam::{DVec2, DVec3};
+use tem00_numerics::{Grid, circle_point_at_turn};
 
 use self::map::RadianceMap;
-use crate::{LampSample, TracerError, circle};
+use crate::{LampSample, TracerError};
 
 /// Light from all around, so far away that it is the same everywhere in the scene.
 ///
@@ -164,7 +164,7 @@ impl Environment {
 fn on_sphere([u, v]: [f64; 2]) -> DVec3 {
     let z = 1.0 - 2.0 * v;
     let radius = (4.0 * v * (1.0 - v)).sqrt();
-    (radius * circle::at_turn(u)).extend(z)
+    (radius * DVec2::from(circle_point_at_turn(u))).extend(z)
 }
 
 #[cfg(test)]

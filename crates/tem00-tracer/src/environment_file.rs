@@ -4,12 +4,10 @@ mod pfm;
 use core::{error, fmt};
 use std::path::{Path, PathBuf};
 
+use tem00_camera::MAXIMUM_PIXELS;
 use tem00_numerics::Grid;
 
-use crate::{
-    MAXIMUM_PIXELS,
-    input_file::{MAX_ASSET_BYTES, read_input},
-};
+use crate::input_file::{MAX_ASSET_BYTES, read_input};
 
 /// The parts of red, green and blue in the luminance, for the primaries of Rec. 709.
 const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];

@@ -1,6 +1,7 @@
 use core::{error, fmt};
 
 use tem00_beam::BeamError;
+use tem00_camera::CameraError;
 use tem00_decorrelation::DecorrelationError;
 use tem00_speckle::SpeckleError;
 
@@ -24,13 +25,8 @@ pub enum TracerError {
         /// What is allowed.
         allowed: &'static str,
     },
-    /// The image has no pixels or more than the film can hold.
-    Resolution {
-        /// The requested number of columns.
-        width: usize,
-        /// The requested number of rows.
-        height: usize,
-    },
+    /// The camera is not possible.
+    Camera(CameraError),
     /// The laser's beam is not possible.
     Beam(BeamError),
     /// The camera's imaging geometry is not possible.
@@ -55,6 +51,39 @@ pub enum TracerError {
     Missing(&'static str),
 }
 
+impl TracerError {
+    /// Returns the key of a scene file whose value was rejected, where there is one.
+    pub fn parameter(&self) -> Option<&'static str> {
+        match self {
+            Self::OutOfRange { parameter, .. } | Self::Direction { parameter, .. } => {
+                Some(parameter)
+            }
+            Self::Camera(source) => source.parameter(),
+            Self::Beam(source) => parameter_of_beam(source),
+            _ => None,
+        }
+    }
+}
+
+fn parameter_of_beam(error: &BeamError) -> Option<&'static str> {
+    let parameter = match error {
+        BeamError::Wavelength(_) => "wavelength",
+        BeamError::WaistRadius(_) | BeamError::NotParaxial { .. } => "waist_radius",
+        BeamError::MSquared(_) => "m_squared",
+        BeamError::FanAngle(_) => "fan_angle",
+        BeamError::ApexOffset { .. } => "apex_offset",
+        BeamError::FocusDistance(_) => "focus_distance",
+        BeamError::Edge(_) => "edge",
+        BeamError::WaistDistance(_) => "waist_distance",
+        BeamError::Power(_) => "power",
+        BeamError::Origin(_) => "position",
+        BeamError::Direction(_) => "look_at",
+        BeamError::FanAxis(_) => "line_direction",
+        _ => return None,
+    };
+    Some(parameter)
+}
+
 impl fmt::Display for TracerError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -64,11 +93,7 @@ impl fmt::Display for TracerError {
                 allowed,
             } => write!(f, "{parameter} must be {allowed}, got {value}"),
             Self::Direction { parameter, allowed } => write!(f, "{parameter} must be {allowed}"),
-            Self::Resolution { width, height } => write!(
-                f,
-                "resolution must be at least 1 × 1 and at most {} pixels in all, got {width} × {height}",
-                crate::camera::MAXIMUM_PIXELS
-            ),
+            Self::Camera(source) => source.fmt(f),
             Self::Beam(source) => source.fmt(f),
             Self::Imaging(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
@@ -90,6 +115,12 @@ impl error::Error for TracerError {}
 impl From<BeamError> for TracerError {
     fn from(source: BeamError) -> Self {
         Self::Beam(source)
+    }
+}
+
+impl From<CameraError> for TracerError {
+    fn from(source: CameraError) -> Self {
+        Self::Camera(source)
     }
 }
 

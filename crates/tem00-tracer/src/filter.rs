@@ -3,12 +3,13 @@ mod table;
 use core::f64::consts::PI;
 
 use glam::DVec2;
+use tem00_camera::IMAGE_MARGIN;
 
 use self::table::HalfTable;
 use crate::TracerError;
 
 /// The largest radius of a filter, in pixels.
-pub(crate) const MAXIMUM_RADIUS: f64 = 16.0;
+const MAXIMUM_RADIUS: f64 = IMAGE_MARGIN;
 
 /// How the samples around a pixel make its value: a kernel k(x) k(y), with x and y in pixels from
 /// the centre of the pixel, 0 beyond its radius.

@@ -1,10 +1,9 @@
 //! What becomes of the light of a laser up to the camera, without an image being rendered.
 
 use glam::{DVec2, DVec3};
+use tem00_camera::{Camera, Ray};
 
-use crate::{
-    Camera, Crop, Hit, Intersector, Laser, LocalFrame, Ray, Scene, TracerError, spread::even,
-};
+use crate::{Crop, Hit, Intersector, Laser, LocalFrame, Scene, TracerError, spread::even};
 
 /// Rays of each laser, and rays of the camera, that are followed.
 const RAYS: u32 = 4096;

@@ -8,13 +8,15 @@ mod vertex;
 
 use core::mem::take;
 
+use tem00_camera::{Camera, Ray};
+
 use self::{batch::Path, rules::Spectrum, vertex::Vertex};
 pub(crate) use self::{
     batch::{Batch, CameraSample, LaserSample, Seen},
     rules::PathRules,
 };
 use crate::{
-    Camera, Hit, Intersector, Laser, Ray, Scene,
+    Hit, Intersector, Laser, Scene,
     sampler::{Sequence, Stream, Use},
     speckle::{SpeckleFrame, SpecklePoint},
 };

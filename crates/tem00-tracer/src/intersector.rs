@@ -10,6 +10,7 @@ mod triangles;
 
 use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
+use tem00_camera::Ray;
 
 pub use self::segment::Segment;
 pub(crate) use self::triangles::MeshHierarchy;
@@ -20,7 +21,7 @@ use self::{
     query::{Nearest, Query, Shadow},
     traverse::{Leaves, Stacks, follow_many, follow_one},
 };
-use crate::{Hit, Ray, Shape, TracerError};
+use crate::{Hit, Shape, TracerError};
 
 /// Finds where rays meet shapes.
 ///
@@ -46,7 +47,8 @@ use crate::{Hit, Ray, Shape, TracerError};
 ///
 /// ```
 /// use glam::DVec3;
-/// use tem00_tracer::{Intersector, Ray, Shape, Sphere};
+/// use tem00_camera::Ray;
+/// use tem00_tracer::{Intersector, Shape, Sphere};
 ///
 /// let ball = Shape::Sphere(Sphere::new(DVec3::ZERO, 0.01)?);
 /// let intersector = Intersector::build(&[ball])?;

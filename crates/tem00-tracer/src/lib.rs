@@ -66,8 +66,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod camera;
-mod circle;
 mod environment;
 mod environment_file;
 mod error;
@@ -81,12 +79,12 @@ mod intersector;
 mod lamp;
 mod laser;
 mod light_tracer;
+mod local_frame;
 mod material;
 mod mesh;
 mod mesh_file;
 mod metal;
 mod printable;
-mod ray;
 mod render;
 mod sampler;
 mod scene;
@@ -98,10 +96,6 @@ mod spread;
 mod testing;
 mod trajectory;
 
-pub use camera::{
-    Camera, CameraConnection, CameraDescription, CameraRay, MAXIMUM_PIXELS, RadialDistortion,
-    SensorTilt,
-};
 pub use environment::Environment;
 pub use environment_file::{RadianceMapError, read_radiance_map};
 pub use error::TracerError;
@@ -112,11 +106,11 @@ pub use inspection::{LaserInspection, LightFate, LightPart};
 pub use intersector::{Intersector, Segment};
 pub use lamp::{Lamp, LampSample};
 pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
+pub use local_frame::LocalFrame;
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use mesh::{MeshError, TriangleMesh};
 pub use mesh_file::{MeshFormat, read_mesh, read_mesh_bytes};
 pub use metal::Metal;
-pub use ray::{Frame as LocalFrame, Ray};
 pub use render::{
     Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, render_frame,
 };

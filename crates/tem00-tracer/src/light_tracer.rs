@@ -21,10 +21,11 @@ mod walk;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
+use tem00_camera::Camera;
 use tem00_numerics::Grid;
 
 use self::{splats::SplatFilm, walk::Walk};
-use crate::{Camera, Crop, Intersector, LaserLayers, RenderError, Scene, speckle::SpeckleFrame};
+use crate::{Crop, Intersector, LaserLayers, RenderError, Scene, speckle::SpeckleFrame};
 
 /// Follows light from the lasers to the camera, in one frame.
 #[derive(Clone, Copy, Debug)]

@@ -1,4 +1,6 @@
-use crate::{Camera, Crop, Filter, Lamp, Laser, LaserEvents, Material, Method, Shape, Trajectory};
+use tem00_camera::Camera;
+
+use crate::{Crop, Filter, Lamp, Laser, LaserEvents, Material, Method, Shape, Trajectory};
 
 /// An object: a shape made of a material, perhaps moving from frame to frame.
 #[derive(Clone, Debug, PartialEq)]

@@ -15,7 +15,8 @@ mod start;
 
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::SMatrix;
-use tem00_tracer::{Camera, RigidMotion};
+use tem00_camera::Camera;
+use tem00_tracer::RigidMotion;
 
 use self::{covariance::COUNT, perturbation::Perturbations};
 use crate::{LaserPlane, TriangulationError, Triangulator};

@@ -1,5 +1,6 @@
 use core::{error, fmt};
 
+use tem00_camera::CameraError;
 use tem00_speckle::SpeckleError;
 use tem00_tracer::{RenderError, TracerError};
 
@@ -53,7 +54,9 @@ pub enum TriangulationError {
         /// What to change.
         advice: &'static str,
     },
-    /// Camera, laser or scene are not possible, or were not rendered.
+    /// The camera is not possible.
+    Camera(CameraError),
+    /// Laser or scene are not possible, or were not rendered.
     Tracer(TracerError),
     /// A speckle pattern is not possible.
     Speckle(SpeckleError),
@@ -61,6 +64,20 @@ pub enum TriangulationError {
     Scene(String),
     /// The caller asked to stop.
     Cancelled,
+}
+
+impl TriangulationError {
+    /// Returns the name of the parameter that was rejected, where there is one.
+    pub fn parameter(&self) -> Option<&'static str> {
+        match self {
+            Self::OutOfRange { parameter, .. } | Self::Direction { parameter, .. } => {
+                Some(parameter)
+            }
+            Self::Camera(source) => source.parameter(),
+            Self::Tracer(source) => source.parameter(),
+            _ => None,
+        }
+    }
 }
 
 impl fmt::Display for TriangulationError {
@@ -89,6 +106,7 @@ impl fmt::Display for TriangulationError {
             Self::NothingMeasured { why, advice } => {
                 write!(f, "nothing can be measured: {why}; {advice}")
             }
+            Self::Camera(source) => source.fmt(f),
             Self::Tracer(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
             Self::Scene(why) => f.write_str(why),
@@ -98,6 +116,12 @@ impl fmt::Display for TriangulationError {
 }
 
 impl error::Error for TriangulationError {}
+
+impl From<CameraError> for TriangulationError {
+    fn from(source: CameraError) -> Self {
+        Self::Camera(source)
+    }
+}
 
 impl From<TracerError> for TriangulationError {
     fn from(source: TracerError) -> Self {

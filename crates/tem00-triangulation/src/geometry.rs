@@ -2,7 +2,7 @@ mod plane;
 mod profile;
 
 use glam::{DVec2, DVec3};
-use tem00_tracer::Camera;
+use tem00_camera::Camera;
 
 pub use self::{plane::LaserPlane, profile::ProfilePoint};
 
@@ -27,7 +27,7 @@ pub use self::{plane::LaserPlane, profile::ProfilePoint};
 /// height, times the magnification:
 ///
 /// ```
-/// use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+/// use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 /// use tem00_triangulation::{DVec2, DVec3, LaserPlane, Triangulator};
 ///
 /// let camera = Camera::new(CameraDescription {

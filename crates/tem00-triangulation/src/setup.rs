@@ -8,7 +8,7 @@ mod range;
 mod scene;
 
 use glam::{DVec2, DVec3};
-use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 
 use crate::{DetectorSettings, LaserPlane, LineDetector, Sensor, TriangulationError, Triangulator};
 

@@ -1,6 +1,6 @@
 //! What a calibration found, as a table.
 
-use tem00_tracer::RadialDistortion;
+use tem00_camera::RadialDistortion;
 use tem00_triangulation::{Calibration, DVec2, DVec3, PARAMETERS};
 
 use crate::table::number;

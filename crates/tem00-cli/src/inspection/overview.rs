@@ -5,7 +5,8 @@ use kuva::render::{
     color::Color,
     render::{PathData, Primitive, Scene as Canvas, TextAnchor},
 };
-use tem00_tracer::{Camera, LaserInspection, Scene, Shape};
+use tem00_camera::Camera;
+use tem00_tracer::{LaserInspection, Scene, Shape};
 
 use crate::plot::Drawing;
 

@@ -99,7 +99,7 @@ fn write_point(out: &mut impl Write, index: usize, point: &LinePoint) -> io::Res
 
 #[cfg(test)]
 mod tests {
-    use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+    use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
     use tem00_triangulation::LaserPlane;
 
     use super::*;

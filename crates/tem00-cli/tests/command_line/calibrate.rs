@@ -4,7 +4,8 @@ use std::{fs, path::Path};
 
 use glam::DVec2;
 use serde_json::Value;
-use tem00_tracer::{Camera, CameraDescription, RadialDistortion, RigidMotion, SensorTilt};
+use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+use tem00_tracer::RigidMotion;
 use tem00_triangulation::{DVec3, LaserPlane};
 
 use super::{folder, run};

@@ -1,8 +1,9 @@
 use glam::{DVec2, DVec3};
+use tem00_camera::Ray;
 
 use super::Vertex;
 use crate::{
-    Hit, Intersector, Ray, Segment,
+    Hit, Intersector, Segment,
     sampler::Stream,
     speckle::{SpeckleFrame, SpecklePoint},
 };

@@ -1,10 +1,12 @@
+use tem00_camera::Ray;
+
 use super::{
     Integrator,
     batch::{Arrival, Batch, Path},
     lasers::number,
     rules::LAMP_WAVELENGTH,
 };
-use crate::{Hit, Lamp, LampEvents, Ray, sampler::Use};
+use crate::{Hit, Lamp, LampEvents, sampler::Use};
 
 /// Returns the share of an estimate whose direction was drawn with the density `pdf`, if it could
 /// also have been drawn with the density `other`.

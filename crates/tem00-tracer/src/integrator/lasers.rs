@@ -1,10 +1,12 @@
+use tem00_camera::Ray;
+
 use super::{
     CameraSample, Integrator,
     batch::{Arrival, Batch, Path},
     lamps::share,
     vertex::Vertex,
 };
-use crate::{Formulas, Hit, Ray, laser::Illumination, sampler::Use};
+use crate::{Formulas, Hit, laser::Illumination, sampler::Use};
 
 impl<'a> Integrator<'a> {
     /// Connects every rough surface point to every laser.

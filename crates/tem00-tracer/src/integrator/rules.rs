@@ -1,5 +1,7 @@
+use tem00_camera::Camera;
+
 use crate::{
-    Camera, Formulas, Intersector, Lamp, LampEvents, Laser, Method, RenderOptions, Scene,
+    Formulas, Intersector, Lamp, LampEvents, Laser, Method, RenderOptions, Scene,
     sampler::Sequence, speckle::SpeckleFrame,
 };
 

@@ -1,6 +1,7 @@
 use glam::DVec3;
+use tem00_camera::Ray;
 
-use crate::{BsdfSample, Hit, Intersector, LocalFrame, Material, Ray, Segment};
+use crate::{BsdfSample, Hit, Intersector, LocalFrame, Material, Segment};
 
 /// A surface point that a path has met.
 #[derive(Clone, Copy, Debug)]

@@ -2,9 +2,9 @@ mod build;
 
 use fearless_simd::{Simd, f32x8, prelude::*};
 use glam::{DMat3, DVec3};
+use tem00_camera::Ray;
 
 use super::lanes::{RayLanes, meet_boxes};
-use crate::Ray;
 
 /// The number of children of a node.
 pub(super) const WIDTH: usize = 8;

@@ -1,12 +1,12 @@
 use fearless_simd::{Simd, f32x8, f32x16, prelude::*};
 use glam::DVec3;
+use tem00_camera::Ray;
 
 use super::{
     hierarchy::{Hierarchy, LocalRay, Node, Placement, Scale, WIDTH, pick, splat},
     lanes::{Met, RayLanes, TriangleLanes, meet_boxes, meet_triangles},
     query::Query,
 };
-use crate::Ray;
 
 /// The number of rays that are followed together.
 pub(super) const LANES: usize = 64;

@@ -1,6 +1,7 @@
 use glam::DVec3;
+use tem00_camera::Ray;
 
-use crate::{Cylinder, MeshInstance, Ray, Rectangle, Sphere, mesh};
+use crate::{Cylinder, MeshInstance, Rectangle, Sphere, mesh};
 
 /// What a leaf of the hierarchy holds.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 use glam::DVec3;
+use tem00_camera::Ray;
 
 use super::{primitive::Primitive, segment::Segment};
-use crate::Ray;
 
 /// Where in a scene a primitive is: the index of the body, and that of the triangle in it.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 use tem00_beam::{Emitter, LineProfile, TabulatedLineLight};
+use tem00_camera::Ray;
 
 use super::{Laser, Source};
-use crate::Ray;
 
 /// A ray that a laser sends out.
 #[derive(Clone, Copy, Debug, PartialEq)]

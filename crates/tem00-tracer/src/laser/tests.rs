@@ -1,7 +1,7 @@
 use tem00_beam::{AngularProfile, FocusCurve};
+use tem00_camera::Ray;
 
 use super::*;
-use crate::Ray;
 
 /// A line of 60° in focus at 0.3 m, from the origin along z.
 fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {

@@ -1,6 +1,7 @@
 use glam::DVec2;
+use tem00_camera::Ray;
 
-use crate::{Intersector, Ray, Scene, TracerError, spread::even};
+use crate::{Intersector, Scene, TracerError, spread::even};
 
 /// Image points on each side of the grid that is looked through.
 const SIDE: u32 = 64;

@@ -2,13 +2,14 @@ use core::f64::consts::PI;
 use std::path::Path;
 
 use glam::{DVec2, DVec3};
+use tem00_camera::CameraDescription;
 use tem00_statistics::{kolmogorov_smirnov, t_test_mean};
 
 use super::{
     draws::{DrawKey, Draws},
     *,
 };
-use crate::{CameraDescription, Material, Rectangle, Shape, TriangleMesh, parse_scene};
+use crate::{Material, Rectangle, Shape, TriangleMesh, parse_scene};
 
 /// A correct light tracer fails a comparison with this probability at the fixed seeds.
 const SIGNIFICANCE: f64 = 1e-4;

@@ -1,13 +1,12 @@
 use glam::{DVec2, DVec3};
+use tem00_camera::Ray;
 
 use super::{
     LightJob, LightShare, LightTracer,
     draws::{DrawKey, Draws},
     splats::{Splat, Splats},
 };
-use crate::{
-    Crop, EmittedRay, Hit, Laser, LocalFrame, Material, Ray, Segment, speckle::SpecklePoint,
-};
+use crate::{Crop, EmittedRay, Hit, Laser, LocalFrame, Material, Segment, speckle::SpecklePoint};
 
 /// Surfaces that a light path always leaves again before it may end by chance.
 const CERTAIN_BOUNCES: u32 = 2;

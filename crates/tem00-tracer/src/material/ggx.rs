@@ -1,8 +1,7 @@
 use core::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
-
-use crate::circle;
+use tem00_numerics::circle_point_at_turn;
 
 /// Isotropic microfacets with the GGX (Trowbridge–Reitz) distribution of slopes.
 ///
@@ -68,7 +67,7 @@ impl Ggx {
             .unwrap_or(DVec3::X);
         let upward = view.cross(across);
         // Draw a point of the hemisphere's projection: a half disc beside a half ellipse.
-        let DVec2 { x, y: up } = u.sqrt() * circle::at_turn(v);
+        let DVec2 { x, y: up } = u.sqrt() * DVec2::from(circle_point_at_turn(v));
         let lift = 0.5 * (1.0 + view.z);
         let half_disc = ((1.0 - x) * (1.0 + x)).sqrt();
         let y = (1.0 - lift) * half_disc + lift * up;

@@ -471,7 +471,7 @@ fn a_polygon_of_many_corners_can_be_met() {
             radius * angle(37 * i).sin(),
             1.0,
         );
-        let ray = crate::Ray {
+        let ray = tem00_camera::Ray {
             origin,
             direction: DVec3::NEG_Z,
         };

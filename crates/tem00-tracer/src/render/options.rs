@@ -1,4 +1,6 @@
-use crate::{Camera, Filter, RenderSettings, TracerError};
+use tem00_camera::Camera;
+
+use crate::{Filter, RenderSettings, TracerError};
 
 /// Which formulas a render uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,4 +1,5 @@
 use glam::DVec2;
+use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 
 use super::document::Document;
 use super::error::Problem;
@@ -7,7 +8,7 @@ use super::placement::{Placement, across, rejected};
 use super::quantity::{ANGLE, LENGTH, NUMBER};
 use super::section::Section;
 use super::value::Value;
-use crate::{Camera, CameraDescription, RadialDistortion, SensorTilt, Trajectory};
+use crate::Trajectory;
 
 pub(super) const KEYS: &[&str] = &[
     "position",
@@ -42,7 +43,7 @@ pub(super) fn read(root: &Document<'_>) -> Result<MovingCamera, Problem> {
         .table("camera", KEYS)?
         .ok_or_else(|| Problem::new("the scene needs a camera: a section [camera]"))?;
     let description = description(&section)?;
-    let camera = Camera::new(description).map_err(|error| rejected(&error, &[&section]))?;
+    let camera = Camera::new(description).map_err(|error| rejected(&error.into(), &[&section]))?;
     Ok(MovingCamera {
         trajectory: trajectory(&section, pivot(&section, camera.position())?)?,
         camera,

@@ -1,5 +1,4 @@
 use glam::DVec3;
-use tem00_beam::BeamError;
 
 use super::error::Problem;
 use super::section::Section;
@@ -52,40 +51,10 @@ pub(super) fn across(axis: DVec3, preferred: DVec3, otherwise: DVec3) -> DVec3 {
 /// Returns the problem of an object that could not be made, placed at the key that it is about in
 /// the first of `sections` that has it, or else at the header of the first.
 pub(super) fn rejected(error: &TracerError, sections: &[&Section<'_>]) -> Problem {
-    let key = key_of(error);
+    let key = error.parameter().unwrap_or_default();
     let section = sections.iter().find(|section| section.has(key));
     match section.or(sections.first()) {
         Some(section) => section.problem_with(key, error),
         None => Problem::new(error.to_string()),
-    }
-}
-
-/// The key of a scene file that an error is about, or an empty string.
-fn key_of(error: &TracerError) -> &str {
-    match error {
-        TracerError::OutOfRange { parameter, .. } | TracerError::Direction { parameter, .. } => {
-            parameter
-        }
-        TracerError::Resolution { .. } => "resolution",
-        TracerError::Beam(error) => key_of_beam(error),
-        _ => "",
-    }
-}
-
-fn key_of_beam(error: &BeamError) -> &str {
-    match error {
-        BeamError::Wavelength(_) => "wavelength",
-        BeamError::WaistRadius(_) | BeamError::NotParaxial { .. } => "waist_radius",
-        BeamError::MSquared(_) => "m_squared",
-        BeamError::FanAngle(_) => "fan_angle",
-        BeamError::ApexOffset { .. } => "apex_offset",
-        BeamError::FocusDistance(_) => "focus_distance",
-        BeamError::Edge(_) => "edge",
-        BeamError::WaistDistance(_) => "waist_distance",
-        BeamError::Power(_) => "power",
-        BeamError::Origin(_) => "position",
-        BeamError::Direction(_) => "look_at",
-        BeamError::FanAxis(_) => "line_direction",
-        _ => "",
     }
 }

@@ -1,9 +1,11 @@
+use tem00_camera::Camera;
+
 use super::document::Document;
 use super::error::Problem;
 use super::filter;
 use super::quantity::{MEMORY, NUMBER};
 use super::value::Value;
-use crate::{Camera, Crop, LaserEvents, Method, RenderSettings, SpeckleSettings};
+use crate::{Crop, LaserEvents, Method, RenderSettings, SpeckleSettings};
 
 pub(super) const RENDER_KEYS: &[&str] = &[
     "samples_per_pixel",

@@ -1,11 +1,12 @@
 use glam::{DVec2, DVec3};
+use tem00_camera::Camera;
 use tem00_decorrelation::{
     CameraFrame, Configuration, ConfigurationData, Illumination, ImageOrientation, ImagingGeometry,
     RigidMotion, RigidMotions, SpeckleMotion, equivalent_pupil_shift,
 };
 
 use super::{SpecklePoint, perspective::Perspective, upright};
-use crate::{Camera, Laser, Scene};
+use crate::{Laser, Scene};
 
 /// What has moved between the reference frame and another.
 #[derive(Clone, Debug)]

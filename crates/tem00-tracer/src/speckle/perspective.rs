@@ -1,7 +1,6 @@
 use glam::{DVec2, DVec3};
+use tem00_camera::{Camera, RadialDistortion, SensorTilt};
 use tem00_decorrelation::ImagingGeometry;
-
-use crate::{Camera, RadialDistortion, SensorTilt};
 
 /// The image of a camera in perspective: as an untilted sensor would see it through a lens without
 /// distortion.
@@ -93,7 +92,7 @@ impl Perspective {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::CameraDescription;
+    use tem00_camera::CameraDescription;
 
     fn description() -> CameraDescription {
         CameraDescription {

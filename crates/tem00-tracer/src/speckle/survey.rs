@@ -2,6 +2,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec2;
 use rayon::prelude::*;
+use tem00_camera::Camera;
 use tem00_decorrelation::ImagingGeometry;
 
 use super::{
@@ -9,7 +10,7 @@ use super::{
     change::{Change, Witness},
     perspective::Perspective,
 };
-use crate::{Camera, Intersector, Scene, TracerError};
+use crate::{Intersector, Scene, TracerError};
 
 /// Rays per image side with which a frame is surveyed.
 const RAYS_PER_SIDE: u32 = 128;

@@ -5,9 +5,10 @@ pub use self::render::calibrate_scene;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3};
+use tem00_camera::Camera;
 use tem00_tracer::{
-    Camera, Lamp, Laser, Material, MeshInstance, RigidMotion, Scene, Shape, Surface,
-    SurfaceSpeckle, TracerError, Trajectory, TriangleMesh,
+    Lamp, Laser, Material, MeshInstance, RigidMotion, Scene, Shape, Surface, SurfaceSpeckle,
+    TracerError, Trajectory, TriangleMesh,
 };
 
 use super::Checkerboard;

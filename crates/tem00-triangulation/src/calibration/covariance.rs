@@ -10,7 +10,7 @@ pub(super) const COUNT: usize = PARAMETERS.len();
 /// What is uncertain about a calibration, in the order of its covariance.
 ///
 /// The camera's axes are those of its image: to the right, down, and along the view. A tilt is the
-/// vector of [`SensorTilt`](tem00_tracer::SensorTilt): its angle along the right of the image and along
+/// vector of [`SensorTilt`](tem00_camera::SensorTilt): its angle along the right of the image and along
 /// its top. The board is turned and shifted in the axes of the camera about its own origin, where the
 /// origin of heights is. The normal of the laser plane changes by a vector across itself, and the plane is
 /// shifted along its normal.

@@ -1,6 +1,6 @@
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::DVector;
-use tem00_tracer::{Camera, CameraDescription, RadialDistortion};
+use tem00_camera::{Camera, CameraDescription, RadialDistortion};
 
 use super::{
     CameraModel,

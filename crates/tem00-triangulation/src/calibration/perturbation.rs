@@ -1,6 +1,6 @@
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::{SMatrix, Vector3};
-use tem00_tracer::{Camera, CameraDescription, SensorTilt};
+use tem00_camera::{Camera, CameraDescription, SensorTilt};
 
 use super::covariance::{COUNT, CalibrationCovariance};
 use crate::{TriangulationError, Triangulator};

@@ -1,4 +1,4 @@
-use tem00_tracer::{CameraDescription, RadialDistortion, SensorTilt};
+use tem00_camera::{CameraDescription, RadialDistortion, SensorTilt};
 
 use super::*;
 

@@ -239,15 +239,7 @@ fn count(value: &Value<'_>, most: u32) -> Result<u32, Problem> {
 
 /// Places the error of a set-up that is not possible at the key that it is about.
 fn rejected(error: &TriangulationError, sections: &[&Section<'_>]) -> Problem {
-    let key = match error {
-        TriangulationError::OutOfRange { parameter, .. }
-        | TriangulationError::Direction { parameter, .. } => parameter,
-        TriangulationError::Tracer(tem00_tracer::TracerError::OutOfRange { parameter, .. }) => {
-            parameter
-        }
-        TriangulationError::Tracer(tem00_tracer::TracerError::Resolution { .. }) => "resolution",
-        _ => "",
-    };
+    let key = error.parameter().unwrap_or_default();
     let section = sections.iter().find(|section| section.has(key));
     match section {
         Some(section) => section.problem_with(key, error),

@@ -1,9 +1,7 @@
 use proptest::prelude::*;
 use tem00_beam::FocusCurve;
-use tem00_tracer::{
-    BeamShape, CameraDescription, FanGeometry, Laser, LaserDescription, LineProfile,
-    RadialDistortion, SensorTilt,
-};
+use tem00_camera::{CameraDescription, RadialDistortion, SensorTilt};
+use tem00_tracer::{BeamShape, FanGeometry, Laser, LaserDescription, LineProfile};
 
 use super::*;
 use crate::{LinePoint, Validity};

@@ -1,6 +1,7 @@
 use glam::DVec2;
+use tem00_camera::Camera;
 use tem00_numerics::Grid;
-use tem00_tracer::{Camera, Frame};
+use tem00_tracer::Frame;
 
 use crate::Sensor;
 

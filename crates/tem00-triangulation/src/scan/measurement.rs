@@ -1,9 +1,10 @@
 use core::sync::atomic::AtomicBool;
 
 use glam::DMat3;
+use tem00_camera::Camera;
 use tem00_tracer::{
-    BeamShape, Camera, Filter, Frame, Laser, Method, ReferencePoint, RenderOptions, Scene,
-    SpeckleChange, SpeckleModel, SurfaceSpeckle, render_frame,
+    BeamShape, Filter, Frame, Laser, Method, ReferencePoint, RenderOptions, Scene, SpeckleChange,
+    SpeckleModel, SurfaceSpeckle, render_frame,
 };
 
 use super::{

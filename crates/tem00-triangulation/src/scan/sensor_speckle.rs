@@ -2,8 +2,8 @@ use core::f64::consts::PI;
 use std::borrow::Cow;
 
 use glam::DMat2;
+use tem00_camera::Camera;
 use tem00_numerics::jinc;
-use tem00_tracer::Camera;
 
 use super::speckle_table::SpeckleTable;
 use crate::{DVec2, TriangulationError};

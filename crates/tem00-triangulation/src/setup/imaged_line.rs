@@ -1,7 +1,7 @@
 use core::f64::consts::{PI, SQRT_2};
 
 use glam::DVec3;
-use tem00_tracer::Camera;
+use tem00_camera::Camera;
 
 use super::{SetupDescription, line_profile::LineProfile};
 use crate::Sensor;

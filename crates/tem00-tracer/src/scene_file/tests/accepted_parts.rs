@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use approx::assert_relative_eq;
 use glam::{DVec2, DVec3};
+use tem00_camera::{RadialDistortion, SensorTilt};
 use tempfile::TempDir;
 
 use super::{CAMERA, LASER, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
 use crate::{
     Crop, Cylinder, Environment, Filter, Keyframe, Lamp, LaserEvents, Material, Metal, Method,
-    RadialDistortion, Rotation, SceneFile, SensorTilt, Shape, Surface, SurfaceSpeckle, Trajectory,
-    read_scene,
+    Rotation, SceneFile, Shape, Surface, SurfaceSpeckle, Trajectory, read_scene,
 };
 
 /// Reads the minimal scene with further keys of its surface.

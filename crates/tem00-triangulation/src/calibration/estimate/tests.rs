@@ -1,7 +1,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, Normal};
-use tem00_tracer::{CameraDescription, RadialDistortion, SensorTilt};
+use tem00_camera::{CameraDescription, RadialDistortion, SensorTilt};
 
 use super::*;
 use crate::Triangulator;

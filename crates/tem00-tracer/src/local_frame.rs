@@ -1,14 +1,5 @@
 use glam::DVec3;
 
-/// A half-line along which light is followed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
-    /// Where the ray starts, in metres.
-    pub origin: DVec3,
-    /// Where the ray goes; of unit length.
-    pub direction: DVec3,
-}
-
 /// The axes in which a material sees a surface: z along the normal, x and y in the surface.
 ///
 /// The axes are orthonormal and right-handed. The tangents follow from the normal alone, without a
@@ -32,13 +23,13 @@ pub struct Ray {
 ///
 /// - T. Duff et al., *Building an Orthonormal Basis, Revisited*, 2017.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct LocalFrame {
     tangent: DVec3,
     bitangent: DVec3,
     normal: DVec3,
 }
 
-impl Frame {
+impl LocalFrame {
     /// Creates the frame of a surface from its `normal`, of unit length.
     pub fn from_normal(normal: DVec3) -> Self {
         let DVec3 { x, y, z } = normal;
@@ -89,7 +80,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn assert_orthonormal(normal: DVec3) {
-        let frame = Frame::from_normal(normal);
+        let frame = LocalFrame::from_normal(normal);
         let (t, b, n) = (frame.tangent(), frame.bitangent(), frame.normal());
         // Each component is a handful of operations on numbers up to 1: some 10 roundings of
         // 1.1e−16, plus the rounding of the normal's own length.

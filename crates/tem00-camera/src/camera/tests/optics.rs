@@ -1,6 +1,7 @@
 use proptest::test_runner::RngSeed;
 
 use super::*;
+use crate::CameraError;
 
 fn with_distortion(k1: f64, k2: f64, k3: f64) -> CameraDescription {
     CameraDescription {
@@ -56,7 +57,7 @@ fn distortion_that_folds_inside_the_image_is_refused() {
         let camera = Camera::new(description);
         let refused = matches!(
             camera,
-            Err(TracerError::OutOfRange {
+            Err(CameraError::OutOfRange {
                 parameter: "distortion",
                 ..
             })
@@ -97,7 +98,7 @@ fn tilts_that_turn_the_sensor_away_are_refused() {
         let camera = Camera::new(description);
         let refused = matches!(
             camera,
-            Err(TracerError::OutOfRange {
+            Err(CameraError::OutOfRange {
                 parameter: "tilt",
                 ..
             })
@@ -152,7 +153,7 @@ fn speckle_grows_with_the_depth_of_the_tilted_sensor() {
     })
     .unwrap();
     let above = horizon.imaging_geometry_at(pixel, 650e-9);
-    assert!(matches!(above, Err(TracerError::Imaging(_))), "{above:?}");
+    assert!(matches!(above, Err(CameraError::Imaging(_))), "{above:?}");
 }
 
 #[test]

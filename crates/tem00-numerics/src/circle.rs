@@ -5,12 +5,10 @@
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use glam::DVec2;
-
 /// Returns the point of the unit circle at the angle 2π `turn`, for `turn` in [0, 1].
 ///
 /// Both coordinates err by less than 3e−16.
-pub(crate) fn at_turn(turn: f64) -> DVec2 {
+pub fn circle_point_at_turn(turn: f64) -> [f64; 2] {
     // The number of the nearest quarter is exact, and so is the rest.
     let quarters = 4.0 * turn;
     #[expect(
@@ -19,23 +17,24 @@ pub(crate) fn at_turn(turn: f64) -> DVec2 {
         reason = "it is one of the numbers from 0 to 4"
     )]
     let nearest = (quarters + 0.5) as u32;
-    let beside = at_small_angle(FRAC_PI_2 * (quarters - f64::from(nearest)));
+    let [x, y] = at_small_angle(FRAC_PI_2 * (quarters - f64::from(nearest)));
     // Turning by a quarter is exact, too; processors guess badly which one it will be.
-    QUARTERS[nearest as usize % 4].rotate(beside)
+    let [cos, sin] = QUARTERS[nearest as usize % 4];
+    [cos * x - sin * y, sin * x + cos * y]
 }
 
 /// The points of the circle at the quarters of a turn.
-const QUARTERS: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
+const QUARTERS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
 
-/// Returns the point of the unit circle at the angle π/4 `share`, for `share` in [−1, 1].
+/// Returns the point of the unit circle at the angle π/4 `fraction`, for `fraction` in [−1, 1].
 ///
 /// Both coordinates err by less than 3e−16.
-pub(crate) fn at_eighth(share: f64) -> DVec2 {
-    at_small_angle(FRAC_PI_4 * share)
+pub fn circle_point_at_eighth(fraction: f64) -> [f64; 2] {
+    at_small_angle(FRAC_PI_4 * fraction)
 }
 
 /// Taylor's series of cosine and sine: up to π/4 what is left out is below 5e−17.
-fn at_small_angle(angle: f64) -> DVec2 {
+fn at_small_angle(angle: f64) -> [f64; 2] {
     const fn inverse_factorial(n: u32) -> f64 {
         let (mut product, mut factor) = (1.0, 1);
         while factor < n {
@@ -65,10 +64,10 @@ fn at_small_angle(angle: f64) -> DVec2 {
     ];
     let square = angle * angle;
     let series = |terms: &[f64]| terms.iter().fold(0.0, |sum, term| sum * square + term);
-    DVec2::new(
+    [
         1.0 + square * series(&COSINE),
         angle + angle * square * series(&SINE),
-    )
+    ]
 }
 
 #[cfg(test)]
@@ -81,27 +80,34 @@ mod tests {
             let turn = f64::from(index) / 100_000.0;
             let (sin, cos) = libm::sincos(core::f64::consts::TAU * turn);
             // The angle of the general functions errs by a rounding of a number up to 2π, 4.4e−16.
-            let point = at_turn(turn);
-            assert!(point.abs_diff_eq(DVec2::new(cos, sin), 8e-16), "{turn}");
+            let [x, y] = circle_point_at_turn(turn);
+            assert!(
+                (x - cos).abs() <= 8e-16 && (y - sin).abs() <= 8e-16,
+                "{turn}"
+            );
         }
     }
 
     #[test]
     fn eighths_are_those_of_the_general_functions() {
         for index in -10_000..=10_000 {
-            let share = f64::from(index) / 10_000.0;
-            let (sin, cos) = libm::sincos(FRAC_PI_4 * share);
-            let point = at_eighth(share);
+            let fraction = f64::from(index) / 10_000.0;
+            let (sin, cos) = libm::sincos(FRAC_PI_4 * fraction);
+            let [x, y] = circle_point_at_eighth(fraction);
             // Two roundings of numbers up to 1, and that of the general functions.
-            assert!(point.abs_diff_eq(DVec2::new(cos, sin), 4e-16), "{share}");
+            assert!(
+                (x - cos).abs() <= 4e-16 && (y - sin).abs() <= 4e-16,
+                "{fraction}"
+            );
         }
     }
 
     #[test]
     fn quarter_turns_are_exact() {
-        let corners = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y, DVec2::X];
+        let [right, up, left, down] = QUARTERS;
+        let corners = [right, up, left, down, right];
         for (turn, corner) in [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().zip(corners) {
-            assert_eq!(at_turn(turn), corner, "{turn}");
+            assert_eq!(circle_point_at_turn(turn), corner, "{turn}");
         }
     }
 }

@@ -1,4 +1,3 @@
-mod description;
 mod distortion;
 mod lens;
 mod sensor;
@@ -6,18 +5,17 @@ mod sensor;
 use glam::{DMat3, DVec2, DVec3};
 use tem00_decorrelation::{ImagingGeometry, LensData, RigidMotion};
 
-use self::{description::check, distortion::Distortion, sensor::Sensor};
-use crate::{Ray, TracerError, filter::MAXIMUM_RADIUS};
+use self::{distortion::Distortion, sensor::Sensor};
+use crate::{CameraDescription, CameraError, Ray, description::check};
 
-pub use self::description::{CameraDescription, MAXIMUM_PIXELS, RadialDistortion, SensorTilt};
 pub use self::lens::{CameraConnection, CameraRay};
 
 /// The sine of the smallest accepted angle between `up` and the viewing direction.
 const SMALLEST_SINE: f64 = 1e-6;
 
-/// How far beyond the edges of the image its points may be asked for, in pixels: as far as
-/// reconstruction filters reach.
-const MARGIN: f64 = MAXIMUM_RADIUS;
+/// How far beyond the edges of the image its points may be asked for, in pixels: as far as a
+/// reconstruction filter may reach.
+pub const IMAGE_MARGIN: f64 = 16.0;
 
 /// A perspective camera with a thin lens and a sensor, from which the speckle size follows.
 ///
@@ -52,7 +50,7 @@ const MARGIN: f64 = MAXIMUM_RADIUS;
 ///
 /// ```
 /// use glam::{DVec2, DVec3};
-/// use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+/// use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 ///
 /// let camera = Camera::new(CameraDescription {
 ///     position: DVec3::new(0.0, 0.0, 0.3),
@@ -75,7 +73,7 @@ const MARGIN: f64 = MAXIMUM_RADIUS;
 /// let right = camera.project(DVec3::new(11.0 * 3.45e-6, 0.0, 0.0));
 /// assert_eq!(middle, Some(DVec2::new(320.0, 240.0)));
 /// assert!(right.is_some_and(|right| right.distance(DVec2::new(321.0, 240.0)) < 1e-9));
-/// # Ok::<(), tem00_tracer::TracerError>(())
+/// # Ok::<(), tem00_camera::CameraError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -94,14 +92,14 @@ impl Camera {
     ///
     /// Returns an error if a length is not positive and finite, if the f-number is below 0.5, if the
     /// focus distance does not exceed the focal length, if the camera looks at itself or along `up`,
-    /// if the image is empty or has more than [`MAXIMUM_PIXELS`] pixels, if the tilt is so large
+    /// if the image is empty or has more than [`MAXIMUM_PIXELS`](crate::MAXIMUM_PIXELS) pixels, if the tilt is so large
     /// that a part of the pupil sees the back of the sensor or a part of the image lies before the
     /// lens, or if the distortion folds a part of the image back.
-    pub fn new(description: CameraDescription) -> Result<Self, TracerError> {
+    pub fn new(description: CameraDescription) -> Result<Self, CameraError> {
         description.check()?;
         let view = (description.look_at - description.position)
             .try_normalize()
-            .ok_or(TracerError::Direction {
+            .ok_or(CameraError::Direction {
                 parameter: "look_at",
                 allowed: "a point other than the camera's position",
             })?;
@@ -109,7 +107,7 @@ impl Camera {
         // Rounding alone makes the product of parallel directions about 1e−16 long.
         let right = (across.length() > SMALLEST_SINE)
             .then(|| across.normalize())
-            .ok_or(TracerError::Direction {
+            .ok_or(CameraError::Direction {
                 parameter: "up",
                 allowed: "a direction across the viewing direction",
             })?;
@@ -180,7 +178,7 @@ impl Camera {
     /// # Errors
     ///
     /// Returns an error if the wavelength is not positive and finite or exceeds the pupil.
-    pub fn imaging_geometry(&self, wavelength: f64) -> Result<ImagingGeometry, TracerError> {
+    pub fn imaging_geometry(&self, wavelength: f64) -> Result<ImagingGeometry, CameraError> {
         self.geometry_for(wavelength, self.description.focus_distance)
     }
 
@@ -204,7 +202,7 @@ impl Camera {
         &self,
         pixel: DVec2,
         wavelength: f64,
-    ) -> Result<ImagingGeometry, TracerError> {
+    ) -> Result<ImagingGeometry, CameraError> {
         let depth = self.sensor.point(pixel).z;
         let CameraDescription {
             focal_length,
@@ -293,7 +291,7 @@ impl Camera {
     ///
     /// ```
     /// # use glam::{DVec2, DVec3};
-    /// # use tem00_tracer::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+    /// # use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
     /// # let camera = Camera::new(CameraDescription {
     /// #     position: DVec3::new(0.0, 0.0, 0.3),
     /// #     look_at: DVec3::ZERO,
@@ -313,7 +311,7 @@ impl Camera {
     ///
     /// let on_axis = camera.irradiance_per_radiance(DVec2::new(320.0, 240.0));
     /// assert!((on_axis - 0.010_312).abs() < 0.000_001); // sr
-    /// # Ok::<(), tem00_tracer::TracerError>(())
+    /// # Ok::<(), tem00_camera::CameraError>(())
     /// ```
     pub fn irradiance_per_radiance(&self, pixel: DVec2) -> f64 {
         let radius = 0.5 * self.pupil_diameter();
@@ -360,7 +358,7 @@ impl Camera {
         &self,
         wavelength: f64,
         surface_to_pupil: f64,
-    ) -> Result<ImagingGeometry, TracerError> {
+    ) -> Result<ImagingGeometry, CameraError> {
         Ok(ImagingGeometry::from_lens(LensData {
             wavelength,
             focal_length: self.description.focal_length,
@@ -371,7 +369,7 @@ impl Camera {
     }
 
     /// Checks that each image point stands behind the lens, in front of the sensor, and has one ray.
-    fn check_sensor(&self) -> Result<(), TracerError> {
+    fn check_sensor(&self) -> Result<(), CameraError> {
         let tilt = self.description.tilt.angle;
         let steepest = self.sensor.slope().length() * 0.5 * self.pupil_diameter();
         check(
@@ -380,11 +378,11 @@ impl Camera {
             steepest < 1.0,
             "so small that all of the pupil sees the front of the sensor (in radians)",
         )?;
-        let size = self.description.size() + MARGIN;
+        let size = self.description.size() + IMAGE_MARGIN;
         let corners = [
-            DVec2::splat(-MARGIN),
-            DVec2::new(size.x, -MARGIN),
-            DVec2::new(-MARGIN, size.y),
+            DVec2::splat(-IMAGE_MARGIN),
+            DVec2::new(size.x, -IMAGE_MARGIN),
+            DVec2::new(-IMAGE_MARGIN, size.y),
             size,
         ];
         for place in corners.map(|corner| self.sensor.point(corner)) {

@@ -1,11 +1,11 @@
 use glam::{DVec2, DVec3};
 
-use crate::TracerError;
+use crate::CameraError;
 
-/// The most pixels an image may have: 2²⁸, which is 16 384 × 16 384.
+/// The maximum number of pixels of an image: 2²⁸, which is 16 384 × 16 384.
 pub const MAXIMUM_PIXELS: usize = 1 << 28;
 
-/// What determines a [`Camera`](crate::Camera).
+/// Parameters of a [`Camera`](crate::Camera).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraDescription {
     /// The centre of the lens, which is its entrance pupil, in metres.
@@ -26,11 +26,11 @@ pub struct CameraDescription {
     pub resolution: [usize; 2],
     /// The image point on the axis of the lens, in pixels; `None` for the middle of the image.
     pub principal_point: Option<DVec2>,
-    /// How the sensor is tilted.
+    /// The tilt of the sensor.
     pub tilt: SensorTilt,
-    /// How the lens distorts the image.
+    /// The distortion of the image by the lens.
     pub distortion: RadialDistortion,
-    /// Whether what is out of focus is blurred. Without it the camera is sharp everywhere, as if all
+    /// The blur of what is out of focus. Without it the camera is sharp everywhere, as if all
     /// light went through the centre of the lens; the speckle keeps its size.
     pub depth_of_field: bool,
 }
@@ -79,17 +79,17 @@ pub struct RadialDistortion {
 
 impl CameraDescription {
     /// Checks everything that can be checked without the geometry.
-    pub(super) fn check(&self) -> Result<(), TracerError> {
+    pub(crate) fn check(&self) -> Result<(), CameraError> {
         self.check_lengths()?;
         self.check_resolution()?;
         if !self.position.is_finite() || !self.look_at.is_finite() {
-            return Err(TracerError::Direction {
+            return Err(CameraError::Direction {
                 parameter: "look_at",
                 allowed: "a finite point seen from a finite position",
             });
         }
         if self.principal_point.is_some_and(|point| !point.is_finite()) {
-            return Err(TracerError::Direction {
+            return Err(CameraError::Direction {
                 parameter: "principal_point",
                 allowed: "a finite image point, in pixels",
             });
@@ -108,7 +108,7 @@ impl CameraDescription {
         check("tilt", azimuth, azimuth.is_finite(), "at a finite azimuth")
     }
 
-    fn check_lengths(&self) -> Result<(), TracerError> {
+    fn check_lengths(&self) -> Result<(), CameraError> {
         let lengths = [
             ("focal_length", self.focal_length),
             ("f_number", self.f_number),
@@ -133,42 +133,42 @@ impl CameraDescription {
         )
     }
 
-    fn check_resolution(&self) -> Result<(), TracerError> {
+    fn check_resolution(&self) -> Result<(), CameraError> {
         let [width, height] = self.resolution;
         width
             .checked_mul(height)
             .filter(|pixels| (1..=MAXIMUM_PIXELS).contains(pixels))
             .map(|_| ())
-            .ok_or(TracerError::Resolution { width, height })
+            .ok_or(CameraError::Resolution { width, height })
     }
 
     /// Returns the distance from the lens to the sensor along the axis, in metres.
-    pub(super) fn image_distance(&self) -> f64 {
+    pub(crate) fn image_distance(&self) -> f64 {
         self.focal_length * self.focus_distance / (self.focus_distance - self.focal_length)
     }
 
     /// Returns the image point on the axis of the lens, in pixels.
-    pub(super) fn axis_point(&self) -> DVec2 {
+    pub(crate) fn axis_point(&self) -> DVec2 {
         self.principal_point.unwrap_or(self.size() / 2.0)
     }
 
     /// Returns the width and the height of the image, in pixels.
-    pub(super) fn size(&self) -> DVec2 {
+    pub(crate) fn size(&self) -> DVec2 {
         DVec2::new(self.resolution[0] as f64, self.resolution[1] as f64)
     }
 }
 
 /// Returns an error about `parameter` unless `holds`.
-pub(super) fn check(
+pub(crate) fn check(
     parameter: &'static str,
     value: f64,
     holds: bool,
     allowed: &'static str,
-) -> Result<(), TracerError> {
+) -> Result<(), CameraError> {
     if holds {
         return Ok(());
     }
-    Err(TracerError::OutOfRange {
+    Err(CameraError::OutOfRange {
         parameter,
         value,
         allowed,

@@ -1,7 +1,8 @@
 use glam::{DVec2, DVec3};
+use tem00_numerics::circle_point_at_eighth;
 
 use super::Camera;
-use crate::{Ray, circle};
+use crate::Ray;
 
 /// A ray from a point of the lens into the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,12 +135,9 @@ impl Camera {
         let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
         let radius = 0.5 * self.pupil_diameter();
         if x.abs() > y.abs() {
-            radius * x * circle::at_eighth(y / x)
+            radius * x * DVec2::from(circle_point_at_eighth(y / x))
         } else if y != 0.0 {
-            let DVec2 {
-                x: along,
-                y: across,
-            } = circle::at_eighth(x / y);
+            let [along, across] = circle_point_at_eighth(x / y);
             radius * y * DVec2::new(across, along)
         } else {
             DVec2::ZERO

@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3};
 
-use super::CameraDescription;
+use crate::CameraDescription;
 
 /// The sensor in the axes of the camera: right, up and along the view, from the centre of the lens.
 ///

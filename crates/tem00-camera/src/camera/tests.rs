@@ -2,6 +2,7 @@ use approx::assert_relative_eq;
 use proptest::prelude::*;
 
 use super::*;
+use crate::{CameraDescription, RadialDistortion, SensorTilt};
 
 mod focus;
 mod light;

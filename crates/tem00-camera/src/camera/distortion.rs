@@ -1,6 +1,6 @@
 use glam::{DMat2, DVec2};
 
-use super::RadialDistortion;
+use crate::RadialDistortion;
 
 /// Radial distortion with the range in which it can be undone.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -66,6 +66,7 @@
 //! # Ok::<(), tem00_speckle::SpeckleError>(())
 //! ```
 
+mod complex;
 mod error;
 mod interpolation;
 mod light;

@@ -12,8 +12,7 @@ use tem00_numerics::Grid;
 
 use crate::{
     Phasors, PupilField, SlicePath, SpeckleError,
-    stack::workers::map_with_scratch,
-    stack::{filled, reserve},
+    stack::{filled, reserve, workers::map_with_scratch},
 };
 
 /// A stack of intensity slices on the circular path, interpolated as printed.

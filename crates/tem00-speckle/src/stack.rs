@@ -3,8 +3,10 @@ use tem00_numerics::Grid;
 
 use crate::{
     Interpolation, PupilField, SpeckleError,
-    interpolation::spline::{Variance, prefilters},
-    interpolation::taps::Period,
+    interpolation::{
+        spline::{Variance, prefilters},
+        taps::Period,
+    },
 };
 
 mod file;

@@ -9,14 +9,16 @@
 //! products also turn with f, and the polynomials leave 1e−6 at most.
 
 use num_complex::Complex;
-use tem00_numerics::Grid;
+use tem00_numerics::{
+    Grid,
+    cast::{to_f32, to_signed},
+};
 
 use crate::{
     Interpolation, PupilField,
+    complex::to_c64,
     interpolation::spline::{Variance, lag_products, response},
-    pupil::lattice::to_i64,
     pupil::mask::{Row, Span},
-    pupil::transmission::to_c64,
 };
 
 /// Powers of p for the part that is even about the middle.
@@ -77,12 +79,11 @@ impl Covariance {
         table
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
     fn new(table: [[f64; SHAPES]; SHAPES]) -> Self {
         // The largest that each shape becomes: p ≤ ¼, o ≤ √3/18.
         const LARGEST: [f64; SHAPES] = [1.0, 0.25, 0.0625, 0.015_625, 0.096_3, 0.024_1];
         const RESOLVED: f64 = 2e-6;
-        let even = core::array::from_fn(|ny| core::array::from_fn(|nx| table[ny][nx] as f32));
+        let even = core::array::from_fn(|ny| core::array::from_fn(|nx| to_f32(table[ny][nx])));
         let mut odd = table;
         for row in odd.iter_mut().take(EVEN) {
             row[..EVEN].fill(0.0);
@@ -101,7 +102,7 @@ impl Covariance {
 
         Self {
             even,
-            odd: (bound > RESOLVED).then(|| odd.map(|row| row.map(|c| c as f32))),
+            odd: (bound > RESOLVED).then(|| odd.map(|row| row.map(to_f32))),
         }
     }
 }
@@ -136,7 +137,7 @@ impl Responses {
             let (corner, size) = (field.mask.corner()[axis], field.size()[axis]);
             (0..field.mask.extent()[axis])
                 .map(|index| {
-                    let k = corner + to_i64(index);
+                    let k = corner + to_signed(index);
                     fractions.map(|f| response(interpolation, k, f, size))
                 })
                 .collect()
@@ -186,7 +187,7 @@ impl Responses {
 
 /// The index of the same lattice point in a box displaced by `shift`.
 fn moved(index: usize, shift: i64) -> Option<usize> {
-    usize::try_from(to_i64(index).saturating_sub(shift)).ok()
+    usize::try_from(to_signed(index).saturating_sub(shift)).ok()
 }
 
 /// Σ over the rows that both pupils have, of the sums along each.
@@ -253,7 +254,7 @@ fn running_sums(shapes: &[[f64; SHAPES]]) -> Vec<[f64; SHAPES]> {
 fn counted(a: Row, b: Row, shift: i64, running: &[[f64; SHAPES]]) -> [Complex<f64>; SHAPES] {
     let mut sums = [Complex::new(0.0, 0.0); SHAPES];
     let mut add = |a: Span, b: Span, sign: f64| {
-        let along = |n: usize| usize::try_from(to_i64(n).saturating_add(shift)).unwrap_or(0);
+        let along = |n: usize| usize::try_from(to_signed(n).saturating_add(shift)).unwrap_or(0);
         let (start, end) = (a.start.max(along(b.start)), a.end.min(along(b.end)));
         if start < end {
             for (n, sum) in sums.iter_mut().enumerate() {
@@ -348,7 +349,6 @@ fn basis<const N: usize>(nodes: [f64; N]) -> [[f64; N]; N] {
 }
 
 /// The mean square of one slice, in place of the sum over lags.
-#[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
 pub(crate) fn mean_square(variance: &Variance, interpolation: Interpolation) -> Even {
     let (basis, fractions) = (basis(nodes::<EVEN>()), fractions());
     // For each lag, the polynomial of Σ w(t) w(t + lag).
@@ -370,7 +370,7 @@ pub(crate) fn mean_square(variance: &Variance, interpolation: Interpolation) -> 
             }
         }
     }
-    table.map(|row| row.map(|c| c as f32))
+    table.map(|row| row.map(to_f32))
 }
 
 #[cfg(test)]

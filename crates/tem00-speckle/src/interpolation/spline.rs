@@ -3,11 +3,15 @@
 use core::f64::consts::PI;
 
 use num_complex::Complex;
-use tem00_numerics::Grid;
+use tem00_numerics::{
+    Grid,
+    cast::{to_f32, to_signed},
+};
 
 use crate::{
     Interpolation,
-    pupil::{PupilField, lattice::to_i64, mask::Mask, transmission::to_c64},
+    complex::to_c64,
+    pupil::{PupilField, mask::Mask},
 };
 
 /// What the pupil point k is multiplied with: the reciprocal of the spline's Fourier transform,
@@ -22,18 +26,14 @@ pub(crate) fn prefilter(k: i64, size: usize, interpolation: Interpolation) -> f6
 /// The lattice points along one axis of the mask's box.
 fn points(mask: &Mask, axis: usize) -> impl Iterator<Item = i64> {
     let corner = mask.corner()[axis];
-    (0..mask.extent()[axis]).map(move |index| corner + to_i64(index))
+    (0..mask.extent()[axis]).map(move |index| corner + to_signed(index))
 }
 
 /// The prefilter over the bounding box of the pupil, for each axis.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "amplitudes are stored as f32"
-)]
 pub(crate) fn prefilters(field: &PupilField, interpolation: Interpolation) -> [Vec<f32>; 2] {
     [0, 1].map(|axis| {
         points(&field.mask, axis)
-            .map(|k| prefilter(k, field.size()[axis], interpolation) as f32)
+            .map(|k| to_f32(prefilter(k, field.size()[axis], interpolation)))
             .collect()
     })
 }
@@ -97,18 +97,17 @@ impl Variance {
         Self::normalised(table, total)
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
     fn normalised(table: [[f64; 4]; 4], total: f64) -> Self {
         let multiplicity = |lag: usize| if lag == 0 { 1.0 } else { 2.0 };
         let entry = |ly: usize, lx: usize| {
             if total > 0.0 {
-                (table[ly][lx] * multiplicity(lx) * multiplicity(ly) / total) as f32
+                to_f32(table[ly][lx] * multiplicity(lx) * multiplicity(ly) / total)
             } else {
                 // Without light any variance will do; this one is 1 at every fraction.
                 if ly + lx == 0 {
                     1.0
                 } else {
-                    multiplicity(lx) as f32 * multiplicity(ly) as f32
+                    to_f32(multiplicity(lx) * multiplicity(ly))
                 }
             }
         };

@@ -1,6 +1,7 @@
 use num_complex::Complex;
+use tem00_numerics::cast::to_f32;
 
-use crate::{SpeckleError, SpeckleField, SpecklePattern};
+use crate::{SpeckleError, SpeckleField, SpecklePattern, complex::to_c64};
 
 /// A uniform wave that interferes with the speckle: partially developed speckle.
 ///
@@ -92,17 +93,13 @@ impl CoherentBackground {
     /// Returns the intensity, with expected mean 1, where the speckle has the complex `amplitude`, of
     /// mean square 1.
     pub fn intensity(&self, amplitude: Complex<f32>) -> f64 {
-        let amplitude = Complex::new(f64::from(amplitude.re), f64::from(amplitude.im));
+        let amplitude = to_c64(amplitude);
         (amplitude + self.wave).norm_sqr() / (1.0 + self.beam_ratio)
     }
 
     /// Returns the intensity of the whole `field` on the background.
     pub fn pattern(&self, field: &SpeckleField) -> SpecklePattern {
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "patterns are stored as f32"
-        )]
-        let values = field.values().map(|&u| self.intensity(u) as f32);
+        let values = field.values().map(|&u| to_f32(self.intensity(u)));
         SpecklePattern::new(values, field.speckle_size())
     }
 }

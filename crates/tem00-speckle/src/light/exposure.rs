@@ -1,10 +1,14 @@
 use core::f64::consts::PI;
 
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Grid, sinc};
+use tem00_numerics::{
+    Fft2, Grid,
+    cast::{to_f32, to_usize},
+    sinc,
+};
 
-use super::transform::{frequency, plan, to_c32, to_complex, to_f32, wave};
-use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch};
+use super::transform::{frequency, plan, to_complex, wave};
+use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch, complex::to_c32};
 
 /// An exposure during which the pattern moves, or changes, or both, at a constant rate.
 ///
@@ -104,7 +108,7 @@ impl Exposure {
     pub fn moments(&self) -> usize {
         let [x, y] = self.pupil_drift;
         let drift = x.hypot(y);
-        whole((30.0 * drift.max(drift.sqrt())).ceil()).max(1)
+        to_usize((30.0 * drift.max(drift.sqrt())).ceil()).max(1)
     }
 
     /// Returns the exposure of the undisplaced pupil in focus.
@@ -217,15 +221,6 @@ fn add<T: Copy + core::ops::AddAssign>(sum: &mut Grid<T>, values: &Grid<T>) {
 fn check(drift: [f64; 2], maximum: f64) -> Result<(), f64> {
     let bad = |x: &f64| !(-maximum..=maximum).contains(x);
     drift.into_iter().find(bad).map_or(Ok(()), Err)
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a few thousand moments at most"
-)]
-fn whole(x: f64) -> usize {
-    x as usize
 }
 
 #[cfg(test)]

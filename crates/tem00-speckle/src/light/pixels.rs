@@ -1,10 +1,10 @@
 use core::f64::consts::PI;
 
 use num_complex::Complex;
-use tem00_numerics::{Fft2Scratch, Grid, sinc};
+use tem00_numerics::{Fft2Scratch, Grid, cast::to_f32, sinc};
 
-use super::transform::{frequency, plan, to_c32, to_f32, wave};
-use crate::{SpeckleError, SpecklePattern};
+use super::transform::{frequency, plan, wave};
+use crate::{SpeckleError, SpecklePattern, complex::to_c32};
 
 /// The pixels of a sensor on a pattern: boxes of any size at any pitch.
 ///

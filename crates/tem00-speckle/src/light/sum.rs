@@ -1,6 +1,7 @@
 use core::f64::consts::{LN_2, PI};
 
-use super::transform::to_f32;
+use tem00_numerics::cast::{to_f32, to_usize};
+
 use crate::{PupilField, SpeckleError, SpecklePattern};
 
 /// Independent speckle patterns whose intensities add, each with its share of the light.
@@ -188,10 +189,10 @@ impl IncoherentSum {
             false => 1.0,
         };
         if modes > Self::MAX_PATTERNS as f64 {
-            return Err(SpeckleError::PatternCount(whole(modes)));
+            return Err(SpeckleError::PatternCount(to_usize(modes)));
         }
         let powers = core::iter::successors(Some(1.0), |power| Some(power * ratio));
-        let weights: Vec<f64> = powers.take(whole(modes)).collect();
+        let weights: Vec<f64> = powers.take(to_usize(modes)).collect();
         Self::weighted(&weights)
     }
 
@@ -365,15 +366,6 @@ const fn scatter(x: u64) -> u64 {
     let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     x ^ (x >> 31)
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a whole number of patterns, saturated if it is huge"
-)]
-fn whole(x: f64) -> usize {
-    x as usize
 }
 
 #[cfg(test)]

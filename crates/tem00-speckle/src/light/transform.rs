@@ -1,9 +1,7 @@
 //! Intensities in the frequency domain.
 
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Grid};
-
-use crate::pupil::lattice::to_i64;
+use tem00_numerics::{Fft2, Grid, cast::to_signed};
 
 /// Plans the transform of a pattern, or of part of one.
 pub(super) fn plan([width, height]: [usize; 2]) -> Fft2 {
@@ -12,13 +10,12 @@ pub(super) fn plan([width, height]: [usize; 2]) -> Fft2 {
 
 /// The frequency at `index` in a spectrum of `size` points, in periods per pattern.
 pub(super) fn frequency(index: usize, size: usize) -> f64 {
-    let (index, size) = (to_i64(index), to_i64(size));
-    let signed = if 2 * index > size {
+    let (index, size) = (to_signed(index), to_signed(size));
+    (if 2 * index > size {
         index - size
     } else {
         index
-    };
-    signed as f64
+    }) as f64
 }
 
 /// A real grid as a complex one.
@@ -29,20 +26,4 @@ pub(super) fn to_complex(values: &Grid<f32>) -> Grid<Complex<f32>> {
 /// exp(2πi turns)
 pub(super) fn wave(turns: f64) -> Complex<f64> {
     Complex::cis(core::f64::consts::TAU * (turns - turns.round()))
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "patterns and their spectra are stored as f32"
-)]
-pub(super) fn to_c32(z: Complex<f64>) -> Complex<f32> {
-    Complex::new(z.re as f32, z.im as f32)
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "patterns and their spectra are stored as f32"
-)]
-pub(super) const fn to_f32(x: f64) -> f32 {
-    x as f32
 }

@@ -1,9 +1,12 @@
 //! The amplitude at the samples and the coefficients of the spline, one from the other.
 
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Fft2Scratch, Grid};
+use tem00_numerics::{
+    Fft2, Fft2Scratch, Grid,
+    cast::{to_f32, to_signed},
+};
 
-use crate::{Interpolation, interpolation::spline::prefilter, pupil::lattice::to_i64};
+use crate::{Interpolation, interpolation::spline::prefilter};
 
 /// The filter that turns samples of a band-limited field into the coefficients of its spline.
 ///
@@ -26,7 +29,7 @@ impl SplineFilter {
         }
         let factors = [width, height].map(|size| {
             // Frequencies of either sign have the same factor.
-            let frequency = |index: usize| to_i64(index.min(size - index));
+            let frequency = |index: usize| to_signed(index.min(size - index));
             let factor = |index| prefilter(frequency(index), size, interpolation);
             (0..size).map(factor).collect()
         });
@@ -58,9 +61,4 @@ impl SplineFilter {
                 value.conj()
             });
     }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "transforms run in f32")]
-const fn to_f32(x: f64) -> f32 {
-    x as f32
 }

@@ -9,7 +9,7 @@ use super::{
     CHUNK, NpyError, NpyReader, check_finite, element::Element, grid, header::Header,
     spline::SplineFilter, write_values,
 };
-use crate::{PupilField, SlicePath, SpeckleStack, StackOptions, pupil::transmission::to_c64};
+use crate::{PupilField, SlicePath, SpeckleStack, StackOptions, complex::to_c64};
 
 /// What the mean square of a slice may be: that of few Gaussian phasors strays from 1.
 const BRIGHTNESS: core::ops::RangeInclusive<f64> = 0.1..=10.0;

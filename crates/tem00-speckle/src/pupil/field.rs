@@ -2,12 +2,14 @@ use core::f64::consts::PI;
 use std::sync::Arc;
 
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Grid};
+use tem00_numerics::{Fft2, Grid, cast::to_usize};
 
 use crate::{
     Phasors, Pupil, SpeckleError,
-    pupil::lattice::{Lattice, Seeded, Source},
-    pupil::mask::Mask,
+    pupil::{
+        lattice::{Lattice, Seeded, Source},
+        mask::Mask,
+    },
 };
 
 /// A field on the lattice of pupil points, random or measured, seen through the pupil.
@@ -265,7 +267,7 @@ impl PupilField {
         // (Σ|t|²)² / Σ|t|⁴ is a whole number of equal phasors but for its rounding.
         let effective = mask.effective_count() * (1.0 + 1e-12);
         if effective < Self::MIN_PHASORS as f64 {
-            return Err(SpeckleError::PhasorCount(whole(effective)));
+            return Err(SpeckleError::PhasorCount(to_usize(effective)));
         }
         let [columns, rows] = mask.extent();
         let transform = Fft2::with_aperture(size[0], size[1], columns, rows)
@@ -453,15 +455,6 @@ fn check_samples(samples: &Grid<Complex<f32>>) -> Result<(), SpeckleError> {
             y: bad / samples.width(),
         }),
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a small number of phasors, rounded down"
-)]
-fn whole(x: f64) -> usize {
-    x as usize
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use num_complex::Complex;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
-use tem00_numerics::{Grid, vectorised};
+use tem00_numerics::{Grid, cast::to_signed, vectorised};
 
 use crate::Phasors;
 
@@ -92,7 +92,7 @@ fn nearest(k: i64, period: i64) -> i64 {
 
 /// Copies the samples at (kx, ky), (kx + 1, ky), …, and zeros where there are none.
 fn copy_run(samples: &Grid<Complex<f32>>, [kx, ky]: [i64; 2], run: &mut [Complex<f32>]) {
-    let [width, height] = [samples.width(), samples.height()].map(to_i64);
+    let [width, height] = [samples.width(), samples.height()].map(to_signed);
     run.fill(Complex::new(0.0, 0.0));
     let (x, y) = (kx + width / 2, ky + height / 2);
     if !(0..height).contains(&y) {
@@ -100,7 +100,7 @@ fn copy_run(samples: &Grid<Complex<f32>>, [kx, ky]: [i64; 2], run: &mut [Complex
     }
     let row = samples.row(to_index(y));
     // The part of the run that meets the row.
-    let (first, last) = (x.max(0), (x + to_i64(run.len())).min(width));
+    let (first, last) = (x.max(0), (x + to_signed(run.len())).min(width));
     if first < last {
         run[to_index(first - x)..to_index(last - x)]
             .copy_from_slice(&row[to_index(first)..to_index(last)]);
@@ -162,14 +162,6 @@ impl Seeded {
         generator.set_word_pos(u128::from(word));
         generator
     }
-}
-
-#[expect(
-    clippy::cast_possible_wrap,
-    reason = "lattice sizes and counts are far below 2⁶³"
-)]
-pub(crate) const fn to_i64(n: usize) -> i64 {
-    n as i64
 }
 
 /// An index that is not negative, as its place in the program shows.
@@ -393,7 +385,7 @@ mod tests {
         let lattice = torus(9, [701, 8]);
         let whole = row(&lattice, [-800, 4], 1_800);
         for (start, length) in [(0, 1), (255, 2), (256, 300), (17, 1_783), (799, 3)] {
-            let part = row(&lattice, [to_i64(start) - 800, 4], length);
+            let part = row(&lattice, [to_signed(start) - 800, 4], length);
             assert_eq!(part, whole[start..start + length], "from {start}");
         }
     }
@@ -408,7 +400,9 @@ mod tests {
                 for start in [-6, -2, 1] {
                     for (k, value) in (start..).zip(row(&lattice, [start, ky], 7)) {
                         let inside = |k: i64, n: usize| {
-                            usize::try_from(k + to_i64(n / 2)).ok().filter(|&i| i < n)
+                            usize::try_from(k + to_signed(n / 2))
+                                .ok()
+                                .filter(|&i| i < n)
                         };
                         let expected = match (inside(k, width), inside(ky, height)) {
                             (Some(x), Some(y)) => sample(x, y),

@@ -3,9 +3,12 @@
 use core::f64::consts::PI;
 
 use num_complex::Complex;
-use tem00_numerics::Grid;
+use tem00_numerics::{
+    Grid,
+    cast::{to_i64, to_signed, to_usize},
+};
 
-use crate::{Pupil, pupil::lattice::to_i64, pupil::transmission::to_c64};
+use crate::{Pupil, complex::to_c64};
 
 /// The lattice points of a pupil about a point of the lattice, and what they transmit.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,12 +90,12 @@ impl Mask {
         let reach = pupil.reach();
         let along = |axis: usize| {
             let first = fraction[axis] - 0.5 * reach[axis] * diameter[axis] * Pupil::RIM;
-            first_point(first)
+            to_i64(first.ceil())
         };
         let corner = [along(0), along(1)];
         let position = |axis: usize| -> Vec<f64> {
             (0..extent[axis])
-                .map(|i| ((corner[axis] + to_i64(i)) as f64 - fraction[axis]) / diameter[axis])
+                .map(|i| ((corner[axis] + to_signed(i)) as f64 - fraction[axis]) / diameter[axis])
                 .collect()
         };
         let (x, y) = (position(0), position(1));
@@ -115,7 +118,7 @@ impl Mask {
     /// The largest box that the points can need, wherever the centre lies.
     pub(crate) fn extent_of(pupil: &Pupil, diameter: [f64; 2]) -> [usize; 2] {
         let reach = pupil.reach();
-        [0, 1].map(|axis| whole(reach[axis] * diameter[axis] * Pupil::RIM) + 1)
+        [0, 1].map(|axis| to_usize(reach[axis] * diameter[axis] * Pupil::RIM) + 1)
     }
 
     fn sum_up(&self) -> Sums {
@@ -182,7 +185,7 @@ impl Mask {
                 self.span_sum(row.outer, x) - self.span_sum(row.hole, x)
             }),
             Some(_) => {
-                let wave = |i| Complex::cis(-2.0 * x * (self.corner[0] + to_i64(i)) as f64);
+                let wave = |i| Complex::cis(-2.0 * x * (self.corner[0] + to_signed(i)) as f64);
                 let waves: Vec<_> = (0..self.extent[0]).map(wave).collect();
                 self.sum_rows(y, |j, _| {
                     self.powers(j).map(|(i, power)| waves[i] * power).sum()
@@ -196,7 +199,7 @@ impl Mask {
     fn sum_rows(&self, angle: f64, sum: impl Fn(usize, Row) -> Complex<f64>) -> Complex<f64> {
         let rows = self.rows.iter().enumerate();
         rows.map(|(y, row)| {
-            let ky = (self.corner[1] + to_i64(y)) as f64;
+            let ky = (self.corner[1] + to_signed(y)) as f64;
             sum(y, *row) * Complex::cis(angle * ky)
         })
         .sum()
@@ -205,7 +208,7 @@ impl Mask {
     /// Σ over the span of exp(−2i kx theta).
     fn span_sum(&self, span: Span, theta: f64) -> Complex<f64> {
         // First and last point lie as far to either side of half their sum.
-        let twice_middle = 2 * self.corner[0] + to_i64(span.start + span.end) - 1;
+        let twice_middle = 2 * self.corner[0] + to_signed(span.start + span.end) - 1;
         Complex::cis(-theta * twice_middle as f64) * dirichlet(span.count(), theta)
     }
 
@@ -213,7 +216,7 @@ impl Mask {
     pub(crate) fn overlap(&self, [dx, dy]: [i64; 2]) -> Complex<f64> {
         let mut sum = Complex::new(0.0, 0.0);
         for (y, row) in self.rows.iter().enumerate() {
-            let other = usize::try_from(to_i64(y).saturating_sub(dy));
+            let other = usize::try_from(to_signed(y).saturating_sub(dy));
             let Some((other, there)) = other.ok().and_then(|o| Some((o, self.rows.get(o)?))) else {
                 continue;
             };
@@ -229,8 +232,8 @@ impl Mask {
 /// Points shared by two rows of which the second is shifted by `shift`.
 fn shared_points(a: Row, b: Row, shift: i64) -> usize {
     let shared = |a: Span, b: Span| {
-        let start = to_i64(a.start).max(to_i64(b.start).saturating_add(shift));
-        let end = to_i64(a.end).min(to_i64(b.end).saturating_add(shift));
+        let start = to_signed(a.start).max(to_signed(b.start).saturating_add(shift));
+        let end = to_signed(a.end).min(to_signed(b.end).saturating_add(shift));
         usize::try_from(end.saturating_sub(start)).unwrap_or(0)
     };
     // |A∖a ∩ B∖b| = |AB| − |Ab| − |aB| + |ab|; the subtractions never pass below zero in this order.
@@ -240,7 +243,7 @@ fn shared_points(a: Row, b: Row, shift: i64) -> usize {
 }
 
 fn shared_weights(a: &[Complex<f32>], b: &[Complex<f32>], shift: i64) -> Complex<f64> {
-    let at = |x: usize| usize::try_from(to_i64(x).saturating_sub(shift)).ok();
+    let at = |x: usize| usize::try_from(to_signed(x).saturating_sub(shift)).ok();
     let shared = a.iter().enumerate().filter_map(|(x, a)| {
         let b = b.get(at(x)?)?;
         Some(to_c64(*a) * to_c64(*b).conj())
@@ -261,24 +264,6 @@ fn dirichlet(count: usize, theta: f64) -> f64 {
 /// The representative of x modulo `period` in [−period/2, period/2].
 fn nearest(x: f64, period: f64) -> f64 {
     x - period * (x / period).round()
-}
-
-/// The first lattice point at or after `x`.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "a place within one pupil of the origin"
-)]
-fn first_point(x: f64) -> i64 {
-    x.ceil() as i64
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a non-negative number of lattice points, rounded down on purpose"
-)]
-fn whole(x: f64) -> usize {
-    x as usize
 }
 
 #[cfg(test)]

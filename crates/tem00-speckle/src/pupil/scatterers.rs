@@ -1,12 +1,14 @@
 use num_complex::Complex;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
-use tem00_numerics::Grid;
+use tem00_numerics::{
+    Grid,
+    cast::{to_signed, to_usize},
+};
 
 use crate::{
     Pupil, PupilField, SpeckleError,
-    pupil::lattice::{to_i64, unit_phasor},
-    pupil::mask::Mask,
+    pupil::{lattice::unit_phasor, mask::Mask},
 };
 
 /// What the key of the generator holds beside the seed; a new value would be a new family.
@@ -84,12 +86,12 @@ fn scatter(mask: &Mask, count: usize, generator: &mut ChaCha8Rng) -> Grid<Comple
     let [x, y] = [0, 1].map(|axis| {
         // The box about the mask may reach further to one side than to the other.
         let corner = mask.corner()[axis];
-        let end = corner + to_i64(mask.extent()[axis]);
+        let end = corner + to_signed(mask.extent()[axis]);
         let reach = corner.unsigned_abs().max(end.unsigned_abs());
         usize::try_from(reach).unwrap_or(usize::MAX)
     });
     let mut samples = Grid::filled(2 * x + 1, 2 * y + 1, Complex::new(0.0, 0.0));
-    let place = |k: i64, reach: usize| usize::try_from(k + to_i64(reach)).unwrap_or(usize::MAX);
+    let place = |k: i64, reach: usize| usize::try_from(k + to_signed(reach)).unwrap_or(usize::MAX);
     let mut points = points_of(mask);
     for taken in 0..count {
         // The points before `taken` are used up: Durstenfeld (1964).
@@ -107,21 +109,16 @@ fn points_of(mask: &Mask) -> Vec<[i64; 2]> {
     let rows = 0..mask.extent()[1];
     rows.flat_map(|row| {
         let columns = mask.powers(row);
-        columns.map(move |(column, _)| [x + to_i64(column), y + to_i64(row)])
+        columns.map(move |(column, _)| [x + to_signed(column), y + to_signed(row)])
     })
     .collect()
 }
 
 /// A random number below `end`; for the ends of lattices all are equally probable within 10⁻¹⁰.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the product is a non-negative number below `end`"
-)]
 fn below(end: usize, generator: &mut ChaCha8Rng) -> usize {
     const UNIT: f64 = 1.0 / (1_u64 << 53) as f64;
     let uniform = (generator.next_u64() >> 11) as f64 * UNIT;
-    ((uniform * end as f64) as usize).min(end - 1)
+    to_usize(uniform * end as f64).min(end - 1)
 }
 
 fn generator(seed: u64) -> ChaCha8Rng {

@@ -1,7 +1,7 @@
-use core::f64::consts::PI;
+use core::f64::consts::{FRAC_PI_2, PI};
 
 use num_complex::Complex;
-use tem00_numerics::disc_overlap;
+use tem00_numerics::{cast::to_f32, disc_overlap, quadrature::integrate};
 
 use crate::{SpeckleError, Transmission};
 
@@ -134,14 +134,10 @@ impl Pupil {
     }
 
     /// The amplitude transmission at `p` diameters from the centre.
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "transmissions are stored as f32"
-    )]
     pub(crate) fn transmission(&self, [x, y]: [f64; 2]) -> Complex<f32> {
         let amplitude = match self {
             _ if !self.contains([x, y]) => 0.0,
-            Self::Gaussian { radius } => (-(x.hypot(y) / radius).powi(2)).exp() as f32,
+            Self::Gaussian { radius } => to_f32((-(x.hypot(y) / radius).powi(2)).exp()),
             Self::Sampled(transmission) => return transmission.at([x, y]),
             _ => 1.0,
         };
@@ -155,7 +151,6 @@ impl Pupil {
 /// the rim of the lens they share lies at b(φ) = √(¼ − ¼ρ² sin²φ) − ½ρ cos φ. In polar coordinates the
 /// radial integral is elementary; the quadrants are alike.
 fn gaussian_overlap(rho: f64, radius: f64) -> f64 {
-    const INTERVALS: u32 = 256;
     if rho >= 1.0 || rho.is_nan() {
         return 0.0;
     }
@@ -169,22 +164,14 @@ fn gaussian_overlap(rho: f64, radius: f64) -> f64 {
             false => -(-x).exp_m1(),
         }
     };
-    // Simpson's rule; the integrand is smooth, and more so for a smaller rho.
-    let step = 0.5 * PI / f64::from(INTERVALS);
-    let sum: f64 = (0..=INTERVALS)
-        .map(|i| {
-            let (sin, cos) = (f64::from(i) * step).sin_cos();
-            let rim = 0.5 * (1.0 - (rho * sin).powi(2)).sqrt() - 0.5 * rho * cos;
-            let weight = match i {
-                0 | INTERVALS => 1.0,
-                i if i % 2 == 1 => 4.0,
-                _ => 2.0,
-            };
-            weight * radial(rim.max(0.0))
-        })
-        .sum();
-    let whole = radial(0.5) * 3.0 * f64::from(INTERVALS);
-    (-0.5 * (rho / radius).powi(2)).exp() * sum / whole
+    let along = |phi: f64| {
+        let (sin, cos) = phi.sin_cos();
+        let rim = 0.5 * (1.0 - (rho * sin).powi(2)).sqrt() - 0.5 * rho * cos;
+        radial(rim.max(0.0))
+    };
+    // The corner of the lens sharpens towards ρ = 1; eight panels leave 1e−10 of the overlap.
+    let shared = integrate(along, [0.0, FRAC_PI_2], FRAC_PI_2 / 8.0);
+    (-0.5 * (rho / radius).powi(2)).exp() * shared / (radial(0.5) * FRAC_PI_2)
 }
 
 /// The common area of discs of diameters 1 and `inner` < 1 at the distance `rho`, over π/4.

@@ -1,9 +1,12 @@
 use std::sync::Arc;
 
 use num_complex::Complex;
-use tem00_numerics::Grid;
+use tem00_numerics::{
+    Grid,
+    cast::{to_i64, to_signed, to_usize},
+};
 
-use crate::{SpeckleError, pupil::lattice::to_i64};
+use crate::{SpeckleError, complex::to_c64};
 
 /// The amplitude transmission of a pupil of any shape, on a grid over the pupil's bounding square.
 ///
@@ -107,7 +110,10 @@ impl Transmission {
 
     /// Σ t(x, y) t*(x − shift) over the cells.
     fn product(&self, [dx, dy]: [i64; 2]) -> Complex<f64> {
-        let (width, height) = (to_i64(self.values.width()), to_i64(self.values.height()));
+        let (width, height) = (
+            to_signed(self.values.width()),
+            to_signed(self.values.height()),
+        );
         let shared = |d: i64, n: i64| d.max(0)..(n + d).min(n);
         let mut sum = Complex::new(0.0, 0.0);
         for y in shared(dy, height) {
@@ -121,23 +127,13 @@ impl Transmission {
     }
 }
 
-pub(crate) fn to_c64(z: Complex<f32>) -> Complex<f64> {
-    Complex::new(f64::from(z.re), f64::from(z.im))
-}
-
 /// The cell of `count` in which x ∈ [−½, ½] lies; the rim belongs to the outermost.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the cast saturates at the rim"
-)]
 fn cell(x: f64, count: usize) -> usize {
-    (((x + 0.5) * count as f64) as usize).min(count - 1)
+    to_usize((x + 0.5) * count as f64).min(count - 1)
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "a number of cells")]
 fn split(x: f64) -> (i64, f64) {
-    (x.floor() as i64, x - x.floor())
+    (to_i64(x.floor()), x - x.floor())
 }
 
 #[cfg(test)]

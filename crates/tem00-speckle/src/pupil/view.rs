@@ -7,12 +7,18 @@ use core::{
 use std::borrow::Cow;
 
 use num_complex::Complex;
-use tem00_numerics::{Fft2Scratch, Grid};
+use tem00_numerics::{
+    Fft2Scratch, Grid,
+    cast::{to_f32, to_i64, to_signed},
+};
 
 use crate::{
     PupilField, SpeckleField, SpecklePattern,
-    pupil::lattice::{Lattice, Source, to_i64},
-    pupil::mask::{Mask, Span},
+    complex::{to_c32, to_c64},
+    pupil::{
+        lattice::{Lattice, Source},
+        mask::{Mask, Span},
+    },
 };
 
 const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
@@ -283,7 +289,7 @@ impl PupilField {
     /// scale · exp(−2πi corner x / Q): moves the pupil's centre from its place in the aperture to
     /// zero frequency.
     fn centring_phase(&self, view: &View<'_>, axis: usize, scale: f64) -> Vec<Complex<f32>> {
-        let size = to_i64(self.size()[axis]);
+        let size = to_signed(self.size()[axis]);
         let corner = view.mask.corner()[axis];
         (0..size)
             .map(|x| {
@@ -330,8 +336,8 @@ impl Selection<'_> {
         let inside = part(row.outer);
         values[..inside.start].fill(ZERO);
         values[inside.end..].fill(ZERO);
-        let kx = centre[0] + mask.corner()[0] + to_i64(columns.start + inside.start);
-        let ky = centre[1] + mask.corner()[1] + to_i64(y);
+        let kx = centre[0] + mask.corner()[0] + to_signed(columns.start + inside.start);
+        let ky = centre[1] + mask.corner()[1] + to_signed(y);
         self.lattice.fill_row([kx, ky], &mut values[inside]);
         values[part(row.hole)].fill(ZERO);
         if let Some(weights) = mask.weights(y) {
@@ -360,7 +366,6 @@ impl Selection<'_> {
 }
 
 /// The lattice point nearest to `offset` diameters, and the way from there.
-#[expect(clippy::cast_possible_truncation, reason = "the product is below 2⁴⁶")]
 fn lattice_point(offset: f64, diameter: f64) -> (i64, f64) {
     // So many diameters are a number of rounds of the lattice, which the remainder takes off exactly.
     let place = offset % Lattice::SIDE as f64 * diameter;
@@ -369,23 +374,11 @@ fn lattice_point(offset: f64, diameter: f64) -> (i64, f64) {
     // Whole numbers over the diameter, times the diameter, are whole but for this rounding.
     let rounding = 2.0 * f64::EPSILON * place.abs();
     let on_lattice = fraction.abs() <= rounding;
-    (point as i64, if on_lattice { 0.0 } else { fraction })
+    (to_i64(point), if on_lattice { 0.0 } else { fraction })
 }
 
 fn scaled(z: Complex<f32>, gain: f64) -> Complex<f32> {
-    to_c32(Complex::new(f64::from(z.re), f64::from(z.im)) * gain)
-}
-
-fn to_c32(z: Complex<f64>) -> Complex<f32> {
-    Complex::new(to_f32(z.re), to_f32(z.im))
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "fields and patterns are stored as f32"
-)]
-const fn to_f32(x: f64) -> f32 {
-    x as f32
+    to_c32(to_c64(z) * gain)
 }
 
 #[cfg(test)]

@@ -1,14 +1,15 @@
 //! The slices of a stack, and how each joins the next.
 
 use num_complex::Complex;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_signed};
 
 use crate::{
     Interpolation, PupilField, SlicePath,
-    interpolation::covariance::{Covariance, Even, Responses, mean_square},
-    interpolation::spline::Variance,
-    pupil::lattice::to_i64,
-    pupil::transmission::to_c64,
+    complex::to_c64,
+    interpolation::{
+        covariance::{Covariance, Even, Responses, mean_square},
+        spline::Variance,
+    },
     stack::workers::map_with_scratch,
 };
 
@@ -108,7 +109,7 @@ impl Joiner<'_> {
 
 /// Re Σ a(k) b*(k − shift).
 fn shared(a: &Grid<Complex<f32>>, b: &Grid<Complex<f32>>, [dx, dy]: [i64; 2]) -> f64 {
-    let (width, height) = (to_i64(a.width()), to_i64(a.height()));
+    let (width, height) = (to_signed(a.width()), to_signed(a.height()));
     let both = |shift: i64, size: i64| shift.clamp(0, size)..(size + shift).clamp(0, size);
     let at = |grid: &Grid<_>, x, y| to_c64(*grid.wrapped(x, y));
     both(dy, height)

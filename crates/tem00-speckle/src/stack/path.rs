@@ -1,11 +1,11 @@
 use core::f64::consts::PI;
 
-use tem00_numerics::{circular_path_overlap, circular_path_overlap_inverse, disc_overlap_inverse};
-
-use crate::{
-    Pupil, PupilField, SpeckleError,
-    pupil::lattice::{Lattice, to_i64},
+use tem00_numerics::{
+    cast::{to_i64, to_signed, to_usize},
+    circular_path_overlap, circular_path_overlap_inverse, disc_overlap_inverse,
 };
+
+use crate::{Pupil, PupilField, SpeckleError, pupil::lattice::Lattice};
 
 /// The way the pupil takes over the lattice from slice to slice of a stack.
 ///
@@ -113,15 +113,18 @@ impl SlicePath {
             Self::Circle { half_period } => {
                 let angle = PI * index as f64 / half_period as f64;
                 let [x, y] = field.diameter().map(|diameter| 0.5 * diameter);
-                [round(x * angle.cos()), round(y * angle.sin())]
+                [
+                    to_i64((x * angle.cos()).round()),
+                    to_i64((y * angle.sin()).round()),
+                ]
             }
             Self::Straight {
                 half_period,
                 length,
             } => {
                 // i P / (2M), rounded to the nearest integer, on a lattice that closes after P.
-                let (period, slices) = (points_along(length, field), to_i64(2 * half_period));
-                [(2 * to_i64(index) * period + slices) / (2 * slices), 0]
+                let (period, slices) = (points_along(length, field), to_signed(2 * half_period));
+                [(2 * to_signed(index) * period + slices) / (2 * slices), 0]
             }
         }
     }
@@ -129,12 +132,7 @@ impl SlicePath {
 
 /// The lattice points along a path of `length` diameters.
 fn points_along(length: usize, field: &PupilField) -> i64 {
-    round(length as f64 * field.diameter()[0])
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "lattice points are small")]
-fn round(x: f64) -> i64 {
-    x.round() as i64
+    to_i64((length as f64 * field.diameter()[0]).round())
 }
 
 /// The correlation along a path in closed form, for the continuous pupil.
@@ -257,11 +255,6 @@ impl PathLaw {
     }
 
     /// The same for a circular pupil in closed form, but for rounding.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a slice of the stack"
-    )]
     fn guess(&self, overlap: f64) -> Option<usize> {
         let slices = match self.path {
             _ if self.pupil != Pupil::Circle => return None,
@@ -274,7 +267,7 @@ impl PathLaw {
                 length,
             } => (2 * half_period) as f64 / length as f64 * disc_overlap_inverse(overlap),
         };
-        Some(slices.ceil() as usize)
+        Some(to_usize(slices.ceil()))
     }
 }
 

@@ -1,3 +1,5 @@
+use tem00_numerics::cast::to_usize;
+
 use crate::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackOptions};
 
 /// What a stack is to be looked up for.
@@ -317,13 +319,9 @@ impl StackNeeds {
 
 /// The smallest multiple of 8 without prime factors above 5 that covers `speckles` speckles: a size
 /// that Fourier transforms like.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the cast saturates, and what is too large is rejected by the pupil field"
-)]
 fn diameter_for(speckles: f64) -> usize {
-    let smallest = (speckles.ceil() as usize).max(SMALLEST_DIAMETER);
+    // What is too large is refused by the pupil field.
+    let smallest = to_usize(speckles.ceil()).max(SMALLEST_DIAMETER);
     let multiples = smallest.div_ceil(8)..=PupilField::MAX_SIZE / 8;
     multiples
         .map(|multiple| 8 * multiple)
@@ -342,13 +340,8 @@ fn is_smooth(mut number: usize) -> bool {
 
 /// The length of a straight path, in pupil diameters, that ends clear of its start after a motion of
 /// `motion` diameters.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the cast saturates"
-)]
 fn length_for(motion: f64) -> usize {
-    ((1.0 + motion).ceil() as usize).clamp(2, LONGEST_PATH)
+    to_usize((1.0 + motion).ceil()).clamp(2, LONGEST_PATH)
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! The mean of a band-limited, periodic function over an interval of any length.
 
+use tem00_numerics::quadrature::gauss_legendre;
+
 /// A place and its share of a mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Node {
@@ -7,14 +9,8 @@ pub(crate) struct Node {
     pub(crate) weight: f64,
 }
 
-/// Gauss and Legendre's five points of [−1, 1], and half of their weights.
-const GAUSS: [[f64; 2]; 5] = [
-    [-0.906_179_845_938_664, 0.118_463_442_528_094_54],
-    [-0.538_469_310_105_683_1, 0.239_314_335_249_683_24],
-    [0.0, 0.284_444_444_444_444_44],
-    [0.538_469_310_105_683_1, 0.239_314_335_249_683_24],
-    [0.906_179_845_938_664, 0.118_463_442_528_094_54],
-];
+/// The rule on [−1, 1], whose weights add up to 2.
+const GAUSS: [(f64, f64); 5] = gauss_legendre();
 
 /// Nodes for the mean over the interval of `size` about `centre` of a function with the period
 /// `period` and without frequencies above 1/`finest`.
@@ -44,9 +40,9 @@ pub(crate) fn mean_nodes(centre: f64, size: f64, period: f64, finest: f64) -> Ve
         let width = rest / count;
         let panel = |i| {
             let middle = middle + (i + 0.5 - 0.5 * count) * width;
-            GAUSS.map(|[x, weight]| Node {
+            GAUSS.map(|(x, weight)| Node {
                 place: middle + 0.5 * width * x,
-                weight: weight * (1.0 - whole) / count,
+                weight: 0.5 * weight * (1.0 - whole) / count,
             })
         };
         nodes.extend(counted(count).flat_map(panel));

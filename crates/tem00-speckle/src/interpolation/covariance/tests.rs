@@ -50,7 +50,7 @@ fn points(field: &PupilField) -> Vec<([i64; 2], Complex<f64>)> {
             let t = mask
                 .weights(y)
                 .map_or(Complex::new(1.0, 0.0), |w| to_c64(w[x]));
-            points.push(([x0 + to_i64(x), y0 + to_i64(y)], t));
+            points.push(([x0 + to_signed(x), y0 + to_signed(y)], t));
         }
     }
     points

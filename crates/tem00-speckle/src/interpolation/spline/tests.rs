@@ -39,7 +39,7 @@ fn points(mask: &Mask) -> Vec<([f64; 2], f64)> {
     (0..mask.extent()[1])
         .flat_map(|y| mask.powers(y).map(move |(x, power)| (x, y, power)))
         .map(|(x, y, power)| {
-            let k = [(x0 + to_i64(x)) as f64, (y0 + to_i64(y)) as f64];
+            let k = [(x0 + to_signed(x)) as f64, (y0 + to_signed(y)) as f64];
             (k, power)
         })
         .collect()

@@ -1,9 +1,9 @@
 use proptest::{prelude::*, test_runner::RngSeed};
-use tem00_numerics::disc_overlap;
+use tem00_numerics::{cast::to_signed, disc_overlap};
 use tem00_statistics::{boiling_contrast, t_test_mean, translation_contrast};
 
 use super::*;
-use crate::{Phasors, pupil::lattice::to_i64};
+use crate::Phasors;
 
 fn exposure(image_drift: [f64; 2], pupil_drift: [f64; 2]) -> Exposure {
     let exposure = Exposure::default().with_image_drift(image_drift).unwrap();
@@ -19,7 +19,7 @@ fn mean(pattern: &SpecklePattern, of: impl Fn(f64) -> f64) -> f64 {
 fn direct_intensity(field: &PupilField, offset: [f64; 2], r: [f64; 2]) -> f64 {
     let (mut sum, mut count) = (Complex::new(0.0, 0.0), 0.0);
     let [c_x, c_y] = field.diameter();
-    let reach = to_i64(field.size()[0]);
+    let reach = to_signed(field.size()[0]);
     for (kx, ky) in (-reach..=reach).flat_map(|kx| (-reach..=reach).map(move |ky| (kx, ky))) {
         let [x, y] = [kx as f64 / c_x - offset[0], ky as f64 / c_y - offset[1]];
         if x.hypot(y) > 0.5 {

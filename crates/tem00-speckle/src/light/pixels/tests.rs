@@ -1,8 +1,9 @@
 use proptest::{prelude::*, test_runner::RngSeed};
+use tem00_numerics::cast::to_signed;
 use tem00_statistics::{pixel_contrast, rectangular_pixel_contrast, t_test_mean};
 
 use super::*;
-use crate::{PupilField, pupil::lattice::to_i64};
+use crate::PupilField;
 
 fn mean(image: &Grid<f32>, of: impl Fn(f64) -> f64) -> f64 {
     let values = image.values();
@@ -13,7 +14,7 @@ fn mean(image: &Grid<f32>, of: impl Fn(f64) -> f64) -> f64 {
 fn direct_intensity(field: &PupilField, r: [f64; 2]) -> f64 {
     let (mut sum, mut count) = (Complex::new(0.0, 0.0), 0.0);
     let [c_x, c_y] = field.diameter();
-    let reach = to_i64(field.size()[0] / 2);
+    let reach = to_signed(field.size()[0] / 2);
     for (kx, ky) in (-reach..=reach).flat_map(|kx| (-reach..=reach).map(move |ky| (kx, ky))) {
         if (kx as f64 / c_x).hypot(ky as f64 / c_y) > 0.5 {
             continue;

@@ -1,5 +1,7 @@
+use tem00_numerics::cast::to_signed;
+
 use super::*;
-use crate::{SpecklePattern, pupil::lattice::to_i64};
+use crate::SpecklePattern;
 
 fn fields(size: usize, diameter: usize, seeds: u64) -> Vec<PupilField> {
     (0..seeds)
@@ -17,7 +19,7 @@ fn autocovariance(pattern: &SpecklePattern, [x, y]: [i64; 2]) -> f64 {
     let ([width, height], values) = (pattern.size(), pattern.values());
     mean((0..width * height).map(|index| {
         let (column, row) = (index % width, index / width);
-        let there = values.wrapped(to_i64(column) + x, to_i64(row) + y);
+        let there = values.wrapped(to_signed(column) + x, to_signed(row) + y);
         (f64::from(values[(column, row)]) - 1.0) * (f64::from(*there) - 1.0)
     }))
 }
@@ -144,7 +146,7 @@ fn displaced_pupils_share_the_phasors_of_their_overlap() {
             let mut sum = Complex::new(0.0, 0.0);
             for y in 0..48 {
                 for x in 0..48 {
-                    let turns = (shift[0] * to_i64(x) + shift[1] * to_i64(y)) as f64 / 48.0;
+                    let turns = (shift[0] * to_signed(x) + shift[1] * to_signed(y)) as f64 / 48.0;
                     let frame = Complex::cis(-2.0 * PI * turns);
                     let (a, b) = (here.values()[(x, y)], there.values()[(x, y)]);
                     let product = a * b.conj();

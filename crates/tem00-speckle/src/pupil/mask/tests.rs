@@ -45,7 +45,7 @@ fn points(mask: &Mask) -> Vec<([i64; 2], Complex<f64>)> {
     let mut points = Vec::new();
     for (j, row) in mask.rows.iter().enumerate() {
         for i in row.columns() {
-            let k = [mask.corner[0] + to_i64(i), mask.corner[1] + to_i64(j)];
+            let k = [mask.corner[0] + to_signed(i), mask.corner[1] + to_signed(j)];
             let weight = mask
                 .weights(j)
                 .map_or(Complex::new(1.0, 0.0), |w| to_c64(w[i]));

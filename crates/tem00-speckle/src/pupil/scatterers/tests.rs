@@ -24,7 +24,7 @@ fn so_many_points_of_the_pupil_shine_and_no_others() {
     for count in [1, 2, 8, 30, 49] {
         let field = field(count, 3);
         let samples = field.samples().unwrap();
-        let origin = [samples.width() / 2, samples.height() / 2].map(to_i64);
+        let origin = [samples.width() / 2, samples.height() / 2].map(to_signed);
         let mut lit = 0;
         for (index, sample) in samples.values().iter().enumerate() {
             if sample.norm_sqr() <= 0.0 {
@@ -33,7 +33,7 @@ fn so_many_points_of_the_pupil_shine_and_no_others() {
             lit += 1;
             assert!((sample.norm() - 1.0).abs() < 1e-6, "{sample}");
             let (x, y) = (index % samples.width(), index / samples.width());
-            let [x, y] = [to_i64(x) - origin[0], to_i64(y) - origin[1]];
+            let [x, y] = [to_signed(x) - origin[0], to_signed(y) - origin[1]];
             // The pupil has a diameter of 8 points.
             assert!(x * x + y * y <= 16, "({x}, {y})");
         }
@@ -106,7 +106,7 @@ fn all_points_of_the_pupil_are_equally_probable() {
     let mut counts = vec![0; points.len()];
     for seed in 0..4900 {
         let samples = scatter(&mask, 1, &mut generator(seed));
-        let [x, y] = [samples.width() / 2, samples.height() / 2].map(to_i64);
+        let [x, y] = [samples.width() / 2, samples.height() / 2].map(to_signed);
         let lit = |&[kx, ky]: &[i64; 2]| samples.wrapped(x + kx, y + ky).norm_sqr() > 0.5;
         counts[points.iter().position(lit).unwrap()] += 1;
     }

@@ -134,7 +134,7 @@ proptest! {
         let brightness = 10.0_f32.powi(exponent);
         // Wide enough for every displacement: 14 + 10 points to either side.
         let samples = Grid::from_fn(51, 60, |i, j| {
-            synthetic.phasor([to_i64(i) - 25, to_i64(j) - 30]) * brightness
+            synthetic.phasor([to_signed(i) - 25, to_signed(j) - 30]) * brightness
         });
         let measured = PupilField::from_samples(samples, [40, 50], 2.5).unwrap();
         let [synthetic, measured] =
@@ -162,7 +162,7 @@ fn covariance(a: &SpecklePattern, b: &SpecklePattern, [x, y]: [i64; 2]) -> f64 {
     let mut sum = 0.0;
     for j in 0..height {
         for i in 0..width {
-            let there = b.values().wrapped(to_i64(i) + x, to_i64(j) + y);
+            let there = b.values().wrapped(to_signed(i) + x, to_signed(j) + y);
             sum += (f64::from(a.values()[(i, j)]) - 1.0) * (f64::from(*there) - 1.0);
         }
     }

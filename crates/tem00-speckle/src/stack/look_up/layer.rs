@@ -2,8 +2,10 @@
 
 use crate::{
     SpeckleStack,
-    interpolation::covariance::even_at,
-    interpolation::taps::{Taps, amplitudes},
+    interpolation::{
+        covariance::even_at,
+        taps::{Taps, amplitudes},
+    },
     pupil::lattice::unit_phasor,
     stack::Slice,
 };

@@ -1,9 +1,10 @@
 use core::f64::consts::TAU;
 
 use num_complex::Complex;
+use tem00_numerics::cast::to_signed;
 
 use super::*;
-use crate::{Interpolation, PupilField, SlicePath, StackOptions, pupil::lattice::to_i64};
+use crate::{Interpolation, PupilField, SlicePath, StackOptions};
 
 /// The place of a coordinate: cell, fraction, and taps with their weights.
 struct Place {
@@ -111,7 +112,7 @@ fn look_ups_follow_from_coefficients_and_closed_forms_alone() {
                 let (x, y) = (1.0 + (7.37 * t) % 44.0, 1.0 + (11.71 * t) % 44.0);
                 let f = (0.37 * t) % 1.0;
                 let index = usize::try_from(step).unwrap() % stack.slice_count();
-                let u = f + to_i64(index) as f64;
+                let u = f + to_signed(index) as f64;
                 let expected = stack.intensity_at(x, y, u);
                 let got = documented(&stack, [x, y], (index, f));
                 // Sums of 16 taps in f32: 1e-6 of the brightest samples, whose intensity is ~10.

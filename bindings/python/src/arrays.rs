@@ -15,7 +15,7 @@ use pyo3::{exceptions::PyRuntimeError, prelude::*};
 pub(crate) use columns::{Column, evaluate};
 pub(crate) use images::{ComplexImage, Image, image_array};
 pub(crate) use numbers::{Count, Numbers, length};
-pub(crate) use results::{array, vector_array, zeros};
+pub(crate) use results::{Matrix3, Values, Vector, array, vector_array, zeros};
 
 use crate::error::refused;
 use blocks::Blocks;

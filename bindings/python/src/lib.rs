@@ -1,7 +1,10 @@
 //! Python bindings of tem00, the extension module `tem00._tem00`.
 //!
 //! One file for each physics crate; `arrays` takes NumPy arrays in and gives them out, `error`
-//! makes Python exceptions of the errors.
+//! makes Python exceptions of the errors; `methods` declares what only hands on.
+
+#[macro_use]
+mod methods;
 
 mod arrays;
 mod beam;

@@ -1,5 +1,9 @@
-use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods};
+use core::convert::Infallible;
+
+use numpy::{Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods};
 use pyo3::{exceptions::PyMemoryError, prelude::*, types::PyFloat};
+use tem00_beam::{DVec2, DVec3};
+use tem00_decorrelation::DMat3;
 use tem00_numerics::available_memory;
 
 /// Arrays below this many bytes are made without asking how much memory is left.
@@ -86,6 +90,62 @@ pub(crate) fn array<'py, T: Element>(
     values: Vec<T>,
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     PyArray1::from_vec(py, values).reshape(shape.to_vec())
+}
+
+/// A float where all arguments are numbers, else an array of their common shape.
+pub(crate) type Values<'py> = Bound<'py, PyAny>;
+
+/// A vector, in Python an array of shape (K,).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vector<const K: usize>([f64; K]);
+
+impl<const K: usize> From<[f64; K]> for Vector<K> {
+    fn from(components: [f64; K]) -> Self {
+        Self(components)
+    }
+}
+
+impl From<DVec2> for Vector<2> {
+    fn from(vector: DVec2) -> Self {
+        Self(vector.to_array())
+    }
+}
+
+impl From<DVec3> for Vector<3> {
+    fn from(vector: DVec3) -> Self {
+        Self(vector.to_array())
+    }
+}
+
+impl<'py, const K: usize> IntoPyObject<'py> for Vector<K> {
+    type Target = PyArray1<f64>;
+    type Output = Bound<'py, PyArray1<f64>>;
+    type Error = Infallible;
+
+    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Infallible> {
+        Ok(vector_array(py, self.0))
+    }
+}
+
+/// A square matrix, in Python an array of shape (3, 3).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Matrix3(DMat3);
+
+impl From<DMat3> for Matrix3 {
+    fn from(matrix: DMat3) -> Self {
+        Self(matrix)
+    }
+}
+
+impl<'py> IntoPyObject<'py> for Matrix3 {
+    type Target = PyArray2<f64>;
+    type Output = Bound<'py, PyArray2<f64>>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
+        // Columns of the transpose are rows of NumPy.
+        vector_array(py, self.0.transpose().to_cols_array()).reshape([3, 3])
+    }
 }
 
 /// Returns a vector as an array of the shape (K,).

@@ -5,9 +5,12 @@ use super::{
     frame::{CameraFrame, LineOfSight},
     illumination::Illumination,
     rigid::RigidMotions,
-    vectors::{Array2, Array3, array2, array3, shown, vec2, vec3},
+    vectors::{Array2, array2, shown, vec2, vec3},
 };
-use crate::{arrays::Numbers, error::OrRaise};
+use crate::{
+    arrays::{Numbers, Vector},
+    error::OrRaise,
+};
 
 /// A point of a rough surface, its light and its camera, all in the world: one state of a scene.
 ///
@@ -73,42 +76,6 @@ impl Configuration {
         Ok(Self(self.0.with_wavelength(wavelength).or_raise()?))
     }
 
-    /// Vacuum wavelength in metres.
-    #[getter]
-    fn wavelength(&self) -> f64 {
-        self.0.wavelength()
-    }
-
-    /// Position of the surface point in metres, of shape (3,).
-    #[getter]
-    fn point<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.point())
-    }
-
-    /// Unit normal of the surface, of shape (3,).
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.normal())
-    }
-
-    /// Unit vector from the surface point to the light source, of shape (3,).
-    #[getter]
-    fn direction_to_source<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.direction_to_source())
-    }
-
-    /// Line of sight to the point.
-    #[getter]
-    fn sight(&self) -> LineOfSight {
-        LineOfSight(*self.0.sight())
-    }
-
-    /// Position of the centre of the entrance pupil in metres, of shape (3,).
-    #[getter]
-    fn pupil<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.pupil())
-    }
-
     /// Return where the speckle field after a change is what it was at a point of the pupil before.
     ///
     /// Parameters
@@ -152,4 +119,26 @@ impl Configuration {
             self.0.wavelength()
         )
     }
+}
+
+methods! {
+    impl Configuration as this: this.0;
+
+    /// Vacuum wavelength in metres.
+    get wavelength -> f64;
+
+    /// Position of the surface point in metres, of shape (3,).
+    get point -> Vector<3>;
+
+    /// Unit normal of the surface, of shape (3,).
+    get normal -> Vector<3>;
+
+    /// Unit vector from the surface point to the light source, of shape (3,).
+    get direction_to_source -> Vector<3>;
+
+    /// Line of sight to the point.
+    get sight -> LineOfSight = LineOfSight(*this.0.sight());
+
+    /// Position of the centre of the entrance pupil in metres, of shape (3,).
+    get pupil -> Vector<3>;
 }

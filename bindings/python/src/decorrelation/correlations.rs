@@ -1,8 +1,8 @@
-use pyo3::{prelude::*, types::PyAny};
+use pyo3::prelude::*;
 use tem00_decorrelation as physics;
 
 use crate::{
-    arrays::{Count, Numbers, map},
+    arrays::{Count, Numbers, Values, map},
     error::refused,
     pickling::{Recipe, by_constructor},
 };
@@ -42,24 +42,6 @@ impl CorrelationLaw {
         Self(physics::CorrelationLaw::AtPeak)
     }
 
-    /// Return the intensity correlation left, in [0, 1].
-    ///
-    /// Parameters
-    /// ----------
-    /// pupil_shift : float or array
-    ///     Displacement across the pupil in pupil diameters.
-    /// axial_shift : float or array
-    ///     Displacement along the axis in axial decorrelation lengths.
-    fn correlation<'py>(
-        &self,
-        py: Python<'py>,
-        pupil_shift: Numbers<'py>,
-        axial_shift: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let named = [("pupil_shift", &pupil_shift), ("axial_shift", &axial_shift)];
-        map(py, named, |[s, x]| self.0.correlation(s, x))
-    }
-
     fn __repr__(&self) -> String {
         format!("CorrelationLaw.{}()", self.name())
     }
@@ -69,52 +51,46 @@ impl CorrelationLaw {
     }
 }
 
-/// Return the intensity correlation left when the speckle slides across a circular pupil.
-///
-/// Parameters
-/// ----------
-/// shift : float or array
-///     Pupil displacement in pupil diameters.
-#[pyfunction]
-pub(super) fn pupil_overlap_correlation<'py>(
-    py: Python<'py>,
-    shift: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    map(py, [("shift", &shift)], |[s]| {
-        physics::pupil_overlap_correlation(s)
-    })
+methods! {
+    impl CorrelationLaw as this: this.0;
+
+    /// Return the intensity correlation left, in [0, 1].
+    ///
+    /// Parameters
+    /// ----------
+    /// pupil_shift : float or array
+    ///     Displacement across the pupil in pupil diameters.
+    /// axial_shift : float or array
+    ///     Displacement along the axis in axial decorrelation lengths.
+    map correlation(pupil_shift, axial_shift);
 }
 
-/// Return the intensity correlation left when the surface moves along the optical axis.
-///
-/// Parameters
-/// ----------
-/// shift : float or array
-///     Axial displacement in axial decorrelation lengths.
-#[pyfunction]
-pub(super) fn axial_correlation<'py>(
-    py: Python<'py>,
-    shift: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    map(py, [("shift", &shift)], |[x]| physics::axial_correlation(x))
-}
+functions! {
+    /// Return the intensity correlation left when the speckle slides across a circular pupil.
+    ///
+    /// Parameters
+    /// ----------
+    /// shift : float or array
+    ///     Pupil displacement in pupil diameters.
+    map pupil_overlap_correlation(shift);
 
-/// Return the product of the laws for a pupil and an axial displacement.
-///
-/// Parameters
-/// ----------
-/// pupil_shift : float or array
-///     Displacement across the pupil in pupil diameters.
-/// axial_shift : float or array
-///     Displacement along the axis in axial decorrelation lengths.
-#[pyfunction]
-pub(super) fn correlation<'py>(
-    py: Python<'py>,
-    pupil_shift: Numbers<'py>,
-    axial_shift: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let named = [("pupil_shift", &pupil_shift), ("axial_shift", &axial_shift)];
-    map(py, named, |[s, x]| physics::correlation(s, x))
+    /// Return the intensity correlation left when the surface moves along the optical axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// shift : float or array
+    ///     Axial displacement in axial decorrelation lengths.
+    map axial_correlation(shift);
+
+    /// Return the product of the laws for a pupil and an axial displacement.
+    ///
+    /// Parameters
+    /// ----------
+    /// pupil_shift : float or array
+    ///     Displacement across the pupil in pupil diameters.
+    /// axial_shift : float or array
+    ///     Displacement along the axis in axial decorrelation lengths.
+    map correlation(pupil_shift, axial_shift);
 }
 
 /// Return the coordinate of a circular stack at which a look-up has a correlation to that at 0.
@@ -135,33 +111,19 @@ pub(super) fn slice_coordinate<'py>(
     py: Python<'py>,
     correlation: Numbers<'py>,
     half_period: Count,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Values<'py>> {
     let half_period = half_period.within("half_period", [1, usize::MAX])?;
     map(py, [("correlation", &correlation)], |[left]| {
         physics::slice_coordinate(left, half_period)
     })
 }
 
-/// Return the pupil displacement, in pupil diameters, that alone would leave a correlation.
-#[pyfunction]
-pub(super) fn equivalent_pupil_shift<'py>(
-    py: Python<'py>,
-    correlation: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    map(py, [("correlation", &correlation)], |[left]| {
-        physics::equivalent_pupil_shift(left)
-    })
-}
+functions! {
+    /// Return the pupil displacement, in pupil diameters, that alone would leave a correlation.
+    map equivalent_pupil_shift(correlation);
 
-/// Return the axial displacement, in axial decorrelation lengths, that alone leaves a correlation.
-#[pyfunction]
-pub(super) fn equivalent_axial_shift<'py>(
-    py: Python<'py>,
-    correlation: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    map(py, [("correlation", &correlation)], |[left]| {
-        physics::equivalent_axial_shift(left)
-    })
+    /// Return the axial displacement, in axial decorrelation lengths, that alone leaves a correlation.
+    map equivalent_axial_shift(correlation);
 }
 
 /// Return the multiple of a motion at which the product law first leaves a correlation.

@@ -61,40 +61,10 @@ impl FieldSetup {
         Ok(Self { setup, geometry })
     }
 
-    /// The lens, its pupil and the sensor.
-    #[getter]
-    fn geometry(&self) -> ImagingGeometry {
-        self.geometry
-    }
-
-    /// The axes of the camera.
-    #[getter]
-    fn camera(&self) -> CameraFrame {
-        CameraFrame(self.setup.camera)
-    }
-
     /// Centre of the pupil in metres, of shape (3,).
     #[getter]
     fn pupil_centre<'py>(&self, py: Python<'py>) -> Array3<'py> {
         array3(py, self.setup.pupil_centre)
-    }
-
-    /// Which way up image displacements are counted.
-    #[getter]
-    fn orientation(&self) -> &'static str {
-        orientation_name(self.setup.orientation)
-    }
-
-    /// Speckle size of the pattern in samples.
-    #[getter]
-    fn pattern_speckle_size(&self) -> f64 {
-        self.setup.pattern_speckle_size
-    }
-
-    /// Number of slices of the stack to the first uncorrelated one.
-    #[getter]
-    fn half_period(&self) -> usize {
-        self.setup.half_period
     }
 
     fn __repr__(&self) -> String {
@@ -108,6 +78,25 @@ impl FieldSetup {
             self.setup.half_period
         )
     }
+}
+
+methods! {
+    impl FieldSetup as this: this.geometry;
+
+    /// The lens, its pupil and the sensor.
+    get geometry -> ImagingGeometry = this.geometry;
+
+    /// The axes of the camera.
+    get camera -> CameraFrame = CameraFrame(this.setup.camera);
+
+    /// Which way up image displacements are counted.
+    get orientation -> &'static str = orientation_name(this.setup.orientation);
+
+    /// Speckle size of the pattern in samples.
+    get pattern_speckle_size -> f64 = this.setup.pattern_speckle_size;
+
+    /// Number of slices of the stack to the first uncorrelated one.
+    get half_period -> usize = this.setup.half_period;
 }
 
 /// The light on the points of a field, by the curvature of its wavefront there.
@@ -244,12 +233,6 @@ impl MotionField {
         }
     }
 
-    /// What all points share.
-    #[getter]
-    fn setup(&self) -> FieldSetup {
-        self.setup
-    }
-
     /// Work out displacements, correlation and coordinates at many points.
     ///
     /// All arguments broadcast together. Arrays in float64 that lie row by row are not copied.
@@ -298,6 +281,13 @@ impl MotionField {
     fn __repr__(&self) -> String {
         format!("MotionField({})", self.setup.__repr__())
     }
+}
+
+methods! {
+    impl MotionField as this: this.setup;
+
+    /// What all points share.
+    get setup -> FieldSetup = this.setup;
 }
 
 /// The arrays of the results.

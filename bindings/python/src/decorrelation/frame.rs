@@ -1,9 +1,9 @@
 use pyo3::prelude::*;
 use tem00_decorrelation::{self as physics, DMat3};
 
-use super::vectors::{Array2, Array3, array2, array3, mat3, shown, shown33, vec3};
+use super::vectors::{Array2, array2, mat3, shown, shown33, vec3};
 use crate::{
-    arrays::Numbers,
+    arrays::{Numbers, Vector},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -44,24 +44,6 @@ impl CameraFrame {
         Ok(Self(frame.or_raise()?))
     }
 
-    /// b1, the axis of the pupil plane to the right in the image, of shape (3,).
-    #[getter]
-    fn right<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.right())
-    }
-
-    /// b2, the axis of the pupil plane upwards in the image, of shape (3,).
-    #[getter]
-    fn up<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.up())
-    }
-
-    /// b3, the optical axis from the scene towards the camera, of shape (3,).
-    #[getter]
-    fn towards_camera<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.towards_camera())
-    }
-
     pub(super) fn __repr__(&self) -> String {
         format!("CameraFrame.from_axes({})", shown33(self.axes()))
     }
@@ -70,6 +52,19 @@ impl CameraFrame {
         let rows = self.axes().transpose().to_cols_array_2d();
         by_constructor::<Self>(py, "from_axes", (rows.map(Vec::from).to_vec(),))
     }
+}
+
+methods! {
+    impl CameraFrame as this: this.0;
+
+    /// b1, the axis of the pupil plane to the right in the image, of shape (3,).
+    get right -> Vector<3>;
+
+    /// b2, the axis of the pupil plane upwards in the image, of shape (3,).
+    get up -> Vector<3>;
+
+    /// b3, the optical axis from the scene towards the camera, of shape (3,).
+    get towards_camera -> Vector<3>;
 }
 
 /// The line from a surface point to the centre of the pupil, in the frame of the camera.
@@ -90,30 +85,6 @@ impl LineOfSight {
     fn new(camera: PyRef<'_, CameraFrame>, to_pupil: Numbers<'_>) -> PyResult<Self> {
         let sight = physics::LineOfSight::new(&camera.0, vec3("to_pupil", &to_pupil)?);
         Ok(Self(sight.or_raise()?))
-    }
-
-    /// Frame of the camera.
-    #[getter]
-    fn camera(&self) -> CameraFrame {
-        CameraFrame(*self.0.camera())
-    }
-
-    /// Unit vector from the surface point to the centre of the pupil, of shape (3,).
-    #[getter]
-    fn direction<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.direction())
-    }
-
-    /// Distance from the surface point to the centre of the pupil, in metres.
-    #[getter]
-    fn distance(&self) -> f64 {
-        self.0.distance()
-    }
-
-    /// Depth of the surface point before the pupil plane, in metres.
-    #[getter]
-    fn depth(&self) -> f64 {
-        self.0.depth()
     }
 
     /// Return the components along b1 and b2 of a vector projected along the line of sight.
@@ -139,4 +110,20 @@ impl LineOfSight {
             self.0.distance()
         )
     }
+}
+
+methods! {
+    impl LineOfSight as this: this.0;
+
+    /// Frame of the camera.
+    get camera -> CameraFrame = CameraFrame(*this.0.camera());
+
+    /// Unit vector from the surface point to the centre of the pupil, of shape (3,).
+    get direction -> Vector<3>;
+
+    /// Distance from the surface point to the centre of the pupil, in metres.
+    get distance -> f64;
+
+    /// Depth of the surface point before the pupil plane, in metres.
+    get depth -> f64;
 }

@@ -84,137 +84,6 @@ impl ImagingGeometry {
         Ok(Self { geometry, made })
     }
 
-    /// Vacuum wavelength in metres.
-    #[getter]
-    fn wavelength(&self) -> f64 {
-        self.geometry.wavelength()
-    }
-
-    /// Focal length in metres.
-    #[getter]
-    fn focal_length(&self) -> f64 {
-        self.geometry.focal_length()
-    }
-
-    /// F-number, that of focus at infinity.
-    #[getter]
-    fn f_number(&self) -> f64 {
-        self.geometry.f_number()
-    }
-
-    /// F-number of the light on the sensor.
-    #[getter]
-    fn working_f_number(&self) -> f64 {
-        self.geometry.working_f_number()
-    }
-
-    /// Distance from the surface in focus to the entrance pupil, in metres.
-    #[getter]
-    fn surface_to_pupil(&self) -> f64 {
-        self.geometry.surface_to_pupil()
-    }
-
-    /// Pixel pitch of the sensor in metres.
-    #[getter]
-    fn pixel_pitch(&self) -> f64 {
-        self.geometry.pixel_pitch()
-    }
-
-    /// Principal distance in metres, which takes the tangent of a viewing angle to the sensor.
-    #[getter]
-    fn principal_distance(&self) -> f64 {
-        self.geometry.principal_distance()
-    }
-
-    /// Distance from the exit pupil to the sensor, in metres.
-    #[getter]
-    fn pupil_to_image(&self) -> f64 {
-        self.geometry.pupil_to_image()
-    }
-
-    /// Magnification at the surface in focus, without a sign.
-    #[getter]
-    fn magnification(&self) -> f64 {
-        self.geometry.magnification()
-    }
-
-    /// Pupil magnification, 1 for a thin lens.
-    #[getter]
-    fn pupil_magnification(&self) -> f64 {
-        self.geometry.pupil_magnification()
-    }
-
-    /// Diameter of the entrance pupil in metres.
-    #[getter]
-    fn pupil_diameter(&self) -> f64 {
-        self.geometry.pupil_diameter()
-    }
-
-    /// Diameter of the exit pupil in metres.
-    #[getter]
-    fn exit_pupil_diameter(&self) -> f64 {
-        self.geometry.exit_pupil_diameter()
-    }
-
-    /// Speckle size on the sensor in metres.
-    #[getter]
-    fn speckle_size(&self) -> f64 {
-        self.geometry.speckle_size()
-    }
-
-    /// Speckle size on the sensor in pixels.
-    #[getter]
-    fn speckle_size_in_pixels(&self) -> f64 {
-        self.geometry.speckle_size_in_pixels()
-    }
-
-    /// Speckle size projected onto the surface in focus, in metres.
-    #[getter]
-    fn object_speckle_size(&self) -> f64 {
-        self.geometry.object_speckle_size()
-    }
-
-    /// Displacement along the axis that first decorrelates the speckle of the surface, in metres.
-    #[getter]
-    fn axial_decorrelation_length(&self) -> f64 {
-        self.geometry.axial_decorrelation_length()
-    }
-
-    /// Depth of focus of the speckle at the surface, in metres.
-    #[getter]
-    fn depth_of_focus(&self) -> f64 {
-        self.geometry.depth_of_focus()
-    }
-
-    /// Depth of focus of the speckle at the sensor, in metres.
-    #[getter]
-    fn sensor_depth_of_focus(&self) -> f64 {
-        self.geometry.sensor_depth_of_focus()
-    }
-
-    /// Return the axial decorrelation length of points at positive depths before the pupil, in metres.
-    fn axial_decorrelation_length_at<'py>(
-        &self,
-        py: Python<'py>,
-        depth: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        depth.positive("depth")?;
-        map(py, [("depth", &depth)], |[z]| {
-            self.geometry.axial_decorrelation_length_at(z)
-        })
-    }
-
-    /// Return the defocus 1/Z − 1/L of points at depths Z before the pupil, in 1/m.
-    ///
-    /// Parameters
-    /// ----------
-    /// depth : float or array
-    ///     Depth in metres, positive.
-    fn defocus_at<'py>(&self, py: Python<'py>, depth: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        depth.positive("depth")?;
-        map(py, [("depth", &depth)], |[z]| self.geometry.defocus_at(z))
-    }
-
     /// Return the coordinate in a speckle pattern that belongs to a place in the image.
     ///
     /// Parameters
@@ -265,6 +134,75 @@ impl ImagingGeometry {
             }
         }
     }
+}
+
+methods! {
+    impl ImagingGeometry as this: this.geometry;
+
+    /// Vacuum wavelength in metres.
+    get wavelength -> f64;
+
+    /// Focal length in metres.
+    get focal_length -> f64;
+
+    /// F-number, that of focus at infinity.
+    get f_number -> f64;
+
+    /// F-number of the light on the sensor.
+    get working_f_number -> f64;
+
+    /// Distance from the surface in focus to the entrance pupil, in metres.
+    get surface_to_pupil -> f64;
+
+    /// Pixel pitch of the sensor in metres.
+    get pixel_pitch -> f64;
+
+    /// Principal distance in metres, which takes the tangent of a viewing angle to the sensor.
+    get principal_distance -> f64;
+
+    /// Distance from the exit pupil to the sensor, in metres.
+    get pupil_to_image -> f64;
+
+    /// Magnification at the surface in focus, without a sign.
+    get magnification -> f64;
+
+    /// Pupil magnification, 1 for a thin lens.
+    get pupil_magnification -> f64;
+
+    /// Diameter of the entrance pupil in metres.
+    get pupil_diameter -> f64;
+
+    /// Diameter of the exit pupil in metres.
+    get exit_pupil_diameter -> f64;
+
+    /// Speckle size on the sensor in metres.
+    get speckle_size -> f64;
+
+    /// Speckle size on the sensor in pixels.
+    get speckle_size_in_pixels -> f64;
+
+    /// Speckle size projected onto the surface in focus, in metres.
+    get object_speckle_size -> f64;
+
+    /// Displacement along the axis that first decorrelates the speckle of the surface, in metres.
+    get axial_decorrelation_length -> f64;
+
+    /// Depth of focus of the speckle at the surface, in metres.
+    get depth_of_focus -> f64;
+
+    /// Depth of focus of the speckle at the sensor, in metres.
+    get sensor_depth_of_focus -> f64;
+
+    /// Return the axial decorrelation length of points at positive depths before the pupil, in metres.
+    map axial_decorrelation_length_at(depth: positive);
+
+    /// Return the defocus 1/Z − 1/L of points at depths Z before the pupil, in 1/m.
+    ///
+    /// Parameters
+    /// ----------
+    /// depth : float or array
+    ///     Depth in metres, positive.
+    map defocus_at(depth: positive);
 }
 
 /// The two pairs of a pattern coordinate by their names.

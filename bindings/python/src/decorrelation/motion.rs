@@ -4,10 +4,13 @@ use tem00_decorrelation::{self as physics, DVec3};
 use super::{
     frame::LineOfSight,
     geometry::ImagingGeometry,
-    vectors::{Array2, Array3, array2, array3, orientation_of, shown, vec3},
+    vectors::{Array2, array2, orientation_of, shown, vec3},
     wavefront::Wavefront,
 };
-use crate::{arrays::Numbers, error::OrRaise};
+use crate::{
+    arrays::{Numbers, Vector},
+    error::OrRaise,
+};
 
 /// Small translations since the reference state, in world coordinates and metres.
 ///
@@ -38,36 +41,6 @@ impl Motion {
         }))
     }
 
-    /// Translation of the surface in metres, of shape (3,).
-    #[getter]
-    fn surface<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.surface)
-    }
-
-    /// Translation of the camera in metres, of shape (3,).
-    #[getter]
-    fn camera<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.camera)
-    }
-
-    /// Translation of the light source and its wavefront in metres, of shape (3,).
-    #[getter]
-    fn source<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.source)
-    }
-
-    /// How far the camera sees the surface move, in metres, of shape (3,).
-    #[getter]
-    fn surface_seen_by_camera<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.surface_seen_by_camera())
-    }
-
-    /// How far the surface moves through the illumination, in metres, of shape (3,).
-    #[getter]
-    fn surface_within_illumination<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.surface_within_illumination())
-    }
-
     fn __repr__(&self) -> String {
         let [surface, camera, source] = [self.0.surface, self.0.camera, self.0.source].map(shown);
         format!("Motion(surface={surface}, camera={camera}, source={source})")
@@ -80,6 +53,25 @@ impl Motion {
         named.set_item("source", self.0.source.to_array())?;
         Ok(((), named))
     }
+}
+
+methods! {
+    impl Motion as this: this.0;
+
+    /// Translation of the surface in metres, of shape (3,).
+    field surface -> Vector<3>;
+
+    /// Translation of the camera in metres, of shape (3,).
+    field camera -> Vector<3>;
+
+    /// Translation of the light source and its wavefront in metres, of shape (3,).
+    field source -> Vector<3>;
+
+    /// How far the camera sees the surface move, in metres, of shape (3,).
+    get surface_seen_by_camera -> Vector<3>;
+
+    /// How far the surface moves through the illumination, in metres, of shape (3,).
+    get surface_within_illumination -> Vector<3>;
 }
 
 /// A point of a rough surface, as the camera sees it and as the laser lights it.
@@ -107,24 +99,6 @@ impl SurfacePoint {
         let normal = vec3("normal", &normal)?;
         let point = physics::SurfacePoint::new(sight.0, normal, wavefront.0);
         Ok(Self(point.or_raise()?))
-    }
-
-    /// Line of sight to the point.
-    #[getter]
-    fn sight(&self) -> LineOfSight {
-        LineOfSight(*self.0.sight())
-    }
-
-    /// Unit normal of the surface, of shape (3,).
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.normal())
-    }
-
-    /// The light on the point.
-    #[getter]
-    fn wavefront(&self) -> Wavefront {
-        Wavefront(*self.0.wavefront())
     }
 
     /// Return how far the speckle moves in the image, in metres on the sensor.
@@ -173,4 +147,17 @@ impl SurfacePoint {
             .map(|displacement| array2(py, "motion", displacement))
             .transpose()
     }
+}
+
+methods! {
+    impl SurfacePoint as this: this.0;
+
+    /// Line of sight to the point.
+    get sight -> LineOfSight = LineOfSight(*this.0.sight());
+
+    /// Unit normal of the surface, of shape (3,).
+    get normal -> Vector<3>;
+
+    /// The light on the point.
+    get wavefront -> Wavefront = Wavefront(*this.0.wavefront());
 }

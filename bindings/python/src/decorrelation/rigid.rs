@@ -1,10 +1,9 @@
-use numpy::PyArray2;
 use pyo3::prelude::*;
 use tem00_decorrelation as physics;
 
-use super::vectors::{Array3, array3, array33, mat3, shown, shown33, vec3};
+use super::vectors::{Array3, array3, mat3, shown, shown33, vec3};
 use crate::{
-    arrays::Numbers,
+    arrays::{Matrix3, Numbers, Vector},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -71,18 +70,6 @@ impl RigidMotion {
         Self(self.0.inverse())
     }
 
-    /// Rotation matrix of shape (3, 3).
-    #[getter]
-    fn rotation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array33(py, self.0.rotation())
-    }
-
-    /// Translation in metres, of shape (3,).
-    #[getter]
-    fn translation<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.translation())
-    }
-
     /// Return where the motion takes a point of shape (3,), in metres.
     fn point<'py>(&self, py: Python<'py>, point: Numbers<'py>) -> PyResult<Array3<'py>> {
         let moved = self.0.point(vec3("point", &point)?);
@@ -109,6 +96,16 @@ impl RigidMotion {
         let translation = Vec::from(self.0.translation().to_array());
         by_constructor::<Self>(py, "__call__", (rows, translation))
     }
+}
+
+methods! {
+    impl RigidMotion as this: this.0;
+
+    /// Rotation matrix of shape (3, 3).
+    get rotation -> Matrix3;
+
+    /// Translation in metres, of shape (3,).
+    get translation -> Vector<3>;
 }
 
 /// Returns a motion whose translation has not overflowed.
@@ -149,27 +146,22 @@ impl RigidMotions {
         })
     }
 
-    /// Motion of the surface.
-    #[getter]
-    fn surface(&self) -> RigidMotion {
-        RigidMotion(self.0.surface)
-    }
-
-    /// Motion of the camera.
-    #[getter]
-    fn camera(&self) -> RigidMotion {
-        RigidMotion(self.0.camera)
-    }
-
-    /// Motion of the light source and its wave.
-    #[getter]
-    fn source(&self) -> RigidMotion {
-        RigidMotion(self.0.source)
-    }
-
     fn __repr__(&self) -> String {
         let [surface, camera, source] =
             [self.0.surface, self.0.camera, self.0.source].map(|m| RigidMotion(m).__repr__());
         format!("RigidMotions(surface={surface}, camera={camera}, source={source})")
     }
+}
+
+methods! {
+    impl RigidMotions as this: this.0;
+
+    /// Motion of the surface.
+    get surface -> RigidMotion = RigidMotion(this.0.surface);
+
+    /// Motion of the camera.
+    get camera -> RigidMotion = RigidMotion(this.0.camera);
+
+    /// Motion of the light source and its wave.
+    get source -> RigidMotion = RigidMotion(this.0.source);
 }

@@ -92,21 +92,6 @@ impl SpeckleMotion {
             .transpose()
     }
 
-    /// Motion of the surface towards the camera along the optical axis, in metres.
-    #[getter]
-    fn axial_displacement(&self) -> f64 {
-        self.0.axial_displacement
-    }
-
-    /// What is left of the old pattern as a correlation of intensity, in [0, 1].
-    ///
-    /// It is that of the pattern looked up at the `speckle_displacement`: by the law
-    /// `CorrelationLaw.at_image_displacement()` in `new`, `CorrelationLaw.at_peak()` in `between`.
-    #[getter]
-    fn correlation(&self) -> f64 {
-        self.0.correlation
-    }
-
     fn __repr__(&self) -> String {
         let displacement = self.0.speckle_displacement().to_array();
         let correlation = self.0.correlation;
@@ -114,6 +99,19 @@ impl SpeckleMotion {
             "<SpeckleMotion: speckle_displacement={displacement:?}, correlation={correlation:?}>"
         )
     }
+}
+
+methods! {
+    impl SpeckleMotion as this: this.0;
+
+    /// Motion of the surface towards the camera along the optical axis, in metres.
+    field axial_displacement -> f64;
+
+    /// What is left of the old pattern as a correlation of intensity, in [0, 1].
+    ///
+    /// It is that of the pattern looked up at the `speckle_displacement`: by the law
+    /// `CorrelationLaw.at_image_displacement()` in `new`, `CorrelationLaw.at_peak()` in `between`.
+    field correlation -> f64;
 }
 
 /// Refuses what moved so far that the result is no number.

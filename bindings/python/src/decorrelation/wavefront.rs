@@ -1,10 +1,9 @@
-use numpy::PyArray2;
 use pyo3::prelude::*;
 use tem00_decorrelation as physics;
 
-use super::vectors::{Array3, array3, array33, mat3, shown, shown33, vec3};
+use super::vectors::{Array3, array3, mat3, shown, shown33, vec3};
 use crate::{
-    arrays::Numbers,
+    arrays::{Matrix3, Numbers, Vector},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -101,18 +100,6 @@ impl Wavefront {
         Ok(direction.map(|direction| array3(py, direction)))
     }
 
-    /// Unit vector from the surface to the source, of shape (3,).
-    #[getter]
-    fn direction_to_source<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.0.direction_to_source())
-    }
-
-    /// Symmetric curvature tensor in 1/m, of shape (3, 3).
-    #[getter]
-    fn curvature<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array33(py, self.0.curvature())
-    }
-
     fn __repr__(&self) -> String {
         let direction = shown(self.0.direction_to_source());
         format!(
@@ -127,6 +114,16 @@ impl Wavefront {
         let rows = rows.map(Vec::from).to_vec();
         by_constructor::<Self>(py, "from_tensor", (direction, rows))
     }
+}
+
+methods! {
+    impl Wavefront as this: this.0;
+
+    /// Unit vector from the surface to the source, of shape (3,).
+    get direction_to_source -> Vector<3>;
+
+    /// Symmetric curvature tensor in 1/m, of shape (3, 3).
+    get curvature -> Matrix3;
 }
 
 fn check_finite(name: &'static str, value: f64) -> PyResult<()> {

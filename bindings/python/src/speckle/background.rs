@@ -36,24 +36,6 @@ impl CoherentBackground {
         Ok(Self(background.or_raise()?))
     }
 
-    /// Intensity of the background over the mean of the speckle.
-    #[getter]
-    const fn beam_ratio(&self) -> f64 {
-        self.0.beam_ratio()
-    }
-
-    /// Phase in radians.
-    #[getter]
-    const fn phase(&self) -> f64 {
-        self.0.phase()
-    }
-
-    /// Contrast on fully developed speckle.
-    #[getter]
-    fn contrast(&self) -> f64 {
-        self.0.contrast()
-    }
-
     /// Return the intensity, with expected mean 1, where the speckle has an amplitude.
     ///
     /// Parameters
@@ -105,6 +87,19 @@ impl CoherentBackground {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         by_constructor::<Self>(py, "__call__", (self.0.beam_ratio(), self.0.phase()))
     }
+}
+
+methods! {
+    impl CoherentBackground as this: this.0;
+
+    /// Intensity of the background over the mean of the speckle.
+    get beam_ratio -> f64;
+
+    /// Phase in radians.
+    get phase -> f64;
+
+    /// Contrast on fully developed speckle.
+    get contrast -> f64;
 }
 
 #[expect(

@@ -53,24 +53,6 @@ impl Exposure {
         Ok(Self(self.0.with_pupil_drift(drift).or_raise()?))
     }
 
-    /// Drift of the pattern over the sensor, along x and y in speckle sizes.
-    #[getter]
-    fn image_drift(&self) -> (f64, f64) {
-        self.0.image_drift().into()
-    }
-
-    /// Drift of the light over the pupil, along x and y in pupil diameters.
-    #[getter]
-    fn pupil_drift(&self) -> (f64, f64) {
-        self.0.pupil_drift().into()
-    }
-
-    /// Number of patterns whose mean the exposure is, 1 without pupil drift.
-    #[getter]
-    fn moments(&self) -> usize {
-        self.0.moments()
-    }
-
     /// Return the exposure of the undisplaced pupil in focus.
     ///
     /// Parameters
@@ -125,4 +107,17 @@ impl Exposure {
             .with_image_drift(image_drift)?
             .with_pupil_drift(pupil_drift)
     }
+}
+
+methods! {
+    impl Exposure as this: this.0;
+
+    /// Drift of the pattern over the sensor, along x and y in speckle sizes.
+    get image_drift -> (f64, f64);
+
+    /// Drift of the light over the pupil, along x and y in pupil diameters.
+    get pupil_drift -> (f64, f64);
+
+    /// Number of patterns whose mean the exposure is, 1 without pupil drift.
+    get moments -> usize;
 }

@@ -161,36 +161,6 @@ impl PupilField {
         Ok(Self(self.0.clone().with_seed(seed.unsigned("seed")?)))
     }
 
-    /// Width and height of the pattern in samples.
-    #[getter]
-    fn size(&self) -> (usize, usize) {
-        self.0.size().into()
-    }
-
-    /// Nominal pupil diameter along x and y in lattice points.
-    #[getter]
-    fn diameter(&self) -> (f64, f64) {
-        self.0.diameter().into()
-    }
-
-    /// Speckle size Q / C in samples.
-    #[getter]
-    const fn speckle_size(&self) -> f64 {
-        self.0.speckle_size()
-    }
-
-    /// Shape of the pupil.
-    #[getter]
-    fn pupil(&self) -> Pupil {
-        Pupil(self.0.pupil().clone())
-    }
-
-    /// Seed, or None for samples from outside.
-    #[getter]
-    const fn seed(&self) -> Option<u64> {
-        self.0.seed()
-    }
-
     /// Law of the phasors, "unit" or "gaussian", or None for samples from outside.
     #[getter]
     fn phasors(&self) -> Option<&'static str> {
@@ -205,24 +175,6 @@ impl PupilField {
         // SAFETY: the samples belong to this object, which is frozen.
         let array = samples.map(|samples| unsafe { view(slf.clone().into_any(), samples) });
         array.transpose()
-    }
-
-    /// Number N of lattice points inside the pupil.
-    #[getter]
-    const fn phasor_count(&self) -> usize {
-        self.0.phasor_count()
-    }
-
-    /// Number of phasors of equal weight that fluctuate as the pupil's do.
-    #[getter]
-    fn effective_phasor_count(&self) -> f64 {
-        self.0.effective_phasor_count()
-    }
-
-    /// Diameter in lattice points of the disc whose area is the pupil's.
-    #[getter]
-    fn effective_diameter(&self) -> f64 {
-        self.0.effective_diameter()
     }
 
     /// Return the exact amplitude correlation of two samples.
@@ -382,4 +334,32 @@ impl PupilField {
         };
         Ok(Self(parts.build().or_raise()?))
     }
+}
+
+methods! {
+    impl PupilField as this: this.0;
+
+    /// Width and height of the pattern in samples.
+    get size -> (usize, usize);
+
+    /// Nominal pupil diameter along x and y in lattice points.
+    get diameter -> (f64, f64);
+
+    /// Speckle size Q / C in samples.
+    get speckle_size -> f64;
+
+    /// Shape of the pupil.
+    get pupil -> Pupil = Pupil(this.0.pupil().clone());
+
+    /// Seed, or None for samples from outside.
+    get seed -> Option<u64>;
+
+    /// Number N of lattice points inside the pupil.
+    get phasor_count -> usize;
+
+    /// Number of phasors of equal weight that fluctuate as the pupil's do.
+    get effective_phasor_count -> f64;
+
+    /// Diameter in lattice points of the disc whose area is the pupil's.
+    get effective_diameter -> f64;
 }

@@ -119,30 +119,6 @@ impl ObjectiveSpeckle {
         Ok(Self(speckle.or_raise()?))
     }
 
-    /// Wavelength in metres.
-    #[getter]
-    const fn wavelength(&self) -> f64 {
-        self.0.wavelength()
-    }
-
-    /// Distance of the screen in metres.
-    #[getter]
-    const fn distance(&self) -> f64 {
-        self.0.distance()
-    }
-
-    /// Area of the surface that is lit.
-    #[getter]
-    const fn area(&self) -> LitArea {
-        LitArea(self.0.area())
-    }
-
-    /// Speckle size in metres: the period of the finest fringes along x.
-    #[getter]
-    fn speckle_size(&self) -> f64 {
-        self.0.speckle_size()
-    }
-
     /// Return the field on a screen.
     ///
     /// Parameters
@@ -189,4 +165,20 @@ impl ObjectiveSpeckle {
         let arguments = (self.0.wavelength(), self.0.distance(), self.area());
         by_constructor::<Self>(py, "__call__", arguments)
     }
+}
+
+methods! {
+    impl ObjectiveSpeckle as this: this.0;
+
+    /// Wavelength in metres.
+    get wavelength -> f64;
+
+    /// Distance of the screen in metres.
+    get distance -> f64;
+
+    /// Area of the surface that is lit.
+    get area -> LitArea = LitArea(this.0.area());
+
+    /// Speckle size in metres: the period of the finest fringes along x.
+    get speckle_size -> f64;
 }

@@ -30,18 +30,6 @@ impl StackOptions {
         }))
     }
 
-    /// How look-ups interpolate in the plane.
-    #[getter]
-    fn interpolation(&self) -> &'static str {
-        name_of(&INTERPOLATIONS, self.0.interpolation)
-    }
-
-    /// Bytes that the slices may take.
-    #[getter]
-    const fn memory_limit(&self) -> u64 {
-        self.0.memory_limit
-    }
-
     fn __repr__(&self) -> String {
         format!(
             "StackOptions(interpolation='{}', memory_limit={})",
@@ -57,4 +45,14 @@ impl StackOptions {
         let arguments = (options.interpolation(), options.0.memory_limit);
         Ok((slf.get_type(), arguments.into_pyobject(slf.py())?))
     }
+}
+
+methods! {
+    impl StackOptions as this: this.0;
+
+    /// How look-ups interpolate in the plane.
+    get interpolation -> &'static str = name_of(&INTERPOLATIONS, this.0.interpolation);
+
+    /// Bytes that the slices may take.
+    field memory_limit -> u64;
 }

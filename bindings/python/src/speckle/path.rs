@@ -85,12 +85,6 @@ impl SlicePath {
         }
     }
 
-    /// Number of slices: 1, or 2 M.
-    #[getter]
-    const fn slice_count(&self) -> usize {
-        self.0.slice_count()
-    }
-
     /// Return the bytes of a stack of width x height samples along this path: 8 per sample.
     ///
     /// Parameters
@@ -126,6 +120,13 @@ impl SlicePath {
             } => by_constructor::<Self>(py, "straight", (half_period, length)),
         }
     }
+}
+
+methods! {
+    impl SlicePath as this: this.0;
+
+    /// Number of slices: 1, or 2 M.
+    get slice_count -> usize;
 }
 
 impl SlicePath {

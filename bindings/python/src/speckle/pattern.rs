@@ -20,18 +20,6 @@ impl SpecklePattern {
         unsafe { view(slf.clone().into_any(), slf.get().0.values()) }
     }
 
-    /// Width and height, which are the periods, in samples.
-    #[getter]
-    fn size(&self) -> (usize, usize) {
-        self.0.size().into()
-    }
-
-    /// Speckle size in samples.
-    #[getter]
-    const fn speckle_size(&self) -> f64 {
-        self.0.speckle_size()
-    }
-
     /// Write the intensity as an NPY file of float32, to be read by `numpy.load`.
     ///
     /// Parameters
@@ -49,6 +37,16 @@ impl SpecklePattern {
     }
 }
 
+methods! {
+    impl SpecklePattern as this: this.0;
+
+    /// Width and height, which are the periods, in samples.
+    get size -> (usize, usize);
+
+    /// Speckle size in samples.
+    get speckle_size -> f64;
+}
+
 /// The complex amplitude of a speckle field, of mean square 1, periodic in both axes.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Debug, PartialEq)]
@@ -61,18 +59,6 @@ impl SpeckleField {
     fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<Complex32>>> {
         // SAFETY: the values lie in this object, which is frozen.
         unsafe { view(slf.clone().into_any(), slf.get().0.values()) }
-    }
-
-    /// Width and height, which are the periods, in samples.
-    #[getter]
-    fn size(&self) -> (usize, usize) {
-        self.0.size().into()
-    }
-
-    /// Speckle size in samples.
-    #[getter]
-    const fn speckle_size(&self) -> f64 {
-        self.0.speckle_size()
     }
 
     /// Return the intensity, the squared magnitude of the amplitude.
@@ -95,4 +81,14 @@ impl SpeckleField {
         let speckle_size = self.0.speckle_size();
         format!("<SpeckleField: size=({width}, {height}), speckle_size={speckle_size}>")
     }
+}
+
+methods! {
+    impl SpeckleField as this: this.0;
+
+    /// Width and height, which are the periods, in samples.
+    get size -> (usize, usize);
+
+    /// Speckle size in samples.
+    get speckle_size -> f64;
 }

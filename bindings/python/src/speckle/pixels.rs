@@ -60,30 +60,6 @@ impl PixelArray {
         Ok(Self(self.0.with_origin(origin).or_raise()?))
     }
 
-    /// Number of pixels along x and y.
-    #[getter]
-    fn count(&self) -> (usize, usize) {
-        self.0.count().into()
-    }
-
-    /// Distance of neighbours along x and y in samples.
-    #[getter]
-    fn pitch(&self) -> (f64, f64) {
-        self.0.pitch().into()
-    }
-
-    /// Width and height of a pixel in samples.
-    #[getter]
-    fn size(&self) -> (f64, f64) {
-        self.0.size().into()
-    }
-
-    /// Middle of the first pixel in samples.
-    #[getter]
-    fn origin(&self) -> (f64, f64) {
-        self.0.origin().into()
-    }
-
     /// Return the mean intensity over each pixel.
     ///
     /// Parameters
@@ -133,4 +109,20 @@ impl PixelArray {
             .with_size(size)?
             .with_origin(origin)
     }
+}
+
+methods! {
+    impl PixelArray as this: this.0;
+
+    /// Number of pixels along x and y.
+    get count -> (usize, usize);
+
+    /// Distance of neighbours along x and y in samples.
+    get pitch -> (f64, f64);
+
+    /// Width and height of a pixel in samples.
+    get size -> (f64, f64);
+
+    /// Middle of the first pixel in samples.
+    get origin -> (f64, f64);
 }

@@ -58,42 +58,6 @@ impl StackNeeds {
         }))
     }
 
-    /// Width and height of the image in pixels.
-    #[getter]
-    fn image(&self) -> (f64, f64) {
-        self.0.image.into()
-    }
-
-    /// Width and height of all that is looked up, in pixels.
-    #[getter]
-    fn region(&self) -> (f64, f64) {
-        self.0.region.into()
-    }
-
-    /// Speckle size on the sensor in pixels.
-    #[getter]
-    const fn speckle_size(&self) -> f64 {
-        self.0.speckle_size
-    }
-
-    /// Largest motion of the pupil in its diameters, or None.
-    #[getter]
-    const fn motion(&self) -> Option<f64> {
-        self.0.motion
-    }
-
-    /// Number of frames among which the speckle is compared.
-    #[getter]
-    const fn frames(&self) -> u32 {
-        self.0.frames
-    }
-
-    /// Bytes that the slices may take.
-    #[getter]
-    const fn memory_limit(&self) -> u64 {
-        self.0.memory_limit
-    }
-
     fn __repr__(&self) -> String {
         let needs = &self.0;
         let motion = needs.motion.map_or("None".to_owned(), |m| m.to_string());
@@ -122,6 +86,28 @@ impl StackNeeds {
         );
         Ok((slf.get_type(), arguments.into_pyobject(slf.py())?))
     }
+}
+
+methods! {
+    impl StackNeeds as this: this.0;
+
+    /// Width and height of the image in pixels.
+    field image -> (f64, f64);
+
+    /// Width and height of all that is looked up, in pixels.
+    field region -> (f64, f64);
+
+    /// Speckle size on the sensor in pixels.
+    field speckle_size -> f64;
+
+    /// Largest motion of the pupil in its diameters, or None.
+    field motion -> Option<f64>;
+
+    /// Number of frames among which the speckle is compared.
+    field frames -> u32;
+
+    /// Bytes that the slices may take.
+    field memory_limit -> u64;
 }
 
 /// Sizes of a stack that repeats nothing where it is looked up and takes no more memory than that
@@ -245,42 +231,6 @@ impl StackPlan {
         Ok(Self(plan))
     }
 
-    /// Width and height of the pattern in samples.
-    #[getter]
-    fn size(&self) -> (usize, usize) {
-        self.0.size().into()
-    }
-
-    /// Diameter of the pupil along each axis in lattice points.
-    #[getter]
-    fn diameter(&self) -> (usize, usize) {
-        self.0.diameter().into()
-    }
-
-    /// Path of the slices.
-    #[getter]
-    const fn path(&self) -> SlicePath {
-        SlicePath(self.0.path())
-    }
-
-    /// Bytes that the slices take.
-    #[getter]
-    const fn memory_bytes(&self) -> u64 {
-        self.0.memory_bytes()
-    }
-
-    /// Slices that a motion of the pupil by its diameter passes.
-    #[getter]
-    fn slices_per_diameter(&self) -> f64 {
-        self.0.slices_per_diameter()
-    }
-
-    /// Largest motion of the pupil that the slices tell apart from every smaller one, in diameters.
-    #[getter]
-    fn reach(&self) -> f64 {
-        self.0.reach()
-    }
-
     /// Return whether the pattern repeats nothing within the region.
     fn holds_region(&self, needs: &StackNeeds) -> bool {
         self.0.holds_region(&needs.0)
@@ -333,4 +283,26 @@ impl StackPlan {
         let sizes = (self.size(), self.diameter(), self.path());
         by_constructor::<Self>(py, "from_sizes", sizes)
     }
+}
+
+methods! {
+    impl StackPlan as this: this.0;
+
+    /// Width and height of the pattern in samples.
+    get size -> (usize, usize);
+
+    /// Diameter of the pupil along each axis in lattice points.
+    get diameter -> (usize, usize);
+
+    /// Path of the slices.
+    get path -> SlicePath = SlicePath(this.0.path());
+
+    /// Bytes that the slices take.
+    get memory_bytes -> u64;
+
+    /// Slices that a motion of the pupil by its diameter passes.
+    get slices_per_diameter -> f64;
+
+    /// Largest motion of the pupil that the slices tell apart from every smaller one, in diameters.
+    get reach -> f64;
 }

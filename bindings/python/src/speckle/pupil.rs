@@ -4,7 +4,7 @@ use tem00_speckle as physics;
 
 use super::images::view;
 use crate::{
-    arrays::{ComplexImage, Image, Numbers, map},
+    arrays::{ComplexImage, Image, map},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -78,28 +78,6 @@ impl Pupil {
         }
     }
 
-    /// Return the overlap of the pupil with itself, displaced by x and y diameters.
-    ///
-    /// It is the amplitude correlation of two speckle fields whose pupils are so displaced.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y : `array_like`
-    ///     Displacement in pupil diameters.
-    ///
-    /// Returns
-    /// -------
-    /// float or numpy.ndarray
-    ///     Overlap between 0 and 1, in the common shape of the arguments.
-    fn overlap<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("x", &x), ("y", &y)], |shift| self.0.overlap(shift))
-    }
-
     pub(super) fn __repr__(&self) -> String {
         match &self.0 {
             physics::Pupil::Circle => "Pupil.circle()".to_owned(),
@@ -131,6 +109,20 @@ impl Pupil {
             }
         }
     }
+}
+
+methods! {
+    impl Pupil as this: this.0;
+
+    /// Return the overlap of the pupil with itself, displaced by x and y diameters.
+    ///
+    /// It is the amplitude correlation of two speckle fields whose pupils are so displaced.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y : `array_like`
+    ///     Displacement in pupil diameters.
+    map overlap(x, y) = this.0.overlap([x, y]);
 }
 
 impl Pupil {

@@ -18,7 +18,7 @@ use super::{
     slice_law::SliceLaw,
 };
 use crate::{
-    arrays::{Numbers, fill, map},
+    arrays::{Numbers, Values, fill, map},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -127,49 +127,6 @@ impl SpeckleStack {
         Ok(py.detach(|| self.0.write_npy(BufWriter::new(File::create(file)?)))?)
     }
 
-    /// Field the slices were cut from. That of a straight path closes on itself after the length of
-    /// the path.
-    #[getter]
-    fn field(&self) -> PupilField {
-        PupilField(self.0.field().clone())
-    }
-
-    /// Path of the pupil.
-    #[getter]
-    const fn path(&self) -> SlicePath {
-        SlicePath(self.0.path())
-    }
-
-    /// How look-ups interpolate in the plane.
-    #[getter]
-    fn interpolation(&self) -> &'static str {
-        name_of(&INTERPOLATIONS, self.0.interpolation())
-    }
-
-    /// Width and height, which are the periods in the plane, in samples.
-    #[getter]
-    fn size(&self) -> (usize, usize) {
-        self.0.size().into()
-    }
-
-    /// Speckle size in samples.
-    #[getter]
-    const fn speckle_size(&self) -> f64 {
-        self.0.speckle_size()
-    }
-
-    /// Number of slices, the period in u.
-    #[getter]
-    const fn slice_count(&self) -> usize {
-        self.0.slice_count()
-    }
-
-    /// Bytes that the slices take.
-    #[getter]
-    const fn memory_bytes(&self) -> u64 {
-        self.0.memory_bytes()
-    }
-
     /// Return the coefficients that look-ups interpolate, complex64 [row, column].
     ///
     /// They are the samples of the slice's amplitude, or those of the prefiltered spline: a read-only
@@ -227,7 +184,7 @@ impl SpeckleStack {
         x: Numbers<'py>,
         y: Numbers<'py>,
         u: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Values<'py>> {
         let arguments = [("x", &x), ("y", &y), ("u", &u)];
         let [intensity] = fill(py, arguments, |[x, y, u], [intensity]| {
             self.0.intensity_batch(x, y, u, intensity);
@@ -257,7 +214,7 @@ impl SpeckleStack {
         y: Numbers<'py>,
         size: [f64; 2],
         u: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Values<'py>> {
         let size = finite_pair("size", size)?;
         if let Some(bad) = size.into_iter().find(|side| *side < 0.0) {
             return Err(refused(
@@ -267,70 +224,6 @@ impl SpeckleStack {
         }
         map(py, [("x", &x), ("y", &y), ("u", &u)], |[x, y, u]| {
             self.0.average_over([x, y], size, u)
-        })
-    }
-
-    /// Return the correlation of the intensities looked up at two coordinates, exactly.
-    ///
-    /// Parameters
-    /// ----------
-    /// u, v : `array_like`
-    ///     Coordinates in slices, on slices or between.
-    ///
-    /// Returns
-    /// -------
-    /// float or numpy.ndarray
-    ///     Correlation between 0 and 1.
-    fn correlation_between<'py>(
-        &self,
-        py: Python<'py>,
-        u: Numbers<'py>,
-        v: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("u", &u), ("v", &v)], |[u, v]| {
-            self.0.correlation_between(u, v)
-        })
-    }
-
-    /// Return the correlation of the intensities at u = 0 and u = distance, in closed form.
-    ///
-    /// Parameters
-    /// ----------
-    /// distance : `array_like`
-    ///     Distance in slices.
-    ///
-    /// Returns
-    /// -------
-    /// float or numpy.ndarray
-    ///     Correlation between 0 and 1.
-    fn correlation_at<'py>(
-        &self,
-        py: Python<'py>,
-        distance: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("distance", &distance)], |[distance]| {
-            self.0.correlation_at(distance)
-        })
-    }
-
-    /// Return the coordinate u at which a look-up has a given correlation to that at u = 0.
-    ///
-    /// Parameters
-    /// ----------
-    /// correlation : `array_like`
-    ///     Correlation; 1 and more give 0, 0 and less the first slice of no correlation.
-    ///
-    /// Returns
-    /// -------
-    /// float or numpy.ndarray
-    ///     Distance in slices.
-    fn coordinate_of<'py>(
-        &self,
-        py: Python<'py>,
-        correlation: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("correlation", &correlation)], |[correlation]| {
-            self.0.coordinate_of(correlation)
         })
     }
 
@@ -360,6 +253,56 @@ impl SpeckleStack {
             self.interpolation()
         )
     }
+}
+
+methods! {
+    impl SpeckleStack as this: this.0;
+
+    /// Field the slices were cut from. That of a straight path closes on itself after the length of
+    /// the path.
+    get field -> PupilField = PupilField(this.0.field().clone());
+
+    /// Path of the pupil.
+    get path -> SlicePath = SlicePath(this.0.path());
+
+    /// How look-ups interpolate in the plane.
+    get interpolation -> &'static str = name_of(&INTERPOLATIONS, this.0.interpolation());
+
+    /// Width and height, which are the periods in the plane, in samples.
+    get size -> (usize, usize);
+
+    /// Speckle size in samples.
+    get speckle_size -> f64;
+
+    /// Number of slices, the period in u.
+    get slice_count -> usize;
+
+    /// Bytes that the slices take.
+    get memory_bytes -> u64;
+
+    /// Return the correlation of the intensities looked up at two coordinates, exactly.
+    ///
+    /// Parameters
+    /// ----------
+    /// u, v : `array_like`
+    ///     Coordinates in slices, on slices or between.
+    map correlation_between(u, v);
+
+    /// Return the correlation of the intensities at u = 0 and u = distance, in closed form.
+    ///
+    /// Parameters
+    /// ----------
+    /// distance : `array_like`
+    ///     Distance in slices.
+    map correlation_at(distance);
+
+    /// Return the coordinate u at which a look-up has a given correlation to that at u = 0.
+    ///
+    /// Parameters
+    /// ----------
+    /// correlation : `array_like`
+    ///     Correlation; 1 and more give 0, 0 and less the first slice of no correlation.
+    map coordinate_of(correlation);
 }
 
 impl SpeckleStack {

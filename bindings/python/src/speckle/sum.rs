@@ -36,24 +36,6 @@ impl Bandwidth {
         })
     }
 
-    /// Central wavelength in metres.
-    #[getter]
-    const fn wavelength(&self) -> f64 {
-        self.0.wavelength
-    }
-
-    /// Full width at half maximum in metres.
-    #[getter]
-    const fn linewidth(&self) -> f64 {
-        self.0.linewidth
-    }
-
-    /// Standard deviation of the optical path in metres.
-    #[getter]
-    const fn path_spread(&self) -> f64 {
-        self.0.path_spread
-    }
-
     fn __repr__(&self) -> String {
         let Self(band) = self;
         format!(
@@ -69,6 +51,19 @@ impl Bandwidth {
         let arguments = (band.wavelength, band.linewidth, band.path_spread);
         Ok((slf.get_type(), arguments.into_pyobject(slf.py())?))
     }
+}
+
+methods! {
+    impl Bandwidth as this: this.0;
+
+    /// Central wavelength in metres.
+    field wavelength -> f64;
+
+    /// Full width at half maximum in metres.
+    field linewidth -> f64;
+
+    /// Standard deviation of the optical path in metres.
+    field path_spread -> f64;
 }
 
 /// Independent speckle patterns whose intensities add, each with its share of the light.
@@ -144,12 +139,6 @@ impl IncoherentSum {
         Ok(array(py, &[shares.len()], shares)?.into_any())
     }
 
-    /// Contrast of the sum of fully developed patterns.
-    #[getter]
-    fn contrast(&self) -> f64 {
-        self.0.contrast()
-    }
-
     /// Return one field for each pattern: `field` itself, then the same with seeds made from its own.
     ///
     /// Parameters
@@ -217,6 +206,13 @@ impl IncoherentSum {
         let (count, contrast) = (self.0.shares().len(), self.0.contrast());
         format!("<IncoherentSum: {count} patterns, contrast={contrast}>")
     }
+}
+
+methods! {
+    impl IncoherentSum as this: this.0;
+
+    /// Contrast of the sum of fully developed patterns.
+    get contrast -> f64;
 }
 
 /// An exception on its way through a sum.

@@ -4,30 +4,18 @@ use pyo3::{prelude::*, types::PyAny};
 use tem00_statistics as physics;
 
 use crate::{
-    arrays::{Numbers, map},
+    arrays::{Numbers, Values, map},
     error::refused,
 };
 
-/// Return the contrast of fully developed speckle seen by square pixels.
-///
-/// Parameters
-/// ----------
-/// pixel_size : float or array
-///     Side of the pixels in units of the speckle size, 0 or more.
-///
-/// Returns
-/// -------
-/// float or array
-///     Contrast, in the shape of `pixel_size`.
-#[pyfunction]
-pub(super) fn pixel_contrast<'py>(
-    py: Python<'py>,
-    pixel_size: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    pixel_size.not_negative("pixel_size")?;
-    map(py, [("pixel_size", &pixel_size)], |[q]| {
-        physics::pixel_contrast(q)
-    })
+functions! {
+    /// Return the contrast of fully developed speckle seen by square pixels.
+    ///
+    /// Parameters
+    /// ----------
+    /// pixel_size : float or array
+    ///     Side of the pixels in units of the speckle size, 0 or more.
+    map pixel_contrast(pixel_size: not_negative);
 }
 
 /// Return the contrast of fully developed speckle seen by rectangular pixels.
@@ -40,7 +28,7 @@ pub(super) fn pixel_contrast<'py>(
 pub(super) fn rectangular_pixel_contrast<'py>(
     py: Python<'py>,
     pixel_size: [Numbers<'py>; 2],
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Values<'py>> {
     let [width, height] = &pixel_size;
     width.not_negative("pixel_size")?;
     height.not_negative("pixel_size")?;
@@ -48,54 +36,31 @@ pub(super) fn rectangular_pixel_contrast<'py>(
     map(py, named, physics::rectangular_pixel_contrast)
 }
 
-/// Return the contrast of fully developed speckle behind a Gaussian filter.
-///
-/// Parameters
-/// ----------
-/// spread : float or array
-///     Standard deviation of the filter along either axis, in units of the speckle size, 0 or more.
-#[pyfunction]
-pub(super) fn gaussian_filter_contrast<'py>(
-    py: Python<'py>,
-    spread: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    spread.not_negative("spread")?;
-    map(py, [("spread", &spread)], |[s]| {
-        physics::gaussian_filter_contrast(s)
-    })
-}
+functions! {
+    /// Return the contrast of fully developed speckle behind a Gaussian filter.
+    ///
+    /// Parameters
+    /// ----------
+    /// spread : float or array
+    ///     Standard deviation of the filter along either axis, in units of the speckle size, 0 or more.
+    map gaussian_filter_contrast(spread: not_negative);
 
-/// Return the contrast of an exposure during which speckle boils and the image stands still.
-///
-/// Parameters
-/// ----------
-/// drift : float or array
-///     Shift of the light across a circular pupil during the exposure, in pupil diameters, 0 or
-///     more.
-#[pyfunction]
-pub(super) fn boiling_contrast<'py>(
-    py: Python<'py>,
-    drift: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    drift.not_negative("drift")?;
-    map(py, [("drift", &drift)], |[s]| physics::boiling_contrast(s))
-}
+    /// Return the contrast of an exposure during which speckle boils and the image stands still.
+    ///
+    /// Parameters
+    /// ----------
+    /// drift : float or array
+    ///     Shift of the light across a circular pupil during the exposure, in pupil diameters, 0 or
+    ///     more.
+    map boiling_contrast(drift: not_negative);
 
-/// Return the contrast of an exposure during which the pattern moves across the image.
-///
-/// Parameters
-/// ----------
-/// drift : float or array
-///     Motion of the pattern during the exposure, in units of the speckle size, 0 or more.
-#[pyfunction]
-pub(super) fn translation_contrast<'py>(
-    py: Python<'py>,
-    drift: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    drift.not_negative("drift")?;
-    map(py, [("drift", &drift)], |[s]| {
-        physics::translation_contrast(s)
-    })
+    /// Return the contrast of an exposure during which the pattern moves across the image.
+    ///
+    /// Parameters
+    /// ----------
+    /// drift : float or array
+    ///     Motion of the pattern during the exposure, in units of the speckle size, 0 or more.
+    map translation_contrast(drift: not_negative);
 }
 
 /// Return the contrast of an exposure during which the pattern changes in any way.
@@ -139,7 +104,7 @@ fn correlation_at(correlation: &Bound<'_, PyAny>, t: f64) -> PyResult<f64> {
 pub(super) fn contrast_squared_spread<'py>(
     py: Python<'py>,
     speckles_across: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Values<'py>> {
     let name = "speckles_across";
     speckles_across.positive(name)?;
     map(py, [(name, &speckles_across)], |[n]| {

@@ -27,35 +27,27 @@ impl Moments {
         Ok(Self(moments))
     }
 
-    /// Number of samples.
-    #[getter]
-    fn count(&self) -> usize {
-        self.0.count()
-    }
-
-    /// Mean.
-    #[getter]
-    fn mean(&self) -> f64 {
-        self.0.mean()
-    }
-
-    /// Standard deviation, with the divisor n − 1.
-    #[getter]
-    fn standard_deviation(&self) -> f64 {
-        self.0.standard_deviation()
-    }
-
-    /// Standard error of the mean, for independent samples.
-    #[getter]
-    fn standard_error(&self) -> f64 {
-        self.0.standard_error()
-    }
-
     fn __repr__(&self) -> String {
         let (count, mean) = (self.0.count(), self.0.mean());
         let deviation = self.0.standard_deviation();
         format!("<Moments: count={count}, mean={mean:?}, standard_deviation={deviation:?}>")
     }
+}
+
+methods! {
+    impl Moments as this: this.0;
+
+    /// Number of samples.
+    get count -> usize;
+
+    /// Mean.
+    get mean -> f64;
+
+    /// Standard deviation, with the divisor n − 1.
+    get standard_deviation -> f64;
+
+    /// Standard error of the mean, for independent samples.
+    get standard_error -> f64;
 }
 
 /// The contrast of samples, their standard deviation over their mean, and its uncertainty.
@@ -98,22 +90,20 @@ impl Contrast {
         Ok(self.0.confidence_interval(level).or_raise()?.into())
     }
 
-    /// Contrast.
-    #[getter]
-    fn value(&self) -> f64 {
-        self.0.value()
-    }
-
-    /// Standard error of the contrast.
-    #[getter]
-    fn standard_error(&self) -> f64 {
-        self.0.standard_error()
-    }
-
     fn __repr__(&self) -> String {
         let (value, error) = (self.0.value(), self.0.standard_error());
         format!("<Contrast: value={value:?}, standard_error={error:?}>")
     }
+}
+
+methods! {
+    impl Contrast as this: this.0;
+
+    /// Contrast.
+    get value -> f64;
+
+    /// Standard error of the contrast.
+    get standard_error -> f64;
 }
 
 /// A Gamma law fitted to samples: their mean and the shape, the number of degrees of freedom.
@@ -139,24 +129,6 @@ impl GammaFit {
         Ok(Self(fit.or_raise()?))
     }
 
-    /// Mean of the samples.
-    #[getter]
-    fn mean(&self) -> f64 {
-        self.0.mean()
-    }
-
-    /// Shape, the number of degrees of freedom.
-    #[getter]
-    fn shape(&self) -> f64 {
-        self.0.shape()
-    }
-
-    /// Standard error of the shape, for independent samples.
-    #[getter]
-    fn standard_error(&self) -> f64 {
-        self.0.standard_error()
-    }
-
     /// Return the law of the intensity in units of the mean; its shape must be 1 at least.
     fn law(&self) -> PyResult<GammaIntensity> {
         Ok(GammaIntensity(self.0.law().or_raise()?))
@@ -167,6 +139,19 @@ impl GammaFit {
         let error = self.0.standard_error();
         format!("<GammaFit: mean={mean:?}, shape={shape:?}, standard_error={error:?}>")
     }
+}
+
+methods! {
+    impl GammaFit as this: this.0;
+
+    /// Mean of the samples.
+    get mean -> f64;
+
+    /// Shape, the number of degrees of freedom.
+    get shape -> f64;
+
+    /// Standard error of the shape, for independent samples.
+    get standard_error -> f64;
 }
 
 /// Return Pearson's correlation coefficient of two images of the same shape, in [−1, 1].

@@ -1,10 +1,10 @@
 use core::f64::consts::FRAC_PI_2;
 
-use pyo3::{prelude::*, types::PyAny};
+use pyo3::prelude::*;
 use tem00_statistics as physics;
 
 use crate::{
-    arrays::{Numbers, map},
+    arrays::{Numbers, Values, map},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -29,23 +29,27 @@ impl GaussianSpectrum {
         Ok(Self(spectrum))
     }
 
-    /// Central wavelength in metres.
-    #[getter]
-    fn wavelength(&self) -> f64 {
-        self.0.wavelength()
+    fn __repr__(&self) -> String {
+        let (wavelength, linewidth) = (self.0.wavelength(), self.0.linewidth());
+        format!("GaussianSpectrum(wavelength={wavelength:?}, linewidth={linewidth:?})")
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
+        by_constructor::<Self>(py, "__call__", (self.0.wavelength(), self.0.linewidth()))
+    }
+}
+
+methods! {
+    impl GaussianSpectrum as this: this.0;
+
+    /// Central wavelength in metres.
+    get wavelength -> f64;
 
     /// Linewidth, the full width at half maximum, in metres.
-    #[getter]
-    fn linewidth(&self) -> f64 {
-        self.0.linewidth()
-    }
+    get linewidth -> f64;
 
     /// Coherence length in metres.
-    #[getter]
-    fn coherence_length(&self) -> f64 {
-        self.0.coherence_length()
-    }
+    get coherence_length -> f64;
 
     /// Return the correlation of the patterns at the central and at a longer wavelength.
     ///
@@ -55,18 +59,7 @@ impl GaussianSpectrum {
     ///     By how much the other wavelength is longer, in metres.
     /// path_spread : float or array
     ///     Standard deviation of the optical path, in metres, 0 or more.
-    fn correlation<'py>(
-        &self,
-        py: Python<'py>,
-        shift: Numbers<'py>,
-        path_spread: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        path_spread.not_negative("path_spread")?;
-        let named = [("shift", &shift), ("path_spread", &path_spread)];
-        map(py, named, |[shift, spread]| {
-            self.0.correlation(shift, spread)
-        })
-    }
+    map correlation(shift, path_spread: not_negative);
 
     /// Return the contrast of the speckle in this light.
     ///
@@ -74,25 +67,7 @@ impl GaussianSpectrum {
     /// ----------
     /// path_spread : float or array
     ///     Standard deviation of the optical path, in metres, 0 or more.
-    fn contrast<'py>(
-        &self,
-        py: Python<'py>,
-        path_spread: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        path_spread.not_negative("path_spread")?;
-        map(py, [("path_spread", &path_spread)], |[spread]| {
-            self.0.contrast(spread)
-        })
-    }
-
-    fn __repr__(&self) -> String {
-        let (wavelength, linewidth) = (self.0.wavelength(), self.0.linewidth());
-        format!("GaussianSpectrum(wavelength={wavelength:?}, linewidth={linewidth:?})")
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "__call__", (self.0.wavelength(), self.0.linewidth()))
-    }
+    map contrast(path_spread: not_negative);
 }
 
 /// Return the standard deviation of the optical path of light reflected by a rough surface.
@@ -113,7 +88,7 @@ pub(super) fn path_spread_of_reflection<'py>(
     py: Python<'py>,
     height_spread: Numbers<'py>,
     angles: [Numbers<'py>; 2],
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Values<'py>> {
     height_spread.not_negative("height_spread")?;
     let [incidence, observation] = &angles;
     for angle in &angles {

@@ -15,22 +15,20 @@ pub(crate) struct TestOutcome(pub(super) physics::TestOutcome);
 
 #[pymethods]
 impl TestOutcome {
-    /// The test's statistic: the larger, the further from the hypothesis.
-    #[getter]
-    fn statistic(&self) -> f64 {
-        self.0.statistic
-    }
-
-    /// The probability of a statistic at least as far from the hypothesis, were it true.
-    #[getter]
-    fn p_value(&self) -> f64 {
-        self.0.p_value
-    }
-
     fn __repr__(&self) -> String {
         let physics::TestOutcome { statistic, p_value } = self.0;
         format!("<TestOutcome: statistic={statistic:?}, p_value={p_value:?}>")
     }
+}
+
+methods! {
+    impl TestOutcome as this: this.0;
+
+    /// The test's statistic: the larger, the further from the hypothesis.
+    field statistic -> f64;
+
+    /// The probability of a statistic at least as far from the hypothesis, were it true.
+    field p_value -> f64;
 }
 
 /// Test whether samples follow a continuous distribution, after Kolmogorov and Smirnov.

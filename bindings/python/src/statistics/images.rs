@@ -63,24 +63,6 @@ pub(crate) struct Ring(physics::Ring);
 
 #[pymethods]
 impl Ring {
-    /// Mean distance of the cells from the origin.
-    #[getter]
-    fn radius(&self) -> f64 {
-        self.0.radius
-    }
-
-    /// Mean of the values.
-    #[getter]
-    fn mean(&self) -> f64 {
-        self.0.mean
-    }
-
-    /// Number of cells.
-    #[getter]
-    fn count(&self) -> usize {
-        self.0.count
-    }
-
     fn __repr__(&self) -> String {
         let physics::Ring {
             radius,
@@ -89,6 +71,19 @@ impl Ring {
         } = self.0;
         format!("<Ring: radius={radius:?}, mean={mean:?}, count={count}>")
     }
+}
+
+methods! {
+    impl Ring as this: this.0;
+
+    /// Mean distance of the cells from the origin.
+    field radius -> f64;
+
+    /// Mean of the values.
+    field mean -> f64;
+
+    /// Number of cells.
+    field count -> usize;
 }
 
 /// Return the averages of a grid of lags or frequencies over rings about its origin.
@@ -223,27 +218,22 @@ impl SpeckleSize {
         physics::SpeckleSize::along(axis, &lags.grid("lags")?).or_raise()
     }
 
-    /// Speckle size along the rows, in pixels.
-    #[getter]
-    fn x(&self) -> f64 {
-        self.0.x()
-    }
-
-    /// Speckle size along the columns, in pixels.
-    #[getter]
-    fn y(&self) -> f64 {
-        self.0.y()
-    }
-
-    /// Geometric mean of both sizes, in pixels.
-    #[getter]
-    fn mean(&self) -> f64 {
-        self.0.mean()
-    }
-
     fn __repr__(&self) -> String {
         format!("<SpeckleSize: x={:?}, y={:?}>", self.0.x(), self.0.y())
     }
+}
+
+methods! {
+    impl SpeckleSize as this: this.0;
+
+    /// Speckle size along the rows, in pixels.
+    get x -> f64;
+
+    /// Speckle size along the columns, in pixels.
+    get y -> f64;
+
+    /// Geometric mean of both sizes, in pixels.
+    get mean -> f64;
 }
 
 /// Returns how an image continues beyond its edges.

@@ -1,9 +1,9 @@
-use pyo3::{prelude::*, types::PyAny};
+use pyo3::prelude::*;
 use tem00_statistics as physics;
 
 use super::phasors::checked_order;
 use crate::{
-    arrays::{Count, Numbers, map},
+    arrays::{Count, Numbers, Values, map},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -27,18 +27,6 @@ impl JointIntensity {
         Ok(Self(law))
     }
 
-    /// Magnitude of the correlation of the amplitudes.
-    #[getter]
-    fn amplitude_correlation(&self) -> f64 {
-        self.0.amplitude_correlation()
-    }
-
-    /// Correlation of the intensities, the square of that of the amplitudes.
-    #[getter]
-    fn intensity_correlation(&self) -> f64 {
-        self.0.intensity_correlation()
-    }
-
     /// Return the joint density of two intensities.
     ///
     /// Parameters
@@ -49,66 +37,10 @@ impl JointIntensity {
         &self,
         py: Python<'py>,
         intensities: [Numbers<'py>; 2],
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Values<'py>> {
         let [first, second] = &intensities;
         let named = [("intensities", first), ("intensities", second)];
         map(py, named, |pair| self.0.density(pair))
-    }
-
-    /// Return the density of the intensity at one point where that at the other is `given`.
-    ///
-    /// Parameters
-    /// ----------
-    /// intensity, given : float or array
-    ///     Intensities in units of their mean, broadcast together.
-    fn conditional_density<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-        given: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        given.not_negative("given")?;
-        let named = [("intensity", &intensity), ("given", &given)];
-        map(py, named, |[i, g]| self.0.conditional_density(i, g))
-    }
-
-    /// Return the probability of at most `intensity` at one point where the other has `given`.
-    ///
-    /// Parameters
-    /// ----------
-    /// intensity, given : float or array
-    ///     Intensities in units of their mean, broadcast together.
-    fn conditional_cumulative<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-        given: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        given.not_negative("given")?;
-        let named = [("intensity", &intensity), ("given", &given)];
-        map(py, named, |[i, g]| self.0.conditional_cumulative(i, g))
-    }
-
-    /// Return the mean of the intensity at one point where that at the other is `given`.
-    fn conditional_mean<'py>(
-        &self,
-        py: Python<'py>,
-        given: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        given.not_negative("given")?;
-        map(py, [("given", &given)], |[g]| self.0.conditional_mean(g))
-    }
-
-    /// Return the variance of the intensity at one point where that at the other is `given`.
-    fn conditional_variance<'py>(
-        &self,
-        py: Python<'py>,
-        given: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        given.not_negative("given")?;
-        map(py, [("given", &given)], |[g]| {
-            self.0.conditional_variance(g)
-        })
     }
 
     /// Return the moment ⟨I₁ᵐ I₂ⁿ⟩ of the orders (m, n), each at most 20.
@@ -126,4 +58,36 @@ impl JointIntensity {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         by_constructor::<Self>(py, "__call__", (self.0.amplitude_correlation(),))
     }
+}
+
+methods! {
+    impl JointIntensity as this: this.0;
+
+    /// Magnitude of the correlation of the amplitudes.
+    get amplitude_correlation -> f64;
+
+    /// Correlation of the intensities, the square of that of the amplitudes.
+    get intensity_correlation -> f64;
+
+    /// Return the density of the intensity at one point where that at the other is `given`.
+    ///
+    /// Parameters
+    /// ----------
+    /// intensity, given : float or array
+    ///     Intensities in units of their mean, broadcast together.
+    map conditional_density(intensity, given: not_negative);
+
+    /// Return the probability of at most `intensity` at one point where the other has `given`.
+    ///
+    /// Parameters
+    /// ----------
+    /// intensity, given : float or array
+    ///     Intensities in units of their mean, broadcast together.
+    map conditional_cumulative(intensity, given: not_negative);
+
+    /// Return the mean of the intensity at one point where that at the other is `given`.
+    map conditional_mean(given: not_negative);
+
+    /// Return the variance of the intensity at one point where that at the other is `given`.
+    map conditional_variance(given: not_negative);
 }

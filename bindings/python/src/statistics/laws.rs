@@ -1,4 +1,4 @@
-use pyo3::{prelude::*, types::PyAny};
+use pyo3::prelude::*;
 use tem00_statistics as physics;
 
 use crate::{
@@ -7,46 +7,22 @@ use crate::{
     pickling::{Recipe, by_constructor},
 };
 
-/// Return the probability density of the intensity of fully developed speckle, exp(−I).
-///
-/// Parameters
-/// ----------
-/// intensity : float or array
-///     Intensity in units of its mean.
-///
-/// Returns
-/// -------
-/// float or array
-///     Density, in the shape of `intensity`; 0 below zero.
-#[pyfunction]
-pub(super) fn exponential_density<'py>(
-    py: Python<'py>,
-    intensity: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    map(py, [("intensity", &intensity)], |[i]| {
-        physics::exponential_density(i)
-    })
-}
+functions! {
+    /// Return the probability density of the intensity of fully developed speckle, exp(−I).
+    ///
+    /// Parameters
+    /// ----------
+    /// intensity : float or array
+    ///     Intensity in units of its mean.
+    map exponential_density(intensity);
 
-/// Return the probability that the intensity of fully developed speckle is at most `intensity`.
-///
-/// Parameters
-/// ----------
-/// intensity : float or array
-///     Intensity in units of its mean.
-///
-/// Returns
-/// -------
-/// float or array
-///     Probability 1 − exp(−I), in the shape of `intensity`.
-#[pyfunction]
-pub(super) fn exponential_cumulative<'py>(
-    py: Python<'py>,
-    intensity: Numbers<'py>,
-) -> PyResult<Bound<'py, PyAny>> {
-    map(py, [("intensity", &intensity)], |[i]| {
-        physics::exponential_cumulative(i)
-    })
+    /// Return the probability that the intensity of fully developed speckle is at most `intensity`.
+    ///
+    /// Parameters
+    /// ----------
+    /// intensity : float or array
+    ///     Intensity in units of its mean.
+    map exponential_cumulative(intensity);
 }
 
 /// The law of the intensity after speckle has been averaged: a Gamma distribution of mean 1.
@@ -72,44 +48,24 @@ impl GammaIntensity {
         let law = physics::GammaIntensity::from_contrast(contrast).or_raise()?;
         Ok(Self(law))
     }
+}
+
+methods! {
+    impl GammaIntensity as this: this.0;
 
     /// Shape, the number of degrees of freedom.
-    #[getter]
-    fn shape(&self) -> f64 {
-        self.0.shape()
-    }
+    get shape -> f64;
 
     /// Contrast, standard deviation over mean.
-    #[getter]
-    fn contrast(&self) -> f64 {
-        self.0.contrast()
-    }
+    get contrast -> f64;
 
     /// Return the probability density at intensities in units of their mean, in their shape.
-    fn density<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("intensity", &intensity)], |[i]| self.0.density(i))
-    }
+    map density(intensity);
 
     /// Return the probability of at most an intensity in units of the mean, in its shape.
-    fn cumulative<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("intensity", &intensity)], |[i]| self.0.cumulative(i))
-    }
+    map cumulative(intensity);
 
-    fn __repr__(&self) -> String {
-        format!("GammaIntensity(shape={:?})", self.0.shape())
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "__call__", (self.0.shape(),))
-    }
+    made_by new(shape);
 }
 
 /// The law of the intensity of partially polarised speckle.
@@ -128,44 +84,24 @@ impl PartiallyPolarised {
     fn new(degree: f64) -> PyResult<Self> {
         Ok(Self(physics::PartiallyPolarised::new(degree).or_raise()?))
     }
+}
+
+methods! {
+    impl PartiallyPolarised as this: this.0;
 
     /// Degree of polarisation of the scattered light.
-    #[getter]
-    fn degree(&self) -> f64 {
-        self.0.degree()
-    }
+    get degree -> f64;
 
     /// Contrast, standard deviation over mean.
-    #[getter]
-    fn contrast(&self) -> f64 {
-        self.0.contrast()
-    }
+    get contrast -> f64;
 
     /// Return the probability density at intensities in units of their mean, in their shape.
-    fn density<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("intensity", &intensity)], |[i]| self.0.density(i))
-    }
+    map density(intensity);
 
     /// Return the probability of at most an intensity in units of the mean, in its shape.
-    fn cumulative<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("intensity", &intensity)], |[i]| self.0.cumulative(i))
-    }
+    map cumulative(intensity);
 
-    fn __repr__(&self) -> String {
-        format!("PartiallyPolarised(degree={:?})", self.0.degree())
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "__call__", (self.0.degree(),))
-    }
+    made_by new(degree);
 }
 
 /// The law of the intensity of a sum of independent speckle patterns of any mean intensities.
@@ -191,32 +127,6 @@ impl WeightedSum {
         Ok(Self { law, weights })
     }
 
-    /// Contrast, standard deviation over mean.
-    #[getter]
-    fn contrast(&self) -> f64 {
-        self.law.contrast()
-    }
-
-    /// Return the probability density at intensities in units of their mean, in their shape.
-    fn density<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("intensity", &intensity)], |[i]| self.law.density(i))
-    }
-
-    /// Return the probability of at most an intensity in units of the mean, in its shape.
-    fn cumulative<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("intensity", &intensity)], |[i]| {
-            self.law.cumulative(i)
-        })
-    }
-
     fn __repr__(&self) -> String {
         format!("WeightedSum(weights={:?})", self.weights)
     }
@@ -224,6 +134,19 @@ impl WeightedSum {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         by_constructor::<Self>(py, "__call__", (self.weights.clone(),))
     }
+}
+
+methods! {
+    impl WeightedSum as this: this.law;
+
+    /// Contrast, standard deviation over mean.
+    get contrast -> f64;
+
+    /// Return the probability density at intensities in units of their mean, in their shape.
+    map density(intensity);
+
+    /// Return the probability of at most an intensity in units of the mean, in its shape.
+    map cumulative(intensity);
 }
 
 /// The law of the intensity of speckle on a coherent background, such as a specular reflection.
@@ -250,42 +173,22 @@ impl CoherentBackground {
         let law = physics::CoherentBackground::from_contrast(contrast).or_raise()?;
         Ok(Self(law))
     }
+}
+
+methods! {
+    impl CoherentBackground as this: this.0;
 
     /// Beam ratio, background over mean of the speckle.
-    #[getter]
-    fn beam_ratio(&self) -> f64 {
-        self.0.beam_ratio()
-    }
+    get beam_ratio -> f64;
 
     /// Contrast, standard deviation over mean.
-    #[getter]
-    fn contrast(&self) -> f64 {
-        self.0.contrast()
-    }
+    get contrast -> f64;
 
     /// Return the probability density at intensities in units of their mean, in their shape.
-    fn density<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("intensity", &intensity)], |[i]| self.0.density(i))
-    }
+    map density(intensity);
 
     /// Return the probability of at most an intensity in units of the mean, in its shape.
-    fn cumulative<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("intensity", &intensity)], |[i]| self.0.cumulative(i))
-    }
+    map cumulative(intensity);
 
-    fn __repr__(&self) -> String {
-        format!("CoherentBackground(beam_ratio={:?})", self.0.beam_ratio())
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "__call__", (self.0.beam_ratio(),))
-    }
+    made_by new(beam_ratio);
 }

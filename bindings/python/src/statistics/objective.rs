@@ -1,8 +1,8 @@
-use pyo3::{prelude::*, types::PyAny};
+use pyo3::prelude::*;
 use tem00_statistics as physics;
 
 use crate::{
-    arrays::{Numbers, length, map},
+    arrays::{Numbers, Values, length, map},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -97,18 +97,6 @@ impl ObjectiveSpeckle {
         })
     }
 
-    /// Speckle size along x and y, in metres.
-    #[getter]
-    fn size(&self) -> (f64, f64) {
-        self.speckle.size().into()
-    }
-
-    /// Coherence area in m².
-    #[getter]
-    fn coherence_area(&self) -> f64 {
-        self.speckle.coherence_area()
-    }
-
     /// Return the normalised autocovariance of the intensity.
     ///
     /// Parameters
@@ -119,7 +107,7 @@ impl ObjectiveSpeckle {
         &self,
         py: Python<'py>,
         lag: [Numbers<'py>; 2],
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Values<'py>> {
         let [x, y] = &lag;
         map(py, [("lag", x), ("lag", y)], |lag| {
             self.speckle.autocovariance(lag)
@@ -140,4 +128,14 @@ impl ObjectiveSpeckle {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         by_constructor::<Self>(py, "__call__", (self.wavelength, self.distance, self.area))
     }
+}
+
+methods! {
+    impl ObjectiveSpeckle as this: this.speckle;
+
+    /// Speckle size along x and y, in metres.
+    get size -> (f64, f64);
+
+    /// Coherence area in m².
+    get coherence_area -> f64;
 }

@@ -1,10 +1,9 @@
-use pyo3::{prelude::*, types::PyAny};
+use pyo3::prelude::*;
 use tem00_statistics as physics;
 
 use crate::{
-    arrays::{Count, Numbers, map},
+    arrays::{Count, map},
     error::OrRaise,
-    pickling::{Recipe, by_constructor},
 };
 
 /// The largest order of a moment.
@@ -28,44 +27,24 @@ impl PhasorSum {
         let law = py.detach(|| physics::PhasorSum::new(count)).or_raise()?;
         Ok(Self(law))
     }
+}
+
+methods! {
+    impl PhasorSum as this: this.0;
 
     /// Number of phasors.
-    #[getter]
-    fn count(&self) -> usize {
-        self.0.count()
-    }
+    get count -> usize;
 
     /// Contrast, standard deviation over mean.
-    #[getter]
-    fn contrast(&self) -> f64 {
-        self.0.contrast()
-    }
+    get contrast -> f64;
 
     /// Return the probability density at intensities in units of their mean, in their shape.
-    fn density<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("intensity", &intensity)], |[i]| self.0.density(i))
-    }
+    map density(intensity);
 
     /// Return the probability of at most an intensity in units of the mean, in its shape.
-    fn cumulative<'py>(
-        &self,
-        py: Python<'py>,
-        intensity: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("intensity", &intensity)], |[i]| self.0.cumulative(i))
-    }
+    map cumulative(intensity);
 
-    fn __repr__(&self) -> String {
-        format!("PhasorSum(count={})", self.0.count())
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "__call__", (self.0.count(),))
-    }
+    made_by new(count);
 }
 
 /// Return the contrast of the intensity of a sum of `count` phasors, √(1 − 1/count).

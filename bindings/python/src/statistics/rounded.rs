@@ -28,30 +28,6 @@ impl GreyLevels {
         Ok(py.detach(|| physics::GreyLevels::of(values)).map(Self))
     }
 
-    /// Share of the pixels at the largest level.
-    #[getter]
-    fn share_of_largest(&self) -> f64 {
-        self.0.share_of_largest()
-    }
-
-    /// Number of levels.
-    #[getter]
-    fn count(&self) -> usize {
-        self.0.count()
-    }
-
-    /// Smallest difference of two levels.
-    #[getter]
-    fn step(&self) -> f64 {
-        self.0.step()
-    }
-
-    /// Whether all levels are whole multiples of the step.
-    #[getter]
-    fn are_multiples(&self) -> bool {
-        self.0.are_multiples()
-    }
-
     /// Return the position of the largest level that is not above a value, or 0.
     fn index(&self, value: f64) -> usize {
         self.0.index(value)
@@ -74,40 +50,6 @@ impl GreyLevels {
         Ok(self.0.nearest_edge(value))
     }
 
-    /// Return the mean of the exponential law whose values, rounded to the levels, have a mean.
-    ///
-    /// Parameters
-    /// ----------
-    /// rounded : float or array
-    ///     Mean of the rounded values, positive.
-    fn exponential_mean<'py>(
-        &self,
-        py: Python<'py>,
-        rounded: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        rounded.positive("rounded")?;
-        map(py, [("rounded", &rounded)], |[mean]| {
-            self.0.exponential_mean(mean)
-        })
-    }
-
-    /// Return the contrast of an exponential law whose values, rounded to the levels, have a mean.
-    ///
-    /// Parameters
-    /// ----------
-    /// rounded : float or array
-    ///     Mean of the rounded values, positive.
-    fn exponential_contrast<'py>(
-        &self,
-        py: Python<'py>,
-        rounded: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        rounded.positive("rounded")?;
-        map(py, [("rounded", &rounded)], |[mean]| {
-            self.0.exponential_contrast(mean)
-        })
-    }
-
     /// Return the samples in ascending order, those of each level spread evenly over its cell.
     fn spread<'py>(
         &self,
@@ -122,6 +64,38 @@ impl GreyLevels {
         let (count, step) = (self.0.count(), self.0.step());
         format!("<GreyLevels: count={count}, step={step:?}>")
     }
+}
+
+methods! {
+    impl GreyLevels as this: this.0;
+
+    /// Share of the pixels at the largest level.
+    get share_of_largest -> f64;
+
+    /// Number of levels.
+    get count -> usize;
+
+    /// Smallest difference of two levels.
+    get step -> f64;
+
+    /// Whether all levels are whole multiples of the step.
+    get are_multiples -> bool;
+
+    /// Return the mean of the exponential law whose values, rounded to the levels, have a mean.
+    ///
+    /// Parameters
+    /// ----------
+    /// rounded : float or array
+    ///     Mean of the rounded values, positive.
+    map exponential_mean(rounded: positive);
+
+    /// Return the contrast of an exponential law whose values, rounded to the levels, have a mean.
+    ///
+    /// Parameters
+    /// ----------
+    /// rounded : float or array
+    ///     Mean of the rounded values, positive.
+    map exponential_contrast(rounded: positive);
 }
 
 /// How well samples agree with a law, whether they were rounded or not.

@@ -11,28 +11,23 @@ pub(crate) struct Singularity(physics::Singularity);
 
 #[pymethods]
 impl Singularity {
-    /// Column of the cell: the singularity lies between this sample and the next.
-    #[getter]
-    fn x(&self) -> usize {
-        self.0.x
-    }
-
-    /// Row of the cell.
-    #[getter]
-    fn y(&self) -> usize {
-        self.0.y
-    }
-
-    /// +1 where the phase grows on the way from the x to the y axis, −1 where it falls.
-    #[getter]
-    fn charge(&self) -> i8 {
-        self.0.charge
-    }
-
     fn __repr__(&self) -> String {
         let physics::Singularity { x, y, charge } = self.0;
         format!("<Singularity: x={x}, y={y}, charge={charge}>")
     }
+}
+
+methods! {
+    impl Singularity as this: this.0;
+
+    /// Column of the cell: the singularity lies between this sample and the next.
+    field x -> usize;
+
+    /// Row of the cell.
+    field y -> usize;
+
+    /// +1 where the phase grows on the way from the x to the y axis, −1 where it falls.
+    field charge -> i8;
 }
 
 /// Find the phase singularities of a sampled field, cell by cell, in the order of its rows.
@@ -77,33 +72,25 @@ impl VortexDensity {
         Ok(Self(density.or_raise_renamed(&["samples"], "field")?))
     }
 
-    /// Number of singularities.
-    #[getter]
-    fn count(&self) -> usize {
-        self.0.count()
-    }
-
-    /// Number of singularities per squared sample.
-    #[getter]
-    fn value(&self) -> f64 {
-        self.0.value()
-    }
-
-    /// Standard error of the density, per squared sample.
-    #[getter]
-    fn standard_error(&self) -> f64 {
-        self.0.standard_error()
-    }
-
-    /// Speckle size that makes this density, in samples; `None` without singularities.
-    #[getter]
-    fn speckle_size(&self) -> Option<f64> {
-        self.0.speckle_size()
-    }
-
     fn __repr__(&self) -> String {
         let (count, value) = (self.0.count(), self.0.value());
         let error = self.0.standard_error();
         format!("<VortexDensity: count={count}, value={value:?}, standard_error={error:?}>")
     }
+}
+
+methods! {
+    impl VortexDensity as this: this.0;
+
+    /// Number of singularities.
+    get count -> usize;
+
+    /// Number of singularities per squared sample.
+    get value -> f64;
+
+    /// Standard error of the density, per squared sample.
+    get standard_error -> f64;
+
+    /// Speckle size that makes this density, in samples; `None` without singularities.
+    get speckle_size -> Option<f64>;
 }

@@ -16,7 +16,7 @@ use std::error::Error;
 
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 use tem00::{
-    decorrelation::{ImagingGeometry, LensData, axial_correlation, equivalent_axial_shift, paper},
+    decorrelation::{ImagingGeometry, LensData, axial_correlation, equivalent_axial_shift},
     speckle::PupilField,
     statistics::pearson_correlation,
 };
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         surface_to_pupil: 0.3,
         pixel_pitch: 3.45e-6,
     })?;
-    let stated = paper::axial_decorrelation_length(&geometry);
+    let stated = tem00_paper::axial_decorrelation_length(&geometry);
     let zero = geometry.axial_decorrelation_length();
     let fields = (0..SEEDS).map(|seed| PupilField::new(768, 256, seed));
     let fields = fields.collect::<Result<Vec<_>, _>>()?;

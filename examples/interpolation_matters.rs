@@ -17,11 +17,10 @@ use std::error::Error;
 
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 use tem00::{
-    speckle::{
-        Interpolation, PupilField, SlicePath, SpeckleStack, StackOptions, paper::BilinearStack,
-    },
+    speckle::{Interpolation, PupilField, SlicePath, SpeckleStack, StackOptions},
     statistics::{Contrast, StatisticsError},
 };
+use tem00_paper::BilinearStack;
 
 /// Speckles across a pattern.
 const SPECKLES: usize = 256;

@@ -7,8 +7,9 @@
 
 use tem00::beam::{
     BeamError, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam, LaserLine, LineLight,
-    LineProfile, Placement, paper,
+    LineProfile, Placement,
 };
+use tem00_paper as paper;
 
 const NODES: i32 = 200;
 
@@ -42,7 +43,7 @@ fn main() -> Result<(), BeamError> {
     };
     let light = LineLight::place(&line, &placement, 1.0)?;
 
-    let excess = paper::PrintedFan::new(focus, fan.fan_angle, 0.2)?.power_per_watt(0.2);
+    let excess = paper::PrintedFan::new(&line).power_per_watt(0.2);
 
     println!("A 1 W line, 20° wide and 0.2 mm thick at 200 mm");
     println!("tilt | theory | measured | as printed | printed, with the fan normalised");

@@ -8,9 +8,10 @@
 
 use tem00::decorrelation::{
     CameraFrame, DVec2, DVec3, DecorrelationError, ImageOrientation, ImagingGeometry, LensData,
-    LineOfSight, Motion, SpeckleMotion, SurfacePoint, Wavefront, paper,
+    LineOfSight, Motion, SpeckleMotion, SurfacePoint, Wavefront,
 };
 use tem00::numerics::circular_path_overlap;
+use tem00_paper as paper;
 
 fn main() -> Result<(), DecorrelationError> {
     let geometry = ImagingGeometry::from_lens(LensData {
@@ -26,7 +27,8 @@ fn main() -> Result<(), DecorrelationError> {
     // The waist of the line lies on the surface: its wavefront is curved along the fan only.
     let line = Wavefront::astigmatic(laser, DVec3::Y, 1.0 / laser_distance, 0.0)?;
     let point = SurfacePoint::new(LineOfSight::new(&camera, eye)?, DVec3::Z, line)?;
-    let (axes, angles) = paper::EulerAngles::between(&camera, DVec3::Z)?;
+    let (axes, angles) =
+        paper::EulerAngles::between(&camera, DVec3::Z).expect("a normal of unit length");
     let emitter = paper::Emitter {
         direction: axes.transpose() * line.direction_to_source(),
         distance: laser_distance,

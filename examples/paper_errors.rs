@@ -17,12 +17,11 @@ use kuva::prelude::{LinePlot, Plot};
 use tem00::{
     decorrelation::{
         CameraFrame, DVec2, DVec3, ImageOrientation, ImagingGeometry, LensData, LineOfSight,
-        Motion, SurfacePoint, Wavefront, axial_correlation,
-        paper::{self, Emitter, EulerAngles},
-        pupil_overlap_correlation,
+        Motion, SurfacePoint, Wavefront, axial_correlation, pupil_overlap_correlation,
     },
     numerics::circular_path_overlap,
 };
+use tem00_paper::{self as paper, Emitter, EulerAngles};
 
 /// From the surface to the pupil, in metres.
 const DISTANCE: f64 = 0.3;

@@ -47,12 +47,23 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &["glam", "num-complex", "rand_chacha", "rand_core"],
     ),
     (
+        "tem00-paper",
+        &[
+            "tem00-beam",
+            "tem00-decorrelation",
+            "tem00-numerics",
+            "tem00-speckle",
+        ],
+        &["glam"],
+    ),
+    (
         "tem00-tracer",
         &[
             "tem00-beam",
             "tem00-camera",
             "tem00-decorrelation",
             "tem00-numerics",
+            "tem00-paper",
             "tem00-speckle",
         ],
         &[

@@ -179,16 +179,6 @@ fn every_type_of_decorrelation_crosses_threads() {
     );
 }
 
-#[test]
-fn the_formulas_as_printed_cross_threads() {
-    use tem00::{beam::paper as lights, decorrelation::paper as motions, speckle::paper as stacks};
-    let names = names_of_shared! {
-        lights::DiscConeRay, lights::DiscConeSampler, lights::PrintedEvent,
-        lights::PrintedFan, motions::Emitter, motions::EulerAngles, stacks::BilinearStack,
-    };
-    assert_eq!(names.count(), 7, "types of the modules `paper`");
-}
-
 /// The sources of a folder, tests aside.
 fn sources(folder: PathBuf) -> Vec<PathBuf> {
     let mut found = Vec::new();

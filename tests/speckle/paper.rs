@@ -3,9 +3,10 @@
 
 use proptest::{prelude::*, test_runner::RngSeed};
 use tem00::{
-    speckle::{PupilField, SlicePath, SpeckleStack, paper::BilinearStack},
+    speckle::{PupilField, SlicePath, SpeckleStack},
     statistics::{Contrast, Moments, t_test_mean},
 };
+use tem00_paper::BilinearStack;
 
 /// The squared contrast of a look-up over the cells of a tile, at one fraction of each.
 fn squared_contrast(size: usize, [fx, fy]: [f64; 2], look_up: impl Fn(f64, f64) -> f64) -> f64 {

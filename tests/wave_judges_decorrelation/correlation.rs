@@ -6,7 +6,7 @@ use tem00::{
     decorrelation::{
         self, CameraFrame, Configuration, ConfigurationData, CorrelationLaw, ImageOrientation,
         ImagingGeometry, LineOfSight, Motion, PupilDistances, SpeckleMotion, SurfacePoint,
-        Wavefront, axial_correlation, paper, pupil_overlap_correlation,
+        Wavefront, axial_correlation, pupil_overlap_correlation,
     },
     numerics::Fft2,
     wave::{
@@ -288,7 +288,7 @@ fn motion_along_the_axis_leaves_a_squared_sinc_with_its_zero_at_twice_the_printe
     };
     let geometry = bench.geometry();
     // a_O is the motion in units of the printed length.
-    let printed = paper::axial_decorrelation_length(&geometry);
+    let printed = tem00_paper::axial_decorrelation_length(&geometry);
     let motions = [0.25, 0.5, 1.0, 1.5, 2.0, 2.5, -1.0];
     let state = |a_o: &f64| State {
         motion: Motion {

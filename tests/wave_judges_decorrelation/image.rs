@@ -1,9 +1,7 @@
 //! Displacement of the speckle in the image, in focus and out of it.
 
 use tem00::{
-    decorrelation::{
-        ImageOrientation, ImagingGeometry, Motion, PupilDistances, SpeckleMotion, paper,
-    },
+    decorrelation::{ImageOrientation, ImagingGeometry, Motion, PupilDistances, SpeckleMotion},
     wave::{
         Amplitudes, Arrangement, Camera, DVec2, DVec3, Field, Grid, ImageSampling, ImageWindow,
         Lens, PatchDescription, RoughSurface, Roughness, displacement_between,
@@ -57,10 +55,10 @@ impl Case {
 
     /// Equation (5) as Bergmann et al. 2016 print it, upright.
     fn printed_law(&self) -> DVec2 {
-        let angles = paper::EulerAngles::between(&self.scene.frame(), self.scene.normal);
+        let angles = tem00_paper::EulerAngles::between(&self.scene.frame(), self.scene.normal);
         let (axes, angles) = angles.expect("angles");
         let motion = axes.transpose() * self.motion.surface;
-        -paper::image_displacement(self.geometry().magnification(), angles, motion)
+        -tem00_paper::image_displacement(self.geometry().magnification(), angles, motion)
     }
 
     /// Measures the displacement in the image, in metres, on the mean over some surfaces.

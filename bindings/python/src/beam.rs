@@ -16,7 +16,6 @@ mod lights;
 mod line;
 mod line_lights;
 mod located;
-mod paper;
 mod placement;
 mod profile;
 mod records;
@@ -47,7 +46,6 @@ pub(crate) mod beam {
         line::{FanGeometry, LaserLine},
         line_lights::{LineLight, TabulatedLineLight},
         located::LocatedBeam,
-        paper::paper,
         placement::{Axis, Ellipse, Placement},
         profile::{AngularProfile, LineProfile},
         records::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent},

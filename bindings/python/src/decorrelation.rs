@@ -6,7 +6,6 @@ mod geometry;
 mod illumination;
 mod lens;
 mod motion;
-mod paper;
 mod rigid;
 mod speckle_motion;
 mod vectors;
@@ -34,7 +33,6 @@ pub(crate) mod decorrelation {
         illumination::Illumination,
         lens::{Focus, LensData, PupilDistances, ThickLensData},
         motion::{Motion, SurfacePoint},
-        paper::paper,
         rigid::{RigidMotion, RigidMotions},
         speckle_motion::SpeckleMotion,
         wavefront::Wavefront,

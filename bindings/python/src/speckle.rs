@@ -10,7 +10,6 @@ mod files;
 mod images;
 mod objective;
 mod options;
-mod paper;
 mod path;
 mod pattern;
 mod pixels;
@@ -32,7 +31,6 @@ pub(crate) mod speckle {
         field::PupilField,
         objective::{LitArea, ObjectiveSpeckle},
         options::StackOptions,
-        paper::paper,
         path::SlicePath,
         pattern::{SpeckleField, SpecklePattern},
         pixels::PixelArray,

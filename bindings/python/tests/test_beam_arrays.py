@@ -9,7 +9,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from tem00 import ParameterError, beam
-from tem00.beam import paper
 
 LASER = beam.GaussianBeam.from_waist(650e-9, 1e-4)
 ELLIPTIC = beam.AstigmaticBeam.from_divergences(650e-9, (1e-3, 2e-3))
@@ -32,7 +31,6 @@ QUERIES: dict[str, tuple[Callable[..., object], int]] = {
     "section": (lambda x, y, z: SECTION.power_in_slit(x, y), 0),
     "light flux": (SPOT.flux, 3),
     "light": (SPOT.irradiance, 0),
-    "streamline": (lambda x, y, z: paper.streamline_point(LASER, x, y, z, 0.1), 3),
 }
 queries = pytest.mark.parametrize("name", QUERIES)
 

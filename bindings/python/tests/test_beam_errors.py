@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from tem00 import ParameterError, beam
-from tem00.beam import closed_form, paper
+from tem00.beam import closed_form
 
 NAN, INF = float("nan"), float("inf")
 LASER = beam.GaussianBeam.from_waist(650e-9, 1e-4)
@@ -131,11 +131,6 @@ REFUSED: list[tuple[str, Callable[[], object]]] = [
     ("d", lambda: SPOT.radiance(0, 0, 0, [0, 1])),
     ("wi", lambda: SPOT.next_event_pdf(0, 0, 0, [0, NAN, 1])),
     ("l", lambda: SPOT.bounds(INF)),
-    ("l", lambda: paper.modified_divergence(LASER, 0)),
-    ("l", lambda: paper.lost_by_cone([0.5, 1])),
-    ("l", lambda: paper.DiscConeSampler(LASER, 0.1, NAN)),
-    ("fan_angle", lambda: paper.PrintedFan(LASER, 0, 0.1)),
-    ("n", lambda: paper.spot_next_event(SPOT, 0, 0, 0, [0, 1])),
 ]
 
 

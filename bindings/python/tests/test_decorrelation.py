@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from scipy import integrate
 from tem00 import decorrelation as dc
 from tem00._typing import FloatArray
-from tem00.decorrelation import paper
 
 WAVELENGTH = 650e-9
 LENS = dc.LensData(
@@ -378,34 +377,6 @@ def test_large_changes_alter_the_phase_of_heights() -> None:
     assert math.isclose(speckle.correlation, disc_overlap(180e-6 / 3.125e-3) ** 2, rel_tol=1e-5)
 
 
-def test_the_paper_is_quoted_as_printed() -> None:
-    frame = dc.CameraFrame.look_at([0.2, 0.1, 0.3], [0, 0, 0], [0, 1, 0])
-    axes, angles = paper.EulerAngles.between(frame, [0, 0, 1])
-    to_surface = axes.T
-    camera = np.stack([frame.right, frame.up, frame.towards_camera], axis=1)
-    np.testing.assert_allclose(angles.camera_axes, to_surface @ camera, atol=1e-14)
-    (s1, c1), (s2, c2) = ((math.sin(q), math.cos(q)) for q in (angles.q1, angles.q2))
-    a = np.array([1e-4, -2e-4, 3e-5])
-    printed = -0.1 * np.array([[c1, 0, s1], [s1 * s2, c2, c1 * s2]]) @ a
-    np.testing.assert_allclose(paper.image_displacement(0.1, angles, a), printed, atol=1e-18)
-    emitter = paper.Emitter(direction=[0, 0, 1], distance=math.inf)
-    in_pupil = paper.pupil_displacement(angles, emitter, 0.3, a)
-    assert in_pupil is not None
-    zero = paper.axial_decorrelation_length(CAMERA)
-    m, f_number = CAMERA.magnification, CAMERA.f_number
-    assert math.isclose(zero, WAVELENGTH * (2 * (1 + 1 / m) * f_number) ** 2, rel_tol=1e-14)
-    u = paper.slice_coordinate(CAMERA, (in_pupil[0], in_pupil[1]), 1e-3, 8)
-    length = float(np.hypot(*in_pupil))
-    assert math.isclose(u, (length / CAMERA.pupil_diameter + 1e-3 / zero) * 8, rel_tol=1e-13)
-    np.testing.assert_array_equal(
-        paper.relative_pupil_displacement([1e-3, 0], in_pupil), in_pupil + [1e-3, 0]
-    )
-    x, y = paper.pattern_coordinate(CAMERA, (1.0, 2.0), (CAMERA.pixel_pitch, 0.0), 4.0)
-    scale = 4 / CAMERA.speckle_size_in_pixels
-    assert math.isclose(x, 2 * scale, rel_tol=1e-13)
-    assert math.isclose(y, 2 * scale, rel_tol=1e-13)
-
-
 BENCH = Bench()
 OBJECTS = [
     LENS,
@@ -515,8 +486,6 @@ REFUSALS: list[tuple[Callable[[], object], str]] = [
     (lambda: setup(half_period=-1), "half_period"),
     (lambda: setup(orientation="left"), "orientation"),
     (lambda: dc.motion_multiple(0.5, math.nan, 0.0), "pupil_shift"),
-    (lambda: paper.EulerAngles(q1=math.inf, q2=0.0), "q1"),
-    (lambda: paper.Emitter(direction=[0, 0, 1], distance=math.nan), "distance"),
 ]
 
 

@@ -13,7 +13,7 @@ from tem00 import statistics as st
 
 
 def test_every_module_can_be_imported_by_its_name() -> None:
-    for name in ("statistics", "decorrelation", "decorrelation.paper"):
+    for name in ("statistics", "decorrelation"):
         module = importlib.import_module(f"tem00.{name}")
         assert module.__name__ == f"tem00.{name}"
 

@@ -24,7 +24,6 @@ from tem00.speckle import (
     StackPlan,
     Transmission,
 )
-from tem00.speckle.paper import BilinearStack
 
 FIELD = PupilField(64, 16, 7)
 STACK = SpeckleStack.generate(FIELD, SlicePath.circle(half_period=2))
@@ -113,9 +112,6 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
         "displacement",
         "inf",
     ),
-    (lambda: BilinearStack.generate(FIELD, 0), "half_period", "0"),
-    (lambda: BilinearStack.generate(FIELD, 2).contrast_between_slices(4, 0.5), "index", "4"),
-    (lambda: BilinearStack.generate(FIELD, 2).intensity_at(0.0, np.nan, 0.0), "y", "NaN"),
     (lambda: SpeckleStack.read_from(__file__, 1 << 20), "file", "stack"),
     (
         lambda: SpeckleStack.read_npy(__file__, FIELD, SlicePath.still(), StackOptions()),
@@ -143,7 +139,6 @@ TOO_LARGE: list[Callable[[], object]] = [
         FIELD, SlicePath.circle(half_period=4), StackOptions(memory_limit=1000)
     ),
     lambda: StackPlan(needs(memory_limit=1000)),
-    lambda: BilinearStack.generate(PupilField(2**15, 8, 0), 2**15),
     lambda: STACK.intensity_at(
         np.zeros((10**6, 1, 1)), np.zeros((1, 10**6, 1)), np.zeros((1, 1, 100))
     ),

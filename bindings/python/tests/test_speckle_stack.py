@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from scipy import ndimage, optimize
 
 from tem00.speckle import PupilField, SlicePath, SpeckleStack, StackOptions
-from tem00.speckle.paper import BilinearStack
 
 SIZE, DIAMETER = 64, 20
 CIRCLE = SlicePath.circle(half_period=4)
@@ -297,17 +296,3 @@ def test_a_stack_file_keeps_the_bits(stack: SpeckleStack, tmp_path: Path) -> Non
     assert SpeckleStack.read_from(file, 1 << 20) == stack
     with pytest.raises(MemoryError, match="at most 1000 bytes"):
         SpeckleStack.read_from(file, 1000)
-
-
-def test_the_printed_look_up_is_bilinear_in_the_intensity(field: PupilField) -> None:
-    printed = BilinearStack.generate(field, 3)
-    assert (printed.size, printed.slice_count) == ((SIZE, SIZE), 6)
-    stack = SpeckleStack.generate(field, SlicePath.circle(half_period=3))
-    slices = [field.pattern_at(stack.offset(i), 0.0).values for i in (2, 3)]
-    x, y = np.array([3.25, 40.5]), np.array([7.75, 62.5])
-    here, there = (ndimage.map_coordinates(s.astype(float), [y, x], order=1) for s in slices)
-    expected = 0.6 * here + 0.4 * there
-    np.testing.assert_allclose(printed.intensity_at(x, y, 2.4), expected, atol=SINGLE)
-    # Contrasts with Q / C = 3.2 samples per speckle lie between those of 2 and of 4.
-    assert 0.757 < printed.contrast_between_samples(0.5, 0.5) < 0.927
-    assert printed.contrast_between_slices(0, 0.5) < printed.contrast_between_slices(0, 0.1)

@@ -7,7 +7,6 @@ comment superfluous, which is an error as well.
 import numpy as np
 from tem00 import ParameterError, decorrelation, statistics
 from tem00._typing import FloatArray
-from tem00.decorrelation import paper
 from typing_extensions import assert_type
 
 INTENSITIES = np.linspace(0.0, 3.0, 7)
@@ -74,7 +73,6 @@ def structures() -> None:
     decorrelation.CameraFrame.look_at(1.0, [0, 0, 0], [0, 1, 0])  # type: ignore[arg-type]
     assert_type(frame.right, FloatArray)
     decorrelation.Motion(surfaces=[0, 0, 1])  # type: ignore[call-arg]
-    paper.EulerAngles(0.1, 0.2)  # type: ignore[call-arg]
 
 
 def errors() -> None:

@@ -131,8 +131,6 @@ pub enum BeamError {
     Direction(DVec3),
     /// The fan axis of a placement has no length, is not finite, or is parallel to the direction.
     FanAxis(DVec3),
-    /// The fraction of the peak at which a cone is cut off is not in the open interval (0, 1).
-    CutoffFraction(f64),
     /// A field of a placed light is outside the range that single precision can carry.
     SinglePrecision(f64),
 }
@@ -190,7 +188,6 @@ impl BeamError {
             Self::Origin(..) => "origin",
             Self::Direction(..) => "direction",
             Self::FanAxis(..) => "fan_axis",
-            Self::CutoffFraction(..) => "l",
             Self::SinglePrecision(..) => "single_precision",
         }
     }
@@ -358,9 +355,6 @@ impl fmt::Display for BeamError {
                 "fan axis must be finite, have a length and not be parallel to the direction, \
                  got {got}"
             ),
-            Self::CutoffFraction(got) => {
-                write!(f, "cut-off fraction must lie in (0, 1), got {got:e}")
-            }
             Self::SinglePrecision(got) => write!(
                 f,
                 "a field of the light is outside the range of f32, got {got:e}"

@@ -27,8 +27,6 @@
 //! densities, radiance, bounds and batches. The text of their [closed forms](closed_form) in WGSL
 //! and C is for kernels that cannot call a library.
 //!
-//! Formulas as printed by Bergmann et al. 2016, each with the size of its error, are in [`paper`].
-//!
 //! # Scope and non-goals
 //!
 //! Paraxial, scalar beams of one wavelength, with M² ≥ 1, in free space and through ideal lenses,
@@ -71,7 +69,6 @@ mod general;
 mod line;
 mod located;
 mod normal;
-pub mod paper;
 mod placed;
 mod profile;
 mod real;

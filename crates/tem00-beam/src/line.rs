@@ -101,8 +101,8 @@ pub struct FanGeometry {
 ///
 /// # References
 ///
-/// - S. Bergmann et al., 2016, section 4, whose scaling of x is normalised here; see
-///   [`paper::PrintedFan`](crate::paper::PrintedFan).
+/// - S. Bergmann et al., 2016, section 4, whose scaling of x, here normalised, gives the power `T z / w`
+///   instead of 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserLine {
     focus: GaussianBeam,

@@ -54,8 +54,7 @@ pub fn pupil_overlap_correlation(shift: f64) -> f64 {
 /// not. The function is even.
 ///
 /// In the notation of the original x = `a_O`/2. Bergmann et al. 2016 take the pattern for
-/// decorrelated at `a_O` = 1, where 40.5 % are left: see
-/// [`paper::axial_decorrelation_length`](crate::paper::axial_decorrelation_length).
+/// decorrelated at `a_O` = 1, where 40.5 % are left.
 ///
 /// # Examples
 ///

@@ -454,8 +454,7 @@ impl ImagingGeometry {
     /// moves across the image *by* `a_I`. `pattern_speckle_size` is `h_p`, the speckle size of the
     /// pattern in samples. The result is not wrapped to the period of the pattern.
     ///
-    /// Bergmann et al. 2016, §6.3, prints a plus sign: see
-    /// [`paper::pattern_coordinate`](crate::paper::pattern_coordinate).
+    /// Bergmann et al. 2016, §6.3, prints a plus sign, by which the pattern runs backwards.
     pub fn pattern_coordinate(
         &self,
         pixel: DVec2,

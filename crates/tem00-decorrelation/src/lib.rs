@@ -27,9 +27,6 @@
 //! | What happens at many points at once? | [`MotionField`] |
 //! | Where do I look in the pattern? | [`ImagingGeometry::pattern_coordinate`], [`slice_coordinate`] |
 //!
-//! The module [`paper`] holds the formulas as Bergmann et al. 2016 print them, each with the size
-//! of its error.
-//!
 //! # Two laws of motion
 //!
 //! | | [`SpeckleMotion::new`] | [`SpeckleMotion::between`] |
@@ -110,7 +107,6 @@ mod geometry;
 mod illumination;
 mod lens;
 mod motion;
-pub mod paper;
 mod rigid;
 mod wavefront;
 

@@ -125,8 +125,8 @@ impl SurfacePoint {
     ///
     /// Π is [`LineOfSight::project`], Z the [depth](LineOfSight::depth) of the point and C the
     /// [principal distance](ImagingGeometry::principal_distance) of the camera. On the
-    /// optical axis, this is eq. (5) of Bergmann et al. 2016 with its sign corrected: see
-    /// [`paper::image_displacement`](crate::paper::image_displacement).
+    /// optical axis, this is eq. (5) of Bergmann et al. 2016 with the sign of sin q₁ in its
+    /// first row corrected: as printed, motion along the normal goes the wrong way at 30°.
     pub fn image_displacement(
         &self,
         geometry: &ImagingGeometry,
@@ -149,8 +149,7 @@ impl SurfacePoint {
     ///
     /// with the curvature K of the wavefront, the normal n, the line of sight l, its length d and
     /// the projection Π onto the pupil plane. For a line of sight along the optical axis and a
-    /// spherical wave this is the pair of Sjödahl 1995:
-    /// see [`paper::pupil_displacement`](crate::paper::pupil_displacement).
+    /// spherical wave this is the pair of Sjödahl 1995.
     ///
     /// Returns `None` where the surface is seen edge-on under a curved wave: the speckle then
     /// rushes across the pupil, and the pattern counts as decorrelated.

@@ -71,7 +71,6 @@ mod error;
 mod interpolation;
 mod light;
 mod npy;
-pub mod paper;
 mod pupil;
 mod stack;
 

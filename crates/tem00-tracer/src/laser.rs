@@ -4,7 +4,7 @@ mod wave;
 use glam::DVec3;
 use tem00_beam::{
     AstigmaticBeam, BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight,
-    LineProfile, LocatedBeam, NextEvent, Placement, SpotLight, TabulatedLineLight, paper,
+    LineProfile, LocatedBeam, NextEvent, Placement, SpotLight, TabulatedLineLight,
 };
 use tem00_decorrelation::RigidMotion;
 
@@ -197,8 +197,8 @@ impl Laser {
     ) -> Option<Illumination> {
         let (point, normal) = (point.to_array(), normal.to_array());
         let event = match &self.source {
-            Source::Spot { light, .. } => paper::spot_next_event(light, point, normal),
-            Source::Line { light, .. } => paper::line_next_event(light, point, normal),
+            Source::Spot { light, .. } => tem00_paper::spot_next_event(light, point, normal),
+            Source::Line { light, .. } => tem00_paper::line_next_event(light, point, normal),
         }?;
         Some(Illumination {
             source: DVec3::from_array(event.point),

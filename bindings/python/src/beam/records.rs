@@ -125,5 +125,3 @@ pub(super) fn shown(py: Python<'_>, name: &str, fields: &[(&str, &Py<PyAny>)]) -
     }
     Ok(format!("{name}({})", text.join(", ")))
 }
-
-pub(super) use record;

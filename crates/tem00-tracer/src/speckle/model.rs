@@ -1,6 +1,7 @@
 use glam::DVec2;
-use tem00_decorrelation::{ImagingGeometry, paper as printed, pupil_overlap_correlation};
-use tem00_speckle::{IncoherentSum, SpeckleStack, paper::BilinearStack};
+use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
+use tem00_paper::BilinearStack;
+use tem00_speckle::{IncoherentSum, SpeckleStack};
 
 use super::{
     PatternPlan, SpecklePlan, SpecklePoint,
@@ -249,7 +250,7 @@ impl SpeckleFrame<'_> {
         let (displacement, u) =
             displacement_and_slice(&self.change, laser, geometry, half_period, point);
         let pixel = upright(point.pixel);
-        let c = printed::pattern_coordinate(geometry, pixel, displacement, speckle_size);
+        let c = tem00_paper::pattern_coordinate(geometry, pixel, displacement, speckle_size);
         [c.x, c.y, u]
     }
 }

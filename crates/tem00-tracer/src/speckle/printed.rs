@@ -1,7 +1,8 @@
 //! The motion of speckle by the formulas of Bergmann et al. 2016, as printed.
 
 use glam::DVec2;
-use tem00_decorrelation::{CameraFrame, DecorrelationError, ImagingGeometry, paper};
+use tem00_decorrelation::{CameraFrame, ImagingGeometry};
+use tem00_paper as paper;
 
 use super::{SpecklePoint, change::Change};
 
@@ -19,10 +20,7 @@ pub(super) fn displacement_and_slice(
     if change.is_still(laser, point.surface) {
         return (DVec2::ZERO, 0.0);
     }
-    motion(change, laser, geometry, half_period, point)
-        .ok()
-        .flatten()
-        .unwrap_or((DVec2::ZERO, half_period as f64))
+    motion(change, laser, geometry, half_period, point).unwrap_or((DVec2::ZERO, half_period as f64))
 }
 
 fn motion(
@@ -31,9 +29,9 @@ fn motion(
     geometry: &ImagingGeometry,
     half_period: usize,
     point: &SpecklePoint,
-) -> Result<Option<(DVec2, f64)>, DecorrelationError> {
+) -> Option<(DVec2, f64)> {
     let camera = change.camera();
-    let axes = CameraFrame::from_axes(camera.axes())?;
+    let axes = CameraFrame::from_axes(camera.axes()).ok()?;
     let (surface_axes, angles) = paper::EulerAngles::between(&axes, point.normal)?;
     let to_surface = surface_axes.transpose();
     let to_emitter = change.laser(laser).description().position - point.position;
@@ -46,16 +44,14 @@ fn motion(
     let in_image = paper::image_displacement(geometry.magnification(), angles, to_surface * seen);
     let distance = camera.position().distance(point.position);
     let surface = to_surface * moved.surface;
-    let in_pupil = paper::pupil_displacement(angles, emitter, distance, surface);
-    Ok(in_pupil.map(|in_pupil| {
-        let (right, up) = (axes.right(), axes.up());
-        let of_camera = DVec2::new(moved.camera.dot(right), moved.camera.dot(up));
-        let u = paper::slice_coordinate(
-            geometry,
-            paper::relative_pupil_displacement(of_camera, in_pupil),
-            seen.dot(axes.towards_camera()),
-            half_period,
-        );
-        (in_image, u)
-    }))
+    let in_pupil = paper::pupil_displacement(angles, emitter, distance, surface)?;
+    let (right, up) = (axes.right(), axes.up());
+    let of_camera = DVec2::new(moved.camera.dot(right), moved.camera.dot(up));
+    let u = paper::slice_coordinate(
+        geometry,
+        paper::relative_pupil_displacement(of_camera, in_pupil),
+        seen.dot(axes.towards_camera()),
+        half_period,
+    );
+    Some((in_image, u))
 }

@@ -7,7 +7,6 @@ from typing_extensions import disjoint_base
 
 from tem00._typing import FloatArray, Numbers, RealArray, Vector
 from tem00.beam import closed_form as closed_form
-from tem00.beam import paper as paper
 
 __all__ = [
     "AbcdMatrix",
@@ -42,7 +41,6 @@ __all__ = [
     "TabulatedLineLight",
     "ThickLens",
     "closed_form",
-    "paper",
 ]
 
 _ComplexArray = NDArray[np.complex128]

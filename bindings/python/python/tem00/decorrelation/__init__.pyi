@@ -2,7 +2,6 @@ from collections.abc import Sequence
 from typing import ClassVar, Literal, final, overload
 
 from tem00._typing import FloatArray, Numbers, Pair, RealArray, Triple, Vector
-from tem00.decorrelation import paper as paper
 
 __all__ = [
     "CameraFrame",
@@ -30,7 +29,6 @@ __all__ = [
     "equivalent_axial_shift",
     "equivalent_pupil_shift",
     "motion_multiple",
-    "paper",
     "pupil_overlap_correlation",
     "slice_coordinate",
 ]

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from tem00._typing import ComplexArray, FloatArray, Numbers, RealArray, Vector
 
-from . import paper as paper
 
 __all__ = [
     "Bandwidth",
@@ -28,7 +27,6 @@ __all__ = [
     "StackOptions",
     "StackPlan",
     "Transmission",
-    "paper",
 ]
 
 _Interpolation = Literal["cubic_spline", "bilinear", "nearest"]

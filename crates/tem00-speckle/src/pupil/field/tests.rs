@@ -242,7 +242,6 @@ fn fields_cross_threads() {
     fn check<T: Send + Sync>() {}
     check::<PupilField>();
     check::<crate::SpeckleStack>();
-    check::<crate::paper::BilinearStack>();
 }
 
 #[test]

@@ -1,10 +1,7 @@
 use core::f64::consts::FRAC_2_PI;
 
 use glam::DVec3;
-
-use crate::GaussianBeam;
-use crate::placed::phase_space::PhaseSpace;
-use crate::placed::{LineLight, SpotLight};
+use tem00_beam::{Axis, Emitter, GaussianBeam, LineLight, SpotLight};
 
 /// The printed next-event estimation: a point of the aperture and a radiance from there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,16 +27,14 @@ pub struct PrintedEvent {
 /// L has the unit W/m², not W/(m² sr): it stands before a delta distribution over directions. The
 /// division makes a surface as bright as if it faced the beam whatever its tilt, so that it
 /// receives `P / cos θ_s`: 1.15, 2.00 and 3.86 times the power at 30°, 60° and 75°, without bound at
-/// grazing incidence. [`Emitter::next_event`](crate::Emitter::next_event) does not divide.
+/// grazing incidence. [`Emitter::next_event`] does not divide.
 ///
 /// # Examples
 ///
 /// ```
-/// use tem00_beam::paper;
-///
-/// let tilted = paper::radiance(100.0, 60_f64.to_radians().cos());
+/// let tilted = tem00_paper::radiance(100.0, 60_f64.to_radians().cos());
 /// assert!(tilted.is_some_and(|radiance| (radiance - 200.0).abs() < 1e-9));
-/// assert_eq!(paper::radiance(100.0, -0.1), None);
+/// assert_eq!(tem00_paper::radiance(100.0, -0.1), None);
 /// ```
 pub fn radiance(irradiance: f64, cos_surface: f64) -> Option<f64> {
     (cos_surface > 0.0).then(|| irradiance / cos_surface)
@@ -67,21 +62,23 @@ pub fn streamline_point(beam: &GaussianBeam, receiver: DVec3, aperture_z: f64) -
 ///
 /// See [`radiance`] and [`streamline_point`] for what is wrong with it.
 pub fn spot_next_event(light: &SpotLight<f64>, p: [f64; 3], n: [f64; 3]) -> Option<PrintedEvent> {
-    let [x, y, z] = light.frame().local_from_world_point(p);
-    let flow = light.lit_flow([x, y, z])?;
-    let ratio = |axis: &crate::Axis<f64>| (axis.radius_sq_at(0.0) / axis.radius_sq_at(z)).sqrt();
+    let irradiance = Some(light.irradiance(p)).filter(|&e| e > 0.0)?;
+    let frame = Frame::new(light.origin, [light.ex, light.ey, light.ez]);
+    let [x, y, z] = frame.local(p);
+    let ratio = |axis: &Axis<f64>| (axis.radius_sq_at(0.0) / axis.radius_sq_at(z)).sqrt();
     let aperture = [x * ratio(&light.x), y * ratio(&light.y)];
-    printed_event(light, aperture, p, n, flow.irradiance)
+    printed_event(frame.aperture_point(aperture), p, n, irradiance)
 }
 
 /// Returns the printed next-event estimation of a laser line at `p`, a point of a surface with the
 /// unit normal `n`; `None` outside the cut-off, at or behind the lens, or on the unlit side.
 ///
-/// The fan is that of [`PrintedFan`](super::PrintedFan), which knows only the Gaussian profile, and
+/// The fan is that of [`PrintedFan`](crate::PrintedFan), which knows only the Gaussian profile, and
 /// the scaled x′ is the coordinate that the ratio of beam radii is applied to: the unscaled one
 /// would end outside the aperture. See [`radiance`] for what else is wrong with it.
 pub fn line_next_event(light: &LineLight<f64>, p: [f64; 3], n: [f64; 3]) -> Option<PrintedEvent> {
-    let [x, y, z] = light.frame().local_from_world_point(p);
+    let frame = Frame::new(light.origin, [light.ex, light.ey, light.ez]);
+    let [x, y, z] = frame.local(p);
     if z <= 0.0 {
         return None;
     }
@@ -93,21 +90,40 @@ pub fn line_next_event(light: &LineLight<f64>, p: [f64; 3], n: [f64; 3]) -> Opti
     }
     let irradiance = FRAC_2_PI * light.power / w_sq * (-2.0 * rho_sq).exp();
     let ratio = (light.y.radius_sq_at(light.apex_offset) / w_sq).sqrt();
-    printed_event(light, [x * ratio, y * ratio], p, n, irradiance)
+    let point = frame.aperture_point([x * ratio, y * ratio]);
+    printed_event(point, p, n, irradiance)
 }
 
-fn printed_event(
-    light: &impl PhaseSpace<f64>,
-    aperture: [f64; 2],
-    p: [f64; 3],
-    n: [f64; 3],
-    irradiance: f64,
-) -> Option<PrintedEvent> {
-    let point = light.frame().world_from_aperture(aperture);
-    let towards = DVec3::from(point) - DVec3::from(p);
+/// The frame of a placed light.
+struct Frame {
+    origin: DVec3,
+    axes: [DVec3; 3],
+}
+
+impl Frame {
+    fn new(origin: [f64; 3], axes: [[f64; 3]; 3]) -> Self {
+        Self {
+            origin: DVec3::from(origin),
+            axes: axes.map(DVec3::from),
+        }
+    }
+
+    fn local(&self, p: [f64; 3]) -> [f64; 3] {
+        let from_origin = DVec3::from(p) - self.origin;
+        self.axes.map(|axis| from_origin.dot(axis))
+    }
+
+    fn aperture_point(&self, [x, y]: [f64; 2]) -> DVec3 {
+        let [ex, ey, _] = self.axes;
+        self.origin + (x * ex + y * ey)
+    }
+}
+
+fn printed_event(point: DVec3, p: [f64; 3], n: [f64; 3], irradiance: f64) -> Option<PrintedEvent> {
+    let towards = point - DVec3::from(p);
     let wi = towards.try_normalize()?;
     Some(PrintedEvent {
-        point,
+        point: point.to_array(),
         distance: towards.length(),
         wi: wi.to_array(),
         radiance: radiance(irradiance, wi.dot(DVec3::from(n)))?,
@@ -116,9 +132,10 @@ fn printed_event(
 
 #[cfg(test)]
 mod tests {
+    use tem00_beam::{FanGeometry, FocusCurve, LaserLine, LineProfile, Placement};
+
     use super::*;
-    use crate::paper::PrintedFan;
-    use crate::{Emitter, FanGeometry, FocusCurve, LaserLine, LineProfile, Placement};
+    use crate::PrintedFan;
 
     const PLACEMENT: Placement = Placement {
         origin: DVec3::ZERO,
@@ -208,7 +225,7 @@ mod tests {
         for profile in [LineProfile::GaussianTan, LineProfile::Powell { edge: 0.1 }] {
             let line = LaserLine::new(beam(), geometry, profile.clone()).unwrap();
             let light = LineLight::place(&line, &PLACEMENT, 2e-3).unwrap();
-            let fan = PrintedFan::new(beam(), 0.5, 0.1).unwrap();
+            let fan = PrintedFan::new(&line);
             let p = DVec3::new(0.01, 2e-4, 0.15);
             let printed = line_next_event(&light, p.to_array(), [0.0, 0.0, -1.0]).unwrap();
             let e = printed.radiance * -printed.wi[2];

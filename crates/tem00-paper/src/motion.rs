@@ -1,66 +1,9 @@
-//! Formulas as printed in Bergmann et al. 2016, where they differ from the rest of this crate or
-//! are a special case of it.
-//!
-//! They serve to reproduce the figures of that paper and to show what the difference amounts to.
-//!
-//! | formula | here | instead of | at worst: printed, correct |
-//! |---|---|---|---|
-//! | eq. (5) | [`image_displacement`] | [`SurfacePoint::image_displacement`] | 200 %: the wrong way for motion along the normal |
-//! | `a_P^S`, §6.4 | [`pupil_displacement`] | [`SurfacePoint::pupil_displacement`] | none on the optical axis; off it, 0 instead of −tan of the angle, times `a_z` |
-//! | `d_SL`, §6.4 | [`Emitter`] | [`Wavefront`] | any factor, and the sign, in a Gaussian beam or a fan |
-//! | `a_P^C + a_P^S`, §6.4 | [`relative_pupil_displacement`] | [`Motion`] | twice `a_P^C` instead of 0, unless that is *minus* the camera motion |
-//! | `d_z⁰`, §6.4 | [`axial_decorrelation_length`] | [`ImagingGeometry::axial_decorrelation_length`] | a factor of 2; γ = 0.405 is left |
-//! | u in the plane, §6.4 | [`slice_coordinate`] | [`slice_coordinate`](crate::slice_coordinate) | γ = 0.236, 0.431 at 0.27 D |
-//! | u along the axis | the same | the same | γ = 0.067, 0.856 at 0.43 `d_z⁰` |
-//! | u, both opposed | the same | the same | γ = 1, 0 |
-//! | u past M | the same | the same | γ = 1, 0 |
-//! | c, §6.3 | [`pattern_coordinate`] | [`ImagingGeometry::pattern_coordinate`] | the pattern runs backwards |
-//!
-//! The example `paper_errors` of the workspace computes these numbers.
-//!
-//! Vectors are in *surface coordinates* n1, n2, n3, with n3 the normal; [`EulerAngles::between`]
-//! provides them.
-//!
-//! # Examples
-//!
-//! The look-up of the paper from end to end, for a surface that moves by 0.1 mm along x under a
-//! camera tilted by 45° and a laser emitter 0.5 m above:
-//!
-//! ```
-//! use tem00_decorrelation::{CameraFrame, DVec2, DVec3, ImagingGeometry, LensData, paper};
-//!
-//! let geometry = ImagingGeometry::from_lens(LensData {
-//!     wavelength: 650e-9,
-//!     focal_length: 25e-3,
-//!     f_number: 8.0,
-//!     surface_to_pupil: 0.3,
-//!     pixel_pitch: 3.45e-6,
-//! })?;
-//! let camera = CameraFrame::look_at(DVec3::new(1.0, 0.0, 1.0), DVec3::ZERO, DVec3::Y)?;
-//! let (surface_axes, angles) = paper::EulerAngles::between(&camera, DVec3::Z)?;
-//! let to_surface = surface_axes.transpose();
-//! let a = to_surface * DVec3::new(0.1e-3, 0.0, 0.0);
-//! let emitter = paper::Emitter { direction: to_surface * DVec3::Z, distance: 0.5 };
-//!
-//! let on_sensor = paper::image_displacement(geometry.magnification(), angles, a);
-//! let in_pupil = paper::pupil_displacement(angles, emitter, 0.3, a).unwrap_or(DVec2::ZERO);
-//! let (pixel, h_p, half_period) = (DVec2::new(320.0, 240.0), 4.0, 16);
-//! let c = paper::pattern_coordinate(&geometry, pixel, on_sensor, h_p);
-//! let u = paper::slice_coordinate(&geometry, in_pupil, 0.0, half_period);
-//!
-//! assert!((c - DVec2::new(773.9, 583.9)).length() < 0.1);
-//! assert!((u - 0.796).abs() < 1e-3);
-//! # Ok::<(), tem00_decorrelation::DecorrelationError>(())
-//! ```
-//!
-//! [`SurfacePoint::image_displacement`]: crate::SurfacePoint::image_displacement
-//! [`SurfacePoint::pupil_displacement`]: crate::SurfacePoint::pupil_displacement
-//! [`Motion`]: crate::Motion
-//! [`Wavefront`]: crate::Wavefront
-
 use glam::{DMat3, DVec2, DVec3};
+use tem00_decorrelation::{CameraFrame, ImagingGeometry};
 
-use crate::{CameraFrame, DecorrelationError, GRAZING_COSINE, ImagingGeometry};
+/// The sine of the smallest angle between two directions that have a common normal: the square root
+/// of the rounding unit.
+const SMALLEST_SINE: f64 = 1.0 / 67_108_864.0;
 
 /// The two angles, in radians, by which the paper relates the camera to the surface: `q1` about n2,
 /// then `q2` about the new first axis.
@@ -86,18 +29,11 @@ impl EulerAngles {
     /// there is a choice for which two suffice: n2 across both the normal and b1, on the side that
     /// keeps q1 within ±90°.
     ///
-    /// # Errors
-    ///
-    /// Returns an error if the normal is zero or not finite.
-    pub fn between(
-        camera: &CameraFrame,
-        normal: DVec3,
-    ) -> Result<(DMat3, Self), DecorrelationError> {
-        let n3 = normal
-            .try_normalize()
-            .ok_or(DecorrelationError::Normal(normal))?;
+    /// Returns `None` if the normal is zero or not finite.
+    pub fn between(camera: &CameraFrame, normal: DVec3) -> Option<(DMat3, Self)> {
+        let n3 = normal.try_normalize()?;
         let across = n3.cross(camera.right());
-        let n2 = if across.length() > GRAZING_COSINE {
+        let n2 = if across.length() > SMALLEST_SINE {
             across.normalize()
         } else {
             camera.up()
@@ -108,7 +44,7 @@ impl EulerAngles {
             q1: (-b1.dot(n3)).atan2(b1.dot(n1)),
             q2: (-b3.dot(n2)).atan2(b2.dot(n2)),
         };
-        Ok((DMat3::from_cols(n1, n2, n3), angles))
+        Some((DMat3::from_cols(n1, n2, n3), angles))
     }
 
     /// Returns the axes b1, b2, b3 of the camera in surface coordinates as the columns of a matrix.

@@ -1,9 +1,5 @@
-use core::f64::consts::PI;
-
 use glam::DVec3;
-
-use crate::gaussian::is_coordinate;
-use crate::{BeamError, GaussianBeam};
+use tem00_beam::{GaussianBeam, LaserLine};
 
 /// The laser fan as printed: the irradiance of the round beam, with x scaled to the line.
 ///
@@ -19,7 +15,7 @@ use crate::{BeamError, GaussianBeam};
 ///
 /// The factor `w / (T z)` that a change of variable brings is missing, so that the power on a plane
 /// is [`power_per_watt`](Self::power_per_watt) instead of 1, and z → 0 is singular.
-/// [`LaserLine`](crate::LaserLine) has neither fault.
+/// [`LaserLine`] has neither fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintedFan {
     focus: GaussianBeam,
@@ -28,29 +24,13 @@ pub struct PrintedFan {
 }
 
 impl PrintedFan {
-    /// Creates the fan from the beam, the full fan angle in radians and the distance from the
-    /// emitter to the waist in metres.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if `fan_angle` is not in (0, π), or if `focus_distance` is not finite or
-    /// beyond 1e30 m.
-    pub fn new(
-        focus: GaussianBeam,
-        fan_angle: f64,
-        focus_distance: f64,
-    ) -> Result<Self, BeamError> {
-        if !(fan_angle > 0.0 && fan_angle < PI) {
-            return Err(BeamError::FanAngle(fan_angle));
+    /// Returns the printed form of a line, with the emitter for its lens.
+    pub const fn new(line: &LaserLine) -> Self {
+        Self {
+            focus: *line.focus(),
+            half_slope: line.half_slope(),
+            focus_distance: line.fan().focus_distance,
         }
-        if !is_coordinate(focus_distance) {
-            return Err(BeamError::FocusDistance(focus_distance));
-        }
-        Ok(Self {
-            focus,
-            half_slope: (0.5 * fan_angle).tan(),
-            focus_distance,
-        })
     }
 
     /// Returns the printed irradiance per watt, in m⁻², of a plane of constant z at `point`; 0
@@ -82,17 +62,37 @@ impl PrintedFan {
 
 #[cfg(test)]
 mod tests {
+    use tem00_beam::{FanGeometry, FocusCurve, LineProfile};
+
     use super::*;
-    use crate::{FanGeometry, FocusCurve, LaserLine, LineProfile};
 
     fn focus() -> GaussianBeam {
         GaussianBeam::from_waist(650e-9, 0.1e-3).unwrap()
     }
 
+    /// A line of 0.5 rad that is thinnest 0.2 m from its apex.
+    fn line(apex_offset: f64) -> LaserLine {
+        let geometry = FanGeometry {
+            fan_angle: 0.5,
+            apex_offset,
+            focus_distance: 0.2 - apex_offset,
+            focus_curve: FocusCurve::EqualDistance,
+        };
+        LaserLine::new(focus(), geometry, LineProfile::GaussianTan).unwrap()
+    }
+
+    /// The printed fan that is thinnest 0.2 m from its emitter.
+    fn fan() -> PrintedFan {
+        PrintedFan {
+            focus_distance: 0.2,
+            ..PrintedFan::new(&line(1e-3))
+        }
+    }
+
     #[test]
     fn power_is_off_by_length_over_thickness() {
         const NODES: i32 = 64;
-        let fan = PrintedFan::new(focus(), 0.5, 0.2).unwrap();
+        let fan = fan();
         for z in [0.1, 0.2, 0.4] {
             // The trapezoidal rule on four radii converges beyond rounding; 1e−14 lies outside.
             let h = 4.0 * 0.25_f64.tan() * z / f64::from(NODES);
@@ -113,14 +113,8 @@ mod tests {
     #[test]
     fn normalised_it_is_the_line_from_an_apex_in_the_lens() {
         let apex_offset = 1e-3;
-        let geometry = FanGeometry {
-            fan_angle: 0.5,
-            apex_offset,
-            focus_distance: 0.2 - apex_offset,
-            focus_curve: FocusCurve::EqualDistance,
-        };
-        let line = LaserLine::new(focus(), geometry, LineProfile::GaussianTan).unwrap();
-        let fan = PrintedFan::new(focus(), 0.5, 0.2).unwrap();
+        let line = line(apex_offset);
+        let fan = fan();
         let z = 0.3;
         for x in [0.0, 0.004] {
             let from_apex = DVec3::new(x, 5e-5, z);
@@ -135,7 +129,7 @@ mod tests {
 
     #[test]
     fn nothing_is_lit_at_or_behind_the_emitter() {
-        let fan = PrintedFan::new(focus(), 0.5, 0.2).unwrap();
+        let fan = fan();
         for z in [0.0, -0.1] {
             let irradiance = fan.irradiance_per_watt(DVec3::Z * z);
             assert!(
@@ -143,18 +137,5 @@ mod tests {
                 "z = {z}: {irradiance}"
             );
         }
-    }
-
-    #[test]
-    fn impossible_arguments_are_rejected() {
-        for angle in [0.0, PI, f64::NAN] {
-            let result = PrintedFan::new(focus(), angle, 0.2);
-            assert!(matches!(result, Err(BeamError::FanAngle(_))), "{angle}");
-        }
-        let result = PrintedFan::new(focus(), 0.5, f64::INFINITY);
-        assert!(
-            matches!(result, Err(BeamError::FocusDistance(_))),
-            "{result:?}"
-        );
     }
 }

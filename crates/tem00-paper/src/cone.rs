@@ -1,62 +1,21 @@
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
-
-use crate::gaussian::is_coordinate;
-use crate::{BeamError, GaussianBeam};
+use tem00_beam::{GaussianBeam, LocatedBeam};
 
 /// Returns the modified divergence `θ′`, in radians, that reaches down to the fraction `l` of the
-/// peak.
+/// peak; `None` unless `l` is in the open interval (0, 1). The paper admits 1, which is a cone
+/// without content.
 ///
 /// ```text
 /// θ′ = θ √(−½ ln l)
 /// ```
 ///
 /// At `l = 1/e²` it is the divergence itself. The formula is right; as an angle it is meaningful
-/// while it stays small. The cone leaves out [`lost_by_cone`] of the power.
-///
-/// # Errors
-///
-/// Returns an error if `l` is not in the open interval (0, 1). The paper admits 1, which is a cone
-/// without content.
-pub fn modified_divergence(beam: &GaussianBeam, l: f64) -> Result<f64, BeamError> {
-    if l > 0.0 && l < 1.0 {
-        Ok(beam.divergence() * (-0.5 * l.ln()).sqrt())
-    } else {
-        Err(BeamError::CutoffFraction(l))
-    }
-}
-
-/// Returns the fraction of the power of a circular beam outside the cone that reaches down to the
-/// fraction `l` of the peak: `l` itself.
-///
-/// # Errors
-///
-/// Returns an error if `l` is not in the open interval (0, 1).
-pub fn lost_by_cone(l: f64) -> Result<f64, BeamError> {
-    if l > 0.0 && l < 1.0 {
-        Ok(l)
-    } else {
-        Err(BeamError::CutoffFraction(l))
-    }
-}
-
-/// Returns the fraction of the power of a laser line outside the wedge that reaches down to the
-/// fraction `l` of the peak.
-///
-/// ```text
-/// 1 − erf(√(−ln l))
-/// ```
-///
-/// # Errors
-///
-/// Returns an error if `l` is not in the open interval (0, 1).
-pub fn lost_by_fan_cone(l: f64) -> Result<f64, BeamError> {
-    if l > 0.0 && l < 1.0 {
-        Ok(libm::erfc((-l.ln()).sqrt()))
-    } else {
-        Err(BeamError::CutoffFraction(l))
-    }
+/// while it stays small. The cone leaves out the fraction `l` of the power of a circular beam, and
+/// the wedge that reaches down to `l` leaves out `1 − erf(√(−ln l))` of that of a laser line.
+pub fn modified_divergence(beam: &GaussianBeam, l: f64) -> Option<f64> {
+    (l > 0.0 && l < 1.0).then(|| beam.divergence() * (-0.5 * l.ln()).sqrt())
 }
 
 /// The printed sampler of rays: a uniform point of the aperture disc, a uniform direction of the
@@ -75,7 +34,7 @@ pub fn lost_by_fan_cone(l: f64) -> Result<f64, BeamError> {
 ///
 /// instead of P, and that only where cone and disc together cover the beam. With the waist 0.15 m behind
 /// or ahead of the aperture of a 50 µm beam, up to 84 % of the light is missed at l = 0.01. The disc of radius `w_A`
-/// alone holds `1 − e⁻² = 86.5 %` of the power. [`Emitter::sample_ray`](crate::Emitter::sample_ray)
+/// alone holds `1 − e⁻² = 86.5 %` of the power. [`Emitter::sample_ray`](tem00_beam::Emitter::sample_ray)
 /// has neither fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscConeSampler {
@@ -97,23 +56,14 @@ pub struct DiscConeRay {
 }
 
 impl DiscConeSampler {
-    /// Creates the sampler for a beam whose waist is at the signed distance `waist_distance`, in
-    /// metres, from the aperture; the cone reaches down to the fraction `l` of the peak.
+    /// Creates the sampler for a beam whose reference plane is the aperture; the cone reaches down
+    /// to the fraction `l` of the peak.
     ///
-    /// # Errors
-    ///
-    /// Returns an error if `waist_distance` is not finite or beyond 1e30 m, if `l` is not in the
-    /// open interval (0, 1), or if it is so small that the cone exceeds a half-space.
-    pub fn new(beam: &GaussianBeam, waist_distance: f64, l: f64) -> Result<Self, BeamError> {
-        if !is_coordinate(waist_distance) {
-            return Err(BeamError::WaistDistance(waist_distance));
-        }
-        let half_angle = modified_divergence(beam, l)?;
-        if half_angle > FRAC_PI_2 {
-            return Err(BeamError::CutoffFraction(l));
-        }
-        Ok(Self {
-            aperture_radius: beam.radius_at(waist_distance),
+    /// Returns `None` unless `l` is in the open interval (0, 1) and the cone within a half-space.
+    pub fn new(beam: &LocatedBeam, l: f64) -> Option<Self> {
+        let half_angle = modified_divergence(beam.beam(), l)?;
+        (half_angle <= FRAC_PI_2).then(|| Self {
+            aperture_radius: beam.radius_at(0.0),
             half_angle,
         })
     }
@@ -159,6 +109,11 @@ mod tests {
         GaussianBeam::from_waist(650e-9, 50e-6).unwrap()
     }
 
+    /// The beam with its waist at the signed distance `waist` from the aperture.
+    fn located(waist: f64) -> LocatedBeam {
+        LocatedBeam::new(beam(), waist).unwrap()
+    }
+
     /// ∫ f over [0, b] by the midpoint rule.
     fn integrate(f: impl Fn(f64) -> f64, b: f64) -> f64 {
         const INTERVALS: u32 = 20_000;
@@ -178,15 +133,11 @@ mod tests {
             assert!((profile(edge) / l - 1.0).abs() < 1e-12, "l = {l}");
             let norm = 2.0 / (PI * delta * delta);
             let inside = integrate(|s| norm * profile(s) * TAU * s, edge);
-            let lost = lost_by_cone(l).unwrap();
             // Midpoint rule: (edge / 20000)² / 24 · f' at the ends, 1e−9.
-            assert!(
-                (1.0 - inside - lost).abs() < 1e-8,
-                "l = {l}: {inside}, {lost}"
-            );
+            assert!((1.0 - inside - l).abs() < 1e-8, "l = {l}: {inside}");
             let norm = 2.0 * (2.0 / PI).sqrt() / delta;
             let inside = integrate(|s| norm * profile(s), edge);
-            let lost = lost_by_fan_cone(l).unwrap();
+            let lost = libm::erfc((-l.ln()).sqrt());
             assert!(
                 (1.0 - inside - lost).abs() < 1e-8,
                 "l = {l}: {inside}, {lost}"
@@ -197,7 +148,7 @@ mod tests {
     #[test]
     fn rays_fill_disc_and_cone_uniformly() {
         const COUNT: u32 = 40_000;
-        let sampler = DiscConeSampler::new(&beam(), 0.1, 1e-2).unwrap();
+        let sampler = DiscConeSampler::new(&located(0.1), 1e-2).unwrap();
         let radius = beam().radius_at(0.1);
         let cone = modified_divergence(&beam(), 1e-2).unwrap();
         assert!(
@@ -243,7 +194,7 @@ mod tests {
         const COUNT: u32 = 40_000;
         let l = 1e-4;
         let z = 1.0;
-        let sampler = DiscConeSampler::new(&beam(), 0.0, l).unwrap();
+        let sampler = DiscConeSampler::new(&located(0.0), l).unwrap();
         let mut rng = ChaCha8Rng::seed_from_u64(5);
         let (mut sum, mut squares) = (0.0, 0.0);
         for _ in 0..COUNT {
@@ -291,7 +242,7 @@ mod tests {
         const COUNT: u32 = 40_000;
         let l = 1e-2;
         for (waist, z, lost) in [(-0.15, 0.05, 0.84), (0.15, 0.05, 0.76), (-0.15, 0.15, 0.40)] {
-            let sampler = DiscConeSampler::new(&beam(), waist, l).unwrap();
+            let sampler = DiscConeSampler::new(&located(waist), l).unwrap();
             let mut rng = ChaCha8Rng::seed_from_u64(6);
             let weights = (0..COUNT).map(|_| {
                 let ray = sampler.sample(rng.random());
@@ -328,27 +279,13 @@ mod tests {
     }
 
     #[test]
-    fn impossible_arguments_are_rejected() {
+    fn fractions_outside_the_open_unit_interval_have_no_cone() {
         for l in [0.0, 1.0, -0.5, 2.0, f64::NAN] {
-            let results = [
-                modified_divergence(&beam(), l),
-                lost_by_cone(l),
-                lost_by_fan_cone(l),
-                DiscConeSampler::new(&beam(), 0.0, l).map(|sampler| sampler.half_angle()),
-            ];
-            let rejected = |r: &Result<f64, _>| matches!(r, Err(BeamError::CutoffFraction(_)));
-            assert!(results.iter().all(rejected), "l = {l}: {results:?}");
+            assert_eq!(modified_divergence(&beam(), l), None, "l = {l}");
+            assert_eq!(DiscConeSampler::new(&located(0.0), l), None, "l = {l}");
         }
         let wide = GaussianBeam::from_divergence(650e-9, 0.5).unwrap();
-        let result = DiscConeSampler::new(&wide, 0.0, 1e-30);
-        assert!(
-            matches!(result, Err(BeamError::CutoffFraction(_))),
-            "{result:?}"
-        );
-        let result = DiscConeSampler::new(&wide, f64::NAN, 0.1);
-        assert!(
-            matches!(result, Err(BeamError::WaistDistance(_))),
-            "{result:?}"
-        );
+        let wide = LocatedBeam::new(wide, 0.0).unwrap();
+        assert_eq!(DiscConeSampler::new(&wide, 1e-30), None, "beyond 90°");
     }
 }

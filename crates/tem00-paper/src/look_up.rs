@@ -1,29 +1,17 @@
-//! The look-up as printed in Bergmann et al. 2016, to reproduce its figures and show the
-//! difference.
-//!
-//! | printed | here | consequence |
-//! |---|---|---|
-//! | bilinear interpolation of the intensity | [`BilinearStack::intensity_at`] | contrast 0.757 half-way between samples at a speckle size of 2 |
-//! | linear blend of two intensity slices | [`BilinearStack::intensity_at`] | contrast 0.885 half-way between 2M = 16 slices |
-//! | coordinates wrapped into [0, Q − 1] | [`BilinearStack::intensity_at`] | a jump in the pattern: samples Q − 1 and 0 coincide |
-//! | slice coordinate wrapped into [0, 2M − 1] | [`BilinearStack::intensity_at`] | slices 2M − 1 and 0 coincide: a jump in time |
+use core::f64::consts::PI;
 
-use tem00_numerics::Grid;
-
-use crate::{
-    Phasors, PupilField, SlicePath, SpeckleError,
-    stack::{filled, reserve, workers::map_with_scratch},
-};
+use tem00_numerics::{Grid, available_memory};
+use tem00_speckle::{Phasors, PupilField, SlicePath, SpeckleError, SpeckleScratch};
 
 /// A stack of intensity slices on the circular path, interpolated as printed.
 ///
 /// The mean is 1 everywhere, but the contrast falls between samples and between slices, and the
-/// last interval along each axis is lost. Use [`SpeckleStack`](crate::SpeckleStack) for anything
-/// but comparison.
+/// last interval along each axis is lost: coordinates are wrapped into [0, Q − 1] and [0, 2M − 1],
+/// so that the pattern jumps where it repeats, in the plane and in time. Use
+/// [`SpeckleStack`](tem00_speckle::SpeckleStack) for anything but comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BilinearStack {
     field: PupilField,
-    path: SlicePath,
     slices: Vec<Grid<f32>>,
 }
 
@@ -37,18 +25,22 @@ impl BilinearStack {
     pub fn generate(field: &PupilField, half_period: usize) -> Result<Self, SpeckleError> {
         let path = SlicePath::Circle { half_period };
         path.check()?;
+        // A stack of amplitudes has 8 bytes per sample.
+        let bytes = path.memory_bytes(field.size()) / 2;
+        if available_memory().is_some_and(|available| bytes > available) {
+            return Err(SpeckleError::Memory { bytes });
+        }
         let [width, height] = field.size();
-        let rooms: Vec<Vec<f32>> = reserve(path, field.size())?;
-        let slices = map_with_scratch(rooms, |index, room, scratch| {
-            let mut intensity = filled(room, [width, height], 0.0)?;
-            let offset = path.offset(index, field);
-            field.pattern_into(offset, 0.0, &mut intensity, scratch);
-            Ok(intensity)
-        });
+        let mut scratch = SpeckleScratch::default();
+        let slice = |index| {
+            let mut intensity = Grid::filled(width, height, 0.0);
+            let offset = circle_offset(field, index, half_period);
+            field.pattern_into(offset, 0.0, &mut intensity, &mut scratch);
+            intensity
+        };
         Ok(Self {
-            slices: slices.into_iter().collect::<Result<_, _>>()?,
+            slices: (0..path.slice_count()).map(slice).collect(),
             field: field.clone(),
-            path,
         })
     }
 
@@ -112,9 +104,10 @@ impl BilinearStack {
             "slice {index} of a stack of {}",
             self.slices.len()
         );
-        let centre = |i: usize| self.path.centre(i % self.slices.len(), &self.field);
-        let step = self.field.shift(centre(index), centre(index + 1));
-        let rho = self.field.overlap(step).re;
+        let half_period = self.slices.len() / 2;
+        let [from, to] = [index, index + 1].map(|i| circle_centre(&self.field, i, half_period));
+        let shift = [0, 1].map(|axis| to[axis] - from[axis]);
+        let rho = self.field.overlap(shift).re;
         let (a, b) = square_and_cross(f);
         (a + b * rho * rho - self.fixed_mean() * (a + b * rho))
             .max(0.0)
@@ -128,6 +121,21 @@ impl BilinearStack {
             Some(Phasors::Unit) | None => self.field.effective_phasor_count().recip(),
         }
     }
+}
+
+/// The centre of the pupil of slice `index` on the circle of §6.4, rounded to lattice points so that
+/// all pupils hold the same points.
+#[expect(clippy::cast_possible_truncation, reason = "lattice points are small")]
+fn circle_centre(field: &PupilField, index: usize, half_period: usize) -> [i64; 2] {
+    let angle = PI * index as f64 / half_period as f64;
+    let [x, y] = field.diameter().map(|diameter| 0.5 * diameter);
+    [x * angle.cos(), y * angle.sin()].map(|centre| centre.round() as i64)
+}
+
+/// The same, in pupil diameters.
+fn circle_offset(field: &PupilField, index: usize, half_period: usize) -> [f64; 2] {
+    let centre = circle_centre(field, index, half_period);
+    [0, 1].map(|axis| centre[axis] as f64 / field.diameter()[axis])
 }
 
 /// (1 − f)² + f² and 2 f (1 − f).
@@ -263,12 +271,19 @@ mod tests {
     }
 
     #[test]
+    fn a_stack_beyond_the_memory_is_refused() {
+        let field = PupilField::new(1 << 15, 8, 0).unwrap();
+        let refused = BilinearStack::generate(&field, 1 << 15);
+        assert!(matches!(refused, Err(SpeckleError::Memory { .. })));
+    }
+
+    #[test]
     fn printed_wraps_lose_the_last_interval() {
         let printed = stack(32, 16, 3, 4);
         let pattern = |index: usize| {
             let field = &printed.field;
             field
-                .pattern_at(printed.path.offset(index, field), 0.0)
+                .pattern_at(circle_offset(field, index, 3), 0.0)
                 .into_values()
         };
         let first = pattern(0);

@@ -10,9 +10,15 @@
 //! | [`speckle`] | `tem00-speckle` | pupil field → pattern → stack → look-up |
 //! | [`decorrelation`] | `tem00-decorrelation` | imaging geometry → displacement → correlation |
 //! | [`camera`] | `tem00-camera` | lens and sensor: projection, focus, tilt, distortion |
-//! | [`wave`] | `tem00-wave` | scalar wave optics of rough surfaces, the judge of the others |
-//! | [`statistics`] | `tem00-statistics` | closed forms, estimators, hypothesis tests |
 //! | [`numerics`] | `tem00-numerics` | grids, pruned Fourier transform, pupil functions |
+#![cfg_attr(
+    feature = "statistics",
+    doc = "| [`statistics`] | `tem00-statistics` | closed forms, estimators, hypothesis tests (feature `statistics`) |"
+)]
+#![cfg_attr(
+    feature = "wave",
+    doc = "| [`wave`] | `tem00-wave` | scalar wave optics of rough surfaces, the judge of the others (feature `wave`) |"
+)]
 #![cfg_attr(
     feature = "tracer",
     doc = "| [`tracer`] | `tem00-tracer` | a reference path and light tracer (feature `tracer`) |"
@@ -27,11 +33,13 @@ pub use tem00_camera as camera;
 pub use tem00_decorrelation as decorrelation;
 pub use tem00_numerics as numerics;
 pub use tem00_speckle as speckle;
+#[cfg(feature = "statistics")]
 pub use tem00_statistics as statistics;
 #[cfg(feature = "tracer")]
 pub use tem00_tracer as tracer;
 #[cfg(feature = "triangulation")]
 pub use tem00_triangulation as triangulation;
+#[cfg(feature = "wave")]
 pub use tem00_wave as wave;
 
 #[cfg(doctest)]

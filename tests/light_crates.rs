@@ -25,12 +25,11 @@ fn read(path: impl AsRef<Path>) -> String {
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The crates that `tem00-{name}` brings with it, one to a line; build scripts' included.
-fn brought_by(name: &str, features: &str) -> BTreeSet<String> {
-    let package = format!("tem00-{name}");
+/// The crates that a package brings with it, one to a line; build scripts' included.
+fn brought_by(package: &str, features: &str) -> BTreeSet<String> {
     let output = Command::new(env!("CARGO"))
         .current_dir(root())
-        .args(["tree", "--offline", "--locked", "--package", &package])
+        .args(["tree", "--offline", "--locked", "--package", package])
         .args(["--edges", "normal,build", "--no-default-features"])
         .args([
             "--features",
@@ -65,7 +64,8 @@ fn the_documentation_counts_the_crates_that_each_brings() {
         let manifest = read(format!("crates/tem00-{name}/Cargo.toml"));
         for (cell, feature) in rows[0].iter().zip(["", "simd", "parallel"]) {
             let exists = feature.is_empty() || manifest.contains(&format!("\n{feature} = ["));
-            let count = exists.then(|| brought_by(name, feature).len().to_string());
+            let package = format!("tem00-{name}");
+            let count = exists.then(|| brought_by(&package, feature).len().to_string());
             assert_eq!(
                 *cell,
                 count.unwrap_or("–".to_owned()),
@@ -76,10 +76,26 @@ fn the_documentation_counts_the_crates_that_each_brings() {
 }
 
 #[test]
+fn the_documentation_counts_the_crates_that_the_facade_brings() {
+    let page = read("docs/integration.md");
+    let all = "statistics,triangulation,wave";
+    for (phrase, features) in [("and brings", ""), ("all of them it brings", all)] {
+        let (_, count) = page.split_once(phrase).expect("a count of the facade");
+        let count: String = count
+            .trim()
+            .chars()
+            .take_while(char::is_ascii_digit)
+            .collect();
+        let brought = brought_by("tem00", features).len().to_string();
+        assert_eq!(count, brought, "tem00 with the features [{features}]");
+    }
+}
+
+#[test]
 fn no_threads_come_along_unless_asked_for() {
     for name in CRATES {
         for features in ["", "simd"] {
-            let crates = brought_by(name, features);
+            let crates = brought_by(&format!("tem00-{name}"), features);
             assert!(
                 !crates.iter().any(|line| line.starts_with("rayon")),
                 "tem00-{name} with the features [{features}] brings {crates:?}"

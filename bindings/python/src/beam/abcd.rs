@@ -46,30 +46,6 @@ impl ThickLens {
         })
     }
 
-    /// Refractive index of the glass.
-    #[getter]
-    fn index(&self) -> f64 {
-        self.0.index
-    }
-
-    /// Curvature of the surface that the light enters, in 1/m.
-    #[getter]
-    fn front_curvature(&self) -> f64 {
-        self.0.front_curvature
-    }
-
-    /// Curvature of the surface that the light leaves by, in 1/m.
-    #[getter]
-    fn back_curvature(&self) -> f64 {
-        self.0.back_curvature
-    }
-
-    /// Distance of the surfaces on the axis, in metres.
-    #[getter]
-    fn thickness(&self) -> f64 {
-        self.0.thickness
-    }
-
     fn __repr__(&self) -> String {
         let (index, front, back, thickness) = self.__getnewargs__();
         format!(
@@ -83,6 +59,22 @@ impl ThickLens {
         let [front, back] = [lens.front_curvature, lens.back_curvature];
         (lens.index, front, back, lens.thickness)
     }
+}
+
+methods! {
+    impl ThickLens as this: this.0;
+
+    /// Refractive index of the glass.
+    field index -> f64;
+
+    /// Curvature of the surface that the light enters, in 1/m.
+    field front_curvature -> f64;
+
+    /// Curvature of the surface that the light leaves by, in 1/m.
+    field back_curvature -> f64;
+
+    /// Distance of the surfaces on the axis, in metres.
+    field thickness -> f64;
 }
 
 /// The ray matrix of a paraxial optical system, from an input plane to an output plane.
@@ -281,72 +273,6 @@ impl AbcdMatrix {
         Self(self.0.then(next.0))
     }
 
-    /// Entry A: the height behind the system per height in front.
-    #[getter]
-    fn a(&self) -> f64 {
-        self.0.a()
-    }
-
-    /// Entry B, in metres; 0 where the output plane is an image of the input plane.
-    #[getter]
-    fn b(&self) -> f64 {
-        self.0.b()
-    }
-
-    /// Entry C, in 1/m; negative for a focusing system.
-    #[getter]
-    fn c(&self) -> f64 {
-        self.0.c()
-    }
-
-    /// Entry D: the slope behind the system per slope in front.
-    #[getter]
-    fn d(&self) -> f64 {
-        self.0.d()
-    }
-
-    /// Determinant, the refractive index in front over that behind.
-    #[getter]
-    fn determinant(&self) -> f64 {
-        self.0.determinant()
-    }
-
-    /// Focal length on the side of the output, in metres; None for an afocal system.
-    #[getter]
-    fn focal_length(&self) -> Option<f64> {
-        self.0.focal_length()
-    }
-
-    /// Distance from the output plane to the back focal point, in metres; None if afocal.
-    #[getter]
-    fn back_focal_distance(&self) -> Option<f64> {
-        self.0.back_focal_distance()
-    }
-
-    /// Distance from the output plane to the back principal plane, in metres; None if afocal.
-    #[getter]
-    fn back_principal_plane(&self) -> Option<f64> {
-        self.0.back_principal_plane()
-    }
-
-    /// Distance from the input plane to the front principal plane, in metres; None if afocal.
-    #[getter]
-    fn front_principal_plane(&self) -> Option<f64> {
-        self.0.front_principal_plane()
-    }
-
-    /// Half the trace of the matrix.
-    #[getter]
-    fn half_trace(&self) -> f64 {
-        self.0.half_trace()
-    }
-
-    /// Whether rays stay near the axis however often they travel through the system.
-    #[getter]
-    fn is_stable(&self) -> bool {
-        self.0.is_stable()
-    }
-
     /// Return the beam parameter that reproduces itself from the input to the output plane.
     ///
     /// Returns
@@ -413,4 +339,41 @@ impl AbcdMatrix {
         let [a, b, c, d] = [matrix.a(), matrix.b(), matrix.c(), matrix.d()];
         format!("AbcdMatrix(a={a:?}, b={b:?}, c={c:?}, d={d:?})")
     }
+}
+
+methods! {
+    impl AbcdMatrix as this: this.0;
+
+    /// Entry A: the height behind the system per height in front.
+    get a -> f64;
+
+    /// Entry B, in metres; 0 where the output plane is an image of the input plane.
+    get b -> f64;
+
+    /// Entry C, in 1/m; negative for a focusing system.
+    get c -> f64;
+
+    /// Entry D: the slope behind the system per slope in front.
+    get d -> f64;
+
+    /// Determinant, the refractive index in front over that behind.
+    get determinant -> f64;
+
+    /// Focal length on the side of the output, in metres; None for an afocal system.
+    get focal_length -> Option<f64>;
+
+    /// Distance from the output plane to the back focal point, in metres; None if afocal.
+    get back_focal_distance -> Option<f64>;
+
+    /// Distance from the output plane to the back principal plane, in metres; None if afocal.
+    get back_principal_plane -> Option<f64>;
+
+    /// Distance from the input plane to the front principal plane, in metres; None if afocal.
+    get front_principal_plane -> Option<f64>;
+
+    /// Half the trace of the matrix.
+    get half_trace -> f64;
+
+    /// Whether rays stay near the axis however often they travel through the system.
+    get is_stable -> bool;
 }

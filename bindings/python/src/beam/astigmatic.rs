@@ -125,24 +125,6 @@ impl AstigmaticBeam {
         (LocatedBeam(*x), LocatedBeam(*y))
     }
 
-    /// Angle from x to the first principal axis, in radians.
-    #[getter]
-    fn rotation(&self) -> f64 {
-        self.0.rotation()
-    }
-
-    /// Wavelength, in metres.
-    #[getter]
-    fn wavelength(&self) -> f64 {
-        self.0.wavelength()
-    }
-
-    /// Distances, in metres and ascending, at which the beam is circular; None where there are fewer.
-    #[getter]
-    fn circular_planes(&self) -> (Option<f64>, Option<f64>) {
-        self.0.circular_planes().into()
-    }
-
     /// Return the beam radii (1/e²) along the principal axes, in metres.
     ///
     /// Parameters
@@ -188,78 +170,6 @@ impl AstigmaticBeam {
         map_vector(py, [("z", &z)], |[z]| self.0.curvatures_at(z))
     }
 
-    /// Return the Gouy phase, in radians: the mean of those of the two axes.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Distance from the reference plane, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Phase in radians, in the shape of ``z``.
-    fn gouy_phase_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.gouy_phase_at(z))
-    }
-
-    /// Return the ratio of the smaller to the larger beam radius.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Distance from the reference plane, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Ratio from 0 to 1, in the shape of ``z``.
-    fn ellipticity_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.ellipticity_at(z))
-    }
-
-    /// Return the irradiance on the axis per watt of beam power, in 1/m².
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Distance from the reference plane, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Irradiance per watt, in the shape of ``z``.
-    fn peak_irradiance_per_watt<'py>(
-        &self,
-        py: Python<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.peak_irradiance_per_watt(z))
-    }
-
-    /// Return the irradiance per watt of beam power, in 1/m², on planes square to the axis.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y, z : float or array_like
-    ///     Coordinates in the frame of the beam, in metres; they broadcast together.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Irradiance per watt, in the common shape.
-    fn irradiance_per_watt<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("x", &x), ("y", &y), ("z", &z)], |p| {
-            self.0.irradiance_per_watt(DVec3::from(p))
-        })
-    }
-
     /// Return the energy-flow vector per watt of beam power, in 1/m².
     ///
     /// Its integral over any surface that cuts the whole beam is 1. A surface whose normal ``n`` lies
@@ -303,4 +213,49 @@ impl AstigmaticBeam {
     fn _restored(x: &LocatedBeam, y: &LocatedBeam, rotation: f64) -> PyResult<Self> {
         Self::new(x, y)?.with_rotation(rotation)
     }
+}
+
+methods! {
+    impl AstigmaticBeam as this: this.0;
+
+    /// Angle from x to the first principal axis, in radians.
+    get rotation -> f64;
+
+    /// Wavelength, in metres.
+    get wavelength -> f64;
+
+    /// Distances, in metres and ascending, at which the beam is circular; None where there are fewer.
+    get circular_planes -> (Option<f64>, Option<f64>);
+
+    /// Return the Gouy phase, in radians: the mean of those of the two axes.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Distance from the reference plane, in metres.
+    map gouy_phase_at(z);
+
+    /// Return the ratio of the smaller to the larger beam radius.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Distance from the reference plane, in metres.
+    map ellipticity_at(z);
+
+    /// Return the irradiance on the axis per watt of beam power, in 1/m².
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Distance from the reference plane, in metres.
+    map peak_irradiance_per_watt(z);
+
+    /// Return the irradiance per watt of beam power, in 1/m², on planes square to the axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates in the frame of the beam, in metres; they broadcast together.
+    map irradiance_per_watt(x, y, z) = this.0.irradiance_per_watt(DVec3::new(x, y, z));
 }

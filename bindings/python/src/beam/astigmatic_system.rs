@@ -148,14 +148,15 @@ impl AstigmaticSystem {
         PyArray1::from_slice(py, entries).reshape([2, 2, 2, 2])
     }
 
-    /// Ratio of the refractive index before the system to that behind it.
-    #[getter]
-    fn index_ratio(&self) -> f64 {
-        self.0.index_ratio()
-    }
-
     fn __repr__(&self) -> String {
         let blocks = self.0.blocks().map(|row| row.map(rows_of));
         format!("AstigmaticSystem(blocks={blocks:?})")
     }
+}
+
+methods! {
+    impl AstigmaticSystem as this: this.0;
+
+    /// Ratio of the refractive index before the system to that behind it.
+    get index_ratio -> f64;
 }

@@ -67,30 +67,6 @@ impl ComplexBeamParameter {
         Ok(Self(parameter.or_raise_as(&names)?))
     }
 
-    /// Signed distance past the waist, in metres.
-    #[getter]
-    fn distance_from_waist(&self) -> f64 {
-        self.0.distance_from_waist()
-    }
-
-    /// Rayleigh range, in metres.
-    #[getter]
-    fn rayleigh_range(&self) -> f64 {
-        self.0.rayleigh_range()
-    }
-
-    /// Wavefront curvature 1/R, in 1/m, positive where the beam diverges.
-    #[getter]
-    fn curvature(&self) -> f64 {
-        self.0.curvature()
-    }
-
-    /// Gouy phase, in radians.
-    #[getter]
-    fn gouy_phase(&self) -> f64 {
-        self.0.gouy_phase()
-    }
-
     /// Return the beam radius (1/e²), in metres.
     ///
     /// Parameters
@@ -149,4 +125,20 @@ impl ComplexBeamParameter {
         let parts = (self.0.distance_from_waist(), self.0.rayleigh_range());
         by_constructor::<Self>(py, "__call__", parts)
     }
+}
+
+methods! {
+    impl ComplexBeamParameter as this: this.0;
+
+    /// Signed distance past the waist, in metres.
+    get distance_from_waist -> f64;
+
+    /// Rayleigh range, in metres.
+    get rayleigh_range -> f64;
+
+    /// Wavefront curvature 1/R, in 1/m, positive where the beam diverges.
+    get curvature -> f64;
+
+    /// Gouy phase, in radians.
+    get gouy_phase -> f64;
 }

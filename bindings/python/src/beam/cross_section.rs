@@ -1,14 +1,10 @@
 //! The irradiance over a plane across a beam.
 
-use numpy::PyArray1;
 use pyo3::prelude::*;
 use tem00_beam as physics;
 
 use super::arguments::{OrRaiseAs, columns, components, map, map_inner, try_map};
-use crate::{
-    arrays::Numbers,
-    pickling::{Recipe, by_constructor},
-};
+use crate::arrays::{Numbers, Vector};
 
 /// The irradiance of a Gaussian beam of 1 W over a plane across it.
 ///
@@ -29,86 +25,6 @@ impl CrossSection {
     fn new(radii: [f64; 2]) -> PyResult<Self> {
         let section = physics::CrossSection::new(radii);
         Ok(Self(section.or_raise_as(&[("radius", "radii")])?))
-    }
-
-    /// Principal radii (1/e²), in metres, shape (2,).
-    #[getter]
-    fn radii<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.0.radii())
-    }
-
-    /// This cross-section with its axes exchanged.
-    #[getter]
-    fn transposed(&self) -> Self {
-        Self(self.0.transposed())
-    }
-
-    /// Full widths at half maximum along x and y, in metres, shape (2,).
-    #[getter]
-    fn fwhm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.0.fwhm())
-    }
-
-    /// D4σ widths along x and y, in metres, shape (2,).
-    #[getter]
-    fn d4_sigma<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.0.d4_sigma())
-    }
-
-    /// Distances, in metres, shape (2,), by which a knife edge moves along x and y between the
-    /// positions that leave 10 % and 90 % of the power.
-    #[getter]
-    fn knife_edge_width<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.0.knife_edge_width())
-    }
-
-    /// Effective area ``π w_x w_y``, in m².
-    #[getter]
-    fn effective_area(&self) -> f64 {
-        self.0.effective_area()
-    }
-
-    /// Return the irradiance per watt of beam power, in 1/m².
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y : float or array_like
-    ///     Coordinates along the principal axes, in metres; they broadcast together.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Irradiance per watt, in the common shape.
-    fn irradiance_per_watt<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("x", &x), ("y", &y)], |point| {
-            self.0.irradiance_per_watt(point)
-        })
-    }
-
-    /// Return the fraction of the power within a centred circle.
-    ///
-    /// Parameters
-    /// ----------
-    /// radius : float or array_like
-    ///     Radius of the circle, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Fraction from 0 to 1, in the shape of ``radius``.
-    fn power_in_circle<'py>(
-        &self,
-        py: Python<'py>,
-        radius: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("radius", &radius)], |[radius]| {
-            self.0.power_in_circle(radius)
-        })
     }
 
     /// Return the fraction of the power within a circle anywhere.
@@ -158,25 +74,6 @@ impl CrossSection {
         try_map(py, argument, |fraction| self.0.circle_radius(fraction))
     }
 
-    /// Return the fraction of the power within a centred square, the ensquared power.
-    ///
-    /// Parameters
-    /// ----------
-    /// side : float or array_like
-    ///     Length of the sides, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Fraction from 0 to 1, in the shape of ``side``.
-    fn power_in_square<'py>(
-        &self,
-        py: Python<'py>,
-        side: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("side", &side)], |[side]| self.0.power_in_square(side))
-    }
-
     /// Return the fraction of the power within a rectangle.
     ///
     /// Parameters
@@ -202,6 +99,53 @@ impl CrossSection {
             [self.0.power_in_rectangle([x, y], [width, height])]
         })
     }
+}
+
+methods! {
+    impl CrossSection as this: this.0;
+
+    /// Principal radii (1/e²), in metres, shape (2,).
+    get radii -> Vector<2>;
+
+    /// This cross-section with its axes exchanged.
+    get transposed -> Self = Self(this.0.transposed());
+
+    /// Full widths at half maximum along x and y, in metres, shape (2,).
+    get fwhm -> Vector<2>;
+
+    /// D4σ widths along x and y, in metres, shape (2,).
+    get d4_sigma -> Vector<2>;
+
+    /// Distances, in metres, shape (2,), by which a knife edge moves along x and y between the
+    /// positions that leave 10 % and 90 % of the power.
+    get knife_edge_width -> Vector<2>;
+
+    /// Effective area ``π w_x w_y``, in m².
+    get effective_area -> f64;
+
+    /// Return the irradiance per watt of beam power, in 1/m².
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y : float or array_like
+    ///     Coordinates along the principal axes, in metres; they broadcast together.
+    map irradiance_per_watt(x, y) = this.0.irradiance_per_watt([x, y]);
+
+    /// Return the fraction of the power within a centred circle.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : float or array_like
+    ///     Radius of the circle, in metres.
+    map power_in_circle(radius);
+
+    /// Return the fraction of the power within a centred square, the ensquared power.
+    ///
+    /// Parameters
+    /// ----------
+    /// side : float or array_like
+    ///     Length of the sides, in metres.
+    map power_in_square(side);
 
     /// Return the fraction of the power that passes a slit across x.
     ///
@@ -209,22 +153,7 @@ impl CrossSection {
     /// ----------
     /// centre, width : float or array_like
     ///     Middle of the slit on x and its full width, in metres; they broadcast together.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Fraction from 0 to 1, in the common shape.
-    fn power_in_slit<'py>(
-        &self,
-        py: Python<'py>,
-        centre: Numbers<'py>,
-        width: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let arguments = [("centre", &centre), ("width", &width)];
-        map(py, arguments, |[centre, width]| {
-            self.0.power_in_slit(centre, width)
-        })
-    }
+    map power_in_slit(centre, width);
 
     /// Return the fraction of the power that passes a knife edge across x.
     ///
@@ -232,26 +161,7 @@ impl CrossSection {
     /// ----------
     /// position : float or array_like
     ///     Place of the edge on x, in metres; it covers everything below.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Fraction from 0 to 1, in the shape of ``position``.
-    fn power_past_knife_edge<'py>(
-        &self,
-        py: Python<'py>,
-        position: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("position", &position)], |[position]| {
-            self.0.power_past_knife_edge(position)
-        })
-    }
+    map power_past_knife_edge(position);
 
-    fn __repr__(&self) -> String {
-        format!("CrossSection(radii={:?})", self.0.radii())
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "__call__", (self.0.radii(),))
-    }
+    made_by new(radii);
 }

@@ -53,19 +53,6 @@ impl Emitter {
         self.vector(py, 3)
     }
 
-    /// Power, in watts.
-    #[getter]
-    fn power(&self) -> f64 {
-        self.0.frame_rows()[0][3]
-    }
-
-    /// Distance from the axis, in beam radii, beyond which no light arrives; in a laser line that
-    /// from the plane of the fan.
-    #[getter]
-    fn cutoff(&self) -> f64 {
-        self.0.frame_rows()[1][3]
-    }
-
     /// Return the fields of the light in the order of memory, as rows of four.
     ///
     /// They are what a kernel or a shader reads; the class of each light says which field is where.
@@ -380,6 +367,17 @@ impl Emitter {
             half_angle: PyFloat::new(py, bounds.half_angle).into_any().unbind(),
         })
     }
+}
+
+methods! {
+    impl Emitter as this: this.0;
+
+    /// Power, in watts.
+    get power -> f64 = this.0.frame_rows()[0][3];
+
+    /// Distance from the axis, in beam radii, beyond which no light arrives; in a laser line that
+    /// from the plane of the fan.
+    get cutoff -> f64 = this.0.frame_rows()[1][3];
 }
 
 impl Emitter {

@@ -126,64 +126,6 @@ impl CausticFit {
             .map_err(|error| raised(error, "radii"))
     }
 
-    /// Waist radius w₀, in metres.
-    #[getter]
-    fn waist_radius(&self) -> Estimate {
-        self.0.waist_radius().into()
-    }
-
-    /// Position z₀ of the waist, in metres, on the axis of the measured positions.
-    #[getter]
-    fn waist_position(&self) -> Estimate {
-        self.0.waist_position().into()
-    }
-
-    /// Far-field divergence half-angle δ, in radians.
-    #[getter]
-    fn divergence(&self) -> Estimate {
-        self.0.divergence().into()
-    }
-
-    /// Rayleigh range ``w₀ / δ``, in metres.
-    #[getter]
-    fn rayleigh_range(&self) -> Estimate {
-        self.0.rayleigh_range().into()
-    }
-
-    /// Beam parameter product ``w₀ δ``, in m·rad.
-    #[getter]
-    fn beam_parameter_product(&self) -> Estimate {
-        self.0.beam_parameter_product().into()
-    }
-
-    /// Beam quality factor M².
-    #[getter]
-    fn m_squared(&self) -> Estimate {
-        self.0.m_squared().into()
-    }
-
-    /// Standard deviation of the data from the fit: relative to the radius, in metres for ``"equal"``
-    /// errors, in units of the known deviations for known ones.
-    #[getter]
-    fn residual_deviation(&self) -> f64 {
-        self.0.residual_deviation()
-    }
-
-    /// Return the fitted beam radius (1/e²) in metres.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Position, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Radius in metres, in the shape of ``z``.
-    fn radius_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.radius_at(z))
-    }
-
     /// Return the fitted beam, seen from the position 0.
     ///
     /// Returns
@@ -200,6 +142,40 @@ impl CausticFit {
                 .map(|estimate| format!("{:?} ± {:?}", estimate.value, estimate.standard_error));
         format!("<CausticFit: waist radius {waist} m, waist position {position} m, M² {m_squared}>")
     }
+}
+
+methods! {
+    impl CausticFit as this: this.0;
+
+    /// Waist radius w₀, in metres.
+    get waist_radius -> Estimate;
+
+    /// Position z₀ of the waist, in metres, on the axis of the measured positions.
+    get waist_position -> Estimate;
+
+    /// Far-field divergence half-angle δ, in radians.
+    get divergence -> Estimate;
+
+    /// Rayleigh range ``w₀ / δ``, in metres.
+    get rayleigh_range -> Estimate;
+
+    /// Beam parameter product ``w₀ δ``, in m·rad.
+    get beam_parameter_product -> Estimate;
+
+    /// Beam quality factor M².
+    get m_squared -> Estimate;
+
+    /// Standard deviation of the data from the fit: relative to the radius, in metres for ``"equal"``
+    /// errors, in units of the known deviations for known ones.
+    get residual_deviation -> f64;
+
+    /// Return the fitted beam radius (1/e²) in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Position, in metres.
+    map radius_at(z);
 }
 
 /// A Gaussian beam fitted to the power that passes a knife edge moved across it.
@@ -254,35 +230,30 @@ impl KnifeEdgeFit {
         fit.map(Self).map_err(|error| raised(error, "powers"))
     }
 
-    /// Radius (1/e²) of the beam along the movement of the edge, in metres.
-    #[getter]
-    fn radius(&self) -> Estimate {
-        self.0.radius().into()
+    fn __repr__(&self) -> String {
+        let [radius, centre, power] = [self.radius(), self.centre(), self.power()]
+            .map(|estimate| format!("{:?} ± {:?}", estimate.value, estimate.standard_error));
+        format!("<KnifeEdgeFit: radius {radius} m, centre {centre} m, power {power}>")
     }
+}
+
+methods! {
+    impl KnifeEdgeFit as this: this.0;
+
+    /// Radius (1/e²) of the beam along the movement of the edge, in metres.
+    get radius -> Estimate;
 
     /// Position of the centre of the beam, in metres.
-    #[getter]
-    fn centre(&self) -> Estimate {
-        self.0.centre().into()
-    }
+    get centre -> Estimate;
 
     /// Power of the whole beam, in the unit of the measured powers.
-    #[getter]
-    fn power(&self) -> Estimate {
-        self.0.power().into()
-    }
+    get power -> Estimate;
 
     /// Background, in the unit of the measured powers; None if none was fitted.
-    #[getter]
-    fn background(&self) -> Option<Estimate> {
-        self.0.background().map(Into::into)
-    }
+    get background -> Option<Estimate> = this.0.background().map(Into::into);
 
     /// Standard deviation of the data from the fit, in the unit of the measured powers.
-    #[getter]
-    fn residual_deviation(&self) -> f64 {
-        self.0.residual_deviation()
-    }
+    get residual_deviation -> f64;
 
     /// Return the fitted power, in the unit of the measured powers.
     ///
@@ -290,24 +261,7 @@ impl KnifeEdgeFit {
     /// ----------
     /// position : float or array_like
     ///     Position of the edge, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Power that passes, in the shape of ``position``.
-    fn power_at<'py>(
-        &self,
-        py: Python<'py>,
-        position: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("position", &position)], |[x]| self.0.power_at(x))
-    }
-
-    fn __repr__(&self) -> String {
-        let [radius, centre, power] = [self.radius(), self.centre(), self.power()]
-            .map(|estimate| format!("{:?} ± {:?}", estimate.value, estimate.standard_error));
-        format!("<KnifeEdgeFit: radius {radius} m, centre {centre} m, power {power}>")
-    }
+    map power_at(position);
 }
 
 /// What is known of the errors of measured radii.

@@ -91,48 +91,6 @@ impl GaussianBeam {
         Ok(Self(beam.or_raise_as(&[("waist_radius", "m_squared")])?))
     }
 
-    /// Wavelength in the medium the beam travels in, in metres.
-    #[getter]
-    fn wavelength(&self) -> f64 {
-        self.0.wavelength()
-    }
-
-    /// Radius of the waist (1/e²), in metres.
-    #[getter]
-    fn waist_radius(&self) -> f64 {
-        self.0.waist_radius()
-    }
-
-    /// Beam quality factor M², 1 for a diffraction-limited beam.
-    #[getter]
-    fn m_squared(&self) -> f64 {
-        self.0.m_squared()
-    }
-
-    /// Rayleigh range ``π w₀² / (M² λ)``, in metres.
-    #[getter]
-    fn rayleigh_range(&self) -> f64 {
-        self.0.rayleigh_range()
-    }
-
-    /// Far-field divergence half-angle ``M² λ / (π w₀)``, in radians.
-    #[getter]
-    fn divergence(&self) -> f64 {
-        self.0.divergence()
-    }
-
-    /// Confocal parameter ``2 z_R``, in metres.
-    #[getter]
-    fn confocal_parameter(&self) -> f64 {
-        self.0.confocal_parameter()
-    }
-
-    /// Beam parameter product ``w₀ δ``, in m·rad; 1e-6 m·rad are 1 mm·mrad.
-    #[getter]
-    fn beam_parameter_product(&self) -> f64 {
-        self.0.beam_parameter_product()
-    }
-
     /// Return the full length over which the radius stays within ``growth`` times the waist.
     ///
     /// Parameters
@@ -152,51 +110,6 @@ impl GaussianBeam {
         try_map(py, ("growth", &growth), |g| self.0.depth_of_focus(g))
     }
 
-    /// Return the beam radius (1/e²) in metres.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Signed distance from the waist, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Radius in metres, in the shape of ``z``.
-    fn radius_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.radius_at(z))
-    }
-
-    /// Return the full width at half maximum ``√(2 ln 2) w(z)`` in metres.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Signed distance from the waist, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Width in metres, in the shape of ``z``.
-    fn fwhm_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.fwhm_at(z))
-    }
-
-    /// Return the D4σ width ``2 w(z)``, a diameter, in metres.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Signed distance from the waist, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Width in metres, in the shape of ``z``.
-    fn d4_sigma_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.d4_sigma_at(z))
-    }
-
     /// Return the distribution of the irradiance over a plane across the beam.
     ///
     /// Parameters
@@ -210,78 +123,6 @@ impl GaussianBeam {
     fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
         let z = coordinate("z", z)?;
         Ok(CrossSection(self.0.cross_section_at(z)))
-    }
-
-    /// Return the wavefront curvature 1/R in 1/m, positive where the beam diverges.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Signed distance from the waist, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Curvature in 1/m, in the shape of ``z``; 0 at the waist.
-    fn curvature_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.curvature_at(z))
-    }
-
-    /// Return the Gouy phase ``atan(z / z_R)`` in radians.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Signed distance from the waist, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Phase in radians, in the shape of ``z``.
-    fn gouy_phase_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.gouy_phase_at(z))
-    }
-
-    /// Return the irradiance on the axis per watt of beam power, in 1/m².
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Signed distance from the waist, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Irradiance per watt, in the shape of ``z``.
-    fn peak_irradiance_per_watt<'py>(
-        &self,
-        py: Python<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.peak_irradiance_per_watt(z))
-    }
-
-    /// Return the irradiance per watt of beam power, in 1/m², on a plane across the beam.
-    ///
-    /// Parameters
-    /// ----------
-    /// r, z : float or array_like
-    ///     Distance from the axis and signed distance from the waist, in metres; they broadcast
-    ///     together.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Irradiance per watt, in the common shape.
-    fn irradiance_per_watt<'py>(
-        &self,
-        py: Python<'py>,
-        r: Numbers<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("r", &r), ("z", &z)], |[r, z]| {
-            self.0.irradiance_per_watt(r, z)
-        })
     }
 
     /// Return the energy-flow vector per watt of beam power, in 1/m².
@@ -311,30 +152,6 @@ impl GaussianBeam {
         })
     }
 
-    /// Return the fraction of the power within a distance of the axis.
-    ///
-    /// Parameters
-    /// ----------
-    /// radius, z : float or array_like
-    ///     Distance from the axis, 0 or more, and signed distance from the waist, in metres; they
-    ///     broadcast together.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Fraction from 0 to 1, in the common shape.
-    fn encircled_power<'py>(
-        &self,
-        py: Python<'py>,
-        radius: Numbers<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        radius.not_negative("radius")?;
-        map(py, [("radius", &radius), ("z", &z)], |[radius, z]| {
-            self.0.encircled_power(radius, z)
-        })
-    }
-
     pub(super) fn __repr__(&self) -> String {
         let (wavelength, waist_radius) = (self.0.wavelength(), self.0.waist_radius());
         let m_squared = match self.0.m_squared() {
@@ -358,4 +175,95 @@ impl GaussianBeam {
     fn _restored(wavelength: f64, waist_radius: f64, m_squared: f64) -> PyResult<Self> {
         Self::from_waist(wavelength, waist_radius)?.with_m_squared(m_squared)
     }
+}
+
+methods! {
+    impl GaussianBeam as this: this.0;
+
+    /// Wavelength in the medium the beam travels in, in metres.
+    get wavelength -> f64;
+
+    /// Radius of the waist (1/e²), in metres.
+    get waist_radius -> f64;
+
+    /// Beam quality factor M², 1 for a diffraction-limited beam.
+    get m_squared -> f64;
+
+    /// Rayleigh range ``π w₀² / (M² λ)``, in metres.
+    get rayleigh_range -> f64;
+
+    /// Far-field divergence half-angle ``M² λ / (π w₀)``, in radians.
+    get divergence -> f64;
+
+    /// Confocal parameter ``2 z_R``, in metres.
+    get confocal_parameter -> f64;
+
+    /// Beam parameter product ``w₀ δ``, in m·rad; 1e-6 m·rad are 1 mm·mrad.
+    get beam_parameter_product -> f64;
+
+    /// Return the beam radius (1/e²) in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the waist, in metres.
+    map radius_at(z);
+
+    /// Return the full width at half maximum ``√(2 ln 2) w(z)`` in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the waist, in metres.
+    map fwhm_at(z);
+
+    /// Return the D4σ width ``2 w(z)``, a diameter, in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the waist, in metres.
+    map d4_sigma_at(z);
+
+    /// Return the wavefront curvature 1/R in 1/m, positive where the beam diverges.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the waist, in metres.
+    map curvature_at(z);
+
+    /// Return the Gouy phase ``atan(z / z_R)`` in radians.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the waist, in metres.
+    map gouy_phase_at(z);
+
+    /// Return the irradiance on the axis per watt of beam power, in 1/m².
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the waist, in metres.
+    map peak_irradiance_per_watt(z);
+
+    /// Return the irradiance per watt of beam power, in 1/m², on a plane across the beam.
+    ///
+    /// Parameters
+    /// ----------
+    /// r, z : float or array_like
+    ///     Distance from the axis and signed distance from the waist, in metres; they broadcast
+    ///     together.
+    map irradiance_per_watt(r, z);
+
+    /// Return the fraction of the power within a distance of the axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius, z : float or array_like
+    ///     Distance from the axis, 0 or more, and signed distance from the waist, in metres; they
+    ///     broadcast together.
+    map encircled_power(radius: not_negative, z);
 }

@@ -1,6 +1,6 @@
 //! Beams with general astigmatism.
 
-use numpy::{Complex64, PyArray1, PyArray2};
+use numpy::{Complex64, PyArray2};
 use pyo3::{
     prelude::*,
     types::{PyComplex, PyComplexMethods},
@@ -15,7 +15,10 @@ use super::{
     cross_section::CrossSection,
     rows::array_of,
 };
-use crate::{arrays::Numbers, error::OrRaise};
+use crate::{
+    arrays::{Numbers, Vector},
+    error::OrRaise,
+};
 
 /// The second moments of the phase space of a beam at one plane.
 ///
@@ -170,12 +173,6 @@ impl GeneralAstigmaticBeam {
         Ok(Self(self.0.through(&system.0).or_raise()?))
     }
 
-    /// Wavelength in the medium the beam travels in, in metres.
-    #[getter]
-    fn wavelength(&self) -> f64 {
-        self.0.wavelength()
-    }
-
     /// Covariance of the positions of all rays of one slope, in m², shape (2, 2).
     #[getter]
     fn position_spread<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
@@ -186,24 +183,6 @@ impl GeneralAstigmaticBeam {
     #[getter]
     fn position_per_slope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         array_of(py, &rows_of(self.0.position_per_slope()))
-    }
-
-    /// Far-field divergence half-angles, in radians, shape (2,), the larger one first.
-    #[getter]
-    fn divergences<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.0.divergences())
-    }
-
-    /// M² of the two modes of the beam, shape (2,), the smaller one first.
-    #[getter]
-    fn beam_quality<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.0.beam_quality())
-    }
-
-    /// Twist ``⟨x s_y⟩ − ⟨y s_x⟩`` of the beam, in metres.
-    #[getter]
-    fn twist(&self) -> f64 {
-        self.0.twist()
     }
 
     /// Return the second moments at a plane.
@@ -251,21 +230,6 @@ impl GeneralAstigmaticBeam {
         Ok(CrossSection(self.0.cross_section_at(z)))
     }
 
-    /// Return the angle from x to the major axis of the irradiance, in radians.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Distance from the reference plane, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Angle in (-π/2, π/2], in the shape of ``z``; 0 where the spot is circular.
-    fn orientation_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.orientation_at(z))
-    }
-
     /// Return the tensor, in 1/m, that takes a position to the mean slope of the rays there.
     ///
     /// Parameters
@@ -306,48 +270,6 @@ impl GeneralAstigmaticBeam {
         array_of(py, &self.0.complex_curvature_at(z))
     }
 
-    /// Return the irradiance on the axis per watt of beam power, in 1/m².
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Distance from the reference plane, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Irradiance per watt, in the shape of ``z``.
-    fn peak_irradiance_per_watt<'py>(
-        &self,
-        py: Python<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.peak_irradiance_per_watt(z))
-    }
-
-    /// Return the irradiance per watt of beam power, in 1/m², on planes square to the axis.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y, z : float or array_like
-    ///     Coordinates in the frame of the beam, in metres; they broadcast together.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Irradiance per watt, in the common shape.
-    fn irradiance_per_watt<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("x", &x), ("y", &y), ("z", &z)], |p| {
-            self.0.irradiance_per_watt(DVec3::from(p))
-        })
-    }
-
     /// Return the energy-flow vector per watt of beam power, in 1/m².
     ///
     /// Its integral over any surface that cuts the whole beam is 1. A surface whose normal ``n`` lies
@@ -383,6 +305,46 @@ impl GeneralAstigmaticBeam {
              quality {smaller:?} and {larger:?}>"
         )
     }
+}
+
+methods! {
+    impl GeneralAstigmaticBeam as this: this.0;
+
+    /// Wavelength in the medium the beam travels in, in metres.
+    get wavelength -> f64;
+
+    /// Far-field divergence half-angles, in radians, shape (2,), the larger one first.
+    get divergences -> Vector<2>;
+
+    /// M² of the two modes of the beam, shape (2,), the smaller one first.
+    get beam_quality -> Vector<2>;
+
+    /// Twist ``⟨x s_y⟩ − ⟨y s_x⟩`` of the beam, in metres.
+    get twist -> f64;
+
+    /// Return the angle from x to the major axis of the irradiance, in radians.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Distance from the reference plane, in metres.
+    map orientation_at(z);
+
+    /// Return the irradiance on the axis per watt of beam power, in 1/m².
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Distance from the reference plane, in metres.
+    map peak_irradiance_per_watt(z);
+
+    /// Return the irradiance per watt of beam power, in 1/m², on planes square to the axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates in the frame of the beam, in metres; they broadcast together.
+    map irradiance_per_watt(x, y, z) = this.0.irradiance_per_watt(DVec3::new(x, y, z));
 }
 
 /// A number that Python can make complex.

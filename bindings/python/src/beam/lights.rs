@@ -105,22 +105,20 @@ impl SpotLight {
         Self::of(py, physics::SpotLight::from_rows(rows.0))
     }
 
-    /// Squared beam radius along x; its ``z0`` is the distance from the aperture to the waist.
-    #[getter]
-    fn x(&self) -> Axis {
-        Axis(self.0.x)
-    }
-
-    /// Squared beam radius along y; its ``z0`` is the distance from the aperture to the waist.
-    #[getter]
-    fn y(&self) -> Axis {
-        Axis(self.0.y)
-    }
-
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         let rows = array_of(py, &self.0.to_rows())?;
         by_constructor::<Self>(py, "from_rows", (rows,))
     }
+}
+
+methods! {
+    impl SpotLight as this: this.0;
+
+    /// Squared beam radius along x; its ``z0`` is the distance from the aperture to the waist.
+    get x -> Axis = Axis(this.0.x);
+
+    /// Squared beam radius along y; its ``z0`` is the distance from the aperture to the waist.
+    get y -> Axis = Axis(this.0.y);
 }
 
 impl SpotLight {
@@ -184,18 +182,6 @@ impl AstigmaticLight {
         Self::of(py, physics::AstigmaticLight::from_rows(rows.0))
     }
 
-    /// W: squared radii of the position on the aperture plane of rays with a given slope, in m².
-    #[getter]
-    fn position(&self) -> Ellipse {
-        Ellipse(self.0.position)
-    }
-
-    /// S: squared radii of the slope, in rad².
-    #[getter]
-    fn slope(&self) -> Ellipse {
-        Ellipse(self.0.slope)
-    }
-
     /// K: mean position on the aperture plane per slope, in metres, shape (2, 2).
     #[getter]
     fn position_per_slope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
@@ -206,6 +192,16 @@ impl AstigmaticLight {
         let rows = array_of(py, &self.0.to_rows())?;
         by_constructor::<Self>(py, "from_rows", (rows,))
     }
+}
+
+methods! {
+    impl AstigmaticLight as this: this.0;
+
+    /// W: squared radii of the position on the aperture plane of rays with a given slope, in m².
+    get position -> Ellipse = Ellipse(this.0.position);
+
+    /// S: squared radii of the slope, in rad².
+    get slope -> Ellipse = Ellipse(this.0.slope);
 }
 
 impl AstigmaticLight {

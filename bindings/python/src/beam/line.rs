@@ -51,24 +51,6 @@ impl FanGeometry {
         })
     }
 
-    /// Full angle between the edges of the line, in radians.
-    #[getter]
-    fn fan_angle(&self) -> f64 {
-        self.0.fan_angle
-    }
-
-    /// Distance of the virtual apex behind the lens, in metres.
-    #[getter]
-    fn apex_offset(&self) -> f64 {
-        self.0.apex_offset
-    }
-
-    /// Distance from the lens along the axis to where the line is thinnest, in metres.
-    #[getter]
-    fn focus_distance(&self) -> f64 {
-        self.0.focus_distance
-    }
-
     /// Where the line is thinnest off the axis, ``"equal_distance"`` or ``"equal_plane"``.
     #[getter]
     fn focus_curve(&self) -> &'static str {
@@ -91,6 +73,19 @@ impl FanGeometry {
         let curve = self.focus_curve();
         (fan.fan_angle, fan.apex_offset, fan.focus_distance, curve)
     }
+}
+
+methods! {
+    impl FanGeometry as this: this.0;
+
+    /// Full angle between the edges of the line, in radians.
+    field fan_angle -> f64;
+
+    /// Distance of the virtual apex behind the lens, in metres.
+    field apex_offset -> f64;
+
+    /// Distance from the lens along the axis to where the line is thinnest, in metres.
+    field focus_distance -> f64;
 }
 
 const EQUAL_DISTANCE: &str = "equal_distance";
@@ -141,97 +136,6 @@ impl LaserLine {
         Ok(Self(line.or_raise()?))
     }
 
-    /// The beam across the fan.
-    #[getter]
-    fn focus(&self) -> GaussianBeam {
-        GaussianBeam(*self.0.focus())
-    }
-
-    /// The geometry of the fan.
-    #[getter]
-    fn fan(&self) -> FanGeometry {
-        FanGeometry(*self.0.fan())
-    }
-
-    /// The profile along the line.
-    #[getter]
-    fn profile(&self) -> LineProfile {
-        LineProfile(self.0.profile().clone())
-    }
-
-    /// Slope of the edges of the fan, the tangent of half the fan angle.
-    #[getter]
-    fn half_slope(&self) -> f64 {
-        self.0.half_slope()
-    }
-
-    /// Slant distance from the virtual apex to the waist on the axis, in metres.
-    #[getter]
-    fn waist_slant_distance(&self) -> f64 {
-        self.0.waist_slant_distance()
-    }
-
-    /// Diffraction-limited radius of the virtual apex, in metres.
-    #[getter]
-    fn source_radius(&self) -> f64 {
-        self.0.source_radius()
-    }
-
-    /// Return the slant distance from the virtual apex to the waist, in metres.
-    ///
-    /// Parameters
-    /// ----------
-    /// slope : float or array_like
-    ///     Tangent of the fan angle.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Distance in metres, in the shape of ``slope``.
-    fn waist_slant_distance_at<'py>(
-        &self,
-        py: Python<'py>,
-        slope: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("slope", &slope)], |[slope]| {
-            self.0.waist_slant_distance_at(slope)
-        })
-    }
-
-    /// Return the half-length of the line, in metres, on a plane square to the axis.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Distance from the lens, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Half-length in metres, in the shape of ``z``.
-    fn half_length_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.half_length_at(z))
-    }
-
-    /// Return the half-thickness of the line on the axis (1/e²), in metres.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Distance from the lens, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Half-thickness in metres, in the shape of ``z``.
-    fn half_thickness_at<'py>(
-        &self,
-        py: Python<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.half_thickness_at(z))
-    }
-
     /// Return the half-thickness of the line (1/e²), in metres, at a fan angle.
     ///
     /// Parameters
@@ -253,97 +157,6 @@ impl LaserLine {
         check_theta(&theta)?;
         map(py, [("z", &z), ("theta", &theta)], |[z, theta]| {
             self.0.half_thickness_at_angle(z, theta)
-        })
-    }
-
-    /// Return the fraction of the power between two fan angles, in either order.
-    ///
-    /// Parameters
-    /// ----------
-    /// a, b : float or array_like
-    ///     Angles from the axis, in radians; they broadcast together. There is no power beyond ±π/2.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Fraction from 0 to 1, in the common shape.
-    fn power_between_angles<'py>(
-        &self,
-        py: Python<'py>,
-        a: Numbers<'py>,
-        b: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("a", &a), ("b", &b)], |[a, b]| {
-            self.0.power_between_angles(a, b)
-        })
-    }
-
-    /// Return the fraction of the power between two places along the line, in either order.
-    ///
-    /// Parameters
-    /// ----------
-    /// x_min, x_max, z : float or array_like
-    ///     The places, in metres, on the plane at the distance ``z`` from the lens, in metres; they
-    ///     broadcast together.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Fraction from 0 to 1, in the common shape; 0 for z < 0.
-    fn power_on_length<'py>(
-        &self,
-        py: Python<'py>,
-        x_min: Numbers<'py>,
-        x_max: Numbers<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let arguments = [("x_min", &x_min), ("x_max", &x_max), ("z", &z)];
-        map(py, arguments, |[x_min, x_max, z]| {
-            self.0.power_on_length(x_min, x_max, z)
-        })
-    }
-
-    /// Return the fraction of the power per fan angle, in 1/rad.
-    ///
-    /// Parameters
-    /// ----------
-    /// theta : float or array_like
-    ///     Signed angle from the axis, in radians.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Fraction per radian, in the shape of ``theta``; 0 at right angles to the axis and behind.
-    fn power_per_angle<'py>(
-        &self,
-        py: Python<'py>,
-        theta: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("theta", &theta)], |[theta]| {
-            self.0.power_per_angle(theta)
-        })
-    }
-
-    /// Return the irradiance per watt, in 1/m², on planes square to the axis.
-    ///
-    /// Parameters
-    /// ----------
-    /// x, y, z : float or array_like
-    ///     Coordinates in the frame of the line, in metres; they broadcast together.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Irradiance per watt, in the common shape.
-    fn irradiance_per_watt<'py>(
-        &self,
-        py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("x", &x), ("y", &y), ("z", &z)], |p| {
-            self.0.irradiance_per_watt(DVec3::from(p))
         })
     }
 
@@ -382,6 +195,85 @@ impl LaserLine {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         by_constructor::<Self>(py, "__call__", (self.focus(), self.fan(), self.profile()))
     }
+}
+
+methods! {
+    impl LaserLine as this: this.0;
+
+    /// The beam across the fan.
+    get focus -> GaussianBeam = GaussianBeam(*this.0.focus());
+
+    /// The geometry of the fan.
+    get fan -> FanGeometry = FanGeometry(*this.0.fan());
+
+    /// The profile along the line.
+    get profile -> LineProfile = LineProfile(this.0.profile().clone());
+
+    /// Slope of the edges of the fan, the tangent of half the fan angle.
+    get half_slope -> f64;
+
+    /// Slant distance from the virtual apex to the waist on the axis, in metres.
+    get waist_slant_distance -> f64;
+
+    /// Diffraction-limited radius of the virtual apex, in metres.
+    get source_radius -> f64;
+
+    /// Return the slant distance from the virtual apex to the waist, in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// slope : float or array_like
+    ///     Tangent of the fan angle.
+    map waist_slant_distance_at(slope);
+
+    /// Return the half-length of the line, in metres, on a plane square to the axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Distance from the lens, in metres.
+    map half_length_at(z);
+
+    /// Return the half-thickness of the line on the axis (1/e²), in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Distance from the lens, in metres.
+    map half_thickness_at(z);
+
+    /// Return the fraction of the power between two fan angles, in either order.
+    ///
+    /// Parameters
+    /// ----------
+    /// a, b : float or array_like
+    ///     Angles from the axis, in radians; they broadcast together. There is no power beyond ±π/2.
+    map power_between_angles(a, b);
+
+    /// Return the fraction of the power between two places along the line, in either order.
+    ///
+    /// Parameters
+    /// ----------
+    /// x_min, x_max, z : float or array_like
+    ///     The places, in metres, on the plane at the distance ``z`` from the lens, in metres; they
+    ///     broadcast together.
+    map power_on_length(x_min, x_max, z);
+
+    /// Return the fraction of the power per fan angle, in 1/rad.
+    ///
+    /// Parameters
+    /// ----------
+    /// theta : float or array_like
+    ///     Signed angle from the axis, in radians.
+    map power_per_angle(theta);
+
+    /// Return the irradiance per watt, in 1/m², on planes square to the axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates in the frame of the line, in metres; they broadcast together.
+    map irradiance_per_watt(x, y, z) = this.0.irradiance_per_watt(DVec3::new(x, y, z));
 }
 
 /// Checks that angles of a fan lie in front of the lens.

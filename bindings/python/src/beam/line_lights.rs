@@ -80,37 +80,6 @@ impl LineLight {
         Self::of(py, physics::LineLight::from_rows(rows.0))
     }
 
-    /// Distance of the virtual apex behind the lens, in metres.
-    #[getter]
-    fn apex_offset(&self) -> f64 {
-        self.0.apex_offset
-    }
-
-    /// Radius of the virtual apex, in metres: the diffraction-limited width of the fan's source.
-    #[getter]
-    fn source_radius(&self) -> f64 {
-        self.0.source_radius
-    }
-
-    /// Squared beam radius across the fan; its ``z0`` is the slant distance from the virtual apex to
-    /// the waist, on the axis.
-    #[getter]
-    fn y(&self) -> Axis {
-        Axis(self.0.y)
-    }
-
-    /// Half-width of the uniform part of the profile, in its variable; 0 for a Gaussian profile.
-    #[getter]
-    fn flat(&self) -> f64 {
-        self.0.flat
-    }
-
-    /// Standard deviation of the Gaussian part of the profile, in its variable; 0 for a top hat.
-    #[getter]
-    fn sigma(&self) -> f64 {
-        self.0.sigma
-    }
-
     /// The variable of the profile: 0 for tan θ, 1 for θ, 2 for sin θ, 3 for a table kept elsewhere.
     #[getter]
     fn variable(&self) -> u8 {
@@ -123,28 +92,39 @@ impl LineLight {
         }
     }
 
-    /// Share of the untruncated profile inside ``|θ| < π/2``; 1 in tan θ.
-    #[getter]
-    fn mass(&self) -> f64 {
-        self.0.mass
-    }
-
-    /// Slope of the edges of the fan, the tangent of half the fan angle.
-    #[getter]
-    fn half_slope(&self) -> f64 {
-        self.0.half_slope
-    }
-
-    /// Whether the waist lies on a plane square to the axis, and not on a circle about the apex.
-    #[getter]
-    fn focus_on_plane(&self) -> bool {
-        self.0.focus_on_plane > 0.0
-    }
-
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         let rows = array_of(py, &self.0.to_rows())?;
         by_constructor::<Self>(py, "from_rows", (rows,))
     }
+}
+
+methods! {
+    impl LineLight as this: this.0;
+
+    /// Distance of the virtual apex behind the lens, in metres.
+    field apex_offset -> f64;
+
+    /// Radius of the virtual apex, in metres: the diffraction-limited width of the fan's source.
+    field source_radius -> f64;
+
+    /// Squared beam radius across the fan; its ``z0`` is the slant distance from the virtual apex to
+    /// the waist, on the axis.
+    get y -> Axis = Axis(this.0.y);
+
+    /// Half-width of the uniform part of the profile, in its variable; 0 for a Gaussian profile.
+    field flat -> f64;
+
+    /// Standard deviation of the Gaussian part of the profile, in its variable; 0 for a top hat.
+    field sigma -> f64;
+
+    /// Share of the untruncated profile inside ``|θ| < π/2``; 1 in tan θ.
+    field mass -> f64;
+
+    /// Slope of the edges of the fan, the tangent of half the fan angle.
+    field half_slope -> f64;
+
+    /// Whether the waist lies on a plane square to the axis, and not on a circle about the apex.
+    get focus_on_plane -> bool = this.0.focus_on_plane > 0.0;
 }
 
 impl LineLight {
@@ -203,10 +183,11 @@ impl TabulatedLineLight {
     fn line(&self, py: Python<'_>) -> PyResult<Py<LineLight>> {
         LineLight::of(py, self.line)
     }
+}
+
+methods! {
+    impl TabulatedLineLight as this: this.0;
 
     /// The profile along the fan.
-    #[getter]
-    fn profile(&self) -> AngularProfile {
-        AngularProfile(self.profile.clone())
-    }
+    get profile -> AngularProfile = AngularProfile(this.profile.clone());
 }

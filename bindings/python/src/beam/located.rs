@@ -10,7 +10,6 @@ use super::{
     gaussian::GaussianBeam,
 };
 use crate::{
-    arrays::Numbers,
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -39,39 +38,6 @@ impl LocatedBeam {
         ))
     }
 
-    /// The beam.
-    #[getter]
-    fn beam(&self) -> GaussianBeam {
-        GaussianBeam(*self.0.beam())
-    }
-
-    /// Signed distance from the reference plane to the waist, in metres.
-    #[getter]
-    fn waist_distance(&self) -> f64 {
-        self.0.waist_distance()
-    }
-
-    /// Complex beam parameter in the reference plane.
-    #[getter]
-    fn complex_parameter(&self) -> ComplexBeamParameter {
-        ComplexBeamParameter(self.0.complex_parameter())
-    }
-
-    /// Return the beam radius (1/e²) in metres.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Signed distance from the reference plane, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Radius in metres, in the shape of ``z``.
-    fn radius_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.radius_at(z))
-    }
-
     /// Return the distribution of the irradiance over a plane across the beam.
     ///
     /// Parameters
@@ -85,21 +51,6 @@ impl LocatedBeam {
     fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
         let z = coordinate("z", z)?;
         Ok(CrossSection(self.0.cross_section_at(z)))
-    }
-
-    /// Return the wavefront curvature 1/R in 1/m, positive where the beam diverges.
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Signed distance from the reference plane, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Curvature in 1/m, in the shape of ``z``.
-    fn curvature_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.curvature_at(z))
     }
 
     /// Return the beam behind a thin lens in the reference plane.
@@ -125,4 +76,33 @@ impl LocatedBeam {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         by_constructor::<Self>(py, "__call__", (self.beam(), self.0.waist_distance()))
     }
+}
+
+methods! {
+    impl LocatedBeam as this: this.0;
+
+    /// The beam.
+    get beam -> GaussianBeam = GaussianBeam(*this.0.beam());
+
+    /// Signed distance from the reference plane to the waist, in metres.
+    get waist_distance -> f64;
+
+    /// Complex beam parameter in the reference plane.
+    get complex_parameter -> ComplexBeamParameter = ComplexBeamParameter(this.0.complex_parameter());
+
+    /// Return the beam radius (1/e²) in metres.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the reference plane, in metres.
+    map radius_at(z);
+
+    /// Return the wavefront curvature 1/R in 1/m, positive where the beam diverges.
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Signed distance from the reference plane, in metres.
+    map curvature_at(z);
 }

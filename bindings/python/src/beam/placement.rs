@@ -1,12 +1,11 @@
 //! Where a light stands, and the plain parts of placed lights.
 
-use numpy::PyArray1;
 use pyo3::prelude::*;
 use tem00_beam as physics;
 use tem00_beam::DVec3;
 
 use super::arguments::map;
-use crate::arrays::Numbers;
+use crate::arrays::Vector;
 
 /// Where a light stands and where it points, in world coordinates.
 ///
@@ -38,24 +37,6 @@ impl Placement {
         })
     }
 
-    /// Centre of the aperture, in metres, shape (3,).
-    #[getter]
-    fn origin<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.0.origin.as_ref())
-    }
-
-    /// Direction of travel, of any length, shape (3,).
-    #[getter]
-    fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.0.direction.as_ref())
-    }
-
-    /// A vector in the plane of the fan, shape (3,).
-    #[getter]
-    fn fan_axis<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.0.fan_axis.as_ref())
-    }
-
     fn __repr__(&self) -> String {
         let [origin, direction, fan_axis] = self.vectors();
         format!("Placement(origin={origin:?}, direction={direction:?}, fan_axis={fan_axis:?})")
@@ -64,6 +45,19 @@ impl Placement {
     fn __getnewargs__(&self) -> ([f64; 3], [f64; 3], [f64; 3]) {
         self.vectors().into()
     }
+}
+
+methods! {
+    impl Placement as this: this.0;
+
+    /// Centre of the aperture, in metres, shape (3,).
+    field origin -> Vector<3>;
+
+    /// Direction of travel, of any length, shape (3,).
+    field direction -> Vector<3>;
+
+    /// A vector in the plane of the fan, shape (3,).
+    field fan_axis -> Vector<3>;
 }
 
 impl Placement {
@@ -82,39 +76,6 @@ pub(crate) struct Axis(pub(super) physics::Axis<f64>);
 
 #[pymethods]
 impl Axis {
-    /// Squared waist radius, in m².
-    #[getter]
-    fn w0_sq(&self) -> f64 {
-        self.0.w0_sq
-    }
-
-    /// Squared divergence half-angle, in rad².
-    #[getter]
-    fn theta_sq(&self) -> f64 {
-        self.0.theta_sq
-    }
-
-    /// Position of the waist, in metres, on the coordinate that the light says.
-    #[getter]
-    fn z0(&self) -> f64 {
-        self.0.z0
-    }
-
-    /// Return the squared beam radius in m².
-    ///
-    /// Parameters
-    /// ----------
-    /// z : float or array_like
-    ///     Coordinate along the beam, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// float or ndarray
-    ///     Squared radius, in the shape of ``z``.
-    fn radius_sq_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        map(py, [("z", &z)], |[z]| self.0.radius_sq_at(z))
-    }
-
     fn __repr__(&self) -> String {
         let physics::Axis {
             w0_sq,
@@ -126,6 +87,27 @@ impl Axis {
     }
 }
 
+methods! {
+    impl Axis as this: this.0;
+
+    /// Squared waist radius, in m².
+    field w0_sq -> f64;
+
+    /// Squared divergence half-angle, in rad².
+    field theta_sq -> f64;
+
+    /// Position of the waist, in metres, on the coordinate that the light says.
+    field z0 -> f64;
+
+    /// Return the squared beam radius in m².
+    ///
+    /// Parameters
+    /// ----------
+    /// z : float or array_like
+    ///     Coordinate along the beam, in metres.
+    map radius_sq_at(z);
+}
+
 /// A symmetric 2 × 2 matrix of a placed light: squared radii of an ellipse.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,26 +115,21 @@ pub(crate) struct Ellipse(pub(super) physics::Ellipse<f64>);
 
 #[pymethods]
 impl Ellipse {
-    /// Element in the first row and column.
-    #[getter]
-    fn xx(&self) -> f64 {
-        self.0.xx
-    }
-
-    /// Element off the diagonal.
-    #[getter]
-    fn xy(&self) -> f64 {
-        self.0.xy
-    }
-
-    /// Element in the second row and column.
-    #[getter]
-    fn yy(&self) -> f64 {
-        self.0.yy
-    }
-
     fn __repr__(&self) -> String {
         let physics::Ellipse { xx, xy, yy, .. } = self.0;
         format!("<Ellipse: xx={xx:?}, xy={xy:?}, yy={yy:?}>")
     }
+}
+
+methods! {
+    impl Ellipse as this: this.0;
+
+    /// Element in the first row and column.
+    field xx -> f64;
+
+    /// Element off the diagonal.
+    field xy -> f64;
+
+    /// Element in the second row and column.
+    field yy -> f64;
 }

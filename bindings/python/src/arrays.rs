@@ -9,16 +9,17 @@ mod columns;
 mod images;
 mod numbers;
 mod results;
+mod whole;
 
-use pyo3::{exceptions::PyRuntimeError, prelude::*};
+use pyo3::prelude::*;
 
-pub(crate) use columns::{Column, evaluate};
+pub(crate) use columns::{Column, columns, evaluate};
 pub(crate) use images::{ComplexImage, Image, image_array};
-pub(crate) use numbers::{Count, Numbers, length};
-pub(crate) use results::{Matrix3, Values, Vector, array, vector_array, zeros};
+pub(crate) use numbers::{Numbers, length};
+pub(crate) use results::{Matrix3, Values, Vector, array, vector_array};
+pub(crate) use whole::Whole;
 
 use crate::error::refused;
-use blocks::Blocks;
 
 /// An argument and its name.
 pub(crate) type Named<'a, 'py> = (&'static str, &'a Numbers<'py>);
@@ -33,7 +34,7 @@ pub(crate) fn map<'py, const N: usize>(
     py: Python<'py>,
     arguments: [Named<'_, 'py>; N],
     f: impl Fn([f64; N]) -> f64 + Send + Sync,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Values<'py>> {
     let [values] = map_many(py, arguments, |x| [f(x)])?;
     Ok(values)
 }
@@ -43,7 +44,7 @@ pub(crate) fn map_many<'py, const N: usize, const M: usize>(
     py: Python<'py>,
     arguments: [Named<'_, 'py>; N],
     f: impl Fn([f64; N]) -> [f64; M] + Send + Sync,
-) -> PyResult<[Bound<'py, PyAny>; M]> {
+) -> PyResult<[Values<'py>; M]> {
     fill(py, arguments, |columns, mut out| {
         for i in 0..columns[0].len() {
             let values = f(columns.map(|column| column[i]));
@@ -54,12 +55,8 @@ pub(crate) fn map_many<'py, const N: usize, const M: usize>(
     })
 }
 
-/// Hands `N` arguments, broadcast together, to `f` block by block as slices of equal length, and
-/// returns what it writes to the `M` slices beside them, in the common shape; floats for numbers.
-/// Without the interpreter's lock.
-///
-/// Only the results take memory. `f` is called with at most 4096 elements at a time; not at all where
-/// there are none.
+/// Hands `N` arguments of numbers, broadcast together, to `f`: [`evaluate`] for arguments of any size
+/// and for results that are numbers.
 ///
 /// # Errors
 ///
@@ -68,36 +65,9 @@ pub(crate) fn map_many<'py, const N: usize, const M: usize>(
 pub(crate) fn fill<'py, const N: usize, const M: usize>(
     py: Python<'py>,
     arguments: [Named<'_, 'py>; N],
-    mut f: impl FnMut([&[f64]; N], [&mut [f64]; M]) + Send,
-) -> PyResult<[Bound<'py, PyAny>; M]> {
-    let names = arguments.map(|(name, _)| name);
-    let blocks = Blocks::new(arguments)?;
-    let filled = py.detach(|| {
-        let mut out = zeros::<f64, M>(blocks.shape())?;
-        let mut rest = out.each_mut().map(Vec::as_mut_slice);
-        let mut outcome = Ok(());
-        blocks.run(|columns| {
-            let mut block = rest.each_mut().map(|rest| {
-                let (block, after) = core::mem::take(rest).split_at_mut(columns[0].len());
-                *rest = after;
-                block
-            });
-            f(columns, block.each_mut().map(|block| &mut **block));
-            for block in block {
-                if let Some(index) = block.iter().position(|value| value.is_nan()) {
-                    outcome = Err(no_number(names, columns.map(|column| column[index])));
-                }
-            }
-        });
-        outcome.map(|()| out)
-    });
-    let mut arrays = Vec::with_capacity(M);
-    for values in filled? {
-        arrays.push(results::array_or_float(py, blocks.shape(), values)?);
-    }
-    arrays
-        .try_into()
-        .map_err(|_| PyRuntimeError::new_err("an array is missing"))
+    f: impl FnMut([&[f64]; N], [&mut [f64]; M]) + Send,
+) -> PyResult<[Values<'py>; M]> {
+    evaluate(py, columns(arguments, f64::MAX)?, [&[]; M], f)
 }
 
 /// The exception for finite arguments so extreme that the result of a formula is not a number.

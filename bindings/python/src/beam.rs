@@ -16,6 +16,7 @@ mod lights;
 mod line;
 mod line_lights;
 mod located;
+mod matrices;
 mod placement;
 mod profile;
 mod records;

@@ -1,7 +1,7 @@
 use numpy::ndarray::{ArrayViewD, IxDyn, iter::Iter};
-use pyo3::{PyResult, exceptions::PyValueError};
+use pyo3::PyResult;
 
-use super::{Named, results::element_count};
+use super::results::element_count;
 use crate::error::refused;
 
 /// Elements that are worked on at a time: they stay in the cache.
@@ -15,34 +15,12 @@ pub(super) struct Blocks<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Blocks<'a, N> {
-    /// Broadcasts arguments by NumPy's rule.
-    ///
-    /// # Errors
-    ///
-    /// Refuses arguments that are not finite, shapes that do not fit together, and more elements than
-    /// an address counts.
-    pub(super) fn new(arguments: [Named<'a, '_>; N]) -> PyResult<Self> {
-        let names = arguments.map(|(name, _)| name);
-        let mut views = Vec::with_capacity(N);
-        for (name, argument) in arguments {
-            let view = ArrayViewD::from_shape(argument.shape(), argument.finite(name)?);
-            views.push(view.map_err(|error| PyValueError::new_err(error.to_string()))?);
-        }
-        let views = views
-            .try_into()
-            .map_err(|_| PyValueError::new_err("an argument is missing"))?;
-        Self::of_views(names, views)
-    }
-
     /// Broadcasts the values of arguments by NumPy's rule.
     ///
     /// # Errors
     ///
     /// Refuses shapes that do not fit together, and more elements than an address counts.
-    pub(super) fn of_views(
-        names: [&'static str; N],
-        views: [ArrayViewD<'a, f64>; N],
-    ) -> PyResult<Self> {
+    pub(super) fn new(names: [&'static str; N], views: [ArrayViewD<'a, f64>; N]) -> PyResult<Self> {
         let shape = common_shape(&names, &views)?;
         Ok(Self {
             length: element_count(&shape)?,

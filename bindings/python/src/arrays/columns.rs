@@ -55,15 +55,37 @@ impl<'a> Column<'a> {
             None => Ok(()),
             Some(value) => {
                 let (name, limit) = (self.name, self.limit);
-                let message = format!("{name} must be finite and within ±{limit:e}, got {value:e}");
+                let within = match limit {
+                    f64::MAX => String::new(),
+                    _ => format!(" and within ±{limit:e}"),
+                };
+                let message = format!("{name} must be finite{within}, got {value:e}");
                 Err(refused(name, message))
             }
         }
     }
 }
 
-/// As [`fill`](super::fill), for columns of any origin and for results that hold a number, a vector or
-/// a matrix in each place: `inner` is the shape of each, empty for a number.
+/// Takes arguments of numbers up to a magnitude.
+pub(crate) fn columns<'a, const N: usize>(
+    arguments: [Named<'a, '_>; N],
+    limit: f64,
+) -> PyResult<[Column<'a>; N]> {
+    let mut columns = Vec::with_capacity(N);
+    for argument in arguments {
+        columns.push(Column::new(argument, limit)?);
+    }
+    columns
+        .try_into()
+        .map_err(|_| PyRuntimeError::new_err("an argument is missing"))
+}
+
+/// Hands columns, broadcast together, to `f` block by block as slices of equal length, and returns what
+/// it writes to the `M` slices beside them: in the common shape, followed by the shape `inner` of each
+/// result, which is empty for a number. Floats for numbers. Without the interpreter's lock.
+///
+/// Only the results take memory. `f` is called with at most 4096 elements at a time; not at all where
+/// there are none.
 ///
 /// # Errors
 ///
@@ -74,9 +96,9 @@ pub(crate) fn evaluate<'py, const N: usize, const M: usize>(
     columns: [Column<'_>; N],
     inner: [&[usize]; M],
     mut f: impl FnMut([&[f64]; N], [&mut [f64]; M]) + Send,
-) -> PyResult<[Bound<'py, PyAny>; M]> {
+) -> PyResult<[results::Values<'py>; M]> {
     let names = columns.each_ref().map(|column| column.name);
-    let blocks = Blocks::of_views(names, columns.each_ref().map(|column| column.values.view()))?;
+    let blocks = Blocks::new(names, columns.each_ref().map(|column| column.values.view()))?;
     let shapes = inner.map(|inner| [blocks.shape(), inner].concat());
     let sizes = inner.map(|inner| inner.iter().product::<usize>());
     let filled = py.detach(|| {

@@ -5,7 +5,7 @@ use numpy::{
     PyUntypedArrayMethods,
 };
 use pyo3::{
-    exceptions::{PyOverflowError, PyTypeError, PyValueError},
+    exceptions::{PyTypeError, PyValueError},
     prelude::*,
     types::{PyFloat, PyInt},
 };
@@ -138,53 +138,6 @@ pub(crate) fn length(name: &'static str, value: f64) -> PyResult<f64> {
     }
     let message = format!("{name} must be positive and finite, got {value:?} m");
     Err(refused(name, message))
-}
-
-/// A number of things, as an argument of a function.
-#[derive(Debug)]
-pub(crate) struct Count(Result<usize, String>);
-
-impl<'py> FromPyObject<'_, 'py> for Count {
-    type Error = PyErr;
-
-    fn extract(argument: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        match argument.extract() {
-            Ok(count) => Ok(Self(Ok(count))),
-            Err(error) if error.is_instance_of::<PyOverflowError>(argument.py()) => {
-                Ok(Self(Err(argument.str()?.to_string())))
-            }
-            Err(error) => Err(error),
-        }
-    }
-}
-
-impl Count {
-    /// Returns the number.
-    ///
-    /// # Errors
-    ///
-    /// Refuses the argument of this name if it is negative or no address counts that far.
-    pub(crate) fn value(&self, name: &'static str) -> PyResult<usize> {
-        self.0.clone().map_err(|given| {
-            let most = usize::MAX;
-            let message = format!("{name} must be a whole number from 0 to {most}, got {given}");
-            refused(name, message)
-        })
-    }
-
-    /// Returns the number where it lies between `least` and `most`.
-    ///
-    /// # Errors
-    ///
-    /// Refuses the argument of this name elsewhere.
-    pub(crate) fn within(&self, name: &'static str, [least, most]: [usize; 2]) -> PyResult<usize> {
-        let value = self.value(name)?;
-        if (least..=most).contains(&value) {
-            return Ok(value);
-        }
-        let message = format!("{name} must lie between {least} and {most}, got {value}");
-        Err(refused(name, message))
-    }
 }
 
 /// Returns an array of `T` that is aligned and lies in memory row by row: the argument itself where it

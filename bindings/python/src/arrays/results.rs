@@ -42,15 +42,6 @@ fn is_too_much(bytes: usize) -> bool {
     bytes > SMALL && available_memory().is_some_and(|available| bytes as u64 > available)
 }
 
-/// Returns `M` arrays of zeros of this shape.
-///
-/// # Errors
-///
-/// Returns a `MemoryError` where memory does not hold them.
-pub(crate) fn zeros<T: Copy + Default, const M: usize>(shape: &[usize]) -> PyResult<[Vec<T>; M]> {
-    zeros_of([shape; M])
-}
-
 /// Returns an array of zeros of each of these shapes.
 ///
 /// # Errors

@@ -1,10 +1,10 @@
 //! Arguments of the queries of beams and lights, and what becomes of them.
 
-use pyo3::{exceptions::PyRuntimeError, prelude::*};
+use pyo3::prelude::*;
 use tem00_beam::BeamError;
 
 use crate::{
-    arrays::{Column, Named, Numbers, evaluate},
+    arrays::{Column, Named, Numbers, Values, columns, evaluate},
     error::{IntoPython, refused},
 };
 
@@ -31,17 +31,11 @@ pub(super) fn list<'a>(name: &'static str, numbers: &'a Numbers<'_>) -> PyResult
     }
 }
 
-/// Arguments of numbers.
-pub(super) fn columns<'a, const N: usize>(
+/// Arguments of numbers that are coordinates.
+pub(super) fn coordinates<'a, const N: usize>(
     arguments: [Named<'a, '_>; N],
 ) -> PyResult<[Column<'a>; N]> {
-    let mut columns = Vec::with_capacity(N);
-    for argument in arguments {
-        columns.push(Column::new(argument, LIMIT)?);
-    }
-    columns
-        .try_into()
-        .map_err(|_| PyRuntimeError::new_err("an argument is missing"))
+    columns(arguments, LIMIT)
 }
 
 /// The components of an argument that holds vectors in its last axis.
@@ -68,8 +62,8 @@ pub(super) fn map<'py, const N: usize>(
     py: Python<'py>,
     arguments: [Named<'_, 'py>; N],
     f: impl Fn([f64; N]) -> f64 + Send + Sync,
-) -> PyResult<Bound<'py, PyAny>> {
-    map_inner(py, columns(arguments)?, &[], |x| [f(x)])
+) -> PyResult<Values<'py>> {
+    map_inner(py, coordinates(arguments)?, &[], |x| [f(x)])
 }
 
 /// Applies `f` to numbers, broadcast together; its vectors lie in the last axis of the result.
@@ -77,8 +71,8 @@ pub(super) fn map_vector<'py, const N: usize, const K: usize>(
     py: Python<'py>,
     arguments: [Named<'_, 'py>; N],
     f: impl Fn([f64; N]) -> [f64; K] + Send + Sync,
-) -> PyResult<Bound<'py, PyAny>> {
-    map_inner(py, columns(arguments)?, &[K], f)
+) -> PyResult<Values<'py>> {
+    map_inner(py, coordinates(arguments)?, &[K], f)
 }
 
 /// Applies `f` to columns; its values lie in the shape `inner` in the last axes of the result.
@@ -87,7 +81,7 @@ pub(super) fn map_inner<'py, const N: usize, const K: usize>(
     columns: [Column<'_>; N],
     inner: &[usize],
     f: impl Fn([f64; N]) -> [f64; K] + Send + Sync,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Values<'py>> {
     let [values] = evaluate(py, columns, [inner], |columns, [out]| {
         for (i, out) in out.chunks_exact_mut(K).enumerate() {
             out.copy_from_slice(&f(columns.map(|column| column[i])));
@@ -101,7 +95,7 @@ pub(super) fn try_map<'py>(
     py: Python<'py>,
     argument: Named<'_, 'py>,
     f: impl Fn(f64) -> Result<f64, BeamError> + Send + Sync,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Values<'py>> {
     let name = argument.0;
     let mut first_error = Ok(());
     let column = Column::new(argument, f64::MAX)?;

@@ -6,7 +6,7 @@ use tem00_beam::DVec3;
 
 use super::{
     abcd::AbcdMatrix,
-    arguments::{OrRaiseAs, columns, coordinate, map, map_inner, map_vector},
+    arguments::{OrRaiseAs, coordinate, coordinates, map, map_inner, map_vector},
     cross_section::CrossSection,
     located::LocatedBeam,
 };
@@ -191,7 +191,7 @@ impl AstigmaticBeam {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| {
             self.0.flux_per_watt(DVec3::from(p)).to_array()
         })

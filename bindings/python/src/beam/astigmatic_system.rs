@@ -8,7 +8,7 @@ use tem00_beam::DVec2;
 use super::{
     abcd::AbcdMatrix,
     arguments::{OrRaiseAs, map_inner, matrices},
-    general::{matrix_of, rows_of},
+    matrices::{matrix_of, rows_of},
 };
 use crate::{arrays::Numbers, error::OrRaise};
 

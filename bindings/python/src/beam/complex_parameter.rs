@@ -3,13 +3,9 @@
 use pyo3::{prelude::*, types::PyComplex};
 use tem00_beam as physics;
 
-use super::{
-    arguments::{OrRaiseAs, try_map},
-    located::LocatedBeam,
-};
+use super::arguments::{OrRaiseAs, try_map};
 use crate::{
     arrays::Numbers,
-    error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
 
@@ -97,23 +93,6 @@ impl ComplexBeamParameter {
     fn __complex__<'py>(&self, py: Python<'py>) -> Bound<'py, PyComplex> {
         let q = self.0.to_complex();
         PyComplex::from_doubles(py, q.re, q.im)
-    }
-
-    /// Return the beam of this parameter, seen from the plane of the parameter.
-    ///
-    /// Parameters
-    /// ----------
-    /// wavelength : float
-    ///     Wavelength in the medium the beam travels in, in metres.
-    /// m_squared : float
-    ///     Beam quality factor, at least 1.
-    ///
-    /// Returns
-    /// -------
-    /// LocatedBeam
-    fn to_located_beam(&self, wavelength: f64, m_squared: f64) -> PyResult<LocatedBeam> {
-        let beam = self.0.to_located_beam(wavelength, m_squared);
-        Ok(LocatedBeam(beam.or_raise()?))
     }
 
     fn __repr__(&self) -> String {

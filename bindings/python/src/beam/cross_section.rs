@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use tem00_beam as physics;
 
-use super::arguments::{OrRaiseAs, columns, components, map, map_inner, try_map};
+use super::arguments::{OrRaiseAs, components, coordinates, map, map_inner, try_map};
 use crate::arrays::{Numbers, Vector};
 
 /// The irradiance of a Gaussian beam of 1 W over a plane across it.
@@ -47,7 +47,7 @@ impl CrossSection {
         radius: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let [x, y] = components(("centre", &centre))?;
-        let [radius] = columns([("radius", &radius)])?;
+        let [radius] = coordinates([("radius", &radius)])?;
         let columns = [x, y, radius];
         map_inner(py, columns, &[], |[x, y, radius]| {
             [self.0.power_in_circle_at([x, y], radius)]

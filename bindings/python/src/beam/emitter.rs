@@ -4,7 +4,7 @@ use numpy::PyArray1;
 use pyo3::{prelude::*, types::PyFloat};
 
 use super::{
-    arguments::{OrRaiseAs, columns, components, coordinate, map_inner, uniforms},
+    arguments::{OrRaiseAs, components, coordinate, coordinates, map_inner, uniforms},
     light::Light,
     records::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
     rows::{Precision, array_of},
@@ -108,7 +108,7 @@ impl Emitter {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let [irradiance] = evaluate(py, points, [&[]], |[x, y, z], [out]| {
             self.0.ask(|light| light.irradiance_batch(x, y, z, out));
         })?;
@@ -135,7 +135,7 @@ impl Emitter {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| self.0.ask(|light| light.flux(p)))
     }
 
@@ -161,7 +161,7 @@ impl Emitter {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Option<NextEvent>> {
-        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let inner: [&[usize]; 4] = [&[3], &[], &[3], &[]];
         let [point, distance, wi, e_perp] = evaluate(py, points, inner, |points, out| {
             self.0.next_events(points, out);
@@ -200,7 +200,7 @@ impl Emitter {
         z: Numbers<'py>,
         u: Numbers<'py>,
     ) -> PyResult<Option<SampledEvent>> {
-        let [x, y, z] = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        let [x, y, z] = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let [u0, u1] = uniforms(&u)?;
         let inner: [&[usize]; 5] = [&[3], &[], &[3], &[], &[]];
         let [point, distance, wi, value, pdf] =
@@ -241,7 +241,7 @@ impl Emitter {
         z: Numbers<'py>,
         wi: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let [x, y, z] = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        let [x, y, z] = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let [wi_x, wi_y, wi_z] = components(("wi", &wi))?;
         let columns = [x, y, z, wi_x, wi_y, wi_z];
         map_inner(py, columns, &[], |[x, y, z, wi @ ..]| {
@@ -299,7 +299,7 @@ impl Emitter {
         z: Numbers<'py>,
         d: Numbers<'py>,
     ) -> PyResult<RayPdf> {
-        let [x, y, z] = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        let [x, y, z] = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let [d_x, d_y, d_z] = components(("d", &d))?;
         let columns = [x, y, z, d_x, d_y, d_z];
         let [position, direction] = evaluate(py, columns, [&[]; 2], |columns, out| {
@@ -336,7 +336,7 @@ impl Emitter {
         z: Numbers<'py>,
         d: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let [x, y, z] = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        let [x, y, z] = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let [d_x, d_y, d_z] = components(("d", &d))?;
         map_inner(py, [x, y, z, d_x, d_y, d_z], &[], |[x, y, z, d @ ..]| {
             [self.0.ask(|light| light.radiance([x, y, z], d))]

@@ -5,7 +5,7 @@ use tem00_beam as physics;
 use tem00_beam::DVec3;
 
 use super::{
-    arguments::{OrRaiseAs, columns, coordinate, map, map_inner, try_map},
+    arguments::{OrRaiseAs, coordinate, coordinates, map, map_inner, try_map},
     cross_section::CrossSection,
 };
 use crate::{
@@ -146,7 +146,7 @@ impl GaussianBeam {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| {
             self.0.flux_per_watt(DVec3::from(p)).to_array()
         })

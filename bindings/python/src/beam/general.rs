@@ -6,13 +6,14 @@ use pyo3::{
     types::{PyComplex, PyComplexMethods},
 };
 use tem00_beam as physics;
-use tem00_beam::{DMat2, DVec3};
+use tem00_beam::DVec3;
 
 use super::{
-    arguments::{OrRaiseAs, columns, coordinate, map, map_inner, map_vector},
+    arguments::{OrRaiseAs, coordinate, coordinates, map, map_inner, map_vector},
     astigmatic::AstigmaticBeam,
     astigmatic_system::AstigmaticSystem,
     cross_section::CrossSection,
+    matrices::{Rows, matrix_of, rows_of},
     rows::array_of,
 };
 use crate::{
@@ -246,7 +247,7 @@ impl GeneralAstigmaticBeam {
         py: Python<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        map_inner(py, columns([("z", &z)])?, &[2, 2], |[z]| {
+        map_inner(py, coordinates([("z", &z)])?, &[2, 2], |[z]| {
             self.0.curvature_tensor_at(z).transpose().to_cols_array()
         })
     }
@@ -291,7 +292,7 @@ impl GeneralAstigmaticBeam {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| {
             self.0.flux_per_watt(DVec3::from(p)).to_array()
         })
@@ -358,17 +359,4 @@ impl<'py> FromPyObject<'_, 'py> for Complex {
         let complex = complex.cast_into::<PyComplex>()?;
         Ok(Self(Complex64::new(complex.real(), complex.imag())))
     }
-}
-
-/// The rows of a 2 × 2 matrix.
-type Rows = [[f64; 2]; 2];
-
-/// A matrix from its rows.
-pub(super) fn matrix_of(rows: Rows) -> DMat2 {
-    DMat2::from_cols_array_2d(&rows).transpose()
-}
-
-/// The rows of a matrix.
-pub(super) fn rows_of(matrix: DMat2) -> Rows {
-    matrix.transpose().to_cols_array_2d()
 }

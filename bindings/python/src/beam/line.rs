@@ -5,7 +5,7 @@ use tem00_beam as physics;
 use tem00_beam::DVec3;
 
 use super::{
-    arguments::{columns, map, map_inner},
+    arguments::{coordinates, map, map_inner},
     gaussian::GaussianBeam,
     profile::LineProfile,
 };
@@ -180,7 +180,7 @@ impl LaserLine {
         y: Numbers<'py>,
         z: Numbers<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = columns([("x", &x), ("y", &y), ("z", &z)])?;
+        let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| {
             self.0.flux_per_watt(DVec3::from(p)).to_array()
         })

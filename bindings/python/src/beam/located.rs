@@ -106,3 +106,25 @@ methods! {
     ///     Signed distance from the reference plane, in metres.
     map curvature_at(z);
 }
+
+// Here, as it makes a beam of this file from a parameter: that file does without this one.
+#[expect(clippy::wrong_self_convention, reason = "Python objects are borrowed")]
+#[pymethods]
+impl ComplexBeamParameter {
+    /// Return the beam of this parameter, seen from the plane of the parameter.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Wavelength in the medium the beam travels in, in metres.
+    /// m_squared : float
+    ///     Beam quality factor, at least 1.
+    ///
+    /// Returns
+    /// -------
+    /// LocatedBeam
+    fn to_located_beam(&self, wavelength: f64, m_squared: f64) -> PyResult<LocatedBeam> {
+        let beam = self.0.to_located_beam(wavelength, m_squared);
+        Ok(LocatedBeam(beam.or_raise()?))
+    }
+}

@@ -2,9 +2,10 @@
 
 use pyo3::prelude::*;
 
-/// Defines a frozen class of named values with a constructor, a repr and pickling.
+/// Defines a frozen class of named values with a constructor, a repr and pickling. The types are for
+/// the stubs: `Values` are numbers or arrays.
 macro_rules! record {
-    ($module:literal, $(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident,)+ }) => {
+    ($module:literal, $(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ident,)+ }) => {
         $(#[$doc])*
         #[pyclass(frozen, module = $module)]
         #[derive(Debug)]
@@ -41,13 +42,13 @@ record! {
     /// For arrays of points all members are arrays, and 0 where no light arrives.
     NextEvent {
         /// Point of the aperture plane that the light seems to come from, shape (..., 3).
-        point,
+        point: Array,
         /// Distance to ``point``, in metres, shape (...).
-        distance,
+        distance: Values,
         /// Unit vector towards the light, against the mean energy flow, shape (..., 3).
-        wi,
+        wi: Array,
         /// Irradiance of a surface square to ``wi``, in W/m², shape (...).
-        e_perp,
+        e_perp: Values,
     }
 }
 
@@ -58,15 +59,15 @@ record! {
     /// For arrays of points all members are arrays, and 0 where no light arrives.
     SampledEvent {
         /// Point of the aperture plane that the ray comes from, shape (..., 3).
-        point,
+        point: Array,
         /// Distance to ``point``, in metres, shape (...).
-        distance,
+        distance: Values,
         /// Unit vector towards the light, shape (..., 3).
-        wi,
+        wi: Array,
         /// Radiance divided by ``pdf``, in W/m², shape (...).
-        value,
+        value: Values,
         /// Probability density of ``wi``, per steradian, shape (...).
-        pdf,
+        pdf: Values,
     }
 }
 
@@ -75,19 +76,19 @@ record! {
     /// A ray that leaves the aperture, or arrays of them.
     RaySample {
         /// Point of the aperture plane, shape (..., 3).
-        origin,
+        origin: Array,
         /// Power the ray stands for, in watts: that of the light, to be divided by the number of
         /// rays, shape (...).
-        flux,
+        flux: Values,
         /// Unit vector along the ray, shape (..., 3).
-        direction,
+        direction: Array,
         /// Cosine of the angle between the ray and the axis, shape (...).
-        cos,
+        cos: Values,
         /// Probability density of ``origin`` given the direction, per m² of the aperture plane,
         /// shape (...).
-        pdf_position,
+        pdf_position: Values,
         /// Probability density of ``direction``, per steradian, shape (...).
-        pdf_direction,
+        pdf_direction: Values,
     }
 }
 
@@ -96,9 +97,9 @@ record! {
     /// The probability densities of a ray; their product is the joint density.
     RayPdf {
         /// Density of the position given the direction, per m² of the aperture plane, shape (...).
-        position,
+        position: Values,
         /// Density of the direction, per steradian, shape (...).
-        direction,
+        direction: Values,
     }
 }
 
@@ -107,13 +108,13 @@ record! {
     /// Bounds of a light in space and direction, as a light hierarchy stores them.
     Bounds {
         /// Smallest corner of an axis-aligned box around the lit volume, in metres, shape (3,).
-        min,
+        min: Array,
         /// Largest corner of the box, in metres, shape (3,).
-        max,
+        max: Array,
         /// Unit vector along the axis, shape (3,).
-        axis,
+        axis: Array,
         /// Half-angle, in radians, of the cone about ``axis`` that the light travels in.
-        half_angle,
+        half_angle: f64,
     }
 }
 

@@ -2,7 +2,7 @@ use pyo3::prelude::*;
 use tem00_decorrelation as physics;
 
 use crate::{
-    arrays::{Count, Numbers, Values, map},
+    arrays::{Numbers, Values, Whole, map},
     error::refused,
     pickling::{Recipe, by_constructor},
 };
@@ -110,9 +110,9 @@ functions! {
 pub(super) fn slice_coordinate<'py>(
     py: Python<'py>,
     correlation: Numbers<'py>,
-    half_period: Count,
+    half_period: Whole<'_>,
 ) -> PyResult<Values<'py>> {
-    let half_period = half_period.within("half_period", [1, usize::MAX])?;
+    let half_period = half_period.between("half_period", [1, usize::MAX])?;
     map(py, [("correlation", &correlation)], |[left]| {
         physics::slice_coordinate(left, half_period)
     })

@@ -5,10 +5,10 @@ use super::{
     frame::CameraFrame,
     geometry::ImagingGeometry,
     motion::Motion,
-    vectors::{Array3, array3, orientation_name, orientation_of, shown, vec3},
+    vectors::{orientation_name, orientation_of, shown, vec3},
 };
 use crate::{
-    arrays::{Count, Named, Numbers, fill},
+    arrays::{Named, Numbers, Vector, Whole, fill},
     error::OrRaise,
 };
 
@@ -47,7 +47,7 @@ impl FieldSetup {
         pupil_centre: Numbers<'_>,
         orientation: &str,
         pattern_speckle_size: f64,
-        half_period: Count,
+        half_period: Whole<'_>,
     ) -> PyResult<Self> {
         let setup = physics::FieldSetup {
             geometry: geometry.geometry,
@@ -55,16 +55,10 @@ impl FieldSetup {
             pupil_centre: vec3("pupil_centre", &pupil_centre)?,
             orientation: orientation_of(orientation)?,
             pattern_speckle_size,
-            half_period: half_period.value("half_period")?,
+            half_period: half_period.unsigned("half_period")?,
         };
         let geometry = *geometry;
         Ok(Self { setup, geometry })
-    }
-
-    /// Centre of the pupil in metres, of shape (3,).
-    #[getter]
-    fn pupil_centre<'py>(&self, py: Python<'py>) -> Array3<'py> {
-        array3(py, self.setup.pupil_centre)
     }
 
     fn __repr__(&self) -> String {
@@ -81,7 +75,7 @@ impl FieldSetup {
 }
 
 methods! {
-    impl FieldSetup as this: this.geometry;
+    impl FieldSetup as this: this.setup;
 
     /// The lens, its pupil and the sensor.
     get geometry -> ImagingGeometry = this.geometry;
@@ -89,14 +83,17 @@ methods! {
     /// The axes of the camera.
     get camera -> CameraFrame = CameraFrame(this.setup.camera);
 
+    /// Centre of the pupil in metres, of shape (3,).
+    field pupil_centre -> Vector<3>;
+
     /// Which way up image displacements are counted.
     get orientation -> &'static str = orientation_name(this.setup.orientation);
 
     /// Speckle size of the pattern in samples.
-    get pattern_speckle_size -> f64 = this.setup.pattern_speckle_size;
+    field pattern_speckle_size -> f64;
 
     /// Number of slices of the stack to the first uncorrelated one.
-    get half_period -> usize = this.setup.half_period;
+    field half_period -> usize;
 }
 
 /// The light on the points of a field, by the curvature of its wavefront there.

@@ -1,4 +1,4 @@
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use tem00_decorrelation::{DMat3, DVec2, DVec3, ImageOrientation};
 
@@ -65,11 +65,6 @@ pub(super) fn numbers(name: &'static str, vector: DVec2) -> PyResult<DVec2> {
         return Err(refused(name, message));
     }
     Ok(vector)
-}
-
-/// Returns a matrix as an array of shape (3, 3).
-pub(super) fn array33(py: Python<'_>, matrix: DMat3) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    vector_array(py, matrix.transpose().to_cols_array()).reshape([3, 3])
 }
 
 /// Returns which way up image displacements are counted.

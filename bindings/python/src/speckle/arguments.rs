@@ -1,44 +1,9 @@
 //! Arguments that are checked where their name is known.
 
-use pyo3::{conversion::FromPyObjectOwned, exceptions::PyTypeError, intern, prelude::*};
+use pyo3::prelude::*;
 use tem00_speckle::{Interpolation, Phasors};
 
-use crate::error::refused;
-
-/// A whole number of any size, as Python has it.
-#[derive(Debug)]
-pub(crate) struct Whole<'py>(Bound<'py, PyAny>);
-
-impl<'py> FromPyObject<'_, 'py> for Whole<'py> {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let index = object.call_method0(intern!(object.py(), "__index__"));
-        index.map(Self).map_err(|_| {
-            let found = object.get_type();
-            PyTypeError::new_err(format!("expected an integer, got {found}"))
-        })
-    }
-}
-
-impl<'py> Whole<'py> {
-    /// Returns a count or a seed.
-    pub(crate) fn unsigned<T: FromPyObjectOwned<'py>>(&self, name: &str) -> PyResult<T> {
-        self.within(name, &format!("from 0 to 2**{} - 1", 8 * size_of::<T>()))
-    }
-
-    /// Returns a number of either sign.
-    pub(crate) fn signed(&self, name: &str) -> PyResult<i64> {
-        self.within(name, "from -2**63 to 2**63 - 1")
-    }
-
-    fn within<T: FromPyObjectOwned<'py>>(&self, name: &str, allowed: &str) -> PyResult<T> {
-        self.0.extract().map_err(|_| {
-            let message = format!("{name} must be a whole number {allowed}, got {}", self.0);
-            refused(name, message)
-        })
-    }
-}
+use crate::{arrays::Whole, error::refused};
 
 /// A width and a height, or any two counts.
 pub(crate) fn counts(name: &str, [x, y]: &[Whole<'_>; 2]) -> PyResult<[usize; 2]> {

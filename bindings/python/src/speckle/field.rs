@@ -3,13 +3,13 @@ use pyo3::{exceptions::PyTypeError, prelude::*, types::PyComplex};
 use tem00_speckle as physics;
 
 use super::{
-    arguments::{PHASORS, Whole, choice, counts, finite, finite_pair, name_of},
+    arguments::{PHASORS, choice, counts, finite, finite_pair, name_of},
     images::{check_room, view},
     pattern::{SpeckleField, SpecklePattern},
     pupil::Pupil,
 };
 use crate::{
-    arrays::{ComplexImage, Numbers, map_many},
+    arrays::{ComplexImage, Numbers, Whole, map_many},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };

@@ -2,11 +2,11 @@ use pyo3::prelude::*;
 use tem00_speckle as physics;
 
 use super::{
-    arguments::{Whole, counts, finite_pair},
+    arguments::{counts, finite_pair},
     field::PupilField,
 };
 use crate::{
-    arrays::length,
+    arrays::{Whole, length},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };

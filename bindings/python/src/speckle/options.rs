@@ -4,7 +4,8 @@ use pyo3::{
 };
 use tem00_speckle as physics;
 
-use super::arguments::{INTERPOLATIONS, Whole, choice, name_of};
+use super::arguments::{INTERPOLATIONS, choice, name_of};
+use crate::arrays::Whole;
 
 /// How a stack is built.
 ///

@@ -1,8 +1,9 @@
 use pyo3::prelude::*;
 use tem00_speckle as physics;
 
-use super::arguments::{Whole, counts};
+use super::arguments::counts;
 use crate::{
+    arrays::Whole,
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };

@@ -2,13 +2,9 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use tem00_speckle as physics;
 
-use super::{
-    arguments::{Whole, counts},
-    images::check_bytes,
-    pattern::SpecklePattern,
-};
+use super::{arguments::counts, images::check_bytes, pattern::SpecklePattern};
 use crate::{
-    arrays::image_array,
+    arrays::{Whole, image_array},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };

@@ -5,13 +5,11 @@ use pyo3::{
 use tem00_speckle as physics;
 
 use super::{
-    arguments::{Whole, counts},
-    field::PupilField,
-    options::StackOptions,
-    path::SlicePath,
+    arguments::counts, field::PupilField, options::StackOptions, path::SlicePath,
     stack::SpeckleStack,
 };
 use crate::{
+    arrays::Whole,
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };

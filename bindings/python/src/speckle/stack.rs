@@ -9,7 +9,7 @@ use pyo3::{prelude::*, types::PyBytes};
 use tem00_speckle as physics;
 
 use super::{
-    arguments::{INTERPOLATIONS, Whole, finite_pair, index, name_of},
+    arguments::{INTERPOLATIONS, finite_pair, index, name_of},
     field::PupilField,
     files::OrRaiseFile,
     images::{check_bytes, view},
@@ -18,7 +18,7 @@ use super::{
     slice_law::SliceLaw,
 };
 use crate::{
-    arrays::{Numbers, Values, fill, map},
+    arrays::{Numbers, Values, Whole, fill, map},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };

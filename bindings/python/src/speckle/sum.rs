@@ -4,9 +4,9 @@ use pyo3::{
 };
 use tem00_speckle::{self as physics, SpeckleError};
 
-use super::{arguments::Whole, field::PupilField, images::check_room, pattern::SpecklePattern};
+use super::{field::PupilField, images::check_room, pattern::SpecklePattern};
 use crate::{
-    arrays::{Numbers, array},
+    arrays::{Numbers, Whole, array},
     error::{IntoPython, OrRaise, refused},
 };
 

@@ -4,7 +4,7 @@ use tem00_statistics as physics;
 use tem00_statistics::StatisticsError;
 
 use crate::{
-    arrays::{Count, Numbers},
+    arrays::{Numbers, Whole},
     error::{OrRaise, refused},
 };
 
@@ -66,10 +66,10 @@ pub(super) fn kolmogorov_smirnov(
 pub(super) fn chi_squared(
     observed: Numbers<'_>,
     expected: Numbers<'_>,
-    constraints: Count,
+    constraints: Whole<'_>,
 ) -> PyResult<TestOutcome> {
     let observed = counts(observed.values()?)?;
-    let constraints = constraints.value("constraints")?;
+    let constraints = constraints.unsigned("constraints")?;
     let outcome = physics::chi_squared(&observed, expected.values()?, constraints);
     Ok(TestOutcome(outcome.or_raise()?))
 }

@@ -3,7 +3,7 @@ use pyo3::prelude::*;
 use tem00_statistics as physics;
 
 use crate::{
-    arrays::{Count, Image, image_array},
+    arrays::{Image, Whole, image_array},
     error::{OrRaise, refused},
 };
 
@@ -130,9 +130,9 @@ pub(super) fn radial_average(
 pub(super) fn decorrelated_samples<'py>(
     py: Python<'py>,
     grid: Image<'py>,
-    stride: Count,
+    stride: Whole<'_>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let (grid, stride) = (grid.grid("grid")?, stride.value("stride")?);
+    let (grid, stride) = (grid.grid("grid")?, stride.unsigned("stride")?);
     let samples = physics::decorrelated_samples(&grid, stride).or_raise()?;
     Ok(PyArray1::from_vec(py, samples))
 }
@@ -154,9 +154,9 @@ pub(super) fn decorrelated_samples<'py>(
 pub(super) fn local_contrast<'py>(
     py: Python<'py>,
     image: Image<'py>,
-    window: Count,
+    window: Whole<'_>,
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-    let (image, window) = (image.grid("image")?, window.value("window")?);
+    let (image, window) = (image.grid("image")?, window.unsigned("window")?);
     let map = py.detach(|| physics::local_contrast(&image, window));
     image_array(py, map.or_raise_renamed(VALUES, "image")?)
 }

@@ -3,7 +3,7 @@ use tem00_statistics as physics;
 
 use super::phasors::checked_order;
 use crate::{
-    arrays::{Count, Numbers, Values, map},
+    arrays::{Numbers, Values, Whole, map},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -44,7 +44,7 @@ impl JointIntensity {
     }
 
     /// Return the moment ⟨I₁ᵐ I₂ⁿ⟩ of the orders (m, n), each at most 20.
-    fn moment(&self, orders: [Count; 2]) -> PyResult<f64> {
+    fn moment(&self, orders: [Whole<'_>; 2]) -> PyResult<f64> {
         let [m, n] = &orders;
         let orders = [checked_order("orders", m)?, checked_order("orders", n)?];
         Ok(self.0.moment(orders))

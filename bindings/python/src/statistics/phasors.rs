@@ -2,7 +2,7 @@ use pyo3::prelude::*;
 use tem00_statistics as physics;
 
 use crate::{
-    arrays::{Count, map},
+    arrays::{Whole, map},
     error::OrRaise,
 };
 
@@ -22,8 +22,8 @@ pub(crate) struct PhasorSum(physics::PhasorSum);
 #[pymethods]
 impl PhasorSum {
     #[new]
-    fn new(py: Python<'_>, count: Count) -> PyResult<Self> {
-        let count = count.value("count")?;
+    fn new(py: Python<'_>, count: Whole<'_>) -> PyResult<Self> {
+        let count = count.unsigned("count")?;
         let law = py.detach(|| physics::PhasorSum::new(count)).or_raise()?;
         Ok(Self(law))
     }
@@ -49,8 +49,8 @@ methods! {
 
 /// Return the contrast of the intensity of a sum of `count` phasors, √(1 − 1/count).
 #[pyfunction]
-pub(super) fn contrast_of_phasor_sum(count: Count) -> PyResult<f64> {
-    let count = count.within("count", [1, usize::MAX])?;
+pub(super) fn contrast_of_phasor_sum(count: Whole<'_>) -> PyResult<f64> {
+    let count = count.between("count", [1, usize::MAX])?;
     Ok(physics::contrast_of_phasor_sum(count))
 }
 
@@ -63,8 +63,8 @@ pub(super) fn contrast_of_phasor_sum(count: Count) -> PyResult<f64> {
 /// order : int
 ///     Order of the moment, at most 20.
 #[pyfunction]
-pub(super) fn moment_of_phasor_sum(count: Count, order: Count) -> PyResult<f64> {
-    let count = count.within("count", [1, usize::MAX])?;
+pub(super) fn moment_of_phasor_sum(count: Whole<'_>, order: Whole<'_>) -> PyResult<f64> {
+    let count = count.between("count", [1, usize::MAX])?;
     Ok(physics::moment_of_phasor_sum(
         count,
         checked_order("order", &order)?,
@@ -72,7 +72,7 @@ pub(super) fn moment_of_phasor_sum(count: Count, order: Count) -> PyResult<f64> 
 }
 
 /// Returns the order of a moment that is not too large.
-pub(super) fn checked_order(name: &'static str, order: &Count) -> PyResult<u32> {
-    let order = order.within(name, [0, LARGEST_ORDER])?;
+pub(super) fn checked_order(name: &'static str, order: &Whole<'_>) -> PyResult<u32> {
+    let order = order.between(name, [0, LARGEST_ORDER])?;
     Ok(u32::try_from(order)?)
 }

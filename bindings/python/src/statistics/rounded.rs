@@ -6,7 +6,7 @@ use tem00_statistics as physics;
 
 use super::hypotheses::{TestOutcome, checked, probabilities};
 use crate::{
-    arrays::{Count, Numbers, map},
+    arrays::{Numbers, Whole, map},
     error::{OrRaise, refused},
 };
 
@@ -34,9 +34,9 @@ impl GreyLevels {
     }
 
     /// Return the light, from and to, for which the level at an index stands.
-    fn cell(&self, index: Count) -> PyResult<(f64, f64)> {
+    fn cell(&self, index: Whole<'_>) -> PyResult<(f64, f64)> {
         let last = self.0.count() - 1;
-        Ok(self.0.cell(index.within("index", [0, last])?).into())
+        Ok(self.0.cell(index.between("index", [0, last])?).into())
     }
 
     /// Return the edge of a level that is nearest to a value.
@@ -156,8 +156,8 @@ impl GoodnessOfFit {
     /// ----------
     /// constraints : int
     ///     1 for the total and 1 for each parameter of the law that was fitted.
-    fn chi_squared(&self, constraints: Count) -> PyResult<TestOutcome> {
-        let constraints = constraints.value("constraints")?;
+    fn chi_squared(&self, constraints: Whole<'_>) -> PyResult<TestOutcome> {
+        let constraints = constraints.unsigned("constraints")?;
         Ok(TestOutcome(self.0.chi_squared(constraints).or_raise()?))
     }
 

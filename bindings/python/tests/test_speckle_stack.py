@@ -262,26 +262,6 @@ def test_samples_of_a_look_up_are_exponential_at_every_coordinate() -> None:
     assert (values**2).mean() == pytest.approx(2, abs=4 * np.sqrt(20) * error)
 
 
-def test_numpy_reads_what_a_stack_writes(
-    field: PupilField, stack: SpeckleStack, tmp_path: Path
-) -> None:
-    file = tmp_path / "slices.npy"
-    stack.write_npy(file)
-    slices = np.load(file)
-    assert (slices.dtype, slices.shape) == (np.complex64, (8, SIZE, SIZE))
-    for index in range(8):
-        expected = field.speckle(stack.offset(index), 0.0).values
-        np.testing.assert_allclose(slices[index], expected, atol=SINGLE)
-    again = SpeckleStack.read_npy(file, field, CIRCLE, StackOptions())
-    x, y = points(50)
-    np.testing.assert_allclose(
-        again.intensity_at(x, y, 1.5), stack.intensity_at(x, y, 1.5), atol=SINGLE
-    )
-    np.save(file, np.asfortranarray(slices.astype(np.complex128)))
-    foreign = SpeckleStack.read_npy(str(file), field, CIRCLE, StackOptions("nearest"))
-    np.testing.assert_array_equal(foreign.coefficients(5), slices[5])
-
-
 def test_numpy_reads_what_patterns_and_fields_write(field: PupilField, tmp_path: Path) -> None:
     pattern, amplitude = field.pattern(), field.field()
     pattern.write_npy(tmp_path / "pattern.npy")

@@ -1,4 +1,4 @@
-//! Grids and stacks as NumPy files.
+//! Grids as NumPy files.
 
 use std::io::{self, Read, Write};
 
@@ -11,8 +11,6 @@ mod element;
 mod error;
 mod header;
 mod literal;
-mod spline;
-mod stack;
 
 use element::{Element, ElementType};
 pub use error::NpyError;
@@ -112,22 +110,18 @@ impl<R: Read> NpyReader<R> {
     /// or beyond single precision.
     pub fn into_complex(self, memory_limit: u64) -> Result<Grid<Complex<f32>>, NpyError> {
         let grid = self.into_grid(memory_limit)?;
-        check_finite(&grid, None)?;
+        check_finite(&grid)?;
         Ok(grid)
     }
 
     fn into_grid<T: Element>(mut self, memory_limit: u64) -> Result<Grid<T>, NpyError> {
         let &[height, width] = self.shape() else {
-            return Err(NpyError::Dimensions {
-                shape: self.header.shape,
-                needed: 2,
-            });
+            return Err(NpyError::Shape(self.header.shape));
         };
         let (bytes_each, decode) = self.decoder()?;
         let count = self.count_within::<T>(memory_limit)?;
         let (width, height) = (to_usize(width), to_usize(height));
-        let mut buffer = vec![0; CHUNK];
-        let values = self.values(count, bytes_each, &decode, &mut buffer)?;
+        let values = self.values(count, bytes_each, &decode)?;
         if self.header.columns_first {
             let columns = grid(height, width, values)?;
             return Ok(Grid::from_fn(width, height, |x, y| columns[(y, x)]));
@@ -149,8 +143,7 @@ impl<R: Read> NpyReader<R> {
     fn count_within<T>(&self, limit: u64) -> Result<usize, NpyError> {
         let shape = &self.header.shape;
         if shape.contains(&0) {
-            let shape = shape.clone();
-            return Err(NpyError::Empty { shape });
+            return Err(NpyError::Shape(shape.clone()));
         }
         let count = shape
             .iter()
@@ -165,15 +158,14 @@ impl<R: Read> NpyReader<R> {
         count.ok_or(NpyError::Memory { bytes: needed })
     }
 
-    /// The next `count` values in the order of the file.
+    /// The `count` values in the order of the file.
     fn values<T>(
         &mut self,
         count: usize,
         bytes_each: usize,
         decode: &impl Fn(&[u8]) -> T,
-        buffer: &mut [u8],
     ) -> Result<Vec<T>, NpyError> {
-        let mut values = Vec::new();
+        let (mut values, mut buffer) = (Vec::new(), vec![0; CHUNK]);
         while values.len() < count {
             let more = (count - values.len()).min(buffer.len() / bytes_each);
             let bytes = &mut buffer[..more * bytes_each];
@@ -246,18 +238,13 @@ impl SpeckleField {
 fn write_grid<T: Element>(grid: &Grid<T>, mut writer: impl Write) -> io::Result<()> {
     let shape = [grid.height(), grid.width()];
     writer.write_all(&Header::bytes_of(T::WRITTEN, &shape))?;
-    write_values(grid, &mut writer)?;
-    writer.flush()
-}
-
-fn write_values<T: Element>(grid: &Grid<T>, writer: &mut impl Write) -> io::Result<()> {
     let mut bytes = Vec::with_capacity(CHUNK);
     for values in grid.values().chunks(CHUNK / size_of::<T>()) {
         bytes.clear();
         values.iter().for_each(|value| value.encode(&mut bytes));
         writer.write_all(&bytes)?;
     }
-    Ok(())
+    writer.flush()
 }
 
 /// Makes room for `more` values, doubling what is there, but never for more than `count`.
@@ -276,18 +263,16 @@ fn reserve<T>(values: &mut Vec<T>, more: usize, count: usize) -> Result<(), NpyE
 }
 
 fn grid<T>(width: usize, height: usize, values: Vec<T>) -> Result<Grid<T>, NpyError> {
-    Grid::from_vec(width, height, values).map_err(|_| NpyError::Empty {
-        shape: vec![height as u64, width as u64],
-    })
+    Grid::from_vec(width, height, values)
+        .map_err(|_| NpyError::Shape(vec![height as u64, width as u64]))
 }
 
-fn check_finite(grid: &Grid<Complex<f32>>, slice: Option<usize>) -> Result<(), NpyError> {
+fn check_finite(grid: &Grid<Complex<f32>>) -> Result<(), NpyError> {
     let finite = |z: &Complex<f32>| z.re.is_finite() && z.im.is_finite();
     match grid.values().iter().position(|z| !finite(z)) {
         None => Ok(()),
         Some(bad) => {
-            let (y, x) = (bad / grid.width(), bad % grid.width());
-            let index = slice.into_iter().chain([y, x]).collect();
+            let index = [bad / grid.width(), bad % grid.width()];
             Err(NpyError::NotFinite { index })
         }
     }

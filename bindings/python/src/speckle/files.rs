@@ -2,8 +2,8 @@
 
 use std::io;
 
-use pyo3::{exceptions::PyMemoryError, prelude::*};
-use tem00_speckle::{NpyError, StackFileError};
+use pyo3::prelude::*;
+use tem00_speckle::StackFileError;
 
 use crate::error::{IntoPython, refused};
 
@@ -19,19 +19,6 @@ impl<T> OrRaiseFile<T> for Result<T, StackFileError> {
         self.map_err(|error| match error {
             StackFileError::Io(error) => raised(error),
             StackFileError::Stack(error) => error.into_python(),
-            other => refused("file", other.to_string()),
-        })
-    }
-}
-
-impl<T> OrRaiseFile<T> for Result<T, NpyError> {
-    fn or_raise_file(self) -> PyResult<T> {
-        self.map_err(|error| match error {
-            NpyError::Io(error) => raised(error),
-            NpyError::Stack(error) => error.into_python(),
-            NpyError::MemoryLimit { .. } | NpyError::Memory { .. } => {
-                PyMemoryError::new_err(error.to_string())
-            }
             other => refused("file", other.to_string()),
         })
     }

@@ -78,34 +78,6 @@ impl SpeckleStack {
         Ok(Self(stack.or_raise_file()?))
     }
 
-    /// Read the slices of a stack from an NPY file of complex numbers (slices, rows, columns).
-    ///
-    /// Parameters
-    /// ----------
-    /// file : str or os.PathLike
-    ///     File to read: one that `write_npy` has written, or that was computed elsewhere.
-    /// field : `PupilField`
-    ///     Field that the slices are of.
-    /// path : `SlicePath`
-    ///     Path of the pupil over the field.
-    /// options : `StackOptions`
-    ///     Interpolation and memory limit.
-    #[staticmethod]
-    fn read_npy(
-        py: Python<'_>,
-        file: PathBuf,
-        field: &PupilField,
-        path: &SlicePath,
-        options: &StackOptions,
-    ) -> PyResult<Self> {
-        let (field, path, options) = (&field.0, path.0, options.0);
-        let stack = py.detach(|| {
-            let reader = BufReader::new(File::open(file)?);
-            physics::SpeckleStack::read_npy(reader, field, path, options)
-        });
-        Ok(Self(stack.or_raise_file()?))
-    }
-
     /// Write the stack to a file that keeps its bits.
     ///
     /// Parameters
@@ -114,17 +86,6 @@ impl SpeckleStack {
     ///     Where to write.
     fn write_to(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
         Ok(py.detach(|| self.0.write_to(BufWriter::new(File::create(file)?)))?)
-    }
-
-    /// Write the amplitude of all slices as an NPY file of complex64 (slices, rows, columns), to be
-    /// read by `numpy.load`.
-    ///
-    /// Parameters
-    /// ----------
-    /// file : str or os.PathLike
-    ///     Where to write.
-    fn write_npy(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
-        Ok(py.detach(|| self.0.write_npy(BufWriter::new(File::create(file)?)))?)
     }
 
     /// Return the coefficients that look-ups interpolate, complex64 [row, column].

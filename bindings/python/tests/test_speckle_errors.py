@@ -97,7 +97,7 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: PixelArray((0, 1), (1.0, 1.0)), "count", "0"),
     (lambda: PixelArray((1, 1), (-1.0, 1.0)), "pitch", "-1"),
     (lambda: PixelArray((1, 1), (1.0, 1.0)).with_size((-1.0, 1.0)), "size", "-1"),
-    (lambda: PixelArray((1, 1), (1.0, 1.0)).with_origin((2e12, 0.0)), "origin", "2000000000"),
+    (lambda: PixelArray((1, 1), (1.0, 1.0)).with_origin((2e12, 0.0)), "origin", "2e12"),
     (lambda: ObjectiveSpeckle(-1.0, 1.0, LitArea.disc(1.0)), "wavelength", "-1"),
     (lambda: ObjectiveSpeckle(1.0, 0.0, LitArea.disc(1.0)), "distance", "0"),
     (lambda: LitArea.ring(1.0, -1.0), "inner", "-1"),
@@ -113,11 +113,6 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
         "inf",
     ),
     (lambda: SpeckleStack.read_from(__file__, 1 << 20), "file", "stack"),
-    (
-        lambda: SpeckleStack.read_npy(__file__, FIELD, SlicePath.still(), StackOptions()),
-        "file",
-        "NumPy",
-    ),
 ]
 
 

@@ -126,10 +126,7 @@ fn behind(
     size: usize,
     diameter: usize,
 ) -> Result<PupilField, SpeckleError> {
-    if diameter < PupilField::MIN_DIAMETER || diameter > size / 2 {
-        return Err(SpeckleError::Diameter { diameter, size });
-    }
-    let speckle_size = size as f64 / diameter as f64;
+    let speckle_size = PupilField::new(size, diameter, 0)?.speckle_size();
     PupilField::from_samples(samples, [size; 2], speckle_size)
 }
 

@@ -9,8 +9,8 @@ mod shape;
 pub(crate) mod transmission;
 mod view;
 
-pub(crate) use field::Layout;
 pub use field::PupilField;
+pub(crate) use field::{Layout, too_large};
 pub use pattern::{SpeckleField, SpecklePattern};
 pub use shape::{Phasors, Pupil};
 pub use transmission::Transmission;

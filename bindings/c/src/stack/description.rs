@@ -97,11 +97,11 @@ impl StackDescription {
     /// The field; a refusal names what the description says.
     fn field(&self) -> Result<PupilField, Failure> {
         self.field_of_sizes().map_err(|error| {
-            let parameter = match error {
-                SpeckleError::Size(_) if self.width >= self.height => "width",
-                SpeckleError::Size(_) => "height",
-                SpeckleError::SpeckleSize { .. } if self.diameter > 0 => "diameter",
-                _ => error.parameter(),
+            let parameter = match error.parameter() {
+                "size" if self.width >= self.height => "width",
+                "size" => "height",
+                "speckle_size" if self.diameter > 0 => "diameter",
+                other => other,
             };
             Failure::argument(parameter, error)
         })

@@ -151,7 +151,12 @@ fn memory_and_files_have_statuses_of_their_own() {
         "a file above the limit"
     );
     assert_eq!(
-        of_file(SpeckleError::HalfPeriod(0).into()),
+        of_file(
+            tem00_speckle::SlicePath::Circle { half_period: 0 }
+                .check()
+                .unwrap_err()
+                .into()
+        ),
         Status::File,
         "a bad header"
     );

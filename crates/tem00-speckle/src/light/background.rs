@@ -63,10 +63,18 @@ impl CoherentBackground {
     /// Returns an error unless `0 ≤ beam_ratio ≤ MAX_BEAM_RATIO` and `phase` is finite.
     pub fn new(beam_ratio: f64, phase: f64) -> Result<Self, SpeckleError> {
         if !(0.0..=Self::MAX_BEAM_RATIO).contains(&beam_ratio) {
-            return Err(SpeckleError::BeamRatio(beam_ratio));
+            return Err(SpeckleError::out_of_range(
+                "beam_ratio",
+                beam_ratio,
+                "0 to 1e12",
+            ));
         }
         if !phase.is_finite() {
-            return Err(SpeckleError::Phase(phase));
+            return Err(SpeckleError::out_of_range(
+                "phase",
+                phase,
+                "finite, in radians",
+            ));
         }
         Ok(Self {
             beam_ratio,

@@ -73,7 +73,11 @@ impl Exposure {
     ///
     /// Returns an error unless the drift along both axes is within ±`MAX_IMAGE_DRIFT`.
     pub fn with_image_drift(mut self, drift: [f64; 2]) -> Result<Self, SpeckleError> {
-        check(drift, Self::MAX_IMAGE_DRIFT).map_err(SpeckleError::ImageDrift)?;
+        check(
+            drift,
+            Self::MAX_IMAGE_DRIFT,
+            "within ±1e6 speckle sizes in the image",
+        )?;
         self.image_drift = drift;
         Ok(self)
     }
@@ -85,7 +89,11 @@ impl Exposure {
     ///
     /// Returns an error unless the drift along both axes is within ±`MAX_PUPIL_DRIFT`.
     pub fn with_pupil_drift(mut self, drift: [f64; 2]) -> Result<Self, SpeckleError> {
-        check(drift, Self::MAX_PUPIL_DRIFT).map_err(SpeckleError::PupilDrift)?;
+        check(
+            drift,
+            Self::MAX_PUPIL_DRIFT,
+            "within ±128 diameters over the pupil",
+        )?;
         self.pupil_drift = drift;
         Ok(self)
     }
@@ -217,10 +225,15 @@ fn add<T: Copy + core::ops::AddAssign>(sum: &mut Grid<T>, values: &Grid<T>) {
     pairs.for_each(|(sum, value)| *sum += *value);
 }
 
-/// The first component beyond ±`maximum`, if there is one.
-fn check(drift: [f64; 2], maximum: f64) -> Result<(), f64> {
-    let bad = |x: &f64| !(-maximum..=maximum).contains(x);
-    drift.into_iter().find(bad).map_or(Ok(()), Err)
+/// Refuses a drift with a component beyond ±`maximum`.
+fn check(drift: [f64; 2], maximum: f64, allowed: &'static str) -> Result<(), SpeckleError> {
+    match drift
+        .into_iter()
+        .find(|x| !(-maximum..=maximum).contains(x))
+    {
+        Some(bad) => Err(SpeckleError::out_of_range("drift", bad, allowed)),
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]

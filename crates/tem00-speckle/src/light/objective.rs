@@ -124,22 +124,17 @@ impl ObjectiveSpeckle {
     /// and finite, the inner diameter of a ring is below the outer one and the height of a rectangle at
     /// most its width.
     pub fn new(wavelength: f64, distance: f64, area: LitArea) -> Result<Self, SpeckleError> {
-        let is_length = |x: f64| x > 0.0 && x.is_finite();
-        if !is_length(wavelength) {
-            return Err(SpeckleError::Wavelength(wavelength));
-        }
-        if !is_length(distance) {
-            return Err(SpeckleError::Distance(distance));
-        }
+        check_length("wavelength", wavelength)?;
+        check_length("distance", distance)?;
         let lengths = match area {
             LitArea::Disc { diameter } => [diameter; 2],
             LitArea::Ring { outer, inner } => [outer, inner],
             LitArea::Rectangle { width, height } => [width, height],
             LitArea::GaussianSpot { radius } => [radius; 2],
         };
-        if let Some(bad) = lengths.into_iter().find(|&length| !is_length(length)) {
-            return Err(SpeckleError::LitSize(bad));
-        }
+        lengths
+            .into_iter()
+            .try_for_each(|length| check_length("area", length))?;
         area.pupil().check()?;
         Ok(Self {
             wavelength,
@@ -186,9 +181,7 @@ impl ObjectiveSpeckle {
         sample_pitch: f64,
         seed: u64,
     ) -> Result<PupilField, SpeckleError> {
-        if !(sample_pitch > 0.0 && sample_pitch.is_finite()) {
-            return Err(SpeckleError::SamplePitch(sample_pitch));
-        }
+        check_length("sample_pitch", sample_pitch)?;
         PupilField::from_speckle_size(size, self.speckle_size() / sample_pitch, seed)?
             .with_pupil(self.area.pupil())
     }
@@ -198,6 +191,14 @@ impl ObjectiveSpeckle {
     pub fn offset(&self, displacement: [f64; 2]) -> [f64; 2] {
         displacement.map(|length| -length / self.area.width())
     }
+}
+
+fn check_length(parameter: &'static str, length: f64) -> Result<(), SpeckleError> {
+    if length > 0.0 && length.is_finite() {
+        return Ok(());
+    }
+    let allowed = "a positive finite number of metres";
+    Err(SpeckleError::out_of_range(parameter, length, allowed))
 }
 
 #[cfg(test)]

@@ -64,11 +64,13 @@ impl PixelArray {
     pub fn new(count: [usize; 2], pitch: [f64; 2]) -> Result<Self, SpeckleError> {
         for axis in [0, 1] {
             if !(1..=Self::MAX_COUNT).contains(&count[axis]) {
-                return Err(SpeckleError::PixelCount(count[axis]));
+                let (count, allowed) = (count[axis] as f64, "1 to 32768 pixels along each axis");
+                return Err(SpeckleError::out_of_range("count", count, allowed));
             }
             let maximum = Self::MAX_LENGTH / count[axis] as f64;
             if !(pitch[axis] > 0.0 && pitch[axis] <= maximum) {
-                return Err(SpeckleError::PixelPitch(pitch[axis]));
+                let allowed = "positive, all pixels together at most 1e12 samples";
+                return Err(SpeckleError::out_of_range("pitch", pitch[axis], allowed));
             }
         }
         Ok(Self {
@@ -88,7 +90,7 @@ impl PixelArray {
     pub fn with_size(mut self, size: [f64; 2]) -> Result<Self, SpeckleError> {
         let good = |x: &f64| (0.0..=Self::MAX_LENGTH).contains(x);
         match size.into_iter().find(|x| !good(x)) {
-            Some(bad) => Err(SpeckleError::PixelSize(bad)),
+            Some(bad) => Err(SpeckleError::out_of_range("size", bad, "0 to 1e12 samples")),
             None => {
                 self.size = size;
                 Ok(self)
@@ -104,7 +106,10 @@ impl PixelArray {
     pub fn with_origin(mut self, origin: [f64; 2]) -> Result<Self, SpeckleError> {
         let good = |x: &f64| x.abs() <= Self::MAX_LENGTH;
         match origin.into_iter().find(|x| !good(x)) {
-            Some(bad) => Err(SpeckleError::PixelOrigin(bad)),
+            Some(bad) => {
+                let allowed = "within ±1e12 samples";
+                Err(SpeckleError::out_of_range("origin", bad, allowed))
+            }
             None => {
                 self.origin = origin;
                 Ok(self)

@@ -80,7 +80,7 @@ impl IncoherentSum {
     /// Returns an error unless `1 ≤ count ≤ MAX_PATTERNS`.
     pub fn equal(count: usize) -> Result<Self, SpeckleError> {
         if !(1..=Self::MAX_PATTERNS).contains(&count) {
-            return Err(SpeckleError::PatternCount(count));
+            return Err(not_a_count(count as f64));
         }
         Ok(Self {
             shares: vec![(count as f64).recip(); count],
@@ -111,7 +111,7 @@ impl IncoherentSum {
         };
         let (count, total) = (scaled().count(), scaled().sum::<f64>());
         if !(1..=Self::MAX_PATTERNS).contains(&count) {
-            return Err(SpeckleError::PatternCount(count));
+            return Err(not_a_count(count as f64));
         }
         Ok(Self {
             shares: scaled().map(|weight| weight / total).collect(),
@@ -132,7 +132,11 @@ impl IncoherentSum {
     /// Returns an error unless `0 ≤ degree ≤ 1`.
     pub fn partially_polarised(degree: f64) -> Result<Self, SpeckleError> {
         if !(0.0..=1.0).contains(&degree) {
-            return Err(SpeckleError::Polarisation(degree));
+            return Err(SpeckleError::out_of_range(
+                "degree",
+                degree,
+                "between 0 and 1",
+            ));
         }
         Self::weighted(&[0.5 * (1.0 + degree), 0.5 * (1.0 - degree)])
     }
@@ -189,7 +193,7 @@ impl IncoherentSum {
             false => 1.0,
         };
         if modes > Self::MAX_PATTERNS as f64 {
-            return Err(SpeckleError::PatternCount(to_usize(modes)));
+            return Err(not_a_count(modes));
         }
         let powers = core::iter::successors(Some(1.0), |power| Some(power * ratio));
         let weights: Vec<f64> = powers.take(to_usize(modes)).collect();
@@ -204,7 +208,7 @@ impl IncoherentSum {
     pub fn and(&self, other: &Self) -> Result<Self, SpeckleError> {
         let count = self.shares.len() * other.shares.len();
         if count > Self::MAX_PATTERNS {
-            return Err(SpeckleError::PatternCount(count));
+            return Err(not_a_count(count as f64));
         }
         let products = |share| other.shares.iter().map(move |part| share * part);
         let weights: Vec<f64> = self.shares.iter().flat_map(products).collect();
@@ -330,14 +334,30 @@ impl Bandwidth {
             path_spread,
         } = self;
         if !(wavelength > 0.0 && wavelength.is_finite()) {
-            return Err(SpeckleError::Wavelength(wavelength));
+            let allowed = "a positive finite number of metres";
+            return Err(SpeckleError::out_of_range(
+                "wavelength",
+                wavelength,
+                allowed,
+            ));
         }
         let maximum = 0.1 * wavelength;
         if !(linewidth >= 0.0 && linewidth <= maximum) {
-            return Err(SpeckleError::Linewidth { linewidth, maximum });
+            let (limits, unit) = ([0.0, maximum], "m, a tenth of the wavelength");
+            return Err(SpeckleError::out_of_limits(
+                "linewidth",
+                linewidth,
+                limits,
+                unit,
+            ));
         }
         if !(path_spread >= 0.0 && path_spread.is_finite()) {
-            return Err(SpeckleError::PathSpread(path_spread));
+            let allowed = "finite and not negative, in metres";
+            return Err(SpeckleError::out_of_range(
+                "path_spread",
+                path_spread,
+                allowed,
+            ));
         }
         let relative_width = linewidth / wavelength;
         // √(4π) / √(2 ln 2 / π)
@@ -366,6 +386,10 @@ const fn scatter(x: u64) -> u64 {
     let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     x ^ (x >> 31)
+}
+
+const fn not_a_count(count: f64) -> SpeckleError {
+    SpeckleError::out_of_range("count", count, "1 to 1024 patterns")
 }
 
 #[cfg(test)]

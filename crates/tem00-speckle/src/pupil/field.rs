@@ -2,7 +2,7 @@ use core::f64::consts::PI;
 use std::sync::Arc;
 
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Grid, cast::to_usize};
+use tem00_numerics::{Fft2, Grid};
 
 use crate::{
     Phasors, Pupil, SpeckleError,
@@ -113,14 +113,16 @@ impl PupilField {
     /// use tem00_speckle::{PupilField, SpeckleError};
     ///
     /// let aliased = PupilField::new(256, 129, 0);
-    /// assert!(matches!(aliased, Err(SpeckleError::Diameter { .. })));
+    /// assert!(matches!(aliased, Err(SpeckleError::OutOfLimits { parameter: "diameter", .. })));
     /// ```
     pub fn new(size: usize, diameter: usize, seed: u64) -> Result<Self, SpeckleError> {
         if size > Self::MAX_SIZE {
-            return Err(SpeckleError::Size(size));
+            return Err(too_large(size));
         }
         if diameter < Self::MIN_DIAMETER || diameter > size / 2 {
-            return Err(SpeckleError::Diameter { diameter, size });
+            let limits = [Self::MIN_DIAMETER as f64, (size / 2) as f64];
+            let (got, unit) = (diameter as f64, "lattice points, half the size at most");
+            return Err(SpeckleError::out_of_limits("diameter", got, limits, unit));
         }
         let layout = Layout {
             size: [size; 2],
@@ -253,10 +255,8 @@ impl PupilField {
         // The constructors round the one or the other.
         let agrees = |a: f64, b: f64| (a - b).abs() < 1e-12 * a;
         if !(agrees(x, layout.diameter[0]) && agrees(y, layout.diameter[1])) {
-            return Err(SpeckleError::SpeckleSize {
-                speckle_size: layout.speckle_size,
-                largest: layout.size[0] as f64 / layout.diameter[0],
-            });
+            let largest = layout.size[0] as f64 / layout.diameter[0];
+            return Err(not_a_speckle_size(layout.speckle_size, largest));
         }
         Self::build(lattice, layout, pupil)
     }
@@ -267,11 +267,17 @@ impl PupilField {
         // (Σ|t|²)² / Σ|t|⁴ is a whole number of equal phasors but for its rounding.
         let effective = mask.effective_count() * (1.0 + 1e-12);
         if effective < Self::MIN_PHASORS as f64 {
-            return Err(SpeckleError::PhasorCount(to_usize(effective)));
+            let allowed =
+                "open for at least 49 equal phasors (enlarge the diameter or open the pupil)";
+            return Err(SpeckleError::out_of_range(
+                "pupil",
+                effective.floor(),
+                allowed,
+            ));
         }
         let [columns, rows] = mask.extent();
         let transform = Fft2::with_aperture(size[0], size[1], columns, rows)
-            .map_err(|_| SpeckleError::Size(size[0].max(size[1])))?;
+            .map_err(|_| too_large(size[0].max(size[1])))?;
         Ok(Self {
             lattice,
             size,
@@ -422,14 +428,11 @@ impl PartialEq for PupilField {
 impl Layout {
     fn new(size: [usize; 2], speckle_size: f64) -> Result<Self, SpeckleError> {
         if let Some(&side) = size.iter().find(|&&side| side > PupilField::MAX_SIZE) {
-            return Err(SpeckleError::Size(side));
+            return Err(too_large(side));
         }
         let largest = size[0].min(size[1]) as f64 / PupilField::MIN_DIAMETER as f64;
         if !(speckle_size >= 2.0 && speckle_size <= largest) {
-            return Err(SpeckleError::SpeckleSize {
-                speckle_size,
-                largest,
-            });
+            return Err(not_a_speckle_size(speckle_size, largest));
         }
         Ok(Self {
             size,
@@ -444,6 +447,16 @@ const fn seeded(seed: u64) -> Lattice {
         seed,
         phasors: Phasors::Unit,
     }))
+}
+
+/// The refusal of a side above [`PupilField::MAX_SIZE`].
+pub(crate) const fn too_large(side: usize) -> SpeckleError {
+    SpeckleError::out_of_range("size", side as f64, "at most 32768 samples")
+}
+
+const fn not_a_speckle_size(speckle_size: f64, largest: f64) -> SpeckleError {
+    let unit = "samples in a pattern of that size";
+    SpeckleError::out_of_limits("speckle_size", speckle_size, [2.0, largest], unit)
 }
 
 fn check_samples(samples: &Grid<Complex<f32>>) -> Result<(), SpeckleError> {

@@ -71,10 +71,14 @@ impl PupilField {
         let diameter = Self::from_speckle_size(size, speckle_size, seed)?.diameter();
         let mask = Mask::new(&Pupil::Circle, diameter, [0.0; 2]);
         if !(1..=mask.count()).contains(&count) {
-            return Err(SpeckleError::ScattererCount {
-                count,
-                largest: mask.count(),
-            });
+            let limits = [1.0, mask.count() as f64];
+            let unit = "scatterers, the lattice points in the pupil";
+            return Err(SpeckleError::out_of_limits(
+                "count",
+                count as f64,
+                limits,
+                unit,
+            ));
         }
         let samples = scatter(&mask, count, &mut generator(seed));
         Self::from_samples(samples, size, speckle_size)

@@ -52,7 +52,7 @@ impl Transmission {
             .iter()
             .find(|&&t| !(0.0..=1.0).contains(&t))
         {
-            return Err(SpeckleError::Transmission(bad));
+            return Err(amplifies(bad));
         }
         Ok(Self {
             values: Arc::new(amplitude.map(|&t| Complex::new(t, 0.0))),
@@ -70,7 +70,7 @@ impl Transmission {
         let magnitude = |t: &Complex<f32>| t.re.hypot(t.im);
         let mut magnitudes = amplitude.values().iter().map(magnitude);
         if let Some(bad) = magnitudes.find(|t| !(0.0..=allowed).contains(t)) {
-            return Err(SpeckleError::Transmission(bad));
+            return Err(amplifies(bad));
         }
         Ok(Self {
             values: Arc::new(amplitude),
@@ -127,6 +127,10 @@ impl Transmission {
     }
 }
 
+const fn amplifies(amplitude: f32) -> SpeckleError {
+    SpeckleError::out_of_range("amplitude", amplitude as f64, "between 0 and 1")
+}
+
 /// The cell of `count` in which x ∈ [−½, ½] lies; the rim belongs to the outermost.
 fn cell(x: f64, count: usize) -> usize {
     to_usize((x + 0.5) * count as f64).min(count - 1)
@@ -139,7 +143,7 @@ fn split(x: f64) -> (i64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Pupil;
+    use crate::{Pupil, error::assert_refused};
 
     fn disc(cells: usize) -> Grid<f32> {
         let centre = 0.5 * cells as f64 - 0.5;
@@ -213,9 +217,8 @@ mod tests {
             grid[(1, 1)] = bad;
             let real = Transmission::new(&grid);
             let complex = Transmission::from_complex(grid.map(|&t| Complex::new(0.0, t)));
-            assert!(matches!(real, Err(SpeckleError::Transmission(_))), "{bad}");
-            let refused = matches!(complex, Err(SpeckleError::Transmission(_)));
-            assert_eq!(refused, !(-1.0..=1.0).contains(&bad), "{bad} i");
+            assert_refused(real, "amplitude must be between 0 and 1", bad);
+            assert_eq!(complex.is_err(), !(-1.0..=1.0).contains(&bad), "{bad} i");
         }
     }
 }

@@ -16,6 +16,7 @@ mod header;
 
 use checksum::Checksum;
 pub use error::StackFileError;
+use fields::{from_bytes, to_bytes};
 use fixed::Fixed;
 use header::Header;
 
@@ -116,23 +117,6 @@ fn read_grid(
         }));
     }
     Grid::from_vec(width, height, values).map_err(|_| StackFileError::Damaged)
-}
-
-/// Real part first, each little-endian.
-fn to_bytes(z: &Complex<f32>) -> [u8; 8] {
-    word(z).to_le_bytes()
-}
-
-fn word(z: &Complex<f32>) -> u64 {
-    u64::from(z.re.to_bits()) | u64::from(z.im.to_bits()) << 32
-}
-
-fn from_bytes(bytes: [u8; 8]) -> Complex<f32> {
-    let [a, b, c, d, e, f, g, h] = bytes;
-    Complex::new(
-        f32::from_le_bytes([a, b, c, d]),
-        f32::from_le_bytes([e, f, g, h]),
-    )
 }
 
 #[cfg(test)]

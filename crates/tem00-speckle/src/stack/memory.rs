@@ -2,7 +2,7 @@
 
 use tem00_numerics::{Grid, available_memory};
 
-use crate::{Interpolation, SlicePath, SpeckleError};
+use crate::{Interpolation, SlicePath, SpeckleError, pupil::too_large};
 
 /// How a [`SpeckleStack`](crate::SpeckleStack) is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +66,7 @@ pub(crate) fn filled<T: Clone>(
     value: T,
 ) -> Result<Grid<T>, SpeckleError> {
     room.resize(width * height, value);
-    Grid::from_vec(width, height, room).map_err(|_| SpeckleError::Size(width.min(height)))
+    Grid::from_vec(width, height, room).map_err(|_| too_large(width.min(height)))
 }
 
 #[cfg(test)]

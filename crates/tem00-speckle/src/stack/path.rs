@@ -79,10 +79,16 @@ impl SlicePath {
             Self::Circle { half_period } | Self::Straight { half_period, .. }
                 if half_period == 0 || half_period > Self::MAX_HALF_PERIOD =>
             {
-                Err(SpeckleError::HalfPeriod(half_period))
+                let half_period = half_period as f64;
+                Err(SpeckleError::out_of_range(
+                    "half_period",
+                    half_period,
+                    "1 to 32768 slices",
+                ))
             }
             Self::Straight { length, .. } if length < 2 || length > Self::MAX_LENGTH => {
-                Err(SpeckleError::PathLength(length))
+                let allowed = "2 to 32768 pupil diameters";
+                Err(SpeckleError::out_of_range("length", length as f64, allowed))
             }
             _ => Ok(()),
         }

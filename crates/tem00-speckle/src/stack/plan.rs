@@ -287,18 +287,20 @@ impl StackPlan {
 impl StackNeeds {
     fn check(&self) -> Result<(), SpeckleError> {
         let positive = |x: &f64| x.is_finite() && *x > 0.0;
-        if let Some(side) = self.image.iter().find(|side| !positive(side)) {
-            return Err(SpeckleError::Image(*side));
-        }
-        if let Some(side) = self.region.iter().find(|side| !positive(side)) {
-            return Err(SpeckleError::Region(*side));
-        }
-        if !positive(&self.speckle_size) {
-            return Err(SpeckleError::SpeckleSizeInPixels(self.speckle_size));
+        for (parameter, lengths) in [
+            ("image", &self.image[..]),
+            ("region", &self.region),
+            ("speckle_size", &[self.speckle_size]),
+        ] {
+            if let Some(length) = lengths.iter().find(|length| !positive(length)) {
+                let allowed = "a positive finite number of pixels";
+                return Err(SpeckleError::out_of_range(parameter, *length, allowed));
+            }
         }
         match self.motion {
             Some(motion) if !(motion >= 0.0 && motion.is_finite()) => {
-                Err(SpeckleError::Motion(motion))
+                let allowed = "finite and not negative, in pupil diameters";
+                Err(SpeckleError::out_of_range("motion", motion, allowed))
             }
             _ => Ok(()),
         }

@@ -1,6 +1,7 @@
 use tem00_statistics::{LitArea as LitByLaw, ObjectiveSpeckle as Law};
 
 use super::*;
+use crate::error::assert_refused;
 
 const WAVELENGTH: f64 = 532e-9;
 const DISTANCE: f64 = 0.8;
@@ -131,9 +132,17 @@ fn lengths_outside_their_range_are_refused() {
     let disc = LitArea::Disc { diameter: 1e-3 };
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let speckle = ObjectiveSpeckle::new(bad, 1.0, disc);
-        assert!(matches!(speckle, Err(SpeckleError::Wavelength(_))), "{bad}");
+        assert_refused(
+            speckle,
+            "wavelength must be a positive finite number of metres",
+            bad,
+        );
         let speckle = ObjectiveSpeckle::new(1e-6, bad, disc);
-        assert!(matches!(speckle, Err(SpeckleError::Distance(_))), "{bad}");
+        assert_refused(
+            speckle,
+            "distance must be a positive finite number of metres",
+            bad,
+        );
         for area in [
             LitArea::Disc { diameter: bad },
             LitArea::Ring {
@@ -147,28 +156,41 @@ fn lengths_outside_their_range_are_refused() {
             LitArea::GaussianSpot { radius: bad },
         ] {
             let speckle = ObjectiveSpeckle::new(1e-6, 1.0, area);
-            assert!(matches!(speckle, Err(SpeckleError::LitSize(_))), "{area:?}");
+            assert_refused(
+                speckle,
+                "area must be a positive finite number of metres",
+                bad,
+            );
         }
         let field = self::speckle(disc).field([64, 64], bad, 0);
-        assert!(matches!(field, Err(SpeckleError::SamplePitch(_))), "{bad}");
+        assert_refused(
+            field,
+            "sample_pitch must be a positive finite number of metres",
+            bad,
+        );
     }
     let ring = LitArea::Ring {
         outer: 1e-3,
         inner: 2e-3,
     };
     let speckle = ObjectiveSpeckle::new(1e-6, 1.0, ring);
-    assert_eq!(speckle, Err(SpeckleError::InnerDiameter(2.0)));
+    assert_refused(
+        speckle,
+        "inner must be inside (0, 1), in units of the outer diameter",
+        2,
+    );
     let tall = LitArea::Rectangle {
         width: 1e-3,
         height: 2e-3,
     };
     let speckle = ObjectiveSpeckle::new(1e-6, 1.0, tall);
-    assert_eq!(speckle, Err(SpeckleError::Height(2.0)));
+    assert_refused(
+        speckle,
+        "height must be positive and at most 1, in units of the width",
+        2,
+    );
     for pitch in [1e-30, 1.0, 1e30] {
         let field = self::speckle(disc).field([64, 64], pitch, 0);
-        assert!(
-            matches!(field, Err(SpeckleError::SpeckleSize { .. })),
-            "{pitch}"
-        );
+        assert_eq!(field.unwrap_err().parameter(), "speckle_size", "{pitch}");
     }
 }

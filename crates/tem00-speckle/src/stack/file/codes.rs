@@ -65,17 +65,22 @@ pub(super) fn write_pupil(body: &mut Writer, pupil: &Pupil) {
     body.u32(to_u32(size[0])).u32(to_u32(size[1]));
 }
 
-pub(super) fn zero(name: &'static str, value: u32) -> Result<(), StackFileError> {
+pub(super) fn check_reserved(value: u32) -> Result<(), StackFileError> {
     match value {
         0 => Ok(()),
-        value => Err(unknown(name, value)),
+        value => Err(out_of_range("reserved entry", value, "0")),
     }
 }
 
-pub(super) fn unknown(name: &'static str, value: u32) -> StackFileError {
-    StackFileError::Entry {
-        name,
+pub(super) fn out_of_range(
+    parameter: &'static str,
+    value: impl Into<u64>,
+    allowed: &'static str,
+) -> StackFileError {
+    StackFileError::OutOfRange {
+        parameter,
         value: value.into(),
+        allowed,
     }
 }
 
@@ -84,7 +89,7 @@ pub(super) fn interpolation_of(degree: u32) -> Result<Interpolation, StackFileEr
         0 => Ok(Interpolation::Nearest),
         1 => Ok(Interpolation::Bilinear),
         3 => Ok(Interpolation::CubicSpline),
-        _ => Err(unknown("interpolation", degree)),
+        _ => Err(out_of_range("interpolation", degree, "0, 1 or 3")),
     }
 }
 
@@ -92,10 +97,8 @@ pub(super) fn period(points: i64) -> Result<i64, StackFileError> {
     if (1..=Lattice::SIDE).contains(&points) {
         return Ok(points);
     }
-    Err(StackFileError::Entry {
-        name: "period of the lattice",
-        value: points.cast_unsigned(),
-    })
+    let allowed = "1 to 2³² lattice points";
+    Err(out_of_range("period", points.cast_unsigned(), allowed))
 }
 
 pub(super) fn path_of(
@@ -111,7 +114,7 @@ pub(super) fn path_of(
             half_period,
             length,
         }),
-        _ => Err(unknown("path", kind)),
+        _ => Err(out_of_range("path", kind, "0, 1 or 2")),
     }
 }
 
@@ -120,7 +123,7 @@ pub(super) fn source_of(kind: u32, seed: u64) -> Result<SourceKind, StackFileErr
         0 => Phasors::Unit,
         1 => Phasors::Gaussian,
         2 => return Ok(SourceKind::Measured),
-        _ => return Err(unknown("source of the field", kind)),
+        _ => return Err(out_of_range("source", kind, "0, 1 or 2")),
     };
     Ok(SourceKind::Seeded(Seeded { seed, phasors }))
 }
@@ -130,14 +133,14 @@ pub(super) fn pupil_of(
     reserved: u32,
     parameter: f64,
 ) -> Result<PupilKind, StackFileError> {
-    zero("reserved entry", reserved)?;
+    check_reserved(reserved)?;
     Ok(PupilKind::Shape(match kind {
         0 => Pupil::Circle,
         1 => Pupil::Annulus { inner: parameter },
         2 => Pupil::Rectangle { height: parameter },
         3 => Pupil::Gaussian { radius: parameter },
         4 => return Ok(PupilKind::Sampled),
-        _ => return Err(unknown("pupil", kind)),
+        _ => return Err(out_of_range("pupil", kind, "0 to 4")),
     }))
 }
 

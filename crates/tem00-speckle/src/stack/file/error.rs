@@ -7,25 +7,29 @@ use crate::SpeckleError;
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum StackFileError {
-    /// The file does not begin like a stack.
+    /// The file is not the file of a stack.
     Foreign,
     /// The file is of a version that came after this library.
     Newer {
         /// The version of the file.
         version: u32,
+        /// The newest version that this library reads.
+        newest: u32,
     },
     /// The file ends before the stack does.
     Truncated,
     /// The bytes are not those that were written.
     Damaged,
-    /// An entry of the header has a value without a meaning.
-    Entry {
+    /// An entry of the header is outside its range.
+    OutOfRange {
         /// The name of the entry.
-        name: &'static str,
+        parameter: &'static str,
         /// The rejected value.
         value: u64,
+        /// What is allowed.
+        allowed: &'static str,
     },
-    /// The header describes a stack that cannot be.
+    /// The header describes an impossible stack.
     Stack(SpeckleError),
     /// The reader failed.
     Io(io::Error),
@@ -34,20 +38,24 @@ pub enum StackFileError {
 impl fmt::Display for StackFileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Foreign => write!(f, "file must be a speckle stack, got something else"),
-            Self::Newer { version } => write!(
+            Self::Foreign => write!(f, "not the file of a speckle stack"),
+            Self::Newer { version, newest } => write!(
                 f,
-                "file version must be at most {}, got {version}: written by a newer library",
-                super::fixed::VERSION
+                "file version must be at most {newest}, got {version}: written by a newer library"
             ),
-            Self::Truncated => write!(f, "file must hold all of the stack, got a part of it"),
-            Self::Damaged => write!(f, "file must be as it was written, got other bytes"),
-            Self::Entry { name, value } => {
-                write!(
-                    f,
-                    "{name} in the header of the file must have a meaning, got {value}"
-                )
-            }
+            Self::Truncated => write!(f, "file ends before its stack does"),
+            Self::Damaged => write!(
+                f,
+                "file has changed since it was written: its checksum is another"
+            ),
+            Self::OutOfRange {
+                parameter,
+                value,
+                allowed,
+            } => write!(
+                f,
+                "{parameter} in the header of the file must be {allowed}, got {value}"
+            ),
             Self::Stack(error) => write!(f, "stack in the file: {error}"),
             Self::Io(error) => write!(f, "file could not be read: {error}"),
         }

@@ -2,7 +2,7 @@
 
 use num_complex::Complex;
 
-use super::{StackFileError, from_bytes, to_bytes};
+use super::StackFileError;
 
 /// Writes numbers one after the other.
 #[derive(Debug, Default)]
@@ -85,4 +85,21 @@ impl<'a> Reader<'a> {
         self.rest = self.rest.get(count..).ok_or(StackFileError::Truncated)?;
         Ok(())
     }
+}
+
+/// Real part first, each little-endian.
+pub(super) fn to_bytes(z: &Complex<f32>) -> [u8; 8] {
+    word(z).to_le_bytes()
+}
+
+pub(super) fn word(z: &Complex<f32>) -> u64 {
+    u64::from(z.re.to_bits()) | u64::from(z.im.to_bits()) << 32
+}
+
+pub(super) fn from_bytes(bytes: [u8; 8]) -> Complex<f32> {
+    let [a, b, c, d, e, f, g, h] = bytes;
+    Complex::new(
+        f32::from_le_bytes([a, b, c, d]),
+        f32::from_le_bytes([e, f, g, h]),
+    )
 }

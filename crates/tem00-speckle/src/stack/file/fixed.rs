@@ -4,10 +4,16 @@ use std::io::Read;
 
 use super::{
     StackFileError,
-    codes::{PupilKind, SourceKind, interpolation_of, path_of, period, pupil_of, source_of, zero},
+    codes::{
+        PupilKind, SourceKind, check_reserved, interpolation_of, out_of_range, path_of, period,
+        pupil_of, source_of,
+    },
     fields::Reader,
 };
-use crate::{Interpolation, PupilField, SlicePath, SpeckleError, pupil::Layout};
+use crate::{
+    Interpolation, PupilField, SlicePath,
+    pupil::{Layout, too_large},
+};
 
 /// The version that this library writes, and the newest that it reads.
 pub(super) const VERSION: u32 = 1;
@@ -51,10 +57,13 @@ impl Fixed {
         let mut entries = Reader::new(&bytes[MAGIC.len()..]);
         let version = entries.u32()?;
         if version > VERSION {
-            return Err(StackFileError::Newer { version });
+            let newest = VERSION;
+            return Err(StackFileError::Newer { version, newest });
         }
-        zero("version", u32::from(version == 0))?;
-        zero("reserved entry", entries.u32()?)?;
+        if version == 0 {
+            return Err(out_of_range("version", version, "at least 1"));
+        }
+        check_reserved(entries.u32()?)?;
         let fixed = Self::parse(bytes, &mut entries)?;
         fixed.check_lengths()?;
         Ok(fixed)
@@ -96,20 +105,15 @@ impl Fixed {
 
     fn check_lengths(&self) -> Result<(), StackFileError> {
         if let Some(side) = self.layout.size.iter().find(|&&s| s > PupilField::MAX_SIZE) {
-            return Err(SpeckleError::Size(*side).into());
+            return Err(too_large(*side).into());
         }
         let slices = u64::from(self.slices);
         if slices != self.path.slice_count() as u64 {
-            return Err(StackFileError::Entry {
-                name: "number of slices",
-                value: slices,
-            });
+            return Err(out_of_range("slices", slices, "those of the path"));
         }
         if self.data_offset != self.header_bytes() {
-            return Err(StackFileError::Entry {
-                name: "data offset",
-                value: self.data_offset,
-            });
+            let allowed = "the length of the header";
+            return Err(out_of_range("data offset", self.data_offset, allowed));
         }
         Ok(())
     }

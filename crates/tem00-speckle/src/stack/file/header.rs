@@ -7,10 +7,9 @@ use tem00_numerics::Grid;
 
 use super::{
     Checksum, StackFileError,
-    codes::{PupilKind, SourceKind, unknown, write_layout, write_pupil, write_source},
-    fields::{Reader, Writer},
+    codes::{PupilKind, SourceKind, out_of_range, write_layout, write_pupil, write_source},
+    fields::{Reader, Writer, word},
     fixed::{BLOCK, FIXED, Fixed, MAGIC, PROLOGUE, SLICE, VERSION},
-    word,
 };
 use crate::{
     Interpolation, Pupil, PupilField, SlicePath, SpeckleStack, Transmission,
@@ -150,5 +149,5 @@ fn grid(
     values: &[Complex<f32>],
 ) -> Result<Grid<Complex<f32>>, StackFileError> {
     Grid::from_vec(width as usize, height as usize, values.to_vec())
-        .map_err(|_| unknown("size of a grid", width.min(height)))
+        .map_err(|_| out_of_range("side of a grid", width.min(height), "at least 1"))
 }

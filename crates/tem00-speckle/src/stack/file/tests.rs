@@ -158,7 +158,7 @@ fn other_files_are_told_from_damaged_ones() {
     );
     let newer = with(8, &[2, 0, 0, 0]);
     assert!(
-        matches!(newer, StackFileError::Newer { version: 2 }),
+        matches!(newer, StackFileError::Newer { version: 2, .. }),
         "{newer:?}"
     );
     assert!(newer.to_string().contains("at most 1, got 2"), "{newer}");

@@ -1,6 +1,7 @@
 use proptest::{prelude::*, test_runner::RngSeed};
 
 use super::*;
+use crate::error::assert_refused;
 
 fn needs() -> StackNeeds {
     StackNeeds {
@@ -56,30 +57,25 @@ fn the_stack_is_that_of_the_plan() {
 fn what_cannot_be_planned_is_named() {
     let plan = |needs: StackNeeds| StackPlan::new(&needs);
     for bad in [0.0, -1.0, f64::INFINITY] {
-        let image = [1.0, bad];
-        assert_eq!(
-            plan(StackNeeds { image, ..needs() }),
-            Err(SpeckleError::Image(bad))
-        );
-        let region = [bad, 1.0];
-        assert_eq!(
-            plan(StackNeeds { region, ..needs() }),
-            Err(SpeckleError::Region(bad))
-        );
-        let speckle_size = bad;
-        assert_eq!(
-            plan(StackNeeds {
-                speckle_size,
-                ..needs()
-            }),
-            Err(SpeckleError::SpeckleSizeInPixels(bad))
-        );
+        let (image, region, speckle_size) = ([1.0, bad], [bad, 1.0], bad);
+        for (needs, parameter) in [
+            (StackNeeds { image, ..needs() }, "image"),
+            (StackNeeds { region, ..needs() }, "region"),
+            (
+                StackNeeds {
+                    speckle_size,
+                    ..needs()
+                },
+                "speckle_size",
+            ),
+        ] {
+            let rule = format!("{parameter} must be a positive finite number of pixels");
+            assert_refused(plan(needs), &rule, bad);
+        }
     }
     let motion = Some(-0.5);
-    assert_eq!(
-        plan(StackNeeds { motion, ..needs() }),
-        Err(SpeckleError::Motion(-0.5))
-    );
+    let rule = "motion must be finite and not negative, in pupil diameters";
+    assert_refused(plan(StackNeeds { motion, ..needs() }), rule, -0.5);
     assert_eq!(
         plan(StackNeeds {
             memory_limit: 1000,
@@ -93,14 +89,12 @@ fn what_cannot_be_planned_is_named() {
     // Speckles of a nanometre: no pattern is that large, whatever the memory.
     let speckle_size = 1e-4;
     let memory_limit = u64::MAX;
-    assert_eq!(
-        plan(StackNeeds {
-            speckle_size,
-            memory_limit,
-            ..needs()
-        }),
-        Err(SpeckleError::Size(6_000_000))
-    );
+    let huge = StackNeeds {
+        speckle_size,
+        memory_limit,
+        ..needs()
+    };
+    assert_refused(plan(huge), "size must be at most 32768 samples", 6e6);
 }
 
 #[test]
@@ -226,8 +220,7 @@ proptest! {
                 }
             }
             Err(SpeckleError::MemoryLimit { needed, limit }) => prop_assert!(needed > limit),
-            Err(SpeckleError::Size(size)) => prop_assert!(size > PupilField::MAX_SIZE),
-            Err(other) => prop_assert!(false, "{other}"),
+            Err(other) => prop_assert_eq!(other.parameter(), "size", "{}", other),
         }
     }
 }

@@ -1,14 +1,10 @@
 //! `tem00 budget`: what height uncertainty a set-up gives, and what dominates it.
 
 mod drawings;
-mod page;
-mod record;
+mod report;
 mod words;
 
-use std::{
-    io::Write,
-    path::{Path, PathBuf},
-};
+use std::{io::Write, path::Path};
 
 use tem00_triangulation::{
     Budget, LightLevel, Setup, Simulation, SimulationOptions, TriangulationError,
@@ -17,13 +13,12 @@ use tem00_triangulation::{
 
 use crate::{
     args::BudgetArgs,
-    atomic::write_atomically,
     failure::Failure,
     interrupt,
     kind::{Kind, wrong_or},
     output,
     progress::Progress,
-    table::write_columns,
+    report::units::PERCENT,
 };
 
 const HELP: &str = "setups/ has set-up files, and docs/setup_file.md tells how to write them";
@@ -75,16 +70,11 @@ pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure
     let _lock = output::prepare(&folder)?;
     let pool = output::thread_pool(args.threads)?;
     let findings = pool.install(|| Findings::new(args, setup, text))?;
-    let record = record::text(&findings)?;
-    let written = write(&findings, &record, &folder)?;
-    let printed = if args.json {
-        writeln!(out, "{record}")
-    } else {
-        let mut paths = written.iter();
-        print(&findings, out)
-            .and_then(|()| paths.try_for_each(|path| writeln!(out, "{}", path.display())))
-    };
-    printed.map_err(|error| Failure::stdout(&error))?;
+    let report = report::report(&findings, draw(&findings, &folder)?);
+    let files = ["budget.json", "budget.html"].map(|name| folder.join(name));
+    report.save_json(&files[0])?;
+    report.save_page(&files[1])?;
+    report.print(args.json, &files, out)?;
     findings.answer.map(drop).map_err(|refusal| {
         let message = format!("{}: no uncertainty: {}", args.setup.display(), refusal.why);
         Failure::no_result(message, refusal.advice)
@@ -124,8 +114,8 @@ impl Answer {
         if let Some(found) = trials.as_ref().filter(|found| found.total().is_none()) {
             return Ok(Err(Refusal {
                 why: format!(
-                    "{} % of the columns have no line that can be trusted",
-                    words::percent(found.invalid())
+                    "{} of the columns have no line that can be trusted",
+                    PERCENT.with_digits(2).text(found.invalid())
                 ),
                 advice: match setup.light_level() {
                     LightLevel::Good => "try another method or `window` in [detector]",
@@ -179,42 +169,19 @@ fn over_range(setup: &Setup) -> Vec<(f64, Option<f64>)> {
         .collect()
 }
 
-fn print(findings: &Findings<'_>, out: &mut impl Write) -> std::io::Result<()> {
-    for (name, value) in words::facts(findings) {
-        writeln!(out, "{name}: {value}")?;
-    }
-    writeln!(out)?;
-    if let Ok(answer) = &findings.answer {
-        write_columns(&words::table(answer), out)?;
-        writeln!(out)?;
-        for line in words::verdicts(answer, findings.setup.light_level()) {
-            writeln!(out, "{line}")?;
-        }
-        writeln!(out)?;
-    }
-    Ok(())
-}
-
-/// Writes all files into the folder, and returns the names of those that one opens first.
-fn write(findings: &Findings<'_>, record: &str, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let path = |name: &str| folder.join(name);
-    let json = path("budget.json");
-    write_atomically(&json, |file| writeln!(file, "{record}"))
-        .map_err(|error| Failure::writing(&json, error))?;
-    let drawn = match &findings.answer {
-        Ok(answer) => vec![
+/// Draws the budget into the folder, if there is one, and returns the drawings.
+fn draw(findings: &Findings<'_>, folder: &Path) -> Result<Vec<String>, Failure> {
+    match &findings.answer {
+        Ok(answer) => Ok(vec![
             drawings::contributions(answer).save(folder, CONTRIBUTIONS)?,
             drawings::over_range(answer).save(folder, OVER_RANGE)?,
-        ],
+        ]),
         // Those of another run would be taken for those of this one.
         Err(_) => {
             output::remove(folder, &[CONTRIBUTIONS, OVER_RANGE], &["svg", "png"])?;
-            Vec::new()
+            Ok(Vec::new())
         }
-    };
-    let html = path("budget.html");
-    page::report(findings, &drawn).save(&html)?;
-    Ok(vec![json, html])
+    }
 }
 
 /// The names of the drawings.

@@ -21,7 +21,7 @@ use crate::{
     image::{ImageError, RawFormat, RawImage, read_raw},
     interrupt,
     progress::Progress,
-    table::write_columns,
+    report::Report,
 };
 
 /// The photographs of a board.
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &CalibrateArgs, out: &mut impl Write) -> Result<(), Fail
         )
     })?;
     write_calibration(&target, &calibration)?;
-    report(&calibration, &target, out)
+    report(&calibration).print(false, &[target], out)
 }
 
 fn model(args: &CalibrateArgs, resolution: [usize; 2]) -> CameraModel {
@@ -68,14 +68,14 @@ fn model(args: &CalibrateArgs, resolution: [usize; 2]) -> CameraModel {
     }
 }
 
-fn report(calibration: &Calibration, target: &Path, out: &mut impl Write) -> Result<(), Failure> {
-    let written = write_columns(&table::parameters(calibration), out).and_then(|()| {
-        for line in table::sentences(calibration) {
-            writeln!(out, "{line}")?;
-        }
-        writeln!(out, "\nCalibration: {}", target.display())
-    });
-    written.map_err(|error| Failure::stdout(&error))
+fn report(calibration: &Calibration) -> Report {
+    let mut report = Report::new("Calibration of a camera and a laser");
+    report
+        .section("Camera")
+        .table(table::parameters(calibration));
+    let sentences = table::sentences(calibration).into_iter();
+    sentences.for_each(|sentence| report.verdict(sentence));
+    report
 }
 
 /// Returns the photographs of a folder, by name.

@@ -1,16 +1,12 @@
 //! `tem00 design`: the best set-up under constraints.
 
 mod files;
-mod listing;
-mod page;
 mod plots;
-mod record;
+mod report;
 mod units;
+mod words;
 
-use std::{
-    io::Write,
-    path::{Path, PathBuf},
-};
+use std::{io::Write, path::Path};
 
 use tem00_triangulation::{
     Candidate, DesignFigure, DesignOutcome, DesignSearch, Setup, TriangulationError, neighbours,
@@ -68,17 +64,8 @@ pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure
     }
     let shown = *design.shown_setup()?.description();
     let near = pool.install(|| neighbours(&shown, PART));
-    let written = files::write(&design, &near, &folder)?;
-    if args.json {
-        record::print(&design, out)?;
-    } else {
-        listing::print(&design, out)?;
-        let line = |path: &PathBuf| writeln!(out, "{}", path.display());
-        written
-            .iter()
-            .try_for_each(line)
-            .map_err(|error| Failure::stdout(&error))?;
-    }
+    let (report, written) = files::write(&design, &near, &folder)?;
+    report.print(args.json, &written, out)?;
     design.winner().map(|_| ()).ok_or_else(|| design.nothing())
 }
 
@@ -126,7 +113,7 @@ impl<'a> Design<'a> {
     /// Returns why the search has no result.
     fn nothing(&self) -> Failure {
         let name = self.file.display();
-        let why = listing::hindrances(self).join("; ");
+        let why = words::hindrances(self).join("; ");
         let (possible, _) = self.outcome.counts();
         if possible == 0 {
             return Failure::no_result(

@@ -24,7 +24,6 @@ use crate::{
     kind::{Kind, wrong_or},
     output,
     progress::Progress,
-    table::write_columns,
 };
 
 use self::{
@@ -64,23 +63,10 @@ pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure>
         progress.advance(1);
     }
     drop(progress);
-    notes::tell(&notes);
-    let record = summary::json(&settings, &summaries);
-    write_whole(&folder.join("lines.json"), record.as_bytes())?;
-    let shown = if args.json {
-        out.write_all(record.as_bytes())
-    } else {
-        let mut table = vec![summary::headings()];
-        table.extend(summaries.iter().flat_map(ImageSummary::rows));
-        write_columns(&table, out).and_then(|()| {
-            writeln!(
-                out,
-                "\nPoints, pictures and lines.json: {}",
-                folder.display()
-            )
-        })
-    };
-    shown.map_err(|error| Failure::stdout(&error))?;
+    let mut report = summary::report(&settings, &summaries);
+    notes.into_iter().for_each(|line| report.note(line));
+    report.save_json(&folder.join("lines.json"))?;
+    report.print(args.json, &[folder.join("lines.json")], out)?;
     if summaries.iter().any(ImageSummary::has_valid_points) {
         return Ok(());
     }
@@ -92,7 +78,7 @@ pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure>
                 several.len()
             ),
         },
-        "the notes above tell why; the pictures show what was found",
+        "the notes tell why; the pictures show what was found",
     ))
 }
 
@@ -193,11 +179,6 @@ fn draw(path: &Path, image: &Grid<f32>, found: (&Found, bool)) -> Result<(), Fai
     let picture = overlay::picture(image, found);
     write_atomically(path, |writer| write_rgb_png(writer, &picture, &[]))
         .map_err(|error: ImageError| Failure::writing(path, error))
-}
-
-fn write_whole(path: &Path, content: &[u8]) -> Result<(), Failure> {
-    write_atomically(path, |writer| writer.write_all(content))
-        .map_err(|error: std::io::Error| Failure::writing(path, error))
 }
 
 fn with_ending(target: &Path, ending: &str) -> PathBuf {

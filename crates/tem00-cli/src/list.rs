@@ -8,7 +8,7 @@ use tem00_triangulation::{LineMethod, SensorDescription};
 use crate::{
     args::{ListArgs, Listed},
     failure::Failure,
-    table::{rounded, write_columns},
+    report::{Cell, Column, Table, rounded},
 };
 
 /// Prints what was asked for, with its sources.
@@ -17,14 +17,15 @@ use crate::{
 ///
 /// Returns a failure if a metal was not measured at the wavelength, or nobody reads.
 pub(crate) fn run(args: &ListArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (lines, note) = match args.what {
+    let (table, note) = match args.what {
         Listed::Metals => (metals(args.wavelength)?, METALS),
         Listed::Materials => (materials(), MATERIALS_NOTE),
         Listed::Surfaces => (surfaces(), SURFACES),
         Listed::Detectors => (detectors(), DETECTORS),
         Listed::Sensors => (sensors(), SENSORS),
     };
-    write_columns(&lines, out)
+    table
+        .write_text(out)
         .and_then(|()| writeln!(out, "\n{note}"))
         .map_err(|error| Failure::stdout(&error))
 }
@@ -33,27 +34,27 @@ const METALS: &str = "\
 In a scene: conductor.metal = \"gold\", or mirror.metal = \"gold\". Reflectance at normal incidence, from n
 and k, which were measured on clean, smooth surfaces, mostly films.";
 
-fn metals(wavelength: f64) -> Result<Vec<Vec<String>>, Failure> {
-    let mut lines = vec![line(["metal", "n", "k", "reflectance", "source"])];
+fn metals(wavelength: f64) -> Result<Table, Failure> {
+    let mut table = headed(["metal", "n", "k", "reflectance", "source"]);
     for (name, metal) in Metal::NAMED {
         let refused = |error: TracerError| Failure::input(error.to_string(), "--wavelength 650nm");
         let (n, k) = metal.refractive_index(wavelength).map_err(refused)?;
         let reflectance = metal.normal_reflectance(wavelength).map_err(refused)?;
         let [n, k, reflectance] = [n, k, reflectance].map(|x| rounded(x, 3));
-        lines.push(line([name, &n, &k, &reflectance, metal.source()]));
+        table.row(texts([name, &n, &k, &reflectance, metal.source()]));
     }
-    Ok(lines)
+    Ok(table)
 }
 
 const MATERIALS_NOTE: &str = "\
 In a scene: lambertian.reflectance = 0.5 in [[surface]]. docs/scene_file.md has ranges and defaults.";
 
-fn materials() -> Vec<Vec<String>> {
-    let mut lines = vec![line(["material", "keys", "what it is"])];
+fn materials() -> Table {
+    let mut table = headed(["material", "keys", "what it is"]);
     for (name, keys) in MATERIALS {
-        lines.push(line([name, &keys.join(", "), what_it_is(name)]));
+        table.row(texts([name, &keys.join(", "), what_it_is(name)]));
     }
-    lines
+    table
 }
 
 fn what_it_is(material: &str) -> &'static str {
@@ -79,30 +80,30 @@ meadinfo.org list its numbers. The rms height is that of Gaussian heights in the
 a tool leaves is not modelled. Set-ups have no finish: their reflectance is that towards the camera, which Ra
 and metal do not tell.";
 
-fn surfaces() -> Vec<Vec<String>> {
-    let mut lines = vec![line(["process", "Ra, typical (µm)", "rms height (µm)"])];
+fn surfaces() -> Table {
+    let mut table = headed(["process", "Ra, typical (µm)", "rms height (µm)"]);
     for process in FinishingProcess::ALL {
         let [least, greatest] = process.mean_deviation.map(|ra| rounded(1e6 * ra, 3));
         let height = rounded(1e6 * process.rms_height(), 3);
-        lines.push(line([
+        table.row(texts([
             process.name,
             &format!("{least} … {greatest}"),
             &height,
         ]));
     }
-    lines
+    table
 }
 
 const DETECTORS: &str = "\
 In [detector]: method = \"parabola\". --method of `tem00 lines` takes the same names.";
 
-fn detectors() -> Vec<Vec<String>> {
-    let mut lines = vec![line(["method", "least window", "place of the line"])];
+fn detectors() -> Table {
+    let mut table = headed(["method", "least window", "place of the line"]);
     for method in LineMethod::ALL {
         let window = method.least_window().to_string();
-        lines.push(line([method.name(), &window, place_of_line(&method)]));
+        table.row(texts([method.name(), &window, place_of_line(&method)]));
     }
-    lines
+    table
 }
 
 fn place_of_line(method: &LineMethod) -> &'static str {
@@ -133,7 +134,7 @@ Typical values and no measurement: an industrial CMOS sensor with global shutter
 data sheets after EMVA 1288 have them around 2020. [sensor] takes them where it has no value of its own,
 with `bit_depth` = 12 unless it says otherwise; `quantum_efficiency` and `exposure` must be given.";
 
-fn sensors() -> Vec<Vec<String>> {
+fn sensors() -> Table {
     type Value = fn(&SensorDescription) -> f64;
     let rows: [(&str, Value); 7] = [
         ("full_well (electrons)", |sensor| sensor.full_well),
@@ -145,17 +146,32 @@ fn sensors() -> Vec<Vec<String>> {
         ("gain (DN/electron)", |sensor| sensor.gain),
     ];
     let sensors = [8, 10, 12, 14, 16].map(SensorDescription::typical);
-    let bits = sensors.iter().map(|sensor| sensor.bit_depth.to_string());
-    let mut lines = vec![["bit_depth".to_owned()].into_iter().chain(bits).collect()];
+    let bits = sensors
+        .each_ref()
+        .map(|sensor| sensor.bit_depth.to_string());
+    let [a, b, c, d, e] = bits.each_ref().map(String::as_str);
+    let mut table = headed(["bit_depth", a, b, c, d, e]);
     for (name, value) in rows {
-        let values = sensors.iter().map(|sensor| rounded(value(sensor), 4));
-        lines.push([name.to_owned()].into_iter().chain(values).collect());
+        let values = sensors
+            .iter()
+            .map(|sensor| rounded(value(sensor), 4).into());
+        table.row(
+            [name.into()]
+                .into_iter()
+                .chain(values)
+                .collect::<Vec<Cell>>(),
+        );
     }
-    lines
+    table
 }
 
-fn line<const N: usize>(cells: [&str; N]) -> Vec<String> {
-    cells.map(String::from).to_vec()
+/// Starts a table with the headings of its columns.
+fn headed<const N: usize>(headings: [&str; N]) -> Table {
+    Table::new("", headings.map(Column::shown))
+}
+
+fn texts<const N: usize>(cells: [&str; N]) -> [Cell; N] {
+    cells.map(Cell::from)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ mod budget;
 mod calibrate;
 mod calibration_file;
 mod colour;
+mod comparison;
 mod design;
 mod excerpt;
 mod failure;
@@ -28,7 +29,6 @@ mod shell;
 mod speckle;
 mod stats;
 mod summary;
-mod table;
 mod triangulate;
 
 use std::{

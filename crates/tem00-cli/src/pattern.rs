@@ -15,11 +15,11 @@ use tem00_speckle::{NpyError, NpyReader, PupilField, SpeckleError, SpeckleField,
 use crate::{
     args::PatternArgs,
     atomic::{probe_writable, write_atomically},
+    comparison,
     failure::Failure,
     image::{Format, ImageError, Layer, open, write_exr, write_grey_png},
-    interrupt,
-    output::{self, note},
-    table::{Row, write_table},
+    interrupt, output,
+    report::Report,
 };
 
 /// The largest size Q: 2²⁸ samples, the most that [`read_image`](crate::image::read_image) takes.
@@ -39,11 +39,11 @@ const FIELD_MEMORY: u64 = 8 << 28;
 pub(crate) fn run(args: &PatternArgs, out: &mut impl Write) -> Result<(), Failure> {
     output::thread_pool(None)?
         .install(|| write_and_compare(args))
-        .and_then(|rows| write_table(&rows, out).map_err(|error| Failure::stdout(&error)))
+        .and_then(|report| report.print(false, &[], out))
 }
 
-/// Writes the pattern and returns the rows of the table.
-fn write_and_compare(args: &PatternArgs) -> Result<Vec<Row>, Failure> {
+/// Writes the pattern and returns how it compares with the theory.
+fn write_and_compare(args: &PatternArgs) -> Result<Report, Failure> {
     let format = output_format(&args.output, args.amplitude)?;
     let field = pupil_field(args)?;
     probe_writable(&args.output).map_err(|error| cannot_write(&args.output, &error))?;
@@ -61,15 +61,20 @@ fn write_and_compare(args: &PatternArgs) -> Result<Vec<Row>, Failure> {
             "choose another --pupil or --diameter, or a --field that is not dark in its middle",
         ));
     }
-    let table = theory::compare(&field, &pattern)?;
+    let compared = theory::compare(&field, &pattern)?;
     write_atomically(&args.output, |file| {
         write(file, format, &values, &description(args, &field))
     })
     .map_err(|error| Failure::writing(&args.output, error))?;
-    for remark in &table.notes {
-        note(&format!("note: {remark}"));
-    }
-    Ok(table.rows)
+    let mut report = Report::new("A speckle pattern beside the theory");
+    report
+        .section("Statistics")
+        .table(comparison::table(&compared.rows));
+    compared
+        .notes
+        .into_iter()
+        .for_each(|line| report.note(line));
+    Ok(report)
 }
 
 fn output_format(path: &Path, amplitude: bool) -> Result<Format, Failure> {

@@ -1,170 +1,200 @@
-//! Reports: one HTML file that opens offline.
+//! Reports: what a command found, as one value that is shown on a terminal, as JSON and as a page.
 
+mod cell;
 mod cloud;
 mod escape;
+mod html;
+mod json;
 mod style;
 mod table;
+mod terminal;
+pub(crate) mod units;
 
-use core::fmt::Write as _;
-use std::{io::Write as _, path::Path};
+use serde::Serialize;
+use serde_json::{Map, Value};
 
-use base64::{Engine, engine::general_purpose::STANDARD};
+pub(crate) use self::{
+    cell::{Cell, number, rounded},
+    cloud::Cloud,
+    table::{Column, Table},
+    units::Unit,
+};
 
-use self::escape::escaped;
-pub(crate) use self::{cloud::Cloud, table::Table};
-use crate::{atomic::write_atomically, failure::Failure};
-
-/// A report in the making: one HTML file with everything in it, for screens and paper.
+/// What a command found.
 ///
-/// It refers to nothing outside of itself: scripts, styles, fonts or pictures; a browser is told to load
-/// none. Whatever it is given as text appears as that text. The same calls give the same bytes.
+/// Each number is told once, with its key, its name and its unit:
+///
+/// - a terminal shows the sections that are not [details](Section::in_detail), the first one last, and then the
+///   verdicts, so that what matters stands above the prompt;
+/// - JSON has every quantity and table under its key, in SI units, and `null` where nothing is known;
+/// - a page shows the verdicts, then the sections with their drawings, in one file that opens offline.
+///
+/// Whatever it is given as text appears as that text. The same calls give the same bytes.
 #[derive(Clone, Debug)]
 pub(crate) struct Report {
     title: String,
-    body: String,
-    /// Whether there are points to turn.
-    turns: bool,
+    /// What programs get beside the sections.
+    data: Map<String, Value>,
+    verdicts: Vec<String>,
+    warnings: Vec<String>,
+    notes: Vec<String>,
+    sections: Vec<Section>,
+}
+
+/// A part of a report under one heading.
+#[derive(Clone, Debug)]
+pub(crate) struct Section {
+    heading: String,
+    /// The key of the object that holds its quantities; `None` for those of the report itself.
+    key: Option<&'static str>,
+    in_detail: bool,
+    blocks: Vec<Block>,
+}
+
+/// A piece of a section.
+#[derive(Clone, Debug)]
+enum Block {
+    /// A quantity with its key and its name.
+    Fact(&'static str, String, Cell),
+    /// What only programs get.
+    Data(String, Value),
+    Table(Table),
+    /// An explanation, on pages alone.
+    Paragraph(String),
+    /// Drawings, pictures and files, on pages alone.
+    Figure(html::Figure),
 }
 
 impl Report {
     /// Starts a report with its title.
-    pub(crate) fn new(title: &str) -> Self {
+    pub(crate) fn new(title: impl Into<String>) -> Self {
+        let program = concat!("tem00 ", env!("CARGO_PKG_VERSION"));
         let mut report = Self {
-            title: title.to_owned(),
-            body: String::new(),
-            turns: false,
+            title: title.into(),
+            data: Map::new(),
+            verdicts: Vec::new(),
+            warnings: Vec::new(),
+            notes: Vec::new(),
+            sections: Vec::new(),
         };
-        report.element("h1", title);
+        report.data("program", program);
         report
     }
 
+    /// Adds what only programs get; a number that is not finite becomes `null`.
+    pub(crate) fn data(&mut self, key: &str, value: impl Serialize) {
+        self.data.insert(key.to_owned(), json::value(value));
+    }
+
+    /// Adds a sentence of what the report comes to; the first is the result.
+    pub(crate) fn verdict(&mut self, sentence: impl Into<String>) {
+        self.verdicts.push(sentence.into());
+    }
+
+    /// Adds a reason to doubt the result.
+    pub(crate) fn warning(&mut self, text: impl Into<String>) {
+        self.warnings.push(text.into());
+    }
+
+    /// Adds what the result assumes.
+    pub(crate) fn note(&mut self, text: impl Into<String>) {
+        self.notes.push(text.into());
+    }
+
     /// Starts a section.
-    pub(crate) fn heading(&mut self, text: &str) {
-        self.element("h2", text);
+    pub(crate) fn section(&mut self, heading: impl Into<String>) -> &mut Section {
+        let index = self.sections.len();
+        self.sections.push(Section {
+            heading: heading.into(),
+            key: None,
+            in_detail: false,
+            blocks: Vec::new(),
+        });
+        &mut self.sections[index]
+    }
+}
+
+impl Section {
+    /// Puts the quantities and tables into an object of their own in JSON.
+    pub(crate) const fn under(&mut self, key: &'static str) -> &mut Self {
+        self.key = Some(key);
+        self
     }
 
-    /// Adds a paragraph.
-    pub(crate) fn paragraph(&mut self, text: &str) {
-        self.element("p", text);
+    /// Leaves the section out on a terminal.
+    pub(crate) const fn in_detail(&mut self) -> &mut Self {
+        self.in_detail = true;
+        self
     }
 
-    /// Adds a paragraph that stands out: what the report comes to.
-    pub(crate) fn verdict(&mut self, text: &str) {
-        self.push(format_args!("<p class=\"verdict\">{}</p>\n", escaped(text)));
+    /// Adds a quantity.
+    pub(crate) fn fact(
+        &mut self,
+        key: &'static str,
+        name: impl Into<String>,
+        value: impl Into<Cell>,
+    ) -> &mut Self {
+        self.push(Block::Fact(key, name.into(), value.into()))
     }
 
-    /// Adds a list of names and what they are.
-    pub(crate) fn facts(&mut self, facts: &[(&str, String)]) {
-        self.body.push_str("<dl>\n");
-        for (name, value) in facts {
-            let (name, value) = (escaped(name), escaped(value));
-            self.push(format_args!("<dt>{name}</dt><dd>{value}</dd>\n"));
-        }
-        self.body.push_str("</dl>\n");
+    /// Adds what only programs get; a number that is not finite becomes `null`.
+    pub(crate) fn data(&mut self, key: &str, value: impl Serialize) -> &mut Self {
+        self.push(Block::Data(key.to_owned(), json::value(value)))
     }
 
     /// Adds a table.
-    pub(crate) fn table(&mut self, table: &Table) {
-        table.write(&mut self.body);
+    pub(crate) fn table(&mut self, table: Table) -> &mut Self {
+        self.push(Block::Table(table))
     }
 
-    /// Adds drawings with their captions, side by side where there is room.
-    pub(crate) fn drawings<'a>(&mut self, drawings: impl IntoIterator<Item = (&'a str, &'a str)>) {
-        self.body.push_str("<div class=\"drawings\">\n");
-        for (svg, caption) in drawings {
-            self.drawing(svg, caption);
-        }
-        self.body.push_str("</div>\n");
+    /// Adds an explanation.
+    pub(crate) fn paragraph(&mut self, text: impl Into<String>) -> &mut Self {
+        self.push(Block::Paragraph(text.into()))
     }
 
     /// Adds a drawing with its caption. `svg` is the text of an SVG file of this program.
-    pub(crate) fn drawing(&mut self, svg: &str, caption: &str) {
-        let label = format!("<svg role=\"img\" aria-label=\"{}\"", escaped(caption));
-        // A declaration may only begin a file.
-        let start = svg.find("<svg").unwrap_or(svg.len());
-        self.figure(&svg[start..].replacen("<svg", &label, 1), caption);
+    pub(crate) fn drawing(
+        &mut self,
+        svg: impl Into<String>,
+        caption: impl Into<String>,
+    ) -> &mut Self {
+        let figure = html::Figure::Drawing(svg.into(), caption.into());
+        self.push(Block::Figure(figure))
     }
 
     /// Adds points in space that the reader may turn, if there are any.
-    pub(crate) fn cloud(&mut self, cloud: Cloud<'_>) {
-        if let Some((svg, caption)) = cloud.draw() {
-            self.turns = true;
-            self.drawing(&svg, &caption);
+    pub(crate) fn cloud(&mut self, cloud: Cloud<'_>) -> &mut Self {
+        match cloud.draw() {
+            Some((svg, caption)) => self.push(Block::Figure(html::Figure::Cloud(svg, caption))),
+            None => self,
         }
     }
 
     /// Adds a picture with its caption, a small one enlarged. `png` is the content of a PNG file of so many
     /// columns.
-    pub(crate) fn picture(&mut self, png: &[u8], columns: usize, caption: &str) {
-        /// About the width of the page.
-        const WIDTH: usize = 900;
-        let data = STANDARD.encode(png);
-        let text = escaped(caption);
-        let shown = (WIDTH / columns.max(1)).max(1) * columns;
-        let class = if shown > columns {
-            " class=\"enlarged\""
-        } else {
-            ""
-        };
-        self.figure(
-            &format!(
-                "<img{class} width=\"{shown}\" alt=\"{text}\" src=\"data:image/png;base64,{data}\">"
-            ),
+    pub(crate) fn picture(
+        &mut self,
+        png: Vec<u8>,
+        columns: usize,
+        caption: impl Into<String>,
+    ) -> &mut Self {
+        let caption = caption.into();
+        self.push(Block::Figure(html::Figure::Picture {
+            png,
+            columns,
             caption,
-        );
+        }))
     }
 
     /// Adds a file as it is, under its name.
-    pub(crate) fn file(&mut self, name: &str, text: &str) {
-        let (name, text) = (escaped(name), escaped(text));
-        self.push(format_args!(
-            "<details><summary>{name}</summary><pre>{text}</pre></details>\n"
-        ));
+    pub(crate) fn file(&mut self, name: impl Into<String>, text: impl Into<String>) -> &mut Self {
+        let figure = html::Figure::File(name.into(), text.into());
+        self.push(Block::Figure(figure))
     }
 
-    /// Returns the file.
-    pub(crate) fn html(&self) -> String {
-        let (title, style, body) = (escaped(&self.title), style::CSS, &self.body);
-        let version = env!("CARGO_PKG_VERSION");
-        let dark = style::dark();
-        let script = if self.turns {
-            format!("<script>\n{}</script>\n", cloud::SCRIPT)
-        } else {
-            String::new()
-        };
-        format!(
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-             <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; \
-             style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <title>{title}</title>\n<style>\n{style}{dark}</style>\n</head>\n<body>\n<main>\n{body}\
-             <footer>tem00 {version}</footer>\n</main>\n{script}</body>\n</html>\n"
-        )
-    }
-
-    /// Writes the file.
-    ///
-    /// # Errors
-    ///
-    /// Returns a failure if it cannot be written.
-    pub(crate) fn save(&self, path: &Path) -> Result<(), Failure> {
-        write_atomically(path, |file| file.write_all(self.html().as_bytes()))
-            .map_err(|error| Failure::writing(path, error))
-    }
-
-    fn figure(&mut self, content: &str, caption: &str) {
-        let caption = escaped(caption);
-        self.push(format_args!(
-            "<figure>{content}<figcaption>{caption}</figcaption></figure>\n"
-        ));
-    }
-
-    fn element(&mut self, name: &str, text: &str) {
-        self.push(format_args!("<{name}>{}</{name}>\n", escaped(text)));
-    }
-
-    fn push(&mut self, text: core::fmt::Arguments<'_>) {
-        // Memory takes whatever it is given.
-        let _ = self.body.write_fmt(text);
+    fn push(&mut self, block: Block) -> &mut Self {
+        self.blocks.push(block);
+        self
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::io::Write;
 
-use serde::Serialize;
 use tem00_decorrelation::{
     CameraFrame, Configuration, ConfigurationData, DVec2, DVec3, DecorrelationError, Focus,
     Illumination, ImagingGeometry, RigidMotion, RigidMotions, ThickLensData,
@@ -13,7 +12,10 @@ use tem00_statistics::{AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, pixel_contrast};
 use crate::{
     args::SpeckleArgs,
     failure::Failure,
-    table::{rounded, write_columns},
+    report::{
+        Cell, Column, Report, Table, Unit,
+        units::{DEGREES, NUMBER},
+    },
 };
 
 /// Prints what is known of the speckle of a camera without a scene.
@@ -28,61 +30,23 @@ pub(crate) fn run(args: &SpeckleArgs, out: &mut impl Write) -> Result<(), Failur
             "--wavelength, --focal-length, --f-number, --distance and --pupil-magnification make the lens",
         )
     })?;
-    let printed = if args.json {
-        let text = serde_json::to_string_pretty(&speckle)
-            .map_err(|error| Failure::running(error.to_string()))?;
-        writeln!(out, "{text}")
-    } else {
-        speckle.print(out)
-    };
-    printed.map_err(|error| Failure::stdout(&error))
+    speckle.report(args).print(args.json, &[], out)
 }
 
-/// What a lens says of its speckle, in SI units.
-#[derive(Debug, Serialize)]
+/// What a lens says of its speckle.
+#[derive(Debug)]
 struct Speckle {
-    wavelength: f64,
-    focal_length: f64,
-    f_number: f64,
-    distance: f64,
-    pupil_magnification: f64,
-    angle: f64,
-    magnification: f64,
-    working_f_number: f64,
-    pupil_diameter: f64,
-    /// On the sensor and on the surface.
-    sensor: Size,
-    surface: Size,
+    geometry: ImagingGeometry,
     pixel: Option<Pixel>,
     decorrelation: Vec<Decorrelation>,
 }
 
-/// How large speckle is, in metres.
-#[derive(Debug, Serialize)]
-struct Size {
-    /// The period of the finest fringes, h.
-    speckle_size: f64,
-    /// The full width of the autocovariance at half its maximum, 1.03 h.
-    full_width_at_half_maximum: f64,
-    /// The lag at which the autocovariance first vanishes, 1.22 h.
-    first_zero: f64,
-}
-
-impl Size {
-    fn new(speckle_size: f64) -> Self {
-        Self {
-            speckle_size,
-            full_width_at_half_maximum: 2.0 * AIRY_HALF_WIDTH * speckle_size,
-            first_zero: AIRY_FIRST_ZERO * speckle_size,
-        }
-    }
-}
-
 /// What a square pixel without gaps sees of the speckle.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 struct Pixel {
     pitch: f64,
-    speckle_size_in_pixels: f64,
+    /// In pixels.
+    speckle_size: f64,
     /// The contrast of polarised light, and of light that the surface has depolarised.
     contrast: f64,
     contrast_depolarised: f64,
@@ -93,7 +57,7 @@ impl Pixel {
         let contrast = pixel_contrast(pitch / speckle_size);
         Self {
             pitch,
-            speckle_size_in_pixels: speckle_size / pitch,
+            speckle_size: speckle_size / pitch,
             contrast,
             // Two patterns of half the power each.
             contrast_depolarised: contrast * core::f64::consts::FRAC_1_SQRT_2,
@@ -102,7 +66,7 @@ impl Pixel {
 }
 
 /// How much of a change leaves half the pattern, and how much none, in SI units.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 struct Decorrelation {
     by: Change,
     /// `None` where the change does not decorrelate the pattern at first order.
@@ -111,8 +75,7 @@ struct Decorrelation {
 }
 
 /// What changes the speckle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Change {
     /// The surface moves across the line of sight, and a pixel stays where it is.
     AcrossInAPixel,
@@ -127,24 +90,22 @@ enum Change {
 }
 
 impl Change {
-    const fn words(self) -> &'static str {
-        match self {
-            Self::AcrossInAPixel => "surface across the sight, in a pixel",
-            Self::Across => "surface across the sight, followed",
-            Self::Along => "surface along the sight",
-            Self::Tilt => "surface tilted",
-            Self::Wavelength => "wavelength",
-        }
+    fn name(self) -> Cell {
+        let (key, words) = match self {
+            Self::AcrossInAPixel => ("across_in_a_pixel", "surface across the sight, in a pixel"),
+            Self::Across => ("across", "surface across the sight, followed"),
+            Self::Along => ("along", "surface along the sight"),
+            Self::Tilt => ("tilt", "surface tilted"),
+            Self::Wavelength => ("wavelength", "wavelength"),
+        };
+        Cell::new(key, words)
     }
 
-    fn text(self, value: Option<f64>) -> String {
-        match value {
-            None => "-".into(),
-            Some(angle) if self == Self::Tilt => {
-                format!("{}°", rounded(angle.to_degrees(), 4))
-            }
-            Some(value) => length(value),
-        }
+    fn cell(self, value: Option<f64>) -> Cell {
+        Cell::or_dash(value.map(|value| match self {
+            Self::Tilt => DEGREES.quantity(value),
+            _ => length(value),
+        }))
     }
 }
 
@@ -159,76 +120,127 @@ impl Speckle {
             // Nothing that is told without a pitch depends on it.
             pixel_pitch: args.pixel_pitch.unwrap_or(args.wavelength),
         })?;
-        let h = geometry.speckle_size();
         Ok(Self {
-            wavelength: args.wavelength,
-            focal_length: args.focal_length,
-            f_number: args.f_number,
-            distance: args.distance,
-            pupil_magnification: args.pupil_magnification,
-            angle: args.angle,
-            magnification: geometry.magnification(),
-            working_f_number: geometry.working_f_number(),
-            pupil_diameter: geometry.pupil_diameter(),
-            sensor: Size::new(h),
-            surface: Size::new(geometry.object_speckle_size()),
-            pixel: args.pixel_pitch.map(|pitch| Pixel::new(pitch, h)),
+            pixel: args
+                .pixel_pitch
+                .map(|pitch| Pixel::new(pitch, geometry.speckle_size())),
             decorrelation: decorrelation(&geometry, args.angle)?,
+            geometry,
         })
     }
 
-    fn print(&self, out: &mut impl Write) -> std::io::Result<()> {
-        writeln!(
-            out,
-            "{}, f = {}, f/{}, {} from the surface: magnification {}, working f-number {}, pupil {}\n",
-            length(self.wavelength),
-            length(self.focal_length),
-            rounded(self.f_number, 4),
-            length(self.distance),
-            rounded(self.magnification, 4),
-            rounded(self.working_f_number, 4),
-            length(self.pupil_diameter),
-        )?;
-        let line = |cells: [&str; 3]| cells.map(String::from).to_vec();
-        let row = |name: &str, size: fn(&Size) -> f64| {
-            let [sensor, surface] = [&self.sensor, &self.surface].map(|of| length(size(of)));
-            line([name, &sensor, &surface])
-        };
-        let mut lines = vec![
-            line(["speckle", "on the sensor", "on the surface"]),
-            row("size h, the period of the finest fringes", |size| {
-                size.speckle_size
-            }),
-            row("full width at half maximum, 1.03 h", |size| {
-                size.full_width_at_half_maximum
-            }),
-            row("first zero of the autocovariance, 1.22 h", |size| {
-                size.first_zero
-            }),
-        ];
+    fn report(&self, args: &SpeckleArgs) -> Report {
+        let mut report = Report::new("The speckle of a lens");
+        report.verdict(
+            "Half and none are of the correlation of intensity, in collimated light on a surface that faces the \
+             camera. A change of the wavelength also decorrelates what the heights of the surface do to the \
+             phase, which is not counted here.",
+        );
+        report.section("What changes it").table(self.changes());
+        let section = report.section("Its size").table(self.sizes());
         if let Some(pixel) = &self.pixel {
-            let name = format!("h in pixels of {}", length(pixel.pitch));
-            let size = rounded(pixel.speckle_size_in_pixels, 4);
-            lines.push(line([&name, &size, ""]));
-            let contrast = rounded(pixel.contrast, 3);
-            let half = format!("{}, depolarised", rounded(pixel.contrast_depolarised, 3));
-            lines.push(line(["contrast in a pixel, polarised", &contrast, &half]));
+            section
+                .fact("pixel_pitch", "pixel pitch", length(pixel.pitch))
+                .fact(
+                    "speckle_size_pixels",
+                    "size h in pixels",
+                    NUMBER.quantity(pixel.speckle_size),
+                )
+                .fact(
+                    "contrast",
+                    "contrast in a pixel, polarised",
+                    NUMBER.with_digits(3).quantity(pixel.contrast),
+                )
+                .fact(
+                    "contrast_depolarised",
+                    "contrast in a pixel, depolarised",
+                    NUMBER.with_digits(3).quantity(pixel.contrast_depolarised),
+                );
         }
-        write_columns(&lines, out)?;
-        writeln!(out)?;
-        let mut lines = vec![line(["change", "half is left at", "none is left at"])];
-        for Decorrelation { by, half, none } in &self.decorrelation {
-            lines.push(line([by.words(), &by.text(*half), &by.text(*none)]));
-        }
-        write_columns(&lines, out)?;
-        writeln!(
-            out,
-            "\nCollimated light at {}° to the sight, on a surface that faces the camera. Half and none \
-             are of the correlation of intensity. A change of the wavelength also decorrelates what the \
-             heights of the surface do to the phase, which is not counted here.",
-            rounded(self.angle.to_degrees(), 4)
-        )
+        let geometry = &self.geometry;
+        report
+            .section("The lens")
+            .fact("wavelength", "wavelength", length(args.wavelength))
+            .fact("focal_length", "focal length", length(args.focal_length))
+            .fact("f_number", "f-number", NUMBER.quantity(args.f_number))
+            .fact("distance", "distance of the surface", length(args.distance))
+            .fact("angle", "angle of the light", DEGREES.quantity(args.angle))
+            .fact(
+                "pupil_magnification",
+                "pupil magnification",
+                NUMBER.quantity(args.pupil_magnification),
+            )
+            .fact(
+                "magnification",
+                "magnification",
+                NUMBER.quantity(geometry.magnification()),
+            )
+            .fact(
+                "working_f_number",
+                "working f-number",
+                NUMBER.quantity(geometry.working_f_number()),
+            )
+            .fact(
+                "pupil_diameter",
+                "pupil diameter",
+                length(geometry.pupil_diameter()),
+            );
+        report
     }
+
+    /// The size on the sensor and on the surface.
+    fn sizes(&self) -> Table {
+        let columns = [
+            Column::new("quantity", "speckle"),
+            Column::new("sensor", "on the sensor"),
+            Column::new("surface", "on the surface"),
+        ];
+        let mut table =
+            Table::new("Speckle on the sensor and on the surface", columns).under("sizes");
+        let sizes = [
+            self.geometry.speckle_size(),
+            self.geometry.object_speckle_size(),
+        ];
+        for (key, name, factor) in [
+            (
+                "speckle_size",
+                "size h, the period of the finest fringes",
+                1.0,
+            ),
+            (
+                "full_width_at_half_maximum",
+                "full width at half maximum, 1.03 h",
+                2.0 * AIRY_HALF_WIDTH,
+            ),
+            (
+                "first_zero",
+                "first zero of the autocovariance, 1.22 h",
+                AIRY_FIRST_ZERO,
+            ),
+        ] {
+            let [sensor, surface] = sizes.map(|size| length(factor * size));
+            table.row([Cell::new(key, name), sensor, surface]);
+        }
+        table
+    }
+
+    fn changes(&self) -> Table {
+        let columns = [
+            Column::new("by", "change"),
+            Column::new("half", "half is left at"),
+            Column::new("none", "none is left at"),
+        ];
+        let mut table = Table::new("What decorrelates the speckle", columns).under("decorrelation");
+        for Decorrelation { by, half, none } in &self.decorrelation {
+            table.row([by.name(), by.cell(*half), by.cell(*none)]);
+        }
+        table
+    }
+}
+
+/// A length in the unit that suits it.
+fn length(metres: f64) -> Cell {
+    Unit::of_length(metres).quantity(metres)
 }
 
 /// Returns what decorrelates the speckle of a surface that faces the camera, under collimated light at
@@ -312,17 +324,6 @@ fn pupil_shifts(geometry: &ImagingGeometry, angle: f64) -> Result<[f64; 3], Deco
     ])
 }
 
-/// Writes a length with four digits, in the unit that suits it.
-fn length(metres: f64) -> String {
-    let (unit, size) = match metres {
-        long if long >= 1.0 => ("m", 1.0),
-        long if long >= 1e-3 => ("mm", 1e-3),
-        long if long >= 1e-6 => ("µm", 1e-6),
-        _ => ("nm", 1e-9),
-    };
-    format!("{} {unit}", rounded(metres / size, 4))
-}
-
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
@@ -384,19 +385,6 @@ mod tests {
             let found = found.find(|found| found.by == change).expect("listed");
             let shift = found.half.expect("a length") / found.none.expect("a length");
             assert_relative_eq!(overlap(shift).powi(2), 0.5, epsilon = 1e-9);
-        }
-    }
-
-    #[test]
-    fn lengths_are_written_in_the_unit_that_suits() {
-        for (metres, text) in [
-            (0.3, "300 mm"),
-            (5.672_7e-6, "5.673 µm"),
-            (650e-9, "650 nm"),
-            (2.0, "2 m"),
-            (3.125e-3, "3.125 mm"),
-        ] {
-            assert_eq!(length(metres), text);
         }
     }
 }

@@ -6,7 +6,6 @@ mod page;
 
 use std::{io::Write, path::Path};
 
-use serde::Serialize;
 use tem00_numerics::Grid;
 use tem00_statistics::{
     Boundary, Contrast, FlatImage, GreyLevels, Moments, SpeckleSize, StatisticsError,
@@ -15,12 +14,13 @@ use tem00_statistics::{
 
 use crate::{
     args::StatsArgs,
+    comparison::{self, Row},
     failure::Failure,
     image::{LoadedImage, Reading, read_image},
     kind::{Kind, wrong_or},
     output::{self, note},
     plot::Format,
-    table::{Row, write_table},
+    report::Report,
 };
 use curves::{Curves, Measured};
 use findings::Findings;
@@ -42,7 +42,7 @@ const SMALLEST_WINDOW: f64 = 6.0;
 const BYTES_PER_PIXEL: u64 = 100;
 
 /// What was found in an image.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 struct Measurement {
     image: String,
     width: usize,
@@ -89,7 +89,13 @@ pub(crate) fn run(args: &StatsArgs, out: &mut impl Write) -> Result<(), Failure>
     if let Some((path, format)) = plot {
         draw(&measurement, path, format)?;
     }
-    print(&measurement, args.json, out)
+    if !args.json {
+        note(&format!(
+            "{}: {}",
+            measurement.image, measurement.interpretation
+        ));
+    }
+    measurement.report().print(args.json, &[], out)
 }
 
 /// Measures an image, flattened if that was asked for.
@@ -140,23 +146,21 @@ fn draw(measurement: &Measurement, path: &Path, format: Format) -> Result<(), Fa
         .map_err(|error| Failure::writing(path, error))
 }
 
-fn print(measurement: &Measurement, json: bool, out: &mut impl Write) -> Result<(), Failure> {
-    if json {
-        let text = serde_json::to_string_pretty(measurement)
-            .map_err(|error| Failure::running(format!("cannot write JSON: {error}")))?;
-        return writeln!(out, "{text}").map_err(|error| Failure::stdout(&error));
+impl Measurement {
+    fn report(&self) -> Report {
+        let mut report = Report::new(format!("{}: the speckle of an image", self.image));
+        report.data("image", &self.image);
+        report.data("width", self.width);
+        report.data("height", self.height);
+        report.data("interpretation", &self.interpretation);
+        report.data("curves", &self.curves);
+        report
+            .section("Statistics")
+            .table(comparison::table(&self.rows));
+        self.warnings.iter().for_each(|line| report.warning(line));
+        self.assumptions.iter().for_each(|line| report.note(line));
+        report
     }
-    note(&format!(
-        "{}: {}",
-        measurement.image, measurement.interpretation
-    ));
-    for warning in &measurement.warnings {
-        note(&format!("warning: {warning}"));
-    }
-    for assumption in &measurement.assumptions {
-        note(&format!("note: {assumption}"));
-    }
-    write_table(&measurement.rows, out).map_err(|error| Failure::stdout(&error))
 }
 
 /// Divides an image by its mean over windows of so many pixels, or as many as its speckle wants.
@@ -255,7 +259,7 @@ mod tests {
     use tem00_speckle::PupilField;
 
     use super::*;
-    use crate::table::Expectation;
+    use crate::comparison::Expectation;
 
     fn measured(values: Grid<f32>) -> Measurement {
         let image = LoadedImage {

@@ -1,10 +1,11 @@
 //! `tem00 triangulate`: from a scene file to a measured part.
 
 mod calibration;
+mod drawings;
 mod files;
-mod page;
-mod record;
+mod frame;
 mod refusal;
+mod report;
 mod terms;
 
 use std::{io::Write, path::Path};
@@ -15,13 +16,7 @@ use tem00_triangulation::{
     TriangulationError,
 };
 
-use self::{
-    files::Files,
-    page::Page,
-    record::{FrameRecord, Record},
-    refusal::Refusal,
-    terms::Terms,
-};
+use self::{files::Files, frame::FrameRecord, refusal::Refusal, terms::Terms};
 use crate::{
     args::{FrameRange, TriangulateArgs},
     failure::Failure,
@@ -32,6 +27,7 @@ use crate::{
     output,
     progress::FrameProgress,
     render::{frames, tracer_failure},
+    report::Report,
 };
 
 /// What to say of a file that is no scene.
@@ -62,8 +58,16 @@ pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Fa
         )
     })?;
     let measured = pool.install(|| job.measure())?;
-    job.write(&measured)?;
-    job.print(&measured, out)
+    let report = job.write(&measured)?;
+    report.print(false, &[job.files.path("report.html")], out)?;
+    measured.terms.map(drop).map_err(|refusal| {
+        let message = format!(
+            "{}: nothing was measured: {}",
+            args.scene.display(),
+            refusal.why
+        );
+        Failure::no_result(message, refusal.advice)
+    })
 }
 
 /// A measurement that is set up.
@@ -183,44 +187,23 @@ impl<'a> Job<'a> {
             .map_err(|error| measurement_failure(&self.args.scene, &error))
     }
 
-    fn write(&self, measured: &Measured) -> Result<(), Failure> {
+    /// Writes all files, and returns the report.
+    fn write(&self, measured: &Measured) -> Result<Report, Failure> {
         let height = self.measurement.settings().height;
         self.files.write_profiles(&measured.profiles, height)?;
         self.files.write_point_cloud(&measured.profiles)?;
         self.files.write_height_map(measured.map.as_ref())?;
-        let record = Record::of(self, measured);
-        self.files.write_json(&record)?;
-        Page {
-            job: self,
-            measured,
-        }
-        .write()
-    }
-
-    fn print(&self, measured: &Measured, out: &mut impl Write) -> Result<(), Failure> {
-        let text = measured
-            .terms
-            .as_ref()
-            .map_or_else(|_| String::new(), Terms::text);
-        let speckle = measured.speckle_sentence(self.measurement.settings().average);
-        let report = self.files.path("report.html");
-        write!(out, "{text}{speckle}")
-            .and_then(|()| writeln!(out, "{}", report.display()))
-            .map_err(|error| Failure::stdout(&error))?;
-        measured.terms.as_ref().map(drop).map_err(|refusal| {
-            let scene = self.args.scene.display();
-            let message = format!("{scene}: nothing was measured: {}", refusal.why);
-            Failure::no_result(message, refusal.advice)
-        })
+        let report = report::report(self, measured)?;
+        report.save_json(&self.files.path("measurement.json"))?;
+        report.save_page(&self.files.path("report.html"))?;
+        Ok(report)
     }
 }
 
 impl Measured {
-    /// What becomes of speckle from frame to frame, as a line of text; nothing where that is not known.
-    fn speckle_sentence(&self, average: Averaging) -> String {
-        let Some(change) = &self.speckle_change else {
-            return String::new();
-        };
+    /// What becomes of speckle from frame to frame; nothing where that is not known.
+    fn speckle_sentence(&self, average: Averaging) -> Option<String> {
+        let change = self.speckle_change.as_ref()?;
         let worth = match self.effective_frames {
             Some(worth) if average.frames > 1 => format!(
                 "; a mean over {} frames is worth {worth:.1} of independent speckle",
@@ -228,10 +211,10 @@ impl Measured {
             ),
             _ => String::new(),
         };
-        format!(
-            "Speckle from frame to frame: {}{worth}.\n",
+        Some(format!(
+            "Speckle from frame to frame: {}{worth}.",
             in_words(change)
-        )
+        ))
     }
 }
 

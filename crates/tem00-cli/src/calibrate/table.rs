@@ -3,27 +3,27 @@
 use tem00_camera::RadialDistortion;
 use tem00_triangulation::{Calibration, DVec2, DVec3, PARAMETERS};
 
-use crate::table::number;
+use crate::report::{Column, Table, number};
 
-/// Returns the parameters of the camera that were sought, with headings: name, value, uncertainty, unit.
-pub(super) fn parameters(calibration: &Calibration) -> Vec<Vec<String>> {
-    let headings = ["parameter", "value", "uncertainty", "unit"].map(String::from);
-    let mut lines = vec![headings.to_vec()];
+/// Returns the parameters of the camera that were sought.
+pub(super) fn parameters(calibration: &Calibration) -> Table {
+    let columns = ["parameter", "value", "uncertainty", "unit"].map(Column::shown);
+    let mut table = Table::new("Parameters of the camera", columns);
     for (i, value) in values(calibration).into_iter().enumerate() {
         let uncertainty = calibration
             .covariance()
             .map_or(0.0, |c| c.standard_uncertainty(i));
         if uncertainty > 0.0 {
             let (scale, unit) = shown_in(PARAMETERS[i].unit);
-            lines.push(vec![
+            table.row([
                 PARAMETERS[i].name.into(),
-                number(scale * value),
-                number(scale * uncertainty),
+                (scale * value).into(),
+                (scale * uncertainty).into(),
                 unit.into(),
             ]);
         }
     }
-    lines
+    table
 }
 
 /// Returns the values of the parameters of the camera, in the order of [`PARAMETERS`].
@@ -59,7 +59,7 @@ const fn shown_in(unit: &'static str) -> (f64, &'static str) {
 
 /// Returns what the table cannot tell, one sentence per line.
 pub(super) fn sentences(calibration: &Calibration) -> Vec<String> {
-    let mut sentences = vec![String::new()];
+    let mut sentences = Vec::new();
     if let Some(quality) = calibration.quality() {
         sentences.push(format!(
             "{} corners on {} boards fit within {} pixel (rms).",

@@ -7,15 +7,15 @@ use std::{
 
 use tem00_triangulation::{Candidate, DesignFigure, Neighbours};
 
-use super::{Design, page, plots, record::Record, units};
-use crate::{atomic::write_atomically, failure::Failure};
+use super::{Design, plots, report, units};
+use crate::{atomic::write_atomically, failure::Failure, report::Report};
 
-/// Writes all files into the folder, and returns the names of those that one opens first.
+/// Writes all files into the folder, and returns the report and the names of those that one opens first.
 pub(super) fn write(
     design: &Design<'_>,
     near: &[Neighbours],
     folder: &Path,
-) -> Result<Vec<PathBuf>, Failure> {
+) -> Result<(Report, Vec<PathBuf>), Failure> {
     let path = |name: &str| folder.join(name);
     let best = best(design)?;
     let mut names = vec!["design.csv", "design.json", "design.html"];
@@ -24,16 +24,14 @@ pub(super) fn write(
         names.insert(0, "best.toml");
     }
     save(&path("design.csv"), |file| write_csv(design, file))?;
-    let record = Record::of(design).text()?;
-    save(&path("design.json"), |file| writeln!(file, "{record}"))?;
-    let mut figures = Vec::new();
-    for named in plots::all(design, near) {
-        let svg = named.drawing.save(folder, &named.name)?;
-        figures.push((svg, named.caption));
-    }
-    let report = page::report(design, near, &figures, best.as_deref())?;
-    report.save(&path("design.html"))?;
-    Ok(names.into_iter().map(path).collect())
+    let drawings = plots::all(design, near).into_iter();
+    let drawings =
+        drawings.map(|named| Ok((named.drawing.save(folder, &named.name)?, named.caption)));
+    let drawings = drawings.collect::<Result<_, Failure>>()?;
+    let report = report::report(design, near, drawings, best.as_deref())?;
+    report.save_json(&path("design.json"))?;
+    report.save_page(&path("design.html"))?;
+    Ok((report, names.into_iter().map(path).collect()))
 }
 
 fn save(
@@ -64,7 +62,7 @@ fn best(design: &Design<'_>) -> Result<Option<String>, Failure> {
          {text}",
         design.search.count(),
         winner.index,
-        expanded.quantity(figures.expanded_uncertainty),
+        expanded.text(figures.expanded_uncertainty),
     )))
 }
 

@@ -5,14 +5,14 @@ use tem00_triangulation::{
     UncertaintySource,
 };
 
-use super::{
-    Design,
-    units::{self, MICROMETRES},
-};
-use crate::plot::{
-    Bars, Chart, Drawing,
-    colours::{self, BROKEN, COMBINED, FRONT, KEPT, LESS, MORE},
-    is_drawn,
+use super::{Design, units};
+use crate::{
+    plot::{
+        Bars, Chart, Drawing,
+        colours::{self, BROKEN, COMBINED, FRONT, KEPT, LESS, MORE},
+        is_drawn,
+    },
+    report::units::MICROMETRES,
 };
 
 /// The most dots in a diagram.
@@ -50,7 +50,10 @@ fn trade_off(design: &Design<'_>) -> Named {
         thinned.filter_map(Candidate::possible).map(place)
     };
     let front = design.outcome.front(depth);
-    let labels = [x.label(depth.name()), y.label(objective.name())];
+    let labels = [
+        units::label(x, depth.name()),
+        units::label(y, objective.name()),
+    ];
     let chart = Chart::new("What depth of field costs", [&labels[0], &labels[1]])
         .dots("break a constraint", dots(false))
         .coloured(BROKEN)
@@ -78,7 +81,7 @@ fn trade_off(design: &Design<'_>) -> Named {
 fn over(design: &Design<'_>, sweep: &Sweep) -> Named {
     let parameter = sweep.parameter();
     let unit = units::of_parameter(parameter);
-    let label = unit.label(parameter.name());
+    let label = units::label(unit, parameter.name());
     let slice = slice(design, parameter);
     let curve = |value: &dyn Fn(&DesignFigures) -> f64| -> Vec<(f64, f64)> {
         let height = |figures: &DesignFigures| MICROMETRES.of(value(figures));

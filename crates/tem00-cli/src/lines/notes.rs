@@ -5,29 +5,13 @@ use std::path::Path;
 use tem00_triangulation::Validity;
 
 use super::Found;
-use crate::{args::LinesArgs, image::RawImage, output::note};
-
-/// The most notes that are told one by one.
-const TOLD: usize = 8;
+use crate::{args::LinesArgs, image::RawImage};
 
 /// The share of points that may be doubtful without a word.
 const DOUBTFUL: f64 = 0.1;
 
 /// The share of columns in which there should be a line.
 const LIT: f64 = 0.25;
-
-/// Writes notes to standard error, if there is anybody to read it.
-pub(super) fn tell(notes: &[String]) {
-    for remark in notes.iter().take(TOLD) {
-        note(&format!("note: {remark}"));
-    }
-    if notes.len() > TOLD {
-        note(&format!(
-            "note: and {} more of this kind",
-            notes.len() - TOLD
-        ));
-    }
-}
 
 /// Returns what should be known of the lines of an image.
 pub(super) fn of(

@@ -6,13 +6,16 @@ use serde::Serialize;
 use tem00_triangulation::{DetectorSettings, LinePoint, Validity};
 
 use super::Found;
-use crate::{image::RawImage, table::number};
+use crate::{
+    image::RawImage,
+    report::{Cell, Column, Report, Table},
+};
 
 /// The columns to either side of one that a parabola is fitted to.
 const REACH: usize = 8;
 
 /// One line of an image.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct LineSummary {
     /// The number of the line, from 0.
     pub(super) line: usize,
@@ -103,6 +106,7 @@ pub(super) struct ImageSummary {
     bit_depth: u32,
     interpretation: String,
     saturated_pixels: usize,
+    #[serde(skip)]
     lines: Vec<LineSummary>,
     #[serde(skip)]
     name: String,
@@ -126,79 +130,56 @@ impl ImageSummary {
         self.lines.iter().any(|line| line.valid > 0)
     }
 
-    /// Returns the rows of the table: one per line, or one that says that there is none.
-    pub(super) fn rows(&self) -> Vec<Vec<String>> {
+    /// Adds its lines to the table, or that there is none.
+    fn add_to(&self, table: &mut Table) {
+        let name = || Cell::new(&self.image, &self.name);
         if self.lines.is_empty() {
-            let dashes = core::iter::repeat_n("-".to_owned(), 6);
-            return vec![
-                [self.name.clone(), "none".into()]
-                    .into_iter()
-                    .chain(dashes)
-                    .collect(),
-            ];
+            let mut row = vec![name(), Cell::missing("none")];
+            row.resize_with(8, || Cell::missing("-"));
+            table.row(row);
         }
-        let cell = |value: Option<f64>| value.map_or_else(|| "-".into(), number);
-        let row = |line: &LineSummary| {
-            vec![
-                self.name.clone(),
-                line.line.to_string(),
-                line.columns.to_string(),
+        for line in &self.lines {
+            table.row([
+                name(),
+                line.line.into(),
+                line.columns.into(),
                 valid_share(line),
-                cell(line.position),
-                cell(line.noise),
-                cell(line.width),
-                cell(line.peak),
-            ]
-        };
-        self.lines.iter().map(row).collect()
+                Cell::or_dash(line.position),
+                Cell::or_dash(line.noise),
+                Cell::or_dash(line.width),
+                Cell::or_dash(line.peak),
+            ]);
+        }
     }
 }
 
-fn valid_share(line: &LineSummary) -> String {
-    format!(
-        "{:.1} %",
-        100.0 * line.valid as f64 / line.columns.max(1) as f64
-    )
+fn valid_share(line: &LineSummary) -> Cell {
+    let share = line.valid as f64 / line.columns.max(1) as f64;
+    Cell::new(share, format!("{:.1} %", 100.0 * share))
 }
 
-/// Returns the headings of the table.
-pub(super) fn headings() -> Vec<String> {
-    [
-        "image",
-        "line",
-        "columns",
-        "valid",
-        "position/px",
-        "noise/px",
-        "width/px",
-        "peak/DN",
-    ]
-    .map(String::from)
-    .to_vec()
-}
-
-#[derive(Serialize)]
-struct Record<'a> {
-    detector: &'static str,
-    window_px: usize,
-    least_peak_dn: f64,
-    most_lines: usize,
-    images: &'a [ImageSummary],
-}
-
-/// Returns all summaries as JSON.
-pub(super) fn json(settings: &DetectorSettings, images: &[ImageSummary]) -> String {
-    let record = Record {
-        detector: settings.method.name(),
-        window_px: settings.window,
-        least_peak_dn: settings.least_peak,
-        most_lines: settings.most_lines,
-        images,
-    };
-    // Numbers and text without maps of other keys than text are always JSON.
-    let mut text = serde_json::to_string_pretty(&record).unwrap_or_default();
-    text.push('\n');
-    text
+/// Returns the report of all images.
+pub(super) fn report(settings: &DetectorSettings, images: &[ImageSummary]) -> Report {
+    let mut report = Report::new("Lines in images");
+    report.data("detector", settings.method.name());
+    report.data("window_pixels", settings.window);
+    report.data("min_peak_dn", settings.least_peak);
+    report.data("max_lines", settings.most_lines);
+    report.data("images", images);
+    let columns = [
+        Column::new("image", "image"),
+        Column::new("line", "line"),
+        Column::new("columns", "columns"),
+        Column::new("valid_share", "valid"),
+        Column::new("position_pixels", "position/px"),
+        Column::new("noise_pixels", "noise/px"),
+        Column::new("width_pixels", "width/px"),
+        Column::new("peak_dn", "peak/DN"),
+    ];
+    let mut table = Table::new("Lines", columns).under("lines");
+    images.iter().for_each(|image| image.add_to(&mut table));
+    report.section("Lines").table(table);
+    report
 }
 
 #[cfg(test)]

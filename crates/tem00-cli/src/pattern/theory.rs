@@ -11,9 +11,9 @@ use tem00_statistics::{
 };
 
 use crate::{
+    comparison::{Expectation, Row},
     failure::Failure,
     interrupt,
-    table::{Expectation, Row},
 };
 
 /// The significance of the Kolmogorov–Smirnov test in the table.

@@ -2,11 +2,8 @@
 
 use core::fmt::Write as _;
 
-use super::escape::escaped;
-use crate::{
-    plot::{height_colour, is_drawn},
-    table::rounded,
-};
+use super::{cell::rounded, escape::escaped};
+use crate::plot::{height_colour, is_drawn};
 
 /// What turns the points, where the reader's browser runs it; without it they stand as in print.
 pub(super) const SCRIPT: &str = include_str!("cloud.js");

@@ -1,136 +1,96 @@
 //! Tables of a report.
 
-use core::fmt::Write;
+use super::cell::Cell;
 
-use super::escape::escaped;
-
-/// A table: words to the left, numbers to the right, units in the headings.
-#[derive(Clone, Debug, Default)]
+/// A table: one description for columns on a terminal, an array of objects in JSON and a table on a page.
+#[derive(Clone, Debug)]
 pub(crate) struct Table {
-    caption: String,
-    headings: Vec<String>,
-    rows: Vec<Row>,
+    pub(super) key: Option<&'static str>,
+    pub(super) caption: String,
+    pub(super) columns: Vec<Column>,
+    pub(super) rows: Vec<Vec<Cell>>,
+    /// The rows that sum up those above, which only people see.
+    pub(super) totals: Vec<Vec<Cell>>,
 }
 
+/// A column: its key for programs, and its heading, with the unit, for people.
 #[derive(Clone, Debug)]
-struct Row {
-    cells: Vec<String>,
-    total: bool,
+pub(crate) struct Column {
+    pub(super) key: Option<String>,
+    pub(super) heading: Option<String>,
+}
+
+impl Column {
+    /// A column with its key and its heading.
+    pub(crate) fn new(key: impl Into<String>, heading: impl Into<String>) -> Self {
+        Self {
+            key: Some(key.into()),
+            heading: Some(heading.into()),
+        }
+    }
+
+    /// A column that only programs get.
+    pub(crate) fn data(key: impl Into<String>) -> Self {
+        Self {
+            key: Some(key.into()),
+            heading: None,
+        }
+    }
+
+    /// A column that only people get.
+    pub(crate) fn shown(heading: impl Into<String>) -> Self {
+        Self {
+            key: None,
+            heading: Some(heading.into()),
+        }
+    }
 }
 
 impl Table {
-    /// Starts a table with its caption and the headings of its columns.
-    pub(crate) fn new(caption: &str, headings: &[&str]) -> Self {
+    /// Starts a table with its caption and its columns.
+    pub(crate) fn new(caption: impl Into<String>, columns: impl Into<Vec<Column>>) -> Self {
         Self {
-            caption: caption.to_owned(),
-            headings: headings.iter().copied().map(String::from).collect(),
+            key: None,
+            caption: caption.into(),
+            columns: columns.into(),
             rows: Vec::new(),
+            totals: Vec::new(),
         }
+    }
+
+    /// Gives the key of the array of rows; without one, JSON leaves the rows out.
+    pub(crate) const fn under(mut self, key: &'static str) -> Self {
+        self.key = Some(key);
+        self
     }
 
     /// Adds a row. Missing cells stay empty, those too many are left out.
-    pub(crate) fn row(&mut self, cells: Vec<String>) {
-        self.rows.push(Row {
-            cells,
-            total: false,
-        });
+    pub(crate) fn row(&mut self, cells: impl Into<Vec<Cell>>) {
+        self.rows.push(cells.into());
     }
 
-    /// Adds a row that sums up those above.
-    pub(crate) fn total(&mut self, cells: Vec<String>) {
-        self.rows.push(Row { cells, total: true });
+    /// Adds a row that sums up those above, for people alone: in JSON, sums have keys of their own.
+    pub(crate) fn total(&mut self, cells: impl Into<Vec<Cell>>) {
+        self.totals.push(cells.into());
     }
 
-    /// Writes the table as HTML.
-    pub(super) fn write(&self, out: &mut String) {
-        // Memory takes whatever it is given.
-        let _ = self.write_into(out);
+    /// Returns the headings of the columns that people see.
+    pub(super) fn headings(&self) -> Vec<&str> {
+        let columns = self.columns.iter();
+        columns
+            .filter_map(|column| column.heading.as_deref())
+            .collect()
     }
 
-    fn write_into(&self, out: &mut String) -> core::fmt::Result {
-        let caption = escaped(&self.caption);
-        writeln!(
-            out,
-            "<div class=\"scroll\"><table><caption>{caption}</caption>"
-        )?;
-        out.push_str("<thead><tr>");
-        for (column, heading) in self.headings.iter().enumerate() {
-            let (class, heading) = (self.class(column), escaped(heading));
-            write!(out, "<th scope=\"col\"{class}>{heading}</th>")?;
-        }
-        out.push_str("</tr></thead>\n<tbody>\n");
-        for row in &self.rows {
-            out.push_str(if row.total {
-                "<tr class=\"total\">"
-            } else {
-                "<tr>"
-            });
-            for column in 0..self.headings.len() {
-                let cell = row.cells.get(column).map_or("", String::as_str);
-                write!(out, "<td{}>{}</td>", self.class(column), escaped(cell))?;
-            }
-            out.push_str("</tr>\n");
-        }
-        out.push_str("</tbody></table></div>\n");
-        Ok(())
+    /// Returns the texts of a row that people see.
+    pub(super) fn texts<'a>(&'a self, row: &'a [Cell]) -> impl Iterator<Item = &'a str> {
+        let columns = self.columns.iter().enumerate();
+        let shown = columns.filter(|(_, column)| column.heading.is_some());
+        shown.map(|(index, _)| row.get(index).map_or("", Cell::text))
     }
 
-    /// Returns the attribute of the cells of a column: numbers stand to the right.
-    fn class(&self, column: usize) -> &'static str {
-        let cells = || {
-            let cells = self.rows.iter().filter_map(|row| row.cells.get(column));
-            cells.filter(|cell| !cell.is_empty())
-        };
-        if cells().next().is_some() && cells().all(|cell| is_number(cell)) {
-            " class=\"number\""
-        } else {
-            ""
-        }
-    }
-}
-
-/// Returns whether a cell holds a number, as "3.2e-6", "± 0.1", "12 %" or "-", where there is none.
-fn is_number(cell: &str) -> bool {
-    let text = cell.trim_start_matches(['±', '≥', '≤', '<', '>', ' ']);
-    let text = text.trim_end_matches(['%', ' ']);
-    matches!(text, "-" | "–" | "∞") || text.parse::<f64>().is_ok()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn html(table: &Table) -> String {
-        let mut out = String::new();
-        table.write(&mut out);
-        out
-    }
-
-    #[test]
-    fn columns_of_numbers_stand_to_the_right() {
-        let mut table = Table::new("budget", &["term", "u (µm)", "share"]);
-        table.row(vec!["speckle".into(), "3.2".into(), "91 %".into()]);
-        table.row(vec!["dark noise".into(), "1e-3".into(), "-".into()]);
-        table.total(vec!["combined".into(), "± 3.3".into()]);
-        let html = html(&table);
-        assert!(html.contains("<th scope=\"col\">term</th>"), "{html}");
-        assert!(
-            html.contains("<th scope=\"col\" class=\"number\">u (µm)</th>"),
-            "{html}"
-        );
-        assert_eq!(html.matches("<td class=\"number\">").count(), 6, "{html}");
-        assert!(html.contains("<tr class=\"total\">"), "{html}");
-    }
-
-    #[test]
-    fn cells_are_escaped_and_rows_are_as_long_as_the_headings() {
-        let mut table = Table::new("<b>", &["a"]);
-        table.row(vec!["x < y".into(), "too many".into()]);
-        let html = html(&table);
-        assert!(
-            html.contains("x &lt; y") && !html.contains("too many"),
-            "{html}"
-        );
-        assert!(html.contains("<caption>&lt;b&gt;</caption>"), "{html}");
+    /// Returns all rows, the totals last.
+    pub(super) fn all_rows(&self) -> impl Iterator<Item = &[Cell]> {
+        self.rows.iter().chain(&self.totals).map(|row| &**row)
     }
 }

@@ -3,29 +3,109 @@ use crate::plot::Chart;
 
 fn report() -> Report {
     let mut report = Report::new("A <set-up> & its \"budget\"");
-    report.heading("What dominates");
+    report.data("seed", 3);
     report.verdict("speckle");
-    report.paragraph("</main><script>alert(1)</script>");
-    report.facts(&[("wavelength", "660 nm".into()), ("<b>", "&".into())]);
-    let mut table = Table::new("terms", &["term", "u (µm)"]);
-    table.row(vec!["speckle".into(), "3.2".into()]);
-    report.table(&table);
-    let charts =
-        ["one", "two"].map(|name| Chart::new(name, ["x", "y"]).line("", [(0.0, 1.0), (1.0, 0.0)]));
-    let drawings = charts.map(Chart::draw);
-    report.drawings(
-        drawings
-            .iter()
-            .map(|drawing| (drawing.svg(), "a \"caption\"")),
-    );
-    report.picture(b"\x89PNG\r\n\x1a\n", 209, "a \"picture\"");
-    report.cloud(Cloud {
+    report.warning("dark");
+    report
+        .section("What dominates")
+        .paragraph("</main><script>alert(1)</script>")
+        .fact(
+            "wavelength",
+            "wavelength",
+            units::NANOMETRES.quantity(660e-9),
+        )
+        .fact("width", "<b>", Cell::missing("not measured: no line"));
+    let columns = [
+        Column::new("term", "term"),
+        Column::new("contribution", "u (µm)"),
+        Column::data("unit"),
+        Column::shown("x < y"),
+    ];
+    let mut table = Table::new("<i>", columns).under("terms");
+    let u = units::MICROMETRES;
+    table.row([
+        "speckle".into(),
+        u.cell(3.2e-6),
+        "px".into(),
+        "a & b".into(),
+    ]);
+    table.row(["bias".into(), Cell::or_dash(None::<f64>), "m".into()]);
+    table.total(["combined".into(), u.cell(3.3e-6)]);
+    report.section("Budget").under("budget").table(table);
+    let details = report.section("Details").in_detail();
+    for name in ["one", "two"] {
+        let chart = Chart::new(name, ["x", "y"]).line("", [(0.0, 1.0), (1.0, 0.0)]);
+        details.drawing(chart.draw().svg(), "a \"caption\"");
+    }
+    details.picture(b"\x89PNG\r\n\x1a\n".to_vec(), 209, "a \"picture\"");
+    details.cloud(Cloud {
         labels: ["x", "y", "z"],
         to_scale: true,
         points: vec![[0.0; 3], [1.0; 3]],
     });
-    report.file("setup.toml", "wavelength = \"660 nm\" # a < b\n");
+    details.file("setup.toml", "wavelength = \"660 nm\" # a < b\n");
+    details.fact("cells", "cells", 7_usize);
     report
+}
+
+#[test]
+fn a_terminal_ends_with_the_verdict() {
+    let mut out = Vec::new();
+    report()
+        .print(false, &["b.html".into()], &mut out)
+        .expect("memory can be written");
+    let expected = "\
+term      u (µm)  x < y
+speckle   3.2     a & b
+bias      -
+combined  3.3
+
+wavelength: 660 nm
+<b>: not measured: no line
+
+speckle
+
+b.html
+";
+    assert_eq!(String::from_utf8_lossy(&out), expected);
+}
+
+#[test]
+fn programs_get_si_units_under_keys() {
+    let found: Value = serde_json::from_str(&report().json()).expect("JSON");
+    let expected = serde_json::json!({
+        "program": concat!("tem00 ", env!("CARGO_PKG_VERSION")),
+        "seed": 3,
+        "wavelength": 660e-9,
+        "width": null,
+        "budget": {
+            "terms": [
+                {"term": "speckle", "contribution": 3.2e-6, "unit": "px"},
+                {"term": "bias", "contribution": null, "unit": "m"},
+            ],
+        },
+        "cells": 7,
+        "verdicts": ["speckle"],
+        "warnings": ["dark"],
+        "notes": [],
+    });
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn columns_of_numbers_stand_to_the_right() {
+    let html = report().html();
+    for part in [
+        "<th scope=\"col\">term</th>",
+        "<th scope=\"col\" class=\"number\">u (µm)</th>",
+        "<td class=\"number\">3.2</td>",
+        "<tr class=\"total\">",
+        "<td>a &amp; b</td>",
+        "<caption>&lt;i&gt;</caption>",
+    ] {
+        assert!(html.contains(part), "{part} is in {html}");
+    }
+    assert_eq!(html.matches("<td class=\"number\">").count(), 3, "{html}");
 }
 
 /// Returns the page without its script, which is no HTML, and the script.
@@ -118,7 +198,7 @@ fn a_report_is_a_file() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("report.html");
     let report = report();
-    report.save(&path).expect("the folder can be written");
+    report.save_page(&path).expect("the folder can be written");
     let read = std::fs::read_to_string(&path).expect("the file is there");
     assert_eq!(read, report.html());
 }

@@ -7,7 +7,7 @@ use tem00_statistics::{
     size_before_pixels,
 };
 
-use crate::table::{Expectation, Row};
+use crate::comparison::{Expectation, Row};
 
 /// How many standard errors the tolerances allow.
 const SIGMAS: f64 = 4.0;

@@ -6,7 +6,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use serde::Serialize;
 use tem00_numerics::Grid;
 use tem00_speckle::write_real_npy;
 use tem00_triangulation::{
@@ -26,7 +25,7 @@ pub(super) struct Files {
 
 /// The columns of a profile.
 const HEADINGS: &str = "column,line,x_pixel,y_pixel,width_pixel,intensity_dn,validity,\
-                        x_m,y_m,z_m,height_m,u_x_m,u_y_m,u_z_m,u_height_m,u_place_pixel,\
+                        x_m,y_m,z_m,height_m,u_x_m,u_y_m,u_z_m,u_height_m,u_position_pixel,\
                         u_speckle_pixel,u_shot_pixel,u_dark_pixel,u_quantisation_pixel,u_prnu_pixel,\
                         u_dsnu_pixel,u_calibration_height_m";
 
@@ -115,13 +114,6 @@ impl Files {
         write_raw(&path, &picture, &text).map_err(|error| Failure::writing(&path, error))?;
         self.write_array("height.npy", &map.heights)?;
         self.write_array("height_uncertainty.npy", &map.uncertainties)
-    }
-
-    /// Writes a record.
-    pub(super) fn write_json(&self, record: &impl Serialize) -> Result<(), Failure> {
-        let text = serde_json::to_string_pretty(record)
-            .map_err(|error| Failure::running(format!("cannot write JSON: {error}")))?;
-        self.write("measurement.json", |file| writeln!(file, "{text}"))
     }
 
     /// Returns the ending of raw frames and height maps.

@@ -2,7 +2,7 @@
 
 use tem00_triangulation::Validity;
 
-use super::record::FrameRecord;
+use super::frame::FrameRecord;
 
 /// Why nothing was measured.
 #[derive(Clone, Debug, PartialEq)]

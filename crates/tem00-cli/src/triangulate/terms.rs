@@ -1,17 +1,19 @@
 //! What makes heights uncertain, over all points.
 
-use core::fmt::Write as _;
-
-use serde::Serialize;
 use tem00_triangulation::{DVec3, MeasuredPoint, PlaceNoise, UncertaintySource};
 
+use crate::report::{
+    Cell, Column, Table,
+    units::{MICROMETRES, NUMBER, PERCENT},
+};
+
 /// One term of the uncertainty.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Term {
     /// What it comes from.
     pub(super) name: &'static str,
-    /// The standard uncertainty of a line's place, in pixels; none of the calibration.
-    pub(super) place: Option<f64>,
+    /// The standard uncertainty of a line's position, in pixels; none of the calibration.
+    pub(super) position: Option<f64>,
     /// The standard uncertainty of a height, in metres.
     pub(super) height: f64,
     /// The share of the variance of a height, from 0 to 1.
@@ -19,7 +21,7 @@ pub(super) struct Term {
 }
 
 /// The terms, as root mean squares over the valid points.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Terms {
     /// The number of valid points.
     pub(super) points: usize,
@@ -69,7 +71,7 @@ impl Terms {
                 let variance = mean(&|point| of(&point.noise) * per_pixel(point));
                 Term {
                     name,
-                    place: Some(mean(&|point| of(&point.noise)).sqrt()),
+                    position: Some(mean(&|point| of(&point.noise)).sqrt()),
                     height: variance.sqrt(),
                     share: 0.0,
                 }
@@ -78,7 +80,7 @@ impl Terms {
         let calibration = mean(&|point| point.calibration_uncertainty_along(height).powi(2));
         terms.push(Term {
             name: CALIBRATION,
-            place: None,
+            position: None,
             height: calibration.sqrt(),
             share: 0.0,
         });
@@ -113,42 +115,36 @@ impl Terms {
         format!(
             "Expanded uncertainty of the height of a point: U = {} (95 %, k = {COVERAGE}), as root mean \
              square of {} points.{dominant}",
-            micrometres(self.expanded),
+            MICROMETRES.with_digits(3).text(self.expanded),
             self.points,
         )
     }
 
-    /// Returns the table for a terminal.
-    pub(super) fn text(&self) -> String {
-        let mut text = format!(
-            "{:<14}{:>14}{:>14}{:>9}\n",
-            "term", "place (px)", "height (µm)", "share"
-        );
+    /// Returns the terms as a table.
+    pub(super) fn table(&self) -> Table {
+        let columns = [
+            Column::new("name", "term"),
+            Column::new("position_pixels", "position (px)"),
+            Column::new("height", "height (µm)"),
+            Column::new("share", "share (%)"),
+        ];
+        let caption = "Root mean squares over all valid points";
+        let mut table = Table::new(caption, columns).under("terms");
         for term in &self.terms {
-            let place = term
-                .place
-                .map_or("-".to_owned(), |place| format!("{place:.4}"));
-            // Memory takes whatever it is given.
-            let _ = writeln!(
-                text,
-                "{:<14}{place:>14}{:>14.3}{:>7.1} %",
-                term.name,
-                1e6 * term.height,
-                100.0 * term.share
-            );
+            table.row([
+                term.name.into(),
+                Cell::or_dash(term.position.map(|position| NUMBER.cell(position))),
+                MICROMETRES.cell(term.height),
+                PERCENT.with_digits(3).cell(term.share),
+            ]);
         }
-        let _ = writeln!(
-            text,
-            "{:<14}{:>14}{:>14.3}\n{:<14}{:>14}{:>14.3}",
-            "combined",
-            "",
-            1e6 * self.combined,
-            "expanded, 95 %",
-            "",
-            1e6 * self.expanded
-        );
-        let _ = writeln!(text, "{}", self.verdict());
-        text
+        for (name, length) in [
+            ("combined", self.combined),
+            ("expanded, 95 %", self.expanded),
+        ] {
+            table.total([name.into(), Cell::default(), MICROMETRES.cell(length)]);
+        }
+        table
     }
 }
 
@@ -157,19 +153,6 @@ fn remedy(name: &str) -> &'static str {
     let mut sources = UncertaintySource::ALL.into_iter();
     let source = sources.find(|source| source.name() == name);
     source.map_or("", UncertaintySource::remedy)
-}
-
-/// A length in micrometres, with three digits or so.
-pub(super) fn micrometres(length: f64) -> String {
-    let value = 1e6 * length;
-    let digits = if value.abs() >= 100.0 {
-        0
-    } else if value.abs() >= 10.0 {
-        1
-    } else {
-        2
-    };
-    format!("{value:.digits$} µm")
 }
 
 #[cfg(test)]

@@ -53,7 +53,7 @@ fn a_budget_is_a_table_and_five_files() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     let table = text(&output.stdout);
     for part in [
-        "speckle dominates",
+        "Speckle dominates",
         "by trials",
         "quantisation",
         "calibration",

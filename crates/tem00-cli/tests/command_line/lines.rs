@@ -96,9 +96,9 @@ fn the_summary_is_json_on_demand() {
     );
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(json["detector"], "steger");
-    let line = &json["images"][0]["lines"][0];
+    let line = &json["lines"][0];
     assert_eq!(line["columns"], 60);
-    let position = line["position"].as_f64().expect("a number");
+    let position = line["position_pixels"].as_f64().expect("a number");
     // The sine has the mean 0 over its period.
     assert!((position - 24.0).abs() < 1e-2, "{position}");
     let written = fs::read(folder.path().join("out/lines/lines.json")).expect("the file");
@@ -168,11 +168,11 @@ fn an_image_without_a_line_has_none() {
     let output = run(folder.path(), "lines dark.png --json");
     assert_code(&output, 3);
     let record: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert_eq!(
-        record["images"][0]["lines"],
-        serde_json::json!([]),
-        "{record}"
-    );
+    let line = &record["lines"][0];
+    assert_eq!(line["image"], "dark.png", "{record}");
+    for key in ["line", "position_pixels", "noise_pixels", "peak_dn"] {
+        assert!(line[key].is_null(), "{key}: {record}");
+    }
     let output = run(folder.path(), "lines dark.png");
     assert_code(&output, 3);
     assert!(

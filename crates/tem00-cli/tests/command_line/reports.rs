@@ -150,7 +150,7 @@ fn a_measurement_is_reported_with_its_result_first() {
         "Height map",
         "Profile",
         "Uncertainty of a height",
-        "Frame",
+        "Frames",
         "Settings",
     ];
     assert_eq!(headings(&html), expected);

@@ -161,7 +161,7 @@ fn figures(page: &str, command: &str, name: &str) -> Vec<f64> {
 fn check_results(quoted: &[&str], printed: &str) {
     let by_trials = quoted.iter().any(|line| line.contains("± (µm)"));
     for line in quoted {
-        let line = line.split("; by trials").next().unwrap_or(line);
+        let line = line.split(" By trials").next().unwrap_or(line);
         let line = line.trim_end_matches('…');
         let mut wanted: Vec<&str> = line.split_whitespace().collect();
         let row = [

@@ -1,8 +1,8 @@
 //! Measured quantities beside what theory says of them.
 
-use std::io::{self, Write};
-
 use serde::Serialize;
+
+use crate::report::{Cell, Column, Table, number, rounded};
 
 /// What theory says of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -51,7 +51,7 @@ impl Expectation {
 }
 
 /// One line of the table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Row {
     /// What was measured, with the unit.
     pub(crate) quantity: String,
@@ -73,103 +73,47 @@ impl Row {
         }
     }
 
-    fn cells(&self) -> [String; 5] {
+    fn cells(&self) -> [Cell; 5] {
+        let theory = |text: String| Cell::new(self.theory, text);
         let (theory, tolerance) = match self.theory {
             Expectation::Near { value, tolerance } => {
-                (number(value), format!("± {}", number(tolerance)))
+                (theory(number(value)), format!("± {}", number(tolerance)))
             }
             Expectation::AtLeast { at_least: bound } => {
-                (format!("≥ {}", number(bound)), "-".into())
+                (theory(format!("≥ {}", number(bound))), "-".into())
             }
-            Expectation::AtMost { at_most: bound } => (format!("≤ {}", number(bound)), "-".into()),
-            Expectation::Open => ("-".into(), "-".into()),
+            Expectation::AtMost { at_most: bound } => {
+                (theory(format!("≤ {}", number(bound))), "-".into())
+            }
+            Expectation::Open => (Cell::missing("-"), "-".into()),
         };
         [
-            self.quantity.clone(),
-            number(self.measured),
+            self.quantity.as_str().into(),
+            self.measured.into(),
             theory,
-            tolerance,
-            self.verdict.clone().unwrap_or_else(|| "-".into()),
+            tolerance.into(),
+            Cell::or_dash(self.verdict.as_deref()),
         ]
     }
 }
 
-/// Writes the rows as columns, two spaces apart, under a line of headings.
-pub(crate) fn write_table(rows: &[Row], out: &mut impl Write) -> io::Result<()> {
-    let headings = ["quantity", "measured", "theory", "tolerance", "verdict"].map(String::from);
-    let rows = rows.iter().map(|row| row.cells().to_vec());
-    let lines: Vec<_> = core::iter::once(headings.to_vec()).chain(rows).collect();
-    write_columns(&lines, out)
-}
-
-/// Writes lines of as many cells each as columns, two spaces apart.
-pub(crate) fn write_columns(lines: &[Vec<String>], out: &mut impl Write) -> io::Result<()> {
-    let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |column: usize| {
-        let cells = lines.iter().filter_map(|line| line.get(column));
-        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
-    };
-    let widths: Vec<_> = (0..columns).map(width).collect();
-    for line in lines {
-        let padded: Vec<_> = line
-            .iter()
-            .zip(&widths)
-            .map(|(cell, &width)| format!("{cell:width$}"))
-            .collect();
-        writeln!(out, "{}", padded.join("  ").trim_end())?;
-    }
-    Ok(())
-}
-
-/// Writes a number with five significant digits, without an exponent where that is readable.
-pub(crate) fn number(value: f64) -> String {
-    rounded(value, 5)
-}
-
-/// Writes a number with so many significant digits, without an exponent where that is readable.
-pub(crate) fn rounded(value: f64, digits: u8) -> String {
-    let magnitude = value.abs();
-    let text = if magnitude == 0.0 {
-        return "0".into();
-    } else if (1e-3..1e6).contains(&magnitude) {
-        let decimals = f64::from(digits) - 1.0 - magnitude.log10().floor();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "the number of digits lies in [0, 9]"
-        )]
-        let decimals = decimals.clamp(0.0, 9.0) as usize;
-        format!("{value:.decimals$}")
-    } else {
-        return format!("{value:.2e}");
-    };
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+/// Returns the rows as a table.
+pub(crate) fn table(rows: &[Row]) -> Table {
+    let columns = [
+        Column::new("quantity", "quantity"),
+        Column::new("measured", "measured"),
+        Column::new("theory", "theory"),
+        Column::shown("tolerance"),
+        Column::new("verdict", "verdict"),
+    ];
+    let mut table = Table::new("Measured beside the theory", columns).under("rows");
+    rows.iter().for_each(|row| table.row(row.cells()));
+    table
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_have_five_digits() {
-        for (value, expected) in [
-            (0.0, "0"),
-            (1.0, "1"),
-            (0.999_384, "0.99938"),
-            (512.0, "512"),
-            (123_456.7, "123457"),
-            (-4.05, "-4.05"),
-            (0.012_345_67, "0.012346"),
-            (1e-9, "1.00e-9"),
-            (2.5e7, "2.50e7"),
-        ] {
-            assert_eq!(number(value), expected);
-        }
-    }
 
     #[test]
     fn theory_is_null_where_there_is_none() {
@@ -227,7 +171,9 @@ mod tests {
             ),
         ];
         let mut out = Vec::new();
-        write_table(&rows, &mut out).expect("memory can be written");
+        table(&rows)
+            .write_text(&mut out)
+            .expect("memory can be written");
         let expected = "\
 quantity      measured  theory   tolerance  verdict
 mean          1         1        ± 1.00e-5  agrees

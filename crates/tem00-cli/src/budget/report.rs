@@ -1,0 +1,271 @@
+//! The report of a budget.
+
+use serde_json::json;
+use tem00_triangulation::{Budget, BudgetTerm, Setup, UncertaintySource};
+
+use super::{Answer, Findings, words};
+use crate::report::{
+    Cell, Column, Report, Section, Table,
+    units::{MICROMETRES, MILLIMETRES, MILLISECONDS, NUMBER, PERCENT, PIXELS},
+};
+
+/// Returns the report; the numbers of a set-up that measures nothing are `null`.
+pub(super) fn report(findings: &Findings<'_>, drawings: Vec<String>) -> Report {
+    let mut report = Report::new("Uncertainty budget of a laser-triangulation set-up");
+    let (file, setup) = (findings.file.display().to_string(), &findings.setup);
+    let (answer, refusal) = (
+        findings.answer.as_ref().ok(),
+        findings.answer.as_ref().err(),
+    );
+    report.data("setup", &file);
+    report.data("reason", refusal.map(|refusal| &refusal.why));
+    let verdicts = match &findings.answer {
+        Ok(answer) => words::verdicts(answer, setup.light_level()),
+        Err(refusal) => words::refusal(refusal).into(),
+    };
+    verdicts.into_iter().for_each(|line| report.verdict(line));
+    numbers(&mut report, answer);
+    report.data("trials", trials(findings));
+    match answer {
+        Some(answer) => terms(report.section("The budget"), answer, drawings),
+        None => report.data("terms", json!([])),
+    }
+    image(report.section("The set-up").under("image"), setup);
+    report.section("Files").file(file, &findings.text);
+    report
+}
+
+/// Adds the numbers that the verdicts tell in words.
+fn numbers(report: &mut Report, answer: Option<&Answer>) {
+    let values: [(&str, fn(&Budget) -> f64); 7] = [
+        ("height", Budget::height),
+        ("combined", Budget::combined),
+        ("degrees_of_freedom", Budget::degrees_of_freedom),
+        ("coverage_factor", Budget::coverage_factor),
+        ("expanded", Budget::expanded),
+        ("line_law", Budget::line_law),
+        ("dorsch", Budget::dorsch),
+    ];
+    for (key, value) in values {
+        report.data(key, answer.map(|answer| value(&answer.budget)));
+    }
+    report.data(
+        "dominant",
+        answer.map(|answer| answer.budget.dominant().source.name()),
+    );
+    let over_range = answer.map_or(&[][..], |answer| &answer.over_range);
+    let over_range = over_range.iter();
+    let over_range =
+        over_range.map(|(height, combined)| json!({ "height": height, "combined": combined }));
+    report.data("over_range", over_range.collect::<Vec<_>>());
+}
+
+/// Returns what trials found, and the combined uncertainty by them; without an uncertainty, how many columns
+/// have no line that can be trusted.
+fn trials(findings: &Findings<'_>) -> serde_json::Value {
+    let (trials, combined) = match &findings.answer {
+        Ok(answer) => (&answer.trials, answer.combined_by_trials()),
+        Err(refusal) => (&refusal.trials, None),
+    };
+    let Some(trials) = trials else {
+        return serde_json::Value::Null;
+    };
+    let total = trials.total();
+    json!({
+        "trials": trials.options().trials,
+        "seed": trials.options().seed,
+        "uncertainty": total.map(|total| total.uncertainty),
+        "standard_error": total.map(|total| total.standard_error),
+        "combined": combined,
+        "invalid": trials.invalid(),
+    })
+}
+
+/// Adds the table of the terms and the drawings.
+fn terms(section: &mut Section, answer: &Answer, drawings: Vec<String>) {
+    const CAPTIONS: [&str; 2] = [
+        "The standard uncertainty of a height by each source alone, and by all.",
+        "The combined standard uncertainty, by formulas, over the heights that are in the image and in \
+         the depth of field.",
+    ];
+    let mut columns: Vec<Column> = [
+        Column::new("source", "source"),
+        Column::new("evaluation", "type"),
+        Column::new("distribution", "distribution"),
+        Column::new("uncertainty", "standard uncertainty"),
+        Column::data("unit"),
+        Column::new("sensitivity", "sensitivity"),
+        Column::new("degrees_of_freedom", "degrees of freedom"),
+        Column::new("contribution", "contribution (µm)"),
+        Column::new("share", "share (%)"),
+    ]
+    .into();
+    if answer.trials.is_some() {
+        columns.push(Column::new("by_trials", "by trials (µm)"));
+        columns.push(Column::new("by_trials_standard_error", "± (µm)"));
+    }
+    let mut table = Table::new("Standard uncertainties of a height", columns).under("terms");
+    for term in answer.budget.terms() {
+        table.row(cells(answer, term));
+    }
+    table.total(combined(answer));
+    section.table(table).paragraph(
+        "Types after the GUM: A by statistics, B by models and data sheets. Formulas are first order in \
+         the noise. Trials expose simulated frames and find the line in them: errors of a single source \
+         against the position without noise, those of all at once against the true position; ± is a standard \
+         error.",
+    );
+    for (drawing, caption) in drawings.into_iter().zip(CAPTIONS) {
+        section.drawing(drawing, caption);
+    }
+}
+
+fn cells(answer: &Answer, term: &BudgetTerm) -> Vec<Cell> {
+    let is_length = term.source == UncertaintySource::Calibration;
+    let uncertainty = if is_length { MICROMETRES } else { PIXELS };
+    let sensitivity = if is_length {
+        Cell::new(term.sensitivity, "1")
+    } else {
+        let text = MICROMETRES.text(term.sensitivity.abs());
+        Cell::new(term.sensitivity, format!("{text}/px"))
+    };
+    let mut cells = vec![
+        term.source.name().into(),
+        format!("{:?}", term.evaluation).into(),
+        term.distribution.name().into(),
+        uncertainty.quantity(term.uncertainty),
+        term.unit().into(),
+        sensitivity,
+        NUMBER.with_digits(3).cell(term.degrees_of_freedom),
+        MICROMETRES.cell(term.contribution()),
+        PERCENT.with_digits(3).cell(answer.budget.share(term)),
+    ];
+    if let Some(trials) = &answer.trials {
+        let found = trials.term(term.source);
+        let length = |value: Option<f64>| Cell::or_dash(value.map(|value| MICROMETRES.cell(value)));
+        cells.push(length(found.map(|found| found.uncertainty)));
+        cells.push(length(found.map(|found| found.standard_error)));
+    }
+    cells
+}
+
+/// Returns the last line of the table.
+fn combined(answer: &Answer) -> Vec<Cell> {
+    let budget = &answer.budget;
+    let mut cells = vec![Cell::from("combined")];
+    cells.resize(6, Cell::default());
+    cells.push(NUMBER.with_digits(3).cell(budget.degrees_of_freedom()));
+    cells.push(MICROMETRES.cell(budget.combined()));
+    cells.push(PERCENT.cell(1.0));
+    let total = answer.trials.as_ref().and_then(|trials| trials.total());
+    if let (Some(total), Some(combined)) = (total, answer.combined_by_trials()) {
+        cells.push(MICROMETRES.cell(combined));
+        cells.push(MICROMETRES.cell(total.standard_error));
+    }
+    cells
+}
+
+/// Adds what follows from the set-up.
+fn image(section: &mut Section, setup: &Setup) {
+    let (description, line, range) = (setup.description(), setup.line(), setup.measuring_range());
+    let [low, high] = [range.low, range.high].map(|height| MILLIMETRES.text(height));
+    let exposure = MILLISECONDS.quantity(description.sensor.exposure_time);
+    let detector = description.detector.method.name();
+    section
+        .fact(
+            "line_width_pixels",
+            "line width in the image (1/e²)",
+            PIXELS.quantity(line.width).and(format!(
+                ", {} of the line itself and {} of the lens",
+                PIXELS.text(line.line_width),
+                PIXELS.text(line.diffraction_width)
+            )),
+        )
+        .fact(
+            "speckle_size_pixels",
+            "speckle size in the image",
+            Cell::new(line.speckle_size, PIXELS.text(line.speckle_size[1])),
+        )
+        .fact(
+            "contrast",
+            "speckle contrast in a pixel",
+            NUMBER.quantity(setup.contrast()),
+        )
+        .fact(
+            "saturation",
+            "light",
+            PERCENT.quantity(setup.saturation()).and(format!(
+                " of the range, {} electrons in the brightest pixel: {}",
+                NUMBER.text(setup.peak_electrons()),
+                setup.light_level().name()
+            )),
+        )
+        .fact(
+            "exposure",
+            "exposure",
+            if description.auto_exposure {
+                exposure.and(", chosen so that bright grains fill nine tenths of the range")
+            } else {
+                exposure
+            },
+        )
+        .fact(
+            "height_per_pixel",
+            "height per pixel",
+            Cell::new(
+                line.height_per_pixel,
+                MICROMETRES.text(line.height_per_pixel.abs()),
+            ),
+        )
+        .fact(
+            "measuring_range",
+            "measuring range",
+            Cell::new(
+                [range.low, range.high],
+                format!("{}, from {low} to {high}", MILLIMETRES.text(range.length())),
+            ),
+        )
+        .fact(
+            "field_width",
+            "field width",
+            MILLIMETRES.quantity(setup.field_width()),
+        )
+        .fact(
+            "detector",
+            "detector",
+            Cell::new(detector, detector.replace('_', " ")),
+        )
+        .fact("averages", "averages", averages(setup))
+        .data("magnification", setup.magnification())
+        .data("line_width_of_line_pixels", line.line_width)
+        .data("line_width_of_lens_pixels", line.diffraction_width)
+        .data("peak_electrons", setup.peak_electrons())
+        .data("column_electrons", line.column_electrons)
+        .data("grain_saturation", setup.grain_saturation())
+        .data("light", setup.light_level().name());
+}
+
+fn averages(setup: &Setup) -> Cell {
+    let average = setup.description().average;
+    let speckle = match (average.frames, average.independent_speckle) {
+        (1, _) => "",
+        (_, true) => ", each with its own speckle",
+        (_, false) => ", all with the same speckle",
+    };
+    let plural = |count: u32, what: &str| match count {
+        1 => format!("one {what}"),
+        _ => format!("{count} {what}s"),
+    };
+    Cell::new(
+        json!({
+            "columns": average.columns,
+            "frames": average.frames,
+            "independent_speckle": average.independent_speckle,
+        }),
+        format!(
+            "{} of {}{speckle}",
+            plural(average.columns, "column"),
+            plural(average.frames, "frame")
+        ),
+    )
+}

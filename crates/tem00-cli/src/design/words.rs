@@ -1,0 +1,58 @@
+//! A search in sentences.
+
+use tem00_triangulation::Exclusion;
+
+use super::{Design, units};
+
+/// Returns what the search comes to, in a sentence.
+pub(super) fn verdict(design: &Design<'_>) -> String {
+    let (possible, allowed) = design.outcome.counts();
+    let tried = design.search.count();
+    let counts =
+        format!("{tried} set-ups tried, {possible} possible, {allowed} keep every constraint");
+    match design.winner().and_then(|candidate| candidate.allowed()) {
+        Some(figures) => {
+            let objective = design.objective();
+            let value = units::of_figure(objective).text(objective.of(figures));
+            let name = units::words(objective.name());
+            let dominant = figures.dominant.name();
+            format!("{counts}. The best: {name} {value}, most of it by {dominant}.")
+        }
+        None => format!("{counts}. The nearest to them is shown."),
+    }
+}
+
+/// Returns what keeps set-ups out: a line for those that are not possible, and one for each constraint
+/// that excludes any.
+pub(super) fn hindrances(design: &Design<'_>) -> Vec<String> {
+    let exclusions = design.outcome.exclusions().into_iter();
+    let some = exclusions.filter(|exclusion| exclusion.excluded > 0);
+    impossible(design)
+        .into_iter()
+        .chain(some.map(line))
+        .collect()
+}
+
+fn line(exclusion: Exclusion) -> String {
+    let figure = exclusion.constraint.figure;
+    let bound = units::of_figure(figure).text(exclusion.constraint.bound);
+    let sign = if figure.is_gain() { "≥" } else { "≤" };
+    let name = units::words(figure.name());
+    format!(
+        "{name} {sign} {bound} excludes {}, {} of them alone",
+        exclusion.excluded, exclusion.alone
+    )
+}
+
+/// Returns how many set-ups are not possible, with the reason of the first.
+fn impossible(design: &Design<'_>) -> Option<String> {
+    let candidates = design.outcome.candidates().iter();
+    let mut why =
+        candidates.filter_map(|candidate| Some((candidate, candidate.figures.as_ref().err()?)));
+    let (first, error) = why.next()?;
+    let count = 1 + why.count();
+    Some(format!(
+        "{count} not possible; the first, number {}: {error}",
+        first.index
+    ))
+}

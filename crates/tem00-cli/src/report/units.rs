@@ -1,0 +1,110 @@
+//! The units in which people read quantities.
+
+use super::cell::{Cell, rounded};
+
+/// A unit in which a quantity is shown, and the number of digits that are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Unit {
+    /// The symbol; empty for numbers.
+    symbol: &'static str,
+    /// Its size in SI units, or in pixels.
+    size: f64,
+    digits: u8,
+}
+
+const fn unit(symbol: &'static str, size: f64) -> Unit {
+    let digits = 4;
+    Unit {
+        symbol,
+        size,
+        digits,
+    }
+}
+
+pub(crate) const NUMBER: Unit = unit("", 1.0);
+pub(crate) const PERCENT: Unit = unit("%", 0.01);
+pub(crate) const PIXELS: Unit = unit("px", 1.0);
+pub(crate) const METRES: Unit = unit("m", 1.0);
+pub(crate) const MILLIMETRES: Unit = unit("mm", 1e-3);
+pub(crate) const MICROMETRES: Unit = unit("µm", 1e-6);
+pub(crate) const NANOMETRES: Unit = unit("nm", 1e-9);
+pub(crate) const MILLIWATTS: Unit = unit("mW", 1e-3);
+pub(crate) const MILLISECONDS: Unit = unit("ms", 1e-3);
+pub(crate) const DEGREES: Unit = unit("°", core::f64::consts::PI / 180.0);
+
+impl Unit {
+    /// Returns the unit that suits a length in metres.
+    pub(crate) const fn of_length(metres: f64) -> Self {
+        match metres {
+            long if long >= 1.0 => METRES,
+            long if long >= 1e-3 => MILLIMETRES,
+            long if long >= 1e-6 => MICROMETRES,
+            _ => NANOMETRES,
+        }
+    }
+
+    /// Returns the unit for values with so many significant digits.
+    pub(crate) const fn with_digits(self, digits: u8) -> Self {
+        Self { digits, ..self }
+    }
+
+    /// Returns a value in SI units in this unit.
+    pub(crate) fn of(self, value: f64) -> f64 {
+        value / self.size
+    }
+
+    /// Returns a name with the unit: "range (mm)".
+    pub(crate) fn label(self, name: &str) -> String {
+        if self.symbol.is_empty() {
+            name.to_owned()
+        } else {
+            format!("{name} ({})", self.symbol)
+        }
+    }
+
+    /// Writes a value in SI units with the unit.
+    pub(crate) fn text(self, value: f64) -> String {
+        let text = rounded(self.of(value), self.digits);
+        match self.symbol {
+            "" => text,
+            "°" => format!("{text}°"),
+            symbol => format!("{text} {symbol}"),
+        }
+    }
+
+    /// Returns a value in SI units, shown with the unit.
+    pub(crate) fn quantity(self, value: f64) -> Cell {
+        Cell::new(value, self.text(value))
+    }
+
+    /// Returns a value in SI units for a column that has the unit in its heading.
+    pub(crate) fn cell(self, value: f64) -> Cell {
+        Cell::new(value, rounded(self.of(value), self.digits))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_shown_in_the_unit_that_suits() {
+        for (metres, text) in [
+            (0.3, "300 mm"),
+            (5.672_7e-6, "5.673 µm"),
+            (650e-9, "650 nm"),
+            (2.0, "2 m"),
+            (3.125e-3, "3.125 mm"),
+        ] {
+            assert_eq!(Unit::of_length(metres).text(metres), text);
+        }
+    }
+
+    #[test]
+    fn programs_get_si_units_and_people_a_unit_that_suits() {
+        let cell = MICROMETRES.quantity(38.431e-6);
+        assert_eq!(cell, Cell::new(38.431e-6, "38.43 µm"));
+        assert_eq!(PERCENT.with_digits(3).cell(0.994_21).text(), "99.4");
+        assert_eq!(MICROMETRES.label("height"), "height (µm)");
+    }
+}

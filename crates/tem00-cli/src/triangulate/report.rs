@@ -1,0 +1,267 @@
+//! The report of a measurement.
+
+use serde_json::{Value, json};
+use tem00_triangulation::{HeightMap, MeasuredPoint, Raster};
+
+use super::{Job, Measured, drawings::Drawings, frame, in_words, refusal::Refusal, terms::Terms};
+use crate::{
+    failure::Failure,
+    report::{
+        Cell, Report, Section,
+        units::{MICROMETRES, MILLIMETRES, PERCENT},
+    },
+};
+
+/// What the numbers say of each other.
+const CORRELATIONS: &str = "Speckle correlates the errors of neighbouring columns over about a speckle, and \
+    those of frames in which the surface has not moved; shot noise, dark noise and quantisation are new in \
+    every pixel and frame; PRNU and DSNU are new in every pixel and stay from frame to frame; the error of \
+    the calibration is common to all points.";
+
+/// Returns the report, and writes its diagrams.
+///
+/// # Errors
+///
+/// Returns a failure if a file cannot be written.
+pub(super) fn report(job: &Job<'_>, measured: &Measured) -> Result<Report, Failure> {
+    let drawings = Drawings { job, measured };
+    let mut report = Report::new(format!("{}: measured by triangulation", job.name));
+    let scene = job.args.scene.display().to_string();
+    report.data("scene", &scene);
+    report.data("profiles", measured.profiles.len());
+    match &measured.terms {
+        Ok(terms) => {
+            report.verdict(terms.verdict());
+            let average = job.measurement.settings().average;
+            measured
+                .speckle_sentence(average)
+                .into_iter()
+                .for_each(|line| report.verdict(line));
+        }
+        Err(refusal) => {
+            report.verdict(format!("Nothing was measured: {}.", refusal.why));
+            report.verdict(format!("What helps: {}.", refusal.advice));
+            drawings.remove()?;
+        }
+    }
+    match measured.map.as_ref() {
+        Some(map) => height_map(&mut report, &drawings, map)?,
+        None => report.data("height_map", Value::Null),
+    }
+    match &measured.terms {
+        Ok(terms) => {
+            drawings.profile(report.section("Profile").in_detail())?;
+            uncertainty(report.section("Uncertainty of a height"), &drawings, terms)?;
+        }
+        Err(Refusal { why, .. }) => report.data(
+            "uncertainty",
+            json!({"points": 0, "terms": [], "combined": null, "expanded": null, "reason": why}),
+        ),
+    }
+    let section = report.section("Frames").in_detail();
+    drawings.frame(section)?;
+    section.table(frame::table(&measured.frames));
+    let section = report.section("Settings").in_detail();
+    settings(section, job, measured);
+    if let Ok(text) = std::fs::read_to_string(&job.args.scene) {
+        section.file(scene, text);
+    }
+    Ok(report)
+}
+
+fn height_map(
+    report: &mut Report,
+    drawings: &Drawings<'_>,
+    map: &HeightMap,
+) -> Result<(), Failure> {
+    let Some((_, scale)) = map.quantised() else {
+        report.data("height_map", Value::Null);
+        return Ok(());
+    };
+    let (origin, pitch) = match map.raster {
+        Raster::Image { .. } => (None, None),
+        Raster::Part { origin, pitch } => (Some(origin), Some(pitch)),
+    };
+    let heights = map.range().map(|range| {
+        let [low, high] = range.map(|height| MILLIMETRES.with_digits(5).text(height));
+        Cell::new(range, format!("{low} to {high}"))
+    });
+    let [width, height] = [map.heights.width(), map.heights.height()];
+    let section = report.section("Height map").under("height_map").in_detail();
+    drawings.maps(section, map)?;
+    section
+        .fact("range", "heights", Cell::or_dash(heights))
+        .fact(
+            "size",
+            "cells",
+            Cell::new([width, height], format!("{width} × {height}")),
+        )
+        .fact(
+            "holes",
+            "holes",
+            PERCENT.with_digits(3).quantity(map.holes()),
+        )
+        // The lower edges of the first cell along the line and along the scan, and the side of a cell; none
+        // for columns and profiles.
+        .data("origin", origin)
+        .data("pitch", pitch)
+        // The height of the value v of the 16-bit file: offset + scale v, from 1; 0 is a hole.
+        .data("offset", scale.offset)
+        .data("scale", scale.scale);
+    Ok(())
+}
+
+fn uncertainty(
+    section: &mut Section,
+    drawings: &Drawings<'_>,
+    terms: &Terms,
+) -> Result<(), Failure> {
+    section
+        .under("uncertainty")
+        .data("points", terms.points)
+        .table(terms.table())
+        .data("combined", terms.combined)
+        .data("expanded", terms.expanded)
+        .data("reason", Value::Null);
+    drawings.terms(section, terms)?;
+    section.paragraph(CORRELATIONS);
+    Ok(())
+}
+
+fn settings(section: &mut Section, job: &Job<'_>, measured: &Measured) {
+    let measurement = &job.measurement;
+    let render = &measurement.scene().render;
+    section
+        .fact("average", "average", average(job, measured))
+        .fact(
+            "speckle",
+            "speckle size on the sensor",
+            speckle(job, measured),
+        )
+        .fact(
+            "height_per_pixel",
+            "height per pixel",
+            height_per_pixel(job, measured),
+        )
+        .fact("detector", "detector", detector(job))
+        .fact("sensor", "sensor", sensor(job))
+        .fact("calibration", "calibration", calibration(job))
+        .fact("seed", "seed", render.seed)
+        .fact(
+            "samples_per_pixel",
+            "samples per pixel",
+            render.samples_per_pixel,
+        );
+}
+
+fn average(job: &Job<'_>, measured: &Measured) -> Cell {
+    let average = job.measurement.settings().average;
+    let worth = measured
+        .effective_frames
+        .map_or_else(String::new, |frames| {
+            format!("; worth {frames:.1} profiles of independent speckle")
+        });
+    Cell::new(
+        json!({
+            "frames": average.frames,
+            "columns": average.columns,
+            "effective_frames": measured.effective_frames,
+        }),
+        format!(
+            "{} frames, {} columns{worth}",
+            average.frames, average.columns
+        ),
+    )
+}
+
+/// The speckle size in the middle of the image, along rows and columns, and what becomes of speckle from a
+/// frame to the next.
+fn speckle(job: &Job<'_>, measured: &Measured) -> Cell {
+    if job.args.no_speckle {
+        return Cell::missing("left out, as asked");
+    }
+    let speckle = job.measurement.speckle();
+    let ([across, down], contrast) = (speckle.size(), speckle.variance.sqrt());
+    let change = measured.speckle_change.as_ref();
+    let between = change.map_or_else(String::new, |change| {
+        format!("; from frame to frame {}", in_words(change))
+    });
+    Cell::new(
+        json!({
+            "size": [across, down],
+            "contrast": contrast,
+            "between_frames": change.map(|change| json!({
+                "displacement": change.displacement.to_array(),
+                "correlation": change.correlation,
+            })),
+        }),
+        format!("{across:.2} × {down:.2} pixels, contrast {contrast:.2}{between}"),
+    )
+}
+
+/// What a pixel is in height, at the first valid point.
+fn height_per_pixel(job: &Job<'_>, measured: &Measured) -> Cell {
+    let height = job.measurement.settings().height;
+    let mut points = measured.profiles.iter().flatten();
+    let point = points.find(|point| point.is_valid());
+    let per_pixel = |point: &MeasuredPoint| point.per_pixel.dot(height).abs();
+    Cell::or_dash(point.map(|point| MICROMETRES.with_digits(3).quantity(per_pixel(point))))
+}
+
+fn detector(job: &Job<'_>) -> Cell {
+    let settings = job.measurement.detector().settings();
+    let method = settings.method.name();
+    Cell::new(
+        json!({
+            "method": method,
+            "window": settings.window,
+            "min_peak": settings.least_peak,
+            "max_lines": settings.most_lines,
+            "saturation": settings.saturation,
+        }),
+        format!("{method}, window {} pixels", settings.window),
+    )
+}
+
+fn sensor(job: &Job<'_>) -> Cell {
+    let sensor = job.measurement.sensor().description();
+    Cell::new(
+        json!({
+            "quantum_efficiency": sensor.quantum_efficiency,
+            "gain": sensor.gain,
+            "dark_noise": sensor.dark_noise,
+            "dark_current": sensor.dark_current,
+            "full_well": sensor.full_well,
+            "prnu": sensor.prnu,
+            "dsnu": sensor.dsnu,
+            "bit_depth": sensor.bit_depth,
+            "black_level": sensor.black_level,
+            "pixel_pitch": sensor.pixel_pitch,
+            "fill_factor": sensor.fill_factor,
+            "exposure_time": sensor.exposure_time,
+            "serial_number": sensor.serial_number,
+        }),
+        format!(
+            "{} bits, {:.3} DN per electron, exposure {:.4} ms, full well {:.0} electrons",
+            sensor.bit_depth,
+            sensor.gain,
+            1e3 * sensor.exposure_time,
+            sensor.full_well
+        ),
+    )
+}
+
+fn calibration(job: &Job<'_>) -> Cell {
+    match job.measurement.calibration().quality() {
+        None => Cell::new(json!({"method": "exact"}), "exact, from the scene"),
+        Some(quality) => Cell::new(
+            json!({
+                "method": "estimated",
+                "boards": quality.boards,
+                "rms_reprojection": quality.rms_reprojection,
+                "rms_plane": quality.rms_plane,
+            }),
+            format!("estimated from {} boards", quality.boards),
+        ),
+    }
+}

@@ -151,7 +151,8 @@ fn quoted<'a>(page: &'a str, command: &str) -> Vec<&'a str> {
 /// Returns the numbers of the row of a name in the results of a command.
 fn figures(page: &str, command: &str, name: &str) -> Vec<f64> {
     let rows = quoted(page, command);
-    let row = rows.iter().find_map(|row| row.strip_prefix(name));
+    // Tables come after quantities whose names may begin alike.
+    let row = rows.iter().rev().find_map(|row| row.strip_prefix(name));
     let numbers = row.expect(name).split_whitespace();
     numbers.filter_map(|word| word.parse().ok()).collect()
 }

@@ -1,5 +1,6 @@
 //! Ray matrices of one transverse axis.
 
+use crate::range::check;
 use crate::{BeamError, ComplexBeamParameter, GaussianBeam, LocatedBeam};
 
 mod elements;
@@ -77,14 +78,23 @@ impl AbcdMatrix {
     /// number.
     pub fn new(a: f64, b: f64, c: f64, d: f64) -> Result<Self, BeamError> {
         if let Some(bad) = [a, b, c, d].into_iter().find(|entry| !entry.is_finite()) {
-            return Err(BeamError::MatrixEntry(bad));
+            return Err(BeamError::out_of_range(
+                "matrix",
+                bad,
+                "",
+                "finite in all entries",
+            ));
         }
         // The first product is not rounded, the rounding of the second is put back (Kahan).
         let product = b * c;
         let determinant = a.mul_add(d, -product) - b.mul_add(c, -product);
-        if !(determinant > 0.0 && determinant.is_finite()) {
-            return Err(BeamError::Determinant(determinant));
-        }
+        check(
+            determinant > 0.0 && determinant.is_finite(),
+            "determinant",
+            determinant,
+            "",
+            "positive and finite",
+        )?;
         Ok(Self {
             a,
             b,

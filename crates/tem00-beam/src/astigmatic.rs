@@ -3,7 +3,7 @@ use core::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use crate::astigmatic_system::check_determinants;
-use crate::gaussian::is_coordinate;
+use crate::range::is_coordinate;
 use crate::{AbcdMatrix, BeamError, CrossSection, GaussianBeam, LocatedBeam};
 
 /// An elliptic Gaussian beam with simple astigmatism: two principal axes at right angles, each with
@@ -63,9 +63,9 @@ impl AstigmaticBeam {
     pub fn new(x: LocatedBeam, y: LocatedBeam) -> Result<Self, BeamError> {
         let [first, second] = [x, y].map(|axis| axis.beam().wavelength());
         if (first - second).abs() > 0.0 {
-            return Err(BeamError::Wavelengths {
-                x: first,
-                y: second,
+            return Err(BeamError::AxesDiffer {
+                parameter: "wavelength",
+                values: [first, second],
             });
         }
         Ok(Self {
@@ -132,7 +132,9 @@ impl AstigmaticBeam {
         if rotation.is_finite() {
             Ok(Self { rotation, ..self })
         } else {
-            Err(BeamError::Rotation(rotation))
+            Err(BeamError::out_of_range(
+                "rotation", rotation, "rad", "finite",
+            ))
         }
     }
 

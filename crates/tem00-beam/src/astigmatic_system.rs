@@ -1,6 +1,6 @@
 use glam::{DMat2, DVec2};
 
-use crate::gaussian::{is_coordinate, is_length};
+use crate::range::{check_coordinate, is_length};
 use crate::{AbcdMatrix, BeamError};
 
 /// How far from symplectic, relative to its largest products, a matrix given by its entries may be.
@@ -76,13 +76,18 @@ impl AstigmaticSystem {
     /// // No lens makes a beam narrower in x alone and leaves its slopes as they are.
     /// let narrow = DMat2::from_diagonal([0.5, 1.0].into());
     /// let magic = AstigmaticSystem::new([[narrow, DMat2::ZERO], [DMat2::ZERO, one]]);
-    /// assert!(matches!(magic, Err(BeamError::NotSymplectic(_))));
+    /// assert!(matches!(magic, Err(e) if e.parameter() == "matrix"));
     /// # Ok::<(), BeamError>(())
     /// ```
     pub fn new([[a, b], [c, d]]: [[DMat2; 2]; 2]) -> Result<Self, BeamError> {
         let mut entries = [a, b, c, d].into_iter().flat_map(|m| m.to_cols_array());
         if let Some(bad) = entries.find(|entry| !entry.is_finite()) {
-            return Err(BeamError::MatrixEntry(bad));
+            return Err(BeamError::out_of_range(
+                "matrix",
+                bad,
+                "",
+                "finite in all entries",
+            ));
         }
         let ratio = a * d.transpose() - b * c.transpose();
         let index_ratio = 0.5 * (ratio.x_axis.x + ratio.y_axis.y);
@@ -102,7 +107,12 @@ impl AstigmaticSystem {
                 index_ratio,
             })
         } else {
-            Err(BeamError::NotSymplectic(deviation))
+            Err(BeamError::out_of_range(
+                "matrix",
+                deviation,
+                "",
+                "symplectic up to the ratio of the refractive indices (shown is the relative deviation)",
+            ))
         }
     }
 
@@ -150,14 +160,11 @@ impl AstigmaticSystem {
     ///
     /// Returns an error if `length` is not finite or beyond 1e30 m.
     pub fn free_space(length: f64) -> Result<Self, BeamError> {
-        if is_coordinate(length) {
-            Ok(Self {
-                b: DMat2::IDENTITY * length,
-                ..Self::straight(DMat2::IDENTITY)
-            })
-        } else {
-            Err(BeamError::Length(length))
-        }
+        check_coordinate("length", length)?;
+        Ok(Self {
+            b: DMat2::IDENTITY * length,
+            ..Self::straight(DMat2::IDENTITY)
+        })
     }
 
     /// Creates a thin lens of the focal length `focal_length`, in metres, positive where it focuses.
@@ -239,7 +246,12 @@ impl AstigmaticSystem {
                 ..Self::straight(DMat2::IDENTITY)
             })
         } else {
-            Err(BeamError::FocalLength(focal_length))
+            Err(BeamError::out_of_range(
+                "focal_length",
+                focal_length,
+                "m",
+                "between 1e-30 m and 1e30 m in magnitude",
+            ))
         }
     }
 
@@ -259,7 +271,10 @@ impl AstigmaticSystem {
 pub(crate) fn check_determinants(axes: &[AbcdMatrix; 2]) -> Result<(), BeamError> {
     let [x, y] = axes.map(|axis| axis.determinant());
     if (x - y).abs() > SYMPLECTIC_TOLERANCE * x {
-        return Err(BeamError::Determinants { x, y });
+        return Err(BeamError::AxesDiffer {
+            parameter: "determinant",
+            values: [x, y],
+        });
     }
     Ok(())
 }
@@ -268,7 +283,9 @@ fn finite_rotation(rotation: f64) -> Result<f64, BeamError> {
     if rotation.is_finite() {
         Ok(rotation)
     } else {
-        Err(BeamError::Rotation(rotation))
+        Err(BeamError::out_of_range(
+            "rotation", rotation, "rad", "finite",
+        ))
     }
 }
 

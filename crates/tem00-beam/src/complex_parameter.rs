@@ -2,7 +2,7 @@ use core::f64::consts::PI;
 
 use num_complex::Complex64;
 
-use crate::gaussian::{is_coordinate, is_length};
+use crate::range::{check, check_coordinate, check_curvature, check_length};
 use crate::{BeamError, GaussianBeam, LocatedBeam};
 
 /// The complex beam parameter `q` of a Gaussian beam in one plane.
@@ -57,12 +57,14 @@ impl ComplexBeamParameter {
     /// Returns an error if `distance_from_waist` is not finite or beyond 1e30 m, or if
     /// `rayleigh_range` does not lie between 1e−100 m and 1e100 m.
     pub fn new(distance_from_waist: f64, rayleigh_range: f64) -> Result<Self, BeamError> {
-        if !is_coordinate(distance_from_waist) {
-            return Err(BeamError::WaistDistance(distance_from_waist));
-        }
-        if !(1e-100..=1e100).contains(&rayleigh_range) {
-            return Err(BeamError::RayleighRange(rayleigh_range));
-        }
+        check_coordinate("waist_distance", distance_from_waist)?;
+        check(
+            (1e-100..=1e100).contains(&rayleigh_range),
+            "rayleigh_range",
+            rayleigh_range,
+            "m",
+            "between 1e-100 m and 1e100 m",
+        )?;
         Ok(Self {
             distance_from_waist,
             rayleigh_range,
@@ -100,15 +102,9 @@ impl ComplexBeamParameter {
         curvature: f64,
         effective_wavelength: f64,
     ) -> Result<Self, BeamError> {
-        if !is_length(radius) {
-            return Err(BeamError::Radius(radius));
-        }
-        if !is_coordinate(curvature) {
-            return Err(BeamError::Curvature(curvature));
-        }
-        if !is_length(effective_wavelength) {
-            return Err(BeamError::Wavelength(effective_wavelength));
-        }
+        check_length("radius", radius)?;
+        check_curvature(curvature)?;
+        check_length("wavelength", effective_wavelength)?;
         let spread = effective_wavelength / (PI * radius * radius);
         let modulus = spread.hypot(curvature);
         Self::new(curvature / modulus / modulus, spread / modulus / modulus)
@@ -146,9 +142,7 @@ impl ComplexBeamParameter {
     ///
     /// Returns an error if `effective_wavelength` is not a length from 1e−30 m to 1e30 m.
     pub fn radius(&self, effective_wavelength: f64) -> Result<f64, BeamError> {
-        if !is_length(effective_wavelength) {
-            return Err(BeamError::Wavelength(effective_wavelength));
-        }
+        check_length("wavelength", effective_wavelength)?;
         Ok(self.modulus() * (effective_wavelength / (PI * self.rayleigh_range)).sqrt())
     }
 
@@ -175,9 +169,13 @@ impl ComplexBeamParameter {
         wavelength: f64,
         m_squared: f64,
     ) -> Result<LocatedBeam, BeamError> {
-        if !(m_squared >= 1.0 && m_squared.is_finite()) {
-            return Err(BeamError::MSquared(m_squared));
-        }
+        check(
+            m_squared >= 1.0 && m_squared.is_finite(),
+            "m_squared",
+            m_squared,
+            "",
+            "finite and at least 1",
+        )?;
         let waist_radius = (m_squared / PI * wavelength * self.rayleigh_range).sqrt();
         let beam = GaussianBeam::from_waist(wavelength, waist_radius)?.with_m_squared(m_squared)?;
         LocatedBeam::new(beam, -self.distance_from_waist)

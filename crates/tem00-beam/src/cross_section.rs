@@ -5,7 +5,7 @@ mod quadrature;
 use core::f64::consts::{LN_2, PI};
 
 use crate::BeamError;
-use crate::gaussian::is_length;
+use crate::range::{check, check_length};
 use marginal::{Interval, power_beyond};
 
 /// The irradiance of a Gaussian beam of 1 W over a plane across it.
@@ -51,10 +51,10 @@ impl CrossSection {
     ///
     /// Returns an error if a radius is not a length from 1e−30 m to 1e30 m.
     pub fn new(radii: [f64; 2]) -> Result<Self, BeamError> {
-        match radii.into_iter().find(|&radius| !is_length(radius)) {
-            Some(radius) => Err(BeamError::Radius(radius)),
-            None => Ok(Self { radii }),
+        for radius in radii {
+            check_length("radius", radius)?;
         }
+        Ok(Self { radii })
     }
 
     /// The cross-section of a beam, whose radii are positive and finite.
@@ -184,9 +184,13 @@ impl CrossSection {
     /// # Ok::<(), tem00_beam::BeamError>(())
     /// ```
     pub fn circle_radius(&self, fraction: f64) -> Result<f64, BeamError> {
-        if !(0.0..1.0).contains(&fraction) {
-            return Err(BeamError::PowerFraction(fraction));
-        }
+        check(
+            (0.0..1.0).contains(&fraction),
+            "fraction",
+            fraction,
+            "",
+            "in [0, 1)",
+        )?;
         let per_radius = (-0.5 * (-fraction).ln_1p()).sqrt();
         let [w_x, w_y] = self.radii;
         if w_x.total_cmp(&w_y).is_eq() || fraction <= 0.0 {

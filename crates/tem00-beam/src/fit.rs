@@ -11,6 +11,9 @@ use core::{error, fmt};
 pub use caustic::{CausticFit, RadiusErrors};
 pub use knife_edge::KnifeEdgeFit;
 
+use crate::BeamError;
+use crate::range::check_coordinates;
+
 /// A fitted value and its standard error, in the same unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
@@ -20,7 +23,7 @@ pub struct Estimate {
     pub standard_error: f64,
 }
 
-/// Why measured data could not be fitted.
+/// Reasons why measured data have no fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FitError {
@@ -38,36 +41,8 @@ pub enum FitError {
         /// The smallest number accepted.
         needed: usize,
     },
-    /// The wavelength, in metres, is not a length from 1e−30 m to 1e30 m.
-    Wavelength(f64),
-    /// A position, in metres, is not finite or beyond 1e30 m.
-    Position {
-        /// Its place in the list.
-        index: usize,
-        /// The rejected position, in metres.
-        value: f64,
-    },
-    /// A beam radius, in metres, is not a length from 1e−30 m to 1e30 m.
-    Radius {
-        /// Its place in the list.
-        index: usize,
-        /// The rejected radius, in metres.
-        value: f64,
-    },
-    /// The standard deviation of a radius, in metres, is not a length from 1e−30 m to 1e30 m.
-    Deviation {
-        /// Its place in the list.
-        index: usize,
-        /// The rejected standard deviation, in metres.
-        value: f64,
-    },
-    /// A power is not finite or beyond 1e30.
-    Power {
-        /// Its place in the list.
-        index: usize,
-        /// The rejected power, in the caller's unit.
-        value: f64,
-    },
+    /// An argument, or an entry of one, is outside its range.
+    Argument(BeamError),
     /// All positions are the same.
     EqualPositions,
     /// The power does not change along the trace, or only a beam of negative power would fit it.
@@ -82,7 +57,6 @@ pub enum FitError {
 
 impl fmt::Display for FitError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const LENGTH: &str = "must lie between 1e-30 m and 1e30 m";
         match self {
             Self::LengthsDiffer { positions, values } => write!(
                 f,
@@ -91,21 +65,7 @@ impl fmt::Display for FitError {
             Self::TooFewPoints { got, needed } => {
                 write!(f, "the fit needs at least {needed} points, got {got}")
             }
-            Self::Wavelength(got) => write!(f, "wavelength {LENGTH}, got {got:e} m"),
-            Self::Position { index, value } => write!(
-                f,
-                "position {index} must be finite and within ±1e30 m, got {value:e} m"
-            ),
-            Self::Radius { index, value } => {
-                write!(f, "radius {index} {LENGTH}, got {value:e} m")
-            }
-            Self::Deviation { index, value } => {
-                write!(f, "standard deviation {index} {LENGTH}, got {value:e} m")
-            }
-            Self::Power { index, value } => write!(
-                f,
-                "power {index} must be finite and within ±1e30, got {value:e}"
-            ),
+            Self::Argument(error) => error.fmt(f),
             Self::EqualPositions => write!(f, "positions must differ, but all are the same"),
             Self::NoEdge => write!(
                 f,
@@ -122,6 +82,12 @@ impl fmt::Display for FitError {
 }
 
 impl error::Error for FitError {}
+
+impl From<BeamError> for FitError {
+    fn from(error: BeamError) -> Self {
+        Self::Argument(error)
+    }
+}
 
 /// Checks that both lists have one length, and at least `needed` entries.
 fn check_count(positions: &[f64], values: &[f64], needed: usize) -> Result<(), FitError> {
@@ -140,15 +106,6 @@ fn check_count(positions: &[f64], values: &[f64], needed: usize) -> Result<(), F
     Ok(())
 }
 
-/// Returns the first value, with its index, that is not valid.
-fn find_invalid(values: &[f64], is_valid: impl Fn(f64) -> bool) -> Option<(usize, f64)> {
-    values
-        .iter()
-        .copied()
-        .enumerate()
-        .find(|&(_, value)| !is_valid(value))
-}
-
 /// The positions of a measurement, mapped to the interval [−1, 1].
 ///
 /// The fits work on such coordinates, so that the unit of the data makes no difference.
@@ -161,9 +118,7 @@ struct Axis {
 
 impl Axis {
     fn new(positions: &[f64]) -> Result<Self, FitError> {
-        if let Some((index, value)) = find_invalid(positions, crate::gaussian::is_coordinate) {
-            return Err(FitError::Position { index, value });
-        }
+        check_coordinates("positions", positions)?;
         let first = positions.iter().copied().fold(f64::INFINITY, f64::min);
         let last = positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let (middle, half_range) = (0.5 * first + 0.5 * last, 0.5 * last - 0.5 * first);
@@ -193,7 +148,6 @@ mod tests {
 
     #[test]
     fn messages_name_the_value_that_is_wrong() {
-        let (index, value) = (7, -1.5);
         let cases = [
             (
                 FitError::LengthsDiffer {
@@ -208,15 +162,11 @@ mod tests {
                 "4 points",
                 "3",
             ),
-            (FitError::Wavelength(value), "wavelength", "-1.5e0"),
-            (FitError::Position { index, value }, "position 7", "-1.5e0"),
-            (FitError::Radius { index, value }, "radius 7", "-1.5e0"),
             (
-                FitError::Deviation { index, value },
-                "deviation 7",
-                "-1.5e0",
+                BeamError::out_of_range("radius", -1.5, "m", "long").into(),
+                "radius",
+                "-1.5e0 m",
             ),
-            (FitError::Power { index, value }, "power 7", "-1.5e0"),
             (FitError::EqualPositions, "positions", "same"),
             (FitError::NoEdge, "power", "change"),
             (FitError::Undetermined, "data", "parameters"),

@@ -2,6 +2,7 @@ use core::f64::consts::PI;
 
 use glam::DVec3;
 
+use crate::range::{check, check_length};
 use crate::{BeamError, CrossSection};
 
 /// The largest divergence, in radians, for which the paraxial model is trusted.
@@ -80,12 +81,8 @@ impl GaussianBeam {
     /// assert!(matches!(swapped, Err(BeamError::NotParaxial { .. })));
     /// ```
     pub fn from_waist(wavelength: f64, waist_radius: f64) -> Result<Self, BeamError> {
-        if !is_length(wavelength) {
-            return Err(BeamError::Wavelength(wavelength));
-        }
-        if !is_length(waist_radius) {
-            return Err(BeamError::WaistRadius(waist_radius));
-        }
+        check_length("wavelength", wavelength)?;
+        check_length("waist_radius", waist_radius)?;
         Self {
             wavelength,
             waist_radius,
@@ -124,16 +121,16 @@ impl GaussianBeam {
     /// # Ok::<(), tem00_beam::BeamError>(())
     /// ```
     pub fn from_divergence(wavelength: f64, divergence: f64) -> Result<Self, BeamError> {
-        if !is_length(wavelength) {
-            return Err(BeamError::Wavelength(wavelength));
-        }
-        if !(divergence > 0.0 && divergence <= PARAXIAL_LIMIT) {
-            return Err(BeamError::Divergence(divergence));
-        }
+        check_length("wavelength", wavelength)?;
+        check(
+            divergence > 0.0 && divergence <= PARAXIAL_LIMIT,
+            "divergence",
+            divergence,
+            "rad",
+            "in (0, 0.5] rad",
+        )?;
         let waist_radius = wavelength / (PI * divergence);
-        if !is_length(waist_radius) {
-            return Err(BeamError::WaistRadius(waist_radius));
-        }
+        check_length("waist_radius", waist_radius)?;
         Ok(Self {
             wavelength,
             waist_radius,
@@ -161,9 +158,13 @@ impl GaussianBeam {
     /// # Ok::<(), tem00_beam::BeamError>(())
     /// ```
     pub fn with_m_squared(self, m_squared: f64) -> Result<Self, BeamError> {
-        if !(m_squared >= 1.0 && m_squared.is_finite()) {
-            return Err(BeamError::MSquared(m_squared));
-        }
+        check(
+            m_squared >= 1.0 && m_squared.is_finite(),
+            "m_squared",
+            m_squared,
+            "",
+            "finite and at least 1",
+        )?;
         Self { m_squared, ..self }.paraxial()
     }
 
@@ -242,9 +243,13 @@ impl GaussianBeam {
     /// # Ok::<(), tem00_beam::BeamError>(())
     /// ```
     pub fn depth_of_focus(&self, growth: f64) -> Result<f64, BeamError> {
-        if !(growth > 1.0 && growth.is_finite()) {
-            return Err(BeamError::Growth(growth));
-        }
+        check(
+            growth > 1.0 && growth.is_finite(),
+            "growth",
+            growth,
+            "",
+            "finite and greater than 1",
+        )?;
         // √(growth² − 1), where neither the square overflows nor the difference loses digits.
         let lengths = (growth - 1.0).sqrt() * (growth + 1.0).sqrt();
         Ok(self.confocal_parameter() * lengths)
@@ -400,16 +405,6 @@ impl GaussianBeam {
         let rho = radius / self.radius_at(z);
         -(-2.0 * rho * rho).exp_m1()
     }
-}
-
-/// The lengths whose squares, products and quotients stay within the range of `f64`.
-pub(crate) fn is_length(x: f64) -> bool {
-    (1e-30..=1e30).contains(&x)
-}
-
-/// The coordinates whose squares and products with lengths stay within the range of `f64`.
-pub(crate) fn is_coordinate(x: f64) -> bool {
-    x.abs() <= 1e30
 }
 
 #[cfg(test)]

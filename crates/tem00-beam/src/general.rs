@@ -3,7 +3,8 @@ use core::f64::consts::PI;
 use glam::{DMat2, DVec2, DVec3};
 use num_complex::Complex64;
 
-use crate::gaussian::{PARAXIAL_LIMIT, is_length};
+use crate::gaussian::PARAXIAL_LIMIT;
+use crate::range::{check, check_length};
 use crate::{AstigmaticBeam, AstigmaticSystem, BeamError, CrossSection};
 
 use generator::{Ellipse, Generator, combine, covariance};
@@ -113,7 +114,7 @@ impl GeneralAstigmaticBeam {
     /// assert!((smaller - 1.16).abs() < 1e-3 && (larger - 2.32).abs() < 1e-3);
     ///
     /// let infrared = GeneralAstigmaticBeam::from_moments(1064e-9, &moments);
-    /// assert!(matches!(infrared, Err(BeamError::MSquared(_))));
+    /// assert!(matches!(infrared, Err(e) if e.parameter() == "m_squared"));
     /// # Ok::<(), BeamError>(())
     /// ```
     pub fn from_moments(wavelength: f64, moments: &SecondMoments) -> Result<Self, BeamError> {
@@ -123,14 +124,26 @@ impl GeneralAstigmaticBeam {
             slope,
         } = *moments;
         if !mixed.is_finite() {
-            return Err(BeamError::MixedMoments(mixed));
+            return Err(BeamError::Matrix {
+                parameter: "mixed",
+                value: mixed,
+                allowed: "finite, in m",
+            });
         }
-        let slope_root = square_root(slope).ok_or(BeamError::SlopeMoments(slope))?;
-        square_root(position).ok_or(BeamError::PositionMoments(position))?;
+        let slope_root = square_root(slope).ok_or(BeamError::Matrix {
+            parameter: "slope",
+            value: slope,
+            allowed: "symmetric and positive definite",
+        })?;
+        let refused = BeamError::Matrix {
+            parameter: "position",
+            value: position,
+            allowed: "symmetric, positive definite and at least what the mixed and slope moments imply, in m²",
+        };
+        square_root(position).ok_or(refused)?;
         let shift = mixed * slope_root.inverse().transpose();
         let symmetric = 0.5 * (position + position.transpose());
-        let spread = square_root(symmetric - shift * shift.transpose())
-            .ok_or(BeamError::PositionMoments(position))?;
+        let spread = square_root(symmetric - shift * shift.transpose()).ok_or(refused)?;
         let generator = Generator {
             spread,
             shift,
@@ -172,9 +185,7 @@ impl GeneralAstigmaticBeam {
         wavelength: f64,
         curvature: [[Complex64; 2]; 2],
     ) -> Result<Self, BeamError> {
-        if !is_length(wavelength) {
-            return Err(BeamError::Wavelength(wavelength));
-        }
+        check_length("wavelength", wavelength)?;
         let largest = curvature
             .as_flattened()
             .iter()
@@ -186,7 +197,7 @@ impl GeneralAstigmaticBeam {
         };
         let root = square_root(matrix(|q| -q.im))
             .filter(|_| matrix(|q| q.re).is_finite() && (xy - yx).norm() <= 1e-9 * largest)
-            .ok_or(BeamError::ComplexCurvature(curvature))?;
+            .ok_or(BeamError::Matrix { parameter: "curvature", value: matrix(|q| q.im), allowed: "finite and symmetric with a negative definite imaginary part (which is shown), in m⁻¹" })?;
         let unit = (wavelength / (4.0 * PI)).sqrt();
         let (position, spread) = (unit * root.inverse().transpose(), unit * root);
         let slope = matrix(|q| q.re) * position;
@@ -199,25 +210,27 @@ impl GeneralAstigmaticBeam {
 
     /// Returns the beam if light of the wavelength can have this phase space.
     fn checked(wavelength: f64, generator: Generator) -> Result<Self, BeamError> {
-        if !is_length(wavelength) {
-            return Err(BeamError::Wavelength(wavelength));
-        }
+        check_length("wavelength", wavelength)?;
         let beam = Self {
             wavelength,
             generator,
         };
         let [radius, _] = beam.radii_at(0.0);
-        if !(generator.is_finite() && is_length(radius)) {
-            return Err(BeamError::Radius(radius));
-        }
+        check_length(
+            "radius",
+            if generator.is_finite() {
+                radius
+            } else {
+                f64::NAN
+            },
+        )?;
         let [divergence, _] = beam.divergences();
-        if divergence > PARAXIAL_LIMIT * (1.0 + 1e-12) {
-            return Err(BeamError::Divergence(divergence));
-        }
-        match beam.beam_quality() {
-            [smaller, _] if smaller >= 1.0 - M_SQUARED_ROUNDING => Ok(beam),
-            [smaller, _] => Err(BeamError::MSquared(smaller)),
-        }
+        let paraxial = divergence <= PARAXIAL_LIMIT * (1.0 + 1e-12);
+        check(paraxial, "divergence", divergence, "rad", "in (0, 0.5] rad")?;
+        let [smaller, _] = beam.beam_quality();
+        let possible = smaller >= 1.0 - M_SQUARED_ROUNDING;
+        check(possible, "m_squared", smaller, "", "finite and at least 1")?;
+        Ok(beam)
     }
 
     /// Returns the beam seen from a reference plane further along by `distance`, in metres, of

@@ -71,6 +71,7 @@ mod located;
 mod normal;
 mod placed;
 mod profile;
+mod range;
 mod real;
 
 pub use abcd::{AbcdMatrix, ThickLens};

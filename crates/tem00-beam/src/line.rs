@@ -2,9 +2,9 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
 
-use crate::gaussian::is_coordinate;
 use crate::normal::normal_density;
 use crate::profile::{SlopeDensity, SlopeProfile};
+use crate::range::{check, check_coordinate};
 use crate::{BeamError, GaussianBeam, LineProfile};
 
 /// The apex offset must exceed this many source radii, so that the fan has a sharp apex.
@@ -126,12 +126,14 @@ impl LaserLine {
         fan: FanGeometry,
         profile: LineProfile,
     ) -> Result<Self, BeamError> {
-        if !(fan.fan_angle > 0.0 && fan.fan_angle < PI) {
-            return Err(BeamError::FanAngle(fan.fan_angle));
-        }
-        if !is_coordinate(fan.focus_distance) {
-            return Err(BeamError::FocusDistance(fan.focus_distance));
-        }
+        check(
+            fan.fan_angle > 0.0 && fan.fan_angle < PI,
+            "fan_angle",
+            fan.fan_angle,
+            "rad",
+            "in (0, π) rad",
+        )?;
+        check_coordinate("focus_distance", fan.focus_distance)?;
         let density = profile.slope_density(fan.fan_angle)?;
         let line = Self {
             focus,

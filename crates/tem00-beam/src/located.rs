@@ -1,4 +1,4 @@
-use crate::gaussian::is_coordinate;
+use crate::range::check_coordinate;
 use crate::{BeamError, CrossSection, GaussianBeam};
 
 /// A Gaussian beam and where its waist lies, seen from a reference plane.
@@ -33,14 +33,11 @@ impl LocatedBeam {
     ///
     /// Returns an error if `waist_distance` is not finite or beyond 1e30 m.
     pub fn new(beam: GaussianBeam, waist_distance: f64) -> Result<Self, BeamError> {
-        if is_coordinate(waist_distance) {
-            Ok(Self {
-                beam,
-                waist_distance,
-            })
-        } else {
-            Err(BeamError::WaistDistance(waist_distance))
-        }
+        check_coordinate("waist_distance", waist_distance)?;
+        Ok(Self {
+            beam,
+            waist_distance,
+        })
     }
 
     /// Returns the beam.
@@ -95,7 +92,10 @@ mod tests {
         let beam = GaussianBeam::from_waist(650e-9, 50e-6).unwrap();
         for bad in [f64::NAN, f64::INFINITY, -2e30] {
             let result = LocatedBeam::new(beam, bad);
-            assert!(matches!(result, Err(BeamError::WaistDistance(_))), "{bad}");
+            assert!(
+                matches!(result, Err(e) if e.parameter() == "waist_distance"),
+                "{bad}"
+            );
         }
     }
 }

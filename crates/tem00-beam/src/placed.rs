@@ -104,7 +104,7 @@ impl<T: Real> Axis<T> {
 fn to_single<const N: usize>(rows: [[f64; 4]; N]) -> Result<[[f32; 4]; N], BeamError> {
     let overflow = |field: &&f64| !<f32 as Scalar>::of(**field).is_finite();
     match rows.as_flattened().iter().find(overflow) {
-        Some(&field) => Err(BeamError::SinglePrecision(field)),
+        Some(&field) => Err(BeamError::single_precision(field)),
         None => Ok(rows.map(|row| row.map(<f32 as Scalar>::of))),
     }
 }
@@ -122,7 +122,7 @@ fn check_digits<const N: usize>(quantities: [f64; N]) -> Result<(), BeamError> {
     for quantity in quantities {
         let dark = quantity.abs() < f64::MIN_POSITIVE;
         if !(<f32 as Scalar>::of(quantity).is_normal() || dark) {
-            return Err(BeamError::SinglePrecision(quantity));
+            return Err(BeamError::single_precision(quantity));
         }
     }
     Ok(())
@@ -133,7 +133,12 @@ fn checked_power(power: f64) -> Result<f64, BeamError> {
     if (0.0..=1e100).contains(&power) {
         Ok(power)
     } else {
-        Err(BeamError::Power(power))
+        Err(BeamError::out_of_range(
+            "power",
+            power,
+            "W",
+            "between 0 W and 1e100 W",
+        ))
     }
 }
 

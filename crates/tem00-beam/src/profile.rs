@@ -93,7 +93,9 @@ impl LineProfile {
             Self::Powell { edge } if (1e-6..=1.0).contains(edge) => {
                 SlopeDensity::uniform(Variable::Tan, half_slope, edge * half_slope)
             }
-            Self::Powell { edge } => return Err(BeamError::Edge(*edge)),
+            Self::Powell { edge } => {
+                return Err(BeamError::out_of_range("edge", *edge, "", "in [1e-6, 1]"));
+            }
             Self::Tabulated(_) => SlopeDensity::uniform(Variable::Tabulated, 0.0, 0.0),
         })
     }

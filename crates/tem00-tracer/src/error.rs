@@ -59,29 +59,20 @@ impl TracerError {
                 Some(parameter)
             }
             Self::Camera(source) => source.parameter(),
-            Self::Beam(source) => parameter_of_beam(source),
+            Self::Beam(source) => Some(key_of_beam(source)),
             _ => None,
         }
     }
 }
 
-fn parameter_of_beam(error: &BeamError) -> Option<&'static str> {
-    let parameter = match error {
-        BeamError::Wavelength(_) => "wavelength",
-        BeamError::WaistRadius(_) | BeamError::NotParaxial { .. } => "waist_radius",
-        BeamError::MSquared(_) => "m_squared",
-        BeamError::FanAngle(_) => "fan_angle",
-        BeamError::ApexOffset { .. } => "apex_offset",
-        BeamError::FocusDistance(_) => "focus_distance",
-        BeamError::Edge(_) => "edge",
-        BeamError::WaistDistance(_) => "waist_distance",
-        BeamError::Power(_) => "power",
-        BeamError::Origin(_) => "position",
-        BeamError::Direction(_) => "look_at",
-        BeamError::FanAxis(_) => "line_direction",
-        _ => return None,
-    };
-    Some(parameter)
+/// The keys of a scene file are the library's names, but for those of a placement.
+fn key_of_beam(error: &BeamError) -> &'static str {
+    match error.parameter() {
+        "origin" => "position",
+        "direction" => "look_at",
+        "fan_axis" => "line_direction",
+        name => name,
+    }
 }
 
 impl fmt::Display for TracerError {

@@ -1,7 +1,7 @@
 use tem00_beam::{
-    AngularProfile, AstigmaticBeam, AstigmaticLight, BeamError, DMat2, DVec3, FanGeometry,
-    GaussianBeam, GeneralAstigmaticBeam, LaserLine, LineLight, LocatedBeam, SecondMoments,
-    SpotLight, TabulatedLineLight,
+    AngularProfile, AstigmaticBeam, AstigmaticLight, DMat2, DVec3, FanGeometry, GaussianBeam,
+    GeneralAstigmaticBeam, LaserLine, LineLight, LocatedBeam, SecondMoments, SpotLight,
+    TabulatedLineLight,
 };
 
 use super::Light;
@@ -181,8 +181,8 @@ impl EllipticDescription {
         let beam = GaussianBeam::from_waist(self.wavelength, self.waist_radius[i]);
         let beam = beam.and_then(|beam| beam.with_m_squared(self.m_squared[i]));
         let located = beam.and_then(|beam| LocatedBeam::new(beam, self.waist_distance[i]));
-        located.map_err(|error| match error {
-            BeamError::Wavelength(_) => error.into(),
+        located.map_err(|error| match error.parameter() {
+            "wavelength" => error.into(),
             _ => Failure::argument(
                 &format!("{}[{i}]", error.parameter()),
                 format!("axis {i}: {error}"),

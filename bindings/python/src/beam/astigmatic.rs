@@ -115,7 +115,7 @@ impl AstigmaticBeam {
     ///     The beam seen from the output plane.
     fn through_axes(&self, systems: [PyRef<'_, AbcdMatrix>; 2]) -> PyResult<Self> {
         let beam = self.0.through_axes(systems.map(|system| system.0));
-        Ok(Self(beam.or_raise_as(&[("axes", "systems")])?))
+        Ok(Self(beam.or_raise_as(&[("determinant", "systems")])?))
     }
 
     /// The beams along the first and the second principal axis.

@@ -47,7 +47,8 @@ impl AstigmaticSystem {
     fn from_axes(axes: [PyRef<'_, AbcdMatrix>; 2], rotation: f64) -> PyResult<Self> {
         let axes = axes.map(|axis| axis.0);
         Ok(Self(
-            physics::AstigmaticSystem::from_axes(axes, rotation).or_raise()?,
+            physics::AstigmaticSystem::from_axes(axes, rotation)
+                .or_raise_renamed(&["determinant"], "axes")?,
         ))
     }
 

@@ -306,15 +306,10 @@ impl Errors<'_> {
 
 /// The exception for data that cannot be fitted; `values` is the name of what was measured.
 fn raised(error: physics::FitError, values: &str) -> PyErr {
-    let name = match error {
-        physics::FitError::Wavelength(_) => "wavelength",
-        physics::FitError::Deviation { .. } => "errors",
-        physics::FitError::Position { .. }
-        | physics::FitError::TooFewPoints { .. }
-        | physics::FitError::EqualPositions => "positions",
-        physics::FitError::LengthsDiffer { .. }
-        | physics::FitError::Radius { .. }
-        | physics::FitError::Power { .. } => values,
+    let name = match &error {
+        physics::FitError::Argument(argument) => argument.parameter(),
+        physics::FitError::TooFewPoints { .. } | physics::FitError::EqualPositions => "positions",
+        physics::FitError::LengthsDiffer { .. } => values,
         _ => return FitError::new_err(error.to_string()),
     };
     refused(name, error.to_string())

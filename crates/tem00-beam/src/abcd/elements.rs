@@ -4,7 +4,7 @@ use core::f64::consts::FRAC_PI_2;
 
 use super::AbcdMatrix;
 use crate::BeamError;
-use crate::gaussian::{is_coordinate, is_length};
+use crate::range::{check, check_coordinate, check_curvature, is_length};
 
 /// A thick lens in air.
 ///
@@ -37,7 +37,7 @@ impl AbcdMatrix {
     ///
     /// Returns an error if `length` is not finite or beyond 1e30 m.
     pub fn free_space(length: f64) -> Result<Self, BeamError> {
-        check_length(length)?;
+        check_coordinate("length", length)?;
         Ok(Self::unimodular([1.0, length, 0.0, 1.0]))
     }
 
@@ -50,7 +50,12 @@ impl AbcdMatrix {
         if is_length(focal_length.abs()) {
             Ok(Self::power(-1.0 / focal_length))
         } else {
-            Err(BeamError::FocalLength(focal_length))
+            Err(BeamError::out_of_range(
+                "focal_length",
+                focal_length,
+                "m",
+                "between 1e-30 m and 1e30 m in magnitude",
+            ))
         }
     }
 
@@ -79,9 +84,13 @@ impl AbcdMatrix {
     /// # Ok::<(), tem00_beam::BeamError>(())
     /// ```
     pub fn thick_lens(lens: &ThickLens) -> Result<Self, BeamError> {
-        if !(0.0..=1e30).contains(&lens.thickness) {
-            return Err(BeamError::Thickness(lens.thickness));
-        }
+        check(
+            (0.0..=1e30).contains(&lens.thickness),
+            "thickness",
+            lens.thickness,
+            "m",
+            "between 0 m and 1e30 m",
+        )?;
         let front = Self::curved_interface(1.0, lens.index, lens.front_curvature)?;
         let glass = Self::free_space(lens.thickness)?;
         let back = Self::curved_interface(lens.index, 1.0, lens.back_curvature)?;
@@ -124,7 +133,12 @@ impl AbcdMatrix {
         if angle_of_incidence.abs() < FRAC_PI_2 && cos > 0.0 {
             Ok([-2.0 * curvature / cos, -2.0 * curvature * cos].map(Self::power))
         } else {
-            Err(BeamError::AngleOfIncidence(angle_of_incidence))
+            Err(BeamError::out_of_range(
+                "angle_of_incidence",
+                angle_of_incidence,
+                "rad",
+                "in (-π/2, π/2) rad",
+            ))
         }
     }
 
@@ -177,10 +191,14 @@ impl AbcdMatrix {
     /// Returns an error if `gradient` does not lie between 0 and 1e30 m⁻¹, or if `length` is not
     /// finite or beyond 1e30 m.
     pub fn grin(gradient: f64, length: f64) -> Result<Self, BeamError> {
-        if !(0.0..=1e30).contains(&gradient) {
-            return Err(BeamError::Gradient(gradient));
-        }
-        check_length(length)?;
+        check(
+            (0.0..=1e30).contains(&gradient),
+            "gradient",
+            gradient,
+            "m⁻¹",
+            "between 0 m⁻¹ and 1e30 m⁻¹",
+        )?;
+        check_coordinate("length", length)?;
         let phase = gradient * length;
         let (sin, cos) = phase.sin_cos();
         let sinc = if phase == 0.0 { 1.0 } else { sin / phase };
@@ -236,28 +254,9 @@ impl AbcdMatrix {
     }
 }
 
-fn check_length(length: f64) -> Result<(), BeamError> {
-    if is_coordinate(length) {
-        Ok(())
-    } else {
-        Err(BeamError::Length(length))
-    }
-}
-
-fn check_curvature(curvature: f64) -> Result<(), BeamError> {
-    if is_coordinate(curvature) {
-        Ok(())
-    } else {
-        Err(BeamError::Curvature(curvature))
-    }
-}
-
 fn check_index(index: f64) -> Result<(), BeamError> {
-    if (1e-3..=1e3).contains(&index) {
-        Ok(())
-    } else {
-        Err(BeamError::Index(index))
-    }
+    let valid = (1e-3..=1e3).contains(&index);
+    check(valid, "index", index, "", "in [0.001, 1000]")
 }
 
 #[cfg(test)]

@@ -59,7 +59,12 @@ impl AbcdMatrix {
             let distance = (0.5 * self.a - 0.5 * self.d) / self.c;
             ComplexBeamParameter::new(distance, stability.sqrt() / self.c.abs())
         } else {
-            Err(BeamError::HalfTrace(self.half_trace()))
+            Err(BeamError::out_of_range(
+                "half_trace",
+                self.half_trace(),
+                "",
+                "in (-1, 1) for a beam to reproduce itself",
+            ))
         }
     }
 

@@ -193,11 +193,17 @@ fn a_glass_block_shortens_the_wavelength_and_keeps_the_waist() {
 fn impossible_matrices_are_rejected() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let result = AbcdMatrix::new(1.0, 0.0, bad, 1.0);
-        assert!(matches!(result, Err(BeamError::MatrixEntry(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "matrix"),
+            "{bad}"
+        );
     }
     for [a, d] in [[1.0, 0.0], [-1.0, 1.0], [1e200, 1e200], [1e-200, 1e-200]] {
         let result = AbcdMatrix::new(a, 0.0, 0.0, d);
-        assert!(matches!(result, Err(BeamError::Determinant(_))), "{a}, {d}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "determinant"),
+            "{a}, {d}"
+        );
     }
 }
 

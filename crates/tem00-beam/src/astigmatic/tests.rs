@@ -215,7 +215,7 @@ fn systems_into_two_media_at_once_are_rejected() {
     let glass = AbcdMatrix::flat_interface(1.0, 1.5).unwrap();
     let result = beam().through_axes([glass, AbcdMatrix::identity()]);
     assert!(
-        matches!(result, Err(BeamError::Determinants { .. })),
+        matches!(result, Err(e) if e.parameter() == "determinant"),
         "{result:?}"
     );
 }
@@ -240,18 +240,24 @@ fn impossible_beams_are_rejected() {
     };
     let mixed = AstigmaticBeam::new(axis(650e-9), axis(532e-9));
     assert!(
-        matches!(mixed, Err(BeamError::Wavelengths { .. })),
+        matches!(mixed, Err(e) if e.parameter() == "wavelength"),
         "{mixed:?}"
     );
     let turned = AstigmaticBeam::stigmatic(axis(RED)).with_rotation(f64::NAN);
-    assert!(matches!(turned, Err(BeamError::Rotation(_))), "{turned:?}");
+    assert!(
+        matches!(turned, Err(e) if e.parameter() == "rotation"),
+        "{turned:?}"
+    );
     let moved = AstigmaticBeam::stigmatic(axis(RED)).with_waist_distances([0.0, f64::INFINITY]);
     assert!(
-        matches!(moved, Err(BeamError::WaistDistance(_))),
+        matches!(moved, Err(e) if e.parameter() == "waist_distance"),
         "{moved:?}"
     );
     let wide = AstigmaticBeam::from_divergences(RED, [0.1, 0.6]);
-    assert!(matches!(wide, Err(BeamError::Divergence(_))), "{wide:?}");
+    assert!(
+        matches!(wide, Err(e) if e.parameter() == "divergence"),
+        "{wide:?}"
+    );
 }
 
 proptest! {

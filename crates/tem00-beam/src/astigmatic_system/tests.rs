@@ -81,11 +81,14 @@ fn a_system_of_two_axes_acts_along_each() {
     assert!(distance(&cylinder, &same) < 5e-15, "{cylinder:?}");
     let glass = AstigmaticSystem::from_axes([x, lens], 0.3);
     assert!(
-        matches!(glass, Err(BeamError::Determinants { .. })),
+        matches!(glass, Err(e) if e.parameter() == "determinant"),
         "{glass:?}"
     );
     let turned = AstigmaticSystem::from_axes([x, y], f64::NAN);
-    assert!(matches!(turned, Err(BeamError::Rotation(_))), "{turned:?}");
+    assert!(
+        matches!(turned, Err(e) if e.parameter() == "rotation"),
+        "{turned:?}"
+    );
 }
 
 #[test]
@@ -115,7 +118,10 @@ fn matrices_of_no_system_are_rejected() {
     let one = DMat2::IDENTITY;
     let skewed = DMat2::from_cols_array(&[0.0, 1.0, -1.0, 0.0]);
     let nan = AstigmaticSystem::new([[a, b], [DMat2::NAN, d]]);
-    assert!(matches!(nan, Err(BeamError::MatrixEntry(_))), "{nan:?}");
+    assert!(
+        matches!(nan, Err(e) if e.parameter() == "matrix"),
+        "{nan:?}"
+    );
     for blocks in [
         [[a + off, b], [c, d]],
         [[a, b + off], [c, d]],
@@ -128,7 +134,7 @@ fn matrices_of_no_system_are_rejected() {
     ] {
         let result = AstigmaticSystem::new(blocks);
         assert!(
-            matches!(result, Err(BeamError::NotSymplectic(_))),
+            matches!(result, Err(e) if e.parameter() == "matrix"),
             "{blocks:?}: {result:?}"
         );
     }
@@ -148,20 +154,29 @@ fn matrices_of_no_system_are_rejected() {
 fn impossible_elements_are_rejected() {
     for bad in [f64::NAN, f64::INFINITY, 1e31] {
         let result = AstigmaticSystem::free_space(bad);
-        assert!(matches!(result, Err(BeamError::Length(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "length"),
+            "{bad}"
+        );
     }
     for bad in [f64::NAN, f64::INFINITY, 0.0, 1e-31] {
         for result in [
             AstigmaticSystem::thin_lens(bad),
             AstigmaticSystem::cylinder_lens(bad, 0.1),
         ] {
-            assert!(matches!(result, Err(BeamError::FocalLength(_))), "{bad}");
+            assert!(
+                matches!(result, Err(e) if e.parameter() == "focal_length"),
+                "{bad}"
+            );
         }
     }
     for result in [
         AstigmaticSystem::cylinder_lens(1.0, f64::NAN),
         AstigmaticSystem::image_rotation(f64::INFINITY),
     ] {
-        assert!(matches!(result, Err(BeamError::Rotation(_))), "{result:?}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "rotation"),
+            "{result:?}"
+        );
     }
 }

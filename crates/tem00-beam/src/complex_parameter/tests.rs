@@ -89,21 +89,42 @@ fn half_the_power_density_is_left_one_rayleigh_range_away() {
 fn impossible_parameters_are_rejected() {
     for bad in [f64::NAN, f64::INFINITY, 2e30] {
         let result = ComplexBeamParameter::new(bad, 1.0);
-        assert!(matches!(result, Err(BeamError::WaistDistance(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "waist_distance"),
+            "{bad}"
+        );
         let result = ComplexBeamParameter::from_radius_and_curvature(1e-3, bad, 1e-6);
-        assert!(matches!(result, Err(BeamError::Curvature(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "curvature"),
+            "{bad}"
+        );
     }
     for bad in [0.0, -1.0, 1e101, f64::NAN, f64::INFINITY] {
         let result = ComplexBeamParameter::new(0.0, bad);
-        assert!(matches!(result, Err(BeamError::RayleighRange(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "rayleigh_range"),
+            "{bad}"
+        );
         let result = ComplexBeamParameter::from_radius_and_curvature(bad, 0.0, 1e-6);
-        assert!(matches!(result, Err(BeamError::Radius(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "radius"),
+            "{bad}"
+        );
         let result = ComplexBeamParameter::from_radius_and_curvature(1e-3, 0.0, bad);
-        assert!(matches!(result, Err(BeamError::Wavelength(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "wavelength"),
+            "{bad}"
+        );
         let result = parameter(0.0, 1.0).radius(bad);
-        assert!(matches!(result, Err(BeamError::Wavelength(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "wavelength"),
+            "{bad}"
+        );
         let result = parameter(0.0, 1.0).to_located_beam(1e-6, bad.min(0.99));
-        assert!(matches!(result, Err(BeamError::MSquared(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "m_squared"),
+            "{bad}"
+        );
     }
 }
 

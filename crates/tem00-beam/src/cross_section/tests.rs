@@ -270,7 +270,10 @@ fn circle_radius_inverts_the_encircled_power() {
         assert!(none.abs() < f64::MIN_POSITIVE, "{none}");
         for bad in [-1e-9, 1.0, 2.0, f64::NAN] {
             let result = spot.circle_radius(bad);
-            assert!(matches!(result, Err(BeamError::PowerFraction(_))), "{bad}");
+            assert!(
+                matches!(result, Err(e) if e.parameter() == "fraction"),
+                "{bad}"
+            );
         }
     }
 }
@@ -439,7 +442,10 @@ fn radii_that_are_not_lengths_are_rejected() {
     for bad in [0.0, -1.0, 1e31, f64::NAN, f64::INFINITY] {
         for radii in [[bad, 1.0], [1.0, bad]] {
             let result = CrossSection::new(radii);
-            assert!(matches!(result, Err(BeamError::Radius(_))), "{radii:?}");
+            assert!(
+                matches!(result, Err(e) if e.parameter() == "radius"),
+                "{radii:?}"
+            );
         }
     }
 }

@@ -1,8 +1,8 @@
 use core::f64::consts::PI;
 
 use super::least_squares::{Minimum, Residual, minimise};
-use super::{Axis, Estimate, FitError, check_count, find_invalid};
-use crate::gaussian::is_length;
+use super::{Axis, Estimate, FitError, check_count};
+use crate::range::{check_length, check_lengths};
 use crate::{BeamError, GaussianBeam, LocatedBeam};
 
 /// What is known of the errors of measured beam radii.
@@ -105,9 +105,7 @@ impl CausticFit {
         errors: RadiusErrors<'_>,
     ) -> Result<Self, FitError> {
         let data = Caustic::new(positions, radii, errors)?;
-        if !is_length(wavelength) {
-            return Err(FitError::Wavelength(wavelength));
-        }
+        check_length("wavelength", wavelength)?;
         let count = radii.len();
         let from_polynomial = data.polynomial().map(|start| data.search(start));
         let minimum = match from_polynomial {
@@ -238,14 +236,10 @@ impl<'a> Caustic<'a> {
     fn new(positions: &[f64], radii: &[f64], errors: RadiusErrors<'a>) -> Result<Self, FitError> {
         check_count(positions, radii, PARAMETERS + 1)?;
         let axis = Axis::new(positions)?;
-        if let Some((index, value)) = find_invalid(radii, is_length) {
-            return Err(FitError::Radius { index, value });
-        }
+        check_lengths("radii", radii)?;
         if let RadiusErrors::Known(deviations) = errors {
             check_count(positions, deviations, PARAMETERS + 1)?;
-            if let Some((index, value)) = find_invalid(deviations, is_length) {
-                return Err(FitError::Deviation { index, value });
-            }
+            check_lengths("errors", deviations)?;
         }
         let unit = radii.iter().copied().fold(0.0, f64::max);
         Ok(Self {

@@ -1,8 +1,8 @@
 use core::f64::consts::{FRAC_2_SQRT_PI, SQRT_2};
 
 use super::least_squares::{Minimum, Residual, minimise};
-use super::{Axis, Estimate, FitError, check_count, find_invalid};
-use crate::gaussian::is_coordinate;
+use super::{Axis, Estimate, FitError, check_count};
+use crate::range::{check_list, is_coordinate};
 
 /// A Gaussian beam fitted to the power that passes a knife edge moved across it.
 ///
@@ -165,9 +165,13 @@ struct Trace {
 impl Trace {
     fn new(positions: &[f64], powers: &[f64], with_floor: bool) -> Result<Self, FitError> {
         let axis = Axis::new(positions)?;
-        if let Some((index, value)) = find_invalid(powers, is_coordinate) {
-            return Err(FitError::Power { index, value });
-        }
+        check_list(
+            is_coordinate,
+            "powers",
+            powers,
+            "",
+            "finite and within ±1e30",
+        )?;
         let least = powers.iter().copied().fold(f64::INFINITY, f64::min);
         let most = powers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let unit = most - least;

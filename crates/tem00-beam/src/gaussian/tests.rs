@@ -234,7 +234,10 @@ fn depth_of_focus_is_where_the_radius_has_grown() {
     assert!((confocal - 1.0).abs() < 1e-15, "{confocal}");
     for bad in [1.0, 0.5, -2.0, f64::NAN, f64::INFINITY] {
         let result = beam.depth_of_focus(bad);
-        assert!(matches!(result, Err(BeamError::Growth(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "growth"),
+            "{bad}"
+        );
     }
 }
 
@@ -333,21 +336,21 @@ fn constructor_rejects_values_that_are_not_lengths() {
         assert!(
             matches!(
                 GaussianBeam::from_waist(bad, 100e-6),
-                Err(BeamError::Wavelength(_))
+                Err(e) if e.parameter() == "wavelength"
             ),
             "wavelength {bad}"
         );
         assert!(
             matches!(
                 GaussianBeam::from_divergence(bad, 1e-3),
-                Err(BeamError::Wavelength(_))
+                Err(e) if e.parameter() == "wavelength"
             ),
             "wavelength {bad}"
         );
         assert!(
             matches!(
                 GaussianBeam::from_waist(HENE, bad),
-                Err(BeamError::WaistRadius(_))
+                Err(e) if e.parameter() == "waist_radius"
             ),
             "waist {bad}"
         );
@@ -360,7 +363,7 @@ fn constructor_rejects_impossible_divergence_and_quality() {
         assert!(
             matches!(
                 GaussianBeam::from_divergence(HENE, bad),
-                Err(BeamError::Divergence(_))
+                Err(e) if e.parameter() == "divergence"
             ),
             "divergence {bad}"
         );
@@ -368,13 +371,13 @@ fn constructor_rejects_impossible_divergence_and_quality() {
     assert!(
         matches!(
             GaussianBeam::from_divergence(HENE, 1e-300),
-            Err(BeamError::WaistRadius(_))
+            Err(e) if e.parameter() == "waist_radius"
         ),
         "a waist beyond all lengths"
     );
     for bad in [0.999, -1.0, f64::NAN, f64::INFINITY] {
         assert!(
-            matches!(beam().with_m_squared(bad), Err(BeamError::MSquared(_))),
+            matches!(beam().with_m_squared(bad), Err(e) if e.parameter() == "m_squared"),
             "M² = {bad}"
         );
     }

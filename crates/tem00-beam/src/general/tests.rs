@@ -367,7 +367,10 @@ fn diffraction_limited_moments_pass_and_better_ones_do_not() {
         let [smaller, _] = beam.unwrap().beam_quality();
         assert!((smaller - 1.0).abs() < 1e-11, "z = {z}: {smaller}");
         let better = GeneralAstigmaticBeam::from_moments(RED, &ideal(1.0 - 2e-6, z));
-        assert!(matches!(better, Err(BeamError::MSquared(_))), "{better:?}");
+        assert!(
+            matches!(better, Err(e) if e.parameter() == "m_squared"),
+            "{better:?}"
+        );
     }
 }
 
@@ -457,14 +460,14 @@ fn impossible_complex_curvatures_are_rejected() {
     ] {
         let result = GeneralAstigmaticBeam::from_complex_curvature(RED, bad);
         assert!(
-            matches!(result, Err(BeamError::ComplexCurvature(_))),
+            matches!(result, Err(e) if e.parameter() == "curvature"),
             "{bad:?}: {result:?}"
         );
     }
     let plain = [[good, c(0.0, 0.0)], [c(0.0, 0.0), good]];
     let result = GeneralAstigmaticBeam::from_complex_curvature(0.0, plain);
     assert!(
-        matches!(result, Err(BeamError::Wavelength(_))),
+        matches!(result, Err(e) if e.parameter() == "wavelength"),
         "{result:?}"
     );
 }
@@ -488,7 +491,7 @@ fn impossible_moments_are_rejected() {
             ..good
         });
         assert!(
-            matches!(position, Err(BeamError::PositionMoments(_))),
+            matches!(position, Err(e) if e.parameter() == "position"),
             "{position:?}"
         );
         let slope = result(SecondMoments {
@@ -496,13 +499,13 @@ fn impossible_moments_are_rejected() {
             ..good
         });
         assert!(
-            matches!(slope, Err(BeamError::SlopeMoments(_))),
+            matches!(slope, Err(e) if e.parameter() == "slope"),
             "{slope:?}"
         );
     }
     let mixed = result(SecondMoments { mixed: nan, ..good });
     assert!(
-        matches!(mixed, Err(BeamError::MixedMoments(_))),
+        matches!(mixed, Err(e) if e.parameter() == "mixed"),
         "{mixed:?}"
     );
     // ⟨x s⟩² above ⟨x²⟩⟨s²⟩ = 4e−14.
@@ -511,7 +514,7 @@ fn impossible_moments_are_rejected() {
         ..good
     });
     assert!(
-        matches!(correlated, Err(BeamError::PositionMoments(_))),
+        matches!(correlated, Err(e) if e.parameter() == "position"),
         "{correlated:?}"
     );
     // √(1e−8 · 2.6e−7) = 5.1e−8 is below λ/4π = 5.17e−8.
@@ -519,7 +522,10 @@ fn impossible_moments_are_rejected() {
         slope: DMat2::IDENTITY * 2.6e-7,
         ..good
     });
-    assert!(matches!(dark, Err(BeamError::MSquared(_))), "{dark:?}");
+    assert!(
+        matches!(dark, Err(e) if e.parameter() == "m_squared"),
+        "{dark:?}"
+    );
     // Either entry of a diagonal alone, and a twist beyond what the rest allows.
     let one_mode = DMat2::from_diagonal(DVec2::new(4e-6, 2.6e-7));
     let one_mode = result(SecondMoments {
@@ -527,7 +533,7 @@ fn impossible_moments_are_rejected() {
         ..good
     });
     assert!(
-        matches!(one_mode, Err(BeamError::MSquared(_))),
+        matches!(one_mode, Err(e) if e.parameter() == "m_squared"),
         "{one_mode:?}"
     );
     let spiral = DMat2::from_cols_array(&[0.0, -1.6e-7, 1.6e-7, 0.0]);
@@ -535,22 +541,34 @@ fn impossible_moments_are_rejected() {
         mixed: spiral,
         ..good
     });
-    assert!(matches!(spiral, Err(BeamError::MSquared(_))), "{spiral:?}");
+    assert!(
+        matches!(spiral, Err(e) if e.parameter() == "m_squared"),
+        "{spiral:?}"
+    );
     let wide = result(SecondMoments {
         slope: DMat2::IDENTITY * 0.07,
         ..good
     });
-    assert!(matches!(wide, Err(BeamError::Divergence(_))), "{wide:?}");
+    assert!(
+        matches!(wide, Err(e) if e.parameter() == "divergence"),
+        "{wide:?}"
+    );
     let wavelength = GeneralAstigmaticBeam::from_moments(-1.0, &good);
     assert!(
-        matches!(wavelength, Err(BeamError::Wavelength(_))),
+        matches!(wavelength, Err(e) if e.parameter() == "wavelength"),
         "{wavelength:?}"
     );
     let far = turning().propagated(1e35);
-    assert!(matches!(far, Err(BeamError::Radius(_))), "{far:?}");
+    assert!(
+        matches!(far, Err(e) if e.parameter() == "radius"),
+        "{far:?}"
+    );
     let lens = AstigmaticSystem::thin_lens(1e-6).unwrap();
     let sharp = turning().through(&lens);
-    assert!(matches!(sharp, Err(BeamError::Divergence(_))), "{sharp:?}");
+    assert!(
+        matches!(sharp, Err(e) if e.parameter() == "divergence"),
+        "{sharp:?}"
+    );
 }
 
 proptest! {

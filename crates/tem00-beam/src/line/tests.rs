@@ -238,7 +238,10 @@ fn impossible_geometry_is_rejected() {
     let with = |fan| LaserLine::new(focus(), fan, LineProfile::GaussianTan);
     for fan_angle in [0.0, -0.1, PI, f64::NAN, f64::INFINITY] {
         let result = with(FanGeometry { fan_angle, ..FAN });
-        assert!(matches!(result, Err(BeamError::FanAngle(_))), "{fan_angle}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "fan_angle"),
+            "{fan_angle}"
+        );
     }
     for apex_offset in [0.0, -1e-3, 80e-6, 1e31, f64::NAN] {
         let result = with(FanGeometry { apex_offset, ..FAN });
@@ -253,10 +256,13 @@ fn impossible_geometry_is_rejected() {
             ..FAN
         });
         assert!(
-            matches!(result, Err(BeamError::FocusDistance(_))),
+            matches!(result, Err(e) if e.parameter() == "focus_distance"),
             "{focus_distance}"
         );
     }
     let result = LaserLine::new(focus(), FAN, LineProfile::Powell { edge: 0.0 });
-    assert!(matches!(result, Err(BeamError::Edge(_))), "{result:?}");
+    assert!(
+        matches!(result, Err(e) if e.parameter() == "edge"),
+        "{result:?}"
+    );
 }

@@ -148,7 +148,7 @@ impl AstigmaticLight<f64> {
             let [xx, xy, yy] = [ellipse.xx, ellipse.xy, ellipse.yy].map(f64::from);
             let rounded = Ellipse::new(xx, xy, yy).determinant();
             if (rounded / area - 1.0).abs() > 0.01 {
-                return Err(BeamError::SinglePrecision(area));
+                return Err(BeamError::single_precision(area));
             }
         }
         Ok(light)

@@ -1,7 +1,7 @@
 use glam::DVec3;
 
 use crate::BeamError;
-use crate::gaussian::is_coordinate;
+use crate::range::is_coordinate;
 use crate::real::Real;
 
 /// The sine of the smallest accepted angle between the fan axis and the direction.
@@ -23,19 +23,29 @@ impl Placement {
     /// Returns the frame of the light.
     pub(super) fn frame(&self) -> Result<Frame<f64>, BeamError> {
         if !self.origin.to_array().into_iter().all(is_coordinate) {
-            return Err(BeamError::Origin(self.origin));
+            return Err(BeamError::Vector {
+                parameter: "origin",
+                value: self.origin,
+                allowed: "finite and within ±1e30 m",
+            });
         }
-        let ez = self
-            .direction
-            .try_normalize()
-            .ok_or(BeamError::Direction(self.direction))?;
-        let fan_axis = self
-            .fan_axis
-            .try_normalize()
-            .ok_or(BeamError::FanAxis(self.fan_axis))?;
+        let ez = self.direction.try_normalize().ok_or(BeamError::Vector {
+            parameter: "direction",
+            value: self.direction,
+            allowed: "finite and of some length",
+        })?;
+        let fan_axis = self.fan_axis.try_normalize().ok_or(BeamError::Vector {
+            parameter: "fan_axis",
+            value: self.fan_axis,
+            allowed: "finite, of some length and not parallel to the direction",
+        })?;
         let across = fan_axis.reject_from_normalized(ez);
         if across.length() < MIN_FAN_AXIS_SINE {
-            return Err(BeamError::FanAxis(self.fan_axis));
+            return Err(BeamError::Vector {
+                parameter: "fan_axis",
+                value: self.fan_axis,
+                allowed: "finite, of some length and not parallel to the direction",
+            });
         }
         let ey = ez.cross(across).normalize();
         Ok(Frame {
@@ -157,7 +167,10 @@ mod tests {
                 ..PLACEMENT
             }
             .frame();
-            assert!(matches!(result, Err(BeamError::Origin(_))), "{origin}");
+            assert!(
+                matches!(result, Err(e) if e.parameter() == "origin"),
+                "{origin}"
+            );
         }
         for direction in [nan, DVec3::ZERO, DVec3::Z * f64::INFINITY] {
             let result = Placement {
@@ -166,7 +179,7 @@ mod tests {
             }
             .frame();
             assert!(
-                matches!(result, Err(BeamError::Direction(_))),
+                matches!(result, Err(e) if e.parameter() == "direction"),
                 "{direction}"
             );
         }
@@ -177,7 +190,10 @@ mod tests {
                 ..PLACEMENT
             }
             .frame();
-            assert!(matches!(result, Err(BeamError::FanAxis(_))), "{fan_axis}");
+            assert!(
+                matches!(result, Err(e) if e.parameter() == "fan_axis"),
+                "{fan_axis}"
+            );
         }
     }
 }

@@ -418,15 +418,21 @@ fn batches_of_next_events_of_unequal_length_panic() {
 fn invalid_numbers_are_rejected() {
     for power in [-1e-3, 1e101, f64::NAN, f64::INFINITY] {
         let result = SpotLight::place(&beam(), 0.1, &placement(), power);
-        assert!(matches!(result, Err(BeamError::Power(_))), "{power}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "power"),
+            "{power}"
+        );
         let laser = laser_line(LineProfile::GaussianTan);
         let result = LineLight::place(&laser, &placement(), power);
-        assert!(matches!(result, Err(BeamError::Power(_))), "{power}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "power"),
+            "{power}"
+        );
     }
     for distance in [f64::NAN, f64::NEG_INFINITY, 1e31] {
         let result = SpotLight::place(&beam(), distance, &placement(), POWER);
         assert!(
-            matches!(result, Err(BeamError::WaistDistance(_))),
+            matches!(result, Err(e) if e.parameter() == "waist_distance"),
             "{distance}"
         );
     }
@@ -444,7 +450,7 @@ fn single_precision_is_refused_where_it_cannot_hold_the_light() {
         match light.to_f32() {
             Ok(_) => true,
             Err(error) => {
-                let expected = matches!(error, BeamError::SinglePrecision(_));
+                let expected = error.parameter() == "single_precision";
                 assert!(expected, "{error}");
                 false
             }

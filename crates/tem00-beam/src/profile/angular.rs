@@ -4,6 +4,7 @@ use std::sync::Arc;
 use super::density::{SlopeProfile, Variable};
 use crate::BeamError;
 use crate::normal::interior;
+use crate::range::check_list;
 use crate::real::Real;
 
 /// The smallest accepted distance between two angles, in radians: finer than any measurement.
@@ -70,7 +71,7 @@ impl AngularProfile {
     /// let unsorted = AngularProfile::new(&[-0.3, 0.3, 0.0], &[0.0, 1.0, 0.0]);
     /// assert!(matches!(
     ///     unsorted,
-    ///     Err(BeamError::ProfileAngle { index: 2, .. })
+    ///     Err(BeamError::Entry { parameter: "angles", index: 2, .. })
     /// ));
     /// ```
     pub fn new(angles: &[f64], powers: &[f64]) -> Result<Self, BeamError> {
@@ -84,7 +85,12 @@ impl AngularProfile {
         check_powers(powers)?;
         let peak = powers.iter().copied().fold(0.0, f64::max);
         if peak <= 0.0 {
-            return Err(BeamError::ProfileTotal(peak));
+            return Err(BeamError::out_of_range(
+                "powers",
+                peak,
+                "",
+                "greater than 0 at some angle",
+            ));
         }
         let table = angles.iter().zip(powers);
         let relative = table.map(|(&angle, power)| (angle, power / peak)).collect();
@@ -121,8 +127,8 @@ impl AngularProfile {
         let [first, last] = table.ends();
         let same = |pair: &[AngularKnot<f32>]| pair[0].angle >= pair[1].angle;
         match knots.windows(2).position(same) {
-            Some(index) => Err(BeamError::SinglePrecision(self.knots[index].angle)),
-            None if last - first <= 4.0 * table.margin() => Err(BeamError::SinglePrecision(first)),
+            Some(index) => Err(BeamError::single_precision(self.knots[index].angle)),
+            None if last - first <= 4.0 * table.margin() => Err(BeamError::single_precision(first)),
             None => Ok(knots),
         }
     }
@@ -147,7 +153,13 @@ fn check_angles(angles: &[f64]) -> Result<(), BeamError> {
     let mut least = f64::NEG_INFINITY;
     for (index, &angle) in angles.iter().enumerate() {
         if !(angle >= least && angle.abs() < FRAC_PI_2) {
-            return Err(BeamError::ProfileAngle { index, angle });
+            return Err(BeamError::Entry {
+                parameter: "angles",
+                index,
+                value: angle,
+                unit: "rad",
+                allowed: "ascending within (-π/2, π/2) rad",
+            });
         }
         least = angle + MIN_SPACING;
     }
@@ -156,13 +168,7 @@ fn check_angles(angles: &[f64]) -> Result<(), BeamError> {
 
 fn check_powers(powers: &[f64]) -> Result<(), BeamError> {
     let valid = |power: f64| power >= 0.0 && power.is_finite();
-    match powers.iter().position(|&power| !valid(power)) {
-        Some(index) => Err(BeamError::ProfilePower {
-            index,
-            power: powers[index],
-        }),
-        None => Ok(()),
-    }
+    check_list(valid, "powers", powers, "", "finite and not negative")
 }
 
 /// Integrates and normalises a table whose largest power is 1.

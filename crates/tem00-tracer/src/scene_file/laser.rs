@@ -190,8 +190,10 @@ fn table(section: &Section<'_>) -> Result<AngularProfile, Problem> {
         powers.iter().map(|power| power.quantity(&NUMBER)).collect();
     AngularProfile::new(&radians?, &relative?).map_err(|error| {
         let culprit = match error {
-            BeamError::ProfileAngle { index, .. } => angles.get(index),
-            BeamError::ProfilePower { index, .. } => powers.get(index),
+            BeamError::Entry {
+                parameter, index, ..
+            } if parameter == "angles" => angles.get(index),
+            BeamError::Entry { index, .. } => powers.get(index),
             _ => None,
         };
         match culprit {

@@ -158,15 +158,30 @@ fn a_graded_medium_without_gradient_is_free_space() {
 fn impossible_lengths_and_curvatures_are_rejected() {
     for bad in INFINITE.into_iter().chain([2e30, -2e30]) {
         let result = AbcdMatrix::free_space(bad);
-        assert!(matches!(result, Err(BeamError::Length(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "length"),
+            "{bad}"
+        );
         let result = AbcdMatrix::grin(1.0, bad);
-        assert!(matches!(result, Err(BeamError::Length(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "length"),
+            "{bad}"
+        );
         let result = AbcdMatrix::curved_mirror(bad);
-        assert!(matches!(result, Err(BeamError::Curvature(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "curvature"),
+            "{bad}"
+        );
         let result = AbcdMatrix::tilted_mirror(bad, 0.0);
-        assert!(matches!(result, Err(BeamError::Curvature(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "curvature"),
+            "{bad}"
+        );
         let result = AbcdMatrix::curved_interface(1.0, 1.5, bad);
-        assert!(matches!(result, Err(BeamError::Curvature(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "curvature"),
+            "{bad}"
+        );
     }
 }
 
@@ -174,14 +189,20 @@ fn impossible_lengths_and_curvatures_are_rejected() {
 fn impossible_media_and_angles_are_rejected() {
     for bad in INFINITE.into_iter().chain([-1.0, 2e30]) {
         let result = AbcdMatrix::grin_rod(1.5, bad, 1.0);
-        assert!(matches!(result, Err(BeamError::Gradient(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "gradient"),
+            "{bad}"
+        );
         let result = AbcdMatrix::thick_lens(&ThickLens {
             index: 1.5,
             front_curvature: 0.0,
             back_curvature: 0.0,
             thickness: bad,
         });
-        assert!(matches!(result, Err(BeamError::Thickness(_))), "{bad}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "thickness"),
+            "{bad}"
+        );
     }
     for bad in INFINITE.into_iter().chain([0.0, -1.5, 1e-4, 1e4]) {
         let results = [
@@ -190,7 +211,10 @@ fn impossible_media_and_angles_are_rejected() {
             AbcdMatrix::grin_rod(bad, 1.0, 1.0),
         ];
         for result in results {
-            assert!(matches!(result, Err(BeamError::Index(_))), "{bad}");
+            assert!(
+                matches!(result, Err(e) if e.parameter() == "index"),
+                "{bad}"
+            );
         }
     }
     for bad in INFINITE
@@ -199,7 +223,7 @@ fn impossible_media_and_angles_are_rejected() {
     {
         let result = AbcdMatrix::tilted_mirror(1.0, bad);
         assert!(
-            matches!(result, Err(BeamError::AngleOfIncidence(_))),
+            matches!(result, Err(e) if e.parameter() == "angle_of_incidence"),
             "{bad}"
         );
     }

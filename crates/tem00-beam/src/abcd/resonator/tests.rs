@@ -73,7 +73,7 @@ fn unstable_resonators_have_no_mode() {
         assert!(!round_trip.is_stable(), "{round_trip:?}");
         let result = round_trip.eigenmode();
         assert!(
-            matches!(result, Err(BeamError::HalfTrace(h)) if h.abs() >= 1.0 - 1e-15),
+            matches!(result, Err(BeamError::OutOfRange { parameter: "half_trace", value, .. }) if value.abs() >= 1.0 - 1e-15),
             "{result:?}"
         );
     }

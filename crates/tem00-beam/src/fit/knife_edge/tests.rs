@@ -2,6 +2,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::*;
+use crate::BeamError;
 use crate::CrossSection;
 use crate::fit::synthetic::{assert_chi_squared, assert_standard_normal, noise, pull};
 
@@ -179,11 +180,28 @@ fn hopeless_traces_are_named() {
     for bad in [f64::NAN, f64::INFINITY, -2e30] {
         let error = fit(&with(&x, bad), &powers);
         assert!(
-            matches!(error, FitError::Position { index: 2, .. }),
+            matches!(
+                error,
+                FitError::Argument(BeamError::Entry {
+                    parameter: "positions",
+                    index: 2,
+                    ..
+                })
+            ),
             "{error}"
         );
         let error = fit(&x, &with(&powers, bad));
-        assert!(matches!(error, FitError::Power { index: 2, .. }), "{error}");
+        assert!(
+            matches!(
+                error,
+                FitError::Argument(BeamError::Entry {
+                    parameter: "powers",
+                    index: 2,
+                    ..
+                })
+            ),
+            "{error}"
+        );
     }
     let jump: Vec<_> = (0..25).map(|i| if i < 12 { 1.0 } else { 0.0 }).collect();
     assert_eq!(fit(&x, &jump), FitError::Undetermined, "a jump");

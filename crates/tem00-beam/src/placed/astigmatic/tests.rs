@@ -359,7 +359,10 @@ fn the_widest_points_lie_on_the_bounds() {
 fn invalid_powers_are_rejected() {
     for power in [-1e-3, 1e101, f64::NAN, f64::INFINITY] {
         let result = AstigmaticLight::place(&general(), &placement(), power);
-        assert!(matches!(result, Err(BeamError::Power(_))), "{power}");
+        assert!(
+            matches!(result, Err(e) if e.parameter() == "power"),
+            "{power}"
+        );
     }
 }
 
@@ -371,7 +374,7 @@ fn single_precision_is_refused_where_it_cannot_hold_the_light() {
         match light.to_f32() {
             Ok(_) => false,
             Err(error) => {
-                assert!(matches!(error, BeamError::SinglePrecision(_)), "{error}");
+                assert!(error.parameter() == "single_precision", "{error}");
                 true
             }
         }

@@ -103,7 +103,11 @@ fn either_light_refuses_the_profile_of_the_other() {
     let error = TabulatedLineLight::place(&smooth, &placement(), POWER).unwrap_err();
     assert_eq!(error, BeamError::NotTabulated, "no table");
     let error = TabulatedLineLight::place(&tabulated, &placement(), -1.0).unwrap_err();
-    assert_eq!(error, BeamError::Power(-1.0), "negative power");
+    assert_eq!(
+        error,
+        BeamError::out_of_range("power", -1.0, "W", "between 0 W and 1e100 W"),
+        "negative power"
+    );
 }
 
 #[test]

@@ -121,16 +121,28 @@ fn tables_that_are_none_are_rejected() {
         let mut angles = [-0.3, 0.0, 0.3];
         angles[place] = bad;
         let error = reject(&angles, &[1.0; 3]);
-        let expected = matches!(error, BeamError::ProfileAngle { index, .. } if index == place);
+        let expected =
+            matches!(error, BeamError::Entry { parameter: "angles", index, .. } if index == place);
         assert!(expected, "{bad}: {error}");
     }
     for bad in [-1e-300, f64::NAN, f64::INFINITY] {
         let error = reject(&[-0.3, 0.0, 0.3], &[1.0, 1.0, bad]);
-        let expected = matches!(error, BeamError::ProfilePower { index: 2, .. });
+        let expected = matches!(
+            error,
+            BeamError::Entry {
+                parameter: "powers",
+                index: 2,
+                ..
+            }
+        );
         assert!(expected, "{bad}: {error}");
     }
     let error = reject(&[-0.3, 0.3], &[0.0; 2]);
-    assert_eq!(error, BeamError::ProfileTotal(0.0), "dark");
+    assert_eq!(
+        error,
+        BeamError::out_of_range("powers", 0.0, "", "greater than 0 at some angle"),
+        "dark"
+    );
 }
 
 #[test]
@@ -142,13 +154,13 @@ fn single_precision_keeps_angles_apart_or_says_so() {
     }
     let step = AngularProfile::new(&[0.0, 0.3, 0.3 + 1e-10, 0.5], &[1.0, 1.0, 0.0, 0.0]).unwrap();
     let error = step.to_f32().unwrap_err();
-    assert_eq!(error, BeamError::SinglePrecision(0.3), "one angle in f32");
+    assert_eq!(error, BeamError::single_precision(0.3), "one angle in f32");
     // Two or three units of 1.2e−7: the margin at either end would leave nothing to draw from.
     let thread = AngularProfile::new(&[1.0, 1.0 + 2.75e-7], &[1.0, 1.0]).unwrap();
     let error = thread.to_f32().unwrap_err();
     assert_eq!(
         error,
-        BeamError::SinglePrecision(1.0),
+        BeamError::single_precision(1.0),
         "a table of one angle"
     );
 }

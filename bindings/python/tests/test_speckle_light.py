@@ -55,7 +55,7 @@ def test_sums_have_the_contrast_of_their_shares() -> None:
     assert IncoherentSum.equal(9).contrast == pytest.approx(1 / 3, rel=1e-14)
     polarised = IncoherentSum.partially_polarised(0.6)
     assert polarised.contrast == pytest.approx(np.sqrt((1 + 0.36) / 2), rel=1e-14)
-    both = IncoherentSum.equal(3).and_(polarised)
+    both = IncoherentSum.equal(3).split_by(polarised)
     assert len(both.shares) == 6
     assert both.contrast == pytest.approx(polarised.contrast / np.sqrt(3), rel=1e-14)
     assert both != polarised

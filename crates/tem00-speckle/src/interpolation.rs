@@ -2,7 +2,7 @@ pub(crate) mod covariance;
 pub(crate) mod spline;
 pub(crate) mod taps;
 
-/// How a look-up finds the amplitude between the samples of a slice.
+/// Interpolation of the amplitude between the samples of a slice.
 ///
 /// Each is linear in the amplitude and renormalised by the variance that it leaves, in closed form,
 /// so that the intensity is exponential with mean 1 at every coordinate. What they differ in is

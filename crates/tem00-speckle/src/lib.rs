@@ -14,11 +14,11 @@
 //!
 //! ```text
 //! IncoherentSum          several lasers, partial polarisation, a broad spectrum
-//! CoherentBackground     a mirror's share, a reference wave
+//! CoherentBackground     a mirror reflection, a reference wave
 //! Exposure               a pattern that moves or boils while it is exposed
 //! PixelArray             boxes of any size at any pitch
 //! ObjectiveSpeckle       a lit area instead of a pupil: speckle without a lens
-//! PupilField::from_scatterers    a few point sources: speckle not fully developed
+//! PupilField::from_scatterers    a few point sources: partially developed speckle
 //! ```
 //!
 //! Files: [`SpeckleStack::write_to`] keeps a stack with its bits, to be read again or mapped into

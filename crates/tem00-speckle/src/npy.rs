@@ -22,7 +22,7 @@ const CHUNK: usize = 1 << 16;
 /// A NumPy file (NPY) whose header has been read and whose values follow.
 ///
 /// Versions 1 to 3 of the format are understood, both orders of the values (C and Fortran) and both
-/// orders of their bytes. Real values are `float32`, `float64`, `uint8` or `uint16`, complex ones
+/// byte orders. Real values are `float32`, `float64`, `uint8` or `uint16`, complex ones
 /// `complex64` or `complex128`; all are kept in single precision. An array of the shape
 /// (height, width) becomes a grid of height rows.
 ///
@@ -67,8 +67,8 @@ impl<R: Read> NpyReader<R> {
     ///
     /// # Errors
     ///
-    /// Returns an error if the reader does, or if the file is none of NumPy's, of an unknown version
-    /// or cut short.
+    /// Returns an error if the reader does, or if the file is not a NumPy file, of an unknown version
+    /// or truncated.
     pub fn new(mut reader: R) -> Result<Self, NpyError> {
         let header = Header::read(&mut reader)?;
         Ok(Self { reader, header })
@@ -84,10 +84,10 @@ impl<R: Read> NpyReader<R> {
         &self.header.element_type
     }
 
-    /// Tells whether the values are complex.
+    /// Returns whether the values are complex.
     pub fn is_complex(&self) -> bool {
         matches!(
-            ElementType::of(&self.header.element_type),
+            ElementType::from_name(&self.header.element_type),
             Some(ElementType::Complex(..))
         )
     }
@@ -96,7 +96,7 @@ impl<R: Read> NpyReader<R> {
     ///
     /// # Errors
     ///
-    /// Returns an error if the reader does, if the array has not two dimensions or no values, if
+    /// Returns an error if the reader does, if the array does not have two dimensions or is empty, if
     /// they are not real, if the file ends too early or if the memory is over the limit or refused.
     pub fn into_real(self, memory_limit: u64) -> Result<Grid<f32>, NpyError> {
         self.into_grid(memory_limit)
@@ -131,7 +131,7 @@ impl<R: Read> NpyReader<R> {
 
     /// The bytes of a value, and how they are understood.
     fn decoder<T: Element>(&self) -> Result<(usize, impl Fn(&[u8]) -> T + use<T, R>), NpyError> {
-        ElementType::of(&self.header.element_type)
+        ElementType::from_name(&self.header.element_type)
             .and_then(T::decoder)
             .ok_or_else(|| NpyError::ElementType {
                 found: self.header.element_type.clone(),

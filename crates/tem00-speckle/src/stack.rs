@@ -30,7 +30,7 @@ pub use plan::{StackNeeds, StackPlan};
 pub use slice_law::SliceLaw;
 use workers::map_with_scratch;
 
-/// Speckle that moves and decorrelates: slices of one random field behind a wandering pupil.
+/// Speckle that moves and decorrelates: slices of one random field behind a moving pupil.
 ///
 /// A look-up takes a position (x, y) in samples and a coordinate u in slices. Along x and y the
 /// pattern repeats after Q samples, along u after 2M slices. Two slices are correlated by how far
@@ -46,7 +46,7 @@ use workers::map_with_scratch;
 /// Slices hold complex amplitudes, not intensities: interpolated amplitudes of a Gaussian random
 /// process are Gaussian again, so that the intensity keeps its exponential law at every coordinate
 /// once it is divided by the variance that the interpolation leaves. In the plane that is the
-/// [`Interpolation`] of one's choice, a cubic B-spline by default, with the variance in closed form.
+/// chosen [`Interpolation`], a cubic B-spline by default, with the variance in closed form.
 /// Between slices it is a linear blend in the common frame of the lattice:
 ///
 /// ```text
@@ -57,7 +57,7 @@ use workers::map_with_scratch;
 /// with the pupil centres c, the variance v of the interpolated amplitude and its covariance w between
 /// the two slices, both as functions of the fractions of x and y. At the samples w is the overlap of the two
 /// pupils, counted on the lattice; elsewhere it is what interpolation makes of the light that both see. For
-/// a field from outside, v and w are those of the light that the pupils see, slice by slice.
+/// an external field, v and w are those of the light that the pupils see, slice by slice.
 ///
 /// # Validity
 ///
@@ -66,7 +66,7 @@ use workers::map_with_scratch;
 /// - The spline's rms error of the field is 4.3e−3 at a speckle size of 2 samples and 2e−4 at 4.
 ///   It changes the autocovariance by up to 3.8e−3 and 1.3e−4, but neither mean nor contrast.
 /// - The mean is 1 at every coordinate but for 3e−6, the rounding of `f32`. The one exception is M = 1,
-///   where both pupils may meet the same points of the rim from opposite sides: their share is 1/N
+///   where both pupils may meet the same points of the rim from opposite sides: the overlap is 1/N
 ///   for a disc and up to 1/C for a rectangle.
 /// - Between slices the correlation is that of the blend, which the methods below take in:
 ///
@@ -190,7 +190,7 @@ impl SpeckleStack {
         self.law.path
     }
 
-    /// Returns how look-ups interpolate in the plane.
+    /// Returns the interpolation in the plane.
     pub const fn interpolation(&self) -> Interpolation {
         self.interpolation
     }

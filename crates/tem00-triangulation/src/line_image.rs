@@ -94,7 +94,7 @@ impl LineImage {
         Ok(Self {
             data,
             samples,
-            light: IncoherentSum::equal(data.patterns as usize)?.and(&polarised)?,
+            light: IncoherentSum::equal(data.patterns as usize)?.split_by(&polarised)?,
             period,
             speckle,
         })

@@ -125,11 +125,9 @@ impl IncoherentSum {
         Ok(Self(sum.or_raise()?))
     }
 
-    /// Return the light that is both: every pattern of this sum is split as `other` is.
-    ///
-    /// `and` is a word of Python, hence the underscore.
-    fn and_(&self, other: &Self) -> PyResult<Self> {
-        Ok(Self(self.0.and(&other.0).or_raise()?))
+    /// Return this sum with every pattern split as `other` is: light that both laws divide.
+    fn split_by(&self, other: &Self) -> PyResult<Self> {
+        Ok(Self(self.0.split_by(&other.0).or_raise()?))
     }
 
     /// Shares of the patterns, which sum to 1, float64 of shape (n,).

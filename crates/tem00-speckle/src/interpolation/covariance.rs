@@ -348,7 +348,7 @@ fn basis<const N: usize>(nodes: [f64; N]) -> [[f64; N]; N] {
     })
 }
 
-/// The mean square of one slice, in place of the sum over lags.
+/// The mean square of one slice as a polynomial, instead of the sum over lags.
 pub(crate) fn mean_square(variance: &Variance, interpolation: Interpolation) -> Even {
     let (basis, fractions) = (basis(nodes::<EVEN>()), fractions());
     // For each lag, the polynomial of Σ w(t) w(t + lag).

@@ -14,7 +14,7 @@ use crate::{
     pupil::{PupilField, mask::Mask},
 };
 
-/// What the pupil point k is multiplied with: the reciprocal of the spline's Fourier transform,
+/// Factor on the pupil point k: the reciprocal of the spline's Fourier transform,
 /// `sinc⁻⁴(π k / Q)`. The other interpolations go through the samples themselves.
 pub(crate) fn prefilter(k: i64, size: usize, interpolation: Interpolation) -> f64 {
     match interpolation {
@@ -59,8 +59,8 @@ impl Variance {
         Self::new(field, interpolation, |y| field.mask.powers(y))
     }
 
-    /// The variance of what the pupil sees of a field from outside, given over the mask's box.
-    pub(crate) fn of(
+    /// The variance of the external field in the pupil, given over the mask's box.
+    pub(crate) fn of_light(
         seen: &Grid<Complex<f32>>,
         field: &PupilField,
         interpolation: Interpolation,
@@ -154,7 +154,7 @@ pub(crate) fn lag_products(interpolation: Interpolation, f: f64) -> [f64; 4] {
     core::array::from_fn(|lag| w[lag..].iter().zip(&w).map(|(a, b)| a * b).sum())
 }
 
-/// What interpolation at the fraction `f` makes of the wave of the pupil point k, over that wave.
+/// Response of the interpolation at the fraction `f` to the wave of the pupil point k, over that wave.
 ///
 /// ```text
 /// g(k; f) = b(k) Σ w(t) exp(−2πi k (t − f) / Q)

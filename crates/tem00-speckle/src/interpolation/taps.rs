@@ -45,12 +45,12 @@ impl Period {
         let (mut cells, mut fractions) = ([0; L], [0.0; L]);
         for (x, (cell, fraction)) in x.iter().zip(cells.iter_mut().zip(&mut fractions)) {
             let rest = x - round(x * self.reciprocal) * self.length;
-            let place = rest + if rest < 0.0 { self.length } else { 0.0 };
-            let nearest = round(place);
-            let floor = nearest - if nearest > place { 1.0 } else { 0.0 };
+            let position = rest + if rest < 0.0 { self.length } else { 0.0 };
+            let nearest = round(position);
+            let floor = nearest - if nearest > position { 1.0 } else { 0.0 };
             let floor = if floor < last { floor } else { last };
-            *cell = whole(floor);
-            *fraction = place - floor;
+            *cell = low_bits(floor);
+            *fraction = position - floor;
         }
         (cells, fractions)
     }
@@ -81,7 +81,7 @@ fn round(x: f64) -> f64 {
 /// A whole number below 2³², from the last bits of its sum with a large one.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
-fn whole(x: f64) -> usize {
+fn low_bits(x: f64) -> usize {
     (x + ROUNDING).to_bits() as u32 as usize
 }
 
@@ -96,7 +96,7 @@ pub(crate) struct Taps<const N: usize, const L: usize> {
     /// The fractions that the weights belong to.
     pub(crate) fractions: [f32; L],
     /// The coordinates that the taps stand for, in one period.
-    pub(crate) places: [f64; L],
+    pub(crate) positions: [f64; L],
 }
 
 /// Interpolation by N taps along an axis.
@@ -109,7 +109,7 @@ impl<const L: usize> Kernel<L> for Taps<4, L> {
     #[inline(always)]
     fn around(x: &[f64; L], period: &Period) -> Self {
         let (cells, f) = period.split(x);
-        let fractions = single(&f);
+        let fractions = to_single(&f);
         let mut weights = [[0.0; L]; 4];
         let mut first = cells;
         for i in 0..L {
@@ -124,7 +124,7 @@ impl<const L: usize> Kernel<L> for Taps<4, L> {
             first,
             weights,
             fractions,
-            places: places(&cells, &f),
+            positions: positions(&cells, &f),
         }
     }
 }
@@ -133,12 +133,12 @@ impl<const L: usize> Kernel<L> for Taps<2, L> {
     #[inline(always)]
     fn around(x: &[f64; L], period: &Period) -> Self {
         let (cells, f) = period.split(x);
-        let fractions = single(&f);
+        let fractions = to_single(&f);
         Self {
             first: cells,
             weights: [fractions.map(|f| 1.0 - f), fractions],
             fractions,
-            places: places(&cells, &f),
+            positions: positions(&cells, &f),
         }
     }
 }
@@ -155,14 +155,14 @@ impl<const L: usize> Kernel<L> for Taps<1, L> {
             first: cells,
             weights: [[1.0; L]],
             fractions: [0.0; L],
-            places: cells.map(|n| n as f64),
+            positions: cells.map(|n| n as f64),
         }
     }
 }
 
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
-fn single<const L: usize>(x: &[f64; L]) -> [f32; L] {
+fn to_single<const L: usize>(x: &[f64; L]) -> [f32; L] {
     let mut single = [0.0; L];
     for (single, x) in single.iter_mut().zip(x) {
         *single = *x as f32;
@@ -171,12 +171,12 @@ fn single<const L: usize>(x: &[f64; L]) -> [f32; L] {
 }
 
 #[inline(always)]
-fn places<const L: usize>(cells: &[usize; L], fractions: &[f64; L]) -> [f64; L] {
-    let mut places = [0.0; L];
-    for (place, (cell, f)) in places.iter_mut().zip(cells.iter().zip(fractions)) {
-        *place = *cell as f64 + f;
+fn positions<const L: usize>(cells: &[usize; L], fractions: &[f64; L]) -> [f64; L] {
+    let mut positions = [0.0; L];
+    for (position, (cell, f)) in positions.iter_mut().zip(cells.iter().zip(fractions)) {
+        *position = *cell as f64 + f;
     }
-    places
+    positions
 }
 
 /// The four taps of the cubic B-spline that reach the fraction `f` between the second and the third.

@@ -47,7 +47,7 @@ use crate::{SpeckleError, SpeckleField, SpecklePattern, complex::to_c64};
 pub struct CoherentBackground {
     beam_ratio: f64,
     phase: f64,
-    /// What is added to the amplitude.
+    /// The wave added to the amplitude.
     wave: Complex<f64>,
 }
 
@@ -105,7 +105,7 @@ impl CoherentBackground {
         (amplitude + self.wave).norm_sqr() / (1.0 + self.beam_ratio)
     }
 
-    /// Returns the intensity of the whole `field` on the background.
+    /// Returns the intensity of `field` on the background.
     pub fn pattern(&self, field: &SpeckleField) -> SpecklePattern {
         let values = field.values().map(|&u| to_f32(self.intensity(u)));
         SpecklePattern::new(values, field.speckle_size())

@@ -17,7 +17,7 @@ use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch, complex::t
 /// ```
 ///
 /// The *image drift* T moves the pattern over the sensor; the *pupil drift* s moves the light over the
-/// pupil, so that the speckle boils in its place. The exposure is centred: at t = 0 the pattern is the
+/// pupil, so that the speckle boils where it is. The exposure is centred: at t = 0 the pattern is the
 /// one that does not move. The mean is exactly 1 where that of the still pattern is.
 ///
 /// ```text
@@ -137,8 +137,8 @@ impl Exposure {
         let mut sum = moment.clone();
         let mut scratch = SpeckleScratch::default();
         for time in self.times() {
-            let place = [0, 1].map(|axis| offset[axis] + self.pupil_drift[axis] * time);
-            field.pattern_into(place, defocus, &mut moment, &mut scratch);
+            let position = [0, 1].map(|axis| offset[axis] + self.pupil_drift[axis] * time);
+            field.pattern_into(position, defocus, &mut moment, &mut scratch);
             match &mut smear {
                 Some(smear) => smear.add(&moment, time),
                 None => add(&mut sum, &moment),

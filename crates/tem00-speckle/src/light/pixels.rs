@@ -50,7 +50,7 @@ pub struct PixelArray {
 impl PixelArray {
     /// The largest number of pixels along an axis.
     pub const MAX_COUNT: usize = 1 << 15;
-    /// The largest length, in samples: the place of a pixel is known to 10⁻⁴ of a sample there.
+    /// The largest length, in samples: the position of a pixel is known to 10⁻⁴ of a sample there.
     pub const MAX_LENGTH: f64 = 1e12;
 
     /// Creates an array of `count` pixels, of the size of their `pitch` in samples, along x and y.
@@ -175,8 +175,8 @@ impl PixelArray {
         let mut scratch = Fft2Scratch::default();
         let mut weights = Grid::filled(period, self.count[axis], 0.0);
         for (i, row) in weights.values_mut().chunks_exact_mut(period).enumerate() {
-            let place = self.origin[axis] + i as f64 * self.pitch[axis];
-            let turns = place.rem_euclid(length) / length;
+            let position = self.origin[axis] + i as f64 * self.pitch[axis];
+            let turns = position.rem_euclid(length) / length;
             for (k, value) in spectrum.values_mut().iter_mut().enumerate() {
                 *value = to_c32(wave(frequency(k, period) * turns) * box_spectrum[k]);
             }

@@ -16,7 +16,7 @@ use crate::{PupilField, SpeckleError, SpecklePattern};
 ///
 /// # Patterns and stacks
 ///
-/// [`pattern`](Self::pattern) adds whole patterns: pass [`PupilField::pattern`], or a closure that
+/// [`pattern`](Self::pattern) adds patterns: pass [`PupilField::pattern`], or a closure that
 /// displaces the pupil or exposes. For look-ups, build one stack per [field](Self::fields) and weigh
 /// what they return with [`intensity`](Self::intensity). Coordinates and correlations stay those of
 /// one stack: equal motion leaves every part of the sum with the same correlation.
@@ -29,7 +29,7 @@ use crate::{PupilField, SpeckleError, SpecklePattern};
 /// use tem00_speckle::{IncoherentSum, PupilField, SlicePath, SpeckleStack};
 ///
 /// let lasers = IncoherentSum::weighted(&[2.0, 1.0])?;
-/// let light = lasers.and(&IncoherentSum::partially_polarised(0.0)?)?;
+/// let light = lasers.split_by(&IncoherentSum::partially_polarised(0.0)?)?;
 /// assert!((light.contrast() - (5.0_f64 / 9.0 / 2.0).sqrt()).abs() < 1e-12);
 ///
 /// let field = PupilField::new(64, 16, 1)?;
@@ -66,7 +66,7 @@ pub struct Bandwidth {
     pub path_spread: f64,
 }
 
-/// The share of the light that the last parts of a spectrum may hold, to be left out.
+/// Largest fraction of the light in the last parts of a spectrum that are left out.
 const NEGLIGIBLE_SHARE: f64 = 1e-4;
 
 impl IncoherentSum {
@@ -103,7 +103,7 @@ impl IncoherentSum {
                 weight: weights[index],
             });
         }
-        // The largest first: the sum of the weights may exceed all numbers.
+        // Scaled by the largest first: the sum of the weights may overflow.
         let largest = weights.iter().fold(0.0_f64, |a, &b| a.max(b));
         let scaled = || {
             let scaled = weights.iter().map(|weight| weight / largest);
@@ -200,12 +200,12 @@ impl IncoherentSum {
         Self::weighted(&weights)
     }
 
-    /// Returns the light that is both: every pattern of this sum is split as `other` is.
+    /// Returns this sum with every pattern split as `other` is: light that both laws divide.
     ///
     /// # Errors
     ///
     /// Returns an error if the product of both counts exceeds `MAX_PATTERNS`.
-    pub fn and(&self, other: &Self) -> Result<Self, SpeckleError> {
+    pub fn split_by(&self, other: &Self) -> Result<Self, SpeckleError> {
         let count = self.shares.len() * other.shares.len();
         if count > Self::MAX_PATTERNS {
             return Err(not_a_count(count as f64));

@@ -24,7 +24,7 @@ pub(super) enum ElementType {
     Complex(Number, bool),
 }
 
-/// How a number is stored.
+/// Number types of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Number {
     /// `float32`.
@@ -39,7 +39,7 @@ pub(super) enum Number {
 
 impl ElementType {
     /// Understands a name such as `<c8`.
-    pub(super) fn of(name: &str) -> Option<Self> {
+    pub(super) fn from_name(name: &str) -> Option<Self> {
         let (order, kind) = name.split_at_checked(1)?;
         let highest_first = match order {
             "<" | "|" => false,
@@ -72,10 +72,10 @@ impl Number {
     #[expect(clippy::cast_possible_truncation, reason = "grids keep f32")]
     fn value(self, bytes: &[u8], highest_first: bool) -> f32 {
         let mut word = [0; 8];
-        let place = &mut word[..bytes.len().min(8)];
-        place.copy_from_slice(&bytes[..place.len()]);
+        let bytes_read = &mut word[..bytes.len().min(8)];
+        bytes_read.copy_from_slice(&bytes[..bytes_read.len()]);
         if highest_first {
-            place.reverse();
+            bytes_read.reverse();
         }
         let bits = u64::from_le_bytes(word);
         match self {

@@ -1,4 +1,4 @@
-//! What stands before the values.
+//! The header before the values.
 
 use std::io::Read;
 
@@ -10,12 +10,12 @@ use super::{
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 /// The values begin at a multiple of this.
 const BLOCK: usize = 64;
-/// The most bytes of a header: NumPy itself reads 10 000 unless it is told to trust the file.
+/// Maximum length of a header, in bytes: NumPy itself reads 10 000 unless it is told to trust the file.
 const LONGEST: usize = 1 << 16;
 /// NumPy leaves room for the first side to grow to this many digits.
 const GROWTH: usize = 21;
 
-/// What a header says of its array.
+/// Description of the array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Header {
     pub(super) element_type: String,
@@ -50,7 +50,7 @@ impl Header {
         }
         let mut text = vec![0; length];
         reader.read_exact(&mut text)?;
-        let text = str::from_utf8(&text).map_err(|_| NpyError::Header("it must be a text"))?;
+        let text = str::from_utf8(&text).map_err(|_| NpyError::Header("it must be text"))?;
         Self::parse(text)
     }
 
@@ -83,10 +83,10 @@ impl Header {
         if !entries.is_at_end() {
             return Err(NpyError::Header("nothing must follow its dictionary"));
         }
-        Self::of(found)
+        Self::from_entries(found)
     }
 
-    fn of(entries: [Option<Literal>; 3]) -> Result<Self, NpyError> {
+    fn from_entries(entries: [Option<Literal>; 3]) -> Result<Self, NpyError> {
         let [element_type, columns_first, shape] = entries;
         let element_type = match element_type {
             Some(Literal::Text(name) | Literal::Other(name)) => name,
@@ -96,7 +96,9 @@ impl Header {
             return Err(NpyError::Header("fortran_order must be True or False"));
         };
         let Some(Literal::Numbers(shape)) = shape else {
-            return Err(NpyError::Header("shape must be a tuple of whole numbers"));
+            return Err(NpyError::Header(
+                "shape must be a tuple of integers of at least 0",
+            ));
         };
         Ok(Self {
             element_type,

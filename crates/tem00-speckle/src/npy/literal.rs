@@ -8,7 +8,7 @@ pub(super) enum Literal {
     /// A string without escapes.
     Text(String),
     Boolean(bool),
-    /// A tuple or list of whole numbers that are not negative.
+    /// A tuple or list of integers of at least 0.
     Numbers(Vec<u64>),
     /// Anything else, as it is written: the type of a structured array.
     Other(String),
@@ -36,7 +36,7 @@ impl<'a> Literals<'a> {
         }
     }
 
-    /// Tells whether nothing but blanks is left.
+    /// Returns whether only blanks are left.
     pub(super) fn is_at_end(&self) -> bool {
         self.rest.trim_start().is_empty()
     }

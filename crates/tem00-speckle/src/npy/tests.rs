@@ -148,12 +148,12 @@ fn what_is_no_field_says_what_it_is() {
         (
             "negative",
             with("'descr': '<c8', 'shape': (-1, 2)"),
-            "whole numbers",
+            "integers of at least 0",
         ),
         (
             "huge",
             with("'descr': '<c8', 'shape': (99999999999999999999, 1)"),
-            "whole numbers",
+            "integers of at least 0",
         ),
         (
             "a line",

@@ -82,7 +82,7 @@ pub struct PupilField {
     pub(crate) transform: Fft2,
 }
 
-/// What a pattern is made for: samples, and lattice points across the pupil.
+/// Sizes of a pattern: samples, and lattice points across the pupil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Layout {
     pub(crate) size: [usize; 2],
@@ -162,8 +162,8 @@ impl PupilField {
         Self::build(seeded(seed), layout, Pupil::Circle)
     }
 
-    /// Creates a field of samples from outside behind a circular pupil: a measured or computed complex
-    /// amplitude in the pupil plane. [`NpyReader`](crate::NpyReader) reads one from a file of NumPy.
+    /// Creates a field of external samples behind a circular pupil: a measured or computed complex
+    /// amplitude in the pupil plane. [`NpyReader`](crate::NpyReader) reads one from a NumPy file.
     ///
     /// One sample is one lattice point, and the sample (⌊width/2⌋, ⌊height/2⌋) the origin, about
     /// which the undisplaced pupil stands. The field is zero beyond the samples. `size` and
@@ -201,7 +201,7 @@ impl PupilField {
     }
 
     /// Returns the same field behind a pupil of another diameter, for speckles `speckle_size` samples
-    /// wide. Samples from outside are shared, not copied.
+    /// wide. External samples are shared, not copied.
     ///
     /// # Errors
     ///
@@ -211,7 +211,7 @@ impl PupilField {
         Self::build(self.lattice, layout, self.pupil)
     }
 
-    /// Returns the same pupil with another law of phasors. Samples from outside stay as they are.
+    /// Returns the same pupil with another law of phasors. External samples stay as they are.
     #[must_use]
     pub const fn with_phasors(mut self, phasors: Phasors) -> Self {
         if let Source::Seeded(seeded) = &mut self.lattice.source {
@@ -220,7 +220,7 @@ impl PupilField {
         self
     }
 
-    /// Returns the same pupil with another, independent set of phasors. Samples from outside stay as
+    /// Returns the same pupil with another, independent set of phasors. External samples stay as
     /// they are.
     #[must_use]
     pub const fn with_seed(mut self, seed: u64) -> Self {
@@ -321,7 +321,7 @@ impl PupilField {
         &self.pupil
     }
 
-    /// Returns the seed, or `None` for samples from outside.
+    /// Returns the seed, or `None` for external samples.
     pub const fn seed(&self) -> Option<u64> {
         match &self.lattice.source {
             Source::Seeded(seeded) => Some(seeded.seed),
@@ -329,7 +329,7 @@ impl PupilField {
         }
     }
 
-    /// Returns the law of the phasors, or `None` for samples from outside.
+    /// Returns the law of the phasors, or `None` for external samples.
     pub const fn phasors(&self) -> Option<Phasors> {
         match &self.lattice.source {
             Source::Seeded(seeded) => Some(seeded.phasors),
@@ -337,7 +337,7 @@ impl PupilField {
         }
     }
 
-    /// Returns the samples from outside, or `None` for random phasors.
+    /// Returns the external samples, or `None` for random phasors.
     pub fn samples(&self) -> Option<&Grid<Complex<f32>>> {
         match &self.lattice.source {
             Source::Seeded(_) => None,

@@ -1,4 +1,4 @@
-//! What lies on the pupil lattice: random phasors addressed by seed and position, or samples.
+//! Values on the pupil lattice: random phasors addressed by seed and position, or samples.
 
 use core::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ pub(crate) struct Lattice {
     pub(crate) period: [i64; 2],
 }
 
-/// Where the values at the lattice points come from.
+/// Source of the values at the lattice points.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Source {
     Seeded(Seeded),
@@ -38,7 +38,7 @@ pub(crate) struct Seeded {
     pub(crate) phasors: Phasors,
 }
 
-/// What the key of the generator holds beside the seed; a new value would be a new family.
+/// Rest of the generator's key beside the seed; a new value would be a new family.
 const KEY: &[u8; 24] = b"tem00 speckle phasors v1";
 
 /// Streams from here on hold the magnitudes, those below the phases.
@@ -164,7 +164,7 @@ impl Seeded {
     }
 }
 
-/// An index that is not negative, as its place in the program shows.
+/// An index that the caller keeps from being negative.
 fn to_index(n: i64) -> usize {
     usize::try_from(n).unwrap_or(0)
 }

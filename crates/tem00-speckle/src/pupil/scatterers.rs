@@ -11,11 +11,11 @@ use crate::{
     pupil::{lattice::unit_phasor, mask::Mask},
 };
 
-/// What the key of the generator holds beside the seed; a new value would be a new family.
+/// Rest of the generator's key beside the seed; a new value would be a new family.
 const KEY: &[u8; 24] = b"tem00 few scatterers  v1";
 
 impl PupilField {
-    /// Creates the field of a few point sources of equal strength and random phase, at random places
+    /// Creates the field of a few point sources of equal strength and random phase, at random positions
     /// of a circular pupil: partially developed speckle.
     ///
     /// ```text
@@ -95,14 +95,14 @@ fn scatter(mask: &Mask, count: usize, generator: &mut ChaCha8Rng) -> Grid<Comple
         usize::try_from(reach).unwrap_or(usize::MAX)
     });
     let mut samples = Grid::filled(2 * x + 1, 2 * y + 1, Complex::new(0.0, 0.0));
-    let place = |k: i64, reach: usize| usize::try_from(k + to_signed(reach)).unwrap_or(usize::MAX);
+    let index = |k: i64, reach: usize| usize::try_from(k + to_signed(reach)).unwrap_or(usize::MAX);
     let mut points = points_of(mask);
     for taken in 0..count {
         // The points before `taken` are used up: Durstenfeld (1964).
         let other = taken + below(points.len() - taken, generator);
         points.swap(taken, other);
         let [kx, ky] = points[taken];
-        samples[(place(kx, x), place(ky, y))] = unit_phasor(generator.next_u32());
+        samples[(index(kx, x), index(ky, y))] = unit_phasor(generator.next_u32());
     }
     samples
 }

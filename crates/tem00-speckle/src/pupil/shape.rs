@@ -45,7 +45,7 @@ pub enum Pupil {
 }
 
 impl Pupil {
-    /// What a radius on the rim may exceed it by: the rounding of coordinates.
+    /// Factor by which a radius on the rim may exceed it: the rounding of coordinates.
     pub(crate) const RIM: f64 = 1.0 + 1e-12;
 
     /// Returns the overlap of the pupil with itself, displaced by `shift` diameters, in [0, 1].
@@ -86,7 +86,7 @@ impl Pupil {
         }
     }
 
-    /// Tells whether the proportions of the pupil are possible.
+    /// Checks the proportions of the pupil.
     ///
     /// # Errors
     ///
@@ -117,7 +117,7 @@ impl Pupil {
         }
     }
 
-    /// Whether the point at `p` diameters from the centre belongs to the pupil.
+    /// Returns whether the point at `p` diameters from the centre belongs to the pupil.
     pub(crate) fn contains(&self, [x, y]: [f64; 2]) -> bool {
         let rim = 0.5 * Self::RIM;
         match self {
@@ -131,7 +131,7 @@ impl Pupil {
         }
     }
 
-    /// Whether the transmission is other than 0 or 1.
+    /// Returns whether the transmission is other than 0 or 1.
     pub(crate) const fn is_weighted(&self) -> bool {
         matches!(self, Self::Gaussian { .. } | Self::Sampled(_))
     }

@@ -42,12 +42,12 @@ pub(crate) struct View<'a> {
     defocus: f64,
 }
 
-/// What a pupil selects from the lattice, over the box of its mask.
+/// Values that a pupil selects from the lattice, over the box of its mask.
 struct Selection<'a> {
     lattice: &'a Lattice,
     view: &'a View<'a>,
     factors: Option<Separable>,
-    /// Of samples from outside: what makes the sum of their squares 1.
+    /// Of external samples: the factor that makes the sum of their squares 1.
     gain: Option<f64>,
 }
 
@@ -195,8 +195,8 @@ impl PupilField {
             offset.iter().all(|x| x.is_finite()) && defocus.is_finite(),
             "the offset {offset:?} or the defocus {defocus} is not finite"
         );
-        let place = |axis: usize| lattice_point(offset[axis], self.diameter()[axis]);
-        let [(x, fx), (y, fy)] = [place(0), place(1)];
+        let position = |axis: usize| lattice_point(offset[axis], self.diameter()[axis]);
+        let [(x, fx), (y, fy)] = [position(0), position(1)];
         let on_lattice = fx.abs() + fy.abs() <= 0.0;
         View {
             centre: [x, y],
@@ -219,8 +219,8 @@ impl PupilField {
         }
     }
 
-    /// What the pupil sees of a field about a lattice point, over the box of its mask. The squares
-    /// of a field from outside sum to 1, or to 0 where there is no light.
+    /// The field in the pupil about a lattice point, over the box of its mask. The squares of an
+    /// external field sum to 1, or to 0 where there is no light.
     pub(crate) fn seen(&self, centre: [i64; 2]) -> Grid<Complex<f32>> {
         let view = self.view_of_point(centre);
         let selection = self.selection(&view, None);
@@ -238,7 +238,7 @@ impl PupilField {
         }
     }
 
-    /// What the pupil selects, its box at the corner of the transform's array.
+    /// The values in the pupil, its box at the corner of the transform's array.
     fn selection<'a>(
         &'a self,
         view: &'a View<'a>,
@@ -286,7 +286,7 @@ impl PupilField {
             .collect()
     }
 
-    /// scale · exp(−2πi corner x / Q): moves the pupil's centre from its place in the aperture to
+    /// scale · exp(−2πi corner x / Q): moves the pupil's centre from its position in the aperture to
     /// zero frequency.
     fn centring_phase(&self, view: &View<'_>, axis: usize, scale: f64) -> Vec<Complex<f32>> {
         let size = to_signed(self.size()[axis]);
@@ -330,8 +330,8 @@ impl Selection<'_> {
         let row = mask.row(y);
         // Where a span lies among the columns.
         let part = |span: Span| {
-            let place = |x: usize| x.clamp(columns.start, columns.end) - columns.start;
-            place(span.start)..place(span.end)
+            let column = |x: usize| x.clamp(columns.start, columns.end) - columns.start;
+            column(span.start)..column(span.end)
         };
         let inside = part(row.outer);
         values[..inside.start].fill(ZERO);
@@ -347,7 +347,7 @@ impl Selection<'_> {
         }
     }
 
-    /// What makes the sum of squares of samples from outside 1. Without any light it is 0.
+    /// The factor that makes the sum of squares of external samples 1; 0 without any light.
     fn gain(&self) -> f64 {
         let [width, height] = self.view.mask.extent();
         let mut row = vec![ZERO; width];
@@ -368,11 +368,11 @@ impl Selection<'_> {
 /// The lattice point nearest to `offset` diameters, and the way from there.
 fn lattice_point(offset: f64, diameter: f64) -> (i64, f64) {
     // So many diameters are a number of rounds of the lattice, which the remainder takes off exactly.
-    let place = offset % Lattice::SIDE as f64 * diameter;
-    let point = place.round();
-    let fraction = place - point;
+    let position = offset % Lattice::SIDE as f64 * diameter;
+    let point = position.round();
+    let fraction = position - point;
     // Whole numbers over the diameter, times the diameter, are whole but for this rounding.
-    let rounding = 2.0 * f64::EPSILON * place.abs();
+    let rounding = 2.0 * f64::EPSILON * position.abs();
     let on_lattice = fraction.abs() <= rounding;
     (to_i64(point), if on_lattice { 0.0 } else { fraction })
 }

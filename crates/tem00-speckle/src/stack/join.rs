@@ -36,7 +36,7 @@ pub(crate) struct Join {
     pub(crate) covariance: Covariance,
 }
 
-/// What slices of one stack have in common.
+/// Data that the slices of one stack share.
 struct Joiner<'a> {
     field: &'a PupilField,
     interpolation: Interpolation,
@@ -46,7 +46,7 @@ struct Joiner<'a> {
 }
 
 /// Joins the coefficients of the slices of `field`, and returns the variances: one for all slices of
-/// random phasors, one for each of light from outside.
+/// random phasors, one for each of external light.
 pub(super) fn join_all(
     field: &PupilField,
     path: SlicePath,
@@ -80,7 +80,7 @@ pub(super) fn join_all(
 }
 
 impl Joiner<'_> {
-    /// How the slice of the pupil at `centre` joins that at `next`, and its variance.
+    /// The join from the slice of the pupil at `centre` to that at `next`, and the variance of the first.
     fn join(&self, centre: [i64; 2], next: [i64; 2]) -> (Join, Variance) {
         let shift = self.field.shift(centre, next);
         if self.field.samples().is_none() {
@@ -91,7 +91,7 @@ impl Joiner<'_> {
         let (here, next) = (self.field.seen(centre), self.field.seen(next));
         let overlap = shared(&here, &next, shift);
         let covariance = self.responses.of_light(&here, &next, shift);
-        let variance = Variance::of(&here, self.field, self.interpolation);
+        let variance = Variance::of_light(&here, self.field, self.interpolation);
         (self.with(shift, overlap, covariance), variance)
     }
 

@@ -66,7 +66,7 @@ impl SpeckleStack {
     }
 
     /// Returns the mean of the intensity over a box of `size` samples about `centre`, at u: what a
-    /// pixel sees whose whole area takes part.
+    /// pixel sees with its full area.
     ///
     /// For renderers that multiply speckle onto a finished image, and for pixels that are not much
     /// smaller than a speckle: looked up at its centre, such a pixel would show too much contrast.
@@ -100,8 +100,8 @@ impl SpeckleStack {
             centre.iter().all(|c| c.is_finite()) && size.iter().all(|s| s.is_finite() && *s >= 0.0),
             "a box of the size {size:?} about {centre:?}"
         );
-        let places = self.places(&[u]);
-        let layer = self.layer(places.slices[0], places.between[0]);
+        let positions = self.positions(&[u]);
+        let layer = self.layer(positions.slices[0], positions.between[0]);
         let nodes = [0, 1].map(|axis| {
             let period = self.size()[axis] as f64;
             let finest = layer.finest(axis, period, self.speckle_size());
@@ -119,11 +119,11 @@ impl SpeckleStack {
     where
         Taps<N, 1>: Kernel<1>,
     {
-        let places = self.places(&[u]);
-        let layer = self.layer(places.slices[0], places.between[0]);
+        let positions = self.positions(&[u]);
+        let layer = self.layer(positions.slices[0], positions.between[0]);
         let [along_x, along_y, _] = &self.periods;
         let (x, y) = (Taps::around(&[x], along_x), Taps::around(&[y], along_y));
-        let [intensity] = layer.intensities::<N, 1>(&x, &y, &places.fractions);
+        let [intensity] = layer.intensities::<N, 1>(&x, &y, &positions.fractions);
         intensity
     }
 
@@ -154,13 +154,13 @@ impl SpeckleStack {
         Taps<N, 1>: Kernel<1>,
         Taps<N, LANES>: Kernel<LANES>,
     {
-        let places = self.places(u);
-        let (slice, between) = (places.slices[0], places.between[0]);
-        let alike = places
+        let positions = self.positions(u);
+        let (slice, between) = (positions.slices[0], positions.between[0]);
+        let alike = positions
             .slices
             .iter()
             .fold(true, |alike, s| alike & (*s == slice));
-        let alike = places
+        let alike = positions
             .between
             .iter()
             .fold(alike, |alike, b| alike & (*b == between));
@@ -171,7 +171,7 @@ impl SpeckleStack {
         let [along_x, along_y, _] = &self.periods;
         let (x, y) = (Taps::around(x, along_x), Taps::around(y, along_y));
         let layer = self.layer(slice, between);
-        *intensity = layer.intensities::<N, LANES>(&x, &y, &places.fractions);
+        *intensity = layer.intensities::<N, LANES>(&x, &y, &positions.fractions);
     }
 
     fn one_by_one<const N: usize>(&self, [x, y, u]: [&[f64]; 3], intensity: &mut [f64])
@@ -189,21 +189,21 @@ impl SpeckleStack {
     where
         Taps<N, 1>: Kernel<1>,
     {
-        let places = self.places(&[u]);
-        let layer = self.layer(places.slices[0], places.between[0]);
+        let positions = self.positions(&[u]);
+        let layer = self.layer(positions.slices[0], positions.between[0]);
         let [along_x, along_y, _] = &self.periods;
         let columns: Vec<(Taps<N, 1>, f64)> = columns
             .iter()
-            .map(|node| (Taps::around(&[node.place], along_x), node.weight))
+            .map(|node| (Taps::around(&[node.position], along_x), node.weight))
             .collect();
         let along = |y: &Taps<N, 1>| -> f64 {
             let terms = columns.iter();
             terms
-                .map(|(x, weight)| weight * layer.intensities(x, y, &places.fractions)[0])
+                .map(|(x, weight)| weight * layer.intensities(x, y, &positions.fractions)[0])
                 .sum()
         };
         rows.iter()
-            .map(|node| node.weight * along(&Taps::around(&[node.place], along_y)))
+            .map(|node| node.weight * along(&Taps::around(&[node.position], along_y)))
             .sum()
     }
 }

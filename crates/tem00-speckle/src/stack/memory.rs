@@ -4,10 +4,10 @@ use tem00_numerics::{Grid, available_memory};
 
 use crate::{Interpolation, SlicePath, SpeckleError, pupil::too_large};
 
-/// How a [`SpeckleStack`](crate::SpeckleStack) is built.
+/// Options of a [`SpeckleStack`](crate::SpeckleStack).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StackOptions {
-    /// How look-ups interpolate in the plane.
+    /// Interpolation in the plane.
     pub interpolation: Interpolation,
     /// The bytes that the slices may take, [`u64::MAX`] by default.
     ///

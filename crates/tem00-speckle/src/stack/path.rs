@@ -7,7 +7,7 @@ use tem00_numerics::{
 
 use crate::{Pupil, PupilField, SpeckleError, pupil::lattice::Lattice};
 
-/// The way the pupil takes over the lattice from slice to slice of a stack.
+/// Path of the pupil over the lattice from slice to slice of a stack.
 ///
 /// `half_period` is the number M of slices to the first uncorrelated one; the stack is cyclic with
 /// 2M slices. More slices cost memory and buy a smaller error of the blend between them.
@@ -68,7 +68,7 @@ impl SlicePath {
             .saturating_mul(self.slice_count() as u64)
     }
 
-    /// Tells whether a stack can follow this path.
+    /// Checks the number of slices and the length.
     ///
     /// # Errors
     ///
@@ -148,7 +148,7 @@ pub(crate) struct PathLaw {
     pub(crate) pupil: Pupil,
 }
 
-/// What a blend of two neighbouring slices has in common with a slice before them: all as overlaps
+/// Overlaps of a blend of two neighbouring slices with a slice before them: all as overlaps
 /// of pupils.
 ///
 /// ```text

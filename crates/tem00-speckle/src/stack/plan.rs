@@ -2,7 +2,7 @@ use tem00_numerics::cast::to_usize;
 
 use crate::{PupilField, SlicePath, SpeckleError, SpeckleStack, StackOptions};
 
-/// What a stack is to be looked up for.
+/// Requirements on a stack: the look-ups that it is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StackNeeds {
     /// Width and height of the image, in pixels.
@@ -92,8 +92,7 @@ impl StackPlan {
     /// Creates the plan of known sizes: of the pattern in samples, of the pupil in lattice points along each
     /// axis, and of the path.
     ///
-    /// Whether a pattern can have them is what [`field`](Self::field) says, as for the
-    /// [candidates](Self::candidates).
+    /// [`field`](Self::field) returns an error if a pattern cannot have them.
     pub const fn from_sizes(size: [usize; 2], diameter: [usize; 2], path: SlicePath) -> Self {
         Self {
             diameter,
@@ -249,13 +248,13 @@ impl StackPlan {
         }
     }
 
-    /// Whether the pattern repeats nothing within the region.
+    /// Returns whether the pattern repeats nothing within the region.
     pub fn holds_region(&self, needs: &StackNeeds) -> bool {
         (0..2).all(|axis| self.diameter[axis] as f64 >= needs.region[axis] / needs.speckle_size)
     }
 
-    /// Whether each frame has the speckle of its own motion. With two frames it always has: what is
-    /// beyond the reach is new.
+    /// Returns whether each frame has the speckle of its own motion. With two frames it always has:
+    /// speckle beyond the reach is new.
     pub fn holds_motion(&self, needs: &StackNeeds) -> bool {
         needs.frames <= 2 || needs.motion.is_none_or(|motion| motion <= self.reach())
     }

@@ -2,10 +2,10 @@
 
 use tem00_numerics::quadrature::gauss_legendre;
 
-/// A place and its share of a mean.
+/// A position and its weight in a mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Node {
-    pub(crate) place: f64,
+    pub(crate) position: f64,
     pub(crate) weight: f64,
 }
 
@@ -28,7 +28,7 @@ pub(crate) fn mean_nodes(centre: f64, size: f64, period: f64, finest: f64) -> Ve
     if whole > 0.0 {
         let count = (period / finest).floor() + 2.0;
         let node = |i| Node {
-            place: i * period / count,
+            position: i * period / count,
             weight: whole / count,
         };
         nodes.extend(counted(count).map(node));
@@ -41,7 +41,7 @@ pub(crate) fn mean_nodes(centre: f64, size: f64, period: f64, finest: f64) -> Ve
         let panel = |i| {
             let middle = middle + (i + 0.5 - 0.5 * count) * width;
             GAUSS.map(|(x, weight)| Node {
-                place: middle + 0.5 * width * x,
+                position: middle + 0.5 * width * x,
                 weight: 0.5 * weight * (1.0 - whole) / count,
             })
         };
@@ -70,7 +70,7 @@ mod tests {
     }
 
     fn sum(k: f64, nodes: &[Node], period: f64) -> f64 {
-        let term = |n: &Node| n.weight * (2.0 * PI * k * n.place / period + 1.0).cos();
+        let term = |n: &Node| n.weight * (2.0 * PI * k * n.position / period + 1.0).cos();
         nodes.iter().map(term).sum()
     }
 
@@ -106,7 +106,7 @@ mod tests {
             for centre in [-f64::MAX, -1e30, 0.0, 1e-30, 1e300, f64::MAX] {
                 let nodes = mean_nodes(centre, size, 48.0, 2.0);
                 assert!(nodes.len() < 200, "{} nodes", nodes.len());
-                let finite = |n: &Node| n.place.is_finite() && n.weight.is_finite();
+                let finite = |n: &Node| n.position.is_finite() && n.weight.is_finite();
                 assert!(nodes.iter().all(finite), "size {size:e} at {centre:e}");
             }
         }

@@ -227,7 +227,7 @@ impl Planner<'_> {
 fn shares(speckle: &SurfaceSpeckle) -> Result<Vec<f64>, TracerError> {
     let patterns = IncoherentSum::equal(speckle.patterns as usize)?;
     let waves = IncoherentSum::partially_polarised(speckle.polarisation)?;
-    Ok(patterns.and(&waves)?.shares().to_vec())
+    Ok(patterns.split_by(&waves)?.shares().to_vec())
 }
 
 impl PatternPlan {

@@ -191,12 +191,12 @@ fn parts_are_independent_of_each_other_and_of_neighbouring_seeds() {
 fn both_together_split_every_pattern() {
     let lasers = IncoherentSum::weighted(&[2.0, 1.0]).unwrap();
     let polarised = IncoherentSum::partially_polarised(0.6).unwrap();
-    let both = lasers.and(&polarised).unwrap();
+    let both = lasers.split_by(&polarised).unwrap();
     assert_eq!(both.shares().len(), 4, "{both:?}");
     let product = lasers.contrast() * polarised.contrast();
     assert!((both.contrast() - product).abs() < 1e-15, "{both:?}");
     let many = IncoherentSum::equal(100).unwrap();
-    assert_refused(many.and(&many), COUNT, 10_000);
+    assert_refused(many.split_by(&many), COUNT, 10_000);
 }
 
 #[test]

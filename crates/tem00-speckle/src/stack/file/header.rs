@@ -1,4 +1,4 @@
-//! What stands before the coefficients.
+//! The header before the coefficients.
 
 use std::{io::Read, sync::Arc};
 
@@ -112,7 +112,7 @@ impl Header {
     }
 }
 
-/// What a look-up needs beside the coefficients of the slices.
+/// Writes the entries of the slices for a look-up.
 fn write_slices(body: &mut Writer, stack: &SpeckleStack) {
     for (index, slice) in stack.slices.iter().enumerate() {
         let [x, y] = slice.join.step;

@@ -1,4 +1,4 @@
-//! What a stack shows on a slice, or between two.
+//! Look-ups on a slice, or between two.
 
 use crate::{
     SpeckleStack,
@@ -18,9 +18,9 @@ pub(super) struct Layer<'a> {
     next: Option<&'a Slice>,
 }
 
-/// Where coordinates u lie: a slice, whether they are beyond it, and how far towards the next.
+/// Positions of coordinates u: the slice, whether they lie beyond it, and the fraction to the next.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Places<const L: usize> {
+pub(super) struct Positions<const L: usize> {
     pub(super) slices: [usize; L],
     pub(super) between: [bool; L],
     pub(super) fractions: [f32; L],
@@ -29,7 +29,7 @@ pub(super) struct Places<const L: usize> {
 impl SpeckleStack {
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "look-ups run in f32")]
-    pub(super) fn places<const L: usize>(&self, u: &[f64; L]) -> Places<L> {
+    pub(super) fn positions<const L: usize>(&self, u: &[f64; L]) -> Positions<L> {
         let (slices, f) = self.periods[2].split(u);
         let moves = self.slices.len() > 1;
         let (mut between, mut fractions) = ([false; L], [0.0; L]);
@@ -37,7 +37,7 @@ impl SpeckleStack {
             between[i] = moves & (f[i] > 0.0);
             fractions[i] = f[i] as f32;
         }
-        Places {
+        Positions {
             slices,
             between,
             fractions,
@@ -98,7 +98,7 @@ impl Layer<'_> {
         let turns = self.here.join.turns;
         let [re, im] = amplitude;
         for i in 0..L {
-            let phase = phase(turns[0] * x.places[i] + turns[1] * y.places[i]);
+            let phase = phase(turns[0] * x.positions[i] + turns[1] * y.positions[i]);
             let phasor = unit_phasor(phase);
             let (own, other) = (1.0 - f[i], f[i]);
             let [a, b] = [there[0][i], there[1][i]];
@@ -131,7 +131,7 @@ impl Layer<'_> {
 #[inline(always)]
 #[expect(
     clippy::cast_possible_truncation,
-    reason = "the bits of whole turns are meant to be lost"
+    reason = "the bits of complete turns are dropped on purpose"
 )]
 fn phase(turns: f64) -> u32 {
     // Between 2²⁰ and 2²¹ the last bit of a number is worth 2⁻³², so that the lower half of them

@@ -15,8 +15,8 @@ use pyo3::prelude::*;
 
 pub(crate) use columns::{Column, columns, evaluate};
 pub(crate) use images::{ComplexImage, Image, image_array};
-pub(crate) use numbers::{Numbers, length};
-pub(crate) use results::{Matrix3, Values, Vector, array, vector_array};
+pub(crate) use numbers::{Components, Numbers, Samples, Table, Vectors, length};
+pub(crate) use results::{Array, Matrix3, Values, Vector, array, vector_array};
 pub(crate) use whole::Whole;
 
 use crate::error::refused;

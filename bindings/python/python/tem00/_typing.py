@@ -1,7 +1,8 @@
 """Types of arguments and results, for annotations."""
 
-from collections.abc import Sequence
-from typing import TypeAlias
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Literal, SupportsIndex, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,3 +29,39 @@ Triple: TypeAlias = tuple[Numbers, Numbers, Numbers] | Sequence[Numbers] | Float
 
 ComplexArray: TypeAlias = NDArray[np.complexfloating] | NDArray[np.floating]
 """An array of complex numbers."""
+
+ComplexTable: TypeAlias = NDArray[np.complexfloating] | Sequence[Sequence[complex]]
+"""Rows of complex numbers."""
+
+Vectors: TypeAlias = Vector | Sequence[Sequence[float]]
+"""Vectors in the last axis of an array."""
+
+Table: TypeAlias = NDArray[np.floating] | Sequence[Sequence[float]]
+"""Rows of numbers."""
+
+Nested: TypeAlias = (
+    Sequence[Sequence[Sequence[Sequence[float]]]] | Sequence[Sequence[FloatArray]] | FloatArray
+)
+"""Rows of matrices."""
+
+Counts: TypeAlias = tuple[SupportsIndex, SupportsIndex] | Sequence[SupportsIndex]
+"""A width and a height, or any two counts."""
+
+Values: TypeAlias = float | FloatArray
+"""A number, or an array where an argument is one."""
+
+Cumulative: TypeAlias = Callable[[FloatArray], RealArray]
+"""A distribution function."""
+
+Real = TypeVar("Real", float, FloatArray)
+
+File: TypeAlias = str | PathLike[str]
+"""The path of a file."""
+
+Boundary: TypeAlias = Literal["periodic", "finite"]
+Dtype: TypeAlias = Literal["float64", "float32"] | type[np.float64] | type[np.float32]
+Errors: TypeAlias = Literal["relative", "equal"] | Vector
+FocusCurve: TypeAlias = Literal["equal_distance", "equal_plane"]
+Interpolation: TypeAlias = Literal["cubic_spline", "bilinear", "nearest"]
+Orientation: TypeAlias = Literal["screen_upright", "sensor_inverted"]
+Phasors: TypeAlias = Literal["unit", "gaussian"]

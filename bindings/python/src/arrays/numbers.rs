@@ -25,6 +25,18 @@ pub(crate) enum Numbers<'py> {
     Array(PyReadonlyArrayDyn<'py, f64>),
 }
 
+/// An array of one axis: the components of a vector, or a list.
+pub(crate) type Components<'py> = Numbers<'py>;
+
+/// An array of two axes.
+pub(crate) type Table<'py> = Numbers<'py>;
+
+/// An array of any shape, never a number.
+pub(crate) type Samples<'py> = Numbers<'py>;
+
+/// An array whose last axes hold vectors.
+pub(crate) type Vectors<'py> = Numbers<'py>;
+
 impl<'py> FromPyObject<'_, 'py> for Numbers<'py> {
     type Error = PyErr;
 

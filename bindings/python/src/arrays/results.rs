@@ -86,6 +86,9 @@ pub(crate) fn array<'py, T: Element>(
 /// A float where all arguments are numbers, else an array of their common shape.
 pub(crate) type Values<'py> = Bound<'py, PyAny>;
 
+/// An array, with vectors or matrices in its last axes.
+pub(crate) type Array<'py> = Bound<'py, PyAny>;
+
 /// A vector, in Python an array of shape (K,).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vector<const K: usize>([f64; K]);

@@ -9,7 +9,7 @@ use super::{
     located::LocatedBeam,
 };
 use crate::{
-    arrays::Numbers,
+    arrays::{Array, Vectors},
     error::{OrRaise, refused},
 };
 
@@ -294,11 +294,7 @@ impl AbcdMatrix {
     /// -------
     /// ndarray, shape (..., 2)
     ///     Height and slope of each ray behind.
-    fn transform_ray<'py>(
-        &self,
-        py: Python<'py>,
-        ray: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn transform_ray<'py>(&self, py: Python<'py>, ray: Vectors<'py>) -> PyResult<Array<'py>> {
         let columns = components::<2>(("ray", &ray))?;
         map_inner(py, columns, &[2], |ray| self.0.transform_ray(ray))
     }

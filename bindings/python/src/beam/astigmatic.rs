@@ -11,7 +11,7 @@ use super::{
     located::LocatedBeam,
 };
 use crate::{
-    arrays::Numbers,
+    arrays::{Array, Numbers},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -136,7 +136,7 @@ impl AstigmaticBeam {
     /// -------
     /// ndarray, shape (..., 2)
     ///     Radii in metres, with the axes last.
-    fn radii_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn radii_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Array<'py>> {
         map_vector(py, [("z", &z)], |[z]| self.0.radii_at(z))
     }
 
@@ -166,7 +166,7 @@ impl AstigmaticBeam {
     /// -------
     /// ndarray, shape (..., 2)
     ///     Curvatures in 1/m, with the axes last.
-    fn curvatures_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn curvatures_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Array<'py>> {
         map_vector(py, [("z", &z)], |[z]| self.0.curvatures_at(z))
     }
 
@@ -190,7 +190,7 @@ impl AstigmaticBeam {
         x: Numbers<'py>,
         y: Numbers<'py>,
         z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Array<'py>> {
         let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| {
             self.0.flux_per_watt(DVec3::from(p)).to_array()

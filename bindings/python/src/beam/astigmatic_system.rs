@@ -10,7 +10,10 @@ use super::{
     arguments::{OrRaiseAs, map_inner, matrices},
     matrices::{matrix_of, rows_of},
 };
-use crate::{arrays::Numbers, error::OrRaise};
+use crate::{
+    arrays::{Array, Vectors},
+    error::OrRaise,
+};
 
 /// The ray matrix of a paraxial system that may act differently in x and y, and mix them.
 ///
@@ -128,11 +131,7 @@ impl AstigmaticSystem {
     /// -------
     /// ndarray, shape (..., 2, 2)
     ///     Position and slope of each ray behind.
-    fn transform_ray<'py>(
-        &self,
-        py: Python<'py>,
-        ray: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn transform_ray<'py>(&self, py: Python<'py>, ray: Vectors<'py>) -> PyResult<Array<'py>> {
         let columns = matrices(("ray", &ray))?;
         map_inner(py, columns, &[2, 2], |[x, y, s_x, s_y]| {
             let ray = [DVec2::new(x, y), DVec2::new(s_x, s_y)];

@@ -5,7 +5,7 @@ use tem00_beam as physics;
 
 use super::arguments::{OrRaiseAs, try_map};
 use crate::{
-    arrays::Numbers,
+    arrays::{Numbers, Values},
     pickling::{Recipe, by_constructor},
 };
 
@@ -78,7 +78,7 @@ impl ComplexBeamParameter {
         &self,
         py: Python<'py>,
         effective_wavelength: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Values<'py>> {
         let argument = ("effective_wavelength", &effective_wavelength);
         try_map(py, argument, |wavelength| self.0.radius(wavelength))
     }

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use tem00_beam as physics;
 
 use super::arguments::{OrRaiseAs, components, coordinates, map, map_inner, try_map};
-use crate::arrays::{Numbers, Vector};
+use crate::arrays::{Numbers, Values, Vector, Vectors};
 
 /// The irradiance of a Gaussian beam of 1 W over a plane across it.
 ///
@@ -43,9 +43,9 @@ impl CrossSection {
     fn power_in_circle_at<'py>(
         &self,
         py: Python<'py>,
-        centre: Numbers<'py>,
+        centre: Vectors<'py>,
         radius: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Values<'py>> {
         let [x, y] = components(("centre", &centre))?;
         let [radius] = coordinates([("radius", &radius)])?;
         let columns = [x, y, radius];
@@ -65,11 +65,7 @@ impl CrossSection {
     /// -------
     /// float or ndarray
     ///     Radius in metres, in the shape of ``fraction``.
-    fn circle_radius<'py>(
-        &self,
-        py: Python<'py>,
-        fraction: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn circle_radius<'py>(&self, py: Python<'py>, fraction: Numbers<'py>) -> PyResult<Values<'py>> {
         let argument = ("fraction", &fraction);
         try_map(py, argument, |fraction| self.0.circle_radius(fraction))
     }
@@ -90,9 +86,9 @@ impl CrossSection {
     fn power_in_rectangle<'py>(
         &self,
         py: Python<'py>,
-        centre: Numbers<'py>,
-        size: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+        centre: Vectors<'py>,
+        size: Vectors<'py>,
+    ) -> PyResult<Values<'py>> {
         let [x, y] = components(("centre", &centre))?;
         let [width, height] = components(("size", &size))?;
         map_inner(py, [x, y, width, height], &[], |[x, y, width, height]| {

@@ -9,7 +9,7 @@ use super::{
     records::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
     rows::{Precision, array_of},
 };
-use crate::arrays::{Numbers, evaluate};
+use crate::arrays::{Array, Numbers, Values, Vectors, evaluate};
 
 /// A light that a renderer can evaluate and sample: what all placed lights have in common.
 ///
@@ -67,7 +67,7 @@ impl Emitter {
     /// ndarray, shape (6, 4) or (7, 4)
     ///     6 rows for a ``SpotLight``, 7 for all others.
     #[pyo3(signature = (dtype = Precision::Double))]
-    fn to_rows<'py>(&self, py: Python<'py>, dtype: Precision) -> PyResult<Bound<'py, PyAny>> {
+    fn to_rows<'py>(&self, py: Python<'py>, dtype: Precision) -> PyResult<Array<'py>> {
         Ok(match dtype {
             Precision::Double => array_of(py, &self.0.rows())?.into_any(),
             Precision::Single => {
@@ -107,7 +107,7 @@ impl Emitter {
         x: Numbers<'py>,
         y: Numbers<'py>,
         z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Values<'py>> {
         let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let [irradiance] = evaluate(py, points, [&[]], |[x, y, z], [out]| {
             self.0.ask(|light| light.irradiance_batch(x, y, z, out));
@@ -134,7 +134,7 @@ impl Emitter {
         x: Numbers<'py>,
         y: Numbers<'py>,
         z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Array<'py>> {
         let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| self.0.ask(|light| light.flux(p)))
     }
@@ -198,7 +198,7 @@ impl Emitter {
         x: Numbers<'py>,
         y: Numbers<'py>,
         z: Numbers<'py>,
-        u: Numbers<'py>,
+        u: Vectors<'py>,
     ) -> PyResult<Option<SampledEvent>> {
         let [x, y, z] = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let [u0, u1] = uniforms(&u)?;
@@ -239,8 +239,8 @@ impl Emitter {
         x: Numbers<'py>,
         y: Numbers<'py>,
         z: Numbers<'py>,
-        wi: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+        wi: Vectors<'py>,
+    ) -> PyResult<Values<'py>> {
         let [x, y, z] = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let [wi_x, wi_y, wi_z] = components(("wi", &wi))?;
         let columns = [x, y, z, wi_x, wi_y, wi_z];
@@ -260,7 +260,7 @@ impl Emitter {
     /// -------
     /// RaySample
     ///     The rays, in the shape of ``u[..., 0]``.
-    fn sample_ray<'py>(&self, py: Python<'py>, u: Numbers<'py>) -> PyResult<RaySample> {
+    fn sample_ray<'py>(&self, py: Python<'py>, u: Vectors<'py>) -> PyResult<RaySample> {
         let columns = uniforms::<4>(&u)?;
         let inner: [&[usize]; 6] = [&[3], &[], &[3], &[], &[], &[]];
         let [origin, flux, direction, cos, pdf_position, pdf_direction] =
@@ -297,7 +297,7 @@ impl Emitter {
         x: Numbers<'py>,
         y: Numbers<'py>,
         z: Numbers<'py>,
-        d: Numbers<'py>,
+        d: Vectors<'py>,
     ) -> PyResult<RayPdf> {
         let [x, y, z] = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let [d_x, d_y, d_z] = components(("d", &d))?;
@@ -334,8 +334,8 @@ impl Emitter {
         x: Numbers<'py>,
         y: Numbers<'py>,
         z: Numbers<'py>,
-        d: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+        d: Vectors<'py>,
+    ) -> PyResult<Values<'py>> {
         let [x, y, z] = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let [d_x, d_y, d_z] = components(("d", &d))?;
         map_inner(py, [x, y, z, d_x, d_y, d_z], &[], |[x, y, z, d @ ..]| {

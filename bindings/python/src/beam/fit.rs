@@ -8,7 +8,7 @@ use super::{
     located::LocatedBeam,
 };
 use crate::{
-    arrays::Numbers,
+    arrays::{Components, Numbers},
     error::{OrRaise, refused},
 };
 
@@ -81,7 +81,7 @@ pub(crate) struct CausticFit(physics::CausticFit);
 #[pymethods]
 impl CausticFit {
     #[new]
-    fn new(wavelength: f64, positions: Numbers<'_>, radii: Numbers<'_>) -> PyResult<Self> {
+    fn new(wavelength: f64, positions: Components<'_>, radii: Components<'_>) -> PyResult<Self> {
         Self::with_errors(wavelength, positions, radii, Errors::Relative)
     }
 
@@ -110,8 +110,8 @@ impl CausticFit {
     #[staticmethod]
     fn with_errors(
         wavelength: f64,
-        positions: Numbers<'_>,
-        radii: Numbers<'_>,
+        positions: Components<'_>,
+        radii: Components<'_>,
         errors: Errors<'_>,
     ) -> PyResult<Self> {
         let (positions, radii) = (list("positions", &positions)?, list("radii", &radii)?);
@@ -200,7 +200,7 @@ pub(crate) struct KnifeEdgeFit(physics::KnifeEdgeFit);
 #[pymethods]
 impl KnifeEdgeFit {
     #[new]
-    fn new(positions: Numbers<'_>, powers: Numbers<'_>) -> PyResult<Self> {
+    fn new(positions: Components<'_>, powers: Components<'_>) -> PyResult<Self> {
         let (positions, powers) = (list("positions", &positions)?, list("powers", &powers)?);
         let fit = physics::KnifeEdgeFit::new(positions, powers);
         fit.map(Self).map_err(|error| raised(error, "powers"))
@@ -224,7 +224,7 @@ impl KnifeEdgeFit {
     /// FitError
     ///     If the data do not determine a beam.
     #[staticmethod]
-    fn with_background(positions: Numbers<'_>, powers: Numbers<'_>) -> PyResult<Self> {
+    fn with_background(positions: Components<'_>, powers: Components<'_>) -> PyResult<Self> {
         let (positions, powers) = (list("positions", &positions)?, list("powers", &powers)?);
         let fit = physics::KnifeEdgeFit::with_background(positions, powers);
         fit.map(Self).map_err(|error| raised(error, "powers"))

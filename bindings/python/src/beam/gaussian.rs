@@ -9,7 +9,7 @@ use super::{
     cross_section::CrossSection,
 };
 use crate::{
-    arrays::Numbers,
+    arrays::{Array, Numbers, Values},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -102,11 +102,7 @@ impl GaussianBeam {
     /// -------
     /// float or ndarray
     ///     Depth of focus in metres, in the shape of ``growth``.
-    fn depth_of_focus<'py>(
-        &self,
-        py: Python<'py>,
-        growth: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn depth_of_focus<'py>(&self, py: Python<'py>, growth: Numbers<'py>) -> PyResult<Values<'py>> {
         try_map(py, ("growth", &growth), |g| self.0.depth_of_focus(g))
     }
 
@@ -145,7 +141,7 @@ impl GaussianBeam {
         x: Numbers<'py>,
         y: Numbers<'py>,
         z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Array<'py>> {
         let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| {
             self.0.flux_per_watt(DVec3::from(p)).to_array()

@@ -17,7 +17,7 @@ use super::{
     rows::array_of,
 };
 use crate::{
-    arrays::{Numbers, Vector},
+    arrays::{Array, Numbers, Vector},
     error::OrRaise,
 };
 
@@ -212,7 +212,7 @@ impl GeneralAstigmaticBeam {
     /// -------
     /// ndarray, shape (..., 2)
     ///     Radii in metres, with the axes last.
-    fn radii_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn radii_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Array<'py>> {
         map_vector(py, [("z", &z)], |[z]| self.0.radii_at(z))
     }
 
@@ -242,11 +242,7 @@ impl GeneralAstigmaticBeam {
     /// -------
     /// ndarray, shape (..., 2, 2)
     ///     Curvature of the wavefront of a coherent beam, in 1/m.
-    fn curvature_tensor_at<'py>(
-        &self,
-        py: Python<'py>,
-        z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn curvature_tensor_at<'py>(&self, py: Python<'py>, z: Numbers<'py>) -> PyResult<Array<'py>> {
         map_inner(py, coordinates([("z", &z)])?, &[2, 2], |[z]| {
             self.0.curvature_tensor_at(z).transpose().to_cols_array()
         })
@@ -291,7 +287,7 @@ impl GeneralAstigmaticBeam {
         x: Numbers<'py>,
         y: Numbers<'py>,
         z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Array<'py>> {
         let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| {
             self.0.flux_per_watt(DVec3::from(p)).to_array()

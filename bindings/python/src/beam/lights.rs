@@ -14,7 +14,7 @@ use super::{
     rows::{Rows, array_of},
 };
 use crate::{
-    arrays::Numbers,
+    arrays::Table,
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -98,7 +98,7 @@ impl SpotLight {
     /// -------
     /// SpotLight
     #[staticmethod]
-    fn from_rows(py: Python<'_>, rows: Numbers<'_>) -> PyResult<Py<Self>> {
+    fn from_rows(py: Python<'_>, rows: Table<'_>) -> PyResult<Py<Self>> {
         let rows = Rows::placed(&rows)?;
         rows.check_axis(4)?;
         rows.check_axis(5)?;
@@ -175,7 +175,7 @@ impl AstigmaticLight {
     /// -------
     /// AstigmaticLight
     #[staticmethod]
-    fn from_rows(py: Python<'_>, rows: Numbers<'_>) -> PyResult<Py<Self>> {
+    fn from_rows(py: Python<'_>, rows: Table<'_>) -> PyResult<Py<Self>> {
         let rows = Rows::placed(&rows)?;
         rows.check_ellipse(4)?;
         rows.check_ellipse(5)?;

@@ -10,7 +10,7 @@ use super::{
     profile::LineProfile,
 };
 use crate::{
-    arrays::Numbers,
+    arrays::{Array, Numbers, Values},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -153,7 +153,7 @@ impl LaserLine {
         py: Python<'py>,
         z: Numbers<'py>,
         theta: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Values<'py>> {
         check_theta(&theta)?;
         map(py, [("z", &z), ("theta", &theta)], |[z, theta]| {
             self.0.half_thickness_at_angle(z, theta)
@@ -179,7 +179,7 @@ impl LaserLine {
         x: Numbers<'py>,
         y: Numbers<'py>,
         z: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Array<'py>> {
         let points = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         map_inner(py, points, &[3], |p| {
             self.0.flux_per_watt(DVec3::from(p)).to_array()

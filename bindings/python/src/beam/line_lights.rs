@@ -12,7 +12,7 @@ use super::{
     rows::{Rows, array_of},
 };
 use crate::{
-    arrays::Numbers,
+    arrays::Table,
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -73,7 +73,7 @@ impl LineLight {
     /// -------
     /// LineLight
     #[staticmethod]
-    fn from_rows(py: Python<'_>, rows: Numbers<'_>) -> PyResult<Py<Self>> {
+    fn from_rows(py: Python<'_>, rows: Table<'_>) -> PyResult<Py<Self>> {
         let rows = Rows::placed(&rows)?;
         rows.check_axis(4)?;
         rows.check_fan()?;

@@ -9,7 +9,7 @@ use super::{
     rows::array_of,
 };
 use crate::{
-    arrays::Numbers,
+    arrays::{Components, Table},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -132,7 +132,7 @@ pub(crate) struct AngularProfile(pub(super) physics::AngularProfile);
 #[pymethods]
 impl AngularProfile {
     #[new]
-    fn new(angles: Numbers<'_>, powers: Numbers<'_>) -> PyResult<Self> {
+    fn new(angles: Components<'_>, powers: Components<'_>) -> PyResult<Self> {
         let (angles, powers) = (list("angles", &angles)?, list("powers", &powers)?);
         let profile = physics::AngularProfile::new(angles, powers);
         Ok(Self(profile.or_raise()?))
@@ -149,7 +149,7 @@ impl AngularProfile {
     /// -------
     /// AngularProfile
     #[staticmethod]
-    fn from_pairs(pairs: Numbers<'_>) -> PyResult<Self> {
+    fn from_pairs(pairs: Table<'_>) -> PyResult<Self> {
         let [_, 2] = pairs.shape() else {
             let shape = pairs.shape();
             let message = format!("pairs must have the shape [n, 2], got {shape:?}");

@@ -8,7 +8,7 @@ use super::{
     vectors::{Array2, array2, shown, vec2, vec3},
 };
 use crate::{
-    arrays::{Numbers, Vector},
+    arrays::{Components, Vector},
     error::OrRaise,
 };
 
@@ -40,11 +40,11 @@ impl Configuration {
     #[pyo3(signature = (*, wavelength, point, normal, illumination, camera, pupil))]
     fn new(
         wavelength: f64,
-        point: Numbers<'_>,
-        normal: Numbers<'_>,
+        point: Components<'_>,
+        normal: Components<'_>,
         illumination: PyRef<'_, Illumination>,
         camera: PyRef<'_, CameraFrame>,
-        pupil: Numbers<'_>,
+        pupil: Components<'_>,
     ) -> PyResult<Self> {
         let state = physics::Configuration::new(physics::ConfigurationData {
             wavelength,
@@ -93,7 +93,7 @@ impl Configuration {
         &self,
         py: Python<'py>,
         after: PyRef<'py, Self>,
-        pupil_point: Numbers<'py>,
+        pupil_point: Components<'py>,
     ) -> PyResult<Option<Array2<'py>>> {
         let pupil_point = vec2("pupil_point", &pupil_point)?;
         let moved = self.0.pupil_point_after(&after.0, pupil_point);

@@ -8,7 +8,7 @@ use super::{
     vectors::{orientation_name, orientation_of, shown, vec3},
 };
 use crate::{
-    arrays::{Named, Numbers, Vector, Whole, fill},
+    arrays::{Components, Named, Numbers, Values, Vector, Whole, fill},
     error::OrRaise,
 };
 
@@ -44,7 +44,7 @@ impl FieldSetup {
     fn new(
         geometry: PyRef<'_, ImagingGeometry>,
         camera: PyRef<'_, CameraFrame>,
-        pupil_centre: Numbers<'_>,
+        pupil_centre: Components<'_>,
         orientation: &str,
         pattern_speckle_size: f64,
         half_period: Whole<'_>,
@@ -119,7 +119,7 @@ impl FieldLight {
 
     /// Return spherical waves that diverge from a point of shape (3,), in metres.
     #[staticmethod]
-    fn point_source(position: Numbers<'_>) -> PyResult<Self> {
+    fn point_source(position: Components<'_>) -> PyResult<Self> {
         Ok(Self(Light::PointSource(vec3("position", &position)?)))
     }
 
@@ -153,10 +153,13 @@ impl FieldLight {
 /// Numbers where points were numbers, arrays of the common shape where they were arrays.
 #[pyclass(frozen, module = "tem00.decorrelation")]
 #[derive(Debug)]
-pub(crate) struct FieldSlices([Py<PyAny>; 8]);
+pub(crate) struct FieldSlices([Field; 8]);
+
+/// A number for one point, an array for many.
+type Field = Py<PyAny>;
 
 impl FieldSlices {
-    fn pair(&self, py: Python<'_>, first: usize) -> (Py<PyAny>, Py<PyAny>) {
+    fn pair(&self, py: Python<'_>, first: usize) -> (Field, Field) {
         (self.0[first].clone_ref(py), self.0[first + 1].clone_ref(py))
     }
 }
@@ -165,7 +168,7 @@ impl FieldSlices {
 impl FieldSlices {
     /// Motion of the speckle in the image along b1 and b2, in metres on the sensor.
     #[getter]
-    fn speckle_displacement(&self, py: Python<'_>) -> (Py<PyAny>, Py<PyAny>) {
+    fn speckle_displacement(&self, py: Python<'_>) -> (Field, Field) {
         self.pair(py, 0)
     }
 
@@ -173,25 +176,25 @@ impl FieldSlices {
     ///
     /// Infinite where the pattern counts as decorrelated because the speckle left the pupil.
     #[getter]
-    fn pupil_displacement(&self, py: Python<'_>) -> (Py<PyAny>, Py<PyAny>) {
+    fn pupil_displacement(&self, py: Python<'_>) -> (Field, Field) {
         self.pair(py, 2)
     }
 
     /// What is left of the old pattern as a correlation of intensity, in [0, 1].
     #[getter]
-    fn correlation(&self, py: Python<'_>) -> Py<PyAny> {
+    fn correlation(&self, py: Python<'_>) -> Field {
         self.0[4].clone_ref(py)
     }
 
     /// Where to look the pattern up, in pattern samples and not wrapped.
     #[getter]
-    fn pattern_coordinate(&self, py: Python<'_>) -> (Py<PyAny>, Py<PyAny>) {
+    fn pattern_coordinate(&self, py: Python<'_>) -> (Field, Field) {
         self.pair(py, 5)
     }
 
     /// Which slice of a circular stack to look up, from 0 to the half period.
     #[getter]
-    fn slice_coordinate(&self, py: Python<'_>) -> Py<PyAny> {
+    fn slice_coordinate(&self, py: Python<'_>) -> Field {
         self.0[7].clone_ref(py)
     }
 
@@ -288,7 +291,7 @@ methods! {
 }
 
 /// The arrays of the results.
-type Results<'py> = [Bound<'py, PyAny>; 8];
+type Results<'py> = [Values<'py>; 8];
 
 impl MotionField {
     /// Evaluates in light that is the same for all points.

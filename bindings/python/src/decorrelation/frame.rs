@@ -3,7 +3,7 @@ use tem00_decorrelation::{self as physics, DMat3};
 
 use super::vectors::{Array2, array2, mat3, shown, shown33, vec3};
 use crate::{
-    arrays::{Numbers, Vector},
+    arrays::{Components, Table, Vector},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -23,7 +23,7 @@ impl CameraFrame {
 impl CameraFrame {
     /// Return the frame of a rotation matrix of shape (3, 3) with the columns b1, b2 and b3.
     #[staticmethod]
-    fn from_axes(axes: Numbers<'_>) -> PyResult<Self> {
+    fn from_axes(axes: Table<'_>) -> PyResult<Self> {
         let frame = physics::CameraFrame::from_axes(mat3("axes", &axes)?);
         Ok(Self(frame.or_raise()?))
     }
@@ -37,7 +37,11 @@ impl CameraFrame {
     /// up : array of shape (3,)
     ///     Upward direction of any length, not along the view.
     #[staticmethod]
-    fn look_at(position: Numbers<'_>, target: Numbers<'_>, up: Numbers<'_>) -> PyResult<Self> {
+    fn look_at(
+        position: Components<'_>,
+        target: Components<'_>,
+        up: Components<'_>,
+    ) -> PyResult<Self> {
         let position = vec3("position", &position)?;
         let (target, up) = (vec3("target", &target)?, vec3("up", &up)?);
         let frame = physics::CameraFrame::look_at(position, target, up);
@@ -82,7 +86,7 @@ pub(crate) struct LineOfSight(pub(super) physics::LineOfSight);
 #[pymethods]
 impl LineOfSight {
     #[new]
-    fn new(camera: PyRef<'_, CameraFrame>, to_pupil: Numbers<'_>) -> PyResult<Self> {
+    fn new(camera: PyRef<'_, CameraFrame>, to_pupil: Components<'_>) -> PyResult<Self> {
         let sight = physics::LineOfSight::new(&camera.0, vec3("to_pupil", &to_pupil)?);
         Ok(Self(sight.or_raise()?))
     }
@@ -98,7 +102,7 @@ impl LineOfSight {
     /// -------
     /// array of shape (2,)
     ///     Components in the unit of the vector.
-    fn project<'py>(&self, py: Python<'py>, vector: Numbers<'py>) -> PyResult<Array2<'py>> {
+    fn project<'py>(&self, py: Python<'py>, vector: Components<'py>) -> PyResult<Array2<'py>> {
         let projected = self.0.project(vec3("vector", &vector)?);
         array2(py, "vector", projected)
     }

@@ -1,9 +1,9 @@
-use pyo3::{prelude::*, types::PyAny};
+use pyo3::prelude::*;
 use tem00_decorrelation::{self as physics, DVec2};
 
 use super::lens::{LensData, PupilDistances, ThickLensData};
 use crate::{
-    arrays::{Numbers, map, map_many},
+    arrays::{Numbers, Values, map, map_many},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -106,7 +106,7 @@ impl ImagingGeometry {
         pixel: [Numbers<'py>; 2],
         image_displacement: [Numbers<'py>; 2],
         pattern_speckle_size: f64,
-    ) -> PyResult<[Bound<'py, PyAny>; 2]> {
+    ) -> PyResult<[Values<'py>; 2]> {
         check_pattern(pattern_speckle_size)?;
         let named = coordinate_arguments(&pixel, &image_displacement);
         map_many(py, named, |[x, y, ax, ay]| {

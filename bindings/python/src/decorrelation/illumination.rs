@@ -6,7 +6,7 @@ use super::{
     vectors::{Array3, array3, vec3},
     wavefront::Wavefront,
 };
-use crate::{arrays::Numbers, error::OrRaise};
+use crate::{arrays::Components, error::OrRaise};
 
 /// A light source in the world: from where it lights each point.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
@@ -17,7 +17,7 @@ pub(crate) struct Illumination(pub(super) physics::Illumination);
 impl Illumination {
     /// Return collimated light from the direction to its source, of shape (3,) and any length.
     #[staticmethod]
-    fn collimated(direction_to_source: Numbers<'_>) -> PyResult<Self> {
+    fn collimated(direction_to_source: Components<'_>) -> PyResult<Self> {
         let direction = vec3("direction_to_source", &direction_to_source)?;
         Ok(Self(
             physics::Illumination::collimated(direction).or_raise()?,
@@ -26,14 +26,14 @@ impl Illumination {
 
     /// Return the light of a point source at a position of shape (3,), in metres.
     #[staticmethod]
-    fn point_source(position: Numbers<'_>) -> PyResult<Self> {
+    fn point_source(position: Components<'_>) -> PyResult<Self> {
         let light = physics::Illumination::point_source(vec3("position", &position)?);
         Ok(Self(light.or_raise()?))
     }
 
     /// Return light from its wavefront at a position of shape (3,), in metres.
     #[staticmethod]
-    fn near(position: Numbers<'_>, wavefront: PyRef<'_, Wavefront>) -> PyResult<Self> {
+    fn near(position: Components<'_>, wavefront: PyRef<'_, Wavefront>) -> PyResult<Self> {
         let light = physics::Illumination::near(vec3("position", &position)?, wavefront.0);
         Ok(Self(light.or_raise()?))
     }
@@ -44,7 +44,7 @@ impl Illumination {
     fn direction_from<'py>(
         &self,
         py: Python<'py>,
-        point: Numbers<'py>,
+        point: Components<'py>,
     ) -> PyResult<Option<Array3<'py>>> {
         let direction = self.0.direction_from(vec3("point", &point)?);
         Ok(direction.map(|direction| array3(py, direction)))

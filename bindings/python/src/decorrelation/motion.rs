@@ -8,7 +8,7 @@ use super::{
     wavefront::Wavefront,
 };
 use crate::{
-    arrays::{Numbers, Vector},
+    arrays::{Components, Vector},
     error::OrRaise,
 };
 
@@ -27,11 +27,11 @@ impl Motion {
     #[new]
     #[pyo3(signature = (*, surface = None, camera = None, source = None))]
     fn new(
-        surface: Option<Numbers<'_>>,
-        camera: Option<Numbers<'_>>,
-        source: Option<Numbers<'_>>,
+        surface: Option<Components<'_>>,
+        camera: Option<Components<'_>>,
+        source: Option<Components<'_>>,
     ) -> PyResult<Self> {
-        let of = |name, vector: Option<Numbers<'_>>| {
+        let of = |name, vector: Option<Components<'_>>| {
             vector.map_or(Ok(DVec3::ZERO), |vector| vec3(name, &vector))
         };
         Ok(Self(physics::Motion {
@@ -93,7 +93,7 @@ impl SurfacePoint {
     #[new]
     fn new(
         sight: PyRef<'_, LineOfSight>,
-        normal: Numbers<'_>,
+        normal: Components<'_>,
         wavefront: PyRef<'_, Wavefront>,
     ) -> PyResult<Self> {
         let normal = vec3("normal", &normal)?;

@@ -3,7 +3,7 @@ use tem00_decorrelation as physics;
 
 use super::vectors::{Array3, array3, mat3, shown, shown33, vec3};
 use crate::{
-    arrays::{Matrix3, Numbers, Vector},
+    arrays::{Components, Matrix3, Table, Vector},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -29,7 +29,7 @@ impl RigidMotion {
     }
 
     #[new]
-    fn new(rotation: Numbers<'_>, translation: Numbers<'_>) -> PyResult<Self> {
+    fn new(rotation: Table<'_>, translation: Components<'_>) -> PyResult<Self> {
         let rotation = mat3("rotation", &rotation)?;
         let motion = physics::RigidMotion::new(rotation, vec3("translation", &translation)?);
         Ok(Self(motion.or_raise()?))
@@ -37,7 +37,7 @@ impl RigidMotion {
 
     /// Return a translation of shape (3,), in metres.
     #[staticmethod]
-    fn along(translation: Numbers<'_>) -> PyResult<Self> {
+    fn along(translation: Components<'_>) -> PyResult<Self> {
         let motion = physics::RigidMotion::along(vec3("translation", &translation)?);
         Ok(Self(motion.or_raise()?))
     }
@@ -53,7 +53,7 @@ impl RigidMotion {
     /// angle : float
     ///     Angle in radians, right-handed.
     #[staticmethod]
-    fn about(pivot: Numbers<'_>, axis: Numbers<'_>, angle: f64) -> PyResult<Self> {
+    fn about(pivot: Components<'_>, axis: Components<'_>, angle: f64) -> PyResult<Self> {
         let (pivot, axis) = (vec3("pivot", &pivot)?, vec3("axis", &axis)?);
         let motion = physics::RigidMotion::about(pivot, axis, angle);
         // Of finite arguments, one at the end of the range makes the translation overflow.
@@ -71,7 +71,7 @@ impl RigidMotion {
     }
 
     /// Return where the motion takes a point of shape (3,), in metres.
-    fn point<'py>(&self, py: Python<'py>, point: Numbers<'py>) -> PyResult<Array3<'py>> {
+    fn point<'py>(&self, py: Python<'py>, point: Components<'py>) -> PyResult<Array3<'py>> {
         let moved = self.0.point(vec3("point", &point)?);
         if moved.is_finite() {
             return Ok(array3(py, moved));
@@ -81,7 +81,7 @@ impl RigidMotion {
     }
 
     /// Return where the motion turns a direction of shape (3,).
-    fn direction<'py>(&self, py: Python<'py>, direction: Numbers<'py>) -> PyResult<Array3<'py>> {
+    fn direction<'py>(&self, py: Python<'py>, direction: Components<'py>) -> PyResult<Array3<'py>> {
         Ok(array3(py, self.0.direction(vec3("direction", &direction)?)))
     }
 

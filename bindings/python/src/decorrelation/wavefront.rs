@@ -3,7 +3,7 @@ use tem00_decorrelation as physics;
 
 use super::vectors::{Array3, array3, mat3, shown, shown33, vec3};
 use crate::{
-    arrays::{Matrix3, Numbers, Vector},
+    arrays::{Components, Matrix3, Table, Vector},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -19,7 +19,7 @@ pub(crate) struct Wavefront(pub(super) physics::Wavefront);
 impl Wavefront {
     /// Return a plane wave from the direction to its source, of shape (3,) and any length.
     #[staticmethod]
-    fn plane(direction_to_source: Numbers<'_>) -> PyResult<Self> {
+    fn plane(direction_to_source: Components<'_>) -> PyResult<Self> {
         let direction = vec3("direction_to_source", &direction_to_source)?;
         Ok(Self(physics::Wavefront::plane(direction).or_raise()?))
     }
@@ -33,7 +33,7 @@ impl Wavefront {
     /// curvature : float
     ///     Curvature in 1/m.
     #[staticmethod]
-    fn spherical(direction_to_source: Numbers<'_>, curvature: f64) -> PyResult<Self> {
+    fn spherical(direction_to_source: Components<'_>, curvature: f64) -> PyResult<Self> {
         let direction = vec3("direction_to_source", &direction_to_source)?;
         let wave = physics::Wavefront::spherical(direction, curvature);
         Ok(Self(wave.or_raise()?))
@@ -51,8 +51,8 @@ impl Wavefront {
     ///     Curvatures along and across that axis, in 1/m.
     #[staticmethod]
     fn astigmatic(
-        direction_to_source: Numbers<'_>,
-        axis: Numbers<'_>,
+        direction_to_source: Components<'_>,
+        axis: Components<'_>,
         curvature_along: f64,
         curvature_across: f64,
     ) -> PyResult<Self> {
@@ -74,7 +74,7 @@ impl Wavefront {
     /// curvature : array of shape (3, 3)
     ///     Symmetric curvature tensor in 1/m; only its part across the direction counts.
     #[staticmethod]
-    fn from_tensor(direction_to_source: Numbers<'_>, curvature: Numbers<'_>) -> PyResult<Self> {
+    fn from_tensor(direction_to_source: Components<'_>, curvature: Table<'_>) -> PyResult<Self> {
         let direction = vec3("direction_to_source", &direction_to_source)?;
         let wave = physics::Wavefront::from_tensor(direction, mat3("curvature", &curvature)?);
         Ok(Self(wave.or_raise()?))
@@ -94,7 +94,7 @@ impl Wavefront {
     fn direction_from<'py>(
         &self,
         py: Python<'py>,
-        offset: Numbers<'py>,
+        offset: Components<'py>,
     ) -> PyResult<Option<Array3<'py>>> {
         let direction = self.0.direction_from(vec3("offset", &offset)?);
         Ok(direction.map(|direction| array3(py, direction)))

@@ -6,7 +6,7 @@ use tem00_speckle::{self as physics, SpeckleError};
 
 use super::{field::PupilField, images::check_room, pattern::SpecklePattern};
 use crate::{
-    arrays::{Numbers, Whole, array},
+    arrays::{Array, Components, Values, Whole, array},
     error::{IntoPython, OrRaise, refused},
 };
 
@@ -96,7 +96,7 @@ impl IncoherentSum {
     /// weights : `array_like`, shape (n,)
     ///     Mean intensities in any unit, 0 or more.
     #[staticmethod]
-    fn weighted(weights: Numbers<'_>) -> PyResult<Self> {
+    fn weighted(weights: Components<'_>) -> PyResult<Self> {
         let sum = physics::IncoherentSum::weighted(weights.finite("weights")?);
         Ok(Self(sum.or_raise()?))
     }
@@ -132,7 +132,7 @@ impl IncoherentSum {
 
     /// Shares of the patterns, which sum to 1, float64 of shape (n,).
     #[getter]
-    fn shares<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn shares<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         let shares = self.0.shares().to_vec();
         Ok(array(py, &[shares.len()], shares)?.into_any())
     }
@@ -188,11 +188,7 @@ impl IncoherentSum {
     /// -------
     /// float or numpy.ndarray
     ///     Sum in the shape of the intensities.
-    fn intensity<'py>(
-        &self,
-        py: Python<'py>,
-        part: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn intensity<'py>(&self, py: Python<'py>, part: &Bound<'py, PyAny>) -> PyResult<Values<'py>> {
         let mut sum = 0.0_f64.into_pyobject(py)?.into_any();
         for (index, share) in self.0.shares().iter().enumerate() {
             sum = sum.add(part.call1((index,))?.mul(share)?)?;

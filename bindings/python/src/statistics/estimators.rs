@@ -3,7 +3,7 @@ use tem00_statistics as physics;
 
 use super::laws::GammaIntensity;
 use crate::{
-    arrays::{Image, Numbers},
+    arrays::{Image, Samples},
     error::OrRaise,
 };
 
@@ -21,7 +21,7 @@ impl Moments {
     /// samples : array
     ///     At least two finite samples, in any shape.
     #[staticmethod]
-    fn of(py: Python<'_>, samples: Numbers<'_>) -> PyResult<Self> {
+    fn of(py: Python<'_>, samples: Samples<'_>) -> PyResult<Self> {
         let samples = samples.values()?;
         let moments = py.detach(|| physics::Moments::of(samples)).or_raise()?;
         Ok(Self(moments))
@@ -64,7 +64,7 @@ impl Contrast {
     /// samples : array
     ///     At least two finite samples of a positive mean, in any shape.
     #[staticmethod]
-    fn of(py: Python<'_>, samples: Numbers<'_>) -> PyResult<Self> {
+    fn of(py: Python<'_>, samples: Samples<'_>) -> PyResult<Self> {
         let samples = samples.values()?;
         let contrast = py.detach(|| physics::Contrast::of(samples)).or_raise()?;
         Ok(Self(contrast))
@@ -115,7 +115,7 @@ pub(crate) struct GammaFit(physics::GammaFit);
 impl GammaFit {
     /// Fit the law to the mean and the variance of samples in any shape.
     #[staticmethod]
-    fn by_moments(py: Python<'_>, samples: Numbers<'_>) -> PyResult<Self> {
+    fn by_moments(py: Python<'_>, samples: Samples<'_>) -> PyResult<Self> {
         let samples = samples.values()?;
         let fit = py.detach(|| physics::GammaFit::by_moments(samples));
         Ok(Self(fit.or_raise()?))
@@ -123,7 +123,7 @@ impl GammaFit {
 
     /// Fit the law of the largest likelihood to positive samples in any shape.
     #[staticmethod]
-    fn by_likelihood(py: Python<'_>, samples: Numbers<'_>) -> PyResult<Self> {
+    fn by_likelihood(py: Python<'_>, samples: Samples<'_>) -> PyResult<Self> {
         let samples = samples.values()?;
         let fit = py.detach(|| physics::GammaFit::by_likelihood(samples));
         Ok(Self(fit.or_raise()?))

@@ -4,7 +4,7 @@ use tem00_statistics as physics;
 use tem00_statistics::StatisticsError;
 
 use crate::{
-    arrays::{Numbers, Whole},
+    arrays::{Components, Numbers, Samples, Whole},
     error::{OrRaise, refused},
 };
 
@@ -43,7 +43,7 @@ methods! {
 #[pyfunction]
 pub(super) fn kolmogorov_smirnov(
     py: Python<'_>,
-    samples: Numbers<'_>,
+    samples: Samples<'_>,
     cumulative: Bound<'_, PyAny>,
 ) -> PyResult<TestOutcome> {
     let places = probabilities(&cumulative, checked(samples.values()?)?)?;
@@ -64,8 +64,8 @@ pub(super) fn kolmogorov_smirnov(
 ///     What the expected counts were fitted to: 1 for the total, 1 more for each parameter.
 #[pyfunction]
 pub(super) fn chi_squared(
-    observed: Numbers<'_>,
-    expected: Numbers<'_>,
+    observed: Components<'_>,
+    expected: Components<'_>,
     constraints: Whole<'_>,
 ) -> PyResult<TestOutcome> {
     let observed = counts(observed.values()?)?;
@@ -85,7 +85,7 @@ pub(super) fn chi_squared(
 #[pyfunction]
 pub(super) fn t_test_mean(
     py: Python<'_>,
-    samples: Numbers<'_>,
+    samples: Samples<'_>,
     mean: f64,
 ) -> PyResult<TestOutcome> {
     let samples = samples.values()?;

@@ -2,7 +2,7 @@ use pyo3::prelude::*;
 use tem00_statistics as physics;
 
 use crate::{
-    arrays::{Numbers, map},
+    arrays::{Components, map},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -121,7 +121,7 @@ pub(crate) struct WeightedSum {
 #[pymethods]
 impl WeightedSum {
     #[new]
-    fn new(weights: Numbers<'_>) -> PyResult<Self> {
+    fn new(weights: Components<'_>) -> PyResult<Self> {
         let weights = weights.values()?.to_vec();
         let law = physics::WeightedSum::new(&weights).or_raise()?;
         Ok(Self { law, weights })

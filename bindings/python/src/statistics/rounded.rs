@@ -6,7 +6,7 @@ use tem00_statistics as physics;
 
 use super::hypotheses::{TestOutcome, checked, probabilities};
 use crate::{
-    arrays::{Numbers, Whole, map},
+    arrays::{Samples, Whole, map},
     error::{OrRaise, refused},
 };
 
@@ -23,7 +23,7 @@ impl GreyLevels {
 
     /// Find the levels of an image, in any shape; `None` if it is not rounded.
     #[staticmethod]
-    fn of(py: Python<'_>, values: Numbers<'_>) -> PyResult<Option<Self>> {
+    fn of(py: Python<'_>, values: Samples<'_>) -> PyResult<Option<Self>> {
         let values = values.values()?;
         Ok(py.detach(|| physics::GreyLevels::of(values)).map(Self))
     }
@@ -54,7 +54,7 @@ impl GreyLevels {
     fn spread<'py>(
         &self,
         py: Python<'py>,
-        samples: Numbers<'py>,
+        samples: Samples<'py>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let spread = self.0.spread(samples.finite("samples")?);
         Ok(PyArray1::from_vec(py, spread))
@@ -114,7 +114,7 @@ pub(crate) struct GoodnessOfFit(physics::GoodnessOfFit);
 #[pymethods]
 impl GoodnessOfFit {
     #[new]
-    fn new(samples: Numbers<'_>, cumulative: Bound<'_, PyAny>) -> PyResult<Self> {
+    fn new(samples: Samples<'_>, cumulative: Bound<'_, PyAny>) -> PyResult<Self> {
         let places = probabilities(&cumulative, checked(samples.values()?)?)?;
         let fit = physics::GoodnessOfFit::new(&places, |place| place);
         Ok(Self(fit.or_raise()?))
@@ -133,7 +133,7 @@ impl GoodnessOfFit {
     ///     array of shape (n,), the edges of the levels, and returns probabilities in that shape.
     #[staticmethod]
     fn of_rounded(
-        samples: Numbers<'_>,
+        samples: Samples<'_>,
         levels: PyRef<'_, GreyLevels>,
         cumulative: Bound<'_, PyAny>,
     ) -> PyResult<Self> {

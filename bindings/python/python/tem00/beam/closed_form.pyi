@@ -1,6 +1,9 @@
 from typing import Final
 
-__all__ = ["C_HEADER", "WGSL"]
+__all__ = [
+    "C_HEADER",
+    "WGSL",
+]
 
 WGSL: Final[str]
 C_HEADER: Final[str]

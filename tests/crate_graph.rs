@@ -27,8 +27,8 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     ),
     (
         "tem00-beam",
-        &[],
-        &["fearless_simd", "glam", "libm", "num-complex"],
+        &["tem00-numerics"],
+        &["glam", "libm", "num-complex"],
     ),
     (
         "tem00-speckle",

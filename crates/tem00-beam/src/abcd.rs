@@ -3,10 +3,8 @@
 use crate::range::check;
 use crate::{BeamError, ComplexBeamParameter, GaussianBeam, LocatedBeam};
 
-mod elements;
+pub(crate) mod elements;
 mod resonator;
-
-pub use elements::ThickLens;
 
 /// The ray matrix of a paraxial optical system, from an input plane to an output plane.
 ///

@@ -1,6 +1,5 @@
 mod circle;
 mod marginal;
-mod quadrature;
 
 use core::f64::consts::{LN_2, PI};
 

@@ -74,7 +74,7 @@ mod profile;
 mod range;
 mod real;
 
-pub use abcd::{AbcdMatrix, ThickLens};
+pub use abcd::{AbcdMatrix, elements::ThickLens};
 pub use astigmatic::AstigmaticBeam;
 pub use astigmatic_system::AstigmaticSystem;
 pub use complex_parameter::ComplexBeamParameter;

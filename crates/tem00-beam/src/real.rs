@@ -12,7 +12,7 @@ pub(crate) mod sealed {
     use core::fmt::Debug;
     use core::ops::{Add, Div, Mul, Neg, Sub};
 
-    use super::exponential::{exp_f32, exp_f64};
+    use crate::real::exponential::{exp_f32, exp_f64};
 
     /// The operations a placed light needs of its scalar.
     #[expect(unnameable_types, reason = "it seals `Real`")]
@@ -42,6 +42,16 @@ pub(crate) mod sealed {
         /// Returns the exponential, within 1.5 units of the last place; 0 where it is hardly normal.
         fn exp(self) -> Self;
         fn abs(self) -> Self;
+        /// Returns `other` if it is smaller.
+        #[inline(always)]
+        fn smaller(self, other: Self) -> Self {
+            if other < self { other } else { self }
+        }
+        /// Returns `other` if it is larger.
+        #[inline(always)]
+        fn larger(self, other: Self) -> Self {
+            if other > self { other } else { self }
+        }
         /// Returns the number itself if `condition` holds, and 0 if not.
         #[inline(always)]
         fn only_if(self, condition: bool) -> Self {

@@ -2,6 +2,7 @@ use core::f64::consts::FRAC_PI_2;
 
 use proptest::{prelude::*, test_runner::RngSeed};
 
+use super::elements::ThickLens;
 use super::*;
 
 pub(in crate::abcd) fn space(length: f64) -> AbcdMatrix {

@@ -6,7 +6,7 @@
 use core::f64::consts::PI;
 
 use super::marginal::{Interval, power_beyond};
-use super::quadrature::integrate;
+use tem00_numerics::quadrature::integrate_adaptively;
 
 /// How many radii from the axis the density underflows: exp(−2 · 19.4²) = 1e−327.
 const REACH: f64 = 19.4;
@@ -154,7 +154,7 @@ impl Half {
             let t = x / self.circle.w_x;
             (2.0 / PI).sqrt() / self.circle.w_x * (-2.0 * t * t).exp()
         };
-        integrate(
+        integrate_adaptively(
             |p| {
                 let chord = self.chord(p);
                 density(chord.x) * self.interval(&chord).power(self.circle.w_y) * chord.stretch

@@ -1,7 +1,8 @@
 use core::f64::consts::PI;
 
+use super::error::FitError;
 use super::least_squares::{Minimum, Residual, minimise};
-use super::{Axis, Estimate, FitError, check_count};
+use super::positions::{Axis, Estimate, check_count};
 use crate::range::{check_length, check_lengths};
 use crate::{BeamError, GaussianBeam, LocatedBeam};
 

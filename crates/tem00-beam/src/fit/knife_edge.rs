@@ -1,7 +1,8 @@
 use core::f64::consts::{FRAC_2_SQRT_PI, SQRT_2};
 
+use super::error::FitError;
 use super::least_squares::{Minimum, Residual, minimise};
-use super::{Axis, Estimate, FitError, check_count};
+use super::positions::{Axis, Estimate, check_count};
 use crate::range::{check_list, is_coordinate};
 
 /// A Gaussian beam fitted to the power that passes a knife edge moved across it.

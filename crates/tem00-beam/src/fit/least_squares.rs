@@ -4,7 +4,7 @@
 //! Appl. Math. 11, 431, 1963): each diagonal element of the normal matrix grows by the same factor,
 //! so that the units of the parameters make no difference.
 
-use super::FitError;
+use super::error::FitError;
 
 const MAX_STEPS: usize = 300;
 const FIRST_DAMPING: f64 = 1e-3;

@@ -3,7 +3,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::Estimate;
+use super::positions::Estimate;
 use crate::normal::standard_normal;
 
 /// The standard normal variate that a correct value exceeds in magnitude with a probability of 1e−4.

@@ -3,11 +3,12 @@ use core::f64::consts::FRAC_2_PI;
 use glam::DMat2;
 
 use super::ellipse::{Ellipse, Factors};
-use super::emitter::{Emitter, larger, secant};
-use super::frame::Frame;
+use super::emitter::Emitter;
+use super::frame::{Frame, Placement};
 use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
 use super::record::RayPdf;
-use super::{DEFAULT_CUTOFF, Placement, check_digits, checked_power, first_three, row, to_single};
+use super::rows::{DEFAULT_CUTOFF, check_digits, checked_power, first_three, row, to_single};
+use super::slope::secant;
 use crate::normal::standard_normal;
 use crate::real::Real;
 use crate::{BeamError, GeneralAstigmaticBeam};
@@ -309,8 +310,8 @@ impl<T: Real> PhaseSpace<T> for AstigmaticLight<T> {
         // Both elements are convex in z, so they are largest at one of the ends.
         Reach {
             half_width: [
-                self.cutoff * larger(near.xx, far.xx).sqrt(),
-                self.cutoff * larger(near.yy, far.yy).sqrt(),
+                self.cutoff * near.xx.larger(far.xx).sqrt(),
+                self.cutoff * near.yy.larger(far.yy).sqrt(),
             ],
             slope: self.cutoff * self.slope.largest().sqrt(),
         }

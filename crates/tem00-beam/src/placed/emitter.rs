@@ -1,6 +1,6 @@
-use super::batch::{Batch, check_lengths, event_at, irradiance_at};
-use super::phase_space::PhaseSpace;
+use super::phase_space::{Batch, PhaseSpace, event_at, irradiance_at};
 use super::record::{Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent};
+use super::slope::{aperture_point, direction, secant, slope_of, towards_light};
 use crate::real::Real;
 
 /// A light that a renderer can evaluate and sample, without allocation.
@@ -207,8 +207,8 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
             let across =
                 reach.half_width[0] * frame.ex[i].abs() + reach.half_width[1] * frame.ey[i].abs();
             let far = frame.origin[i] + l * frame.ez[i];
-            bounds.min[i] = smaller(frame.origin[i], far) - across;
-            bounds.max[i] = larger(frame.origin[i], far) + across;
+            bounds.min[i] = frame.origin[i].smaller(far) - across;
+            bounds.max[i] = frame.origin[i].larger(far) + across;
         }
         bounds
     }
@@ -237,42 +237,11 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     }
 }
 
-fn smaller<T: Real>(a: T, b: T) -> T {
-    if b < a { b } else { a }
-}
-
-pub(super) fn larger<T: Real>(a: T, b: T) -> T {
-    if b > a { b } else { a }
-}
-
-/// Returns `√(1 + s²)`, the length of the ray per distance along the axis.
-#[inline(always)]
-pub(super) fn secant<T: Real>(slope: [T; 2]) -> T {
-    (T::ONE + slope[0] * slope[0] + slope[1] * slope[1]).sqrt()
-}
-
-/// Returns the unit vector of a slope, in the frame of the light.
-#[inline(always)]
-pub(super) fn direction<T: Real>(slope: [T; 2]) -> [T; 3] {
-    let cos = T::ONE / secant(slope);
-    [slope[0] * cos, slope[1] * cos, cos]
-}
-
-/// Returns the slope of a direction, unless it runs against the axis, or at right angles to it: up to
-/// this cosine the cube of the secant, in the densities, is within the range of `f32`.
-fn slope_of<T: Real>(direction: [T; 3]) -> Option<[T; 2]> {
-    let [x, y, z] = direction;
-    (z > T::of(1e-12)).then(|| [x / z, y / z])
-}
-
-/// Follows the ray through `local` back to the aperture plane.
-#[inline(always)]
-pub(super) fn aperture_point<T: Real>(local: [T; 3], slope: [T; 2]) -> [T; 2] {
-    let [x, y, z] = local;
-    [x - slope[0] * z, y - slope[1] * z]
-}
-
-#[inline(always)]
-pub(super) fn towards_light<T: Real>([x, y, z]: [T; 3]) -> [T; 3] {
-    [-x, -y, -z]
+/// Panics unless all slices of a batch are of equal length.
+fn check_lengths<T, const N: usize>(points: [&[T]; 3], out: [usize; N]) {
+    let [x, y, z] = points.map(<[T]>::len);
+    assert!(
+        [y, z].iter().chain(&out).all(|&len| len == x),
+        "x, y, z and out must be of equal length, got {x}, {y}, {z} and {out:?}",
+    );
 }

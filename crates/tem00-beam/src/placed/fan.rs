@@ -1,14 +1,15 @@
 //! The laws of a laser line, whatever its profile along the fan.
 #![expect(unnameable_types, reason = "it belongs to a sealed trait")]
 
-use super::batch::Batch;
+use super::emitter::Emitter;
 use super::frame::Frame;
 use super::line::LineLight;
-use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
+use super::phase_space::{Batch, Flow, PhaseSpace, Reach, SlopeSample};
 use super::record::RayPdf;
 use crate::normal::{normal_density, standard_normal};
-use crate::profile::{SlopeProfile, secant};
+use crate::profile::{SlopeDensity, SlopeProfile, Variable, secant};
 use crate::real::Real;
+use tem00_numerics::vectorised;
 
 /// A laser line with a profile along its fan.
 pub trait Fan {
@@ -179,6 +180,56 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         Reach {
             half_width: [T::of(slope * far), T::of(line.cutoff * w_sq.sqrt())],
             slope: T::of(slope.hypot(elevation)),
+        }
+    }
+}
+
+impl<T: Real> Emitter<T> for LineLight<T> {}
+
+impl<T: Real> Fan for LineLight<T> {
+    type Scalar = T;
+    type Profile = SlopeDensity<T>;
+
+    #[inline(always)]
+    fn line(&self) -> &Self {
+        self
+    }
+
+    #[inline(always)]
+    fn profile(&self) -> SlopeDensity<T> {
+        self.slope_density()
+    }
+
+    /// Writes the constants of a Gaussian into the loop, whose compiler then drops the branches to
+    /// the other profiles.
+    fn run_batch(&self, batch: Batch<'_, T>) {
+        const TAN: f64 = Variable::Tan.code();
+        const SIN: f64 = Variable::Sin.code();
+        let is_gaussian_in = |code: f64| self.flat == T::ZERO && self.variable == T::of(code);
+        if is_gaussian_in(TAN) {
+            vectorised(
+                #[inline(always)]
+                || batch.over(&self.gaussian_in(TAN)),
+            );
+        } else if is_gaussian_in(SIN) {
+            vectorised(
+                #[inline(always)]
+                || batch.over(&self.gaussian_in(SIN)),
+            );
+        } else {
+            batch.over(self);
+        }
+    }
+}
+
+impl<T: Real> LineLight<T> {
+    /// Returns the light with the profile of a Gaussian in the variable of this code.
+    #[inline(always)]
+    fn gaussian_in(&self, code: f64) -> Self {
+        Self {
+            flat: T::ZERO,
+            variable: T::of(code),
+            ..*self
         }
     }
 }

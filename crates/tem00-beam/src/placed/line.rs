@@ -1,11 +1,8 @@
-use super::batch::{Batch, vectorised};
-use super::emitter::Emitter;
-use super::fan::Fan;
-use super::{
-    Axis, DEFAULT_CUTOFF, Placement, check_digits, checked_power, first_three, row, to_single,
-};
+use super::axis::Axis;
+use super::frame::Placement;
+use super::rows::{DEFAULT_CUTOFF, check_digits, checked_power, first_three, row, to_single};
 use crate::normal::normal_density;
-use crate::profile::{SlopeDensity, SlopeProfile, Variable};
+use crate::profile::{SlopeDensity, SlopeProfile};
 use crate::real::Real;
 use crate::{BeamError, FocusCurve, LaserLine, LineProfile};
 
@@ -171,7 +168,7 @@ impl LineLight<f64> {
     /// numbers.
     pub fn to_f32(&self) -> Result<LineLight<f32>, BeamError> {
         let across = normal_density(0.0, 0.5 * self.y.w0_sq.sqrt());
-        let peak = self.power * self.profile().per_slope(0.0) / self.apex_offset * across;
+        let peak = self.power * self.slope_density().per_slope(0.0) / self.apex_offset * across;
         let (y, source) = (self.y, self.source_radius);
         check_digits([y.w0_sq, y.theta_sq, source, self.sigma, peak])?;
         Ok(LineLight::from_rows(to_single(self.to_rows())?))
@@ -232,35 +229,9 @@ impl<T: Real> LineLight<T> {
         }
     }
 
-    /// Returns the light with the profile of a Gaussian in the variable of this code.
+    /// Returns the density of the slope along the fan.
     #[inline(always)]
-    fn gaussian_in(&self, code: f64) -> Self {
-        Self {
-            flat: T::ZERO,
-            variable: T::of(code),
-            ..*self
-        }
-    }
-
-    /// Widens the fields to double precision.
-    pub(super) fn wide(&self) -> LineLight<f64> {
-        LineLight::from_rows(self.to_rows().map(|row| row.map(T::wide)))
-    }
-}
-
-impl<T: Real> Emitter<T> for LineLight<T> {}
-
-impl<T: Real> Fan for LineLight<T> {
-    type Scalar = T;
-    type Profile = SlopeDensity<T>;
-
-    #[inline(always)]
-    fn line(&self) -> &Self {
-        self
-    }
-
-    #[inline(always)]
-    fn profile(&self) -> SlopeDensity<T> {
+    pub(super) fn slope_density(&self) -> SlopeDensity<T> {
         SlopeDensity {
             variable: self.variable,
             flat: self.flat,
@@ -269,24 +240,8 @@ impl<T: Real> Fan for LineLight<T> {
         }
     }
 
-    /// Writes the constants of a Gaussian into the loop, whose compiler then drops the branches to
-    /// the other profiles.
-    fn run_batch(&self, batch: Batch<'_, T>) {
-        const TAN: f64 = Variable::Tan.code();
-        const SIN: f64 = Variable::Sin.code();
-        let is_gaussian_in = |code: f64| self.flat == T::ZERO && self.variable == T::of(code);
-        if is_gaussian_in(TAN) {
-            vectorised(
-                #[inline(always)]
-                || batch.over(&self.gaussian_in(TAN)),
-            );
-        } else if is_gaussian_in(SIN) {
-            vectorised(
-                #[inline(always)]
-                || batch.over(&self.gaussian_in(SIN)),
-            );
-        } else {
-            batch.over(self);
-        }
+    /// Widens the fields to double precision.
+    pub(super) fn wide(&self) -> LineLight<f64> {
+        LineLight::from_rows(self.to_rows().map(|row| row.map(T::wide)))
     }
 }

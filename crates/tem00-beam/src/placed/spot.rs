@@ -1,12 +1,12 @@
 use core::f64::consts::{FRAC_2_PI, PI};
 
-use super::emitter::{Emitter, larger, secant};
-use super::frame::Frame;
+use super::axis::Axis;
+use super::emitter::Emitter;
+use super::frame::{Frame, Placement};
 use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
 use super::record::RayPdf;
-use super::{
-    Axis, DEFAULT_CUTOFF, Placement, check_digits, checked_power, first_three, row, to_single,
-};
+use super::rows::{DEFAULT_CUTOFF, check_digits, checked_power, first_three, row, to_single};
+use super::slope::secant;
 use crate::normal::{joint_normal_density, standard_normal};
 use crate::real::Real;
 use crate::{AstigmaticBeam, BeamError, GaussianBeam, LocatedBeam};
@@ -254,11 +254,14 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
 
     fn reach(&self, l: T) -> Reach<T> {
         // w² is convex in z, so it is largest at one of the ends.
-        let radius =
-            |axis: &Axis<T>| larger(axis.radius_sq_at(T::ZERO), axis.radius_sq_at(l)).sqrt();
+        let radius = |axis: &Axis<T>| {
+            axis.radius_sq_at(T::ZERO)
+                .larger(axis.radius_sq_at(l))
+                .sqrt()
+        };
         Reach {
             half_width: [self.cutoff * radius(&self.x), self.cutoff * radius(&self.y)],
-            slope: self.cutoff * larger(self.x.theta_sq, self.y.theta_sq).sqrt(),
+            slope: self.cutoff * self.x.theta_sq.larger(self.y.theta_sq).sqrt(),
         }
     }
 }

@@ -1,6 +1,8 @@
 use super::emitter::Emitter;
 use super::fan::Fan;
-use super::{LineLight, Placement, check_digits};
+use super::frame::Placement;
+use super::line::LineLight;
+use super::rows::check_digits;
 use crate::normal::normal_density;
 use crate::profile::AngularTable;
 use crate::real::Real;

@@ -8,7 +8,10 @@ use rand_chacha::ChaCha8Rng;
 use super::fan::Fan;
 use super::phase_space::PhaseSpace;
 use super::*;
+use crate::GaussianBeam;
 use crate::profile::SlopeProfile;
+use crate::real::Real;
+use crate::real::sealed::Scalar;
 use crate::{AstigmaticBeam, FanGeometry, FocusCurve, LaserLine, LineProfile, LocatedBeam};
 
 const ORIGIN: DVec3 = DVec3::new(0.1, -0.2, 0.3);

@@ -7,7 +7,7 @@ use crate::range::is_coordinate;
 use crate::{AbcdMatrix, BeamError, CrossSection, GaussianBeam, LocatedBeam};
 
 /// An elliptic Gaussian beam with simple astigmatism: two principal axes at right angles, each with
-/// its own waist, place of the waist and M².
+/// its own waist, waist position and M².
 ///
 /// The beam travels along +z from the reference plane z = 0, the aperture. In its principal axes
 /// `u` and `v` it is the product of two beams of one dimension:
@@ -277,7 +277,7 @@ impl AstigmaticBeam {
         let radii = DVec2::from(self.radii_at(point.z));
         let rho = self.principal(point) / radii;
         let exponent = 2.0 * rho.length_squared();
-        // exp is 0 beyond. The comparison also refuses the distance of a point beyond all numbers.
+        // exp is 0 beyond. The comparison also refuses the distance of a point where it overflows.
         if exponent < 750.0 {
             self.peak_irradiance_per_watt(point.z) * (-exponent).exp()
         } else {
@@ -326,7 +326,7 @@ fn crossings(x: &LocatedBeam, y: &LocatedBeam) -> [f64; 2] {
     let waists = (wx - wy) * (wx + wy);
     let half_linear = sy * sy * d;
     let constant = waists - sy * d * (sy * d);
-    // Negative where the radii never meet: the root and all that follows is then not a number.
+    // Negative where the radii never meet: the root and all that follows is then NaN.
     let root = ((sx * sy * d) * (sx * sy * d) - spread * waists).sqrt();
     let sum = -(half_linear + root.copysign(half_linear));
     [sum / spread, constant / sum]

@@ -3,7 +3,8 @@ use glam::{DMat2, DVec2};
 use crate::range::{check_coordinate, is_length};
 use crate::{AbcdMatrix, BeamError};
 
-/// How far from symplectic, relative to its largest products, a matrix given by its entries may be.
+/// Largest deviation from symplectic of a matrix given by its entries, relative to its largest
+/// products.
 const SYMPLECTIC_TOLERANCE: f64 = 1e-9;
 
 /// The ray-transfer matrix of a paraxial system that may act differently in x and y, and mix them.
@@ -111,7 +112,8 @@ impl AstigmaticSystem {
                 "matrix",
                 deviation,
                 "",
-                "symplectic up to the ratio of the refractive indices (shown is the relative deviation)",
+                "symplectic up to the ratio of the refractive indices (the relative deviation is \
+                 shown)",
             ))
         }
     }

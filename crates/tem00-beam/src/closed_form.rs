@@ -22,7 +22,7 @@
 
 /// Irradiance and next event of all lights in WGSL: functions and structs without bindings.
 ///
-/// Its front page says what they take and return.
+/// Its first comment lists their arguments and results.
 pub const WGSL: &str = include_str!("../shaders/tem00_beam.wgsl");
 
 /// Irradiance and next event of all lights in C99, for `float` and for `double`.

@@ -14,7 +14,7 @@ pub enum BeamError {
         value: f64,
         /// The unit of the value, empty for a plain number.
         unit: &'static str,
-        /// What is allowed, with the unit.
+        /// The allowed values, with their unit.
         allowed: &'static str,
     },
     /// An entry of a list is outside its range.
@@ -27,7 +27,7 @@ pub enum BeamError {
         value: f64,
         /// The unit of the value, empty for a plain number.
         unit: &'static str,
-        /// What is allowed, with the unit.
+        /// The allowed values, with their unit.
         allowed: &'static str,
     },
     /// A vector is not finite, or does not point where it must.
@@ -36,16 +36,16 @@ pub enum BeamError {
         parameter: &'static str,
         /// The rejected vector.
         value: DVec3,
-        /// What is allowed, with the unit.
+        /// The allowed values, with their unit.
         allowed: &'static str,
     },
-    /// A matrix is none of its kind.
+    /// A matrix is not of the required kind.
     Matrix {
         /// The name of the parameter.
         parameter: &'static str,
         /// The rejected matrix.
         value: DMat2,
-        /// What is allowed, with the unit.
+        /// The allowed values, with their unit.
         allowed: &'static str,
     },
     /// The two axes of a beam or a system differ in what they must share.

@@ -11,7 +11,7 @@ use generator::{Ellipse, Generator, combine, covariance};
 
 mod generator;
 
-/// How far below 1 rounding may take the M² of a mode that is diffraction-limited.
+/// Largest rounding error, below 1, of the M² of a mode that is diffraction-limited.
 const M_SQUARED_ROUNDING: f64 = 1e-6;
 
 /// The second moments of the phase space of a beam at one plane.
@@ -138,7 +138,8 @@ impl GeneralAstigmaticBeam {
         let refused = BeamError::Matrix {
             parameter: "position",
             value: position,
-            allowed: "symmetric, positive definite and at least what the mixed and slope moments imply, in m²",
+            allowed: "symmetric, positive definite and at least what the mixed and slope moments \
+                      imply, in m²",
         };
         square_root(position).ok_or(refused)?;
         let shift = mixed * slope_root.inverse().transpose();
@@ -197,7 +198,12 @@ impl GeneralAstigmaticBeam {
         };
         let root = square_root(matrix(|q| -q.im))
             .filter(|_| matrix(|q| q.re).is_finite() && (xy - yx).norm() <= 1e-9 * largest)
-            .ok_or(BeamError::Matrix { parameter: "curvature", value: matrix(|q| q.im), allowed: "finite and symmetric with a negative definite imaginary part (which is shown), in m⁻¹" })?;
+            .ok_or(BeamError::Matrix {
+                parameter: "curvature",
+                value: matrix(|q| q.im),
+                allowed: "finite and symmetric with a negative definite imaginary part (which is \
+                          shown), in m⁻¹",
+            })?;
         let unit = (wavelength / (4.0 * PI)).sqrt();
         let (position, spread) = (unit * root.inverse().transpose(), unit * root);
         let slope = matrix(|q| q.re) * position;
@@ -481,7 +487,7 @@ impl From<AstigmaticBeam> for GeneralAstigmaticBeam {
 /// Returns the normal density of `ellipse` at `position`.
 fn irradiance(ellipse: &Ellipse, position: DVec2) -> f64 {
     let exponent = 0.5 * ellipse.squared_distance(position);
-    // exp is 0 beyond. The comparison also refuses the distance of a point beyond all numbers.
+    // exp is 0 beyond. The comparison also refuses the distance of a point where it overflows.
     if exponent < 750.0 {
         ellipse.peak() * (-exponent).exp()
     } else {

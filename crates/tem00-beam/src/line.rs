@@ -10,7 +10,7 @@ use crate::{BeamError, GaussianBeam, LineProfile};
 /// The apex offset must exceed this many source radii, so that the fan has a sharp apex.
 const MIN_SOURCE_RADII: f64 = 100.0;
 
-/// Where the waist of a laser line lies, over the angles of the fan.
+/// Curve of best focus: the position of the waist of a laser line, over the angles of the fan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FocusCurve {
     /// On the circle about the virtual apex: at the same slant distance from it at every angle.
@@ -42,7 +42,7 @@ pub struct FanGeometry {
     /// Distance from the lens along the axis to where the line is thinnest, in metres; negative for
     /// a line that diverges from a waist before the lens.
     pub focus_distance: f64,
-    /// Where the line is thinnest off the axis.
+    /// Curve on which the line is thinnest off the axis.
     pub focus_curve: FocusCurve,
 }
 
@@ -270,8 +270,8 @@ impl LaserLine {
     /// # };
     /// # let focus = GaussianBeam::from_waist(650e-9, 0.1e-3)?;
     /// let line = LaserLine::new(focus, fan, LineProfile::UniformTan)?;
-    /// let share = line.power_on_length(-20e-3, 20e-3, 0.198);
-    /// assert!((share - 20e-3 / line.half_length_at(0.198)).abs() < 1e-15);
+    /// let fraction = line.power_on_length(-20e-3, 20e-3, 0.198);
+    /// assert!((fraction - 20e-3 / line.half_length_at(0.198)).abs() < 1e-15);
     /// # Ok::<(), tem00_beam::BeamError>(())
     /// ```
     pub fn power_on_length(&self, x_min: f64, x_max: f64, z: f64) -> f64 {

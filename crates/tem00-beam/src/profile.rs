@@ -9,7 +9,7 @@ pub(crate) use angular::AngularTable;
 pub use angular::{AngularKnot, AngularProfile};
 pub(crate) use density::{SlopeDensity, SlopeProfile, Variable, secant};
 
-/// How a laser line spreads its power along the fan.
+/// Distribution of the power of a laser line along its fan.
 ///
 /// Each profile is a density in a variable `v` of the fan angle `θ`: in `tan θ`, in `θ` itself or in
 /// `sin θ`. With the full fan angle `α`, the edges of the fan are at `v(α/2)`: the 1/e² points of a

@@ -2,9 +2,9 @@
 
 use crate::BeamError;
 
-/// What [`is_length`] allows.
+/// The range of [`is_length`].
 const LENGTH: &str = "between 1e-30 m and 1e30 m";
-/// What [`is_coordinate`] allows.
+/// The range of [`is_coordinate`].
 const COORDINATE: &str = "finite and within ±1e30 m";
 
 /// The lengths whose squares, products and quotients stay within the range of `f64`.

@@ -59,7 +59,7 @@ impl EulerAngles {
     }
 }
 
-/// Where the paper takes the light to come from.
+/// Position of the light source as the paper takes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emitter {
     /// Unit vector from the surface to the laser emitter, in surface coordinates.

@@ -8,10 +8,10 @@ use core::f64::consts::PI;
 use super::marginal::{Interval, power_beyond};
 use tem00_numerics::quadrature::integrate_adaptively;
 
-/// How many radii from the axis the density underflows: exp(−2 · 19.4²) = 1e−327.
+/// Distance from the axis, in radii, at which the density underflows: exp(−2 · 19.4²) = 1e−327.
 const REACH: f64 = 19.4;
 
-/// Where an integrand that follows the density changes its character, in radii from the axis: the
+/// Distances, in radii from the axis, at which an integrand that follows the density changes: the
 /// core, the tails that matter to the sum, the tails that matter to themselves.
 const LEVELS: [f64; 7] = [-REACH, -5.0, -2.0, 0.0, 2.0, 5.0, REACH];
 

@@ -6,7 +6,7 @@ use super::positions::{Axis, Estimate, check_count};
 use crate::range::{check_length, check_lengths};
 use crate::{BeamError, GaussianBeam, LocatedBeam};
 
-/// What is known of the errors of measured beam radii.
+/// Errors of measured beam radii, as far as they are known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RadiusErrors<'a> {
@@ -281,14 +281,14 @@ impl<'a> Caustic<'a> {
         }
     }
 
-    /// Whether waist and divergence both leave a trace above rounding in some radius.
+    /// Tests that waist and divergence both change some radius by more than rounding.
     fn show(&self, p: &[f64; PARAMETERS]) -> bool {
         const ROUNDING: f64 = 1e-12;
-        let share = |k: usize, i: usize| {
+        let fraction = |k: usize, i: usize| {
             let slope = self.residual(p, i).slopes[k] * self.relative_deviation(i);
             slope.abs()
         };
-        let shows = |k: usize| (0..self.radii.len()).any(|i| share(k, i) > ROUNDING);
+        let shows = |k: usize| (0..self.radii.len()).any(|i| fraction(k, i) > ROUNDING);
         shows(0) && shows(2)
     }
 
@@ -301,7 +301,7 @@ impl<'a> Caustic<'a> {
         }
     }
 
-    /// Where the search begins: the hyperbola as a polynomial, `w² = a + b z + c z²`, unless that
+    /// Start of the search: the hyperbola as a polynomial, `w² = a + b z + c z²`, unless that
     /// has no waist.
     fn polynomial(&self) -> Option<[f64; PARAMETERS]> {
         let minimum = minimise([0.0; 3], self.radii.len(), |p, i| {
@@ -320,7 +320,7 @@ impl<'a> Caustic<'a> {
         (c > 0.0 && waist > 0.0).then_some(start)
     }
 
-    /// Where it begins if that fails: the smallest radius as the waist, and the steepest line from
+    /// Start of the search if that fails: the smallest radius as the waist, and the steepest line from
     /// it as the divergence.
     fn guess(&self) -> Result<[f64; PARAMETERS], FitError> {
         let points = || self.axis.coordinates.iter().zip(&self.radii);

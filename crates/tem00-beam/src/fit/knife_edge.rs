@@ -146,7 +146,7 @@ impl KnifeEdgeFit {
     }
 }
 
-/// The places of the parameters; the background is missing from a fit without it.
+/// The indices of the parameters; the background is missing from a fit without it.
 const POWER: usize = 0;
 const CENTRE: usize = 1;
 const LN_RADIUS: usize = 2;
@@ -173,13 +173,13 @@ impl Trace {
             "",
             "finite and within ±1e30",
         )?;
-        let least = powers.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = powers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let unit = most - least;
+        let minimum = powers.iter().copied().fold(f64::INFINITY, f64::min);
+        let maximum = powers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let unit = maximum - minimum;
         if unit < f64::MIN_POSITIVE {
             return Err(FitError::NoEdge);
         }
-        let floor = if with_floor { least } else { 0.0 };
+        let floor = if with_floor { minimum } else { 0.0 };
         let powers: Vec<_> = powers.iter().map(|power| (power - floor) / unit).collect();
         let mean = powers.iter().sum::<f64>() / powers.len() as f64;
         let trend: f64 = powers

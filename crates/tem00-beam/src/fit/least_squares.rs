@@ -126,7 +126,7 @@ impl<const N: usize> Normal<N> {
     }
 }
 
-/// Whether no component exceeds the limit; one that is no number does.
+/// Tests that no component exceeds the limit; NaN does.
 fn is_within(step: &[f64], limit: f64) -> bool {
     step.iter().all(|s| s.abs() <= limit)
 }

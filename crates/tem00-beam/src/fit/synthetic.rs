@@ -1,4 +1,4 @@
-//! What the tests of the fits share: noise, and the judgement of many repeated fits.
+//! Noise for the tests of the fits, and statistics of repeated fits.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

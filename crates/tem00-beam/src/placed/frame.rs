@@ -7,7 +7,7 @@ use crate::real::Real;
 /// The sine of the smallest accepted angle between the fan axis and the direction.
 const MIN_FAN_AXIS_SINE: f64 = 1e-6;
 
-/// Where a light stands and where it points, in world coordinates.
+/// Position and orientation of a light, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// Centre of the aperture (the lens of a laser line), in metres.

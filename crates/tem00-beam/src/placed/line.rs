@@ -24,7 +24,7 @@ use crate::{BeamError, FocusCurve, LaserLine, LineProfile};
 ///
 /// The density along the fan is given in the variable `v` that `variable` says: uniform on
 /// [−flat, flat], convolved with a normal density of standard deviation `sigma` (the normal alone if
-/// `flat` is 0, a top hat if `sigma` is 0), and divided by `mass`, its share inside `|θ| < π/2`. Per
+/// `flat` is 0, a top hat if `sigma` is 0), and divided by `mass`, its fraction inside `|θ| < π/2`. Per
 /// slope it is `g = g_v(v) dv/du`.
 ///
 /// | `variable` | v | dv/du |
@@ -101,7 +101,7 @@ pub struct LineLight<T> {
     /// The variable of the profile: 0 for tan θ, 1 for θ, 2 for sin θ, 3 for a table kept elsewhere,
     /// without which the light is dark.
     pub variable: T,
-    /// Share of the untruncated profile inside `|θ| < π/2`; 1 in tan θ.
+    /// Fraction of the untruncated profile inside `|θ| < π/2`; 1 in tan θ.
     pub mass: T,
     /// `T = tan(α/2)`, the slope of the edges of the fan.
     pub half_slope: T,

@@ -1,4 +1,4 @@
-//! What tells one light from another. The module is private, which seals the trait `Emitter`.
+//! Laws that tell one light from another. The module is private, which seals the trait `Emitter`.
 #![expect(unnameable_types, reason = "the trait is sealed")]
 
 use super::frame::Frame;

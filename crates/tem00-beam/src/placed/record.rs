@@ -1,4 +1,4 @@
-//! What the queries of a placed light return.
+//! Results of the queries of a placed light.
 
 /// The light that arrives at a point, as one direction and one irradiance.
 #[repr(C)]
@@ -14,7 +14,7 @@ pub struct NextEvent<T> {
     pub e_perp: T,
 }
 
-/// Where the next events at many points go: one slice for each number.
+/// Output slices for the next events at many points: one for each number.
 ///
 /// The point of the aperture plane is left out: it is `p + distance · wi`.
 #[derive(Debug)]

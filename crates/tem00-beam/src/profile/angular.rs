@@ -150,9 +150,9 @@ impl AngularKnot<f64> {
 }
 
 fn check_angles(angles: &[f64]) -> Result<(), BeamError> {
-    let mut least = f64::NEG_INFINITY;
+    let mut minimum = f64::NEG_INFINITY;
     for (index, &angle) in angles.iter().enumerate() {
-        if !(angle >= least && angle.abs() < FRAC_PI_2) {
+        if !(angle >= minimum && angle.abs() < FRAC_PI_2) {
             return Err(BeamError::Entry {
                 parameter: "angles",
                 index,
@@ -161,7 +161,7 @@ fn check_angles(angles: &[f64]) -> Result<(), BeamError> {
                 allowed: "ascending within (-π/2, π/2) rad",
             });
         }
-        least = angle + MIN_SPACING;
+        minimum = angle + MIN_SPACING;
     }
     Ok(())
 }

@@ -195,7 +195,7 @@ fn the_cutoff_is_at_its_largest_slope() {
                 density.reaches(0.999_999 * end, cutoff),
                 "{density:?}: {end}"
             );
-            // A cut-off beyond π/2 is none.
+            // A cut-off beyond π/2 cuts nothing.
             let open = !density.reaches(1e100, cutoff);
             assert!(
                 density.reaches(1.000_001 * end, cutoff) != open,

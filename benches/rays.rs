@@ -24,9 +24,10 @@ use obvhs::{
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use tem00::camera::Ray;
+use tem00::scene::parse_scene;
 use tem00::tracer::{
     Hit, Intersector, LocalFrame, Rectangle, RenderOptions, Scene, Segment, Shape, SpeckleModel,
-    SpecklePlan, TriangleMesh, parse_scene, render_frame,
+    SpecklePlan, TriangleMesh, render_frame,
 };
 
 /// Every eighth pixel of a 512² image in both directions, and the rays of each.

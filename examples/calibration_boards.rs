@@ -17,7 +17,7 @@ use std::{
 
 use png::{BitDepth, ColorType, Encoder};
 use tem00::{
-    tracer::parse_scene,
+    scene::parse_scene,
     triangulation::{BoardPlan, BoardSettings, RawFrame, Sensor, SensorDescription, find_corners},
 };
 

@@ -7,8 +7,9 @@
 use std::{error::Error, path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
+    scene::parse_scene,
     statistics::{Contrast, pixel_contrast},
-    tracer::{RenderOptions, SpeckleModel, SpecklePlan, parse_scene, render_frame},
+    tracer::{RenderOptions, SpeckleModel, SpecklePlan, render_frame},
 };
 
 const SCENE: &str = r#"

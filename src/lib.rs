@@ -24,14 +24,22 @@
     doc = "| [`tracer`] | `tem00-tracer` | a reference path and light tracer (feature `tracer`) |"
 )]
 #![cfg_attr(
+    feature = "tracer",
+    doc = "| [`scene`] | `tem00-scene` | scene files, meshes, maps of radiance (feature `tracer`) |"
+)]
+#![cfg_attr(
     feature = "triangulation",
     doc = "| [`triangulation`] | `tem00-triangulation` | sensor, line detectors, calibration, profiles and their uncertainty (feature `triangulation`) |"
 )]
 
 pub use tem00_beam as beam;
 pub use tem00_camera as camera;
+#[cfg(feature = "tracer")]
+pub use tem00_config as config;
 pub use tem00_decorrelation as decorrelation;
 pub use tem00_numerics as numerics;
+#[cfg(feature = "tracer")]
+pub use tem00_scene as scene;
 pub use tem00_speckle as speckle;
 #[cfg(feature = "statistics")]
 pub use tem00_statistics as statistics;

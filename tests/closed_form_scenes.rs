@@ -8,8 +8,9 @@
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
+    scene::parse_scene,
     statistics::t_test_mean,
-    tracer::{Frame, RenderOptions, parse_scene, render_frame},
+    tracer::{Frame, RenderOptions, render_frame},
 };
 
 /// A correct renderer fails a comparison with this probability at a given set of seeds.

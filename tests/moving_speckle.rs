@@ -15,9 +15,10 @@ use tem00::{
         SpeckleMotion, SurfacePoint, Wavefront, axial_correlation, pupil_overlap_correlation,
     },
     numerics::{Grid, circular_path_overlap},
+    scene::parse_scene,
     speckle::{PupilField, SlicePath, SpeckleStack},
     statistics::pearson_correlation,
-    tracer::{Formulas, RenderOptions, SpeckleModel, SpecklePlan, parse_scene, render_frame},
+    tracer::{Formulas, RenderOptions, SpeckleModel, SpecklePlan, render_frame},
 };
 
 const LENS: LensData = LensData {

@@ -12,11 +12,9 @@ use std::{
 
 use tem00::{
     beam::GaussianBeam,
+    scene::parse_scene,
     statistics::t_test_mean,
-    tracer::{
-        Frame, RenderError, RenderOptions, Scene, SpeckleModel, SpecklePlan, parse_scene,
-        render_frame,
-    },
+    tracer::{Frame, RenderError, RenderOptions, Scene, SpeckleModel, SpecklePlan, render_frame},
 };
 
 const SEEDS: u64 = 20;

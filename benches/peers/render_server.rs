@@ -20,7 +20,8 @@ use std::{
     time::Instant,
 };
 
-use tem00::tracer::{Frame, LampEvents, RenderOptions, Scene, read_scene, render_frame};
+use tem00::scene::read_scene;
+use tem00::tracer::{Frame, LampEvents, RenderOptions, Scene, render_frame};
 
 #[derive(Default)]
 struct Server {

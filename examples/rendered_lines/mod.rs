@@ -4,7 +4,8 @@
 use std::{error::Error, path::Path, sync::atomic::AtomicBool};
 
 use tem00::{
-    tracer::{Crop, RenderOptions, Scene, SpeckleModel, SpecklePlan, parse_scene, render_frame},
+    scene::parse_scene,
+    tracer::{Crop, RenderOptions, Scene, SpeckleModel, SpecklePlan, render_frame},
     triangulation::{
         DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, LineMethod, Triangulator,
     },

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use tem00::tracer::{Formulas, SpeckleModel, SpecklePlan, document::FileAccess};
+use tem00::config::FileAccess;
+use tem00::tracer::{Formulas, SpeckleModel, SpecklePlan};
 use tem00::triangulation::{
     MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, mean_point,
 };

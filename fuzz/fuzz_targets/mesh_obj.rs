@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use tem00_tracer::{MeshFormat, read_mesh_bytes};
+use tem00_scene::{MeshFormat, read_mesh_bytes};
 
 fuzz_target!(|content: &[u8]| {
     match read_mesh_bytes(content, MeshFormat::Obj, 1e-3) {

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use tem00_tracer::parse_scene;
+use tem00_scene::parse_scene;
 
 fuzz_target!(|text: &str| {
     if let Err(error) = parse_scene(text, Path::new("/nowhere")) {

@@ -6,10 +6,8 @@ use tem00::{
         ImageOrientation, ImagingGeometry, LensData, RigidMotion, RigidMotions, SpeckleMotion,
     },
     numerics::Grid,
-    tracer::{
-        RenderOptions, Rotation, Scene, SpeckleModel, SpecklePlan, Trajectory, parse_scene,
-        render_frame,
-    },
+    scene::parse_scene,
+    tracer::{RenderOptions, Rotation, Scene, SpeckleModel, SpecklePlan, Trajectory, render_frame},
 };
 
 /// A plate at the origin that faces a camera 0.3 m away.

@@ -3,9 +3,10 @@ use std::{path::Path, sync::atomic::AtomicBool};
 use tem00::{
     camera::{Camera, CameraDescription, RadialDistortion, SensorTilt},
     numerics::Grid,
+    scene::parse_scene,
     tracer::{
         Formulas, Rectangle, RenderOptions, Shape, SpeckleModel, SpecklePlan, Trajectory,
-        parse_scene, render_frame,
+        render_frame,
     },
     triangulation::{
         CalibrationSettings, DVec2, DVec3, DetectorSettings, MeasuredFrame, Measurement,

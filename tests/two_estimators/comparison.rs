@@ -5,10 +5,11 @@ use std::{path::Path, sync::atomic::AtomicBool};
 use tem00::{
     camera::{Camera, CameraDescription},
     numerics::Grid,
+    scene::parse_scene,
     statistics::{kolmogorov_smirnov, t_test_mean},
     tracer::{
         Frame, LaserEvents, LaserLayers, Material, Method, RenderOptions, Scene, SpeckleModel,
-        parse_scene, render_frame,
+        render_frame,
     },
 };
 

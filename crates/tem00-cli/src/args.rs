@@ -14,9 +14,9 @@ mod triangulate;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use tem00_config::LENGTH;
 use tem00_speckle::Pupil;
 use tem00_tracer::Crop;
-use tem00_tracer::document::LENGTH;
 
 pub(crate) use self::{
     budget::BudgetArgs,

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
-use tem00_tracer::document::{MAX_TEXT_BYTES, read_input};
+use tem00_config::{MAX_TEXT_BYTES, read_input};
 use tem00_triangulation::{
     Calibration, CalibrationCovariance, CalibrationQuality, LaserPlane, PARAMETERS,
     TriangulationError,

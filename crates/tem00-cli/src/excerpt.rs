@@ -3,7 +3,7 @@
 use std::{ops::Range, path::Path};
 
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
-use tem00_tracer::document::{is_hazard, printable_line};
+use tem00_config::{is_hazard, printable_line};
 
 /// The longest line that is shown whole, in bytes.
 const WIDEST: usize = 160;

@@ -3,7 +3,7 @@
 use std::{io, path::Path};
 
 use miette::{Diagnostic, Report, SourceSpan};
-use tem00_tracer::{SceneError, document::printable_line};
+use tem00_config::{ConfigError, printable_line};
 use thiserror::Error;
 
 use crate::excerpt::Excerpt;
@@ -56,7 +56,7 @@ impl Failure {
 
     /// Returns a complaint about a scene file, a set-up file or one that they include, with `otherwise`
     /// for help where the complaint has no place and no help of its own.
-    pub(crate) fn file(path: &Path, error: &SceneError, otherwise: &str) -> Self {
+    pub(crate) fn file(path: &Path, error: &ConfigError, otherwise: &str) -> Self {
         let help = error.help().map(str::to_owned);
         let path = error.path().unwrap_or(path);
         match error.span() {

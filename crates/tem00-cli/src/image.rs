@@ -13,8 +13,9 @@ use std::{
 };
 
 use num_complex::Complex;
+use tem00_config::open_input;
 use tem00_numerics::{Grid, MemoryError, check_memory};
-use tem00_tracer::{Crop, document::open_input};
+use tem00_tracer::Crop;
 use thiserror::Error;
 
 pub(crate) use exr_file::{Layer, Window, write_exr};

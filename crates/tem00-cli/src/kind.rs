@@ -2,7 +2,7 @@
 
 use std::{fs::File, io::Read, path::Path};
 
-use tem00_tracer::document::{DocumentKind, kind_of_document};
+use tem00_config::{DocumentKind, kind_of_document};
 
 use crate::failure::Failure;
 

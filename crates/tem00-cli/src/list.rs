@@ -2,7 +2,8 @@
 
 use std::io::Write;
 
-use tem00_tracer::{FinishingProcess, Metal, TracerError, document::MATERIALS};
+use tem00_scene::MATERIALS;
+use tem00_tracer::{FinishingProcess, Metal, TracerError};
 use tem00_triangulation::{LineMethod, SensorDescription};
 
 use crate::{

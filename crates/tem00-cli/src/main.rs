@@ -38,7 +38,7 @@ use std::{
 };
 
 use clap::Parser;
-use tem00_tracer::document::is_hazard;
+use tem00_config::is_hazard;
 
 use crate::{
     args::{Cli, Command},

@@ -9,8 +9,8 @@ use std::{
 };
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use tem00_config::{is_standard_input, printable};
 use tem00_numerics::check_memory;
-use tem00_tracer::document::{is_standard_input, printable};
 
 use crate::{
     atomic::{create_writable_folder, remove_abandoned},

@@ -9,7 +9,7 @@ use std::{
 };
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
-use tem00_tracer::document::printable_line;
+use tem00_config::printable_line;
 
 use self::lines::Lines;
 use crate::output::{is_quiet, note};

@@ -9,8 +9,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use tem00_scene::SceneFile;
 use tem00_tracer::{
-    Formulas, Method, RenderOptions, Scene, SceneFile, SpeckleModel, SpecklePlan, TracerError,
+    Formulas, Method, RenderOptions, Scene, SpeckleModel, SpecklePlan, TracerError,
 };
 
 use self::{

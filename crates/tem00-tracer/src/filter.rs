@@ -19,7 +19,6 @@ const MAXIMUM_RADIUS: f64 = IMAGE_MARGIN;
 /// - D. P. Mitchell and A. N. Netravali, *Reconstruction Filters in Computer Graphics*, 1988, eq. 8.
 /// - C. E. Duchon, *Lanczos Filtering in One and Two Dimensions*, 1979.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Filter {
     /// k = 1. With the radius ½ pixels do not overlap and are what the pixels of a sensor are.
     Box {

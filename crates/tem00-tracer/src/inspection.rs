@@ -97,35 +97,6 @@ impl Scene {
     /// # Errors
     ///
     /// Returns an error if the geometry cannot be built.
-    ///
-    /// # Examples
-    ///
-    /// A plate stands 70 mm beside the spot:
-    ///
-    /// ```
-    /// use tem00_tracer::{LightFate, parse_scene};
-    ///
-    /// let scene = parse_scene(
-    ///     r#"
-    ///     [camera]
-    ///     position = [0, 0, "300 mm"]
-    ///
-    ///     [[laser]]
-    ///     wavelength = "650 nm"
-    ///     power = "5 mW"
-    ///     position = ["100 mm", 0, "300 mm"]
-    ///     spot.waist_radius = "0.2 mm"
-    ///
-    ///     [[surface]]
-    ///     rectangle = { centre = ["70 mm", 0, 0], size = ["20 mm", "20 mm"] }
-    ///     "#,
-    ///     std::path::Path::new("."),
-    /// )?;
-    /// let lasers = scene.inspect_lasers(0)?;
-    /// assert!(!lasers[0].is_seen());
-    /// assert_eq!(lasers[0].parts[0].fate, LightFate::Misses);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn inspect_lasers(&self, frame: u32) -> Result<Vec<LaserInspection>, TracerError> {
         let inspector = Inspector {
             scene: self,
@@ -383,6 +354,3 @@ impl Parts {
         self.0
     }
 }
-
-#[cfg(test)]
-mod tests;

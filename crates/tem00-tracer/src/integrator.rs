@@ -233,6 +233,3 @@ impl<'a> Integrator<'a> {
         self.rays_meet_lamps(specular) || self.rays_meet_lasers()
     }
 }
-
-#[cfg(test)]
-mod tests;

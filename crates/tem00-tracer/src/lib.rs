@@ -1,9 +1,9 @@
 //! A reference path tracer that shows how laser beams, speckle and its decorrelation meet.
 //!
-//! A scene of surfaces, lasers and lamps is seen by a camera with a real lens and sensor. Light that
-//! meets *one* rough surface on its way from a laser to the camera, and any number of mirrors and
-//! glass, is coherent: each camera sample of it is multiplied by the speckle pattern at its place in
-//! the image. All other light is left as it is.
+//! A [`Scene`] of surfaces, lasers and lights is seen by a [`Camera`](tem00_camera::Camera) with a real lens
+//! and sensor. Light that meets *one* rough surface on its way from a laser to the camera, and any number
+//! of mirrors and glass, is coherent: each camera sample of it is multiplied by the speckle pattern at its
+//! position in the image. All other light is left as it is.
 //!
 //! # Conventions
 //!
@@ -15,64 +15,90 @@
 //!
 //! # Main types
 //!
-//! [`read_scene`] makes a [`Scene`] of a file; [`SpecklePlan`] chooses the patterns and says why,
-//! [`SpeckleModel`] generates them, and [`render_frame`] renders a [`Frame`] of layers.
+//! [`Scene`] describes what is rendered; `tem00-scene` reads one from a file. [`SpecklePlan`] chooses the
+//! patterns and says why, [`SpeckleModel`] generates them, and [`render_frame`] renders a [`Frame`] of
+//! layers. [`SpeckleChange`] is how speckle moves and changes between two frames.
 //!
 //! # Scope and non-goals
 //!
-//! Rectangles, spheres, tubes and meshes; diffuse surfaces, metals, plastic, mirrors and clear glass; a
-//! thin lens with depth of field, tilt and distortion; moving objects, lasers and cameras. Each laser
-//! is traced at its own wavelength, and lamps are white. There is no polarisation, no dispersion, and
-//! nothing scatters between surfaces. Laser light that meets mirrors or glass both before and after
-//! a rough surface is not found unless lasers are [sampled](LaserEvents::Sampled).
+//! Rectangles, spheres, tubes and meshes; diffuse surfaces, metals, plastic, mirrors and clear glass;
+//! moving objects, lasers and cameras. Each laser is traced at its own wavelength, and other lights are
+//! white. There is no polarisation, no dispersion, and nothing scatters between surfaces. Laser light that
+//! meets mirrors or glass both before and after a rough surface is not found unless lasers are
+//! [sampled](LaserEvents::Sampled). Nothing is read from files.
 //!
 //! # Example
+//!
+//! A plate under a laser spot, which moves by 11 pixel pitches where the lens images at 1:11:
 //!
 //! ```
 //! use std::sync::atomic::AtomicBool;
 //!
-//! use tem00_tracer::{RenderOptions, SpeckleModel, SpecklePlan, parse_scene, render_frame};
+//! use glam::DVec3;
+//! use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+//! use tem00_tracer::{
+//!     BeamShape, Laser, LaserDescription, Material, Rectangle, ReferencePoint, RenderOptions, Scene,
+//!     Shape, SpeckleChange, SpeckleModel, SpecklePlan, Surface, Trajectory, render_frame,
+//! };
 //!
-//! let scene = parse_scene(
-//!     r#"
-//!     [camera]
-//!     position = ["0 mm", "0 mm", "300 mm"]
-//!     look_at = ["0 mm", "0 mm", "0 mm"]
-//!     focal_length = "25 mm"
-//!     f_number = 8
-//!     pixel_pitch = "3.45 um"
-//!     resolution = [32, 32]
+//! let mut scene = Scene::new(Camera::new(CameraDescription {
+//!     position: 0.3 * DVec3::Z,
+//!     look_at: DVec3::ZERO,
+//!     up: DVec3::Y,
+//!     focal_length: 25e-3,
+//!     f_number: 8.0,
+//!     focus_distance: 0.3,
+//!     pixel_pitch: 3.45e-6,
+//!     resolution: [32, 32],
+//!     principal_point: None,
+//!     tilt: SensorTilt::default(),
+//!     distortion: RadialDistortion::default(),
+//!     depth_of_field: true,
+//! })?);
+//! scene.lasers.push(Laser::new(LaserDescription {
+//!     wavelength: 650e-9,
+//!     power: 1e-3,
+//!     position: DVec3::new(0.1, 0.0, 0.3),
+//!     look_at: DVec3::ZERO,
+//!     line_direction: DVec3::X,
+//!     shape: BeamShape::Spot {
+//!         waist_radius: [0.1e-3; 2],
+//!         waist_distance: [0.316; 2],
+//!         m_squared: [1.0; 2],
+//!     },
+//! })?);
+//! let plate = Rectangle::new(DVec3::ZERO, 0.01 * DVec3::X, 0.01 * DVec3::Y)?;
+//! scene.surfaces.push(Surface {
+//!     trajectory: Trajectory::steady(37.95e-6 * DVec3::X)?,
+//!     ..Surface::new("plate", Shape::Rectangle(plate), Material::lambertian(0.8)?)
+//! });
+//! scene.render.frames = 2;
 //!
-//!     [[laser]]
-//!     wavelength = "650 nm"
-//!     power = "1 mW"
-//!     position = ["100 mm", "0 mm", "300 mm"]
-//!     look_at = ["0 mm", "0 mm", "0 mm"]
-//!     spot = { waist_radius = "0.1 mm" }
+//! // Before anything is rendered: the camera sees the spot, and the plate is rough enough for speckle.
+//! assert!(scene.inspect_lasers(0)?[0].is_seen());
+//! assert!(scene.roughness_notes()?.is_empty());
 //!
-//!     [[surface]]
-//!     rectangle = { centre = [0, 0, 0], normal = [0, 0, 1], size = ["20 mm", "20 mm"] }
-//!     "#,
-//!     std::path::Path::new("."),
-//! )?;
 //! let options = RenderOptions { samples_per_pixel: 4, ..RenderOptions::default() };
 //! let plan = SpecklePlan::new(&scene, options.formulas, options.seed)?;
 //! let speckle = SpeckleModel::generate(&scene, &plan)?;
-//!
 //! let frame = render_frame(&scene, Some(&speckle), 0, &options, |_| (), &AtomicBool::new(false))?;
 //!
 //! // The whole spot is in the image.
 //! assert!((frame.lasers[0].power_on_target / 1e-3 - 1.0).abs() < 0.02);
+//!
+//! // In the next frame the speckle has moved by a pixel and is nearly the same.
+//! let point = ReferencePoint { surface: 0, position: DVec3::ZERO, normal: DVec3::Z };
+//! let change = SpeckleChange::between(&scene, 0, &point, [0, 1]).unwrap();
+//! assert!((change.displacement.x - 1.0).abs() < 1e-2);
+//! assert!((0.95..1.0).contains(&change.correlation));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod environment;
-mod environment_file;
 mod error;
 mod film;
 mod filter;
 mod finish;
-mod input_file;
 mod inspection;
 mod integrator;
 mod intersector;
@@ -82,13 +108,10 @@ mod light_tracer;
 mod local_frame;
 mod material;
 mod mesh;
-mod mesh_file;
 mod metal;
-mod printable;
 mod render;
 mod sampler;
 mod scene;
-mod scene_file;
 mod shape;
 mod speckle;
 mod spread;
@@ -97,7 +120,6 @@ mod testing;
 mod trajectory;
 
 pub use environment::Environment;
-pub use environment_file::{RadianceMapError, read_radiance_map};
 pub use error::TracerError;
 pub use film::{Frame, LaserLayers};
 pub use filter::{Filter, FilterSample, FilterSampler};
@@ -109,13 +131,11 @@ pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIlluminat
 pub use local_frame::LocalFrame;
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use mesh::{MeshError, TriangleMesh};
-pub use mesh_file::{MeshFormat, read_mesh, read_mesh_bytes};
 pub use metal::Metal;
 pub use render::{
     Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, render_frame,
 };
 pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
-pub use scene_file::{SceneError, SceneFile, parse_scene, read_scene};
 
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
 pub use speckle::{
@@ -125,21 +145,6 @@ pub use trajectory::{Keyframe, Rotation, Trajectory};
 
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};
-
-/// Files in the syntax of scene files, section by section: for what reads more than a scene.
-pub mod document {
-    pub use crate::scene_file::{
-        ANGLE, Change, Choice, DURATION, Dimension, Document, DocumentKind, Format, LENGTH,
-        MATERIALS, MEMORY, NUMBER, POWER, Problem, RADIANCE, Reading, Section, Value,
-        kind_of_document, parse_document, read_document,
-    };
-
-    pub use crate::printable::{is_hazard, printable, printable_line};
-
-    pub use crate::input_file::{
-        FileAccess, MAX_ASSET_BYTES, MAX_TEXT_BYTES, is_standard_input, open_input, read_input,
-    };
-}
 
 /// How rigid bodies move.
 pub use tem00_decorrelation::RigidMotion;

@@ -154,8 +154,3 @@ fn add_light_traced(
     }
     Ok(())
 }
-
-#[cfg(test)]
-mod edge_cases;
-#[cfg(test)]
-mod tests;

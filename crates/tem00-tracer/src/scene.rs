@@ -19,6 +19,20 @@ pub struct Surface {
     pub rms_height: Option<f64>,
 }
 
+impl Surface {
+    /// Creates a surface that stands still and whose speckle is fully developed and polarised.
+    pub fn new(name: impl Into<String>, shape: Shape, material: Material) -> Self {
+        Self {
+            name: name.into(),
+            shape,
+            material,
+            trajectory: Trajectory::default(),
+            speckle: SurfaceSpeckle::default(),
+            rms_height: None,
+        }
+    }
+}
+
 /// What the speckle of a surface is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceSpeckle {
@@ -126,6 +140,19 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Creates a dark and empty scene with a camera that stands still.
+    pub fn new(camera: Camera) -> Self {
+        Self {
+            camera,
+            camera_trajectory: Trajectory::default(),
+            lasers: Vec::new(),
+            surfaces: Vec::new(),
+            lamps: Vec::new(),
+            speckle: SpeckleSettings::default(),
+            render: RenderSettings::default(),
+        }
+    }
+
     /// Returns the camera as it stands in `frame`.
     pub fn camera_at(&self, frame: u32) -> Camera {
         self.camera.moved(&self.camera_trajectory.pose_at(frame))

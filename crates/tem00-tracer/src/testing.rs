@@ -1,29 +1,68 @@
-//! What the tests of estimators share.
+//! Scenes that several tests share.
 
-use tem00_statistics::t_test_mean;
+use glam::DVec3;
+use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 
-/// A correct estimator fails a comparison with this probability at a given set of seeds.
-const SIGNIFICANCE: f64 = 1e-4;
+use crate::{BeamShape, Laser, LaserDescription, Material, Rectangle, Scene, Shape, Surface};
 
-/// Returns the mean over an image.
-pub(crate) fn mean(values: &[f32]) -> f64 {
-    values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len() as f64
+/// A camera of 25 mm at f/8 that looks at the origin, in focus there.
+pub(crate) fn camera(position: DVec3, resolution: [usize; 2]) -> CameraDescription {
+    CameraDescription {
+        position,
+        look_at: DVec3::ZERO,
+        up: DVec3::Y,
+        focal_length: 25e-3,
+        f_number: 8.0,
+        focus_distance: position.length(),
+        pixel_pitch: 3.45e-6,
+        resolution,
+        principal_point: None,
+        tilt: SensorTilt::default(),
+        distortion: RadialDistortion::default(),
+        depth_of_field: true,
+    }
 }
 
-/// Asserts that renders with different seeds have the mean `expected`, and can tell by `precision`.
-pub(crate) fn assert_mean(name: &str, values: &[f64], expected: f64, precision: f64) {
-    let test = t_test_mean(values, expected).unwrap();
-    assert!(
-        test.p_value > SIGNIFICANCE,
-        "{name}: p = {:e}, {values:?} | {expected}",
-        test.p_value
-    );
-    let n = values.len() as f64;
-    let average = values.iter().sum::<f64>() / n;
-    let squares = values.iter().map(|v| (v - average).powi(2)).sum::<f64>();
-    let error = (squares / (n * (n - 1.0))).sqrt();
-    assert!(
-        error <= precision,
-        "{name}: the standard error {error:e} exceeds {precision:e}"
-    );
+/// A round spot of 650 nm and 1 mW whose waist lies at the origin, where it is aimed at.
+pub(crate) fn spot(position: DVec3, waist_radius: f64) -> LaserDescription {
+    LaserDescription {
+        wavelength: 650e-9,
+        power: 1e-3,
+        position,
+        look_at: DVec3::ZERO,
+        line_direction: DVec3::X,
+        shape: BeamShape::Spot {
+            waist_radius: [waist_radius; 2],
+            waist_distance: [position.length(); 2],
+            m_squared: [1.0; 2],
+        },
+    }
+}
+
+/// A diffuse plate of two edge lengths that faces along a normal.
+pub(crate) fn plate(centre: DVec3, normal: DVec3, size: [f64; 2]) -> Surface {
+    let right = DVec3::Y.cross(normal).normalize();
+    let up = normal.cross(right).normalize();
+    let rectangle = Rectangle::new(centre, 0.5 * size[0] * right, 0.5 * size[1] * up).unwrap();
+    Surface::new(
+        "plate",
+        Shape::Rectangle(rectangle),
+        Material::lambertian(0.8).unwrap(),
+    )
+}
+
+/// A scene of one plate in one frame.
+pub(crate) fn scene(
+    camera: CameraDescription,
+    lasers: &[LaserDescription],
+    plate: Surface,
+) -> Scene {
+    let lasers = lasers
+        .iter()
+        .map(|laser| Laser::new(laser.clone()).unwrap());
+    Scene {
+        lasers: lasers.collect(),
+        surfaces: vec![plate],
+        ..Scene::new(Camera::new(camera).unwrap())
+    }
 }

@@ -4,7 +4,8 @@
 
 use std::{path::Path, sync::atomic::AtomicBool};
 
-use tem00_tracer::{Crop, RenderOptions, parse_scene, render_frame};
+use tem00_scene::parse_scene;
+use tem00_tracer::{Crop, RenderOptions, render_frame};
 use tem00_triangulation::{DVec2, Setup, parse_setup};
 
 fn setup(scheimpflug: bool) -> Setup {

@@ -1,7 +1,7 @@
 //! What the commands share that read scene files and set-up files.
 
 use clap::Args;
-use tem00_tracer::document::{Change, FileAccess, Reading};
+use tem00_config::{Change, FileAccess, Reading};
 
 /// How a scene file or a set-up file is read.
 #[derive(Args, Clone, Debug)]

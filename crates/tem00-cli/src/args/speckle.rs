@@ -1,7 +1,7 @@
 //! The command line of `tem00 speckle`.
 
 use clap::Args;
-use tem00_tracer::document::ANGLE;
+use tem00_config::ANGLE;
 
 use super::{length, positive};
 

@@ -10,10 +10,8 @@ use std::{
 };
 
 use serde::{Deserialize, Serialize};
-use tem00_tracer::{
-    Scene, Shape, TriangleMesh,
-    document::{MAX_TEXT_BYTES, open_input, read_input},
-};
+use tem00_config::{MAX_TEXT_BYTES, open_input, read_input};
+use tem00_tracer::{Scene, Shape, TriangleMesh};
 
 use crate::{
     atomic::write_atomically,
@@ -221,7 +219,7 @@ impl fmt::Display for Fingerprint {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use tem00_tracer::parse_scene;
+    use tem00_scene::parse_scene;
 
     use super::*;
 

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use tem00_tracer::document::is_hazard;
+use tem00_config::is_hazard;
 
 /// Returns text as HTML shows it, between tags and in quoted attributes.
 ///

@@ -39,31 +39,40 @@ impl Laser {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
+    use tem00_beam::{FanGeometry, FocusCurve, LineProfile};
 
     use super::*;
+    use crate::{BeamShape, LaserDescription, testing::spot};
 
-    const LASERS: &str = r#"
-        [camera]
-        position = [0, 0, 0.3]
-        [[surface]]
-        rectangle = { size = [0.1, 0.1] }
-        [[laser]]
-        wavelength = "650 nm"
-        power = "1 mW"
-        position = [0.1, 0.02, 0.3]
-        spot = { waist_radius = ["0.05 mm", "0.2 mm"], waist_distance = ["0.1 m", "0.5 m"] }
-        [[laser]]
-        wavelength = "650 nm"
-        power = "1 mW"
-        position = [-0.1, 0.02, 0.3]
-        line = { thickness = "0.1 mm", fan_angle = "40 deg", focus_distance = "0.2 m" }
-    "#;
+    fn lasers() -> [Laser; 2] {
+        let elliptic = LaserDescription {
+            shape: BeamShape::Spot {
+                waist_radius: [0.05e-3, 0.2e-3],
+                waist_distance: [0.1, 0.5],
+                m_squared: [1.0; 2],
+            },
+            ..spot(DVec3::new(0.1, 0.02, 0.3), 0.05e-3)
+        };
+        let line = LaserDescription {
+            shape: BeamShape::Line {
+                waist_radius: 0.05e-3,
+                m_squared: 1.0,
+                fan: FanGeometry {
+                    fan_angle: 40_f64.to_radians(),
+                    apex_offset: 2e-3,
+                    focus_distance: 0.2,
+                    focus_curve: FocusCurve::EqualDistance,
+                },
+                profile: LineProfile::GaussianTan,
+            },
+            ..spot(DVec3::new(-0.1, 0.02, 0.3), 0.05e-3)
+        };
+        [elliptic, line].map(|laser| Laser::new(laser).unwrap())
+    }
 
     #[test]
     fn the_wave_arrives_as_the_light_does_and_goes_on_beyond_it() {
-        let scene = crate::parse_scene(LASERS, Path::new(".")).unwrap();
-        for laser in &scene.lasers {
+        for laser in lasers() {
             let mut lit = 0;
             for i in 0..400_u32 {
                 let (x, y) = (f64::from(i % 20) - 9.5, f64::from(i / 20) - 9.5);

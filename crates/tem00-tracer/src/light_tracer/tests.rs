@@ -1,5 +1,4 @@
 use core::f64::consts::PI;
-use std::path::Path;
 
 use glam::{DVec2, DVec3};
 use tem00_camera::CameraDescription;
@@ -9,7 +8,7 @@ use super::{
     draws::{DrawKey, Draws},
     *,
 };
-use crate::{Material, Rectangle, Shape, TriangleMesh, parse_scene};
+use crate::{LaserDescription, Material, Rectangle, Shape, Surface, TriangleMesh, testing};
 
 /// A correct light tracer fails a comparison with this probability at the fixed seeds.
 const SIGNIFICANCE: f64 = 1e-4;
@@ -19,33 +18,20 @@ const REFLECTANCE: f64 = 0.5;
 
 /// A spot on an upright plate, seen by a camera that is sharp everywhere.
 fn plate() -> Scene {
-    let text = format!(
-        r#"
-        [camera]
-        position = [0, 0.1, 0.3]
-        look_at = [0, 0, 0]
-        focal_length = "25 mm"
-        f_number = 8
-        pixel_pitch = "20 um"
-        resolution = [24, 16]
-        [[laser]]
-        wavelength = "650 nm"
-        power = {POWER}
-        position = [0.1, 0, 0.2]
-        look_at = [0, 0, 0]
-        spot = {{ waist_radius = "0.5 mm" }}
-        [[surface]]
-        rectangle = {{ centre = [0, 0, 0], normal = [0, 0, 1], size = [0.1, 0.1] }}
-        lambertian = {{ reflectance = {REFLECTANCE} }}
-        "#
-    );
-    let mut scene = parse_scene(&text, Path::new(".")).unwrap();
-    let sharp = CameraDescription {
+    let camera = CameraDescription {
+        pixel_pitch: 20e-6,
         depth_of_field: false,
-        ..*scene.camera.description()
+        ..testing::camera(DVec3::new(0.0, 0.1, 0.3), [24, 16])
     };
-    scene.camera = Camera::new(sharp).unwrap();
-    scene
+    let laser = LaserDescription {
+        power: POWER,
+        ..testing::spot(DVec3::new(0.1, 0.0, 0.2), 0.5e-3)
+    };
+    let plate = Surface {
+        material: Material::lambertian(REFLECTANCE).unwrap(),
+        ..testing::plate(DVec3::ZERO, DVec3::Z, [0.1, 0.1])
+    };
+    testing::scene(camera, &[laser], plate)
 }
 
 fn whole(scene: &Scene) -> Crop {

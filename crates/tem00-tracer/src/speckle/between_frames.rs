@@ -57,43 +57,6 @@ impl SpeckleChange {
     /// # Panics
     ///
     /// Panics unless `laser < scene.lasers.len()` and `point.surface < scene.surfaces.len()`.
-    ///
-    /// # Examples
-    ///
-    /// A plate 0.3 m away moves by 11 pixel pitches where the lens images at 1:11:
-    ///
-    /// ```
-    /// use glam::DVec3;
-    /// use tem00_tracer::{ReferencePoint, SpeckleChange, parse_scene};
-    ///
-    /// let scene = parse_scene(
-    ///     r#"
-    ///     [render]
-    ///     frames = 2
-    ///     [camera]
-    ///     position = [0, 0, "300 mm"]
-    ///     focal_length = "25 mm"
-    ///     f_number = 8
-    ///     pixel_pitch = "3.45 um"
-    ///     resolution = [64, 48]
-    ///     [[laser]]
-    ///     wavelength = "650 nm"
-    ///     power = "1 mW"
-    ///     position = [0, 0, "200 mm"]
-    ///     spot.waist_radius = "4 mm"
-    ///     [[surface]]
-    ///     displacement_per_frame = ["37.95 um", 0, 0]
-    ///     rectangle.size = ["20 mm", "20 mm"]
-    ///     "#,
-    ///     std::path::Path::new("."),
-    /// )?;
-    /// let point = ReferencePoint { surface: 0, position: DVec3::ZERO, normal: DVec3::Z };
-    ///
-    /// let change = SpeckleChange::between(&scene, 0, &point, [0, 1]).unwrap();
-    /// assert!((change.displacement.x - 1.0).abs() < 1e-3);
-    /// assert!((0.95..1.0).contains(&change.correlation));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn between(
         scene: &Scene,
         laser: usize,

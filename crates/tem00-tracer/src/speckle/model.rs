@@ -287,41 +287,27 @@ impl Part {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use glam::DVec3;
 
     use super::*;
-    use crate::{Formulas, SurfaceSpeckle};
+    use crate::{Formulas, LaserDescription, Surface, SurfaceSpeckle, Trajectory, testing};
 
     /// Two plates that move apart under two lasers, one of them with a sum of patterns.
     fn scene() -> Scene {
-        let text = r#"
-            [render]
-            frames = 4
-            [camera]
-            position = [0, 0, 0.3]
-            focal_length = "25 mm"
-            f_number = 8
-            resolution = [64, 48]
-            [[laser]]
-            wavelength = "650 nm"
-            power = "1 mW"
-            position = [0.1, 0, 0.25]
-            spot.waist_radius = "2 mm"
-            [[laser]]
-            wavelength = "532 nm"
-            power = "1 mW"
-            position = [-0.1, 0, 0.25]
-            spot.waist_radius = "2 mm"
-            [[surface]]
-            displacement_per_frame = ["0.1 mm", 0, 0]
-            rectangle.size = [0.02, 0.02]
-            [[surface]]
-            displacement_per_frame = [0, "0.2 mm", 0]
-            rectangle = { centre = [0, 0, 1e-3], size = [0.02, 0.02] }
-        "#;
-        let mut scene = crate::parse_scene(text, Path::new(".")).unwrap();
+        let red = testing::spot(DVec3::new(0.1, 0.0, 0.25), 2e-3);
+        let green = LaserDescription {
+            wavelength: 532e-9,
+            position: DVec3::new(-0.1, 0.0, 0.25),
+            ..red.clone()
+        };
+        let plate = |z: f64, displacement: DVec3| Surface {
+            trajectory: Trajectory::steady(displacement).unwrap(),
+            ..testing::plate(z * DVec3::Z, DVec3::Z, [0.02, 0.02])
+        };
+        let camera = testing::camera(0.3 * DVec3::Z, [64, 48]);
+        let mut scene = testing::scene(camera, &[red, green], plate(0.0, 0.1e-3 * DVec3::X));
+        scene.surfaces.push(plate(1e-3, 0.2e-3 * DVec3::Y));
+        scene.render.frames = 4;
         scene.render.reference_frame = 1;
         scene.surfaces[1].speckle = SurfaceSpeckle {
             patterns: 2,
@@ -379,7 +365,7 @@ mod tests {
         let model = model(&scene, Formulas::Derived);
         let moving = model.in_frame(&scene, 1);
         for surface in &mut scene.surfaces {
-            surface.trajectory = crate::Trajectory::default();
+            surface.trajectory = Trajectory::default();
         }
         let still = model.in_frame(&scene, 1);
         for point in points(&scene, 200) {

@@ -40,36 +40,6 @@ impl Scene {
     ///
     /// Returns an error if the imaging geometry is not possible, or if a wavelength or a height is
     /// beyond what [`Material::optical_roughness`](crate::Material::optical_roughness) judges.
-    ///
-    /// # Examples
-    ///
-    /// A lapped gauge block behind a camera that resolves 62 µm:
-    ///
-    /// ```
-    /// let scene = tem00_tracer::parse_scene(
-    ///     r#"
-    ///     [camera]
-    ///     position = [0, 0, "300 mm"]
-    ///     focal_length = "25 mm"
-    ///     f_number = 8
-    ///     [[laser]]
-    ///     wavelength = "650 nm"
-    ///     power = "1 mW"
-    ///     position = ["100 mm", 0, "300 mm"]
-    ///     spot.waist_radius = "0.1 mm"
-    ///     [[surface]]
-    ///     name = "gauge"
-    ///     rectangle.size = ["20 mm", "20 mm"]
-    ///     conductor = { metal = "iron", roughness = 0.01 }
-    ///     "#,
-    ///     std::path::Path::new("."),
-    /// )?;
-    /// let notes = scene.roughness_notes()?;
-    /// assert_eq!(notes.len(), 1);
-    /// assert!(notes[0].to_string().starts_with("surface `gauge` is too smooth"));
-    /// assert!(notes[0].roughness.patches() < 20.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn roughness_notes(&self) -> Result<Vec<RoughnessNote>, TracerError> {
         let mut notes = Vec::new();
         for surface in &self.surfaces {
@@ -97,33 +67,27 @@ impl Scene {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
+    use glam::DVec3;
 
-    use crate::{Material, Metal};
+    use crate::{
+        LaserDescription, Material, Metal,
+        testing::{self, camera, plate, spot},
+    };
 
     /// A camera that resolves λ L/D = 62 µm at 650 nm and 51 µm at 532 nm.
-    const SCENE: &str = r#"
-        [camera]
-        position = [0, 0, 0.3]
-        focal_length = "25 mm"
-        f_number = 8
-        [[laser]]
-        wavelength = "650 nm"
-        power = "1 mW"
-        position = [0.1, 0, 0.3]
-        spot.waist_radius = "0.1 mm"
-        [[laser]]
-        wavelength = "532 nm"
-        power = "1 mW"
-        position = [0.1, 0, 0.3]
-        spot.waist_radius = "0.1 mm"
-        [[surface]]
-        rectangle.size = [0.02, 0.02]
-        "#;
+    fn scene() -> crate::Scene {
+        let red = spot(DVec3::new(0.1, 0.0, 0.3), 0.1e-3);
+        let green = LaserDescription {
+            wavelength: 532e-9,
+            ..red.clone()
+        };
+        let plate = plate(DVec3::ZERO, DVec3::Z, [0.02, 0.02]);
+        testing::scene(camera(0.3 * DVec3::Z, [640, 480]), &[red, green], plate)
+    }
 
     #[test]
     fn what_is_too_smooth_is_noted_for_each_laser_and_nothing_else_is() {
-        let mut scene = crate::parse_scene(SCENE, Path::new(".")).unwrap();
+        let mut scene = scene();
         let mut noted = |material: Material, rms_height: Option<f64>| -> Vec<usize> {
             scene.surfaces[0].material = material;
             scene.surfaces[0].rms_height = rms_height;

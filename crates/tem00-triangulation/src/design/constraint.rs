@@ -1,6 +1,6 @@
 use core::fmt;
 
-use tem00_tracer::document::{DURATION, Dimension, LENGTH, NUMBER, POWER};
+use tem00_config::{DURATION, Dimension, LENGTH, NUMBER, POWER};
 
 use super::DesignFigures;
 use crate::setup::{LEAST_SIGNAL, MOST_GRAIN_SATURATION};

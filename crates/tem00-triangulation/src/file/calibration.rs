@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use tem00_tracer::document::{Document, LENGTH, Problem, Section};
+use tem00_config::{Document, LENGTH, Problem, Section};
 
 /// The keys of the section `[calibration]`.
 pub(super) const KEYS: &[&str] = &[
@@ -139,7 +139,7 @@ fn refuse_boards(section: &Section<'_>) -> Result<(), Problem> {
 mod tests {
     use std::path::Path;
 
-    use tem00_tracer::document::{Format, parse_document};
+    use tem00_config::{Format, parse_document};
 
     use super::*;
 

@@ -1,4 +1,4 @@
-use tem00_tracer::document::{Dimension, Document, Problem, Section, Value};
+use tem00_config::{Dimension, Document, Problem, Section, Value};
 
 use crate::{
     Constraint, DesignFigure, DesignParameter, DesignQuestion, DesignSearch, Objective,

@@ -1,4 +1,4 @@
-use tem00_tracer::document::{Document, NUMBER, Problem, Section, Value};
+use tem00_config::{Document, NUMBER, Problem, Section, Value};
 
 use crate::{DetectorSettings, FilterOrder, LineDetector, LineMethod};
 
@@ -115,10 +115,7 @@ fn whole(value: &Value<'_>, least: usize, most: usize) -> Result<usize, Problem>
 mod tests {
     use std::path::Path;
 
-    use tem00_tracer::{
-        SceneError,
-        document::{Format, parse_document},
-    };
+    use tem00_config::{ConfigError, Format, parse_document};
 
     use super::*;
 
@@ -128,7 +125,7 @@ mod tests {
         help: "",
     };
 
-    fn read(lines: &str) -> Result<DetectorSettings, SceneError> {
+    fn read(lines: &str) -> Result<DetectorSettings, ConfigError> {
         let text = format!("[detector]\n{lines}\n");
         parse_document(&text, Path::new("."), FORMAT, read_detector)
     }

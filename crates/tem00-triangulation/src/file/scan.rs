@@ -1,5 +1,5 @@
+use tem00_config::{Document, LENGTH, Problem, Section, Value};
 use tem00_tracer::Scene;
-use tem00_tracer::document::{Document, LENGTH, Problem, Section, Value};
 
 use crate::{Averaging, RawFormat, ScanSettings};
 

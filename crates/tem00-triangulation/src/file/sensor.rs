@@ -1,7 +1,7 @@
 #[cfg(test)]
 mod tests;
 
-use tem00_tracer::document::{DURATION, Document, NUMBER, Problem, Section, Value};
+use tem00_config::{DURATION, Document, NUMBER, Problem, Section, Value};
 
 use crate::{Sensor, SensorDescription, TriangulationError};
 

@@ -1,11 +1,8 @@
 use std::path::Path;
 
-use tem00_tracer::{
-    SceneError,
-    document::{
-        ANGLE, Document, FileAccess, Format, LENGTH, NUMBER, POWER, Problem, Reading, Section,
-        Value, parse_document, read_document,
-    },
+use tem00_config::{
+    ANGLE, ConfigError, Document, FileAccess, Format, LENGTH, NUMBER, POWER, Problem, Reading,
+    Section, Value, parse_document, read_document,
 };
 
 use super::{read_detector, sensor::read_sensor_or_auto};
@@ -53,7 +50,7 @@ pub(super) const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"
 ///
 /// Returns an error if the file cannot be read, is not valid TOML, or does not describe a set-up. It
 /// names key, value and what is allowed, and knows its place in the file.
-pub fn read_setup(path: &Path) -> Result<Setup, SceneError> {
+pub fn read_setup(path: &Path) -> Result<Setup, ConfigError> {
     read_setup_with(path, FileAccess::WithinFolder, |_, _| Ok(())).map(|(setup, ())| setup)
 }
 
@@ -67,7 +64,7 @@ pub fn read_setup_with<'a, T>(
     path: &Path,
     reading: impl Into<Reading<'a>>,
     further: impl FnOnce(&Document<'_>, &Setup) -> Result<T, Problem>,
-) -> Result<(Setup, T), SceneError> {
+) -> Result<(Setup, T), ConfigError> {
     read_document(path, reading, SETUP, |document| {
         with_further(document, further)
     })
@@ -109,9 +106,9 @@ pub fn read_setup_with<'a, T>(
 /// // One pixel is p / (m sin θ) in height, with the magnification 1/11.
 /// let per_pixel = setup.line().height_per_pixel;
 /// assert!((per_pixel - 3.45e-6 * 11.0 / 0.5).abs() < 1e-9);
-/// # Ok::<(), tem00_tracer::SceneError>(())
+/// # Ok::<(), tem00_config::ConfigError>(())
 /// ```
-pub fn parse_setup(text: &str) -> Result<Setup, SceneError> {
+pub fn parse_setup(text: &str) -> Result<Setup, ConfigError> {
     parse_setup_with(text, |_, _| Ok(())).map(|(setup, ())| setup)
 }
 
@@ -123,7 +120,7 @@ pub fn parse_setup(text: &str) -> Result<Setup, SceneError> {
 pub fn parse_setup_with<T>(
     text: &str,
     further: impl FnOnce(&Document<'_>, &Setup) -> Result<T, Problem>,
-) -> Result<(Setup, T), SceneError> {
+) -> Result<(Setup, T), ConfigError> {
     parse_document(text, Path::new("."), SETUP, |document| {
         with_further(document, further)
     })

@@ -1,6 +1,6 @@
 use core::fmt::Write;
 
-use tem00_tracer::document::{ANGLE, DURATION, Dimension, LENGTH, NUMBER, POWER};
+use tem00_config::{ANGLE, DURATION, Dimension, LENGTH, NUMBER, POWER};
 
 use crate::{Averages, DetectorSettings, LineMethod, SensorDescription, SetupDescription};
 

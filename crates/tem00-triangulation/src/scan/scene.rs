@@ -1,7 +1,9 @@
 use std::path::{Path, PathBuf};
 
-use tem00_tracer::document::{Document, Problem, Reading};
-use tem00_tracer::{Scene, SceneError, SceneFile};
+use tem00_config::ConfigError;
+use tem00_config::{Document, Problem, Reading};
+use tem00_scene::SceneFile;
+use tem00_tracer::Scene;
 
 use crate::file::{read_calibration, read_detector, read_scan, read_sensor};
 use crate::{CalibrationSettings, DetectorSettings, ScanSettings, SensorDescription};
@@ -32,7 +34,7 @@ impl MeasurementScene {
     pub fn read<'a>(
         path: &Path,
         reading: impl Into<Reading<'a>>,
-    ) -> Result<(Self, Vec<PathBuf>), SceneError> {
+    ) -> Result<(Self, Vec<PathBuf>), ConfigError> {
         let (file, further) = SceneFile::read_with(path, reading, further)?;
         let (sensor, detector, calibration, scan) = further;
         let measurement = Self {

@@ -1,5 +1,5 @@
+use tem00_config::DURATION;
 use tem00_statistics::rectangular_pixel_contrast;
-use tem00_tracer::document::DURATION;
 
 use super::{ImagedLine, Setup};
 use crate::TriangulationError;

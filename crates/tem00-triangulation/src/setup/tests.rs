@@ -188,7 +188,7 @@ fn the_measuring_range_is_seen_with_half_a_window_about_it() {
 #[test]
 fn the_scene_of_a_setup_is_read_as_one() {
     for setup in [setup(), scheimpflug()] {
-        let scene = tem00_tracer::parse_scene(&setup.scene(1e-3), std::path::Path::new("."));
+        let scene = tem00_scene::parse_scene(&setup.scene(1e-3), std::path::Path::new("."));
         let camera = scene.unwrap().camera;
         let point = DVec3::new(1e-3, 0.0, 2e-3);
         let (ours, theirs) = (setup.camera().project(point), camera.project(point));

@@ -1,34 +1,21 @@
-use std::path::Path;
-
 use super::*;
-use crate::{Keyframe, Rotation, Trajectory};
+use crate::{BeamShape, Keyframe, Rotation, Trajectory, testing};
 
 /// A plate under a spot that diverges, from the side, a little out of focus.
-const SCENE: &str = r#"
-    [render]
-    frames = 8
-    [camera]
-    position = [0.02, 0, 0.3]
-    look_at = [0, 0, 0]
-    focal_length = "25 mm"
-    focus_distance = "290 mm"
-    f_number = 8
-    pixel_pitch = "3.45 um"
-    resolution = [640, 480]
-
-    [[laser]]
-    wavelength = "650 nm"
-    power = "1 mW"
-    position = [0.1, 0, 0.25]
-    look_at = [0, 0, 0]
-    spot = { waist_radius = "20 um", waist_distance = 0 }
-
-    [[surface]]
-    rectangle = { centre = [0, 0, 0], normal = [0.3, 0.1, 1], size = [0.04, 0.04] }
-"#;
-
 fn scene() -> Scene {
-    crate::parse_scene(SCENE, Path::new(".")).unwrap()
+    let mut camera = testing::camera(DVec3::new(0.02, 0.0, 0.3), [640, 480]);
+    camera.focus_distance = 0.29;
+    let mut laser = testing::spot(DVec3::new(0.1, 0.0, 0.25), 20e-6);
+    laser.shape = BeamShape::Spot {
+        waist_radius: [20e-6; 2],
+        waist_distance: [0.0; 2],
+        m_squared: [1.0; 2],
+    };
+    let normal = DVec3::new(0.3, 0.1, 1.0).normalize();
+    let plate = testing::plate(DVec3::ZERO, normal, [0.04, 0.04]);
+    let mut scene = testing::scene(camera, &[laser], plate);
+    scene.render.frames = 8;
+    scene
 }
 
 fn steady(axis: DVec3, angle: f64, displacement: DVec3) -> Trajectory {

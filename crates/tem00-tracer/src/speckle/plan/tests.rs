@@ -1,39 +1,64 @@
-use std::path::Path;
+use glam::DVec3;
 
 use super::*;
-use crate::parse_scene;
+use crate::{
+    BeamShape, Keyframe, Laser, LaserDescription, Material, Shape, Sphere, Surface,
+    testing::{self, camera},
+};
 
-/// A plate under a collimated spot as wide as the image, in a number of frames; `more` is appended.
-fn scene(frames: u32, displacement: &str, more: &str) -> Scene {
-    let text = format!(
-        r#"
-        [render]
-        frames = {frames}
-        [camera]
-        position = [0, 0, 0.3]
-        resolution = [300, 200]
-        [[laser]]
-        wavelength = "650 nm"
-        power = "1 mW"
-        position = [0, 0, 0.2]
-        spot = {{ waist_radius = "5 mm" }}
-        [[surface]]
-        displacement_per_frame = {displacement}
-        rectangle = {{ size = [0.1, 0.1] }}
-        {more}
-        "#
-    );
-    parse_scene(&text, Path::new(".")).unwrap()
+/// A wide plate in the plane z, moving from frame to frame.
+fn plate(z: f64, displacement: DVec3) -> Surface {
+    Surface {
+        trajectory: Trajectory::steady(displacement).unwrap(),
+        ..testing::plate(z * DVec3::Z, DVec3::Z, [0.1, 0.1])
+    }
 }
 
-fn plan(frames: u32, displacement: &str, more: &str) -> Result<PatternPlan, TracerError> {
-    let plan = SpecklePlan::new(&scene(frames, displacement, more), Formulas::Derived, 0)?;
+/// A plate under a collimated spot as wide as the image, in a number of frames.
+fn scene(frames: u32, displacement: DVec3) -> Scene {
+    let laser = LaserDescription {
+        shape: BeamShape::Spot {
+            waist_radius: [5e-3; 2],
+            waist_distance: [0.2; 2],
+            m_squared: [1.0; 2],
+        },
+        ..testing::spot(0.2 * DVec3::Z, 5e-3)
+    };
+    let camera = camera(0.3 * DVec3::Z, [300, 200]);
+    let mut scene = testing::scene(camera, &[laser], plate(0.0, displacement));
+    scene.render.frames = frames;
+    scene
+}
+
+fn plan_of(scene: &Scene) -> Result<PatternPlan, TracerError> {
+    let plan = SpecklePlan::new(scene, Formulas::Derived, 0)?;
     Ok(plan.patterns()[0].clone())
+}
+
+fn plan(frames: u32, displacement: DVec3) -> PatternPlan {
+    plan_of(&scene(frames, displacement)).unwrap()
+}
+
+/// The plan of a scene of two plates.
+fn plan_with(
+    frames: u32,
+    displacement: DVec3,
+    more: impl IntoIterator<Item = Surface>,
+) -> PatternPlan {
+    let mut scene = scene(frames, displacement);
+    scene.surfaces.extend(more);
+    plan_of(&scene).unwrap()
+}
+
+/// The plan with patterns of at most so many MiB.
+fn plan_within(mebibytes: f64, mut scene: Scene) -> Result<PatternPlan, TracerError> {
+    scene.speckle.memory = (mebibytes * f64::from(1 << 20)) as u64;
+    plan_of(&scene)
 }
 
 #[test]
 fn nothing_repeats_within_the_image() {
-    let plan = plan(2, "[0, 0, 0]", "").unwrap();
+    let plan = plan(2, DVec3::ZERO);
     // h = λ (1 + m) F with m = 1/11, in pixels of 3.45 µm.
     let speckle_size = 650e-9 * 12.0 / 11.0 * 8.0 / 3.45e-6;
     let error = plan.speckle_size_in_pixels() / speckle_size - 1.0;
@@ -46,7 +71,7 @@ fn nothing_repeats_within_the_image() {
 
 #[test]
 fn motion_of_several_frames_widens_the_pattern_and_asks_for_slices() {
-    let plan = plan(3, "[\"2 mm\", 0, 0]", "").unwrap();
+    let plan = plan(3, 2e-3 * DVec3::X);
     // 4 mm are 105.4 pixels: 405.4 pixels hold 246.6 speckles. The pupil of 3.125 mm is left behind,
     // so that the path of the slices is three diameters long.
     assert_eq!(plan.stack().size(), [512, 256], "{plan}");
@@ -65,7 +90,7 @@ fn motion_of_several_frames_widens_the_pattern_and_asks_for_slices() {
 
 #[test]
 fn two_frames_need_no_more_than_two_diameters() {
-    let plan = plan(2, "[\"4 mm\", 0, 0]", "").unwrap();
+    let plan = plan(2, 4e-3 * DVec3::X);
     assert_eq!(plan.stack().size(), [512, 256], "{plan}");
     assert!(!plan.to_string().contains("MORE"), "{plan}");
 }
@@ -73,9 +98,15 @@ fn two_frames_need_no_more_than_two_diameters() {
 #[test]
 fn surfaces_that_move_apart_have_patterns_of_their_own_each_as_wide_as_it_needs() {
     // Two halves that close in by 10 pixels each bring speckle from 10 pixels beyond their side.
-    let more = "[[surface]]\ndisplacement_per_frame = [0.3795e-3, 0, 0]\n\
-                rectangle = { centre = [-0.05, 0, 0.001], size = [0.1, 0.1] }";
-    let plan = plan(2, "[-0.3795e-3, 0, 0]", more).unwrap();
+    let left = Surface {
+        trajectory: Trajectory::steady(0.3795e-3 * DVec3::X).unwrap(),
+        ..testing::plate(DVec3::new(-0.05, 0.0, 0.001), DVec3::Z, [0.1, 0.1])
+    };
+    let left = Surface {
+        name: "left half".to_owned(),
+        ..left
+    };
+    let plan = plan_with(2, -0.3795e-3 * DVec3::X, [left]);
     let [one, other] = plan.allotments() else {
         panic!("two motions have two patterns: {plan}");
     };
@@ -88,15 +119,17 @@ fn surfaces_that_move_apart_have_patterns_of_their_own_each_as_wide_as_it_needs(
     assert_eq!(places, [0, 1], "{plan}");
     let lines: Vec<_> = plan.to_string().lines().map(str::to_owned).collect();
     assert_eq!(lines.len(), 2, "{plan}");
-    assert!(lines[1].starts_with("`surface 2`: speckles of"), "{plan}");
+    assert!(lines[1].starts_with("`left half`: speckles of"), "{plan}");
 }
 
-/// A plate beside the first one that stands still.
-const REST: &str = "[[surface]]\nrectangle = { centre = [0, 0, -0.01], size = [0.1, 0.1] }\n";
+/// A plate behind the first one that stands still.
+fn rest() -> Surface {
+    plate(-0.01, DVec3::ZERO)
+}
 
 #[test]
 fn what_stands_still_takes_one_slice() {
-    let plan = plan(2, "[0.3795e-3, 0, 0]", REST).unwrap();
+    let plan = plan_with(2, 0.3795e-3 * DVec3::X, [rest()]);
     let slices = plan
         .allotments()
         .iter()
@@ -109,30 +142,41 @@ fn what_stands_still_takes_one_slice() {
 #[test]
 fn surfaces_that_move_alike_share_a_pattern_wherever_they_turn() {
     // Each turns about its own middle: by nothing.
-    let more = |motion: &str| {
-        format!(
-            "[[surface]]\n{motion}\nrectangle = {{ centre = [0.01, 0, 0.01], size = [0.1, 0.1] }}\n\
-             [[surface]]\n{motion}\nsphere = {{ centre = [0.03, 0, 0.01], radius = 0.01 }}\n"
-        )
+    let more = |motion: &Trajectory| {
+        let beside = DVec3::new(0.01, 0.0, 0.01);
+        let plate = testing::plate(beside, DVec3::Z, [0.1, 0.1]);
+        let ball = Sphere::new(DVec3::new(0.03, 0.0, 0.01), 0.01).unwrap();
+        let ball = Surface::new(
+            "ball",
+            Shape::Sphere(ball),
+            Material::lambertian(0.8).unwrap(),
+        );
+        [plate, ball].map(|surface| Surface {
+            trajectory: motion.clone(),
+            ..surface
+        })
     };
-    let keyframes = "keyframe = [{ frame = 0 }, { frame = 1 }]";
-    let still = plan(2, "[0, 0, 0]", &(more("") + &more(keyframes))).unwrap();
+    let keyframes = [Keyframe::at(0.0), Keyframe::at(1.0)];
+    let keyframed = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
+    let standing = [more(&Trajectory::default()), more(&keyframed)];
+    let still = plan_with(2, DVec3::ZERO, standing.concat());
     assert_eq!(still.allotments().len(), 1, "{still}");
-    let steady = "displacement_per_frame = [0.3795e-3, 0, 0]";
-    let moving = plan(2, "[0.3795e-3, 0, 0]", &more(steady)).unwrap();
+    let steady = Trajectory::steady(0.3795e-3 * DVec3::X).unwrap();
+    let moving = plan_with(2, 0.3795e-3 * DVec3::X, more(&steady));
     assert_eq!(moving.allotments().len(), 1, "{moving}");
 }
 
 #[test]
 fn a_memory_that_does_not_hold_patterns_for_all_holds_places_for_them() {
-    let planned = |memory: &str| {
-        let more = format!("{REST}[speckle]\nmemory = \"{memory}\"");
-        plan(2, "[0.3795e-3, 0, 0]", &more).unwrap()
+    let planned = |mebibytes: f64| {
+        let mut scene = scene(2, 0.3795e-3 * DVec3::X);
+        scene.surfaces.push(rest());
+        plan_within(mebibytes, scene).unwrap()
     };
     // 32 slices of 3/4 MiB and one; less than 16 slices per diameter are not worth it.
-    let own = planned("24.75 MiB");
+    let own = planned(24.75);
     assert_eq!(own.allotments().len(), 2, "{own}");
-    let shared = planned("24.7 MiB");
+    let shared = planned(24.7);
     assert_eq!(shared.allotments().len(), 1, "{shared}");
     assert_eq!(shared.stack().path().slice_count(), 32, "{shared}");
     assert!(
@@ -149,22 +193,17 @@ fn a_memory_that_does_not_hold_patterns_for_all_holds_places_for_them() {
 
 #[test]
 fn many_motions_share_what_memory_there_is() {
-    let mut more = String::new();
-    for i in 1..=100 {
-        more.push_str(&format!(
-            "[[surface]]\ndisplacement_per_frame = [{i}e-6, 0, 0]\n\
-             rectangle = {{ centre = [0, 0, -{i}e-4], size = [0.1, 0.1] }}\n"
-        ));
-    }
-    more.push_str("[speckle]\nmemory = \"64 MiB\"");
-    let plan = plan(2, "[0.3795e-3, 0, 0]", &more).unwrap();
+    let mut scene = scene(2, 0.3795e-3 * DVec3::X);
+    let more = (1..=100).map(|i| plate(-1e-4 * f64::from(i), 1e-6 * f64::from(i) * DVec3::X));
+    scene.surfaces.extend(more);
+    let plan = plan_within(64.0, scene).unwrap();
     assert!(plan.memory_bytes() <= 64 << 20, "{plan}");
     assert!(plan.to_string().contains("101 places"), "{plan}");
 }
 
 #[test]
 fn sums_of_patterns_take_a_stack_for_each_part() {
-    let mut scene = scene(2, "[0.3795e-3, 0, 0]", "");
+    let mut scene = scene(2, 0.3795e-3 * DVec3::X);
     scene.surfaces[0].speckle = SurfaceSpeckle {
         patterns: 3,
         polarisation: 0.5,
@@ -201,7 +240,7 @@ fn sums_of_patterns_take_a_stack_for_each_part() {
 #[test]
 fn motions_before_and_after_the_reference_frame_add_up() {
     // 1 mm a frame behind a pupil of 3.125 mm: 0.64 diameters before, and 0.96 after.
-    let mut scene = scene(6, "[\"1 mm\", 0, 0]", "");
+    let mut scene = scene(6, 1e-3 * DVec3::X);
     scene.render.reference_frame = 2;
     let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
     let allotment = &plan.patterns()[0].allotments()[0];
@@ -219,9 +258,7 @@ fn motions_before_and_after_the_reference_frame_add_up() {
 
 #[test]
 fn a_motion_between_two_surveyed_frames_is_found_by_its_keyframes() {
-    use crate::{Keyframe, Trajectory};
-    use glam::DVec3;
-    let mut scene = scene(1001, "[0, 0, 0]", "");
+    let mut scene = scene(1001, DVec3::ZERO);
     let away = Keyframe {
         displacement: DVec3::new(2e-3, 0.0, 0.0),
         ..Keyframe::at(501.0)
@@ -235,17 +272,16 @@ fn a_motion_between_two_surveyed_frames_is_found_by_its_keyframes() {
 
 #[test]
 fn memory_bounds_the_number_of_slices() {
-    let motion = "[\"0.2 mm\", 0, 0]";
-    let slices = |memory: &str| {
-        let more = format!("[speckle]\nmemory = \"{memory}\"");
-        plan(2, motion, &more).map(|plan| plan.stack().path().slice_count())
+    let slices = |mebibytes: f64| {
+        let plan = plan_within(mebibytes, scene(2, 0.2e-3 * DVec3::X));
+        plan.map(|plan| plan.stack().path().slice_count())
     };
     // 384 × 256 complex samples are 3/4 MiB a slice.
-    assert_eq!(slices("48 MiB"), Ok(64));
-    assert_eq!(slices("47 MiB"), Ok(32));
-    assert_eq!(slices("6 MiB"), Ok(8));
+    assert_eq!(slices(48.0), Ok(64));
+    assert_eq!(slices(47.0), Ok(32));
+    assert_eq!(slices(6.0), Ok(8));
     assert_eq!(
-        slices("5 MiB"),
+        slices(5.0),
         Err(TracerError::PatternMemory {
             needed: 6 << 20,
             allowed: 5 << 20
@@ -255,12 +291,12 @@ fn memory_bounds_the_number_of_slices() {
 
 #[test]
 fn a_motion_that_does_not_fit_the_memory_is_cut_and_said() {
-    let motion = "[\"20 mm\", 0, 0]";
+    let moving = || scene(4, 20e-3 * DVec3::X);
     // 12.8 diameters take a path of 14, of 56 slices of 3/4 MiB with four to a diameter.
-    let whole = plan(4, motion, "[speckle]\nmemory = \"42 MiB\"").unwrap();
+    let whole = plan_within(42.0, moving()).unwrap();
     assert_eq!(whole.stack().path().slice_count(), 56, "{whole}");
     assert!(!whole.to_string().contains("MORE"), "{whole}");
-    let plan = plan(4, motion, "[speckle]\nmemory = \"41 MiB\"").unwrap();
+    let plan = plan_within(41.0, moving()).unwrap();
     assert!(plan.stack().memory_bytes() <= 41 << 20, "{plan}");
     assert!(
         plan.to_string().contains("MORE than the slices hold"),
@@ -272,15 +308,12 @@ fn a_motion_that_does_not_fit_the_memory_is_cut_and_said() {
 fn frames_share_no_speckle_while_a_smaller_field_fits_the_memory() {
     // 1.28 diameters take a path of 3, of 12 slices or more: 12 MiB of 512 × 256 samples for the image
     // and where it came from, 9 MiB of 384 × 256 for the image alone.
-    let plan = |memory: &str| {
-        let more = format!("[speckle]\nmemory = \"{memory}\"");
-        plan(3, "[\"2 mm\", 0, 0]", &more).unwrap()
-    };
+    let plan = |mebibytes: f64| plan_within(mebibytes, scene(3, 2e-3 * DVec3::X)).unwrap();
     for (memory, width, slices, shares) in [
-        ("12 MiB", 512, 12, false),
-        ("11 MiB", 384, 12, false),
-        ("9 MiB", 384, 12, false),
-        ("8 MiB", 512, 8, true),
+        (12.0, 512, 12, false),
+        (11.0, 384, 12, false),
+        (9.0, 384, 12, false),
+        (8.0, 512, 8, true),
     ] {
         let plan = plan(memory);
         assert_eq!(plan.stack().size(), [width, 256], "{memory}: {plan}");
@@ -296,15 +329,20 @@ fn frames_share_no_speckle_while_a_smaller_field_fits_the_memory() {
 #[test]
 fn points_without_light_ask_for_nothing() {
     // The plate behind the laser passes the apex of its beam, but no light meets it.
-    let more = "[[surface]]\ndisplacement_per_frame = [0, \"50 mm\", 0]\n\
-                rectangle = { centre = [0.001, 0, 0.21], size = [0.0005, 0.2] }";
-    let plan = plan(3, "[0, 0, 0]", more).unwrap();
+    let behind = Surface {
+        trajectory: Trajectory::steady(50e-3 * DVec3::Y).unwrap(),
+        ..testing::plate(DVec3::new(0.001, 0.0, 0.21), DVec3::Z, [0.0005, 0.2])
+    };
+    let plan = plan_with(3, DVec3::ZERO, [behind]);
     assert!(plan.largest_shift() < 1e-9, "{plan}");
 }
 
 #[test]
 fn what_the_scene_asks_for_is_kept_and_said() {
-    let plan = plan(2, "[0, 0, 0]", "[speckle]\nsize = 300\ndiameter = 100").unwrap();
+    let mut scene = scene(2, DVec3::ZERO);
+    scene.speckle.size = Some(300);
+    scene.speckle.diameter = Some(100);
+    let plan = plan_of(&scene).unwrap();
     assert_eq!(plan.stack().size(), [300, 300], "{plan}");
     assert_eq!(plan.stack().diameter(), [100, 100], "{plan}");
     let text = plan.to_string();
@@ -317,12 +355,12 @@ fn what_the_scene_asks_for_is_kept_and_said() {
 
 #[test]
 fn printed_formulas_get_the_circle_of_the_paper() {
-    let scene = scene(2, "[\"0.2 mm\", 0, 0]", "");
+    let scene = scene(2, 0.2e-3 * DVec3::X);
     let plan = SpecklePlan::new(&scene, Formulas::AsPrinted, 0).unwrap();
     let path = plan.patterns()[0].stack().path();
     assert_eq!(path, SlicePath::Circle { half_period: 32 }, "{plan}");
     // No memory gives the circle more than one diameter.
-    let scene = self::scene(3, "[\"2 mm\", 0, 0]", "");
+    let scene = self::scene(3, 2e-3 * DVec3::X);
     let plan = SpecklePlan::new(&scene, Formulas::AsPrinted, 0).unwrap();
     assert!(plan.patterns()[0].largest_shift() > 1.0, "{plan}");
     assert!(!plan.to_string().contains("MORE"), "{plan}");
@@ -330,14 +368,12 @@ fn printed_formulas_get_the_circle_of_the_paper() {
 
 #[test]
 fn lasers_have_seeds_of_their_own() {
-    let second = r#"
-        [[laser]]
-        wavelength = "532 nm"
-        power = "1 mW"
-        position = [0.1, 0, 0.2]
-        spot = { waist_radius = "1 mm" }
-    "#;
-    let scene = scene(2, "[0, 0, 0]", second);
+    let second = LaserDescription {
+        wavelength: 532e-9,
+        ..testing::spot(DVec3::new(0.1, 0.0, 0.2), 1e-3)
+    };
+    let mut scene = scene(2, DVec3::ZERO);
+    scene.lasers.push(Laser::new(second).unwrap());
     let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
     let [first, second] = plan.patterns() else {
         panic!("two lasers have two patterns");

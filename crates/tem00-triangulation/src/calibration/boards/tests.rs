@@ -1,6 +1,6 @@
 use std::{path::Path, sync::atomic::AtomicBool};
 
-use tem00_tracer::parse_scene;
+use tem00_scene::parse_scene;
 
 use super::*;
 use crate::{DetectorSettings, LineDetector, Sensor, SensorDescription, find_corners};

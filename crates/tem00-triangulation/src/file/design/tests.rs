@@ -1,6 +1,6 @@
 use core::f64::consts::PI;
 
-use tem00_tracer::SceneError;
+use tem00_config::ConfigError;
 
 use super::*;
 use crate::{parse_setup, parse_setup_with};
@@ -25,7 +25,7 @@ exposure = "1 ms"
 reflectance = 0.5
 "#;
 
-fn read(design: &str) -> Result<DesignSearch, SceneError> {
+fn read(design: &str) -> Result<DesignSearch, ConfigError> {
     let text = format!("{SETUP}{design}");
     let read =
         |document: &Document<'_>, setup: &crate::Setup| read_design(document, setup.description());

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use tem00_tracer::document::{Format, parse_document};
+use tem00_config::{Format, parse_document};
 
 use super::*;
 

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use tem00_tracer::{SceneError, document::FileAccess};
+use tem00_config::{ConfigError, FileAccess};
 
 use crate::MeasurementScene;
 
@@ -32,7 +32,7 @@ samples_per_pixel = 4
 "#;
 
 /// Reads a scene from a file with this text.
-pub(super) fn scene_of(text: &str) -> Result<MeasurementScene, SceneError> {
+pub(super) fn scene_of(text: &str) -> Result<MeasurementScene, ConfigError> {
     let mut file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
     file.write_all(text.as_bytes()).unwrap();
     MeasurementScene::read(file.path(), FileAccess::WithinFolder).map(|(scene, _)| scene)

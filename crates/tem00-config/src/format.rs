@@ -1,0 +1,72 @@
+use toml::de::{DeTable, DeValue};
+
+/// A kind of file that is read section by section.
+#[derive(Clone, Copy, Debug)]
+pub struct Format {
+    /// What such a file describes, as messages name it: "scene".
+    pub noun: &'static str,
+    /// The keys that it may have outside of its sections. `"include"` among them lets it name files
+    /// that belong to it.
+    pub keys: &'static [&'static str],
+    /// What to say when there is no such file.
+    pub help: &'static str,
+}
+
+/// What a document describes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DocumentKind {
+    /// A scene: camera, lasers and surfaces in space.
+    Scene,
+    /// A set-up: what data sheets tell of a triangulation sensor.
+    Setup,
+}
+
+/// Tells by its sections what a document describes, so that a file of another kind can be told by name;
+/// `None` if it is no TOML, or nothing that is known.
+///
+/// A scene may have several lasers and surfaces, `[[laser]]` and `[[surface]]`; a set-up has one `[laser]`
+/// and one `[surface]`.
+pub fn kind_of_document(text: &str) -> Option<DocumentKind> {
+    let document = DeTable::parse(text).ok()?;
+    let sections = ["laser", "surface"].map(|key| document.get_ref().get(key));
+    let kinds = sections
+        .into_iter()
+        .flatten()
+        .map(|section| match section.get_ref() {
+            DeValue::Array(_) => Some(DocumentKind::Scene),
+            DeValue::Table(_) => Some(DocumentKind::Setup),
+            _ => None,
+        });
+    let kinds: Vec<_> = kinds.collect();
+    match *kinds {
+        [Some(kind)] => Some(kind),
+        [Some(kind), Some(other)] if kind == other => Some(kind),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_and_set_ups_are_told_apart() {
+        for (text, kind) in [
+            (
+                "[[laser]]\n[[surface]]\n[camera]",
+                Some(DocumentKind::Scene),
+            ),
+            ("[laser]\n[surface]\n[camera]", Some(DocumentKind::Setup)),
+            ("[[surface]]", Some(DocumentKind::Scene)),
+            // Both at once is a mistake in one of them.
+            ("[laser]\n[[surface]]", None),
+            ("[camera]", None),
+            ("laser = 5", None),
+            ("[laser", None),
+            ("", None),
+        ] {
+            assert_eq!(kind_of_document(text), kind, "{text}");
+        }
+    }
+}

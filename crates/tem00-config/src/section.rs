@@ -1,0 +1,289 @@
+use core::fmt::Display;
+use std::path::PathBuf;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::error::{Location, Problem};
+use crate::format::Format;
+use crate::source::Source;
+use crate::value::{Value, nearest};
+
+/// A table that a section may have: its key, and the keys that it may have itself.
+pub type Choice = (&'static str, &'static [&'static str]);
+
+/// One table of the file.
+///
+/// It is opened with the keys that it may have. A key that is not among them is an error at once,
+/// before a missing key is missed: a typo in a required key is both.
+#[derive(Clone, Debug)]
+pub struct Section<'a> {
+    header: String,
+    is_root: bool,
+    keys: &'static [&'static str],
+    table: &'a DeTable<'a>,
+    place: Location,
+    source: &'a Source,
+}
+
+impl<'a> Section<'a> {
+    /// Opens a document itself.
+    pub(crate) fn root(
+        document: &'a DeTable<'a>,
+        source: &'a Source,
+        format: &Format,
+    ) -> Result<Self, Problem> {
+        Self {
+            header: format!("the {}", format.noun),
+            is_root: true,
+            keys: format.keys,
+            table: document,
+            place: source.place(0..0),
+            source,
+        }
+        .checked(None)
+    }
+
+    /// Returns the value of a key, if the file gives one.
+    pub fn optional(&self, key: &'static str) -> Option<Value<'a>> {
+        debug_assert!(self.keys.contains(&key), "{key} is not declared");
+        let item = self.table.get(key)?;
+        Some(Value::new(key, item, self.source))
+    }
+
+    /// Returns the value of a key that must be there; `example` shows how it may look.
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed at the section, if there is none.
+    pub fn required(&self, key: &'static str, example: &str) -> Result<Value<'a>, Problem> {
+        self.optional(key).ok_or_else(|| {
+            self.problem(format_args!("{} needs the key `{key}`", self.header))
+                .with_help(format!("for example `{key} = {example}`"))
+        })
+    }
+
+    /// Returns what `read` makes of the value of a key, or `default` without such a key.
+    ///
+    /// # Errors
+    ///
+    /// Returns the problems of `read`.
+    pub fn or<T>(
+        &self,
+        key: &'static str,
+        default: T,
+        read: impl FnOnce(&Value<'a>) -> Result<T, Problem>,
+    ) -> Result<T, Problem> {
+        self.optional(key).map_or(Ok(default), |value| read(&value))
+    }
+
+    /// Opens the table of a key, if the file has one.
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
+    /// not have.
+    pub fn table(
+        &self,
+        key: &'static str,
+        keys: &'static [&'static str],
+    ) -> Result<Option<Self>, Problem> {
+        let Some(value) = self.optional(key) else {
+            return Ok(None);
+        };
+        let header = format!("[{}]", self.path_to(key));
+        match self.table.get(key).map(Spanned::get_ref) {
+            Some(DeValue::Table(table)) => self.open(header, table, value.place(), keys).map(Some),
+            _ => Err(value.must_be(format_args!("a table: write `{header}` and its keys below"))),
+        }
+    }
+
+    /// Opens every table of a key of which the file may have several.
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
+    /// not have.
+    pub fn tables(
+        &self,
+        key: &'static str,
+        keys: &'static [&'static str],
+    ) -> Result<Vec<Self>, Problem> {
+        let Some(value) = self.optional(key) else {
+            return Ok(Vec::new());
+        };
+        let header = format!("[[{}]]", self.path_to(key));
+        let wrong = |place: &Value<'a>| {
+            place.must_be(format_args!("written `{header}`, with its keys below"))
+        };
+        let Some(DeValue::Array(items)) = self.table.get(key).map(Spanned::get_ref) else {
+            return Err(wrong(&value));
+        };
+        items
+            .iter()
+            .map(|item| match item.get_ref() {
+                DeValue::Table(table) => {
+                    self.open(header.clone(), table, self.source.place(item.span()), keys)
+                }
+                _ => Err(wrong(&Value::new(key, item, self.source))),
+            })
+            .collect()
+    }
+
+    /// Opens the one table of `choices` that the file has, or returns `None` without any.
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
+    /// not have.
+    pub fn at_most_one_of(
+        &self,
+        what: &str,
+        choices: &[Choice],
+    ) -> Result<Option<(&'static str, Self)>, Problem> {
+        let mut given: Vec<_> = choices
+            .iter()
+            .filter_map(|&(key, keys)| Some((self.optional(key)?.place(), key, keys)))
+            .collect();
+        given.sort_by_key(|(place, ..)| place.span.start);
+        match given.as_slice() {
+            [] => Ok(None),
+            [(_, key, keys)] => Ok(self.table(key, keys)?.map(|section| (*key, section))),
+            [(_, first, _), (place, second, _), ..] => {
+                let header = &self.header;
+                let message =
+                    format!("{header} must have one {what}, got `{first}` and `{second}`");
+                Err(Problem::new(message)
+                    .at(place.clone())
+                    .with_help(format!("start another {header} for the second")))
+            }
+        }
+    }
+
+    /// Opens the one table of `choices` that the file has.
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed in the file, if it is missing, written otherwise or has a key that it may
+    /// not have.
+    pub fn one_of(&self, what: &str, choices: &[Choice]) -> Result<(&'static str, Self), Problem> {
+        self.at_most_one_of(what, choices)?.ok_or_else(|| {
+            let headers = choices
+                .iter()
+                .map(|(key, _)| format!("[{}]", self.path_to(key)));
+            let headers: Vec<String> = headers.collect();
+            let (header, headers) = (&self.header, headers.join(" or "));
+            self.problem(format_args!("{header} needs a {what}: {headers}"))
+        })
+    }
+
+    /// Returns the text of the file that the section stands in.
+    pub(crate) fn text(&self) -> &'a str {
+        self.source.text()
+    }
+
+    /// Returns the path of a file that the section names.
+    pub fn beside(&self, name: &str) -> PathBuf {
+        self.source.beside(name)
+    }
+
+    /// Names the place of a key as compilers do.
+    pub(crate) fn describe(&self, key: &'static str) -> String {
+        let place = self
+            .optional(key)
+            .map_or(self.place.clone(), |value| value.place());
+        self.source.describe(&place)
+    }
+
+    /// Returns whether the file gives the key.
+    pub fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
+    /// Returns a problem placed at the header of the section.
+    pub fn problem(&self, message: impl Display) -> Problem {
+        Problem::new(message.to_string()).at(self.place.clone())
+    }
+
+    /// Returns a problem that was found when an object was made of the section, placed at the value
+    /// of `key` if the file gives one, and in its unit.
+    pub fn problem_with(&self, key: &str, message: impl Display) -> Problem {
+        match self.table.get(key) {
+            Some(item) => Value::new(key, item, self.source).problem(message),
+            None => self.problem(message),
+        }
+    }
+
+    fn open(
+        &self,
+        header: String,
+        table: &'a DeTable<'a>,
+        place: Location,
+        keys: &'static [&'static str],
+    ) -> Result<Self, Problem> {
+        Self {
+            header,
+            is_root: false,
+            keys,
+            table,
+            place,
+            source: self.source,
+        }
+        .checked(Some(self))
+    }
+
+    /// The path of a key of this section, as in "laser.spot".
+    fn path_to(&self, key: &str) -> String {
+        if self.is_root {
+            return key.to_owned();
+        }
+        format!("{}.{key}", self.header.trim_matches(['[', ']']))
+    }
+
+    /// Complains about the first key that the section does not know.
+    fn checked(self, parent: Option<&Self>) -> Result<Self, Problem> {
+        let unknown = self
+            .table
+            .keys()
+            .filter(|key| !self.keys.contains(&key.get_ref().as_ref()))
+            .min_by_key(|key| key.span().start);
+        match unknown {
+            None => Ok(self),
+            Some(key) => {
+                let place = self.source.place(key.span());
+                Err(self.unknown(key.get_ref(), parent).at(place))
+            }
+        }
+    }
+
+    fn unknown(&self, key: &str, parent: Option<&Self>) -> Problem {
+        let header = &self.header;
+        let message = match nearest(key, self.keys) {
+            Some(meant) => format!("unknown key `{key}` in {header}; did you mean `{meant}`?"),
+            None => format!("unknown key `{key}` in {header}"),
+        };
+        let help = match parent {
+            Some(parent) if parent.keys.contains(&key) && !parent.is_root => format!(
+                "`{key}` belongs to {}: write it above the line `{header}`",
+                parent.header
+            ),
+            _ => format!("allowed here: {}", self.keys.join(", ")),
+        };
+        Problem::new(message).with_help(help)
+    }
+}
+
+/// Returns the problem of an object that could not be made, placed at the key of the rejected
+/// `parameter` in the first of `sections` that has it, or else at the header of the first.
+pub fn rejected(
+    error: &impl Display,
+    parameter: Option<&str>,
+    sections: &[&Section<'_>],
+) -> Problem {
+    let key = parameter.unwrap_or_default();
+    let section = sections.iter().find(|section| section.has(key));
+    match section.or(sections.first()) {
+        Some(section) => section.problem_with(key, error),
+        None => Problem::new(error.to_string()),
+    }
+}

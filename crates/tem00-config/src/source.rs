@@ -1,0 +1,61 @@
+use core::ops::Range;
+use std::path::{Path, PathBuf};
+
+use toml::de::DeTable;
+
+use crate::error::{Location, Problem, line_column};
+
+/// The key by which a file names others that belong to it.
+pub(crate) const INCLUDE: &str = "include";
+
+/// One text of a document: the file itself, or one that it includes.
+#[derive(Debug)]
+pub(crate) struct Source {
+    /// The index among all texts of the document, in which the file itself is the first.
+    pub(crate) index: usize,
+    pub(crate) path: Option<PathBuf>,
+    pub(crate) directory: PathBuf,
+    pub(crate) text: String,
+    /// It lies outside of the folder of the file, and is therefore not quoted.
+    pub(crate) is_outside: bool,
+}
+
+impl Source {
+    /// Returns the text.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Returns the path of a file that this text names.
+    pub(crate) fn beside(&self, name: &str) -> PathBuf {
+        self.directory.join(name)
+    }
+
+    /// Returns a place in this text.
+    pub(crate) const fn place(&self, span: Range<usize>) -> Location {
+        Location {
+            source: self.index,
+            span,
+        }
+    }
+
+    /// Names a place as compilers do: "lights.toml:3:1".
+    pub(crate) fn describe(&self, place: &Location) -> String {
+        let file = self.path.as_deref().unwrap_or(Path::new("text"));
+        match line_column(&self.text, place.span.start) {
+            Some((line, column)) => format!("{}:{line}:{column}", file.display()),
+            None => file.display().to_string(),
+        }
+    }
+
+    /// Returns the document and tells where it is no TOML.
+    pub(crate) fn parse(&self) -> Result<toml::Spanned<DeTable<'_>>, Problem> {
+        DeTable::parse(&self.text).map_err(|error| {
+            let problem = Problem::new(format!("this is not valid TOML: {}", error.message()));
+            match error.span() {
+                Some(span) => problem.at(self.place(span)),
+                None => problem.at(self.place(0..0)),
+            }
+        })
+    }
+}

@@ -1,0 +1,249 @@
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::{
+    Change, ConfigError, FileAccess, Folder, Format, Problem, Reading, Section, change,
+    error::{Location, line_column},
+    folder::OUTSIDE,
+    input_file::{MAX_TEXT_BYTES, is_standard_input, read_input, read_text as read_text_file},
+    source::{INCLUDE, Source},
+};
+
+/// The maximum number of files between a file and one that it includes.
+const DEEPEST: usize = 16;
+
+/// The texts of a document.
+#[derive(Debug)]
+pub(crate) struct Sources {
+    format: Format,
+    folder: Folder,
+    all: Vec<Source>,
+    /// The order in which they are put together: what is included stands before what includes it.
+    order: Vec<usize>,
+    /// The texts that are being read, outermost first.
+    open: Vec<usize>,
+    /// The canonical paths of the texts that came from files.
+    canonical: Vec<Option<PathBuf>>,
+}
+
+impl Sources {
+    /// Reads a scene file and all that it includes.
+    pub(crate) fn of_file(
+        path: &Path,
+        reading: Reading<'_>,
+        format: Format,
+    ) -> Result<Self, ConfigError> {
+        let text = read_text(path, &format)?;
+        let directory = path.parent().unwrap_or(Path::new(""));
+        let mut sources = Self::of_text(text, Some(path), (directory, reading.access), format)?;
+        match sources.change(reading.changes) {
+            Ok(()) => Ok(sources),
+            Err(problem) => Err(sources.locate(problem)),
+        }
+    }
+
+    /// Puts values in the place of those that the texts have.
+    fn change(&mut self, changes: &[Change]) -> Result<(), Problem> {
+        if changes.is_empty() {
+            return Ok(());
+        }
+        let in_order = self.order.iter().filter_map(|&index| self.all.get(index));
+        let mut texts: Vec<String> = in_order.map(|source| source.text.clone()).collect();
+        // What is included stands before the file itself.
+        let main = texts.len().saturating_sub(1);
+        change::apply(changes, &mut texts, main)?;
+        for (&index, text) in self.order.iter().zip(texts) {
+            self.all[index].text = text;
+        }
+        Ok(())
+    }
+
+    /// Reads all that a text includes.
+    pub(crate) fn of_text(
+        text: String,
+        path: Option<&Path>,
+        (directory, access): (&Path, FileAccess),
+        format: Format,
+    ) -> Result<Self, ConfigError> {
+        let mut sources = Self {
+            format,
+            folder: Folder::new(directory, access),
+            all: Vec::new(),
+            order: Vec::new(),
+            open: Vec::new(),
+            canonical: Vec::new(),
+        };
+        let canonical = path.and_then(|path| fs::canonicalize(path).ok());
+        let source = Source {
+            index: 0,
+            path: path.map(Path::to_path_buf),
+            directory: directory.to_path_buf(),
+            text,
+            is_outside: false,
+        };
+        match sources.add(source, canonical) {
+            Ok(()) => Ok(sources),
+            Err(problem) => Err(sources.locate(problem)),
+        }
+    }
+
+    /// Returns the texts in the order in which they are put together.
+    pub(crate) fn in_order(&self) -> impl Iterator<Item = &Source> {
+        self.order.iter().filter_map(|&index| self.all.get(index))
+    }
+
+    /// Returns the kind of file.
+    pub(crate) const fn format(&self) -> &Format {
+        &self.format
+    }
+
+    /// Returns the files that were read, the scene file first; standard input is none.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        let paths = self.all.iter().filter_map(|source| source.path.clone());
+        paths.filter(|path| !is_standard_input(path)).collect()
+    }
+
+    /// Turns a problem into an error that knows its file.
+    pub(crate) fn locate(&self, problem: Problem) -> ConfigError {
+        let index = problem.place.as_ref().map_or(0, |place| place.source);
+        let source = self.all.get(index);
+        let path = source.and_then(|source| source.path.as_deref());
+        match source {
+            Some(source) if source.is_outside => {
+                ConfigError::new(path, "", unquoted(source, &problem))
+            }
+            source => ConfigError::new(path, source.map_or("", Source::text), problem),
+        }
+    }
+
+    /// Returns the folder of the scene file.
+    pub(crate) const fn folder(&self) -> &Folder {
+        &self.folder
+    }
+
+    fn add(&mut self, source: Source, canonical: Option<PathBuf>) -> Result<(), Problem> {
+        let index = source.index;
+        self.all.push(source);
+        self.canonical.push(canonical);
+        self.open.push(index);
+        for include in self.includes_of_last()? {
+            self.include(include)?;
+        }
+        self.open.pop();
+        self.order.push(index);
+        Ok(())
+    }
+
+    fn includes_of_last(&self) -> Result<Vec<Include>, Problem> {
+        match self.all.last() {
+            Some(source) => includes_of(source, &self.format),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    fn include(&mut self, include: Include) -> Result<(), Problem> {
+        let Include { path, .. } = &include;
+        let unreadable = |error| include.problem(format_args!("cannot be read: {error}"));
+        let canonical = fs::canonicalize(path).map_err(unreadable)?;
+        let is_outside = !self.folder.holds(&canonical);
+        if is_outside && self.folder.access == FileAccess::WithinFolder {
+            return Err(include
+                .problem(format_args!(
+                    "lies outside of the folder of the {} file",
+                    self.format.noun
+                ))
+                .with_help(OUTSIDE));
+        }
+        self.check_new(&canonical, &include)?;
+        let bytes = read_input(path, MAX_TEXT_BYTES).map_err(unreadable)?;
+        let text =
+            String::from_utf8(bytes).map_err(|_| include.problem("must be text in UTF-8"))?;
+        let source = Source {
+            index: self.all.len(),
+            directory: path.parent().unwrap_or(Path::new("")).to_path_buf(),
+            path: Some(include.path),
+            text,
+            is_outside,
+        };
+        self.add(source, Some(canonical))
+    }
+
+    /// Refuses a file that was read before, and one at the end of a long chain.
+    fn check_new(&self, canonical: &Path, include: &Include) -> Result<(), Problem> {
+        let mut read = self.canonical.iter();
+        match read.position(|read| read.as_deref() == Some(canonical)) {
+            Some(index) if self.open.contains(&index) => {
+                Err(include.problem("would include itself"))
+            }
+            Some(_) => Err(include.problem("is part of the document already")),
+            None if self.open.len() > DEEPEST => Err(include.problem(format_args!(
+                "would be more than {DEEPEST} files away from the first"
+            ))),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A problem in a file that is not the scene's own, without what stands there.
+fn unquoted(source: &Source, problem: &Problem) -> Problem {
+    let place = problem.place.as_ref();
+    let place = place.and_then(|place| line_column(&source.text, place.span.start));
+    let place = place.map_or_else(String::new, |(line, column)| {
+        format!(" in line {line}, column {column}")
+    });
+    Problem::new(format!(
+        "there is a mistake{place}; the file lies outside of the document's folder and is not quoted"
+    ))
+}
+
+/// A file that another one includes, and where it says so.
+struct Include {
+    path: PathBuf,
+    place: Location,
+}
+
+impl Include {
+    fn problem(&self, what: impl core::fmt::Display) -> Problem {
+        let name = self.path.display();
+        Problem::new(format!("`include`: {name} {what}")).at(self.place.clone())
+    }
+}
+
+fn includes_of(source: &Source, format: &Format) -> Result<Vec<Include>, Problem> {
+    let document = source.parse()?;
+    let root = Section::root(document.get_ref(), source, format)?;
+    if !format.keys.contains(&INCLUDE) {
+        return Ok(Vec::new());
+    }
+    let Some(list) = root.optional(INCLUDE) else {
+        return Ok(Vec::new());
+    };
+    let include = |file: &crate::value::Value<'_>| {
+        Ok(Include {
+            path: source.beside(file.string()?),
+            place: file.place(),
+        })
+    };
+    let files = list.list("a list of files, such as [\"lights.toml\"]")?;
+    files.iter().map(include).collect()
+}
+
+fn read_text(path: &Path, format: &Format) -> Result<String, ConfigError> {
+    let unreadable = |why: &dyn core::fmt::Display| {
+        let problem = Problem::new(format!("the {} file cannot be read: {why}", format.noun))
+            .with_help(format.help);
+        ConfigError::new(Some(path), "", problem)
+    };
+    let bytes = read_text_file(path).map_err(|why| unreadable(&why))?;
+    String::from_utf8(bytes).map_err(|not_utf8| {
+        let valid = not_utf8.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(&not_utf8.as_bytes()[..valid]);
+        let place = Location {
+            source: 0,
+            span: valid..valid,
+        };
+        let problem =
+            Problem::new(format!("the {} file must be text in UTF-8", format.noun)).at(place);
+        ConfigError::new(Some(path), &text, problem)
+    })
+}

@@ -1,0 +1,91 @@
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use tem00_config::Folder;
+use tem00_numerics::Grid;
+use tem00_tracer::TriangleMesh;
+
+use crate::mesh_file::{MeshFileError, read_mesh_with};
+use crate::radiance_map::{RadianceMapError, read_radiance_map};
+
+/// Which normals light is scattered by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Shading {
+    /// Those of the vertices, where the file has them.
+    Smooth,
+    /// Those of the triangles.
+    Flat,
+}
+
+/// The files other than text that a scene is made of.
+#[derive(Debug)]
+pub(crate) struct Assets {
+    folder: Folder,
+    files: Vec<PathBuf>,
+    /// The meshes by canonical path, in the unit of their files.
+    meshes: HashMap<(PathBuf, Shading), Arc<TriangleMesh>>,
+}
+
+impl Assets {
+    /// Begins without files, for a scene in a folder.
+    pub(crate) fn new(folder: &Folder) -> Self {
+        Self {
+            folder: folder.clone(),
+            files: Vec::new(),
+            meshes: HashMap::new(),
+        }
+    }
+
+    /// Reads a mesh in the unit of its file, once for all surfaces that are made of it.
+    pub(crate) fn mesh(
+        &mut self,
+        path: &Path,
+        shading: Shading,
+    ) -> Result<Arc<TriangleMesh>, MeshFileError> {
+        let canonical = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        if let Some(mesh) = self.meshes.get(&(canonical.clone(), shading)) {
+            return Ok(Arc::clone(mesh));
+        }
+        let mesh = read_mesh_with(path, 1.0, self.folder.access).map_err(|error| {
+            if self.folder.holds(&canonical) {
+                error
+            } else {
+                error.unquoted()
+            }
+        })?;
+        let mesh = match shading {
+            Shading::Flat if !mesh.normals().is_empty() => {
+                TriangleMesh::new(mesh.vertices().to_vec(), mesh.triangles().to_vec())?
+            }
+            _ => mesh,
+        };
+        let mesh = Arc::new(mesh);
+        self.note(path);
+        self.meshes.insert((canonical, shading), Arc::clone(&mesh));
+        Ok(mesh)
+    }
+
+    /// Reads a map of radiance, whose values are multiplied by `scale`.
+    pub(crate) fn radiance_map(
+        &mut self,
+        path: &Path,
+        scale: f64,
+    ) -> Result<Grid<f32>, RadianceMapError> {
+        let map = read_radiance_map(path, scale)?;
+        self.note(path);
+        Ok(map)
+    }
+
+    /// Notes that a file was read.
+    fn note(&mut self, path: &Path) {
+        if !self.files.iter().any(|known| known == path) {
+            self.files.push(path.to_path_buf());
+        }
+    }
+
+    /// Returns the files in the order in which they were first read.
+    pub(crate) fn into_files(self) -> Vec<PathBuf> {
+        self.files
+    }
+}

@@ -1,0 +1,87 @@
+use core::{error, fmt};
+use std::path::PathBuf;
+
+use tem00_tracer::MeshError;
+
+/// An error of a file with a triangle mesh.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MeshFileError {
+    /// The content is no mesh.
+    Mesh(MeshError),
+    /// The scale, in metres per unit of the file, is not positive and finite.
+    Scale(f64),
+    /// The extension of the file name is that of no mesh format known here.
+    Extension(String),
+    /// The file could not be opened or read; the text is the system's.
+    Read(String),
+    /// The file does not follow its format.
+    Format {
+        /// The line of the file, from 1, where the format has lines.
+        line: Option<usize>,
+        /// What is wrong.
+        message: String,
+    },
+    /// Any of the above, about a file.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: Box<Self>,
+    },
+}
+
+impl MeshFileError {
+    /// Returns the error without what stands in the file.
+    pub(crate) fn unquoted(self) -> Self {
+        match self {
+            Self::Format { line, .. } => Self::Format {
+                line,
+                message: "it breaks the rules of its format".to_owned(),
+            },
+            Self::File { path, source } => Self::File {
+                path,
+                source: Box::new(source.unquoted()),
+            },
+            error => error,
+        }
+    }
+}
+
+impl fmt::Display for MeshFileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mesh(source) => source.fmt(f),
+            Self::Scale(got) => {
+                write!(
+                    f,
+                    "scale must be positive and finite, in metres per unit, got {got}"
+                )
+            }
+            Self::Extension(got) => {
+                write!(
+                    f,
+                    "mesh format must be .obj, .ply, .stl, .gltf or .glb, got {got:?}"
+                )
+            }
+            Self::Read(message) => write!(f, "{message}"),
+            Self::Format {
+                line: Some(line),
+                message,
+            } => write!(f, "line {line}: {message}"),
+            Self::Format {
+                line: None,
+                message,
+            } => write!(f, "{message}"),
+            Self::File { path, source } => write!(f, "{}: {source}", path.display()),
+        }
+    }
+}
+
+impl error::Error for MeshFileError {}
+
+impl From<MeshError> for MeshFileError {
+    fn from(source: MeshError) -> Self {
+        Self::Mesh(source)
+    }
+}

@@ -1,0 +1,481 @@
+mod any_bytes;
+mod gltf;
+mod normals;
+
+use std::{fs, io::Cursor, path::PathBuf};
+
+use glam::DVec3;
+use tempfile::TempDir;
+
+use tem00_tracer::{Intersector, Shape, TriangleMesh};
+
+use super::{MeshFileError, MeshFormat, read_mesh, read_mesh_bytes};
+
+/// A pyramid: its base is a quadrilateral. Coordinates are exact in single precision.
+const VERTICES: [[f32; 3]; 5] = [
+    [-1.0, -1.0, 0.0],
+    [1.0, -1.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [-1.0, 1.0, 0.0],
+    [0.25, -0.125, 1.5],
+];
+const BASE: [u32; 4] = [0, 3, 2, 1];
+const SIDES: [[u32; 3]; 4] = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+
+/// The pyramid in metres, from a file in millimetres.
+fn pyramid() -> Vec<[DVec3; 3]> {
+    let corner = |index: u32| {
+        let [x, y, z] = VERTICES[index as usize].map(f64::from);
+        DVec3::new(x, y, z) * 1e-3
+    };
+    let base = [[0, 3, 2], [0, 2, 1]];
+    base.iter().chain(&SIDES).map(|t| t.map(corner)).collect()
+}
+
+/// Writes a file into a folder of its own and reads it as millimetres.
+fn read(name: &str, content: impl AsRef<[u8]>) -> (Result<TriangleMesh, MeshFileError>, PathBuf) {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, content).unwrap();
+    (read_mesh(&path, 1e-3), path)
+}
+
+fn triangle_corners(mesh: &TriangleMesh) -> Vec<[DVec3; 3]> {
+    let triangles = mesh.triangles().iter();
+    triangles
+        .map(|triangle| triangle.map(|index| mesh.vertices()[index as usize]))
+        .collect()
+}
+
+fn assert_pyramid(name: &str, content: impl AsRef<[u8]>) {
+    let mesh = read(name, content).0.unwrap();
+    assert_eq!(triangle_corners(&mesh), pyramid(), "{name}");
+    assert_eq!(mesh.vertices().len(), 5, "{name}: vertices are shared");
+}
+
+/// Returns what the error says after the name of the file.
+fn complaint(name: &str, content: impl AsRef<[u8]>) -> String {
+    let (result, path) = read(name, content);
+    let text = result.unwrap_err().to_string();
+    let about = format!("{}: ", path.display());
+    text.strip_prefix(&about)
+        .unwrap_or_else(|| panic!("{text} does not begin with {about}"))
+        .to_owned()
+}
+
+fn ply_header(format: &str, coordinate: &str, list: &str) -> String {
+    format!(
+        "ply\nformat {format} 1.0\ncomment a pyramid\nelement vertex 5\nproperty {coordinate} x\n\
+         property {coordinate} y\nproperty {coordinate} z\nproperty uchar red\nelement edge 1\n\
+         property int start\nelement face 5\nproperty list {list}\nend_header\n"
+    )
+}
+
+fn ascii_ply() -> String {
+    let mut text = ply_header("ascii", "float", "uchar int vertex_indices");
+    for [x, y, z] in VERTICES {
+        text += &format!("{x} {y} {z} 255\n");
+    }
+    text += "7\n4 0 3 2 1\n";
+    for [a, b, c] in SIDES {
+        text += &format!("3 {a} {b} {c}\n");
+    }
+    text
+}
+
+/// A binary PLY file with coordinates in double precision, in the byte order of `double`, `int`
+/// and `short`.
+fn binary_ply(
+    order: &str,
+    double: impl Fn(f64) -> [u8; 8],
+    int: impl Fn(u32) -> [u8; 4],
+    short: impl Fn(u16) -> [u8; 2],
+) -> Vec<u8> {
+    let header = ply_header(order, "double", "ushort uint vertex_index");
+    let mut bytes = header.into_bytes();
+    for vertex in VERTICES {
+        bytes.extend(vertex.into_iter().flat_map(|c| double(c.into())));
+        bytes.push(255);
+    }
+    bytes.extend(int(7));
+    let sides = SIDES.iter().map(|side| side.as_slice());
+    for face in std::iter::once(BASE.as_slice()).chain(sides) {
+        bytes.extend(short(u16::try_from(face.len()).unwrap()));
+        bytes.extend(face.iter().flat_map(|&index| int(index)));
+    }
+    bytes
+}
+
+fn triangles() -> Vec<[[f32; 3]; 3]> {
+    let base = [[0, 3, 2], [0, 2, 1]];
+    let indices = base.iter().chain(&SIDES);
+    indices
+        .map(|t: &[u32; 3]| t.map(|i| VERTICES[i as usize]))
+        .collect()
+}
+
+fn ascii_stl() -> String {
+    let mut text = "solid pyramid\n".to_owned();
+    for corners in triangles() {
+        text += "  facet normal 0 0 0\n    outer loop\n";
+        for [x, y, z] in corners {
+            text += &format!("      vertex {x:e} {y:e} {z:e}\n");
+        }
+        text += "    endloop\n  endfacet\n";
+    }
+    text + "endsolid pyramid\n"
+}
+
+fn binary_stl(header: &str) -> Vec<u8> {
+    let mut bytes = format!("{header:80}").into_bytes();
+    let triangles = triangles();
+    bytes.extend(u32::try_from(triangles.len()).unwrap().to_le_bytes());
+    for corners in triangles {
+        bytes.extend([0; 12]);
+        bytes.extend(corners.iter().flatten().flat_map(|c| c.to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+/// With comments, normals, texture coordinates, backward indices and a continued line.
+const OBJ: &str = "\
+# a pyramid
+mtllib none.mtl
+o pyramid
+v -1 -1 0
+v 1 -1 0 1.0
+v 1.0 1.0 0.0 0.5 0.5 0.5
+v -1 1 0 # the last of the base
+vn 0 0 1
+vt 0.5 0.5
+f 1/1 4/1 \\
+  3/1 2/1
+v 0.25 -.125 1.5e0
+usemtl none
+s off
+f 1 2 5
+f -4/1 -3/1 -1/1
+f 3/1 4/1 5/1
+g another group
+f -2 -5 -1
+";
+
+#[test]
+fn every_format_gives_the_same_triangles() {
+    assert_pyramid("pyramid.obj", OBJ);
+    assert_pyramid("windows.OBJ", OBJ.replace('\n', "\r\n"));
+    assert_pyramid("ascii.ply", ascii_ply());
+    assert_pyramid(
+        "little.Ply",
+        binary_ply(
+            "binary_little_endian",
+            f64::to_le_bytes,
+            u32::to_le_bytes,
+            u16::to_le_bytes,
+        ),
+    );
+    assert_pyramid(
+        "big.PLY",
+        binary_ply(
+            "binary_big_endian",
+            f64::to_be_bytes,
+            u32::to_be_bytes,
+            u16::to_be_bytes,
+        ),
+    );
+    assert_pyramid("ascii.stl", ascii_stl());
+    assert_pyramid("binary.STL", binary_stl("exported"));
+}
+
+#[test]
+fn stl_files_that_only_look_like_the_other_kind_are_read() {
+    assert_pyramid("solid-binary.stl", binary_stl("solid exported\n"));
+    assert_pyramid("unnamed.stl", ascii_stl().replace(" pyramid", ""));
+    assert_pyramid("capitals.stl", ascii_stl().replace("vertex", "VERTEX"));
+    // Two solids in one file are one mesh.
+    let halves = ascii_stl().replacen(
+        "  facet normal 0 0 0\n",
+        "  facet normal 0 0 0\nendsolid\nsolid more\n",
+        1,
+    );
+    assert_pyramid("solids.stl", halves);
+    let mut padded = binary_stl("padded");
+    padded.extend([0; 7]);
+    assert_pyramid("padded.stl", padded);
+}
+
+#[test]
+fn independent_readers_see_the_same_triangles() {
+    let options = tobj::LoadOptions {
+        triangulate: true,
+        ..tobj::LoadOptions::default()
+    };
+    // What tobj does not take: comments after a vertex, continued lines, weights, and colours of
+    // some vertices only.
+    let plain = OBJ
+        .replace(" # the last of the base", "")
+        .replace("\\\n", "")
+        .replace("-1 0 1.0", "-1 0")
+        .replace(" 0.5 0.5 0.5", "");
+    let (models, _) = tobj::load_obj_buf(&mut Cursor::new(plain), &options, |_| {
+        Err(tobj::LoadError::OpenFileFailed)
+    })
+    .unwrap();
+    let obj: Vec<[f32; 3]> = models
+        .iter()
+        .flat_map(|model| {
+            let (points, _) = model.mesh.positions.as_chunks::<3>();
+            model
+                .mesh
+                .indices
+                .iter()
+                .map(|&index| points[index as usize])
+        })
+        .collect();
+    assert_eq!(obj, triangles().concat(), "tobj reads the OBJ file");
+
+    for bytes in [ascii_stl().into_bytes(), binary_stl("exported")] {
+        let mesh = stl_io::read_stl(&mut Cursor::new(bytes)).unwrap();
+        let faces = mesh.faces.iter();
+        let stl: Vec<[f32; 3]> = faces
+            .flat_map(|face| face.vertices.map(|index| mesh.vertices[index].into()))
+            .collect();
+        assert_eq!(stl, triangles().concat(), "stl_io reads the STL file");
+    }
+}
+
+#[test]
+fn text_keeps_double_precision() {
+    let x = 123.456_789_012_345;
+    let obj = format!("v {x} 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
+    let stl = format!(
+        "solid\nfacet normal 0 0 0\nouter loop\nvertex {x} 0 0\nvertex 0 1 0\nvertex 0 0 1\n\
+         endloop\nendfacet\nendsolid\n"
+    );
+    for (name, text) in [("a.obj", obj), ("a.stl", stl)] {
+        let mesh = read(name, text).0.unwrap();
+        assert_eq!(mesh.vertices()[0], DVec3::new(x * 1e-3, 0.0, 0.0), "{name}");
+    }
+}
+
+#[test]
+fn scale_is_the_length_of_the_unit() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("inches.obj");
+    fs::write(&path, OBJ).unwrap();
+    for scale in [0.0254, 1.0, 1e-6] {
+        let mesh = read_mesh(&path, scale).unwrap();
+        let (low, high) = (DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 1.5));
+        assert_eq!(mesh.bounds(), (scale * low, scale * high), "scale {scale}");
+    }
+}
+
+#[test]
+fn broken_obj_files_are_explained() {
+    for (content, expected) in [
+        ("", "the mesh has no triangles"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\n", "the mesh has no triangles"),
+        (
+            "v 0 0 0\nv 1 zero 0\n",
+            "line 2: a coordinate must be a number, got \"zero\"",
+        ),
+        ("v 0 0\n", "line 1: a vertex needs three coordinates"),
+        (
+            "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+            "vertex 0 (from 0) must be finite, got [0, 0, NaN]",
+        ),
+        (
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n",
+            "line 5: the face refers to vertex 4, but the file has 3",
+        ),
+        (
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n",
+            "line 4: a corner must start with a vertex number, from 1 up or from -1 down to -3, \
+             got \"-4\"",
+        ),
+        (
+            "v 0 0 0\nf 0 1 1\n",
+            "line 2: a corner must start with a vertex number, from 1 up or from -1 down to -1, \
+             got \"0\"",
+        ),
+        (
+            "f 99999999999 1 1\n",
+            "line 1: a corner must start with a vertex number, from 1 up or from -1 down to -0, \
+             got \"99999999999\"",
+        ),
+        (
+            "v 0 0 0\nv 1 0 0\nf 1 2\n",
+            "line 3: a face needs three corners, got 2",
+        ),
+        (
+            "v 0 0 0\nv 1 0 0\nf 1 2 1\n",
+            "none of the mesh's 1 triangles has an area",
+        ),
+    ] {
+        assert_eq!(complaint("broken.obj", content), expected, "{content:?}");
+    }
+}
+
+#[test]
+fn broken_stl_files_are_explained() {
+    let text = ascii_stl();
+    for (content, expected) in [
+        (
+            String::new(),
+            "an STL file begins with \"solid\" or with a header of 84 bytes",
+        ),
+        (
+            text.replacen(" 1e0", " one", 1),
+            "line 5: a coordinate must be a number, got \"one\"",
+        ),
+        (
+            text.replacen("outer", "inner", 1),
+            "line 3: expected solid, facet, outer, vertex, \
+             endloop, endfacet or endsolid, got \"inner\"",
+        ),
+        (
+            text.clone() + "solid more\n",
+            "line 45: the file ends before \"endsolid\"",
+        ),
+        (
+            text.replace("endsolid pyramid", ""),
+            "line 44: the file ends before \"endsolid\"",
+        ),
+        (
+            text.replacen("      vertex -1e0 -1e0 0e0\n", "", 1),
+            "line 7: a facet needs three vertices, got 2",
+        ),
+        ("solid\nendsolid\n".to_owned(), "the mesh has no triangles"),
+    ] {
+        assert_eq!(complaint("broken.stl", &content), expected, "{content}");
+    }
+    let mut cut = binary_stl("cut");
+    cut.truncate(200);
+    let expected = "the STL header announces 384 bytes, but the file has 200";
+    assert_eq!(complaint("cut.stl", cut), expected, "cut off");
+    let mut nan = binary_stl("nan");
+    nan[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
+    let expected = "vertex 0 (from 0) must be finite, got [NaN, -0.001, 0]";
+    assert_eq!(complaint("nan.stl", nan), expected, "NaN");
+}
+
+#[test]
+fn broken_ply_files_are_explained() {
+    let text = ascii_ply();
+    let begins = |content: &str, expected: &str| {
+        let got = complaint("broken.ply", content);
+        assert!(
+            got.starts_with(expected),
+            "{got:?} does not begin with {expected:?}"
+        );
+        assert!(!got.contains('\n'), "one line: {got:?}");
+    };
+    begins("", "Unexpected end of file");
+    begins("plough\n", "line 1: Expected magic number 'ply'");
+    begins(
+        &text.replace("float x", "floating x"),
+        "line 5: Couldn't parse line.",
+    );
+    begins(
+        &text.replace("0.25", "0,25"),
+        "line 18: Couldn't read element line.",
+    );
+    begins(
+        &text.replace("3 3 0 4\n", ""),
+        "line 24: Unexpected end of file",
+    );
+    begins(
+        &text.replace("4 0 3 2 1", "2 0 3"),
+        "face 0 (from 0) needs three corners, got 2",
+    );
+    begins(
+        &text.replace("3 3 0 4", "3 3 0 9"),
+        "triangle 5 (from 0) refers to vertex 9, but the mesh has 5",
+    );
+    begins(
+        &text.replace("float z", "float w"),
+        "vertex 0 (from 0) must be finite, got [-0.001",
+    );
+    begins(
+        &text.replace("0.25", "nan"),
+        "line 18: Couldn't read element line. String: 'nan -0.125 1.5 255",
+    );
+    begins(
+        &text.replace("vertex_indices", "polygon"),
+        "face 0 (from 0) needs three corners, got 0",
+    );
+}
+
+#[test]
+fn not_a_number_in_a_binary_ply_file_is_found() {
+    let double = |c: f64| if c > 1.2 { f64::NAN } else { c }.to_le_bytes();
+    let content = binary_ply(
+        "binary_little_endian",
+        double,
+        u32::to_le_bytes,
+        u16::to_le_bytes,
+    );
+    let expected = "vertex 4 (from 0) must be finite, got [0.00025, -0.000125, NaN]";
+    assert_eq!(complaint("nan.ply", &content), expected, "NaN");
+    let cut = &content[..content.len() - 3];
+    let got = complaint("cut.ply", cut);
+    assert!(!got.is_empty() && !got.contains('\n'), "{got:?}");
+}
+
+#[test]
+fn other_errors_are_explained() {
+    let scale = |scale: f64| {
+        let error = read_mesh("pyramid.obj".as_ref(), scale).unwrap_err();
+        assert!(
+            matches!(&error, MeshFileError::File { source, .. } if matches!(**source, MeshFileError::Scale(_))),
+            "{error:?}"
+        );
+    };
+    scale(0.0);
+    scale(-1e-3);
+    scale(f64::NAN);
+    let expected = "mesh format must be .obj, .ply, .stl, .gltf or .glb, got \".3mf\"";
+    assert_eq!(complaint("pyramid.3MF", ""), expected, "extension");
+    let expected = "mesh format must be .obj, .ply, .stl, .gltf or .glb, got \"\"";
+    assert_eq!(complaint("pyramid", ""), expected, "no extension");
+    let missing = read_mesh("no/such/mesh.ply".as_ref(), 1.0).unwrap_err();
+    let text = missing.to_string();
+    assert!(text.starts_with("no/such/mesh.ply: "), "{text}");
+    assert!(
+        matches!(&missing, MeshFileError::File { source, .. } if matches!(**source, MeshFileError::Read(_))),
+        "{missing:?}"
+    );
+}
+
+#[test]
+fn a_polygon_of_many_corners_can_be_met() {
+    const CORNERS: u32 = 5_000;
+    let angle = |i: u32| f64::from(i) / f64::from(CORNERS) * core::f64::consts::TAU;
+    let mut text: String = (0..CORNERS)
+        .map(|i| format!("v {} {} 0\n", angle(i).cos(), angle(i).sin()))
+        .collect();
+    text += "f";
+    for corner in 1..=CORNERS {
+        text += &format!(" {corner}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("disc.obj");
+    fs::write(&path, text).unwrap();
+    let mesh = read_mesh(&path, 1.0).unwrap();
+    assert_eq!(mesh.triangles().len(), 4_998);
+    let intersector = Intersector::build(&[Shape::from(mesh)]).unwrap();
+    for i in 0..200_u32 {
+        let radius = f64::from(i) / 200.0;
+        let origin = DVec3::new(
+            radius * angle(37 * i).cos(),
+            radius * angle(37 * i).sin(),
+            1.0,
+        );
+        let ray = tem00_camera::Ray {
+            origin,
+            direction: DVec3::NEG_Z,
+        };
+        assert!(intersector.intersect(&ray).is_some(), "missed at {origin}");
+    }
+}

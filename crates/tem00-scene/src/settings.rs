@@ -1,0 +1,136 @@
+use tem00_camera::Camera;
+use tem00_config::{Document, MEMORY, NUMBER, Problem, Value};
+use tem00_tracer::{Crop, LaserEvents, Method, RenderSettings, SpeckleSettings};
+
+use crate::filter;
+
+pub(crate) const RENDER_KEYS: &[&str] = &[
+    "samples_per_pixel",
+    "seed",
+    "frames",
+    "reference_frame",
+    "max_depth",
+    "method",
+    "laser_events",
+    "crop",
+    "target_error",
+    "filter",
+];
+pub(crate) const SPECKLE_KEYS: &[&str] = &["size", "diameter", "half_period", "memory"];
+
+const METHODS: &[(&str, Method)] = &[("path", Method::Path), ("light", Method::Light)];
+const LASER_EVENTS: &[(&str, LaserEvents)] = &[
+    ("beam", LaserEvents::Beam),
+    ("sampled", LaserEvents::Sampled),
+];
+
+/// The largest pattern size and number of slices: what a memory of a tebibyte could hold.
+const MOST: u64 = 1 << 15;
+
+/// Reads how the image of a camera is rendered.
+pub(crate) fn render(root: &Document<'_>, camera: &Camera) -> Result<RenderSettings, Problem> {
+    let default = RenderSettings::default();
+    let Some(section) = root.table("render", RENDER_KEYS)? else {
+        return Ok(default);
+    };
+    let frames = section.or("frames", default.frames, count)?;
+    Ok(RenderSettings {
+        samples_per_pixel: section.or("samples_per_pixel", default.samples_per_pixel, count)?,
+        seed: section.or("seed", default.seed, |value| value.integer(0..=u64::MAX))?,
+        frames,
+        reference_frame: section.or("reference_frame", default.reference_frame, |value| {
+            let frame = value.integer(0..=u64::from(frames - 1))?;
+            Ok(u32::try_from(frame).unwrap_or(frames - 1))
+        })?,
+        max_depth: section.or("max_depth", default.max_depth, |value| {
+            count(value).map(Some)
+        })?,
+        method: section.or("method", default.method, |value| value.one_of(METHODS))?,
+        laser_events: section.or("laser_events", default.laser_events, |value| {
+            value.one_of(LASER_EVENTS)
+        })?,
+        crop: section.or("crop", default.crop, |value| crop(value, camera).map(Some))?,
+        target_error: section.or("target_error", default.target_error, |value| {
+            value
+                .within(&NUMBER, 1e-6..=1.0, "from 1e-6 to 1")
+                .map(Some)
+        })?,
+        filter: filter::read(&section)?,
+    })
+}
+
+/// Reads a part of the image, `[x, y, width, height]`.
+fn crop(value: &Value<'_>, camera: &Camera) -> Result<Crop, Problem> {
+    let allowed = "four numbers of pixels [x, y, width, height]";
+    let [x, y, width, height] = value.elements(allowed)?;
+    let pixels = |value: &Value<'_>, least| {
+        let pixels = value.integer(least..=u64::from(u32::MAX))?;
+        Ok(usize::try_from(pixels).unwrap_or(usize::MAX))
+    };
+    let crop = Crop {
+        x: pixels(&x, 0)?,
+        y: pixels(&y, 0)?,
+        width: pixels(&width, 1)?,
+        height: pixels(&height, 1)?,
+    };
+    let inside = |start: usize, length: usize, size: usize| {
+        start.checked_add(length).is_some_and(|end| end <= size)
+    };
+    let [columns, rows] = [camera.width(), camera.height()];
+    if inside(crop.x, crop.width, columns) && inside(crop.y, crop.height, rows) {
+        Ok(crop)
+    } else {
+        Err(value.must_be(format_args!(
+            "a part [x, y, width, height] of the image of {columns} × {rows} pixels"
+        )))
+    }
+}
+
+/// A number from 1 to a million.
+fn count(value: &Value<'_>) -> Result<u32, Problem> {
+    const MOST: u32 = 1_000_000;
+    let count = value.integer(1..=u64::from(MOST))?;
+    Ok(u32::try_from(count).unwrap_or(MOST))
+}
+
+pub(crate) fn speckle(root: &Document<'_>) -> Result<SpeckleSettings, Problem> {
+    let default = SpeckleSettings::default();
+    let Some(section) = root.table("speckle", SPECKLE_KEYS)? else {
+        return Ok(default);
+    };
+    let samples = |key, least| {
+        section.or(key, None, |value| {
+            let samples = value.integer(least..=MOST)?;
+            Ok(usize::try_from(samples).ok())
+        })
+    };
+    let size = samples("size", 16)?;
+    let diameter = samples("diameter", 8)?;
+    if let (Some(size), Some(diameter)) = (size, diameter)
+        && diameter > size / 2
+    {
+        return Err(section.problem_with(
+            "diameter",
+            format_args!(
+                "`diameter` must be at most half of `size`, {}, got {diameter}",
+                size / 2
+            ),
+        ));
+    }
+    Ok(SpeckleSettings {
+        size,
+        diameter,
+        half_period: samples("half_period", 1)?,
+        memory: section.or("memory", default.memory, memory)?,
+    })
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "an amount of memory is at least 1 byte and below 2⁶³ bytes"
+)]
+fn memory(value: &Value<'_>) -> Result<u64, Problem> {
+    let bytes = value.within(&MEMORY, 1.0..=1e18, "from 1 B to 10¹⁸ B")?;
+    Ok(bytes as u64)
+}

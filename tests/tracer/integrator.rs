@@ -1,0 +1,361 @@
+use core::{f64::consts::PI, sync::atomic::AtomicBool};
+use std::path::Path;
+
+use glam::DVec3;
+use tem00::{
+    scene::parse_scene,
+    tracer::{
+        Environment, Frame, Lamp, LampEvents, LaserEvents, Material, Metal, RenderOptions, Scene,
+        render_frame,
+    },
+};
+
+use crate::estimate::{assert_mean, mean};
+
+const SEEDS: u64 = 20;
+
+fn scene(text: &str) -> Scene {
+    parse_scene(text, Path::new(".")).unwrap()
+}
+
+fn render(scene: &Scene, options: &RenderOptions) -> Frame {
+    render_frame(scene, None, 0, options, |_| (), &AtomicBool::new(false)).unwrap()
+}
+
+fn options(samples_per_pixel: u32, seed: u64) -> RenderOptions {
+    RenderOptions {
+        samples_per_pixel,
+        seed,
+        ..RenderOptions::default()
+    }
+}
+
+/// A ball of 0.1 m before the camera, or around it.
+fn ball(camera: &str) -> Scene {
+    scene(&format!(
+        r#"
+        [camera]
+        {camera}
+        focal_length = 0.025
+        f_number = 8
+        focus_distance = 0.4
+        pixel_pitch = "200 um"
+        resolution = [16, 16]
+        [[laser]]
+        wavelength = "650 nm"
+        power = 2
+        position = [0, 0, -0.09]
+        look_at = [0, 0, 0.5]
+        spot = {{ waist_radius = "0.5 um", waist_distance = 0 }}
+        [[surface]]
+        sphere = {{ centre = [0, 0, 0], radius = 0.1 }}
+        "#
+    ))
+}
+
+const OUTSIDE: &str = "position = [0, 0, 0.5]\nlook_at = [0, 0, 0]";
+const INSIDE: &str = "position = [0.02, 0.04, 0]\nlook_at = [0, 0.08, 0.02]";
+
+#[test]
+fn lossless_bodies_vanish_in_uniform_light() {
+    let materials = [
+        ("white", Material::lambertian(1.0).unwrap(), 2e-3),
+        ("mirror", Material::mirror(1.0).unwrap(), 1e-6),
+        ("glass", Material::dielectric(1.5).unwrap(), 5e-3),
+    ];
+    for (name, material, precision) in materials {
+        let mut furnace = ball(OUTSIDE);
+        furnace.lasers.clear();
+        furnace.lamps = vec![Lamp::Environment(Environment::constant(3.0).unwrap())];
+        furnace.surfaces[0].material = material;
+        for events in [LampEvents::Both, LampEvents::Scattering] {
+            let images: Vec<Frame> = (0..SEEDS)
+                .map(|seed| {
+                    render(
+                        &furnace,
+                        &RenderOptions {
+                            lamp_events: events,
+                            ..options(16, seed)
+                        },
+                    )
+                })
+                .collect();
+            // A material that throws its direction away in proportion to what it reflects is exact.
+            let is_exact = name == "mirror" || name == "white" && events == LampEvents::Scattering;
+            if is_exact {
+                for value in images.iter().flat_map(|frame| frame.lamps.values()) {
+                    // Roundings to single precision.
+                    assert!((value / 3.0 - 1.0).abs() < 2e-7, "{name}: {value}");
+                }
+            } else {
+                let means: Vec<f64> = images.iter().map(|f| mean(f.lamps.values())).collect();
+                assert_mean(name, &means, 3.0, 3.0 * precision);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sphere_keeps_each_reflection_of_the_series() {
+    const REFLECTANCE: f64 = 0.7;
+    let mut sphere = ball(INSIDE);
+    sphere.surfaces[0].material = Material::lambertian(REFLECTANCE).unwrap();
+    // What a diffuse sphere reflects spreads evenly over it: ρᵏP / (πA) for each k-th reflection.
+    let once = 2.0 / (PI * 4.0 * PI * 0.01);
+    for depth in [2_i32, 3, 5] {
+        let radiances: Vec<f64> = (0..SEEDS)
+            .map(|seed| {
+                let options = RenderOptions {
+                    max_depth: Some(depth.unsigned_abs()),
+                    ..options(16, seed)
+                };
+                mean(render(&sphere, &options).lasers[0].incoherent.values())
+            })
+            .collect();
+        let expected: f64 = (2..=depth).map(|k| once * REFLECTANCE.powi(k)).sum();
+        // The next reflection would add at least 8 %.
+        assert_mean("series", &radiances, expected, 0.01 * expected);
+    }
+    let direct = RenderOptions {
+        max_depth: Some(1),
+        ..options(4, 0)
+    };
+    let direct = render(&sphere, &direct).lasers.remove(0);
+    assert!(
+        direct.incoherent.values().iter().all(|&v| v == 0.0),
+        "one surface only"
+    );
+    assert!(mean(direct.coherent_before.values()) > 0.0, "lit");
+}
+
+#[test]
+fn environments_light_a_closed_sphere_from_nowhere() {
+    let mut sphere = ball(INSIDE);
+    sphere.lasers.clear();
+    sphere.lamps = vec![Lamp::Environment(Environment::constant(1.0).unwrap())];
+    let frame = render(&sphere, &options(4, 0));
+    assert!(frame.lamps.values().iter().all(|&v| v == 0.0), "dark");
+}
+
+/// The irradiance of a rectangle of radiance 1 on a point, by Lambert's formula for polygons.
+fn polygon_irradiance(corners: [DVec3; 4], point: DVec3, normal: DVec3) -> f64 {
+    let towards = corners.map(|corner| (corner - point).normalize());
+    let edges = (0..4).map(|i| {
+        let (a, b) = (towards[i], towards[(i + 1) % 4]);
+        a.dot(b).acos() * a.cross(b).normalize().dot(normal)
+    });
+    0.5 * edges.sum::<f64>().abs()
+}
+
+#[test]
+fn a_sphere_under_an_area_lamp_obeys_lamberts_formula() {
+    // A few micrometres of a sphere, 40° from its top, under a lamp 0.2 m square.
+    let (sin, cos) = 40.0_f64.to_radians().sin_cos();
+    let (point, normal) = (
+        DVec3::new(0.1 * sin, 0.0, 0.1 * cos),
+        DVec3::new(sin, 0.0, cos),
+    );
+    let eye = point + 0.3 * DVec3::new(0.8, 0.5, 0.2);
+    let text = format!(
+        r#"
+        [camera]
+        position = [{}, {}, {}]
+        look_at = [{}, 0, {}]
+        focal_length = 0.025
+        f_number = 8
+        pixel_pitch = "0.1 um"
+        resolution = [4, 4]
+        [[laser]]
+        wavelength = "650 nm"
+        power = "1 mW"
+        position = [0.5, 0, 1]
+        look_at = [0, 0, 0]
+        spot = {{ waist_radius = "1 mm" }}
+        [[surface]]
+        sphere = {{ centre = [0, 0, 0], radius = 0.1 }}
+        lambertian = {{ reflectance = 0.6 }}
+        [[lamp]]
+        rectangle = {{ centre = [0.05, 0, 0.25], normal = [0, 0, -1], size = [0.2, 0.2], radiance = 10 }}
+        "#,
+        eye.x, eye.y, eye.z, point.x, point.z
+    );
+    let corner = |x: f64, y: f64| DVec3::new(0.05 + 0.1 * x, 0.1 * y, 0.25);
+    let corners = [
+        corner(-1.0, -1.0),
+        corner(1.0, -1.0),
+        corner(1.0, 1.0),
+        corner(-1.0, 1.0),
+    ];
+    let expected = 0.6 / PI * 10.0 * polygon_irradiance(corners, point, normal);
+    for events in [LampEvents::Both, LampEvents::NextEvent] {
+        let radiances: Vec<f64> = (0..SEEDS)
+            .map(|seed| {
+                let options = RenderOptions {
+                    lamp_events: events,
+                    ..options(64, seed)
+                };
+                mean(render(&scene(&text), &options).lamps.values())
+            })
+            .collect();
+        assert_mean("sphere", &radiances, expected, 2e-3 * expected);
+    }
+}
+
+/// A corner of two walls of different materials under a lamp and a laser.
+fn corner(first: Material, second: Material) -> Scene {
+    let mut corner = scene(
+        r#"
+        [camera]
+        position = [0.3, 0.2, 0.4]
+        look_at = [0.05, 0, 0.05]
+        focal_length = 0.025
+        f_number = 4
+        pixel_pitch = "400 um"
+        resolution = [12, 12]
+        [[laser]]
+        wavelength = "650 nm"
+        power = 1
+        position = [0.2, 0.02, 0.3]
+        look_at = [0.05, 0, 0]
+        spot = { waist_radius = "0.2 mm", m_squared = 400, waist_distance = 0 }
+        [[surface]]
+        rectangle = { centre = [0.1, 0, 0], normal = [0, 0, 1], size = [0.2, 0.2] }
+        [[surface]]
+        rectangle = { centre = [0, 0, 0.1], normal = [1, 0, 0], size = [0.2, 0.2] }
+        [[lamp]]
+        rectangle = { centre = [0.2, 0, 0.2], normal = [-1, 0, -1], size = [0.2, 0.1], radiance = 10 }
+        "#,
+    );
+    corner.surfaces[0].material = first;
+    corner.surfaces[1].material = second;
+    corner
+}
+
+#[test]
+fn all_ways_to_find_a_lamp_agree() {
+    let satin = Material::conductor(Metal::Aluminium, 0.3).unwrap();
+    let plastic = Material::plastic(0.6, 1.5, 0.2).unwrap();
+    let plaster = Material::oren_nayar(0.8, 0.5).unwrap();
+    for (name, first, second) in [
+        ("satin on plaster", satin, plaster),
+        ("plastic on satin", plastic, satin),
+    ] {
+        let mut corner = corner(first, second);
+        corner.lasers.clear();
+        let of = |events, seed| {
+            let options = RenderOptions {
+                lamp_events: events,
+                max_depth: Some(4),
+                ..options(32, seed)
+            };
+            mean(render(&corner, &options).lamps.values())
+        };
+        let both: Vec<f64> = (0..SEEDS).map(|s| of(LampEvents::Both, s)).collect();
+        let scale = both.iter().sum::<f64>() / SEEDS as f64;
+        for (events, precision) in [
+            (LampEvents::NextEvent, 0.02),
+            (LampEvents::Scattering, 0.02),
+        ] {
+            let differences: Vec<f64> = (0..SEEDS)
+                .zip(&both)
+                .map(|(s, both)| of(events, 100 + s) - both)
+                .collect();
+            assert_mean(name, &differences, 0.0, precision * scale);
+        }
+    }
+}
+
+#[test]
+fn lasers_light_alike_by_the_beam_and_by_drawn_directions() {
+    let satin = Material::conductor(Metal::Aluminium, 0.3).unwrap();
+    let white = Material::lambertian(0.8).unwrap();
+    for (name, first, second) in [("white", white, white), ("satin", satin, white)] {
+        let mut corner = corner(first, second);
+        corner.lamps.clear();
+        let of = |events, seed| {
+            let options = RenderOptions {
+                laser_events: events,
+                max_depth: Some(3),
+                ..options(16, seed)
+            };
+            let layers = render(&corner, &options).lasers.remove(0);
+            [&layers.coherent_before, &layers.incoherent].map(|layer| mean(layer.values()))
+        };
+        let beam: Vec<[f64; 2]> = (0..SEEDS).map(|s| of(LaserEvents::Beam, s)).collect();
+        let drawn: Vec<[f64; 2]> = (0..SEEDS)
+            .map(|s| of(LaserEvents::Sampled, 100 + s))
+            .collect();
+        for layer in [0, 1] {
+            let scale = beam.iter().map(|v| v[layer]).sum::<f64>() / SEEDS as f64;
+            assert!(scale > 0.0, "{name}, layer {layer} is dark");
+            let pairs = beam.iter().zip(&drawn);
+            let differences: Vec<f64> = pairs.map(|(a, b)| b[layer] - a[layer]).collect();
+            assert_mean(name, &differences, 0.0, 0.03 * scale);
+        }
+    }
+}
+
+#[test]
+fn a_mirror_shows_coherent_light_dimmed_by_its_reflectance() {
+    // The camera looks at the plate over a mirror at 45°, 0.1 m before it.
+    let seen = |camera: &str, mirror: &str| {
+        scene(&format!(
+            r#"
+            [camera]
+            {camera}
+            focal_length = 0.025
+            f_number = 8
+            focus_distance = 0.3
+            pixel_pitch = "40 um"
+            resolution = [24, 24]
+            [[laser]]
+            wavelength = "650 nm"
+            power = 1
+            position = [0.05, 0.05, 0.1]
+            look_at = [0, 0, 0]
+            spot = {{ waist_radius = "1 mm" }}
+            [[surface]]
+            rectangle = {{ centre = [0, 0, 0], normal = [0, 0, 1], size = [0.02, 0.02] }}
+            {mirror}
+            "#
+        ))
+    };
+    let straight = seen("position = [0, 0, 0.3]\nlook_at = [0, 0, 0]", "");
+    let mut over = seen(
+        "position = [0.1, 0, 0.2]\nlook_at = [0, 0, 0.2]\nup = [0, 1, 0]",
+        "[[surface]]\nrectangle = { centre = [0, 0, 0.2], normal = [1, 0, -1], size = [0.1, 0.1] }",
+    );
+    over.surfaces[1].material = Material::mirror(0.7).unwrap();
+    let of = |scene: &Scene, depth, seed| {
+        let options = RenderOptions {
+            max_depth: Some(depth),
+            ..options(16, seed)
+        };
+        let layers = render(scene, &options).lasers.remove(0);
+        assert!(mean(layers.incoherent.values()) == 0.0, "one rough surface");
+        mean(layers.coherent_before.values())
+    };
+    let ratios: Vec<f64> = (0..SEEDS)
+        .map(|seed| of(&over, 2, seed) / of(&straight, 2, 100 + seed))
+        .collect();
+    assert_mean("over a mirror", &ratios, 0.7, 2e-3);
+    assert!(of(&over, 1, 0) == 0.0, "the mirror counts as a surface");
+}
+
+#[test]
+fn a_laser_inside_a_body_lights_nothing_outside() {
+    let mut hidden = ball(OUTSIDE);
+    let frame = render(&hidden, &options(4, 0));
+    let layers = &frame.lasers[0];
+    assert!(
+        layers.coherent_before.values().iter().all(|&v| v == 0.0),
+        "the laser is hidden"
+    );
+    assert!(layers.power_on_target == 0.0, "power");
+    hidden.surfaces[0].shape = hidden.surfaces[0]
+        .shape
+        .moved(&tem00::decorrelation::RigidMotion::along(DVec3::new(0.0, 0.0, -0.3)).unwrap());
+    hidden.surfaces[0].material = Material::lambertian(0.5).unwrap();
+    let behind = render(&hidden, &options(4, 0));
+    assert!(behind.lasers[0].power_on_target == 0.0, "behind the laser");
+}

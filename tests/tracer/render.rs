@@ -1,0 +1,378 @@
+use core::sync::atomic::AtomicBool;
+use std::path::Path;
+
+use tem00::{
+    numerics::Grid,
+    scene::parse_scene,
+    tracer::{
+        Crop, Filter, Frame, Material, RenderError, RenderOptions, Scene, SpeckleModel,
+        SpecklePlan, TracerError, render_frame,
+    },
+};
+
+/// Two lasers and a lamp on two plates.
+fn scene() -> Scene {
+    let text = r#"
+        [camera]
+        position = [0, 0.05, 0.3]
+        look_at = [0, 0, 0]
+        focal_length = 0.025
+        f_number = 8
+        pixel_pitch = "60 um"
+        resolution = [40, 9]
+        [[laser]]
+        wavelength = "650 nm"
+        power = 1
+        position = [0.1, 0, 0.2]
+        look_at = [0, 0, 0]
+        spot = { waist_radius = "2 mm" }
+        [[laser]]
+        wavelength = "532 nm"
+        power = 2
+        position = [-0.1, 0.1, 0.2]
+        look_at = [0.01, 0, 0]
+        spot = { waist_radius = "1 mm" }
+        [[surface]]
+        rectangle = { centre = [0, 0, 0], normal = [0, 0, 1], size = [0.1, 0.1] }
+        [[surface]]
+        rectangle = { centre = [0, -0.02, 0.02], normal = [0, 1, 0.2], size = [0.1, 0.03] }
+        [[lamp]]
+        rectangle = { centre = [0, 0.2, 0.2], normal = [0, -1, -1], size = [0.05, 0.05], radiance = 10 }
+    "#;
+    parse_scene(text, Path::new(".")).unwrap()
+}
+
+fn options() -> RenderOptions {
+    RenderOptions {
+        samples_per_pixel: 7,
+        seed: 3,
+        ..RenderOptions::default()
+    }
+}
+
+fn render(scene: &Scene, options: &RenderOptions) -> Frame {
+    let plan = SpecklePlan::new(scene, options.formulas, 1).unwrap();
+    let model = SpeckleModel::generate(scene, &plan).unwrap();
+    let cancel = AtomicBool::new(false);
+    render_frame(scene, Some(&model), 0, options, |_| (), &cancel).unwrap()
+}
+
+fn with_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.unwrap().install(work)
+}
+
+/// All layers of a frame.
+fn layers(frame: &Frame) -> Vec<&Grid<f32>> {
+    let mut all = vec![
+        &frame.lamps,
+        &frame.lamps_variance,
+        &frame.depth,
+        &frame.samples,
+    ];
+    all.extend(&frame.normal);
+    for laser in &frame.lasers {
+        all.extend([
+            &laser.coherent_before,
+            &laser.speckle,
+            &laser.coherent_after,
+            &laser.incoherent,
+            &laser.variance,
+        ]);
+    }
+    all
+}
+
+#[test]
+fn frames_have_the_same_bits_for_any_number_of_threads() {
+    let scene = scene();
+    for options in [
+        options(),
+        RenderOptions {
+            target_error: Some(0.2),
+            filter: Filter::Tent { radius: 1.0 },
+            ..options()
+        },
+    ] {
+        let one = with_threads(1, || render(&scene, &options));
+        for threads in [2, 7] {
+            let many = with_threads(threads, || render(&scene, &options));
+            assert!(one == many, "{threads} threads, {options:?}");
+        }
+    }
+}
+
+#[test]
+fn a_crop_has_the_bits_of_the_whole_image() {
+    let scene = scene();
+    let crop = Crop {
+        x: 5,
+        y: 2,
+        width: 34,
+        height: 4,
+    };
+    let whole = render(&scene, &options());
+    let part = render(
+        &scene,
+        &RenderOptions {
+            crop: Some(crop),
+            ..options()
+        },
+    );
+    assert_eq!(part.origin, [5, 2], "origin");
+    assert_eq!(part.lamps.width(), 34, "width");
+    for (whole, part) in layers(&whole).into_iter().zip(layers(&part)) {
+        for (y, row) in part.rows().enumerate() {
+            let same = &whole.row(y + crop.y)[crop.x..][..crop.width];
+            assert_eq!(row, same, "row {y}");
+        }
+    }
+}
+
+#[test]
+fn many_lasers_in_one_pass_are_the_lasers_one_by_one() {
+    let all = scene();
+    let together = render(&all, &options());
+    for index in 0..2 {
+        let mut alone = all.clone();
+        alone.lasers = vec![all.lasers[index].clone()];
+        let cancel = AtomicBool::new(false);
+        let one = render_frame(&alone, None, 0, &options(), |_| (), &cancel).unwrap();
+        let (one, together) = (&one.lasers[0], &together.lasers[index]);
+        // White surfaces leave the paths of all wavelengths the same.
+        assert_eq!(one.coherent_before, together.coherent_before, "{index}");
+        assert_eq!(one.incoherent, together.incoherent, "{index}");
+        let relative = one.power_on_target / together.power_on_target - 1.0;
+        assert!(relative.abs() < 1e-15, "{index}: {relative:e}");
+    }
+}
+
+#[test]
+fn depth_and_normal_are_those_of_the_plate() {
+    let mut scene = scene();
+    scene.surfaces.truncate(1);
+    scene.lamps.clear();
+    let frame = render(&scene, &options());
+    // The axis is (0, −0.05, −0.3) / |…|; the plate is met where it meets z = 0.
+    let middle = f64::from(frame.depth[(20, 4)]);
+    let distance = 0.05_f64.hypot(0.3);
+    // The pixel is 0.7 mm wide there, and the axis leans by 0.16.
+    assert!((middle / distance - 1.0).abs() < 1e-3, "{middle} m");
+    let [x, y, z] = frame.normal.each_ref().map(|layer| layer[(20, 4)]);
+    assert!(
+        x == 0.0 && y == 0.0 && (z - 1.0).abs() < 1e-6,
+        "({x}, {y}, {z})"
+    );
+    assert!(
+        frame
+            .samples
+            .values()
+            .iter()
+            .all(|n| n.to_bits() == 7.0_f32.to_bits()),
+        "samples"
+    );
+    let none = Frame {
+        ..render(&with_nothing_in_view(), &options())
+    };
+    assert!(none.depth.values().iter().all(|&d| d == 0.0), "nothing");
+    assert!(
+        none.normal
+            .iter()
+            .all(|n| n.values().iter().all(|&n| n == 0.0)),
+        "nothing has a normal"
+    );
+    let speckle = &none.lasers[0].speckle;
+    assert!(
+        speckle
+            .values()
+            .iter()
+            .all(|s| s.to_bits() == 1.0_f32.to_bits()),
+        "no speckle"
+    );
+}
+
+fn with_nothing_in_view() -> Scene {
+    let mut scene = scene();
+    let away = tem00::decorrelation::RigidMotion::along(glam::DVec3::new(0.0, 0.0, 10.0)).unwrap();
+    for surface in &mut scene.surfaces {
+        surface.shape = surface.shape.moved(&away);
+    }
+    scene.lamps.clear();
+    scene
+}
+
+/// A closed white sphere, whose incoherent radiance is known and the same in every pixel.
+fn sphere() -> (Scene, f64) {
+    let text = r#"
+        [camera]
+        position = [0.02, 0.04, 0]
+        look_at = [0, 0.08, 0.02]
+        focal_length = 0.025
+        f_number = 8
+        focus_distance = 0.3
+        pixel_pitch = "200 um"
+        resolution = [24, 24]
+        [[laser]]
+        wavelength = "650 nm"
+        power = 2
+        position = [0, 0, -0.09]
+        look_at = [0, 0, 0.5]
+        spot = { waist_radius = "0.5 um", waist_distance = 0 }
+        [[surface]]
+        sphere = { centre = [0, 0, 0], radius = 0.1 }
+    "#;
+    let mut scene = parse_scene(text, Path::new(".")).unwrap();
+    scene.surfaces[0].material = Material::lambertian(0.5).unwrap();
+    // ρ²P / (πA (1 − ρ)) after all reflections but the first.
+    let area = 4.0 * core::f64::consts::PI * 0.01;
+    let radiance = 0.25 * 2.0 / (core::f64::consts::PI * area * 0.5);
+    (scene, radiance)
+}
+
+fn render_smooth(scene: &Scene, options: &RenderOptions) -> Frame {
+    let cancel = AtomicBool::new(false);
+    render_frame(scene, None, 0, options, |_| (), &cancel).unwrap()
+}
+
+#[test]
+fn stated_variances_are_those_between_renders() {
+    const SEEDS: u64 = 40;
+    let (scene, radiance) = sphere();
+    let (mut stated, mut squares) = (0.0, 0.0);
+    for seed in 0..SEEDS {
+        let options = RenderOptions {
+            samples_per_pixel: 16,
+            seed,
+            ..RenderOptions::default()
+        };
+        let frame = render_smooth(&scene, &options);
+        let laser = &frame.lasers[0];
+        let pixels = laser.incoherent.values().len() as f64;
+        for (value, variance) in laser
+            .incoherent
+            .values()
+            .iter()
+            .zip(laser.variance.values())
+        {
+            squares += (f64::from(*value) - radiance).powi(2) / pixels;
+            stated += f64::from(*variance) / pixels;
+        }
+    }
+    // The coherent light varies little over a pixel. 23 040 pixels give either variance to 1 %;
+    // the evenness of the samples takes some of it away.
+    let ratio = squares / stated;
+    assert!((0.3..1.03).contains(&ratio), "actual by stated: {ratio}");
+}
+
+#[test]
+fn adaptive_samples_reach_the_error_that_is_asked_for() {
+    const TARGET: f64 = 0.2;
+    let (scene, incoherent) = sphere();
+    let direct = RenderOptions {
+        max_depth: Some(1),
+        samples_per_pixel: 256,
+        ..RenderOptions::default()
+    };
+    let coherent = render_smooth(&scene, &direct).lasers.remove(0);
+    let (mut squares, mut biases) = (Vec::new(), Vec::new());
+    for seed in 0..12 {
+        let options = RenderOptions {
+            samples_per_pixel: 16,
+            seed,
+            target_error: Some(TARGET),
+            ..RenderOptions::default()
+        };
+        let frame = render_smooth(&scene, &options);
+        let laser = &frame.lasers[0];
+        let samples = frame.samples.values();
+        assert!(
+            samples.iter().all(|&n| n > 16.0 && n < 1024.0),
+            "numbers of samples: {samples:?}"
+        );
+        let errors: Vec<f64> = (0..laser.incoherent.values().len())
+            .map(|i| {
+                let truth = incoherent + f64::from(coherent.coherent_before.values()[i]);
+                let value = laser.incoherent.values()[i] + laser.coherent_after.values()[i];
+                f64::from(value) / truth - 1.0
+            })
+            .collect();
+        let n = errors.len() as f64;
+        squares.push((errors.iter().map(|e| e * e).sum::<f64>() / n).sqrt());
+        biases.push(errors.iter().sum::<f64>() / n);
+    }
+    let rms = squares.iter().sum::<f64>() / squares.len() as f64;
+    // What is left of the target is for the uncertainty of the estimated error.
+    assert!((0.5 * TARGET..TARGET).contains(&rms), "error {rms}");
+    let bias = biases.iter().sum::<f64>() / biases.len() as f64;
+    // The mean over 6912 pixels has a standard error of 0.0018; the stop, which depends on what was
+    // found, adds no more.
+    assert!(bias.abs() < 0.008, "bias {bias}");
+}
+
+#[test]
+fn options_out_of_range_are_refused() {
+    let scene = scene();
+    let crop = |x, width| {
+        Some(Crop {
+            x,
+            y: 0,
+            width,
+            height: 1,
+        })
+    };
+    let bad = [
+        (
+            "samples_per_pixel",
+            RenderOptions {
+                samples_per_pixel: 0,
+                ..options()
+            },
+        ),
+        (
+            "crop (columns)",
+            RenderOptions {
+                crop: crop(39, 2),
+                ..options()
+            },
+        ),
+        (
+            "crop (columns)",
+            RenderOptions {
+                crop: crop(0, 0),
+                ..options()
+            },
+        ),
+        (
+            "crop (columns)",
+            RenderOptions {
+                crop: crop(usize::MAX, 2),
+                ..options()
+            },
+        ),
+        (
+            "target_error",
+            RenderOptions {
+                target_error: Some(0.0),
+                ..options()
+            },
+        ),
+        (
+            "target_error",
+            RenderOptions {
+                target_error: Some(f64::NAN),
+                ..options()
+            },
+        ),
+    ];
+    for (name, options) in bad {
+        let cancel = AtomicBool::new(false);
+        let result = render_frame(&scene, None, 0, &options, |_| (), &cancel);
+        assert!(
+            matches!(
+                result,
+                Err(RenderError::Scene(TracerError::OutOfRange { parameter, .. })) if parameter == name
+            ),
+            "{name}: {result:?}"
+        );
+    }
+}

@@ -2,11 +2,25 @@
 //!
 //! A count or an index becomes a number by `n as f64`, exact below 2⁵³.
 
+use num_complex::Complex;
+
 /// Returns `x` in single precision, rounded to nearest; infinite above [`f32::MAX`], NaN for NaN.
 #[expect(clippy::cast_possible_truncation, reason = "rounded on purpose")]
 #[inline]
 pub const fn to_f32(x: f64) -> f32 {
     x as f32
+}
+
+/// Returns `z` in single precision, each part as by [`to_f32`].
+#[inline]
+pub const fn to_c32(z: Complex<f64>) -> Complex<f32> {
+    Complex::new(to_f32(z.re), to_f32(z.im))
+}
+
+/// Returns `z` in double precision, exactly.
+#[inline]
+pub const fn to_c64(z: Complex<f32>) -> Complex<f64> {
+    Complex::new(z.re as f64, z.im as f64)
 }
 
 /// Returns the whole part of a number that is known to be an index or a count.

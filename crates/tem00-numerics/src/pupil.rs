@@ -98,7 +98,7 @@ pub fn sinc(x: f64) -> f64 {
         // 1 − x²/6 + x⁴/120: the last term is below 1e−18.
         return 1.0 - x * x / 6.0;
     }
-    x.sin() / x
+    libm::sin(x) / x
 }
 
 /// Returns the square of [`sinc`] at πx, `sin²(π x) / (π x)²`, within 1e−15; 0 beyond |x| = 2⁵⁰, where it is below 1e−31.

@@ -66,7 +66,6 @@
 //! # Ok::<(), tem00_speckle::SpeckleError>(())
 //! ```
 
-mod complex;
 mod error;
 mod interpolation;
 mod light;

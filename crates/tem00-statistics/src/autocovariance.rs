@@ -1,5 +1,8 @@
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Grid};
+use tem00_numerics::{
+    Fft2, Grid,
+    cast::{to_f32, to_usize},
+};
 
 use crate::{
     StatisticsError,
@@ -78,7 +81,7 @@ pub fn autocovariance(image: &Grid<f32>, boundary: Boundary) -> Result<Grid<f32>
             let normalised = |x: usize, y: usize| {
                 let pairs = (pairs_at(x, width) * pairs_at(y, height)) as f64;
                 if pairs > 0.0 {
-                    single(f64::from(lags[(x, y)]) / zero * (count / pairs))
+                    to_f32(f64::from(lags[(x, y)]) / zero * (count / pairs))
                 } else {
                     0.0
                 }
@@ -122,7 +125,7 @@ pub fn power_spectrum(image: &Grid<f32>) -> Result<Grid<f32>, StatisticsError> {
         .iter()
         .map(|value| f64::from(value.re).powi(2))
         .sum();
-    let scale = single(squares.recip());
+    let scale = to_f32(squares.recip());
     Ok(transform.forward(&fluctuation, |_, _, amplitude| amplitude.norm_sqr() * scale))
 }
 
@@ -178,13 +181,13 @@ pub fn radial_average(grid: &Grid<f32>, step: [f64; 2]) -> Result<Vec<Ring>, Sta
     let [aspect_x, aspect_y] = step.map(|size| size / width);
     let reach_x = (grid.width() / 2) as f64 * aspect_x;
     let reach_y = (grid.height() / 2) as f64 * aspect_y;
-    let mut rings = vec![Ring::EMPTY; 1 + nearest_ring(reach_x.min(reach_y).floor())];
+    let mut rings = vec![Ring::EMPTY; 1 + to_usize(reach_x.min(reach_y))];
     for (y, row) in grid.rows().enumerate() {
         let lag_y = distance_from_origin(y, grid.height()) * aspect_y;
         for (x, &value) in row.iter().enumerate() {
             let lag_x = distance_from_origin(x, grid.width()) * aspect_x;
             let radius = lag_x.hypot(lag_y);
-            if let Some(ring) = rings.get_mut(nearest_ring(radius)) {
+            if let Some(ring) = rings.get_mut(to_usize(radius.round())) {
                 ring.add(radius * width, value.into());
             }
         }
@@ -258,7 +261,7 @@ pub fn decorrelated_samples(grid: &Grid<f32>, stride: usize) -> Result<Vec<f64>,
 fn standardised(image: &Grid<f32>) -> Result<Grid<Complex<f32>>, StatisticsError> {
     let scaled = Scaled::new(image.values())?;
     scaled.check_varies()?;
-    Ok(image.map(|&value| Complex::new(single(scaled.standardise(value)), 0.0)))
+    Ok(image.map(|&value| Complex::new(to_f32(scaled.standardise(value)), 0.0)))
 }
 
 /// Returns the sums Σ a(x) a(x + r) of an image in a periodic array of zeros of the given size.
@@ -285,23 +288,6 @@ fn pairs_at(index: usize, size: usize) -> usize {
 /// Returns the magnitude of the lag at `index`.
 fn distance_from_origin(index: usize, size: usize) -> f64 {
     index.min(size - index) as f64
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a radius is not negative and below the size of the grid"
-)]
-fn nearest_ring(radius: f64) -> usize {
-    radius.round() as usize
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "images are stored in single precision"
-)]
-pub(crate) fn single(value: f64) -> f32 {
-    value as f32
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 
 use crate::{
     StatisticsError,
-    autocovariance::single,
     moments::{Scaled, check_finite},
 };
 
@@ -85,7 +84,7 @@ fn contrast_of(pixels: &[f32]) -> Result<f32, StatisticsError> {
     if scaled.mean <= f64::EPSILON {
         return Err(StatisticsError::Mean(scaled.mean * scaled.unit));
     }
-    Ok(single(scaled.standard_deviation / scaled.mean))
+    Ok(to_f32(scaled.standard_deviation / scaled.mean))
 }
 
 #[cfg(test)]

@@ -32,6 +32,8 @@ pub fn size_before_pixels(measured: f64) -> Option<f64> {
 mod tests {
     use tem00_numerics::Grid;
 
+    use tem00_numerics::cast::to_f32;
+
     use super::*;
     use crate::{SpeckleSize, airy_autocovariance};
 
@@ -56,8 +58,7 @@ mod tests {
             let line: Vec<f64> = (0..13_u32)
                 .map(|lag| behind_pixels(size, lag.into()))
                 .collect();
-            #[expect(clippy::cast_possible_truncation, reason = "lags are single")]
-            let along = |lag: usize| (line[lag.min(25 - lag)] / line[0]) as f32;
+            let along = |lag: usize| to_f32(line[lag.min(25 - lag)] / line[0]);
             let lags = Grid::from_fn(25, 25, |x, y| along(x).min(along(y)));
             let measured = SpeckleSize::from_autocovariance(&lags).expect("it falls");
             let found = size_before_pixels(measured.x()).expect("above a pixel");

@@ -168,15 +168,15 @@ fn airy_argument(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use approx::{assert_abs_diff_eq, assert_relative_eq};
-    use tem00_numerics::{disc_overlap, sinc};
+    use tem00_numerics::{cast::to_f32, disc_overlap, sinc};
 
     use super::*;
-    use crate::{autocovariance::single, synthetic::speckle_tile};
+    use crate::synthetic::speckle_tile;
 
     fn airy_lags(size: usize, [h_x, h_y]: [f64; 2]) -> Grid<f32> {
         let lag = |i: usize| i.min(size - i) as f64;
         Grid::from_fn(size, size, |x, y| {
-            single(airy_autocovariance((lag(x) / h_x).hypot(lag(y) / h_y)))
+            to_f32(airy_autocovariance((lag(x) / h_x).hypot(lag(y) / h_y)))
         })
     }
 
@@ -273,7 +273,7 @@ mod tests {
                 .map(|lag| covariance(f64::from(lag), h) / zero)
                 .collect();
             let lags = Grid::from_fn(11, 11, |x, y| {
-                single(line[x.min(11 - x).max(y.min(11 - y))])
+                to_f32(line[x.min(11 - x).max(y.min(11 - y))])
             });
             let measured = SpeckleSize::from_autocovariance(&lags).unwrap();
             // Half of the third digit; the midpoint rule errs by 1e−5.

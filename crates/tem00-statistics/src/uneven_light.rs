@@ -1,8 +1,8 @@
 use core::f64::consts::{PI, SQRT_2};
 
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 
-use crate::{COHERENCE_AREA, SpeckleSize, StatisticsError, autocovariance::single, moments};
+use crate::{COHERENCE_AREA, SpeckleSize, StatisticsError, moments};
 
 /// The inner radius of the first ring of lags, in speckle sizes: beyond the speckle itself.
 const FIRST_RING: f64 = 1.5;
@@ -160,7 +160,7 @@ impl FlatImage {
         if lowest <= f64::EPSILON * highest * (size.0 + size.1) as f64 {
             return Err(StatisticsError::Mean(lowest));
         }
-        let flat = |x, y| single(f64::from(image[(x, y)]) / means[(x, y)]);
+        let flat = |x, y| to_f32(f64::from(image[(x, y)]) / means[(x, y)]);
         Ok(Self {
             values: Grid::from_fn(size.0, size.1, flat),
             inverse_count: inverse_count(size.0, window / 2) * inverse_count(size.1, window / 2),
@@ -261,7 +261,7 @@ mod tests {
         let middle = [image.width() as f64 / 2.0, image.height() as f64 / 2.0];
         Grid::from_fn(image.width(), image.height(), |x, y| {
             let distance = (x as f64 - middle[0]).hypot(y as f64 - middle[1]) / radius;
-            image[(x, y)] * single((-2.0 * distance * distance).exp())
+            image[(x, y)] * to_f32((-2.0 * distance * distance).exp())
         })
     }
 
@@ -297,7 +297,7 @@ mod tests {
     fn light_that_falls_off_to_one_side_is_found() {
         let (tile, _) = speckle_tile(256, 128, 2);
         // A ramp from 0.2 to 1 has 0.148 of the mean as its deviation squared.
-        let ramp = |x: usize| single(0.2 + 0.8 * x as f64 / 256.0);
+        let ramp = |x: usize| to_f32(0.2 + 0.8 * x as f64 / 256.0);
         let image = Grid::from_fn(256, 256, |x, y| tile[(x, y)] * ramp(x));
         let light = found(&image).expect("a ramp");
         assert!((0.02..0.15).contains(&light.covariance), "{light:?}");

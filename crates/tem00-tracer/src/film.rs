@@ -1,7 +1,7 @@
 mod memory;
 mod sums;
 
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 
 pub(crate) use self::sums::{LaserSums, Moments, PixelSums};
 use crate::{Crop, TracerError};
@@ -130,9 +130,9 @@ impl Film {
     /// Writes what the first samples of a pixel of a strip have found.
     pub(crate) fn write_first(&mut self, strip: usize, [x, y]: [usize; 2], pixel: &PixelSums) {
         self.write([x, y], pixel);
-        self.frame.depth[(x, y)] = single(pixel.depth());
+        self.frame.depth[(x, y)] = to_f32(pixel.depth());
         for (layer, component) in self.frame.normal.iter_mut().zip(pixel.normal().to_array()) {
-            layer[(x, y)] = single(component);
+            layer[(x, y)] = to_f32(component);
         }
         let lasers = self.frame.lasers.len();
         let powers = self.power[strip * lasers..].iter_mut();
@@ -145,18 +145,18 @@ impl Film {
     pub(crate) fn write(&mut self, [x, y]: [usize; 2], pixel: &PixelSums) {
         let at = (x, y);
         for (layers, laser) in self.frame.lasers.iter_mut().zip(&pixel.lasers) {
-            layers.coherent_before[at] = single(pixel.mean(laser.coherent_before));
-            layers.speckle[at] = single(pixel.mean(laser.speckle));
-            layers.coherent_after[at] = single(pixel.mean(laser.coherent_after));
-            layers.incoherent[at] = single(pixel.mean(laser.incoherent));
-            layers.variance[at] = single(pixel.variance(&laser.radiance));
+            layers.coherent_before[at] = to_f32(pixel.mean(laser.coherent_before));
+            layers.speckle[at] = to_f32(pixel.mean(laser.speckle));
+            layers.coherent_after[at] = to_f32(pixel.mean(laser.coherent_after));
+            layers.incoherent[at] = to_f32(pixel.mean(laser.incoherent));
+            layers.variance[at] = to_f32(pixel.variance(&laser.radiance));
         }
-        self.frame.lamps[at] = single(pixel.mean(pixel.lamps.sum));
-        self.frame.lamps_variance[at] = single(pixel.variance(&pixel.lamps));
-        self.frame.samples[at] = single(f64::from(pixel.samples));
+        self.frame.lamps[at] = to_f32(pixel.mean(pixel.lamps.sum));
+        self.frame.lamps_variance[at] = to_f32(pixel.variance(&pixel.lamps));
+        self.frame.samples[at] = to_f32(f64::from(pixel.samples));
         if let Some([mean, variance]) = &mut self.total {
-            mean[at] = single(pixel.mean(pixel.total.sum));
-            variance[at] = single(pixel.variance(&pixel.total));
+            mean[at] = to_f32(pixel.mean(pixel.total.sum));
+            variance[at] = to_f32(pixel.variance(&pixel.total));
         }
     }
 
@@ -208,12 +208,4 @@ impl Film {
         }
         self.frame
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "images are stored in single precision"
-)]
-const fn single(value: f64) -> f32 {
-    value as f32
 }

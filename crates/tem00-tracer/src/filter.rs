@@ -4,6 +4,7 @@ use core::f64::consts::PI;
 
 use glam::DVec2;
 use tem00_camera::IMAGE_MARGIN;
+use tem00_numerics::sinc;
 
 use self::table::HalfTable;
 use crate::TracerError;
@@ -102,7 +103,7 @@ impl Filter {
                 libm::exp(-0.5 * z * z)
             }
             Self::MitchellNetravali { radius, b, c } => mitchell_netravali(2.0 * x / radius, b, c),
-            Self::Lanczos { radius } => sinc(x) * sinc(x / radius),
+            Self::Lanczos { radius } => sinc(PI * x) * sinc(PI * x / radius),
         }
     }
 
@@ -245,14 +246,6 @@ fn mitchell_netravali(x: f64, b: f64, c: f64) -> f64 {
     };
     let [k0, k1, k2, k3] = coefficients;
     (k0 + x * (k1 + x * (k2 + x * k3))) / 6.0
-}
-
-/// sin(πx) / (πx).
-fn sinc(x: f64) -> f64 {
-    if x == 0.0 {
-        return 1.0;
-    }
-    libm::sin(PI * x) / (PI * x)
 }
 
 fn check(

@@ -2,7 +2,7 @@ use core::f64::consts::TAU;
 
 use glam::{DMat2, DVec2, DVec3};
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Grid};
+use tem00_numerics::{Fft2, Grid, cast::to_c32};
 
 use crate::{
     Camera, Field, LitSurface, SamplePlane, WaveError,
@@ -186,7 +186,7 @@ impl ImageWindow {
                 let distance = self.pupil.point(x, y).distance(self.focus_point);
                 let lens = phasor(-distance / self.sampling.wavelength);
                 let value = weight * lens * (values[(x, y)] / largest);
-                focused[(x, y)] = to_f32(value);
+                focused[(x, y)] = to_c32(value);
                 weights += weight;
             }
         }
@@ -273,14 +273,6 @@ fn step_error(step: f64, wavelength: f64, camera: &Camera) -> WaveError {
         step,
         speckle_size: wavelength * lens.pupil_to_image / lens.pupil_diameter,
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the transform works in f32"
-)]
-fn to_f32(value: Complex<f64>) -> Complex<f32> {
-    Complex::new(value.re as f32, value.im as f32)
 }
 
 #[cfg(test)]

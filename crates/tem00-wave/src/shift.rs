@@ -2,7 +2,7 @@ use core::f64::consts::{PI, TAU};
 
 use glam::{DMat2, DVec2};
 use num_complex::Complex;
-use tem00_numerics::{Fft2, Grid};
+use tem00_numerics::{Fft2, Grid, cast::to_signed};
 
 /// How far a pattern has moved, and what is left of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,7 +93,7 @@ const REFINEMENTS: usize = 3;
 const COMMON: usize = 4;
 
 fn limited(displacement: i64, size: usize) -> i64 {
-    let most = to_i64(size - size / COMMON);
+    let most = to_signed(size - size / COMMON);
     displacement.clamp(-most, most)
 }
 
@@ -211,7 +211,7 @@ impl Common {
     /// The whole lag of the largest correlation, up to an eighth of the size.
     fn largest_nearby(&self) -> [i64; 2] {
         let [a, b] = &self.spectra;
-        let reach = [a.width(), a.height()].map(|n| to_i64(n / 8));
+        let reach = [a.width(), a.height()].map(|n| to_signed(n / 8));
         correlation_from(a, b)
             .and_then(|c| argmax(reach, |[x, y]| f64::from(*c.wrapped(x, y))))
             .unwrap_or([0, 0])
@@ -259,9 +259,9 @@ impl Common {
 fn shift_phases(lag: f64, size: usize) -> Vec<(f64, Complex<f64>)> {
     let frequency = |k: usize| {
         let signed = if 2 * k < size {
-            to_i64(k)
+            to_signed(k)
         } else {
-            to_i64(k) - to_i64(size)
+            to_signed(k) - to_signed(size)
         };
         TAU * signed as f64 / size as f64
     };
@@ -330,11 +330,6 @@ fn taper(size: usize, moved: f64) -> Vec<f64> {
         .take_while(|&x| x < size)
         .map(|x| window(x - moved))
         .collect()
-}
-
-#[expect(clippy::cast_possible_wrap, reason = "sizes are far below 2⁶³")]
-const fn to_i64(n: usize) -> i64 {
-    n as i64
 }
 
 /// An index, or zero for a negative number.

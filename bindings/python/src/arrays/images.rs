@@ -3,7 +3,7 @@ use numpy::{
     PyReadonlyArrayDyn, PyUntypedArrayMethods,
 };
 use pyo3::{exceptions::PyMemoryError, prelude::*};
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 
 use super::numbers::row_by_row;
 use crate::error::refused;
@@ -102,7 +102,7 @@ impl Image<'_> {
     /// Refuses the argument of this name unless it has two axes, pixels, and only finite ones.
     pub(crate) fn grid(&self, name: &'static str) -> PyResult<Grid<f32>> {
         self.0
-            .grid(name, |&pixel| single(pixel), |pixel| pixel.is_finite())
+            .grid(name, |&pixel| to_f32(pixel), |pixel| pixel.is_finite())
     }
 }
 
@@ -113,7 +113,7 @@ impl ComplexImage<'_> {
     ///
     /// As [`Image::grid`].
     pub(crate) fn grid(&self, name: &'static str) -> PyResult<Grid<Complex32>> {
-        let narrow = |pixel: &Complex64| Complex32::new(single(pixel.re), single(pixel.im));
+        let narrow = |pixel: &Complex64| Complex32::new(to_f32(pixel.re), to_f32(pixel.im));
         let is_finite = |pixel: &Complex32| pixel.re.is_finite() && pixel.im.is_finite();
         self.0.grid(name, narrow, is_finite)
     }
@@ -126,12 +126,4 @@ pub(crate) fn image_array<T: Element>(
 ) -> PyResult<Bound<'_, PyArray2<T>>> {
     let shape = [grid.height(), grid.width()];
     PyArray1::from_vec(py, grid.into_values()).reshape(shape)
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "images are stored in single precision"
-)]
-const fn single(value: f64) -> f32 {
-    value as f32
 }

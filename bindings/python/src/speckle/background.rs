@@ -1,5 +1,6 @@
 use numpy::Complex32;
 use pyo3::prelude::*;
+use tem00_numerics::cast::to_f32;
 use tem00_speckle as physics;
 
 use super::{
@@ -58,7 +59,7 @@ impl CoherentBackground {
             amplitude.getattr("imag")?.extract()?,
         );
         map(py, [("amplitude", &re), ("amplitude", &im)], |[re, im]| {
-            let intensity = self.0.intensity(Complex32::new(single(re), single(im)));
+            let intensity = self.0.intensity(Complex32::new(to_f32(re), to_f32(im)));
             // What single precision does not hold is refused as not a number.
             if intensity.is_finite() {
                 intensity
@@ -100,12 +101,4 @@ methods! {
 
     /// Contrast on fully developed speckle.
     get contrast -> f64;
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "amplitudes are stored in single precision"
-)]
-const fn single(x: f64) -> f32 {
-    x as f32
 }

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use serde::Serialize;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 use tem00_statistics::{
     GammaIntensity, GreyLevels, SpeckleSize, StatisticsError, airy_autocovariance,
     airy_power_spectrum, exponential_cumulative, power_spectrum, radial_average,
@@ -148,7 +148,7 @@ impl Measured<'_> {
         let (width, height) = (self.values.width(), self.values.height());
         let (fade_x, fade_y) = (hann(width), hann(height));
         let faded = |x: usize, y: usize| {
-            single((f64::from(self.values[(x, y)]) / self.mean - 1.0) * fade_x[x] * fade_y[y])
+            to_f32((f64::from(self.values[(x, y)]) / self.mean - 1.0) * fade_x[x] * fade_y[y])
         };
         let spectrum = power_spectrum(&Grid::from_fn(width, height, faded))?;
         let stretch = self.size.map_or([1.0; 2], |size| {
@@ -173,14 +173,6 @@ pub(super) fn chat(size: f64, frequency: f64) -> f64 {
 fn hann(size: usize) -> Vec<f64> {
     let at = |index: usize| 0.5 - 0.5 * (TAU * (index as f64 + 0.5) / size as f64).cos();
     (0..size).map(at).collect()
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "images are stored in single precision"
-)]
-const fn single(value: f64) -> f32 {
-    value as f32
 }
 
 #[cfg(test)]

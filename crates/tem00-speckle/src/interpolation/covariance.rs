@@ -11,12 +11,12 @@
 use num_complex::Complex;
 use tem00_numerics::{
     Grid,
+    cast::to_c64,
     cast::{to_f32, to_signed},
 };
 
 use crate::{
     Interpolation, PupilField,
-    complex::to_c64,
     interpolation::spline::{Variance, lag_products, response},
     pupil::mask::{Row, Span},
 };

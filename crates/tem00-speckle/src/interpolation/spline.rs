@@ -5,12 +5,12 @@ use core::f64::consts::PI;
 use num_complex::Complex;
 use tem00_numerics::{
     Grid,
+    cast::to_c64,
     cast::{to_f32, to_signed},
 };
 
 use crate::{
     Interpolation,
-    complex::to_c64,
     pupil::{PupilField, mask::Mask},
 };
 

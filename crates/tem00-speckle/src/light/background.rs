@@ -1,7 +1,7 @@
 use num_complex::Complex;
-use tem00_numerics::cast::to_f32;
+use tem00_numerics::{cast::to_c64, cast::to_f32};
 
-use crate::{SpeckleError, SpeckleField, SpecklePattern, complex::to_c64};
+use crate::{SpeckleError, SpeckleField, SpecklePattern};
 
 /// A uniform wave that interferes with the speckle: partially developed speckle.
 ///

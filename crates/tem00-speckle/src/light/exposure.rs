@@ -3,12 +3,13 @@ use core::f64::consts::PI;
 use num_complex::Complex;
 use tem00_numerics::{
     Fft2, Grid,
+    cast::to_c32,
     cast::{to_f32, to_usize},
     sinc,
 };
 
 use super::transform::{frequency, plan, to_complex, wave};
-use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch, complex::to_c32};
+use crate::{PupilField, SpeckleError, SpecklePattern, SpeckleScratch};
 
 /// An exposure during which the pattern moves, or changes, or both, at a constant rate.
 ///

@@ -1,10 +1,10 @@
 use core::f64::consts::PI;
 
 use num_complex::Complex;
-use tem00_numerics::{Fft2Scratch, Grid, cast::to_f32, sinc};
+use tem00_numerics::{Fft2Scratch, Grid, cast::to_c32, cast::to_f32, sinc};
 
 use super::transform::{frequency, plan, wave};
-use crate::{SpeckleError, SpecklePattern, complex::to_c32};
+use crate::{SpeckleError, SpecklePattern};
 
 /// The pixels of a sensor on a pattern: boxes of any size at any pitch.
 ///

@@ -5,10 +5,11 @@ use core::f64::consts::PI;
 use num_complex::Complex;
 use tem00_numerics::{
     Grid,
+    cast::to_c64,
     cast::{to_i64, to_signed, to_usize},
 };
 
-use crate::{Pupil, complex::to_c64};
+use crate::Pupil;
 
 /// The lattice points of a pupil about a point of the lattice, and what they transmit.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,10 +3,11 @@ use std::sync::Arc;
 use num_complex::Complex;
 use tem00_numerics::{
     Grid,
+    cast::to_c64,
     cast::{to_i64, to_signed, to_usize},
 };
 
-use crate::{SpeckleError, complex::to_c64};
+use crate::SpeckleError;
 
 /// The amplitude transmission of a pupil of any shape, on a grid over the pupil's bounding square.
 ///

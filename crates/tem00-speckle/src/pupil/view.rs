@@ -9,12 +9,11 @@ use std::borrow::Cow;
 use num_complex::Complex;
 use tem00_numerics::{
     Fft2Scratch, Grid,
-    cast::{to_f32, to_i64, to_signed},
+    cast::{to_c32, to_c64, to_f32, to_i64, to_signed},
 };
 
 use crate::{
     PupilField, SpeckleField, SpecklePattern,
-    complex::{to_c32, to_c64},
     pupil::{
         lattice::{Lattice, Source},
         mask::{Mask, Span},

@@ -1,11 +1,10 @@
 //! The slices of a stack, and how each joins the next.
 
 use num_complex::Complex;
-use tem00_numerics::{Grid, cast::to_signed};
+use tem00_numerics::{Grid, cast::to_c64, cast::to_signed};
 
 use crate::{
     Interpolation, PupilField, SlicePath,
-    complex::to_c64,
     interpolation::{
         covariance::{Covariance, Even, Responses, mean_square},
         spline::Variance,

@@ -2,9 +2,10 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use tem00_numerics::cast::to_f32;
 
 use super::*;
-use crate::{autocovariance::single, synthetic::speckle_tile};
+use crate::synthetic::speckle_tile;
 
 fn exponential_samples(count: usize, rng: &mut ChaCha8Rng) -> Vec<f64> {
     (0..count)
@@ -93,7 +94,7 @@ fn correlation_of_two_waves_is_the_cosine_of_their_phase() {
     let wave = |phase: f64| {
         Grid::from_fn(32, 3, |x, _| {
             let argument = core::f64::consts::TAU * 3.0 * x as f64 / 32.0;
-            single(100.0 + (argument + phase).cos())
+            to_f32(100.0 + (argument + phase).cos())
         })
     };
     for phase in [0.0_f64, 0.4, 1.5, 3.0] {

@@ -1,12 +1,10 @@
+use tem00_numerics::quadrature::gauss_legendre;
+
 /// Straight pieces of the density: even, so that an edge falls on the joint of cubic splines.
 const PIECES: u32 = 256;
 
-/// Nodes and weights of the Gauss–Legendre rule with three nodes, on [0, 1].
-const GAUSS: [(f64, f64); 3] = [
-    (0.112_701_665_379_258_3, 5.0 / 18.0),
-    (0.5, 8.0 / 18.0),
-    (0.887_298_334_620_741_7, 5.0 / 18.0),
-];
+/// Three points per piece.
+const RULE: [(f64, f64); 3] = gauss_legendre();
 
 /// One side of a symmetric density on [0, radius], made of straight pieces.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,8 +24,10 @@ impl HalfTable {
     pub(super) fn new(kernel: impl Fn(f64) -> f64, radius: f64) -> Self {
         let step = radius / f64::from(PIECES);
         let integral = (0..PIECES)
-            .flat_map(|piece| GAUSS.map(|(node, weight)| (f64::from(piece) + node, weight)))
-            .map(|(x, weight)| weight * step * kernel(step * x))
+            .flat_map(|piece| {
+                RULE.map(|(node, weight)| (f64::from(piece) + 0.5 + 0.5 * node, weight))
+            })
+            .map(|(x, weight)| 0.5 * weight * step * kernel(step * x))
             .sum();
         let mut density: Vec<_> = (0..=PIECES)
             .map(|end| kernel(radius * (f64::from(end) / f64::from(PIECES))).abs())

@@ -1,6 +1,6 @@
 use glam::DVec2;
 use tem00_camera::Camera;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::Frame;
 
 use crate::Sensor;
@@ -77,21 +77,13 @@ impl Exposure {
             mean += before + incoherent;
             coherent += before;
         }
-        self.electrons[at] = single(total);
-        self.without_speckle[at] = single(mean);
-        self.coherent[at] = single(coherent);
+        self.electrons[at] = to_f32(total);
+        self.without_speckle[at] = to_f32(mean);
+        self.coherent[at] = to_f32(coherent);
     }
 }
 
 /// The centre of a pixel.
 fn centre((x, y): (usize, usize)) -> DVec2 {
     DVec2::new(x as f64 + 0.5, y as f64 + 0.5)
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "images are stored in single precision"
-)]
-pub(super) const fn single(value: f64) -> f32 {
-    value as f32
 }

@@ -1,14 +1,10 @@
 use std::borrow::Cow;
 
 use glam::DMat3;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::{ReferencePoint, RigidMotion, SpeckleChange};
 
-use super::{
-    exposure::{Exposure, single},
-    sensor_speckle::ImageSpeckle,
-    speckle_table::SpeckleTable,
-};
+use super::{exposure::Exposure, sensor_speckle::ImageSpeckle, speckle_table::SpeckleTable};
 use crate::{
     Calibration, ColumnLight, DVec2, DVec3, LineDetector, LinePoint, PlaceNoise, ProfilePoint,
     RawFrame, Sensor, TriangulationError, Validity, speckle_covariance,
@@ -224,7 +220,7 @@ impl Expected {
         let largest = f64::from((1_u32 << sensor.bit_depth) - 1);
         let grey_values = exposure.without_speckle.map(|&electrons| {
             let charge = (f64::from(electrons) + dark).min(sensor.full_well);
-            single((sensor.black_level + sensor.gain * charge).min(largest))
+            to_f32((sensor.black_level + sensor.gain * charge).min(largest))
         });
         let lines = surroundings.detector.detect(&grey_values);
         Self {

@@ -1,6 +1,6 @@
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_f32};
 
-use super::{exposure::single, frame::MeasuredPoint};
+use super::frame::MeasuredPoint;
 use crate::{DVec3, TriangulationError};
 
 /// The heights of a part on a grid.
@@ -64,8 +64,8 @@ impl HeightMap {
             valid.sort_by(|a, b| a.seen.reflectance.total_cmp(&b.seen.reflectance));
             for point in valid {
                 let at = (point.seen.column / averaged, row);
-                map.heights[at] = single(point.position.dot(height));
-                map.uncertainties[at] = single(point.uncertainty_along(height));
+                map.heights[at] = to_f32(point.position.dot(height));
+                map.uncertainties[at] = to_f32(point.uncertainty_along(height));
             }
         }
         map
@@ -103,8 +103,8 @@ impl HeightMap {
         }
         let filled = sums.values().iter().enumerate();
         for (i, [count, heights, squares]) in filled.filter(|(_, sum)| sum[0] > 0.0) {
-            map.heights.values_mut()[i] = single(heights / count);
-            map.uncertainties.values_mut()[i] = single((squares / count).sqrt());
+            map.heights.values_mut()[i] = to_f32(heights / count);
+            map.uncertainties.values_mut()[i] = to_f32((squares / count).sqrt());
         }
         Ok(map)
     }

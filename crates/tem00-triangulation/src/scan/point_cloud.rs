@@ -1,5 +1,7 @@
 use std::io::{self, Write};
 
+use tem00_numerics::cast::to_f32;
+
 use super::frame::MeasuredPoint;
 
 /// Writes the valid points of profiles as a binary PLY file.
@@ -42,7 +44,7 @@ fn write_vertex(frame: i32, point: &MeasuredPoint, out: &mut impl Write) -> io::
     let [x, y, z] = point.uncertainty().to_array();
     let along = point.noise.total().sqrt() * point.per_pixel.length();
     for value in [x, y, z, along, point.seen.reflectance] {
-        out.write_all(&super::exposure::single(value).to_le_bytes())?;
+        out.write_all(&to_f32(value).to_le_bytes())?;
     }
     out.write_all(&frame.to_le_bytes())
 }

@@ -3,7 +3,7 @@ use std::borrow::Cow;
 
 use glam::DMat2;
 use tem00_camera::Camera;
-use tem00_numerics::jinc;
+use tem00_numerics::{cast::to_usize, jinc, quadrature::gauss_legendre};
 
 use super::speckle_table::SpeckleTable;
 use crate::{DVec2, TriangulationError};
@@ -64,17 +64,13 @@ impl SensorSpeckle {
     /// The distances, in pixels, at which the integral along an axis takes its values, with the weights.
     fn nodes(&self, axis: usize, displacement: f64) -> Vec<(f64, f64)> {
         // Each panel is at most half a speckle wide, to either side of the kink of the triangle.
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "between 1 and 64"
-        )]
         let panels = (2.0 * self.sensitive_side / self.size()[axis])
             .ceil()
-            .clamp(1.0, 64.0) as u32;
-        let width = 1.0 / f64::from(panels);
-        let half = (0..panels).flat_map(|panel| {
-            GAUSS.map(|(node, weight)| (width * (f64::from(panel) + node), width * weight))
+            .clamp(1.0, 64.0);
+        let half_width = 0.5 / panels;
+        let half = (0..to_usize(panels)).flat_map(|panel| {
+            let middle = 2.0 * panel as f64 + 1.0;
+            RULE.map(|(node, weight)| (half_width * (middle + node), half_width * weight))
         });
         half.flat_map(|(u, weight)| [(u, weight), (-u, weight)])
             .map(|(u, weight)| {
@@ -179,10 +175,5 @@ fn speckles_per_pixel(camera: &Camera, pixel: DVec2, wavelength: f64) -> Option<
     (matrix.is_finite() && matrix.determinant() != 0.0).then_some(matrix)
 }
 
-/// Nodes and weights of Gauss and Legendre on [0, 1].
-const GAUSS: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_92),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_1),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_1),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_92),
-];
+/// Four points per panel.
+const RULE: [(f64, f64); 4] = gauss_legendre();

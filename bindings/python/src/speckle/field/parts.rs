@@ -1,5 +1,5 @@
 use numpy::Complex32;
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_usize};
 use tem00_speckle::{Phasors, Pupil, PupilField, SpeckleError};
 
 /// What a field was made of, to make it again.
@@ -35,7 +35,7 @@ impl Parts {
             pupil: field.pupil().clone(),
         };
         // The constructors round the diameter or the speckle size.
-        [Some(whole(field.diameter()[0])), None]
+        [Some(to_usize(field.diameter()[0])), None]
             .map(parts)
             .into_iter()
             .find(|parts| parts.clone().build().as_ref() == Ok(field))
@@ -62,13 +62,4 @@ impl Parts {
         };
         field.with_pupil(pupil)
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a number of lattice points, far below 2⁵³"
-)]
-const fn whole(x: f64) -> usize {
-    x as usize
 }

@@ -1,3 +1,4 @@
+use tem00_numerics::cast::to_f32;
 use tem00_tracer::Crop;
 
 use super::super::{
@@ -94,7 +95,7 @@ impl Samples {
             .collect();
         let mean_light = |pixel: &[u16]| {
             let sum: f64 = pixel.iter().map(|&value| light[usize::from(value)]).sum();
-            single(sum / pixel.len() as f64)
+            to_f32(sum / pixel.len() as f64)
         };
         let values = self.pixels(&selection).map(mean_light).collect();
         let coloured = self
@@ -154,12 +155,7 @@ fn largest_of(pixel: &[u16]) -> u16 {
 /// The mean of a few values of 16 bits.
 fn mean(values: &[u16]) -> f32 {
     let sum: f64 = values.iter().map(|&value| f64::from(value)).sum();
-    single(sum / values.len() as f64)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "pixels are stored as f32")]
-const fn single(value: f64) -> f32 {
-    value as f32
+    to_f32(sum / values.len() as f64)
 }
 
 /// How grey values relate to the light, and who says so.

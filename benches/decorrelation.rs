@@ -2,7 +2,7 @@
 //! batches and call by call, and the time of each law of correlation.
 //!
 //! The peer is what one writes first: a plain loop over the same slices with the arc cosine and the
-//! sine of the standard library, and the slice by Newton's method.
+//! sine of the standard library.
 
 #![expect(
     clippy::expect_used,
@@ -16,9 +16,8 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use tem00::decorrelation::{
     CameraFrame, CorrelationLaw, DVec2, DVec3, FieldLight, FieldPoints, FieldSetup, FieldSlices,
     ImageOrientation, ImagingGeometry, LensData, LineOfSight, Motion, MotionField, SpeckleMotion,
-    SurfacePoint, Wavefront, slice_coordinate,
+    SurfacePoint, Wavefront,
 };
-use tem00::numerics::circular_path_overlap_inverse;
 
 /// Few enough for coordinates and results to stay in the nearer caches.
 const POINTS: u32 = 4_096;
@@ -39,7 +38,6 @@ fn setup() -> FieldSetup {
         pupil_centre,
         orientation: ImageOrientation::ScreenUpright,
         pattern_speckle_size: 4.0,
-        half_period: 8,
     }
 }
 
@@ -110,14 +108,13 @@ fn vector(columns: &[&[f64]; 3], i: usize) -> DVec3 {
     DVec3::new(columns[0][i], columns[1][i], columns[2][i])
 }
 
-fn output(out: &mut [Vec<f64>; 8]) -> FieldSlices<'_> {
-    let [a, b, c, d, e, f, g, h] = out;
+fn output(out: &mut [Vec<f64>; 7]) -> FieldSlices<'_> {
+    let [a, b, c, d, e, f, g] = out;
     FieldSlices {
         speckle_displacement: [a, b],
         pupil_displacement: [c, d],
         correlation: e,
         pattern_coordinate: [f, g],
-        slice_coordinate: h,
     }
 }
 
@@ -153,12 +150,11 @@ fn by_calls(
         speckle.image_displacement,
         setup.pattern_speckle_size,
     );
-    let slice = slice_coordinate(speckle.correlation, setup.half_period);
-    [pattern.x, pattern.y, slice]
+    [pattern.x, pattern.y, speckle.correlation]
 }
 
 /// The results in collimated light as one writes them first.
-fn plain_loop(setup: &FieldSetup, points: &FieldPoints<'_>, out: &mut [Vec<f64>; 8]) {
+fn plain_loop(setup: &FieldSetup, points: &FieldPoints<'_>, out: &mut [Vec<f64>; 7]) {
     let geometry = &setup.geometry;
     let (b1, b2, b3) = (
         setup.camera.right(),
@@ -185,7 +181,6 @@ fn plain_loop(setup: &FieldSetup, points: &FieldPoints<'_>, out: &mut [Vec<f64>;
         let sinc = if z == 0.0 { 1.0 } else { z.sin() / z };
         let (h_p, h) = (setup.pattern_speckle_size, geometry.speckle_size());
         let amplitude = overlap * sinc.abs();
-        let slice = setup.half_period as f64 * circular_path_overlap_inverse(amplitude);
         let pattern =
             |pixel: f64, moved| pixel * h_p / geometry.speckle_size_in_pixels() - moved * h_p / h;
         let results = [
@@ -196,7 +191,6 @@ fn plain_loop(setup: &FieldSetup, points: &FieldPoints<'_>, out: &mut [Vec<f64>;
             amplitude * amplitude,
             pattern(points.pixel[0][i], speckle[0]),
             pattern(points.pixel[1][i], speckle[1]),
-            slice,
         ];
         for (column, result) in out.iter_mut().zip(results) {
             column[i] = result;
@@ -208,7 +202,7 @@ fn fields(criterion: &mut Criterion) {
     let scene = Scene::new();
     let setup = setup();
     let field = MotionField::new(setup).expect("a valid field");
-    let mut out = [(); 8].map(|()| vec![0.0; POINTS as usize]);
+    let mut out = [(); 7].map(|()| vec![0.0; POINTS as usize]);
 
     let mut group = criterion.benchmark_group("batch");
     group.throughput(Throughput::Elements(POINTS.into()));

@@ -9,7 +9,11 @@
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use tem00::{
-    numerics::Grid,
+    decorrelation::{
+        CameraFrame, DVec3, FieldLight, FieldPoints, FieldSetup, FieldSlices, ImageOrientation,
+        ImagingGeometry, LensData, MotionField,
+    },
+    numerics::{Grid, cast::to_f32},
     speckle::{PupilField, SlicePath, SpeckleStack},
     statistics::{exponential_cumulative, kolmogorov_smirnov, pearson_correlation},
 };
@@ -23,13 +27,9 @@ fn stack(seed: u64, path: SlicePath) -> SpeckleStack {
     SpeckleStack::generate(&field, path).expect("a small stack")
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "patterns are stored in single precision"
-)]
 fn slice(stack: &SpeckleStack, u: f64) -> Grid<f32> {
     Grid::from_fn(SIZE, SIZE, |x, y| {
-        stack.intensity_at(x as f64, y as f64, u) as f32
+        to_f32(stack.intensity_at(x as f64, y as f64, u))
     })
 }
 
@@ -69,6 +69,81 @@ fn slices_decorrelate_by_the_closed_form() {
             assert!(
                 (measured - expected).abs() < tolerance,
                 "{path:?}, {distance} slices apart: {measured} | {expected}"
+            );
+        }
+    }
+}
+
+/// The correlations that a field states after motions of one point across the line of sight.
+fn correlations_of_motions<const N: usize>(motions: [f64; N]) -> [f64; N] {
+    let pupil_centre = DVec3::new(0.0, 0.0, 0.3);
+    let field = MotionField::new(FieldSetup {
+        geometry: ImagingGeometry::from_lens(LensData {
+            wavelength: 650e-9,
+            focal_length: 25e-3,
+            f_number: 8.0,
+            surface_to_pupil: 0.3,
+            pixel_pitch: 3.45e-6,
+        })
+        .expect("a valid lens"),
+        camera: CameraFrame::look_at(pupil_centre, DVec3::ZERO, DVec3::Y).expect("a valid view"),
+        pupil_centre,
+        orientation: ImageOrientation::ScreenUpright,
+        pattern_speckle_size: (SIZE / DIAMETER) as f64,
+    })
+    .expect("a valid field");
+    let (zero, one) = ([0.0; N], [1.0; N]);
+    let mut results = [[0.0; N]; 7];
+    let [a, b, c, d, correlation, e, f] = &mut results;
+    field.evaluate(
+        &FieldPoints {
+            position: [&zero; 3],
+            normal: [&zero, &zero, &one],
+            motion: [&motions, &zero, &zero],
+            pixel: [&zero; 2],
+            light: FieldLight::Collimated,
+        },
+        FieldSlices {
+            speckle_displacement: [a, b],
+            pupil_displacement: [c, d],
+            correlation,
+            pattern_coordinate: [e, f],
+        },
+    );
+    results[4]
+}
+
+#[test]
+fn a_stack_shows_the_correlations_that_a_field_states() {
+    const PATTERNS: u64 = 4;
+    // Up to two thirds of a pupil of 3.125 mm.
+    let stated = correlations_of_motions([0.2e-3, 0.5e-3, 0.9e-3, 2.1e-3]);
+    assert!(
+        stated.is_sorted_by(|a, b| a > b) && stated[3] > 0.02,
+        "{stated:?}"
+    );
+    for path in [
+        SlicePath::Straight {
+            half_period: HALF_PERIOD,
+            length: 2,
+        },
+        SlicePath::Circle {
+            half_period: HALF_PERIOD,
+        },
+    ] {
+        let stacks: Vec<_> = (0..PATTERNS).map(|seed| stack(seed, path)).collect();
+        for gamma in stated {
+            let seen = stacks.iter().map(|stack| {
+                let there = slice(stack, stack.coordinate_of(gamma));
+                pearson_correlation(&slice(stack, 0.0), &there).expect("bright patterns")
+            });
+            let seen = seen.sum::<f64>() / PATTERNS as f64;
+            // As above.
+            let tolerance =
+                4.0 * 1.5 * standard_error() / (PATTERNS as f64).sqrt() + 1.0 / DIAMETER as f64;
+            assert!(
+                (seen - gamma).abs() < tolerance,
+                "{path:?}: {seen} seen, {gamma} stated"
             );
         }
     }

@@ -1015,10 +1015,6 @@ typedef struct {
      */
     double pattern_speckle_size;
     /**
-     * Number of slices of a circular stack to the first uncorrelated one, at least 1.
-     */
-    size_t half_period;
-    /**
      * Motion of camera, source and all surfaces, added to those of the points.
      */
     tem00_motion shared_motion;
@@ -1071,17 +1067,14 @@ typedef struct {
      */
     double *pupil_displacement[2];
     /**
-     * What is left of the old pattern as a correlation of intensity, in [0, 1].
+     * What is left of the old pattern as a correlation of intensity, in [0, 1]; for
+     * `tem00_stack_coordinate_of`.
      */
     double *correlation;
     /**
      * Where to look the pattern up, in pattern samples and not wrapped.
      */
     double *pattern_coordinate[2];
-    /**
-     * Which slice of a circular stack to look up, from 0 to `half_period`.
-     */
-    double *slice_coordinate;
 } tem00_field_results;
 
 #ifdef __cplusplus
@@ -1584,17 +1577,6 @@ tem00_status tem00_imaging_motion_field(const tem00_imaging *imaging,
  * The pointer is null or valid.
  */
 tem00_status tem00_correlation(double pupil_shift, double axial_shift, double *correlation);
-
-/**
- * Computes the coordinate u of a circular stack at which the intensity has a given correlation to that
- * at u = 0: 0 for 1 or more, and `half_period` for 0 or less. The stack has twice `half_period` slices,
- * at least 2.
- *
- * The pointer is null or valid.
- */
-tem00_status tem00_slice_coordinate(double correlation,
-                                    size_t half_period,
-                                    double *coordinate);
 
 #ifdef __cplusplus
 }  // extern "C"

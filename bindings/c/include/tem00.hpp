@@ -363,13 +363,6 @@ inline double correlation(double pupil_shift, double axial_shift) {
     return correlation;
 }
 
-/** Distance between two slices of a circular stack that have a given correlation. */
-inline double slice_coordinate(double correlation, std::size_t half_period) {
-    double coordinate = 0;
-    check(tem00_slice_coordinate(correlation, half_period, &coordinate));
-    return coordinate;
-}
-
 } // namespace tem00
 
 #endif

@@ -25,7 +25,7 @@ pub(crate) mod decorrelation {
         configuration::Configuration,
         correlations::{
             CorrelationLaw, axial_correlation, correlation, equivalent_axial_shift,
-            equivalent_pupil_shift, motion_multiple, pupil_overlap_correlation, slice_coordinate,
+            equivalent_pupil_shift, motion_multiple, pupil_overlap_correlation,
         },
         field::{FieldLight, FieldSetup, FieldSlices, MotionField},
         frame::{CameraFrame, LineOfSight},

@@ -92,11 +92,6 @@ def test_angles_behind_the_surface_are_refused() -> None:
             st.path_spread_of_reflection(1e-6, angles)
 
 
-def test_a_stack_without_slices_is_refused() -> None:
-    with pytest.raises(tem00.ParameterError, match="half_period must lie between 1"):
-        dc.slice_coordinate(0.5, 0)
-
-
 def test_arrays_too_large_to_copy_are_a_memory_error() -> None:
     # 2⁴⁰ times the same number, of which a copy would take 8 TiB.
     wide = np.broadcast_to(np.float64(1.0), 1 << 40)

@@ -176,11 +176,6 @@ def test_the_correlation_laws_are_integrals_over_the_shared_lens(s: float, x: fl
     assert dc.CorrelationLaw.product().correlation(s, x) == dc.correlation(s, x)
 
 
-def on_circle(u: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the overlap of two pupils on a circle as wide as they are, u half turns apart."""
-    return np.asarray(1 - u - np.sin(np.pi * u) / np.pi)
-
-
 def test_inverses_undo_the_laws() -> None:
     left = np.linspace(0.01, 0.99, 23)
     # Both ends of the inverses have roots: 1e-12 of γ.
@@ -190,12 +185,6 @@ def test_inverses_undo_the_laws() -> None:
     np.testing.assert_allclose(
         dc.axial_correlation(dc.equivalent_axial_shift(left)), left, atol=1e-11
     )
-    u = dc.slice_coordinate(left, 8)
-    # The blend of the slices about u, of norm 1, with slice 0.
-    slices, f = np.floor(u), u - np.floor(u)
-    overlap = (1 - f) * on_circle(slices / 8) + f * on_circle((slices + 1) / 8)
-    norm = (1 - f) ** 2 + f**2 + 2 * f * (1 - f) * on_circle(np.asarray(1 / 8))
-    np.testing.assert_allclose(overlap**2 / norm, left, atol=1e-11)
     multiple = dc.motion_multiple(0.5, 0.02, 0.01)
     assert multiple is not None
     assert math.isclose(dc.correlation(0.02 * multiple, 0.01 * multiple), 0.5, rel_tol=1e-10)
@@ -267,7 +256,6 @@ def field(orientation: str = "screen_upright") -> dc.MotionField:
             pupil_centre=bench.eye,
             orientation=orientation,  # type: ignore[arg-type]
             pattern_speckle_size=4.0,
-            half_period=8,
         )
     )
 
@@ -309,8 +297,6 @@ def test_a_field_is_the_motion_of_each_of_its_points() -> None:
             (float(pixel[0, i]), float(pixel[1, i])), (float(at[0]), float(at[1])), 4.0
         )
         np.testing.assert_allclose(np.array(whole.pattern_coordinate)[:, i], [x, y], rtol=1e-12)
-        slice_coordinate = dc.slice_coordinate(float(correlation), 8)
-        assert math.isclose(np.asarray(whole.slice_coordinate)[i], slice_coordinate, rel_tol=1e-9)
 
 
 def test_light_of_any_curvature_is_taken_as_six_components() -> None:
@@ -349,7 +335,6 @@ def test_a_point_behind_the_camera_is_decorrelated() -> None:
         light=dc.FieldLight.collimated(),
     )
     assert result.correlation == 0.0
-    assert result.slice_coordinate == 8.0
     assert result.pupil_displacement == (math.inf, math.inf)
 
 
@@ -441,7 +426,6 @@ def setup(**changes: object) -> dc.MotionField:
         "pupil_centre": [0.0, 0.0, 0.0],
         "orientation": "screen_upright",
         "pattern_speckle_size": 4.0,
-        "half_period": 8,
     }
     return dc.MotionField(dc.FieldSetup(**(values | changes)))  # type: ignore[arg-type]
 
@@ -483,7 +467,6 @@ REFUSALS: list[tuple[Callable[[], object], str]] = [
     (lambda: STATE.pupil_point_after(STATE, [0, 0, 0]), "pupil_point"),
     (lambda: setup(pupil_centre=NAN3), "pupil_centre"),
     (lambda: setup(pattern_speckle_size=-1.0), "pattern_speckle_size"),
-    (lambda: setup(half_period=-1), "half_period"),
     (lambda: setup(orientation="left"), "orientation"),
     (lambda: dc.motion_multiple(0.5, math.nan, 0.0), "pupil_shift"),
 ]

@@ -1,12 +1,9 @@
 mod inverse;
 mod joint;
-mod series;
 #[cfg(test)]
 mod tests;
 
-pub use inverse::{
-    equivalent_axial_shift, equivalent_pupil_shift, motion_multiple, slice_coordinate,
-};
+pub use inverse::{equivalent_axial_shift, equivalent_pupil_shift, motion_multiple};
 pub use joint::CorrelationLaw;
 
 use tem00_numerics::{disc_overlap, sinc_pi_squared};

@@ -91,8 +91,6 @@ pub enum DecorrelationError {
     PupilCentre(DVec3),
     /// The speckle size of the pattern, in samples, is not a positive finite number.
     PatternSpeckleSize(f64),
-    /// A stack has no slices: half their number is zero.
-    HalfPeriod,
     /// A ratio of lengths of the camera and the pattern, in samples per pixel or per metre, or 1/m, is
     /// so large that products with coordinates overflow.
     Scale(f64),
@@ -144,7 +142,6 @@ impl DecorrelationError {
             Self::Translation(..) => "translation",
             Self::PupilCentre(..) => "pupil_centre",
             Self::PatternSpeckleSize(..) => "pattern_speckle_size",
-            Self::HalfPeriod => "half_period",
             Self::Scale(..) => "geometry",
         }
     }
@@ -254,7 +251,6 @@ impl fmt::Display for DecorrelationError {
             Self::PatternSpeckleSize(got) => {
                 write!(f, "speckle size of the pattern {POSITIVE} {got} samples")
             }
-            Self::HalfPeriod => write!(f, "half period must be at least 1, got 0"),
             Self::Scale(got) => write!(
                 f,
                 "geometry and pattern must have lengths of one scale, with ratios of at most \
@@ -373,7 +369,6 @@ mod tests {
                 "speckle size",
                 "-1.25 samples",
             ),
-            (E::HalfPeriod, "half period", "got 0"),
             (E::Scale(1e300), "geometry", "1e300"),
         ];
         for (error, name, value) in cases {

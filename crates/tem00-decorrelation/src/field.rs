@@ -23,16 +23,15 @@ pub struct FieldSetup {
     pub orientation: ImageOrientation,
     /// Speckle size `h_p` of the pattern, in pattern samples.
     pub pattern_speckle_size: f64,
-    /// Number M of slices of the stack to the first uncorrelated one; the stack has 2M.
-    pub half_period: usize,
 }
 
 /// What motions do to the speckle at many surface points, such as those behind the pixels of an
 /// image.
 ///
-/// It is [`SpeckleMotion`](crate::SpeckleMotion) for slices, with the coordinates of the look-up
-/// added: everything that the points share is worked out once, and the loop over them needs no more
-/// than arithmetic and square roots. The results of a point do not depend, to the last bit, on the
+/// It is [`SpeckleMotion`](crate::SpeckleMotion) for slices, with the coordinate of the look-up in the
+/// pattern added: everything that the points share is worked out once, and the loop over them needs no
+/// more than arithmetic and square roots. A stack of patterns turns the correlation into a coordinate
+/// along its own path. The results of a point do not depend, to the last bit, on the
 /// points around it. They differ from those of [`SpeckleMotion::new`](crate::SpeckleMotion::new) by
 /// rounding, but for the correlation: here it is the product law, which needs no integral.
 ///
@@ -79,7 +78,6 @@ pub struct FieldSetup {
 ///     pupil_centre: eye,
 ///     orientation: ImageOrientation::ScreenUpright,
 ///     pattern_speckle_size: 4.0,
-///     half_period: 8,
 /// })?;
 ///
 /// let (zero, one) = ([0.0; 2], [1.0; 2]);
@@ -90,20 +88,18 @@ pub struct FieldSetup {
 ///     pixel: [&[0.0, 26.35], &zero],
 ///     light: FieldLight::Collimated,
 /// };
-/// let mut out = [[0.0; 2]; 8];
-/// let [speckle_x, speckle_y, pupil_x, pupil_y, correlation, pattern_x, pattern_y, slice] = &mut out;
+/// let mut out = [[0.0; 2]; 7];
+/// let [speckle_x, speckle_y, pupil_x, pupil_y, correlation, pattern_x, pattern_y] = &mut out;
 /// field.evaluate(&points, FieldSlices {
 ///     speckle_displacement: [speckle_x, speckle_y],
 ///     pupil_displacement: [pupil_x, pupil_y],
 ///     correlation,
 ///     pattern_coordinate: [pattern_x, pattern_y],
-///     slice_coordinate: slice,
 /// });
 ///
-/// assert_eq!([correlation[0], slice[0]], [1.0, 0.0]);
+/// assert_eq!(correlation[0], 1.0);
 /// assert!((speckle_x[1] / 3.45e-6 - 6.588).abs() < 1e-3);
 /// assert!((correlation[1] - 0.807).abs() < 1e-3);
-/// assert!((slice[1] - 0.628).abs() < 1e-3);
 /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,15 +129,14 @@ impl MotionField {
     ///
     /// # Errors
     ///
-    /// Returns an error if the centre of the pupil is not finite, the speckle size of the pattern not
-    /// positive and finite, or the half period zero, or if geometry and pattern are so far apart in scale
-    /// that products of their lengths overflow.
+    /// Returns an error if the centre of the pupil is not finite or the speckle size of the pattern not
+    /// positive and finite, or if geometry and pattern are so far apart in scale that products of their
+    /// lengths overflow.
     pub fn new(setup: FieldSetup) -> Result<Self, DecorrelationError> {
         let FieldSetup {
             geometry,
             pupil_centre,
             pattern_speckle_size,
-            half_period,
             ..
         } = setup;
         if !pupil_centre.is_finite() {
@@ -149,9 +144,6 @@ impl MotionField {
         }
         if !(pattern_speckle_size > 0.0 && pattern_speckle_size.is_finite()) {
             return Err(DecorrelationError::PatternSpeckleSize(pattern_speckle_size));
-        }
-        if half_period == 0 {
-            return Err(DecorrelationError::HalfPeriod);
         }
         let sign = match setup.orientation {
             ImageOrientation::ScreenUpright => 1.0,

@@ -25,7 +25,7 @@
 //! | What moved or turned a lot, or has other light? | [`Configuration`], [`RigidMotions`], [`Illumination`] |
 //! | What happens to the speckle? | [`SpeckleMotion`] |
 //! | What happens at many points at once? | [`MotionField`] |
-//! | Where do I look in the pattern? | [`ImagingGeometry::pattern_coordinate`], [`slice_coordinate`] |
+//! | Where do I look in the pattern? | [`ImagingGeometry::pattern_coordinate`] |
 //!
 //! # Two laws of motion
 //!
@@ -113,7 +113,7 @@ mod wavefront;
 pub use configuration::{Configuration, ConfigurationData};
 pub use correlation::{
     CorrelationLaw, axial_correlation, correlation, equivalent_axial_shift, equivalent_pupil_shift,
-    motion_multiple, pupil_overlap_correlation, slice_coordinate,
+    motion_multiple, pupil_overlap_correlation,
 };
 pub use error::DecorrelationError;
 pub use field::{FieldLight, FieldPoints, FieldSetup, FieldSlices, MotionField};

@@ -34,8 +34,6 @@ pub struct FieldSetup {
     pub orientation: u32,
     /// Speckle size of the pattern, in samples.
     pub pattern_speckle_size: f64,
-    /// Number of slices of a circular stack to the first uncorrelated one, at least 1.
-    pub half_period: usize,
     /// Motion of camera, source and all surfaces, added to those of the points.
     pub shared_motion: Motion,
 }
@@ -68,12 +66,11 @@ pub struct FieldResults {
     pub speckle_displacement: [*mut f64; 2],
     /// Motion of the speckle field across the pupil, in metres; infinite where it left the pupil.
     pub pupil_displacement: [*mut f64; 2],
-    /// What is left of the old pattern as a correlation of intensity, in [0, 1].
+    /// What is left of the old pattern as a correlation of intensity, in [0, 1]; for
+    /// `tem00_stack_coordinate_of`.
     pub correlation: *mut f64,
     /// Where to look the pattern up, in pattern samples and not wrapped.
     pub pattern_coordinate: [*mut f64; 2],
-    /// Which slice of a circular stack to look up, from 0 to `half_period`.
-    pub slice_coordinate: *mut f64,
 }
 
 impl FieldSetup {
@@ -84,7 +81,6 @@ impl FieldSetup {
             pupil_centre: DVec3::from_array(self.pupil_centre),
             orientation: orientation(self.orientation)?,
             pattern_speckle_size: self.pattern_speckle_size,
-            half_period: self.half_period,
         })
         .map_err(|error| match error {
             DecorrelationError::Scale(_) => Failure::argument("imaging", error),
@@ -185,7 +181,7 @@ impl FieldPoints {
 }
 
 impl FieldResults {
-    fn columns(&self) -> [Named<*mut f64>; 8] {
+    fn columns(&self) -> [Named<*mut f64>; 7] {
         let [speckle_x, speckle_y] = self.speckle_displacement;
         let [pupil_x, pupil_y] = self.pupil_displacement;
         let [pattern_x, pattern_y] = self.pattern_coordinate;
@@ -197,12 +193,11 @@ impl FieldResults {
             ("correlation", self.correlation),
             ("pattern_coordinate", pattern_x),
             ("pattern_coordinate", pattern_y),
-            ("slice_coordinate", self.slice_coordinate),
         ]
     }
 }
 
-fn slices(columns: [&mut [f64]; 8]) -> FieldSlices<'_> {
+fn slices(columns: [&mut [f64]; 7]) -> FieldSlices<'_> {
     let [
         speckle_x,
         speckle_y,
@@ -211,14 +206,12 @@ fn slices(columns: [&mut [f64]; 8]) -> FieldSlices<'_> {
         correlation,
         pattern_x,
         pattern_y,
-        slice_coordinate,
     ] = columns;
     FieldSlices {
         speckle_displacement: [speckle_x, speckle_y],
         pupil_displacement: [pupil_x, pupil_y],
         correlation,
         pattern_coordinate: [pattern_x, pattern_y],
-        slice_coordinate,
     }
 }
 

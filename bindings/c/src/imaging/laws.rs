@@ -24,27 +24,3 @@ pub unsafe extern "C" fn tem00_correlation(
         unsafe { write("correlation", correlation, result) }
     })
 }
-
-/// Computes the coordinate u of a circular stack at which the intensity has a given correlation to that
-/// at u = 0: 0 for 1 or more, and `half_period` for 0 or less. The stack has twice `half_period` slices,
-/// at least 2.
-///
-/// # Safety
-///
-/// The pointer is null or valid.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn tem00_slice_coordinate(
-    correlation: f64,
-    half_period: usize,
-    coordinate: *mut f64,
-) -> Status {
-    call(|| {
-        check_finite("correlation", &[correlation])?;
-        if half_period == 0 {
-            return Err(tem00_decorrelation::DecorrelationError::HalfPeriod.into());
-        }
-        let result = tem00_decorrelation::slice_coordinate(correlation, half_period);
-        // SAFETY: by the contract of this function.
-        unsafe { write("coordinate", coordinate, result) }
-    })
-}

@@ -160,9 +160,6 @@ fn laws_are_those_of_the_library() {
         // SAFETY: the pointer is valid.
         let got: f64 = answer(|out| unsafe { tem00_correlation(s, x, out) });
         assert_eq!(got, tem00_decorrelation::correlation(s, x), "{s}, {x}");
-        // SAFETY: the pointer is valid.
-        let u: f64 = answer(|out| unsafe { tem00_slice_coordinate(got, 8, out) });
-        assert_eq!(u, tem00_decorrelation::slice_coordinate(got, 8), "{got}");
     }
     let nan = f64::NAN;
     let mut out = 0.0;
@@ -176,10 +173,6 @@ fn laws_are_those_of_the_library() {
             (
                 "axial_shift",
                 refusal(tem00_correlation(0.0, nan, &raw mut out)),
-            ),
-            (
-                "correlation",
-                refusal(tem00_slice_coordinate(nan, 8, &raw mut out)),
             ),
         ]
     };

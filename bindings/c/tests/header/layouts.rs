@@ -49,7 +49,7 @@ const STRUCTS: [(&str, usize, &str, usize); 28] = structs![
     SpeckleMotion "speckle_motion" correlation,
     FieldSetup "field_setup" shared_motion,
     FieldPoints "field_points" curvature,
-    FieldResults "field_results" slice_coordinate,
+    FieldResults "field_results" pattern_coordinate,
 ];
 
 /// The last constant of each enumeration, and its number.

@@ -1,5 +1,5 @@
 from collections.abc import Sequence
-from typing import ClassVar, SupportsIndex, final, overload
+from typing import ClassVar, final, overload
 from tem00._typing import FloatArray, Numbers, Orientation, Pair, RealArray, Table, Triple, Values, Vector
 
 __all__ = [
@@ -29,7 +29,6 @@ __all__ = [
     "equivalent_pupil_shift",
     "motion_multiple",
     "pupil_overlap_correlation",
-    "slice_coordinate",
 ]
 
 @overload
@@ -53,10 +52,6 @@ def motion_multiple(correlation: float, pupil_shift: float, axial_shift: float) 
 def pupil_overlap_correlation(shift: float) -> float: ...
 @overload
 def pupil_overlap_correlation(shift: RealArray) -> FloatArray: ...
-@overload
-def slice_coordinate(correlation: float, half_period: SupportsIndex) -> float: ...
-@overload
-def slice_coordinate(correlation: RealArray, half_period: SupportsIndex) -> FloatArray: ...
 
 @final
 class CameraFrame:
@@ -142,7 +137,6 @@ class FieldSetup:
         pupil_centre: Vector,
         orientation: Orientation,
         pattern_speckle_size: float,
-        half_period: SupportsIndex,
     ) -> FieldSetup: ...
     @property
     def geometry(self) -> ImagingGeometry: ...
@@ -154,8 +148,6 @@ class FieldSetup:
     def orientation(self) -> Orientation: ...
     @property
     def pattern_speckle_size(self) -> float: ...
-    @property
-    def half_period(self) -> int: ...
     def __eq__(self, value: object, /) -> bool: ...
     def __ne__(self, value: object, /) -> bool: ...
     __hash__: ClassVar[None]  # type: ignore[assignment]
@@ -170,8 +162,6 @@ class FieldSlices:
     def correlation(self) -> Values: ...
     @property
     def pattern_coordinate(self) -> tuple[Values, Values]: ...
-    @property
-    def slice_coordinate(self) -> Values: ...
 
 @final
 class Focus:

@@ -2,7 +2,7 @@ use pyo3::prelude::*;
 use tem00_decorrelation as physics;
 
 use crate::{
-    arrays::{Numbers, Values, Whole, map},
+    arrays::map,
     error::refused,
     pickling::{Recipe, by_constructor},
 };
@@ -91,31 +91,6 @@ functions! {
     /// axial_shift : float or array
     ///     Displacement along the axis in axial decorrelation lengths.
     map correlation(pupil_shift, axial_shift);
-}
-
-/// Return the coordinate of a circular stack at which a look-up has a correlation to that at 0.
-///
-/// Parameters
-/// ----------
-/// correlation : float or array
-///     Intensity correlation.
-/// half_period : int
-///     Number of slices to the first uncorrelated one, at least 1; the stack has twice as many.
-///
-/// Returns
-/// -------
-/// float or array
-///     Slices, from 0 for a correlation of 1 or more to `half_period` for 0 or less.
-#[pyfunction]
-pub(super) fn slice_coordinate<'py>(
-    py: Python<'py>,
-    correlation: Numbers<'py>,
-    half_period: Whole<'_>,
-) -> PyResult<Values<'py>> {
-    let half_period = half_period.between("half_period", [1, usize::MAX])?;
-    map(py, [("correlation", &correlation)], |[left]| {
-        physics::slice_coordinate(left, half_period)
-    })
 }
 
 functions! {

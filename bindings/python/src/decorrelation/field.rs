@@ -8,7 +8,7 @@ use super::{
     vectors::{orientation_name, orientation_of, shown, vec3},
 };
 use crate::{
-    arrays::{Components, Named, Numbers, Values, Vector, Whole, fill},
+    arrays::{Components, Named, Numbers, Values, Vector, fill},
     error::OrRaise,
 };
 
@@ -26,8 +26,6 @@ use crate::{
 ///     Which way up image displacements are counted.
 /// pattern_speckle_size : float
 ///     Speckle size of the pattern in samples.
-/// half_period : int
-///     Number of slices of the stack to the first uncorrelated one; the stack has twice as many.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FieldSetup {
@@ -39,7 +37,7 @@ pub(crate) struct FieldSetup {
 impl FieldSetup {
     #[new]
     #[pyo3(signature = (
-        *, geometry, camera, pupil_centre, orientation, pattern_speckle_size, half_period
+        *, geometry, camera, pupil_centre, orientation, pattern_speckle_size
     ))]
     fn new(
         geometry: PyRef<'_, ImagingGeometry>,
@@ -47,7 +45,6 @@ impl FieldSetup {
         pupil_centre: Components<'_>,
         orientation: &str,
         pattern_speckle_size: f64,
-        half_period: Whole<'_>,
     ) -> PyResult<Self> {
         let setup = physics::FieldSetup {
             geometry: geometry.geometry,
@@ -55,7 +52,6 @@ impl FieldSetup {
             pupil_centre: vec3("pupil_centre", &pupil_centre)?,
             orientation: orientation_of(orientation)?,
             pattern_speckle_size,
-            half_period: half_period.unsigned("half_period")?,
         };
         let geometry = *geometry;
         Ok(Self { setup, geometry })
@@ -66,10 +62,9 @@ impl FieldSetup {
         let centre = shown(self.setup.pupil_centre);
         format!(
             "FieldSetup(geometry={geometry}, camera={camera}, pupil_centre={centre}, \
-             orientation={:?}, pattern_speckle_size={:?}, half_period={})",
+             orientation={:?}, pattern_speckle_size={:?})",
             self.orientation(),
-            self.setup.pattern_speckle_size,
-            self.setup.half_period
+            self.setup.pattern_speckle_size
         )
     }
 }
@@ -91,9 +86,6 @@ methods! {
 
     /// Speckle size of the pattern in samples.
     field pattern_speckle_size -> f64;
-
-    /// Number of slices of the stack to the first uncorrelated one.
-    field half_period -> usize;
 }
 
 /// The light on the points of a field, by the curvature of its wavefront there.
@@ -153,7 +145,7 @@ impl FieldLight {
 /// Numbers where points were numbers, arrays of the common shape where they were arrays.
 #[pyclass(frozen, module = "tem00.decorrelation")]
 #[derive(Debug)]
-pub(crate) struct FieldSlices([Field; 8]);
+pub(crate) struct FieldSlices([Field; 7]);
 
 /// A number for one point, an array for many.
 type Field = Py<PyAny>;
@@ -180,7 +172,8 @@ impl FieldSlices {
         self.pair(py, 2)
     }
 
-    /// What is left of the old pattern as a correlation of intensity, in [0, 1].
+    /// What is left of the old pattern as a correlation of intensity, in [0, 1]; the slice to look up
+    /// is `SpeckleStack.coordinate_of` of it.
     #[getter]
     fn correlation(&self, py: Python<'_>) -> Field {
         self.0[4].clone_ref(py)
@@ -190,12 +183,6 @@ impl FieldSlices {
     #[getter]
     fn pattern_coordinate(&self, py: Python<'_>) -> (Field, Field) {
         self.pair(py, 5)
-    }
-
-    /// Which slice of a circular stack to look up, from 0 to the half period.
-    #[getter]
-    fn slice_coordinate(&self, py: Python<'_>) -> Field {
-        self.0[7].clone_ref(py)
     }
 
     fn __repr__(&self) -> String {
@@ -291,7 +278,7 @@ methods! {
 }
 
 /// The arrays of the results.
-type Results<'py> = [Values<'py>; 8];
+type Results<'py> = [Values<'py>; 7];
 
 impl MotionField {
     /// Evaluates in light that is the same for all points.
@@ -389,13 +376,12 @@ fn named_points<'a, 'py>(
 }
 
 /// Where the results of a block go.
-fn slices(out: [&mut [f64]; 8]) -> physics::FieldSlices<'_> {
-    let [sx, sy, px, py, correlation, cx, cy, slice_coordinate] = out;
+fn slices(out: [&mut [f64]; 7]) -> physics::FieldSlices<'_> {
+    let [sx, sy, px, py, correlation, cx, cy] = out;
     physics::FieldSlices {
         speckle_displacement: [sx, sy],
         pupil_displacement: [px, py],
         correlation,
         pattern_coordinate: [cx, cy],
-        slice_coordinate,
     }
 }

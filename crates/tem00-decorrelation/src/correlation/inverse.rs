@@ -2,37 +2,7 @@ use core::f64::consts::PI;
 
 use tem00_numerics::{disc_overlap_inverse, sinc_inverse};
 
-use super::{correlation as product_law, series};
-
-/// Returns the coordinate u of a circular speckle stack at which a look-up has a given intensity
-/// correlation γ to the reference pattern at u = 0.
-///
-/// ```text
-/// on a slice   u = M x                                    1 − x − sin(π x)/π = √γ
-/// between      ((1 − f) ρ(i) + f ρ(i + 1))² = γ (1 − 2 f (1 − f) (1 − ρ(1))),    u = i + f
-/// ```
-///
-/// `half_period` is M, the number of slices to the first uncorrelated one; the stack has 2M. ρ(i) is
-/// the overlap of the pupils of slices i apart. The result runs from 0 for γ ≥ 1 to M for γ ≤ 0. It is
-/// the exact inverse of the stack's own law, so that look-ups, which blend neighbouring slices, have the
-/// correlation asked for.
-///
-/// # Examples
-///
-/// ```
-/// use tem00_decorrelation::slice_coordinate;
-///
-/// // Neighbours in a stack of 16 slices.
-/// let gamma = 0.567_292_284_154_527;
-/// assert!((slice_coordinate(gamma, 8) - 1.0).abs() < 1e-12);
-/// assert_eq!(slice_coordinate(0.0, 8), 8.0);
-/// // The blend half-way to it has the correlation (1 + √γ)/2 to the first.
-/// assert!((slice_coordinate(0.5 + 0.5 * gamma.sqrt(), 8) - 0.5).abs() < 1e-12);
-/// ```
-#[inline]
-pub fn slice_coordinate(correlation: f64, half_period: usize) -> f64 {
-    series::blended_slice(amplitude(correlation), half_period as f64)
-}
+use super::correlation as product_law;
 
 /// Returns the pupil displacement, in units of the pupil diameter, that alone would leave a given
 /// intensity correlation γ.
@@ -138,7 +108,6 @@ fn between(low: f64, high: f64) -> Option<f64> {
 }
 
 /// √γ, with rounding noise below zero taken for zero.
-#[inline(always)]
 fn amplitude(correlation: f64) -> f64 {
     correlation.max(0.0).sqrt()
 }

@@ -2,7 +2,6 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use tem00_numerics::circular_path_overlap;
 
 use super::*;
 
@@ -207,24 +206,9 @@ fn product_stays_within_the_stated_error() {
 }
 
 #[test]
-fn slice_coordinate_inverts_the_law_of_the_stack() {
-    // γ between neighbouring slices, from 1 − 1/M − sin(π/M)/π to 15 digits.
-    let reference = [
-        (4, 0.275_541_973_262_254),
-        (8, 0.567_292_284_154_527),
-        (16, 0.766_326_598_814_221),
-    ];
-    for (half_period, gamma) in reference {
-        let u = slice_coordinate(gamma, half_period);
-        assert!((u - 1.0).abs() < 1e-12, "M = {half_period}: u = {u}");
-    }
-}
-
-#[test]
 fn correlations_out_of_range_map_to_the_ends() {
     for (gamma, end) in [(1.0, 0.0), (1.5, 0.0), (0.0, 1.0), (-1e-17, 1.0)] {
         let inverses = [
-            slice_coordinate(gamma, 8) / 8.0,
             equivalent_pupil_shift(gamma),
             equivalent_axial_shift(gamma),
             motion_multiple(gamma, 1.0, 0.2).unwrap(),
@@ -251,19 +235,10 @@ proptest! {
     #![proptest_config(config(256))]
 
     #[test]
-    fn slices_that_far_apart_have_the_correlation_asked_for(
-        gamma in 0.0_f64..1.0,
-        half_period in 1_usize..100,
-    ) {
-        let u = slice_coordinate(gamma, half_period);
-        let rho = |slices: f64| circular_path_overlap(slices / half_period as f64);
-        let (i, f) = (u.floor(), u.fract());
-        let blend = (1.0 - f) * rho(i) + f * rho(i + 1.0);
-        let stack = blend * blend / ((1.0 - f).powi(2) + f * f + 2.0 * f * (1.0 - f) * rho(1.0));
-        // Rounding of u by ε changes γ by up to 4ε, that of ρ by 2ε.
-        prop_assert!((stack - gamma).abs() < 1e-14 * half_period as f64);
-        let straight = pupil_overlap_correlation(equivalent_pupil_shift(gamma));
-        prop_assert!((straight - gamma).abs() < 1e-14);
+    fn inverses_have_the_correlation_asked_for(gamma in 0.0_f64..1.0) {
+        // Rounding of s by ε changes γ by up to 4ε.
+        let across = pupil_overlap_correlation(equivalent_pupil_shift(gamma));
+        prop_assert!((across - gamma).abs() < 1e-14);
         let axial = axial_correlation(equivalent_axial_shift(gamma));
         prop_assert!((axial - gamma).abs() < 1e-14);
     }
@@ -318,7 +293,6 @@ proptest! {
                 prop_assert!(multiple.is_finite() && multiple >= 0.0);
             }
             prop_assert!((0.0..=1.0).contains(&equivalent_axial_shift(gamma)));
-            prop_assert!((0.0..=8.0).contains(&slice_coordinate(gamma, 8)));
         }
     }
 }

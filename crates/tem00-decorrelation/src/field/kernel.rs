@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::MotionField;
 use super::slices::{INPUTS, OUTPUTS};
-use crate::{GRAZING_COSINE, correlation, slice_coordinate};
+use crate::{GRAZING_COSINE, correlation};
 
 /// As many points as are worked on at a time, in arrays that no other memory overlaps.
 const BLOCK: usize = 32;
@@ -63,22 +63,12 @@ struct Outcome {
     pupil_displacement: DVec2,
     correlation: f64,
     pattern_coordinate: DVec2,
-    slice_coordinate: f64,
 }
 
 impl Outcome {
     #[inline(always)]
     fn put(&self, block: &mut Block<OUTPUTS>, i: usize) {
-        let [
-            speckle_x,
-            speckle_y,
-            pupil_x,
-            pupil_y,
-            correlation,
-            x,
-            y,
-            slice,
-        ] = block;
+        let [speckle_x, speckle_y, pupil_x, pupil_y, correlation, x, y] = block;
         speckle_x[i] = self.speckle_displacement.x;
         speckle_y[i] = self.speckle_displacement.y;
         pupil_x[i] = self.pupil_displacement.x;
@@ -86,7 +76,6 @@ impl Outcome {
         correlation[i] = self.correlation;
         x[i] = self.pattern_coordinate.x;
         y[i] = self.pattern_coordinate.y;
-        slice[i] = self.slice_coordinate;
     }
 }
 
@@ -178,7 +167,6 @@ impl MotionField {
             correlation: left,
             pattern_coordinate: point.pixel * self.samples_per_pixel
                 - speckle * self.samples_per_metre,
-            slice_coordinate: slice_coordinate(left, self.setup.half_period),
         }
     }
 

@@ -41,20 +41,18 @@ pub struct FieldSlices<'a> {
     /// pattern counts as decorrelated because the speckle left the pupil.
     pub pupil_displacement: [&'a mut [f64]; 2],
     /// What is left of the old pattern as a correlation of intensity, in [0, 1]:
-    /// [`correlation`](crate::correlation).
+    /// [`correlation`](crate::correlation). A stack looks it up at the coordinate where its own path has
+    /// that correlation to the first slice.
     pub correlation: &'a mut [f64],
     /// Where to look the pattern up, in pattern samples and not wrapped:
     /// [`pattern_coordinate`](crate::ImagingGeometry::pattern_coordinate).
     pub pattern_coordinate: [&'a mut [f64]; 2],
-    /// Which slice of a circular stack to look up, from 0 to M:
-    /// [`slice_coordinate`](crate::slice_coordinate).
-    pub slice_coordinate: &'a mut [f64],
 }
 
 /// Slices that a point is read from: position, normal, motion, pixel, curvature.
 pub(super) const INPUTS: usize = 17;
 /// Slices that a result is written to, in the order of [`FieldSlices`].
-pub(super) const OUTPUTS: usize = 8;
+pub(super) const OUTPUTS: usize = 7;
 
 impl<'a> FieldPoints<'a> {
     /// Returns the slices in order; those of the curvature are empty where the light needs none.
@@ -95,7 +93,6 @@ impl<'a> FieldSlices<'a> {
             self.correlation,
             pattern_x,
             pattern_y,
-            self.slice_coordinate,
         ]
     }
 }

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::*;
-use crate::{LensData, LineOfSight, SurfacePoint, Wavefront, correlation, slice_coordinate};
+use crate::{LensData, LineOfSight, SurfacePoint, Wavefront, correlation};
 
 const EYE: DVec3 = DVec3::new(0.02, -0.01, 0.3);
 const SOURCE: DVec3 = DVec3::new(0.1, 0.05, 0.25);
@@ -22,14 +22,13 @@ fn setup() -> FieldSetup {
         pupil_centre: EYE,
         orientation: ImageOrientation::ScreenUpright,
         pattern_speckle_size: 4.0,
-        half_period: 8,
     }
 }
 
 /// A point with its motion, pixel and curvature, as one row of the columns.
 type Row = [f64; 17];
-/// Speckle displacement, pupil displacement, correlation, pattern and slice coordinate of a point.
-type Results = [f64; 8];
+/// Speckle displacement, pupil displacement, correlation and pattern coordinate of a point.
+type Results = [f64; 7];
 
 #[derive(Clone, Copy, Debug)]
 enum Light {
@@ -56,8 +55,8 @@ fn evaluate(field: &MotionField, light: Light, rows: &[Row]) -> Vec<Results> {
             Light::Curvature => FieldLight::Curvature([11, 12, 13, 14, 15, 16].map(column)),
         },
     };
-    let mut out = [(); 8].map(|()| vec![f64::NAN; rows.len()]);
-    let [a, b, c, d, e, f, g, h] = &mut out;
+    let mut out = [(); 7].map(|()| vec![f64::NAN; rows.len()]);
+    let [a, b, c, d, e, f, g] = &mut out;
     field.evaluate(
         &points,
         FieldSlices {
@@ -65,7 +64,6 @@ fn evaluate(field: &MotionField, light: Light, rows: &[Row]) -> Vec<Results> {
             pupil_displacement: [c, d],
             correlation: e,
             pattern_coordinate: [f, g],
-            slice_coordinate: h,
         },
     );
     (0..rows.len())
@@ -127,9 +125,8 @@ fn by_calls(setup: &FieldSetup, light: Light, shared: &Motion, row: &Row) -> Res
     );
     let pixel = DVec2::new(row[9], row[10]);
     let pattern = geometry.pattern_coordinate(pixel, image, setup.pattern_speckle_size);
-    let slice = slice_coordinate(left, setup.half_period);
     [
-        image.x, image.y, pupil.x, pupil.y, left, pattern.x, pattern.y, slice,
+        image.x, image.y, pupil.x, pupil.y, left, pattern.x, pattern.y,
     ]
 }
 
@@ -163,8 +160,7 @@ fn batches_and_single_calls_agree() {
         source: DVec3::new(0.2e-3, 0.3e-3, -1e-3),
     };
     // Some 20 roundings of 1e-16 each: of 1 mm in the image, 10 mm at the pupil, 2000 samples.
-    // The slice goes with a small γ to the power of 1/6, which amplifies.
-    let tolerance = [1e-17, 1e-17, 1e-15, 1e-15, 1e-13, 4e-12, 4e-12, 1e-10];
+    let tolerance = [1e-17, 1e-17, 1e-15, 1e-15, 1e-13, 4e-12, 4e-12];
     for orientation in [
         ImageOrientation::ScreenUpright,
         ImageOrientation::SensorInverted,
@@ -178,7 +174,7 @@ fn batches_and_single_calls_agree() {
             let results = evaluate(&field, light, &rows);
             for (row, result) in rows.iter().zip(&results) {
                 let expected = by_calls(&setup, light, &shared, row);
-                for k in 0..8 {
+                for k in 0..7 {
                     let error = (result[k] - expected[k]).abs();
                     assert!(
                         error <= tolerance[k],
@@ -214,15 +210,6 @@ fn results_do_not_depend_on_the_points_around() {
     assert!(none.is_empty(), "{none:?}");
 }
 
-#[test]
-fn slices_of_a_field_are_those_of_its_correlations() {
-    let field = MotionField::new(setup()).unwrap();
-    for result in evaluate(&field, Light::PointSource, &rows(200)) {
-        let slice = slice_coordinate(result[4], 8);
-        assert_eq!(result[7].to_bits(), slice.to_bits(), "{result:?}");
-    }
-}
-
 /// A point in the middle of the view, moved sideways, in waves of 5/m.
 fn middle() -> Row {
     let mut row = [0.0; 17];
@@ -244,12 +231,11 @@ fn points_out_of_sight_are_decorrelated() {
         still[6..9].fill(0.0);
         for light in LIGHTS {
             for result in evaluate(&field, light, &[moved, still]) {
-                let [speckle_x, speckle_y, pupil_x, pupil_y, left, _, _, slice] = result;
+                let [speckle_x, speckle_y, pupil_x, pupil_y, left, _, _] = result;
                 let stands = speckle_x == 0.0 && speckle_y == 0.0;
                 let gone = pupil_x == f64::INFINITY && pupil_y == f64::INFINITY;
                 assert!(stands && gone, "{light:?} at {position}: {result:?}");
                 assert!(left == 0.0, "{light:?} at {position}: {result:?}");
-                assert!(8.0 - slice == 0.0, "{light:?} at {position}: {result:?}");
                 assert!((result[5] - 70.0 * samples).abs() < 1e-12, "{result:?}");
             }
         }
@@ -317,14 +303,13 @@ fn evaluate_with_last_slices(input: &[f64], output: &mut [f64]) {
         pixel: [&two, &two],
         light: FieldLight::Curvature([&two, &two, &two, &two, &two, input]),
     };
-    let mut out = [[0.0; 2]; 7];
-    let [a, b, c, d, e, f, g] = &mut out;
+    let mut out = [[0.0; 2]; 6];
+    let [a, b, c, d, e, f] = &mut out;
     let out = FieldSlices {
         speckle_displacement: [a, b],
         pupil_displacement: [c, d],
         correlation: e,
-        pattern_coordinate: [f, g],
-        slice_coordinate: output,
+        pattern_coordinate: [f, output],
     };
     MotionField::new(setup()).unwrap().evaluate(&points, out);
 }
@@ -372,7 +357,6 @@ proptest! {
             let result = evaluate(&field, light, &[row])[0];
             prop_assert!(result.iter().all(|x| !x.is_nan()), "{:?}", result);
             prop_assert!((0.0..=1.0).contains(&result[4]));
-            prop_assert!((0.0..=8.0).contains(&result[7]));
             prop_assert!(result[0].is_finite() && result[1].is_finite());
         }
     }

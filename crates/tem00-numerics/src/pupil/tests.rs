@@ -102,6 +102,19 @@ fn overlap_on_the_circle_is_that_of_discs_so_far_apart() {
 }
 
 #[test]
+fn overlaps_on_the_circle_have_their_known_squares() {
+    // Of 1 − x − sin(π x)/π to 15 digits.
+    for (parts, square) in [
+        (4.0, 0.275_541_973_262_254),
+        (8.0, 0.567_292_284_154_527),
+        (16.0, 0.766_326_598_814_221),
+    ] {
+        let got = circular_path_overlap(1.0_f64 / parts).powi(2);
+        assert!((got - square).abs() < 1e-15, "1/{parts}: {got}");
+    }
+}
+
+#[test]
 fn angle_on_the_circle_has_the_overlap_asked_for() {
     for overlap in spread() {
         let x = circular_path_overlap_inverse(overlap);

@@ -10,7 +10,6 @@ fn setup() -> FieldSetup {
         pupil_centre: EYE,
         orientation: ImageOrientation::ScreenUpright as u32,
         pattern_speckle_size: 4.0,
-        half_period: 8,
         shared_motion: MOTION,
     }
 }
@@ -46,30 +45,28 @@ fn points(inputs: &[Vec<f64>; 17], light: FieldLight) -> FieldPoints {
     }
 }
 
-fn results(columns: &mut [Vec<f64>; 8]) -> FieldResults {
-    let [a, b, c, d, correlation, e, f, slice_coordinate] =
-        columns.each_mut().map(|column| column.as_mut_ptr());
+fn results(columns: &mut [Vec<f64>; 7]) -> FieldResults {
+    let [a, b, c, d, correlation, e, f] = columns.each_mut().map(|column| column.as_mut_ptr());
     FieldResults {
         speckle_displacement: [a, b],
         pupil_displacement: [c, d],
         correlation,
         pattern_coordinate: [e, f],
-        slice_coordinate,
     }
 }
 
-fn room() -> [Vec<f64>; 8] {
-    [(); 8].map(|()| vec![7.0; COUNT])
+fn room() -> [Vec<f64>; 7] {
+    [(); 7].map(|()| vec![7.0; COUNT])
 }
 
-fn evaluate(setup: &FieldSetup, points: &FieldPoints, out: &mut [Vec<f64>; 8]) -> Status {
+fn evaluate(setup: &FieldSetup, points: &FieldPoints, out: &mut [Vec<f64>; 7]) -> Status {
     let imaging = Owned::new(&LENS);
     let results = results(out);
     // SAFETY: the pointers are valid, or refused.
     unsafe { tem00_imaging_motion_field(imaging.0, setup, points, COUNT, &raw const results) }
 }
 
-fn by_library(inputs: &[Vec<f64>; 17], light: FieldLight) -> [Vec<f64>; 8] {
+fn by_library(inputs: &[Vec<f64>; 17], light: FieldLight) -> [Vec<f64>; 7] {
     use tem00_decorrelation::FieldLight as L;
     let CameraAxes {
         right,
@@ -84,7 +81,6 @@ fn by_library(inputs: &[Vec<f64>; 17], light: FieldLight) -> [Vec<f64>; 8] {
         pupil_centre: DVec3::from_array(EYE),
         orientation: tem00_decorrelation::ImageOrientation::ScreenUpright,
         pattern_speckle_size: 4.0,
-        half_period: 8,
     });
     let [px, py, pz, nx, ny, nz, ax, ay, az, tx, ty, curvature @ ..] =
         inputs.each_ref().map(Vec::as_slice);
@@ -100,13 +96,12 @@ fn by_library(inputs: &[Vec<f64>; 17], light: FieldLight) -> [Vec<f64>; 8] {
         },
     };
     let mut out = room();
-    let [a, b, c, d, correlation, e, f, slice_coordinate] = &mut out;
+    let [a, b, c, d, correlation, e, f] = &mut out;
     let slices = FieldSlices {
         speckle_displacement: [a, b],
         pupil_displacement: [c, d],
         correlation,
         pattern_coordinate: [e, f],
-        slice_coordinate,
     };
     field
         .unwrap()
@@ -263,7 +258,7 @@ fn results_in_one_place_are_refused() {
     let points = points(&inputs, FieldLight::Collimated);
     let setup = setup();
     let mut results = results(&mut out);
-    results.slice_coordinate = results.correlation;
+    results.pattern_coordinate[1] = results.correlation;
     // SAFETY: the columns are valid, and refused as they overlap.
     let status = unsafe {
         let results = &raw const results;
@@ -275,6 +270,6 @@ fn results_in_one_place_are_refused() {
             results,
         )
     };
-    let expected = pointer("slice_coordinate");
+    let expected = pointer("pattern_coordinate");
     assert_eq!(refusal(status), expected, "two results in one column");
 }

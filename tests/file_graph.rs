@@ -26,19 +26,6 @@ const KNOWN: &[&[&str]] = &[
         "bindings/python/src/arrays/columns.rs",
     ],
     &[
-        "crates/tem00-beam/src/cross_section.rs",
-        "crates/tem00-beam/src/gaussian.rs",
-    ],
-    &[
-        "crates/tem00-beam/src/placed/batch.rs",
-        "crates/tem00-beam/src/placed/emitter.rs",
-        "crates/tem00-beam/src/placed/phase_space.rs",
-    ],
-    &[
-        "crates/tem00-beam/src/placed/fan.rs",
-        "crates/tem00-beam/src/placed/line.rs",
-    ],
-    &[
         "crates/tem00-camera/src/description.rs",
         "crates/tem00-camera/src/error.rs",
     ],
@@ -189,24 +176,11 @@ const KNOWN: &[&[&str]] = &[
         "crates/tem00-tracer/src/shape/sphere.rs",
     ],
     &[
-        "crates/tem00-triangulation/src/calibration/estimate.rs",
-        "crates/tem00-triangulation/src/calibration/model.rs",
-        "crates/tem00-triangulation/src/calibration/start.rs",
-    ],
-    &[
-        "crates/tem00-triangulation/src/design.rs",
-        "crates/tem00-triangulation/src/design/outcome.rs",
-    ],
-    &[
         "crates/tem00-triangulation/src/detector.rs",
-        "crates/tem00-triangulation/src/detector/blais_rioux.rs",
         "crates/tem00-triangulation/src/detector/column.rs",
-        "crates/tem00-triangulation/src/detector/estimate.rs",
         "crates/tem00-triangulation/src/detector/extent.rs",
-        "crates/tem00-triangulation/src/detector/gaussian_fit.rs",
-        "crates/tem00-triangulation/src/detector/gravity.rs",
+        "crates/tem00-triangulation/src/detector/profile.rs",
         "crates/tem00-triangulation/src/detector/steger.rs",
-        "crates/tem00-triangulation/src/detector/three_point.rs",
         "crates/tem00-triangulation/src/detector/tracks.rs",
     ],
     &[

@@ -1,5 +1,6 @@
 mod board;
 mod boards;
+mod camera_model;
 mod corners;
 mod covariance;
 mod estimate;
@@ -23,9 +24,10 @@ use crate::{LaserPlane, TriangulationError, Triangulator};
 
 pub use self::board::Checkerboard;
 pub use self::boards::{BoardPlan, calibrate_scene};
+pub use self::camera_model::CameraModel;
 pub use self::corners::find_corners;
 pub use self::covariance::{CalibrationCovariance, PARAMETERS, Parameter};
-pub use self::estimate::{BoardView, CameraModel, calibrate};
+pub use self::estimate::{BoardView, calibrate};
 
 /// A calibrated set-up: its camera and its laser plane, and how well they are known.
 ///

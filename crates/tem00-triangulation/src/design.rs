@@ -175,7 +175,9 @@ impl DesignSearch {
             Ok(candidate)
         };
         let candidates: Result<Vec<_>, _> = (0..self.count).into_par_iter().map(attempt).collect();
-        Ok(DesignOutcome::new(&self.question, candidates?))
+        let constraints = self.question.constraints.clone();
+        let objective = self.question.objective.figure();
+        Ok(DesignOutcome::new(candidates?, constraints, objective))
     }
 
     fn candidate(&self, index: usize) -> Candidate {

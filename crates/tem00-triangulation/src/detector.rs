@@ -5,6 +5,7 @@ mod extent;
 mod gaussian_fit;
 mod gravity;
 mod method;
+mod profile;
 mod sensitivity;
 mod steger;
 #[cfg(test)]
@@ -16,8 +17,8 @@ use rayon::prelude::*;
 use tem00_numerics::Grid;
 
 use column::{Column, Sighting};
-use estimate::{Estimate, Profile};
 use extent::Extent;
+use profile::{Estimate, Profile};
 use steger::Kernels;
 
 use crate::TriangulationError;

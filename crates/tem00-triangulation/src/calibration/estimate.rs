@@ -5,7 +5,7 @@ use tem00_numerics::Grid;
 use tem00_tracer::RigidMotion;
 
 use super::{
-    Calibration, CalibrationCovariance, CalibrationQuality, Checkerboard, PARAMETERS,
+    Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard, PARAMETERS,
     corners::find_corners,
     covariance::COUNT,
     least_squares::{LeastSquares, Solution, minimise},
@@ -18,29 +18,6 @@ use crate::{LaserPlane, LineDetector, LinePoint, TriangulationError, Validity};
 
 /// The least number of boards.
 const LEAST_BOARDS: usize = 3;
-
-/// What is known of a camera before it is calibrated, and what is sought.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraModel {
-    /// The pixel pitch, in metres, of the data sheet.
-    pub pixel_pitch: f64,
-    /// The numbers of pixel columns and rows.
-    pub resolution: [usize; 2],
-    /// The focal length, in metres, of the data sheet; `None` if it is not known. What is estimated is
-    /// the image distance; the focal length decides where the image is sharp.
-    pub focal_length: Option<f64>,
-    /// The f-number, which decides blur and speckle and is not estimated.
-    pub f_number: f64,
-    /// Whether the sensor is tilted (Scheimpflug): then its tilt is sought, and the axis of the lens
-    /// is taken to meet the middle of the image. Otherwise the principal point is sought.
-    ///
-    /// Without distortion both describe the same images: a pinhole before a tilted sensor is one before
-    /// an upright sensor, with the principal point where the perpendicular meets it. Therefore they are
-    /// not sought together.
-    pub tilted: bool,
-    /// How many coefficients of radial distortion are sought, from 0 to 3.
-    pub radial: usize,
-}
 
 /// What a camera saw of one board: image points, in pixels.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -132,34 +109,6 @@ pub fn calibrate(
     let solution = minimise(&bundle, start)?;
     let lines = Lines::new(&bundle, &solution.state, board, views)?;
     assemble(&bundle, &solution, &lines)
-}
-
-impl CameraModel {
-    fn check(&self) -> Result<(), TriangulationError> {
-        let focal_length = self.focal_length.unwrap_or(1.0);
-        let lengths = [
-            ("pixel_pitch", self.pixel_pitch),
-            ("focal_length", focal_length),
-        ];
-        let bad = lengths
-            .into_iter()
-            .find(|(_, value)| !(*value > 0.0 && value.is_finite()));
-        if let Some((parameter, value)) = bad {
-            return Err(TriangulationError::OutOfRange {
-                parameter,
-                value,
-                allowed: "positive and finite, in metres",
-            });
-        }
-        if self.radial > 3 {
-            return Err(TriangulationError::OutOfRange {
-                parameter: "radial",
-                value: self.radial as f64,
-                allowed: "from 0 to 3 coefficients of distortion",
-            });
-        }
-        Ok(())
-    }
 }
 
 fn check_views(board: &Checkerboard, views: &[BoardView]) -> Result<(), TriangulationError> {
@@ -324,19 +273,6 @@ fn assemble(
     Calibration::exact(camera.moved(&to_board), plane)
         .with_covariance(CalibrationCovariance::new(DVec3::ZERO, &rows)?)
         .map(|calibration| calibration.with_quality(quality))
-}
-
-impl CameraModel {
-    /// Returns the distance at which the image is sharp: by the lens equation if the focal length is
-    /// known and shorter than the image distance, else where the boards stood.
-    fn focus_distance(&self, image_distance: f64, mean_depth: f64) -> f64 {
-        let by_lens = self
-            .focal_length
-            .map(|f| f * image_distance / (image_distance - f));
-        by_lens
-            .filter(|focus| *focus > 0.0 && focus.is_finite())
-            .unwrap_or(mean_depth)
-    }
 }
 
 /// Returns the motion that takes the axes of the camera to those of a board.

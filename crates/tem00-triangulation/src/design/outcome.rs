@@ -1,4 +1,4 @@
-use super::{Constraint, DesignFigure, DesignFigures, DesignQuestion, pareto_front};
+use super::{Constraint, DesignFigure, DesignFigures, pareto_front};
 use crate::{SetupDescription, TriangulationError};
 
 /// A set-up that was tried.
@@ -51,11 +51,15 @@ pub struct DesignOutcome {
 }
 
 impl DesignOutcome {
-    pub(super) fn new(question: &DesignQuestion, candidates: Vec<Candidate>) -> Self {
+    pub(super) const fn new(
+        candidates: Vec<Candidate>,
+        constraints: Vec<Constraint>,
+        objective: DesignFigure,
+    ) -> Self {
         Self {
             candidates,
-            constraints: question.constraints.clone(),
-            objective: question.objective.figure(),
+            constraints,
+            objective,
         }
     }
 

@@ -1,4 +1,4 @@
-use super::{FilterOrder, estimate::Profile};
+use super::{FilterOrder, profile::Profile};
 
 /// The zero of the filtered derivative nearest to the greatest pixel, on the side to which it points.
 pub(super) fn zero(profile: &Profile<'_>, order: FilterOrder) -> Option<f64> {

@@ -1,4 +1,4 @@
-use super::estimate::Profile;
+use super::profile::Profile;
 
 /// How the light of a line is spread over its window.
 #[derive(Clone, Copy, Debug, PartialEq)]

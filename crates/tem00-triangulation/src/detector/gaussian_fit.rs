@@ -3,8 +3,8 @@ use core::f64::consts::{FRAC_PI_2, SQRT_2};
 use nalgebra::{Matrix4, Vector4};
 
 use super::{
-    estimate::{Estimate, Profile},
     extent::Extent,
+    profile::{Estimate, Profile},
 };
 
 /// A Gaussian on a constant background, integrated over pixels.

@@ -1,6 +1,6 @@
 use core::ops::ControlFlow;
 
-use super::estimate::Profile;
+use super::profile::Profile;
 
 /// The centre of gravity over the window.
 pub(super) fn plain(profile: &Profile<'_>) -> Option<f64> {

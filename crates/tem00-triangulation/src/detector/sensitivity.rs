@@ -1,7 +1,7 @@
 use super::{
     LineDetector, LinePoint,
     column::{Column, Sighting},
-    estimate::Profile,
+    profile::Profile,
 };
 
 /// The change of a pixel, as a fraction of the peak, over which differences are taken. They err by its

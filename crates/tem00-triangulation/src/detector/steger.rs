@@ -2,7 +2,7 @@ use core::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use tem00_numerics::Grid;
 
-use super::{estimate::Profile, method::kernel_radius};
+use super::{method::kernel_radius, profile::Profile};
 
 /// A Gaussian and its first two derivatives, each integrated over the pixels about its middle.
 ///

@@ -1,4 +1,4 @@
-use super::estimate::Profile;
+use super::profile::Profile;
 
 /// The greatest value and its neighbours: before, at and after.
 fn three(profile: &Profile<'_>) -> [f64; 3] {

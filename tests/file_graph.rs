@@ -97,14 +97,6 @@ const KNOWN: &[&[&str]] = &[
         "crates/tem00-cli/src/triangulate/report.rs",
     ],
     &[
-        "crates/tem00-decorrelation/src/field.rs",
-        "crates/tem00-decorrelation/src/field/kernel.rs",
-    ],
-    &[
-        "crates/tem00-decorrelation/src/finite.rs",
-        "crates/tem00-decorrelation/src/motion.rs",
-    ],
-    &[
         "crates/tem00-statistics/src/autocovariance.rs",
         "crates/tem00-statistics/src/error.rs",
         "crates/tem00-statistics/src/moments.rs",
@@ -114,11 +106,6 @@ const KNOWN: &[&[&str]] = &[
     &[
         "crates/tem00-tracer/src/environment.rs",
         "crates/tem00-tracer/src/lamp.rs",
-    ],
-    &[
-        "crates/tem00-tracer/src/environment_file.rs",
-        "crates/tem00-tracer/src/environment_file/open_exr.rs",
-        "crates/tem00-tracer/src/environment_file/pfm.rs",
     ],
     &[
         "crates/tem00-tracer/src/film.rs",
@@ -152,22 +139,8 @@ const KNOWN: &[&[&str]] = &[
         "crates/tem00-tracer/src/material/plastic.rs",
     ],
     &[
-        "crates/tem00-tracer/src/mesh_file.rs",
-        "crates/tem00-tracer/src/mesh_file/gltf.rs",
-        "crates/tem00-tracer/src/mesh_file/obj.rs",
-        "crates/tem00-tracer/src/mesh_file/ply.rs",
-        "crates/tem00-tracer/src/mesh_file/stl.rs",
-    ],
-    &[
         "crates/tem00-tracer/src/render/options.rs",
         "crates/tem00-tracer/src/scene.rs",
-    ],
-    &[
-        "crates/tem00-tracer/src/scene_file/change.rs",
-        "crates/tem00-tracer/src/scene_file/format.rs",
-        "crates/tem00-tracer/src/scene_file/section.rs",
-        "crates/tem00-tracer/src/scene_file/source.rs",
-        "crates/tem00-tracer/src/scene_file/value.rs",
     ],
     &[
         "crates/tem00-tracer/src/shape.rs",
@@ -186,11 +159,6 @@ const KNOWN: &[&[&str]] = &[
     &[
         "crates/tem00-triangulation/src/scan/sensor_speckle.rs",
         "crates/tem00-triangulation/src/scan/speckle_table.rs",
-    ],
-    &[
-        "crates/tem00-wave/src/heights.rs",
-        "crates/tem00-wave/src/lit.rs",
-        "crates/tem00-wave/src/surface.rs",
     ],
 ];
 

@@ -4,7 +4,6 @@ mod slices;
 mod tests;
 
 use glam::DVec3;
-use tem00_numerics::vectorised;
 
 use crate::{CameraFrame, DecorrelationError, ImageOrientation, ImagingGeometry, Motion};
 
@@ -187,39 +186,5 @@ impl MotionField {
     /// Returns what all points share.
     pub const fn setup(&self) -> &FieldSetup {
         &self.setup
-    }
-
-    /// Works out displacements, correlation and coordinates at many points.
-    ///
-    /// Few points at a time waste time: they are taken in blocks of 32.
-    ///
-    /// # Panics
-    ///
-    /// Panics unless all slices of `points` and `out` are of equal length.
-    pub fn evaluate(&self, points: &FieldPoints<'_>, out: FieldSlices<'_>) {
-        let columns = points.columns();
-        let columns = &columns[..points.column_count()];
-        let out = out.into_columns();
-        let len = out[0].len();
-        assert!(
-            columns.iter().all(|column| column.len() == len)
-                && out.iter().all(|column| column.len() == len),
-            "all slices must be of equal length, got {:?} and {:?}",
-            columns
-                .iter()
-                .map(|column| column.len())
-                .collect::<Vec<_>>(),
-            out.each_ref().map(|column| column.len()),
-        );
-        vectorised(
-            #[inline(always)]
-            || match points.light {
-                FieldLight::Collimated => self.run(columns, out, kernel::collimated),
-                FieldLight::PointSource(source) => {
-                    self.run(columns, out, |point, a| kernel::spherical(source, point, a));
-                }
-                FieldLight::Curvature(_) => self.run(columns, out, kernel::curved),
-            },
-        );
     }
 }

@@ -3,7 +3,8 @@ use core::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use crate::{
-    Configuration, CorrelationLaw, GRAZING_COSINE, ImageOrientation, ImagingGeometry, SpeckleMotion,
+    Configuration, CorrelationLaw, GRAZING_COSINE, ImageOrientation, ImagingGeometry,
+    SpeckleMotion, motion::defocus_displacement,
 };
 
 /// The law of speckle motion between two states, however far apart.
@@ -266,21 +267,6 @@ impl SpeckleMotion {
                 CorrelationLaw::AtPeak.correlation(pupil.length() / diameter, axial_shift)
             }),
         }
-    }
-}
-
-/// `−C W A`, upright: what a displacement in the pupil moves in the image at the defocus W.
-pub(crate) fn defocus_displacement(
-    geometry: &ImagingGeometry,
-    defocus: f64,
-    pupil_displacement: Option<DVec2>,
-) -> DVec2 {
-    let displacement = pupil_displacement.unwrap_or(DVec2::ZERO);
-    let shift = displacement * (-geometry.principal_distance() * defocus);
-    if shift.is_finite() {
-        shift
-    } else {
-        DVec2::ZERO
     }
 }
 

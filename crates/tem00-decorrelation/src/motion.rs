@@ -2,7 +2,6 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     CorrelationLaw, DecorrelationError, GRAZING_COSINE, ImagingGeometry, LineOfSight, Wavefront,
-    finite::defocus_displacement,
 };
 
 /// Small translations since the reference state, in world coordinates and metres.
@@ -271,6 +270,21 @@ impl SpeckleMotion {
             axial_displacement,
             correlation,
         }
+    }
+}
+
+/// `−C W A`, upright: the displacement in the image for one in the pupil at the defocus W.
+pub(crate) fn defocus_displacement(
+    geometry: &ImagingGeometry,
+    defocus: f64,
+    pupil_displacement: Option<DVec2>,
+) -> DVec2 {
+    let displacement = pupil_displacement.unwrap_or(DVec2::ZERO);
+    let shift = displacement * (-geometry.principal_distance() * defocus);
+    if shift.is_finite() {
+        shift
+    } else {
+        DVec2::ZERO
     }
 }
 

@@ -5,8 +5,8 @@ use tem00_numerics::Grid;
 
 use crate::{
     Scatterer,
+    patch::PatchFrame,
     random::{Purpose, Random},
-    surface::PatchFrame,
 };
 
 /// Nodes of white noise per correlation length. The variance between nodes then ripples by

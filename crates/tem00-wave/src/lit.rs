@@ -74,8 +74,15 @@ impl Progress {
     }
 }
 
+impl RoughSurface {
+    /// Returns the surface under a light, ready to be seen.
+    pub fn lit_by(&self, illumination: &Illumination) -> LitSurface {
+        LitSurface::new(self, illumination)
+    }
+}
+
 impl LitSurface {
-    pub(crate) fn new(surface: &RoughSurface, illumination: &Illumination) -> Self {
+    fn new(surface: &RoughSurface, illumination: &Illumination) -> Self {
         let sources = surface.scatterers().iter().map(|scatterer| {
             let incident = illumination.amplitude_at(scatterer.position);
             (scatterer.position, scatterer.amplitude * incident)

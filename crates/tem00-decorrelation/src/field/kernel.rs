@@ -1,9 +1,10 @@
 //! The laws at one point, and a loop over many points that fills the vector units.
 
 use glam::{DVec2, DVec3};
+use tem00_numerics::vectorised;
 
 use super::MotionField;
-use super::slices::{INPUTS, OUTPUTS};
+use super::slices::{FieldLight, FieldPoints, FieldSlices, INPUTS, OUTPUTS};
 use crate::{GRAZING_COSINE, correlation};
 
 /// As many points as are worked on at a time, in arrays that no other memory overlaps.
@@ -81,13 +82,13 @@ impl Outcome {
 
 /// Plane waves do not turn.
 #[inline(always)]
-pub(super) fn collimated(_: &Point, _: DVec3) -> Option<DVec3> {
+fn collimated(_: &Point, _: DVec3) -> Option<DVec3> {
     None
 }
 
 /// K a = (a − l (l·a))/R for a source at `source`.
 #[inline(always)]
-pub(super) fn spherical(source: DVec3, point: &Point, a: DVec3) -> Option<DVec3> {
+fn spherical(source: DVec3, point: &Point, a: DVec3) -> Option<DVec3> {
     let to_source = source - point.position;
     let squared = to_source.length_squared();
     Some((a - to_source * (to_source.dot(a) / squared)) / squared.sqrt())
@@ -95,7 +96,7 @@ pub(super) fn spherical(source: DVec3, point: &Point, a: DVec3) -> Option<DVec3>
 
 /// K a for the tensor that came with the point.
 #[inline(always)]
-pub(super) fn curved(point: &Point, a: DVec3) -> Option<DVec3> {
+fn curved(point: &Point, a: DVec3) -> Option<DVec3> {
     let [first, rest] = point.curvature;
     Some(DVec3::new(
         first.dot(a),
@@ -105,9 +106,43 @@ pub(super) fn curved(point: &Point, a: DVec3) -> Option<DVec3> {
 }
 
 impl MotionField {
+    /// Works out displacements, correlation and coordinates at many points.
+    ///
+    /// Few points at a time waste time: they are taken in blocks of 32.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless all slices of `points` and `out` are of equal length.
+    pub fn evaluate(&self, points: &FieldPoints<'_>, out: FieldSlices<'_>) {
+        let columns = points.columns();
+        let columns = &columns[..points.column_count()];
+        let out = out.into_columns();
+        let len = out[0].len();
+        assert!(
+            columns.iter().all(|column| column.len() == len)
+                && out.iter().all(|column| column.len() == len),
+            "all slices must be of equal length, got {:?} and {:?}",
+            columns
+                .iter()
+                .map(|column| column.len())
+                .collect::<Vec<_>>(),
+            out.each_ref().map(|column| column.len()),
+        );
+        vectorised(
+            #[inline(always)]
+            || match points.light {
+                FieldLight::Collimated => self.run(columns, out, collimated),
+                FieldLight::PointSource(source) => {
+                    self.run(columns, out, |point, a| spherical(source, point, a));
+                }
+                FieldLight::Curvature(_) => self.run(columns, out, curved),
+            },
+        );
+    }
+
     /// Works through all points, with the turn of the illumination by a motion, K a, as a function.
     #[inline(always)]
-    pub(super) fn run(
+    fn run(
         &self,
         columns: &[&[f64]],
         mut out: [&mut [f64]; OUTPUTS],

@@ -1,7 +1,7 @@
 use proptest::{prelude::*, test_runner::RngSeed};
 
 use super::*;
-use crate::DVec2;
+use crate::{Arrangement, Complex, DVec2};
 
 fn patch(arrangement: Arrangement, roughness: Roughness) -> PatchDescription {
     PatchDescription {

@@ -17,8 +17,9 @@ use std::{
 
 use png::{BitDepth, ColorType, Encoder};
 use tem00::{
+    scan::BoardPlan,
     scene::parse_scene,
-    triangulation::{BoardPlan, BoardSettings, RawFrame, Sensor, SensorDescription, find_corners},
+    triangulation::{BoardSettings, RawFrame, Sensor, SensorDescription, find_corners},
 };
 
 const SCENE: &str = r#"

@@ -31,13 +31,19 @@
     feature = "triangulation",
     doc = "| [`triangulation`] | `tem00-triangulation` | sensor, line detectors, calibration, profiles and their uncertainty (feature `triangulation`) |"
 )]
+#![cfg_attr(
+    feature = "scan",
+    doc = "| [`scan`] | `tem00-scan` | a part as a triangulation sensor sees it: rendered frames, scans, height maps (feature `scan`) |"
+)]
 
 pub use tem00_beam as beam;
 pub use tem00_camera as camera;
-#[cfg(feature = "tracer")]
+#[cfg(any(feature = "tracer", feature = "triangulation"))]
 pub use tem00_config as config;
 pub use tem00_decorrelation as decorrelation;
 pub use tem00_numerics as numerics;
+#[cfg(feature = "scan")]
+pub use tem00_scan as scan;
 #[cfg(feature = "tracer")]
 pub use tem00_scene as scene;
 pub use tem00_speckle as speckle;

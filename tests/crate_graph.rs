@@ -103,8 +103,6 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-numerics",
             "tem00-speckle",
             "tem00-statistics",
-            "tem00-scene",
-            "tem00-tracer",
         ],
         &[
             "glam",
@@ -118,6 +116,21 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         ],
     ),
     (
+        "tem00-scan",
+        &[
+            "tem00-camera",
+            "tem00-config",
+            "tem00-decorrelation",
+            "tem00-numerics",
+            "tem00-scene",
+            "tem00-speckle",
+            "tem00-statistics",
+            "tem00-tracer",
+            "tem00-triangulation",
+        ],
+        &["glam", "rayon"],
+    ),
+    (
         "tem00-cli",
         &[
             "tem00-camera",
@@ -126,6 +139,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-numerics",
             "tem00-speckle",
             "tem00-statistics",
+            "tem00-scan",
             "tem00-scene",
             "tem00-tracer",
             "tem00-triangulation",

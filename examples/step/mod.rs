@@ -4,10 +4,8 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use tem00::config::FileAccess;
+use tem00::scan::{MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, mean_point};
 use tem00::tracer::{Formulas, SpeckleModel, SpecklePlan};
-use tem00::triangulation::{
-    MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, mean_point,
-};
 
 /// The height of the step, in metres.
 pub(crate) const STEP: f64 = 1e-3;

@@ -7,10 +7,11 @@
 mod step_artefact;
 
 use step_artefact::{PLATES, STEP, measure, measured_frame, prepare, scene, step};
-use tem00::tracer::Trajectory;
-use tem00::triangulation::{
-    Averaging, DVec3, MeasuredFrame, MeasuredPoint, MeasurementScene, Scan, SpeckleCorrelation,
+use tem00::scan::{
+    Averaging, MeasuredFrame, MeasuredPoint, MeasurementScene, Scan, SpeckleCorrelation,
 };
+use tem00::tracer::Trajectory;
+use tem00::triangulation::DVec3;
 
 /// The scene, with both plates moving by so many metres per frame.
 fn moving(by: DVec3, frames: u32) -> MeasurementScene {

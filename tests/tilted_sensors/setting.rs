@@ -3,15 +3,13 @@ use std::{path::Path, sync::atomic::AtomicBool};
 use tem00::{
     camera::{Camera, CameraDescription, RadialDistortion, SensorTilt},
     numerics::Grid,
+    scan::{MeasuredFrame, Measurement, MeasurementScene, ScanSettings},
     scene::parse_scene,
     tracer::{
         Formulas, Rectangle, RenderOptions, Shape, SpeckleModel, SpecklePlan, Trajectory,
         render_frame,
     },
-    triangulation::{
-        CalibrationSettings, DVec2, DVec3, DetectorSettings, MeasuredFrame, Measurement,
-        MeasurementScene, ScanSettings, SensorDescription,
-    },
+    triangulation::{CalibrationSettings, DVec2, DVec3, DetectorSettings, SensorDescription},
 };
 
 /// Columns and rows of the images.

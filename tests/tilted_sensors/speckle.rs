@@ -6,8 +6,9 @@ use tem00::{
     camera::{RadialDistortion, SensorTilt},
     decorrelation::equivalent_pupil_shift,
     numerics::{Grid, jinc},
+    scan::SensorSpeckle,
     tracer::{ReferencePoint, SpeckleChange},
-    triangulation::{DVec2, DVec3, SensorSpeckle},
+    triangulation::{DVec2, DVec3},
     wave::displacement_between,
 };
 

@@ -10,11 +10,11 @@ mod terms;
 
 use std::{io::Write, path::Path};
 
-use tem00_tracer::{Formulas, SpeckleChange, SpeckleModel, SpecklePlan};
-use tem00_triangulation::{
+use tem00_scan::{
     Averaging, HeightMap, MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, Scan,
-    TriangulationError,
+    ScanError,
 };
+use tem00_tracer::{Formulas, SpeckleChange, SpeckleModel, SpecklePlan};
 
 use self::{files::Files, frame::FrameRecord, refusal::Refusal, terms::Terms};
 use crate::{
@@ -239,10 +239,10 @@ fn overruled(mut measured: MeasurementScene, args: &TriangulateArgs) -> Measurem
     measured
 }
 
-fn measurement_failure(path: &Path, error: &TriangulationError) -> Failure {
+fn measurement_failure(path: &Path, error: &ScanError) -> Failure {
     match error {
-        TriangulationError::Cancelled => Failure::Interrupted,
-        TriangulationError::Tracer(error) => tracer_failure(path, error),
+        ScanError::Cancelled => Failure::Interrupted,
+        ScanError::Tracer(error) => tracer_failure(path, error),
         error => Failure::input(
             format!("{}: {error}", path.display()),
             "docs/scene_file.md lists what is allowed",

@@ -1,5 +1,4 @@
 mod board;
-mod boards;
 mod camera_model;
 mod corners;
 mod covariance;
@@ -17,13 +16,12 @@ mod start;
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::SMatrix;
 use tem00_camera::Camera;
-use tem00_tracer::RigidMotion;
+use tem00_decorrelation::RigidMotion;
 
 use self::{covariance::COUNT, perturbation::Perturbations};
 use crate::{LaserPlane, TriangulationError, Triangulator};
 
 pub use self::board::Checkerboard;
-pub use self::boards::{BoardPlan, calibrate_scene};
 pub use self::camera_model::CameraModel;
 pub use self::corners::find_corners;
 pub use self::covariance::{CalibrationCovariance, PARAMETERS, Parameter};

@@ -2,7 +2,6 @@ use core::{error, fmt};
 
 use tem00_camera::CameraError;
 use tem00_speckle::SpeckleError;
-use tem00_tracer::{RenderError, TracerError};
 
 /// Why a part of a triangulation set-up could not be constructed or evaluated.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,12 +55,8 @@ pub enum TriangulationError {
     },
     /// The camera is not possible.
     Camera(CameraError),
-    /// Laser or scene are not possible, or were not rendered.
-    Tracer(TracerError),
     /// A speckle pattern is not possible.
     Speckle(SpeckleError),
-    /// A scene is none that can be measured, and why.
-    Scene(String),
     /// The caller asked to stop.
     Cancelled,
 }
@@ -74,7 +69,6 @@ impl TriangulationError {
                 Some(parameter)
             }
             Self::Camera(source) => source.parameter(),
-            Self::Tracer(source) => source.parameter(),
             _ => None,
         }
     }
@@ -107,9 +101,7 @@ impl fmt::Display for TriangulationError {
                 write!(f, "nothing can be measured: {why}; {advice}")
             }
             Self::Camera(source) => source.fmt(f),
-            Self::Tracer(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
-            Self::Scene(why) => f.write_str(why),
             Self::Cancelled => write!(f, "the work was cancelled"),
         }
     }
@@ -123,24 +115,8 @@ impl From<CameraError> for TriangulationError {
     }
 }
 
-impl From<TracerError> for TriangulationError {
-    fn from(source: TracerError) -> Self {
-        Self::Tracer(source)
-    }
-}
-
 impl From<SpeckleError> for TriangulationError {
     fn from(source: SpeckleError) -> Self {
         Self::Speckle(source)
-    }
-}
-
-impl From<RenderError> for TriangulationError {
-    fn from(source: RenderError) -> Self {
-        match source {
-            RenderError::Scene(source) => Self::Tracer(source),
-            // Whatever else there may be one day, the render did not end.
-            _ => Self::Cancelled,
-        }
     }
 }

@@ -3,7 +3,6 @@
 mod calibration;
 mod design;
 mod detector;
-mod scan;
 mod sensor;
 mod setup;
 mod setup_text;
@@ -13,7 +12,6 @@ pub use self::calibration::{
 };
 pub use self::design::read_design;
 pub use self::detector::read_detector;
-pub use self::scan::read_scan;
 pub use self::sensor::read_sensor;
 pub use self::setup::{parse_setup, parse_setup_with, read_setup, read_setup_with};
 

@@ -24,7 +24,6 @@ mod file;
 mod geometry;
 mod line_image;
 mod place_noise;
-mod scan;
 mod sensor;
 mod setup;
 
@@ -33,8 +32,8 @@ pub use budget::{
     SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,
 };
 pub use calibration::{
-    BoardPlan, BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel,
-    Checkerboard, PARAMETERS, Parameter, calibrate, calibrate_scene, find_corners,
+    BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard,
+    PARAMETERS, Parameter, calibrate, find_corners,
 };
 pub use design::{
     Candidate, Constraint, DesignFigure, DesignFigures, DesignOutcome, DesignParameter,
@@ -46,19 +45,12 @@ pub use dorsch::Dorsch;
 pub use error::TriangulationError;
 pub use file::{
     BoardSettings, CalibrationMethod, CalibrationSettings, parse_setup, parse_setup_with,
-    read_calibration, read_design, read_detector, read_scan, read_sensor, read_setup,
-    read_setup_with,
+    read_calibration, read_design, read_detector, read_sensor, read_setup, read_setup_with,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use line_image::{LineImage, LineImageData};
 pub use place_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
-};
-pub use scan::{
-    Averaging, Exposure, FrameCorrelation, HeightMap, HeightScale, LAMP_WAVELENGTH, MeasuredFrame,
-    MeasuredPoint, Measurement, MeasurementScene, Raster, RawFormat, Scan, ScanMotion,
-    ScanSettings, ScannedPart, SensorSpeckle, SpeckleCorrelation, averaged_profile,
-    brightest_points, mean_point, write_point_cloud,
 };
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{

@@ -5,7 +5,8 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use tem00_triangulation::{BoardPlan, CalibrationMethod, CalibrationSettings, Measurement};
+use tem00_scan::{BoardPlan, Measurement, ScanError};
+use tem00_triangulation::{CalibrationMethod, CalibrationSettings};
 
 use super::{files::Files, measurement_failure};
 use crate::{failure::Failure, interrupt, progress::Progress};
@@ -33,7 +34,7 @@ pub(super) fn calibrated(
             "`tem00 calibrate` estimates a calibration from a folder, and `tem00 lines --calibration` uses it",
         ));
     }
-    let refused = |error| measurement_failure(scene, &error);
+    let refused = |error: ScanError| measurement_failure(scene, &error);
     let plan = BoardPlan::new(measurement.scene(), boards).map_err(refused)?;
     let bar = Progress::of(plan.samples(), "samples");
     bar.name(format!("calibration, {} boards", boards.boards));

@@ -1,6 +1,6 @@
 //! The drawings of a measurement.
 
-use tem00_triangulation::{HeightMap, Raster};
+use tem00_scan::{HeightMap, Raster};
 
 use super::{Job, Measured, files::ranges, terms::Terms};
 use crate::{

@@ -7,10 +7,9 @@ use std::{
 };
 
 use tem00_numerics::Grid;
+use tem00_scan::{HeightMap, MeasuredFrame, MeasuredPoint, Raster, RawFormat, write_point_cloud};
 use tem00_speckle::write_real_npy;
-use tem00_triangulation::{
-    DVec3, HeightMap, MeasuredFrame, MeasuredPoint, Raster, RawFormat, RawFrame, write_point_cloud,
-};
+use tem00_triangulation::{DVec3, RawFrame};
 
 use crate::{
     atomic::write_atomically, failure::Failure, folder_lock::FolderLock, image::write_raw, output,

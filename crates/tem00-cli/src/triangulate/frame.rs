@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use tem00_triangulation::{MeasuredFrame, Validity};
+use tem00_scan::MeasuredFrame;
+use tem00_triangulation::Validity;
 
 use crate::report::{Cell, Column, Table, units::NUMBER};
 

@@ -1,7 +1,7 @@
 //! The report of a measurement.
 
 use serde_json::{Value, json};
-use tem00_triangulation::{HeightMap, MeasuredPoint, Raster};
+use tem00_scan::{HeightMap, MeasuredPoint, Raster};
 
 use super::{Job, Measured, drawings::Drawings, frame, in_words, refusal::Refusal, terms::Terms};
 use crate::{

@@ -1,6 +1,7 @@
 //! What makes heights uncertain, over all points.
 
-use tem00_triangulation::{DVec3, MeasuredPoint, PlaceNoise, UncertaintySource};
+use tem00_scan::MeasuredPoint;
+use tem00_triangulation::{DVec3, PlaceNoise, UncertaintySource};
 
 use crate::report::{
     Cell, Column, Table,

@@ -59,7 +59,7 @@ impl Checkerboard {
     /// Returns the inner corners in the frame of the board, in metres: row by row from the upper left.
     pub fn points(&self) -> Vec<DVec3> {
         let [columns, rows] = self.corners;
-        let point = |row, column| self.at(column as f64, (rows - 1 - row) as f64);
+        let point = |row, column| self.corner_at(column as f64, (rows - 1 - row) as f64);
         (0..rows)
             .flat_map(|row| (0..columns).map(move |column| point(row, column)))
             .collect()
@@ -68,11 +68,11 @@ impl Checkerboard {
     /// Returns the middle of the inner corners in the frame of the board, in metres.
     pub fn middle(&self) -> DVec3 {
         let [columns, rows] = self.corners;
-        self.at((columns - 1) as f64 / 2.0, (rows - 1) as f64 / 2.0)
+        self.corner_at((columns - 1) as f64 / 2.0, (rows - 1) as f64 / 2.0)
     }
 
     /// Returns the point of the board so many squares to the right and up.
-    pub(super) fn at(&self, right: f64, up: f64) -> DVec3 {
+    pub fn corner_at(&self, right: f64, up: f64) -> DVec3 {
         self.square * DVec3::new(right, up, 0.0)
     }
 }

@@ -1,6 +1,6 @@
 use glam::DVec3;
 use nalgebra::{SMatrix, SymmetricEigen};
-use tem00_tracer::RigidMotion;
+use tem00_decorrelation::RigidMotion;
 
 use crate::TriangulationError;
 

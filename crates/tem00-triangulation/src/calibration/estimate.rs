@@ -1,8 +1,8 @@
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::{DMatrix, DVector};
 use tem00_camera::Camera;
+use tem00_decorrelation::RigidMotion;
 use tem00_numerics::Grid;
-use tem00_tracer::RigidMotion;
 
 use super::{
     Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard, PARAMETERS,

@@ -1,5 +1,4 @@
 use glam::DVec3;
-use tem00_tracer::Laser;
 
 use crate::TriangulationError;
 
@@ -25,20 +24,19 @@ impl LaserPlane {
             })
     }
 
-    /// Returns the plane in which the line of a laser opens: through its aperture, along its axis and
-    /// its line direction.
-    ///
-    /// A spot has a plane, too, that of its first axis; only a point of it is lit.
+    /// Returns the plane in which a laser line opens: through its aperture, in metres, along its axis and
+    /// its line direction, both of any length.
     ///
     /// # Errors
     ///
-    /// Returns an error if the laser stands so far away that rounding leaves no direction.
-    pub fn of_laser(laser: &Laser) -> Result<Self, TriangulationError> {
-        let description = laser.description();
-        let axis = description.look_at - description.position;
-        let across = axis.normalize_or_zero();
-        let along = description.line_direction.normalize_or_zero();
-        Self::new(description.position, across.cross(along))
+    /// Returns an error if the two directions are parallel, or a number is not finite.
+    pub fn of_line(
+        aperture: DVec3,
+        axis: DVec3,
+        line_direction: DVec3,
+    ) -> Result<Self, TriangulationError> {
+        let along = line_direction.normalize_or_zero();
+        Self::new(aperture, axis.normalize_or_zero().cross(along))
     }
 
     /// Returns a point of the plane, in metres.

@@ -186,18 +186,6 @@ fn the_measuring_range_is_seen_with_half_a_window_about_it() {
 }
 
 #[test]
-fn the_scene_of_a_setup_is_read_as_one() {
-    for setup in [setup(), scheimpflug()] {
-        let scene = tem00_scene::parse_scene(&setup.scene(1e-3), std::path::Path::new("."));
-        let camera = scene.unwrap().camera;
-        let point = DVec3::new(1e-3, 0.0, 2e-3);
-        let (ours, theirs) = (setup.camera().project(point), camera.project(point));
-        let apart = ours.unwrap().distance(theirs.unwrap());
-        assert!(apart < 1e-9, "{apart}");
-    }
-}
-
-#[test]
 fn a_chosen_exposure_leaves_room_for_bright_grains_and_not_much_more() {
     let mut chosen = 0;
     for (f_number, power, bits) in [

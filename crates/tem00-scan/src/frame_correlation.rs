@@ -1,4 +1,4 @@
-use super::average::SpeckleCorrelation;
+use crate::average::SpeckleCorrelation;
 
 /// The correlation of a line's place over columns, for each number of frames between.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 use glam::DVec3;
+use tem00_triangulation::TriangulationError;
 
-use super::height_map::check_pitch;
-use crate::TriangulationError;
+use crate::height_map::check_pitch;
 
 /// How the frames of a scene become the map of a part.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,14 +1,16 @@
 #![expect(clippy::float_cmp, reason = "what is stored comes back as it was")]
 
+use glam::DVec3;
 use ply_rs_bw::{parser::Parser, ply::DefaultElement, ply::Property};
 use tem00_tracer::{Environment, Lamp, Rotation, Trajectory};
+use tem00_triangulation::{Sensor, SensorDescription, TriangulationError, Validity};
 
-use super::{
+use crate::ScanError;
+use crate::{
     average::{SpeckleCorrelation, mean_point},
     testing::{doubtful, point},
     *,
 };
-use crate::{DVec3, Sensor, SensorDescription, TriangulationError, Validity};
 
 mod scenes;
 
@@ -110,7 +112,7 @@ fn scenes_that_cannot_be_measured_say_why() {
         (light, "`method`"),
     ] {
         let error = Measurement::new(measured(&text)).unwrap_err();
-        assert!(matches!(error, TriangulationError::Scene(_)), "{error}");
+        assert!(matches!(error, ScanError::Scene(_)), "{error}");
         assert!(error.to_string().contains(why), "{error}");
     }
     let mut apart = measured(SCENE);
@@ -223,7 +225,9 @@ fn settings_that_no_scan_has_are_refused() {
         change(&mut measured.scan);
         matches!(
             Measurement::new(measured),
-            Err(TriangulationError::OutOfRange { .. } | TriangulationError::Direction { .. })
+            Err(ScanError::Triangulation(
+                TriangulationError::OutOfRange { .. } | TriangulationError::Direction { .. }
+            ))
         )
     };
     assert!(refused(|scan| scan.average.frames = 0), "no frames");

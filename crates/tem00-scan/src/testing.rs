@@ -1,9 +1,10 @@
 //! Points for tests.
 
 use glam::DMat3;
+use glam::{DVec2, DVec3};
+use tem00_triangulation::{PlaceNoise, ProfilePoint, UncertainPoint, Validity};
 
-use super::frame::MeasuredPoint;
-use crate::{DVec2, DVec3, PlaceNoise, ProfilePoint, UncertainPoint, Validity};
+use crate::frame::MeasuredPoint;
 
 /// A point in a column whose place moves it by 10 µm per pixel along z.
 pub(super) fn point(column: usize, position: DVec3) -> MeasuredPoint {

@@ -1,12 +1,14 @@
 use std::path::{Path, PathBuf};
 
-use tem00_config::ConfigError;
-use tem00_config::{Document, Problem, Reading};
+use tem00_config::{ConfigError, Document, Problem, Reading};
 use tem00_scene::SceneFile;
 use tem00_tracer::Scene;
+use tem00_triangulation::{
+    CalibrationSettings, DetectorSettings, SensorDescription, read_calibration, read_detector,
+    read_sensor,
+};
 
-use crate::file::{read_calibration, read_detector, read_scan, read_sensor};
-use crate::{CalibrationSettings, DetectorSettings, ScanSettings, SensorDescription};
+use crate::{ScanSettings, section::read_scan};
 
 /// A scene and the sensor that measures it.
 #[derive(Clone, Debug)]

@@ -2,11 +2,12 @@ use core::f64::consts::PI;
 use std::borrow::Cow;
 
 use glam::DMat2;
+use glam::DVec2;
 use tem00_camera::Camera;
 use tem00_numerics::{cast::to_usize, jinc, quadrature::gauss_legendre};
 
-use super::speckle_table::SpeckleTable;
-use crate::{DVec2, TriangulationError};
+use crate::ScanError;
+use crate::speckle_table::SpeckleTable;
 
 /// Speckle as the pixels of a sensor see it, at a place of the image.
 ///
@@ -102,12 +103,12 @@ impl ImageSpeckle {
         camera: Camera,
         wavelength: f64,
         (sensitive_side, variance): (f64, f64),
-    ) -> Result<Self, TriangulationError> {
+    ) -> Result<Self, ScanError> {
         camera.imaging_geometry(wavelength)?;
         let middle = 0.5 * DVec2::new(camera.width() as f64, camera.height() as f64);
         let speckles_per_pixel =
             speckles_per_pixel(&camera, middle, wavelength).ok_or_else(|| {
-                TriangulationError::Scene("the camera must see something in the middle".to_owned())
+                ScanError::Scene("the camera must see something in the middle".to_owned())
             })?;
         let middle = SensorSpeckle {
             speckles_per_pixel,

@@ -10,9 +10,11 @@ use tem00_tracer::{
     Lamp, Laser, Material, MeshInstance, RigidMotion, Scene, Shape, Surface, SurfaceSpeckle,
     TracerError, Trajectory, TriangleMesh,
 };
+use tem00_triangulation::{
+    BoardSettings, Checkerboard, LaserPlane, TriangulationError, Triangulator,
+};
 
-use super::Checkerboard;
-use crate::{BoardSettings, LaserPlane, TriangulationError, Triangulator};
+use crate::{ScanError, laser_plane::plane_of};
 
 /// The tilts of the boards, in radians: 25°, 19° and 13°.
 const TILTS: [f64; 3] = [0.436, 0.327, 0.218];
@@ -55,7 +57,7 @@ impl BoardPlan {
     ///
     /// Returns an error if the scene has no laser, if its plane is not seen in the middle of the image, or
     /// if a board with the squares asked for is not whole in the image.
-    pub fn new(scene: &Scene, settings: &BoardSettings) -> Result<Self, TriangulationError> {
+    pub fn new(scene: &Scene, settings: &BoardSettings) -> Result<Self, ScanError> {
         let laser = scene.lasers.first().ok_or(TriangulationError::TooFew {
             what: "lasers",
             got: 0,
@@ -103,7 +105,7 @@ impl BoardPlan {
     /// # Panics
     ///
     /// Panics unless there is such a pose.
-    pub fn scenes(&self, pose: usize) -> Result<[Scene; 2], TriangulationError> {
+    pub fn scenes(&self, pose: usize) -> Result<[Scene; 2], ScanError> {
         let squares = |parity: usize| surface(&self.board, &self.poses[pose], parity);
         let mut lit = self.scene.clone();
         lit.surfaces = vec![squares(0)?, squares(1)?];
@@ -121,11 +123,7 @@ impl BoardPlan {
 }
 
 /// The squares of one parity as a surface; the bright ones have a margin of a square about the board.
-fn surface(
-    board: &Checkerboard,
-    pose: &RigidMotion,
-    parity: usize,
-) -> Result<Surface, TriangulationError> {
+fn surface(board: &Checkerboard, pose: &RigidMotion, parity: usize) -> Result<Surface, ScanError> {
     let [columns, rows] = board.corners().map(|corners| corners + 3);
     let is_margin = |i: usize, j: usize| i == 0 || j == 0 || i + 1 == columns || j + 1 == rows;
     let mut vertices = Vec::new();
@@ -139,7 +137,7 @@ fn surface(
         let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
         let corner = |di: usize, dj: usize| {
             let [right, up] = [i + di, j + dj].map(|n| n as f64 - 2.0);
-            pose.point(board.at(right, up))
+            pose.point(board.corner_at(right, up))
         };
         vertices.extend([corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)]);
         triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
@@ -170,8 +168,8 @@ struct Stage {
 }
 
 impl Stage {
-    fn new(camera: &Camera, laser: &Laser) -> Result<Self, TriangulationError> {
-        let plane = LaserPlane::of_laser(laser)?;
+    fn new(camera: &Camera, laser: &Laser) -> Result<Self, ScanError> {
+        let plane = plane_of(laser)?;
         let pixel = DVec2::new(camera.width() as f64, camera.height() as f64) / 2.0;
         let unseen = TriangulationError::NotDetermined {
             what: "the laser plane",
@@ -201,7 +199,7 @@ impl Stage {
         &self,
         board: &Checkerboard,
         number: usize,
-    ) -> Result<Option<Vec<RigidMotion>>, TriangulationError> {
+    ) -> Result<Option<Vec<RigidMotion>>, ScanError> {
         let poses: Result<Vec<_>, _> = (0..number).map(|i| self.pose(board, i)).collect();
         Ok(poses
             .ok()
@@ -242,7 +240,7 @@ impl Stage {
         let outline = [(-1.0, -1.0), (right, -1.0), (-1.0, up), (right, up)];
         let size = DVec2::new(self.camera.width() as f64, self.camera.height() as f64);
         outline.into_iter().all(|(right, up)| {
-            let image = self.camera.project(pose.point(board.at(right, up)));
+            let image = self.camera.project(pose.point(board.corner_at(right, up)));
             image.is_some_and(|image| {
                 image.cmpgt(DVec2::splat(MARGIN)).all() && image.cmplt(size - MARGIN).all()
             })
@@ -253,7 +251,7 @@ impl Stage {
     fn largest(
         &self,
         settings: &BoardSettings,
-    ) -> Result<(Checkerboard, Vec<RigidMotion>), TriangulationError> {
+    ) -> Result<(Checkerboard, Vec<RigidMotion>), ScanError> {
         let distance = self.middle.distance(self.camera.position());
         let pitch = self.camera.description().pixel_pitch;
         let width = self.camera.width() as f64 * pitch * distance / self.camera.image_distance();
@@ -265,10 +263,11 @@ impl Stage {
             }
             square *= 0.97;
         }
-        Err(TriangulationError::NotDetermined {
+        let undetermined = TriangulationError::NotDetermined {
             what: "the size of a board",
             advice: "no board before this camera is whole in its image",
-        })
+        };
+        Err(undetermined.into())
     }
 }
 

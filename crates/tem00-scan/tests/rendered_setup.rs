@@ -6,7 +6,7 @@ use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00_scene::parse_scene;
 use tem00_tracer::{Crop, RenderOptions, render_frame};
-use tem00_triangulation::{DVec2, Setup, parse_setup};
+use tem00_triangulation::{DVec2, DVec3, Setup, parse_setup};
 
 fn setup(scheimpflug: bool) -> Setup {
     let text = format!(
@@ -64,6 +64,18 @@ fn rendered(setup: &Setup, height: f64) -> [f64; 3] {
     }
     let place = first / sum;
     [sum, place, 4.0 * (second / sum - place * place).sqrt()]
+}
+
+#[test]
+fn the_scene_of_a_setup_has_its_camera() {
+    for setup in [setup(false), setup(true)] {
+        let scene = parse_scene(&setup.scene(1e-3), Path::new(".")).expect("a scene");
+        let point = DVec3::new(1e-3, 0.0, 2e-3);
+        let cameras = [setup.camera(), &scene.camera];
+        let [ours, theirs] = cameras.map(|camera| camera.project(point).expect("it is seen"));
+        let apart = ours.distance(theirs);
+        assert!(apart < 1e-9, "{apart}");
+    }
 }
 
 #[test]

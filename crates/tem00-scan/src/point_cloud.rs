@@ -2,7 +2,7 @@ use std::io::{self, Write};
 
 use tem00_numerics::cast::to_f32;
 
-use super::frame::MeasuredPoint;
+use crate::frame::MeasuredPoint;
 
 /// Writes the valid points of profiles as a binary PLY file.
 ///

@@ -1,13 +1,18 @@
 use core::sync::atomic::AtomicBool;
 
 use glam::DMat3;
+use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
 use tem00_tracer::{
     BeamShape, Filter, Frame, Laser, Method, ReferencePoint, RenderOptions, Scene, SpeckleChange,
     SpeckleModel, SurfaceSpeckle, render_frame,
 };
+use tem00_triangulation::{
+    Calibration, DetectorSettings, LineDetector, Sensor, SensorDescription, TriangulationError,
+};
 
-use super::{
+use crate::{ScanError, laser_plane::plane_of};
+use crate::{
     exposure::Exposure,
     frame::{MeasuredFrame, Surroundings, middle},
     frame_correlation::FrameCorrelation,
@@ -15,10 +20,6 @@ use super::{
     scene::MeasurementScene,
     sensor_speckle::{ImageSpeckle, SensorSpeckle},
     settings::ScanSettings,
-};
-use crate::{
-    Calibration, DVec2, DVec3, DetectorSettings, LaserPlane, LineDetector, Sensor,
-    SensorDescription, TriangulationError,
 };
 
 /// A scene that is measured frame by frame.
@@ -47,7 +48,7 @@ impl Measurement {
     /// image, if the scene asks for a part of the image, another filter than the pixel or light followed
     /// from the lasers, if a sensor, a detector or the settings of the scan are not possible, or if parts
     /// move in a way that no scan does.
-    pub fn new(measured: MeasurementScene) -> Result<Self, TriangulationError> {
+    pub fn new(measured: MeasurementScene) -> Result<Self, ScanError> {
         let MeasurementScene {
             mut scene,
             sensor,
@@ -60,7 +61,7 @@ impl Measurement {
         let laser = line_laser(&scene)?;
         check_direction(&scene.camera, laser)?;
         check_render(&scene)?;
-        let calibration = Calibration::exact(scene.camera, LaserPlane::of_laser(laser)?);
+        let calibration = Calibration::exact(scene.camera, plane_of(laser)?);
         let sensor = Sensor::new(sensor)?;
         let speckle = speckle(&scene, laser, &motion, &sensor)?;
         scene.render.filter = Filter::Box {
@@ -160,7 +161,7 @@ impl Measurement {
         frame: u32,
         progress: impl Fn(u64) + Sync,
         cancel: &AtomicBool,
-    ) -> Result<MeasuredFrame, TriangulationError> {
+    ) -> Result<MeasuredFrame, ScanError> {
         let options = RenderOptions::from(&self.scene.render);
         let rendered = render_frame(&self.scene, speckle, frame, &options, progress, cancel)?;
         let exposure = Exposure::of_frame(&rendered, &self.scene.camera, &self.sensor);
@@ -238,37 +239,38 @@ impl Measurement {
     }
 }
 
-fn checked_uncertainty(uncertainty: f64) -> Result<f64, TriangulationError> {
+fn checked_uncertainty(uncertainty: f64) -> Result<f64, ScanError> {
     if (0.0..f64::INFINITY).contains(&uncertainty) {
         return Ok(uncertainty);
     }
-    Err(TriangulationError::OutOfRange {
+    let negative = TriangulationError::OutOfRange {
         parameter: "uncertainty",
         value: uncertainty,
         allowed: "at least 0 and finite (in metres)",
-    })
+    };
+    Err(negative.into())
 }
 
 /// The laser that draws the line.
-fn line_laser(scene: &Scene) -> Result<&Laser, TriangulationError> {
+fn line_laser(scene: &Scene) -> Result<&Laser, ScanError> {
     let laser = scene.lasers.first();
     laser
         .filter(|laser| matches!(laser.description().shape, BeamShape::Line { .. }))
         .ok_or_else(|| {
             let why = "the first [[laser]] of the scene must draw a line: [laser.line]";
-            TriangulationError::Scene(why.to_owned())
+            ScanError::Scene(why.to_owned())
         })
 }
 
 /// Makes sure that the line crosses columns.
-fn check_direction(camera: &Camera, laser: &Laser) -> Result<(), TriangulationError> {
+fn check_direction(camera: &Camera, laser: &Laser) -> Result<(), ScanError> {
     /// A step along the line, in metres, small against anything that is triangulated.
     const STEP: f64 = 1e-5;
     let description = laser.description();
     let along = STEP * description.line_direction.normalize_or_zero();
     let ends = [-along, along].map(|step| camera.project(description.look_at + step));
     let [Some(left), Some(right)] = ends else {
-        return Err(TriangulationError::Scene(
+        return Err(ScanError::Scene(
             "the camera must see the point that the laser looks at".to_owned(),
         ));
     };
@@ -276,7 +278,7 @@ fn check_direction(camera: &Camera, laser: &Laser) -> Result<(), TriangulationEr
     if x > y {
         return Ok(());
     }
-    Err(TriangulationError::Scene(
+    Err(ScanError::Scene(
         "the laser line must run from left to right in the image: turn the camera by its `up`, or the \
          line by its `line_direction`"
             .to_owned(),
@@ -284,7 +286,7 @@ fn check_direction(camera: &Camera, laser: &Laser) -> Result<(), TriangulationEr
 }
 
 /// Makes sure that the image is what the pixels of a sensor see.
-fn check_render(scene: &Scene) -> Result<(), TriangulationError> {
+fn check_render(scene: &Scene) -> Result<(), ScanError> {
     let render = &scene.render;
     let wrong = if render.filter != Filter::default() {
         "`filter` in [render] must be left out: a sensor sees the mean over the sensitive part of a pixel"
@@ -295,7 +297,7 @@ fn check_render(scene: &Scene) -> Result<(), TriangulationError> {
     } else {
         return Ok(());
     };
-    Err(TriangulationError::Scene(wrong.to_owned()))
+    Err(ScanError::Scene(wrong.to_owned()))
 }
 
 /// The speckle on the sensor; of several surfaces of the part, that of the greatest contrast.
@@ -304,7 +306,7 @@ fn speckle(
     laser: &Laser,
     motion: &ScanMotion,
     sensor: &Sensor,
-) -> Result<ImageSpeckle, TriangulationError> {
+) -> Result<ImageSpeckle, ScanError> {
     let surfaces = motion.surfaces().iter();
     let variances = surfaces.map(|&index| variance(&scene.surfaces[index].speckle));
     let sensitive_side = 2.0 * sensor.sensitive_half_width();

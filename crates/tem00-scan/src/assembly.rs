@@ -1,13 +1,14 @@
 use tem00_tracer::SpeckleChange;
+use tem00_triangulation::TriangulationError;
 
-use super::{
+use crate::ScanError;
+use crate::{
     average::averaged_profile,
     frame::{MeasuredFrame, MeasuredPoint},
     frame_correlation::FrameCorrelation,
     height_map::HeightMap,
     measurement::Measurement,
 };
-use crate::TriangulationError;
 
 /// Puts measured frames together to profiles, and these to the map of a part.
 #[derive(Clone, Debug)]
@@ -120,19 +121,24 @@ impl ScannedPart<'_> {
     /// # Errors
     ///
     /// Returns an error if nothing was measured or if the pitch is too small.
-    pub fn height_map(&self) -> Result<HeightMap, TriangulationError> {
+    pub fn height_map(&self) -> Result<HeightMap, ScanError> {
         let [across, along, height] = self.measurement.axes();
         let settings = self.measurement.settings();
         let valid = self.profiles.iter().flatten().any(MeasuredPoint::is_valid);
         if !valid {
-            return Err(TriangulationError::TooFew {
+            let empty = TriangulationError::TooFew {
                 what: "valid points for a height map",
                 got: 0,
                 needed: 1,
-            });
+            };
+            return Err(empty.into());
         }
         match settings.pitch {
-            Some(pitch) => HeightMap::of_points(&self.profiles, [across, along, height], pitch),
+            Some(pitch) => Ok(HeightMap::of_points(
+                &self.profiles,
+                [across, along, height],
+                pitch,
+            )?),
             None => {
                 let columns = self.measurement.scene().camera.width();
                 let size = [columns, settings.average.columns];

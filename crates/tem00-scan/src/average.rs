@@ -1,10 +1,11 @@
 use glam::DMat3;
+use glam::{DVec2, DVec3};
+use tem00_triangulation::PlaceNoise;
 
-use super::{
+use crate::{
     frame::{MeasuredFrame, MeasuredPoint},
     settings::Averaging,
 };
-use crate::{DVec2, DVec3, PlaceNoise};
 
 /// How speckle correlates the place of the line in two columns of two frames.
 pub trait SpeckleCorrelation {

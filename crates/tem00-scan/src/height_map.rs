@@ -1,7 +1,8 @@
+use glam::DVec3;
 use tem00_numerics::{Grid, cast::to_f32};
+use tem00_triangulation::TriangulationError;
 
-use super::frame::MeasuredPoint;
-use crate::{DVec3, TriangulationError};
+use crate::frame::MeasuredPoint;
 
 /// The heights of a part on a grid.
 ///

@@ -1,6 +1,6 @@
 use tem00_tracer::{RigidMotion, Scene, Surface, Trajectory};
 
-use crate::TriangulationError;
+use crate::ScanError;
 
 /// What moves in a scan: the part under the line, or the sensor head over the part.
 ///
@@ -21,7 +21,7 @@ impl ScanMotion {
     ///
     /// Returns an error if no surface has the name, if surfaces move differently and none is named, or
     /// if camera and laser do not move as one head.
-    pub fn of_scene(scene: &Scene, surface: Option<&str>) -> Result<Self, TriangulationError> {
+    pub fn of_scene(scene: &Scene, surface: Option<&str>) -> Result<Self, ScanError> {
         let surfaces = match surface {
             Some(name) => named(scene, name)?,
             None => moving(scene)?,
@@ -61,15 +61,15 @@ impl ScanMotion {
 }
 
 /// The surface of a name, or its instances.
-fn named(scene: &Scene, name: &str) -> Result<Vec<usize>, TriangulationError> {
+fn named(scene: &Scene, name: &str) -> Result<Vec<usize>, ScanError> {
     let found = scene.surfaces.iter().position(|s| s.name == name);
-    found.map(|index| vec![index]).ok_or_else(|| {
-        TriangulationError::Scene(format!("no surface of the scene is called \"{name}\""))
-    })
+    found
+        .map(|index| vec![index])
+        .ok_or_else(|| ScanError::Scene(format!("no surface of the scene is called \"{name}\"")))
 }
 
 /// The surfaces that move, all alike.
-fn moving(scene: &Scene) -> Result<Vec<usize>, TriangulationError> {
+fn moving(scene: &Scene) -> Result<Vec<usize>, ScanError> {
     let surfaces = scene.surfaces.iter().enumerate();
     let moving: Vec<(usize, &Surface)> = surfaces
         .filter(|(_, surface)| !surface.trajectory.is_still())
@@ -83,7 +83,7 @@ fn moving(scene: &Scene) -> Result<Vec<usize>, TriangulationError> {
         .find(|(_, surface)| !alike(&surface.trajectory, &first.trajectory, frames));
     match other {
         None => Ok(moving.into_iter().map(|(index, _)| index).collect()),
-        Some((_, other)) => Err(TriangulationError::Scene(format!(
+        Some((_, other)) => Err(ScanError::Scene(format!(
             "the surfaces \"{}\" and \"{}\" move differently: `surface` in [scan] must name the one that \
              is scanned",
             first.name, other.name
@@ -92,7 +92,7 @@ fn moving(scene: &Scene) -> Result<Vec<usize>, TriangulationError> {
 }
 
 /// The common motion of camera and first laser.
-fn head(scene: &Scene) -> Result<Trajectory, TriangulationError> {
+fn head(scene: &Scene) -> Result<Trajectory, ScanError> {
     let Some(laser) = scene.lasers.first() else {
         return Ok(scene.camera_trajectory.clone());
     };
@@ -103,7 +103,7 @@ fn head(scene: &Scene) -> Result<Trajectory, TriangulationError> {
     ) {
         return Ok(scene.camera_trajectory.clone());
     }
-    Err(TriangulationError::Scene(
+    Err(ScanError::Scene(
         "camera and laser move differently: in a scan they are one head".to_owned(),
     ))
 }

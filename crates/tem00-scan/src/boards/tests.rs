@@ -1,9 +1,12 @@
 use std::{path::Path, sync::atomic::AtomicBool};
 
 use tem00_scene::parse_scene;
+use tem00_triangulation::{
+    DetectorSettings, LineDetector, Sensor, SensorDescription, find_corners,
+};
 
 use super::*;
-use crate::{DetectorSettings, LineDetector, Sensor, SensorDescription, find_corners};
+use crate::laser_plane::plane_of;
 
 /// A short lens before a vertical laser plane, at 30° from it.
 fn scene() -> Scene {
@@ -92,10 +95,7 @@ fn rendered_boards_give_the_scene_back() {
         .calibrate(&sensor(), &detector, |_| (), &cancel)
         .unwrap();
     let scene = scene();
-    let exact = Triangulator::new(
-        scene.camera,
-        LaserPlane::of_laser(&scene.lasers[0]).unwrap(),
-    );
+    let exact = Triangulator::new(scene.camera, plane_of(&scene.lasers[0]).unwrap());
     for pixel in [
         DVec2::new(120.0, 90.0),
         DVec2::new(60.0, 60.0),
@@ -134,7 +134,7 @@ fn boards_that_do_not_fit_are_refused() {
 #[test]
 fn lines_span_the_laser_plane() {
     let plan = plan(12);
-    let plane = LaserPlane::of_laser(&scene().lasers[0]).unwrap();
+    let plane = plane_of(&scene().lasers[0]).unwrap();
     let offsets: Vec<_> = plan
         .poses()
         .iter()

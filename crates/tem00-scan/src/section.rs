@@ -1,10 +1,10 @@
 use tem00_config::{Document, LENGTH, Problem, Section, Value};
 use tem00_tracer::Scene;
 
-use crate::{Averaging, RawFormat, ScanSettings};
+use crate::settings::{Averaging, RawFormat, ScanSettings};
 
-pub(super) const KEYS: &[&str] = &["surface", "height", "pitch", "average", "raw"];
-pub(super) const AVERAGE_KEYS: &[&str] = &["frames", "columns"];
+const KEYS: &[&str] = &["surface", "height", "pitch", "average", "raw"];
+const AVERAGE_KEYS: &[&str] = &["frames", "columns"];
 
 const RAW_FORMATS: &[(&str, RawFormat)] = &[("png", RawFormat::Png), ("tiff", RawFormat::Tiff)];
 
@@ -16,7 +16,7 @@ const MOST_COLUMNS: u64 = 1 << 16;
 /// # Errors
 ///
 /// Returns a problem, placed in the file, if a key is unknown or a value is not allowed.
-pub fn read_scan(document: &Document<'_>, scene: &Scene) -> Result<ScanSettings, Problem> {
+pub(crate) fn read_scan(document: &Document<'_>, scene: &Scene) -> Result<ScanSettings, Problem> {
     let default = ScanSettings::default();
     let Some(section) = document.table("scan", KEYS)? else {
         return Ok(default);
@@ -58,4 +58,37 @@ fn averaging(section: &Section<'_>, scene: &Scene) -> Result<Averaging, Problem>
             Ok(usize::try_from(columns).unwrap_or(usize::MAX))
         })?,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(name: &str) -> String {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/");
+        std::fs::read_to_string(format!("{folder}{name}")).unwrap()
+    }
+
+    #[test]
+    fn page_and_schema_have_exactly_the_keys_of_the_reader() {
+        let schema: serde_json::Value = serde_json::from_str(&file("scene.schema.json")).unwrap();
+        let scan = &schema["properties"]["scan"];
+        for (section, keys) in [(scan, KEYS), (&scan["properties"]["average"], AVERAGE_KEYS)] {
+            let mut listed: Vec<_> = section["properties"].as_object().unwrap().keys().collect();
+            let mut keys = keys.to_vec();
+            listed.sort();
+            keys.sort_unstable();
+            assert_eq!(listed, keys, "{section}");
+            assert_eq!(section["additionalProperties"], false, "{section}");
+        }
+        let page = file("scene_file.md");
+        let (_, scan) = page.split_once("# `[scan]`\n").unwrap();
+        let rows = scan.split("\n#").next().unwrap().lines();
+        let named = rows.filter_map(|row| row.strip_prefix("| `")?.split_once('`'));
+        let mut named: Vec<_> = named.map(|(key, _)| key).collect();
+        let mut keys = KEYS.to_vec();
+        named.sort_unstable();
+        keys.sort_unstable();
+        assert_eq!(named, keys);
+    }
 }

@@ -1,7 +1,7 @@
 use rayon::prelude::*;
 
-use super::sensor_speckle::SensorSpeckle;
-use crate::PixelCovariance;
+use crate::sensor_speckle::SensorSpeckle;
+use tem00_triangulation::PixelCovariance;
 
 /// How the speckle in the pixels of a sensor goes together, for displacements that are whole pixels
 /// apart from each other.
@@ -110,7 +110,7 @@ mod tests {
     use tem00_statistics::{PixelAutocovariance, PixelColumn, pixel_contrast};
 
     use super::*;
-    use crate::DVec2;
+    use glam::DVec2;
 
     fn speckle(size: f64, sensitive_side: f64) -> SensorSpeckle {
         SensorSpeckle {

@@ -1,13 +1,15 @@
 use std::borrow::Cow;
 
-use glam::DMat3;
+use glam::{DMat3, DVec2, DVec3};
 use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::{ReferencePoint, RigidMotion, SpeckleChange};
+use tem00_triangulation::{
+    Calibration, ColumnLight, LineDetector, LinePoint, PlaceNoise, ProfilePoint, RawFrame, Sensor,
+    Validity, speckle_covariance,
+};
 
-use super::{exposure::Exposure, sensor_speckle::ImageSpeckle, speckle_table::SpeckleTable};
 use crate::{
-    Calibration, ColumnLight, DVec2, DVec3, LineDetector, LinePoint, PlaceNoise, ProfilePoint,
-    RawFrame, Sensor, TriangulationError, Validity, speckle_covariance,
+    ScanError, exposure::Exposure, sensor_speckle::ImageSpeckle, speckle_table::SpeckleTable,
 };
 
 /// What the sensor measures in one frame.
@@ -98,7 +100,7 @@ impl Surroundings<'_> {
         exposure: Exposure,
         frame: u32,
         seed: u64,
-    ) -> Result<MeasuredFrame, TriangulationError> {
+    ) -> Result<MeasuredFrame, ScanError> {
         let raw = self.sensor.expose(&exposure.electrons, seed)?;
         let image = raw.grey_values();
         let lines = self.detector.detect(&image);

@@ -2,12 +2,13 @@ use std::sync::atomic::AtomicBool;
 
 use tem00_numerics::Grid;
 use tem00_tracer::{Filter, RenderOptions, Scene, SpeckleModel, SpecklePlan, render_frame};
+use tem00_triangulation::{
+    BoardSettings, BoardView, Calibration, CameraModel, LineDetector, RawFrame, Sensor, calibrate,
+};
 
 use super::BoardPlan;
-use crate::{
-    BoardSettings, BoardView, Calibration, CameraModel, Exposure, LineDetector, RawFrame, Sensor,
-    TriangulationError, calibrate,
-};
+use crate::Exposure;
+use crate::ScanError;
 
 /// The share of the pixels that may be brighter than the brightest grey value aimed at.
 const BRIGHTER: f64 = 1e-3;
@@ -33,7 +34,7 @@ impl BoardPlan {
         sensor: &Sensor,
         progress: impl Fn(u64) + Sync,
         cancel: &AtomicBool,
-    ) -> Result<[RawFrame; 2], TriangulationError> {
+    ) -> Result<[RawFrame; 2], ScanError> {
         let scenes = self.scenes(pose)?;
         let seed = |image: u64| {
             self.scene
@@ -43,7 +44,7 @@ impl BoardPlan {
         };
         let frame = |scene: &Scene, seed: u64| {
             let electrons = electrons(scene, sensor, seed, (&progress, cancel))?;
-            sensor.expose(&scaled(&electrons, sensor), seed)
+            Ok::<_, ScanError>(sensor.expose(&scaled(&electrons, sensor), seed)?)
         };
         Ok([frame(&scenes[0], seed(0))?, frame(&scenes[1], seed(1))?])
     }
@@ -68,7 +69,7 @@ impl BoardPlan {
         detector: &LineDetector,
         progress: impl Fn(u64) + Sync,
         cancel: &AtomicBool,
-    ) -> Result<Calibration, TriangulationError> {
+    ) -> Result<Calibration, ScanError> {
         let frames = |pose: usize| self.frames(pose, sensor, &progress, cancel);
         let frames: Vec<_> = (0..self.poses.len())
             .map(frames)
@@ -90,13 +91,14 @@ impl BoardPlan {
         &self,
         frames: &[[RawFrame; 2]],
         detector: &LineDetector,
-    ) -> Result<Calibration, TriangulationError> {
+    ) -> Result<Calibration, ScanError> {
         let view = |[lit, line]: &[RawFrame; 2]| {
             let (lit, line) = (lit.grey_values(), line.grey_values());
             BoardView::find(&lit, Some(&line), &self.board, detector)
         };
         let views: Vec<_> = frames.iter().map(view).collect::<Result<_, _>>()?;
-        calibrate(&self.board, &views, &self.model())?.moved(&self.poses[0])
+        let calibration = calibrate(&self.board, &views, &self.model())?;
+        Ok(calibration.moved(&self.poses[0])?)
     }
 
     fn model(&self) -> CameraModel {
@@ -130,7 +132,7 @@ pub fn calibrate_scene(
     settings: &BoardSettings,
     progress: impl Fn(u64) + Sync,
     cancel: &AtomicBool,
-) -> Result<Calibration, TriangulationError> {
+) -> Result<Calibration, ScanError> {
     BoardPlan::new(scene, settings)?.calibrate(sensor, detector, progress, cancel)
 }
 
@@ -140,7 +142,7 @@ fn electrons(
     sensor: &Sensor,
     seed: u64,
     (progress, cancel): (&(impl Fn(u64) + Sync), &AtomicBool),
-) -> Result<Grid<f32>, TriangulationError> {
+) -> Result<Grid<f32>, ScanError> {
     let options = RenderOptions {
         seed,
         filter: Filter::Box {

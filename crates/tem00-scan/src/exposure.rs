@@ -2,8 +2,7 @@ use glam::DVec2;
 use tem00_camera::Camera;
 use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::Frame;
-
-use crate::Sensor;
+use tem00_triangulation::Sensor;
 
 /// The wavelength at which light of lamps is counted, in metres: white light has its middle there.
 pub const LAMP_WAVELENGTH: f64 = 550e-9;

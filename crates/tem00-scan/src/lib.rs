@@ -1,0 +1,55 @@
+//! From a scene to what a triangulation sensor measures of it, frame by frame.
+//!
+//! The path tracer renders what falls on the sensor; `tem00-triangulation` finds the line, and makes points
+//! and their uncertainty of it. This crate brings the two together: exposures of rendered frames, points
+//! brought to the moving part and averaged by the correlation of their speckle, height maps, point clouds,
+//! and calibrations from boards that are rendered.
+//!
+//! # Main types
+//!
+//! A [`MeasurementScene`] is read from a scene file with the sections `[sensor]`, `[detector]`,
+//! `[calibration]` and `[scan]`. A [`Measurement`] of it gives a [`MeasuredFrame`] per frame, a [`Scan`]
+//! puts them together, and a [`HeightMap`] lays them out. [`calibrate_scene`] renders and evaluates boards.
+//!
+//! # Conventions
+//!
+//! Those of [`tem00_triangulation`]: metres, pixels with y down, standard uncertainties.
+
+mod assembly;
+mod average;
+mod boards;
+mod error;
+mod exposure;
+mod frame;
+mod frame_correlation;
+mod height_map;
+mod laser_plane;
+mod measurement;
+mod motion;
+mod point_cloud;
+mod scene;
+mod section;
+mod sensor_speckle;
+mod settings;
+mod speckle_table;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+
+pub use self::{
+    assembly::{Scan, ScannedPart},
+    average::{SpeckleCorrelation, averaged_profile, brightest_points, mean_point},
+    boards::{BoardPlan, calibrate_scene},
+    error::ScanError,
+    exposure::{Exposure, LAMP_WAVELENGTH},
+    frame::{MeasuredFrame, MeasuredPoint},
+    frame_correlation::FrameCorrelation,
+    height_map::{HeightMap, HeightScale, Raster},
+    measurement::Measurement,
+    motion::ScanMotion,
+    point_cloud::write_point_cloud,
+    scene::MeasurementScene,
+    sensor_speckle::SensorSpeckle,
+    settings::{Averaging, RawFormat, ScanSettings},
+};

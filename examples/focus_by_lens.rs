@@ -11,7 +11,8 @@ mod plot;
 use std::error::Error;
 
 use kuva::prelude::{LinePlot, Plot};
-use tem00::beam::{AbcdMatrix, BeamError, GaussianBeam, LocatedBeam, ThickLens};
+use tem00::beam::optics::{AbcdMatrix, ThickLens};
+use tem00::beam::{BeamError, GaussianBeam, LocatedBeam};
 
 const FOCAL_LENGTH: f64 = 0.1;
 

@@ -133,7 +133,11 @@ macro_rules! names_of_shared {
 
 /// The types that `lib.rs` of a crate exports: what is named in capitals.
 fn exported(name: &str) -> BTreeSet<String> {
-    let text = read(format!("crates/tem00-{name}/src/lib.rs"));
+    exported_by(&format!("crates/tem00-{name}/src/lib.rs"))
+}
+
+fn exported_by(file: &str) -> BTreeSet<String> {
+    let text = read(file);
     let statements = text
         .split(';')
         .filter_map(|part| part.split_once("\npub use "));
@@ -149,18 +153,34 @@ fn exported(name: &str) -> BTreeSet<String> {
 fn every_type_of_beam_crosses_threads() {
     use tem00::beam::*;
     let names = names_of_shared! {
-        AbcdMatrix, AngularKnot<f64>, AngularProfile, AstigmaticBeam, AstigmaticLight<f64>,
-        AstigmaticSystem, Axis<f64>, BeamError, Bounds<f64>, CausticFit, Complex64,
-        ComplexBeamParameter, CrossSection, DMat2, DVec2, DVec3, Ellipse<f64>, Estimate,
-        FanGeometry, FitError, FocusCurve, GaussianBeam, GeneralAstigmaticBeam,
-        KnifeEdgeFit, LaserLine, LineLight<f64>, LineProfile, LocatedBeam, NextEvent<f64>,
-        NextEventSlices<'static, f64>, Placement, RadiusErrors<'static>, RayPdf<f64>,
+        AngularKnot<f64>, AngularProfile, AstigmaticBeam, AstigmaticLight<f64>,
+        Axis<f64>, BeamError, Bounds<f64>, Complex64,
+        DMat2, DVec2, DVec3, Ellipse<f64>, FanGeometry, FocusCurve, GaussianBeam, GeneralAstigmaticBeam,
+        LaserLine, LineLight<f64>, LineProfile, LocatedBeam, NextEvent<f64>,
+        NextEventSlices<'static, f64>, Placement, RayPdf<f64>,
         RaySample<f64>, SampledEvent<f64>, SecondMoments, SpotLight<f64>,
-        TabulatedLineLight<'static, f64>, ThickLens,
+        TabulatedLineLight<'static, f64>,
     };
     let traits = ["Emitter", "Real"].map(str::to_owned);
     let listed: BTreeSet<_> = names.chain(traits).collect();
     assert_eq!(exported("beam"), listed, "types of tem00-beam");
+}
+
+#[test]
+fn every_type_of_the_laboratory_of_beams_crosses_threads() {
+    use tem00::beam::{measurement::*, optics::*};
+    let optics = names_of_shared! { AbcdMatrix, AstigmaticSystem, ComplexBeamParameter, ThickLens };
+    let measurement = names_of_shared! {
+        CausticFit, CrossSection, Estimate, FitError, KnifeEdgeFit, RadiusErrors<'static>,
+    };
+    for (room, listed) in [
+        ("optics", optics.collect()),
+        ("measurement", measurement.collect()),
+    ] {
+        let listed: BTreeSet<_> = listed;
+        let file = format!("crates/tem00-beam/src/{room}.rs");
+        assert_eq!(exported_by(&file), listed, "types of {room}");
+    }
 }
 
 #[test]

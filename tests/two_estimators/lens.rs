@@ -3,7 +3,10 @@
 use std::f64::consts::PI;
 
 use tem00::{
-    beam::{AbcdMatrix, DVec2, DVec3, GaussianBeam, LocatedBeam, ThickLens},
+    beam::{
+        DVec2, DVec3, GaussianBeam, LocatedBeam,
+        optics::{AbcdMatrix, ThickLens},
+    },
     tracer::{Frame, Material, Method, Scene, Shape, TriangleMesh},
 };
 

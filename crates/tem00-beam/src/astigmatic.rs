@@ -2,9 +2,11 @@ use core::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
-use crate::astigmatic_system::check_determinants;
+use crate::measurement::CrossSection;
+use crate::optics::AbcdMatrix;
+use crate::optics::astigmatic_system::check_determinants;
 use crate::range::is_coordinate;
-use crate::{AbcdMatrix, BeamError, CrossSection, GaussianBeam, LocatedBeam};
+use crate::{BeamError, GaussianBeam, LocatedBeam};
 
 /// An elliptic Gaussian beam with simple astigmatism: two principal axes at right angles, each with
 /// its own waist, waist position and M².
@@ -155,7 +157,8 @@ impl AstigmaticBeam {
     /// A laser diode, focused by a lens of 4.5 mm to 200 mm behind it:
     ///
     /// ```
-    /// use tem00_beam::{AbcdMatrix, AstigmaticBeam};
+    /// use tem00_beam::AstigmaticBeam;
+    /// use tem00_beam::optics::AbcdMatrix;
     ///
     /// let diode = AstigmaticBeam::from_divergences(658e-9, [0.133, 0.326])?;
     /// let lens = AbcdMatrix::free_space(4.6036e-3)?.then(AbcdMatrix::thin_lens(4.5e-3)?);

@@ -2,8 +2,9 @@ use core::f64::consts::PI;
 
 use glam::DVec3;
 
+use crate::BeamError;
+use crate::measurement::CrossSection;
 use crate::range::{check, check_length};
-use crate::{BeamError, CrossSection};
 
 /// The largest divergence, in radians, for which the paraxial model is trusted.
 pub(crate) const PARAXIAL_LIMIT: f64 = 0.5;

@@ -4,8 +4,10 @@ use glam::{DMat2, DVec2, DVec3};
 use num_complex::Complex64;
 
 use crate::gaussian::PARAXIAL_LIMIT;
+use crate::measurement::CrossSection;
+use crate::optics::AstigmaticSystem;
 use crate::range::{check, check_length};
-use crate::{AstigmaticBeam, AstigmaticSystem, BeamError, CrossSection};
+use crate::{AstigmaticBeam, BeamError};
 
 use generator::{Ellipse, Generator, combine, covariance};
 
@@ -56,7 +58,8 @@ pub struct SecondMoments {
 ///
 /// ```
 /// use core::f64::consts::FRAC_PI_4;
-/// use tem00_beam::{AstigmaticBeam, AstigmaticSystem, GeneralAstigmaticBeam};
+/// use tem00_beam::{AstigmaticBeam, GeneralAstigmaticBeam};
+/// use tem00_beam::optics::AstigmaticSystem;
 ///
 /// let elliptic = AstigmaticBeam::from_divergences(650e-9, [0.5e-3, 1e-3])?;
 /// let lens = AstigmaticSystem::cylinder_lens(0.1, FRAC_PI_4)?;
@@ -268,9 +271,8 @@ impl GeneralAstigmaticBeam {
     /// A lens focuses a collimated circular beam of 1 mm to a waist of `λ f / (π w)`:
     ///
     /// ```
-    /// use tem00_beam::{
-    ///     AstigmaticBeam, AstigmaticSystem, GaussianBeam, GeneralAstigmaticBeam, LocatedBeam,
-    /// };
+    /// use tem00_beam::{AstigmaticBeam, GaussianBeam, GeneralAstigmaticBeam, LocatedBeam};
+    /// use tem00_beam::optics::AstigmaticSystem;
     ///
     /// let beam = GaussianBeam::from_waist(633e-9, 1e-3)?;
     /// let beam = AstigmaticBeam::stigmatic(LocatedBeam::new(beam, 0.0)?);

@@ -16,10 +16,8 @@
 //!
 //! - Beams: [`GaussianBeam`] (z = 0 at the waist), [`LocatedBeam`] (at a reference plane),
 //!   [`AstigmaticBeam`] (elliptic), [`GeneralAstigmaticBeam`] (behind a turned cylinder lens).
-//! - Optics: [`AbcdMatrix`] and [`ComplexBeamParameter`] for one axis, [`AstigmaticSystem`] for two.
 //! - Laser lines: [`LaserLine`] (z = 0 at the lens) with a [`LineProfile`].
-//! - Measurement: [`CrossSection`] for widths and apertures, [`CausticFit`] and [`KnifeEdgeFit`] for
-//!   what was measured.
+//! - The laboratory: [`optics`] for lenses and mirrors, [`measurement`] for widths, apertures and fits.
 //!
 //! *Renderer*, in `f32` or `f64` and in world coordinates: [`SpotLight`], [`AstigmaticLight`],
 //! [`LineLight`] and [`TabulatedLineLight`], plain structs prepared from the above by a
@@ -55,32 +53,23 @@
 //! # Ok::<(), tem00_beam::BeamError>(())
 //! ```
 
-mod abcd;
 mod astigmatic;
-mod astigmatic_system;
 pub mod closed_form;
-mod complex_parameter;
-mod cross_section;
 mod error;
-mod fit;
-mod focus;
 mod gaussian;
 mod general;
 mod line;
 mod located;
+pub mod measurement;
 mod normal;
+pub mod optics;
 mod placed;
 mod profile;
 mod range;
 mod real;
 
-pub use abcd::{AbcdMatrix, elements::ThickLens};
 pub use astigmatic::AstigmaticBeam;
-pub use astigmatic_system::AstigmaticSystem;
-pub use complex_parameter::ComplexBeamParameter;
-pub use cross_section::CrossSection;
 pub use error::BeamError;
-pub use fit::{CausticFit, Estimate, FitError, KnifeEdgeFit, RadiusErrors};
 pub use gaussian::GaussianBeam;
 pub use general::{GeneralAstigmaticBeam, SecondMoments};
 pub use glam::{DMat2, DVec2, DVec3};

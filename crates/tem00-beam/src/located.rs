@@ -1,5 +1,6 @@
+use crate::measurement::CrossSection;
 use crate::range::check_coordinate;
-use crate::{BeamError, CrossSection, GaussianBeam};
+use crate::{BeamError, GaussianBeam};
 
 /// A Gaussian beam and where its waist lies, seen from a reference plane.
 ///

@@ -10,10 +10,11 @@ mod lines;
 use lines::{profiles, slopes};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use tem00_beam::optics::AstigmaticSystem;
 use tem00_beam::{
-    AstigmaticBeam, AstigmaticLight, AstigmaticSystem, DVec3, Emitter, FanGeometry, FocusCurve,
-    GaussianBeam, GeneralAstigmaticBeam, LaserLine, LineLight, LineProfile, LocatedBeam, Placement,
-    RaySample, SpotLight, TabulatedLineLight,
+    AstigmaticBeam, AstigmaticLight, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam,
+    GeneralAstigmaticBeam, LaserLine, LineLight, LineProfile, LocatedBeam, Placement, RaySample,
+    SpotLight, TabulatedLineLight,
 };
 
 const WAVELENGTH: f64 = 650e-9;

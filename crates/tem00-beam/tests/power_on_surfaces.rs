@@ -13,9 +13,10 @@ mod lines;
 use lines::{REACH, profiles, slopes};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use tem00_beam::optics::AstigmaticSystem;
 use tem00_beam::{
-    AstigmaticBeam, AstigmaticLight, AstigmaticSystem, DVec3, Emitter, FanGeometry, FocusCurve,
-    GaussianBeam, GeneralAstigmaticBeam, LaserLine, LineLight, LocatedBeam, Placement, SpotLight,
+    AstigmaticBeam, AstigmaticLight, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam,
+    GeneralAstigmaticBeam, LaserLine, LineLight, LocatedBeam, Placement, SpotLight,
     TabulatedLineLight,
 };
 

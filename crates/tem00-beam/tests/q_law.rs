@@ -7,7 +7,8 @@ use core::f64::consts::PI;
 use proptest::{prelude::*, test_runner::RngSeed};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use tem00_beam::{AbcdMatrix, BeamError, Complex64, GaussianBeam, LocatedBeam};
+use tem00_beam::optics::AbcdMatrix;
+use tem00_beam::{BeamError, Complex64, GaussianBeam, LocatedBeam};
 
 /// A step of light along the axis.
 #[derive(Clone, Copy, Debug)]

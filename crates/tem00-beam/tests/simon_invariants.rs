@@ -11,9 +11,10 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use tem00_beam::optics::{AbcdMatrix, AstigmaticSystem};
 use tem00_beam::{
-    AbcdMatrix, AstigmaticBeam, AstigmaticSystem, BeamError, DMat2, DVec2, GaussianBeam,
-    GeneralAstigmaticBeam, LocatedBeam, SecondMoments,
+    AstigmaticBeam, BeamError, DMat2, DVec2, GaussianBeam, GeneralAstigmaticBeam, LocatedBeam,
+    SecondMoments,
 };
 
 const WAVELENGTH: f64 = 650e-9;

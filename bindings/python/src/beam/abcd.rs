@@ -32,13 +32,13 @@ use crate::{
 /// The values are checked where a matrix is made.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ThickLens(physics::ThickLens);
+pub(crate) struct ThickLens(physics::optics::ThickLens);
 
 #[pymethods]
 impl ThickLens {
     #[new]
     fn new(index: f64, front_curvature: f64, back_curvature: f64, thickness: f64) -> Self {
-        Self(physics::ThickLens {
+        Self(physics::optics::ThickLens {
             index,
             front_curvature,
             back_curvature,
@@ -104,7 +104,7 @@ methods! {
 ///     Entries of the matrix; ``b`` is in metres and ``c`` in 1/m.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct AbcdMatrix(pub(super) physics::AbcdMatrix);
+pub(crate) struct AbcdMatrix(pub(super) physics::optics::AbcdMatrix);
 
 #[pymethods]
 impl AbcdMatrix {
@@ -116,13 +116,15 @@ impl AbcdMatrix {
                 return Err(refused(name, message));
             }
         }
-        Ok(Self(physics::AbcdMatrix::new(a, b, c, d).or_raise()?))
+        Ok(Self(
+            physics::optics::AbcdMatrix::new(a, b, c, d).or_raise()?,
+        ))
     }
 
     /// Return the system that does nothing.
     #[staticmethod]
     fn identity() -> Self {
-        Self(physics::AbcdMatrix::identity())
+        Self(physics::optics::AbcdMatrix::identity())
     }
 
     /// Return a path in one homogeneous medium.
@@ -133,7 +135,9 @@ impl AbcdMatrix {
     ///     Signed length, in metres, within ±1e30.
     #[staticmethod]
     fn free_space(length: f64) -> PyResult<Self> {
-        Ok(Self(physics::AbcdMatrix::free_space(length).or_raise()?))
+        Ok(Self(
+            physics::optics::AbcdMatrix::free_space(length).or_raise()?,
+        ))
     }
 
     /// Return a thin lens.
@@ -145,7 +149,7 @@ impl AbcdMatrix {
     #[staticmethod]
     fn thin_lens(focal_length: f64) -> PyResult<Self> {
         Ok(Self(
-            physics::AbcdMatrix::thin_lens(focal_length).or_raise()?,
+            physics::optics::AbcdMatrix::thin_lens(focal_length).or_raise()?,
         ))
     }
 
@@ -162,7 +166,7 @@ impl AbcdMatrix {
         } else {
             "front_curvature"
         };
-        let matrix = physics::AbcdMatrix::thick_lens(&lens.0);
+        let matrix = physics::optics::AbcdMatrix::thick_lens(&lens.0);
         Ok(Self(matrix.or_raise_as(&[("curvature", surface)])?))
     }
 
@@ -175,7 +179,7 @@ impl AbcdMatrix {
     #[staticmethod]
     fn curved_mirror(curvature: f64) -> PyResult<Self> {
         Ok(Self(
-            physics::AbcdMatrix::curved_mirror(curvature).or_raise()?,
+            physics::optics::AbcdMatrix::curved_mirror(curvature).or_raise()?,
         ))
     }
 
@@ -194,7 +198,7 @@ impl AbcdMatrix {
     ///     The tangential and the sagittal matrix.
     #[staticmethod]
     fn tilted_mirror(curvature: f64, angle_of_incidence: f64) -> PyResult<(Self, Self)> {
-        let planes = physics::AbcdMatrix::tilted_mirror(curvature, angle_of_incidence);
+        let planes = physics::optics::AbcdMatrix::tilted_mirror(curvature, angle_of_incidence);
         Ok(planes.or_raise()?.map(Self).into())
     }
 
@@ -219,7 +223,8 @@ impl AbcdMatrix {
     ///     1/R, in 1/m, positive where the centre of the sphere lies beyond the interface.
     #[staticmethod]
     fn curved_interface(index_before: f64, index_after: f64, curvature: f64) -> PyResult<Self> {
-        let matrix = physics::AbcdMatrix::curved_interface(index_before, index_after, curvature);
+        let matrix =
+            physics::optics::AbcdMatrix::curved_interface(index_before, index_after, curvature);
         let side = if (1e-3..=1e3).contains(&index_before) {
             "index_after"
         } else {
@@ -239,7 +244,7 @@ impl AbcdMatrix {
     #[staticmethod]
     fn grin(gradient: f64, length: f64) -> PyResult<Self> {
         Ok(Self(
-            physics::AbcdMatrix::grin(gradient, length).or_raise()?,
+            physics::optics::AbcdMatrix::grin(gradient, length).or_raise()?,
         ))
     }
 
@@ -255,7 +260,7 @@ impl AbcdMatrix {
     ///     Length, in metres, within ±1e30.
     #[staticmethod]
     fn grin_rod(index: f64, gradient: f64, length: f64) -> PyResult<Self> {
-        let matrix = physics::AbcdMatrix::grin_rod(index, gradient, length);
+        let matrix = physics::optics::AbcdMatrix::grin_rod(index, gradient, length);
         Ok(Self(matrix.or_raise()?))
     }
 

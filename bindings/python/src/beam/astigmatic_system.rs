@@ -27,14 +27,14 @@ use crate::{
 ///     must be symplectic up to the ratio of the refractive indices.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct AstigmaticSystem(pub(super) physics::AstigmaticSystem);
+pub(crate) struct AstigmaticSystem(pub(super) physics::optics::AstigmaticSystem);
 
 #[pymethods]
 impl AstigmaticSystem {
     #[new]
     fn new(blocks: [[[[f64; 2]; 2]; 2]; 2]) -> PyResult<Self> {
         let blocks = blocks.map(|row| row.map(matrix_of));
-        let system = physics::AstigmaticSystem::new(blocks);
+        let system = physics::optics::AstigmaticSystem::new(blocks);
         Ok(Self(system.or_raise_as(&[("matrix", "blocks")])?))
     }
 
@@ -50,7 +50,7 @@ impl AstigmaticSystem {
     fn from_axes(axes: [PyRef<'_, AbcdMatrix>; 2], rotation: f64) -> PyResult<Self> {
         let axes = axes.map(|axis| axis.0);
         Ok(Self(
-            physics::AstigmaticSystem::from_axes(axes, rotation)
+            physics::optics::AstigmaticSystem::from_axes(axes, rotation)
                 .or_raise_renamed(&["determinant"], "axes")?,
         ))
     }
@@ -64,7 +64,7 @@ impl AstigmaticSystem {
     #[staticmethod]
     fn free_space(length: f64) -> PyResult<Self> {
         Ok(Self(
-            physics::AstigmaticSystem::free_space(length).or_raise()?,
+            physics::optics::AstigmaticSystem::free_space(length).or_raise()?,
         ))
     }
 
@@ -77,7 +77,7 @@ impl AstigmaticSystem {
     #[staticmethod]
     fn thin_lens(focal_length: f64) -> PyResult<Self> {
         Ok(Self(
-            physics::AstigmaticSystem::thin_lens(focal_length).or_raise()?,
+            physics::optics::AstigmaticSystem::thin_lens(focal_length).or_raise()?,
         ))
     }
 
@@ -91,7 +91,7 @@ impl AstigmaticSystem {
     ///     Angle, in radians, from x towards y, of the direction along which the lens bends rays.
     #[staticmethod]
     fn cylinder_lens(focal_length: f64, rotation: f64) -> PyResult<Self> {
-        let system = physics::AstigmaticSystem::cylinder_lens(focal_length, rotation);
+        let system = physics::optics::AstigmaticSystem::cylinder_lens(focal_length, rotation);
         Ok(Self(system.or_raise()?))
     }
 
@@ -103,7 +103,7 @@ impl AstigmaticSystem {
     ///     Angle, in radians, from x towards y.
     #[staticmethod]
     fn image_rotation(rotation: f64) -> PyResult<Self> {
-        let system = physics::AstigmaticSystem::image_rotation(rotation);
+        let system = physics::optics::AstigmaticSystem::image_rotation(rotation);
         Ok(Self(system.or_raise()?))
     }
 

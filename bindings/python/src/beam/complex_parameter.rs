@@ -22,14 +22,15 @@ use crate::{
 ///     Rayleigh range, in metres, from 1e-100 to 1e100.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ComplexBeamParameter(pub(super) physics::ComplexBeamParameter);
+pub(crate) struct ComplexBeamParameter(pub(super) physics::optics::ComplexBeamParameter);
 
 #[expect(clippy::wrong_self_convention, reason = "Python objects are borrowed")]
 #[pymethods]
 impl ComplexBeamParameter {
     #[new]
     fn new(distance_from_waist: f64, rayleigh_range: f64) -> PyResult<Self> {
-        let parameter = physics::ComplexBeamParameter::new(distance_from_waist, rayleigh_range);
+        let parameter =
+            physics::optics::ComplexBeamParameter::new(distance_from_waist, rayleigh_range);
         let names = [("waist_distance", "distance_from_waist")];
         Ok(Self(parameter.or_raise_as(&names)?))
     }
@@ -54,7 +55,7 @@ impl ComplexBeamParameter {
         curvature: f64,
         effective_wavelength: f64,
     ) -> PyResult<Self> {
-        let parameter = physics::ComplexBeamParameter::from_radius_and_curvature(
+        let parameter = physics::optics::ComplexBeamParameter::from_radius_and_curvature(
             radius,
             curvature,
             effective_wavelength,

@@ -17,13 +17,13 @@ use crate::arrays::{Numbers, Values, Vector, Vectors};
 ///     Principal radii (1/e²) along x and y, in metres, from 1e-30 to 1e30.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CrossSection(pub(super) physics::CrossSection);
+pub(crate) struct CrossSection(pub(super) physics::measurement::CrossSection);
 
 #[pymethods]
 impl CrossSection {
     #[new]
     fn new(radii: [f64; 2]) -> PyResult<Self> {
-        let section = physics::CrossSection::new(radii);
+        let section = physics::measurement::CrossSection::new(radii);
         Ok(Self(section.or_raise_as(&[("radius", "radii")])?))
     }
 

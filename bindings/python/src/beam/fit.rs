@@ -49,8 +49,8 @@ impl Estimate {
     }
 }
 
-impl From<physics::Estimate> for Estimate {
-    fn from(estimate: physics::Estimate) -> Self {
+impl From<physics::measurement::Estimate> for Estimate {
+    fn from(estimate: physics::measurement::Estimate) -> Self {
         Self::new(estimate.value, estimate.standard_error)
     }
 }
@@ -76,7 +76,7 @@ impl From<physics::Estimate> for Estimate {
 ///     If the data do not determine a beam.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CausticFit(physics::CausticFit);
+pub(crate) struct CausticFit(physics::measurement::CausticFit);
 
 #[pymethods]
 impl CausticFit {
@@ -117,11 +117,11 @@ impl CausticFit {
         let (positions, radii) = (list("positions", &positions)?, list("radii", &radii)?);
         let known = errors.known(radii.len())?;
         let errors = match (&errors, known) {
-            (_, Some(deviations)) => physics::RadiusErrors::Known(deviations),
-            (Errors::Equal, None) => physics::RadiusErrors::Equal,
-            _ => physics::RadiusErrors::Relative,
+            (_, Some(deviations)) => physics::measurement::RadiusErrors::Known(deviations),
+            (Errors::Equal, None) => physics::measurement::RadiusErrors::Equal,
+            _ => physics::measurement::RadiusErrors::Relative,
         };
-        physics::CausticFit::with_errors(wavelength, positions, radii, errors)
+        physics::measurement::CausticFit::with_errors(wavelength, positions, radii, errors)
             .map(Self)
             .map_err(|error| raised(error, "radii"))
     }
@@ -195,14 +195,14 @@ methods! {
 ///     If the data do not determine a beam.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct KnifeEdgeFit(physics::KnifeEdgeFit);
+pub(crate) struct KnifeEdgeFit(physics::measurement::KnifeEdgeFit);
 
 #[pymethods]
 impl KnifeEdgeFit {
     #[new]
     fn new(positions: Components<'_>, powers: Components<'_>) -> PyResult<Self> {
         let (positions, powers) = (list("positions", &positions)?, list("powers", &powers)?);
-        let fit = physics::KnifeEdgeFit::new(positions, powers);
+        let fit = physics::measurement::KnifeEdgeFit::new(positions, powers);
         fit.map(Self).map_err(|error| raised(error, "powers"))
     }
 
@@ -226,7 +226,7 @@ impl KnifeEdgeFit {
     #[staticmethod]
     fn with_background(positions: Components<'_>, powers: Components<'_>) -> PyResult<Self> {
         let (positions, powers) = (list("positions", &positions)?, list("powers", &powers)?);
-        let fit = physics::KnifeEdgeFit::with_background(positions, powers);
+        let fit = physics::measurement::KnifeEdgeFit::with_background(positions, powers);
         fit.map(Self).map_err(|error| raised(error, "powers"))
     }
 
@@ -305,11 +305,12 @@ impl Errors<'_> {
 }
 
 /// The exception for data that cannot be fitted; `values` is the name of what was measured.
-fn raised(error: physics::FitError, values: &str) -> PyErr {
+fn raised(error: physics::measurement::FitError, values: &str) -> PyErr {
     let name = match &error {
-        physics::FitError::Argument(argument) => argument.parameter(),
-        physics::FitError::TooFewPoints { .. } | physics::FitError::EqualPositions => "positions",
-        physics::FitError::LengthsDiffer { .. } => values,
+        physics::measurement::FitError::Argument(argument) => argument.parameter(),
+        physics::measurement::FitError::TooFewPoints { .. }
+        | physics::measurement::FitError::EqualPositions => "positions",
+        physics::measurement::FitError::LengthsDiffer { .. } => values,
         _ => return FitError::new_err(error.to_string()),
     };
     refused(name, error.to_string())

@@ -2,7 +2,8 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::*;
-use crate::{AstigmaticSystem, GeneralAstigmaticBeam};
+use crate::GeneralAstigmaticBeam;
+use crate::optics::AstigmaticSystem;
 
 const RED: f64 = 650e-9;
 

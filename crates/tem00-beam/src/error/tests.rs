@@ -1,8 +1,8 @@
 use super::*;
+use crate::optics::{AbcdMatrix, AstigmaticSystem};
 use crate::{
-    AbcdMatrix, AngularProfile, AstigmaticBeam, AstigmaticSystem, FanGeometry, FocusCurve,
-    GaussianBeam, GeneralAstigmaticBeam, LaserLine, LineProfile, LocatedBeam, Placement,
-    SecondMoments, SpotLight,
+    AngularProfile, AstigmaticBeam, FanGeometry, FocusCurve, GaussianBeam, GeneralAstigmaticBeam,
+    LaserLine, LineProfile, LocatedBeam, Placement, SecondMoments, SpotLight,
 };
 
 #[test]

@@ -50,10 +50,8 @@ use crate::{BeamError, GeneralAstigmaticBeam};
 ///
 /// ```
 /// use core::f64::consts::FRAC_PI_4;
-/// use tem00_beam::{
-///     AstigmaticBeam, AstigmaticLight, AstigmaticSystem, DVec3, Emitter, GeneralAstigmaticBeam,
-///     Placement,
-/// };
+/// use tem00_beam::{AstigmaticBeam, AstigmaticLight, DVec3, Emitter, GeneralAstigmaticBeam, Placement};
+/// use tem00_beam::optics::AstigmaticSystem;
 ///
 /// let elliptic = AstigmaticBeam::from_divergences(650e-9, [0.5e-3, 1e-3])?;
 /// let lens = AstigmaticSystem::cylinder_lens(0.1, FRAC_PI_4)?;

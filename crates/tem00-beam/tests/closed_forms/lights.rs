@@ -2,10 +2,10 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use tem00_beam::optics::AstigmaticSystem;
 use tem00_beam::{
-    AstigmaticBeam, AstigmaticLight, AstigmaticSystem, DVec3, Emitter, FanGeometry, FocusCurve,
-    GaussianBeam, GeneralAstigmaticBeam, LaserLine, LineLight, LineProfile, LocatedBeam, Placement,
-    SpotLight,
+    AstigmaticBeam, AstigmaticLight, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam,
+    GeneralAstigmaticBeam, LaserLine, LineLight, LineProfile, LocatedBeam, Placement, SpotLight,
 };
 
 const PLACEMENT: Placement = Placement {

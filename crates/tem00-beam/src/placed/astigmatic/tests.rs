@@ -8,8 +8,9 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
 use super::*;
+use crate::optics::AstigmaticSystem;
 use crate::real::sealed::Scalar;
-use crate::{AstigmaticBeam, AstigmaticSystem, GaussianBeam, LocatedBeam, SpotLight};
+use crate::{AstigmaticBeam, GaussianBeam, LocatedBeam, SpotLight};
 
 const POWER: f64 = 5e-3;
 const ORIGIN: DVec3 = DVec3::new(0.1, -0.2, 0.3);

@@ -12,7 +12,7 @@ use crate::{BeamError, GaussianBeam, LocatedBeam};
 /// 1/q = 1/R − i M² λ / (π w²)     R: radius of the wavefront, w: beam radius
 /// ```
 ///
-/// It knows neither wavelength nor M²: with [`AbcdMatrix`](crate::AbcdMatrix) it answers where the
+/// It knows neither wavelength nor M²: with [`AbcdMatrix`](crate::optics::AbcdMatrix) it answers where the
 /// beam is focused and how deep, and together with the *effective wavelength* `M² λ` also how wide
 /// it is. Both parts follow the convention exp(i (ω t − k z)) of the references, where the imaginary
 /// part of q is positive.
@@ -28,7 +28,8 @@ use crate::{BeamError, GaussianBeam, LocatedBeam};
 /// One Rayleigh range past the waist the wavefront is curved most:
 ///
 /// ```
-/// use tem00_beam::{Complex64, ComplexBeamParameter};
+/// use tem00_beam::Complex64;
+/// use tem00_beam::optics::ComplexBeamParameter;
 ///
 /// let q = ComplexBeamParameter::new(0.05, 0.05)?;
 ///
@@ -90,7 +91,7 @@ impl ComplexBeamParameter {
     /// A beam of 1 mm half-width, focused to a distance of 0.1 m:
     ///
     /// ```
-    /// use tem00_beam::ComplexBeamParameter;
+    /// use tem00_beam::optics::ComplexBeamParameter;
     ///
     /// let q = ComplexBeamParameter::from_radius_and_curvature(1e-3, -10.0, 650e-9)?;
     /// assert!((q.distance_from_waist() + 0.1).abs() < 1e-4);

@@ -5,15 +5,15 @@ use proptest::{prelude::*, test_runner::RngSeed};
 use super::elements::ThickLens;
 use super::*;
 
-pub(in crate::abcd) fn space(length: f64) -> AbcdMatrix {
+pub(in crate::optics::abcd) fn space(length: f64) -> AbcdMatrix {
     AbcdMatrix::free_space(length).unwrap()
 }
 
-pub(in crate::abcd) fn lens(focal_length: f64) -> AbcdMatrix {
+pub(in crate::optics::abcd) fn lens(focal_length: f64) -> AbcdMatrix {
     AbcdMatrix::thin_lens(focal_length).unwrap()
 }
 
-pub(in crate::abcd) fn mirror(curvature: f64) -> AbcdMatrix {
+pub(in crate::optics::abcd) fn mirror(curvature: f64) -> AbcdMatrix {
     AbcdMatrix::curved_mirror(curvature).unwrap()
 }
 
@@ -22,7 +22,7 @@ fn entries(m: &AbcdMatrix) -> [f64; 4] {
 }
 
 /// Asserts that two matrices agree within `tolerance`, each entry in its own unit.
-pub(in crate::abcd) fn assert_same(left: &AbcdMatrix, right: &AbcdMatrix, tolerance: f64) {
+pub(in crate::optics::abcd) fn assert_same(left: &AbcdMatrix, right: &AbcdMatrix, tolerance: f64) {
     for (l, r) in entries(left).into_iter().zip(entries(right)) {
         assert!((l - r).abs() <= tolerance, "{left:?}\n{right:?}");
     }

@@ -1,7 +1,8 @@
 //! Ray matrices of one transverse axis.
 
+use crate::optics::ComplexBeamParameter;
 use crate::range::check;
-use crate::{BeamError, ComplexBeamParameter, GaussianBeam, LocatedBeam};
+use crate::{BeamError, GaussianBeam, LocatedBeam};
 
 pub(crate) mod elements;
 mod resonator;
@@ -36,7 +37,8 @@ mod resonator;
 /// A beam expander of two lenses, 50 mm and 200 mm, makes a collimated beam four times as wide:
 ///
 /// ```
-/// use tem00_beam::{AbcdMatrix, GaussianBeam, LocatedBeam};
+/// use tem00_beam::{GaussianBeam, LocatedBeam};
+/// use tem00_beam::optics::AbcdMatrix;
 ///
 /// let expander = AbcdMatrix::thin_lens(50e-3)?
 ///     .then(AbcdMatrix::free_space(250e-3)?)
@@ -108,7 +110,7 @@ impl AbcdMatrix {
     /// # Examples
     ///
     /// ```
-    /// use tem00_beam::AbcdMatrix;
+    /// use tem00_beam::optics::AbcdMatrix;
     ///
     /// let space = AbcdMatrix::free_space(0.2)?;
     /// let imaging = space.then(AbcdMatrix::thin_lens(0.1)?).then(space);

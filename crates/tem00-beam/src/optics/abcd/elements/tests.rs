@@ -1,7 +1,7 @@
 use core::f64::consts::PI;
 
 use super::*;
-use crate::abcd::tests::{assert_same, lens, mirror, space};
+use crate::optics::abcd::tests::{assert_same, lens, mirror, space};
 
 const INFINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 

@@ -1,7 +1,8 @@
 //! Systems that light travels through again and again.
 
 use super::AbcdMatrix;
-use crate::{BeamError, ComplexBeamParameter};
+use crate::BeamError;
+use crate::optics::ComplexBeamParameter;
 
 /// # Resonators
 impl AbcdMatrix {
@@ -43,7 +44,7 @@ impl AbcdMatrix {
     /// 1 m radius:
     ///
     /// ```
-    /// use tem00_beam::AbcdMatrix;
+    /// use tem00_beam::optics::AbcdMatrix;
     ///
     /// let arm = AbcdMatrix::free_space(0.3)?;
     /// let round_trip = arm.then(AbcdMatrix::curved_mirror(1.0)?).then(arm);

@@ -48,7 +48,7 @@ pub enum RadiusErrors<'a> {
 /// A fibre laser at 1064 nm, focused, and measured with a scatter of about 1 %:
 ///
 /// ```
-/// use tem00_beam::CausticFit;
+/// use tem00_beam::measurement::CausticFit;
 ///
 /// let positions = [0.0, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.10, 0.12];
 /// let radii = [
@@ -60,7 +60,7 @@ pub enum RadiusErrors<'a> {
 /// let m_squared = fit.m_squared();
 /// assert!((m_squared.value - 2.2).abs() < 0.05, "{m_squared:?}");
 /// assert!(m_squared.standard_error < 0.03);
-/// # Ok::<(), tem00_beam::FitError>(())
+/// # Ok::<(), tem00_beam::measurement::FitError>(())
 /// ```
 ///
 /// # References

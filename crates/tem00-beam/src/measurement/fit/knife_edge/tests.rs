@@ -3,8 +3,8 @@ use proptest::test_runner::RngSeed;
 
 use super::*;
 use crate::BeamError;
-use crate::CrossSection;
-use crate::fit::synthetic::{assert_chi_squared, assert_standard_normal, noise, pull};
+use crate::measurement::CrossSection;
+use crate::measurement::fit::synthetic::{assert_chi_squared, assert_standard_normal, noise, pull};
 
 const RADIUS: f64 = 0.6e-3;
 const CENTRE: f64 = 7.1e-3;

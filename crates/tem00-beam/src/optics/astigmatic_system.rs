@@ -1,7 +1,8 @@
 use glam::{DMat2, DVec2};
 
+use crate::BeamError;
+use crate::optics::AbcdMatrix;
 use crate::range::{check_coordinate, is_length};
-use crate::{AbcdMatrix, BeamError};
 
 /// Largest deviation from symplectic of a matrix given by its entries, relative to its largest
 /// products.
@@ -33,7 +34,8 @@ const SYMPLECTIC_TOLERANCE: f64 = 1e-9;
 ///
 /// ```
 /// use core::f64::consts::FRAC_PI_2;
-/// use tem00_beam::{AstigmaticSystem, DVec2};
+/// use tem00_beam::DVec2;
+/// use tem00_beam::optics::AstigmaticSystem;
 ///
 /// let crossed = AstigmaticSystem::cylinder_lens(0.1, 0.3)?
 ///     .then(AstigmaticSystem::cylinder_lens(0.1, 0.3 + FRAC_PI_2)?);
@@ -68,7 +70,8 @@ impl AstigmaticSystem {
     /// # Examples
     ///
     /// ```
-    /// use tem00_beam::{AstigmaticSystem, BeamError, DMat2};
+    /// use tem00_beam::{BeamError, DMat2};
+    /// use tem00_beam::optics::AstigmaticSystem;
     ///
     /// let one = DMat2::IDENTITY;
     /// let path = AstigmaticSystem::new([[one, 0.1 * one], [DMat2::ZERO, one]])?;
@@ -131,7 +134,8 @@ impl AstigmaticSystem {
     /// A concave mirror hit at 45° focuses in the plane of incidence first:
     ///
     /// ```
-    /// use tem00_beam::{AbcdMatrix, AstigmaticSystem, DVec2};
+    /// use tem00_beam::DVec2;
+    /// use tem00_beam::optics::{AbcdMatrix, AstigmaticSystem};
     ///
     /// let planes = AbcdMatrix::tilted_mirror(10.0, 45_f64.to_radians())?;
     /// let mirror = AstigmaticSystem::from_axes(planes, 0.0)?;

@@ -1,6 +1,7 @@
 //! Focusing by a lens.
 
-use crate::{AbcdMatrix, BeamError, LocatedBeam};
+use crate::optics::AbcdMatrix;
+use crate::{BeamError, LocatedBeam};
 
 impl LocatedBeam {
     /// Returns the beam behind a thin lens in the reference plane, for the signed focal length `f`

@@ -25,7 +25,7 @@ use marginal::{Interval, power_beyond};
 /// A beam of 1 mm radius through an iris of its own size, centred and 0.2 mm off:
 ///
 /// ```
-/// use tem00_beam::CrossSection;
+/// use tem00_beam::measurement::CrossSection;
 ///
 /// let spot = CrossSection::new([1e-3, 1e-3])?;
 /// assert!((spot.power_in_circle(1e-3) - 0.8647).abs() < 1e-4); // 1 − e⁻²
@@ -99,7 +99,7 @@ impl CrossSection {
     /// # Examples
     ///
     /// ```
-    /// use tem00_beam::CrossSection;
+    /// use tem00_beam::measurement::CrossSection;
     ///
     /// let spot = CrossSection::new([1e-3, 2e-3])?;
     /// let [along_x, along_y] = spot.knife_edge_width();
@@ -148,7 +148,7 @@ impl CrossSection {
     /// A fibre core of 50 µm diameter receives an elliptical spot, centred and 20 µm beside it:
     ///
     /// ```
-    /// use tem00_beam::CrossSection;
+    /// use tem00_beam::measurement::CrossSection;
     ///
     /// let spot = CrossSection::new([20e-6, 10e-6])?;
     /// let centred = spot.power_in_circle_at([0.0, 0.0], 25e-6);
@@ -176,7 +176,7 @@ impl CrossSection {
     /// An aperture of 3/2 of the beam radius passes 98.9 % of the power; 99 % take a little more:
     ///
     /// ```
-    /// use tem00_beam::CrossSection;
+    /// use tem00_beam::measurement::CrossSection;
     ///
     /// let spot = CrossSection::new([1e-3, 1e-3])?;
     /// assert!((spot.circle_radius(0.99)? - 1.517e-3).abs() < 1e-6);

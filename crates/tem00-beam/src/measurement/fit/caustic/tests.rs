@@ -2,7 +2,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::*;
-use crate::fit::synthetic::{assert_chi_squared, assert_standard_normal, noise, pull};
+use crate::measurement::fit::synthetic::{assert_chi_squared, assert_standard_normal, noise, pull};
 
 const WAVELENGTH: f64 = 1064e-9;
 const WAIST: f64 = 80e-6;

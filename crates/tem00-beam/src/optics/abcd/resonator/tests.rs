@@ -3,7 +3,7 @@ use core::f64::consts::PI;
 use proptest::{prelude::*, test_runner::RngSeed};
 
 use super::*;
-use crate::abcd::tests::{lens, mirror, space};
+use crate::optics::abcd::tests::{lens, mirror, space};
 
 #[test]
 fn the_mode_of_a_symmetric_resonator_is_that_of_kogelnik_and_li() {

@@ -71,7 +71,7 @@ impl AbcdMatrix {
     /// A ball lens of N-BK7, 5 mm across, has the focal length `n D / (4 (n − 1))`:
     ///
     /// ```
-    /// use tem00_beam::{AbcdMatrix, ThickLens};
+    /// use tem00_beam::optics::{AbcdMatrix, ThickLens};
     ///
     /// let ball = AbcdMatrix::thick_lens(&ThickLens {
     ///     index: 1.517,
@@ -219,7 +219,7 @@ impl AbcdMatrix {
     /// `1 / (n₀ g)`:
     ///
     /// ```
-    /// use tem00_beam::AbcdMatrix;
+    /// use tem00_beam::optics::AbcdMatrix;
     ///
     /// let gradient = 327.0; // SELFOC-like, pitch 19.2 mm
     /// let quarter_pitch = std::f64::consts::FRAC_PI_2 / gradient;

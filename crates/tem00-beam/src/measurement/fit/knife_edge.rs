@@ -23,7 +23,7 @@ use crate::range::{check_list, is_coordinate};
 /// A trace across a beam of about half a millimetre:
 ///
 /// ```
-/// use tem00_beam::KnifeEdgeFit;
+/// use tem00_beam::measurement::KnifeEdgeFit;
 ///
 /// let positions = [0.0, 0.2e-3, 0.4e-3, 0.6e-3, 0.8e-3, 1.0e-3, 1.2e-3];
 /// let powers = [0.00, 0.06, 0.34, 1.00, 1.66, 1.94, 2.00]; // mW
@@ -32,7 +32,7 @@ use crate::range::{check_list, is_coordinate};
 /// assert!((fit.radius().value - 0.421e-3).abs() < 0.003e-3);
 /// assert!((fit.centre().value - 0.6e-3).abs() < 0.001e-3);
 /// assert!((fit.power().value - 2.0).abs() < 0.01);
-/// # Ok::<(), tem00_beam::FitError>(())
+/// # Ok::<(), tem00_beam::measurement::FitError>(())
 /// ```
 ///
 /// # References

@@ -25,7 +25,7 @@
 //! | `d_SL`, §6.4 | [`Emitter`] | [`Wavefront`] | any factor, and the sign, in a Gaussian beam or a fan |
 //! | `a_P^C + a_P^S`, §6.4 | [`relative_pupil_displacement`] | [`Motion`] | twice `a_P^C` instead of 0, unless that is *minus* the camera motion |
 //! | `d_z⁰`, §6.4 | [`axial_decorrelation_length`] | [`ImagingGeometry::axial_decorrelation_length`] | a factor of 2; γ = 0.405 is left |
-//! | u in the plane, §6.4 | [`slice_coordinate`] | [`slice_coordinate`](tem00_decorrelation::slice_coordinate) | γ = 0.236, 0.431 at 0.27 D |
+//! | u in the plane, §6.4 | [`slice_coordinate`] | [`SpeckleStack::coordinate_of`](tem00_speckle::SpeckleStack::coordinate_of) of the correlation | γ = 0.236, 0.431 at 0.27 D |
 //! | u along the axis | the same | the same | γ = 0.067, 0.856 at 0.43 `d_z⁰` |
 //! | u, both opposed | the same | the same | γ = 1, 0 |
 //! | u past M | the same | the same | γ = 1, 0 |

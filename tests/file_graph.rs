@@ -26,10 +26,6 @@ const KNOWN: &[&[&str]] = &[
         "bindings/python/src/arrays/columns.rs",
     ],
     &[
-        "crates/tem00-camera/src/description.rs",
-        "crates/tem00-camera/src/error.rs",
-    ],
-    &[
         "crates/tem00-cli/src/args.rs",
         "crates/tem00-cli/src/args/calibrate.rs",
         "crates/tem00-cli/src/args/list.rs",
@@ -102,51 +98,6 @@ const KNOWN: &[&[&str]] = &[
         "crates/tem00-statistics/src/moments.rs",
         "crates/tem00-statistics/src/speckle_size.rs",
         "crates/tem00-statistics/src/sums.rs",
-    ],
-    &[
-        "crates/tem00-tracer/src/environment.rs",
-        "crates/tem00-tracer/src/lamp.rs",
-    ],
-    &[
-        "crates/tem00-tracer/src/film.rs",
-        "crates/tem00-tracer/src/film/memory.rs",
-    ],
-    &[
-        "crates/tem00-tracer/src/integrator.rs",
-        "crates/tem00-tracer/src/integrator/rules.rs",
-    ],
-    &[
-        "crates/tem00-tracer/src/integrator/lamps.rs",
-        "crates/tem00-tracer/src/integrator/lasers.rs",
-    ],
-    &[
-        "crates/tem00-tracer/src/intersector/triangles.rs",
-        "crates/tem00-tracer/src/mesh.rs",
-    ],
-    &[
-        "crates/tem00-tracer/src/light_tracer.rs",
-        "crates/tem00-tracer/src/light_tracer/splats.rs",
-        "crates/tem00-tracer/src/light_tracer/walk.rs",
-        "crates/tem00-tracer/src/render.rs",
-        "crates/tem00-tracer/src/render/pass.rs",
-    ],
-    &[
-        "crates/tem00-tracer/src/material.rs",
-        "crates/tem00-tracer/src/material/conductor.rs",
-        "crates/tem00-tracer/src/material/dielectric.rs",
-        "crates/tem00-tracer/src/material/interreflection.rs",
-        "crates/tem00-tracer/src/material/oren_nayar.rs",
-        "crates/tem00-tracer/src/material/plastic.rs",
-    ],
-    &[
-        "crates/tem00-tracer/src/render/options.rs",
-        "crates/tem00-tracer/src/scene.rs",
-    ],
-    &[
-        "crates/tem00-tracer/src/shape.rs",
-        "crates/tem00-tracer/src/shape/cylinder.rs",
-        "crates/tem00-tracer/src/shape/rectangle.rs",
-        "crates/tem00-tracer/src/shape/sphere.rs",
     ],
     &[
         "crates/tem00-triangulation/src/detector.rs",

@@ -2,8 +2,6 @@ use core::{error, fmt};
 
 use tem00_decorrelation::DecorrelationError;
 
-use crate::MAXIMUM_PIXELS;
-
 /// A reason why a camera cannot be constructed.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -59,7 +57,7 @@ impl fmt::Display for CameraError {
             Self::Direction { parameter, allowed } => write!(f, "{parameter} must be {allowed}"),
             Self::Resolution { width, height } => write!(
                 f,
-                "resolution must be at least 1 × 1 and at most {MAXIMUM_PIXELS} pixels in all, got {width} × {height}"
+                "resolution must be at least 1 × 1 and at most 2²⁸ pixels in all, got {width} × {height}"
             ),
             Self::Imaging(source) => source.fmt(f),
         }

@@ -1,10 +1,12 @@
+mod layout;
 mod memory;
 mod sums;
 
 use tem00_numerics::{Grid, cast::to_f32};
 
+pub(crate) use self::layout::FilmLayout;
 pub(crate) use self::sums::{LaserSums, Moments, PixelSums};
-use crate::{Crop, TracerError};
+use crate::TracerError;
 
 /// The rendered layers of one frame, or of the part of it that was cropped.
 ///
@@ -70,21 +72,6 @@ pub(crate) struct Film {
     power: Vec<f64>,
     /// The radiance of all sources, kept where the number of samples depends on it.
     total: Option<[Grid<f32>; 2]>,
-}
-
-/// What a film is made for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FilmLayout<'a> {
-    /// The wavelengths of the lasers, in metres.
-    pub wavelengths: &'a [f64],
-    /// The part of the image that is rendered.
-    pub area: Crop,
-    /// The number of strips into which the area is divided.
-    pub strips: usize,
-    /// Whether the number of samples depends on the radiance.
-    pub adaptive: bool,
-    /// Whether light is followed from the lasers, too.
-    pub light_traced: bool,
 }
 
 impl Film {

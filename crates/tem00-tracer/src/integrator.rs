@@ -5,6 +5,7 @@ mod lamps;
 mod lasers;
 mod rules;
 mod vertex;
+mod weights;
 
 use core::mem::take;
 
@@ -16,7 +17,7 @@ pub(crate) use self::{
     rules::PathRules,
 };
 use crate::{
-    Hit, Intersector, Laser, Scene,
+    Hit, Intersector, Lamp, Laser, RenderOptions, Scene,
     sampler::{Sequence, Stream, Use},
     speckle::{SpeckleFrame, SpecklePoint},
 };
@@ -39,6 +40,62 @@ pub(crate) struct Integrator<'a> {
     lamp_shapes: Vec<usize>,
     /// The lamps that rays meet where they meet nothing else.
     environments: Vec<usize>,
+}
+
+impl<'a> Integrator<'a> {
+    /// Prepares a frame of a scene.
+    pub(crate) fn new(
+        scene: &'a Scene,
+        frame: u32,
+        intersector: &'a Intersector,
+        options: &RenderOptions,
+    ) -> Self {
+        let lamps = |is_meant: fn(&Lamp) -> bool| {
+            let lamps = scene.lamps.iter().enumerate();
+            lamps
+                .filter(|(_, lamp)| is_meant(lamp))
+                .map(|(index, _)| index)
+                .collect()
+        };
+        Self {
+            scene,
+            camera: scene.camera_at(frame),
+            lasers: scene.lasers.iter().map(|laser| laser.at(frame)).collect(),
+            intersector,
+            speckle: None,
+            rules: options.into(),
+            sequence: Sequence::new(options.samples_per_pixel),
+            spectrum: Spectrum::of(&scene.lasers, &scene.lamps),
+            lamp_shapes: lamps(|lamp| matches!(lamp, Lamp::Area { .. })),
+            environments: lamps(|lamp| matches!(lamp, Lamp::Environment(_))),
+        }
+    }
+
+    /// Multiplies coherent light by the speckle of the frame.
+    pub(crate) fn with_speckle(mut self, speckle: Option<&'a SpeckleFrame<'a>>) -> Self {
+        self.speckle = speckle;
+        self
+    }
+
+    /// Returns the camera of the frame.
+    pub(crate) fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// Returns the random numbers of the render.
+    pub(crate) fn sequence(&self) -> &Sequence {
+        &self.sequence
+    }
+
+    /// Returns the wavelengths of the lasers, in metres.
+    pub(crate) fn laser_wavelengths(&self) -> impl Iterator<Item = f64> {
+        self.lasers.iter().map(Laser::wavelength)
+    }
+
+    /// Returns the number of lasers.
+    pub(crate) fn laser_count(&self) -> usize {
+        self.lasers.len()
+    }
 }
 
 impl<'a> Integrator<'a> {

@@ -1,9 +1,11 @@
+mod sample;
 mod spherical_rectangle;
 
 use core::f64::consts::PI;
 
 use glam::DVec3;
 
+pub use self::sample::LampSample;
 use self::spherical_rectangle::SphericalRectangle;
 use crate::{Environment, Rectangle, TracerError};
 
@@ -47,21 +49,6 @@ pub enum Lamp {
     },
     /// Light from all around, from beyond the scene.
     Environment(Environment),
-}
-
-/// A direction from which a lamp sends light to a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LampSample {
-    /// The direction to the light, of unit length.
-    pub direction: DVec3,
-    /// The distance to the light, in metres; infinite for an environment.
-    pub distance: f64,
-    /// The radiance divided by the density `pdf`, in W/m²; for a point, the irradiance across the
-    /// direction.
-    pub radiance_over_pdf: f64,
-    /// The density with which the direction is drawn, per steradian; `None` for a point, which has
-    /// no other direction.
-    pub pdf: Option<f64>,
 }
 
 impl Lamp {

@@ -133,9 +133,10 @@ pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery
 pub use mesh::{MeshError, TriangleMesh};
 pub use metal::Metal;
 pub use render::{
-    Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, render_frame,
+    Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, RenderSettings,
+    render_frame,
 };
-pub use scene::{RenderSettings, Scene, SpeckleSettings, Surface, SurfaceSpeckle};
+pub use scene::{Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
 pub use speckle::{

@@ -14,6 +14,7 @@
 //! speckle moves and changes as if the light came straight from the laser.
 
 mod draws;
+mod job;
 mod splats;
 mod survey;
 mod walk;
@@ -21,67 +22,10 @@ mod walk;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
-use tem00_camera::Camera;
-use tem00_numerics::Grid;
 
+pub(crate) use self::job::{LightJob, LightLayers, LightShare, LightTracer};
 use self::{splats::SplatFilm, walk::Walk};
-use crate::{Crop, Intersector, LaserLayers, RenderError, Scene, speckle::SpeckleFrame};
-
-/// Follows light from the lasers to the camera, in one frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LightTracer<'a> {
-    pub scene: &'a Scene,
-    /// The camera as it stands in the frame.
-    pub camera: &'a Camera,
-    /// The surfaces as they stand in the frame, and the lamps behind them.
-    pub intersector: &'a Intersector,
-    pub speckle: Option<&'a SpeckleFrame<'a>>,
-    pub frame: u32,
-    /// The most surfaces that light may meet between laser and camera; `None` for no limit.
-    pub max_depth: Option<u32>,
-    pub share: LightShare,
-    /// The part of the image that is rendered.
-    pub area: Crop,
-}
-
-/// Which light is followed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LightShare {
-    /// All that reaches the camera from a rough surface.
-    All,
-    /// That of it which a mirror or glass was the first to meet: all that the path tracer misses.
-    SpecularFirst,
-}
-
-/// What is asked of a light tracer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct LightJob {
-    /// The index of the laser in the scene.
-    pub laser: usize,
-    /// The number of light paths. The same number gives the same bits in every part of the image.
-    pub paths: u64,
-    pub seed: u64,
-}
-
-/// The layers that light paths add to those of a laser.
-///
-/// Radiances in W/(m² sr), averaged over the square of the pixel: a light path comes upon its image
-/// point by chance, so that no other reconstruction filter applies.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct LightLayers {
-    /// Radiance of the light that has met one rough surface, before speckle.
-    pub coherent_before: Grid<f32>,
-    /// The same, each path multiplied by its speckle factor.
-    pub coherent_after: Grid<f32>,
-    /// Radiance of the light that has met more than one rough surface.
-    pub incoherent: Grid<f32>,
-    /// The variance of the sum of the last two, without bias: from groups of paths that are
-    /// independent of each other.
-    pub variance: Grid<f32>,
-    /// The power that the light paths bring to the first rough surface where that is seen in the
-    /// image, in watts.
-    pub power_on_target: f64,
-}
+use crate::{LaserLayers, RenderError};
 
 /// The groups of light paths whose points of phase space are spread evenly.
 #[derive(Clone, Copy, Debug)]

@@ -8,12 +8,14 @@ mod interreflection;
 mod optical_roughness;
 mod oren_nayar;
 mod plastic;
+mod sample;
 
 use core::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
 pub use self::optical_roughness::{OpticalRoughness, OpticalRoughnessQuery};
+pub use self::sample::BsdfSample;
 use self::{
     conductor::Conductor,
     dielectric::Dielectric,
@@ -71,46 +73,6 @@ enum Scattering {
     Mirror { reflectance: f64 },
     Polished { metal: Metal },
     Dielectric(Dielectric),
-}
-
-/// A direction drawn from a material, with what an estimator needs of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BsdfSample {
-    /// The drawn direction, of unit length, in the local frame.
-    pub wi: DVec3,
-    /// The BSDF times |cos θ| of `wi`, divided by `pdf`.
-    pub weight: f64,
-    /// The density with which `wi` is drawn, per steradian. For specular materials it is the
-    /// probability of the choice between reflection and refraction.
-    pub pdf: f64,
-    /// Whether the material sends light into single directions only.
-    pub specular: bool,
-    /// The square of the index on the side of `wi`, relative to that on the side of `wo`; 1 for
-    /// reflection. `weight` is that of radiance carried from `wi` to `wo`; `weight · eta_squared` is
-    /// that of power carried from `wo` to `wi`, for paths that start at a light.
-    pub eta_squared: f64,
-}
-
-impl BsdfSample {
-    fn rough(wi: DVec3, weight: f64, pdf: f64) -> Self {
-        Self {
-            wi,
-            weight,
-            pdf,
-            specular: false,
-            eta_squared: 1.0,
-        }
-    }
-
-    fn mirrored(wo: DVec3, weight: f64, pdf: f64) -> Self {
-        Self {
-            wi: DVec3::new(-wo.x, -wo.y, wo.z),
-            weight,
-            pdf,
-            specular: true,
-            eta_squared: 1.0,
-        }
-    }
 }
 
 impl Material {

@@ -147,7 +147,9 @@ impl TriangleMesh {
 
     /// Returns the hierarchy that finds where rays meet the triangles.
     pub(crate) fn hierarchy(&self) -> &MeshHierarchy {
-        self.hierarchy.get_or_init(|| MeshHierarchy::build(self))
+        self.hierarchy.get_or_init(|| {
+            MeshHierarchy::build(self.triangles.len(), |triangle| self.corners(triangle))
+        })
     }
 
     /// Returns the corners of a triangle, in metres.

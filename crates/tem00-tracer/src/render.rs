@@ -1,42 +1,19 @@
+mod error;
 mod options;
 mod pass;
+mod settings;
 
-use core::{error, fmt, sync::atomic::AtomicBool};
+use core::sync::atomic::AtomicBool;
 
+pub use self::error::RenderError;
 pub use self::options::{Crop, Formulas, LampEvents, LaserEvents, Method, RenderOptions};
 use self::pass::PathPass;
+pub use self::settings::RenderSettings;
 use crate::{
-    FilterSampler, Frame, Intersector, Scene, SpeckleModel, TracerError,
+    FilterSampler, Frame, Intersector, Scene, SpeckleModel,
     integrator::Integrator,
     light_tracer::{LightJob, LightShare, LightTracer},
 };
-
-/// Why a frame was not rendered.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum RenderError {
-    /// The caller asked to stop.
-    Cancelled,
-    /// The scene cannot be rendered.
-    Scene(TracerError),
-}
-
-impl fmt::Display for RenderError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Cancelled => write!(f, "the render was cancelled"),
-            Self::Scene(source) => source.fmt(f),
-        }
-    }
-}
-
-impl error::Error for RenderError {}
-
-impl From<TracerError> for RenderError {
-    fn from(source: TracerError) -> Self {
-        Self::Scene(source)
-    }
-}
 
 impl Scene {
     /// Returns the number of camera samples and light paths that one frame takes, of which

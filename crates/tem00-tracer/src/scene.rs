@@ -1,6 +1,6 @@
 use tem00_camera::Camera;
 
-use crate::{Crop, Filter, Lamp, Laser, LaserEvents, Material, Method, Shape, Trajectory};
+use crate::{Lamp, Laser, Material, RenderSettings, Shape, Trajectory};
 
 /// An object: a shape made of a material, perhaps moving from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,48 +71,6 @@ impl Default for SpeckleSettings {
             diameter: None,
             half_period: None,
             memory: 1 << 30,
-        }
-    }
-}
-
-/// Choices about the image; the command line may overrule them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RenderSettings {
-    /// The number of camera samples per pixel.
-    pub samples_per_pixel: u32,
-    /// The seed of everything random: camera samples and speckle.
-    pub seed: u64,
-    /// The number of frames.
-    pub frames: u32,
-    /// The frame whose speckle the others' has moved and changed from.
-    pub reference_frame: u32,
-    /// The most surfaces that light may meet between source and camera; `None` for no limit.
-    pub max_depth: Option<u32>,
-    /// How light is followed.
-    pub method: Method,
-    /// How the lasers are sampled from a surface.
-    pub laser_events: LaserEvents,
-    /// The part of the image that is rendered; `None` for all.
-    pub crop: Option<Crop>,
-    /// The relative standard error of a pixel at which it gets no more samples.
-    pub target_error: Option<f64>,
-    /// How the samples around a pixel make its value.
-    pub filter: Filter,
-}
-
-impl Default for RenderSettings {
-    fn default() -> Self {
-        Self {
-            samples_per_pixel: 16,
-            seed: 0,
-            frames: 1,
-            reference_frame: 0,
-            max_depth: None,
-            method: Method::default(),
-            laser_events: LaserEvents::default(),
-            crop: None,
-            target_error: None,
-            filter: Filter::default(),
         }
     }
 }

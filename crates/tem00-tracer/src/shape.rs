@@ -1,3 +1,4 @@
+mod checks;
 mod cylinder;
 mod instance;
 mod rectangle;
@@ -6,7 +7,7 @@ mod sphere;
 use glam::DVec3;
 
 pub use self::{cylinder::Cylinder, instance::MeshInstance, rectangle::Rectangle, sphere::Sphere};
-use crate::{LocalFrame, RigidMotion, TracerError, TriangleMesh};
+use crate::{LocalFrame, RigidMotion, TriangleMesh};
 
 /// A shape that light can meet.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,24 +105,6 @@ impl Hit {
             self.normal
         })
     }
-}
-
-fn check_point(parameter: &'static str, point: DVec3) -> Result<(), TracerError> {
-    if point.is_finite() {
-        return Ok(());
-    }
-    Err(TracerError::Direction {
-        parameter,
-        allowed: "a finite point",
-    })
-}
-
-/// Returns a vector of unit length along `vector`.
-fn direction(parameter: &'static str, vector: DVec3) -> Result<DVec3, TracerError> {
-    vector.try_normalize().ok_or(TracerError::Direction {
-        parameter,
-        allowed: "a finite vector longer than zero",
-    })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use tem00_numerics::available_memory;
 
-use super::FilmLayout;
+use super::layout::FilmLayout;
 use crate::TracerError;
 
 /// The layers of each laser, and those that a frame has once.

@@ -3,20 +3,10 @@ use tem00_camera::Ray;
 use super::{
     Integrator,
     batch::{Arrival, Batch, Path},
-    lasers::number,
     rules::LAMP_WAVELENGTH,
+    weights::{power_heuristic, random_number},
 };
 use crate::{Hit, Lamp, LampEvents, sampler::Use};
-
-/// Returns the share of an estimate whose direction was drawn with the density `pdf`, if it could
-/// also have been drawn with the density `other`.
-///
-/// It is the power heuristic of E. Veach, *Robust Monte Carlo Methods for Light Transport
-/// Simulation*, 1997, §9.2.4, with the exponent 2.
-pub(super) fn share(pdf: f64, other: f64) -> f64 {
-    let ratio = other / pdf;
-    1.0 / (1.0 + ratio * ratio)
-}
 
 impl<'a> Integrator<'a> {
     /// Connects every rough surface point to a point of every lamp.
@@ -55,7 +45,7 @@ impl<'a> Integrator<'a> {
         let stream = batch.samples[path.sample].stream;
         let u = self
             .sequence
-            .pair(stream, Use::Lamp(path.depth, number(index)));
+            .pair(stream, Use::Lamp(path.depth, random_number(index)));
         let Some(light) = lamp.sample(vertex.position, u) else {
             return;
         };
@@ -69,7 +59,7 @@ impl<'a> Integrator<'a> {
         }
         // Weigh the connection against the chance to meet the lamp by itself.
         let weight = match (light.pdf, self.rules.lamp_events) {
-            (Some(pdf), LampEvents::Both) => share(pdf, vertex.pdf(wi)),
+            (Some(pdf), LampEvents::Both) => power_heuristic(pdf, vertex.pdf(wi)),
             _ => 1.0,
         };
         let segment = if light.distance.is_finite() {
@@ -102,7 +92,9 @@ impl<'a> Integrator<'a> {
             let weight = match (path.scattering_pdf, self.rules.lamp_events) {
                 (None, _) | (_, LampEvents::Scattering) => 1.0,
                 (Some(_), LampEvents::NextEvent) => 0.0,
-                (Some(pdf), LampEvents::Both) => share(pdf, lamp.pdf(ray.origin, ray.direction)),
+                (Some(pdf), LampEvents::Both) => {
+                    power_heuristic(pdf, lamp.pdf(ray.origin, ray.direction))
+                }
             };
             let radiance = self.lamp_throughput(path, batch) * lamp.radiance_along(ray.direction);
             batch.samples[path.sample].lamps += weight * radiance;

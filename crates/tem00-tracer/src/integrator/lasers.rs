@@ -3,8 +3,8 @@ use tem00_camera::Ray;
 use super::{
     CameraSample, Integrator,
     batch::{Arrival, Batch, Path},
-    lamps::share,
     vertex::Vertex,
+    weights::{power_heuristic, random_number},
 };
 use crate::{Formulas, Hit, laser::Illumination, sampler::Use};
 
@@ -37,7 +37,7 @@ impl<'a> Integrator<'a> {
             return;
         };
         // Weigh the connection against the chance to meet the beam by itself.
-        let weight = pdf.map_or(1.0, |pdf| share(pdf, vertex.pdf(wi)));
+        let weight = pdf.map_or(1.0, |pdf| power_heuristic(pdf, vertex.pdf(wi)));
         let reflected = vertex.reflected(wi, self.lasers[laser].wavelength());
         let throughput = self.laser_throughput(laser, &path, batch);
         let radiance = weight * throughput * light.irradiance * reflected;
@@ -75,7 +75,7 @@ impl<'a> Integrator<'a> {
         if !self.rules.samples_beams {
             return Some((source.illuminate(vertex.position)?, None));
         }
-        let purpose = Use::Laser(path.depth, number(laser));
+        let purpose = Use::Laser(path.depth, random_number(laser));
         let u = self.sequence.pair(sample.stream, purpose);
         let event = source.sampled_event(vertex.position, u)?;
         let light = Illumination {
@@ -109,7 +109,7 @@ impl<'a> Integrator<'a> {
                 continue;
             }
             let weight = path.scattering_pdf.map_or(1.0, |pdf| {
-                share(pdf, laser.event_pdf(ray.origin, ray.direction))
+                power_heuristic(pdf, laser.event_pdf(ray.origin, ray.direction))
             });
             let throughput = self.laser_throughput(index, path, batch);
             let slot = path.sample * self.lasers.len() + index;
@@ -136,12 +136,4 @@ impl<'a> Integrator<'a> {
         let solid_angle = self.camera.solid_angle_per_pixel(sample.pixel);
         solid_angle * vertex.distance.powi(2) / vertex.cosine.abs()
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "it only chooses random numbers"
-)]
-pub(super) const fn number(index: usize) -> u32 {
-    index as u32
 }

@@ -1,11 +1,4 @@
-use tem00_camera::Camera;
-
-use crate::{
-    Formulas, Intersector, Lamp, LampEvents, Laser, Method, RenderOptions, Scene,
-    sampler::Sequence, speckle::SpeckleFrame,
-};
-
-use super::Integrator;
+use crate::{Formulas, Lamp, LampEvents, Laser, Method, RenderOptions};
 
 /// The wavelength at which materials are evaluated for lamps, in metres: lamps are white and
 /// materials grey under them.
@@ -47,7 +40,7 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
-    fn of(lasers: &[Laser], lamps: &[Lamp]) -> Self {
+    pub(super) fn of(lasers: &[Laser], lamps: &[Lamp]) -> Self {
         let mut wavelengths = Vec::new();
         let of_laser = lasers
             .iter()
@@ -74,60 +67,4 @@ fn place(wavelengths: &mut Vec<f64>, wavelength: f64) -> usize {
         wavelengths.push(wavelength);
         wavelengths.len() - 1
     })
-}
-
-impl<'a> Integrator<'a> {
-    /// Prepares a frame of a scene.
-    pub(crate) fn new(
-        scene: &'a Scene,
-        frame: u32,
-        intersector: &'a Intersector,
-        options: &RenderOptions,
-    ) -> Self {
-        let lamps = |is_meant: fn(&Lamp) -> bool| {
-            let lamps = scene.lamps.iter().enumerate();
-            lamps
-                .filter(|(_, lamp)| is_meant(lamp))
-                .map(|(index, _)| index)
-                .collect()
-        };
-        Self {
-            scene,
-            camera: scene.camera_at(frame),
-            lasers: scene.lasers.iter().map(|laser| laser.at(frame)).collect(),
-            intersector,
-            speckle: None,
-            rules: options.into(),
-            sequence: Sequence::new(options.samples_per_pixel),
-            spectrum: Spectrum::of(&scene.lasers, &scene.lamps),
-            lamp_shapes: lamps(|lamp| matches!(lamp, Lamp::Area { .. })),
-            environments: lamps(|lamp| matches!(lamp, Lamp::Environment(_))),
-        }
-    }
-
-    /// Multiplies coherent light by the speckle of the frame.
-    pub(crate) fn with_speckle(mut self, speckle: Option<&'a SpeckleFrame<'a>>) -> Self {
-        self.speckle = speckle;
-        self
-    }
-
-    /// Returns the camera of the frame.
-    pub(crate) fn camera(&self) -> &Camera {
-        &self.camera
-    }
-
-    /// Returns the random numbers of the render.
-    pub(crate) fn sequence(&self) -> &Sequence {
-        &self.sequence
-    }
-
-    /// Returns the wavelengths of the lasers, in metres.
-    pub(crate) fn laser_wavelengths(&self) -> impl Iterator<Item = f64> {
-        self.lasers.iter().map(Laser::wavelength)
-    }
-
-    /// Returns the number of lasers.
-    pub(crate) fn laser_count(&self) -> usize {
-        self.lasers.len()
-    }
 }

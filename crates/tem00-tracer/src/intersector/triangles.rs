@@ -5,7 +5,6 @@ use super::{
     hierarchy::{Hierarchy, LocalRay, WIDTH, load, pick, splat},
     lanes::{RayLanes, TOLERANCE, TriangleLanes},
 };
-use crate::TriangleMesh;
 
 /// The hierarchy over the triangles of a mesh, in the mesh's own coordinates.
 #[derive(Clone, Debug)]
@@ -26,16 +25,16 @@ pub(super) struct Block {
 }
 
 impl MeshHierarchy {
-    pub(crate) fn build(mesh: &TriangleMesh) -> Self {
-        let corners = |triangle: usize| mesh.corners(triangle);
-        let boxes: Vec<_> = (0..mesh.triangles().len())
-            .map(corners)
+    /// Builds the hierarchy over `count` triangles by their corners.
+    pub(crate) fn build(count: usize, corners: impl Fn(usize) -> [DVec3; 3]) -> Self {
+        let boxes: Vec<_> = (0..count)
+            .map(&corners)
             .map(|[a, b, c]| (a.min(b).min(c), a.max(b).max(c)))
             .collect();
         let (boxes, leaves) = Hierarchy::build(&boxes, 8);
         let blocks = leaves
             .iter()
-            .map(|triangles| Block::new(mesh, &boxes, triangles))
+            .map(|triangles| Block::new(&corners, &boxes, triangles))
             .collect();
         Self { boxes, blocks }
     }
@@ -56,7 +55,7 @@ impl Block {
     /// The shortest edge to which tolerances shrink: below, products of edges underflow.
     const SHORTEST: f64 = 1e-15;
 
-    fn new(mesh: &TriangleMesh, boxes: &Hierarchy, triangles: &[u32]) -> Self {
+    fn new(corners: &impl Fn(usize) -> [DVec3; 3], boxes: &Hierarchy, triangles: &[u32]) -> Self {
         // Empty lanes hold a triangle without area, far away, whose tolerance nothing passes.
         let mut block = Self {
             corner: [[1e9; WIDTH]; 3],
@@ -65,8 +64,7 @@ impl Block {
             triangles: [NONE; WIDTH],
         };
         for (lane, &triangle) in triangles.iter().enumerate() {
-            let corners = mesh.corners(triangle as usize);
-            let [a, b, c] = corners.map(|corner| boxes.to_local(corner));
+            let [a, b, c] = corners(triangle as usize).map(|corner| boxes.to_local(corner));
             let (e1, e2) = (b - a, c - a);
             let longer = e1.length().max(e2.length()).max(Self::SHORTEST);
             for axis in 0..3 {

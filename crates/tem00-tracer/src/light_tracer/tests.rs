@@ -8,7 +8,10 @@ use super::{
     draws::{DrawKey, Draws},
     *,
 };
-use crate::{LaserDescription, Material, Rectangle, Shape, Surface, TriangleMesh, testing};
+use crate::{
+    Crop, Intersector, LaserDescription, Material, Rectangle, Scene, Shape, Surface, TriangleMesh,
+    testing,
+};
 
 /// A correct light tracer fails a comparison with this probability at the fixed seeds.
 const SIGNIFICANCE: f64 = 1e-4;

@@ -1,6 +1,6 @@
 use tem00_camera::Camera;
 
-use crate::{Filter, RenderSettings, TracerError};
+use crate::{Filter, TracerError};
 
 /// Which formulas a render uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -95,29 +95,6 @@ pub struct RenderOptions {
     /// little: in a closed sphere of reflectance ½ under a narrow beam, with 16 first samples and a target
     /// of 0.2, by less than 0.4 %. The error there is 0.15.
     pub target_error: Option<f64>,
-}
-
-impl From<&RenderSettings> for RenderOptions {
-    fn from(settings: &RenderSettings) -> Self {
-        Self {
-            samples_per_pixel: settings.samples_per_pixel,
-            seed: settings.seed,
-            formulas: Formulas::Derived,
-            max_depth: settings.max_depth,
-            method: settings.method,
-            laser_events: settings.laser_events,
-            lamp_events: LampEvents::default(),
-            filter: settings.filter,
-            crop: settings.crop,
-            target_error: settings.target_error,
-        }
-    }
-}
-
-impl Default for RenderOptions {
-    fn default() -> Self {
-        Self::from(&RenderSettings::default())
-    }
 }
 
 impl RenderOptions {

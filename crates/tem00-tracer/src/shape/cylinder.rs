@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use super::{check_point, direction};
+use super::checks::{check_point, unit_vector};
 use crate::{RigidMotion, TracerError};
 
 /// An open tube: the curved side of a right circular cylinder, without its two ends.
@@ -37,7 +37,7 @@ impl Cylinder {
     /// is not positive and finite.
     pub fn new(centre: DVec3, axis: DVec3, radius: f64, length: f64) -> Result<Self, TracerError> {
         check_point("centre", centre)?;
-        let axis = direction("axis", axis)?;
+        let axis = unit_vector("axis", axis)?;
         for (parameter, value) in [("radius", radius), ("length", length)] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(TracerError::OutOfRange {

@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use super::{check_point, direction};
+use super::checks::{check_point, unit_vector};
 use crate::{RigidMotion, TracerError};
 
 /// A flat rectangle.
@@ -46,8 +46,8 @@ impl Rectangle {
     pub fn new(centre: DVec3, half_u: DVec3, half_v: DVec3) -> Result<Self, TracerError> {
         const RIGHT_ANGLE_TOLERANCE: f64 = 1e-6;
         check_point("centre", centre)?;
-        let u = direction("half_u", half_u)?;
-        let v = direction("half_v", half_v)?;
+        let u = unit_vector("half_u", half_u)?;
+        let v = unit_vector("half_v", half_v)?;
         if u.dot(v).abs() > RIGHT_ANGLE_TOLERANCE {
             return Err(TracerError::Direction {
                 parameter: "half_v",

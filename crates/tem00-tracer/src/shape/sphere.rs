@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use super::check_point;
+use super::checks::check_point;
 use crate::{RigidMotion, TracerError};
 
 /// A sphere.

@@ -1,0 +1,16 @@
+use crate::Crop;
+
+/// Sizes of a film, and the light that it keeps apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FilmLayout<'a> {
+    /// The wavelengths of the lasers, in metres.
+    pub wavelengths: &'a [f64],
+    /// The part of the image that is rendered.
+    pub area: Crop,
+    /// The number of strips into which the area is divided.
+    pub strips: usize,
+    /// Whether the number of samples depends on the radiance.
+    pub adaptive: bool,
+    /// Whether light is followed from the lasers, too.
+    pub light_traced: bool,
+}

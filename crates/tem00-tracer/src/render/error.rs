@@ -1,0 +1,30 @@
+use core::{error, fmt};
+
+use crate::TracerError;
+
+/// Why a frame was not rendered.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The caller asked to stop.
+    Cancelled,
+    /// The scene cannot be rendered.
+    Scene(TracerError),
+}
+
+impl fmt::Display for RenderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cancelled => write!(f, "the render was cancelled"),
+            Self::Scene(source) => source.fmt(f),
+        }
+    }
+}
+
+impl error::Error for RenderError {}
+
+impl From<TracerError> for RenderError {
+    fn from(source: TracerError) -> Self {
+        Self::Scene(source)
+    }
+}

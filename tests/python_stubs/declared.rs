@@ -76,6 +76,9 @@ fn member(input: ParseStream<'_>, class: &str) -> Result<Option<Member>> {
     if kind == "map" {
         return Ok(Some(Member::Method(query(input, "self")?, "")));
     }
+    if kind == "make" {
+        return Ok(Some(constructor(query(input, "")?, class)));
+    }
     let name = input.parse::<Ident>()?.to_string();
     if kind == "made_by" {
         let content;
@@ -90,7 +93,21 @@ fn member(input: ParseStream<'_>, class: &str) -> Result<Option<Member>> {
     Ok(Some(Member::Property(name, result(&ty, class))))
 }
 
-/// The part of `map` behind this word.
+/// A constructor from numbers.
+fn constructor(mut function: Function, class: &str) -> Member {
+    for parameter in &mut function.parameters {
+        parameter.ty = Python::One("float".to_owned());
+    }
+    function.returns = Python::One(class.to_owned());
+    if function.name == "new" {
+        "__new__".clone_into(&mut function.name);
+        function.receiver = "cls";
+        return Member::Method(function, "");
+    }
+    Member::Method(function, "@staticmethod\n")
+}
+
+/// The part of `map` or `make` behind this word.
 fn query(input: ParseStream<'_>, receiver: &'static str) -> Result<Function> {
     let name = input.parse::<Ident>()?.to_string();
     let content;

@@ -12,6 +12,8 @@
 ///   `name`; `map name(x, y) = expression;` has another origin. `x: not_negative` has the argument
 ///   checked by this method of [`Numbers`](crate::arrays::Numbers) first. The module's own `map`
 ///   walks through the arrays.
+/// - `make name(x, y);` is a constructor from numbers, the library's function `name`, and `Class(x, y)`
+///   if the name is `new`;
 /// - `made_by name(x, y);` declares `__repr__` and `__reduce__` of what `Class.name(x, y)` makes
 ///   again, where `x` and `y` are methods of the library's object; `Class(x, y)` if the name is `new`.
 ///
@@ -84,6 +86,35 @@ macro_rules! methods {
             $(#[$($attribute)*])*
             map $name($($argument $(: $check)?),+) = $inner.$name($($argument),+); $($items)*
         }
+    };
+    (
+        @item [$class:ident $this:ident $inner:tt] [$($done:tt)*]
+        $(#[$($attribute:tt)*])* make new($($argument:ident),+); $($items:tt)*
+    ) => {
+        methods! { @item [$class $this $inner] [$($done)*]
+            $(#[$($attribute)*])* #[new] make (new)($($argument),+); $($items)*
+        }
+    };
+    (
+        @item [$class:ident $this:ident $inner:tt] [$($done:tt)*]
+        $(#[$($attribute:tt)*])* make $name:ident($($argument:ident),+); $($items:tt)*
+    ) => {
+        methods! { @item [$class $this $inner] [$($done)*]
+            $(#[$($attribute)*])* #[staticmethod] make ($name)($($argument),+); $($items)*
+        }
+    };
+    (
+        @item [$class:ident $this:ident $inner:tt] [$($done:tt)*]
+        $(#[$($attribute:tt)*])* make ($name:ident)($($argument:ident),+);
+        $($items:tt)*
+    ) => {
+        methods! { @item [$class $this $inner] [
+            $($done)*
+            $(#[$($attribute)*])*
+            fn $name($($argument: f64),+) -> pyo3::PyResult<Self> {
+                Ok(Self($crate::error::OrRaise::or_raise(physics::$class::$name($($argument),+))?))
+            }
+        ] $($items)* }
     };
     (
         @item [$class:ident $this:ident $inner:tt] [$($done:tt)*]

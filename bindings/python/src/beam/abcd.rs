@@ -1,7 +1,7 @@
 //! Ray matrices of one transverse axis.
 
 use pyo3::prelude::*;
-use tem00_beam as physics;
+use tem00_beam::optics as physics;
 
 use super::{
     arguments::{OrRaiseAs, components, map_inner},
@@ -32,13 +32,13 @@ use crate::{
 /// The values are checked where a matrix is made.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ThickLens(physics::optics::ThickLens);
+pub(crate) struct ThickLens(physics::ThickLens);
 
 #[pymethods]
 impl ThickLens {
     #[new]
     fn new(index: f64, front_curvature: f64, back_curvature: f64, thickness: f64) -> Self {
-        Self(physics::optics::ThickLens {
+        Self(physics::ThickLens {
             index,
             front_curvature,
             back_curvature,
@@ -104,7 +104,7 @@ methods! {
 ///     Entries of the matrix; ``b`` is in metres and ``c`` in 1/m.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct AbcdMatrix(pub(super) physics::optics::AbcdMatrix);
+pub(crate) struct AbcdMatrix(pub(super) physics::AbcdMatrix);
 
 #[pymethods]
 impl AbcdMatrix {
@@ -116,41 +116,13 @@ impl AbcdMatrix {
                 return Err(refused(name, message));
             }
         }
-        Ok(Self(
-            physics::optics::AbcdMatrix::new(a, b, c, d).or_raise()?,
-        ))
+        Ok(Self(physics::AbcdMatrix::new(a, b, c, d).or_raise()?))
     }
 
     /// Return the system that does nothing.
     #[staticmethod]
     fn identity() -> Self {
-        Self(physics::optics::AbcdMatrix::identity())
-    }
-
-    /// Return a path in one homogeneous medium.
-    ///
-    /// Parameters
-    /// ----------
-    /// length : float
-    ///     Signed length, in metres, within ±1e30.
-    #[staticmethod]
-    fn free_space(length: f64) -> PyResult<Self> {
-        Ok(Self(
-            physics::optics::AbcdMatrix::free_space(length).or_raise()?,
-        ))
-    }
-
-    /// Return a thin lens.
-    ///
-    /// Parameters
-    /// ----------
-    /// focal_length : float
-    ///     Signed focal length, in metres, positive for a focusing lens.
-    #[staticmethod]
-    fn thin_lens(focal_length: f64) -> PyResult<Self> {
-        Ok(Self(
-            physics::optics::AbcdMatrix::thin_lens(focal_length).or_raise()?,
-        ))
+        Self(physics::AbcdMatrix::identity())
     }
 
     /// Return a thick lens in air, from the vertex of its front to the vertex of its back.
@@ -166,21 +138,8 @@ impl AbcdMatrix {
         } else {
             "front_curvature"
         };
-        let matrix = physics::optics::AbcdMatrix::thick_lens(&lens.0);
+        let matrix = physics::AbcdMatrix::thick_lens(&lens.0);
         Ok(Self(matrix.or_raise_as(&[("curvature", surface)])?))
-    }
-
-    /// Return a mirror at normal incidence.
-    ///
-    /// Parameters
-    /// ----------
-    /// curvature : float
-    ///     1/R, in 1/m, positive for a concave, focusing mirror.
-    #[staticmethod]
-    fn curved_mirror(curvature: f64) -> PyResult<Self> {
-        Ok(Self(
-            physics::optics::AbcdMatrix::curved_mirror(curvature).or_raise()?,
-        ))
     }
 
     /// Return the matrices of a tilted mirror: in the plane of incidence, and across it.
@@ -198,7 +157,7 @@ impl AbcdMatrix {
     ///     The tangential and the sagittal matrix.
     #[staticmethod]
     fn tilted_mirror(curvature: f64, angle_of_incidence: f64) -> PyResult<(Self, Self)> {
-        let planes = physics::optics::AbcdMatrix::tilted_mirror(curvature, angle_of_incidence);
+        let planes = physics::AbcdMatrix::tilted_mirror(curvature, angle_of_incidence);
         Ok(planes.or_raise()?.map(Self).into())
     }
 
@@ -223,45 +182,13 @@ impl AbcdMatrix {
     ///     1/R, in 1/m, positive where the centre of the sphere lies beyond the interface.
     #[staticmethod]
     fn curved_interface(index_before: f64, index_after: f64, curvature: f64) -> PyResult<Self> {
-        let matrix =
-            physics::optics::AbcdMatrix::curved_interface(index_before, index_after, curvature);
+        let matrix = physics::AbcdMatrix::curved_interface(index_before, index_after, curvature);
         let side = if (1e-3..=1e3).contains(&index_before) {
             "index_after"
         } else {
             "index_before"
         };
         Ok(Self(matrix.or_raise_as(&[("index", side)])?))
-    }
-
-    /// Return a path inside a medium whose index falls off as ``n₀ (1 − g² r² / 2)``.
-    ///
-    /// Parameters
-    /// ----------
-    /// gradient : float
-    ///     g, in 1/m, from 0 to 1e30.
-    /// length : float
-    ///     Signed length, in metres, within ±1e30.
-    #[staticmethod]
-    fn grin(gradient: f64, length: f64) -> PyResult<Self> {
-        Ok(Self(
-            physics::optics::AbcdMatrix::grin(gradient, length).or_raise()?,
-        ))
-    }
-
-    /// Return a rod of such a medium with flat faces, in air.
-    ///
-    /// Parameters
-    /// ----------
-    /// index : float
-    ///     Refractive index n₀ on the axis, from 0.001 to 1000.
-    /// gradient : float
-    ///     g, in 1/m, from 0 to 1e30.
-    /// length : float
-    ///     Length, in metres, within ±1e30.
-    #[staticmethod]
-    fn grin_rod(index: f64, gradient: f64, length: f64) -> PyResult<Self> {
-        let matrix = physics::optics::AbcdMatrix::grin_rod(index, gradient, length);
-        Ok(Self(matrix.or_raise()?))
     }
 
     /// Return the system of this one followed by ``next``.
@@ -309,10 +236,6 @@ impl AbcdMatrix {
     /// Parameters
     /// ----------
     /// parameter : ComplexBeamParameter
-    ///
-    /// Returns
-    /// -------
-    /// ComplexBeamParameter
     fn transform_parameter(
         &self,
         parameter: &ComplexBeamParameter,
@@ -327,10 +250,6 @@ impl AbcdMatrix {
     /// ----------
     /// beam : LocatedBeam
     ///     The beam in front, seen from the input plane.
-    ///
-    /// Returns
-    /// -------
-    /// LocatedBeam
     fn transform(&self, beam: &LocatedBeam) -> PyResult<LocatedBeam> {
         Ok(LocatedBeam(self.0.transform(&beam.0).or_raise()?))
     }
@@ -344,6 +263,52 @@ impl AbcdMatrix {
 
 methods! {
     impl AbcdMatrix as this: this.0;
+
+    /// Return a path in one homogeneous medium.
+    ///
+    /// Parameters
+    /// ----------
+    /// length : float
+    ///     Signed length, in metres, within ±1e30.
+    make free_space(length);
+
+    /// Return a thin lens.
+    ///
+    /// Parameters
+    /// ----------
+    /// focal_length : float
+    ///     Signed focal length, in metres, positive for a focusing lens.
+    make thin_lens(focal_length);
+
+    /// Return a mirror at normal incidence.
+    ///
+    /// Parameters
+    /// ----------
+    /// curvature : float
+    ///     1/R, in 1/m, positive for a concave, focusing mirror.
+    make curved_mirror(curvature);
+
+    /// Return a path inside a medium whose index falls off as ``n₀ (1 − g² r² / 2)``.
+    ///
+    /// Parameters
+    /// ----------
+    /// gradient : float
+    ///     g, in 1/m, from 0 to 1e30.
+    /// length : float
+    ///     Signed length, in metres, within ±1e30.
+    make grin(gradient, length);
+
+    /// Return a rod of such a medium with flat faces, in air.
+    ///
+    /// Parameters
+    /// ----------
+    /// index : float
+    ///     Refractive index n₀ on the axis, from 0.001 to 1000.
+    /// gradient : float
+    ///     g, in 1/m, from 0 to 1e30.
+    /// length : float
+    ///     Length, in metres, within ±1e30.
+    make grin_rod(index, gradient, length);
 
     /// Entry A: the height behind the system per height in front.
     get a -> f64;

@@ -42,10 +42,6 @@ impl AstigmaticBeam {
     /// Parameters
     /// ----------
     /// beam : LocatedBeam
-    ///
-    /// Returns
-    /// -------
-    /// AstigmaticBeam
     #[staticmethod]
     fn stigmatic(beam: &LocatedBeam) -> Self {
         Self(physics::AstigmaticBeam::stigmatic(beam.0))
@@ -61,10 +57,6 @@ impl AstigmaticBeam {
     ///     Wavelength in metres.
     /// divergences : (float, float)
     ///     Far-field half-angles (1/e²) along x and y, in radians, in (0, 0.5].
-    ///
-    /// Returns
-    /// -------
-    /// AstigmaticBeam
     #[staticmethod]
     fn from_divergences(wavelength: f64, divergences: [f64; 2]) -> PyResult<Self> {
         let beam = physics::AstigmaticBeam::from_divergences(wavelength, divergences);
@@ -77,10 +69,6 @@ impl AstigmaticBeam {
     /// ----------
     /// waist_distances : (float, float)
     ///     Signed distances along the first and the second axis, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// AstigmaticBeam
     fn with_waist_distances(&self, waist_distances: [f64; 2]) -> PyResult<Self> {
         let beam = self.0.with_waist_distances(waist_distances);
         Ok(Self(
@@ -94,10 +82,6 @@ impl AstigmaticBeam {
     /// ----------
     /// rotation : float
     ///     Angle in radians, from x towards y.
-    ///
-    /// Returns
-    /// -------
-    /// AstigmaticBeam
     fn with_rotation(&self, rotation: f64) -> PyResult<Self> {
         Ok(Self(self.0.with_rotation(rotation).or_raise()?))
     }
@@ -146,10 +130,6 @@ impl AstigmaticBeam {
     /// ----------
     /// z : float
     ///     Distance from the reference plane, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// CrossSection
     fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
         let z = coordinate("z", z)?;
         Ok(CrossSection(self.0.cross_section_at(z)))

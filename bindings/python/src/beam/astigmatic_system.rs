@@ -2,8 +2,8 @@
 
 use numpy::{PyArray1, PyArray4, PyArrayMethods};
 use pyo3::prelude::*;
-use tem00_beam as physics;
 use tem00_beam::DVec2;
+use tem00_beam::optics as physics;
 
 use super::{
     abcd::AbcdMatrix,
@@ -27,14 +27,14 @@ use crate::{
 ///     must be symplectic up to the ratio of the refractive indices.
 #[pyclass(frozen, eq, module = "tem00.beam")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct AstigmaticSystem(pub(super) physics::optics::AstigmaticSystem);
+pub(crate) struct AstigmaticSystem(pub(super) physics::AstigmaticSystem);
 
 #[pymethods]
 impl AstigmaticSystem {
     #[new]
     fn new(blocks: [[[[f64; 2]; 2]; 2]; 2]) -> PyResult<Self> {
         let blocks = blocks.map(|row| row.map(matrix_of));
-        let system = physics::optics::AstigmaticSystem::new(blocks);
+        let system = physics::AstigmaticSystem::new(blocks);
         Ok(Self(system.or_raise_as(&[("matrix", "blocks")])?))
     }
 
@@ -50,61 +50,9 @@ impl AstigmaticSystem {
     fn from_axes(axes: [PyRef<'_, AbcdMatrix>; 2], rotation: f64) -> PyResult<Self> {
         let axes = axes.map(|axis| axis.0);
         Ok(Self(
-            physics::optics::AstigmaticSystem::from_axes(axes, rotation)
+            physics::AstigmaticSystem::from_axes(axes, rotation)
                 .or_raise_renamed(&["determinant"], "axes")?,
         ))
-    }
-
-    /// Return a straight path.
-    ///
-    /// Parameters
-    /// ----------
-    /// length : float
-    ///     Signed length, in metres, within ±1e30.
-    #[staticmethod]
-    fn free_space(length: f64) -> PyResult<Self> {
-        Ok(Self(
-            physics::optics::AstigmaticSystem::free_space(length).or_raise()?,
-        ))
-    }
-
-    /// Return a thin lens.
-    ///
-    /// Parameters
-    /// ----------
-    /// focal_length : float
-    ///     Signed focal length, in metres, positive where it focuses.
-    #[staticmethod]
-    fn thin_lens(focal_length: f64) -> PyResult<Self> {
-        Ok(Self(
-            physics::optics::AstigmaticSystem::thin_lens(focal_length).or_raise()?,
-        ))
-    }
-
-    /// Return a thin cylinder lens.
-    ///
-    /// Parameters
-    /// ----------
-    /// focal_length : float
-    ///     Signed focal length, in metres, positive where it focuses.
-    /// rotation : float
-    ///     Angle, in radians, from x towards y, of the direction along which the lens bends rays.
-    #[staticmethod]
-    fn cylinder_lens(focal_length: f64, rotation: f64) -> PyResult<Self> {
-        let system = physics::optics::AstigmaticSystem::cylinder_lens(focal_length, rotation);
-        Ok(Self(system.or_raise()?))
-    }
-
-    /// Return a system that turns positions and slopes, as an image rotator of mirrors does.
-    ///
-    /// Parameters
-    /// ----------
-    /// rotation : float
-    ///     Angle, in radians, from x towards y.
-    #[staticmethod]
-    fn image_rotation(rotation: f64) -> PyResult<Self> {
-        let system = physics::optics::AstigmaticSystem::image_rotation(rotation);
-        Ok(Self(system.or_raise()?))
     }
 
     /// Return the system of this one followed by ``next``.
@@ -112,10 +60,6 @@ impl AstigmaticSystem {
     /// Parameters
     /// ----------
     /// next : AstigmaticSystem
-    ///
-    /// Returns
-    /// -------
-    /// AstigmaticSystem
     fn then(&self, next: &Self) -> Self {
         Self(self.0.then(next.0))
     }
@@ -156,6 +100,40 @@ impl AstigmaticSystem {
 
 methods! {
     impl AstigmaticSystem as this: this.0;
+
+    /// Return a straight path.
+    ///
+    /// Parameters
+    /// ----------
+    /// length : float
+    ///     Signed length, in metres, within ±1e30.
+    make free_space(length);
+
+    /// Return a thin lens.
+    ///
+    /// Parameters
+    /// ----------
+    /// focal_length : float
+    ///     Signed focal length, in metres, positive where it focuses.
+    make thin_lens(focal_length);
+
+    /// Return a thin cylinder lens.
+    ///
+    /// Parameters
+    /// ----------
+    /// focal_length : float
+    ///     Signed focal length, in metres, positive where it focuses.
+    /// rotation : float
+    ///     Angle, in radians, from x towards y, of the direction along which the lens bends rays.
+    make cylinder_lens(focal_length, rotation);
+
+    /// Return a system that turns positions and slopes, as an image rotator of mirrors does.
+    ///
+    /// Parameters
+    /// ----------
+    /// rotation : float
+    ///     Angle, in radians, from x towards y.
+    make image_rotation(rotation);
 
     /// Ratio of the refractive index before the system to that behind it.
     get index_ratio -> f64;

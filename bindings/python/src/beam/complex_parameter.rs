@@ -45,10 +45,6 @@ impl ComplexBeamParameter {
     ///     Wavefront curvature 1/R, in 1/m, positive where the beam diverges.
     /// effective_wavelength : float
     ///     ``M² λ``, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// ComplexBeamParameter
     #[staticmethod]
     fn from_radius_and_curvature(
         radius: f64,

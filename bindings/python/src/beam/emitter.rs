@@ -352,10 +352,6 @@ impl Emitter {
     /// ----------
     /// l : float
     ///     Distance along the axis, in metres, within ±1e30.
-    ///
-    /// Returns
-    /// -------
-    /// Bounds
     fn bounds(&self, py: Python<'_>, l: f64) -> PyResult<Bounds> {
         let l = coordinate("l", l)?;
         let bounds = self.0.ask(|light| light.bounds(l));

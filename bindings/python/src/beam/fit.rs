@@ -99,10 +99,6 @@ impl CausticFit {
     ///     ``"relative"``: proportional to the radius; ``"equal"``: the same for all. The size of both
     ///     follows from the scatter of the data. Numbers: the known standard deviations, in metres.
     ///
-    /// Returns
-    /// -------
-    /// CausticFit
-    ///
     /// Raises
     /// ------
     /// FitError
@@ -214,10 +210,6 @@ impl KnifeEdgeFit {
     ///     Positions of the edge, in metres; at least 5.
     /// powers : array_like, shape (n,)
     ///     Power that passes there, in any unit.
-    ///
-    /// Returns
-    /// -------
-    /// KnifeEdgeFit
     ///
     /// Raises
     /// ------

@@ -10,7 +10,6 @@ use super::{
 };
 use crate::{
     arrays::{Array, Numbers, Values},
-    error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
 
@@ -37,55 +36,12 @@ pub(crate) struct GaussianBeam(pub(super) physics::GaussianBeam);
 
 #[pymethods]
 impl GaussianBeam {
-    /// Return the diffraction-limited beam (M² = 1) of a wavelength and a waist radius.
-    ///
-    /// Parameters
-    /// ----------
-    /// wavelength : float
-    ///     Wavelength in the medium the beam travels in, in metres.
-    /// waist_radius : float
-    ///     Radius of the waist (1/e²), in metres, at least ``2 λ / π``.
-    ///
-    /// Returns
-    /// -------
-    /// GaussianBeam
-    #[staticmethod]
-    fn from_waist(wavelength: f64, waist_radius: f64) -> PyResult<Self> {
-        let beam = physics::GaussianBeam::from_waist(wavelength, waist_radius).or_raise()?;
-        Ok(Self(beam))
-    }
-
-    /// Return the diffraction-limited beam (M² = 1) of a wavelength and a divergence.
-    ///
-    /// Where a data sheet gives the divergence and an M², ask for the divergence ``δ / M²`` and then
-    /// for the M², which brings it back to ``δ``: ``with_m_squared`` keeps the waist.
-    ///
-    /// Parameters
-    /// ----------
-    /// wavelength : float
-    ///     Wavelength in the medium the beam travels in, in metres.
-    /// divergence : float
-    ///     Far-field half-angle (1/e²), in radians, in (0, 0.5].
-    ///
-    /// Returns
-    /// -------
-    /// GaussianBeam
-    #[staticmethod]
-    fn from_divergence(wavelength: f64, divergence: f64) -> PyResult<Self> {
-        let beam = physics::GaussianBeam::from_divergence(wavelength, divergence).or_raise()?;
-        Ok(Self(beam))
-    }
-
     /// Return this beam with another beam quality factor M² and the same waist radius.
     ///
     /// Parameters
     /// ----------
     /// m_squared : float
     ///     Beam quality factor, at least 1, and small enough for the waist to stay paraxial.
-    ///
-    /// Returns
-    /// -------
-    /// GaussianBeam
     fn with_m_squared(&self, m_squared: f64) -> PyResult<Self> {
         let beam = self.0.with_m_squared(m_squared);
         Ok(Self(beam.or_raise_as(&[("waist_radius", "m_squared")])?))
@@ -112,10 +68,6 @@ impl GaussianBeam {
     /// ----------
     /// z : float
     ///     Signed distance from the waist, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// CrossSection
     fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
         let z = coordinate("z", z)?;
         Ok(CrossSection(self.0.cross_section_at(z)))
@@ -175,6 +127,29 @@ impl GaussianBeam {
 
 methods! {
     impl GaussianBeam as this: this.0;
+
+    /// Return the diffraction-limited beam (M² = 1) of a wavelength and a waist radius.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Wavelength in the medium the beam travels in, in metres.
+    /// waist_radius : float
+    ///     Radius of the waist (1/e²), in metres, at least ``2 λ / π``.
+    make from_waist(wavelength, waist_radius);
+
+    /// Return the diffraction-limited beam (M² = 1) of a wavelength and a divergence.
+    ///
+    /// Where a data sheet gives the divergence and an M², ask for the divergence ``δ / M²`` and then
+    /// for the M², which brings it back to ``δ``: ``with_m_squared`` keeps the waist.
+    ///
+    /// Parameters
+    /// ----------
+    /// wavelength : float
+    ///     Wavelength in the medium the beam travels in, in metres.
+    /// divergence : float
+    ///     Far-field half-angle (1/e²), in radians, in (0, 0.5].
+    make from_divergence(wavelength, divergence);
 
     /// Wavelength in the medium the beam travels in, in metres.
     get wavelength -> f64;

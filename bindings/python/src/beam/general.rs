@@ -100,10 +100,6 @@ impl GeneralAstigmaticBeam {
     /// Parameters
     /// ----------
     /// beam : AstigmaticBeam
-    ///
-    /// Returns
-    /// -------
-    /// GeneralAstigmaticBeam
     #[staticmethod]
     fn from_astigmatic(beam: &AstigmaticBeam) -> Self {
         Self(beam.0.into())
@@ -117,10 +113,6 @@ impl GeneralAstigmaticBeam {
     ///     Wavelength in metres.
     /// moments : SecondMoments
     ///     Moments that light of this wavelength can have: M² is at least 1 in both modes.
-    ///
-    /// Returns
-    /// -------
-    /// GeneralAstigmaticBeam
     #[staticmethod]
     fn from_moments(wavelength: f64, moments: &SecondMoments) -> PyResult<Self> {
         let beam = physics::GeneralAstigmaticBeam::from_moments(wavelength, &moments.0);
@@ -135,10 +127,6 @@ impl GeneralAstigmaticBeam {
     ///     Wavelength in metres.
     /// curvature : array_like of complex, shape (2, 2)
     ///     Complex curvature, in 1/m; symmetric, with a negative definite imaginary part.
-    ///
-    /// Returns
-    /// -------
-    /// GeneralAstigmaticBeam
     #[staticmethod]
     fn from_complex_curvature(wavelength: f64, curvature: [[Complex; 2]; 2]) -> PyResult<Self> {
         let tensor = curvature.map(|row| row.map(|Complex(entry)| entry));
@@ -152,10 +140,6 @@ impl GeneralAstigmaticBeam {
     /// ----------
     /// distance : float
     ///     Signed distance, in metres, within ±1e30.
-    ///
-    /// Returns
-    /// -------
-    /// GeneralAstigmaticBeam
     fn propagated(&self, distance: f64) -> PyResult<Self> {
         let beam = self.0.propagated(coordinate("distance", distance)?);
         Ok(Self(beam.or_raise_as(&[("radius", "distance")])?))
@@ -166,10 +150,6 @@ impl GeneralAstigmaticBeam {
     /// Parameters
     /// ----------
     /// system : AstigmaticSystem
-    ///
-    /// Returns
-    /// -------
-    /// GeneralAstigmaticBeam
     fn through(&self, system: &AstigmaticSystem) -> PyResult<Self> {
         Ok(Self(self.0.through(&system.0).or_raise()?))
     }
@@ -192,10 +172,6 @@ impl GeneralAstigmaticBeam {
     /// ----------
     /// z : float
     ///     Distance from the reference plane, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// SecondMoments
     fn moments_at(&self, z: f64) -> PyResult<SecondMoments> {
         let z = coordinate("z", z)?;
         Ok(SecondMoments(self.0.moments_at(z)))
@@ -222,10 +198,6 @@ impl GeneralAstigmaticBeam {
     /// ----------
     /// z : float
     ///     Distance from the reference plane, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// CrossSection
     fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
         let z = coordinate("z", z)?;
         Ok(CrossSection(self.0.cross_section_at(z)))

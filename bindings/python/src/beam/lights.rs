@@ -45,10 +45,6 @@ impl SpotLight {
     /// placement : Placement
     /// power : float
     ///     Power in watts, from 0 to 1e100.
-    ///
-    /// Returns
-    /// -------
-    /// SpotLight
     #[staticmethod]
     fn place(
         py: Python<'_>,
@@ -72,10 +68,6 @@ impl SpotLight {
     /// placement : Placement
     /// power : float
     ///     Power in watts, from 0 to 1e100.
-    ///
-    /// Returns
-    /// -------
-    /// SpotLight
     #[staticmethod]
     fn place_astigmatic(
         py: Python<'_>,
@@ -93,10 +85,6 @@ impl SpotLight {
     /// ----------
     /// rows : array_like, shape (6, 4)
     ///     The fields in the order of memory. What no placed light could hold is refused.
-    ///
-    /// Returns
-    /// -------
-    /// SpotLight
     #[staticmethod]
     fn from_rows(py: Python<'_>, rows: Table<'_>) -> PyResult<Py<Self>> {
         let rows = Rows::placed(&rows)?;
@@ -149,10 +137,6 @@ impl AstigmaticLight {
     /// placement : Placement
     /// power : float
     ///     Power in watts, from 0 to 1e100.
-    ///
-    /// Returns
-    /// -------
-    /// AstigmaticLight
     #[staticmethod]
     fn place(
         py: Python<'_>,
@@ -170,10 +154,6 @@ impl AstigmaticLight {
     /// ----------
     /// rows : array_like, shape (7, 4)
     ///     The fields in the order of memory. What no placed light could hold is refused.
-    ///
-    /// Returns
-    /// -------
-    /// AstigmaticLight
     #[staticmethod]
     fn from_rows(py: Python<'_>, rows: Table<'_>) -> PyResult<Py<Self>> {
         let rows = Rows::placed(&rows)?;

@@ -47,10 +47,6 @@ impl LineLight {
     /// placement : Placement
     /// power : float
     ///     Power in watts, from 0 to 1e100.
-    ///
-    /// Returns
-    /// -------
-    /// LineLight
     #[staticmethod]
     fn place(
         py: Python<'_>,
@@ -68,10 +64,6 @@ impl LineLight {
     /// ----------
     /// rows : array_like, shape (7, 4)
     ///     The fields in the order of memory. What no placed light could hold is refused.
-    ///
-    /// Returns
-    /// -------
-    /// LineLight
     #[staticmethod]
     fn from_rows(py: Python<'_>, rows: Table<'_>) -> PyResult<Py<Self>> {
         let rows = Rows::placed(&rows)?;
@@ -157,10 +149,6 @@ impl TabulatedLineLight {
     /// placement : Placement
     /// power : float
     ///     Power in watts, from 0 to 1e100.
-    ///
-    /// Returns
-    /// -------
-    /// TabulatedLineLight
     #[staticmethod]
     fn place(
         py: Python<'_>,

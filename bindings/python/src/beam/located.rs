@@ -44,10 +44,6 @@ impl LocatedBeam {
     /// ----------
     /// z : float
     ///     Signed distance from the reference plane, in metres.
-    ///
-    /// Returns
-    /// -------
-    /// CrossSection
     fn cross_section_at(&self, z: f64) -> PyResult<CrossSection> {
         let z = coordinate("z", z)?;
         Ok(CrossSection(self.0.cross_section_at(z)))
@@ -119,10 +115,6 @@ impl ComplexBeamParameter {
     ///     Wavelength in the medium the beam travels in, in metres.
     /// m_squared : float
     ///     Beam quality factor, at least 1.
-    ///
-    /// Returns
-    /// -------
-    /// LocatedBeam
     fn to_located_beam(&self, wavelength: f64, m_squared: f64) -> PyResult<LocatedBeam> {
         let beam = self.0.to_located_beam(wavelength, m_squared);
         Ok(LocatedBeam(beam.or_raise()?))

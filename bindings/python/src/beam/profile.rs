@@ -144,10 +144,6 @@ impl AngularProfile {
     /// ----------
     /// pairs : array_like, shape (n, 2)
     ///     Ascending angles, in radians, and the power per angle at each, in any unit.
-    ///
-    /// Returns
-    /// -------
-    /// AngularProfile
     #[staticmethod]
     fn from_pairs(pairs: Table<'_>) -> PyResult<Self> {
         let [_, 2] = pairs.shape() else {

@@ -9,7 +9,6 @@ use super::{
 };
 use crate::{
     arrays::{Numbers, map},
-    error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
 
@@ -30,12 +29,6 @@ impl CoherentBackground {
     /// The largest beam ratio.
     #[classattr]
     const MAX_BEAM_RATIO: f64 = physics::CoherentBackground::MAX_BEAM_RATIO;
-
-    #[new]
-    fn new(beam_ratio: f64, phase: f64) -> PyResult<Self> {
-        let background = physics::CoherentBackground::new(beam_ratio, phase);
-        Ok(Self(background.or_raise()?))
-    }
 
     /// Return the intensity, with expected mean 1, where the speckle has an amplitude.
     ///
@@ -92,6 +85,8 @@ impl CoherentBackground {
 
 methods! {
     impl CoherentBackground as this: this.0;
+
+    make new(beam_ratio, phase);
 
     /// Intensity of the background over the mean of the speckle.
     get beam_ratio -> f64;

@@ -101,18 +101,6 @@ impl IncoherentSum {
         Ok(Self(sum.or_raise()?))
     }
 
-    /// Return partially polarised light.
-    ///
-    /// Parameters
-    /// ----------
-    /// degree : float
-    ///     Degree of polarisation of the light that reaches the sensor, 0 to 1.
-    #[staticmethod]
-    fn partially_polarised(degree: f64) -> PyResult<Self> {
-        let sum = physics::IncoherentSum::partially_polarised(degree);
-        Ok(Self(sum.or_raise()?))
-    }
-
     /// Return light of a Gaussian spectrum.
     ///
     /// Parameters
@@ -204,6 +192,14 @@ impl IncoherentSum {
 
 methods! {
     impl IncoherentSum as this: this.0;
+
+    /// Return partially polarised light.
+    ///
+    /// Parameters
+    /// ----------
+    /// degree : float
+    ///     Degree of polarisation of the light that reaches the sensor, 0 to 1.
+    make partially_polarised(degree);
 
     /// Contrast of the sum of fully developed patterns.
     get contrast -> f64;

@@ -5,7 +5,6 @@ use tem00_statistics as physics;
 
 use crate::{
     arrays::{Numbers, Values, map},
-    error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
 
@@ -23,12 +22,6 @@ pub(crate) struct GaussianSpectrum(physics::GaussianSpectrum);
 
 #[pymethods]
 impl GaussianSpectrum {
-    #[new]
-    fn new(wavelength: f64, linewidth: f64) -> PyResult<Self> {
-        let spectrum = physics::GaussianSpectrum::new(wavelength, linewidth).or_raise()?;
-        Ok(Self(spectrum))
-    }
-
     fn __repr__(&self) -> String {
         let (wavelength, linewidth) = (self.0.wavelength(), self.0.linewidth());
         format!("GaussianSpectrum(wavelength={wavelength:?}, linewidth={linewidth:?})")
@@ -41,6 +34,8 @@ impl GaussianSpectrum {
 
 methods! {
     impl GaussianSpectrum as this: this.0;
+
+    make new(wavelength, linewidth);
 
     /// Central wavelength in metres.
     get wavelength -> f64;

@@ -4,7 +4,6 @@ use tem00_statistics as physics;
 use super::phasors::checked_order;
 use crate::{
     arrays::{Numbers, Values, Whole, map},
-    error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
 
@@ -21,12 +20,6 @@ pub(crate) struct JointIntensity(physics::JointIntensity);
 
 #[pymethods]
 impl JointIntensity {
-    #[new]
-    fn new(amplitude_correlation: f64) -> PyResult<Self> {
-        let law = physics::JointIntensity::new(amplitude_correlation).or_raise()?;
-        Ok(Self(law))
-    }
-
     /// Return the joint density of two intensities.
     ///
     /// Parameters
@@ -62,6 +55,8 @@ impl JointIntensity {
 
 methods! {
     impl JointIntensity as this: this.0;
+
+    make new(amplitude_correlation);
 
     /// Magnitude of the correlation of the amplitudes.
     get amplitude_correlation -> f64;

@@ -35,23 +35,13 @@ functions! {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct GammaIntensity(pub(super) physics::GammaIntensity);
 
-#[pymethods]
-impl GammaIntensity {
-    #[new]
-    fn new(shape: f64) -> PyResult<Self> {
-        Ok(Self(physics::GammaIntensity::new(shape).or_raise()?))
-    }
-
-    /// Return the law that has a contrast between 0.001 and 1.
-    #[staticmethod]
-    fn from_contrast(contrast: f64) -> PyResult<Self> {
-        let law = physics::GammaIntensity::from_contrast(contrast).or_raise()?;
-        Ok(Self(law))
-    }
-}
-
 methods! {
     impl GammaIntensity as this: this.0;
+
+    make new(shape);
+
+    /// Return the law that has a contrast between 0.001 and 1.
+    make from_contrast(contrast);
 
     /// Shape, the number of degrees of freedom.
     get shape -> f64;
@@ -78,16 +68,10 @@ methods! {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PartiallyPolarised(physics::PartiallyPolarised);
 
-#[pymethods]
-impl PartiallyPolarised {
-    #[new]
-    fn new(degree: f64) -> PyResult<Self> {
-        Ok(Self(physics::PartiallyPolarised::new(degree).or_raise()?))
-    }
-}
-
 methods! {
     impl PartiallyPolarised as this: this.0;
+
+    make new(degree);
 
     /// Degree of polarisation of the scattered light.
     get degree -> f64;
@@ -159,24 +143,13 @@ methods! {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CoherentBackground(physics::CoherentBackground);
 
-#[pymethods]
-impl CoherentBackground {
-    #[new]
-    fn new(beam_ratio: f64) -> PyResult<Self> {
-        let law = physics::CoherentBackground::new(beam_ratio).or_raise()?;
-        Ok(Self(law))
-    }
-
-    /// Return the law that has a contrast between 0.001 and 1.
-    #[staticmethod]
-    fn from_contrast(contrast: f64) -> PyResult<Self> {
-        let law = physics::CoherentBackground::from_contrast(contrast).or_raise()?;
-        Ok(Self(law))
-    }
-}
-
 methods! {
     impl CoherentBackground as this: this.0;
+
+    make new(beam_ratio);
+
+    /// Return the law that has a contrast between 0.001 and 1.
+    make from_contrast(contrast);
 
     /// Beam ratio, background over mean of the speckle.
     get beam_ratio -> f64;

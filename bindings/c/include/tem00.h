@@ -1211,10 +1211,10 @@ tem00_status tem00_light_next_event_sampled(const tem00_light *light,
                                             tem00_sampled_event *event);
 
 /**
- * Computes the density, per steradian, with which `tem00_light_next_event_sampled` draws the unit
- * vector `wi` towards the light at `point`; 0 where it is dark.
+ * Computes the density, per steradian, with which `tem00_light_next_event_sampled` draws the
+ * direction `wi` towards the light at `point`; 0 where it is dark.
  *
- * `point` and `wi` hold x, y, z.
+ * `point` and `wi`, of any length but 0, hold x, y, z.
  *
  * The pointers are null or valid.
  */
@@ -1235,10 +1235,10 @@ tem00_status tem00_light_sample_ray(const tem00_light *light,
                                     tem00_ray_sample *ray);
 
 /**
- * Computes the densities with which `tem00_light_sample_ray` draws the ray through `origin` along the
- * unit vector `direction`; 0 for a ray against the axis.
+ * Computes the densities with which `tem00_light_sample_ray` draws the ray through `origin` along
+ * `direction`; 0 for a ray against the axis.
  *
- * `origin`, any point of the ray, and `direction` hold x, y, z.
+ * `origin`, any point of the ray, and `direction`, of any length but 0, hold x, y, z.
  *
  * The pointers are null or valid.
  */
@@ -1248,10 +1248,10 @@ tem00_status tem00_light_ray_pdf(const tem00_light *light,
                                  tem00_ray_pdf *pdf);
 
 /**
- * Computes the radiance, in W/(m² sr), of the ray through `origin` along the unit vector `direction`
- * of travel; 0 for a ray against the axis.
+ * Computes the radiance, in W/(m² sr), of the ray through `origin` along the direction of travel
+ * `direction`; 0 for a ray against the axis.
  *
- * `origin`, any point of the ray, and `direction` hold x, y, z.
+ * `origin`, any point of the ray, and `direction`, of any length but 0, hold x, y, z.
  *
  * The pointers are null or valid.
  */

@@ -8,7 +8,8 @@ use crate::status::Failure;
 /// number that 1e30 becomes in single precision.
 const LARGEST: f64 = 1.000_000_015_047_466_2e30;
 
-/// How far from 1 the length of a unit vector may be: a direction in single precision is nearer.
+/// How far from 1 the length of a vector may be that is taken for a unit vector as it is: a direction in
+/// single precision is nearer.
 const UNIT_TOLERANCE: f64 = 1e-4;
 
 /// Checks that all numbers are finite and within ±1e30.
@@ -54,17 +55,17 @@ pub(crate) fn check_result(name: &str, values: &[f64]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks that a vector is of length 1.
-pub(crate) fn check_unit(name: &str, vector: [f64; 3]) -> Result<(), Failure> {
+/// Returns the unit vector along a vector: the vector itself where its length is 1 but for rounding.
+pub(crate) fn unit_vector(name: &str, vector: [f64; 3]) -> Result<[f64; 3], Failure> {
+    check_coordinates(name, &vector)?;
     let length = vector.iter().fold(0.0_f64, |sum, x| sum.hypot(*x));
     if (length - 1.0).abs() <= UNIT_TOLERANCE {
-        return Ok(());
+        return Ok(vector);
     }
-    let [x, y, z] = vector;
-    Err(Failure::argument(
-        name,
-        format!("{name} must be of length 1 within {UNIT_TOLERANCE:e}, got ({x}, {y}, {z})"),
-    ))
+    if length > 0.0 {
+        return Ok(vector.map(|x| x / length));
+    }
+    Err(Failure::argument(name, format!("{name} must not be zero")))
 }
 
 /// Takes no early exit where all is well, so that the loop fills the vector units.

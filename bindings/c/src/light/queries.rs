@@ -2,7 +2,7 @@ use tem00_beam::Emitter;
 
 use super::Light;
 use crate::{
-    numbers::{check_coordinates, check_length, check_unit, check_variates},
+    numbers::{check_coordinates, check_length, check_variates, unit_vector},
     pointers::{borrow, read, write},
     status::{Failure, Status, call},
 };
@@ -114,16 +114,14 @@ unsafe fn ask_at<R>(
     })
 }
 
-/// Reads a unit vector.
+/// Reads a direction of any length as a unit vector.
 ///
 /// # Safety
 ///
 /// The pointer is null or valid for three numbers.
-unsafe fn unit_vector(name: &str, pointer: *const f64) -> Result<[f64; 3], Failure> {
+unsafe fn read_direction(name: &str, pointer: *const f64) -> Result<[f64; 3], Failure> {
     // SAFETY: by the contract of this function.
-    let vector = unsafe { read(name, pointer) }?;
-    check_unit(name, vector)?;
-    Ok(vector)
+    unit_vector(name, unsafe { read(name, pointer) }?)
 }
 
 /// Reads random numbers.
@@ -256,10 +254,10 @@ pub unsafe extern "C" fn tem00_light_next_event_sampled(
     }
 }
 
-/// Computes the density, per steradian, with which `tem00_light_next_event_sampled` draws the unit
-/// vector `wi` towards the light at `point`; 0 where it is dark.
+/// Computes the density, per steradian, with which `tem00_light_next_event_sampled` draws the
+/// direction `wi` towards the light at `point`; 0 where it is dark.
 ///
-/// `point` and `wi` hold x, y, z.
+/// `point` and `wi`, of any length but 0, hold x, y, z.
 ///
 /// # Safety
 ///
@@ -274,7 +272,7 @@ pub unsafe extern "C" fn tem00_light_next_event_pdf(
     // SAFETY: by the contract of this function.
     unsafe {
         ask_at(light, ("point", point), ("pdf", pdf), |light, p| {
-            Ok(light.next_event_pdf(p, unit_vector("wi", wi)?))
+            Ok(light.next_event_pdf(p, read_direction("wi", wi)?))
         })
     }
 }
@@ -301,10 +299,10 @@ pub unsafe extern "C" fn tem00_light_sample_ray(
     })
 }
 
-/// Computes the densities with which `tem00_light_sample_ray` draws the ray through `origin` along the
-/// unit vector `direction`; 0 for a ray against the axis.
+/// Computes the densities with which `tem00_light_sample_ray` draws the ray through `origin` along
+/// `direction`; 0 for a ray against the axis.
 ///
-/// `origin`, any point of the ray, and `direction` hold x, y, z.
+/// `origin`, any point of the ray, and `direction`, of any length but 0, hold x, y, z.
 ///
 /// # Safety
 ///
@@ -320,16 +318,16 @@ pub unsafe extern "C" fn tem00_light_ray_pdf(
     unsafe {
         ask_at(light, ("origin", origin), ("pdf", pdf), |light, o| {
             Ok(light
-                .ray_pdf(o, unit_vector("direction", direction)?)
+                .ray_pdf(o, read_direction("direction", direction)?)
                 .into())
         })
     }
 }
 
-/// Computes the radiance, in W/(m² sr), of the ray through `origin` along the unit vector `direction`
-/// of travel; 0 for a ray against the axis.
+/// Computes the radiance, in W/(m² sr), of the ray through `origin` along the direction of travel
+/// `direction`; 0 for a ray against the axis.
 ///
-/// `origin`, any point of the ray, and `direction` hold x, y, z.
+/// `origin`, any point of the ray, and `direction`, of any length but 0, hold x, y, z.
 ///
 /// # Safety
 ///
@@ -347,7 +345,7 @@ pub unsafe extern "C" fn tem00_light_radiance(
             light,
             ("origin", origin),
             ("radiance", radiance),
-            |light, o| Ok(light.radiance(o, unit_vector("direction", direction)?)),
+            |light, o| Ok(light.radiance(o, read_direction("direction", direction)?)),
         )
     }
 }

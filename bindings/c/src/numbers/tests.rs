@@ -38,9 +38,9 @@ fn numbers_are_refused_exactly_outside_what_is_allowed() {
         &[0.0, -1e-300, 1.000_001e30],
     );
     accepts(
-        &|x| check_unit("x", [0.0, 0.6 * x, 0.8 * x]),
-        &[1.0, -1.0, 0.999_91, 1.000_09],
-        &[0.0, 0.999_89, 1.000_11, 1e300],
+        &|x| unit_vector("x", [0.0, 0.6 * x, 0.8 * x]).map(|_| ()),
+        &[1.0, -1e-300, 1e-300, 1e30],
+        &[0.0, 2e30],
     );
 }
 
@@ -58,8 +58,8 @@ fn a_refusal_names_the_parameter_the_place_the_value_and_what_is_allowed() {
         "of a number"
     );
     assert_eq!(
-        message(check_unit("wi", [0.0, 3.0, 4.0])),
-        "wi must be of length 1 within 1e-4, got (0, 3, 4)",
+        message(unit_vector("wi", [0.0; 3]).map(|_| ())),
+        "wi must not be zero",
         "of a vector"
     );
 }
@@ -84,4 +84,20 @@ fn results_may_be_infinite_but_not_nan() {
     assert_eq!(check_result("motion", &results[..2]), Ok(()), "infinite");
     let failure = check_result("motion", &results).unwrap_err();
     assert_eq!(failure.parameter, "motion", "{}", failure.message);
+}
+
+#[test]
+fn directions_of_any_length_become_unit_vectors_and_those_of_length_1_keep_their_bits() {
+    for length in [1e-300, 0.5, 0.999, 3.0, 1e30] {
+        let unit = unit_vector("x", [0.0, -0.6 * length, 0.8 * length]).unwrap();
+        for (got, expected) in unit.into_iter().zip([0.0, -0.6, 0.8]) {
+            // Two roundings of the length, one of the quotient.
+            assert!(
+                (got - expected).abs() <= 4.0 * f64::EPSILON,
+                "length {length:e}: {got}"
+            );
+        }
+    }
+    let rounded = [0.6_f32, -0.8, 1e-9].map(f64::from);
+    assert_eq!(unit_vector("x", rounded), Ok(rounded), "single precision");
 }

@@ -2,7 +2,7 @@ use super::*;
 
 const NAN: [f64; 3] = [0.0, f64::NAN, 0.0];
 const POINT: [f64; 3] = [0.2, -0.3, 0.5];
-const LONG: [f64; 3] = [0.0, 0.0, 1.001];
+const ZERO: [f64; 3] = [0.0; 3];
 const UNIT: [f64; 3] = [0.0, 0.0, 1.0];
 
 #[test]
@@ -10,7 +10,7 @@ fn senseless_numbers_are_refused_by_name_and_nothing_is_written() {
     let [pair, ..] = &pairs();
     let light = pair.handle.cast_const();
     let nan = NAN.as_ptr();
-    let (point, unit, long) = (POINT.as_ptr(), UNIT.as_ptr(), LONG.as_ptr());
+    let (point, unit, zero) = (POINT.as_ptr(), UNIT.as_ptr(), ZERO.as_ptr());
     let one = [0.5, 1.0, 0.5, 0.5];
     let half = [0.5; 4];
     let mut number = 7.0;
@@ -55,7 +55,7 @@ fn senseless_numbers_are_refused_by_name_and_nothing_is_written() {
             ),
             (
                 "wi",
-                tem00_light_next_event_pdf(light, point, long, out),
+                tem00_light_next_event_pdf(light, point, zero, out),
                 last_parameter(),
             ),
             (
@@ -70,7 +70,7 @@ fn senseless_numbers_are_refused_by_name_and_nothing_is_written() {
             ),
             (
                 "direction",
-                tem00_light_ray_pdf(light, point, long, &raw mut pdf),
+                tem00_light_ray_pdf(light, point, zero, &raw mut pdf),
                 last_parameter(),
             ),
             (

@@ -93,6 +93,10 @@ const KNOWN: &[&[&str]] = &[
         "crates/tem00-cli/src/triangulate/report.rs",
     ],
     &[
+        "crates/tem00-scan/src/sensor_speckle.rs",
+        "crates/tem00-scan/src/speckle_table.rs",
+    ],
+    &[
         "crates/tem00-statistics/src/autocovariance.rs",
         "crates/tem00-statistics/src/error.rs",
         "crates/tem00-statistics/src/moments.rs",
@@ -106,10 +110,6 @@ const KNOWN: &[&[&str]] = &[
         "crates/tem00-triangulation/src/detector/profile.rs",
         "crates/tem00-triangulation/src/detector/steger.rs",
         "crates/tem00-triangulation/src/detector/tracks.rs",
-    ],
-    &[
-        "crates/tem00-triangulation/src/scan/sensor_speckle.rs",
-        "crates/tem00-triangulation/src/scan/speckle_table.rs",
     ],
 ];
 

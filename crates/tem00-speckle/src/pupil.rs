@@ -6,7 +6,7 @@ pub(crate) mod mask;
 mod pattern;
 mod scatterers;
 mod shape;
-pub(crate) mod transmission;
+mod transmission;
 mod view;
 
 pub use field::PupilField;

@@ -17,13 +17,13 @@ mod path;
 mod plan;
 mod quadrature;
 mod slice_law;
-pub(crate) mod workers;
+mod workers;
 
 pub use file::StackFileError;
 pub(crate) use join::Slice;
 use join::join_all;
 pub use memory::StackOptions;
-pub(crate) use memory::{check_limit, filled, reserve};
+pub(crate) use memory::{check_limit, dark, reserve};
 use path::PathLaw;
 pub use path::SlicePath;
 pub use plan::{StackNeeds, StackPlan};
@@ -146,9 +146,8 @@ impl SpeckleStack {
         check_limit(path.memory_bytes(field.size()), options.memory_limit)?;
         let field = path.close(field);
         let filters = prefilters(&field, options.interpolation);
-        let dark = Complex::new(0.0, 0.0);
         let slices = map_with_scratch(reserve(path, field.size())?, |index, room, scratch| {
-            let mut slice = filled(room, field.size(), dark)?;
+            let mut slice = dark(room, field.size())?;
             let view = field.view_of_point(path.centre(index, &field));
             field.amplitude_into(&view, Some(&filters), &mut slice, scratch);
             Ok(slice)

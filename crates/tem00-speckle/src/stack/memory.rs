@@ -1,5 +1,6 @@
 //! The memory of a stack: asked for before it is used.
 
+use num_complex::Complex;
 use tem00_numerics::{Grid, available_memory};
 
 use crate::{Interpolation, SlicePath, SpeckleError, pupil::too_large};
@@ -36,17 +37,20 @@ pub(crate) const fn check_limit(needed: u64, limit: u64) -> Result<(), SpeckleEr
 /// Room for the slices along `path`, or an error if there is none for all of them.
 ///
 /// It is only used, and taken from the machine, when the slices are filled in.
-pub(crate) fn reserve<T>(path: SlicePath, size: [usize; 2]) -> Result<Vec<Vec<T>>, SpeckleError> {
+pub(crate) fn reserve(
+    path: SlicePath,
+    size: [usize; 2],
+) -> Result<Vec<Vec<Complex<f32>>>, SpeckleError> {
     reserve_of(path, size, available_memory())
 }
 
 /// The same on a machine with so many bytes `available`, if it says so.
-fn reserve_of<T>(
+fn reserve_of(
     path: SlicePath,
     size: [usize; 2],
     available: Option<u64>,
-) -> Result<Vec<Vec<T>>, SpeckleError> {
-    let bytes = path.memory_bytes(size) / 8 * size_of::<T>() as u64;
+) -> Result<Vec<Vec<Complex<f32>>>, SpeckleError> {
+    let bytes = path.memory_bytes(size);
     if available.is_some_and(|available| bytes > available) {
         return Err(SpeckleError::Memory { bytes });
     }
@@ -59,13 +63,12 @@ fn reserve_of<T>(
     rooms.map_err(|_| SpeckleError::Memory { bytes })
 }
 
-/// A grid of one value in `room`.
-pub(crate) fn filled<T: Clone>(
-    mut room: Vec<T>,
+/// A dark slice in `room`.
+pub(crate) fn dark(
+    mut room: Vec<Complex<f32>>,
     [width, height]: [usize; 2],
-    value: T,
-) -> Result<Grid<T>, SpeckleError> {
-    room.resize(width * height, value);
+) -> Result<Grid<Complex<f32>>, SpeckleError> {
+    room.resize(width * height, Complex::new(0.0, 0.0));
     Grid::from_vec(width, height, room).map_err(|_| too_large(width.min(height)))
 }
 
@@ -77,7 +80,7 @@ mod tests {
     fn more_than_the_machine_has_is_refused_before_it_is_used() {
         let path = SlicePath::Circle { half_period: 2 };
         let bytes = 4 * 16 * 8 * 8;
-        let room = |available| reserve_of::<u64>(path, [16, 8], available);
+        let room = |available| reserve_of(path, [16, 8], available);
         assert_eq!(room(Some(bytes - 1)), Err(SpeckleError::Memory { bytes }));
         for enough in [Some(bytes), None] {
             let room = room(enough).map(|rooms| rooms.len());

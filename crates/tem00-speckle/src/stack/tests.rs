@@ -524,7 +524,7 @@ fn memory_that_no_machine_has_is_refused() {
     let path = circle(SlicePath::MAX_HALF_PERIOD);
     // 512 TiB, more than an address has bits for.
     let bytes = path.memory_bytes([PupilField::MAX_SIZE; 2]);
-    let refused = reserve::<Complex<f32>>(path, [PupilField::MAX_SIZE; 2]);
+    let refused = reserve(path, [PupilField::MAX_SIZE; 2]);
     assert_eq!(refused, Err(SpeckleError::Memory { bytes }));
 }
 

@@ -22,8 +22,10 @@
 //! ```
 //!
 //! Files: [`SpeckleStack::write_to`] keeps a stack with its bits, to be read again or mapped into
-//! memory; [`NpyReader`], [`write_npy`] and the methods of that name exchange fields, patterns and
-//! stacks with NumPy.
+//! memory; [`NpyReader`], [`write_npy`] and the methods of that name exchange fields and patterns
+//! with NumPy.
+//!
+//! The formulas and their derivation: `docs/theory/speckle.md` in the repository.
 //!
 //! # Conventions
 //!

@@ -30,8 +30,8 @@ pub const IMAGE_MARGIN: f64 = 16.0;
 ///
 /// Image points are given in pixels, `(0, 0)` at the upper left corner of the image, x to the right
 /// and y *down*; the centre of the first pixel is `(0.5, 0.5)`. The image is upright. The sensor may
-/// stand off the axis, by a principal point, and may be [tilted](SensorTilt); the lens may
-/// [distort](RadialDistortion) the image. Without either the axis is normal to the sensor.
+/// stand off the axis, by a principal point, and may be [tilted](crate::SensorTilt); the lens may
+/// [distort](crate::RadialDistortion) the image. Without either the axis is normal to the sensor.
 ///
 /// The value of a pixel is the mean radiance, over its area and over the pupil: a scene of uniform
 /// radiance L has the value L in every pixel. What falls on the sensor is another matter, see

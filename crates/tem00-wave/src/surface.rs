@@ -18,7 +18,7 @@ use crate::{
 /// A resolution cell of the camera should hold many scatterers: [`Amplitudes`] says what too few do.
 /// A lattice with the spacing `d` repeats its speckle after λ/d in the sine of the angle, at the
 /// distance L after λL/d. That must be more than the pupil and all motion of the speckle across it;
-/// the random offsets of [`Arrangement::Stratified`] break the repetition.
+/// the random offsets of [`Arrangement::Stratified`](crate::Arrangement::Stratified) break the repetition.
 ///
 /// # Examples
 ///

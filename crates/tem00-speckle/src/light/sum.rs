@@ -11,8 +11,8 @@ use crate::{PupilField, SpeckleError, SpecklePattern};
 /// C = √(Σ wⱼ²)         contrast, for fully developed patterns
 /// ```
 ///
-/// Several lasers, both polarisations and the parts of a broad spectrum are all of this form. With
-/// [`and`](Self::and) they combine. The mean is exactly 1 where that of every pattern is.
+/// Several lasers, both polarisations and the parts of a broad spectrum are all of this form, and
+/// [`split_by`](Self::split_by) combines them. The mean is exactly 1 where that of every pattern is.
 ///
 /// # Patterns and stacks
 ///

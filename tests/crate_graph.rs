@@ -39,7 +39,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     (
         "tem00-camera",
         &["tem00-decorrelation", "tem00-numerics"],
-        &["glam", "libm"],
+        &["glam", "libm", "serde"],
     ),
     (
         "tem00-config",
@@ -112,6 +112,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "rand_core",
             "rand_distr",
             "rayon",
+            "serde",
             "statrs",
         ],
     ),

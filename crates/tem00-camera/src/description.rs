@@ -6,6 +6,8 @@ use crate::CameraError;
 pub const MAXIMUM_PIXELS: usize = 1 << 28;
 
 /// Parameters of a [`Camera`](crate::Camera).
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraDescription {
     /// The centre of the lens, which is its entrance pupil, in metres.
@@ -47,6 +49,8 @@ pub struct CameraDescription {
 /// ```text
 /// tan τ′ = (L / d_PI) tan τ      L, d_PI: distances of object and image along the axis
 /// ```
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SensorTilt {
     /// The angle τ between the normal of the sensor and the axis of the lens, in radians.
@@ -67,6 +71,8 @@ pub struct SensorTilt {
 /// # References
 ///
 /// - D. C. Brown, *Decentering Distortion of Lenses*, 1966.
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RadialDistortion {
     /// The coefficient k₁ of r².

@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
-use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+use tem00_camera::{Camera, CameraDescription};
 use tem00_config::{MAX_TEXT_BYTES, read_input};
 use tem00_triangulation::{
     Calibration, CalibrationCovariance, CalibrationQuality, LaserPlane, PARAMETERS,
@@ -24,30 +23,12 @@ type Rows = [[f64; PARAMETERS.len()]; PARAMETERS.len()];
 #[serde(deny_unknown_fields)]
 pub(crate) struct CalibrationRecord {
     format: String,
-    camera: CameraRecord,
+    camera: CameraDescription,
     plane: PlaneRecord,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     covariance: Option<CovarianceRecord>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    quality: Option<QualityRecord>,
-}
-
-#[derive(Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-struct CameraRecord {
-    position: [f64; 3],
-    look_at: [f64; 3],
-    up: [f64; 3],
-    focal_length: f64,
-    f_number: f64,
-    focus_distance: f64,
-    pixel_pitch: f64,
-    resolution: [usize; 2],
-    principal_point: Option<[f64; 2]>,
-    tilt_angle: f64,
-    tilt_azimuth: f64,
-    distortion: [f64; 3],
-    depth_of_field: bool,
+    quality: Option<CalibrationQuality>,
 }
 
 #[derive(Debug, Deserialize, Serialize)]
@@ -63,17 +44,6 @@ struct CovarianceRecord {
     origin: [f64; 3],
     parameters: Vec<String>,
     rows: Vec<Vec<f64>>,
-}
-
-#[derive(Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-struct QualityRecord {
-    boards: usize,
-    corners: usize,
-    rms_reprojection: f64,
-    line_points: usize,
-    outliers: usize,
-    rms_plane: f64,
 }
 
 /// Writes a calibration as JSON, whole or not at all.
@@ -110,13 +80,13 @@ impl CalibrationRecord {
         let plane = calibration.plane();
         Self {
             format: FORMAT.into(),
-            camera: CameraRecord::of(calibration.camera().description()),
+            camera: *calibration.camera().description(),
             plane: PlaneRecord {
                 point: plane.point().to_array(),
                 normal: plane.normal().to_array(),
             },
             covariance: calibration.covariance().map(CovarianceRecord::of),
-            quality: calibration.quality().map(QualityRecord::of),
+            quality: calibration.quality().copied(),
         }
     }
 
@@ -128,7 +98,7 @@ impl CalibrationRecord {
             ));
         }
         let words = |error: TriangulationError| error.to_string();
-        let camera = Camera::new(self.camera.description()).map_err(|error| error.to_string())?;
+        let camera = Camera::new(self.camera).map_err(|error| error.to_string())?;
         let plane = LaserPlane::new(self.plane.point.into(), self.plane.normal.into());
         let mut calibration = Calibration::exact(camera, plane.map_err(words)?);
         if let Some(covariance) = &self.covariance {
@@ -136,51 +106,9 @@ impl CalibrationRecord {
             calibration = calibration.with_covariance(covariance).map_err(words)?;
         }
         Ok(match &self.quality {
-            Some(quality) => calibration.with_quality(quality.quality()),
+            Some(quality) => calibration.with_quality(*quality),
             None => calibration,
         })
-    }
-}
-
-impl CameraRecord {
-    fn of(camera: &CameraDescription) -> Self {
-        let RadialDistortion { k1, k2, k3 } = camera.distortion;
-        Self {
-            position: camera.position.to_array(),
-            look_at: camera.look_at.to_array(),
-            up: camera.up.to_array(),
-            focal_length: camera.focal_length,
-            f_number: camera.f_number,
-            focus_distance: camera.focus_distance,
-            pixel_pitch: camera.pixel_pitch,
-            resolution: camera.resolution,
-            principal_point: camera.principal_point.map(|point| point.to_array()),
-            tilt_angle: camera.tilt.angle,
-            tilt_azimuth: camera.tilt.azimuth,
-            distortion: [k1, k2, k3],
-            depth_of_field: camera.depth_of_field,
-        }
-    }
-
-    fn description(&self) -> CameraDescription {
-        let [k1, k2, k3] = self.distortion;
-        CameraDescription {
-            position: DVec3::from_array(self.position),
-            look_at: DVec3::from_array(self.look_at),
-            up: DVec3::from_array(self.up),
-            focal_length: self.focal_length,
-            f_number: self.f_number,
-            focus_distance: self.focus_distance,
-            pixel_pitch: self.pixel_pitch,
-            resolution: self.resolution,
-            principal_point: self.principal_point.map(DVec2::from_array),
-            tilt: SensorTilt {
-                angle: self.tilt_angle,
-                azimuth: self.tilt_azimuth,
-            },
-            distortion: RadialDistortion { k1, k2, k3 },
-            depth_of_field: self.depth_of_field,
-        }
     }
 }
 
@@ -225,33 +153,12 @@ fn names() -> Vec<String> {
     PARAMETERS.iter().map(name).collect()
 }
 
-impl QualityRecord {
-    const fn of(quality: &CalibrationQuality) -> Self {
-        Self {
-            boards: quality.boards,
-            corners: quality.corners,
-            rms_reprojection: quality.rms_reprojection,
-            line_points: quality.line_points,
-            outliers: quality.outliers,
-            rms_plane: quality.rms_plane,
-        }
-    }
-
-    const fn quality(&self) -> CalibrationQuality {
-        CalibrationQuality {
-            boards: self.boards,
-            corners: self.corners,
-            rms_reprojection: self.rms_reprojection,
-            line_points: self.line_points,
-            outliers: self.outliers,
-            rms_plane: self.rms_plane,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::fs;
+
+    use glam::{DVec2, DVec3};
+    use tem00_camera::{RadialDistortion, SensorTilt};
 
     use super::*;
 

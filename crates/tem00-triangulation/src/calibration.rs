@@ -50,6 +50,8 @@ struct Uncertainty {
 }
 
 /// How well images of a checkerboard and of the line on it fit the calibration that they gave.
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationQuality {
     /// The number of boards.

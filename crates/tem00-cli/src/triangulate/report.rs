@@ -26,7 +26,7 @@ const CORRELATIONS: &str = "Speckle correlates the errors of neighbouring column
 pub(super) fn report(job: &Job<'_>, measured: &Measured) -> Result<Report, Failure> {
     let drawings = Drawings { job, measured };
     let mut report = Report::new(format!("{}: measured by triangulation", job.name));
-    let scene = job.args.scene.display().to_string();
+    let scene = job.args.common.scene.display().to_string();
     report.data("scene", &scene);
     report.data("profiles", measured.profiles.len());
     match &measured.terms {
@@ -63,7 +63,7 @@ pub(super) fn report(job: &Job<'_>, measured: &Measured) -> Result<Report, Failu
     section.table(frame::table(&measured.frames));
     let section = report.section("Settings").in_detail();
     settings(section, job, measured);
-    if let Ok(text) = std::fs::read_to_string(&job.args.scene) {
+    if let Ok(text) = std::fs::read_to_string(&job.args.common.scene) {
         section.file(scene, text);
     }
     Ok(report)
@@ -177,7 +177,7 @@ fn average(job: &Job<'_>, measured: &Measured) -> Cell {
 /// The speckle size in the middle of the image, along rows and columns, and what becomes of speckle from a
 /// frame to the next.
 fn speckle(job: &Job<'_>, measured: &Measured) -> Cell {
-    if job.args.no_speckle {
+    if job.args.common.no_speckle {
         return Cell::missing("left out, as asked");
     }
     let speckle = job.measurement.speckle();
@@ -226,21 +226,7 @@ fn detector(job: &Job<'_>) -> Cell {
 fn sensor(job: &Job<'_>) -> Cell {
     let sensor = job.measurement.sensor().description();
     Cell::new(
-        json!({
-            "quantum_efficiency": sensor.quantum_efficiency,
-            "gain": sensor.gain,
-            "dark_noise": sensor.dark_noise,
-            "dark_current": sensor.dark_current,
-            "full_well": sensor.full_well,
-            "prnu": sensor.prnu,
-            "dsnu": sensor.dsnu,
-            "bit_depth": sensor.bit_depth,
-            "black_level": sensor.black_level,
-            "pixel_pitch": sensor.pixel_pitch,
-            "fill_factor": sensor.fill_factor,
-            "exposure_time": sensor.exposure_time,
-            "serial_number": sensor.serial_number,
-        }),
+        sensor,
         format!(
             "{} bits, {:.3} DN per electron, exposure {:.4} ms, full well {:.0} electrons",
             sensor.bit_depth,
@@ -252,16 +238,13 @@ fn sensor(job: &Job<'_>) -> Cell {
 }
 
 fn calibration(job: &Job<'_>) -> Cell {
-    match job.measurement.calibration().quality() {
-        None => Cell::new(json!({"method": "exact"}), "exact, from the scene"),
-        Some(quality) => Cell::new(
-            json!({
-                "method": "estimated",
-                "boards": quality.boards,
-                "rms_reprojection": quality.rms_reprojection,
-                "rms_plane": quality.rms_plane,
-            }),
+    let quality = job.measurement.calibration().quality();
+    let (method, text) = match quality {
+        None => ("exact", "exact, from the scene".to_owned()),
+        Some(quality) => (
+            "estimated",
             format!("estimated from {} boards", quality.boards),
         ),
-    }
+    };
+    Cell::new(json!({ "method": method, "quality": quality }), text)
 }

@@ -3,6 +3,8 @@ use crate::TriangulationError;
 /// What a data sheet after EMVA 1288 (linear model) tells of a sensor, and how it is used.
 ///
 /// [`typical`](Self::typical) fills in what a data sheet leaves open.
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorDescription {
     /// The quantum efficiency η at the wavelength of the laser, above 0 and at most 1: electrons per

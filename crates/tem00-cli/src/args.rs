@@ -7,6 +7,8 @@ mod files;
 mod lines;
 mod list;
 mod render;
+mod scene;
+mod setup;
 mod shell;
 mod speckle;
 mod triangulate;
@@ -25,7 +27,9 @@ pub(crate) use self::{
     files::FileArgs,
     lines::LinesArgs,
     list::{ListArgs, Listed},
-    render::{FrameRange, RenderArgs},
+    render::RenderArgs,
+    scene::{FrameRange, SceneArgs},
+    setup::SetupArgs,
     shell::{CompletionsArgs, ManArgs},
     speckle::SpeckleArgs,
     triangulate::TriangulateArgs,

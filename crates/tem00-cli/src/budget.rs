@@ -58,25 +58,34 @@ struct Refusal {
 /// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or, with
 /// all files written, if the set-up measures nothing.
 pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (setup, text) = read_setup_with(&args.setup, args.files.reading(), |document, _| {
-        Ok(document.text().to_owned())
-    })
+    let (setup, text) = read_setup_with(
+        &args.common.setup,
+        args.common.files.reading(),
+        |document, _| Ok(document.text().to_owned()),
+    )
     .map_err(|error| {
-        wrong_or(&args.setup, Kind::Setup, || {
-            Failure::file(&args.setup, &error, HELP)
+        wrong_or(&args.common.setup, Kind::Setup, || {
+            Failure::file(&args.common.setup, &error, HELP)
         })
     })?;
-    let folder = output::folder(args.output.as_deref(), &output::name(&args.setup, "set-up"));
+    let folder = output::folder(
+        args.common.output.as_deref(),
+        &output::name(&args.common.setup, "set-up"),
+    );
     let _lock = output::prepare(&folder)?;
-    let pool = output::thread_pool(args.threads)?;
+    let pool = output::thread_pool(args.common.threads)?;
     let findings = pool.install(|| Findings::new(args, setup, text))?;
     let report = report::report(&findings, draw(&findings, &folder)?);
     let files = ["budget.json", "budget.html"].map(|name| folder.join(name));
     report.save_json(&files[0])?;
     report.save_page(&files[1])?;
-    report.print(args.json, &files, out)?;
+    report.print(args.common.json, &files, out)?;
     findings.answer.map(drop).map_err(|refusal| {
-        let message = format!("{}: no uncertainty: {}", args.setup.display(), refusal.why);
+        let message = format!(
+            "{}: no uncertainty: {}",
+            args.common.setup.display(),
+            refusal.why
+        );
         Failure::no_result(message, refusal.advice)
     })
 }
@@ -91,12 +100,12 @@ impl<'a> Findings<'a> {
                 trials: None,
             }),
             Err(error) => {
-                let message = format!("{}: {error}", args.setup.display());
+                let message = format!("{}: {error}", args.common.setup.display());
                 return Err(Failure::input(message, HELP));
             }
         };
         Ok(Self {
-            file: &args.setup,
+            file: &args.common.setup,
             text,
             setup,
             answer,
@@ -149,7 +158,7 @@ fn tried(args: &BudgetArgs, setup: &Setup) -> Result<Simulation, Failure> {
     simulate(setup, options, |_| bar.advance(1), interrupt::flag()).map_err(|error| match error {
         TriangulationError::Cancelled => Failure::Interrupted,
         error => Failure::input(
-            format!("{}: {error}", args.setup.display()),
+            format!("{}: {error}", args.common.setup.display()),
             "smaller averages, or --trials 0",
         ),
     })

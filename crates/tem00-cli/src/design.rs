@@ -43,20 +43,23 @@ struct Design<'a> {
 /// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or if no set-up
 /// keeps every constraint; all files but `best.toml` are written then, if any set-up is possible.
 pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (_, (search, text)) =
-        read_setup_with(&args.setup, args.files.reading(), |document, setup| {
+    let (_, (search, text)) = read_setup_with(
+        &args.common.setup,
+        args.common.files.reading(),
+        |document, setup| {
             let search = read_design(document, setup.description())?;
             Ok((search, document.text().to_owned()))
+        },
+    )
+    .map_err(|error| {
+        wrong_or(&args.common.setup, Kind::Setup, || {
+            Failure::file(&args.common.setup, &error, HELP)
         })
-        .map_err(|error| {
-            wrong_or(&args.setup, Kind::Setup, || {
-                Failure::file(&args.setup, &error, HELP)
-            })
-        })?;
-    let name = output::name(&args.setup, "design");
-    let folder = output::folder(args.output.as_deref(), &name);
+    })?;
+    let name = output::name(&args.common.setup, "design");
+    let folder = output::folder(args.common.output.as_deref(), &name);
     let _lock = output::prepare(&folder)?;
-    let pool = output::thread_pool(args.threads)?;
+    let pool = output::thread_pool(args.common.threads)?;
     let design = pool.install(|| Design::search(args, search, text))?;
     if design.winner().is_none() {
         // That of another search would be taken for the winner of this one.
@@ -65,7 +68,7 @@ pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure
     let shown = *design.shown_setup()?.description();
     let near = pool.install(|| neighbours(&shown, PART));
     let (report, written) = files::write(&design, &near, &folder)?;
-    report.print(args.json, &written, out)?;
+    report.print(args.common.json, &written, out)?;
     design.winner().map(|_| ()).ok_or_else(|| design.nothing())
 }
 
@@ -82,7 +85,7 @@ impl<'a> Design<'a> {
                 error => Failure::running(error.to_string()),
             })?;
         Ok(Self {
-            file: &args.setup,
+            file: &args.common.setup,
             text,
             search,
             outcome,

@@ -38,13 +38,15 @@ use crate::{
 ///
 /// Returns a failure if the input is not valid, a file cannot be written or the user ends it.
 pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let read = SceneFile::read_with(&args.scene, args.files.reading(), |document, _| {
-        Ok(document.text().to_owned())
-    });
+    let read = SceneFile::read_with(
+        &args.common.scene,
+        args.common.files.reading(),
+        |document, _| Ok(document.text().to_owned()),
+    );
     let (SceneFile { scene, files, .. }, text) = read.map_err(|error| {
-        wrong_or(&args.scene, Kind::Scene, || {
+        wrong_or(&args.common.scene, Kind::Scene, || {
             let needed = "a scene needs a laser, a camera and a surface";
-            Failure::file(&args.scene, &error, needed)
+            Failure::file(&args.common.scene, &error, needed)
         })
     })?;
     let scene = overruled(scene, args)?;
@@ -55,7 +57,7 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
     note_invisible_lasers(&render.scene);
     note_missing_light(&render.scene);
     render.warn_of_darkness()?;
-    let pool = output::thread_pool(args.threads)?;
+    let pool = output::thread_pool(args.common.threads)?;
     let sequence = pool.install(|| render.sequence())?;
     let summary = pool.install(|| render.summary(sequence));
     report(&summary);
@@ -72,11 +74,11 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
 
 /// Says what the camera will see of the lasers, and draws the scene.
 fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), Failure> {
-    let frames = frames(args.frames, scene.render.frames)?;
-    let found =
-        Inspection::new(scene, frames).map_err(|error| tracer_failure(&args.scene, &error))?;
-    let name = output::name(&args.scene, "scene");
-    let folder = output::folder(args.output.as_deref(), &name);
+    let frames = frames(args.common.frames, scene.render.frames)?;
+    let found = Inspection::new(scene, frames)
+        .map_err(|error| tracer_failure(&args.common.scene, &error))?;
+    let name = output::name(&args.common.scene, "scene");
+    let folder = output::folder(args.common.output.as_deref(), &name);
     output::prepare(&folder)?;
     let drawing = format!("{name}_overview");
     found.draw(&folder, &drawing)?;
@@ -96,8 +98,7 @@ fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), F
 /// Returns the scene with what the command line overrules.
 fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
     let settings = &mut scene.render;
-    settings.samples_per_pixel = args.spp.unwrap_or(settings.samples_per_pixel);
-    settings.seed = args.seed.unwrap_or(settings.seed);
+    args.common.overrule(settings);
     settings.method = args.method.map_or(settings.method, Into::into);
     settings.max_depth = args.max_depth.or(settings.max_depth);
     settings.target_error = args.target_error.or(settings.target_error);
@@ -133,21 +134,21 @@ impl<'a> Render<'a> {
         scene: Scene,
         (text, files): (&str, &[PathBuf]),
     ) -> Result<Self, Failure> {
-        let name = output::name(&args.scene, "scene");
-        let folder = output::folder(args.output.as_deref(), &name);
+        let name = output::name(&args.common.scene, "scene");
+        let folder = output::folder(args.common.output.as_deref(), &name);
         let options = options(args, &scene);
-        let plan = (!args.no_speckle)
+        let plan = (!args.common.no_speckle)
             .then(|| SpecklePlan::new(&scene, options.formulas, options.seed))
             .transpose()
-            .map_err(|error| tracer_failure(&args.scene, &error))?;
+            .map_err(|error| tracer_failure(&args.common.scene, &error))?;
         // The text as well: standard input is none of the files.
-        let changes = args.files.reading().changes;
+        let changes = args.common.files.reading().changes;
         let choices = (options, plan.is_some(), args.white_level, text, changes);
 
-        let frames = frames(args.frames, scene.render.frames)?;
-        check_room(&args.scene, &scene)?;
+        let frames = frames(args.common.frames, scene.render.frames)?;
+        check_room(&args.common.scene, &scene)?;
         let fingerprint = Fingerprint::of(&scene, files, &choices)?;
-        let lock = match args.frames {
+        let lock = match args.common.frames {
             Some(_) => output::prepare_for_part(&folder, &fingerprint.to_string()),
             None => output::prepare(&folder),
         }?;
@@ -192,7 +193,7 @@ impl<'a> Render<'a> {
     /// Says, before the work, of which lasers the camera will see no light, and draws the scene then.
     fn warn_of_darkness(&self) -> Result<(), Failure> {
         let found = Inspection::new(&self.scene, self.frames)
-            .map_err(|error| tracer_failure(&self.args.scene, &error))?;
+            .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;
         let warnings = found.warnings();
         if warnings.is_empty() {
             return Ok(());
@@ -215,9 +216,9 @@ impl<'a> Render<'a> {
             note(&format!("speckle: {line}"));
         }
         let notes = self.scene.roughness_notes();
-        note_roughness(&notes.map_err(|error| tracer_failure(&self.args.scene, &error))?);
+        note_roughness(&notes.map_err(|error| tracer_failure(&self.args.common.scene, &error))?);
         let model = SpeckleModel::generate(&self.scene, plan)
-            .map_err(|error| tracer_failure(&self.args.scene, &error))?;
+            .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;
         interrupt::check()?;
         Ok(Some(model))
     }
@@ -230,7 +231,7 @@ impl<'a> Render<'a> {
         let per_second = |count: u64| count as f64 / seconds.max(1e-9);
         Summary {
             program: concat!("tem00 ", env!("CARGO_PKG_VERSION")),
-            scene: self.args.scene.display().to_string(),
+            scene: self.args.common.scene.display().to_string(),
             fingerprint: self.fingerprint.to_string(),
             formulas: self.formulas(),
             seed: self.options.seed,
@@ -243,7 +244,10 @@ impl<'a> Render<'a> {
             target_error: self.options.target_error,
             width: self.scene.camera.width(),
             height: self.scene.camera.height(),
-            crop: self.options.crop.map(Into::into),
+            crop: self
+                .options
+                .crop
+                .map(|crop| [crop.x, crop.y, crop.width, crop.height]),
             lasers: LaserSummary::of_scene(&self.scene, self.plan.as_ref()),
             exposure: sequence.exposure,
             frames,

@@ -4,9 +4,9 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 use tem00_statistics::{Contrast, StatisticsError, pixel_contrast};
-use tem00_tracer::{Crop, LaserLayers, PatternPlan, Scene, SpecklePlan};
+use tem00_tracer::{LaserLayers, PatternPlan, Scene, SpecklePlan};
 
-/// The summary of a render. Keys carry their unit.
+/// The summary of a render, in SI units.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     pub(crate) program: &'static str,
@@ -22,8 +22,8 @@ pub(crate) struct Summary {
     pub(crate) target_error: Option<f64>,
     pub(crate) width: usize,
     pub(crate) height: usize,
-    /// The part of the image that was rendered; `None` for all.
-    pub(crate) crop: Option<CropSummary>,
+    /// The part of the image that was rendered, as x, y, width and height in pixels; `None` for all.
+    pub(crate) crop: Option<[usize; 4]>,
     pub(crate) lasers: Vec<LaserSummary>,
     pub(crate) exposure: Exposure,
     pub(crate) frames: Vec<FrameSummary>,
@@ -35,37 +35,11 @@ pub(crate) struct Summary {
     pub(crate) rays_per_second: f64,
 }
 
-/// A part of the image, in pixels.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct CropSummary {
-    x: usize,
-    y: usize,
-    width: usize,
-    height: usize,
-}
-
-impl From<Crop> for CropSummary {
-    fn from(crop: Crop) -> Self {
-        let Crop {
-            x,
-            y,
-            width,
-            height,
-        } = crop;
-        Self {
-            x,
-            y,
-            width,
-            height,
-        }
-    }
-}
-
 /// One laser and its speckle pattern.
 #[derive(Debug, Serialize)]
 pub(crate) struct LaserSummary {
-    wavelength_m: f64,
-    power_w: f64,
+    wavelength: f64,
+    power: f64,
     /// `None` if the speckle was left out.
     pattern: Option<PatternSummary>,
 }
@@ -85,8 +59,7 @@ struct PatternSummary {
 /// How radiance became brightness in the previews.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct Exposure {
-    /// The radiance shown as white.
-    #[serde(rename = "white_level_w_per_m2_sr")]
+    /// The radiance shown as white, in W/(m² sr).
     pub(crate) white_level: f32,
     /// Who chose it.
     pub(crate) chosen_by: Cow<'static, str>,
@@ -144,8 +117,8 @@ pub(crate) struct FrameSummary {
 /// One laser in one frame.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct FrameLaser {
-    /// The power that reaches the surfaces seen in the image.
-    pub(crate) power_on_target_w: f64,
+    /// The power that reaches the surfaces seen in the image, in watts.
+    pub(crate) power_on_target: f64,
     /// The same in units of the laser's power: 1 if the whole footprint is in the image.
     pub(crate) power_ratio: f64,
     /// The contrast of the speckle in the lit pixels; `None` without speckle, without light, or where
@@ -168,8 +141,8 @@ impl LaserSummary {
         let lasers = scene.lasers.iter().enumerate();
         lasers
             .map(|(index, laser)| Self {
-                wavelength_m: laser.wavelength(),
-                power_w: laser.power(),
+                wavelength: laser.wavelength(),
+                power: laser.power(),
                 pattern: pattern(index).map(PatternSummary::new),
             })
             .collect()
@@ -201,7 +174,7 @@ impl FrameLaser {
         // Fewer than two lit pixels, or an even factor: there is no contrast to speak of.
         let contrast = size.and_then(|size| contrast(layers, size, samples_per_pixel).ok());
         Self {
-            power_on_target_w: layers.power_on_target,
+            power_on_target: layers.power_on_target,
             power_ratio: layers.power_on_target / power,
             contrast,
         }

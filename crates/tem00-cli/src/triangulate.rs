@@ -40,21 +40,21 @@ const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface
 /// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or, with all
 /// files written, if no point is valid.
 pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (scene, _) =
-        MeasurementScene::read(&args.scene, args.files.reading()).map_err(|error| {
-            wrong_or(&args.scene, Kind::Scene, || {
-                Failure::file(&args.scene, &error, HELP)
+    let (scene, _) = MeasurementScene::read(&args.common.scene, args.common.files.reading())
+        .map_err(|error| {
+            wrong_or(&args.common.scene, Kind::Scene, || {
+                Failure::file(&args.common.scene, &error, HELP)
             })
         })?;
     let settings = scene.calibration.clone();
     let mut job = Job::new(args, scene)?;
     job.warn_of_darkness()?;
-    let pool = output::thread_pool(args.threads)?;
+    let pool = output::thread_pool(args.common.threads)?;
     job.measurement = pool.install(|| {
         calibration::calibrated(
             job.measurement.clone(),
             &settings,
-            (&args.scene, &job.files),
+            (&args.common.scene, &job.files),
         )
     })?;
     let measured = pool.install(|| job.measure())?;
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Fa
     measured.terms.map(drop).map_err(|refusal| {
         let message = format!(
             "{}: nothing was measured: {}",
-            args.scene.display(),
+            args.common.scene.display(),
             refusal.why
         );
         Failure::no_result(message, refusal.advice)
@@ -95,17 +95,17 @@ struct Measured {
 }
 
 impl<'a> Job<'a> {
-    fn new(args: &'a TriangulateArgs, scene: MeasurementScene) -> Result<Self, Failure> {
-        let name = output::name(&args.scene, "scene");
-        let folder = output::folder(args.output.as_deref(), &name);
-        let scene = overruled(scene, args);
+    fn new(args: &'a TriangulateArgs, mut scene: MeasurementScene) -> Result<Self, Failure> {
+        let name = output::name(&args.common.scene, "scene");
+        let folder = output::folder(args.common.output.as_deref(), &name);
+        args.common.overrule(&mut scene.scene.render);
         let raw = scene.scan.raw;
-        check_room(&args.scene, &scene.scene)?;
-        let measurement =
-            Measurement::new(scene).map_err(|error| measurement_failure(&args.scene, &error))?;
+        check_room(&args.common.scene, &scene.scene)?;
+        let measurement = Measurement::new(scene)
+            .map_err(|error| measurement_failure(&args.common.scene, &error))?;
         Ok(Self {
             args,
-            frames: frames(args.frames, measurement.scene().render.frames)?,
+            frames: frames(args.common.frames, measurement.scene().render.frames)?,
             measurement,
             name,
             files: Files::new(folder, raw)?,
@@ -115,7 +115,7 @@ impl<'a> Job<'a> {
     /// Says, before the work, of which lasers the camera will see no light.
     fn warn_of_darkness(&self) -> Result<(), Failure> {
         let found = Inspection::new(self.measurement.scene(), self.frames)
-            .map_err(|error| tracer_failure(&self.args.scene, &error))?;
+            .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;
         found.warnings().iter().for_each(|line| output::note(line));
         Ok(())
     }
@@ -149,7 +149,7 @@ impl<'a> Job<'a> {
         let has_map = profiles.len() > 1 && terms.is_some();
         let map = has_map.then(|| part.height_map()).transpose();
         Ok(Measured {
-            map: map.map_err(|error| measurement_failure(&self.args.scene, &error))?,
+            map: map.map_err(|error| measurement_failure(&self.args.common.scene, &error))?,
             shown,
             effective_frames: part.effective_frames(),
             speckle_change: part.speckle_change().copied(),
@@ -160,11 +160,11 @@ impl<'a> Job<'a> {
     }
 
     fn speckle(&self) -> Result<Option<SpeckleModel>, Failure> {
-        if self.args.no_speckle {
+        if self.args.common.no_speckle {
             return Ok(None);
         }
         let scene = self.measurement.scene();
-        let refused = |error| tracer_failure(&self.args.scene, &error);
+        let refused = |error| tracer_failure(&self.args.common.scene, &error);
         let plan =
             SpecklePlan::new(scene, Formulas::Derived, scene.render.seed).map_err(refused)?;
         let model = SpeckleModel::generate(scene, &plan).map_err(refused)?;
@@ -184,7 +184,7 @@ impl<'a> Job<'a> {
         ));
         self.measurement
             .measure(speckle, number, advance, interrupt::flag())
-            .map_err(|error| measurement_failure(&self.args.scene, &error))
+            .map_err(|error| measurement_failure(&self.args.common.scene, &error))
     }
 
     /// Writes all files, and returns the report.
@@ -229,14 +229,6 @@ fn in_words(change: &SpeckleChange) -> String {
         "{right:+.2} pixels to the right, {down:+.2} down; correlation {:.2}",
         change.correlation
     )
-}
-
-/// Returns the scene with what the command line overrules.
-fn overruled(mut measured: MeasurementScene, args: &TriangulateArgs) -> MeasurementScene {
-    let settings = &mut measured.scene.render;
-    settings.samples_per_pixel = args.spp.unwrap_or(settings.samples_per_pixel);
-    settings.seed = args.seed.unwrap_or(settings.seed);
-    measured
 }
 
 fn measurement_failure(path: &Path, error: &ScanError) -> Failure {

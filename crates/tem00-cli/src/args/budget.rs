@@ -1,10 +1,8 @@
 //! The command line of `tem00 budget`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
-use super::FileArgs;
+use super::SetupArgs;
 
 /// Say what height uncertainty a set-up gives, and what dominates it.
 ///
@@ -17,16 +15,8 @@ use super::FileArgs;
 #[derive(Args, Debug)]
 #[command(after_help = BUDGET_EXAMPLES)]
 pub(crate) struct BudgetArgs {
-    /// The set-up file, or - for standard input.
-    #[arg(value_name = "SETUP.toml")]
-    pub(crate) setup: PathBuf,
-
     #[command(flatten)]
-    pub(crate) files: FileArgs,
-
-    /// The folder for the files, made if it is missing [default: out/<name of the set-up>].
-    #[arg(short, long, value_name = "DIR")]
-    pub(crate) output: Option<PathBuf>,
+    pub(crate) common: SetupArgs,
 
     /// The number of trials, 10 to a million; 0 leaves them out.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = trials)]
@@ -35,14 +25,6 @@ pub(crate) struct BudgetArgs {
     /// The seed of the trials.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
-
-    /// Threads to work with, 1 to 1024; the result does not depend on it [default: all].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
-
-    /// Print JSON instead of a table.
-    #[arg(long)]
-    pub(crate) json: bool,
 }
 
 const BUDGET_EXAMPLES: &str = "\
@@ -66,6 +48,8 @@ fn trials(text: &str) -> Result<u32, String> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::PathBuf;
+
     use clap::Parser;
 
     use super::*;
@@ -83,13 +67,13 @@ mod tests {
     fn every_option_of_budget_is_understood() {
         let line = "tem00 budget a.toml -o d --trials 30 --seed 4 --threads 2 --json";
         let args = parse(line).expect("the line is valid");
-        assert_eq!(args.setup, PathBuf::from("a.toml"));
-        assert_eq!(args.output, Some(PathBuf::from("d")));
+        assert_eq!(args.common.setup, PathBuf::from("a.toml"));
+        assert_eq!(args.common.output, Some(PathBuf::from("d")));
         assert_eq!((args.trials, args.seed), (30, 4));
-        assert_eq!(args.threads, Some(2));
-        assert!(args.json, "JSON is asked for");
+        assert_eq!(args.common.threads, Some(2));
+        assert!(args.common.json, "JSON is asked for");
         let args = parse("tem00 budget a.toml --trials 0").expect("the line is valid");
-        assert_eq!((args.trials, args.seed, args.json), (0, 0, false));
+        assert_eq!((args.trials, args.seed, args.common.json), (0, 0, false));
     }
 
     #[test]

@@ -1,10 +1,8 @@
 //! The command line of `tem00 design`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 
-use super::FileArgs;
+use super::SetupArgs;
 
 /// Search set-ups for the least height uncertainty under constraints.
 ///
@@ -15,29 +13,13 @@ use super::FileArgs;
 #[derive(Args, Debug)]
 #[command(after_help = DESIGN_EXAMPLES)]
 pub(crate) struct DesignArgs {
-    /// The set-up file, with the section [design], or - for standard input.
-    #[arg(value_name = "SETUP.toml")]
-    pub(crate) setup: PathBuf,
-
     #[command(flatten)]
-    pub(crate) files: FileArgs,
-
-    /// The folder for the files, made if it is missing [default: out/<name of the set-up>].
-    #[arg(short, long, value_name = "DIR")]
-    pub(crate) output: Option<PathBuf>,
+    pub(crate) common: SetupArgs,
 
     /// How many of the best set-ups are listed, 1 to 1000.
     #[arg(long, value_name = "N", default_value_t = 10,
           value_parser = clap::value_parser!(u16).range(1..=1_000))]
     pub(crate) best: u16,
-
-    /// Threads to work with, 1 to 1024; the result does not depend on it [default: all].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
-
-    /// Print JSON instead of a table.
-    #[arg(long)]
-    pub(crate) json: bool,
 }
 
 const DESIGN_EXAMPLES: &str = "\

@@ -1,11 +1,9 @@
 //! The command line of `tem00 render`.
 
-use std::path::PathBuf;
-
 use clap::{Args, ValueEnum};
 use tem00_tracer::{Crop, Method};
 
-use super::{FileArgs, crop, positive};
+use super::{SceneArgs, crop, positive};
 
 /// Render a scene: PNG preview, OpenEXR layers and a JSON summary.
 ///
@@ -14,29 +12,8 @@ use super::{FileArgs, crop, positive};
 #[derive(Args, Debug)]
 #[command(after_help = RENDER_EXAMPLES)]
 pub(crate) struct RenderArgs {
-    /// The scene file, or - for standard input.
-    #[arg(value_name = "SCENE.toml")]
-    pub(crate) scene: PathBuf,
-
     #[command(flatten)]
-    pub(crate) files: FileArgs,
-
-    /// The folder for the images, made if it is missing [default: out/<name of the scene>].
-    #[arg(short, long, value_name = "DIR")]
-    pub(crate) output: Option<PathBuf>,
-
-    /// Camera samples per pixel, 1 to a million [default: from the scene].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub(crate) spp: Option<u32>,
-
-    /// The seed of everything random [default: from the scene].
-    #[arg(long, value_name = "N")]
-    pub(crate) seed: Option<u64>,
-
-    /// Only these frames, counted from 0: one, or FIRST..LAST with both ends; frames are the same
-    /// however they are shared out [default: all].
-    #[arg(long, visible_alias = "frame", value_name = "N|FIRST..LAST")]
-    pub(crate) frames: Option<FrameRange>,
+    pub(crate) common: SceneArgs,
 
     /// Leave out the frames that an earlier run of the same render finished in the folder.
     #[arg(long)]
@@ -57,14 +34,6 @@ pub(crate) struct RenderArgs {
     /// The relative standard error at which a pixel gets no more samples [default: from the scene].
     #[arg(long, value_name = "ERROR", value_parser = relative_error)]
     pub(crate) target_error: Option<f64>,
-
-    /// Threads to render with, 1 to 1024; the image does not depend on it [default: all].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
-
-    /// Leave the speckle out.
-    #[arg(long)]
-    pub(crate) no_speckle: bool,
 
     /// Use the formulas as printed in Bergmann et al. 2016, with their errors, for comparison.
     #[arg(long)]
@@ -98,26 +67,6 @@ Files:
                   several, which --resume goes by
   <scene>_overview.svg|png  camera, lasers and parts from three sides; with --check, and where the camera
                   sees no light of a laser";
-
-/// A range of frames, counted from 0, with both ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct FrameRange {
-    pub(crate) first: u32,
-    pub(crate) last: u32,
-}
-
-impl core::str::FromStr for FrameRange {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (first, last) = text.split_once("..").unwrap_or((text, text));
-        match (first.parse(), last.parse()) {
-            (Ok(first), Ok(last)) if first <= last => Ok(Self { first, last }),
-            (Ok(_), Ok(_)) => Err("the first frame must not be after the last".into()),
-            _ => Err("must be a frame, such as 3, or a range with both ends, such as 3..10".into()),
-        }
-    }
-}
 
 /// How light is followed, by the names that scene files use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -169,20 +118,11 @@ mod tests {
 
     #[test]
     fn every_option_of_render_is_understood() {
-        let line = "tem00 render a.toml -o d --spp 3 --seed 4 --threads 2 --no-speckle --paper \
-                    --white-level 1e3 --frames 2..7 --resume --crop 1,2,30,40 --method light \
-                    --max-depth 5 --target-error 0.01 --check";
+        let line = "tem00 render a.toml --paper --white-level 1e3 --resume --crop 1,2,30,40 \
+                    --method light --max-depth 5 --target-error 0.01 --check";
         let args = parse(line).expect("the line is valid");
-        assert_eq!(args.scene, PathBuf::from("a.toml"));
-        assert_eq!(args.output, Some(PathBuf::from("d")));
-        assert_eq!((args.spp, args.seed), (Some(3), Some(4)));
-        assert_eq!(args.threads, Some(2));
-        assert!(
-            args.no_speckle && args.paper && args.resume && args.check,
-            "all are on"
-        );
+        assert!(args.paper && args.resume && args.check, "all are on");
         assert_eq!(args.white_level, Some(1e3));
-        assert_eq!(args.frames, Some(FrameRange { first: 2, last: 7 }));
         let crop = Crop {
             x: 1,
             y: 2,
@@ -198,37 +138,8 @@ mod tests {
     #[test]
     fn a_scene_is_all_that_render_needs() {
         let args = parse("tem00 render a.toml").expect("the line is valid");
-        assert!(
-            args.output.is_none() && args.spp.is_none() && args.seed.is_none(),
-            "{args:?}"
-        );
-        assert!(
-            !args.no_speckle && !args.paper && !args.resume && !args.check,
-            "{args:?}"
-        );
-        assert!(args.frames.is_none() && args.crop.is_none(), "{args:?}");
-    }
-
-    #[test]
-    fn frames_are_one_or_a_range() {
-        let range = |text: &str| text.parse::<FrameRange>();
-        assert_eq!(range("4"), Ok(FrameRange { first: 4, last: 4 }));
-        assert_eq!(range("0..9"), Ok(FrameRange { first: 0, last: 9 }));
-        for bad in [
-            "",
-            "..",
-            "3..",
-            "..3",
-            "5..3",
-            "-1",
-            "1.5",
-            "1..2..3",
-            "99999999999",
-        ] {
-            assert!(range(bad).is_err(), "{bad} is no range");
-        }
-        let one = parse("tem00 render a.toml --frame 4").expect("the line is valid");
-        assert_eq!(one.frames, Some(FrameRange { first: 4, last: 4 }));
+        assert!(!args.paper && !args.resume && !args.check, "{args:?}");
+        assert!(args.crop.is_none(), "{args:?}");
     }
 
     #[test]

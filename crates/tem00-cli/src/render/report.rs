@@ -42,7 +42,7 @@ pub(super) fn report(summary: &Summary) {
     for frame in &summary.frames {
         for (index, laser) in frame.lasers.iter().enumerate() {
             let ratio = 100.0 * laser.power_ratio;
-            let watts = laser.power_on_target_w;
+            let watts = laser.power_on_target;
             let found = if watts > 0.0 {
                 format!("{watts:.4e} W on target, {ratio:.2} % of its power")
             } else {

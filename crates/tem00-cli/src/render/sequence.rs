@@ -150,7 +150,7 @@ impl Render<'_> {
         let frame = render_frame(&self.scene, model, number, &self.options, advance, flag);
         frame.map_err(|error| match error {
             RenderError::Cancelled => Failure::Interrupted,
-            RenderError::Scene(error) => tracer_failure(&self.args.scene, &error),
+            RenderError::Scene(error) => tracer_failure(&self.args.common.scene, &error),
             other => Failure::running(other.to_string()),
         })
     }

@@ -51,7 +51,7 @@ Examples:
                                                       calibrate camera and laser plane
 
 Data goes to standard output, everything else to standard error.
-Exit codes: 0 fine, 1 failure while running, 2 bad input or usage, 3 nothing measured or found,
+Exit codes: 0 success, 1 failure while running, 2 bad input or usage, 3 nothing measured or found,
 130 interrupted.";
 
 /// Laser light with speckle, from scene file to image, and from data sheet to height uncertainty.
@@ -85,9 +85,9 @@ pub(crate) enum Command {
 /// Generate a speckle pattern and compare it with the theory.
 ///
 /// The pattern has Q × Q samples, is periodic, and has the mean 1. A random field of the diameter C
-/// in the pupil makes speckles of Q / C samples; so does a field from outside, that --field takes
-/// from a file. The table on standard output lists what was measured beside what the theory says and
-/// how far the two may differ.
+/// in the pupil makes speckles of Q / C samples; so does a measured or computed field, which --field reads
+/// from a file. The table on standard output lists the measured values beside those of the theory, with
+/// the tolerance of each.
 #[derive(Args, Debug)]
 #[command(after_help = PATTERN_EXAMPLES)]
 pub(crate) struct PatternArgs {
@@ -129,7 +129,7 @@ Examples:
   tem00 pattern -o speckle.png
   tem00 pattern -o fine.npy --size 2048 --diameter 1024 --seed 7
   tem00 pattern -o telescope.exr --pupil annulus:0.4
-  tem00 pattern -o measured.npy --field pupil.npy     speckle behind a field from outside
+  tem00 pattern -o measured.npy --field pupil.npy     speckle behind a measured field
   tem00 pattern -o stopped.npy --field pupil.npy --diameter 300 --size 2048";
 
 /// Measure the speckle in an image, and compare it with the theory.
@@ -159,7 +159,7 @@ pub(crate) struct StatsArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) channel: Option<String>,
 
-    /// How grey values relate to light [default: as the file says, else linear].
+    /// The relation of grey values to light [default: as the file says, else linear].
     #[arg(long, value_name = "CURVE")]
     pub(crate) transfer: Option<Transfer>,
 

@@ -9,7 +9,7 @@ use std::{
 
 use tempfile::NamedTempFile;
 
-/// How the names of temporary files begin and end.
+/// The start and the end of the names of temporary files.
 const PREFIX: &str = ".tem00-";
 const SUFFIX: &str = ".part";
 

@@ -21,7 +21,7 @@ use crate::{
     report::units::PERCENT,
 };
 
-const HELP: &str = "setups/ has set-up files, and docs/setup_file.md tells how to write them";
+const HELP: &str = "setups/ has set-up files, and docs/setup_file.md explains how to write them";
 
 /// A set-up that was looked at.
 struct Findings<'a> {
@@ -36,18 +36,18 @@ struct Findings<'a> {
 /// The uncertainty of a height.
 struct Answer {
     budget: Budget,
-    /// What trials found, unless they were left out.
+    /// The result of trials, unless they were left out.
     trials: Option<Simulation>,
     /// The heights that can be measured, and the combined standard uncertainty there, in metres; none where
     /// no line is found.
     over_range: Vec<(f64, Option<f64>)>,
 }
 
-/// Why a set-up measures nothing.
+/// The reason for which a set-up measures nothing.
 struct Refusal {
     why: String,
     advice: &'static str,
-    /// What trials found, if it came to that.
+    /// The result of trials, if there were any.
     trials: Option<Simulation>,
 }
 

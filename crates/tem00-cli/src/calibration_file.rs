@@ -12,13 +12,13 @@ use tem00_triangulation::{
 
 use crate::{atomic::write_atomically, failure::Failure};
 
-/// What a file of this kind begins with.
+/// The format of the file, with its version.
 const FORMAT: &str = "tem00 calibration 1";
 
 /// The rows of a covariance.
 type Rows = [[f64; PARAMETERS.len()]; PARAMETERS.len()];
 
-/// A calibration as the file tells it: SI units, radians, places in pixels.
+/// The content of the file: SI units, radians, positions in pixels.
 #[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CalibrationRecord {

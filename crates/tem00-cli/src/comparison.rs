@@ -1,10 +1,10 @@
-//! Measured quantities beside what theory says of them.
+//! Measured quantities beside the predictions of the theory.
 
 use serde::Serialize;
 
 use crate::report::{Cell, Column, Table, number, rounded};
 
-/// What theory says of a quantity.
+/// The prediction of the theory for a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(crate) enum Expectation {
@@ -53,13 +53,13 @@ impl Expectation {
 /// One line of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Row {
-    /// What was measured, with the unit.
+    /// The name of the quantity, with the unit.
     pub(crate) quantity: String,
     /// The measured value.
     pub(crate) measured: f64,
-    /// What theory says of it.
+    /// The prediction of the theory.
     pub(crate) theory: Expectation,
-    /// Whether that agrees, in words.
+    /// The agreement, in words.
     pub(crate) verdict: Option<String>,
 }
 

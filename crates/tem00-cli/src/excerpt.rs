@@ -13,7 +13,7 @@ const WIDEST: usize = 160;
 pub(crate) struct Excerpt {
     name: String,
     text: String,
-    /// Where it begins in the file: lines and characters before it.
+    /// Its start in the file: the lines and characters before it.
     line: usize,
     column: usize,
 }

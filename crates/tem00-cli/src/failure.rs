@@ -1,4 +1,4 @@
-//! Why the program ends early, and the exit code that says so.
+//! Failures of the program and their exit codes.
 
 use std::{io, path::Path};
 
@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::excerpt::Excerpt;
 
-/// Why the program ends before its work is done.
+/// The reason for which the program ends before its work is done.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// The user gave something that cannot be used. Exit code 2.

@@ -12,7 +12,7 @@ use std::{
 /// however it ends.
 const NAME: &str = ".tem00.lock";
 
-/// How often a lock that is shared is tried for, and the time between. Those who take it hold it alone
+/// The number of attempts at a shared lock, and the time between them. Those who take it hold it alone
 /// for a moment, to write down what they share.
 const TRIES: u32 = 40;
 const PAUSE: Duration = Duration::from_millis(25);
@@ -25,7 +25,7 @@ pub(crate) struct FolderLock {
     file: Option<File>,
 }
 
-/// Why the right to write into a folder is not had.
+/// The reason for which a folder may not be written into.
 #[derive(Debug)]
 pub(crate) enum Refused {
     /// Another process has it, with this number if it is known.

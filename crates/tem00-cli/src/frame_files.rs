@@ -36,14 +36,14 @@ pub(crate) fn check_room(path: &Path, scene: &Scene) -> Result<(), Failure> {
     )
 }
 
-/// Where the files of a frame go.
+/// The paths of the files of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct FramePaths {
     /// The preview.
     pub(crate) preview: PathBuf,
     /// The layers.
     pub(crate) layers: PathBuf,
-    /// What says that the others are whole. For a single frame it is the summary.
+    /// The record that the others are whole; for a single frame it is the summary.
     pub(crate) record: PathBuf,
 }
 

@@ -50,7 +50,7 @@ impl Format {
     }
 }
 
-/// How grey values relate to light.
+/// The relation of grey values to light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Transfer {
     /// In proportion, as sensors deliver them.
@@ -59,12 +59,12 @@ pub(crate) enum Transfer {
     Srgb,
 }
 
-/// What is wanted of an image.
+/// Options for reading an image.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reading<'a> {
     /// One channel of several; without it the mean of R, G and B is taken, or the first channel.
     pub(crate) channel: Option<&'a str>,
-    /// How grey values relate to light, whatever the file says.
+    /// The relation of grey values to light, instead of that of the file.
     pub(crate) transfer: Option<Transfer>,
     /// A part of the image.
     pub(crate) crop: Option<Crop>,
@@ -75,13 +75,13 @@ pub(crate) struct Reading<'a> {
 pub(crate) struct LoadedImage {
     /// One value per pixel.
     pub(crate) values: Grid<f32>,
-    /// What was taken from the file and how, in words.
+    /// A description of what was read from the file and how.
     pub(crate) interpretation: String,
     /// The share of pixels at the largest value that the file can hold, if it has one.
     pub(crate) saturated: Option<f64>,
 }
 
-/// Why an image file could not be read or written.
+/// Errors of reading or writing an image file.
 #[derive(Debug, Error)]
 pub(crate) enum ImageError {
     #[error("{0}")]
@@ -110,10 +110,10 @@ pub(crate) enum ImageError {
     FrameFormat(String),
     #[error("pixels of {0} are not supported: use grey or RGB of 8 or 16 bits, not in planes")]
     Pixels(String),
-    #[error("grey values of the file have {found} bits, not {told}")]
-    FewerBits { told: u32, found: u32 },
-    #[error("grey values of {told} bits are at most {}, but there is one of {found}", (1_u32 << .told) - 1)]
-    Bits { told: u32, found: u16 },
+    #[error("grey values of the file have {found} bits, not {expected}")]
+    FewerBits { expected: u32, found: u32 },
+    #[error("grey values of {expected} bits are at most {}, but there is one of {found}", (1_u32 << .expected) - 1)]
+    Bits { expected: u32, found: u16 },
     #[error("the image has {width} × {height} pixels; between 1 and {MAXIMUM_PIXELS} are allowed")]
     Size { width: u64, height: u64 },
     #[error(

@@ -1,4 +1,4 @@
-//! What the camera will see of the lasers, found before anything is rendered.
+//! Inspection of a scene before it is rendered: the laser light that the camera will see.
 
 mod overview;
 mod words;
@@ -12,7 +12,7 @@ use crate::{args::FrameRange, failure::Failure};
 /// The most frames that are looked at.
 const MOST_FRAMES: u32 = 8;
 
-/// What the camera sees of each laser in frames spread over those that were asked for.
+/// The light of each laser that reaches the camera, in frames spread over the requested ones.
 pub(crate) struct Inspection<'a> {
     scene: &'a Scene,
     /// The number of each frame, and its lasers.

@@ -1,4 +1,4 @@
-//! What kind of file the user has given, where a command wants another.
+//! The kind of a file, where a command needs another.
 
 use std::{fs::File, io::Read, path::Path};
 
@@ -6,7 +6,7 @@ use tem00_config::{DocumentKind, kind_of_document};
 
 use crate::failure::Failure;
 
-/// As much of a file as tells its kind.
+/// The number of bytes that determine the kind of a file.
 const MAX_BYTES: u64 = 1 << 20;
 
 /// A kind of file that a command takes.
@@ -52,7 +52,7 @@ impl Kind {
     }
 }
 
-/// How files begin that hold an image: PNG, OpenEXR, NumPy, JPEG, TIFF in both orders of bytes, BMP, PGM and PPM.
+/// The first bytes of image files: PNG, OpenEXR, NumPy, JPEG, TIFF in both orders of bytes, BMP, PGM and PPM.
 const IMAGES: [&[u8]; 11] = [
     b"\x89PNG",
     b"\x76\x2f\x31\x01",

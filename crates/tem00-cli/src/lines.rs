@@ -78,7 +78,7 @@ pub(crate) fn run(args: &LinesArgs, out: &mut impl Write) -> Result<(), Failure>
                 several.len()
             ),
         },
-        "the notes tell why; the pictures show what was found",
+        "the notes say why; the pictures show what was found",
     ))
 }
 

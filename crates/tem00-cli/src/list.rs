@@ -99,7 +99,7 @@ const DETECTORS: &str = "\
 In [detector]: method = \"parabola\". --method of `tem00 lines` takes the same names.";
 
 fn detectors() -> Table {
-    let mut table = headed(["method", "least window", "place of the line"]);
+    let mut table = headed(["method", "minimum window", "position of the line"]);
     for method in LineMethod::ALL {
         let window = method.least_window().to_string();
         table.row(texts([method.name(), &window, place_of_line(&method)]));
@@ -115,7 +115,7 @@ fn place_of_line(method: &LineMethod) -> &'static str {
         }
         LineMethod::IteratedCentreOfGravity => "over a window that is moved onto its result",
         LineMethod::Parabola => {
-            "vertex of a parabola through the greatest pixel and its neighbours"
+            "vertex of a parabola through the brightest pixel and its neighbours"
         }
         LineMethod::LogGaussian => {
             "vertex through their logarithms; exact for points of a Gaussian"

@@ -1,4 +1,4 @@
-//! What the commands share: where their files go, and the threads that they work on.
+//! Output folders, notes and threads, which the commands share.
 
 use std::{
     fmt::Arguments,

@@ -28,7 +28,7 @@ const MAXIMUM_SIZE: usize = 1 << 14;
 /// The bytes that it takes to make a sample, to measure it and to write it; its amplitude takes more.
 const BYTES_PER_SAMPLE: u64 = 36;
 
-/// The memory that a field from outside may take: as much as the largest pattern of amplitudes.
+/// The memory that an external field may take: as much as the largest pattern of amplitudes.
 const FIELD_MEMORY: u64 = 8 << 28;
 
 /// Generates a pattern, writes it to the file asked for and prints the table.
@@ -125,7 +125,7 @@ fn pupil_field(args: &PatternArgs) -> Result<PupilField, Failure> {
         })
 }
 
-/// The field of samples from outside, seen through a pupil of whole samples.
+/// The field of external samples, seen through a pupil of whole samples.
 fn behind(
     samples: Grid<Complex<f32>>,
     size: usize,
@@ -169,7 +169,7 @@ fn description(args: &PatternArgs, field: &PupilField) -> String {
     )
 }
 
-/// What is written: the intensity or the complex amplitude.
+/// The values to write: the intensity or the complex amplitude.
 enum Values {
     Intensity(SpecklePattern),
     Amplitude(SpeckleField),

@@ -133,7 +133,7 @@ fn styled(layout: Layout) -> Layout {
 const WIDTH: f64 = 480.0;
 const HEIGHT: f64 = 360.0;
 
-/// What stays free below the lowest text.
+/// The margin below the lowest text.
 const MARGIN: f64 = 6.0;
 
 /// Returns where the lowest text stands: a legend of several rows is taller than was planned for.

@@ -88,7 +88,7 @@ impl Progress {
 /// One progress bar over all frames.
 pub(crate) struct FrameProgress {
     bar: Progress,
-    /// What each frame counts, and how many have begun.
+    /// The work of each frame, and the number of frames that have begun.
     samples_per_frame: u64,
     begun: Cell<u64>,
 }

@@ -1,4 +1,4 @@
-//! Reports: what a command found, as one value that is shown on a terminal, as JSON and as a page.
+//! Reports: the results of a command as one value, shown on a terminal, as JSON and as a page.
 
 mod cell;
 mod cloud;
@@ -20,7 +20,7 @@ pub(crate) use self::{
     units::Unit,
 };
 
-/// What a command found.
+/// The results of a command.
 ///
 /// Each number is told once, with its key, its name and its unit:
 ///
@@ -33,7 +33,7 @@ pub(crate) use self::{
 #[derive(Clone, Debug)]
 pub(crate) struct Report {
     title: String,
-    /// What programs get beside the sections.
+    /// Values for programs, beside the sections.
     data: Map<String, Value>,
     verdicts: Vec<String>,
     warnings: Vec<String>,
@@ -56,7 +56,7 @@ pub(crate) struct Section {
 enum Block {
     /// A quantity with its key and its name.
     Fact(&'static str, String, Cell),
-    /// What only programs get.
+    /// A value for programs alone.
     Data(String, Value),
     Table(Table),
     /// An explanation, on pages alone.

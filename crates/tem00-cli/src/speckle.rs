@@ -33,7 +33,7 @@ pub(crate) fn run(args: &SpeckleArgs, out: &mut impl Write) -> Result<(), Failur
     speckle.report(args).print(args.json, &[], out)
 }
 
-/// What a lens says of its speckle.
+/// The speckle of a lens.
 #[derive(Debug)]
 struct Speckle {
     geometry: ImagingGeometry,
@@ -41,7 +41,7 @@ struct Speckle {
     decorrelation: Vec<Decorrelation>,
 }
 
-/// What a square pixel without gaps sees of the speckle.
+/// The speckle in a square pixel without gaps.
 #[derive(Debug)]
 struct Pixel {
     pitch: f64,
@@ -65,7 +65,7 @@ impl Pixel {
     }
 }
 
-/// How much of a change leaves half the pattern, and how much none, in SI units.
+/// The amounts of a change that leave half of the pattern and none, in SI units.
 #[derive(Debug)]
 struct Decorrelation {
     by: Change,
@@ -74,7 +74,7 @@ struct Decorrelation {
     none: Option<f64>,
 }
 
-/// What changes the speckle.
+/// The changes that decorrelate speckle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Change {
     /// The surface moves across the line of sight, and a pixel stays where it is.

@@ -41,7 +41,7 @@ const SMALLEST_WINDOW: f64 = 6.0;
 /// there are four for each.
 const BYTES_PER_PIXEL: u64 = 100;
 
-/// What was found in an image.
+/// The statistics of an image.
 #[derive(Debug)]
 struct Measurement {
     image: String,

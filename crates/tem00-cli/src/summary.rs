@@ -1,4 +1,4 @@
-//! What a render found, as JSON.
+//! The summary of a render as JSON.
 
 use std::borrow::Cow;
 
@@ -56,12 +56,12 @@ struct PatternSummary {
     why: String,
 }
 
-/// How radiance became brightness in the previews.
+/// The brightness of the previews.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct Exposure {
     /// The radiance shown as white, in W/(m² sr).
     pub(crate) white_level: f32,
-    /// Who chose it.
+    /// The rule by which it was chosen.
     pub(crate) chosen_by: Cow<'static, str>,
 }
 

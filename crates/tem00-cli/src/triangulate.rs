@@ -30,7 +30,7 @@ use crate::{
     report::Report,
 };
 
-/// What to say of a file that is no scene.
+/// The help for a file that is not a scene.
 const HELP: &str = "a scene needs a camera, a laser with [laser.line], a surface and a [sensor]";
 
 /// Measures a scene and prints what makes its heights uncertain.
@@ -79,7 +79,7 @@ struct Job<'a> {
     files: Files,
 }
 
-/// What was measured.
+/// The results of a measurement.
 struct Measured {
     frames: Vec<FrameRecord>,
     profiles: Vec<Vec<MeasuredPoint>>,
@@ -88,9 +88,9 @@ struct Measured {
     /// The frame that the report shows, from the middle of the scan.
     shown: Option<MeasuredFrame>,
     effective_frames: Option<f64>,
-    /// What becomes of speckle from frame to frame, where there is any.
+    /// The change of speckle from frame to frame, where there is any.
     speckle_change: Option<SpeckleChange>,
-    /// What makes heights uncertain, or why there is none.
+    /// The terms of the height uncertainty, or the reason why there are none.
     terms: Result<Terms, Refusal>,
 }
 
@@ -201,7 +201,7 @@ impl<'a> Job<'a> {
 }
 
 impl Measured {
-    /// What becomes of speckle from frame to frame; nothing where that is not known.
+    /// The change of speckle from frame to frame as a sentence; `None` where it is not known.
     fn speckle_sentence(&self, average: Averaging) -> Option<String> {
         let change = self.speckle_change.as_ref()?;
         let worth = match self.effective_frames {
@@ -218,7 +218,7 @@ impl Measured {
     }
 }
 
-/// How speckle has moved and how much of it is left.
+/// The motion of speckle and the correlation that is left, in words.
 fn in_words(change: &SpeckleChange) -> String {
     // Adding 0 takes the sign off −0.
     let [right, down] = change

@@ -4,11 +4,11 @@ use clap::Args;
 
 use super::SetupArgs;
 
-/// Say what height uncertainty a set-up gives, and what dominates it.
+/// Compute the height uncertainty of a set-up, and find what dominates it.
 ///
-/// The set-up file holds what data sheets tell: laser line, lens, sensor, angle, surface and detector.
+/// The set-up file holds the values of data sheets: laser line, lens, sensor, angle, surface and detector.
 /// The table on standard output is an uncertainty budget after the GUM: for each source its standard
-/// uncertainty by formulas, and beside it what trials with simulated frames find.
+/// uncertainty by formulas, and beside it the one found by trials with simulated frames.
 ///
 /// A set-up whose line saturates the sensor or is not found, or whose trials trust the line in fewer than
 /// half of the columns, measures nothing: there is no number, and the exit code is 3.

@@ -33,7 +33,7 @@ pub(crate) struct CalibrateArgs {
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) pixel_pitch: f64,
 
-    /// The focal length of the lens, as in "25 mm": where to begin, and where the image is sharp.
+    /// The focal length of the lens, as in "25 mm": the start of the fit, and the distance at which the image is sharp.
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) focal_length: Option<f64>,
 
@@ -45,7 +45,7 @@ pub(crate) struct CalibrateArgs {
     #[arg(long)]
     pub(crate) tilted: bool,
 
-    /// How many coefficients of radial distortion to find, 0 to 3.
+    /// The number of coefficients of radial distortion to find, 0 to 3.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=3))]
     pub(crate) radial: u8,
 

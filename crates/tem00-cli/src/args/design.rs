@@ -4,10 +4,10 @@ use clap::Args;
 
 use super::SetupArgs;
 
-/// Search set-ups for the least height uncertainty under constraints.
+/// Search set-ups for the minimum height uncertainty under constraints.
 ///
-/// The section [design] of the set-up file says what is varied, what a set-up must keep and what is
-/// made small. All combinations are tried; the table on standard output lists the best that keep every
+/// The section [design] of the set-up file names the parameters to vary, the constraints and the
+/// objective. All combinations are tried; the table on standard output lists the best that keep every
 /// constraint. If there is none, it says which constraint excludes how many and the nearest set-up, no
 /// best.toml is written, and the exit code is 3.
 #[derive(Args, Debug)]
@@ -16,7 +16,7 @@ pub(crate) struct DesignArgs {
     #[command(flatten)]
     pub(crate) common: SetupArgs,
 
-    /// How many of the best set-ups are listed, 1 to 1000.
+    /// The number of best set-ups to list, 1 to 1000.
     #[arg(long, value_name = "N", default_value_t = 10,
           value_parser = clap::value_parser!(u16).range(1..=1_000))]
     pub(crate) best: u16,
@@ -34,5 +34,5 @@ Files:
   design.json         the search, its best set-ups, the front, and what constraints exclude
   design.html         all of it in one report that opens offline
   trade_off.svg|png   uncertainty against depth of field
-  over_<parameter>    the least uncertainty over each parameter that is varied, by source
-  sensitivity         what 10 % more or less of each parameter makes of the best";
+  over_<parameter>    the minimum uncertainty over each varied parameter, by source
+  sensitivity         the change of the best by 10 % more or less of each parameter";

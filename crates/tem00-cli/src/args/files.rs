@@ -1,9 +1,9 @@
-//! What the commands share that read scene files and set-up files.
+//! The options of the commands that read scene files and set-up files.
 
 use clap::Args;
 use tem00_config::{Change, FileAccess, Reading};
 
-/// How a scene file or a set-up file is read.
+/// Options for reading a scene file or a set-up file.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct FileArgs {
     /// Let the file include files that lie outside of its folder, and glTF meshes take data from outside

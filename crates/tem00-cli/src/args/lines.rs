@@ -8,7 +8,7 @@ use tem00_triangulation::{DetectorSettings, LineMethod};
 /// Find laser lines in images, to a fraction of a pixel.
 ///
 /// The images come from a camera or from this program: grey or RGB, of 8 to 16 bits. A line runs from
-/// left to right, and each column tells its place (with --rows from top to bottom). For every image
+/// left to right, and has a position in each column (with --rows from top to bottom, and in each row). For every image
 /// there is a table of all points and a picture of the image with the lines drawn on it; the summary
 /// on standard output says how much of each line was found, how much it scatters from column to column
 /// and how wide it is. If no image has a valid point of a line, the exit code is 3.
@@ -26,7 +26,7 @@ pub(crate) struct LinesArgs {
     #[command(flatten)]
     pub(crate) detector: DetectorArgs,
 
-    /// Lines run from top to bottom, and each row tells their place.
+    /// Lines run from top to bottom, and have a position in each row.
     #[arg(long, conflicts_with = "calibration")]
     pub(crate) rows: bool,
 
@@ -35,7 +35,7 @@ pub(crate) struct LinesArgs {
     pub(crate) channel: Option<String>,
 
     /// The bits of a grey value, where the camera has fewer than the file: 8, 10, 12, 14 or 16. They
-    /// tell when a pixel is saturated.
+    /// determine when a pixel is saturated.
     #[arg(long, value_name = "BITS", value_parser = bits)]
     pub(crate) bits: Option<u32>,
 
@@ -48,10 +48,10 @@ pub(crate) struct LinesArgs {
     pub(crate) json: bool,
 }
 
-/// How the lines are found.
+/// The options of the line detector.
 #[derive(Args, Debug)]
 pub(crate) struct DetectorArgs {
-    /// How the place of a line in a column is estimated.
+    /// The estimator of the position of a line in a column.
     #[arg(long = "detector", value_name = "METHOD", default_value = "centre_of_gravity",
           value_parser = method())]
     method: LineMethod,
@@ -74,7 +74,7 @@ pub(crate) struct DetectorArgs {
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     sigma: Option<f64>,
 
-    /// The least height of a line above the background, in grey values.
+    /// The minimum height of a line above the background, in grey values.
     #[arg(
         long,
         value_name = "DN",
@@ -83,7 +83,7 @@ pub(crate) struct DetectorArgs {
     )]
     least_peak: f64,
 
-    /// The most lines per column.
+    /// The maximum number of lines per column.
     #[arg(long, value_name = "K", default_value_t = 1)]
     most_lines: usize,
 }

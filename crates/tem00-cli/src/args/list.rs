@@ -6,11 +6,11 @@ use super::length;
 
 /// List what scenes and set-ups can name: metals, materials, surfaces, detectors, sensors.
 ///
-/// Each comes with its source, and typical values are called so.
+/// Each entry has its source, and typical values are marked.
 #[derive(Args, Debug)]
 #[command(after_help = LIST_EXAMPLES)]
 pub(crate) struct ListArgs {
-    /// What to list.
+    /// The list.
     #[arg(value_name = "WHAT")]
     pub(crate) what: Listed,
 
@@ -25,7 +25,7 @@ Examples:
   tem00 list surfaces                     finishes such as \"milled steel\"
   tem00 list detectors                    how a line is found";
 
-/// What can be listed.
+/// The lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Listed {
     /// Metals with their complex refractive index.
@@ -36,6 +36,6 @@ pub(crate) enum Listed {
     Surfaces,
     /// Methods that find a line in a column.
     Detectors,
-    /// What a sensor is where a file leaves it open.
+    /// Typical sensors, the defaults of files.
     Sensors,
 }

@@ -23,11 +23,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = crop)]
     pub(crate) crop: Option<Crop>,
 
-    /// How light is followed [default: from the scene].
+    /// The direction in which light is traced [default: from the scene].
     #[arg(long, value_name = "METHOD")]
     pub(crate) method: Option<MethodName>,
 
-    /// The most surfaces that light may meet between source and camera [default: from the scene].
+    /// The maximum number of surfaces that light meets between source and camera [default: from the scene].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) max_depth: Option<u32>,
 
@@ -54,7 +54,7 @@ Examples:
   tem00 render scenes/spot.toml                       quick look, into out/spot/
   tem00 render scenes/spot.toml --check               will the camera see the laser? at once
   tem00 render scenes/spot.toml --spp 256 -o good     slower, with less noise
-  tem00 render scenes/spot.toml --paper -o printed    the formulas as printed, to lay beside
+  tem00 render scenes/spot.toml --paper -o printed    the formulas as printed, to compare
   tem00 render scenes/spot.toml --no-speckle          the same light without interference
   tem00 render scenes/moved_surface.toml --resume     go on after an interruption
   tem00 render scenes/moved_surface.toml --frames 1   one frame, for example of several machines
@@ -64,11 +64,11 @@ Files:
   <scene>.exr     layers per laser: coherent_before, speckle, coherent_after, incoherent, in W/(m² sr),
                   and variance; lamps, depth, normal, samples
   <scene>.json    power on the target, speckle size, contrast, exposure, speed; and one per frame of
-                  several, which --resume goes by
+                  several, which --resume reads
   <scene>_overview.svg|png  camera, lasers and parts from three sides; with --check, and where the camera
                   sees no light of a laser";
 
-/// How light is followed, by the names that scene files use.
+/// The direction in which light is traced, by the names of scene files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MethodName {
     /// From the camera.

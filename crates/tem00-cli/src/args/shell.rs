@@ -1,4 +1,4 @@
-//! The command line of what a shell and `man` are told of the program.
+//! The command lines of `tem00 completions` and `tem00 man`.
 
 use std::path::PathBuf;
 

@@ -5,7 +5,7 @@ use tem00_config::ANGLE;
 
 use super::{length, positive};
 
-/// Say how large the speckle of a camera is, how much of it a pixel sees, and what changes it.
+/// Compute the speckle size of a camera, the contrast in a pixel, and what decorrelates the speckle.
 ///
 /// Nothing but the lens, the distance and the wavelength is needed: the surface is rough, and lit over
 /// more than a resolution cell. The size h, wavelength times working f-number, is the period of the finest

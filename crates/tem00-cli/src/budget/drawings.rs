@@ -9,7 +9,7 @@ use crate::plot::{
 const METRES_TO_MICROMETRES: f64 = 1e6;
 const METRES_TO_MILLIMETRES: f64 = 1e3;
 
-/// What each source contributes, by formulas and, unless they were left out, by trials.
+/// The contribution of each source, by formulas and, unless they were left out, by trials.
 pub(super) fn contributions(answer: &Answer) -> Drawing {
     let series: &[(&str, Colour)] = match answer.trials {
         Some(_) => &[("formulas", FORMULAS), ("trials", TRIALS)],

@@ -37,7 +37,8 @@ pub(super) fn report(findings: &Findings<'_>, drawings: Vec<String>) -> Report {
 
 /// Adds the numbers that the verdicts tell in words.
 fn numbers(report: &mut Report, answer: Option<&Answer>) {
-    let values: [(&str, fn(&Budget) -> f64); 7] = [
+    type Value = fn(&Budget) -> f64;
+    let values: [(&str, Value); 7] = [
         ("height", Budget::height),
         ("combined", Budget::combined),
         ("degrees_of_freedom", Budget::degrees_of_freedom),

@@ -1,4 +1,4 @@
-//! What a calibration found, as a table.
+//! The results of a calibration as a table.
 
 use tem00_camera::RadialDistortion;
 use tem00_triangulation::{Calibration, DVec2, DVec3, PARAMETERS};

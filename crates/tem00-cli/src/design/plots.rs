@@ -174,7 +174,7 @@ fn spacing(sweep: &Sweep) -> Spacing {
     }
 }
 
-/// What a tenth more or less of each parameter makes.
+/// The change by a tenth more or less of each parameter.
 fn sensitivity(design: &Design<'_>, near: &[Neighbours]) -> Named {
     let objective = design.objective();
     let now = design.shown().ok().and_then(Candidate::possible);

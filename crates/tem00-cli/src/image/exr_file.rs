@@ -18,7 +18,7 @@ pub(crate) struct Layer<'a> {
     /// This is the only attribute of its kind: the order of several would change from run to run,
     /// and with it the bytes of the file.
     pub(crate) wavelength: Option<f64>,
-    /// What the layer holds, in words. Stored as the standard attribute `comments`.
+    /// A description of the layer. Stored as the standard attribute `comments`.
     ///
     /// Readers disagree on the encoding of other characters than ASCII: they become `?`.
     pub(crate) comments: String,
@@ -26,7 +26,7 @@ pub(crate) struct Layer<'a> {
     pub(crate) channels: Vec<(&'static str, &'a Grid<f32>)>,
 }
 
-/// Where layers lie in an image of which they are a part: in OpenEXR the data window in the display
+/// The position of layers in an image of which they are a part: in OpenEXR the data window in the display
 /// window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Window {

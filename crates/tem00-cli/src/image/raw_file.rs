@@ -49,9 +49,9 @@ pub(crate) struct RawImage {
     pub(crate) bit_depth: u32,
     /// The number of pixels of which a chosen channel has the largest grey value.
     pub(crate) saturated: usize,
-    /// What was taken from the file, in words.
+    /// A description of what was read from the file.
     pub(crate) interpretation: String,
-    /// Whether the file has images after this one.
+    /// `true` if the file has images after this one.
     pub(crate) has_further_images: bool,
     /// The largest grey value of a chosen channel, in DN.
     largest: u16,
@@ -71,14 +71,14 @@ impl RawImage {
     pub(crate) fn with_bit_depth(mut self, bit_depth: u32) -> Result<Self, ImageError> {
         if bit_depth > self.bit_depth {
             return Err(ImageError::FewerBits {
-                told: bit_depth,
+                expected: bit_depth,
                 found: self.bit_depth,
             });
         }
         self.bit_depth = bit_depth;
         if f64::from(self.largest) > self.saturation() {
             return Err(ImageError::Bits {
-                told: bit_depth,
+                expected: bit_depth,
                 found: self.largest,
             });
         }

@@ -1,10 +1,10 @@
-//! Which part of a pixel is taken.
+//! The choice of a component of the pixels.
 
 use png::ColorType;
 
 use super::ImageError;
 
-/// What a pixel of a file consists of.
+/// The components of a pixel of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Components {
     Grey,
@@ -41,7 +41,7 @@ impl From<ColorType> for Components {
     }
 }
 
-/// Which of the components of a pixel are taken.
+/// The choice among the components of a pixel.
 pub(super) struct Selection {
     pub(super) components: usize,
     pub(super) chosen: core::ops::Range<usize>,

@@ -86,7 +86,7 @@ pub(super) fn draw(scene: &Scene, frame: u32, lasers: &[LaserInspection]) -> Dra
     Drawing::of_scene(canvas)
 }
 
-/// What is drawn.
+/// The objects of the drawing.
 struct Content<'a> {
     scene: &'a Scene,
     camera: Camera,
@@ -164,10 +164,10 @@ impl Content<'_> {
     }
 }
 
-/// Where a view is drawn.
+/// The position of a view in the drawing.
 struct Panel<'a> {
     view: &'a View,
-    /// What stands in the middle, in metres.
+    /// The point in the middle, in metres.
     middle: DVec2,
     left: f64,
     per_metre: f64,

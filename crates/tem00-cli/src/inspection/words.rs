@@ -1,4 +1,4 @@
-//! What an inspection says, in words.
+//! The text of an inspection.
 
 use glam::DVec3;
 use tem00_tracer::{Crop, LaserInspection, LightFate, LightPart, Scene};
@@ -142,7 +142,7 @@ fn places(scene: &Scene) -> impl Iterator<Item = String> {
 
 fn name_of(scene: &Scene, surface: Option<usize>) -> String {
     let surface = surface.and_then(|index| scene.surfaces.get(index));
-    surface.map_or_else(|| "a lamp".into(), |surface| format!("`{}`", surface.name))
+    surface.map_or_else(|| "a light".into(), |surface| format!("`{}`", surface.name))
 }
 
 fn percent(share: f64) -> String {

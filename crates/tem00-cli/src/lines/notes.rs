@@ -1,4 +1,4 @@
-//! What the user should know of lines that were found, or not.
+//! Notes on lines that were found, or not.
 
 use std::path::Path;
 
@@ -68,7 +68,7 @@ fn doubtful(found: &Found) -> Option<String> {
     ))
 }
 
-/// What a doubtful point suffers from, and what helps.
+/// The defects of doubtful points, and their remedies.
 const REASONS: [(Validity, &str, &str); 5] = [
     (
         Validity::Saturated,
@@ -85,11 +85,7 @@ const REASONS: [(Validity, &str, &str); 5] = [
         "the window reaches into the next line",
         "a smaller --window helps",
     ),
-    (
-        Validity::Missing,
-        "pixels are no numbers",
-        "look at the image",
-    ),
+    (Validity::Missing, "pixels are NaN", "look at the image"),
     (
         Validity::Failed,
         "the estimate does not converge",

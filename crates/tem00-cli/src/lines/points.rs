@@ -10,7 +10,7 @@ use super::{Found, LineSummary};
 /// The points of an image and what is known about them.
 pub(super) struct Places<'a> {
     pub(super) found: &'a Found,
-    /// Whether each row tells the place of a line instead of each column.
+    /// `true` if a line has a position in each row instead of in each column.
     pub(super) rows: bool,
     pub(super) lines: &'a [LineSummary],
     pub(super) calibration: Option<&'a Calibration>,

@@ -1,4 +1,4 @@
-//! What is said of the lines of an image in a few numbers.
+//! The summary of the lines of an image.
 
 use std::path::Path;
 

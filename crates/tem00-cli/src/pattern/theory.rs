@@ -1,4 +1,4 @@
-//! What is measured of a pattern, beside the theory.
+//! Measurements of a pattern beside the theory.
 
 use core::fmt::Display;
 
@@ -23,11 +23,11 @@ const SIGNIFICANCE: f64 = 1e-3;
 /// (Smirnov 1948).
 const CRITICAL_DISTANCE: f64 = 1.949;
 
-/// How many standard deviations the tolerances in the table allow: a correct pattern exceeds one of
+/// The tolerances in the table, in standard deviations: a correct pattern exceeds one of
 /// them once in 16 000.
 const SIGMAS: f64 = 4.0;
 
-/// What was measured, and what is to be said about it.
+/// The measurements and the notes on them.
 #[derive(Debug, Default)]
 pub(super) struct Comparison {
     pub(super) rows: Vec<Row>,

@@ -8,7 +8,7 @@ use kuva::render::{
 
 use super::heat_map::HOLE;
 
-/// What stands where the cells were.
+/// The placeholder of the cells.
 const MARK: &str = "data-cells=\"\"";
 
 /// By how much a cell is drawn over the next.

@@ -35,7 +35,7 @@ struct Series {
     pieces: Vec<Vec<[f64; 3]>>,
 }
 
-/// How a series is drawn.
+/// The style of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mark {
     Line,

@@ -1,4 +1,4 @@
-//! What colours stand for: one colour has one meaning in all diagrams of a report.
+//! The meanings of colours: one colour has one meaning in all diagrams of a report.
 
 use tem00_triangulation::UncertaintySource;
 
@@ -49,7 +49,7 @@ colours! {
     HEIGHT = "#b4532a", "#e8895c";
     /// Uncertainties of heights.
     UNCERTAINTY = "#2f6fb8", "#79b4f0";
-    /// What was measured in an image, in all directions.
+    /// Values measured in an image, in all directions.
     MEASURED = "#1d6f9f", "#60b4e4";
     ALONG_X = "#2e7d32", "#7cc480";
     ALONG_Y = "#c2571a", "#f09a60";

@@ -18,15 +18,15 @@ pub(super) const HOLE: &str = "#ffffff";
 /// More than 200 cells along an axis are drawn as the means of blocks of them.
 #[derive(Clone, Debug)]
 pub(crate) struct HeatMap<'a> {
-    /// What the colours mean, with the unit.
+    /// The quantity that the colours stand for, with the unit.
     pub(crate) title: &'a str,
     /// The labels of the axes, across and up.
     pub(crate) labels: [&'a str; 2],
-    /// Where the axes begin and end.
+    /// The ranges of the axes.
     pub(crate) ranges: [(f64, f64); 2],
-    /// Whether both axes are lengths: they get one scale, and circles are circles.
+    /// `true` if both axes are lengths: they get one scale, and circles are circles.
     pub(crate) to_scale: bool,
-    /// What the values are: each quantity has colours of its own.
+    /// The kind of the values: each quantity has colours of its own.
     pub(crate) scale: Scale,
     /// The values; the first row is at the *bottom*, where the axis up begins.
     pub(crate) values: &'a Grid<f32>,

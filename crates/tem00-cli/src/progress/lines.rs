@@ -25,7 +25,7 @@ pub(super) struct Lines {
 #[derive(Debug)]
 struct State {
     name: String,
-    /// When the next line is due.
+    /// The time of the next line.
     next: Duration,
 }
 

@@ -1,4 +1,4 @@
-//! What is kept of a finished frame, so that a later run need not render it again.
+//! The record of a finished frame, by which a later run need not render it again.
 
 use std::{
     collections::HashSet,
@@ -131,7 +131,7 @@ impl Fnv {
     }
 }
 
-/// What is kept of finished frames. The summary of a render holds the same keys and more.
+/// The record of finished frames. The summary of a render holds the same keys and more.
 #[derive(Debug, Deserialize, Serialize)]
 pub(super) struct Record {
     pub(super) fingerprint: Fingerprint,
@@ -139,7 +139,7 @@ pub(super) struct Record {
     pub(super) frames: Vec<FrameSummary>,
 }
 
-/// What stands where the record of a frame goes.
+/// The content of the file of a record.
 #[derive(Debug)]
 pub(super) enum Found {
     /// A record of the same render.

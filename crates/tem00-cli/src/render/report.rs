@@ -1,4 +1,4 @@
-//! What a render tells on standard error.
+//! The notes of a render on standard error.
 
 use tem00_tracer::{LaserEvents, RoughnessNote, Scene};
 

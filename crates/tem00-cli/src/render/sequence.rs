@@ -20,7 +20,7 @@ use crate::{
     summary::{Exposure, FrameLaser, FrameSummary},
 };
 
-/// What became of the frames.
+/// The frames of a finished render.
 #[derive(Debug)]
 pub(super) struct Sequence {
     /// The exposure that all frames share.

@@ -19,7 +19,7 @@ impl Cell {
         Self { data, text }
     }
 
-    /// What is not known: `null`, with the reason in the place of a number.
+    /// An unknown value: `null`, with the reason in place of a number.
     pub(crate) fn missing(reason: impl Into<String>) -> Self {
         Self::new(Value::Null, reason)
     }

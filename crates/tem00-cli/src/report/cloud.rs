@@ -5,7 +5,7 @@ use core::fmt::Write as _;
 use super::{cell::rounded, escape::escaped};
 use crate::plot::{height_colour, is_drawn};
 
-/// What turns the points, where the reader's browser runs it; without it they stand as in print.
+/// The script that turns the points; without it they stand as in print.
 pub(super) const SCRIPT: &str = include_str!("cloud.js");
 
 /// The most points that are drawn.
@@ -29,7 +29,7 @@ const LEAST_SIDE: f64 = 0.25;
 pub(crate) struct Cloud<'a> {
     /// The names of the axes, with their units.
     pub(crate) labels: [&'a str; 3],
-    /// Whether the first two axes have the unit of the third.
+    /// `true` if the first two axes have the unit of the third.
     pub(crate) to_scale: bool,
     /// The points; those that are not finite are left out.
     pub(crate) points: Vec<[f64; 3]>,

@@ -8,7 +8,7 @@ use base64::{Engine, engine::general_purpose::STANDARD};
 use super::{Block, Report, Section, Table, cell::Cell, cloud, escape::escaped, style};
 use crate::{atomic::write_atomically, failure::Failure};
 
-/// What only a page shows.
+/// A part that only a page shows.
 #[derive(Clone, Debug)]
 pub(super) enum Figure {
     /// The text of an SVG file of this program, and its caption.
@@ -101,7 +101,7 @@ impl Section {
     }
 }
 
-/// What stands together on a page.
+/// The kinds of blocks that stand together on a page.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Group {
     Facts,

@@ -9,7 +9,7 @@ use tem00_statistics::{
     airy_power_spectrum, exponential_cumulative, power_spectrum, radial_average,
 };
 
-/// What the diagrams show.
+/// The curves of the diagrams.
 #[derive(Debug, Serialize)]
 pub(super) struct Curves {
     /// The speckle sizes along x and y, in pixels.

@@ -9,7 +9,7 @@ use tem00_statistics::{
 
 use crate::comparison::{Expectation, Row};
 
-/// How many standard errors the tolerances allow.
+/// The tolerances, in standard errors.
 const SIGMAS: f64 = 4.0;
 
 /// The level of the interval of the contrast.
@@ -31,7 +31,7 @@ const FINE: f64 = 100.0;
 /// The smallest local mean by the largest below which noise may show in the quotient.
 const DARK: f64 = 0.1;
 
-/// What was found so far.
+/// The results so far.
 pub(super) struct Findings<'a> {
     pub(super) values: &'a Grid<f32>,
     /// The image that the values are of, if it was divided by its local mean.

@@ -28,7 +28,7 @@ pub(super) fn calibrated(
     if boards.folder.is_some() {
         return Err(Failure::input(
             format!(
-                "{}: images of real boards do not tell where the scene is: leave out `folder` in [calibration]",
+                "{}: images of real boards do not determine the position of the scene: leave out `folder` in [calibration]",
                 scene.display()
             ),
             "`tem00 calibrate` estimates a calibration from a folder, and `tem00 lines --calibration` uses it",

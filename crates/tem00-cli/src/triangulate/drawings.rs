@@ -24,7 +24,7 @@ const DRAWINGS: [&str; 5] = [
     "uncertainty_map",
 ];
 
-/// What is drawn of a measurement, into its folder and into sections of its report.
+/// Draws a measurement into its folder and into sections of its report.
 pub(super) struct Drawings<'a> {
     pub(super) job: &'a Job<'a>,
     pub(super) measured: &'a Measured,

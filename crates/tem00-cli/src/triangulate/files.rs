@@ -15,7 +15,7 @@ use crate::{
     atomic::write_atomically, failure::Failure, folder_lock::FolderLock, image::write_raw, output,
 };
 
-/// Where the files of a measurement go.
+/// The folder and the formats of the files of a measurement.
 pub(super) struct Files {
     pub(super) folder: PathBuf,
     raw: RawFormat,

@@ -1,4 +1,4 @@
-//! What is known of each frame.
+//! The summary of each frame.
 
 use std::collections::BTreeMap;
 
@@ -7,18 +7,18 @@ use tem00_triangulation::Validity;
 
 use crate::report::{Cell, Column, Table, units::NUMBER};
 
-/// What a frame showed.
+/// The summary of a frame.
 #[derive(Clone, Debug)]
 pub(super) struct FrameRecord {
     pub(super) number: u32,
     pub(super) file: String,
     /// The number of points that were found.
     pub(super) points: usize,
-    /// How many of them are valid.
+    /// The number of valid points.
     pub(super) valid: usize,
-    /// How many of them lie on saturated pixels.
+    /// The number of points on saturated pixels.
     pub(super) saturated: usize,
-    /// How many of them are not valid, by reason.
+    /// The numbers of points that are not valid, by reason.
     pub(super) not_valid: BTreeMap<&'static str, usize>,
     pub(super) saturated_pixels: usize,
     /// The largest grey value.

@@ -1,10 +1,10 @@
-//! Why a measurement has no valid point, and what to change.
+//! The reason for which a measurement has no valid point, and the remedy.
 
 use tem00_triangulation::Validity;
 
 use super::frame::FrameRecord;
 
-/// Why nothing was measured.
+/// The reason for which nothing was measured, and the remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Refusal {
     pub(super) why: String,
@@ -50,7 +50,7 @@ impl Refusal {
     }
 }
 
-/// What makes a point doubtful, in words, and what helps.
+/// A validity, its description and its remedy.
 type Reason = (Validity, &'static str, &'static str);
 
 const BRIGHT: &str = "pixels are saturated: lower `exposure` in [sensor] or `power` in [[laser]]";
@@ -74,7 +74,7 @@ const REASONS: [Reason; 6] = [
     ),
     (
         Validity::Failed,
-        "have no estimate of their place",
+        "have no estimate of their position",
         "try another `method` or a wider `window` in [detector]",
     ),
     (

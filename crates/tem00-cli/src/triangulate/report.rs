@@ -12,7 +12,7 @@ use crate::{
     },
 };
 
-/// What the numbers say of each other.
+/// The correlations between the errors.
 const CORRELATIONS: &str = "Speckle correlates the errors of neighbouring columns over about a speckle, and \
     those of frames in which the surface has not moved; shot noise, dark noise and quantisation are new in \
     every pixel and frame; PRNU and DSNU are new in every pixel and stay from frame to frame; the error of \
@@ -199,7 +199,7 @@ fn speckle(job: &Job<'_>, measured: &Measured) -> Cell {
     )
 }
 
-/// What a pixel is in height, at the first valid point.
+/// The height of a pixel, at the first valid point.
 fn height_per_pixel(job: &Job<'_>, measured: &Measured) -> Cell {
     let height = job.measurement.settings().height;
     let mut points = measured.profiles.iter().flatten();

@@ -1,4 +1,4 @@
-//! What makes heights uncertain, over all points.
+//! The terms of the height uncertainty, over all points.
 
 use tem00_scan::MeasuredPoint;
 use tem00_triangulation::{DVec3, PlaceNoise, UncertaintySource};
@@ -11,7 +11,7 @@ use crate::report::{
 /// One term of the uncertainty.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Term {
-    /// What it comes from.
+    /// The source of the error.
     pub(super) name: &'static str,
     /// The standard uncertainty of a line's position, in pixels; none of the calibration.
     pub(super) position: Option<f64>,

@@ -200,10 +200,7 @@ fn a_crop_is_a_part_of_the_image() {
     }
     let summary = fs::read(folder.path().join("part/a.json")).expect("a summary");
     let summary: Value = serde_json::from_slice(&summary).expect("JSON");
-    assert_eq!(
-        summary["crop"],
-        serde_json::json!([8, 6, 24, 20])
-    );
+    assert_eq!(summary["crop"], serde_json::json!([8, 6, 24, 20]));
     assert_eq!(summary["samples"], 24 * 20 * 4);
 }
 

@@ -15,11 +15,11 @@ const SHORTEST_HEADER: u32 = 40;
 /// The most bytes between the start of the file and its pixels.
 const LARGEST_OFFSET: u32 = 1 << 16;
 
-/// What the headers say.
+/// The contents of the headers.
 struct Header {
     width: u32,
     height: u32,
-    /// Whether the first row of the file is the lowest of the image.
+    /// `true` if the first row of the file is the lowest of the image.
     upside_down: bool,
     bits: u16,
     /// The place of the palette and of the pixels in the file.

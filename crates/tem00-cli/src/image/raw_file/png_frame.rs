@@ -98,7 +98,7 @@ fn curve(info: &png::Info<'_>) -> StoredCurve {
     }
 }
 
-/// How grey values stand in the file.
+/// The encoding of grey values in the file.
 struct Bits {
     depth: u32,
     shift: u32,

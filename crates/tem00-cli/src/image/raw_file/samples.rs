@@ -8,7 +8,7 @@ use super::super::{
 use super::{ImageError, RawImage};
 use crate::colour::srgb_decoded;
 
-/// What a file holds before a channel is chosen.
+/// The samples of a file before a channel is chosen.
 pub(in crate::image) struct Samples {
     pub(super) width: usize,
     pub(super) height: usize,
@@ -17,14 +17,14 @@ pub(in crate::image) struct Samples {
     pub(super) values: Vec<u16>,
     /// The bits of a grey value, as the file says or as it stores them.
     pub(super) bit_depth: u32,
-    /// What the file says of light and grey values.
+    /// The relation of grey values to light, from the file.
     pub(super) curve: StoredCurve,
-    /// What else is to be said of the file.
+    /// A further remark on the file.
     pub(super) remark: &'static str,
     pub(super) has_further_images: bool,
 }
 
-/// What a file says of light and grey values.
+/// The relation of grey values to light, from a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum StoredCurve {
     Unknown,
@@ -158,7 +158,7 @@ fn mean(values: &[u16]) -> f32 {
     to_f32(sum / values.len() as f64)
 }
 
-/// How grey values relate to the light, and who says so.
+/// The relation of grey values to light, and its origin.
 enum Curve {
     Linear { told: bool },
     Srgb { told: bool },
@@ -186,9 +186,9 @@ impl Curve {
 
     fn description(&self) -> String {
         match self {
-            Self::Linear { told: true } => "linear, as told".into(),
+            Self::Linear { told: true } => "linear, as asked".into(),
             Self::Linear { told: false } => "taken as linear, the file does not say".into(),
-            Self::Srgb { told: true } => "sRGB curve undone, as told".into(),
+            Self::Srgb { told: true } => "sRGB curve undone, as asked".into(),
             Self::Srgb { told: false } => "sRGB curve undone, as the file says".into(),
             Self::Gamma(gamma) => format!("gamma {gamma} undone, as the file says"),
         }

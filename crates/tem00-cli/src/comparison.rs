@@ -2,7 +2,10 @@
 
 use serde::Serialize;
 
-use crate::report::{Cell, Column, Table, number, rounded};
+use crate::{
+    digits::{number, rounded},
+    report::{Cell, Column, Table},
+};
 
 /// The prediction of the theory for a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -8,8 +8,9 @@ use tem00_triangulation::{LineMethod, SensorDescription};
 
 use crate::{
     args::{ListArgs, Listed},
+    digits::rounded,
     failure::Failure,
-    report::{Cell, Column, Table, rounded},
+    report::{Cell, Column, Table},
 };
 
 /// Prints what was asked for, with its sources.

@@ -8,6 +8,7 @@ mod calibration_file;
 mod colour;
 mod comparison;
 mod design;
+mod digits;
 mod excerpt;
 mod failure;
 mod folder_lock;

@@ -14,7 +14,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 pub(crate) use self::{
-    cell::{Cell, number, rounded},
+    cell::Cell,
     cloud::Cloud,
     table::{Column, Table},
     units::Unit,
@@ -83,7 +83,7 @@ impl Report {
 
     /// Adds what only programs get; a number that is not finite becomes `null`.
     pub(crate) fn data(&mut self, key: &str, value: impl Serialize) {
-        self.data.insert(key.to_owned(), json::value(value));
+        self.data.insert(key.to_owned(), cell::value(value));
     }
 
     /// Adds a sentence of what the report comes to; the first is the result.
@@ -139,7 +139,7 @@ impl Section {
 
     /// Adds what only programs get; a number that is not finite becomes `null`.
     pub(crate) fn data(&mut self, key: &str, value: impl Serialize) -> &mut Self {
-        self.push(Block::Data(key.to_owned(), json::value(value)))
+        self.push(Block::Data(key.to_owned(), cell::value(value)))
     }
 
     /// Adds a table.

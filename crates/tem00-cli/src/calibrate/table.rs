@@ -3,7 +3,10 @@
 use tem00_camera::RadialDistortion;
 use tem00_triangulation::{Calibration, DVec2, DVec3, PARAMETERS};
 
-use crate::report::{Column, Table, number};
+use crate::{
+    digits::number,
+    report::{Column, Table},
+};
 
 /// Returns the parameters of the camera that were sought.
 pub(super) fn parameters(calibration: &Calibration) -> Table {

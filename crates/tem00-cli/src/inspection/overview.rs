@@ -255,7 +255,7 @@ fn draw_scale(extent: f64, canvas: &mut Canvas) {
         stroke_width: 2.0,
         stroke_dasharray: None,
     });
-    let name = format!("{} mm", crate::report::rounded(1e3 * length, 3));
+    let name = format!("{} mm", crate::digits::rounded(1e3 * length, 3));
     canvas.add(text(&name, MARGIN + 0.5 * width, y + 16.0, 12, "#202020"));
 }
 

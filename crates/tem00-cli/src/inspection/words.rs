@@ -3,7 +3,7 @@
 use glam::DVec3;
 use tem00_tracer::{Crop, LaserInspection, LightFate, LightPart, Scene};
 
-use crate::report::rounded;
+use crate::digits::rounded;
 
 /// The share of a laser's power below which nothing is told.
 const TOLD: f64 = 0.01;

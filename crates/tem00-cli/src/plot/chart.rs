@@ -8,7 +8,7 @@ use kuva::prelude::{
 };
 
 use super::{Colour, Drawing, EMPTY, Panel, colours::COMBINED, styled};
-use crate::report::number;
+use crate::digits::number;
 
 /// The largest number with a place on an axis: differences and squares of such are numbers still.
 const LARGEST: f64 = 1e100;

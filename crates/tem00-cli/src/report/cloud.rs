@@ -2,8 +2,11 @@
 
 use core::fmt::Write as _;
 
-use super::{cell::rounded, escape::escaped};
-use crate::plot::{height_colour, is_drawn};
+use super::escape::escaped;
+use crate::{
+    digits::rounded,
+    plot::{height_colour, is_drawn},
+};
 
 /// The script that turns the points; without it they stand as in print.
 pub(super) const SCRIPT: &str = include_str!("cloud.js");

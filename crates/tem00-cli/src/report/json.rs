@@ -2,17 +2,10 @@
 
 use std::{io::Write as _, path::Path};
 
-use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::{Block, Report, Section, Table, cell::Cell};
 use crate::{atomic::write_atomically, failure::Failure};
-
-/// Returns what a value is in JSON; numbers that are not finite are `null`.
-pub(super) fn value(value: impl Serialize) -> Value {
-    // Only keys that are no text fail, and there are none.
-    serde_json::to_value(value).unwrap_or_default()
-}
 
 impl Report {
     /// Returns the report as JSON.

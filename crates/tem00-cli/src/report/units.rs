@@ -1,6 +1,7 @@
 //! The units in which people read quantities.
 
-use super::cell::{Cell, rounded};
+use super::cell::Cell;
+use crate::digits::rounded;
 
 /// A unit in which a quantity is shown, and the number of digits that are.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,10 @@
 
 use std::{fs, path::Path, process::Child, process::Stdio, thread::sleep, time::Duration};
 
-use super::{assert_code, files, folder, message, run, scene_folder, sequence, tem00, triangulate};
+use super::{
+    assert_code, design::SETUP, files, folder, message, run, scene_folder, sequence, tem00,
+    triangulate,
+};
 
 /// A process that is killed when the test is done with it, or fails.
 struct Running(Child);
@@ -27,32 +30,6 @@ fn start(folder: &Path, line: &str, there: &str) -> Running {
     assert!(started, "{line} has written {there}");
     running
 }
-
-const SETUP: &str = r#"
-[laser]
-wavelength = "650 nm"
-power = "5 mW"
-line_width = "0.2 mm"
-line_length = "50 mm"
-
-[camera]
-focal_length = "25 mm"
-f_number = 8
-pixel_pitch = "3.45 um"
-resolution = [640, 480]
-distance = "300 mm"
-angle = "30 deg"
-
-[sensor]
-quantum_efficiency = 0.6
-exposure = "0.06 ms"
-
-[surface]
-reflectance = 0.5
-
-[design.vary]
-f_number = [8, 11]
-"#;
 
 #[test]
 fn a_folder_that_another_process_writes_into_is_refused() {

@@ -138,7 +138,7 @@ impl LineFrames {
             LineDetector::new(DetectorSettings {
                 method,
                 window: 2 * rows - 1,
-                least_peak: 0.0,
+                min_peak: 0.0,
                 ..DetectorSettings::default()
             })
         });

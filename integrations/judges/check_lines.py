@@ -33,7 +33,7 @@ ROUNDING = 1e-6
 def found(frame: Path, detector: str, window: int) -> list[dict[str, str]]:
     """The valid points that `tem00 lines` finds."""
     folder = frame.parent / f"{detector}_{window}"
-    options = ["--detector", detector, "--window", str(window), "--least-peak", "5"]
+    options = ["--detector", detector, "--window", str(window), "--min-peak", "5"]
     bits = ["--bits", "12"] if "12_bit" in frame.name else []
     run("tem00", "lines", str(frame), "-o", str(folder), *options, *bits)
     with (folder / f"{frame.stem}.csv").open(newline="") as table:

@@ -134,7 +134,7 @@ impl Waves {
 fn squares(setup: &Setup, images: u64) -> Vec<f64> {
     let waves = Waves::of(setup.line());
     let detector = LineDetector::new(DetectorSettings {
-        least_peak: 0.0,
+        min_peak: 0.0,
         saturation: f64::INFINITY,
         ..*setup.detector().settings()
     });

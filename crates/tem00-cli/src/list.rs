@@ -102,7 +102,7 @@ In [detector]: method = \"parabola\". --method of `tem00 lines` takes the same n
 fn detectors() -> Table {
     let mut table = headed(["method", "minimum window", "position of the line"]);
     for method in LineMethod::ALL {
-        let window = method.least_window().to_string();
+        let window = method.min_window().to_string();
         table.row(texts([method.name(), &window, place_of_line(&method)]));
     }
     table

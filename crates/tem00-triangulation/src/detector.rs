@@ -25,10 +25,10 @@ use crate::TriangulationError;
 
 pub use method::{FilterOrder, LineMethod};
 
-/// How lines are found.
+/// Settings of a [`LineDetector`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DetectorSettings {
-    /// How the place is estimated.
+    /// The estimator of the position.
     pub method: LineMethod,
     /// The number of pixels of a column that an estimate looks at, odd, about the peak.
     ///
@@ -37,10 +37,10 @@ pub struct DetectorSettings {
     /// further pixels only add noise. The wings that a lens adds hold 0.13 h/Y of the light outside of ±Y, h
     /// being the speckle size: a window that moves with the speckle cuts them elsewhere in each column. In a short window a wide speckled line looks like several.
     pub window: usize,
-    /// The least height of a peak above the background, in grey values.
-    pub least_peak: f64,
-    /// The most lines per column.
-    pub most_lines: usize,
+    /// The minimum height of a peak above the background, in grey values.
+    pub min_peak: f64,
+    /// The maximum number of lines per column.
+    pub max_lines: usize,
     /// The grey value from which on a pixel is saturated; infinite if there is none.
     pub saturation: f64,
 }
@@ -51,8 +51,8 @@ impl Default for DetectorSettings {
         Self {
             method: LineMethod::CentreOfGravity,
             window: 31,
-            least_peak: 10.0,
-            most_lines: 1,
+            min_peak: 10.0,
+            max_lines: 1,
             saturation: f64::INFINITY,
         }
     }
@@ -61,8 +61,8 @@ impl Default for DetectorSettings {
 impl DetectorSettings {
     /// The most pixels of a window.
     pub const MOST_WINDOW: usize = 1001;
-    /// The most lines per column.
-    pub const MOST_LINES: usize = 100;
+    /// The maximum number of lines per column.
+    pub const MAX_LINES: usize = 100;
 
     fn validate(&self) -> Result<(), TriangulationError> {
         let refuse = |parameter, value, allowed| {
@@ -80,19 +80,19 @@ impl DetectorSettings {
                 "an odd number of pixels from 3 to 1001",
             );
         }
-        if self.window < self.method.least_window() {
+        if self.window < self.method.min_window() {
             return Err(TriangulationError::TooFew {
                 what: "pixels in the window of this method",
                 got: self.window,
-                needed: self.method.least_window(),
+                needed: self.method.min_window(),
             });
         }
-        if !(0.0..f64::INFINITY).contains(&self.least_peak) {
+        if !(0.0..f64::INFINITY).contains(&self.min_peak) {
             let allowed = "zero or more grey values, and finite";
-            return refuse("least_peak", self.least_peak, allowed);
+            return refuse("min_peak", self.min_peak, allowed);
         }
-        if !(1..=Self::MOST_LINES).contains(&self.most_lines) {
-            return refuse("most_lines", self.most_lines as f64, "from 1 to 100");
+        if !(1..=Self::MAX_LINES).contains(&self.max_lines) {
+            return refuse("max_lines", self.max_lines as f64, "from 1 to 100");
         }
         if self.saturation.is_nan() || self.saturation <= 0.0 {
             return refuse("saturation", self.saturation, "positive, infinite if none");
@@ -187,9 +187,9 @@ impl LineDetector {
     ///
     /// A line is where the column, smoothed over about a quarter of the window, has a maximum that stands
     /// out of the noise by six of its standard deviations. Of maxima closer than half a window the greater
-    /// one counts, and of all the [`most_lines`](DetectorSettings::most_lines) greatest. The background is
+    /// one counts, and of all the [`max_lines`](DetectorSettings::max_lines) greatest. The background is
     /// the median of the pixels outside of the windows; where they are fewer than eight, the lowest
-    /// decile of the column. Lines less than [`least_peak`](DetectorSettings::least_peak) above it are
+    /// decile of the column. Lines less than [`min_peak`](DetectorSettings::min_peak) above it are
     /// left out. Windows end where the next line begins, at the least value between both.
     pub fn detect_column(&self, column: &[f32]) -> Vec<LinePoint> {
         let found = Column::of(column, &self.settings);

@@ -55,7 +55,7 @@ fn description() -> SetupDescription {
             polarisation: 1.0,
         },
         detector: DetectorSettings {
-            least_peak: 1.0,
+            min_peak: 1.0,
             ..DetectorSettings::default()
         },
         calibration_uncertainty: 1e-6,
@@ -89,7 +89,7 @@ const PLACES: [(&str, Place); 25] = [
     ("pixel_pitch", |d| &mut d.sensor.pixel_pitch),
     ("fill_factor", |d| &mut d.sensor.fill_factor),
     ("exposure_time", |d| &mut d.sensor.exposure_time),
-    ("least_peak", |d| &mut d.detector.least_peak),
+    ("min_peak", |d| &mut d.detector.min_peak),
     ("saturation", |d| &mut d.detector.saturation),
     ("threshold", threshold),
 ];
@@ -219,7 +219,7 @@ fn counts_of_nothing_are_refused() {
         |d| d.average.columns = u32::MAX,
         |d| d.detector.window = 0,
         |d| d.detector.window = usize::MAX,
-        |d| d.detector.most_lines = 0,
+        |d| d.detector.max_lines = 0,
         |d| d.sensor.bit_depth = 0,
         |d| d.sensor.bit_depth = u32::MAX,
     ] {

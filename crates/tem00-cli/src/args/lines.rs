@@ -81,11 +81,11 @@ pub(crate) struct DetectorArgs {
         default_value_t = 10.0,
         allow_negative_numbers = true
     )]
-    least_peak: f64,
+    min_peak: f64,
 
     /// The maximum number of lines per column.
     #[arg(long, value_name = "K", default_value_t = 1)]
-    most_lines: usize,
+    max_lines: usize,
 }
 
 impl DetectorArgs {
@@ -102,9 +102,9 @@ impl DetectorArgs {
             method,
             window: self
                 .window
-                .unwrap_or_else(|| usual.window.max(method.least_window())),
-            least_peak: self.least_peak,
-            most_lines: self.most_lines,
+                .unwrap_or_else(|| usual.window.max(method.min_window())),
+            min_peak: self.min_peak,
+            max_lines: self.max_lines,
             ..usual
         })
     }
@@ -162,5 +162,5 @@ const LINES_EXAMPLES: &str = "\
 Examples:
   tem00 lines frame.png
   tem00 lines frames/*.tif --bits 12 --detector gaussian_fit --window 21 -o found
-  tem00 lines photo.png --channel R --most-lines 2
+  tem00 lines photo.png --channel R --max-lines 2
   tem00 lines frame.png --calibration calibration.json     points in space";

@@ -40,7 +40,7 @@ fn too_few(found: &Found, args: &LinesArgs) -> Option<String> {
         ("columns", "give --rows if it runs from top to bottom")
     };
     Some(format!(
-        "a line in {lit} of {} {unit} only: {turned}, and lower --least-peak if it is faint",
+        "a line in {lit} of {} {unit} only: {turned}, and lower --min-peak if it is faint",
         found.len()
     ))
 }

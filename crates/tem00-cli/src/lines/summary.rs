@@ -163,8 +163,8 @@ pub(super) fn report(settings: &DetectorSettings, images: &[ImageSummary]) -> Re
     let mut report = Report::new("Lines in images");
     report.data("detector", settings.method.name());
     report.data("window_pixels", settings.window);
-    report.data("min_peak_dn", settings.least_peak);
-    report.data("max_lines", settings.most_lines);
+    report.data("min_peak_dn", settings.min_peak);
+    report.data("max_lines", settings.max_lines);
     report.data("images", images);
     let columns = [
         Column::new("image", "image"),

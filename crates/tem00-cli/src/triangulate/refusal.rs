@@ -65,7 +65,7 @@ const REASONS: [Reason; 6] = [
     (
         Validity::Crowded,
         "lie within a window of another line",
-        "lower `window` or `most_lines` in [detector]",
+        "lower `window` or `max_lines` in [detector]",
     ),
     (
         Validity::Sliver,

@@ -215,8 +215,8 @@ fn detector(job: &Job<'_>) -> Cell {
         json!({
             "method": method,
             "window": settings.window,
-            "min_peak": settings.least_peak,
-            "max_lines": settings.most_lines,
+            "min_peak": settings.min_peak,
+            "max_lines": settings.max_lines,
             "saturation": settings.saturation,
         }),
         format!("{method}, window {} pixels", settings.window),

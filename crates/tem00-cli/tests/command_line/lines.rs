@@ -208,10 +208,7 @@ fn what_is_doubtful_is_told_with_what_helps() {
             "lines dark.png",
             "a line in 0 of 40 columns only: give --rows",
         ),
-        (
-            "lines down.png --rows --least-peak 5000",
-            "leave --rows out",
-        ),
+        ("lines down.png --rows --min-peak 5000", "leave --rows out"),
         ("lines a.png --window 61", "a smaller --window helps"),
         ("lines white.png", "pixels are saturated"),
     ] {
@@ -250,10 +247,7 @@ fn mistakes_are_told_in_words() {
             "lines a.png --detector blais_rioux --order 3",
             "--order must be 2, 4 or 8, got 3",
         ),
-        (
-            "lines a.png --least-peak -1",
-            "least_peak must be zero or more",
-        ),
+        ("lines a.png --min-peak -1", "min_peak must be zero or more"),
         ("lines a.png --bits 9", "8, 10, 12, 14 or 16"),
         ("lines a.png --channel R", "no channel R"),
         ("lines text.png", "text.png: not a readable PNG"),

@@ -449,7 +449,7 @@ fn trials_report_progress_and_can_be_cancelled() {
 fn a_line_that_is_not_found_has_no_budget() {
     let dark = setup_of(|d| {
         d.laser.power = 1e-9;
-        d.detector.least_peak = 10.0;
+        d.detector.min_peak = 10.0;
     });
     assert_eq!(
         dark.light_level(),

@@ -323,7 +323,7 @@ fn without_light_the_widest_pupil_is_best_and_shot_or_dark_noise_dominates() {
     let mut question = question(vec![list(DesignParameter::FNumber, &[4.0, 8.0, 16.0])], &[]);
     question.base.laser.power = 1e-6;
     question.base.sensor.exposure_time = 1e-3;
-    question.base.detector.least_peak = 0.0;
+    question.base.detector.min_peak = 0.0;
     let found = outcome(question);
     let best = found.best(1)[0];
     assert_relative_eq!(best.description.camera.f_number, 4.0);

@@ -64,7 +64,7 @@ impl Column {
         let values = finite(column);
         let half = settings.window / 2;
         let smooth = Smoothed::of(&values, settings.window);
-        let centres = smooth.maxima(half + 1, settings.most_lines);
+        let centres = smooth.maxima(half + 1, settings.max_lines);
         let (background, background_pixels) = background(&values, is_known, &centres, half);
         let above = |i: usize| {
             if is_known(i) {
@@ -87,7 +87,7 @@ impl Column {
             }
         });
         let stands_out = |line: &Sighting| {
-            above[line.greatest] > 0.0 && above[line.greatest] >= settings.least_peak
+            above[line.greatest] > 0.0 && above[line.greatest] >= settings.min_peak
         };
         Self {
             lines: sightings.filter(stands_out).collect(),

@@ -152,7 +152,7 @@ impl LineMethod {
     }
 
     /// Returns the fewest pixels of a window that the method can work with.
-    pub fn least_window(&self) -> usize {
+    pub fn min_window(&self) -> usize {
         match self {
             Self::BlaisRioux { order } => order.taps() + 3,
             Self::GaussianFit => 7,

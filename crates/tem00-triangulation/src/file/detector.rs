@@ -8,8 +8,8 @@ pub(super) const KEYS: &[&str] = &[
     "threshold",
     "order",
     "sigma",
-    "least_peak",
-    "most_lines",
+    "min_peak",
+    "max_lines",
 ];
 
 /// Reads the section `[detector]`: how lines are found.
@@ -22,8 +22,8 @@ pub(super) const KEYS: &[&str] = &[
 /// method = "thresholded_centre_of_gravity"
 /// threshold = 0.2        # of that method; `order` = 2, 4 or 8 is of "blais_rioux", `sigma` of "steger"
 /// window = 31            # pixels, odd
-/// least_peak = 10        # grey values
-/// most_lines = 1
+/// min_peak = 10        # grey values
+/// max_lines = 1
 /// ```
 ///
 /// # Errors
@@ -35,17 +35,17 @@ pub fn read_detector(document: &Document<'_>) -> Result<DetectorSettings, Proble
         return Ok(default);
     };
     let method = method(&section)?;
-    let least = method.least_window();
+    let least = method.min_window();
     let settings = DetectorSettings {
         method,
         window: section.or("window", default.window.max(least), |value| {
             window(value, least)
         })?,
-        least_peak: section.or("least_peak", default.least_peak, |value| {
+        min_peak: section.or("min_peak", default.min_peak, |value| {
             value.within(&NUMBER, 0.0.., "zero or more grey values")
         })?,
-        most_lines: section.or("most_lines", default.most_lines, |value| {
-            whole(value, 1, DetectorSettings::MOST_LINES)
+        max_lines: section.or("max_lines", default.max_lines, |value| {
+            whole(value, 1, DetectorSettings::MAX_LINES)
         })?,
         ..default
     };
@@ -151,10 +151,10 @@ mod tests {
         assert_eq!(wide.method, LineMethod::Steger { sigma: 6.0 });
         assert_eq!(wide.window, 49, "four σ to either side");
         let eighth =
-            read("method = \"blais_rioux\"\norder = 8\nwindow = 11\nmost_lines = 3").unwrap();
+            read("method = \"blais_rioux\"\norder = 8\nwindow = 11\nmax_lines = 3").unwrap();
         let order = FilterOrder::Eighth;
         assert_eq!(eighth.method, LineMethod::BlaisRioux { order });
-        assert_eq!((eighth.window, eighth.most_lines), (11, 3));
+        assert_eq!((eighth.window, eighth.max_lines), (11, 3));
     }
 
     #[test]
@@ -175,8 +175,8 @@ mod tests {
                 "from 11 to 1001",
                 10,
             ),
-            ("least_peak = -1", "zero or more", 14),
-            ("most_lines = 0", "from 1 to 100", 14),
+            ("min_peak = -1", "zero or more", 14),
+            ("max_lines = 0", "from 1 to 100", 14),
             ("windows = 3", "did you mean `window`?", 1),
         ];
         for (text, expected, column) in cases {

@@ -118,9 +118,9 @@ impl Sections {
         section
             .value("window", detector.window)
             .note("pixels")
-            .number("least_peak", detector.least_peak)
+            .number("min_peak", detector.min_peak)
             .note("grey values")
-            .value("most_lines", detector.most_lines);
+            .value("max_lines", detector.max_lines);
     }
 
     fn section(&mut self, name: &str) -> &mut Self {

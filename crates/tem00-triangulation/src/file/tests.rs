@@ -40,8 +40,8 @@ polarisation = 1
 [detector]
 method = "centre_of_gravity"
 window = 31
-least_peak = 1
-most_lines = 1
+min_peak = 1
+max_lines = 1
 
 [calibration]
 uncertainty = 1e-6

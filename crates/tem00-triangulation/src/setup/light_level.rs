@@ -34,7 +34,7 @@ impl LightLevel {
         match self {
             Self::Dark => {
                 "the line hardly stands out of the noise: raise the exposure, the power or the pupil \
-                 (smaller f-number), or lower `least_peak` in [detector]"
+                 (smaller f-number), or lower `min_peak` in [detector]"
             }
             Self::Good => "the line uses the range of the sensor without leaving it",
             Self::SaturatedGrains => {
@@ -76,7 +76,7 @@ impl Setup {
         if self.saturation_of(signal + self.sensor().dark_electrons()) >= 1.0 {
             LightLevel::Saturated
         } else if self.signal_of(line) < LEAST_SIGNAL
-            || grey_values < self.description().detector.least_peak
+            || grey_values < self.description().detector.min_peak
         {
             LightLevel::Dark
         } else if self.grain_saturation_of(line) > MOST_GRAIN_SATURATION {

@@ -35,8 +35,8 @@ pub(crate) fn description() -> SetupDescription {
         detector: DetectorSettings {
             method: LineMethod::CentreOfGravity,
             window: 31,
-            least_peak: 1.0,
-            most_lines: 1,
+            min_peak: 1.0,
+            max_lines: 1,
             saturation: f64::INFINITY,
         },
         calibration_uncertainty: 1e-6,

@@ -17,11 +17,11 @@ fn image(width: usize, height: usize, lines: &[&dyn Fn(f64) -> Option<f64>]) -> 
     Grid::from_fn(width, height, |x, y| columns[x][y])
 }
 
-fn finder(method: LineMethod, most_lines: usize) -> LineDetector {
+fn finder(method: LineMethod, max_lines: usize) -> LineDetector {
     let settings = DetectorSettings {
         method,
         window: WINDOW,
-        most_lines,
+        max_lines,
         ..DetectorSettings::default()
     };
     LineDetector::new(settings).unwrap()

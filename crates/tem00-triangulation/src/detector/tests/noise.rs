@@ -92,8 +92,8 @@ fn the_fit_is_as_good_as_white_noise_allows() {
 fn noise_alone_is_no_line() {
     // Six standard deviations, 1e−9 each, over 200 columns of some 100 independent places.
     let settings = DetectorSettings {
-        least_peak: 0.0,
-        most_lines: 5,
+        min_peak: 0.0,
+        max_lines: 5,
         ..DetectorSettings::default()
     };
     let detector = LineDetector::new(settings).unwrap();

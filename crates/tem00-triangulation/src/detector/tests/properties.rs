@@ -16,8 +16,8 @@ fn finder(method: LineMethod) -> LineDetector {
     LineDetector::new(DetectorSettings {
         method,
         window: 17,
-        least_peak: 0.0,
-        most_lines: 3,
+        min_peak: 0.0,
+        max_lines: 3,
         saturation: 1e30,
     })
     .unwrap()
@@ -153,19 +153,19 @@ fn settings_outside_of_their_range_are_refused() {
             ..good
         },
         DetectorSettings {
-            least_peak: -1.0,
+            min_peak: -1.0,
             ..good
         },
         DetectorSettings {
-            least_peak: f64::NAN,
+            min_peak: f64::NAN,
             ..good
         },
         DetectorSettings {
-            most_lines: 0,
+            max_lines: 0,
             ..good
         },
         DetectorSettings {
-            most_lines: 101,
+            max_lines: 101,
             ..good
         },
         DetectorSettings {

@@ -40,7 +40,7 @@ fn scatter(method: LineMethod, columns: &[Vec<f32>]) -> f64 {
     let settings = DetectorSettings {
         method,
         window: 41,
-        least_peak: 0.0,
+        min_peak: 0.0,
         ..DetectorSettings::default()
     };
     let detector = LineDetector::new(settings).unwrap();
@@ -76,7 +76,7 @@ fn under_speckle_a_wide_centre_of_gravity_is_best_and_three_points_are_two_to_th
         for method in methods() {
             let ratio = scatter(method, &columns) / gravity;
             assert!(ratio > 0.999, "{method} at w = {radius} h: {ratio}");
-            if method.least_window() == 3 && !method.name().contains("gravity") {
+            if method.min_window() == 3 && !method.name().contains("gravity") {
                 assert!(
                     (least..most).contains(&ratio),
                     "{method} at w = {radius} h: {ratio}"

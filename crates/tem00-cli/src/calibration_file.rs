@@ -238,7 +238,7 @@ mod tests {
             ),
             ("\"focal_length\"", "\"focal_lenght\"", "focal_lenght"),
             ("\"normal\":[", "\"normal\":[0.0,", "no calibration"),
-            ("\"k1\"", "\"k9\"", "parameters"),
+            ("\"image distance\"", "\"distance\"", "parameters"),
             ("{", "", "no calibration"),
         ] {
             assert!(text.contains(from), "{from} is in {text}");

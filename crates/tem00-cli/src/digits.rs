@@ -33,6 +33,25 @@ pub(crate) fn rounded(value: f64, digits: u8) -> String {
     }
 }
 
+/// Writes a positive number with three digits and an SI prefix.
+pub(crate) fn si_prefixed(value: f64) -> String {
+    let (scale, prefix) = match value {
+        v if v >= 1e9 => (1e9, " G"),
+        v if v >= 1e6 => (1e6, " M"),
+        v if v >= 1e3 => (1e3, " k"),
+        _ => (1.0, " "),
+    };
+    let scaled = value / scale;
+    let digits = if scaled >= 100.0 {
+        0
+    } else if scaled >= 10.0 {
+        1
+    } else {
+        2
+    };
+    format!("{scaled:.digits$}{prefix}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -54,5 +73,13 @@ mod tests {
         ] {
             assert_eq!(number(value), expected);
         }
+    }
+
+    #[test]
+    fn rates_have_three_digits_and_a_prefix() {
+        assert_eq!(si_prefixed(3.456), "3.46 ");
+        assert_eq!(si_prefixed(12_345.0), "12.3 k");
+        assert_eq!(si_prefixed(234_567_890.0), "235 M");
+        assert_eq!(si_prefixed(1e9), "1.00 G");
     }
 }

@@ -31,9 +31,6 @@ use self::{
     summary::{ImageSummary, LineSummary},
 };
 
-/// The lines of an image: for each column, or row, the points on them.
-type Found = [Vec<LinePoint>];
-
 /// Finds the lines of all images, and prints their summary.
 ///
 /// # Errors
@@ -175,7 +172,7 @@ fn check_size(path: &Path, image: &RawImage, calibration: &Calibration) -> Resul
     ))
 }
 
-fn draw(path: &Path, image: &Grid<f32>, found: (&Found, bool)) -> Result<(), Failure> {
+fn draw(path: &Path, image: &Grid<f32>, found: (&[Vec<LinePoint>], bool)) -> Result<(), Failure> {
     let picture = overlay::picture(image, found);
     write_atomically(path, |writer| write_rgb_png(writer, &picture, &[]))
         .map_err(|error: ImageError| Failure::writing(path, error))

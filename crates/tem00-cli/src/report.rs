@@ -62,7 +62,24 @@ enum Block {
     /// An explanation, on pages alone.
     Paragraph(String),
     /// Drawings, pictures and files, on pages alone.
-    Figure(html::Figure),
+    Figure(Figure),
+}
+
+/// A part that only a page shows.
+#[derive(Clone, Debug)]
+enum Figure {
+    /// The text of an SVG file of this program, and its caption.
+    Drawing(String, String),
+    /// The same, which the reader may turn.
+    Cloud(String, String),
+    /// The content of a PNG file of so many columns.
+    Picture {
+        png: Vec<u8>,
+        columns: usize,
+        caption: String,
+    },
+    /// The name and the text of a file.
+    File(String, String),
 }
 
 impl Report {
@@ -158,14 +175,14 @@ impl Section {
         svg: impl Into<String>,
         caption: impl Into<String>,
     ) -> &mut Self {
-        let figure = html::Figure::Drawing(svg.into(), caption.into());
+        let figure = Figure::Drawing(svg.into(), caption.into());
         self.push(Block::Figure(figure))
     }
 
     /// Adds points in space that the reader may turn, if there are any.
     pub(crate) fn cloud(&mut self, cloud: Cloud<'_>) -> &mut Self {
         match cloud.draw() {
-            Some((svg, caption)) => self.push(Block::Figure(html::Figure::Cloud(svg, caption))),
+            Some((svg, caption)) => self.push(Block::Figure(Figure::Cloud(svg, caption))),
             None => self,
         }
     }
@@ -179,7 +196,7 @@ impl Section {
         caption: impl Into<String>,
     ) -> &mut Self {
         let caption = caption.into();
-        self.push(Block::Figure(html::Figure::Picture {
+        self.push(Block::Figure(Figure::Picture {
             png,
             columns,
             caption,
@@ -188,7 +205,7 @@ impl Section {
 
     /// Adds a file as it is, under its name.
     pub(crate) fn file(&mut self, name: impl Into<String>, text: impl Into<String>) -> &mut Self {
-        let figure = html::Figure::File(name.into(), text.into());
+        let figure = Figure::File(name.into(), text.into());
         self.push(Block::Figure(figure))
     }
 

@@ -4,29 +4,21 @@ mod calibration;
 mod drawings;
 mod files;
 mod frame;
+mod job;
 mod refusal;
 mod report;
 mod terms;
 
-use std::{io::Write, path::Path};
+use std::io::Write;
 
-use tem00_scan::{
-    Averaging, HeightMap, MeasuredFrame, MeasuredPoint, Measurement, MeasurementScene, Scan,
-    ScanError,
-};
-use tem00_tracer::{Formulas, SpeckleChange, SpeckleModel, SpecklePlan};
+use tem00_scan::MeasurementScene;
 
-use self::{files::Files, frame::FrameRecord, refusal::Refusal, terms::Terms};
+use self::job::{Job, Measured};
 use crate::{
-    args::{FrameRange, TriangulateArgs},
+    args::TriangulateArgs,
     failure::Failure,
-    frame_files::check_room,
-    inspection::Inspection,
-    interrupt,
     kind::{Kind, wrong_or},
     output,
-    progress::FrameProgress,
-    render::{frames, tracer_failure},
     report::Report,
 };
 
@@ -58,7 +50,7 @@ pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Fa
         )
     })?;
     let measured = pool.install(|| job.measure())?;
-    let report = job.write(&measured)?;
+    let report = write(&job, &measured)?;
     report.print(false, &[job.files.path("report.html")], out)?;
     measured.terms.map(drop).map_err(|refusal| {
         let message = format!(
@@ -70,174 +62,14 @@ pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Fa
     })
 }
 
-/// A measurement that is set up.
-struct Job<'a> {
-    args: &'a TriangulateArgs,
-    measurement: Measurement,
-    frames: FrameRange,
-    name: String,
-    files: Files,
-}
-
-/// The results of a measurement.
-struct Measured {
-    frames: Vec<FrameRecord>,
-    profiles: Vec<Vec<MeasuredPoint>>,
-    /// The heights of several profiles.
-    map: Option<HeightMap>,
-    /// The frame that the report shows, from the middle of the scan.
-    shown: Option<MeasuredFrame>,
-    effective_frames: Option<f64>,
-    /// The change of speckle from frame to frame, where there is any.
-    speckle_change: Option<SpeckleChange>,
-    /// The terms of the height uncertainty, or the reason why there are none.
-    terms: Result<Terms, Refusal>,
-}
-
-impl<'a> Job<'a> {
-    fn new(args: &'a TriangulateArgs, mut scene: MeasurementScene) -> Result<Self, Failure> {
-        let name = output::name(&args.common.scene, "scene");
-        let folder = output::folder(args.common.output.as_deref(), &name);
-        args.common.overrule(&mut scene.scene.render);
-        let raw = scene.scan.raw;
-        check_room(&args.common.scene, &scene.scene)?;
-        let measurement = Measurement::new(scene)
-            .map_err(|error| measurement_failure(&args.common.scene, &error))?;
-        Ok(Self {
-            args,
-            frames: frames(args.common.frames, measurement.scene().render.frames)?,
-            measurement,
-            name,
-            files: Files::new(folder, raw)?,
-        })
-    }
-
-    /// Says, before the work, of which lasers the camera will see no light.
-    fn warn_of_darkness(&self) -> Result<(), Failure> {
-        let found = Inspection::new(self.measurement.scene(), self.frames)
-            .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;
-        found.warnings().iter().for_each(|line| output::note(line));
-        Ok(())
-    }
-
-    fn progress(&self) -> FrameProgress {
-        let scene = self.measurement.scene();
-        let samples_per_frame = scene.samples_per_frame(&(&scene.render).into());
-        let frames = u64::from(self.frames.last - self.frames.first) + 1;
-        FrameProgress::new(frames, samples_per_frame)
-    }
-
-    /// Measures all frames, writing raw frames on the way.
-    fn measure(&self) -> Result<Measured, Failure> {
-        let speckle = self.speckle()?;
-        let progress = self.progress();
-        let mut scan = Scan::new(&self.measurement);
-        let (mut frames, mut shown) = (Vec::new(), None);
-        let middle = u32::midpoint(self.frames.first, self.frames.last);
-        for number in self.frames.first..=self.frames.last {
-            let frame = self.frame(number, speckle.as_ref(), &progress)?;
-            let file = self.files.write_raw(&frame, &self.name)?;
-            frames.push(FrameRecord::of(&frame, file));
-            if number == middle {
-                shown = Some(frame.clone());
-            }
-            scan.add(frame);
-        }
-        let part = scan.finish();
-        let profiles = part.profiles().to_vec();
-        let terms = Terms::of(&profiles, self.measurement.settings().height);
-        let has_map = profiles.len() > 1 && terms.is_some();
-        let map = has_map.then(|| part.height_map()).transpose();
-        Ok(Measured {
-            map: map.map_err(|error| measurement_failure(&self.args.common.scene, &error))?,
-            shown,
-            effective_frames: part.effective_frames(),
-            speckle_change: part.speckle_change().copied(),
-            terms: terms.ok_or_else(|| Refusal::of(&frames)),
-            frames,
-            profiles,
-        })
-    }
-
-    fn speckle(&self) -> Result<Option<SpeckleModel>, Failure> {
-        if self.args.common.no_speckle {
-            return Ok(None);
-        }
-        let scene = self.measurement.scene();
-        let refused = |error| tracer_failure(&self.args.common.scene, &error);
-        let plan =
-            SpecklePlan::new(scene, Formulas::Derived, scene.render.seed).map_err(refused)?;
-        let model = SpeckleModel::generate(scene, &plan).map_err(refused)?;
-        interrupt::check()?;
-        Ok(Some(model))
-    }
-
-    fn frame(
-        &self,
-        number: u32,
-        speckle: Option<&SpeckleModel>,
-        progress: &FrameProgress,
-    ) -> Result<MeasuredFrame, Failure> {
-        let advance = progress.begin(format!(
-            "{} frame {number} of {}..{}",
-            self.name, self.frames.first, self.frames.last
-        ));
-        self.measurement
-            .measure(speckle, number, advance, interrupt::flag())
-            .map_err(|error| measurement_failure(&self.args.common.scene, &error))
-    }
-
-    /// Writes all files, and returns the report.
-    fn write(&self, measured: &Measured) -> Result<Report, Failure> {
-        let height = self.measurement.settings().height;
-        self.files.write_profiles(&measured.profiles, height)?;
-        self.files.write_point_cloud(&measured.profiles)?;
-        self.files.write_height_map(measured.map.as_ref())?;
-        let report = report::report(self, measured)?;
-        report.save_json(&self.files.path("measurement.json"))?;
-        report.save_page(&self.files.path("report.html"))?;
-        Ok(report)
-    }
-}
-
-impl Measured {
-    /// The change of speckle from frame to frame as a sentence; `None` where it is not known.
-    fn speckle_sentence(&self, average: Averaging) -> Option<String> {
-        let change = self.speckle_change.as_ref()?;
-        let worth = match self.effective_frames {
-            Some(worth) if average.frames > 1 => format!(
-                "; a mean over {} frames is worth {worth:.1} of independent speckle",
-                average.frames
-            ),
-            _ => String::new(),
-        };
-        Some(format!(
-            "Speckle from frame to frame: {}{worth}.",
-            in_words(change)
-        ))
-    }
-}
-
-/// The motion of speckle and the correlation that is left, in words.
-fn in_words(change: &SpeckleChange) -> String {
-    // Adding 0 takes the sign off −0.
-    let [right, down] = change
-        .displacement
-        .to_array()
-        .map(|pixels| (100.0 * pixels).round() / 100.0 + 0.0);
-    format!(
-        "{right:+.2} pixels to the right, {down:+.2} down; correlation {:.2}",
-        change.correlation
-    )
-}
-
-fn measurement_failure(path: &Path, error: &ScanError) -> Failure {
-    match error {
-        ScanError::Cancelled => Failure::Interrupted,
-        ScanError::Tracer(error) => tracer_failure(path, error),
-        error => Failure::input(
-            format!("{}: {error}", path.display()),
-            "docs/scene_file.md lists what is allowed",
-        ),
-    }
+/// Writes all files, and returns the report.
+fn write(job: &Job<'_>, measured: &Measured) -> Result<Report, Failure> {
+    let height = job.measurement.settings().height;
+    job.files.write_profiles(&measured.profiles, height)?;
+    job.files.write_point_cloud(&measured.profiles)?;
+    job.files.write_height_map(measured.map.as_ref())?;
+    let report = report::report(job, measured)?;
+    report.save_json(&job.files.path("measurement.json"))?;
+    report.save_page(&job.files.path("report.html"))?;
+    Ok(report)
 }

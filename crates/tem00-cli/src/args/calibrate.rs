@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{length, lines::DetectorArgs};
+use super::{
+    lines::DetectorArgs,
+    values::{length, positive},
+};
 
 /// Calibrate camera and laser plane from photographs of a checkerboard and of the line on it.
 ///
@@ -38,7 +41,7 @@ pub(crate) struct CalibrateArgs {
     pub(crate) focal_length: Option<f64>,
 
     /// The f-number of the lens, for its blur and speckle.
-    #[arg(long, value_name = "F", default_value_t = 8.0, value_parser = super::positive)]
+    #[arg(long, value_name = "F", default_value_t = 8.0, value_parser = positive)]
     pub(crate) f_number: f64,
 
     /// The sensor is tilted (Scheimpflug): find its tilt instead of the principal point.

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::length;
+use super::values::length;
 
 /// List what scenes and set-ups can name: metals, materials, surfaces, detectors, sensors.
 ///

@@ -3,7 +3,10 @@
 use clap::{Args, ValueEnum};
 use tem00_tracer::{Crop, Method};
 
-use super::{SceneArgs, crop, positive};
+use super::{
+    SceneArgs,
+    values::{crop, positive},
+};
 
 /// Render a scene: PNG preview, OpenEXR layers and a JSON summary.
 ///

@@ -3,7 +3,7 @@
 use clap::Args;
 use tem00_config::ANGLE;
 
-use super::{length, positive};
+use super::values::{length, positive};
 
 /// Compute the speckle size of a camera, the contrast in a pixel, and what decorrelates the speckle.
 ///

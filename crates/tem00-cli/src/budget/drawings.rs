@@ -1,6 +1,6 @@
 //! The drawings of a budget.
 
-use super::Answer;
+use super::findings::Answer;
 use crate::plot::{
     Bars, Chart, Colour, Drawing,
     colours::{FORMULAS, TRIALS},

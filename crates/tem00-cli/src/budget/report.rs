@@ -3,7 +3,10 @@
 use serde_json::json;
 use tem00_triangulation::{Budget, BudgetTerm, Setup, UncertaintySource};
 
-use super::{Answer, Findings, words};
+use super::{
+    findings::{Answer, Findings},
+    words,
+};
 use crate::report::{
     Cell, Column, Report, Section, Table,
     units::{MICROMETRES, MILLIMETRES, MILLISECONDS, NUMBER, PERCENT, PIXELS},

@@ -2,7 +2,7 @@
 
 use tem00_triangulation::LightLevel;
 
-use super::{Answer, Refusal};
+use super::findings::{Answer, Refusal};
 use crate::report::units::{MICROMETRES, NUMBER, PERCENT};
 
 /// Returns what the budget comes to.

@@ -7,7 +7,7 @@ use std::{
 
 use tem00_triangulation::{Candidate, DesignFigure, Neighbours};
 
-use super::{Design, plots, report, units};
+use super::{plots, report, search::Design, units};
 use crate::{atomic::write_atomically, failure::Failure, report::Report};
 
 /// Writes all files into the folder, and returns the report and the names of those that one opens first.
@@ -53,7 +53,7 @@ fn best(design: &Design<'_>) -> Result<Option<String>, Failure> {
         .to_string()
         .replace(char::is_control, " ");
     let expanded = units::of_figure(DesignFigure::ExpandedUncertainty);
-    let text = design.shown_setup()?.description().to_toml();
+    let text = Design::setup_of(winner)?.description().to_toml();
     Ok(Some(format!(
         "# The best of the {} set-ups that `tem00 design {file}` tried: number {}.\n\
          # A height on the reference plane is known to ±{} (95 %).\n\

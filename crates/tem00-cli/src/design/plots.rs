@@ -5,7 +5,7 @@ use tem00_triangulation::{
     UncertaintySource,
 };
 
-use super::{Design, units};
+use super::{search::Design, units};
 use crate::{
     plot::{
         Bars, Chart, Drawing,
@@ -123,7 +123,7 @@ fn slice<'a>(
     design: &'a Design<'_>,
     parameter: DesignParameter,
 ) -> Vec<(f64, Option<&'a DesignFigures>)> {
-    let Ok(shown) = design.shown() else {
+    let Some(shown) = design.shown() else {
         return Vec::new();
     };
     let same = |candidate: &&Candidate| {
@@ -177,7 +177,7 @@ fn spacing(sweep: &Sweep) -> Spacing {
 /// The change by a tenth more or less of each parameter.
 fn sensitivity(design: &Design<'_>, near: &[Neighbours]) -> Named {
     let objective = design.objective();
-    let now = design.shown().ok().and_then(Candidate::possible);
+    let now = design.shown().and_then(Candidate::possible);
     let now = now.map_or(f64::NAN, |figures| objective.of(figures));
     let change = |figures: Option<&DesignFigures>| {
         figures.map_or(f64::NAN, |figures| {

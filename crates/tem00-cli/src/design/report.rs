@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 use tem00_triangulation::{Candidate, DesignFigure, DesignFigures, Neighbours};
 
-use super::{Design, units, words};
+use super::{search::Design, units, words};
 use crate::{
     failure::Failure,
     report::{
@@ -48,9 +48,11 @@ pub(super) fn report(
         .for_each(|line| report.verdict(line));
 
     list(&mut report, design);
-    let shown = design.shown()?;
-    if let Some(figures) = shown.possible() {
-        let level = design.shown_setup()?.light_level();
+    if let Some((shown, figures)) = design
+        .shown()
+        .and_then(|shown| Some((shown, shown.possible()?)))
+    {
+        let level = Design::setup_of(shown)?.light_level();
         let section = report
             .section("What makes its heights uncertain")
             .in_detail();

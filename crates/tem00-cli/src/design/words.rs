@@ -2,7 +2,8 @@
 
 use tem00_triangulation::Exclusion;
 
-use super::{Design, units};
+use super::{search::Design, units};
+use crate::failure::Failure;
 
 /// Returns what the search comes to, in a sentence.
 pub(super) fn verdict(design: &Design<'_>) -> String {
@@ -55,4 +56,26 @@ fn impossible(design: &Design<'_>) -> Option<String> {
         "{count} not possible; the first, number {}: {error}",
         first.index
     ))
+}
+
+/// Returns why the search has no result.
+pub(super) fn nothing(design: &Design<'_>) -> Failure {
+    let name = design.file.display();
+    let why = hindrances(design).join("; ");
+    let (possible, _) = design.outcome.counts();
+    if possible == 0 {
+        return Failure::no_result(
+            format!(
+                "{name}: none of the {} set-ups is possible: {why}",
+                design.search.count()
+            ),
+            "change the values in [design.vary], or the set-up that the search begins with",
+        );
+    }
+    Failure::no_result(
+        format!(
+            "{name}: none of the {possible} set-ups that are possible keeps every constraint: {why}"
+        ),
+        "relax [design.require] or widen [design.vary]; design.html shows the set-up that comes nearest",
+    )
 }

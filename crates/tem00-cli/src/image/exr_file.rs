@@ -6,7 +6,7 @@ use exr::prelude::{
 };
 use tem00_numerics::Grid;
 
-use super::{ImageError, LoadedImage, check_room, checked_area, grid};
+use super::common::{ImageError, LoadedImage, check_room, checked_area, grid};
 
 /// Named channels of the same size, stored as one part of an OpenEXR file.
 #[derive(Debug)]

@@ -2,7 +2,7 @@ use std::io::Read;
 
 use tem00_speckle::{NpyError, NpyReader};
 
-use super::{ImageError, LoadedImage, MAXIMUM_PIXELS, check_room, checked_area, intensity};
+use super::common::{ImageError, LoadedImage, MAXIMUM_PIXELS, check_room, checked_area, intensity};
 
 /// The bytes of the largest image, of complex numbers that are turned once.
 const MEMORY: u64 = 16 * MAXIMUM_PIXELS;

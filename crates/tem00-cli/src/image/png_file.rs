@@ -3,7 +3,7 @@ use std::io::Write;
 use png::{BitDepth, ColorType, Encoder, ScaledFloat, SrgbRenderingIntent};
 use tem00_numerics::Grid;
 
-use super::ImageError;
+use super::common::ImageError;
 use crate::colour::srgb_encoded;
 
 /// Writes linear sRGB components in [0, 1] as 16-bit sRGB; larger ones become 1.

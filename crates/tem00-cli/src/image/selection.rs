@@ -2,7 +2,7 @@
 
 use png::ColorType;
 
-use super::ImageError;
+use super::common::ImageError;
 
 /// The components of a pixel of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

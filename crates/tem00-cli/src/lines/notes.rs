@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use tem00_triangulation::Validity;
+use tem00_triangulation::{LinePoint, Validity};
 
-use super::Found;
 use crate::{args::LinesArgs, image::RawImage};
 
 /// The share of points that may be doubtful without a word.
@@ -17,7 +16,7 @@ const LIT: f64 = 0.25;
 pub(super) fn of(
     path: &Path,
     image: &RawImage,
-    (found, args): (&Found, &LinesArgs),
+    (found, args): (&[Vec<LinePoint>], &LinesArgs),
 ) -> Vec<String> {
     let name = path.display();
     let several = image
@@ -29,7 +28,7 @@ pub(super) fn of(
 }
 
 /// Tells that there is no line, or hardly any.
-fn too_few(found: &Found, args: &LinesArgs) -> Option<String> {
+fn too_few(found: &[Vec<LinePoint>], args: &LinesArgs) -> Option<String> {
     let lit = found.iter().filter(|points| !points.is_empty()).count();
     if lit as f64 >= LIT * found.len() as f64 {
         return None;
@@ -46,7 +45,7 @@ fn too_few(found: &Found, args: &LinesArgs) -> Option<String> {
 }
 
 /// Tells why many points cannot be trusted.
-fn doubtful(found: &Found) -> Option<String> {
+fn doubtful(found: &[Vec<LinePoint>]) -> Option<String> {
     let points = found.iter().map(Vec::len).sum::<usize>();
     let of = |validity: Validity| {
         let points = found.iter().flatten();

@@ -3,8 +3,6 @@
 use tem00_numerics::Grid;
 use tem00_triangulation::{LinePoint, Validity};
 
-use super::Found;
-
 /// The colours of the lines, in linear sRGB; those of further lines begin again.
 const COLOURS: [[f32; 3]; 4] = [
     [1.0, 0.05, 0.02],
@@ -17,7 +15,10 @@ const COLOURS: [[f32; 3]; 4] = [
 const DOUBTFUL: [f32; 3] = [0.9, 0.0, 0.9];
 
 /// Returns the image in grey, its brightest pixel white, with a coloured pixel for each point.
-pub(crate) fn picture(image: &Grid<f32>, (found, rows): (&Found, bool)) -> Grid<[f32; 3]> {
+pub(crate) fn picture(
+    image: &Grid<f32>,
+    (found, rows): (&[Vec<LinePoint>], bool),
+) -> Grid<[f32; 3]> {
     let brightest = image.values().iter().copied().fold(0.0, f32::max);
     let white = if brightest > 0.0 { brightest } else { 1.0 };
     let mut picture = image.map(|&value| [value / white; 3]);

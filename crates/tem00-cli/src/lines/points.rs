@@ -5,11 +5,11 @@ use std::io::{self, Write};
 use glam::{DVec2, DVec3};
 use tem00_triangulation::{Calibration, LinePoint, Validity};
 
-use super::{Found, LineSummary};
+use super::summary::LineSummary;
 
 /// The points of an image and what is known about them.
 pub(super) struct Places<'a> {
-    pub(super) found: &'a Found,
+    pub(super) found: &'a [Vec<LinePoint>],
     /// `true` if a line has a position in each row instead of in each column.
     pub(super) rows: bool,
     pub(super) lines: &'a [LineSummary],
@@ -128,7 +128,11 @@ mod tests {
         Calibration::exact(camera.expect("a camera"), plane.expect("a plane"))
     }
 
-    fn table(lines: &[LineSummary], found: &Found, calibration: Option<&Calibration>) -> String {
+    fn table(
+        lines: &[LineSummary],
+        found: &[Vec<LinePoint>],
+        calibration: Option<&Calibration>,
+    ) -> String {
         let places = Places {
             found,
             rows: false,

@@ -5,7 +5,6 @@ use std::path::Path;
 use serde::Serialize;
 use tem00_triangulation::{DetectorSettings, LinePoint, Validity};
 
-use super::Found;
 use crate::{
     image::RawImage,
     report::{Cell, Column, Report, Table},
@@ -35,13 +34,13 @@ pub(super) struct LineSummary {
 
 impl LineSummary {
     /// Sums up all lines of an image.
-    pub(super) fn of_all(found: &Found) -> Vec<Self> {
+    pub(super) fn of_all(found: &[Vec<LinePoint>]) -> Vec<Self> {
         let numbers = found.iter().flatten().map(|point| point.line);
         let count = numbers.max().map_or(0, |most| most + 1);
         (0..count).map(|line| Self::of(found, line)).collect()
     }
 
-    fn of(found: &Found, line: usize) -> Self {
+    fn of(found: &[Vec<LinePoint>], line: usize) -> Self {
         let of_line = |points: &Vec<LinePoint>| points.iter().find(|p| p.line == line).copied();
         let columns: Vec<Option<LinePoint>> = found.iter().map(of_line).collect();
         let is_valid = |point: &LinePoint| point.validity == Validity::Valid;

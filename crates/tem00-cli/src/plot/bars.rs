@@ -2,7 +2,10 @@
 
 use kuva::prelude::{BarPlot, Layout, Plot};
 
-use super::{Colour, Drawing, EMPTY, Panel, styled};
+use super::{
+    Colour,
+    drawing::{Drawing, EMPTY, Panel, styled},
+};
 
 /// Bars over categories, one bar per series in each.
 #[derive(Clone, Debug)]

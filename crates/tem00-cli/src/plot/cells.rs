@@ -6,7 +6,7 @@ use kuva::render::{
     render::{Primitive, Scene},
 };
 
-use super::heat_map::HOLE;
+use super::colours::HOLE;
 
 /// The placeholder of the cells.
 const MARK: &str = "data-cells=\"\"";

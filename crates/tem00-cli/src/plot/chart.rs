@@ -3,11 +3,15 @@
 use std::sync::Arc;
 
 use kuva::prelude::{
-    BandPlot, Layout, LegendPosition, LinePlot, LineStyle, MarkerShape, Plot, ScatterPlot,
+    BandPlot, Figure, Layout, LegendPosition, LinePlot, LineStyle, MarkerShape, Plot, ScatterPlot,
     TickFormat,
 };
 
-use super::{Colour, Drawing, EMPTY, Panel, colours::COMBINED, styled};
+use super::{
+    Colour,
+    colours::COMBINED,
+    drawing::{Drawing, EMPTY, Panel, styled},
+};
 use crate::digits::number;
 
 /// The largest number with a place on an axis: differences and squares of such are numbers still.
@@ -116,7 +120,21 @@ impl Chart {
         Drawing::of_panel(self.panel())
     }
 
-    pub(super) fn panel(self) -> Panel {
+    /// Draws charts side by side under a title.
+    pub(crate) fn draw_row(title: &str, charts: Vec<Self>) -> Drawing {
+        let columns = charts.len();
+        let (plots, layouts) = charts.into_iter().map(Self::panel).unzip();
+        Drawing::of_scene(
+            Figure::new(1, columns)
+                .with_title(title)
+                .with_plots(plots)
+                .with_layouts(layouts)
+                .with_cell_size(460.0, 400.0)
+                .render(),
+        )
+    }
+
+    fn panel(self) -> Panel {
         let log = self.log;
         let mut series = self.series;
         series.iter_mut().for_each(|series| series.keep_places(log));

@@ -72,6 +72,9 @@ pub(crate) const fn of_source(source: UncertaintySource) -> Colour {
     }
 }
 
+/// The colour of cells without a value.
+pub(super) const HOLE: &str = "#ffffff";
+
 #[cfg(test)]
 mod tests {
     use super::*;

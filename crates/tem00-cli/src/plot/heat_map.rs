@@ -5,13 +5,13 @@ use std::sync::Arc;
 use kuva::prelude::{ColorMap, Heatmap, Layout, Plot};
 use tem00_numerics::Grid;
 
-use super::{Drawing, EMPTY, Panel, styled};
+use super::{
+    colours::HOLE,
+    drawing::{Drawing, EMPTY, Panel, styled},
+};
 
 /// The most cells that are drawn along an axis.
 const MOST_CELLS: usize = 200;
-
-/// The colour of what has no value.
-pub(super) const HOLE: &str = "#ffffff";
 
 /// Values over a plane, as colours beside a scale; a value that is not finite is a hole.
 ///

@@ -7,7 +7,7 @@ use std::{
 
 use indicatif::HumanDuration;
 
-use super::si_prefixed;
+use crate::digits::si_prefixed;
 
 /// The time before the first line, and the longest between two.
 const FIRST: Duration = Duration::from_secs(2);

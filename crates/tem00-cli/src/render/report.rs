@@ -2,7 +2,7 @@
 
 use tem00_tracer::{LaserEvents, RoughnessNote, Scene};
 
-use crate::{colour::xyz_of_wavelength, output::note, progress::si_prefixed, summary::Summary};
+use crate::{colour::xyz_of_wavelength, digits::si_prefixed, output::note, summary::Summary};
 
 /// Tells which lasers the eye would not see.
 pub(super) fn note_invisible_lasers(scene: &Scene) {

@@ -7,9 +7,8 @@ use tem00_tracer::{
 };
 
 use super::{
-    Render,
+    job::{Render, tracer_failure},
     record::{Found, Record, forget, hash_of_file},
-    tracer_failure,
 };
 use crate::{
     failure::Failure,

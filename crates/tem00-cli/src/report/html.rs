@@ -5,25 +5,8 @@ use std::{io::Write as _, path::Path};
 
 use base64::{Engine, engine::general_purpose::STANDARD};
 
-use super::{Block, Report, Section, Table, cell::Cell, cloud, escape::escaped, style};
+use super::{Block, Figure, Report, Section, Table, cell::Cell, cloud, escape::escaped, style};
 use crate::{atomic::write_atomically, failure::Failure};
-
-/// A part that only a page shows.
-#[derive(Clone, Debug)]
-pub(super) enum Figure {
-    /// The text of an SVG file of this program, and its caption.
-    Drawing(String, String),
-    /// The same, which the reader may turn.
-    Cloud(String, String),
-    /// The content of a PNG file of so many columns.
-    Picture {
-        png: Vec<u8>,
-        columns: usize,
-        caption: String,
-    },
-    /// The name and the text of a file.
-    File(String, String),
-}
 
 impl Report {
     /// Writes the report as a page.

@@ -23,7 +23,7 @@ impl Page<'_> {
             self.autocovariance(),
             self.power_spectrum(),
         ];
-        Drawing::of_row(self.title, charts.map(Chart::legend_inside).into())
+        Chart::draw_row(self.title, charts.map(Chart::legend_inside).into())
     }
 
     fn histogram(&self) -> Chart {

@@ -8,7 +8,7 @@ use std::{
 use tem00_scan::{BoardPlan, Measurement, ScanError};
 use tem00_triangulation::{CalibrationMethod, CalibrationSettings};
 
-use super::{files::Files, measurement_failure};
+use super::{files::Files, job::measurement_failure};
 use crate::{failure::Failure, interrupt, progress::Progress};
 
 /// Returns the measurement with the calibration that the scene asks for: exact, or estimated from boards

@@ -2,7 +2,11 @@
 
 use tem00_scan::{HeightMap, Raster};
 
-use super::{Job, Measured, files::ranges, terms::Terms};
+use super::{
+    files::ranges,
+    job::{Job, Measured},
+    terms::Terms,
+};
 use crate::{
     failure::Failure,
     image::write_rgb_png,

@@ -3,7 +3,13 @@
 use serde_json::{Value, json};
 use tem00_scan::{HeightMap, MeasuredPoint, Raster};
 
-use super::{Job, Measured, drawings::Drawings, frame, in_words, refusal::Refusal, terms::Terms};
+use super::{
+    drawings::Drawings,
+    frame,
+    job::{Job, Measured, in_words},
+    refusal::Refusal,
+    terms::Terms,
+};
 use crate::{
     failure::Failure,
     report::{

@@ -2,10 +2,10 @@ use tem00_numerics::cast::to_f32;
 use tem00_tracer::Crop;
 
 use super::super::{
-    LoadedImage, Transfer, check_inside, grid,
+    common::{ImageError, LoadedImage, Transfer, check_inside, grid},
     selection::{Components, Selection},
 };
-use super::{ImageError, RawImage};
+use super::frame::RawImage;
 use crate::colour::srgb_decoded;
 
 /// The samples of a file before a channel is chosen.

@@ -1,10 +1,11 @@
 use std::{fs, io::Cursor, path::PathBuf};
 
 use png::{BitDepth, ColorType, Encoder};
+use tem00_numerics::Grid;
 use tem00_triangulation::RawFrame;
 use tiff::encoder::{TiffEncoder, colortype};
 
-use super::*;
+use super::{frame::BIT_DEPTHS, *};
 
 fn frame(bit_depth: u32) -> RawFrame {
     let full = u16::MAX >> (16 - bit_depth);

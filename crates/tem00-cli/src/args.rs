@@ -17,7 +17,6 @@ mod values;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use tem00_config::LENGTH;
 use tem00_speckle::Pupil;
 use tem00_tracer::Crop;
 

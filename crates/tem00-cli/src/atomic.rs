@@ -16,12 +16,12 @@ const SUFFIX: &str = ".part";
 /// Temporary files that are being written now.
 static PENDING: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Writes the file `path` by `write`, so that nobody ever sees half of it.
+/// Writes the file `path` by `write`, so that no reader ever sees half of it.
 ///
 /// The content goes to a temporary file in the same folder, which takes the name `path` only when
 /// it is complete and on the disk. If `write` fails the temporary file is removed and what stood at
 /// `path` before stays as it was. A temporary file is locked while it is written, so that
-/// [`remove_abandoned`] can tell those that nobody writes any more.
+/// [`remove_abandoned`] can recognise those that no process writes any more.
 ///
 /// # Errors
 ///
@@ -56,7 +56,7 @@ pub(crate) fn remove_abandoned(folder: &Path) {
     }
 }
 
-/// Removes a temporary file that nobody has locked. One that cannot be removed is no reason to stop.
+/// Removes a temporary file that no process has locked. One that cannot be removed is no reason to stop.
 fn remove_if_abandoned(path: &Path) {
     if let Ok(file) = OpenOptions::new().write(true).open(path)
         && file.try_lock().is_ok()

@@ -75,7 +75,7 @@ pub(crate) fn read_calibration(path: &Path) -> Result<Calibration, Failure> {
 }
 
 impl CalibrationRecord {
-    /// Returns what the file tells of a calibration.
+    /// Returns the content of the file of a calibration.
     pub(crate) fn of(calibration: &Calibration) -> Self {
         let plane = calibration.plane();
         Self {

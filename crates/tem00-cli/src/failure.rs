@@ -39,7 +39,7 @@ impl Failure {
         }))
     }
 
-    /// Returns a complaint about a place in a text file.
+    /// Returns a complaint about a position in a text file.
     pub(crate) fn input_at(
         message: impl Into<String>,
         help: Option<String>,
@@ -55,7 +55,7 @@ impl Failure {
     }
 
     /// Returns a complaint about a scene file, a set-up file or one that they include, with `otherwise`
-    /// for help where the complaint has no place and no help of its own.
+    /// for help where the complaint has no position and no help of its own.
     pub(crate) fn file(path: &Path, error: &ConfigError, otherwise: &str) -> Self {
         let help = error.help().map(str::to_owned);
         let path = error.path().unwrap_or(path);
@@ -110,7 +110,7 @@ impl Failure {
     }
 }
 
-/// One message with the place it is about.
+/// One message with the position it is about.
 #[derive(Debug, Diagnostic, Error)]
 #[error("{message}")]
 struct Problem {
@@ -127,7 +127,7 @@ impl Problem {
     /// The most characters of a message.
     const MAX_CHARS: usize = 2000;
 
-    /// Returns a problem without a place. What it quotes may be long and hold anything.
+    /// Returns a problem without a position. What it quotes may be long and hold anything.
     fn new(message: String, help: Option<String>) -> Self {
         let shown = |text: String| printable_line(&text, Self::MAX_CHARS);
         Self {

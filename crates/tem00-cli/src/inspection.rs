@@ -38,13 +38,13 @@ impl<'a> Inspection<'a> {
         (0..self.scene.lasers.len()).all(|laser| self.is_seen(laser))
     }
 
-    /// Returns what is to be told of every laser, line by line.
+    /// Returns the findings for every laser, line by line.
     pub(crate) fn lines(&self) -> Vec<String> {
         let lasers = 0..self.scene.lasers.len();
         lasers.flat_map(|laser| self.words(laser)).collect()
     }
 
-    /// Returns what is to be told of the lasers that the camera does not see in any frame.
+    /// Returns the findings for the lasers that the camera does not see in any frame.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let lasers = (0..self.scene.lasers.len()).filter(|&laser| !self.is_seen(laser));
         lasers.flat_map(|laser| self.words(laser)).collect()

@@ -64,7 +64,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Tells what is wrong with the command line, or what was asked for with `--help`, and ends.
+/// Prints what is wrong with the command line, or the help that was asked for, and ends.
 fn refuse(error: &clap::Error) -> ! {
     // Names of files that a shell fills in may hold anything.
     if env::args_os().all(|argument| !argument.to_string_lossy().contains(is_hazard)) {

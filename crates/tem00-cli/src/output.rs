@@ -150,7 +150,7 @@ pub(crate) fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// Writes a line to standard error, unless notes are left out or there is nobody to read it.
+/// Writes a line to standard error, unless notes are left out or standard error is closed.
 pub(crate) fn note(text: &str) {
     if !is_quiet() {
         let _ = writeln!(io::stderr(), "{}", printable(text));

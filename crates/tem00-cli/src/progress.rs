@@ -76,7 +76,7 @@ impl Progress {
         self.tell();
     }
 
-    /// Writes a line, where that is how progress is told and it is time to.
+    /// Writes a line, if progress is shown by lines and one is due.
     fn tell(&self) {
         if let Some(line) = self
             .lines

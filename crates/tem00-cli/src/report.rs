@@ -22,7 +22,7 @@ pub(crate) use self::{
 
 /// The results of a command.
 ///
-/// Each number is told once, with its key, its name and its unit:
+/// Each number is stated once, with its key, its name and its unit:
 ///
 /// - a terminal shows the sections that are not [details](Section::in_detail), the first one last, and then the
 ///   verdicts, so that what matters stands above the prompt;

@@ -1,4 +1,4 @@
-//! `tem00 completions` and `tem00 man`: what shells and `man` are told of the program.
+//! `tem00 completions` and `tem00 man`: completions for shells, and manual pages.
 
 use std::io::Write;
 
@@ -16,7 +16,7 @@ use crate::{
 ///
 /// # Errors
 ///
-/// Returns a failure if nobody reads it.
+/// Returns a failure if it cannot be written.
 pub(crate) fn completions(args: &CompletionsArgs, out: &mut impl Write) -> Result<(), Failure> {
     // The generator panics where it cannot write.
     let mut script = Vec::new();

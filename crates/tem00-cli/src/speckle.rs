@@ -22,7 +22,7 @@ use crate::{
 ///
 /// # Errors
 ///
-/// Returns a failure if there is no such lens, or nobody to print for.
+/// Returns a failure if the lens is impossible, or standard output cannot be written.
 pub(crate) fn run(args: &SpeckleArgs, out: &mut impl Write) -> Result<(), Failure> {
     let speckle = Speckle::new(args).map_err(|error| {
         Failure::input(

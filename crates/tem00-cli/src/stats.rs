@@ -28,11 +28,11 @@ use findings::Findings;
 /// The fewest pixels along an axis that hold a speckle and its surroundings.
 const FEWEST_PIXELS: usize = 8;
 
-/// The window of the local mean in speckle sizes, where nobody says another: it takes 0.3 % of the
+/// The window of the local mean in speckle sizes, by default: it takes 0.3 % of the
 /// variance, which is put back.
 const WINDOW: f64 = 20.0;
 
-/// The smallest window in speckle sizes that is taken where nobody says another.
+/// The smallest window in speckle sizes that is taken by default.
 const LEAST_WINDOW: f64 = 8.0;
 
 /// The smallest window in speckle sizes for which what is taken is known.

@@ -21,7 +21,7 @@ pub(super) struct Findings<'a> {
     pub(super) file: &'a Path,
     pub(super) text: String,
     pub(super) setup: Setup,
-    /// The uncertainty of a height, or why there is none.
+    /// The uncertainty of a height, or the reason why there is none.
     pub(super) answer: Result<Answer, Refusal>,
 }
 

@@ -57,7 +57,7 @@ impl<'a> Design<'a> {
         Setup::new(shown.description).map_err(|error| Failure::running(error.to_string()))
     }
 
-    /// Returns the figure that is made small.
+    /// Returns the figure that is minimised.
     pub(super) fn objective(&self) -> DesignFigure {
         self.search.question().objective.figure()
     }

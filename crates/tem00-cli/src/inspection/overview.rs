@@ -96,7 +96,7 @@ struct Content<'a> {
 }
 
 impl Content<'_> {
-    /// Returns the lowest and the highest corner of all that has a place, in a view.
+    /// Returns the lowest and the highest corner of all objects in a view.
     fn extent(&self, view: &View) -> (DVec2, DVec2) {
         let parts = self.shapes.iter().flat_map(|shape| outline(shape, view));
         let points = parts

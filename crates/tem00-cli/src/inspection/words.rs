@@ -5,7 +5,7 @@ use tem00_tracer::{Crop, LaserInspection, LightFate, LightPart, Scene};
 
 use crate::digits::rounded;
 
-/// The share of a laser's power below which nothing is told.
+/// The minimum share of a laser's power that is reported.
 const TOLD: f64 = 0.01;
 
 /// Says what the camera sees of a laser.

@@ -27,7 +27,7 @@ pub(super) fn of(
     notes.map(|note| format!("{name}: {note}")).collect()
 }
 
-/// Tells that there is no line, or hardly any.
+/// Returns a note if there is no line, or hardly any.
 fn too_few(found: &[Vec<LinePoint>], args: &LinesArgs) -> Option<String> {
     let lit = found.iter().filter(|points| !points.is_empty()).count();
     if lit as f64 >= LIT * found.len() as f64 {
@@ -44,7 +44,7 @@ fn too_few(found: &[Vec<LinePoint>], args: &LinesArgs) -> Option<String> {
     ))
 }
 
-/// Tells why many points cannot be trusted.
+/// Returns a note if many points cannot be trusted.
 fn doubtful(found: &[Vec<LinePoint>]) -> Option<String> {
     let points = found.iter().map(Vec::len).sum::<usize>();
     let of = |validity: Validity| {

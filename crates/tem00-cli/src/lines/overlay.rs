@@ -41,7 +41,7 @@ fn colour(point: &LinePoint) -> [f32; 3] {
     }
 }
 
-/// The pixel that a place lies in; one before the image counts as beyond it.
+/// The pixel that contains a position; one before the image counts as beyond it.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -19,7 +19,7 @@ pub(super) struct Places<'a> {
 impl Places<'_> {
     /// Writes the points as a table with commas, in the order of the columns and from the top.
     ///
-    /// With a calibration they have their places in space, in metres, and the standard uncertainties of
+    /// With a calibration they have their positions in space, in metres, and the standard uncertainties of
     /// these: of the calibration and of the line's scatter together. Where there is no point or no
     /// scatter is known, cells are empty.
     pub(super) fn write(&self, out: &mut impl Write) -> io::Result<()> {

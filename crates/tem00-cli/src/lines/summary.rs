@@ -20,11 +20,11 @@ pub(super) struct LineSummary {
     pub(super) line: usize,
     /// The columns in which it was found.
     columns: usize,
-    /// The columns in which its place can be trusted.
+    /// The columns in which its position can be trusted.
     valid: usize,
-    /// The mean of its valid places, in pixels.
+    /// The mean of its valid positions, in pixels.
     position: Option<f64>,
-    /// The standard deviation of its valid places about a smooth line, in pixels.
+    /// The standard deviation of its valid positions about a smooth line, in pixels.
     pub(super) noise: Option<f64>,
     /// The mean of its full 1/e² widths where it is valid, in pixels.
     width: Option<f64>,

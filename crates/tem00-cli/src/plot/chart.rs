@@ -14,12 +14,12 @@ use super::{
 };
 use crate::digits::number;
 
-/// The largest number with a place on an axis: differences and squares of such are numbers still.
+/// The largest number with a position on an axis: differences and squares of such are numbers still.
 const LARGEST: f64 = 1e100;
 
 /// Points and lines over two axes, each linear or logarithmic.
 ///
-/// A point that has no place on its axes, because it is not finite, beyond 1e100 or not positive on a
+/// A point that has no position on its axes, because it is not finite, beyond 1e100 or not positive on a
 /// logarithmic axis, is left out, and breaks the line or the band that it is of.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
@@ -35,7 +35,7 @@ struct Series {
     name: String,
     mark: Mark,
     colour: Colour,
-    /// The pieces between points without a place: x, y and, for bands, the upper y.
+    /// The pieces between points without a position: x, y and, for bands, the upper y.
     pieces: Vec<Vec<[f64; 3]>>,
 }
 
@@ -81,7 +81,7 @@ impl Chart {
         self.with(name, Mark::Crosses, points)
     }
 
-    /// Adds the area between two curves: x, lower y and upper y of each point. It has no place in the
+    /// Adds the area between two curves: x, lower y and upper y of each point. It has no entry in the
     /// legend: name the curve that it belongs to, as in "profile ± u".
     pub(crate) fn band(mut self, points: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
         let points = points.into_iter().map(<[f64; 3]>::from).collect();
@@ -193,7 +193,7 @@ impl Chart {
 }
 
 impl Series {
-    /// Leaves out the points that have no place on their axes.
+    /// Leaves out the points that have no position on their axes.
     fn keep_places(&mut self, [log_x, log_y]: [bool; 2]) {
         let on_axis = |value: f64, log: bool| value.abs() <= LARGEST && (value > 0.0 || !log);
         let has_place = |&[x, low, high]: &[f64; 3]| {
@@ -256,7 +256,7 @@ fn places(piece: &[[f64; 3]]) -> impl Iterator<Item = (f64, f64)> {
     piece.iter().map(|&[x, y, _]| (x, y))
 }
 
-/// Returns the least and the greatest number of all points on a logarithmic axis.
+/// Returns the minimum and the maximum of all points on a logarithmic axis.
 fn extent(series: &[Series], axis: usize) -> (f64, f64) {
     let points = series
         .iter()

@@ -112,7 +112,7 @@ impl Scale {
     }
 }
 
-/// Returns the colour of a height, from 0 for the least to 1 for the greatest.
+/// Returns the colour of a height, from 0 for the minimum to 1 for the maximum.
 pub(crate) fn height_colour(height: f64) -> String {
     ColorMap::Viridis.map(height)
 }

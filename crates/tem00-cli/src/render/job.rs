@@ -91,7 +91,7 @@ impl<'a> Render<'a> {
         self.folder.join(format!("{}.json", self.name))
     }
 
-    /// Says, before the work, of which lasers the camera will see no light, and draws the scene then.
+    /// Warns, before the work, about lasers of which the camera will see no light, and draws the scene then.
     pub(super) fn warn_of_darkness(&self) -> Result<(), Failure> {
         let found = Inspection::new(&self.scene, self.frames)
             .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;

@@ -19,7 +19,7 @@ use crate::{
     summary::{Exposure, FrameSummary},
 };
 
-/// A number that tells renders apart: it changes with the scene, with each file that belongs to it,
+/// A number that distinguishes renders: it changes with the scene, with each file that belongs to it,
 /// with the choices on the command line and with the version of the program.
 ///
 /// It is the 64-bit FNV-1a hash of them all. Two renders share it by chance once in 10¹⁹ pairs.

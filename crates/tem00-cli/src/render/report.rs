@@ -4,7 +4,7 @@ use tem00_tracer::{LaserEvents, RoughnessNote, Scene};
 
 use crate::{colour::xyz_of_wavelength, digits::si_prefixed, output::note, summary::Summary};
 
-/// Tells which lasers the eye would not see.
+/// Warns about lasers of invisible light.
 pub(super) fn note_invisible_lasers(scene: &Scene) {
     for (index, laser) in scene.lasers.iter().enumerate() {
         if xyz_of_wavelength(laser.wavelength()).is_none() {
@@ -16,7 +16,7 @@ pub(super) fn note_invisible_lasers(scene: &Scene) {
     }
 }
 
-/// Tells which surfaces are too smooth for the theory of speckle, the first few of many.
+/// Warns about surfaces that are too smooth for the theory of speckle, the first few of many.
 pub(super) fn note_roughness(notes: &[RoughnessNote]) {
     const TOLD: usize = 8;
     for line in notes.iter().take(TOLD) {
@@ -27,7 +27,7 @@ pub(super) fn note_roughness(notes: &[RoughnessNote]) {
     }
 }
 
-/// Tells which light no method finds.
+/// Warns about light that neither method finds.
 pub(super) fn note_missing_light(scene: &Scene) {
     if scene.has_specular_surfaces() && scene.render.laser_events == LaserEvents::Beam {
         note(
@@ -37,7 +37,7 @@ pub(super) fn note_missing_light(scene: &Scene) {
     }
 }
 
-/// Tells what was found.
+/// Reports power, contrast, exposure and speed.
 pub(super) fn report(summary: &Summary) {
     for frame in &summary.frames {
         for (index, laser) in frame.lasers.iter().enumerate() {

@@ -243,7 +243,7 @@ impl Render<'_> {
         }
     }
 
-    /// After an interruption tells what is kept.
+    /// Notes the finished frames after an interruption.
     fn note_how_to_go_on(&self, failure: &Failure) {
         let frames = self.scene.render.frames;
         if frames > 1 && matches!(failure, Failure::Interrupted) {

@@ -24,7 +24,7 @@ const ELEVATION: f64 = 35.0;
 /// The half diagonal of the box, in tenths of a unit of the drawing.
 const RADIUS: f64 = 2100.0;
 
-/// The least side of the box beside its longest: shorter ones are stretched.
+/// The minimum ratio of a side of the box to its longest: shorter ones are stretched.
 const LEAST_SIDE: f64 = 0.25;
 
 /// Points along the line, along the scan and up, with the names of the axes.
@@ -126,7 +126,7 @@ impl Cloud<'_> {
 }
 
 impl Frame {
-    /// Returns the box about points, if there are any that are not all at one place.
+    /// Returns the box about points, unless there are none or all coincide.
     fn about(points: &[[f64; 3]], to_scale: bool) -> Option<Self> {
         let bound = |axis: usize, start: f64, keep: fn(f64, f64) -> f64| {
             points.iter().map(|point| point[axis]).fold(start, keep)
@@ -161,7 +161,7 @@ impl Frame {
         Some(Self { low, high, scale })
     }
 
-    /// Returns a place in the box, about its middle, in tenths of a unit of the drawing.
+    /// Returns a position in the box, about its middle, in tenths of a unit of the drawing.
     fn place(&self, point: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
             let middle = f64::midpoint(self.low[axis], self.high[axis]);
@@ -181,7 +181,7 @@ impl Frame {
         ((share * COLOURS as f64) as usize).min(COLOURS - 1)
     }
 
-    /// Returns the places of the ends of the edges of the box.
+    /// Returns the positions of the ends of the edges of the box.
     fn edges(&self) -> String {
         let ends = [self.low, self.high];
         let mut edges = String::new();
@@ -217,7 +217,7 @@ impl Frame {
     }
 }
 
-/// Returns where a place is seen at first, in units of the drawing, across and down.
+/// Returns the initial projection of a position, in units of the drawing, across and down.
 fn projected([x, y, z]: [f64; 3]) -> (f64, f64) {
     let (sa, ca) = AZIMUTH.to_radians().sin_cos();
     let (se, ce) = ELEVATION.to_radians().sin_cos();

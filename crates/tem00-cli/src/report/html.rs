@@ -20,7 +20,7 @@ impl Report {
     }
 
     /// Returns the page. It refers to nothing outside of itself: scripts, styles, fonts or pictures; a browser
-    /// is told to load none.
+    /// is forbidden to load any.
     pub(super) fn html(&self) -> String {
         let (title, style, dark) = (escaped(&self.title), style::CSS, style::dark());
         let version = env!("CARGO_PKG_VERSION");

@@ -14,7 +14,7 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// Returns a failure if nobody reads it.
+    /// Returns a failure if standard output cannot be written.
     pub(crate) fn print(
         &self,
         as_json: bool,

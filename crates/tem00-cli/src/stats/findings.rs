@@ -124,7 +124,7 @@ impl Findings<'_> {
         self.levels.map(|levels| self.mean / levels.step())
     }
 
-    /// Tells whether rounding changes more than the error of what is measured.
+    /// Returns whether rounding changes more than the error of the measurement.
     fn is_coarse(&self) -> bool {
         self.mean_level().is_some_and(|mean| mean < COARSE)
     }

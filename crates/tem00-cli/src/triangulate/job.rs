@@ -64,7 +64,7 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Says, before the work, of which lasers the camera will see no light.
+    /// Warns, before the work, about lasers of which the camera will see no light.
     pub(super) fn warn_of_darkness(&self) -> Result<(), Failure> {
         let found = Inspection::new(self.measurement.scene(), self.frames)
             .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;

@@ -37,10 +37,10 @@ pub(super) struct Terms {
 /// The coverage factor of 95 % of a normal distribution.
 const COVERAGE: f64 = 1.96;
 
-/// A term of the noise of a place, in square pixels.
+/// A term of the noise of a position, in square pixels.
 type Variance = fn(&PlaceNoise) -> f64;
 
-/// The terms of the noise of a place, by name.
+/// The terms of the noise of a position, by name.
 const NOISE: [(&str, Variance); 6] = [
     ("speckle", |noise| noise.speckle),
     ("shot noise", |noise| noise.shot),
@@ -50,7 +50,7 @@ const NOISE: [(&str, Variance); 6] = [
     ("DSNU", |noise| noise.dsnu),
 ];
 
-/// The term that is not one of a place.
+/// The term that is not noise of a position.
 const CALIBRATION: &str = "calibration";
 
 impl Terms {

@@ -22,7 +22,7 @@ struct Header {
     /// `true` if the first row of the file is the lowest of the image.
     upside_down: bool,
     bits: u16,
-    /// The place of the palette and of the pixels in the file.
+    /// The position of the palette and of the pixels in the file.
     palette: u32,
     pixels: u32,
 }

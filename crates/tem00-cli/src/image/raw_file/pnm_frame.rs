@@ -1,6 +1,6 @@
 //! Portable grey and pixel maps: the formats P2, P3, P5 and P6 of Netpbm.
 //!
-//! Their header is four numbers, of which the last, the largest grey value, tells the bits of the
+//! Their header is four numbers, of which the last, the largest grey value, gives the bits of the
 //! camera; the readers of other crates drop it.
 
 use std::io::{BufRead, Read};

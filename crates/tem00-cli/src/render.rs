@@ -13,18 +13,19 @@ use tem00_tracer::{Method, Scene};
 pub(crate) use self::job::{frames, tracer_failure};
 use self::{
     job::Render,
-    record::write_json,
-    report::{note_invisible_lasers, note_missing_light, report},
+    report::{note_invisible_lasers, note_missing_light, of_frames},
     sequence::Sequence,
 };
 use crate::{
     args::RenderArgs,
+    digits::si_prefixed,
     failure::Failure,
     image::check_inside,
     inspection::Inspection,
     kind::{Kind, wrong_or},
     output,
-    summary::{LaserSummary, Summary},
+    report::Report,
+    summary::{FrameSummary, lasers},
 };
 
 /// Renders a scene and prints the names of the files that it is in.
@@ -54,12 +55,12 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
     render.warn_of_darkness()?;
     let pool = output::thread_pool(args.common.threads)?;
     let sequence = pool.install(|| render.sequence())?;
-    let summary = pool.install(|| summary(&render, sequence));
-    report(&summary);
+    let report = pool.install(|| report(&render, &sequence));
+    report.tell_verdicts();
     let path = render.summary_path();
-    write_json(&path, &summary)?;
+    report.save_json(&path)?;
     let asked = |number: u32| (render.frames.first..=render.frames.last).contains(&number);
-    let frames = summary.frames.iter().filter(|frame| asked(frame.number));
+    let frames = sequence.finished.iter().filter(|frame| asked(frame.number));
     for file in frames.flat_map(|frame| [&frame.preview, &frame.layers]) {
         writeln!(out, "{}", render.folder.join(file).display())
             .map_err(|error| Failure::stdout(&error))?;
@@ -109,40 +110,62 @@ fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
     Ok(scene)
 }
 
-/// Sums up the frames of a render.
-fn summary(render: &Render<'_>, sequence: Sequence) -> Summary {
-    let frames = sequence.finished;
-    let seconds: f64 = frames.iter().map(|frame| frame.seconds).sum();
-    let samples: u64 = frames.iter().map(|frame| frame.samples).sum();
-    let rays: u64 = frames.iter().map(|frame| frame.rays).sum();
-    let per_second = |count: u64| count as f64 / seconds.max(1e-9);
-    Summary {
-        program: concat!("tem00 ", env!("CARGO_PKG_VERSION")),
-        scene: render.args.common.scene.display().to_string(),
-        fingerprint: render.fingerprint.to_string(),
-        formulas: render.formulas(),
-        seed: render.options.seed,
-        samples_per_pixel: render.options.samples_per_pixel,
-        method: match render.options.method {
+/// Returns the report of the frames of a render.
+fn report(render: &Render<'_>, Sequence { exposure, finished }: &Sequence) -> Report {
+    let (options, camera) = (&render.options, &render.scene.camera);
+    let mut report = Report::new(format!("{}: rendered", render.name));
+    report.data("scene", render.args.common.scene.display().to_string());
+    report.data("fingerprint", render.fingerprint.to_string());
+    report.data("formulas", render.formulas());
+    report.data("seed", options.seed);
+    report.data("samples_per_pixel", options.samples_per_pixel);
+    report.data(
+        "method",
+        match options.method {
             Method::Path => "path",
             Method::Light => "light",
         },
-        max_depth: render.options.max_depth,
-        target_error: render.options.target_error,
-        width: render.scene.camera.width(),
-        height: render.scene.camera.height(),
-        crop: render
-            .options
-            .crop
-            .map(|crop| [crop.x, crop.y, crop.width, crop.height]),
-        lasers: LaserSummary::of_scene(&render.scene, render.plan.as_ref()),
-        exposure: sequence.exposure,
-        frames,
-        threads: rayon::current_num_threads(),
-        samples,
-        rays,
-        seconds,
-        samples_per_second: per_second(samples),
-        rays_per_second: per_second(rays),
-    }
+    );
+    report.data("max_depth", options.max_depth);
+    report.data("target_error", options.target_error);
+    report.data("width", camera.width());
+    report.data("height", camera.height());
+    let crop = options.crop;
+    report.data(
+        "crop",
+        crop.map(|crop| [crop.x, crop.y, crop.width, crop.height]),
+    );
+    report.data("lasers", lasers(&render.scene, render.plan.as_ref()));
+    report.data("exposure", exposure);
+    report.data("frames", finished);
+    of_frames(finished)
+        .into_iter()
+        .for_each(|line| report.verdict(line));
+    report.verdict(format!(
+        "exposure: white is {:.4e} W/(m² sr), {}",
+        exposure.white_level, exposure.chosen_by
+    ));
+    speed(&mut report, finished);
+    report
+}
+
+/// Adds the numbers of samples and rays, and the time that they took.
+fn speed(report: &mut Report, frames: &[FrameSummary]) {
+    let seconds: f64 = frames.iter().map(|frame| frame.seconds).sum();
+    let samples: u64 = frames.iter().map(|frame| frame.samples).sum();
+    let rays: u64 = frames.iter().map(|frame| frame.rays).sum();
+    let threads = rayon::current_num_threads();
+    let [samples_per_second, rays_per_second] =
+        [samples, rays].map(|count| count as f64 / seconds.max(1e-9));
+    report.data("threads", threads);
+    report.data("samples", samples);
+    report.data("rays", rays);
+    report.data("seconds", seconds);
+    report.data("samples_per_second", samples_per_second);
+    report.data("rays_per_second", rays_per_second);
+    report.verdict(format!(
+        "{seconds:.2} s on {threads} threads, {}samples/s, {}rays/s",
+        si_prefixed(samples_per_second),
+        si_prefixed(rays_per_second)
+    ));
 }

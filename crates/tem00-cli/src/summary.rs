@@ -1,60 +1,11 @@
-//! The summary of a render as JSON.
+//! The parts of the summary of a render.
 
 use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use tem00_statistics::{Contrast, StatisticsError, pixel_contrast};
-use tem00_tracer::{LaserLayers, PatternPlan, Scene, SpecklePlan};
-
-/// The summary of a render, in SI units.
-#[derive(Debug, Serialize)]
-pub(crate) struct Summary {
-    pub(crate) program: &'static str,
-    pub(crate) scene: String,
-    /// Tells renders apart.
-    pub(crate) fingerprint: String,
-    pub(crate) formulas: &'static str,
-    pub(crate) seed: u64,
-    pub(crate) samples_per_pixel: u32,
-    pub(crate) method: &'static str,
-    /// `None` without a limit.
-    pub(crate) max_depth: Option<u32>,
-    pub(crate) target_error: Option<f64>,
-    pub(crate) width: usize,
-    pub(crate) height: usize,
-    /// The part of the image that was rendered, as x, y, width and height in pixels; `None` for all.
-    pub(crate) crop: Option<[usize; 4]>,
-    pub(crate) lasers: Vec<LaserSummary>,
-    pub(crate) exposure: Exposure,
-    pub(crate) frames: Vec<FrameSummary>,
-    pub(crate) threads: usize,
-    pub(crate) samples: u64,
-    pub(crate) rays: u64,
-    pub(crate) seconds: f64,
-    pub(crate) samples_per_second: f64,
-    pub(crate) rays_per_second: f64,
-}
-
-/// One laser and its speckle pattern.
-#[derive(Debug, Serialize)]
-pub(crate) struct LaserSummary {
-    wavelength: f64,
-    power: f64,
-    /// `None` if the speckle was left out.
-    pattern: Option<PatternSummary>,
-}
-
-/// The choice of a speckle pattern.
-#[derive(Debug, Serialize)]
-struct PatternSummary {
-    speckle_size_pixels: f64,
-    /// Along the width and along the height.
-    size_q: [usize; 2],
-    diameter_c: [usize; 2],
-    slices: usize,
-    memory_bytes: u64,
-    why: String,
-}
+use tem00_tracer::{Laser, LaserLayers, PatternPlan, Scene, SpecklePlan};
 
 /// The brightness of the previews.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -134,32 +85,26 @@ pub(crate) struct ContrastSummary {
     pub(crate) standard_error: f64,
 }
 
-impl LaserSummary {
-    /// Lists the lasers of a scene with the patterns planned for them.
-    pub(crate) fn of_scene(scene: &Scene, plan: Option<&SpecklePlan>) -> Vec<Self> {
-        let pattern = |index: usize| plan.and_then(|plan| plan.patterns().get(index));
-        let lasers = scene.lasers.iter().enumerate();
-        lasers
-            .map(|(index, laser)| Self {
-                wavelength: laser.wavelength(),
-                power: laser.power(),
-                pattern: pattern(index).map(PatternSummary::new),
-            })
-            .collect()
-    }
-}
-
-impl PatternSummary {
-    fn new(plan: &PatternPlan) -> Self {
-        Self {
-            speckle_size_pixels: plan.speckle_size_in_pixels(),
-            size_q: plan.stack().size(),
-            diameter_c: plan.stack().diameter(),
-            slices: plan.stack().path().slice_count(),
-            memory_bytes: plan.stack().memory_bytes(),
-            why: plan.to_string(),
-        }
-    }
+/// Returns the lasers of a scene with the patterns planned for them, as JSON; `null` stands for a pattern that
+/// was left out.
+pub(crate) fn lasers(scene: &Scene, plan: Option<&SpecklePlan>) -> Vec<Value> {
+    let lasers = scene.lasers.iter().enumerate();
+    let laser = |(index, laser): (usize, &Laser)| {
+        let pattern = plan.and_then(|plan| plan.patterns().get(index));
+        json!({
+            "wavelength": laser.wavelength(),
+            "power": laser.power(),
+            "pattern": pattern.map(|plan| json!({
+                "speckle_size_pixels": plan.speckle_size_in_pixels(),
+                "size": plan.stack().size(),
+                "diameter": plan.stack().diameter(),
+                "slices": plan.stack().path().slice_count(),
+                "memory_bytes": plan.stack().memory_bytes(),
+                "why": plan.to_string(),
+            })),
+        })
+    };
+    lasers.map(laser).collect()
 }
 
 impl FrameLaser {

@@ -2,7 +2,7 @@
 
 use tem00_tracer::{LaserEvents, RoughnessNote, Scene};
 
-use crate::{colour::xyz_of_wavelength, digits::si_prefixed, output::note, summary::Summary};
+use crate::{colour::xyz_of_wavelength, output::note, summary::FrameSummary};
 
 /// Warns about lasers of invisible light.
 pub(super) fn note_invisible_lasers(scene: &Scene) {
@@ -37,9 +37,10 @@ pub(super) fn note_missing_light(scene: &Scene) {
     }
 }
 
-/// Reports power, contrast, exposure and speed.
-pub(super) fn report(summary: &Summary) {
-    for frame in &summary.frames {
+/// Returns the power and the contrast of each laser in each frame, in words.
+pub(super) fn of_frames(frames: &[FrameSummary]) -> Vec<String> {
+    let mut lines = Vec::new();
+    for frame in frames {
         for (index, laser) in frame.lasers.iter().enumerate() {
             let ratio = 100.0 * laser.power_ratio;
             let watts = laser.power_on_target;
@@ -48,24 +49,14 @@ pub(super) fn report(summary: &Summary) {
             } else {
                 "no light on target".into()
             };
-            note(&format!("{}: laser {index}: {found}", frame.preview));
-            if let Some(contrast) = laser.contrast {
-                note(&format!(
+            lines.push(format!("{}: laser {index}: {found}", frame.preview));
+            lines.extend(laser.contrast.map(|contrast| {
+                format!(
                     "{}: laser {index}: speckle contrast {:.3} ± {:.3}, expected {:.3}",
                     frame.preview, contrast.measured, contrast.standard_error, contrast.expected
-                ));
-            }
+                )
+            }));
         }
     }
-    note(&format!(
-        "exposure: white is {:.4e} W/(m² sr), {}",
-        summary.exposure.white_level, summary.exposure.chosen_by
-    ));
-    note(&format!(
-        "{:.2} s on {} threads, {}samples/s, {}rays/s",
-        summary.seconds,
-        summary.threads,
-        si_prefixed(summary.samples_per_second),
-        si_prefixed(summary.rays_per_second)
-    ));
+    lines
 }

@@ -30,6 +30,11 @@ impl Report {
         printed.map_err(|error| Failure::stdout(&error))
     }
 
+    /// Writes the verdicts to standard error, for commands that print nothing but the names of files.
+    pub(crate) fn tell_verdicts(&self) {
+        self.verdicts.iter().for_each(|line| note(line));
+    }
+
     /// Tells warnings and notes, the first few of many.
     fn tell_doubts(&self) {
         const TOLD: usize = 8;

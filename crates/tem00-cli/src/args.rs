@@ -202,7 +202,7 @@ mod tests {
     fn help_is_written_in_standard_terms() {
         const CLAUSES: [&str; 7] = ["What", "How", "Whether", "Which", "Where", "Why", "Who"];
         const PRIVATE: [&str; 6] = [
-            "from outside",
+            "field from outside",
             "is none",
             "no number",
             "lamp",

@@ -52,7 +52,7 @@ fn plan_with(
 
 /// The plan with patterns of at most so many MiB.
 fn plan_within(mebibytes: f64, mut scene: Scene) -> Result<PatternPlan, TracerError> {
-    scene.speckle.memory = (mebibytes * f64::from(1 << 20)) as u64;
+    scene.speckle.memory = tem00_numerics::cast::to_usize(mebibytes * f64::from(1 << 20)) as u64;
     plan_of(&scene)
 }
 

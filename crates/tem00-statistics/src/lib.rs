@@ -56,76 +56,64 @@
 //! # Ok::<(), tem00_statistics::StatisticsError>(())
 //! ```
 
-mod autocovariance;
-mod background;
-mod bandwidth;
-mod bessel;
 mod centroid;
-mod descent;
+mod contrast;
 mod error;
-mod exposure;
-mod first_order;
-mod gamma_fit;
-mod goodness;
-mod grey_levels;
+mod estimate;
 mod hypothesis;
-mod joint;
-mod local_contrast;
-mod moments;
-mod objective;
-mod phasor_sum;
-mod pixel;
-mod pixel_autocovariance;
-mod pixel_widening;
-mod polarisation;
-mod rectangular_pixel;
-mod row_spectrum;
-mod second_order;
-mod singularities;
-mod spatial;
-mod speckle_size;
-mod sums;
+mod intensity;
+mod space;
 #[cfg(test)]
 mod synthetic;
-mod uneven_light;
 
-pub use autocovariance::{
-    Boundary, Ring, autocovariance, decorrelated_samples, power_spectrum, radial_average,
-};
-pub use background::CoherentBackground;
-pub use bandwidth::{GaussianSpectrum, path_spread_of_reflection};
 pub use centroid::{
-    SpeckledLine, disc_spot_centroid_deviation, gaussian_spot_centroid_deviation,
-    imaged_line_centroid_deviation, line_centroid_deviation,
+    imaged::imaged_line_centroid_deviation,
+    line::{SpeckledLine, line_centroid_deviation},
+    pixel_autocovariance::{PixelAutocovariance, PixelColumn},
+    row_spectrum::speckle_length,
+    spot::{disc_spot_centroid_deviation, gaussian_spot_centroid_deviation},
+};
+pub use contrast::{
+    bandwidth::{GaussianSpectrum, path_spread_of_reflection},
+    exposure::{boiling_contrast, contrast_of_exposure, translation_contrast},
+    pixel::pixel_contrast,
+    rectangular_pixel::{gaussian_filter_contrast, rectangular_pixel_contrast},
 };
 pub use error::StatisticsError;
-pub use exposure::{boiling_contrast, contrast_of_exposure, translation_contrast};
-pub use first_order::{
-    GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,
+pub use estimate::{
+    autocovariance::{
+        Boundary, Ring, autocovariance, decorrelated_samples, power_spectrum, radial_average,
+    },
+    gamma_fit::GammaFit,
+    local_contrast::local_contrast,
+    moments::{Contrast, Moments, pearson_correlation},
+    pixel_widening::size_before_pixels,
+    singularities::{Singularity, VortexDensity, phase_singularities},
+    speckle_size::{Axis, SpeckleSize},
+    uneven_light::{FlatImage, UnevenLight},
 };
-pub use gamma_fit::GammaFit;
-pub use goodness::GoodnessOfFit;
-pub use grey_levels::GreyLevels;
-pub use hypothesis::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean};
-pub use joint::JointIntensity;
-pub use local_contrast::local_contrast;
-pub use moments::{Contrast, Moments, pearson_correlation};
-pub use objective::{LitArea, ObjectiveSpeckle};
-pub use phasor_sum::{PhasorSum, moment_of_phasor_sum};
-pub use pixel::pixel_contrast;
-pub use pixel_autocovariance::{PixelAutocovariance, PixelColumn};
-pub use pixel_widening::size_before_pixels;
-pub use polarisation::PartiallyPolarised;
-pub use rectangular_pixel::{gaussian_filter_contrast, rectangular_pixel_contrast};
-pub use row_spectrum::speckle_length;
-pub use second_order::{
-    AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, COHERENCE_AREA, airy_autocovariance, airy_power_spectrum,
-    contrast_squared_spread,
+pub use hypothesis::{
+    goodness::GoodnessOfFit,
+    grey_levels::GreyLevels,
+    samples::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean},
 };
-pub use singularities::{Singularity, VortexDensity, phase_singularities};
-pub use spatial::{
-    MEAN_SQUARE_SLOPE, SPECKLE_DENSITY, VORTEX_DENSITY, area_fraction_above, level_crossings,
+pub use intensity::{
+    background::CoherentBackground,
+    first_order::{
+        GammaIntensity, contrast_of_phasor_sum, exponential_cumulative, exponential_density,
+    },
+    joint::JointIntensity,
+    phasor_sum::{PhasorSum, moment_of_phasor_sum},
+    polarisation::PartiallyPolarised,
+    sums::WeightedSum,
 };
-pub use speckle_size::{Axis, SpeckleSize};
-pub use sums::WeightedSum;
-pub use uneven_light::{FlatImage, UnevenLight};
+pub use space::{
+    objective::{LitArea, ObjectiveSpeckle},
+    second_order::{
+        AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, COHERENCE_AREA, airy_autocovariance, airy_power_spectrum,
+        contrast_squared_spread,
+    },
+    spatial::{
+        MEAN_SQUARE_SLOPE, SPECKLE_DENSITY, VORTEX_DENSITY, area_fraction_above, level_crossings,
+    },
+};

@@ -4,7 +4,7 @@ use libm::erf;
 
 use tem00_numerics::quadrature::integrate;
 
-use crate::row_spectrum::Row;
+use crate::centroid::row_spectrum::Row;
 
 /// Returns the standard deviation of the centroid of a laser line on a rough surface that a lens images,
 /// first order in the fluctuations, for a line of the 1/e² half-width `radius` that is read in rows

@@ -4,7 +4,7 @@ use tem00_numerics::Grid;
 
 use crate::{
     AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, Boundary, StatisticsError, airy_autocovariance,
-    autocovariance, moments::check_finite,
+    estimate::autocovariance, estimate::moments::check_finite,
 };
 
 /// An axis of an image.

@@ -2,7 +2,7 @@ use core::f64::consts::PI;
 
 use tem00_numerics::{quadrature::for_each_node, sinc};
 
-use crate::{StatisticsError, row_spectrum::Row};
+use crate::{StatisticsError, centroid::row_spectrum::Row};
 
 /// A column of pixels that see speckle.
 ///

@@ -2,7 +2,7 @@ use core::f64::consts::{PI, SQRT_2};
 
 use tem00_numerics::{Grid, cast::to_f32};
 
-use crate::{COHERENCE_AREA, SpeckleSize, StatisticsError, moments};
+use crate::{COHERENCE_AREA, SpeckleSize, StatisticsError, estimate::moments};
 
 /// The inner radius of the first ring of lags, in speckle sizes: beyond the speckle itself.
 const FIRST_RING: f64 = 1.5;
@@ -245,7 +245,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::{Boundary, Contrast, Moments, autocovariance, synthetic::speckle_tile};
+    use crate::{Boundary, Contrast, Moments, estimate::autocovariance, synthetic::speckle_tile};
 
     fn found(image: &Grid<f32>) -> Option<UnevenLight> {
         let lags = autocovariance(image, Boundary::Finite).unwrap();

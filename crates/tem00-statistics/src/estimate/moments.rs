@@ -3,7 +3,7 @@ use core::f64::consts::SQRT_2;
 use statrs::function::erf::erf_inv;
 use tem00_numerics::Grid;
 
-use crate::{StatisticsError, second_order::pixels_per_contrast_sample};
+use crate::{StatisticsError, space::second_order::pixels_per_contrast_sample};
 
 /// Mean and standard deviation of samples.
 ///

@@ -2,7 +2,7 @@ use tem00_numerics::{Grid, cast::to_f32};
 
 use crate::{
     StatisticsError,
-    moments::{Scaled, check_finite},
+    estimate::moments::{Scaled, check_finite},
 };
 
 /// Returns the contrast of an image within a square window about every pixel: the map of laser

@@ -1,7 +1,6 @@
 use crate::{
-    StatisticsError,
-    bessel::{rician_cumulative, scaled_bessel_i0},
-    exponential_density,
+    StatisticsError, exponential_density,
+    intensity::bessel::{rician_cumulative, scaled_bessel_i0},
 };
 
 /// The joint law of the intensities at two points of fully developed speckle, or at one point of

@@ -2,7 +2,7 @@ use core::f64::consts::SQRT_2;
 
 use crate::{
     StatisticsError,
-    bessel::{rician_cumulative, scaled_bessel_i0},
+    intensity::bessel::{rician_cumulative, scaled_bessel_i0},
 };
 
 /// The law of the intensity of speckle on a coherent background: partially developed speckle.

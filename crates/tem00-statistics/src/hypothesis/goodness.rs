@@ -1,6 +1,6 @@
 use crate::{
-    GreyLevels, StatisticsError, TestOutcome, chi_squared, kolmogorov_smirnov,
-    moments::check_finite,
+    GreyLevels, StatisticsError, TestOutcome, chi_squared, estimate::moments::check_finite,
+    kolmogorov_smirnov,
 };
 
 /// The number of bins of the χ² test.

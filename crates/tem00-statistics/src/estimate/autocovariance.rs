@@ -6,7 +6,7 @@ use tem00_numerics::{
 
 use crate::{
     StatisticsError,
-    moments::{Scaled, check_finite},
+    estimate::moments::{Scaled, check_finite},
 };
 
 /// How an image continues beyond its edges.

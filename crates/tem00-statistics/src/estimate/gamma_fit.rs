@@ -1,6 +1,6 @@
 use statrs::function::gamma::digamma;
 
-use crate::{GammaIntensity, Moments, StatisticsError, moments::Scaled};
+use crate::{GammaIntensity, Moments, StatisticsError, estimate::moments::Scaled};
 
 /// A Gamma law fitted to samples: their mean and the shape M, the number of degrees of freedom.
 ///

@@ -1,6 +1,6 @@
 use crate::{
     StatisticsError,
-    descent::{Factor, inverse_laplace_transform},
+    intensity::descent::{Factor, inverse_laplace_transform},
 };
 
 /// The law of the intensity of a sum of independent speckle patterns of any mean intensities.

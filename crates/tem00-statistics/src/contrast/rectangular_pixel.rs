@@ -183,7 +183,7 @@ mod tests {
     use tem00_numerics::sinc;
 
     use super::*;
-    use crate::{bessel::scaled_bessel_i0, pixel_contrast};
+    use crate::{intensity::bessel::scaled_bessel_i0, pixel_contrast};
 
     /// C² from the frequencies: the transfer function of the box times the power spectrum.
     fn squared_by_spectrum([q_x, q_y]: [f64; 2]) -> f64 {

@@ -1,0 +1,10 @@
+//! Laws of the intensity: at one point, and at two.
+
+pub(crate) mod background;
+pub(crate) mod bessel;
+pub(crate) mod descent;
+pub(crate) mod first_order;
+pub(crate) mod joint;
+pub(crate) mod phasor_sum;
+pub(crate) mod polarisation;
+pub(crate) mod sums;

@@ -31,6 +31,7 @@ mod grid;
 mod memory;
 mod pupil;
 pub mod quadrature;
+mod shown;
 mod vectorised;
 
 pub use circle::{circle_point_at_eighth, circle_point_at_turn};
@@ -42,4 +43,5 @@ pub use pupil::{
     circular_path_overlap, circular_path_overlap_inverse, disc_overlap, disc_overlap_inverse, jinc,
     sinc, sinc_inverse, sinc_pi_squared,
 };
+pub use shown::Shown;
 pub use vectorised::vectorised;

@@ -56,6 +56,7 @@
 //! # Ok::<(), tem00_statistics::StatisticsError>(())
 //! ```
 
+mod axis;
 mod centroid;
 mod contrast;
 mod error;
@@ -66,6 +67,7 @@ mod space;
 #[cfg(test)]
 mod synthetic;
 
+pub use axis::Axis;
 pub use centroid::{
     imaged::imaged_line_centroid_deviation,
     line::{SpeckledLine, line_centroid_deviation},
@@ -89,7 +91,7 @@ pub use estimate::{
     moments::{Contrast, Moments, pearson_correlation},
     pixel_widening::size_before_pixels,
     singularities::{Singularity, VortexDensity, phase_singularities},
-    speckle_size::{Axis, SpeckleSize},
+    speckle_size::SpeckleSize,
     uneven_light::{FlatImage, UnevenLight},
 };
 pub use hypothesis::{

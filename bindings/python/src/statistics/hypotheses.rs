@@ -102,7 +102,14 @@ pub(super) fn checked(samples: &[f64]) -> PyResult<&[f64]> {
     match samples.iter().position(|sample| !sample.is_finite()) {
         Some(index) => {
             let value = samples[index];
-            Err(StatisticsError::NotFinite { index, value }).or_raise()
+            let (parameter, allowed) = ("samples", "finite");
+            Err(StatisticsError::ValueOutOfRange {
+                parameter,
+                index,
+                value,
+                allowed,
+            })
+            .or_raise()
         }
         None => Ok(samples),
     }

@@ -192,7 +192,7 @@ fn check(
     if (least..=most).contains(&value) {
         Ok(())
     } else {
-        Err(StatisticsError::Extent {
+        Err(StatisticsError::OutOfRange {
             parameter,
             value,
             allowed,

@@ -126,7 +126,7 @@ impl PixelAutocovariance {
 
 fn check(column: &PixelColumn) -> Result<(), StatisticsError> {
     let refuse = |parameter, value, allowed| {
-        Err(StatisticsError::Extent {
+        Err(StatisticsError::OutOfRange {
             parameter,
             value,
             allowed,

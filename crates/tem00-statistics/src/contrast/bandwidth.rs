@@ -63,7 +63,11 @@ impl GaussianSpectrum {
     /// last check also catches swapped arguments.
     pub fn new(wavelength: f64, linewidth: f64) -> Result<Self, StatisticsError> {
         if !(wavelength > 0.0 && wavelength.is_finite()) {
-            return Err(StatisticsError::Wavelength(wavelength));
+            return Err(StatisticsError::refused(
+                "wavelength",
+                wavelength,
+                "positive and finite, in metres",
+            ));
         }
         let maximum = LARGEST_RELATIVE_WIDTH * wavelength;
         if linewidth > 0.0 && linewidth <= maximum {
@@ -72,7 +76,11 @@ impl GaussianSpectrum {
                 linewidth,
             })
         } else {
-            Err(StatisticsError::Linewidth { linewidth, maximum })
+            Err(StatisticsError::refused(
+                "linewidth",
+                linewidth,
+                "positive and at most a tenth of the wavelength, in metres; the two may be swapped",
+            ))
         }
     }
 
@@ -206,18 +214,36 @@ mod tests {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let refused = GaussianSpectrum::new(bad, 1e-9);
             assert!(
-                matches!(refused, Err(StatisticsError::Wavelength(_))),
+                matches!(
+                    refused,
+                    Err(StatisticsError::OutOfRange {
+                        parameter: "wavelength",
+                        ..
+                    })
+                ),
                 "{bad}"
             );
             let refused = GaussianSpectrum::new(650e-9, bad);
             assert!(
-                matches!(refused, Err(StatisticsError::Linewidth { .. })),
+                matches!(
+                    refused,
+                    Err(StatisticsError::OutOfRange {
+                        parameter: "linewidth",
+                        ..
+                    })
+                ),
                 "{bad}"
             );
         }
         let swapped = GaussianSpectrum::new(1e-9, 650e-9);
         assert!(
-            matches!(swapped, Err(StatisticsError::Linewidth { .. })),
+            matches!(
+                swapped,
+                Err(StatisticsError::OutOfRange {
+                    parameter: "linewidth",
+                    ..
+                })
+            ),
             "{swapped:?}"
         );
     }

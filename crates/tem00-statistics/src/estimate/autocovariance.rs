@@ -174,7 +174,7 @@ pub struct Ring {
 /// ```
 pub fn radial_average(grid: &Grid<f32>, step: [f64; 2]) -> Result<Vec<Ring>, StatisticsError> {
     if let Some(&bad) = step.iter().find(|&&s| !(s > 0.0 && s.is_finite())) {
-        return Err(StatisticsError::Step(bad));
+        return Err(StatisticsError::refused("step", bad, "positive and finite"));
     }
     check_finite(grid.values())?;
     let width = step[0].max(step[1]);
@@ -241,7 +241,11 @@ impl Ring {
 /// ```
 pub fn decorrelated_samples(grid: &Grid<f32>, stride: usize) -> Result<Vec<f64>, StatisticsError> {
     if stride == 0 {
-        return Err(StatisticsError::Stride(stride));
+        return Err(StatisticsError::refused(
+            "stride",
+            stride as f64,
+            "at least 1",
+        ));
     }
     check_finite(grid.values())?;
     // At least one sample along each axis, and none closer than a stride to the first of the next
@@ -448,17 +452,32 @@ mod tests {
         for boundary in [Boundary::Periodic, Boundary::Finite] {
             assert_eq!(
                 autocovariance(&flat, boundary),
-                Err(StatisticsError::Constant(f64::from(0.1_f32)))
+                Err(StatisticsError::refused(
+                    "samples",
+                    f64::from(0.1_f32),
+                    StatisticsError::VARIED
+                ))
             );
         }
         assert_eq!(
             power_spectrum(&flat),
-            Err(StatisticsError::Constant(f64::from(0.1_f32)))
+            Err(StatisticsError::refused(
+                "samples",
+                f64::from(0.1_f32),
+                StatisticsError::VARIED
+            ))
         );
         let mut hole = noise(4, 4);
         hole.values_mut()[5] = f32::NAN;
         let rejected = |result: Result<Grid<f32>, _>| {
-            matches!(result, Err(StatisticsError::NotFinite { index: 5, .. }))
+            matches!(
+                result,
+                Err(StatisticsError::ValueOutOfRange {
+                    parameter: "samples",
+                    index: 5,
+                    ..
+                })
+            )
         };
         assert!(rejected(autocovariance(&hole, Boundary::Finite)), "NaN");
         assert!(rejected(power_spectrum(&hole)), "NaN");
@@ -466,11 +485,11 @@ mod tests {
         assert!(decorrelated_samples(&hole, 2).is_err(), "NaN");
         assert_eq!(
             radial_average(&flat, [1.0, 0.0]),
-            Err(StatisticsError::Step(0.0))
+            Err(StatisticsError::refused("step", 0.0, "positive and finite"))
         );
         assert_eq!(
             decorrelated_samples(&flat, 0),
-            Err(StatisticsError::Stride(0))
+            Err(StatisticsError::refused("stride", 0.0, "at least 1"))
         );
     }
 }

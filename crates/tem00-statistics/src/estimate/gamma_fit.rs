@@ -99,7 +99,11 @@ impl GammaFit {
         let excess = -samples.iter().map(deficit).sum::<f64>() / count;
         let mean = scaled.mean * scaled.unit;
         if excess <= f64::EPSILON {
-            return Err(StatisticsError::Constant(mean));
+            return Err(StatisticsError::refused(
+                "samples",
+                mean,
+                StatisticsError::VARIED,
+            ));
         }
         let shape = shape_of_excess(excess);
         let information = (trigamma(shape) - shape.recip()) * count;
@@ -145,7 +149,11 @@ where
     scaled.check_varies()?;
     if scaled.mean <= f64::EPSILON {
         let mean = Moments::of(samples)?.mean();
-        return Err(StatisticsError::Mean(mean));
+        return Err(StatisticsError::refused(
+            "samples",
+            mean,
+            StatisticsError::MEAN,
+        ));
     }
     Ok(scaled)
 }
@@ -316,19 +324,35 @@ mod tests {
             })
         );
         for fit in [GammaFit::by_moments::<f64>, GammaFit::by_likelihood::<f64>] {
-            assert_eq!(fit(&[2.0; 3]), Err(StatisticsError::Constant(2.0)));
+            assert_eq!(
+                fit(&[2.0; 3]),
+                Err(StatisticsError::refused(
+                    "samples",
+                    2.0,
+                    StatisticsError::VARIED
+                ))
+            );
             assert!(
                 matches!(fit(&[1.0]), Err(StatisticsError::Samples { .. })),
                 "one"
             );
             assert!(
-                matches!(fit(&[-1.0, 0.5]), Err(StatisticsError::Mean(_))),
+                matches!(
+                    fit(&[-1.0, 0.5]),
+                    Err(StatisticsError::OutOfRange {
+                        parameter: "samples",
+                        ..
+                    })
+                ),
                 "negative"
             );
             assert!(
                 matches!(
                     fit(&[f64::NAN, 0.5]),
-                    Err(StatisticsError::NotFinite { .. })
+                    Err(StatisticsError::ValueOutOfRange {
+                        parameter: "samples",
+                        ..
+                    })
                 ),
                 "NaN"
             );

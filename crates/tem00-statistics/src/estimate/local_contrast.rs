@@ -82,7 +82,11 @@ pub fn local_contrast(image: &Grid<f32>, window: usize) -> Result<Grid<f32>, Sta
 fn contrast_of(pixels: &[f32]) -> Result<f32, StatisticsError> {
     let scaled = Scaled::new(pixels)?;
     if scaled.mean <= f64::EPSILON {
-        return Err(StatisticsError::Mean(scaled.mean * scaled.unit));
+        return Err(StatisticsError::refused(
+            "samples",
+            scaled.mean * scaled.unit,
+            StatisticsError::MEAN,
+        ));
     }
     Ok(to_f32(scaled.standard_deviation / scaled.mean))
 }
@@ -164,10 +168,23 @@ mod tests {
         let map = local_contrast(&image, 4).unwrap();
         assert_eq!((map.width(), map.height()), (1, 3));
         let dark = local_contrast(&Grid::filled(4, 6, 0.0), 2);
-        assert_eq!(dark, Err(StatisticsError::Mean(0.0)));
+        assert_eq!(
+            dark,
+            Err(StatisticsError::refused(
+                "samples",
+                0.0,
+                StatisticsError::MEAN
+            ))
+        );
         let hole = local_contrast(&Grid::filled(4, 6, f32::NAN), 2);
         assert!(
-            matches!(hole, Err(StatisticsError::NotFinite { .. })),
+            matches!(
+                hole,
+                Err(StatisticsError::ValueOutOfRange {
+                    parameter: "samples",
+                    ..
+                })
+            ),
             "{hole:?}"
         );
     }

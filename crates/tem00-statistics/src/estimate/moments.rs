@@ -115,7 +115,11 @@ impl Contrast {
         let scaled = Scaled::new(samples)?;
         let (mean, deviation) = (scaled.mean, scaled.standard_deviation);
         if mean <= f64::EPSILON {
-            return Err(StatisticsError::Mean(mean * scaled.unit));
+            return Err(StatisticsError::refused(
+                "samples",
+                mean * scaled.unit,
+                StatisticsError::MEAN,
+            ));
         }
         let value = deviation / mean;
         // The influence of one sample on s / m, (Δ² − s²) / 2sm − Δ s / m².
@@ -152,7 +156,11 @@ impl Contrast {
     /// Returns an error unless `speckle_size` is positive and finite.
     pub fn with_speckle_size(self, speckle_size: f64) -> Result<Self, StatisticsError> {
         if !(speckle_size > 0.0 && speckle_size.is_finite()) {
-            return Err(StatisticsError::SpeckleSize(speckle_size));
+            return Err(StatisticsError::refused(
+                "speckle_size",
+                speckle_size,
+                "positive and finite, in pixels",
+            ));
         }
         Ok(Self {
             standard_error: self.standard_error * pixels_per_contrast_sample(speckle_size).sqrt(),
@@ -193,7 +201,7 @@ impl Contrast {
     /// ```
     pub fn confidence_interval(&self, level: f64) -> Result<[f64; 2], StatisticsError> {
         if !(level > 0.0 && level < 1.0) {
-            return Err(StatisticsError::Level(level));
+            return Err(StatisticsError::refused("level", level, "between 0 and 1"));
         }
         if self.value <= 0.0 {
             return Ok([self.value; 2]);
@@ -306,7 +314,11 @@ impl Scaled {
     /// Returns an error if all samples were the same.
     pub(crate) fn check_varies(&self) -> Result<(), StatisticsError> {
         match self.constant {
-            Some(value) => Err(StatisticsError::Constant(value)),
+            Some(value) => Err(StatisticsError::refused(
+                "samples",
+                value,
+                StatisticsError::VARIED,
+            )),
             None => Ok(()),
         }
     }
@@ -352,9 +364,11 @@ where
 {
     let bad = samples.iter().position(|&x| !x.into().is_finite());
     match bad {
-        Some(index) => Err(StatisticsError::NotFinite {
+        Some(index) => Err(StatisticsError::ValueOutOfRange {
+            parameter: "samples",
             index,
             value: samples[index].into(),
+            allowed: "finite",
         }),
         None => Ok(()),
     }

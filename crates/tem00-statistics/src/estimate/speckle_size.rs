@@ -1,29 +1,9 @@
-use core::fmt;
-
 use tem00_numerics::Grid;
 
 use crate::{
-    AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, Boundary, StatisticsError, airy_autocovariance,
-    estimate::autocovariance, estimate::moments::check_finite,
+    AIRY_FIRST_ZERO, AIRY_HALF_WIDTH, Axis, Boundary, StatisticsError, airy_autocovariance,
+    autocovariance, estimate::moments::check_finite,
 };
-
-/// An axis of an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Axis {
-    /// Along the rows.
-    X,
-    /// Along the columns.
-    Y,
-}
-
-impl fmt::Display for Axis {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::X => "x",
-            Self::Y => "y",
-        })
-    }
-}
 
 /// The speckle size h along both axes of an image, in pixels.
 ///
@@ -100,7 +80,11 @@ impl SpeckleSize {
         let zero = f64::from(lags[(0, 0)]);
         check_finite(lags.values())?;
         if zero <= 0.0 {
-            return Err(StatisticsError::ZeroLag(zero));
+            return Err(StatisticsError::refused(
+                "lags",
+                zero,
+                "positive and finite at zero lag",
+            ));
         }
         let along_x = |lag| f64::from(lags[(lag, 0)]) / zero;
         let along_y = |lag| f64::from(lags[(0, lag)]) / zero;
@@ -298,7 +282,11 @@ mod tests {
         );
         assert_eq!(
             SpeckleSize::from_autocovariance(&Grid::filled(9, 9, 0.0)),
-            Err(StatisticsError::ZeroLag(0.0))
+            Err(StatisticsError::refused(
+                "lags",
+                0.0,
+                "positive and finite at zero lag"
+            ))
         );
         let mut hole = airy_lags(64, [4.0, 4.0]);
         hole.values_mut()[1] = f32::NAN;

@@ -158,7 +158,11 @@ impl FlatImage {
         let (lowest, highest) = (of(f64::min, f64::INFINITY), of(f64::max, 0.0));
         // A mean that is below the rounding of the sums is none.
         if lowest <= f64::EPSILON * highest * (size.0 + size.1) as f64 {
-            return Err(StatisticsError::Mean(lowest));
+            return Err(StatisticsError::refused(
+                "samples",
+                lowest,
+                StatisticsError::MEAN,
+            ));
         }
         let flat = |x, y| to_f32(f64::from(image[(x, y)]) / means[(x, y)]);
         Ok(Self {
@@ -245,7 +249,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::{Boundary, Contrast, Moments, estimate::autocovariance, synthetic::speckle_tile};
+    use crate::{Boundary, Contrast, Moments, autocovariance, synthetic::speckle_tile};
 
     fn found(image: &Grid<f32>) -> Option<UnevenLight> {
         let lags = autocovariance(image, Boundary::Finite).unwrap();
@@ -405,10 +409,25 @@ mod tests {
         }
         let half = Grid::from_fn(20, 6, |x, _| if x < 10 { 1.0 } else { 0.0 });
         let dark = FlatImage::new(&half, 3);
-        assert!(matches!(dark, Err(StatisticsError::Mean(_))), "{dark:?}");
+        assert!(
+            matches!(
+                dark,
+                Err(StatisticsError::OutOfRange {
+                    parameter: "samples",
+                    ..
+                })
+            ),
+            "{dark:?}"
+        );
         let hole = FlatImage::new(&Grid::filled(8, 6, f32::NAN), 3);
         assert!(
-            matches!(hole, Err(StatisticsError::NotFinite { .. })),
+            matches!(
+                hole,
+                Err(StatisticsError::ValueOutOfRange {
+                    parameter: "samples",
+                    ..
+                })
+            ),
             "{hole:?}"
         );
     }

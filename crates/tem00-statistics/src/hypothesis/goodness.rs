@@ -264,7 +264,14 @@ mod tests {
         );
         let hole = GoodnessOfFit::new(&[1.0, f64::NAN], exponential);
         assert!(
-            matches!(hole, Err(StatisticsError::NotFinite { index: 1, .. })),
+            matches!(
+                hole,
+                Err(StatisticsError::ValueOutOfRange {
+                    parameter: "samples",
+                    index: 1,
+                    ..
+                })
+            ),
             "{hole:?}"
         );
     }

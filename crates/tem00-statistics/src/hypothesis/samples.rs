@@ -198,7 +198,12 @@ fn merge_sparse_bins(
     }
     let bad = |&(_, value): &(usize, &f64)| !(value.is_finite() && *value >= 0.0);
     if let Some((index, &value)) = expected.iter().enumerate().find(bad) {
-        return Err(StatisticsError::ExpectedCount { index, value });
+        return Err(StatisticsError::ValueOutOfRange {
+            parameter: "expected",
+            index,
+            value,
+            allowed: "finite and not negative",
+        });
     }
     let mut bins = Vec::new();
     let mut open = (0.0, 0.0);
@@ -254,7 +259,7 @@ where
     T: Copy + Into<f64>,
 {
     if !mean.is_finite() {
-        return Err(StatisticsError::TestedMean(mean));
+        return Err(StatisticsError::refused("mean", mean, "finite"));
     }
     let scaled = Scaled::new(samples)?;
     scaled.check_varies()?;

@@ -56,7 +56,11 @@ impl CoherentBackground {
         if beam_ratio >= 0.0 && beam_ratio.is_finite() {
             Ok(Self { beam_ratio })
         } else {
-            Err(StatisticsError::BeamRatio(beam_ratio))
+            Err(StatisticsError::refused(
+                "beam_ratio",
+                beam_ratio,
+                "finite and not negative",
+            ))
         }
     }
 
@@ -67,7 +71,11 @@ impl CoherentBackground {
     /// Returns an error unless `0.001 ≤ contrast ≤ 1`.
     pub fn from_contrast(contrast: f64) -> Result<Self, StatisticsError> {
         if !(1e-3..=1.0).contains(&contrast) {
-            return Err(StatisticsError::Contrast(contrast));
+            return Err(StatisticsError::refused(
+                "contrast",
+                contrast,
+                "from 0.001 to 1",
+            ));
         }
         let root = ((1.0 - contrast) * (1.0 + contrast)).sqrt();
         Ok(Self {
@@ -197,14 +205,26 @@ mod tests {
         for bad in [-1e-9, f64::NAN, f64::INFINITY] {
             let refused = CoherentBackground::new(bad);
             assert!(
-                matches!(refused, Err(StatisticsError::BeamRatio(_))),
+                matches!(
+                    refused,
+                    Err(StatisticsError::OutOfRange {
+                        parameter: "beam_ratio",
+                        ..
+                    })
+                ),
                 "{bad}"
             );
         }
         for bad in [0.0, 1.1, f64::NAN] {
             let refused = CoherentBackground::from_contrast(bad);
             assert!(
-                matches!(refused, Err(StatisticsError::Contrast(_))),
+                matches!(
+                    refused,
+                    Err(StatisticsError::OutOfRange {
+                        parameter: "contrast",
+                        ..
+                    })
+                ),
                 "{bad}"
             );
         }

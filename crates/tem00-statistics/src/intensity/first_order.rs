@@ -100,7 +100,7 @@ impl GammaIntensity {
         if (1.0..=MAXIMUM_SHAPE).contains(&shape) {
             Ok(Self { shape })
         } else {
-            Err(StatisticsError::Shape(shape))
+            Err(StatisticsError::refused("shape", shape, "from 1 to 1e6"))
         }
     }
 
@@ -114,7 +114,11 @@ impl GammaIntensity {
             let shape = (contrast * contrast).recip();
             Ok(Self { shape })
         } else {
-            Err(StatisticsError::Contrast(contrast))
+            Err(StatisticsError::refused(
+                "contrast",
+                contrast,
+                "from 0.001 to 1",
+            ))
         }
     }
 
@@ -291,7 +295,13 @@ mod tests {
     fn shapes_that_speckle_cannot_have_are_refused() {
         for shape in [0.0, 0.999, -1.0, 1.1e6, f64::NAN, f64::INFINITY] {
             assert!(
-                matches!(GammaIntensity::new(shape), Err(StatisticsError::Shape(_))),
+                matches!(
+                    GammaIntensity::new(shape),
+                    Err(StatisticsError::OutOfRange {
+                        parameter: "shape",
+                        ..
+                    })
+                ),
                 "{shape}"
             );
         }
@@ -299,7 +309,10 @@ mod tests {
             assert!(
                 matches!(
                     GammaIntensity::from_contrast(contrast),
-                    Err(StatisticsError::Contrast(_))
+                    Err(StatisticsError::OutOfRange {
+                        parameter: "contrast",
+                        ..
+                    })
                 ),
                 "{contrast}"
             );

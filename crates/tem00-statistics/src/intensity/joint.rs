@@ -54,7 +54,11 @@ impl JointIntensity {
                 amplitude_correlation,
             })
         } else {
-            Err(StatisticsError::AmplitudeCorrelation(amplitude_correlation))
+            Err(StatisticsError::refused(
+                "amplitude_correlation",
+                amplitude_correlation,
+                "at least 0 and below 1",
+            ))
         }
     }
 
@@ -266,7 +270,10 @@ mod tests {
             assert!(
                 matches!(
                     JointIntensity::new(bad),
-                    Err(StatisticsError::AmplitudeCorrelation(_))
+                    Err(StatisticsError::OutOfRange {
+                        parameter: "amplitude_correlation",
+                        ..
+                    })
                 ),
                 "{bad}"
             );

@@ -70,7 +70,13 @@ impl PhasorSum {
     pub fn new(count: usize) -> Result<Self, StatisticsError> {
         let power = match i32::try_from(count) {
             Ok(power @ 8..=1_000_000) => power,
-            _ => return Err(StatisticsError::Phasors(count)),
+            _ => {
+                return Err(StatisticsError::refused(
+                    "count",
+                    count as f64,
+                    "from 8 to 1000000 phasors",
+                ));
+            }
         };
         let root = f64::from(power).sqrt();
         let reach = root.min(LARGEST_AMPLITUDE);
@@ -321,7 +327,14 @@ mod tests {
     fn sums_without_a_law_are_refused() {
         for count in [0, 1, 7, 1_000_001, usize::MAX] {
             let refused = PhasorSum::new(count);
-            assert_eq!(refused, Err(StatisticsError::Phasors(count)));
+            assert_eq!(
+                refused,
+                Err(StatisticsError::refused(
+                    "count",
+                    count as f64,
+                    "from 8 to 1000000 phasors"
+                ))
+            );
         }
     }
 }

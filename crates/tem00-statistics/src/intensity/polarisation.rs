@@ -47,7 +47,11 @@ impl PartiallyPolarised {
         if (0.0..=1.0).contains(&degree) {
             Ok(Self { degree })
         } else {
-            Err(StatisticsError::Degree(degree))
+            Err(StatisticsError::refused(
+                "degree",
+                degree,
+                "a degree of polarisation from 0 to 1",
+            ))
         }
     }
 
@@ -169,7 +173,10 @@ mod tests {
             assert!(
                 matches!(
                     PartiallyPolarised::new(degree),
-                    Err(StatisticsError::Degree(_))
+                    Err(StatisticsError::OutOfRange {
+                        parameter: "degree",
+                        ..
+                    })
                 ),
                 "{degree}"
             );

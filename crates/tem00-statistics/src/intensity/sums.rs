@@ -71,14 +71,20 @@ impl WeightedSum {
     pub fn new(weights: &[f64]) -> Result<Self, StatisticsError> {
         let bad = |&weight: &f64| !(weight >= 0.0 && weight.is_finite());
         if let Some(index) = weights.iter().position(bad) {
-            return Err(StatisticsError::Weight {
+            return Err(StatisticsError::ValueOutOfRange {
+                parameter: "weights",
                 index,
                 value: weights[index],
+                allowed: "finite and not negative",
             });
         }
         let largest = weights.iter().fold(0.0_f64, |a, &b| a.max(b));
         if largest <= 0.0 {
-            return Err(StatisticsError::NoWeight(weights.len()));
+            return Err(StatisticsError::refused(
+                "weights",
+                0.0,
+                "of a positive sum",
+            ));
         }
         let total: f64 = weights.iter().map(|weight| weight / largest).sum();
         let mut shares: Vec<f64> = weights
@@ -96,7 +102,11 @@ impl WeightedSum {
             })
             .collect();
         if shares.len() > Self::MAX_DIFFERENT {
-            return Err(StatisticsError::DifferentWeights(shares.len()));
+            return Err(StatisticsError::refused(
+                "weights",
+                shares.len() as f64,
+                "of at most 65536 different values",
+            ));
         }
         Ok(Self { shares })
     }
@@ -267,7 +277,14 @@ mod tests {
         let many = WeightedSum::MAX_DIFFERENT + 1;
         let weights: Vec<f64> = (1..=many).map(|i| i as f64).collect();
         let refused = WeightedSum::new(&weights);
-        assert_eq!(refused, Err(StatisticsError::DifferentWeights(many)));
+        assert_eq!(
+            refused,
+            Err(StatisticsError::refused(
+                "weights",
+                many as f64,
+                "of at most 65536 different values"
+            ))
+        );
         assert!(WeightedSum::new(&weights[1..]).is_ok(), "the limit itself");
     }
 
@@ -321,14 +338,32 @@ mod tests {
         for bad in [-1.0, f64::NAN, f64::INFINITY] {
             let refused = WeightedSum::new(&[1.0, bad]);
             assert!(
-                matches!(refused, Err(StatisticsError::Weight { index: 1, .. })),
+                matches!(
+                    refused,
+                    Err(StatisticsError::ValueOutOfRange {
+                        parameter: "weights",
+                        index: 1,
+                        ..
+                    })
+                ),
                 "{bad}"
             );
         }
-        assert_eq!(WeightedSum::new(&[]), Err(StatisticsError::NoWeight(0)));
+        assert_eq!(
+            WeightedSum::new(&[]),
+            Err(StatisticsError::refused(
+                "weights",
+                0.0,
+                "of a positive sum"
+            ))
+        );
         assert_eq!(
             WeightedSum::new(&[0.0; 2]),
-            Err(StatisticsError::NoWeight(2))
+            Err(StatisticsError::refused(
+                "weights",
+                0.0,
+                "of a positive sum"
+            ))
         );
     }
 

@@ -78,10 +78,18 @@ impl ObjectiveSpeckle {
     pub fn new(wavelength: f64, distance: f64, area: LitArea) -> Result<Self, StatisticsError> {
         let is_length = |x: f64| x > 0.0 && x.is_finite();
         if !is_length(wavelength) {
-            return Err(StatisticsError::Wavelength(wavelength));
+            return Err(StatisticsError::refused(
+                "wavelength",
+                wavelength,
+                "positive and finite, in metres",
+            ));
         }
         if !is_length(distance) {
-            return Err(StatisticsError::Distance(distance));
+            return Err(StatisticsError::refused(
+                "distance",
+                distance,
+                "positive and finite, in metres",
+            ));
         }
         let lengths = match area {
             LitArea::Disc { diameter } => [diameter; 2],
@@ -89,7 +97,11 @@ impl ObjectiveSpeckle {
             LitArea::GaussianSpot { radius } => [radius; 2],
         };
         match lengths.into_iter().find(|&length| !is_length(length)) {
-            Some(bad) => Err(StatisticsError::LitSize(bad)),
+            Some(bad) => Err(StatisticsError::refused(
+                "area",
+                bad,
+                "positive and finite in every length, in metres",
+            )),
             None => Ok(Self {
                 scale: wavelength * distance,
                 area,
@@ -242,12 +254,24 @@ mod tests {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let refused = ObjectiveSpeckle::new(bad, 1.0, disc);
             assert!(
-                matches!(refused, Err(StatisticsError::Wavelength(_))),
+                matches!(
+                    refused,
+                    Err(StatisticsError::OutOfRange {
+                        parameter: "wavelength",
+                        ..
+                    })
+                ),
                 "{bad}"
             );
             let refused = ObjectiveSpeckle::new(1e-6, bad, disc);
             assert!(
-                matches!(refused, Err(StatisticsError::Distance(_))),
+                matches!(
+                    refused,
+                    Err(StatisticsError::OutOfRange {
+                        parameter: "distance",
+                        ..
+                    })
+                ),
                 "{bad}"
             );
             let areas = [
@@ -265,7 +289,13 @@ mod tests {
             for area in areas {
                 let refused = ObjectiveSpeckle::new(1e-6, 1.0, area);
                 assert!(
-                    matches!(refused, Err(StatisticsError::LitSize(_))),
+                    matches!(
+                        refused,
+                        Err(StatisticsError::OutOfRange {
+                            parameter: "area",
+                            ..
+                        })
+                    ),
                     "{area:?}"
                 );
             }

@@ -154,9 +154,11 @@ fn fields_without_an_answer_are_refused() {
         let refused = phase_singularities(&field, boundary);
         assert_eq!(
             refused,
-            Err(StatisticsError::NotFinite {
+            Err(StatisticsError::ValueOutOfRange {
+                parameter: "samples",
                 index: 5,
-                value: f64::INFINITY
+                value: f64::INFINITY,
+                allowed: "finite",
             })
         );
     }

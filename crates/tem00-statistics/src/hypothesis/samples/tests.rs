@@ -320,17 +320,25 @@ fn input_that_determines_nothing_is_refused() {
         assert!(
             matches!(
                 chi_squared(&[9, 9], &[9.0, value], 1),
-                Err(StatisticsError::ExpectedCount { index: 1, .. })
+                Err(StatisticsError::ValueOutOfRange {
+                    parameter: "expected",
+                    index: 1,
+                    ..
+                })
             ),
             "{value}"
         );
     }
     assert_eq!(
         t_test_mean(&[1.0, 1.0], 1.0),
-        Err(StatisticsError::Constant(1.0))
+        Err(StatisticsError::refused(
+            "samples",
+            1.0,
+            StatisticsError::VARIED
+        ))
     );
     assert_eq!(
         t_test_mean(&[1.0, 2.0], f64::INFINITY),
-        Err(StatisticsError::TestedMean(f64::INFINITY))
+        Err(StatisticsError::refused("mean", f64::INFINITY, "finite"))
     );
 }

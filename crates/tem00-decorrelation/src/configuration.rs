@@ -1,7 +1,8 @@
 use glam::{DMat3, DVec3};
 
 use crate::{
-    CameraFrame, DecorrelationError, Illumination, LineOfSight, RigidMotions, lens::check_positive,
+    CameraFrame, DecorrelationError, Illumination, LineOfSight, RigidMotions,
+    lens::{METRES, check_positive},
 };
 
 /// What a [`Configuration`] is made of.
@@ -80,7 +81,11 @@ impl Configuration {
         let normal = data
             .normal
             .try_normalize()
-            .ok_or(DecorrelationError::Normal(data.normal))?;
+            .ok_or(DecorrelationError::vector(
+                "normal",
+                data.normal,
+                "finite and not zero",
+            ))?;
         let (n1, n2) = normal.any_orthonormal_pair();
         let sight = LineOfSight::new(&data.camera, data.pupil - data.point)?;
         Self {
@@ -140,11 +145,15 @@ impl Configuration {
     }
 
     fn lit(self) -> Result<Self, DecorrelationError> {
-        check_positive(self.wavelength, DecorrelationError::Wavelength)?;
-        let to_source = self
-            .illumination
-            .direction_from(self.point)
-            .ok_or(DecorrelationError::LitPoint(self.point))?;
+        check_positive(self.wavelength, "wavelength", METRES)?;
+        let to_source =
+            self.illumination
+                .direction_from(self.point)
+                .ok_or(DecorrelationError::vector(
+                    "point",
+                    self.point,
+                    "neither at the source nor in a focus, in metres",
+                ))?;
         Ok(Self { to_source, ..self })
     }
 

@@ -139,10 +139,18 @@ impl MotionField {
             ..
         } = setup;
         if !pupil_centre.is_finite() {
-            return Err(DecorrelationError::PupilCentre(pupil_centre));
+            return Err(DecorrelationError::vector(
+                "pupil_centre",
+                pupil_centre,
+                "finite, in metres",
+            ));
         }
         if !(pattern_speckle_size > 0.0 && pattern_speckle_size.is_finite()) {
-            return Err(DecorrelationError::PatternSpeckleSize(pattern_speckle_size));
+            return Err(DecorrelationError::refused(
+                "pattern_speckle_size",
+                pattern_speckle_size,
+                "positive and finite, in samples",
+            ));
         }
         let sign = match setup.orientation {
             ImageOrientation::ScreenUpright => 1.0,
@@ -167,7 +175,11 @@ impl MotionField {
             field.samples_per_metre,
         ];
         match scales.into_iter().find(|scale| *scale > LARGEST_SCALE) {
-            Some(scale) => Err(DecorrelationError::Scale(scale)),
+            Some(scale) => Err(DecorrelationError::refused(
+                "geometry",
+                scale,
+                "of the scale of the pattern, with ratios of lengths of at most 1e250",
+            )),
             None => Ok(field),
         }
     }

@@ -40,7 +40,11 @@ impl CameraFrame {
     pub fn from_axes(axes: DMat3) -> Result<Self, DecorrelationError> {
         orthonormal(axes)
             .map(|axes| Self { axes })
-            .ok_or(DecorrelationError::Axes(axes))
+            .ok_or(DecorrelationError::matrix(
+                "axes",
+                axes,
+                "right-handed and orthonormal within 1e-6",
+            ))
     }
 
     /// Creates the frame of a camera at `position` that looks at `target`, both in metres, with b2
@@ -52,14 +56,20 @@ impl CameraFrame {
     /// or if a component is not finite.
     pub fn look_at(position: DVec3, target: DVec3, up: DVec3) -> Result<Self, DecorrelationError> {
         let back = position - target;
-        let towards_camera = back
-            .try_normalize()
-            .ok_or(DecorrelationError::ViewDirection(back))?;
+        let towards_camera = back.try_normalize().ok_or(DecorrelationError::vector(
+            "target",
+            back,
+            "at a finite vector from the camera that is not zero, in metres",
+        ))?;
         let right = up
             .try_normalize()
             .map(|up| up.cross(towards_camera))
             .filter(|right| right.length() > GRAZING_COSINE)
-            .ok_or(DecorrelationError::Up(up))?;
+            .ok_or(DecorrelationError::vector(
+                "up",
+                up,
+                "finite, not zero and not along the view",
+            ))?;
         Ok(Self::from_right(right.normalize(), towards_camera))
     }
 
@@ -159,7 +169,11 @@ impl LineOfSight {
                 distance: to_pupil.length(),
             })
             .filter(|sight| sight.axis_cosine() > GRAZING_COSINE)
-            .ok_or(DecorrelationError::ToPupil(to_pupil))
+            .ok_or(DecorrelationError::vector(
+                "to_pupil",
+                to_pupil,
+                "finite, in metres, and lead from a point in front of the camera",
+            ))
     }
 
     /// Returns the frame of the camera.
@@ -252,7 +266,10 @@ mod tests {
             assert!(
                 matches!(
                     CameraFrame::from_axes(bad),
-                    Err(DecorrelationError::Axes(_))
+                    Err(DecorrelationError::Matrix {
+                        parameter: "axes",
+                        ..
+                    })
                 ),
                 "accepted {bad}"
             );
@@ -265,14 +282,26 @@ mod tests {
         for target in [eye, DVec3::splat(f64::NAN), DVec3::splat(f64::INFINITY)] {
             let result = CameraFrame::look_at(eye, target, DVec3::Y);
             assert!(
-                matches!(result, Err(DecorrelationError::ViewDirection(_))),
+                matches!(
+                    result,
+                    Err(DecorrelationError::Vector {
+                        parameter: "target",
+                        ..
+                    })
+                ),
                 "target {target}: {result:?}"
             );
         }
         for up in [DVec3::Z, DVec3::NEG_Z, DVec3::ZERO, DVec3::splat(f64::NAN)] {
             let result = CameraFrame::look_at(eye, DVec3::ZERO, up);
             assert!(
-                matches!(result, Err(DecorrelationError::Up(_))),
+                matches!(
+                    result,
+                    Err(DecorrelationError::Vector {
+                        parameter: "up",
+                        ..
+                    })
+                ),
                 "up {up}: {result:?}"
             );
         }
@@ -290,7 +319,13 @@ mod tests {
         ] {
             let result = LineOfSight::new(&camera, bad);
             assert!(
-                matches!(result, Err(DecorrelationError::ToPupil(_))),
+                matches!(
+                    result,
+                    Err(DecorrelationError::Vector {
+                        parameter: "to_pupil",
+                        ..
+                    })
+                ),
                 "{bad}: {result:?}"
             );
         }

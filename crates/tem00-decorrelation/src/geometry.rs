@@ -2,7 +2,7 @@ use glam::DVec2;
 
 use crate::{
     DecorrelationError, LensData, PupilDistances, ThickLensData,
-    lens::{check_f_number, check_positive},
+    lens::{MAGNIFICATION, METRES, check_f_number, check_positive},
 };
 
 /// A camera focused on a surface: a lens, its pupils and the sensor behind it.
@@ -99,7 +99,7 @@ impl ImagingGeometry {
     ///     surface_to_pupil: 20e-3,
     ///     pixel_pitch: 3.45e-6,
     /// });
-    /// assert!(matches!(too_close, Err(DecorrelationError::SurfaceToPupil { .. })));
+    /// assert!(matches!(too_close, Err(DecorrelationError::TooShort { .. })));
     /// ```
     pub fn from_lens(lens: LensData) -> Result<Self, DecorrelationError> {
         let LensData {
@@ -109,11 +109,13 @@ impl ImagingGeometry {
             surface_to_pupil,
             pixel_pitch,
         } = lens;
-        check_positive(focal_length, DecorrelationError::FocalLength)?;
+        check_positive(focal_length, "focal_length", METRES)?;
         check_f_number(f_number)?;
         if !(surface_to_pupil > focal_length && surface_to_pupil.is_finite()) {
-            return Err(DecorrelationError::SurfaceToPupil {
-                surface_to_pupil,
+            return Err(DecorrelationError::TooShort {
+                parameter: "surface_to_pupil",
+                value: surface_to_pupil,
+                limit: "the focal length",
                 minimum: focal_length,
             });
         }
@@ -173,13 +175,17 @@ impl ImagingGeometry {
             focus,
             pixel_pitch,
         } = lens;
-        check_positive(focal_length, DecorrelationError::FocalLength)?;
+        check_positive(focal_length, "focal_length", METRES)?;
         check_f_number(f_number)?;
-        check_positive(pupil_magnification, DecorrelationError::PupilMagnification)?;
+        check_positive(
+            pupil_magnification,
+            "pupil_magnification",
+            "positive and finite",
+        )?;
         let (magnification, surface_to_pupil) = focus.resolve(focal_length, pupil_magnification)?;
         let principal_distance = focal_length + focal_length * magnification / pupil_magnification;
-        check_positive(principal_distance, |_| {
-            DecorrelationError::Magnification(magnification)
+        check_positive(principal_distance, "magnification", MAGNIFICATION).map_err(|_| {
+            DecorrelationError::refused("magnification", magnification, MAGNIFICATION)
         })?;
         Self {
             wavelength,
@@ -230,15 +236,10 @@ impl ImagingGeometry {
             pupil_diameter,
             pixel_pitch,
         } = distances;
-        check_positive(surface_to_pupil, |surface_to_pupil| {
-            DecorrelationError::SurfaceToPupil {
-                surface_to_pupil,
-                minimum: 0.0,
-            }
-        })?;
-        check_positive(pupil_to_image, DecorrelationError::PupilToImage)?;
+        check_positive(surface_to_pupil, "surface_to_pupil", METRES)?;
+        check_positive(pupil_to_image, "pupil_to_image", METRES)?;
         let focal_length = 1.0 / (1.0 / surface_to_pupil + 1.0 / pupil_to_image);
-        check_positive(focal_length, DecorrelationError::FocalLength)?;
+        check_positive(focal_length, "focal_length", METRES)?;
         Self {
             wavelength,
             focal_length,
@@ -263,12 +264,14 @@ impl ImagingGeometry {
     }
 
     fn checked(self) -> Result<Self, DecorrelationError> {
-        check_positive(self.wavelength, DecorrelationError::Wavelength)?;
-        check_positive(self.pixel_pitch, DecorrelationError::PixelPitch)?;
+        check_positive(self.wavelength, "wavelength", METRES)?;
+        check_positive(self.pixel_pitch, "pixel_pitch", METRES)?;
         if !(self.pupil_diameter > self.wavelength && self.pupil_diameter.is_finite()) {
-            return Err(DecorrelationError::PupilDiameter {
-                pupil_diameter: self.pupil_diameter,
-                wavelength: self.wavelength,
+            return Err(DecorrelationError::TooShort {
+                parameter: "pupil_diameter",
+                value: self.pupil_diameter,
+                limit: "the wavelength",
+                minimum: self.wavelength,
             });
         }
         // Half the reciprocal is a numerical aperture, which no lens in air has above one.

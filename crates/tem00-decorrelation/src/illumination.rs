@@ -51,7 +51,11 @@ impl Illumination {
     /// Returns an error if the position is not finite.
     pub fn point_source(position: DVec3) -> Result<Self, DecorrelationError> {
         if !position.is_finite() {
-            return Err(DecorrelationError::LightPosition(position));
+            return Err(DecorrelationError::vector(
+                "position",
+                position,
+                "finite, in metres",
+            ));
         }
         Ok(Self {
             kind: Kind::PointSource(position),
@@ -69,7 +73,11 @@ impl Illumination {
     /// Returns an error if the position is not finite.
     pub fn near(position: DVec3, wavefront: Wavefront) -> Result<Self, DecorrelationError> {
         if !position.is_finite() {
-            return Err(DecorrelationError::LightPosition(position));
+            return Err(DecorrelationError::vector(
+                "position",
+                position,
+                "finite, in metres",
+            ));
         }
         Ok(Self {
             kind: Kind::Near {
@@ -121,7 +129,13 @@ mod tests {
                 Illumination::near(bad, wave),
             ] {
                 assert!(
-                    matches!(result, Err(DecorrelationError::LightPosition(_))),
+                    matches!(
+                        result,
+                        Err(DecorrelationError::Vector {
+                            parameter: "position",
+                            ..
+                        })
+                    ),
                     "{result:?}"
                 );
             }

@@ -78,9 +78,11 @@ impl Focus {
             Self::Magnification(m) => (m, f / m + f / m_p),
             Self::SurfaceToPrincipalPlane(s) => {
                 if !(s > f && s.is_finite()) {
-                    return Err(E::SurfaceToPrincipalPlane {
-                        surface_to_principal_plane: s,
-                        focal_length: f,
+                    return Err(E::TooShort {
+                        parameter: "surface_to_principal_plane",
+                        value: s,
+                        limit: "the focal length",
+                        minimum: f,
                     });
                 }
                 (f / (s - f), (s - f) + f / m_p)
@@ -88,17 +90,20 @@ impl Focus {
             Self::SurfaceToPupil(surface_to_pupil) => {
                 let minimum = f / m_p;
                 if !(surface_to_pupil > minimum && surface_to_pupil.is_finite()) {
-                    return Err(E::SurfaceToPupil {
-                        surface_to_pupil,
+                    return Err(E::TooShort {
+                        parameter: "surface_to_pupil",
+                        value: surface_to_pupil,
+                        limit: "the focal length over the pupil magnification",
                         minimum,
                     });
                 }
                 (f / (surface_to_pupil - minimum), surface_to_pupil)
             }
         };
-        check_positive(m, E::Magnification)?;
+        check_positive(m, "magnification", MAGNIFICATION)?;
         // Finite numbers near the ends of their range have a sum or quotient that is not.
-        check_positive(surface_to_pupil, |_| E::Magnification(m))?;
+        check_positive(surface_to_pupil, "magnification", MAGNIFICATION)
+            .map_err(|_| E::refused("magnification", m, MAGNIFICATION))?;
         Ok((m, surface_to_pupil))
     }
 }
@@ -123,19 +128,30 @@ pub struct PupilDistances {
 
 pub(crate) fn check_positive(
     x: f64,
-    error: impl FnOnce(f64) -> DecorrelationError,
+    parameter: &'static str,
+    allowed: &'static str,
 ) -> Result<(), DecorrelationError> {
     if x > 0.0 && x.is_finite() {
         Ok(())
     } else {
-        Err(error(x))
+        Err(DecorrelationError::refused(parameter, x, allowed))
     }
 }
+
+/// Allowed for magnifications.
+pub(crate) const MAGNIFICATION: &str =
+    "positive and finite, with the distances that follow from it";
+/// Allowed for lengths.
+pub(crate) const METRES: &str = "positive and finite, in metres";
 
 pub(crate) fn check_f_number(f_number: f64) -> Result<(), DecorrelationError> {
     if f_number >= 0.5 && f_number.is_finite() {
         Ok(())
     } else {
-        Err(DecorrelationError::FNumber(f_number))
+        Err(DecorrelationError::refused(
+            "f_number",
+            f_number,
+            "finite and at least 0.5, the limit of any lens in air",
+        ))
     }
 }

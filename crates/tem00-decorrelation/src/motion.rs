@@ -89,9 +89,11 @@ impl SurfacePoint {
         normal: DVec3,
         wavefront: Wavefront,
     ) -> Result<Self, DecorrelationError> {
-        let normal = normal
-            .try_normalize()
-            .ok_or(DecorrelationError::Normal(normal))?;
+        let normal = normal.try_normalize().ok_or(DecorrelationError::vector(
+            "normal",
+            normal,
+            "finite and not zero",
+        ))?;
         Ok(Self {
             sight,
             normal,

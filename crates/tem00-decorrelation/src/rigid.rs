@@ -42,9 +42,17 @@ impl RigidMotion {
     /// Returns an error if the columns of the matrix are not orthonormal within 10⁻⁶ or not
     /// right-handed, or if the translation is not finite.
     pub fn new(rotation: DMat3, translation: DVec3) -> Result<Self, DecorrelationError> {
-        let rotation = orthonormal(rotation).ok_or(DecorrelationError::Rotation(rotation))?;
+        let rotation = orthonormal(rotation).ok_or(DecorrelationError::matrix(
+            "rotation",
+            rotation,
+            "right-handed and orthonormal within 1e-6",
+        ))?;
         if !translation.is_finite() {
-            return Err(DecorrelationError::Translation(translation));
+            return Err(DecorrelationError::vector(
+                "translation",
+                translation,
+                "finite, in metres",
+            ));
         }
         Ok(Self {
             rotation,
@@ -68,14 +76,24 @@ impl RigidMotion {
     ///
     /// Returns an error if the axis is zero, or if an argument is not finite.
     pub fn about(pivot: DVec3, axis: DVec3, angle: f64) -> Result<Self, DecorrelationError> {
-        let axis = axis
-            .try_normalize()
-            .ok_or(DecorrelationError::RotationAxis(axis))?;
+        let axis = axis.try_normalize().ok_or(DecorrelationError::vector(
+            "axis",
+            axis,
+            "finite and not zero",
+        ))?;
         if !angle.is_finite() {
-            return Err(DecorrelationError::RotationAngle(angle));
+            return Err(DecorrelationError::refused(
+                "angle",
+                angle,
+                "finite, in radians",
+            ));
         }
         if !pivot.is_finite() {
-            return Err(DecorrelationError::Pivot(pivot));
+            return Err(DecorrelationError::vector(
+                "pivot",
+                pivot,
+                "finite, in metres",
+            ));
         }
         let rotation = DMat3::from_axis_angle(axis, angle);
         Self::new(rotation, pivot - rotation * pivot)

@@ -117,7 +117,11 @@ impl Wavefront {
             .try_normalize()
             .map(|axis| direction.cross(axis))
             .filter(|across| across.length() > GRAZING_COSINE)
-            .ok_or(DecorrelationError::PrincipalAxis(axis))?
+            .ok_or(DecorrelationError::vector(
+                "axis",
+                axis,
+                "finite, not zero and not along the direction to the source",
+            ))?
             .normalize();
         let along = across.cross(direction);
         Ok(Self {
@@ -149,7 +153,11 @@ impl Wavefront {
         let skew = largest_entry(curvature - curvature.transpose());
         // A maximum drops NaN.
         if !(curvature.is_finite() && skew <= 1e-6 * largest) {
-            return Err(DecorrelationError::CurvatureTensor(curvature));
+            return Err(DecorrelationError::matrix(
+                "curvature",
+                curvature,
+                "finite and symmetric within 1e-6, in 1/m",
+            ));
         }
         let across = DMat3::IDENTITY - outer(direction);
         let symmetric = curvature * 0.5 + curvature.transpose() * 0.5;
@@ -212,16 +220,22 @@ impl Wavefront {
 }
 
 fn unit_direction(direction: DVec3) -> Result<DVec3, DecorrelationError> {
-    direction
-        .try_normalize()
-        .ok_or(DecorrelationError::DirectionToSource(direction))
+    direction.try_normalize().ok_or(DecorrelationError::vector(
+        "direction_to_source",
+        direction,
+        "finite and not zero",
+    ))
 }
 
 fn checked_curvature(curvature: f64) -> Result<f64, DecorrelationError> {
     if curvature.is_finite() {
         Ok(curvature)
     } else {
-        Err(DecorrelationError::Curvature(curvature))
+        Err(DecorrelationError::refused(
+            "curvature",
+            curvature,
+            "finite, in 1/m (1/R)",
+        ))
     }
 }
 
@@ -292,13 +306,25 @@ mod tests {
         for bad in [skew, nan, DMat3::IDENTITY * f64::INFINITY] {
             let result = Wavefront::from_tensor(DVec3::Z, bad);
             assert!(
-                matches!(result, Err(DecorrelationError::CurvatureTensor(_))),
+                matches!(
+                    result,
+                    Err(DecorrelationError::Matrix {
+                        parameter: "curvature",
+                        ..
+                    })
+                ),
                 "{result:?}"
             );
         }
         let result = Wavefront::from_tensor(DVec3::ZERO, DMat3::IDENTITY);
         assert!(
-            matches!(result, Err(DecorrelationError::DirectionToSource(_))),
+            matches!(
+                result,
+                Err(DecorrelationError::Vector {
+                    parameter: "direction_to_source",
+                    ..
+                })
+            ),
             "{result:?}"
         );
     }

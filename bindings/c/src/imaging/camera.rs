@@ -100,14 +100,11 @@ pub struct ImagingInfo {
 impl LensDescription {
     /// The camera; a refusal names what the description says.
     fn geometry(&self) -> Result<ImagingGeometry, Failure> {
-        use DecorrelationError as E;
         let kind = code("focus_kind", self.focus_kind, &FOCUS_KINDS)?;
         self.geometry_of(kind).map_err(|error| {
-            let parameter = match error {
-                E::SurfaceToPupil { .. }
-                | E::SurfaceToPrincipalPlane { .. }
-                | E::Magnification(_) => "focus",
-                _ => error.parameter(),
+            let parameter = match error.parameter() {
+                "surface_to_pupil" | "surface_to_principal_plane" | "magnification" => "focus",
+                other => other,
             };
             Failure::argument(parameter, error)
         })

@@ -1,4 +1,4 @@
-use tem00_decorrelation::{DVec3, DecorrelationError, FieldSlices, MotionField};
+use tem00_decorrelation::{DVec3, FieldSlices, MotionField};
 
 use super::{
     Imaging,
@@ -82,9 +82,9 @@ impl FieldSetup {
             orientation: orientation(self.orientation)?,
             pattern_speckle_size: self.pattern_speckle_size,
         })
-        .map_err(|error| match error {
-            DecorrelationError::Scale(_) => Failure::argument("imaging", error),
-            other => other.into(),
+        .map_err(|error| match error.parameter() {
+            "geometry" => Failure::argument("imaging", error),
+            _ => error.into(),
         })?;
         Ok(field.with_shared_motion(&self.shared_motion.motion()?))
     }

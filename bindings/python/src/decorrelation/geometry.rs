@@ -224,8 +224,10 @@ pub(super) fn check_pattern(pattern_speckle_size: f64) -> PyResult<()> {
     if pattern_speckle_size > 0.0 && pattern_speckle_size.is_finite() {
         return Ok(());
     }
-    Err(physics::DecorrelationError::PatternSpeckleSize(
-        pattern_speckle_size,
-    ))
+    Err(physics::DecorrelationError::OutOfRange {
+        parameter: "pattern_speckle_size",
+        value: pattern_speckle_size,
+        allowed: "positive and finite, in samples",
+    })
     .or_raise()
 }

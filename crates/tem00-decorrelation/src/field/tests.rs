@@ -277,7 +277,13 @@ fn invalid_fields_are_rejected() {
             ..setup()
         });
         assert!(
-            matches!(result, Err(DecorrelationError::PupilCentre(_))),
+            matches!(
+                result,
+                Err(DecorrelationError::Vector {
+                    parameter: "pupil_centre",
+                    ..
+                })
+            ),
             "{bad}: {result:?}"
         );
     }
@@ -287,7 +293,13 @@ fn invalid_fields_are_rejected() {
             ..setup()
         });
         assert!(
-            matches!(result, Err(DecorrelationError::PatternSpeckleSize(_))),
+            matches!(
+                result,
+                Err(DecorrelationError::OutOfRange {
+                    parameter: "pattern_speckle_size",
+                    ..
+                })
+            ),
             "{bad}: {result:?}"
         );
     }

@@ -181,7 +181,13 @@ fn invalid_normals_are_rejected() {
     ] {
         let result = SurfacePoint::new(sight, bad, collimated());
         assert!(
-            matches!(result, Err(DecorrelationError::Normal(_))),
+            matches!(
+                result,
+                Err(DecorrelationError::Vector {
+                    parameter: "normal",
+                    ..
+                })
+            ),
             "{bad}: {result:?}"
         );
     }

@@ -30,13 +30,6 @@ const KNOWN: &[&[&str]] = &[
         "crates/tem00-scan/src/speckle_table.rs",
     ],
     &[
-        "crates/tem00-statistics/src/autocovariance.rs",
-        "crates/tem00-statistics/src/error.rs",
-        "crates/tem00-statistics/src/moments.rs",
-        "crates/tem00-statistics/src/speckle_size.rs",
-        "crates/tem00-statistics/src/sums.rs",
-    ],
-    &[
         "crates/tem00-triangulation/src/detector.rs",
         "crates/tem00-triangulation/src/detector/column.rs",
         "crates/tem00-triangulation/src/detector/extent.rs",

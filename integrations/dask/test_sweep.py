@@ -196,7 +196,7 @@ def test_what_a_worker_refuses_ends_the_program_with_its_message(
     options = ["--scheduler", scheduler, "--f-number", "-8"]
     refused = subprocess.run(command(tmp_path, *options), capture_output=True, text=True)
     assert refused.returncode == 2
-    assert refused.stderr.startswith("error: f-number must")
+    assert refused.stderr.startswith("error: f_number must")
     assert "Traceback" not in refused.stderr
 
 

@@ -55,8 +55,8 @@ fn refused_lenses_name_the_parameter_the_value_and_what_is_allowed() {
             "pixel_pitch": "positive and finite, in metres, got NaN",
         lens(LensData { surface_to_pupil: 0.02, ..LENS }) =>
             "surface_to_pupil": "finite and exceed the focal length of 0.025 m, got 0.02 m",
-        lens(LensData { f_number: 1e6, ..LENS }) =>
-            "pupil_diameter": "finite and exceed the wavelength of 6.5e-7 m, got 2.5e-8 m",
+        lens(LensData { focal_length: 0.25, f_number: 524_288.0, ..LENS }) =>
+            "pupil_diameter": "finite and exceed the wavelength of 6.5e-7 m, got 4.76837158203125e-7 m",
         distances(PupilDistances { pupil_to_image: -1.0, ..DISTANCES }) =>
             "pupil_to_image": "positive and finite, in metres, got -1",
         distances(PupilDistances { pupil_diameter: 61e-3, ..DISTANCES }) =>

@@ -2,7 +2,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::{
     RigidMotion, SamplePlane, WaveError,
-    length::{axes_from, checked_direction, checked_length, checked_position},
+    length::{axes_from, checked_length, checked_position},
 };
 
 /// A camera with an ideal lens: a round pupil, and one plane of the scene in perfect focus.
@@ -48,12 +48,15 @@ pub struct Lens {
 
 impl Lens {
     fn checked(self) -> Result<Self, WaveError> {
-        checked_length(self.pupil_diameter, WaveError::PupilDiameter)?;
-        checked_length(self.focus_distance, WaveError::FocusDistance)?;
-        checked_length(self.pupil_to_image, WaveError::PupilToImage)?;
+        checked_length(self.pupil_diameter, "pupil_diameter")?;
+        checked_length(self.focus_distance, "focus_distance")?;
+        checked_length(self.pupil_to_image, "pupil_to_image")?;
         Ok(self)
     }
 }
+
+/// Allowed for the point that a camera looks at.
+const VIEW: &str = "at a finite vector from the camera that is not zero, in metres";
 
 impl Camera {
     /// Creates a camera from the centre of its pupil, in metres, and its axes: right, up, and from
@@ -72,7 +75,7 @@ impl Camera {
             .flatten()
             .ok_or(WaveError::Axes(axes))?;
         Ok(Self {
-            pupil_centre: checked_position(pupil_centre, WaveError::Position)?,
+            pupil_centre: checked_position(pupil_centre, "position")?,
             axes,
             lens: lens.checked()?,
         })
@@ -91,8 +94,15 @@ impl Camera {
         up: DVec3,
         lens: Lens,
     ) -> Result<Self, WaveError> {
-        let towards_camera = checked_direction(pupil_centre - target, WaveError::ViewDirection)?;
-        let axes = axes_from(up.cross(towards_camera), towards_camera).ok_or(WaveError::Up(up))?;
+        let back = pupil_centre - target;
+        let towards_camera = back
+            .try_normalize()
+            .ok_or(WaveError::vector("target", back, VIEW))?;
+        let axes = axes_from(up.cross(towards_camera), towards_camera).ok_or(WaveError::vector(
+            "up",
+            up,
+            "finite, not zero and not along the view",
+        ))?;
         Self::new(pupil_centre, axes, lens)
     }
 
@@ -219,21 +229,21 @@ mod tests {
                     pupil_diameter: bad,
                     ..LENS
                 },
-                "pupil diameter",
+                "pupil_diameter",
             );
             is_named(
                 Lens {
                     focus_distance: bad,
                     ..LENS
                 },
-                "focus distance",
+                "focus_distance",
             );
             is_named(
                 Lens {
                     pupil_to_image: bad,
                     ..LENS
                 },
-                "pupil-to-image",
+                "pupil_to_image",
             );
         }
         let left_handed = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
@@ -244,9 +254,16 @@ mod tests {
         let at_origin = |target, up| Camera::look_at([DVec3::ZERO, target], up, LENS);
         assert_eq!(
             at_origin(DVec3::ZERO, DVec3::Y),
-            Err(WaveError::ViewDirection(DVec3::ZERO))
+            Err(WaveError::vector("target", DVec3::ZERO, VIEW))
         );
-        assert_eq!(at_origin(DVec3::Z, DVec3::Z), Err(WaveError::Up(DVec3::Z)));
+        assert_eq!(
+            at_origin(DVec3::Z, DVec3::Z),
+            Err(WaveError::vector(
+                "up",
+                DVec3::Z,
+                "finite, not zero and not along the view"
+            ))
+        );
         let camera = new(LENS).expect("a camera");
         assert!(camera.pupil_plane(1e-6, 0).is_err(), "no samples");
         assert!(camera.pupil_plane(f64::NAN, 8).is_err(), "no step");

@@ -110,7 +110,7 @@ impl Illumination {
     /// Returns an error if the wavelength is not between 0.1 nm and 1 m, or the direction zero or
     /// not finite.
     pub fn plane(wavelength: f64, direction: DVec3) -> Result<Self, WaveError> {
-        let z = checked_direction(direction, WaveError::Direction)?;
+        let z = checked_direction(direction, "direction")?;
         Ok(Self {
             wavelength: checked_wavelength(wavelength)?,
             origin: DVec3::ZERO,
@@ -128,7 +128,7 @@ impl Illumination {
     pub fn point(wavelength: f64, position: DVec3) -> Result<Self, WaveError> {
         Ok(Self {
             wavelength: checked_wavelength(wavelength)?,
-            origin: checked_position(position, WaveError::Position)?,
+            origin: checked_position(position, "position")?,
             axes: DMat3::IDENTITY,
             wave: Wave::Point,
         })
@@ -147,10 +147,10 @@ impl Illumination {
     /// above 10 km, or the direction zero or not finite.
     pub fn gaussian_beam(beam: &BeamDescription) -> Result<Self, WaveError> {
         let wavelength = checked_wavelength(beam.wavelength)?;
-        let z = checked_direction(beam.direction, WaveError::Direction)?;
+        let z = checked_direction(beam.direction, "direction")?;
         Ok(Self {
             wavelength,
-            origin: checked_position(beam.waist, WaveError::Position)?,
+            origin: checked_position(beam.waist, "position")?,
             axes: axes_about(z),
             wave: Wave::Beam {
                 rayleigh_range: rayleigh_range(wavelength, beam.waist_radius)?,
@@ -179,16 +179,27 @@ impl Illumination {
     /// between 0 and π/2, or the waist distance not finite or above 10 km in magnitude.
     pub fn fan(fan: &FanDescription) -> Result<Self, WaveError> {
         let wavelength = checked_wavelength(fan.wavelength)?;
-        checked_direction(fan.direction, WaveError::Direction)?;
+        checked_direction(fan.direction, "direction")?;
         if !(fan.half_angle > 0.0 && fan.half_angle < FRAC_PI_2) {
-            return Err(WaveError::HalfAngle(fan.half_angle));
+            return Err(WaveError::refused(
+                "half_angle",
+                fan.half_angle,
+                "between 0 and π/2, in radians",
+            ));
         }
         let waist = DVec3::new(0.0, 0.0, fan.waist_distance);
-        checked_position(waist, |_| WaveError::WaistDistance(fan.waist_distance))?;
+        checked_position(waist, "waist_distance").map_err(|_| {
+            let allowed = "finite and at most 1e4 in magnitude, in metres";
+            WaveError::refused("waist_distance", fan.waist_distance, allowed)
+        })?;
         Ok(Self {
             wavelength,
-            origin: checked_position(fan.apex, WaveError::Position)?,
-            axes: axes_from(fan.opening, fan.direction).ok_or(WaveError::Opening(fan.opening))?,
+            origin: checked_position(fan.apex, "position")?,
+            axes: axes_from(fan.opening, fan.direction).ok_or(WaveError::vector(
+                "opening",
+                fan.opening,
+                "finite, not zero and not along the direction of the fan",
+            ))?,
             wave: Wave::Fan {
                 half_angle_tangent: fan.half_angle.tan(),
                 rayleigh_range: rayleigh_range(wavelength, fan.waist_radius)?,
@@ -275,7 +286,7 @@ struct Mode {
 }
 
 fn rayleigh_range(wavelength: f64, waist_radius: f64) -> Result<f64, WaveError> {
-    let radius = checked_length(waist_radius, WaveError::WaistRadius)?;
+    let radius = checked_length(waist_radius, "waist_radius")?;
     let minimum = 2.0 * wavelength / PI;
     if radius < minimum {
         return Err(WaveError::NotParaxial {

@@ -103,13 +103,21 @@ impl ImageWindow {
     pub fn new(camera: &Camera, sampling: &ImageSampling) -> Result<Self, WaveError> {
         let lens = camera.lens();
         let wavelength = checked_wavelength(sampling.wavelength)?;
-        checked_length(sampling.step, |step| step_error(step, wavelength, camera))?;
+        checked_length(sampling.step, "step")?;
         let tau = sampling.centre / lens.pupil_to_image;
         if tau.is_nan() || tau.length() > 10.0 {
-            return Err(WaveError::ImageCentre(sampling.centre));
+            return Err(WaveError::refused(
+                "centre",
+                sampling.centre.length(),
+                "within 10 pupil-to-image distances of the axis, in metres",
+            ));
         }
         if !(2..=1 << 13).contains(&sampling.samples) {
-            return Err(WaveError::ImageSamples(sampling.samples));
+            return Err(WaveError::refused(
+                "samples",
+                sampling.samples as f64,
+                "from 2 to 8192 along a side",
+            ));
         }
         let lattice = PupilLattice::new(camera, sampling, tau);
         let [width, height] = lattice

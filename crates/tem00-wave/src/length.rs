@@ -12,14 +12,15 @@ pub(crate) const LENGTHS: RangeInclusive<f64> = 1e-12..=1e4;
 /// Wavelengths from 0.1 nm to 1 m.
 pub(crate) const WAVELENGTHS: RangeInclusive<f64> = 1e-10..=1.0;
 
-pub(crate) fn checked_length(
-    length: f64,
-    error: impl FnOnce(f64) -> WaveError,
-) -> Result<f64, WaveError> {
+pub(crate) fn checked_length(length: f64, parameter: &'static str) -> Result<f64, WaveError> {
     if LENGTHS.contains(&length) {
         Ok(length)
     } else {
-        Err(error(length))
+        Err(WaveError::refused(
+            parameter,
+            length,
+            "from 1e-12 to 1e4, in metres",
+        ))
     }
 }
 
@@ -27,27 +28,37 @@ pub(crate) fn checked_wavelength(wavelength: f64) -> Result<f64, WaveError> {
     if WAVELENGTHS.contains(&wavelength) {
         Ok(wavelength)
     } else {
-        Err(WaveError::Wavelength(wavelength))
+        Err(WaveError::refused(
+            "wavelength",
+            wavelength,
+            "from 1e-10 to 1, in metres",
+        ))
     }
 }
 
 pub(crate) fn checked_position(
     position: DVec3,
-    error: impl FnOnce(DVec3) -> WaveError,
+    parameter: &'static str,
 ) -> Result<DVec3, WaveError> {
     // A comparison with NaN is false.
     if position.abs().cmple(DVec3::splat(*LENGTHS.end())).all() {
         Ok(position)
     } else {
-        Err(error(position))
+        Err(WaveError::vector(
+            parameter,
+            position,
+            "finite and at most 1e4 in each component, in metres",
+        ))
     }
 }
 
 pub(crate) fn checked_direction(
     direction: DVec3,
-    error: impl FnOnce(DVec3) -> WaveError,
+    parameter: &'static str,
 ) -> Result<DVec3, WaveError> {
-    direction.try_normalize().ok_or_else(|| error(direction))
+    direction
+        .try_normalize()
+        .ok_or_else(|| WaveError::vector(parameter, direction, "finite and not zero"))
 }
 
 /// Returns right-handed axes whose third column is `third` and whose first is `first` without its

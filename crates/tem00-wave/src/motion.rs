@@ -45,7 +45,7 @@ impl RigidMotion {
     /// Returns an error if a component is not finite or above 10 km.
     pub fn translation(by: DVec3) -> Result<Self, WaveError> {
         Ok(Self {
-            translation: checked_position(by, WaveError::Translation)?,
+            translation: checked_position(by, "translation")?,
             ..Self::IDENTITY
         })
     }
@@ -58,11 +58,13 @@ impl RigidMotion {
     /// Returns an error if the axis is zero or not finite, the angle not finite, or a component of
     /// the centre not finite or above 10 km.
     pub fn rotation(axis: DVec3, angle: f64, centre: DVec3) -> Result<Self, WaveError> {
-        let unit = axis.try_normalize().ok_or(WaveError::RotationAxis(axis))?;
+        let unit =
+            axis.try_normalize()
+                .ok_or(WaveError::vector("axis", axis, "finite and not zero"))?;
         if !angle.is_finite() {
-            return Err(WaveError::Angle(angle));
+            return Err(WaveError::refused("angle", angle, "finite, in radians"));
         }
-        let centre = checked_position(centre, WaveError::Centre)?;
+        let centre = checked_position(centre, "centre")?;
         let rotation = DMat3::from_axis_angle(unit, angle);
         Ok(Self {
             rotation,
@@ -131,19 +133,35 @@ mod tests {
         let far = DVec3::new(0.0, 1e30, 0.0);
         assert_eq!(
             RigidMotion::translation(far),
-            Err(WaveError::Translation(far))
+            Err(WaveError::vector(
+                "translation",
+                far,
+                "finite and at most 1e4 in each component, in metres"
+            ))
         );
         assert_eq!(
             RigidMotion::rotation(DVec3::ZERO, 1.0, DVec3::ZERO),
-            Err(WaveError::RotationAxis(DVec3::ZERO))
+            Err(WaveError::vector(
+                "axis",
+                DVec3::ZERO,
+                "finite and not zero"
+            ))
         );
         assert_eq!(
             RigidMotion::rotation(DVec3::X, f64::INFINITY, DVec3::ZERO),
-            Err(WaveError::Angle(f64::INFINITY))
+            Err(WaveError::refused(
+                "angle",
+                f64::INFINITY,
+                "finite, in radians"
+            ))
         );
         assert_eq!(
             RigidMotion::rotation(DVec3::X, 1.0, far),
-            Err(WaveError::Centre(far))
+            Err(WaveError::vector(
+                "centre",
+                far,
+                "finite and at most 1e4 in each component, in metres"
+            ))
         );
     }
 }

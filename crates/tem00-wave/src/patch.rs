@@ -91,6 +91,11 @@ pub enum Amplitudes {
     Unit,
 }
 
+/// The largest number of scatterers.
+const MAX_SCATTERERS: usize = 1 << 28;
+/// Allowed for numbers of scatterers.
+pub(crate) const COUNT: &str = "from 1 to 2²⁸ in all";
+
 /// The checked frame of a patch.
 pub(crate) struct PatchFrame {
     pub(crate) centre: DVec3,
@@ -103,20 +108,27 @@ pub(crate) struct PatchFrame {
 
 impl PatchFrame {
     pub(crate) fn new(patch: &PatchDescription) -> Result<Self, WaveError> {
-        const MOST: usize = 1 << 28;
         let [columns, rows] = patch.scatterers;
         let count = columns.checked_mul(rows);
-        if !count.is_some_and(|count| (1..=MOST).contains(&count)) {
-            return Err(WaveError::Scatterers(patch.scatterers));
+        if !count.is_some_and(|count| (1..=MAX_SCATTERERS).contains(&count)) {
+            return Err(WaveError::refused(
+                "scatterers",
+                columns as f64 * rows as f64,
+                COUNT,
+            ));
         }
         for side in patch.size {
-            checked_length(side, |_| WaveError::Size(patch.size))?;
+            checked_length(side, "size")?;
         }
-        checked_direction(patch.normal, WaveError::Normal)?;
+        checked_direction(patch.normal, "normal")?;
         let spacing = [0, 1].map(|i| patch.size[i] / patch.scatterers[i] as f64);
         Ok(Self {
-            centre: checked_position(patch.centre, WaveError::Centre)?,
-            axes: axes_from(patch.along, patch.normal).ok_or(WaveError::Along(patch.along))?,
+            centre: checked_position(patch.centre, "centre")?,
+            axes: axes_from(patch.along, patch.normal).ok_or(WaveError::vector(
+                "along",
+                patch.along,
+                "finite, not zero and not along the normal",
+            ))?,
             size: patch.size,
             spacing,
         })

@@ -45,15 +45,23 @@ impl SamplePlane {
         const MOST: usize = 1 << 28;
         let count = samples[0].checked_mul(samples[1]);
         if !count.is_some_and(|count| (1..=MOST).contains(&count)) {
-            return Err(WaveError::Samples(samples));
+            return Err(WaveError::refused(
+                "samples",
+                samples[0] as f64 * samples[1] as f64,
+                "from 1 to 2²⁸ in all",
+            ));
         }
         for step in steps {
             if !LENGTHS.contains(&step.length()) {
-                return Err(WaveError::Steps(steps));
+                return Err(WaveError::vector(
+                    "steps",
+                    step,
+                    "from 1e-12 to 1e4 long, in metres",
+                ));
             }
         }
         Ok(Self {
-            centre: checked_position(centre, WaveError::Centre)?,
+            centre: checked_position(centre, "centre")?,
             steps,
             samples,
             radius: None,
@@ -83,7 +91,7 @@ impl SamplePlane {
     /// Returns an error if the radius is not between 1 pm and 10 km.
     pub fn within(self, radius: f64) -> Result<Self, WaveError> {
         Ok(Self {
-            radius: Some(checked_length(radius, WaveError::Radius)?),
+            radius: Some(checked_length(radius, "radius")?),
             ..self
         })
     }
@@ -165,18 +173,34 @@ mod tests {
         let plane = SamplePlane::new(DVec3::ZERO, steps, [4, 4]).expect("a plane");
         assert_eq!(
             SamplePlane::new(DVec3::X * 1e30, steps, [4, 4]),
-            Err(WaveError::Centre(DVec3::X * 1e30))
+            Err(WaveError::vector(
+                "centre",
+                DVec3::X * 1e30,
+                "finite and at most 1e4 in each component, in metres"
+            ))
         );
-        assert_eq!(
-            SamplePlane::new(DVec3::ZERO, long, [4, 4]),
-            Err(WaveError::Steps(long))
+        let refused = SamplePlane::new(DVec3::ZERO, long, [4, 4]).map_err(|e| e.to_string());
+        assert!(
+            refused.is_err_and(|text| text.starts_with("steps must be from 1e-12 to 1e4 long")),
+            "{long:?}"
         );
         for samples in [[0, 4], [1 << 20, 1 << 20], [usize::MAX, 2]] {
             assert_eq!(
                 SamplePlane::new(DVec3::ZERO, steps, samples),
-                Err(WaveError::Samples(samples))
+                Err(WaveError::refused(
+                    "samples",
+                    samples[0] as f64 * samples[1] as f64,
+                    "from 1 to 2²⁸ in all"
+                ))
             );
         }
-        assert_eq!(plane.within(-1.0), Err(WaveError::Radius(-1.0)));
+        assert_eq!(
+            plane.within(-1.0),
+            Err(WaveError::refused(
+                "radius",
+                -1.0,
+                "from 1e-12 to 1e4, in metres"
+            ))
+        );
     }
 }

@@ -4,7 +4,7 @@ use crate::{
     Amplitudes, PatchDescription, RigidMotion, Roughness, Scatterer, WaveError,
     heights::add_heights,
     length::{checked_length, checked_position},
-    patch::PatchFrame,
+    patch::{COUNT, PatchFrame},
     random::{Purpose, Random},
 };
 
@@ -71,12 +71,16 @@ impl RoughSurface {
                 rms,
                 correlation_length,
             } => {
-                let height = |h: f64| h == 0.0 || checked_length(h, WaveError::Rms).is_ok();
+                let height = |h: f64| h == 0.0 || checked_length(h, "rms").is_ok();
                 if !height(rms) {
-                    return Err(WaveError::Rms(rms));
+                    return Err(WaveError::refused("rms", rms, ZERO_OR_LENGTH));
                 }
                 if !height(correlation_length) {
-                    return Err(WaveError::CorrelationLength(correlation_length));
+                    return Err(WaveError::refused(
+                        "correlation_length",
+                        correlation_length,
+                        ZERO_OR_LENGTH,
+                    ));
                 }
                 add_heights(
                     &mut scatterers,
@@ -97,14 +101,12 @@ impl RoughSurface {
     /// finite or above 10⁴ m in magnitude.
     pub fn from_scatterers(scatterers: Vec<Scatterer>) -> Result<Self, WaveError> {
         if scatterers.is_empty() {
-            return Err(WaveError::Scatterers([0; 2]));
+            return Err(WaveError::refused("scatterers", 0.0, COUNT));
         }
         for scatterer in &scatterers {
-            checked_position(scatterer.position, WaveError::Position)?;
+            checked_position(scatterer.position, "position")?;
             let amplitude = scatterer.amplitude;
-            checked_position(DVec3::new(amplitude.re, amplitude.im, 0.0), |_| {
-                WaveError::Amplitude(amplitude)
-            })?;
+            checked_position(DVec3::new(amplitude.re, amplitude.im, 0.0), "amplitude")?;
         }
         Ok(Self { scatterers })
     }
@@ -126,6 +128,9 @@ impl RoughSurface {
         }
     }
 }
+
+/// Allowed for the heights of a rough surface and their correlation length.
+const ZERO_OR_LENGTH: &str = "0 or from 1e-12 to 1e4, in metres";
 
 fn randomise(scatterers: &mut [Scatterer], amplitudes: Amplitudes, seed: u64) {
     let mut random = Random::new(seed, Purpose::Amplitudes);

@@ -265,7 +265,7 @@ fn constructors_name_what_they_reject() {
             direction: DVec3::Z,
             waist_radius: bad,
         });
-        assert!(message(waist).contains("waist radius"), "{bad}");
+        assert!(message(waist).contains("waist_radius"), "{bad}");
     }
     assert!(
         message(Illumination::plane(WAVELENGTH, DVec3::ZERO)).contains("direction"),
@@ -306,8 +306,8 @@ fn constructors_name_what_they_reject() {
     };
     for (fan, name) in [
         (opening, "opening"),
-        (half_angle, "half-angle"),
-        (waist_distance, "waist distance"),
+        (half_angle, "half_angle"),
+        (waist_distance, "waist_distance"),
         (waist_radius, "paraxial"),
     ] {
         assert!(message(Illumination::fan(&fan)).contains(name), "{name}");

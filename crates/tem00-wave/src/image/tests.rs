@@ -291,29 +291,29 @@ fn constructors_name_what_they_reject() {
                 step: 1.1 * SPECKLE,
                 ..good
             },
-            "image step",
+            "step must",
         ),
         (
             ImageSampling {
                 step: 1e-30,
                 ..good
             },
-            "image step",
+            "step must",
         ),
         (
             ImageSampling {
                 step: f64::NAN,
                 ..good
             },
-            "image step",
+            "step must",
         ),
-        (ImageSampling { samples: 1, ..good }, "samples along"),
+        (ImageSampling { samples: 1, ..good }, "samples must"),
         (
             ImageSampling {
                 samples: 1 << 14,
                 ..good
             },
-            "samples along",
+            "samples must",
         ),
     ] {
         let message = ImageWindow::new(&camera(), &sampling)

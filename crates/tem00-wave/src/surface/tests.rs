@@ -250,14 +250,14 @@ fn constructors_name_what_they_reject() {
                 along: good.normal,
                 ..good
             },
-            "along the patch",
+            "along must",
         ),
         (
             PatchDescription {
                 size: [1e-3, -1.0],
                 ..good
             },
-            "sides",
+            "size must",
         ),
         (
             PatchDescription {
@@ -273,10 +273,10 @@ fn constructors_name_what_they_reject() {
             },
             "scatterers",
         ),
-        (heights(-1e-6, 0.0), "rms height"),
-        (heights(f64::NAN, 0.0), "rms height"),
-        (heights(1e-6, -1.0), "correlation length"),
-        (heights(1e-6, f64::INFINITY), "correlation length"),
+        (heights(-1e-6, 0.0), "rms must"),
+        (heights(f64::NAN, 0.0), "rms must"),
+        (heights(1e-6, -1.0), "correlation_length"),
+        (heights(1e-6, f64::INFINITY), "correlation_length"),
     ] {
         let message = RoughSurface::patch(&patch)
             .expect_err("an error")
@@ -285,7 +285,11 @@ fn constructors_name_what_they_reject() {
     }
     assert_eq!(
         RoughSurface::from_scatterers(Vec::new()),
-        Err(WaveError::Scatterers([0, 0]))
+        Err(WaveError::refused(
+            "scatterers",
+            0.0,
+            "from 1 to 2²⁸ in all"
+        ))
     );
     let scatterer = |position, re| Scatterer {
         position,

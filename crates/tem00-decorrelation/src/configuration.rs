@@ -5,7 +5,7 @@ use crate::{
     lens::{METRES, check_positive},
 };
 
-/// What a [`Configuration`] is made of.
+/// Parameters of a [`Configuration`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConfigurationData {
     /// Vacuum wavelength λ of the light, in metres.

@@ -9,7 +9,7 @@ use crate::{CameraFrame, DecorrelationError, ImageOrientation, ImagingGeometry, 
 
 pub use slices::{FieldLight, FieldPoints, FieldSlices};
 
-/// What all points of a [`MotionField`] share: the camera and the pattern it looks up.
+/// Camera and pattern that all points of a [`MotionField`] share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldSetup {
     /// The lens, its pupil and the sensor.
@@ -18,13 +18,13 @@ pub struct FieldSetup {
     pub camera: CameraFrame,
     /// Centre of the pupil in world coordinates, in metres.
     pub pupil_centre: DVec3,
-    /// Which way up image displacements are counted.
+    /// Orientation in which image displacements are counted.
     pub orientation: ImageOrientation,
     /// Speckle size `h_p` of the pattern, in pattern samples.
     pub pattern_speckle_size: f64,
 }
 
-/// What motions do to the speckle at many surface points, such as those behind the pixels of an
+/// Changes of the speckle by motions at many surface points, such as those behind the pixels of an
 /// image.
 ///
 /// It is [`SpeckleMotion`](crate::SpeckleMotion) for slices, with the coordinate of the look-up in the
@@ -114,7 +114,7 @@ pub struct MotionField {
     per_axial_length: f64,
     samples_per_pixel: f64,
     samples_per_metre: f64,
-    /// What `motion` of the points is to be increased by to give `a − c` and `a − s`.
+    /// Added to the `motion` of the points to give `a − c` and `a − s`.
     seen: DVec3,
     within_illumination: DVec3,
 }

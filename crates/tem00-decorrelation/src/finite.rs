@@ -165,7 +165,7 @@ impl Configuration {
         point.is_finite().then_some(point)
     }
 
-    /// Where the image of the point lies, along b1 and b2 from the axis, upright, in units of the
+    /// Position of the image of the point, along b1 and b2 from the axis, upright, in units of the
     /// principal distance.
     fn tangents(&self) -> DVec2 {
         let (camera, direction) = (self.sight.camera(), self.sight.direction());

@@ -13,7 +13,7 @@ use crate::{DecorrelationError, RigidMotion, Wavefront};
 /// let lamp = Illumination::point_source(DVec3::new(0.0, 0.0, 0.5))?;
 /// assert_eq!(lamp.direction_from(DVec3::ZERO), Some(DVec3::Z));
 ///
-/// // A fan along x with its apex at the same place, known where it meets the surface.
+/// // A fan along x with its apex at the same point, known where it meets the surface.
 /// let fan = Wavefront::astigmatic(DVec3::Z, DVec3::X, 1.0 / 0.5, 0.0)?;
 /// let line = Illumination::near(DVec3::ZERO, fan)?;
 /// let x = DVec3::new(0.1, 0.0, 0.0);

@@ -50,13 +50,13 @@ pub struct ThickLensData {
     pub f_number: f64,
     /// Pupil magnification `m_p`, the diameter of the exit pupil over that of the entrance pupil.
     pub pupil_magnification: f64,
-    /// Where the surface in focus lies.
+    /// Position of the surface in focus.
     pub focus: Focus,
     /// Distance between the centres of neighbouring pixels on the sensor, in metres.
     pub pixel_pitch: f64,
 }
 
-/// Where the surface in focus lies before a [thick lens](ThickLensData).
+/// Position of the surface in focus before a [thick lens](ThickLensData).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Focus {

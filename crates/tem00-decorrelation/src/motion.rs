@@ -46,7 +46,7 @@ impl Motion {
     }
 }
 
-/// Which way up image displacements are counted.
+/// Orientation in which image displacements are counted.
 ///
 /// Either way the axes are b1 and b2 of the camera: to the right and *upwards*. A renderer that
 /// counts its rows downwards flips the second component.
@@ -195,7 +195,7 @@ impl SurfacePoint {
     }
 }
 
-/// What a motion does to the speckle at one surface point: all that a renderer needs per hit.
+/// Change of the speckle by a motion at one surface point: all that a renderer needs per hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SpeckleMotion {
@@ -204,7 +204,7 @@ pub struct SpeckleMotion {
     ///
     /// In focus the speckle moves with it.
     pub image_displacement: DVec2,
-    /// What the speckle of a point out of focus moves in addition, along b1 and b2, in metres on the
+    /// Additional motion of the speckle of a point out of focus, along b1 and b2, in metres on the
     /// sensor.
     ///
     /// ```text
@@ -220,7 +220,7 @@ pub struct SpeckleMotion {
     pub pupil_displacement: Option<DVec2>,
     /// Motion of the surface towards the camera along the optical axis, `(a − c)·b3`, in metres.
     pub axial_displacement: f64,
-    /// What is left of the old pattern as a correlation of intensity, in [0, 1], where the pattern is
+    /// Correlation of the intensity with the old pattern, in [0, 1], where the pattern is
     /// looked up at the [`speckle_displacement`](Self::speckle_displacement).
     ///
     /// That displacement decides on the [`CorrelationLaw`]: it is

@@ -145,7 +145,7 @@ impl Default for RigidMotion {
     }
 }
 
-/// How surface, camera and light source have moved since the reference state, each as a rigid body.
+/// Motions of surface, camera and light source since the reference state, each as a rigid body.
 ///
 /// It is the counterpart of [`Motion`](crate::Motion) for motions that are large or turn a body.
 /// Only differences count: if all three move as one, nothing changes.

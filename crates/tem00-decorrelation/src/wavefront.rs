@@ -177,7 +177,7 @@ impl Wavefront {
     /// # Validity
     ///
     /// Rays are straight, so that a spherical and a cylindrical wave are followed exactly, however
-    /// far. Other waves change their curvatures from place to place: there the error is about the
+    /// far. Other waves change their curvatures from point to point: there the error is about the
     /// square of the offset in units of the radii or, in a Gaussian beam, of the Rayleigh range.
     /// Past that, describe the wave anew.
     ///

@@ -185,7 +185,7 @@ impl Fft2 {
     /// Like [`forward_into`](Self::forward_into), of an aperture that is made on the way and never
     /// exists as a whole.
     ///
-    /// `fill(columns, y, values)` writes what these columns hold in row y. It covers each place of
+    /// `fill(columns, y, values)` writes what these columns hold in row y. It covers each position of
     /// the aperture once, in any order and by any thread, in pieces of up to 64 values that begin
     /// at a multiple of 8.
     ///
@@ -339,7 +339,7 @@ fn interleave<O>(
     }
 }
 
-/// What one thread needs to transform lines.
+/// Scratch memory of one thread for the transform of lines.
 #[derive(Clone, Debug, Default)]
 struct Worker {
     inputs: Vec<Complex<f32>>,
@@ -366,7 +366,7 @@ impl Worker {
     }
 }
 
-/// Why a Fourier transform could not be planned.
+/// Reasons for which a Fourier transform cannot be planned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fft2Error {

@@ -180,7 +180,7 @@ impl<T> IndexMut<(usize, usize)> for Grid<T> {
     }
 }
 
-/// Why a grid could not be constructed.
+/// Reasons for which a grid is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum GridError {

@@ -71,10 +71,10 @@ fn address_space_limit(limits: &str) -> Option<u64> {
 /// The addresses that the C library of Linux systems sets aside for the small allocations of a thread.
 const ARENA: u64 = 64 << 20;
 
-/// What is kept for all that is too small to be looked for.
+/// Memory kept for all that is too small to be checked.
 const SMALL: u64 = 16 << 20;
 
-/// What a limit leaves beside what `threads` set aside, as many of them as can.
+/// Memory that a limit leaves beside what `threads` set aside, as many of them as can.
 fn left(limit: u64, taken: u64, threads: u64) -> u64 {
     let rest = limit.saturating_sub(taken).saturating_sub(SMALL);
     rest - threads.min(rest / ARENA) * ARENA

@@ -76,7 +76,7 @@ pub struct ImageWindow {
     transform: Fft2,
 }
 
-/// Where and how finely an [`ImageWindow`] samples the picture.
+/// Position and fineness of the samples of an [`ImageWindow`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageSampling {
     /// Wavelength λ of the light, in metres.

@@ -47,7 +47,7 @@ pub struct LitSurface {
     wavelength: f64,
 }
 
-/// How far a long sum has come.
+/// Progress of a long sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
     /// Terms summed so far.

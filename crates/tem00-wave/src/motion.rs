@@ -27,7 +27,7 @@ use crate::{WaveError, length::checked_position};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidMotion {
     rotation: DMat3,
-    /// Where the origin goes.
+    /// Image of the origin.
     translation: DVec3,
 }
 

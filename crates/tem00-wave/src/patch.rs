@@ -29,15 +29,15 @@ pub struct PatchDescription {
     pub size: [f64; 2],
     /// Number of scatterers along each side.
     pub scatterers: [usize; 2],
-    /// Where the scatterers lie.
+    /// Arrangement of the scatterers.
     pub arrangement: Arrangement,
-    /// What makes their phases random.
+    /// Cause of their random phases.
     pub roughness: Roughness,
     /// Seed of all randomness. The same seed gives the same surface.
     pub seed: u64,
 }
 
-/// Where scatterers lie on a patch.
+/// Arrangement of scatterers on a patch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Arrangement {
     /// In the centre of each cell of a lattice.
@@ -49,7 +49,7 @@ pub enum Arrangement {
     Random,
 }
 
-/// What makes the phases of scattered light random.
+/// Cause of the random phases of scattered light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Roughness {
     /// Independent random phases, as of a surface much rougher than the wavelength.

@@ -123,7 +123,7 @@ impl SamplePlane {
             .sum()
     }
 
-    /// Where sample `(x, y)` lies from the centre, in metres.
+    /// Vector from the centre to the sample `(x, y)`, in metres.
     pub(crate) fn offset(&self, x: usize, y: usize) -> DVec3 {
         let from_middle = |i: usize, n: usize| i as f64 - (n / 2) as f64;
         from_middle(x, self.samples[0]) * self.steps[0]

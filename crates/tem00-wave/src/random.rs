@@ -8,7 +8,7 @@ use rand_core::{Rng, SeedableRng};
 
 const KEY: &[u8; 24] = b"tem00 wave scatterers v1";
 
-/// What a stream of random numbers is for. Streams are independent.
+/// Purpose of a stream of random numbers. Streams are independent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Purpose {
     Positions,

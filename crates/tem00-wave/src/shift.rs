@@ -4,10 +4,10 @@ use glam::{DMat2, DVec2};
 use num_complex::Complex;
 use tem00_numerics::{Fft2, Grid, cast::to_signed};
 
-/// How far a pattern has moved, and what is left of it.
+/// Displacement of a pattern, and its remaining correlation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
-    /// How far the features of the first pattern have moved in the second, in samples.
+    /// Displacement of the features of the first pattern in the second, in samples.
     pub offset: DVec2,
     /// Pearson correlation of the two patterns after the movement is taken back.
     pub correlation: f64,
@@ -171,7 +171,7 @@ fn correlation_from(a: &Grid<Complex<f32>>, b: &Grid<Complex<f32>>) -> Option<Gr
     Some(back.forward(&cross, |_, _, value| value.re))
 }
 
-/// What two patterns have in common after a whole displacement, tapered at the edges.
+/// The common part of two patterns after a whole displacement, tapered at the edges.
 struct Common {
     spectra: [Grid<Complex<f32>>; 2],
 }

@@ -4,7 +4,7 @@ use tem00_numerics::{quadrature::for_each_node, sinc};
 
 use super::correlation;
 
-/// What is meant by the correlation after a pupil displacement and an axial displacement together.
+/// Law of the correlation after a pupil displacement and an axial displacement together.
 ///
 /// Defocus moves a displaced pattern. Relative to the image of the surface it shifts by
 ///

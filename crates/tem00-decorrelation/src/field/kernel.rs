@@ -7,7 +7,7 @@ use super::MotionField;
 use super::slices::{FieldLight, FieldPoints, FieldSlices, INPUTS, OUTPUTS};
 use crate::{GRAZING_COSINE, correlation};
 
-/// As many points as are worked on at a time, in arrays that no other memory overlaps.
+/// Number of points that are worked on at a time, in arrays that no other memory overlaps.
 const BLOCK: usize = 32;
 
 /// The columns of a block of points.
@@ -58,7 +58,7 @@ impl Point {
     }
 }
 
-/// What becomes of the speckle at a point.
+/// Change of the speckle at a point.
 struct Outcome {
     speckle_displacement: DVec2,
     pupil_displacement: DVec2,

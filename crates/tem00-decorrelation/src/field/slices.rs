@@ -31,7 +31,7 @@ pub enum FieldLight<'a> {
     Curvature([&'a [f64]; 6]),
 }
 
-/// Where the results of a [`MotionField`](crate::MotionField) go, all slices of equal length.
+/// Destinations of the results of a [`MotionField`](crate::MotionField), all slices of equal length.
 #[derive(Debug, PartialEq)]
 pub struct FieldSlices<'a> {
     /// Motion of the speckle in the image along b1 and b2, in metres on the sensor: that of the image
@@ -40,11 +40,11 @@ pub struct FieldSlices<'a> {
     /// Motion of the speckle field across the pupil along b1 and b2, in metres; infinite where the
     /// pattern counts as decorrelated because the speckle left the pupil.
     pub pupil_displacement: [&'a mut [f64]; 2],
-    /// What is left of the old pattern as a correlation of intensity, in [0, 1]:
+    /// Correlation of the intensity with the old pattern, in [0, 1]:
     /// [`correlation`](crate::correlation). A stack looks it up at the coordinate where its own path has
     /// that correlation to the first slice.
     pub correlation: &'a mut [f64],
-    /// Where to look the pattern up, in pattern samples and not wrapped:
+    /// Position at which to look the pattern up, in pattern samples and not wrapped:
     /// [`pattern_coordinate`](crate::ImagingGeometry::pattern_coordinate).
     pub pattern_coordinate: [&'a mut [f64]; 2],
 }

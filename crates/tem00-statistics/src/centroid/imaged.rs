@@ -19,7 +19,7 @@ use crate::centroid::row_spectrum::Row;
 ///
 /// The light of the line interferes in the image as waves do. x and x' are two places in the pupil
 /// along the line, in radii of the pupil; what they have in common across the line, the chord of the outer
-/// one, tells how much of the place of a scatterer on the line is left in the light from both. Already for
+/// one, tells how much of the position of a scatterer on the line is left in the light from both. Already for
 /// lines as wide as a speckle this is the [`line_centroid_deviation`](crate::line_centroid_deviation)
 /// within one per cent. A speckle pattern times the irradiance, [`SpeckledLine`](crate::SpeckledLine),
 /// falls short of it, by 20 % at w = h, 7 % at 2 h and 2 % at 4 h: the lens blurs the line as well.

@@ -140,7 +140,7 @@ impl SpeckledLine {
         let s = self.spread;
         let reach = (self.window - 0.5 * lag).max(0.0) / s;
         let inside = 0.5 * PI.sqrt() * erf(reach);
-        // `u e^(−u²)` of an infinite window is no number.
+        // `u e^(−u²)` of an infinite window is NaN.
         let edge = if reach < 30.0 {
             reach * (-reach * reach).exp()
         } else {

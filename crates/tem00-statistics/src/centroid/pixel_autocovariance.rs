@@ -20,7 +20,7 @@ pub struct PixelColumn {
     pub averaged_columns: usize,
 }
 
-/// How the speckle in the pixels of a column goes together: their covariance, for the mean intensity 1.
+/// Covariance of the speckle in the pixels of a column, for the mean intensity 1.
 ///
 /// ```text
 /// c_k = ∫∫ (4/π) chat(|f|) T²(f_x) sinc²(π s f_y) cos(2π k d f_y) df_x df_y

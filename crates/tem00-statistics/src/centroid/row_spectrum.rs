@@ -47,7 +47,7 @@ pub fn speckle_length(row_height: f64) -> f64 {
     Row::of_height(row_height).spectrum(0.0)
 }
 
-/// What averages speckle along a line: neighbouring pixels of one row.
+/// Neighbouring pixels of one row, which average speckle along a line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
     /// The width of the sensitive part of a pixel along the line, in units of h.
@@ -197,7 +197,7 @@ mod tests {
         assert!(speckle_length(f64::INFINITY).abs() < f64::MIN_POSITIVE);
         assert!(
             speckle_length(f64::NAN).is_nan(),
-            "what is no number has none"
+            "NaN has no length"
         );
     }
 

@@ -9,7 +9,7 @@ use crate::{
     estimate::moments::{Scaled, check_finite},
 };
 
-/// How an image continues beyond its edges.
+/// Continuation of an image beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Boundary {
     /// The image repeats, as a computed speckle pattern does.

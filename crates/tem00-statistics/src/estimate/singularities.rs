@@ -124,7 +124,7 @@ fn crossing(a: Complex<f32>, b: Complex<f32>) -> i8 {
 ///
 /// # Bias
 ///
-/// That of [`phase_singularities`].
+/// As for [`phase_singularities`].
 ///
 /// # Independence
 ///

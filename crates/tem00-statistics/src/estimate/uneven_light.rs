@@ -7,10 +7,10 @@ use crate::{COHERENCE_AREA, SpeckleSize, StatisticsError, estimate::moments};
 /// The inner radius of the first ring of lags, in speckle sizes: beyond the speckle itself.
 const FIRST_RING: f64 = 1.5;
 
-/// How many standard deviations of chance count as chance.
+/// Number of standard deviations that count as chance.
 const SIGMAS: f64 = 4.5;
 
-/// What the side lobes of a pupil leave in the first ring; it falls with the radius. A circle leaves
+/// Part of the side lobes of a pupil in the first ring; it falls with the radius. A circle leaves
 /// 0.005, an annulus with an opening of one half 0.03, of nine tenths 0.07.
 const SIDE_LOBES: f64 = 0.08;
 
@@ -156,7 +156,7 @@ impl FlatImage {
         let of =
             |pick: fn(f64, f64) -> f64, start| means.values().iter().copied().fold(start, pick);
         let (lowest, highest) = (of(f64::min, f64::INFINITY), of(f64::max, 0.0));
-        // A mean that is below the rounding of the sums is none.
+        // A mean below the rounding of the sums is no mean.
         if lowest <= f64::EPSILON * highest * (size.0 + size.1) as f64 {
             return Err(StatisticsError::refused(
                 "samples",

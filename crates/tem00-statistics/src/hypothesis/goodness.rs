@@ -6,7 +6,7 @@ use crate::{
 /// The number of bins of the χ² test.
 const BINS: u32 = 20;
 
-/// How well samples agree with a law, whether they were rounded or not.
+/// Agreement of samples, rounded or not, with a law.
 ///
 /// Samples are compared on the scale of the law's distribution function, where they are even in
 /// [0, 1] if they follow it. Rounded samples lie evenly within the cell of their level, which law and
@@ -45,7 +45,7 @@ const BINS: u32 = 20;
 pub struct GoodnessOfFit {
     /// The samples on the scale of the distribution function.
     places: Vec<f64>,
-    /// Where bins may begin, in ascending order.
+    /// Values at which bins may begin, in ascending order.
     edges: Vec<f64>,
 }
 

@@ -45,7 +45,7 @@ impl GreyLevels {
     /// and the levels are no finer than those of files, 3 · 2¹⁶ steps.
     ///
     /// Values that differ by less than 10⁻⁶ of the greater are one level. Returns `None` for an
-    /// image that is not rounded, is all of one value, or is none of light: with a value that is
+    /// image that is not rounded, is all of one value, or has no light: with a value that is
     /// negative or not finite.
     pub fn of<T: Copy + Into<f64>>(values: &[T]) -> Option<Self> {
         let mut levels: Vec<f64> = values.iter().map(|&value| value.into()).collect();
@@ -204,7 +204,7 @@ impl GreyLevels {
     }
 }
 
-/// Whether a value and a greater one differ by rounding only.
+/// Tells if a value and a greater one differ by rounding only.
 fn are_same(low: f64, high: f64) -> bool {
     high - low <= high * SAME
 }

@@ -7,7 +7,7 @@ use crate::{
     estimate::moments::{Scaled, check_finite},
 };
 
-/// What a test of a hypothesis found.
+/// Outcome of a test of a hypothesis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestOutcome {
     /// The test's statistic: the larger, the further from the hypothesis.
@@ -139,7 +139,7 @@ fn kolmogorov_survival(lambda: f64) -> f64 {
 /// # Validity
 ///
 /// The p-value takes χ² to have the law that it reaches for many counts per bin; five expected
-/// counts are the customary least.
+/// counts are the customary minimum.
 ///
 /// # Errors
 ///
@@ -183,7 +183,7 @@ pub fn chi_squared(
     Ok(TestOutcome { statistic, p_value })
 }
 
-/// The customary least for which χ² nearly has its limiting law.
+/// The customary minimum for which χ² nearly has its limiting law.
 const FEWEST_EXPECTED: f64 = 5.0;
 
 fn merge_sparse_bins(

@@ -29,14 +29,6 @@ const KNOWN: &[&[&str]] = &[
         "crates/tem00-scan/src/sensor_speckle.rs",
         "crates/tem00-scan/src/speckle_table.rs",
     ],
-    &[
-        "crates/tem00-triangulation/src/detector.rs",
-        "crates/tem00-triangulation/src/detector/column.rs",
-        "crates/tem00-triangulation/src/detector/extent.rs",
-        "crates/tem00-triangulation/src/detector/profile.rs",
-        "crates/tem00-triangulation/src/detector/steger.rs",
-        "crates/tem00-triangulation/src/detector/tracks.rs",
-    ],
 ];
 
 type Segments = Vec<String>;

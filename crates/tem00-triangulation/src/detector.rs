@@ -5,8 +5,10 @@ mod extent;
 mod gaussian_fit;
 mod gravity;
 mod method;
+mod point;
 mod profile;
 mod sensitivity;
+mod settings;
 mod steger;
 #[cfg(test)]
 mod tests;
@@ -24,142 +26,8 @@ use steger::Kernels;
 use crate::TriangulationError;
 
 pub use method::{FilterOrder, LineMethod};
-
-/// Settings of a [`LineDetector`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DetectorSettings {
-    /// The estimator of the position.
-    pub method: LineMethod,
-    /// The number of pixels of a column that an estimate looks at, odd, about the peak.
-    ///
-    /// Two to three times the full width of the line between the points of 1/e². Outside of twice that
-    /// width lie 6e−5 of the light of a Gaussian, which move the centre of gravity by 5e−4 pixels at most;
-    /// further pixels only add noise. The wings that a lens adds hold 0.13 h/Y of the light outside of ±Y, h
-    /// being the speckle size: a window that moves with the speckle cuts them elsewhere in each column. In a short window a wide speckled line looks like several.
-    pub window: usize,
-    /// The minimum height of a peak above the background, in grey values.
-    pub min_peak: f64,
-    /// The maximum number of lines per column.
-    pub max_lines: usize,
-    /// The grey value from which on a pixel is saturated; infinite if there is none.
-    pub saturation: f64,
-}
-
-impl Default for DetectorSettings {
-    /// The centre of gravity over 31 pixels of one line per column, at least 10 grey values high.
-    fn default() -> Self {
-        Self {
-            method: LineMethod::CentreOfGravity,
-            window: 31,
-            min_peak: 10.0,
-            max_lines: 1,
-            saturation: f64::INFINITY,
-        }
-    }
-}
-
-impl DetectorSettings {
-    /// The most pixels of a window.
-    pub const MOST_WINDOW: usize = 1001;
-    /// The maximum number of lines per column.
-    pub const MAX_LINES: usize = 100;
-
-    fn validate(&self) -> Result<(), TriangulationError> {
-        let refuse = |parameter, value, allowed| {
-            Err(TriangulationError::OutOfRange {
-                parameter,
-                value,
-                allowed,
-            })
-        };
-        self.method.validate()?;
-        if self.window.is_multiple_of(2) || !(3..=Self::MOST_WINDOW).contains(&self.window) {
-            return refuse(
-                "window",
-                self.window as f64,
-                "an odd number of pixels from 3 to 1001",
-            );
-        }
-        if self.window < self.method.min_window() {
-            return Err(TriangulationError::TooFew {
-                what: "pixels in the window of this method",
-                got: self.window,
-                needed: self.method.min_window(),
-            });
-        }
-        if !(0.0..f64::INFINITY).contains(&self.min_peak) {
-            let allowed = "zero or more grey values, and finite";
-            return refuse("min_peak", self.min_peak, allowed);
-        }
-        if !(1..=Self::MAX_LINES).contains(&self.max_lines) {
-            return refuse("max_lines", self.max_lines as f64, "from 1 to 100");
-        }
-        if self.saturation.is_nan() || self.saturation <= 0.0 {
-            return refuse("saturation", self.saturation, "positive, infinite if none");
-        }
-        Ok(())
-    }
-}
-
-/// A line where it crosses a column.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinePoint {
-    /// The place along the column, in pixels; the centre of the first pixel is at 0.5.
-    pub position: f64,
-    /// The full width between the points of 1/e², in pixels.
-    ///
-    /// It is twice the width between the points before which 16 and 84 % of the light of the window lie,
-    /// or that of the [fit](LineMethod::GaussianFit).
-    pub width: f64,
-    /// The greatest grey value above the background.
-    pub peak: f64,
-    /// The sum of the grey values above the background over the window: what the surface reflects.
-    pub integral: f64,
-    /// The grey value of the background.
-    pub background: f64,
-    /// Whether the place can be trusted.
-    pub validity: Validity,
-    /// Which of the lines of the image the point belongs to, counted from 0; in a single column, the
-    /// number of the line from the top.
-    pub line: usize,
-}
-
-/// Whether a point of a line can be trusted, and if not, why.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Validity {
-    /// Nothing speaks against it.
-    Valid,
-    /// A pixel of the window is saturated.
-    Saturated,
-    /// The window reaches beyond the image.
-    Cut,
-    /// The window was cut where the next line of the column begins.
-    Crowded,
-    /// A pixel of the window is not a finite number; it counts as background.
-    Missing,
-    /// The estimate did not converge or lies outside of the window; the place is that of the peak.
-    Failed,
-    /// An edge of the part cuts the line, of which but a sliver is seen: its place is that of the edge. Or
-    /// there is no line but by noise. Only who knows the line without noise can tell; a detector does not.
-    Sliver,
-}
-
-impl Validity {
-    /// Returns what to write into a table: `valid`, `saturated`, `cut`, `crowded`, `missing`,
-    /// `failed` or `sliver`.
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Valid => "valid",
-            Self::Saturated => "saturated",
-            Self::Cut => "cut",
-            Self::Crowded => "crowded",
-            Self::Missing => "missing",
-            Self::Failed => "failed",
-            Self::Sliver => "sliver",
-        }
-    }
-}
+pub use point::{LinePoint, Validity};
+pub use settings::DetectorSettings;
 
 /// Finds laser lines in columns and images.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,59 @@
+/// A line where it crosses a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinePoint {
+    /// The place along the column, in pixels; the centre of the first pixel is at 0.5.
+    pub position: f64,
+    /// The full width between the points of 1/e², in pixels.
+    ///
+    /// It is twice the width between the points before which 16 and 84 % of the light of the window lie,
+    /// or that of the [fit](crate::LineMethod::GaussianFit).
+    pub width: f64,
+    /// The greatest grey value above the background.
+    pub peak: f64,
+    /// The sum of the grey values above the background over the window: what the surface reflects.
+    pub integral: f64,
+    /// The grey value of the background.
+    pub background: f64,
+    /// Whether the place can be trusted.
+    pub validity: Validity,
+    /// Which of the lines of the image the point belongs to, counted from 0; in a single column, the
+    /// number of the line from the top.
+    pub line: usize,
+}
+
+/// Whether a point of a line can be trusted, and if not, why.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Validity {
+    /// Nothing speaks against it.
+    Valid,
+    /// A pixel of the window is saturated.
+    Saturated,
+    /// The window reaches beyond the image.
+    Cut,
+    /// The window was cut where the next line of the column begins.
+    Crowded,
+    /// A pixel of the window is not a finite number; it counts as background.
+    Missing,
+    /// The estimate did not converge or lies outside of the window; the place is that of the peak.
+    Failed,
+    /// An edge of the part cuts the line, of which but a sliver is seen: its place is that of the edge. Or
+    /// there is no line but by noise. Only who knows the line without noise can tell; a detector does not.
+    Sliver,
+}
+
+impl Validity {
+    /// Returns what to write into a table: `valid`, `saturated`, `cut`, `crowded`, `missing`,
+    /// `failed` or `sliver`.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Valid => "valid",
+            Self::Saturated => "saturated",
+            Self::Cut => "cut",
+            Self::Crowded => "crowded",
+            Self::Missing => "missing",
+            Self::Failed => "failed",
+            Self::Sliver => "sliver",
+        }
+    }
+}

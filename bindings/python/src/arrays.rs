@@ -15,14 +15,9 @@ use pyo3::prelude::*;
 
 pub(crate) use columns::{Column, columns, evaluate};
 pub(crate) use images::{ComplexImage, Image, image_array};
-pub(crate) use numbers::{Components, Numbers, Samples, Table, Vectors, length};
+pub(crate) use numbers::{Components, Named, Numbers, Samples, Table, Vectors, length};
 pub(crate) use results::{Array, Matrix3, Values, Vector, array, vector_array};
 pub(crate) use whole::Whole;
-
-use crate::error::refused;
-
-/// An argument and its name.
-pub(crate) type Named<'a, 'py> = (&'static str, &'a Numbers<'py>);
 
 /// Applies `f` to `N` arguments broadcast together, without the interpreter's lock: a float for
 /// numbers, an array of the common shape for arrays.
@@ -68,14 +63,4 @@ pub(crate) fn fill<'py, const N: usize, const M: usize>(
     f: impl FnMut([&[f64]; N], [&mut [f64]; M]) + Send,
 ) -> PyResult<[Values<'py>; M]> {
     evaluate(py, columns(arguments, f64::MAX)?, [&[]; M], f)
-}
-
-/// The exception for finite arguments so extreme that the result of a formula is not a number.
-fn no_number<const N: usize>(names: [&'static str; N], values: [f64; N]) -> PyErr {
-    let pairs = names.iter().zip(values);
-    let all: Vec<String> = pairs
-        .map(|(name, value)| format!("{name} = {value:e}"))
-        .collect();
-    let message = format!("{} must be less extreme to have a result", all.join(", "));
-    refused(names.first().copied().unwrap_or_default(), message)
 }

@@ -1,7 +1,11 @@
 use numpy::ndarray::{ArrayViewD, Axis};
 use pyo3::{exceptions::PyRuntimeError, prelude::*};
 
-use super::{Named, Numbers, blocks::Blocks, no_number, results};
+use super::{
+    blocks::Blocks,
+    numbers::{Named, Numbers},
+    results,
+};
 use crate::error::refused;
 
 /// The values of an argument, or of one component of an argument that holds vectors.
@@ -142,7 +146,7 @@ fn check_numbers<const N: usize>(
     for result in results {
         if let Some(place) = result.iter().position(|value| value.is_nan()) {
             let index = place * values[0].len() / result.len();
-            return Err(no_number(names, values.map(|column| column[index])));
+            return Err(nan_result(names, values.map(|column| column[index])));
         }
     }
     Ok(())
@@ -151,4 +155,14 @@ fn check_numbers<const N: usize>(
 fn view<'a>(numbers: &'a Numbers<'_>) -> PyResult<ArrayViewD<'a, f64>> {
     ArrayViewD::from_shape(numbers.shape(), numbers.values()?)
         .map_err(|error| PyRuntimeError::new_err(error.to_string()))
+}
+
+/// The exception for finite arguments so extreme that the result of a formula is NaN.
+fn nan_result<const N: usize>(names: [&'static str; N], values: [f64; N]) -> PyErr {
+    let pairs = names.iter().zip(values);
+    let all: Vec<String> = pairs
+        .map(|(name, value)| format!("{name} = {value:e}"))
+        .collect();
+    let message = format!("{} must be less extreme to have a result", all.join(", "));
+    refused(names.first().copied().unwrap_or_default(), message)
 }

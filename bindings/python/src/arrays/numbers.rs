@@ -15,7 +15,7 @@ use crate::error::refused;
 
 /// A number, or an array of real numbers of any shape, as an argument of a function.
 ///
-/// Arrays that are not in `float64`, row by row, are copied. What is no number (text, truth values,
+/// Arrays that are not in `float64`, row by row, are copied. What is not a number (text, truth values,
 /// complex numbers) is a `TypeError`, which names the argument.
 #[derive(Debug)]
 pub(crate) enum Numbers<'py> {
@@ -24,6 +24,9 @@ pub(crate) enum Numbers<'py> {
     /// An array, aligned and row by row.
     Array(PyReadonlyArrayDyn<'py, f64>),
 }
+
+/// An argument and its name.
+pub(crate) type Named<'a, 'py> = (&'static str, &'a Numbers<'py>);
 
 /// An array of one axis: the components of a vector, or a list.
 pub(crate) type Components<'py> = Numbers<'py>;

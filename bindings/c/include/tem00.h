@@ -34,7 +34,7 @@
 
 
 /**
- * Whether a call succeeded and, if not, why. The message is that of `tem00_last_error`.
+ * Success of a call, or the kind of its failure. The message is that of `tem00_last_error`.
  */
 typedef enum {
     /**
@@ -109,7 +109,7 @@ typedef enum {
 } tem00_slice_path;
 
 /**
- * How a look-up finds the amplitude between the samples of a slice.
+ * Interpolation of the amplitude between the samples of a slice.
  */
 typedef enum {
     /**
@@ -145,7 +145,7 @@ typedef enum {
 } tem00_field_light;
 
 /**
- * Where the surface in focus lies before a lens: what `focus` of a description counts.
+ * Meaning of `focus` of a description: the position of the surface in focus before a lens.
  */
 typedef enum {
     /**
@@ -163,7 +163,7 @@ typedef enum {
 } tem00_focus;
 
 /**
- * Where a laser line is thinnest off its axis.
+ * Surface on which a laser line is thinnest off its axis.
  */
 typedef enum {
     /**
@@ -177,7 +177,7 @@ typedef enum {
 } tem00_focus_curve;
 
 /**
- * Which way up image displacements are counted: along `right` and `up` of the camera.
+ * Orientation in which image displacements are counted: along `right` and `up` of the camera.
  */
 typedef enum {
     /**
@@ -191,7 +191,7 @@ typedef enum {
 } tem00_image_orientation;
 
 /**
- * How a laser line spreads its power along the fan.
+ * Distribution of the power of a laser line along the fan.
  */
 typedef enum {
     /**
@@ -242,7 +242,7 @@ typedef struct tem00_light tem00_light;
 typedef struct tem00_stack tem00_stack;
 
 /**
- * Where a light stands and where it points, in world coordinates.
+ * Position and directions of a light, in world coordinates.
  */
 typedef struct {
     /**
@@ -265,7 +265,7 @@ typedef struct {
  */
 typedef struct {
     /**
-     * Where the light stands.
+     * Position and directions of the light.
      */
     tem00_placement placement;
     /**
@@ -296,7 +296,7 @@ typedef struct {
  */
 typedef struct {
     /**
-     * Where the light stands.
+     * Position and directions of the light.
      */
     tem00_placement placement;
     /**
@@ -331,7 +331,7 @@ typedef struct {
  */
 typedef struct {
     /**
-     * Where the light stands.
+     * Position and directions of the light.
      */
     tem00_placement placement;
     /**
@@ -361,7 +361,7 @@ typedef struct {
  */
 typedef struct {
     /**
-     * Where the light stands; the fan opens along its fan axis.
+     * Position and directions of the light; the fan opens along its fan axis.
      */
     tem00_placement placement;
     /**
@@ -393,7 +393,7 @@ typedef struct {
      */
     double focus_distance;
     /**
-     * Where the line is thinnest off the axis: a `tem00_focus_curve`.
+     * Surface on which the line is thinnest off the axis: a `tem00_focus_curve`.
      */
     uint32_t focus_curve;
     /**
@@ -557,7 +557,7 @@ typedef struct {
 } tem00_bounds;
 
 /**
- * Where the next events at many points go: pointers to as many numbers as there are points.
+ * Destination of the next events at many points: pointers to as many numbers as there are points.
  *
  * The point of the aperture plane is p + distance * wi.
  */
@@ -615,7 +615,7 @@ typedef struct {
  */
 typedef struct {
     /**
-     * Which struct of `tem00_beam.h` or `tem00_beam.wgsl` the fields belong to.
+     * Struct of `tem00_beam.h` or `tem00_beam.wgsl` that the fields belong to.
      */
     tem00_light_kind kind;
     /**
@@ -629,7 +629,7 @@ typedef struct {
 } tem00_light_data;
 
 /**
- * What a stack is made of.
+ * Parameters of a stack.
  */
 typedef struct {
     /**
@@ -667,7 +667,7 @@ typedef struct {
      */
     size_t length;
     /**
-     * How look-ups interpolate: a `tem00_interpolation`.
+     * Interpolation of look-ups: a `tem00_interpolation`.
      */
     uint32_t interpolation;
     /**
@@ -682,7 +682,7 @@ typedef struct {
 } tem00_stack_description;
 
 /**
- * What a stack is to be looked up for.
+ * Demands on a stack: image, motion and memory.
  */
 typedef struct {
     /**
@@ -717,7 +717,7 @@ typedef struct {
 } tem00_stack_needs;
 
 /**
- * What a stack is.
+ * Properties of a stack.
  */
 typedef struct {
     /**
@@ -749,7 +749,7 @@ typedef struct {
      */
     size_t length;
     /**
-     * How look-ups interpolate.
+     * Interpolation of look-ups.
      */
     tem00_interpolation interpolation;
     /**
@@ -779,11 +779,11 @@ typedef struct {
      */
     double pupil_magnification;
     /**
-     * What `focus` counts: a `tem00_focus`.
+     * Meaning of `focus`: a `tem00_focus`.
      */
     uint32_t focus_kind;
     /**
-     * Where the surface in focus lies.
+     * Position of the surface in focus.
      */
     double focus;
     /**
@@ -819,7 +819,7 @@ typedef struct {
 } tem00_pupil_distances;
 
 /**
- * What a camera is.
+ * Properties of a camera.
  */
 typedef struct {
     /**
@@ -967,7 +967,7 @@ typedef struct {
 } tem00_motion;
 
 /**
- * What a motion does to the speckle at one surface point.
+ * Effect of a motion on the speckle at one surface point.
  */
 typedef struct {
     /**
@@ -975,7 +975,7 @@ typedef struct {
      */
     double image_displacement[2];
     /**
-     * What the speckle of a point out of focus moves in addition, in metres on the sensor.
+     * Additional displacement of the speckle of a point out of focus, in metres on the sensor.
      */
     double defocus_displacement[2];
     /**
@@ -988,14 +988,14 @@ typedef struct {
      */
     double axial_displacement;
     /**
-     * What is left of the old pattern as a correlation of intensity, in [0, 1], where it is looked up
+     * Correlation of intensity with the pattern before, in [0, 1], where it is looked up
      * at the sum of both displacements in the image.
      */
     double correlation;
 } tem00_speckle_motion;
 
 /**
- * What all points of a field share.
+ * Settings common to all points of a field.
  */
 typedef struct {
     /**
@@ -1007,7 +1007,7 @@ typedef struct {
      */
     double pupil_centre[3];
     /**
-     * Which way up image displacements are counted: a `tem00_image_orientation`.
+     * Orientation in which image displacements are counted: a `tem00_image_orientation`.
      */
     uint32_t orientation;
     /**
@@ -1055,7 +1055,7 @@ typedef struct {
 } tem00_field_points;
 
 /**
- * Where the results of a field go: pointers to as many numbers as there are points.
+ * Destination of the results of a field: pointers to as many numbers as there are points.
  */
 typedef struct {
     /**
@@ -1067,12 +1067,12 @@ typedef struct {
      */
     double *pupil_displacement[2];
     /**
-     * What is left of the old pattern as a correlation of intensity, in [0, 1]; for
+     * Correlation of intensity with the pattern before, in [0, 1]; for
      * `tem00_stack_coordinate_of`.
      */
     double *correlation;
     /**
-     * Where to look the pattern up, in pattern samples and not wrapped.
+     * Coordinates at which to look the pattern up, in pattern samples and not wrapped.
      */
     double *pattern_coordinate[2];
 } tem00_field_results;

@@ -8,8 +8,8 @@ use crate::status::Failure;
 /// number that 1e30 becomes in single precision.
 const LARGEST: f64 = 1.000_000_015_047_466_2e30;
 
-/// How far from 1 the length of a vector may be that is taken for a unit vector as it is: a direction in
-/// single precision is nearer.
+/// Largest deviation from 1 of the length of a vector that is taken for a unit vector as it is: a
+/// direction in single precision is nearer.
 const UNIT_TOLERANCE: f64 = 1e-4;
 
 /// Checks that all numbers are finite and within ±1e30.

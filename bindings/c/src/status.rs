@@ -10,7 +10,7 @@ use tem00_beam::BeamError;
 use tem00_decorrelation::DecorrelationError;
 use tem00_speckle::{SpeckleError, StackFileError};
 
-/// Whether a call succeeded and, if not, why. The message is that of `tem00_last_error`.
+/// Success of a call, or the kind of its failure. The message is that of `tem00_last_error`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -30,7 +30,7 @@ pub enum Status {
     Panic = 6,
 }
 
-/// Why a call fails.
+/// Failure of a call.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Failure {
     pub(crate) status: Status,

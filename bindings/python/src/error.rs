@@ -30,7 +30,7 @@ fn parameter_of(error: &PyErr) -> Option<String> {
     Python::attach(|py| error.value(py).getattr("parameter").ok()?.extract().ok())
 }
 
-/// What the errors of the physics crates become in Python.
+/// Exceptions of Python for the errors of the physics crates.
 pub(crate) trait IntoPython {
     /// Returns the exception.
     fn into_python(self) -> PyErr;

@@ -4,7 +4,7 @@ use pyo3::{
     types::{PyTuple, PyType},
 };
 
-/// What `__reduce__` returns: something to call, and its arguments.
+/// Result of `__reduce__`: something to call, and its arguments.
 pub(crate) type Recipe<'py> = (Bound<'py, PyAny>, (Bound<'py, PyType>,));
 
 /// Returns how pickle makes an object of the class `T` again: by calling its static method `name`,

@@ -7,7 +7,7 @@ use crate::{
     status::{Failure, Status, call},
 };
 
-/// Where the surface in focus lies before a lens: what `focus` of a description counts.
+/// Meaning of `focus` of a description: the position of the surface in focus before a lens.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Focus {
@@ -37,9 +37,9 @@ pub struct LensDescription {
     pub f_number: f64,
     /// Diameter of the exit pupil over that of the entrance pupil; 1 for a thin lens.
     pub pupil_magnification: f64,
-    /// What `focus` counts: a `tem00_focus`.
+    /// Meaning of `focus`: a `tem00_focus`.
     pub focus_kind: u32,
-    /// Where the surface in focus lies.
+    /// Position of the surface in focus.
     pub focus: f64,
     /// Distance between the centres of neighbouring pixels on the sensor, in metres.
     pub pixel_pitch: f64,
@@ -61,7 +61,7 @@ pub struct PupilDistances {
     pub pixel_pitch: f64,
 }
 
-/// What a camera is.
+/// Properties of a camera.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImagingInfo {

@@ -22,7 +22,7 @@ pub enum FieldLight {
     Curvature = 2,
 }
 
-/// What all points of a field share.
+/// Settings common to all points of a field.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FieldSetup {
@@ -30,7 +30,7 @@ pub struct FieldSetup {
     pub camera: CameraAxes,
     /// Centre of the pupil in world coordinates, in metres.
     pub pupil_centre: [f64; 3],
-    /// Which way up image displacements are counted: a `tem00_image_orientation`.
+    /// Orientation in which image displacements are counted: a `tem00_image_orientation`.
     pub orientation: u32,
     /// Speckle size of the pattern, in samples.
     pub pattern_speckle_size: f64,
@@ -58,7 +58,7 @@ pub struct FieldPoints {
     pub curvature: [*const f64; 6],
 }
 
-/// Where the results of a field go: pointers to as many numbers as there are points.
+/// Destination of the results of a field: pointers to as many numbers as there are points.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FieldResults {
@@ -66,10 +66,10 @@ pub struct FieldResults {
     pub speckle_displacement: [*mut f64; 2],
     /// Motion of the speckle field across the pupil, in metres; infinite where it left the pupil.
     pub pupil_displacement: [*mut f64; 2],
-    /// What is left of the old pattern as a correlation of intensity, in [0, 1]; for
+    /// Correlation of intensity with the pattern before, in [0, 1]; for
     /// `tem00_stack_coordinate_of`.
     pub correlation: *mut f64,
-    /// Where to look the pattern up, in pattern samples and not wrapped.
+    /// Coordinates at which to look the pattern up, in pattern samples and not wrapped.
     pub pattern_coordinate: [*mut f64; 2],
 }
 

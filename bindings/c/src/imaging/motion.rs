@@ -7,7 +7,7 @@ use crate::{
     status::{Failure, Status, call},
 };
 
-/// Which way up image displacements are counted: along `right` and `up` of the camera.
+/// Orientation in which image displacements are counted: along `right` and `up` of the camera.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageOrientation {
@@ -71,20 +71,20 @@ pub struct Motion {
     pub source: [f64; 3],
 }
 
-/// What a motion does to the speckle at one surface point.
+/// Effect of a motion on the speckle at one surface point.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpeckleMotion {
     /// Motion of the image of the surface along right and up, in metres on the sensor.
     pub image_displacement: [f64; 2],
-    /// What the speckle of a point out of focus moves in addition, in metres on the sensor.
+    /// Additional displacement of the speckle of a point out of focus, in metres on the sensor.
     pub defocus_displacement: [f64; 2],
     /// Motion of the speckle field across the pupil along right and up, in metres; infinite if it
     /// left the pupil in a grazing view.
     pub pupil_displacement: [f64; 2],
     /// Motion of the surface towards the camera along the optical axis, in metres.
     pub axial_displacement: f64,
-    /// What is left of the old pattern as a correlation of intensity, in [0, 1], where it is looked up
+    /// Correlation of intensity with the pattern before, in [0, 1], where it is looked up
     /// at the sum of both displacements in the image.
     pub correlation: f64,
 }

@@ -7,7 +7,7 @@ use crate::{
     status::{Failure, Status, call},
 };
 
-/// Where the next events at many points go: pointers to as many numbers as there are points.
+/// Destination of the next events at many points: pointers to as many numbers as there are points.
 ///
 /// The point of the aperture plane is p + distance * wi.
 #[repr(C)]

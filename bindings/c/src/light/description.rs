@@ -11,7 +11,7 @@ use crate::{
     status::{Failure, Status, call},
 };
 
-/// Where a light stands and where it points, in world coordinates.
+/// Position and directions of a light, in world coordinates.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Placement {
@@ -28,7 +28,7 @@ pub struct Placement {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct SpotDescription {
-    /// Where the light stands.
+    /// Position and directions of the light.
     pub placement: Placement,
     /// Wavelength in the medium, in metres.
     pub wavelength: f64,
@@ -47,7 +47,7 @@ pub struct SpotDescription {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct EllipticDescription {
-    /// Where the light stands.
+    /// Position and directions of the light.
     pub placement: Placement,
     /// Wavelength in the medium, in metres.
     pub wavelength: f64,
@@ -68,7 +68,7 @@ pub struct EllipticDescription {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct AstigmaticDescription {
-    /// Where the light stands.
+    /// Position and directions of the light.
     pub placement: Placement,
     /// Wavelength in the medium, in metres.
     pub wavelength: f64,
@@ -82,7 +82,7 @@ pub struct AstigmaticDescription {
     pub slope: [[f64; 2]; 2],
 }
 
-/// Where a laser line is thinnest off its axis.
+/// Surface on which a laser line is thinnest off its axis.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FocusCurve {
@@ -92,7 +92,7 @@ pub enum FocusCurve {
     EqualPlane = 1,
 }
 
-/// How a laser line spreads its power along the fan.
+/// Distribution of the power of a laser line along the fan.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineProfile {
@@ -116,7 +116,7 @@ pub enum LineProfile {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct LineDescription {
-    /// Where the light stands; the fan opens along its fan axis.
+    /// Position and directions of the light; the fan opens along its fan axis.
     pub placement: Placement,
     /// Wavelength in the medium, in metres.
     pub wavelength: f64,
@@ -132,7 +132,7 @@ pub struct LineDescription {
     pub apex_offset: f64,
     /// Signed distance from the lens to where the line is thinnest on the axis, in metres.
     pub focus_distance: f64,
-    /// Where the line is thinnest off the axis: a `tem00_focus_curve`.
+    /// Surface on which the line is thinnest off the axis: a `tem00_focus_curve`.
     pub focus_curve: u32,
     /// The profile along the line: a `tem00_line_profile`.
     pub profile: u32,

@@ -22,7 +22,7 @@ pub enum LightKind {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightData {
-    /// Which struct of `tem00_beam.h` or `tem00_beam.wgsl` the fields belong to.
+    /// Struct of `tem00_beam.h` or `tem00_beam.wgsl` that the fields belong to.
     pub kind: LightKind,
     /// Number of fields, 24 or 28.
     pub count: u32,

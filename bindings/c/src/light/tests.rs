@@ -90,7 +90,7 @@ struct Pair {
     peer: Peer,
 }
 
-/// What the library makes without the interface.
+/// Results of the library without the interface.
 enum Peer {
     Spot(SpotLight<f64>),
     Astigmatic(AstigmaticLight<f64>),

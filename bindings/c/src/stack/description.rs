@@ -21,7 +21,7 @@ pub enum SlicePath {
     Straight = 2,
 }
 
-/// How a look-up finds the amplitude between the samples of a slice.
+/// Interpolation of the amplitude between the samples of a slice.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
@@ -33,7 +33,7 @@ pub enum Interpolation {
     Nearest = 2,
 }
 
-/// What a stack is made of.
+/// Parameters of a stack.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StackDescription {
@@ -55,7 +55,7 @@ pub struct StackDescription {
     pub half_period: usize,
     /// Length of a straight path in pupil diameters, at least 2; not read for others.
     pub length: usize,
-    /// How look-ups interpolate: a `tem00_interpolation`.
+    /// Interpolation of look-ups: a `tem00_interpolation`.
     pub interpolation: u32,
     /// Bytes that the slices may take; `UINT64_MAX` for all the machine has.
     pub memory_limit: u64,
@@ -64,7 +64,7 @@ pub struct StackDescription {
     pub threads: u32,
 }
 
-/// What a stack is to be looked up for.
+/// Demands on a stack: image, motion and memory.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StackNeeds {

@@ -8,7 +8,7 @@ use crate::{
     status::{Failure, Status, call},
 };
 
-/// What a stack is.
+/// Properties of a stack.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StackInfo {
@@ -26,7 +26,7 @@ pub struct StackInfo {
     pub half_period: usize,
     /// Length of a straight path in pupil diameters, 0 for others.
     pub length: usize,
-    /// How look-ups interpolate.
+    /// Interpolation of look-ups.
     pub interpolation: Interpolation,
     /// Bytes that the slices take.
     pub memory_bytes: u64,

@@ -63,7 +63,7 @@ fn a_failure_stays_until_the_next_one() {
     assert_eq!(last(), ["y is wrong", "y"], "after the next failure");
 }
 
-/// What a program does that keeps the pointer of one failure while others follow.
+/// A program that keeps the pointer of one failure while others follow.
 #[test]
 fn the_pointer_of_a_failure_stays_valid_and_shows_the_next_one() {
     refuse("x", "x is wrong");

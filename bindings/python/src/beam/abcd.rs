@@ -340,6 +340,6 @@ methods! {
     /// Half the trace of the matrix.
     get half_trace -> f64;
 
-    /// Whether rays stay near the axis however often they travel through the system.
+    /// True if rays stay near the axis however often they travel through the system.
     get is_stable -> bool;
 }

@@ -188,7 +188,7 @@ impl AstigmaticBeam {
         by_constructor::<Self>(py, "_restored", (x, y, self.rotation()))
     }
 
-    /// What pickle calls.
+    /// Constructor that pickle calls.
     #[staticmethod]
     fn _restored(x: &LocatedBeam, y: &LocatedBeam, rotation: f64) -> PyResult<Self> {
         Self::new(x, y)?.with_rotation(rotation)

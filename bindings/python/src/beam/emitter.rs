@@ -382,7 +382,7 @@ impl Emitter {
     }
 }
 
-/// Whether the value is that of one point, and 0.
+/// Returns true for the value 0 of one point.
 pub(super) fn is_dark_number(irradiance: &Bound<'_, PyAny>) -> bool {
     irradiance
         .cast::<PyFloat>()

@@ -256,7 +256,7 @@ methods! {
     map power_at(position);
 }
 
-/// What is known of the errors of measured radii.
+/// Assumption on the errors of measured radii.
 enum Errors<'py> {
     Relative,
     Equal,

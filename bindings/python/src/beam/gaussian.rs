@@ -118,7 +118,7 @@ impl GaussianBeam {
         by_constructor::<Self>(py, "_restored", fields)
     }
 
-    /// What pickle calls.
+    /// Constructor that pickle calls.
     #[staticmethod]
     fn _restored(wavelength: f64, waist_radius: f64, m_squared: f64) -> PyResult<Self> {
         Self::from_waist(wavelength, waist_radius)?.with_m_squared(m_squared)

@@ -51,7 +51,7 @@ impl FanGeometry {
         })
     }
 
-    /// Where the line is thinnest off the axis, ``"equal_distance"`` or ``"equal_plane"``.
+    /// Surface on which the line is thinnest off the axis, ``"equal_distance"`` or ``"equal_plane"``.
     #[getter]
     fn focus_curve(&self) -> &'static str {
         match self.0.focus_curve {

@@ -115,7 +115,7 @@ methods! {
     /// Slope of the edges of the fan, the tangent of half the fan angle.
     field half_slope -> f64;
 
-    /// Whether the waist lies on a plane square to the axis, and not on a circle about the apex.
+    /// True if the waist lies on a plane square to the axis, and not on a circle about the apex.
     get focus_on_plane -> bool = this.0.focus_on_plane > 0.0;
 }
 

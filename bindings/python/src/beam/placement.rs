@@ -7,7 +7,7 @@ use tem00_beam::DVec3;
 use super::arguments::map;
 use crate::arrays::Vector;
 
-/// Where a light stands and where it points, in world coordinates.
+/// Position and directions of a light, in world coordinates.
 ///
 /// Parameters
 /// ----------

@@ -1,4 +1,4 @@
-//! How a laser line spreads its power along the fan.
+//! Distribution of the power of a laser line along the fan.
 
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -14,7 +14,7 @@ use crate::{
     pickling::{Recipe, by_constructor},
 };
 
-/// How a laser line spreads its power along the fan.
+/// Distribution of the power of a laser line along the fan.
 ///
 /// Each profile is a density in tan θ, in θ itself or in sin θ, where θ is the fan angle. The edges of
 /// the fan are the 1/e² points of a Gaussian, the ends of a uniform profile, the half-value points of a

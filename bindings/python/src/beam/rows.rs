@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use crate::{arrays::Numbers, error::refused};
 
-/// How far the axes of a light may be from orthonormal: the rounding of single precision.
+/// Largest deviation of the axes of a light from orthonormal: the rounding of single precision.
 const ORTHONORMAL: f64 = 1e-6;
 
 /// Rows that a user gave, checked.

@@ -7,7 +7,7 @@ use crate::{
     pickling::{Recipe, by_constructor},
 };
 
-/// What is meant by the correlation after a pupil and an axial displacement together.
+/// Definition of the correlation after a pupil and an axial displacement together.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CorrelationLaw(physics::CorrelationLaw);

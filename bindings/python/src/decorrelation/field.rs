@@ -12,7 +12,7 @@ use crate::{
     error::OrRaise,
 };
 
-/// What all points of a field share: the camera and the pattern it looks up.
+/// Settings common to all points of a field: the camera and the pattern it looks up.
 ///
 /// Parameters
 /// ----------
@@ -81,7 +81,7 @@ methods! {
     /// Centre of the pupil in metres, of shape (3,).
     field pupil_centre -> Vector<3>;
 
-    /// Which way up image displacements are counted.
+    /// Orientation in which image displacements are counted.
     get orientation -> &'static str = orientation_name(this.setup.orientation);
 
     /// Speckle size of the pattern in samples.
@@ -140,7 +140,7 @@ impl FieldLight {
     }
 }
 
-/// What motions do to the speckle at many surface points.
+/// Effect of motions on the speckle at many surface points.
 ///
 /// Numbers where points were numbers, arrays of the common shape where they were arrays.
 #[pyclass(frozen, module = "tem00.decorrelation")]
@@ -172,14 +172,14 @@ impl FieldSlices {
         self.pair(py, 2)
     }
 
-    /// What is left of the old pattern as a correlation of intensity, in [0, 1]; the slice to look up
+    /// Correlation of intensity with the pattern before, in [0, 1]; the slice to look up
     /// is `SpeckleStack.coordinate_of` of it.
     #[getter]
     fn correlation(&self, py: Python<'_>) -> Field {
         self.0[4].clone_ref(py)
     }
 
-    /// Where to look the pattern up, in pattern samples and not wrapped.
+    /// Coordinates at which to look the pattern up, in pattern samples and not wrapped.
     #[getter]
     fn pattern_coordinate(&self, py: Python<'_>) -> (Field, Field) {
         self.pair(py, 5)
@@ -190,7 +190,7 @@ impl FieldSlices {
     }
 }
 
-/// What motions do to the speckle at many surface points, such as those behind the pixels.
+/// Effect of motions on the speckle at many surface points, such as those behind the pixels.
 ///
 /// Parameters
 /// ----------
@@ -273,7 +273,7 @@ impl MotionField {
 methods! {
     impl MotionField as this: this.setup;
 
-    /// What all points share.
+    /// Settings common to all points.
     get setup -> FieldSetup = this.setup;
 }
 
@@ -375,7 +375,7 @@ fn named_points<'a, 'py>(
     ]
 }
 
-/// Where the results of a block go.
+/// Destination of the results of a block.
 fn slices(out: [&mut [f64]; 7]) -> physics::FieldSlices<'_> {
     let [sx, sy, px, py, correlation, cx, cy] = out;
     physics::FieldSlices {

@@ -18,7 +18,7 @@ pub(crate) struct ImagingGeometry {
     made: Made,
 }
 
-/// What a geometry can be made from again.
+/// Data that make a geometry again.
 #[derive(Clone, Copy, Debug)]
 enum Made {
     Lens(LensData),

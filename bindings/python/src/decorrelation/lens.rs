@@ -3,7 +3,7 @@ use tem00_decorrelation as physics;
 
 use crate::pickling::{Recipe, by_constructor};
 
-/// What `__getnewargs_ex__` returns: no positional arguments, and those with names.
+/// Result of `__getnewargs_ex__`: no positional arguments, and those with names.
 type Keywords<'py> = ((), Bound<'py, PyDict>);
 
 /// A thin lens at a known distance from the surface; all lengths in metres.
@@ -88,7 +88,7 @@ impl LensData {
     }
 }
 
-/// Where the surface in focus lies before a thick lens.
+/// Position of the surface in focus before a thick lens.
 #[pyclass(frozen, eq, module = "tem00.decorrelation")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Focus(physics::Focus);

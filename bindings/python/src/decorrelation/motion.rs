@@ -67,10 +67,10 @@ methods! {
     /// Translation of the light source and its wavefront in metres, of shape (3,).
     field source -> Vector<3>;
 
-    /// How far the camera sees the surface move, in metres, of shape (3,).
+    /// Displacement of the surface as the camera sees it, in metres, of shape (3,).
     get surface_seen_by_camera -> Vector<3>;
 
-    /// How far the surface moves through the illumination, in metres, of shape (3,).
+    /// Displacement of the surface through the illumination, in metres, of shape (3,).
     get surface_within_illumination -> Vector<3>;
 }
 

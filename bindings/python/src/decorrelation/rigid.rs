@@ -117,7 +117,7 @@ fn finite(motion: physics::RigidMotion, name: &'static str) -> PyResult<RigidMot
     Err(refused(name, message))
 }
 
-/// How surface, camera and light source have moved since the reference state, as rigid bodies.
+/// Motions of surface, camera and light source since the reference state, as rigid bodies.
 ///
 /// Parameters
 /// ----------

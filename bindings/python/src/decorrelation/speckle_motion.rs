@@ -9,7 +9,7 @@ use super::{
 };
 use crate::error::refused;
 
-/// What a motion does to the speckle at one surface point.
+/// Effect of a motion on the speckle at one surface point.
 ///
 /// Parameters
 /// ----------
@@ -69,7 +69,7 @@ impl SpeckleMotion {
         array2(py, "motion", self.0.image_displacement)
     }
 
-    /// What the speckle of a point out of focus moves in addition, in metres on the sensor.
+    /// Additional displacement of the speckle of a point out of focus, in metres on the sensor.
     #[getter]
     fn defocus_displacement<'py>(&self, py: Python<'py>) -> PyResult<Array2<'py>> {
         array2(py, "motion", self.0.defocus_displacement)
@@ -107,7 +107,7 @@ methods! {
     /// Motion of the surface towards the camera along the optical axis, in metres.
     field axial_displacement -> f64;
 
-    /// What is left of the old pattern as a correlation of intensity, in [0, 1].
+    /// Correlation of intensity with the pattern before, in [0, 1].
     ///
     /// It is that of the pattern looked up at the `speckle_displacement`: by the law
     /// `CorrelationLaw.at_image_displacement()` in `new`, `CorrelationLaw.at_peak()` in `between`.

@@ -7,7 +7,7 @@ use tem00_speckle as physics;
 use super::arguments::{INTERPOLATIONS, choice, name_of};
 use crate::arrays::Whole;
 
-/// How a stack is built.
+/// Options of a stack.
 ///
 /// Parameters
 /// ----------
@@ -51,7 +51,7 @@ impl StackOptions {
 methods! {
     impl StackOptions as this: this.0;
 
-    /// How look-ups interpolate in the plane.
+    /// Interpolation of look-ups in the plane.
     get interpolation -> &'static str = name_of(&INTERPOLATIONS, this.0.interpolation);
 
     /// Bytes that the slices may take.

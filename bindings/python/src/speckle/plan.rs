@@ -14,7 +14,7 @@ use crate::{
     pickling::{Recipe, by_constructor},
 };
 
-/// What a stack is to be looked up for.
+/// Demands on a stack: image, motion and memory.
 ///
 /// Parameters
 /// ----------

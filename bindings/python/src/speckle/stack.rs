@@ -226,7 +226,7 @@ methods! {
     /// Path of the pupil.
     get path -> SlicePath = SlicePath(this.0.path());
 
-    /// How look-ups interpolate in the plane.
+    /// Interpolation of look-ups in the plane.
     get interpolation -> &'static str = name_of(&INTERPOLATIONS, this.0.interpolation());
 
     /// Width and height, which are the periods in the plane, in samples.

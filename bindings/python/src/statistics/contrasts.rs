@@ -68,7 +68,7 @@ functions! {
 /// Parameters
 /// ----------
 /// correlation : callable
-///     Takes the share t of the exposure between two moments, a float in [0, 1], and returns the
+///     Takes the fraction t of the exposure between two moments, a float in [0, 1], and returns the
 ///     correlation of the intensities then, in [−1, 1]. It is called a thousand times.
 #[pyfunction]
 pub(super) fn contrast_of_exposure(correlation: Bound<'_, PyAny>) -> PyResult<f64> {

@@ -8,7 +8,7 @@ use crate::{
     error::{OrRaise, refused},
 };
 
-/// What a test of a hypothesis found.
+/// Outcome of a test of a hypothesis.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TestOutcome(pub(super) physics::TestOutcome);

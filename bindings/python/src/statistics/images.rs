@@ -7,7 +7,7 @@ use crate::{
     error::{OrRaise, refused},
 };
 
-/// What errors call the values of an image.
+/// Name of the values of an image in errors.
 const VALUES: &[&str] = &["samples", "lags"];
 
 /// Return the normalised autocovariance of an image at every lag, 1 at zero lag.

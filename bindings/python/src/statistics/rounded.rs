@@ -17,7 +17,7 @@ pub(crate) struct GreyLevels(physics::GreyLevels);
 
 #[pymethods]
 impl GreyLevels {
-    /// The share of the pixels at the largest level from which on an image counts as clipped.
+    /// The fraction of the pixels at the largest level from which on an image counts as clipped.
     #[classattr]
     const CLIPPED_SHARE: f64 = physics::GreyLevels::CLIPPED_SHARE;
 
@@ -78,7 +78,7 @@ methods! {
     /// Smallest difference of two levels.
     get step -> f64;
 
-    /// Whether all levels are whole multiples of the step.
+    /// True if all levels are whole multiples of the step.
     get are_multiples -> bool;
 
     /// Return the mean of the exponential law whose values, rounded to the levels, have a mean.
@@ -98,7 +98,7 @@ methods! {
     map exponential_contrast(rounded: positive);
 }
 
-/// How well samples agree with a law, whether they were rounded or not.
+/// Agreement of samples, rounded or not, with a law.
 ///
 /// Parameters
 /// ----------

@@ -28,7 +28,7 @@ functions! {
     ///     Level in units of the mean intensity.
     map level_crossings(level);
 
-    /// Return the share of the area of fully developed speckle that is brighter than a level.
+    /// Return the fraction of the area of fully developed speckle that is brighter than a level.
     ///
     /// Parameters
     /// ----------

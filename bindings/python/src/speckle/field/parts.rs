@@ -2,7 +2,7 @@ use numpy::Complex32;
 use tem00_numerics::{Grid, cast::to_usize};
 use tem00_speckle::{Phasors, Pupil, PupilField, SpeckleError};
 
-/// What a field was made of, to make it again.
+/// Arguments that make a field again.
 #[derive(Clone, Debug)]
 pub(super) struct Parts {
     pub(super) size: [usize; 2],
@@ -13,7 +13,7 @@ pub(super) struct Parts {
     pub(super) pupil: Pupil,
 }
 
-/// Where the values at the lattice points come from.
+/// Origin of the values at the lattice points.
 #[derive(Clone, Debug)]
 pub(super) enum Source {
     Seeded(u64, Phasors),

@@ -287,3 +287,23 @@ fn median(values: &mut [f64]) -> f64 {
         _ => upper,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_pixel_has_the_mean_of_the_neighbours_that_it_has() {
+        let values = [1.0, 5.0, 2.0, 8.0, 3.0, 9.0, 4.0];
+        for width in [1, 3, 5, 7, 9, 21] {
+            let means = box_mean(&values, width);
+            assert_eq!(means.len(), values.len(), "{width}");
+            for (i, mean) in means.iter().enumerate() {
+                let near = |j: &usize| j.abs_diff(i) <= width / 2;
+                let about: Vec<f64> = (0..7).filter(near).map(|j| values[j]).collect();
+                let expected = about.iter().sum::<f64>() / about.len() as f64;
+                assert!((mean - expected).abs() < 1e-15, "{width}, {i}: {mean}");
+            }
+        }
+    }
+}

@@ -184,3 +184,11 @@ proptest! {
         prop_assert!(image.values().iter().all(|&i| i > -1e-5 && i <= greatest));
     }
 }
+
+#[test]
+fn an_array_tells_what_it_was_made_of() {
+    let pixels = PixelArray::new([5, 4], [1.3, 0.7]).unwrap();
+    assert_eq!(pixels.count(), [5, 4]);
+    assert_eq!(pixels.pitch(), [1.3, 0.7]);
+    assert_eq!(pixels.size(), [1.3, 0.7], "pixels without gaps");
+}

@@ -334,3 +334,17 @@ fn slices_of_unlike_light_are_blended_in_one_frame() {
         assert!(error < 1e-5, "({x}, {y}): {got} | {expected}");
     }
 }
+
+#[test]
+fn fringes_between_slices_are_those_of_both_pupils_together() {
+    let field = PupilField::new(64, 16, 1).unwrap();
+    // Four slices, three diameters: the pupil moves by 12 samples of its lattice from one to the next.
+    let path = SlicePath::Straight {
+        half_period: 2,
+        length: 3,
+    };
+    let stack = stack(&field, path, Interpolation::CubicSpline);
+    let finest = |between| [0, 1].map(|axis| stack.layer(0, between).finest(axis, 64.0, 4.0));
+    assert_eq!(finest(false), [4.0, 4.0]);
+    assert_eq!(finest(true), [64.0 / (16.0 + 12.0), 4.0]);
+}

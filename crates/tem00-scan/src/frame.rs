@@ -9,7 +9,7 @@ use tem00_triangulation::{
 };
 
 use crate::{
-    ScanError, exposure::Exposure, sensor_speckle::ImageSpeckle, speckle_table::SpeckleTable,
+    ScanError, exposure::Exposure, image_speckle::ImageSpeckle, speckle_table::SpeckleTable,
 };
 
 /// What the sensor measures in one frame.

@@ -23,6 +23,7 @@ mod exposure;
 mod frame;
 mod frame_correlation;
 mod height_map;
+mod image_speckle;
 mod laser_plane;
 mod measurement;
 mod motion;

@@ -16,9 +16,10 @@ use crate::{
     exposure::Exposure,
     frame::{MeasuredFrame, Surroundings, middle},
     frame_correlation::FrameCorrelation,
+    image_speckle::ImageSpeckle,
     motion::ScanMotion,
     scene::MeasurementScene,
-    sensor_speckle::{ImageSpeckle, SensorSpeckle},
+    sensor_speckle::SensorSpeckle,
     settings::ScanSettings,
 };
 

@@ -1,6 +1,6 @@
 //! From the camera and the motion in a scene to the speckle factor of a camera sample.
 
-mod allotment;
+mod allocation;
 mod between_frames;
 mod change;
 mod model;

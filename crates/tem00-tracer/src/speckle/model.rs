@@ -5,7 +5,7 @@ use tem00_speckle::{IncoherentSum, SpeckleStack};
 
 use super::{
     PatternPlan, SpecklePlan, SpecklePoint,
-    allotment::{Allotment, Part},
+    allocation::{Part, PatternAllocation},
     change::Change,
     plan::Place,
     printed::displacement_and_slice,
@@ -107,9 +107,9 @@ impl SpeckleModel {
 
 impl LaserPatterns {
     fn generate(geometry: ImagingGeometry, plan: &PatternPlan) -> Result<Self, TracerError> {
-        let allotments = plan.allotments().iter().zip(0_u64..);
-        let patterns = allotments
-            .map(|(allotment, number)| Pattern::generate(plan, allotment, plan.seed_of(number)))
+        let allocations = plan.allocations().iter().zip(0_u64..);
+        let patterns = allocations
+            .map(|(allocation, number)| Pattern::generate(plan, allocation, plan.seed_of(number)))
             .collect::<Result<_, _>>()?;
         Ok(Self {
             geometry,
@@ -120,25 +120,29 @@ impl LaserPatterns {
 }
 
 impl Pattern {
-    fn generate(plan: &PatternPlan, allotment: &Allotment, seed: u64) -> Result<Self, TracerError> {
-        let first = allotment.stack.field(seed)?;
-        let stacks = IncoherentSum::equal(allotment.count)?
+    fn generate(
+        plan: &PatternPlan,
+        allocation: &PatternAllocation,
+        seed: u64,
+    ) -> Result<Self, TracerError> {
+        let first = allocation.stack.field(seed)?;
+        let stacks = IncoherentSum::equal(allocation.count)?
             .fields(&first)?
             .into_iter()
             .map(|field| {
                 if plan.is_as_printed() {
-                    let stack = BilinearStack::generate(&field, allotment.half_period())?;
+                    let stack = BilinearStack::generate(&field, allocation.half_period())?;
                     Ok(Stack::AsPrinted(stack, field.speckle_size()))
                 } else {
-                    let stack = SpeckleStack::generate(&field, allotment.stack.path())?;
+                    let stack = SpeckleStack::generate(&field, allocation.stack.path())?;
                     Ok(Stack::Derived(stack))
                 }
             })
             .collect::<Result<_, TracerError>>()?;
         Ok(Self {
-            slices_per_diameter: allotment.stack.slices_per_diameter(),
-            reaches: allotment.reaches(),
-            half_period: allotment.half_period(),
+            slices_per_diameter: allocation.stack.slices_per_diameter(),
+            reaches: allocation.reaches(),
+            half_period: allocation.half_period(),
             stacks,
         })
     }
@@ -184,7 +188,7 @@ impl SpeckleFrame<'_> {
         let Some(place) = points.first().and_then(|p| patterns.places.get(p.surface)) else {
             return;
         };
-        let pattern = &patterns.patterns[place.allotment];
+        let pattern = &patterns.patterns[place.allocation];
         factors.fill(0.0);
         for part in &place.parts {
             match &pattern.stacks[part.stack] {

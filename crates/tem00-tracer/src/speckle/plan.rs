@@ -4,7 +4,7 @@ use tem00_decorrelation::ImagingGeometry;
 use tem00_speckle::{IncoherentSum, SlicePath, StackNeeds, StackPlan};
 
 use super::{
-    allotment::{self, Allotment, Part, Request},
+    allocation::{self, Part, PatternAllocation, Request},
     change::Witness,
     survey::{Audience, Survey, surveys},
 };
@@ -28,7 +28,7 @@ pub struct SpecklePlan {
 pub struct PatternPlan {
     wavelength: f64,
     speckle_size: f64,
-    allotments: Vec<Allotment>,
+    allocations: Vec<PatternAllocation>,
     /// Where each surface finds its speckle.
     places: Vec<Place>,
     /// The names of the surfaces.
@@ -42,7 +42,7 @@ pub struct PatternPlan {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Place {
     /// The patterns, among those of the laser.
-    pub allotment: usize,
+    pub allocation: usize,
     /// The parts that add up.
     pub parts: Vec<Part>,
     /// What tells one side of the reference frame from the other.
@@ -139,7 +139,7 @@ impl Planner<'_> {
             .collect();
         let as_printed = self.formulas == Formulas::AsPrinted;
         let settings = &self.scene.speckle;
-        let allotments = allotment::allot(&requests, memory, |plan| {
+        let allocations = allocation::allocate(&requests, memory, |plan| {
             let plan = as_asked(plan, settings);
             if as_printed { plan.on_circle() } else { plan }
         })?;
@@ -148,8 +148,8 @@ impl Planner<'_> {
         Ok(PatternPlan {
             wavelength: geometry.wavelength(),
             speckle_size: geometry.speckle_size_in_pixels(),
-            places: self.places(&requests, &allotments, &sums, surveys),
-            allotments,
+            places: self.places(&requests, &allocations, &sums, surveys),
+            allocations,
             names: self.scene.surfaces.iter().map(|s| s.name.clone()).collect(),
             as_printed,
             chosen: settings.size.is_none() && settings.diameter.is_none(),
@@ -189,11 +189,11 @@ impl Planner<'_> {
     fn places(
         &self,
         requests: &[Request],
-        allotments: &[Allotment],
+        allocations: &[PatternAllocation],
         sums: &[Vec<f64>],
         surveys: &[Survey],
     ) -> Vec<Place> {
-        let shared = allotments.iter().any(|allotment| allotment.places > 1);
+        let shared = allocations.iter().any(|allocation| allocation.places > 1);
         let surfaces = self.groups.iter().zip(sums);
         surfaces
             .map(|(&group, shares)| {
@@ -201,14 +201,14 @@ impl Planner<'_> {
                 let first: usize = before.sum();
                 let parts = shares.iter().enumerate();
                 Place {
-                    allotment: if shared { 0 } else { group },
+                    allocation: if shared { 0 } else { group },
                     witness: surveys[group].witness,
                     parts: parts
                         .map(|(number, &share)| match shared {
                             true => Part {
                                 share,
                                 stack: 0,
-                                offset: allotment::place(first + number),
+                                offset: allocation::offset(first + number),
                             },
                             false => Part {
                                 share,
@@ -245,7 +245,7 @@ impl PatternPlan {
     /// diameters.
     pub fn largest_shift(&self) -> f64 {
         let motions = self
-            .allotments
+            .allocations
             .iter()
             .map(|a| a.needs.motion.unwrap_or(0.0));
         motions.fold(0.0, f64::max)
@@ -253,16 +253,19 @@ impl PatternPlan {
 
     /// Returns the bytes that all patterns of the laser take.
     pub fn memory_bytes(&self) -> u64 {
-        self.allotments.iter().map(Allotment::memory_bytes).sum()
+        self.allocations
+            .iter()
+            .map(PatternAllocation::memory_bytes)
+            .sum()
     }
 
     /// The patterns of the first group of surfaces, of which there is always one.
-    fn first(&self) -> &Allotment {
-        &self.allotments[0]
+    fn first(&self) -> &PatternAllocation {
+        &self.allocations[0]
     }
 
-    pub(super) fn allotments(&self) -> &[Allotment] {
-        &self.allotments
+    pub(super) fn allocations(&self) -> &[PatternAllocation] {
+        &self.allocations
     }
 
     pub(super) fn places(&self) -> &[Place] {
@@ -273,14 +276,14 @@ impl PatternPlan {
         self.as_printed
     }
 
-    /// Returns the seed of allotment `number`: that of the laser for the first.
+    /// Returns the seed of allocation `number`: that of the laser for the first.
     pub(super) const fn seed_of(&self, number: u64) -> u64 {
         self.seed
             .wrapping_add(number.wrapping_mul(0xd1b5_4a32_d192_ed03))
     }
 }
 
-impl Allotment {
+impl PatternAllocation {
     pub(super) const fn half_period(&self) -> usize {
         match self.stack.path() {
             SlicePath::Still => 1,

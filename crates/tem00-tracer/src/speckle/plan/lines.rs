@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::{PatternPlan, SpecklePlan};
-use crate::speckle::allotment::Allotment;
+use crate::speckle::allocation::PatternAllocation;
 
 impl fmt::Display for SpecklePlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -24,37 +24,37 @@ impl fmt::Display for SpecklePlan {
 
 impl fmt::Display for PatternPlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, allotment) in self.allotments.iter().enumerate() {
+        for (index, allocation) in self.allocations.iter().enumerate() {
             if index > 0 {
                 writeln!(f)?;
             }
-            if self.allotments.len() > 1 {
-                write!(f, "{}: ", self.surfaces(allotment))?;
+            if self.allocations.len() > 1 {
+                write!(f, "{}: ", self.surfaces(allocation))?;
             }
-            self.line(allotment, f)?;
+            self.line(allocation, f)?;
         }
         Ok(())
     }
 }
 
 impl PatternPlan {
-    /// The names of the first surfaces of an allotment, and how many more there are.
-    fn surfaces(&self, allotment: &Allotment) -> String {
+    /// The names of the first surfaces of an allocation, and how many more there are.
+    fn surfaces(&self, allocation: &PatternAllocation) -> String {
         const SHOWN: usize = 3;
-        let names = allotment
+        let names = allocation
             .surfaces
             .iter()
             .map(|&surface| &self.names[surface]);
         let shown: Vec<_> = names.take(SHOWN).map(|name| format!("`{name}`")).collect();
         let shown = shown.join(", ");
-        match allotment.surfaces.len().saturating_sub(SHOWN) {
+        match allocation.surfaces.len().saturating_sub(SHOWN) {
             0 => shown,
             more => format!("{shown} and {more} more"),
         }
     }
 
-    fn line(&self, allotment: &Allotment, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Allotment { stack, needs, .. } = allotment;
+    fn line(&self, allocation: &PatternAllocation, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let PatternAllocation { stack, needs, .. } = allocation;
         let [width, height] = needs.region;
         write!(
             f,
@@ -91,18 +91,18 @@ impl PatternPlan {
                 }
             )?,
         }
-        if allotment.count > 1 {
-            write!(f, "{} patterns that add up; ", allotment.count)?;
+        if allocation.count > 1 {
+            write!(f, "{} patterns that add up; ", allocation.count)?;
         }
-        if allotment.places > 1 {
+        if allocation.places > 1 {
             write!(
                 f,
                 "{} places in one pattern, for the memory does NOT hold more: each repeats what \
                  another shows elsewhere in the image; ",
-                allotment.places
+                allocation.places
             )?;
         }
-        let mebibytes = allotment.memory_bytes() as f64 / f64::from(1 << 20);
+        let mebibytes = allocation.memory_bytes() as f64 / f64::from(1 << 20);
         write!(f, "{mebibytes:.1} MiB")
     }
 }

@@ -107,15 +107,15 @@ fn surfaces_that_move_apart_have_patterns_of_their_own_each_as_wide_as_it_needs(
         ..left
     };
     let plan = plan_with(2, -0.3795e-3 * DVec3::X, [left]);
-    let [one, other] = plan.allotments() else {
+    let [one, other] = plan.allocations() else {
         panic!("two motions have two patterns: {plan}");
     };
-    for allotment in [one, other] {
-        let width = allotment.needs.region[0];
+    for allocation in [one, other] {
+        let width = allocation.needs.region[0];
         assert!((width - 310.0).abs() < 3.0, "{width} pixels: {plan}");
     }
     assert_ne!(plan.seed_of(0), plan.seed_of(1), "{plan}");
-    let places: Vec<_> = plan.places().iter().map(|place| place.allotment).collect();
+    let places: Vec<_> = plan.places().iter().map(|place| place.allocation).collect();
     assert_eq!(places, [0, 1], "{plan}");
     let lines: Vec<_> = plan.to_string().lines().map(str::to_owned).collect();
     assert_eq!(lines.len(), 2, "{plan}");
@@ -131,7 +131,7 @@ fn rest() -> Surface {
 fn what_stands_still_takes_one_slice() {
     let plan = plan_with(2, 0.3795e-3 * DVec3::X, [rest()]);
     let slices = plan
-        .allotments()
+        .allocations()
         .iter()
         .map(|a| a.stack.path().slice_count());
     assert_eq!(slices.collect::<Vec<_>>(), [64, 1], "{plan}");
@@ -160,10 +160,10 @@ fn surfaces_that_move_alike_share_a_pattern_wherever_they_turn() {
     let keyframed = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
     let standing = [more(&Trajectory::default()), more(&keyframed)];
     let still = plan_with(2, DVec3::ZERO, standing.concat());
-    assert_eq!(still.allotments().len(), 1, "{still}");
+    assert_eq!(still.allocations().len(), 1, "{still}");
     let steady = Trajectory::steady(0.3795e-3 * DVec3::X).unwrap();
     let moving = plan_with(2, 0.3795e-3 * DVec3::X, more(&steady));
-    assert_eq!(moving.allotments().len(), 1, "{moving}");
+    assert_eq!(moving.allocations().len(), 1, "{moving}");
 }
 
 #[test]
@@ -175,9 +175,9 @@ fn a_memory_that_does_not_hold_patterns_for_all_holds_places_for_them() {
     };
     // 32 slices of 3/4 MiB and one; less than 16 slices per diameter are not worth it.
     let own = planned(24.75);
-    assert_eq!(own.allotments().len(), 2, "{own}");
+    assert_eq!(own.allocations().len(), 2, "{own}");
     let shared = planned(24.7);
-    assert_eq!(shared.allotments().len(), 1, "{shared}");
+    assert_eq!(shared.allocations().len(), 1, "{shared}");
     assert_eq!(shared.stack().path().slice_count(), 32, "{shared}");
     assert!(
         shared.to_string().contains("2 places in one pattern"),
@@ -243,13 +243,13 @@ fn motions_before_and_after_the_reference_frame_add_up() {
     let mut scene = scene(6, 1e-3 * DVec3::X);
     scene.render.reference_frame = 2;
     let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
-    let allotment = &plan.patterns()[0].allotments()[0];
-    for (shift, expected) in allotment.shifts.iter().zip([2.0, 3.0]) {
+    let allocation = &plan.patterns()[0].allocations()[0];
+    for (shift, expected) in allocation.shifts.iter().zip([2.0, 3.0]) {
         assert!((shift - expected / 3.125).abs() < 0.01, "{plan}");
     }
     // A path of 1.6 diameters and the pupil's own.
-    assert!((allotment.stack.reach() - 2.0).abs() < 1e-12, "{plan}");
-    let [before, after] = allotment.reaches();
+    assert!((allocation.stack.reach() - 2.0).abs() < 1e-12, "{plan}");
+    let [before, after] = allocation.reaches();
     assert!(
         (before + after - 2.0).abs() < 1e-12 && before < after,
         "{plan}"

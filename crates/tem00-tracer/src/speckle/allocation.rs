@@ -18,7 +18,7 @@ pub(super) struct Request {
 
 /// Patterns of one size for surfaces that move alike, or for all that share it.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Allotment {
+pub(super) struct PatternAllocation {
     /// What is asked for, whether it fits or not.
     pub needs: StackNeeds,
     /// The largest motion of the pupil to either side of the reference frame, in its diameters.
@@ -33,7 +33,7 @@ pub(super) struct Allotment {
     pub surfaces: Vec<usize>,
 }
 
-impl Allotment {
+impl PatternAllocation {
     /// Returns the bytes that the slices of all stacks take.
     pub(super) fn memory_bytes(&self) -> u64 {
         let stacks = u64::try_from(self.count).unwrap_or(u64::MAX);
@@ -59,7 +59,7 @@ impl Allotment {
 pub(super) struct Part {
     /// Its share of the light.
     pub share: f64,
-    /// The stack, among those of the allotment.
+    /// The stack, among those of the allocation.
     pub stack: usize,
     /// Its place in the stack, in periods along x and y.
     pub offset: [f64; 2],
@@ -69,20 +69,20 @@ pub(super) struct Part {
 /// in one with more slices: the blend between them then exceeds the correlation law by up to 0.11.
 const ENOUGH_SLICES: f64 = 16.0;
 
-/// Allots patterns to requests within a memory in bytes: a stack for each pattern, or else a place
+/// Allocates patterns to requests within a memory in bytes: a stack for each pattern, or else a place
 /// in one stack for all. `asked` makes of a plan what the scene file asks for.
-pub(super) fn allot(
+pub(super) fn allocate(
     requests: &[Request],
     memory: u64,
     asked: impl Fn(StackPlan) -> StackPlan,
-) -> Result<Vec<Allotment>, TracerError> {
+) -> Result<Vec<PatternAllocation>, TracerError> {
     let places: usize = requests.iter().map(|request| request.parts).sum();
     if places > 1
         && let Some(stacks) = separate(requests, memory, &asked)?
     {
         let pairs = requests.iter().zip(stacks);
         return Ok(pairs
-            .map(|(request, stack)| Allotment {
+            .map(|(request, stack)| PatternAllocation {
                 needs: request.needs,
                 shifts: request.shifts,
                 stack,
@@ -101,7 +101,7 @@ pub(super) fn allot(
         },
         other => other.into(),
     })?;
-    Ok(vec![Allotment {
+    Ok(vec![PatternAllocation {
         needs,
         shifts,
         stack,
@@ -166,10 +166,10 @@ fn together(requests: &[Request]) -> Option<(StackNeeds, [f64; 2])> {
     })
 }
 
-/// Returns the place of the pattern `number` among `places` in one stack, in periods along x and y.
+/// Returns the offset of the pattern `number` among `places` in one stack, in periods along x and y.
 ///
 /// They are the points of the sequence of Roberts (2018), far apart from each other.
-pub(super) fn place(number: usize) -> [f64; 2] {
+pub(super) fn offset(number: usize) -> [f64; 2] {
     /// The plastic ratio: the root of x³ = x + 1.
     const PLASTIC: f64 = 1.324_717_957_244_746;
     let number = number as f64;

@@ -6,7 +6,7 @@ use tem00_speckle::{IncoherentSum, SlicePath, StackNeeds, StackPlan};
 use super::{
     allocation::{self, Part, PatternAllocation, Request},
     change::Witness,
-    survey::{Audience, Survey, surveys},
+    survey::{LaserGroups, Survey, surveys},
 };
 use crate::{Formulas, Scene, SpeckleSettings, SurfaceSpeckle, TracerError, Trajectory};
 
@@ -68,12 +68,12 @@ impl SpecklePlan {
             .map(|laser| scene.camera.imaging_geometry(laser.wavelength()))
             .collect::<Result<Vec<_>, _>>()?;
         let groups = groups(scene);
-        let audience = Audience {
+        let laser_groups = LaserGroups {
             geometries: &geometries,
             groups: &groups,
         };
         let memory = scene.speckle.memory / scene.lasers.len().max(1) as u64;
-        let surveys = surveys(scene, audience)?;
+        let surveys = surveys(scene, laser_groups)?;
         let lasers = surveys.iter().zip(&geometries).enumerate();
         let patterns = lasers
             .map(|(laser, (surveys, geometry))| {

@@ -67,9 +67,9 @@ impl Survey {
     }
 }
 
-/// Which lasers light which surfaces, as far as patterns go.
+/// The imaging geometries of the lasers, and the groups of surfaces with a pattern each.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Audience<'a> {
+pub(super) struct LaserGroups<'a> {
     /// The imaging geometry of each laser.
     pub geometries: &'a [ImagingGeometry],
     /// The group of each surface.
@@ -82,9 +82,9 @@ pub(super) struct Audience<'a> {
 /// Each frame is surveyed on its own thread.
 pub(super) fn surveys(
     scene: &Scene,
-    audience: Audience<'_>,
+    laser_groups: LaserGroups<'_>,
 ) -> Result<Vec<Vec<Survey>>, TracerError> {
-    let groups = audience.groups.iter().max().map_or(0, |last| last + 1);
+    let groups = laser_groups.groups.iter().max().map_or(0, |last| last + 1);
     let still = vec![vec![Survey::of_image(&scene.camera); groups]; scene.lasers.len()];
     let moves = |laser: usize| {
         let mut surfaces = 0..scene.surfaces.len();
@@ -98,10 +98,10 @@ pub(super) fn surveys(
     let glimpses = frames
         .par_iter()
         .zip(&changes)
-        .map(|(&frame, change)| glimpses(scene, audience, frame, change))
+        .map(|(&frame, change)| glimpses(scene, laser_groups, frame, change))
         .collect::<Result<Vec<_>, TracerError>>()?;
     let mut surveys = still;
-    for (laser, geometry) in audience.geometries.iter().enumerate() {
+    for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
         for (group, survey) in surveys[laser].iter_mut().enumerate() {
             let seen = changes.iter().zip(&glimpses);
             let seen: Vec<_> = seen.map(|(c, g)| (c, &g[laser][group])).collect();
@@ -136,7 +136,7 @@ impl Survey {
 /// What one frame asks of the pattern of each laser and group.
 fn glimpses(
     scene: &Scene,
-    audience: Audience<'_>,
+    laser_groups: LaserGroups<'_>,
     frame: u32,
     change: &Change,
 ) -> Result<Vec<Vec<Glimpse>>, TracerError> {
@@ -146,14 +146,14 @@ fn glimpses(
         shift: 0.0,
         farthest: None,
     };
-    let groups = audience.groups.iter().max().map_or(0, |last| last + 1);
-    let mut glimpses = vec![vec![none; groups]; audience.geometries.len()];
+    let groups = laser_groups.groups.iter().max().map_or(0, |last| last + 1);
+    let mut glimpses = vec![vec![none; groups]; laser_groups.geometries.len()];
     let intersector = Intersector::build(&scene.shapes_at(frame))?;
     for pixel in pixels(image_size(change.camera())) {
         let Some(hit) = intersector.intersect(&change.camera().ray(pixel)) else {
             continue;
         };
-        let Some(&group) = audience.groups.get(hit.surface) else {
+        let Some(&group) = laser_groups.groups.get(hit.surface) else {
             continue;
         };
         let point = SpecklePoint {
@@ -162,7 +162,7 @@ fn glimpses(
             normal: hit.normal,
             surface: hit.surface,
         };
-        for (laser, geometry) in audience.geometries.iter().enumerate() {
+        for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
             if change.laser(laser).illuminate(hit.position).is_some() {
                 let drift = change.drift(laser, geometry, &point);
                 let origin = change.perspective().point(pixel) - drift.displacement;

@@ -40,7 +40,7 @@ pub(super) struct Survey {
 
 /// What one frame asks of a pattern.
 #[derive(Clone, Copy, Debug)]
-struct Glimpse {
+struct FrameSample {
     low: DVec2,
     high: DVec2,
     /// The largest motion of the pupil over the speckle, in pupil diameters.
@@ -95,15 +95,15 @@ pub(super) fn surveys(
     }
     let frames: Vec<u32> = frames(scene).into_iter().collect();
     let changes: Vec<_> = frames.iter().map(|&f| Change::new(scene, f)).collect();
-    let glimpses = frames
+    let samples = frames
         .par_iter()
         .zip(&changes)
-        .map(|(&frame, change)| glimpses(scene, laser_groups, frame, change))
+        .map(|(&frame, change)| frame_samples(scene, laser_groups, frame, change))
         .collect::<Result<Vec<_>, TracerError>>()?;
     let mut surveys = still;
     for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
         for (group, survey) in surveys[laser].iter_mut().enumerate() {
-            let seen = changes.iter().zip(&glimpses);
+            let seen = changes.iter().zip(&samples);
             let seen: Vec<_> = seen.map(|(c, g)| (c, &g[laser][group])).collect();
             survey.add(laser, geometry, &seen);
         }
@@ -113,41 +113,41 @@ pub(super) fn surveys(
 
 impl Survey {
     /// Adds what the frames ask of the pattern of a laser.
-    fn add(&mut self, laser: usize, geometry: &ImagingGeometry, seen: &[(&Change, &Glimpse)]) {
+    fn add(&mut self, laser: usize, geometry: &ImagingGeometry, seen: &[(&Change, &FrameSample)]) {
         let mut largest = 0.0;
-        for (change, glimpse) in seen {
-            let farther = glimpse.farthest.filter(|_| glimpse.shift > largest);
+        for (change, sample) in seen {
+            let farther = sample.farthest.filter(|_| sample.shift > largest);
             if let Some(witness) = farther.and_then(|point| change.witness(laser, geometry, &point))
             {
-                largest = glimpse.shift;
+                largest = sample.shift;
                 self.witness = Some(witness);
             }
         }
-        for (change, glimpse) in seen {
-            self.low = self.low.min(glimpse.low);
-            self.high = self.high.max(glimpse.high);
+        for (change, sample) in seen {
+            self.low = self.low.min(sample.low);
+            self.high = self.high.max(sample.high);
             let side = change.side(laser, geometry, self.witness.as_ref());
             let shift = &mut self.shifts[usize::from(side > 0.0)];
-            *shift = shift.max(glimpse.shift);
+            *shift = shift.max(sample.shift);
         }
     }
 }
 
 /// What one frame asks of the pattern of each laser and group.
-fn glimpses(
+fn frame_samples(
     scene: &Scene,
     laser_groups: LaserGroups<'_>,
     frame: u32,
     change: &Change,
-) -> Result<Vec<Vec<Glimpse>>, TracerError> {
-    let none = Glimpse {
+) -> Result<Vec<Vec<FrameSample>>, TracerError> {
+    let none = FrameSample {
         low: DVec2::INFINITY,
         high: DVec2::NEG_INFINITY,
         shift: 0.0,
         farthest: None,
     };
     let groups = laser_groups.groups.iter().max().map_or(0, |last| last + 1);
-    let mut glimpses = vec![vec![none; groups]; laser_groups.geometries.len()];
+    let mut samples = vec![vec![none; groups]; laser_groups.geometries.len()];
     let intersector = Intersector::build(&scene.shapes_at(frame))?;
     for pixel in pixels(image_size(change.camera())) {
         let Some(hit) = intersector.intersect(&change.camera().ray(pixel)) else {
@@ -166,14 +166,14 @@ fn glimpses(
             if change.laser(laser).illuminate(hit.position).is_some() {
                 let drift = change.drift(laser, geometry, &point);
                 let origin = change.perspective().point(pixel) - drift.displacement;
-                glimpses[laser][group].add(&point, origin, drift.shift);
+                samples[laser][group].add(&point, origin, drift.shift);
             }
         }
     }
-    Ok(glimpses)
+    Ok(samples)
 }
 
-impl Glimpse {
+impl FrameSample {
     /// Adds a point, where its speckle stood, and how far the pupil has moved over it.
     fn add(&mut self, point: &SpecklePoint, origin: DVec2, shift: f64) {
         self.low = self.low.min(origin);

@@ -52,7 +52,7 @@ pub(super) struct Drift {
 ///
 /// It tells a motion to one side of the reference frame from one to the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Witness {
+pub(super) struct ReferencePoint {
     surface: usize,
     /// Where it was seen, in pixels.
     pixel: DVec2,
@@ -125,25 +125,25 @@ impl Change {
     }
 
     /// Returns on which side of the reference frame now is for the speckle of a laser on the surface
-    /// of a witness: 1 where the pupil has moved over its speckle as it has where it moved farthest, and
+    /// of a reference point: 1 where the pupil has moved over its speckle as it has where it moved farthest, and
     /// −1 where it has moved the other way.
     ///
-    /// Without a witness, or where the theory has no value, −1 is before the reference frame.
+    /// Without a reference point, or where the theory has no value, −1 is before the reference frame.
     pub(super) fn side(
         &self,
         laser: usize,
         geometry: &ImagingGeometry,
-        witness: Option<&Witness>,
+        reference_point: Option<&ReferencePoint>,
     ) -> f64 {
-        let along = witness.and_then(|witness| {
-            let body = self.surfaces.get(witness.surface)?;
+        let along = reference_point.and_then(|reference_point| {
+            let body = self.surfaces.get(reference_point.surface)?;
             let point = SpecklePoint {
-                pixel: witness.pixel,
-                position: body.forth.point(witness.position),
-                normal: body.forth.direction(witness.normal),
-                surface: witness.surface,
+                pixel: reference_point.pixel,
+                position: body.forth.point(reference_point.position),
+                normal: body.forth.direction(reference_point.normal),
+                surface: reference_point.surface,
             };
-            Some(self.way(laser, geometry, &point)?.dot(witness.way))
+            Some(self.way(laser, geometry, &point)?.dot(reference_point.way))
         });
         match along {
             Some(along) if along > 0.0 => 1.0,
@@ -154,14 +154,14 @@ impl Change {
     }
 
     /// Returns what a point tells of the way of the pupil over its speckle, if the theory has a value.
-    pub(super) fn witness(
+    pub(super) fn reference_point(
         &self,
         laser: usize,
         geometry: &ImagingGeometry,
         point: &SpecklePoint,
-    ) -> Option<Witness> {
+    ) -> Option<ReferencePoint> {
         let body = self.surfaces.get(point.surface)?;
-        Some(Witness {
+        Some(ReferencePoint {
             surface: point.surface,
             pixel: point.pixel,
             position: body.back.point(point.position),

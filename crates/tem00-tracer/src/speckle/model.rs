@@ -94,7 +94,8 @@ impl SpeckleModel {
         let lasers = self.lasers.iter().enumerate();
         let sides = lasers.map(|(index, laser)| {
             let places = laser.places.iter();
-            let sides = places.map(|p| change.side(index, &laser.geometry, p.witness.as_ref()));
+            let sides =
+                places.map(|p| change.side(index, &laser.geometry, p.reference_point.as_ref()));
             sides.collect()
         });
         SpeckleFrame {

@@ -5,7 +5,7 @@ use tem00_speckle::{IncoherentSum, SlicePath, StackNeeds, StackPlan};
 
 use super::{
     allocation::{self, Part, PatternAllocation, Request},
-    change::Witness,
+    change::ReferencePoint,
     survey::{LaserGroups, Survey, surveys},
 };
 use crate::{Formulas, Scene, SpeckleSettings, SurfaceSpeckle, TracerError, Trajectory};
@@ -46,7 +46,7 @@ pub(super) struct Place {
     /// The parts that add up.
     pub parts: Vec<Part>,
     /// What tells one side of the reference frame from the other.
-    pub witness: Option<Witness>,
+    pub reference_point: Option<ReferencePoint>,
 }
 
 impl SpecklePlan {
@@ -202,7 +202,7 @@ impl Planner<'_> {
                 let parts = shares.iter().enumerate();
                 Place {
                     allocation: if shared { 0 } else { group },
-                    witness: surveys[group].witness,
+                    reference_point: surveys[group].reference_point,
                     parts: parts
                         .map(|(number, &share)| match shared {
                             true => Part {

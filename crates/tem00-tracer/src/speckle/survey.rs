@@ -7,7 +7,7 @@ use tem00_decorrelation::ImagingGeometry;
 
 use super::{
     SpecklePoint,
-    change::{Change, Witness},
+    change::{Change, ReferencePoint},
     perspective::Perspective,
 };
 use crate::{Intersector, Scene, TracerError};
@@ -35,7 +35,7 @@ pub(super) struct Survey {
     /// pupil diameters; the second to the side of the farthest.
     pub shifts: [f64; 2],
     /// A point over whose speckle the pupil has moved farthest.
-    pub witness: Option<Witness>,
+    pub reference_point: Option<ReferencePoint>,
 }
 
 /// What one frame asks of a pattern.
@@ -57,7 +57,7 @@ impl Survey {
             low,
             high,
             shifts: [0.0; 2],
-            witness: None,
+            reference_point: None,
         }
     }
 
@@ -117,16 +117,17 @@ impl Survey {
         let mut largest = 0.0;
         for (change, sample) in seen {
             let farther = sample.farthest.filter(|_| sample.shift > largest);
-            if let Some(witness) = farther.and_then(|point| change.witness(laser, geometry, &point))
+            if let Some(reference_point) =
+                farther.and_then(|point| change.reference_point(laser, geometry, &point))
             {
                 largest = sample.shift;
-                self.witness = Some(witness);
+                self.reference_point = Some(reference_point);
             }
         }
         for (change, sample) in seen {
             self.low = self.low.min(sample.low);
             self.high = self.high.max(sample.high);
-            let side = change.side(laser, geometry, self.witness.as_ref());
+            let side = change.side(laser, geometry, self.reference_point.as_ref());
             let shift = &mut self.shifts[usize::from(side > 0.0)];
             *shift = shift.max(sample.shift);
         }

@@ -15,8 +15,8 @@
 
 mod draws;
 mod job;
+mod specular_search;
 mod splats;
-mod survey;
 mod walk;
 
 use core::sync::atomic::{AtomicBool, Ordering};

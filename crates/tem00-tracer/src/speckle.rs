@@ -7,8 +7,8 @@ mod model;
 mod notes;
 mod perspective;
 mod plan;
+mod prescan;
 mod printed;
-mod survey;
 
 use glam::{DVec2, DVec3};
 

@@ -6,7 +6,7 @@ use tem00_speckle::{IncoherentSum, SlicePath, StackNeeds, StackPlan};
 use super::{
     allocation::{self, Part, PatternAllocation, Request},
     change::ReferencePoint,
-    survey::{LaserGroups, Survey, surveys},
+    prescan::{LaserGroups, MotionPrescan, prescan},
 };
 use crate::{Formulas, Scene, SpeckleSettings, SurfaceSpeckle, TracerError, Trajectory};
 
@@ -73,17 +73,17 @@ impl SpecklePlan {
             groups: &groups,
         };
         let memory = scene.speckle.memory / scene.lasers.len().max(1) as u64;
-        let surveys = surveys(scene, laser_groups)?;
-        let lasers = surveys.iter().zip(&geometries).enumerate();
+        let prescans = prescan(scene, laser_groups)?;
+        let lasers = prescans.iter().zip(&geometries).enumerate();
         let patterns = lasers
-            .map(|(laser, (surveys, geometry))| {
+            .map(|(laser, (prescans, geometry))| {
                 let planner = Planner {
                     scene,
                     laser,
                     formulas,
                     groups: &groups,
                 };
-                planner.plan(surveys, geometry, seed, memory)
+                planner.plan(prescans, geometry, seed, memory)
             })
             .collect::<Result<_, _>>()?;
         Ok(Self { patterns })
@@ -124,7 +124,7 @@ struct Planner<'a> {
 impl Planner<'_> {
     fn plan(
         &self,
-        surveys: &[Survey],
+        prescans: &[MotionPrescan],
         geometry: &ImagingGeometry,
         seed: u64,
         memory: u64,
@@ -133,9 +133,9 @@ impl Planner<'_> {
         let sums = surfaces
             .map(|surface| shares(&surface.speckle))
             .collect::<Result<Vec<_>, _>>()?;
-        let requests = surveys.iter().enumerate();
+        let requests = prescans.iter().enumerate();
         let requests: Vec<_> = requests
-            .map(|(group, survey)| self.request(group, survey, &sums, geometry))
+            .map(|(group, prescan)| self.request(group, prescan, &sums, geometry))
             .collect();
         let as_printed = self.formulas == Formulas::AsPrinted;
         let settings = &self.scene.speckle;
@@ -148,7 +148,7 @@ impl Planner<'_> {
         Ok(PatternPlan {
             wavelength: geometry.wavelength(),
             speckle_size: geometry.speckle_size_in_pixels(),
-            places: self.places(&requests, &allocations, &sums, surveys),
+            places: self.places(&requests, &allocations, &sums, prescans),
             allocations,
             names: self.scene.surfaces.iter().map(|s| s.name.clone()).collect(),
             as_printed,
@@ -161,7 +161,7 @@ impl Planner<'_> {
     fn request(
         &self,
         group: usize,
-        survey: &Survey,
+        prescan: &MotionPrescan,
         sums: &[Vec<f64>],
         geometry: &ImagingGeometry,
     ) -> Request {
@@ -172,14 +172,14 @@ impl Planner<'_> {
         let parts = surfaces.iter().map(|&surface| sums[surface].len());
         Request {
             needs: StackNeeds {
-                image: survey.image.to_array(),
-                region: survey.region().to_array(),
+                image: prescan.image.to_array(),
+                region: prescan.region().to_array(),
                 speckle_size: geometry.speckle_size_in_pixels(),
-                motion: moves.then_some(survey.shifts[0] + survey.shifts[1]),
+                motion: moves.then_some(prescan.shifts[0] + prescan.shifts[1]),
                 frames: self.scene.render.frames,
                 memory_limit: self.scene.speckle.memory,
             },
-            shifts: survey.shifts,
+            shifts: prescan.shifts,
             parts: parts.max().unwrap_or(1),
             surfaces,
         }
@@ -191,7 +191,7 @@ impl Planner<'_> {
         requests: &[Request],
         allocations: &[PatternAllocation],
         sums: &[Vec<f64>],
-        surveys: &[Survey],
+        prescans: &[MotionPrescan],
     ) -> Vec<Place> {
         let shared = allocations.iter().any(|allocation| allocation.places > 1);
         let surfaces = self.groups.iter().zip(sums);
@@ -202,7 +202,7 @@ impl Planner<'_> {
                 let parts = shares.iter().enumerate();
                 Place {
                     allocation: if shared { 0 } else { group },
-                    reference_point: surveys[group].reference_point,
+                    reference_point: prescans[group].reference_point,
                     parts: parts
                         .map(|(number, &share)| match shared {
                             true => Part {

@@ -257,7 +257,7 @@ fn motions_before_and_after_the_reference_frame_add_up() {
 }
 
 #[test]
-fn a_motion_between_two_surveyed_frames_is_found_by_its_keyframes() {
+fn a_motion_between_two_sampled_frames_is_found_by_its_keyframes() {
     let mut scene = scene(1001, DVec3::ZERO);
     let away = Keyframe {
         displacement: DVec3::new(2e-3, 0.0, 0.0),

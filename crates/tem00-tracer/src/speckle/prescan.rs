@@ -12,18 +12,18 @@ use super::{
 };
 use crate::{Intersector, Scene, TracerError};
 
-/// Rays per image side with which a frame is surveyed.
+/// Rays per image side with which a frame is sampled.
 const RAYS_PER_SIDE: u32 = 128;
 
-/// How many frames are surveyed beside those of the keyframes.
+/// How many frames are sampled beside those of the keyframes.
 const FRAMES: u32 = 16;
 
-/// The most keyframes that are surveyed.
+/// The most keyframes that are sampled.
 const KEYFRAMES: usize = 64;
 
 /// What the image and the motion in a scene ask of a pattern.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Survey {
+pub(super) struct MotionPrescan {
     /// Width and height of the image, in pixels.
     pub image: DVec2,
     /// The lowest corner of the region of the reference frame's image from which speckle is looked
@@ -49,7 +49,7 @@ struct FrameSample {
     farthest: Option<SpecklePoint>,
 }
 
-impl Survey {
+impl MotionPrescan {
     fn of_image(camera: &Camera) -> Self {
         let [low, high] = Perspective::of(*camera).image();
         Self {
@@ -79,13 +79,13 @@ pub(super) struct LaserGroups<'a> {
 /// Follows rays to the points that the lasers light, in frames spread over the sequence, and returns
 /// what each laser asks of the pattern of each group of surfaces.
 ///
-/// Each frame is surveyed on its own thread.
-pub(super) fn surveys(
+/// Each frame is sampled on its own thread.
+pub(super) fn prescan(
     scene: &Scene,
     laser_groups: LaserGroups<'_>,
-) -> Result<Vec<Vec<Survey>>, TracerError> {
+) -> Result<Vec<Vec<MotionPrescan>>, TracerError> {
     let groups = laser_groups.groups.iter().max().map_or(0, |last| last + 1);
-    let still = vec![vec![Survey::of_image(&scene.camera); groups]; scene.lasers.len()];
+    let still = vec![vec![MotionPrescan::of_image(&scene.camera); groups]; scene.lasers.len()];
     let moves = |laser: usize| {
         let mut surfaces = 0..scene.surfaces.len();
         surfaces.any(|surface| scene.speckle_moves(laser, surface))
@@ -100,18 +100,18 @@ pub(super) fn surveys(
         .zip(&changes)
         .map(|(&frame, change)| frame_samples(scene, laser_groups, frame, change))
         .collect::<Result<Vec<_>, TracerError>>()?;
-    let mut surveys = still;
+    let mut prescans = still;
     for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
-        for (group, survey) in surveys[laser].iter_mut().enumerate() {
+        for (group, prescan) in prescans[laser].iter_mut().enumerate() {
             let seen = changes.iter().zip(&samples);
             let seen: Vec<_> = seen.map(|(c, g)| (c, &g[laser][group])).collect();
-            survey.add(laser, geometry, &seen);
+            prescan.add(laser, geometry, &seen);
         }
     }
-    Ok(surveys)
+    Ok(prescans)
 }
 
-impl Survey {
+impl MotionPrescan {
     /// Adds what the frames ask of the pattern of a laser.
     fn add(&mut self, laser: usize, geometry: &ImagingGeometry, seen: &[(&Change, &FrameSample)]) {
         let mut largest = 0.0;
@@ -186,7 +186,7 @@ impl FrameSample {
     }
 }
 
-/// The frames to survey: evenly spread, first and last among them, and those at keyframes.
+/// The frames to sample: evenly spread, first and last among them, and those at keyframes.
 fn frames(scene: &Scene) -> BTreeSet<u32> {
     let last = scene.render.frames.saturating_sub(1);
     let lasers = scene.lasers.iter().map(|laser| laser.trajectory());
@@ -231,7 +231,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn surveyed_frames_are_spread_over_the_sequence() {
+    fn sampled_frames_are_spread_over_the_sequence() {
         let spread = |last| spread(last).collect::<Vec<_>>();
         assert_eq!(spread(0), [0]);
         assert_eq!(spread(1), [0, 1]);

@@ -77,12 +77,12 @@ impl SpeckleChange {
             surface: point.surface,
         };
         let geometry = scene.camera.imaging_geometry(wavelength).ok()?;
-        let drift = change.known_drift(laser, &geometry, &seen)?;
+        let shift = change.known_shift(laser, &geometry, &seen)?;
         let perspective = change.perspective();
-        let old = perspective.pixel(perspective.point(pixel) - drift.displacement)?;
+        let old = perspective.pixel(perspective.point(pixel) - shift.displacement)?;
         Some(Self {
             displacement: pixel - old,
-            correlation: pupil_overlap_correlation(drift.shift),
+            correlation: pupil_overlap_correlation(shift.pupil),
         })
     }
 }

@@ -41,11 +41,11 @@ struct LaserChange {
 
 /// What has become of the speckle of a point since the reference frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Drift {
+pub(super) struct SpeckleShift {
     /// How far it has moved in the image in perspective, in pixels with y down.
     pub displacement: DVec2,
     /// How far the pupil has moved over it, in pupil diameters, never negative.
-    pub shift: f64,
+    pub pupil: f64,
 }
 
 /// A point of a surface whose speckle the pupil has moved over.
@@ -125,8 +125,8 @@ impl Change {
     }
 
     /// Returns on which side of the reference frame now is for the speckle of a laser on the surface
-    /// of a reference point: 1 where the pupil has moved over its speckle as it has where it moved farthest, and
-    /// −1 where it has moved the other way.
+    /// of a reference point: 1 where the pupil has moved over its speckle as it has where it moved
+    /// farthest, and −1 where it has moved the other way.
     ///
     /// Without a reference point, or where the theory has no value, −1 is before the reference frame.
     pub(super) fn side(
@@ -190,34 +190,40 @@ impl Change {
     /// Returns what has become of the speckle of a laser at a point.
     ///
     /// Where the theory has no value, every frame has speckle of its own.
-    pub(super) fn drift(
+    pub(super) fn speckle_shift(
         &self,
         laser: usize,
         geometry: &ImagingGeometry,
         point: &SpecklePoint,
-    ) -> Drift {
-        let new = Drift {
+    ) -> SpeckleShift {
+        let new = SpeckleShift {
             displacement: DVec2::ZERO,
-            shift: self.frames.abs(),
+            pupil: self.frames.abs(),
         };
-        self.known_drift(laser, geometry, point).unwrap_or(new)
+        self.known_shift(laser, geometry, point).unwrap_or(new)
     }
 
     /// Returns what has become of the speckle of a laser at a point, if the theory has a value.
-    pub(super) fn known_drift(
+    pub(super) fn known_shift(
         &self,
         laser: usize,
         geometry: &ImagingGeometry,
         point: &SpecklePoint,
-    ) -> Option<Drift> {
+    ) -> Option<SpeckleShift> {
         if self.is_still(laser, point.surface) {
-            return Some(Drift::default());
+            return Some(SpeckleShift::default());
         }
-        self.law(laser, geometry, point).filter(Drift::is_finite)
+        self.theoretical_shift(laser, geometry, point)
+            .filter(SpeckleShift::is_finite)
     }
 
     /// The law of speckle motion between two states, however far apart.
-    fn law(&self, laser: usize, geometry: &ImagingGeometry, point: &SpecklePoint) -> Option<Drift> {
+    fn theoretical_shift(
+        &self,
+        laser: usize,
+        geometry: &ImagingGeometry,
+        point: &SpecklePoint,
+    ) -> Option<SpeckleShift> {
         let [before, now] = self.states(laser, point)?;
         let screen = ImageOrientation::ScreenUpright;
         let pixels_per_tangent = geometry.principal_distance() / geometry.pixel_pitch();
@@ -225,7 +231,7 @@ impl Change {
         let speckle = SpeckleMotion::between(geometry, &before, &now, screen);
         let tangents = speckle.speckle_displacement() / geometry.principal_distance();
         let displacement = upright(tangents * pixels_per_tangent);
-        let shift = match speckle.pupil_displacement {
+        let pupil = match speckle.pupil_displacement {
             Some(pupil) => {
                 let lateral = pupil.length() / geometry.pupil_diameter();
                 let axial = axial_shift(geometry, &before, &now);
@@ -233,9 +239,9 @@ impl Change {
             }
             None => self.frames.abs(),
         };
-        Some(Drift {
+        Some(SpeckleShift {
             displacement,
-            shift,
+            pupil,
         })
     }
 
@@ -282,9 +288,9 @@ impl Change {
     }
 }
 
-impl Drift {
+impl SpeckleShift {
     fn is_finite(&self) -> bool {
-        self.displacement.is_finite() && self.shift.is_finite()
+        self.displacement.is_finite() && self.pupil.is_finite()
     }
 }
 

@@ -228,11 +228,11 @@ impl SpeckleFrame<'_> {
             u: [0.0; BLOCK],
         };
         for (i, point) in points.iter().enumerate() {
-            let drift = self.change.drift(laser, geometry, point);
-            let pixel = self.change.perspective().point(point.pixel) - drift.displacement;
+            let shift = self.change.speckle_shift(laser, geometry, point);
+            let pixel = self.change.perspective().point(point.pixel) - shift.displacement;
             let c = geometry.pattern_coordinate(upright(pixel), DVec2::ZERO, stack.speckle_size());
             // Beyond the reach the speckle is new to the reference frame, wherever the pupil stands.
-            let shift = drift.shift.min(reach);
+            let shift = shift.pupil.min(reach);
             // Where the blend of two slices has kept as much of the reference frame as that shift, and
             // on along the path once nothing is left.
             let u = stack.coordinate_of(pupil_overlap_correlation(shift));

@@ -165,9 +165,9 @@ fn frame_samples(
         };
         for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
             if change.laser(laser).illuminate(hit.position).is_some() {
-                let drift = change.drift(laser, geometry, &point);
-                let origin = change.perspective().point(pixel) - drift.displacement;
-                samples[laser][group].add(&point, origin, drift.shift);
+                let shift = change.speckle_shift(laser, geometry, &point);
+                let origin = change.perspective().point(pixel) - shift.displacement;
+                samples[laser][group].add(&point, origin, shift.pupil);
             }
         }
     }

@@ -48,10 +48,10 @@ fn point(scene: &Scene, frame: u32, fractions: [f64; 2]) -> SpecklePoint {
     }
 }
 
-fn drift(scene: &Scene, frame: u32, fractions: [f64; 2]) -> Drift {
+fn speckle_shift(scene: &Scene, frame: u32, fractions: [f64; 2]) -> SpeckleShift {
     let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
     let change = Change::new(scene, frame);
-    change.drift(0, &geometry, &point(scene, frame, fractions))
+    change.speckle_shift(0, &geometry, &point(scene, frame, fractions))
 }
 
 const PLACES: [[f64; 2]; 4] = [[0.0, 0.0], [0.1, -0.05], [-0.15, 0.1], [0.05, 0.2]];
@@ -68,17 +68,21 @@ fn speckle_stays_where_all_moves_as_one() {
     scene.camera_trajectory = motion.clone();
     scene.lasers[0] = scene.lasers[0].clone().with_trajectory(motion);
     for place in PLACES {
-        let drift = drift(&scene, 7, place);
+        let speckle_shift = speckle_shift(&scene, 7, place);
         // Positions of a metre are rounded to 1e−16, a pixel is 4e−5 m and the pupil 3e−3 m wide.
         // The equivalent shift is a square root of what rounding takes from γ = 1.
-        let moved = drift.displacement.length();
+        let moved = speckle_shift.displacement.length();
         assert!(moved < 1e-9, "{place:?}: {moved:e} pixels");
-        assert!(drift.shift < 1e-9, "{place:?}: {:e}", drift.shift);
+        assert!(
+            speckle_shift.pupil < 1e-9,
+            "{place:?}: {:e}",
+            speckle_shift.pupil
+        );
     }
 }
 
 #[test]
-fn drifts_are_those_of_the_theory_between_two_states() {
+fn speckle_shifts_are_those_of_the_theory_between_two_states() {
     let mut scene = moving();
     scene.render.reference_frame = 2;
     let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
@@ -124,9 +128,9 @@ fn drifts_are_those_of_the_theory_between_two_states() {
         let upright_image = ImageOrientation::ScreenUpright;
         let law = SpeckleMotion::between(&geometry, &old, &new, upright_image);
 
-        let drift = drift(&scene, frame, place);
+        let speckle_shift = speckle_shift(&scene, frame, place);
         let expected = upright(law.speckle_displacement() / geometry.pixel_pitch());
-        let error = (drift.displacement - expected).length();
+        let error = (speckle_shift.displacement - expected).length();
         assert!(error < 1e-8, "{place:?}: {error:e} pixels");
         // The image of the point itself moves by the difference of its projections.
         let image = upright(law.image_displacement / geometry.pixel_pitch());
@@ -134,8 +138,14 @@ fn drifts_are_those_of_the_theory_between_two_states() {
         assert!(error < 1e-8, "{place:?}: {error:e} pixels of the image");
         let lateral = law.pupil_displacement.unwrap().length() / geometry.pupil_diameter();
         let shift = equivalent_pupil_shift(law.correlation).max(lateral);
-        assert!((drift.shift - shift).abs() < 1e-9, "{place:?}: {drift:?}");
-        assert!(drift.shift > 0.1, "{place:?}: {drift:?} tells nothing");
+        assert!(
+            (speckle_shift.pupil - shift).abs() < 1e-9,
+            "{place:?}: {speckle_shift:?}"
+        );
+        assert!(
+            speckle_shift.pupil > 0.1,
+            "{place:?}: {speckle_shift:?} tells nothing"
+        );
     }
 }
 
@@ -144,14 +154,14 @@ fn time_backwards_moves_the_speckle_back() {
     let mut scene = moving();
     for place in PLACES {
         scene.render.reference_frame = 1;
-        let forth = drift(&scene, 6, place);
+        let forth = speckle_shift(&scene, 6, place);
         scene.render.reference_frame = 6;
-        let back = drift(&scene, 1, place);
+        let back = speckle_shift(&scene, 1, place);
         let sum = (forth.displacement + back.displacement).length();
         let size = forth.displacement.length();
         // What the pupil displacement stretches on its way differs both ways in second order.
         assert!(sum < 0.01 * size, "{place:?}: {forth:?} {back:?}");
-        let change = (forth.shift / back.shift - 1.0).abs();
+        let change = (forth.pupil / back.pupil - 1.0).abs();
         assert!(change < 0.02, "{place:?}: {forth:?} and {back:?}");
     }
 }
@@ -168,9 +178,9 @@ fn points_that_the_theory_does_not_know_have_speckle_of_their_own() {
         Keyframe::at(3.0),
     ];
     scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
-    let expected = Drift {
+    let expected = SpeckleShift {
         displacement: DVec2::ZERO,
-        shift: 3.0,
+        pupil: 3.0,
     };
-    assert_eq!(drift(&scene, 3, [0.0, 0.0]), expected);
+    assert_eq!(speckle_shift(&scene, 3, [0.0, 0.0]), expected);
 }

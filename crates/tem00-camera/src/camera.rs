@@ -13,8 +13,8 @@ pub use self::lens::{CameraConnection, CameraRay};
 /// The sine of the smallest accepted angle between `up` and the viewing direction.
 const SMALLEST_SINE: f64 = 1e-6;
 
-/// How far beyond the edges of the image its points may be asked for, in pixels: as far as a
-/// reconstruction filter may reach.
+/// Distance beyond the edges of the image up to which its points may be asked for, in pixels: as
+/// far as a reconstruction filter may reach.
 pub const IMAGE_MARGIN: f64 = 16.0;
 
 /// A perspective camera with a thin lens and a sensor, from which the speckle size follows.

@@ -34,8 +34,8 @@ pub struct Change {
     value: Value,
 }
 
-/// How a scene file, or another document, is read: from where it may name files, and what is to stand in it
-/// instead of what does.
+/// Settings for reading a scene file, or another document: where the files that it names may lie,
+/// and what is to stand in it instead of what does.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading<'a> {
     /// From where files may be read that it names.

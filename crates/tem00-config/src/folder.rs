@@ -5,7 +5,7 @@ use std::{
 
 use crate::FileAccess;
 
-/// What to say of a file that lies elsewhere than it may.
+/// Advice for a file that lies elsewhere than it may.
 pub(crate) const OUTSIDE: &str =
     "put it below that folder, or allow files from everywhere with --allow-outside";
 

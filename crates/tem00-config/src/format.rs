@@ -3,16 +3,16 @@ use toml::de::{DeTable, DeValue};
 /// A kind of file that is read section by section.
 #[derive(Clone, Copy, Debug)]
 pub struct Format {
-    /// What such a file describes, as messages name it: "scene".
+    /// The subject of such a file, as messages name it: "scene".
     pub noun: &'static str,
     /// The keys that it may have outside of its sections. `"include"` among them lets it name files
     /// that belong to it.
     pub keys: &'static [&'static str],
-    /// What to say when there is no such file.
+    /// The advice given when there is no such file.
     pub help: &'static str,
 }
 
-/// What a document describes.
+/// Subject of a document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DocumentKind {

@@ -3,7 +3,7 @@
 /// A bare number is in the SI unit; a string is a number followed by a unit.
 #[derive(Debug)]
 pub struct Dimension {
-    /// What a value of this kind is called, with its article.
+    /// The name of a value of this kind, with its article.
     pub(crate) noun: &'static str,
     /// The plural of the SI unit, for messages.
     pub(crate) si_unit: &'static str,

@@ -7,7 +7,7 @@ use crate::{
     settings::Averaging,
 };
 
-/// How speckle correlates the place of the line in two columns of two frames.
+/// Correlation, by speckle, of the line's position in two columns of two frames.
 pub trait SpeckleCorrelation {
     /// Returns the correlation of the places in columns that lie `columns` apart, the second in the
     /// frame `later` frames after the first.
@@ -91,7 +91,7 @@ pub fn mean_point(
     Some(mean)
 }
 
-/// How the point moves, before it is brought to the part, as the line moves by a pixel.
+/// Displacement of the point, before it is brought to the part, per pixel of line displacement.
 fn seen_per_pixel(point: &MeasuredPoint) -> DVec3 {
     point.per_pixel.length() * point.seen.point.direction.abs()
 }
@@ -128,7 +128,7 @@ fn mean_noise(members: &[Member<'_>], speckle: &impl SpeckleCorrelation) -> Plac
     sum.scaled(1.0 / squared_count)
 }
 
-/// How many columns the second point lies to the right of the first.
+/// Number of columns by which the second point lies to the right of the first.
 fn signed_distance(a: &MeasuredPoint, b: &MeasuredPoint) -> i64 {
     let column = |point: &MeasuredPoint| i64::try_from(point.seen.column).unwrap_or(i64::MAX);
     column(b) - column(a)

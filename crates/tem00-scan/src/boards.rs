@@ -25,11 +25,11 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 /// The turn of the axis of tilt from board to board, in radians: the golden angle, which never repeats.
 const TURN: f64 = 2.399_963_229_728_653;
 
-/// How far from the middle of a board the line may lie, as a part of its height.
+/// Greatest distance of the line from the middle of a board, as a fraction of its height.
 const OFF_MIDDLE: f64 = 0.3;
 
-/// How far boards may stand before or behind where the axis meets the laser plane, as a part of the
-/// distance.
+/// Greatest distance of boards before or behind the point where the axis meets the laser plane, as
+/// a fraction of the distance.
 const LARGEST_SHIFT: f64 = 0.1;
 
 /// The least distance of the squares from the edge of the image, in pixels.
@@ -156,11 +156,11 @@ fn surface(board: &Checkerboard, pose: &RigidMotion, parity: usize) -> Result<Su
     })
 }
 
-/// Where boards stand before a camera.
+/// Positions of boards before a camera.
 struct Stage {
     camera: Camera,
     plane: LaserPlane,
-    /// Where the middle of the image sees the laser plane.
+    /// The point of the laser plane in the middle of the image, in metres.
     middle: DVec3,
     view: DVec3,
     /// The axes of a board that leans half from the camera towards the laser.
@@ -234,7 +234,7 @@ impl Stage {
         by_line.min(LARGEST_SHIFT * self.middle.distance(self.camera.position()))
     }
 
-    /// Whether all squares of a board are in the image.
+    /// Tells whether all squares of a board are in the image.
     fn sees(&self, board: &Checkerboard, pose: &RigidMotion) -> bool {
         let [right, up] = board.corners().map(|corners| corners as f64);
         let outline = [(-1.0, -1.0), (right, -1.0), (-1.0, up), (right, up)];

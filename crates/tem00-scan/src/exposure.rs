@@ -7,7 +7,7 @@ use tem00_triangulation::Sensor;
 /// The wavelength at which light of lamps is counted, in metres: white light has its middle there.
 pub const LAMP_WAVELENGTH: f64 = 550e-9;
 
-/// What a rendered frame frees in the pixels of a sensor, in electrons, before any noise.
+/// Electrons that a rendered frame frees in the pixels of a sensor, before any noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exposure {
     /// The mean number of electrons in each pixel.

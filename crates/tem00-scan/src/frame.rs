@@ -12,12 +12,12 @@ use crate::{
     ScanError, exposure::Exposure, image_speckle::ImageSpeckle, speckle_table::SpeckleTable,
 };
 
-/// What the sensor measures in one frame.
+/// Measurement of the sensor in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredFrame {
     /// The number of the frame.
     pub frame: u32,
-    /// What fell on the sensor.
+    /// The light that fell on the sensor.
     pub exposure: Exposure,
     /// The frame as the camera gives it.
     pub raw: RawFrame,
@@ -25,7 +25,8 @@ pub struct MeasuredFrame {
     pub lines: Vec<Vec<LinePoint>>,
     /// The points on them, by column and from the top.
     pub points: Vec<MeasuredPoint>,
-    /// How speckle correlates the places of the line in columns 0, 1, 2 … apart; 1 alone without speckle.
+    /// The correlation, by speckle, of the line's positions in columns 0, 1, 2 … apart; 1 alone
+    /// without speckle.
     pub correlation: Vec<f64>,
     /// The point in the middle of the profile, whose speckle stands for that of all; `None` without
     /// speckle or without points.
@@ -40,9 +41,9 @@ pub struct MeasuredPoint {
     pub seen: ProfilePoint,
     /// The point on the part as the scene describes it, in metres.
     pub position: DVec3,
-    /// How that moves as the line moves down by a pixel, in metres.
+    /// The displacement of that per pixel by which the line moves down, in metres.
     pub per_pixel: DVec3,
-    /// What makes the place of the line uncertain, in square pixels.
+    /// The contributions to the variance of the line's position, in square pixels.
     pub noise: PlaceNoise,
     /// The covariance that the calibration gives to the position, in m²: common to all points.
     pub calibration: DMat3,
@@ -118,7 +119,7 @@ impl Surroundings<'_> {
         })
     }
 
-    /// How far, in pixels, a line may be from where it would be without noise.
+    /// Greatest distance, in pixels, of a line from its position without noise.
     fn reach(&self) -> f64 {
         0.5 * self.detector.settings().window as f64
     }
@@ -234,7 +235,7 @@ impl Expected {
         }
     }
 
-    /// What makes the place of a line uncertain.
+    /// Returns the contributions to the variance of a line's position.
     fn noise(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> PlaceNoise {
         let sensor = surroundings.sensor.description();
         let column = self.column(surroundings, seen);
@@ -253,7 +254,8 @@ impl Expected {
             .min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// Whether an edge of the part cuts the line at a point, or there would be none without noise.
+    /// Tells whether an edge of the part cuts the line at a point, or there would be none without
+    /// noise.
     ///
     /// First order would say that such a place is known very well, as little light moves little; it is the
     /// place of the edge, and not of the line.

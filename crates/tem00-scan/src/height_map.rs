@@ -13,11 +13,11 @@ pub struct HeightMap {
     pub heights: Grid<f32>,
     /// Their standard uncertainties, in metres; NaN where nothing was measured.
     pub uncertainties: Grid<f32>,
-    /// What columns and rows are.
+    /// The meaning of columns and rows.
     pub raster: Raster,
 }
 
-/// What the columns and rows of a height map are.
+/// Meaning of the columns and rows of a height map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Raster {
     /// Columns of the image, so many to a column of the map, and profiles.
@@ -165,7 +165,7 @@ impl HeightMap {
     }
 }
 
-/// What the whole numbers of a height map stand for.
+/// Scale of the integers of a height map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeightScale {
     /// The height of the value 0, in metres, if it were one.

@@ -87,7 +87,7 @@ impl ImageSpeckle {
     }
 }
 
-/// How many speckles the pixels at an image point are, or `None` if no ray reaches it.
+/// Pixel size in speckles at an image point, or `None` if no ray reaches it.
 fn speckles_per_pixel(camera: &Camera, pixel: DVec2, wavelength: f64) -> Option<DMat2> {
     let (_, steps) = camera.sight(pixel)?;
     let axes = camera.axes();

@@ -2,7 +2,7 @@ use tem00_tracer::{RigidMotion, Scene, Surface, Trajectory};
 
 use crate::ScanError;
 
-/// What moves in a scan: the part under the line, or the sensor head over the part.
+/// The moving object in a scan: the part under the line, or the sensor head over the part.
 ///
 /// The head is the camera with its laser. Points that it measures are brought to where the part stands in
 /// its description, so that the profiles of all frames fit together.
@@ -108,7 +108,7 @@ fn head(scene: &Scene) -> Result<Trajectory, ScanError> {
     ))
 }
 
-/// Whether two motions have the same poses in all frames, to a picometre over a metre.
+/// Tells whether two motions have the same poses in all frames, to a picometre over a metre.
 fn alike(a: &Trajectory, b: &Trajectory, frames: u32) -> bool {
     const CLOSE: f64 = 1e-12;
     a == b

@@ -13,15 +13,15 @@ use crate::{ScanSettings, section::read_scan};
 /// A scene and the sensor that measures it.
 #[derive(Clone, Debug)]
 pub struct MeasurementScene {
-    /// What the camera sees.
+    /// The scene in front of the camera.
     pub scene: Scene,
     /// The sensor of the camera.
     pub sensor: SensorDescription,
-    /// How lines are found in its frames.
+    /// The settings by which lines are found in its frames.
     pub detector: DetectorSettings,
-    /// How camera and laser plane are known.
+    /// The settings by which camera and laser plane are calibrated.
     pub calibration: CalibrationSettings,
-    /// How the frames are put together.
+    /// The settings by which the frames are put together.
     pub scan: ScanSettings,
 }
 

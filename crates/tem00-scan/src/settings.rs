@@ -3,7 +3,7 @@ use tem00_triangulation::TriangulationError;
 
 use crate::height_map::check_pitch;
 
-/// How the frames of a scene become the map of a part.
+/// Settings by which the frames of a scene become the map of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScanSettings {
     /// The name of the surface whose motion the points are freed from; `None` for those that move.
@@ -13,13 +13,13 @@ pub struct ScanSettings {
     pub height: DVec3,
     /// The side of a square cell of the height map, in metres; `None` for a map of columns by profiles.
     pub pitch: Option<f64>,
-    /// What is averaged.
+    /// The numbers of profiles and points that are averaged.
     pub average: Averaging,
     /// The format of the raw frames.
     pub raw: RawFormat,
 }
 
-/// How many profiles, and how many points of a profile, make one.
+/// Numbers of profiles, and of points of a profile, that are averaged into one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Averaging {
     /// The number of frames, one after the other, at least 1.
@@ -28,7 +28,7 @@ pub struct Averaging {
     pub columns: usize,
 }
 
-/// How raw frames are kept.
+/// Format in which raw frames are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RawFormat {
     /// Portable network graphics.

@@ -3,7 +3,7 @@ use rayon::prelude::*;
 use crate::sensor_speckle::SensorSpeckle;
 use tem00_triangulation::PixelCovariance;
 
-/// How the speckle in the pixels of a sensor goes together, for displacements that are whole pixels
+/// Covariance of the speckle in the pixels of a sensor, for displacements that are whole pixels
 /// apart from each other.
 ///
 /// ```text
@@ -26,8 +26,8 @@ pub(super) struct SpeckleTable {
     reach: [usize; 2],
 }
 
-/// How far covariances are kept, in speckle sizes: beyond, those of a row add up to less than 10⁻⁴ of
-/// the first.
+/// Distance up to which covariances are kept, in speckle sizes: beyond, those of a row add up to
+/// less than 10⁻⁴ of the first.
 const REACH: f64 = 12.0;
 
 /// The most pixels to either side that are kept.

@@ -1,4 +1,4 @@
-//! What a set-up says of its image, against the path tracer's rendering of its scene.
+//! Image predicted by a set-up, against the path tracer's rendering of its scene.
 
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 

@@ -9,7 +9,7 @@ use tem00_tracer::TriangleMesh;
 use crate::mesh_file::{MeshFileError, read_mesh_with};
 use crate::radiance_map::{RadianceMapError, read_radiance_map};
 
-/// Which normals light is scattered by.
+/// The normals by which light is scattered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Shading {
     /// Those of the vertices, where the file has them.

@@ -1,7 +1,7 @@
 use glam::DVec3;
 use tem00_config::{Problem, Section, Value};
 
-/// Where something stands and what it looks at, two different points in metres.
+/// Position of an object and the point that it looks at, two different points in metres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     pub(crate) position: DVec3,

@@ -5,7 +5,7 @@ use tem00_camera::CameraError;
 use tem00_decorrelation::DecorrelationError;
 use tem00_speckle::SpeckleError;
 
-/// Why a part of a scene could not be constructed.
+/// A reason why a part of a scene could not be constructed.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TracerError {
@@ -15,14 +15,14 @@ pub enum TracerError {
         parameter: &'static str,
         /// The rejected value.
         value: f64,
-        /// What is allowed, with the unit.
+        /// The allowed values, with the unit.
         allowed: &'static str,
     },
     /// A vector that must point somewhere is zero, not finite or parallel to its partner.
     Direction {
         /// The name of the parameter.
         parameter: &'static str,
-        /// What is allowed.
+        /// The allowed values.
         allowed: &'static str,
     },
     /// The camera is not possible.

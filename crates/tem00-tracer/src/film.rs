@@ -59,7 +59,7 @@ pub struct LaserLayers {
     ///
     /// It is estimated from the camera's first samples: the irradiance at each hit times the area
     /// that the sample covers there. It is the laser's power when the whole footprint is in the image.
-    /// What is seen in a mirror or through glass does not count.
+    /// Surfaces seen in a mirror or through glass do not count.
     pub power_on_target: f64,
 }
 

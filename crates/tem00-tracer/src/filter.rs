@@ -12,8 +12,8 @@ use crate::TracerError;
 /// The largest radius of a filter, in pixels.
 const MAXIMUM_RADIUS: f64 = IMAGE_MARGIN;
 
-/// How the samples around a pixel make its value: a kernel k(x) k(y), with x and y in pixels from
-/// the centre of the pixel, 0 beyond its radius.
+/// Reconstruction filter: a kernel k(x) k(y) that weights the samples around a pixel, with x and y
+/// in pixels from the centre of the pixel, 0 beyond its radius.
 ///
 /// # References
 ///
@@ -138,7 +138,7 @@ impl Filter {
     }
 }
 
-/// Where a sample lies and how it counts.
+/// Position and weight of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilterSample {
     /// The offset from the centre of the pixel, in pixels.

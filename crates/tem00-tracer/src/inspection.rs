@@ -1,4 +1,4 @@
-//! What becomes of the light of a laser up to the camera, without an image being rendered.
+//! Fate of a laser's light on its way to the camera, found without rendering an image.
 
 use glam::{DVec2, DVec3};
 use tem00_camera::{Camera, Ray};
@@ -14,7 +14,7 @@ const MOST_SPECULAR: u32 = 16;
 /// The share of a laser's power from which on it counts as seen in the image.
 const LEAST_SHARE: f64 = 1e-5;
 
-/// What becomes of the light of a laser on its way to the camera, in one frame.
+/// Fate of a laser's light on its way to the camera, in one frame.
 ///
 /// It is found from two sides. Rays drawn from the beam are followed over mirrors and through glass to
 /// their first rough surface, and from there straight to the camera. Rays of the camera are followed
@@ -27,7 +27,7 @@ const LEAST_SHARE: f64 = 1e-5;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LaserInspection {
-    /// Where the light goes, the largest share first.
+    /// The fates of the light, the largest fraction first.
     pub parts: Vec<LightPart>,
     /// The part of the laser's power, from 0 to about 1, on what the image shows: rough surfaces seen
     /// straight, in mirrors or through glass, and lit straight by the laser.
@@ -41,7 +41,7 @@ pub struct LaserInspection {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LightPart {
-    /// What becomes of it.
+    /// The fate of this light.
     pub fate: LightFate,
     /// The index of the surface that it meets, unless it misses all.
     pub surface: Option<usize>,
@@ -53,7 +53,7 @@ pub struct LightPart {
     pub pixel: Option<DVec2>,
 }
 
-/// What becomes of light on its way to the camera.
+/// Fate of light on its way to the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum LightFate {
@@ -149,7 +149,7 @@ struct Arrival {
     direction: DVec3,
     /// The length of its way, in metres.
     length: f64,
-    /// What mirrors and glass left of it, from 0 to 1.
+    /// The fraction of its light that mirrors and glass have left, from 0 to 1.
     weight: f64,
 }
 

@@ -190,7 +190,7 @@ fn pdf_of_rectangle(rectangle: &Rectangle, from: DVec3, direction: DVec3) -> f64
     }
 }
 
-/// Whether a point sees the front of a rectangle.
+/// Tells whether a point sees the front of a rectangle.
 fn faces(rectangle: &Rectangle, from: DVec3) -> bool {
     (from - rectangle.centre()).dot(rectangle.normal()) > 0.0
 }

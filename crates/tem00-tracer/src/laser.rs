@@ -11,7 +11,7 @@ use tem00_decorrelation::RigidMotion;
 pub use self::emission::{EmittedRay, SampledIllumination};
 use crate::{TracerError, Trajectory};
 
-/// What determines a [`Laser`].
+/// Parameters of a [`Laser`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserDescription {
     /// The vacuum wavelength, in metres.
@@ -49,7 +49,7 @@ pub enum BeamShape {
         m_squared: f64,
         /// The fan: full opening angle, offset of its apex, distance of the focus.
         fan: FanGeometry,
-        /// How the power is spread along the line.
+        /// The distribution of the power along the line.
         profile: LineProfile,
     },
 }
@@ -270,7 +270,7 @@ fn line_event(line: &LaserLine, light: &LineLight<f64>, point: [f64; 3]) -> Opti
     }
 }
 
-/// How a laser lights a point.
+/// Illumination of a point by a laser.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Illumination {
     /// The point of the aperture from which the light comes, in metres.

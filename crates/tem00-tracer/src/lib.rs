@@ -147,5 +147,5 @@ pub use trajectory::{Keyframe, Rotation, Trajectory};
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};
 
-/// How rigid bodies move.
+/// Motion of rigid bodies.
 pub use tem00_decorrelation::RigidMotion;

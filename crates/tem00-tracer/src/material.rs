@@ -26,7 +26,7 @@ use self::{
 };
 use crate::{Metal, TracerError, metal::fresnel_reflectance};
 
-/// How a surface scatters light.
+/// Scattering of light by a surface.
 ///
 /// Directions are unit vectors in a [local frame](crate::LocalFrame) whose z axis is the normal, and
 /// point away from the surface: `wo` to where the light goes, `wi` to where it comes from. What is

@@ -36,7 +36,7 @@ pub(crate) struct Stream {
     index: u32,
 }
 
-/// What a pair of random numbers is for. Different uses have independent numbers.
+/// The use of a pair of random numbers. Different uses have independent numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Use {
     /// The place in the pixel.
@@ -45,7 +45,7 @@ pub(crate) enum Use {
     Lens,
     /// The direction in which a path goes on from its vertex of this number.
     Scattering(u32),
-    /// Whether a path goes on from its vertex of this number.
+    /// The decision if a path goes on from its vertex of this number.
     Survival(u32),
     /// The place on a lamp: number of the vertex, number of the lamp.
     Lamp(u32, u32),

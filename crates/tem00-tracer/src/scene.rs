@@ -11,9 +11,9 @@ pub struct Surface {
     pub shape: Shape,
     /// The material.
     pub material: Material,
-    /// How it moves from frame to frame.
+    /// The motion of the surface from frame to frame.
     pub trajectory: Trajectory,
-    /// What its speckle is made of.
+    /// The composition of its speckle.
     pub speckle: SurfaceSpeckle,
     /// The standard deviation of the height of its microscopic relief, in metres, if it is known.
     pub rms_height: Option<f64>,
@@ -33,7 +33,7 @@ impl Surface {
     }
 }
 
-/// What the speckle of a surface is made of.
+/// Composition of the speckle of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceSpeckle {
     /// The number of independent patterns of equal power that add up, at least 1.
@@ -83,7 +83,7 @@ impl Default for SpeckleSettings {
 pub struct Scene {
     /// The camera, before its trajectory moves it.
     pub camera: Camera,
-    /// How the camera moves from frame to frame.
+    /// The motion of the camera from frame to frame.
     pub camera_trajectory: Trajectory,
     /// The lasers.
     pub lasers: Vec<Laser>,

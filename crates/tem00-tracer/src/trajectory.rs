@@ -3,7 +3,7 @@ use tem00_decorrelation::RigidMotion;
 
 use crate::TracerError;
 
-/// How something moves from frame to frame.
+/// Motion of an object from frame to frame.
 ///
 /// The pose of a frame takes the thing from its place in the scene description to its place in that
 /// frame: a rotation by R about a pivot P of the scene description, and then a displacement d.
@@ -67,7 +67,7 @@ impl Default for Rotation {
     }
 }
 
-/// Where something is at one time.
+/// Pose of an object at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Keyframe {
     /// The time, in frames; fractions are allowed.

@@ -13,14 +13,14 @@ pub struct CameraRay {
     pub weight: f64,
 }
 
-/// How a point of the scene is seen through a point of the lens.
+/// Connection of a point of the scene to the image through a point of the lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraConnection {
     /// The image point, in pixels; it lies in the image.
     pub pixel: DVec2,
     /// The point of the lens, in metres.
     pub lens_point: DVec3,
-    /// What a pixel gains in radiance, in W/(m² sr), per radiant intensity from the point towards
+    /// The gain of a pixel in radiance, in W/(m² sr), per radiant intensity from the point towards
     /// the lens, in W/sr; in 1/m².
     pub importance: f64,
 }

@@ -13,7 +13,8 @@ pub(super) struct Sensor {
     up: DVec3,
     /// The unit normal, away from the lens.
     pub normal: DVec3,
-    /// Where the axis of the lens meets the sensor: the distance in metres and the image point.
+    /// The intersection of the lens's axis with the sensor: the distance in metres and the image
+    /// point.
     pub distance: f64,
     axis_point: DVec2,
     pitch: f64,

@@ -19,14 +19,14 @@ pub enum MeshFileError {
     Format {
         /// The line of the file, from 1, where the format has lines.
         line: Option<usize>,
-        /// What is wrong.
+        /// The underlying error.
         message: String,
     },
     /// Any of the above, about a file.
     File {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The underlying error.
         source: Box<Self>,
     },
 }

@@ -3,7 +3,7 @@ use tem00_tracer::TriangleMesh;
 
 use super::error::MeshFileError;
 
-/// What a file holds, in its own unit.
+/// Contents of a file, in its own unit.
 #[derive(Debug, Default)]
 pub(super) struct Polygons {
     pub(super) vertices: Vec<DVec3>,

@@ -11,7 +11,7 @@ pub enum RadianceMapError {
     File {
         /// The path of the file.
         path: PathBuf,
-        /// What is wrong.
+        /// The underlying error.
         source: Box<Self>,
     },
     /// The scale is not positive and finite.

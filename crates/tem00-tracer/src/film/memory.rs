@@ -9,7 +9,7 @@ use crate::TracerError;
 const LAYERS_PER_LASER: u64 = 5;
 const COMMON_LAYERS: u64 = 7;
 
-/// What is followed from one laser, before it is added to that laser's layers: four sums in double
+/// Layers of the light followed from one laser, before it is added to its own: four sums in double
 /// precision, and four layers made of them.
 const LIGHT_LAYERS: u64 = 12;
 

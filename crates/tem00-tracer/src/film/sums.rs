@@ -2,7 +2,7 @@ use glam::DVec3;
 
 use crate::integrator::{CameraSample, LaserSample};
 
-/// What the samples of one pixel add up to.
+/// Sums over the samples of one pixel.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PixelSums {
     pub samples: u32,
@@ -18,7 +18,7 @@ pub(crate) struct PixelSums {
     normal: DVec3,
 }
 
-/// What the samples of one pixel add up to for one laser.
+/// Sums over the samples of one pixel for one laser.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LaserSums {
     pub coherent_before: f64,

@@ -10,7 +10,7 @@ use crate::{
 
 /// Camera samples that are traced together, and the state of their paths.
 ///
-/// What one sample finds does not depend on the others of its batch. The memory is kept from batch to
+/// A sample's result does not depend on the others of its batch. The memory is kept from batch to
 /// batch.
 #[derive(Debug, Default)]
 pub(crate) struct Batch<'a> {
@@ -44,7 +44,7 @@ pub(crate) struct CameraSample {
     pub weight: f64,
     /// The radiance from lamps.
     pub lamps: f64,
-    /// What is seen there, if anything.
+    /// The surface point seen there, if any.
     pub seen: Option<Seen>,
 }
 
@@ -57,7 +57,7 @@ pub(crate) struct Seen {
     pub normal: DVec3,
 }
 
-/// What a camera sample finds of one laser.
+/// Radiance that a camera sample finds from one laser.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LaserSample {
     pub coherent_before: f64,
@@ -94,7 +94,7 @@ pub(super) struct Path {
     pub sample: usize,
     /// The number of surfaces met.
     pub depth: u32,
-    /// How many of the surfaces left behind were rough.
+    /// The number of rough surfaces left behind.
     pub rough: u32,
     /// The factor by which refraction has changed radiance without changing power.
     pub compression: f64,
@@ -157,12 +157,12 @@ pub(super) struct Connections {
     visible: Vec<bool>,
 }
 
-/// What arrives at the camera over a connection.
+/// Light that arrives at the camera over a connection.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Arrival {
     /// Light of a laser.
     Laser {
-        /// Where the laser's values of the sample are.
+        /// The index of the sample's values for the laser.
         slot: usize,
         radiance: f64,
         /// The power on the area that the sample covers.

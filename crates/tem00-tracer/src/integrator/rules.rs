@@ -4,15 +4,15 @@ use crate::{Formulas, Lamp, LampEvents, Laser, Method, RenderOptions};
 /// materials grey under them.
 pub(super) const LAMP_WAVELENGTH: f64 = 550e-9;
 
-/// Which paths are followed, and how they find light.
+/// Rules for the paths that are followed and for the ways in which they find light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PathRules {
     pub formulas: Formulas,
     /// The most surfaces between source and camera.
     pub max_depth: u32,
-    /// Whether the lasers' light is found from the camera at all.
+    /// True if the lasers' light is found from the camera at all.
     pub finds_lasers: bool,
-    /// Whether directions towards lasers are drawn, and rays meet their beams by chance.
+    /// True if directions towards lasers are drawn, and rays meet their beams by chance.
     pub samples_beams: bool,
     pub lamp_events: LampEvents,
 }
@@ -35,7 +35,7 @@ pub(super) struct Spectrum {
     pub wavelengths: Vec<f64>,
     /// For each laser, which of them is its own.
     pub of_laser: Vec<usize>,
-    /// Which of them stands for the lamps; 0 if there are none.
+    /// The index of the one for the lamps; 0 if there are none.
     pub of_lamps: usize,
 }
 

@@ -29,7 +29,7 @@ pub(super) struct Node {
     children: [Child; WIDTH],
 }
 
-/// What is in a box: a node, or a leaf where the highest bit is set.
+/// Content of a box: a node, or a leaf where the highest bit is set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Child(u32);
 
@@ -141,14 +141,14 @@ pub(super) struct LocalRay {
     pub scale: Scale,
 }
 
-/// Where a hierarchy is in the world.
+/// Position and axes of a hierarchy in the world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placement {
     /// The unit of the hierarchy's own coordinates, in metres.
     pub scale: f64,
     /// The rotation into those coordinates.
     pub to_local: DMat3,
-    /// Where their origin is, in metres.
+    /// The position of their origin, in metres.
     pub origin: DVec3,
 }
 
@@ -161,7 +161,7 @@ impl Placement {
     };
 }
 
-/// How distances along a ray turn into the unit of a hierarchy.
+/// Conversion of distances along a ray into the unit of a hierarchy.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale {
     /// The unit of the hierarchy, in metres.
@@ -181,7 +181,7 @@ impl Scale {
     }
 }
 
-/// How far the boxes extend beyond what they hold, in the unit of the hierarchy.
+/// Margin of the boxes around their content, in the unit of the hierarchy.
 ///
 /// With u = 2⁻²⁴ the rounding of single precision, origins within √2 of the centre, boxes within 1
 /// and distances up to 2.5, the plane of a box is met at its true distance once it is moved by

@@ -3,7 +3,7 @@ use tem00_camera::Ray;
 
 use crate::{Cylinder, MeshInstance, Rectangle, Sphere, mesh};
 
-/// What a leaf of the hierarchy holds.
+/// Content of a leaf of the hierarchy.
 #[derive(Clone, Debug)]
 pub(super) enum Primitive {
     Triangle([DVec3; 3]),

@@ -3,16 +3,16 @@ use tem00_camera::Ray;
 
 use super::{primitive::Primitive, segment::Segment};
 
-/// Where in a scene a primitive is: the index of the body, and that of the triangle in it.
+/// Index of a primitive in a scene: that of the body, and that of the triangle in it.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(super) struct Place {
     pub body: u32,
     pub triangle: u32,
 }
 
-/// What is asked about a ray; answered in double precision.
+/// Question about a ray; answered in double precision.
 pub(super) trait Query {
-    /// Whether any primitive in the way decides.
+    /// True if any primitive in the way decides.
     const ANY: bool;
 
     fn ray(&self) -> &Ray;
@@ -30,7 +30,7 @@ pub(super) trait Query {
     fn is_over(&self) -> bool;
 }
 
-/// Which primitive does the ray meet first?
+/// Query for the first primitive that the ray meets.
 #[derive(Clone, Debug)]
 pub(super) struct Nearest {
     ray: Ray,

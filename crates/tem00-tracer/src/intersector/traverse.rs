@@ -6,7 +6,7 @@ use super::{
     query::Query,
 };
 
-/// What the leaves of a hierarchy hold.
+/// Contents of the leaves of a hierarchy.
 pub(super) trait Leaves {
     fn hierarchy(&self) -> &Hierarchy;
 
@@ -32,7 +32,7 @@ pub(super) trait Leaves {
     );
 }
 
-/// What is still to be visited, of all traversals that are under way.
+/// Nodes still to be visited, of all traversals that are under way.
 #[derive(Debug, Default)]
 pub(super) struct Stacks {
     /// Distances, as bits, and children.

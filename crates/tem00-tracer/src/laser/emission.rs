@@ -16,7 +16,7 @@ pub struct EmittedRay {
     pub flux: f64,
 }
 
-/// How a laser lights a point, along a direction drawn at random.
+/// Illumination of a point by a laser, along a direction drawn at random.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledIllumination {
     /// The point of the plane of the aperture from which the light comes, in metres.

@@ -22,7 +22,7 @@ pub(super) struct Draws {
     started: u32,
 }
 
-/// What the random numbers belong to.
+/// Key of a sequence of random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct DrawKey {
     pub seed: u64,

@@ -20,7 +20,7 @@ pub(crate) struct LightTracer<'a> {
     pub area: Crop,
 }
 
-/// Which light is followed.
+/// The part of the light that is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LightShare {
     /// All that reaches the camera from a rough surface.
@@ -29,7 +29,7 @@ pub(crate) enum LightShare {
     SpecularFirst,
 }
 
-/// What is asked of a light tracer.
+/// Task of a light tracer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LightJob {
     /// The index of the laser in the scene.

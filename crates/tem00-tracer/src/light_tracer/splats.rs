@@ -3,7 +3,7 @@ use tem00_numerics::Grid;
 use super::LightLayers;
 use crate::Crop;
 
-/// What light paths bring to one pixel, in W/(m² sr).
+/// Radiance that light paths bring to one pixel, in W/(m² sr).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Splat {
     /// The number of the pixel in the part of the image that is rendered.
@@ -13,7 +13,7 @@ pub(super) struct Splat {
     pub incoherent: f64,
 }
 
-/// What a group of light paths brings to the image.
+/// Contribution of a group of light paths to the image.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Splats {
     /// By pixel in the end, one for each.

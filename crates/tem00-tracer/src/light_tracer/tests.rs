@@ -46,7 +46,7 @@ fn whole(scene: &Scene) -> Crop {
     }
 }
 
-/// What is followed of a scene, in which part of the image.
+/// A scene, the light of it that is followed, and the part of the image.
 type View<'a> = (&'a Scene, LightShare, Crop);
 
 fn try_trace(

@@ -51,7 +51,7 @@ struct Connection<'a> {
     index: usize,
     /// In W/(m² sr).
     radiance: f64,
-    /// What the first rough surface is lit with on the side that the camera sees, in watts.
+    /// The power on the first rough surface, on the side that the camera sees, in watts.
     power: f64,
 }
 

@@ -5,7 +5,7 @@ use super::ggx::Ggx;
 const NODES: usize = 32;
 const LAST: f64 = (NODES - 1) as f64;
 
-/// What rough facets reflect in all, by the cosine of the direction it is seen from.
+/// Directional albedo of rough facets, by the cosine of the viewing direction.
 ///
 /// The albedo is tabulated at equal steps of the fourth root of the cosine, which resolves the
 /// shadows at grazing incidence, and interpolated by cubics through four nodes. For roughnesses

@@ -43,7 +43,7 @@ impl Dielectric {
     }
 }
 
-/// What a smooth boundary does to unpolarised light.
+/// Reflection and refraction of unpolarised light at a smooth boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Refraction {
     /// The fraction of power that is reflected.

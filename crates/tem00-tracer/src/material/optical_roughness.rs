@@ -22,7 +22,7 @@ pub struct OpticalRoughnessQuery {
     pub rms_height: Option<f64>,
 }
 
-/// How rough a surface is for light that is scattered from one direction into another.
+/// Optical roughness of a surface for light that is scattered from one direction into another.
 ///
 /// Speckle is fully developed where two things hold: heights spread the phase over more than a
 /// turn, so that no light is left in step, and what the camera resolves has many patches whose

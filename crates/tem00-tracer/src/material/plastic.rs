@@ -12,9 +12,9 @@ use super::{
 
 /// A clear coat with a rough surface over a diffuse base. All directions are above the surface.
 ///
-/// What the coat does not reflect enters it, is reflected diffusely by the base, and leaves or is
-/// thrown back by the coat's inner side, again and again. With E the albedo of the coat, Ē its mean
-/// over all directions and ρ the reflectance of the base:
+/// Light that the coat does not reflect enters it, is reflected diffusely by the base, and leaves
+/// or is thrown back by the coat's inner side, again and again. With E the albedo of the coat, Ē
+/// its mean over all directions and ρ the reflectance of the base:
 ///
 /// ```text
 /// f = R D G₂ / (4 cos θo cos θi) + (κ / π) (1 − E(θo)) (1 − E(θi)) / (1 − Ē)
@@ -27,7 +27,7 @@ pub(super) struct Plastic {
     facets: Ggx,
     index: f64,
     albedo: Albedo,
-    /// What comes out of the coat of all that enters it, κ.
+    /// The fraction κ of the light entering the coat that comes out again.
     returned: f64,
     /// κ / (π (1 − Ē)).
     base: f64,

@@ -10,7 +10,7 @@ pub struct BsdfSample {
     /// The density with which `wi` is drawn, per steradian. For specular materials it is the
     /// probability of the choice between reflection and refraction.
     pub pdf: f64,
-    /// Whether the material sends light into single directions only.
+    /// True if the material sends light into single directions only.
     pub specular: bool,
     /// The square of the index on the side of `wi`, relative to that on the side of `wo`; 1 for
     /// reflection. `weight` is that of radiance carried from `wi` to `wo`; `weight · eta_squared` is

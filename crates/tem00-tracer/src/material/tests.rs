@@ -71,7 +71,7 @@ fn integrate(f: impl Fn(DVec3) -> f64, rings: u32, sectors: u32) -> f64 {
     sum * TAU / (f64::from(rings) * f64::from(sectors))
 }
 
-/// What the facets of a coat or metal reflect in all: ∫ f cos θi dωi over facets, dωi = 4 (wo·h) dh.
+/// Albedo of the facets of a coat or metal: ∫ f cos θi dωi over facets, dωi = 4 (wo·h) dh.
 ///
 /// Facets resolve lobes of any width and angle.
 fn albedo_of_facets(material: &Material, wo: DVec3) -> f64 {

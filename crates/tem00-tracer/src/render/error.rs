@@ -2,7 +2,7 @@ use core::{error, fmt};
 
 use crate::TracerError;
 
-/// Why a frame was not rendered.
+/// A reason why a frame was not rendered.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RenderError {

@@ -2,7 +2,7 @@ use tem00_camera::Camera;
 
 use crate::{Filter, TracerError};
 
-/// Which formulas a render uses.
+/// The formulas that a render uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Formulas {
     /// The physics as it was derived and checked for this project.
@@ -12,7 +12,7 @@ pub enum Formulas {
     AsPrinted,
 }
 
-/// How light is followed.
+/// The method by which light is followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
     /// From the camera; and from the lasers through mirrors and glass, where the scene has them.
@@ -23,7 +23,7 @@ pub enum Method {
     Light,
 }
 
-/// How the light of a laser at a surface is sampled.
+/// The way in which the light of a laser at a surface is sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LaserEvents {
     /// From the one direction of the mean energy flow.
@@ -33,7 +33,7 @@ pub enum LaserEvents {
     Sampled,
 }
 
-/// How lamps that have an area, and the environment, are sampled from a surface.
+/// The way in which area lamps and the environment are sampled from a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LampEvents {
     /// By a point of the lamp and by a direction of the material, each weighted by how likely it is to
@@ -59,7 +59,7 @@ pub struct Crop {
     pub height: usize,
 }
 
-/// How a frame is rendered.
+/// Options for rendering a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderOptions {
     /// The number of camera samples per pixel, at least 1.
@@ -70,14 +70,14 @@ pub struct RenderOptions {
     pub formulas: Formulas,
     /// The most surfaces that light may meet between source and camera; `None` for no limit.
     pub max_depth: Option<u32>,
-    /// How light is followed.
+    /// The method by which light is followed.
     pub method: Method,
-    /// How the lasers are sampled from a surface.
+    /// The way in which the lasers are sampled from a surface.
     pub laser_events: LaserEvents,
-    /// How lamps are sampled from a surface.
+    /// The way in which lamps are sampled from a surface.
     pub lamp_events: LampEvents,
-    /// How the samples around a pixel make its value. Light that is followed from the lasers is
-    /// averaged over the square of the pixel instead.
+    /// The filter that weights the samples around a pixel. Light that is followed from the lasers
+    /// is averaged over the square of the pixel instead.
     pub filter: Filter,
     /// The part of the image that is rendered; `None` for all. Its pixels have the same bits as in the
     /// whole image, unless a target error asks for more samples.

@@ -34,7 +34,7 @@ pub(super) struct PathPass<'a, P> {
     pub filter: FilterSampler,
     pub frame: u32,
     pub area: Crop,
-    /// Whether light that is followed from the lasers will be added.
+    /// True if light that is followed from the lasers will be added.
     pub light_traced: bool,
     pub progress: &'a P,
     pub cancel: &'a AtomicBool,

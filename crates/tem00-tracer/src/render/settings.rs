@@ -14,15 +14,15 @@ pub struct RenderSettings {
     pub reference_frame: u32,
     /// The most surfaces that light may meet between source and camera; `None` for no limit.
     pub max_depth: Option<u32>,
-    /// How light is followed.
+    /// The method by which light is followed.
     pub method: Method,
-    /// How the lasers are sampled from a surface.
+    /// The way in which the lasers are sampled from a surface.
     pub laser_events: LaserEvents,
     /// The part of the image that is rendered; `None` for all.
     pub crop: Option<Crop>,
     /// The relative standard error of a pixel at which it gets no more samples.
     pub target_error: Option<f64>,
-    /// How the samples around a pixel make its value.
+    /// The filter that weights the samples around a pixel.
     pub filter: Filter,
 }
 

@@ -1,10 +1,10 @@
-//! Which patterns the surfaces of a scene get, so that none shows the speckle of another.
+//! Allocation of patterns to the surfaces of a scene, so that none shows the speckle of another.
 
 use tem00_speckle::{SpeckleError, StackNeeds, StackPlan};
 
 use crate::TracerError;
 
-/// What surfaces that move alike ask of their patterns.
+/// Requirements of surfaces that move alike on their patterns.
 #[derive(Clone, Debug)]
 pub(super) struct Request {
     pub needs: StackNeeds,
@@ -19,7 +19,7 @@ pub(super) struct Request {
 /// Patterns of one size for surfaces that move alike, or for all that share it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PatternAllocation {
-    /// What is asked for, whether it fits or not.
+    /// The requirements, fulfilled or not.
     pub needs: StackNeeds,
     /// The largest motion of the pupil to either side of the reference frame, in its diameters.
     pub shifts: [f64; 2],
@@ -54,7 +54,7 @@ impl PatternAllocation {
     }
 }
 
-/// Where a part of the speckle of a surface is looked up.
+/// Position in a stack at which a part of the speckle of a surface is looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Part {
     /// Its share of the light.
@@ -150,7 +150,7 @@ fn separate(
     Ok((0..levels).filter_map(plans).find(fits))
 }
 
-/// What all requests ask of one stack.
+/// Requirements of all requests on one stack.
 fn together(requests: &[Request]) -> Option<(StackNeeds, [f64; 2])> {
     let requests = requests
         .iter()

@@ -9,16 +9,17 @@ use crate::Scene;
 pub struct ReferencePoint {
     /// The index of the surface in the scene.
     pub surface: usize,
-    /// Where the point is in the first of the frames, in metres.
+    /// The position of the point in the first of the frames, in metres.
     pub position: DVec3,
     /// The unit normal of the surface there.
     pub normal: DVec3,
 }
 
-/// How speckle changes from one frame to another: it moves in the image, and only a part of it is left.
+/// Change of speckle from one frame to another: it moves in the image, and only a part of it is
+/// left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeckleChange {
-    /// How far the pattern has moved on the sensor, in pixels to the right and down.
+    /// The displacement of the pattern on the sensor, in pixels to the right and down.
     pub displacement: DVec2,
     /// The correlation of intensity of what is left, from 0 to 1.
     pub correlation: f64,

@@ -8,7 +8,7 @@ use tem00_decorrelation::{
 use super::{SpecklePoint, perspective::Perspective, upright};
 use crate::{Laser, Scene};
 
-/// What has moved between the reference frame and another.
+/// Motion of the scene between the reference frame and another.
 #[derive(Clone, Debug)]
 pub(super) struct Change {
     /// The number of frames since the reference frame, negative before it.
@@ -39,12 +39,12 @@ struct LaserChange {
     moved: bool,
 }
 
-/// What has become of the speckle of a point since the reference frame.
+/// Motion of the speckle of a point since the reference frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct SpeckleShift {
-    /// How far it has moved in the image in perspective, in pixels with y down.
+    /// The displacement of the speckle in the image in perspective, in pixels with y down.
     pub displacement: DVec2,
-    /// How far the pupil has moved over it, in pupil diameters, never negative.
+    /// The displacement of the pupil over the speckle, in pupil diameters, never negative.
     pub pupil: f64,
 }
 
@@ -54,9 +54,9 @@ pub(super) struct SpeckleShift {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ReferencePoint {
     surface: usize,
-    /// Where it was seen, in pixels.
+    /// The image point where it was seen, in pixels.
     pixel: DVec2,
-    /// Where it is in the reference frame, in metres.
+    /// Its position in the reference frame, in metres.
     position: DVec3,
     /// Its unit normal there.
     normal: DVec3,
@@ -83,12 +83,12 @@ impl BodyChange {
 }
 
 impl Change {
-    /// What has moved since the reference frame of a render.
+    /// Finds the motion since the reference frame of a render.
     pub(super) fn new(scene: &Scene, frame: u32) -> Self {
         Self::between(scene, [scene.render.reference_frame, frame])
     }
 
-    /// What has moved from one frame, which is the reference, to another.
+    /// Finds the motion from one frame, which is the reference, to another.
     pub(super) fn between(scene: &Scene, [reference, frame]: [u32; 2]) -> Self {
         let body = |trajectory: &crate::Trajectory| {
             BodyChange::between(trajectory.pose_at(reference), trajectory.pose_at(frame))
@@ -294,7 +294,7 @@ impl SpeckleShift {
     }
 }
 
-/// How far the surface has gone out of focus, in axial decorrelation lengths.
+/// Change of the surface's defocus, in axial decorrelation lengths.
 fn axial_shift(geometry: &ImagingGeometry, before: &Configuration, now: &Configuration) -> f64 {
     let defocus = |state: &Configuration| geometry.defocus_at(state.sight().depth());
     let diameter = geometry.pupil_diameter();

@@ -24,7 +24,7 @@ pub struct SpeckleModel {
 struct LaserPatterns {
     geometry: ImagingGeometry,
     patterns: Vec<Pattern>,
-    /// Where each surface finds its speckle.
+    /// The patterns in which each surface looks up its speckle.
     places: Vec<Place>,
 }
 
@@ -209,7 +209,7 @@ impl SpeckleFrame<'_> {
         }
     }
 
-    /// Where the points of a surface are found in its pattern.
+    /// Coordinates of the points of a surface in its pattern.
     fn coordinates(
         &self,
         laser: usize,
@@ -242,7 +242,7 @@ impl SpeckleFrame<'_> {
         block
     }
 
-    /// Where a point is found by the formulas of the paper.
+    /// Coordinates of a point by the formulas of the paper.
     fn as_printed(
         &self,
         laser: usize,

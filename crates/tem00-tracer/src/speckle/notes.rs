@@ -11,7 +11,7 @@ pub struct RoughnessNote {
     pub surface: String,
     /// The index of the laser.
     pub laser: usize,
-    /// What its roughness does to the light.
+    /// The effect of its roughness on the light.
     pub roughness: OpticalRoughness,
 }
 

@@ -11,7 +11,7 @@ use tem00_decorrelation::ImagingGeometry;
 pub(super) struct Perspective {
     camera: Camera,
     tilted: bool,
-    /// Whether image points are those of the sensor itself.
+    /// True if image points are those of the sensor itself.
     plain: bool,
 }
 

@@ -29,7 +29,7 @@ pub struct PatternPlan {
     wavelength: f64,
     speckle_size: f64,
     allocations: Vec<PatternAllocation>,
-    /// Where each surface finds its speckle.
+    /// The patterns in which each surface looks up its speckle.
     places: Vec<Place>,
     /// The names of the surfaces.
     names: Vec<String>,
@@ -38,14 +38,14 @@ pub struct PatternPlan {
     seed: u64,
 }
 
-/// Where a surface finds its speckle.
+/// Patterns in which a surface looks up its speckle.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Place {
     /// The patterns, among those of the laser.
     pub allocation: usize,
     /// The parts that add up.
     pub parts: Vec<Part>,
-    /// What tells one side of the reference frame from the other.
+    /// The point that tells one side of the reference frame from the other.
     pub reference_point: Option<ReferencePoint>,
 }
 
@@ -157,7 +157,7 @@ impl Planner<'_> {
         })
     }
 
-    /// What the surfaces of a group ask for.
+    /// Returns the requirements of the surfaces of a group.
     fn request(
         &self,
         group: usize,
@@ -185,7 +185,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Where each surface finds the parts of its speckle.
+    /// Returns the patterns in which each surface looks up the parts of its speckle.
     fn places(
         &self,
         requests: &[Request],

@@ -15,13 +15,13 @@ use crate::{Intersector, Scene, TracerError};
 /// Rays per image side with which a frame is sampled.
 const RAYS_PER_SIDE: u32 = 128;
 
-/// How many frames are sampled beside those of the keyframes.
+/// Number of frames that are sampled beside those of the keyframes.
 const FRAMES: u32 = 16;
 
 /// The most keyframes that are sampled.
 const KEYFRAMES: usize = 64;
 
-/// What the image and the motion in a scene ask of a pattern.
+/// Requirements of the image and the motion in a scene on a pattern.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MotionPrescan {
     /// Width and height of the image, in pixels.
@@ -38,7 +38,7 @@ pub(super) struct MotionPrescan {
     pub reference_point: Option<ReferencePoint>,
 }
 
-/// What one frame asks of a pattern.
+/// Requirements of one frame on a pattern.
 #[derive(Clone, Copy, Debug)]
 struct FrameSample {
     low: DVec2,
@@ -134,7 +134,7 @@ impl MotionPrescan {
     }
 }
 
-/// What one frame asks of the pattern of each laser and group.
+/// Returns the requirements of one frame on the pattern of each laser and group.
 fn frame_samples(
     scene: &Scene,
     laser_groups: LaserGroups<'_>,

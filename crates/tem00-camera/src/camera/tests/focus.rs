@@ -16,7 +16,7 @@ fn tilted_normal(camera: &Camera) -> (DVec3, DVec3) {
     (normal, line.cross(axes.z_axis))
 }
 
-/// Where a ray meets the plane in focus.
+/// Intersection of a ray with the plane in focus.
 fn in_focus(camera: &Camera, ray: &Ray) -> DVec3 {
     let (point, normal) = camera.plane_in_focus();
     let distance = (point - ray.origin).dot(normal) / ray.direction.dot(normal);

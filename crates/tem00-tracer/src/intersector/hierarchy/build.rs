@@ -8,7 +8,7 @@ use obvhs::{
 
 use super::{Child, Hierarchy, Node, PADDING, WIDTH};
 
-/// What the leaves of a hierarchy hold: indices of things, leaf after leaf.
+/// Contents of the leaves of a hierarchy: indices of things, leaf after leaf.
 #[derive(Debug, Default)]
 pub(in super::super) struct Leaves {
     things: Vec<u32>,

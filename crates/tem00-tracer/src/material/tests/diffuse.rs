@@ -51,7 +51,7 @@ fn white_facets_lose_nothing() {
     }
 }
 
-/// What grey facets reflect in all is the sum of the light that met one, two, three … of them.
+/// The albedo of grey facets is the sum of the light that met one, two, three … of them.
 #[test]
 fn grey_facets_reflect_the_sum_of_all_orders() {
     let (reflectance, sigma) = (0.6, 0.8_f64);

@@ -1,4 +1,4 @@
-//! What a plan says of itself.
+//! Text form of a plan.
 
 use core::fmt;
 

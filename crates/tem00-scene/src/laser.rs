@@ -190,8 +190,10 @@ fn table(section: &Section<'_>) -> Result<AngularProfile, Problem> {
     AngularProfile::new(&radians?, &relative?).map_err(|error| {
         let culprit = match error {
             BeamError::Entry {
-                parameter, index, ..
-            } if parameter == "angles" => angles.get(index),
+                parameter: "angles",
+                index,
+                ..
+            } => angles.get(index),
             BeamError::Entry { index, .. } => powers.get(index),
             _ => None,
         };

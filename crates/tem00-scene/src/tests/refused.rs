@@ -382,7 +382,7 @@ fn what_constructors_refuse_is_placed_at_its_key() {
         (
             with("spot.", "line_direction = [1, 0, 2]\nspot."),
             7,
-            "fan axis",
+            "fan_axis must be",
         ),
         (
             with("rectangle.size", "rectangle.up = [0, 0, 3]\nrectangle.size"),

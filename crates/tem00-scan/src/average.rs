@@ -1,6 +1,6 @@
 use glam::DMat3;
 use glam::{DVec2, DVec3};
-use tem00_triangulation::PlaceNoise;
+use tem00_triangulation::PositionNoise;
 
 use crate::{
     frame::{MeasuredFrame, MeasuredPoint},
@@ -97,9 +97,9 @@ fn seen_per_pixel(point: &MeasuredPoint) -> DVec3 {
 }
 
 /// The noise of the mean of the places of several points.
-fn mean_noise(members: &[Member<'_>], speckle: &impl SpeckleCorrelation) -> PlaceNoise {
+fn mean_noise(members: &[Member<'_>], speckle: &impl SpeckleCorrelation) -> PositionNoise {
     let squared_count = (members.len() as f64).powi(2);
-    let mut sum = PlaceNoise::default();
+    let mut sum = PositionNoise::default();
     for (_, point) in members {
         sum.shot += point.noise.shot;
         sum.dark += point.noise.dark;

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2, DVec3};
 use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::{ReferencePoint, RigidMotion, SpeckleChange};
 use tem00_triangulation::{
-    Calibration, ColumnLight, LineDetector, LinePoint, PlaceNoise, ProfilePoint, RawFrame, Sensor,
+    Calibration, ColumnLight, LineDetector, LinePoint, PositionNoise, ProfilePoint, RawFrame, Sensor,
     Validity, speckle_covariance,
 };
 
@@ -44,7 +44,7 @@ pub struct MeasuredPoint {
     /// The displacement of that per pixel by which the line moves down, in metres.
     pub per_pixel: DVec3,
     /// The contributions to the variance of the line's position, in square pixels.
-    pub noise: PlaceNoise,
+    pub noise: PositionNoise,
     /// The covariance that the calibration gives to the position, in m²: common to all points.
     pub calibration: DMat3,
 }
@@ -236,13 +236,13 @@ impl Expected {
     }
 
     /// Returns the contributions to the variance of a line's position.
-    fn noise(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> PlaceNoise {
+    fn noise(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> PositionNoise {
         let sensor = surroundings.sensor.description();
         let column = self.column(surroundings, seen);
         let speckle = surroundings
             .speckle
             .map(|speckle| speckle.column(seen.pixel));
-        PlaceNoise::of_column(sensor, &speckle.as_deref(), &column.light())
+        PositionNoise::of_column(sensor, &speckle.as_deref(), &column.light())
     }
 
     /// The line that there would be without noise at the place of a point, if any.

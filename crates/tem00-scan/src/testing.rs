@@ -2,7 +2,7 @@
 
 use glam::DMat3;
 use glam::{DVec2, DVec3};
-use tem00_triangulation::{PlaceNoise, ProfilePoint, UncertainPoint, Validity};
+use tem00_triangulation::{PositionNoise, ProfilePoint, UncertainPoint, Validity};
 
 use crate::frame::MeasuredPoint;
 
@@ -25,11 +25,11 @@ pub(super) fn point(column: usize, position: DVec3) -> MeasuredPoint {
         },
         position,
         per_pixel: -1e-5 * DVec3::Z,
-        noise: PlaceNoise {
+        noise: PositionNoise {
             speckle: 0.04,
             shot: 0.0025,
             prnu: 0.01,
-            ..PlaceNoise::default()
+            ..PositionNoise::default()
         },
         calibration: DMat3::ZERO,
     }

@@ -19,7 +19,7 @@ pub use self::{
 ///
 /// To first order the place of a line moves with the grey values of its column, δy = Σ gᵢ δIᵢ, whatever
 /// the detector; the sensitivities gᵢ are those of the noise-free column. Each source adds a variance
-/// ([`PlaceNoise`](crate::PlaceNoise)), which the geometry turns into one of height. They are means over
+/// ([`PositionNoise`](crate::PositionNoise)), which the geometry turns into one of height. They are means over
 /// the place of the line within a pixel.
 ///
 /// # Averages

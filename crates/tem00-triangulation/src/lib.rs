@@ -23,7 +23,7 @@ mod error;
 mod file;
 mod geometry;
 mod line_image;
-mod place_noise;
+mod position_noise;
 mod sensor;
 mod setup;
 
@@ -49,8 +49,8 @@ pub use file::{
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use line_image::{LineImage, LineImageData};
-pub use place_noise::{
-    ColumnLight, ColumnSpeckle, PixelCovariance, PlaceNoise, speckle_covariance,
+pub use position_noise::{
+    ColumnLight, ColumnSpeckle, PixelCovariance, PositionNoise, speckle_covariance,
 };
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{

@@ -1,7 +1,7 @@
 //! The terms of the height uncertainty, over all points.
 
 use tem00_scan::MeasuredPoint;
-use tem00_triangulation::{DVec3, PlaceNoise, UncertaintySource};
+use tem00_triangulation::{DVec3, PositionNoise, UncertaintySource};
 
 use crate::report::{
     Cell, Column, Table,
@@ -38,7 +38,7 @@ pub(super) struct Terms {
 const COVERAGE: f64 = 1.96;
 
 /// A term of the noise of a position, in square pixels.
-type Variance = fn(&PlaceNoise) -> f64;
+type Variance = fn(&PositionNoise) -> f64;
 
 /// The terms of the noise of a position, by name.
 const NOISE: [(&str, Variance); 6] = [

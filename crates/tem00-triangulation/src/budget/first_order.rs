@@ -2,7 +2,7 @@ use tem00_statistics::{PixelAutocovariance, PixelColumn};
 
 use super::{BudgetTerm, ErrorDistribution, Evaluation, UncertaintySource};
 use crate::{
-    ColumnLight, ColumnSpeckle, ImagedLine, LinePoint, PlaceNoise, Setup, SetupDescription,
+    ColumnLight, ColumnSpeckle, ImagedLine, LinePoint, PositionNoise, Setup, SetupDescription,
 };
 
 /// The places of the line within a pixel over which the noise is averaged.
@@ -74,7 +74,7 @@ pub(super) fn rows(description: &SetupDescription, line: &ImagedLine) -> usize {
 
 /// Returns all terms of the budget of a line, or `None` if the detector finds none.
 pub(super) fn terms(setup: &Setup, line: &ImagedLine) -> Option<Vec<BudgetTerm>> {
-    let noise = place_noise(setup, line)?;
+    let noise = position_noise(setup, line)?;
     let bias = detector_bias(setup, line)?;
     let calibration = setup.description().calibration_uncertainty;
     let terms = UncertaintySource::ALL.map(|source| {
@@ -106,14 +106,14 @@ pub(super) fn terms(setup: &Setup, line: &ImagedLine) -> Option<Vec<BudgetTerm>>
 }
 
 /// Returns the variances of the place of the line after all averages, in square pixels.
-fn place_noise(setup: &Setup, line: &ImagedLine) -> Option<PlaceNoise> {
+fn position_noise(setup: &Setup, line: &ImagedLine) -> Option<PositionNoise> {
     let d = setup.description();
     let (autocovariance, fewer) = autocovariance(d, line)?;
     let speckle = Some(ColumnSpeckle {
         autocovariance: &autocovariance,
         variance: d.surface.contrast().powi(2) * fewer,
     });
-    let mut sum = PlaceNoise::default();
+    let mut sum = PositionNoise::default();
     for phase in 0..PHASES {
         // Between them: at an edge or a middle two pixels would be equally bright.
         let phase = (f64::from(phase) + 0.5) / f64::from(PHASES);
@@ -124,14 +124,14 @@ fn place_noise(setup: &Setup, line: &ImagedLine) -> Option<PlaceNoise> {
             coherent: &column.electrons,
             sensitivities: &setup.detector().sensitivities(&column.values, &point),
         };
-        let noise = PlaceNoise::of_column(&d.sensor, &speckle, &light);
+        let noise = PositionNoise::of_column(&d.sensor, &speckle, &light);
         sum = plus(sum, noise);
     }
     Some(averaged(d, sum.scaled(1.0 / f64::from(PHASES))))
 }
 
-fn plus(a: PlaceNoise, b: PlaceNoise) -> PlaceNoise {
-    PlaceNoise {
+fn plus(a: PositionNoise, b: PositionNoise) -> PositionNoise {
+    PositionNoise {
         speckle: a.speckle + b.speckle,
         shot: a.shot + b.shot,
         dark: a.dark + b.dark,
@@ -143,13 +143,13 @@ fn plus(a: PlaceNoise, b: PlaceNoise) -> PlaceNoise {
 
 /// Divides by the numbers of columns and frames that each source is independent in; of the columns,
 /// those of speckle are counted already.
-fn averaged(d: &SetupDescription, noise: PlaceNoise) -> PlaceNoise {
+fn averaged(d: &SetupDescription, noise: PositionNoise) -> PositionNoise {
     let columns = f64::from(d.average.columns);
     let frames = f64::from(d.average.frames);
     let sensor = &d.sensor;
     let dark = sensor.dark_noise.powi(2) + sensor.dark_current * sensor.exposure_time;
     let dithered = sensor.gain * dark.sqrt() >= DITHER;
-    PlaceNoise {
+    PositionNoise {
         speckle: noise.speckle
             / if d.average.independent_speckle {
                 frames

@@ -27,7 +27,7 @@ use crate::SensorDescription;
 /// - EMVA Standard 1288, release 4.0, 2021: the linear model of a sensor.
 /// - JCGM 100:2008, *Guide to the expression of uncertainty in measurement*, 5.1 and 5.2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PlaceNoise {
+pub struct PositionNoise {
     /// From speckle.
     pub speckle: f64,
     /// From the Poisson noise of the light.
@@ -97,7 +97,7 @@ impl PixelCovariance for ColumnSpeckle<'_> {
     }
 }
 
-impl PlaceNoise {
+impl PositionNoise {
     /// Returns what makes the place of a line uncertain in a column.
     ///
     /// # Panics

@@ -1,4 +1,4 @@
-//! What height uncertainty a set-up gives, and what dominates it.
+//! Height uncertainty of a set-up, and the source that dominates it.
 
 mod coverage;
 mod first_order;

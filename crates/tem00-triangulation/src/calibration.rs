@@ -42,14 +42,14 @@ pub struct Calibration {
     quality: Option<CalibrationQuality>,
 }
 
-/// What the uncertainty of points is computed from.
+/// Data that the uncertainty of points is computed from.
 #[derive(Clone, Debug, PartialEq)]
 struct Uncertainty {
     covariance: CalibrationCovariance,
     perturbations: Perturbations,
 }
 
-/// How well images of a checkerboard and of the line on it fit the calibration that they gave.
+/// Residuals of images of a checkerboard and of the line on it, against the calibration that they gave.
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -25,7 +25,7 @@ pub use self::{
 };
 use crate::{SetupDescription, TriangulationError};
 
-/// What a search makes as small as possible.
+/// Figure that a search makes as small as possible.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Objective {
     /// The combined standard uncertainty of a height.
@@ -45,16 +45,16 @@ impl Objective {
     }
 }
 
-/// What a search is asked for.
+/// Task of a search: a set-up, what is varied, the constraints and the objective.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignQuestion {
     /// The set-up to begin with: what is not varied stays as it is here.
     pub base: SetupDescription,
-    /// What is varied. The last one varies fastest.
+    /// The varied parameters. The last one varies fastest.
     pub sweeps: Vec<Sweep>,
-    /// What a set-up must keep.
+    /// The constraints that a set-up must keep.
     pub constraints: Vec<Constraint>,
-    /// What is made small.
+    /// The figure that is made small.
     pub objective: Objective,
     /// The most set-ups that may be tried.
     pub most_setups: usize,

@@ -3,7 +3,7 @@ use core::{error, fmt};
 use tem00_camera::CameraError;
 use tem00_speckle::SpeckleError;
 
-/// Why a part of a triangulation set-up could not be constructed or evaluated.
+/// Reason why a part of a triangulation set-up could not be constructed or evaluated.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TriangulationError {
@@ -13,44 +13,44 @@ pub enum TriangulationError {
         parameter: &'static str,
         /// The rejected value.
         value: f64,
-        /// What is allowed, with the unit.
+        /// The allowed values, with the unit.
         allowed: &'static str,
     },
     /// A vector that must point somewhere is zero, not finite or parallel to its partner.
     Direction {
         /// The name of the parameter.
         parameter: &'static str,
-        /// What is allowed.
+        /// The allowed values.
         allowed: &'static str,
     },
     /// There is not enough of something that was counted.
     TooFew {
-        /// What was counted, in the plural.
+        /// The counted things, in the plural.
         what: &'static str,
-        /// How many there are.
+        /// The number of them.
         got: usize,
-        /// How many it takes.
+        /// The minimum number.
         needed: usize,
     },
     /// An image does not show the checkerboard that was asked for.
     NoBoard {
         /// The numbers of inner corners along its rows and its columns.
         corners: [usize; 2],
-        /// How many corners of squares the image shows.
+        /// The number of corners of squares that the image shows.
         found: usize,
     },
     /// Measurements leave open what they should determine.
     NotDetermined {
-        /// What stays open.
+        /// The undetermined quantity.
         what: &'static str,
-        /// What would determine it.
+        /// A measurement or change that would determine it.
         advice: &'static str,
     },
     /// A set-up is possible, but measures nothing.
     NothingMeasured {
-        /// Why it does not.
+        /// The reason.
         why: &'static str,
-        /// What to change.
+        /// A change that helps.
         advice: &'static str,
     },
     /// The camera is not possible.

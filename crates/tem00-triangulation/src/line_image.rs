@@ -9,7 +9,7 @@ use crate::{
     setup::{LineProfile, within},
 };
 
-/// How many samples a speckle has at least, along each axis.
+/// Minimum number of samples of a speckle along each axis.
 ///
 /// A pixel is a sum over its samples. To second order that lets frequencies f pass by the factor
 /// `1 + (π f s)²/6` too well, with the spacing s: at 6 samples, 2 % of amplitude for the average
@@ -19,10 +19,10 @@ const SAMPLES_PER_SPECKLE: f64 = 6.0;
 /// The most samples of a pattern.
 const MAXIMUM_SAMPLES: usize = 1 << 25;
 
-/// How many speckle sizes of darkness lie between the images of a pattern that repeats.
+/// Dark distance between the images of a pattern that repeats, in speckle sizes.
 const DARK: f64 = 8.0;
 
-/// What determines a [`LineImage`]. Lengths are in pixels.
+/// Parameters of a [`LineImage`]. Lengths are in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineImageData {
     /// The numbers of columns and rows.

@@ -2,7 +2,7 @@ use tem00_statistics::PixelAutocovariance;
 
 use crate::SensorDescription;
 
-/// What makes the place of a line along a column uncertain: variances, in square pixels.
+/// Variances of the position of a line along a column, source by source, in square pixels.
 ///
 /// To first order the place moves with the grey values of the column, δy = Σ gᵢ δIᵢ. With the
 /// electrons nᵢ, the gain K and the speckled part Eᵢ of the electrons:
@@ -49,11 +49,11 @@ pub struct ColumnLight<'a> {
     pub electrons: &'a [f64],
     /// Those of them whose light carries speckle.
     pub coherent: &'a [f64],
-    /// How far the place moves per grey value of each pixel, in pixels per DN.
+    /// The shift of the position per grey value of each pixel, in pixels per DN.
     pub sensitivities: &'a [f64],
 }
 
-/// How the speckle in two pixels goes together.
+/// Covariance of the speckle in two pixels.
 pub trait PixelCovariance {
     /// Returns the covariance of the speckle factors of two pixels, a displacement in pixels apart:
     /// C² c, at no displacement the square of the contrast in a pixel.

@@ -21,7 +21,7 @@ pub(super) struct NoiseFreeColumn {
     pub(super) electrons: Vec<f64>,
     /// The grey values.
     pub(super) values: Vec<f32>,
-    /// Where the line is, in pixels.
+    /// The position of the line, in pixels.
     pub(super) centre: f64,
 }
 

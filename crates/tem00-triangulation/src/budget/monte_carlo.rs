@@ -16,7 +16,7 @@ use crate::{
 /// The least number of columns of a simulated frame.
 const COLUMNS: usize = 128;
 
-/// How a set-up is simulated.
+/// Options of the simulation of a set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SimulationOptions {
     /// The number of trials, at least 10: each has a place of the line within a pixel, speckle and a
@@ -45,7 +45,7 @@ pub struct MonteCarloEstimate {
     pub standard_error: f64,
 }
 
-/// What trials say of the uncertainty of a height.
+/// Uncertainty of a height from simulated trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
     options: SimulationOptions,
@@ -84,10 +84,10 @@ impl Simulation {
     }
 }
 
-/// What a trial adds up to, source by source; the last is everything at once.
+/// Outcomes of a trial, source by source; the last is everything at once.
 type Trial = [Outcome; SIMULATED.len() + 1];
 
-/// What a trial finds with the noise of one source, or of all.
+/// Result of a trial with the noise of one source, or of all.
 #[derive(Clone, Copy, Debug)]
 struct Outcome {
     /// The mean square deviation, in square pixels; `None` without a line that can be trusted.

@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// What makes a height uncertain.
+/// Source of the uncertainty of a height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum UncertaintySource {
@@ -76,7 +76,7 @@ impl fmt::Display for UncertaintySource {
     }
 }
 
-/// How a standard uncertainty was evaluated, by the types of the GUM.
+/// Evaluation of a standard uncertainty, by the types of the GUM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evaluation {
     /// By statistics of observations.
@@ -111,9 +111,9 @@ impl ErrorDistribution {
 /// One line of a budget.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BudgetTerm {
-    /// What makes the height uncertain.
+    /// The source of the uncertainty.
     pub source: UncertaintySource,
-    /// How that was evaluated.
+    /// The type of its evaluation.
     pub evaluation: Evaluation,
     /// The distribution of the error.
     pub distribution: ErrorDistribution,

@@ -1,6 +1,6 @@
 use crate::TriangulationError;
 
-/// What is known of a camera before it is calibrated, and what is sought.
+/// Known parameters of a camera before its calibration, and the choice of those that are sought.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraModel {
     /// The pixel pitch, in metres, of the data sheet.
@@ -12,14 +12,14 @@ pub struct CameraModel {
     pub focal_length: Option<f64>,
     /// The f-number, which decides blur and speckle and is not estimated.
     pub f_number: f64,
-    /// Whether the sensor is tilted (Scheimpflug): then its tilt is sought, and the axis of the lens
+    /// True if the sensor is tilted (Scheimpflug): then its tilt is sought, and the axis of the lens
     /// is taken to meet the middle of the image. Otherwise the principal point is sought.
     ///
     /// Without distortion both describe the same images: a pinhole before a tilted sensor is one before
     /// an upright sensor, with the principal point where the perpendicular meets it. Therefore they are
     /// not sought together.
     pub tilted: bool,
-    /// How many coefficients of radial distortion are sought, from 0 to 3.
+    /// The number of coefficients of radial distortion that are sought, from 0 to 3.
     pub radial: usize,
 }
 

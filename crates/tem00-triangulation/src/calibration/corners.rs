@@ -14,10 +14,10 @@ const LAST_SMOOTHING: f64 = 0.06;
 /// The least standard deviation of the last one, in pixels: steps between pixels hardly show in it.
 const LEAST_SMOOTHING: f64 = 2.0;
 
-/// How far its window reaches, in standard deviations.
+/// Reach of its window, in standard deviations.
 const WINDOW: f64 = 4.0;
 
-/// How often a place is refined at most.
+/// Maximum number of refinements of a position.
 const MOST_STEPS: usize = 30;
 
 /// The change of a place below which it stands, in pixels.
@@ -26,7 +26,7 @@ const LEAST_STEP: f64 = 1e-4;
 /// The least size of an image, in pixels, that is worth a look.
 const LEAST_SIZE: usize = 16;
 
-/// How often the image is halved if its corners are too blurred for the ring.
+/// Maximum number of times that the image is halved if its corners are too blurred for the ring.
 const HALVINGS: u32 = 3;
 
 /// Finds the inner corners of a checkerboard in an image, in pixels: row by row from the upper left, to a
@@ -214,7 +214,7 @@ mod tests {
         Checkerboard::new([5, 4], 1.0).unwrap()
     }
 
-    /// Where a corner lies in the image: squares of 20 pixels, turned and in perspective.
+    /// Returns the position of a corner in the image: squares of 20 pixels, turned and in perspective.
     fn place(board: DVec2) -> DVec2 {
         let flat = 20.0 * DVec2::from_angle(0.2).rotate(board);
         let nearer = 1.0 + 0.001 * flat.x - 0.0015 * flat.y;

@@ -7,7 +7,7 @@ use crate::TriangulationError;
 /// The number of parameters.
 pub(super) const COUNT: usize = PARAMETERS.len();
 
-/// What is uncertain about a calibration, in the order of its covariance.
+/// Uncertain parameter of a calibration, in the order of the covariance.
 ///
 /// The camera's axes are those of its image: to the right, down, and along the view. A tilt is the
 /// vector of [`SensorTilt`](tem00_camera::SensorTilt): its angle along the right of the image and along
@@ -138,6 +138,6 @@ impl CalibrationCovariance {
     }
 }
 
-/// How far correlations may be from a possible set by rounding: they come out of sums of many products
+/// Tolerance for rounding in the test that correlations are a possible set: they come out of sums of many products
 /// and an inversion.
 const ROUNDING: f64 = 1e-6;

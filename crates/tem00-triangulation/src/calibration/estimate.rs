@@ -19,7 +19,7 @@ use crate::{LaserPlane, LineDetector, LinePoint, TriangulationError, Validity};
 /// The least number of boards.
 const LEAST_BOARDS: usize = 3;
 
-/// What a camera saw of one board: image points, in pixels.
+/// View of one board by a camera: image points, in pixels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BoardView {
     /// The inner corners, row by row from the upper left, as
@@ -215,8 +215,8 @@ const OUTSIDE: TriangulationError = TriangulationError::NotDetermined {
 };
 
 impl Checkerboard {
-    /// Whether a point, in the axes of the camera, lies on the squares of a board in a pose. The outer
-    /// half of the outermost squares does not count.
+    /// Returns true if a point, in the axes of the camera, lies on the squares of a board in a pose. The
+    /// outer half of the outermost squares does not count.
     fn contains(&self, pose: &Pose, point: DVec3) -> bool {
         let on_board = pose.rotation.transpose() * (point - pose.translation) / self.square();
         let within = |x: f64, corners: usize| x > -0.5 && x < corners as f64 - 0.5;

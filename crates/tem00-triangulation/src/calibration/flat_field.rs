@@ -5,7 +5,7 @@ use tem00_numerics::Grid;
 /// The least illumination that an image is divided by, as a part of its mean on the board.
 const LEAST: f64 = 0.1;
 
-/// How many bright squares each coefficient of the illumination takes at least.
+/// Minimum number of bright squares per coefficient of the illumination.
 const SQUARES_PER_COEFFICIENT: usize = 2;
 
 /// Returns the image divided by the illumination of a board in it, whose ordered corners are about known.

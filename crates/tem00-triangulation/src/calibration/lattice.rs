@@ -2,7 +2,7 @@ use std::collections::HashMap;
 
 use glam::DVec2;
 
-/// How far a corner may lie from where its neighbours expect it, in squares.
+/// Largest distance of a corner from the position that its neighbours predict, in squares.
 const TOLERANCE: f64 = 0.3;
 
 /// The number of points with which a lattice begins.

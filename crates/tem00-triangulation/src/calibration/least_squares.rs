@@ -6,7 +6,7 @@ use crate::TriangulationError;
 ///
 /// The step of a state is a vector of its own, as a rotation is no vector.
 pub(super) trait LeastSquares {
-    /// What is sought.
+    /// The sought parameters.
     type State: Clone;
 
     /// Returns the state changed by a step.

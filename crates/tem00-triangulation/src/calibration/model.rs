@@ -8,7 +8,7 @@ use super::{
     perturbation::{INTRINSICS, focal_length, tilt_of},
 };
 
-/// Where a board stands in the axes of the camera: to the right, down, along the view.
+/// Position and attitude of a board in the axes of the camera: to the right, down, along the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose {
     pub rotation: DMat3,
@@ -51,7 +51,7 @@ pub(super) struct Bundle<'a> {
     pub images: Vec<&'a [DVec2]>,
 }
 
-/// How the image is focused while its sharpness does not matter, in metres.
+/// Focus distance used while the sharpness of the image does not matter, in metres.
 const FOCUS: f64 = 1.0;
 
 impl CameraModel {

@@ -3,7 +3,7 @@ use nalgebra::{Matrix3, SymmetricEigen};
 
 use crate::TriangulationError;
 
-/// How many robust standard deviations a point may lie off the plane.
+/// Largest distance of a point from the plane, in robust standard deviations.
 const OUTLIER: f64 = 4.0;
 
 /// The least ratio of the spread of the points across the line, and of their scatter off the plane.

@@ -21,10 +21,10 @@ const RING: [(i32, i32); 16] = [
     (5, -2),
 ];
 
-/// How far the ring reaches, in pixels.
+/// Reach of the ring, in pixels.
 pub(super) const REACH: usize = 5;
 
-/// How many candidates are kept per corner that is expected.
+/// Maximum number of candidates kept per expected corner.
 const MOST_CANDIDATES: usize = 3;
 
 /// The part of the response of a typical corner below which a pixel is none.

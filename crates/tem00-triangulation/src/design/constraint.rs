@@ -106,7 +106,7 @@ impl fmt::Display for DesignFigure {
 /// A bound that a set-up must keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constraint {
-    /// What is bounded.
+    /// The bounded figure.
     pub figure: DesignFigure,
     /// The least value of a [gain](DesignFigure::is_gain), the greatest of any other figure, in SI
     /// units.

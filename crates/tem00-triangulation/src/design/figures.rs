@@ -2,14 +2,14 @@ use tem00_beam::GaussianBeam;
 
 use crate::{Budget, HeightRange, Setup, SetupDescription, TriangulationError, UncertaintySource};
 
-/// What a set-up comes to: the figures that searches compare.
+/// Figures of a set-up that searches compare.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignFigures {
     /// The combined standard uncertainty of a height on the reference plane, in metres.
     pub uncertainty: f64,
     /// The expanded uncertainty of a height on the reference plane, in metres.
     pub expanded_uncertainty: f64,
-    /// What each source contributes to the standard uncertainty, in metres.
+    /// The contribution of each source to the standard uncertainty, in metres.
     pub contributions: Vec<(UncertaintySource, f64)>,
     /// The source that contributes most.
     pub dominant: UncertaintySource,

@@ -38,7 +38,7 @@ mod tests {
 
     use super::*;
 
-    /// Whether `a` is nowhere worse than `b` and somewhere better.
+    /// Returns true if `a` is nowhere worse than `b` and somewhere better.
     fn betters(a: [f64; 2], b: [f64; 2]) -> bool {
         a[0] <= b[0] && a[1] >= b[1] && (a[0] < b[0] || a[1] > b[1])
     }

@@ -8,7 +8,7 @@ pub struct Candidate {
     pub index: usize,
     /// The set-up.
     pub description: SetupDescription,
-    /// What it comes to, or why it is not possible.
+    /// Its figures, or the reason why it is not possible.
     pub figures: Result<DesignFigures, TriangulationError>,
     /// The constraints that it breaks; none if it is not possible.
     pub broken: Vec<Constraint>,
@@ -31,14 +31,14 @@ fn three_digits(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
 }
 
-/// What a constraint excludes.
+/// Numbers of set-ups that a constraint excludes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exclusion {
     /// The constraint.
     pub constraint: Constraint,
-    /// How many of the possible set-ups break it.
+    /// The number of possible set-ups that break it.
     pub excluded: usize,
-    /// How many of them break no other one: without it they would be allowed.
+    /// The number of these that break no other one: without it they would be allowed.
     pub alone: usize,
 }
 

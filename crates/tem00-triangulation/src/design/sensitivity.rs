@@ -1,7 +1,7 @@
 use super::{DesignFigures, DesignParameter};
 use crate::SetupDescription;
 
-/// What becomes of a set-up when one of its parameters is off.
+/// Figures of a set-up when one of its parameters is off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbours {
     /// The parameter.

@@ -8,7 +8,7 @@ pub struct Sweep {
     values: Vec<f64>,
 }
 
-/// How the values of a sweep are spaced.
+/// Spacing of the values of a sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Spacing {
     /// Equal differences.

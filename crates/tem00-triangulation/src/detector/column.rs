@@ -177,8 +177,8 @@ pub(super) struct Smoothed {
 }
 
 impl Smoothed {
-    /// How many standard deviations of the smoothed noise a line must stand out by. Of 10⁵ independent
-    /// pixels of Gaussian noise not one in ten thousand times does.
+    /// Minimum height of a line, in standard deviations of the smoothed noise. Of 10⁵ independent pixels
+    /// of Gaussian noise none reaches it in 9999 of 10 000 cases.
     const STAND_OUT: f64 = 6.0;
     /// The lower quartile of |a − b| for two independent standard normal numbers a and b.
     const QUARTILE_OF_DIFFERENCES: f64 = 0.450_6;

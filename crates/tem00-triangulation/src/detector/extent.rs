@@ -1,6 +1,6 @@
 use super::profile::Profile;
 
-/// How the light of a line is spread over its window.
+/// Spread of the light of a line over its window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {
     /// The sum of the grey values above the background.
@@ -38,7 +38,7 @@ impl Extent {
     }
 }
 
-/// Where the sum of the pixels first reaches `part`.
+/// Returns the position at which the sum of the pixels first reaches `part`.
 fn before(pixels: impl Iterator<Item = (f64, f64)>, part: f64) -> Option<f64> {
     let mut sum = 0.0;
     for (y, value) in pixels {

@@ -63,7 +63,7 @@ pub(super) fn fit(profile: &Profile<'_>) -> Option<Estimate> {
 impl Gaussian {
     /// The step of the centre and the radius, in pixels, that ends the fit.
     const STAYS: f64 = 1e-11;
-    /// What the sum of squares may rise by. Near its minimum it is flat: its rounding hides a step of
+    /// Largest allowed relative rise of the sum of squares. Near its minimum it is flat: its rounding hides a step of
     /// 1e−8 of the radius, which the normal equations still tell.
     const ROUNDING: f64 = 1e-12;
 

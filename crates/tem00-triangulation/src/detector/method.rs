@@ -2,7 +2,7 @@ use core::fmt;
 
 use crate::TriangulationError;
 
-/// How the place of a line in a column is estimated.
+/// Estimator of the position of a line in a column.
 ///
 /// Values are above the background b of the column. What an estimate looks at is the window and nothing
 /// else. "Exact" is said of a Gaussian line without noise.

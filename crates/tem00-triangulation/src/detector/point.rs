@@ -14,14 +14,14 @@ pub struct LinePoint {
     pub integral: f64,
     /// The grey value of the background.
     pub background: f64,
-    /// Whether the place can be trusted.
+    /// The reason why the position cannot be trusted, if there is one.
     pub validity: Validity,
-    /// Which of the lines of the image the point belongs to, counted from 0; in a single column, the
+    /// The index of the line of the image that the point belongs to, from 0; in a single column, the
     /// number of the line from the top.
     pub line: usize,
 }
 
-/// Whether a point of a line can be trusted, and if not, why.
+/// Validity of a point of a line, with the reason if it cannot be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Validity {

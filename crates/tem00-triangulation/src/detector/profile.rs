@@ -7,7 +7,7 @@ use super::column::Sighting;
 pub(super) struct Profile<'a> {
     /// The grey values of the column above its background.
     pub(super) above: &'a [f64],
-    /// Where the line stands.
+    /// The line as found in the column.
     pub(super) line: &'a Sighting,
 }
 

@@ -24,7 +24,7 @@ fn vertex([before, at, after]: [f64; 3]) -> Option<f64> {
     (curvature > 0.0).then(|| (after - before) / (2.0 * curvature))
 }
 
-/// Where straight flanks of equal slope meet.
+/// Returns the position where straight flanks of equal slope meet.
 pub(super) fn linear(profile: &Profile<'_>) -> Option<f64> {
     let [before, at, after] = three(profile);
     let rise = at - before.min(after);

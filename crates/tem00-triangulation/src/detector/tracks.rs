@@ -43,13 +43,13 @@ pub(super) fn number(columns: &mut [Vec<LinePoint>], window: usize) {
     points.for_each(|point| point.line = numbers[point.line]);
 }
 
-/// Where a track is expected in a column.
+/// Expected position of a track in a column.
 struct Expected {
     track: usize,
     position: f64,
     /// The number of columns since it was seen.
     since: usize,
-    /// Whether it was seen in the column before, or has been hidden by others ever since it was.
+    /// True if it was seen in the column before, or has been hidden by others ever since it was.
     is_followed: bool,
 }
 
@@ -131,7 +131,7 @@ fn hidden(
         .collect()
 }
 
-/// Whether a point is of one line alone. Where two lines come close it may be of both, and does not tell
+/// Returns true if a point is of one line alone. Where two lines come close it may be of both, and does not tell
 /// where one goes; lines that have ended do not count beside one that has not.
 fn is_clear(near: &[Pair<'_>], point: usize) -> bool {
     let of_point = || near.iter().filter(|pair| pair.point == point);
@@ -205,7 +205,7 @@ impl Track {
         self.sum / self.points as f64
     }
 
-    /// Where the line is expected in a column: on the straight line of least squares.
+    /// Returns the expected position of the line in a column: on the straight line of least squares.
     fn at(&self, x: f64) -> f64 {
         let count = self.recent.len() as f64;
         let mean = |of: fn(&(f64, f64)) -> f64| self.recent.iter().map(of).sum::<f64>() / count;

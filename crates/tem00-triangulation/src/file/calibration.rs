@@ -12,16 +12,16 @@ pub(super) const KEYS: &[&str] = &[
     "folder",
 ];
 
-/// How camera and laser plane are known, as a file tells it.
+/// Calibration of camera and laser plane, as a file gives it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibrationSettings {
-    /// How they are known.
+    /// The origin of the calibration.
     pub method: CalibrationMethod,
     /// The standard uncertainty of a height, in metres, that the calibration has from elsewhere.
     pub uncertainty: f64,
 }
 
-/// How camera and laser plane are known.
+/// Origin of the calibration of camera and laser plane.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CalibrationMethod {
     /// As the file says, without error.

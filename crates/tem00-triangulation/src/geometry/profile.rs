@@ -8,7 +8,7 @@ use crate::{LinePoint, Validity};
 pub struct ProfilePoint {
     /// The column of the image in which the line was found, counted from 0.
     pub column: usize,
-    /// Which line of the image the point belongs to, as [`LinePoint::line`].
+    /// The line of the image that the point belongs to, as [`LinePoint::line`].
     pub line: usize,
     /// The image point, in pixels.
     pub pixel: DVec2,
@@ -19,7 +19,7 @@ pub struct ProfilePoint {
     /// The grey values above the background, summed over the line: in proportion to the light that the
     /// surface sends to the camera.
     pub reflectance: f64,
-    /// Whether the place of the line can be trusted.
+    /// The validity of the position of the line.
     pub validity: Validity,
 }
 

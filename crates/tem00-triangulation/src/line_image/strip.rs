@@ -6,7 +6,8 @@ use rand_distr::{Distribution, StandardNormal};
 use tem00_numerics::{Fft2, Grid};
 use tem00_speckle::Complex;
 
-/// How far from its middle a line has scatterers, in half-widths: 10⁻⁸ of the light lie beyond.
+/// Distance from its middle up to which a line has scatterers, in half-widths: 10⁻⁸ of the light lie
+/// beyond.
 const REACH: f64 = 3.0;
 
 /// A strip of a rough surface under a laser line, as the pupil of a camera sees it. Lengths are in
@@ -19,7 +20,7 @@ pub(super) struct Strip {
     /// The size of the image with the darkness beside it, after which it repeats.
     pub(super) period: [f64; 2],
     pub(super) speckle_size: [f64; 2],
-    /// Where the first sample of the image lies.
+    /// The position of the first sample of the image.
     pub(super) first_sample: [f64; 2],
 }
 
@@ -109,7 +110,7 @@ impl Strip {
         (first..=last).map(scatterer).collect()
     }
 
-    /// Where the period of the image begins and ends across the line.
+    /// Returns the beginning and the end of the period of the image across the line.
     fn dark(&self) -> [f64; 2] {
         let margin = 0.5 * (self.period[1] - self.size[1]);
         [-margin, self.size[1] + margin]

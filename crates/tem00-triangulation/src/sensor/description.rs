@@ -1,6 +1,6 @@
 use crate::TriangulationError;
 
-/// What a data sheet after EMVA 1288 (linear model) tells of a sensor, and how it is used.
+/// Data sheet of a sensor after EMVA 1288 (linear model), and the settings that it is used with.
 ///
 /// [`typical`](Self::typical) fills in what a data sheet leaves open.
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,7 +14,7 @@ pub struct RawFrame {
     pub values: Grid<u16>,
     /// The bits of a grey value.
     pub bit_depth: u32,
-    /// Which pixels are saturated: their well is full or their grey value the largest.
+    /// The saturated pixels: their well is full or their grey value the largest.
     pub saturated: Grid<bool>,
 }
 
@@ -130,7 +130,7 @@ fn counted(description: &SensorDescription, mean: f64, noise: &mut ChaCha8Rng) -
     count.min(full)
 }
 
-/// What random numbers are for: no two purposes share a stream.
+/// Purpose of random numbers: no two purposes share a stream.
 #[derive(Clone, Copy)]
 enum Purpose {
     Noise,

@@ -3,7 +3,7 @@ use super::{PLANCK_TIMES_LIGHT, Sensor};
 /// The variance of the error of rounding to whole grey values, in DN².
 const QUANTISATION: f64 = 1.0 / 12.0;
 
-/// What the linear model predicts, for the mean number `electrons` that light frees in a pixel.
+/// Predictions of the linear model, for the mean number `electrons` that light frees in a pixel.
 impl Sensor {
     /// Returns the mean grey value `y₀ + K (μ_e + μ_I t)`, in DN, below saturation.
     pub fn mean_grey_value(&self, electrons: f64) -> f64 {

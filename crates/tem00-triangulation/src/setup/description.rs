@@ -1,6 +1,6 @@
 use crate::{DetectorSettings, SensorDescription, TriangulationError};
 
-/// What data sheets tell of a triangulation set-up.
+/// Description of a triangulation set-up by its data sheets.
 ///
 /// The laser plane stands upright on the reference plane, the camera looks at the line from the side;
 /// see [`Setup`](crate::Setup) for the geometry.
@@ -12,16 +12,16 @@ pub struct SetupDescription {
     pub camera: SetupCamera,
     /// The camera's sensor.
     pub sensor: SensorDescription,
-    /// Whether the exposure time is chosen such that the light fits the sensor, as
+    /// True if the exposure time is chosen such that the light fits the sensor, as
     /// [`Setup::new`](crate::Setup::new) says, and that of the sensor is not read.
     pub auto_exposure: bool,
-    /// What the line falls on.
+    /// The surface that the line falls on.
     pub surface: SetupSurface,
-    /// How the line is found.
+    /// The settings of the line detector.
     pub detector: DetectorSettings,
     /// The standard uncertainty of a height by the calibration alone, in metres.
     pub calibration_uncertainty: f64,
-    /// What heights are averaged over.
+    /// The averaging of heights.
     pub average: Averages,
 }
 
@@ -51,7 +51,7 @@ pub struct SetupCamera {
     pub distance: f64,
     /// The angle between the optical axis and the laser plane, in radians.
     pub angle: f64,
-    /// Whether the sensor is tilted so that the laser plane is in focus, after Scheimpflug.
+    /// True if the sensor is tilted so that the laser plane is in focus, after Scheimpflug.
     pub scheimpflug: bool,
 }
 
@@ -66,14 +66,14 @@ pub struct SetupSurface {
     pub polarisation: f64,
 }
 
-/// What a height is averaged over.
+/// Numbers of columns and frames that a height is averaged over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Averages {
     /// The number of neighbouring columns.
     pub columns: u32,
     /// The number of frames.
     pub frames: u32,
-    /// Whether each frame has speckle of its own, because the part moves on between them. On a part
+    /// True if each frame has speckle of its own, because the part moves on between them. On a part
     /// that rests, speckle rests too, and does not average out.
     pub independent_speckle: bool,
 }

@@ -4,7 +4,7 @@ use tem00_statistics::rectangular_pixel_contrast;
 use super::{ImagedLine, Setup};
 use crate::TriangulationError;
 
-/// Whether the sensor gets the light that it needs.
+/// Verdict on the amount of light that the sensor gets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LightLevel {
@@ -53,7 +53,7 @@ impl LightLevel {
 pub(crate) const LEAST_SIGNAL: f64 = 10.0;
 /// The part of what the sensor can hold that bright grains may fill.
 pub(crate) const MOST_GRAIN_SATURATION: f64 = 1.0;
-/// How many standard deviations of speckle above the mean bright grains are: of fully developed speckle
+/// Height of bright grains above the mean, in standard deviations of speckle: of fully developed speckle
 /// in small pixels 2 % are brighter.
 const BRIGHT_GRAINS: f64 = 3.0;
 /// The part of what the sensor can hold that bright grains fill with an exposure that is chosen: it leaves

@@ -19,7 +19,7 @@ pub(super) struct Frames<'a> {
     seed: u64,
 }
 
-/// What random numbers of a trial are for: no two purposes share a stream.
+/// Purpose of random numbers of a trial: no two purposes share a stream.
 #[derive(Clone, Copy)]
 enum Purpose {
     Shot,

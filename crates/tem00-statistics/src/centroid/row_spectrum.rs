@@ -195,10 +195,7 @@ mod tests {
             assert_relative_eq!(speckle_length(p), high, max_relative = tolerance);
         }
         assert!(speckle_length(f64::INFINITY).abs() < f64::MIN_POSITIVE);
-        assert!(
-            speckle_length(f64::NAN).is_nan(),
-            "NaN has no length"
-        );
+        assert!(speckle_length(f64::NAN).is_nan(), "NaN has no length");
     }
 
     #[test]

@@ -188,7 +188,8 @@ proptest! {
 #[test]
 fn an_array_tells_what_it_was_made_of() {
     let pixels = PixelArray::new([5, 4], [1.3, 0.7]).unwrap();
-    assert_eq!(pixels.count(), [5, 4]);
-    assert_eq!(pixels.pitch(), [1.3, 0.7]);
-    assert_eq!(pixels.size(), [1.3, 0.7], "pixels without gaps");
+    let bits = |lengths: [f64; 2]| lengths.map(f64::to_bits);
+    assert_eq!(pixels.count(), [5, 4], "columns and rows");
+    assert_eq!(bits(pixels.pitch()), bits([1.3, 0.7]), "the pitch");
+    assert_eq!(bits(pixels.size()), bits([1.3, 0.7]), "pixels without gaps");
 }

@@ -28,7 +28,7 @@ fn main() -> Result<(), DecorrelationError> {
     let line = Wavefront::astigmatic(laser, DVec3::Y, 1.0 / laser_distance, 0.0)?;
     let point = SurfacePoint::new(LineOfSight::new(&camera, eye)?, DVec3::Z, line)?;
     let (axes, angles) =
-        paper::EulerAngles::between(&camera, DVec3::Z).expect("a normal of unit length");
+        paper::EulerAngles::between(&camera, DVec3::Z).ok_or("a normal of unit length")?;
     let emitter = paper::Emitter {
         direction: axes.transpose() * line.direction_to_source(),
         distance: laser_distance,

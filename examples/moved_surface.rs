@@ -7,13 +7,13 @@
 #![expect(clippy::print_stdout, reason = "an example prints its answer")]
 
 use tem00::decorrelation::{
-    CameraFrame, DVec2, DVec3, DecorrelationError, ImageOrientation, ImagingGeometry, LensData,
-    LineOfSight, Motion, SpeckleMotion, SurfacePoint, Wavefront,
+    CameraFrame, DVec2, DVec3, ImageOrientation, ImagingGeometry, LensData, LineOfSight, Motion,
+    SpeckleMotion, SurfacePoint, Wavefront,
 };
 use tem00::numerics::circular_path_overlap;
 use tem00_paper as paper;
 
-fn main() -> Result<(), DecorrelationError> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let geometry = ImagingGeometry::from_lens(LensData {
         wavelength: 650e-9,
         focal_length: 25e-3,

@@ -17,10 +17,10 @@ pub use self::{
 
 /// The uncertainty budget of a height, after the GUM.
 ///
-/// To first order the place of a line moves with the grey values of its column, δy = Σ gᵢ δIᵢ, whatever
+/// To first order the position of a line moves with the grey values of its column, δy = Σ gᵢ δIᵢ, whatever
 /// the detector; the sensitivities gᵢ are those of the noise-free column. Each source adds a variance
 /// ([`PositionNoise`](crate::PositionNoise)), which the geometry turns into one of height. They are means over
-/// the place of the line within a pixel.
+/// the position of the line within a pixel.
 ///
 /// # Averages
 ///
@@ -119,11 +119,11 @@ impl Budget {
         let radius = 0.5 * line.line_width.hypot(line.blur) / across;
         let row_height = f64::from(d.average.columns) / along;
         let deviation = imaged_line_centroid_deviation(radius, row_height);
-        let place = contrast * across * deviation / frames.sqrt();
+        let position = contrast * across * deviation / frames.sqrt();
         Some(Self {
             height,
             terms,
-            line_law: place * line.height_per_pixel.abs(),
+            line_law: position * line.height_per_pixel.abs(),
             dorsch: dorsch(setup, contrast)?,
         })
     }

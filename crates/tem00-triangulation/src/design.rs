@@ -209,9 +209,9 @@ fn check_sweeps(sweeps: &[Sweep]) -> Result<(), TriangulationError> {
             needed: 1,
         });
     }
-    for (place, sweep) in sweeps.iter().enumerate() {
+    for (index, sweep) in sweeps.iter().enumerate() {
         let parameter = sweep.parameter();
-        if sweeps[..place]
+        if sweeps[..index]
             .iter()
             .any(|other| other.parameter() == parameter)
         {

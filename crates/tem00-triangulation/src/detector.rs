@@ -61,8 +61,8 @@ impl LineDetector {
     /// left out. Windows end where the next line begins, at the least value between both.
     pub fn detect_column(&self, column: &[f32]) -> Vec<LinePoint> {
         let found = Column::of(column, &self.settings);
-        let place = |profile: &Profile<'_>| profile.estimate(&self.settings.method);
-        self.points(column, &found, place)
+        let position = |profile: &Profile<'_>| profile.estimate(&self.settings.method);
+        self.points(column, &found, position)
     }
 
     /// Finds the lines of an image: for each column the points on them, from the top.
@@ -74,7 +74,7 @@ impl LineDetector {
     /// miss points for two windows; behind a longer gap, or a step higher than a quarter of a window, it is
     /// another one. Lines that cross keep their numbers: where they come
     /// close they go on as they came. Near the crossing both are seen as one, and a point belongs to the
-    /// one that it is nearer to. Lines are numbered from the top, by their mean places; those of less than
+    /// one that it is nearer to. Lines are numbered from the top, by their mean positions; those of less than
     /// a tenth of the points of the longest come after all others.
     pub fn detect(&self, image: &Grid<f32>) -> Vec<Vec<LinePoint>> {
         let columns = Grid::from_fn(image.height(), image.width(), |y, x| image[(x, y)]);
@@ -82,7 +82,7 @@ impl LineDetector {
     }
 
     /// Finds the lines of an image in which they run from top to bottom, as [`detect`](Self::detect)
-    /// does: for each *row* the points on them, from the left, with places along x.
+    /// does: for each *row* the points on them, from the left, with positions along x.
     pub fn detect_rows(&self, image: &Grid<f32>) -> Vec<Vec<LinePoint>> {
         let kernels = match self.settings.method {
             LineMethod::Steger { sigma } => Some(Kernels::new(sigma)),
@@ -100,24 +100,24 @@ impl LineDetector {
 
     fn ridges(&self, image: &Grid<f32>, y: usize, kernels: &Kernels) -> Vec<LinePoint> {
         let found = Column::of(image.row(y), &self.settings);
-        let place = |profile: &Profile<'_>| {
+        let position = |profile: &Profile<'_>| {
             let position = steger::in_image(profile, image, (y, found.background), kernels)?;
             let width = None;
             profile.placed(Estimate { position, width })
         };
-        self.points(image.row(y), &found, place)
+        self.points(image.row(y), &found, position)
     }
 
     fn points(
         &self,
         raw: &[f32],
         column: &Column,
-        place: impl Fn(&Profile<'_>) -> Option<Estimate>,
+        position: impl Fn(&Profile<'_>) -> Option<Estimate>,
     ) -> Vec<LinePoint> {
         let above = &column.above;
         let point = |line: &Sighting| {
             let profile = Profile { above, line };
-            let (extent, estimate) = (Extent::of(&profile), place(&profile));
+            let (extent, estimate) = (Extent::of(&profile), position(&profile));
             let of_extent = extent.map_or(0.0, |extent| extent.width);
             LinePoint {
                 position: estimate.map_or(line.greatest as f64 + 0.5, |found| found.position),
@@ -141,7 +141,7 @@ impl LineDetector {
         points
     }
 
-    /// Returns what speaks against a line whose place was estimated.
+    /// Returns what speaks against a line whose position was estimated.
     fn validity(&self, raw: &[f32], line: &Sighting) -> Validity {
         let half = self.settings.window / 2;
         let window = || raw[line.window.clone()].iter().copied();

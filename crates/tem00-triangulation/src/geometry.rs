@@ -6,7 +6,7 @@ use tem00_camera::Camera;
 
 pub use self::{plane::LaserPlane, profile::ProfilePoint};
 
-/// A camera and a laser plane: what turns a place in the image into a point in space.
+/// A camera and a laser plane: what turns a position in the image into a point in space.
 ///
 /// ```text
 /// P = O + s d        s = n·(Q − O) / (n·d)
@@ -114,10 +114,10 @@ impl Triangulator {
         (distance > 0.0 && finite).then_some(moved)
     }
 
-    /// Returns the point that is seen at an image point whose place along the column has the standard
+    /// Returns the point that is seen at an image point whose position along the column has the standard
     /// uncertainty `along_column`, in pixels, or `None` where there is no point.
     ///
-    /// To first order. Of all that makes a point uncertain only the place of the line is looked at; for
+    /// To first order. Of all that makes a point uncertain only the position of the line is looked at; for
     /// camera and plane see the calibration.
     pub fn point_with_uncertainty(
         &self,

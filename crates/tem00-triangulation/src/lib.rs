@@ -1,16 +1,16 @@
 //! Laser triangulation, from light on a sensor to a profile and its uncertainty.
 //!
-//! A laser line on a surface, seen from the side, tells the height of the surface by its place in the
+//! A laser line on a surface, seen from the side, tells the height of the surface by its position in the
 //! image. This crate holds what lies between the image and the height: a sensor that counts photons,
-//! detectors that find the line to a fraction of a pixel, the geometry that turns its place into a
+//! detectors that find the line to a fraction of a pixel, the geometry that turns its position into a
 //! point in space, and the uncertainty of that point, to which speckle adds most.
 //!
 //! # Conventions
 //!
 //! - Lengths are in metres, angles in radians, times in seconds, `f64`; images are `f32` or `u16`.
-//! - Places in an image are in pixels, x to the right and y *down*; the centre of the first pixel is at
+//! - Positions in an image are in pixels, x to the right and y *down*; the centre of the first pixel is at
 //!   0.5, its edges at 0 and 1.
-//! - A line runs from left to right in the image; each *column* tells its place, along y.
+//! - A line runs from left to right in the image; each *column* tells its position, along y.
 //! - Widths of lines are full widths between the points of 1/e², four standard deviations of a Gaussian.
 //! - Uncertainties are standard uncertainties unless called expanded.
 
@@ -58,5 +58,5 @@ pub use setup::{
     SetupDescription, SetupSurface,
 };
 
-/// The places and directions of this crate.
+/// The positions and directions of this crate.
 pub use glam::{DVec2, DVec3};

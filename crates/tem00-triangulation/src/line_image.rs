@@ -49,7 +49,7 @@ pub struct LineImageData {
 /// n(x, y) = N/a² ∫∫ |A|² dx dy                                 over the sensitive square, of the side a
 /// ```
 ///
-/// G is the Gaussian line about its place c(u) and n normal white noise. The lens blurs the line and
+/// G is the Gaussian line about its position c(u) and n normal white noise. The lens blurs the line and
 /// lets its light interfere at once, so that lines of any width have the speckle of waves: for wide
 /// ones a pattern times the blurred line, for thin ones grains that are the image of the line itself.
 ///
@@ -58,7 +58,7 @@ pub struct LineImageData {
 /// Fully developed speckle of a surface in focus. Each pixel is a sum over whole samples, of which a
 /// speckle has six at least. Speckle that the tilt of the sensor stretches along the columns is
 /// matched by unequal numbers of samples along and across, which leaves at most 2 % of its size. The
-/// place of the line changes little over a speckle along the rows.
+/// position of the line changes little over a speckle along the rows.
 #[derive(Clone, Debug)]
 pub struct LineImage {
     data: LineImageData,
@@ -124,8 +124,8 @@ impl LineImage {
         &self.data
     }
 
-    /// Returns the mean numbers of electrons, without speckle. `centre` gives the place of the line
-    /// along the column at a place along the rows, both in pixels.
+    /// Returns the mean numbers of electrons, without speckle. `centre` gives the position of the line
+    /// along the column at a position along the rows, both in pixels.
     #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     pub fn mean(&self, centre: impl Fn(f64) -> f64 + Sync) -> Grid<f32> {
         let LineImageData {
@@ -165,11 +165,11 @@ impl LineImage {
             speckle_size: [0, 1].map(|axis| self.speckle / self.samples[axis] as f64),
             first_sample: self.samples.map(|samples| 0.5 / samples as f64),
         };
-        let places = strip.places(centre);
+        let positions = strip.positions(centre);
         let [columns, rows] = self.data.size;
         let mut image = Grid::filled(columns, rows, 0.0_f32);
         for (share, part) in self.light.shares().iter().zip(0..) {
-            let (pupil, lit) = strip.pupil(&places, seed, part);
+            let (pupil, lit) = strip.pupil(&positions, seed, part);
             let field = PupilField::from_samples(pupil, self.period, self.speckle)?;
             // The pattern is 1 in the mean over its period, in which this much of the light lies.
             let electrons = share * lit * self.data.column_electrons / period[1];

@@ -4,7 +4,7 @@ use crate::SensorDescription;
 
 /// Variances of the position of a line along a column, source by source, in square pixels.
 ///
-/// To first order the place moves with the grey values of the column, δy = Σ gᵢ δIᵢ. With the
+/// To first order the position moves with the grey values of the column, δy = Σ gᵢ δIᵢ. With the
 /// electrons nᵢ, the gain K and the speckled part Eᵢ of the electrons:
 ///
 /// ```text
@@ -42,7 +42,7 @@ pub struct PositionNoise {
     pub dsnu: f64,
 }
 
-/// The light in a column, and how the place of a line depends on it.
+/// The light in a column, and how the position of a line depends on it.
 #[derive(Clone, Copy, Debug)]
 pub struct ColumnLight<'a> {
     /// The electrons that light frees in each pixel, without noise.
@@ -98,7 +98,7 @@ impl PixelCovariance for ColumnSpeckle<'_> {
 }
 
 impl PositionNoise {
-    /// Returns what makes the place of a line uncertain in a column.
+    /// Returns what makes the position of a line uncertain in a column.
     ///
     /// # Panics
     ///
@@ -138,7 +138,7 @@ impl PositionNoise {
         self.prnu + self.dsnu
     }
 
-    /// Returns the variance of the place, all terms together.
+    /// Returns the variance of the position, all terms together.
     pub const fn total(&self) -> f64 {
         self.speckle + self.temporal() + self.fixed_pattern()
     }
@@ -157,7 +157,7 @@ impl PositionNoise {
     }
 }
 
-/// Returns the covariance that speckle gives the places of a line in two columns, in square pixels.
+/// Returns the covariance that speckle gives the positions of a line in two columns, in square pixels.
 ///
 /// `displacement` leads from the pattern in the first column to that in the second, in pixels to the
 /// right and down: for two columns of one image, their distance; for two frames, what the pattern has
@@ -194,7 +194,7 @@ impl ColumnLight<'_> {
         );
     }
 
-    /// The rows that count, and how far the place moves with the speckle factor in each.
+    /// The rows that count, and how far the position moves with the speckle factor in each.
     ///
     /// Those that move it by less than a millionth of the first are left out.
     fn weights(&self) -> Vec<(f64, f64)> {

@@ -122,7 +122,7 @@ impl Setup {
         &self.detector
     }
 
-    /// Returns what turns places in the image into points: the camera and the plane y = 0.
+    /// Returns what turns positions in the image into points: the camera and the plane y = 0.
     pub const fn triangulator(&self) -> &Triangulator {
         &self.triangulator
     }
@@ -138,7 +138,7 @@ impl Setup {
         ImagedLine::at(&self.description, self.camera(), height)
     }
 
-    /// Returns the height, in metres, of a line that is seen in the middle column at a place `y` along
+    /// Returns the height, in metres, of a line that is seen in the middle column at a position `y` along
     /// it, in pixels, or `None` if the line of sight does not meet the laser plane.
     pub fn height_at(&self, y: f64) -> Option<f64> {
         let [width, _] = self.description.camera.resolution;

@@ -63,10 +63,10 @@ fn description() -> SetupDescription {
     }
 }
 
-/// A place in a description where a number stands.
-type Place = fn(&mut SetupDescription) -> &mut f64;
+/// A number in a description.
+type Field = fn(&mut SetupDescription) -> &mut f64;
 
-const PLACES: [(&str, Place); 25] = [
+const FIELDS: [(&str, Field); 25] = [
     ("wavelength", |d| &mut d.laser.wavelength),
     ("power", |d| &mut d.laser.power),
     ("line_width", |d| &mut d.laser.line_width),
@@ -161,11 +161,11 @@ fn exercise(setup: &Setup, what: &str) {
 #[test]
 fn setups_with_strange_numbers_are_refused_by_name_or_work() {
     let mut refused = 0;
-    for (name, place) in PLACES {
+    for (name, field) in FIELDS {
         for strange in STRANGE {
             let mut description = description();
             description.auto_exposure = name != "exposure_time" && strange.abs() >= 1.0;
-            *place(&mut description) = strange;
+            *field(&mut description) = strange;
             match Setup::new(description) {
                 Ok(setup) => exercise(&setup, &format!("{name} = {strange:e}")),
                 Err(error) => {
@@ -175,7 +175,7 @@ fn setups_with_strange_numbers_are_refused_by_name_or_work() {
             }
         }
         let mut description = description();
-        *place(&mut description) = f64::NAN;
+        *field(&mut description) = f64::NAN;
         let error = Setup::new(description)
             .map(|_| ())
             .map_err(|e| e.to_string());

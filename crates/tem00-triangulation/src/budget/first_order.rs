@@ -5,9 +5,9 @@ use crate::{
     ColumnLight, ColumnSpeckle, ImagedLine, LinePoint, PositionNoise, Setup, SetupDescription,
 };
 
-/// The places of the line within a pixel over which the noise is averaged.
+/// The positions of the line within a pixel over which the noise is averaged.
 const PHASES: u32 = 8;
-/// The places of the line within a pixel over which the bias of the detector is averaged.
+/// The positions of the line within a pixel over which the bias of the detector is averaged.
 const BIAS_PHASES: u32 = 32;
 /// The most speckle sizes that pixels may lie apart for their covariance to be looked at.
 const LONGEST: f64 = 4000.0;
@@ -105,7 +105,7 @@ pub(super) fn terms(setup: &Setup, line: &ImagedLine) -> Option<Vec<BudgetTerm>>
     Some(terms.to_vec())
 }
 
-/// Returns the variances of the place of the line after all averages, in square pixels.
+/// Returns the variances of the position of the line after all averages, in square pixels.
 fn position_noise(setup: &Setup, line: &ImagedLine) -> Option<PositionNoise> {
     let d = setup.description();
     let (autocovariance, fewer) = autocovariance(d, line)?;

@@ -19,7 +19,7 @@ const COLUMNS: usize = 128;
 /// Options of the simulation of a set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SimulationOptions {
-    /// The number of trials, at least 10: each has a place of the line within a pixel, speckle and a
+    /// The number of trials, at least 10: each has a position of the line within a pixel, speckle and a
     /// camera of its own, and as many frames as are averaged.
     pub trials: u32,
     /// The seed of everything random.
@@ -110,8 +110,8 @@ const SIMULATED: [UncertaintySource; 7] = [
 /// Finds the uncertainty of a height at the reference plane by trials: frames with speckle, exposed by
 /// the sensor, in which the detector finds the line; and frames with one source of noise alone.
 ///
-/// Errors of a single source are counted from the place without noise, those of all at once from the
-/// true place. Columns without a trusted line are left out and [counted](Simulation::invalid); where that
+/// Errors of a single source are counted from the position without noise, those of all at once from the
+/// true position. Columns without a trusted line are left out and [counted](Simulation::invalid); where that
 /// are more than half, there is no estimate.
 /// `progress` is told the number of trials that are done; setting `cancel` ends the work.
 ///
@@ -167,11 +167,11 @@ impl<'a> Simulator<'a> {
             image: LineImage::of_setup(setup, [columns, rows])?,
             group,
         };
-        simulator.noise_free_place(0.0).map(|_| simulator)
+        simulator.noise_free_position(0.0).map(|_| simulator)
     }
 
     /// Returns where the detector finds the line without noise.
-    fn noise_free_place(&self, phase: f64) -> Result<f64, TriangulationError> {
+    fn noise_free_position(&self, phase: f64) -> Result<f64, TriangulationError> {
         let column = first_order::NoiseFreeColumn::new(self.setup, self.setup.line(), phase);
         let found = column.found(self.setup).map(|point| point.position);
         found.ok_or(TriangulationError::TooFew {
@@ -184,31 +184,31 @@ impl<'a> Simulator<'a> {
     fn trial(&self, seed: u64, index: u32) -> Result<Trial, TriangulationError> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(u64::from(index));
-        // A place within a pixel, of 2²⁰ that are possible.
+        // A position within a pixel, of 2²⁰ that are possible.
         let phase = f64::from(random.next_u32() >> 12) / f64::from(1_u32 << 20);
-        let place = self.noise_free_place(phase)?;
+        let position = self.noise_free_position(phase)?;
         let frames = Frames::new(self.setup, &self.image, phase, random.next_u64());
         let centre = frames.centre();
         let bias = Outcome {
-            square: Some((place - centre).powi(2)),
+            square: Some((position - centre).powi(2)),
             invalid: 0.0,
         };
         let mut trial = [bias; SIMULATED.len() + 1];
         for (outcome, source) in trial.iter_mut().zip(SIMULATED) {
             let reference = match source {
                 UncertaintySource::DetectorBias => continue,
-                UncertaintySource::Quantisation => places(&self.unlimited, &frames.unrounded()),
-                _ => Places::uniform(place),
+                UncertaintySource::Quantisation => positions(&self.unlimited, &frames.unrounded()),
+                _ => Positions::uniform(position),
             };
-            let found = places(&self.unlimited, &frames.of(source)?);
+            let found = positions(&self.unlimited, &frames.of(source)?);
             *outcome = self.outcome(&found, &reference);
         }
-        let found = places(self.setup.detector(), &frames.exposed()?);
-        trial[SIMULATED.len()] = self.outcome(&found, &Places::uniform(centre));
+        let found = positions(self.setup.detector(), &frames.exposed()?);
+        trial[SIMULATED.len()] = self.outcome(&found, &Positions::uniform(centre));
         Ok(trial)
     }
 
-    fn outcome(&self, found: &Places, reference: &Places) -> Outcome {
+    fn outcome(&self, found: &Positions, reference: &Positions) -> Outcome {
         Outcome {
             square: self.mean_square(found, reference),
             invalid: found.invalid(),
@@ -217,16 +217,16 @@ impl<'a> Simulator<'a> {
 
     /// Returns the mean square of the deviations, each averaged over a group of columns and all frames;
     /// `None` without any that can be trusted.
-    fn mean_square(&self, places: &Places, reference: &Places) -> Option<f64> {
-        let columns = places.0.first().map_or(0, Vec::len);
+    fn mean_square(&self, positions: &Positions, reference: &Positions) -> Option<f64> {
+        let columns = positions.0.first().map_or(0, Vec::len);
         let (mut sum, mut count) = (0.0, 0.0);
         for first in (0..columns).step_by(self.group) {
             let (mut deviation, mut members) = (0.0, 0.0);
-            for frame in 0..places.0.len() {
+            for frame in 0..positions.0.len() {
                 for column in first..first + self.group {
-                    let pair = places.at(frame, column).zip(reference.at(frame, column));
-                    if let Some((place, reference)) = pair {
-                        deviation += place - reference;
+                    let pair = positions.at(frame, column).zip(reference.at(frame, column));
+                    if let Some((position, reference)) = pair {
+                        deviation += position - reference;
                         members += 1.0;
                     }
                 }
@@ -252,12 +252,12 @@ impl<'a> Simulator<'a> {
     }
 }
 
-/// Places of a line, by frame and column; a single one stands for all.
-struct Places(Vec<Vec<Option<f64>>>);
+/// Positions of a line, by frame and column; a single one stands for all.
+struct Positions(Vec<Vec<Option<f64>>>);
 
-impl Places {
-    fn uniform(place: f64) -> Self {
-        Self(vec![vec![Some(place)]])
+impl Positions {
+    fn uniform(position: f64) -> Self {
+        Self(vec![vec![Some(position)]])
     }
 
     fn at(&self, frame: usize, column: usize) -> Option<f64> {
@@ -267,19 +267,19 @@ impl Places {
 
     fn invalid(&self) -> f64 {
         let all = self.0.iter().flatten();
-        let missing = all.clone().filter(|place| place.is_none()).count();
+        let missing = all.clone().filter(|position| position.is_none()).count();
         missing as f64 / all.count() as f64
     }
 }
 
-/// Returns the places of the line in all columns of all frames.
-fn places(detector: &LineDetector, frames: &[Grid<f32>]) -> Places {
-    let place = |points| {
+/// Returns the positions of the line in all columns of all frames.
+fn positions(detector: &LineDetector, frames: &[Grid<f32>]) -> Positions {
+    let position = |points| {
         let point = first_order::brightest(points)?;
         (point.validity == Validity::Valid).then_some(point.position)
     };
-    let of_frame = |frame| detector.detect(frame).into_iter().map(place).collect();
-    Places(frames.iter().map(of_frame).collect())
+    let of_frame = |frame| detector.detect(frame).into_iter().map(position).collect();
+    Positions(frames.iter().map(of_frame).collect())
 }
 
 /// Returns the mean share of columns without a line that can be trusted.

@@ -16,7 +16,7 @@ pub enum UncertaintySource {
     Prnu,
     /// The different dark signal of the pixels.
     Dsnu,
-    /// The systematic error of the detector, which varies with the place of the line in a pixel.
+    /// The systematic error of the detector, which varies with the position of the line in a pixel.
     DetectorBias,
     /// The calibration of camera and laser plane.
     Calibration,
@@ -93,7 +93,7 @@ pub enum ErrorDistribution {
     Normal,
     /// Rectangular in each pixel.
     Rectangular,
-    /// That of a periodic error at a place that is even over the period.
+    /// That of a periodic error at a position that is even over the period.
     Periodic,
 }
 
@@ -117,7 +117,7 @@ pub struct BudgetTerm {
     pub evaluation: Evaluation,
     /// The distribution of the error.
     pub distribution: ErrorDistribution,
-    /// The standard uncertainty of the input quantity after all averages: of the place of the line, in
+    /// The standard uncertainty of the input quantity after all averages: of the position of the line, in
     /// pixels, or of a height, in metres, for the calibration.
     pub uncertainty: f64,
     /// By how much the height changes with the input quantity: in metres per pixel, or 1.

@@ -18,8 +18,8 @@ fn budget_of(change: impl Fn(&mut SetupDescription)) -> Budget {
     Budget::new(&setup_of(change)).unwrap()
 }
 
-/// The contribution of one source to the place of the line, in pixels.
-fn place(budget: &Budget, source: UncertaintySource) -> f64 {
+/// The contribution of one source to the position of the line, in pixels.
+fn position(budget: &Budget, source: UncertaintySource) -> f64 {
     let terms = budget.terms().iter();
     terms
         .filter(|term| term.source == source)
@@ -27,8 +27,8 @@ fn place(budget: &Budget, source: UncertaintySource) -> f64 {
         .sum()
 }
 
-/// The mean over the place of the line in a pixel of Σ (yᵢ − ŷ)² over a window of 2 n + 1 pixels about
-/// the pixel of the line: its own second moment, and the mean square of the place.
+/// The mean over the position of the line in a pixel of Σ (yᵢ − ŷ)² over a window of 2 n + 1 pixels about
+/// the pixel of the line: its own second moment, and the mean square of the position.
 fn squares_of_window(n: f64) -> f64 {
     n * (n + 1.0) * (2.0 * n + 1.0) / 3.0 + (2.0 * n + 1.0) / 12.0
 }
@@ -69,9 +69,9 @@ fn shot_noise_of_a_centre_of_gravity_is_the_bound_and_that_of_the_wings() {
     let variance = line.line_width.powi(2) / 16.0 + 1.0 / 12.0 + lens;
     let bound = (variance / line.column_electrons).sqrt() / counted_light(&setup);
     // The background is that of 25 pixels away to a fifth, 1e−3 of the light in the window; the window that
-    // follows the noise adds the ends' 1 % of a motion that is no larger than that of the place.
+    // follows the noise adds the ends' 1 % of a motion that is no larger than that of the position.
     assert_relative_eq!(
-        place(&budget, UncertaintySource::ShotNoise),
+        position(&budget, UncertaintySource::ShotNoise),
         bound,
         max_relative = 1.5e-2
     );
@@ -95,7 +95,11 @@ fn noise_of_pixels_counts_by_their_distance_to_the_line() {
         ),
     ] {
         // The background, found from 47 pixels, adds (31²/12)(31²/47)/(31 · 31²/12) · … ≤ 2 · 10⁻³.
-        assert_relative_eq!(place(&budget, source), electrons * arm, max_relative = 3e-3);
+        assert_relative_eq!(
+            position(&budget, source),
+            electrons * arm,
+            max_relative = 3e-3
+        );
     }
     // s² Σ n² y²/N² = s² σ/(4 √π) for a Gaussian of the standard deviation σ, here of a line that is
     // wide enough for its pixels to be points, of which the wings take 1 % of the light.
@@ -105,7 +109,7 @@ fn noise_of_pixels_counts_by_their_distance_to_the_line() {
     });
     let sigma = wide.line().width / 4.0;
     let expected = d.prnu * (sigma / (4.0 * PI.sqrt())).sqrt();
-    let found = place(&Budget::new(&wide).unwrap(), UncertaintySource::Prnu);
+    let found = position(&Budget::new(&wide).unwrap(), UncertaintySource::Prnu);
     // Pixels widen σ² = 11 by 1/12.
     assert_relative_eq!(found, expected, max_relative = 1.5e-2);
 }
@@ -141,7 +145,7 @@ fn speckle_of_a_wide_centre_of_gravity_is_that_of_the_blurred_line_in_first_orde
         let (line, budget) = (setup.line(), Budget::new(&setup).unwrap());
         let h = line.speckle_size[1];
         let law = blurred_line_times_pattern(0.5 * line.line_width / h, 1.0 / h);
-        let found = place(&budget, UncertaintySource::Speckle) / h;
+        let found = position(&budget, UncertaintySource::Speckle) / h;
         // Eleven speckles to each side leave 1 % of the light and a fifth of the moments of what is farther
         // out; the window follows the crest, by another per cent.
         assert_relative_eq!(found, law, max_relative = 2.5e-2);
@@ -229,11 +233,11 @@ fn the_bias_of_a_parabola_is_that_of_its_three_pixels() {
         (vertex - centre).powi(2)
     });
     let expected = (squares.sum::<f64>() / 1000.0).sqrt();
-    let found = place(
+    let found = position(
         &Budget::new(&setup).unwrap(),
         UncertaintySource::DetectorBias,
     );
-    // A smooth periodic error is averaged exactly by 32 places; images are f32.
+    // A smooth periodic error is averaged exactly by 32 positions; images are f32.
     assert_relative_eq!(found, expected, max_relative = 2e-3);
 }
 
@@ -254,7 +258,7 @@ fn a_budget_adds_up() {
     assert_relative_eq!(budget.expanded(), 1.959_964 * combined, max_relative = 1e-6);
     let setup = setup_of(|_| ());
     let per_pixel = setup.line().height_per_pixel;
-    let shot = place(&budget, UncertaintySource::ShotNoise) * per_pixel;
+    let shot = position(&budget, UncertaintySource::ShotNoise) * per_pixel;
     let contribution = budget.contribution(UncertaintySource::ShotNoise);
     assert_relative_eq!(contribution, shot, max_relative = 1e-12);
 }
@@ -302,7 +306,7 @@ fn trials_agree_with_first_order_term_by_term() {
         UncertaintySource::Dsnu,
     ] {
         let (first, found) = (budget.contribution(source), trials.term(source).unwrap());
-        // Four standard errors of 40 · 64 independent places, and 1 % for what is not first order.
+        // Four standard errors of 40 · 64 independent positions, and 1 % for what is not first order.
         let apart = (found.uncertainty - first).abs();
         let allowed = 4.0 * found.standard_error + 0.01 * first;
         assert!(apart < allowed, "{source}: {found:?}, {first:e}");

@@ -8,7 +8,7 @@ use crate::TriangulationError;
 /// edges are more than five of them away.
 const SMOOTHING: f64 = 0.18;
 
-/// That of the last one. What uneven light and curved edges do to a place grows with its square.
+/// That of the last one. What uneven light and curved edges do to a position grows with its square.
 const LAST_SMOOTHING: f64 = 0.06;
 
 /// The least standard deviation of the last one, in pixels: steps between pixels hardly show in it.
@@ -20,7 +20,7 @@ const WINDOW: f64 = 4.0;
 /// Maximum number of refinements of a position.
 const MOST_STEPS: usize = 30;
 
-/// The change of a place below which it stands, in pixels.
+/// The change of a position below which it stands, in pixels.
 const LEAST_STEP: f64 = 1e-4;
 
 /// The least size of an image, in pixels, that is worth a look.
@@ -33,10 +33,10 @@ const HALVINGS: u32 = 3;
 /// small fraction of a pixel.
 ///
 /// Corners are found by the bright and dark quarters around them, in the image and in coarser ones, and put
-/// in order by their neighbours. Their places are the saddles of the image that a Gaussian smooths, first over
+/// in order by their neighbours. Their positions are the saddles of the image that a Gaussian smooths, first over
 /// about a third of a square, then over a third of that: by the symmetry of a corner neither blur nor contrast moves
 /// them. Uneven light would: it is estimated from the bright squares and divided out. What is left of it
-/// moves a place, and so does a lens that bends the edges:
+/// moves a position, and so does a lens that bends the edges:
 ///
 /// ```text
 /// σ_x = √(π/8) σ_I / ΔI      by noise: σ_I of a pixel, ΔI bright less dark
@@ -76,11 +76,14 @@ pub fn find_corners(
     for halving in 0..=HALVINGS {
         let candidates = corner_candidates(&coarse, board.number());
         match ordered(&candidates, board.corners()) {
-            Ok(places) => {
+            Ok(positions) => {
                 let scale = f64::from(1_u32 << halving);
-                let places: Vec<_> = places.into_iter().map(|place| scale * place).collect();
-                let flat = flattened(image, board.corners(), &places);
-                return refined(&flat, board, &places);
+                let positions: Vec<_> = positions
+                    .into_iter()
+                    .map(|position| scale * position)
+                    .collect();
+                let flat = flattened(image, board.corners(), &positions);
+                return refined(&flat, board, &positions);
             }
             Err(number) => found = found.max(number),
         }
@@ -104,11 +107,11 @@ fn halved(image: &Grid<f32>) -> Grid<f32> {
     })
 }
 
-/// Moves the places to the saddles near them.
+/// Moves the positions to the saddles near them.
 fn refined(
     image: &Grid<f32>,
     board: &Checkerboard,
-    places: &[DVec2],
+    positions: &[DVec2],
 ) -> Result<Vec<DVec2>, TriangulationError> {
     let [columns, _] = board.corners();
     let side = |i: usize| {
@@ -122,17 +125,21 @@ fn refined(
         } else {
             i - columns
         };
-        let to = |j: usize| places[i].distance(places[j]);
+        let to = |j: usize| positions[i].distance(positions[j]);
         to(beside).min(to(above))
     };
-    let of_place = |(i, place): (usize, &DVec2)| {
+    let of_position = |(i, position): (usize, &DVec2)| {
         let side = side(i);
-        let about = saddle(image, *place, SMOOTHING * side)?;
+        let about = saddle(image, *position, SMOOTHING * side)?;
         let last = (LAST_SMOOTHING * side).max(LEAST_SMOOTHING);
         saddle(image, about, last.min(SMOOTHING * side))
     };
-    let refined: Vec<_> = places.iter().enumerate().filter_map(of_place).collect();
-    if refined.len() < places.len() {
+    let refined: Vec<_> = positions
+        .iter()
+        .enumerate()
+        .filter_map(of_position)
+        .collect();
+    if refined.len() < positions.len() {
         return Err(TriangulationError::NoBoard {
             corners: board.corners(),
             found: refined.len(),
@@ -141,34 +148,34 @@ fn refined(
     Ok(refined)
 }
 
-/// Returns the place near `start` at which the image, smoothed by a Gaussian of the standard deviation
+/// Returns the position near `start` at which the image, smoothed by a Gaussian of the standard deviation
 /// `sigma`, has a saddle, or `None` if there is none within two of them.
 ///
 /// ```text
 /// q ← q − H⁻¹ g      g, H: gradient and second derivatives of G ∗ I at q
 /// ```
 fn saddle(image: &Grid<f32>, start: DVec2, sigma: f64) -> Option<DVec2> {
-    let mut place = start;
+    let mut position = start;
     for _ in 0..MOST_STEPS {
-        let (gradient, second) = derivatives(image, place, sigma);
+        let (gradient, second) = derivatives(image, position, sigma);
         let step = -(second.inverse() * gradient);
-        let near = (place + step).distance(start) < 2.0 * sigma;
+        let near = (position + step).distance(start) < 2.0 * sigma;
         if second.determinant() >= 0.0 || !step.is_finite() || !near {
             return None;
         }
-        place += step;
+        position += step;
         if step.length() < LEAST_STEP {
-            return Some(place);
+            return Some(position);
         }
     }
-    Some(place)
+    Some(position)
 }
 
-/// Returns gradient and second derivatives of the smoothed image at a place, but for a common factor.
+/// Returns gradient and second derivatives of the smoothed image at a position, but for a common factor.
 ///
 /// Beyond the edges of the image its mean goes on.
-fn derivatives(image: &Grid<f32>, place: DVec2, sigma: f64) -> (DVec2, DMat2) {
-    let pixels = || pixels(image, place, sigma);
+fn derivatives(image: &Grid<f32>, position: DVec2, sigma: f64) -> (DVec2, DMat2) {
+    let pixels = || pixels(image, position, sigma);
     let (sum, weights) = pixels().fold((0.0, 0.0), |(sum, weights), (_, weight, value)| {
         (sum + weight * value, weights + weight)
     });
@@ -184,17 +191,21 @@ fn derivatives(image: &Grid<f32>, place: DVec2, sigma: f64) -> (DVec2, DMat2) {
     (gradient, second * (1.0 / sigma))
 }
 
-/// Returns the pixels about a place: their offsets in units of `sigma`, their weights and values.
-fn pixels(image: &Grid<f32>, place: DVec2, sigma: f64) -> impl Iterator<Item = (DVec2, f64, f64)> {
+/// Returns the pixels about a position: their offsets in units of `sigma`, their weights and values.
+fn pixels(
+    image: &Grid<f32>,
+    position: DVec2,
+    sigma: f64,
+) -> impl Iterator<Item = (DVec2, f64, f64)> {
     let range = move |at: f64, size: usize| {
         let (low, high) = (at - WINDOW * sigma, at + WINDOW * sigma);
         (0..size).filter(move |&i| (low..=high).contains(&(i as f64 + 0.5)))
     };
-    let columns: Vec<_> = range(place.x, image.width()).collect();
-    let all = range(place.y, image.height())
+    let columns: Vec<_> = range(position.x, image.width()).collect();
+    let all = range(position.y, image.height())
         .flat_map(move |y| columns.clone().into_iter().map(move |x| (x, y)));
     all.map(move |(x, y)| {
-        let offset = (DVec2::new(x as f64 + 0.5, y as f64 + 0.5) - place) / sigma;
+        let offset = (DVec2::new(x as f64 + 0.5, y as f64 + 0.5) - position) / sigma;
         let weight = (-0.5 * offset.length_squared()).exp();
         (offset, weight, f64::from(image[(x, y)]))
     })
@@ -215,7 +226,7 @@ mod tests {
     }
 
     /// Returns the position of a corner in the image: squares of 20 pixels, turned and in perspective.
-    fn place(board: DVec2) -> DVec2 {
+    fn position(board: DVec2) -> DVec2 {
         let flat = 20.0 * DVec2::from_angle(0.2).rotate(board);
         let nearer = 1.0 + 0.001 * flat.x - 0.0015 * flat.y;
         flat / nearer + DVec2::new(52.3, 38.9)
@@ -244,8 +255,8 @@ mod tests {
         let mut image = Grid::from_fn(170, 140, |x, y| {
             let sums = (0..64_u32).map(|i| {
                 let inside = DVec2::new(f64::from(i % 8), f64::from(i / 8)) / 8.0 + 0.0625;
-                let place = DVec2::new(x as f64, y as f64) + 0.5 + (1.0 + blur) * (inside - 0.5);
-                grey(place)
+                let position = DVec2::new(x as f64, y as f64) + 0.5 + (1.0 + blur) * (inside - 0.5);
+                grey(position)
             });
             (sums.sum::<f64>() / 64.0) as f32
         });
@@ -258,7 +269,7 @@ mod tests {
         let found = find_corners(image, &board()).unwrap();
         let cells = (0..4_u32).flat_map(|row| (0..5_u32).map(move |column| (column, row)));
         let expected =
-            cells.map(|(column, row)| place(DVec2::new(f64::from(column), f64::from(row))));
+            cells.map(|(column, row)| position(DVec2::new(f64::from(column), f64::from(row))));
         let distances = found
             .iter()
             .zip(expected)
@@ -268,7 +279,7 @@ mod tests {
 
     #[test]
     fn corners_are_found_to_a_fraction_of_a_pixel() {
-        // 8 × 8 points place an edge to a uniform 1/8 pixel, 0.036 of standard deviation; over the 2 √π σ = 7
+        // 8 × 8 points locate an edge to a uniform 1/8 pixel, 0.036 of standard deviation; over the 2 √π σ = 7
         // pixels of a smoothing by 2 pixels 0.014 per axis, and three times that for the worst of 20.
         let error = greatest_error(&image(0.0, 0.0));
         assert!(error < 0.042, "{error}");

@@ -107,7 +107,7 @@ impl CalibrationCovariance {
         self.origin
     }
 
-    /// Returns the covariance of two parameters, by their places among the [`PARAMETERS`].
+    /// Returns the covariance of two parameters, by their positions among the [`PARAMETERS`].
     ///
     /// # Panics
     ///
@@ -116,7 +116,7 @@ impl CalibrationCovariance {
         self.matrix[(one, two)]
     }
 
-    /// Returns the standard uncertainty of a parameter, by its place among the [`PARAMETERS`].
+    /// Returns the standard uncertainty of a parameter, by its position among the [`PARAMETERS`].
     ///
     /// # Panics
     ///

@@ -120,8 +120,8 @@ fn check_views(board: &Checkerboard, views: &[BoardView]) -> Result<(), Triangul
         });
     }
     let whole = |view: &&BoardView| {
-        let places = view.corners.iter().chain(&view.line);
-        view.corners.len() == board.number() && places.into_iter().all(|p| p.is_finite())
+        let positions = view.corners.iter().chain(&view.line);
+        view.corners.len() == board.number() && positions.into_iter().all(|p| p.is_finite())
     };
     match views.iter().find(|view| !whole(view)) {
         None => Ok(()),
@@ -149,7 +149,7 @@ fn best_pinhole(bundle: &Bundle<'_>) -> Result<State, TriangulationError> {
 /// The image points of the laser line on the boards that make the plane.
 struct Lines {
     /// By board.
-    places: Vec<Vec<DVec2>>,
+    positions: Vec<Vec<DVec2>>,
     plane: FittedPlane,
     covariance: [[f64; 4]; 4],
     outliers: usize,
@@ -164,26 +164,26 @@ impl Lines {
         views: &[BoardView],
     ) -> Result<Self, TriangulationError> {
         let camera = bundle.camera(state).ok_or(OUTSIDE)?;
-        let mut places: Vec<Vec<DVec2>> = Vec::new();
+        let mut positions: Vec<Vec<DVec2>> = Vec::new();
         for (view, pose) in views.iter().zip(&state.poses) {
-            let on_board = |place: &DVec2| {
+            let on_board = |position: &DVec2| {
                 board
-                    .contains(pose, on_plane(&camera, pose, *place)?)
-                    .then_some(*place)
+                    .contains(pose, on_plane(&camera, pose, *position)?)
+                    .then_some(*position)
             };
-            places.push(view.line.iter().filter_map(on_board).collect());
+            positions.push(view.line.iter().filter_map(on_board).collect());
         }
-        let points = points_of(&camera, state, &places).ok_or(OUTSIDE)?;
+        let points = points_of(&camera, state, &positions).ok_or(OUTSIDE)?;
         let (plane, counts) = without_outliers(&points)?;
         let mut counts = counts.into_iter();
         let before = points.len();
-        for places in &mut places {
-            places.retain(|_| counts.next().unwrap_or(false));
+        for positions in &mut positions {
+            positions.retain(|_| counts.next().unwrap_or(false));
         }
-        let points = points_of(&camera, state, &places).ok_or(OUTSIDE)?;
+        let points = points_of(&camera, state, &positions).ok_or(OUTSIDE)?;
         let sum: f64 = points.iter().map(|&p| plane.distance(p).powi(2)).sum();
         let mut distances = points.iter().map(|&p| plane.distance(p));
-        let runs: Vec<Vec<f64>> = places
+        let runs: Vec<Vec<f64>> = positions
             .iter()
             .map(|run| distances.by_ref().take(run.len()).collect())
             .collect();
@@ -191,7 +191,7 @@ impl Lines {
         let variance = sum / freedom * correlation_factor(&runs);
         Ok(Self {
             covariance: plane.covariance(&points, variance).ok_or(OUTSIDE)?,
-            places,
+            positions,
             plane,
             outliers: before - points.len(),
             rms: (sum / points.len() as f64).sqrt(),
@@ -200,7 +200,7 @@ impl Lines {
 
     /// Returns how the normal and the offset of the plane change from one state to another.
     fn change(&self, bundle: &Bundle<'_>, state: &State) -> Option<[f64; 4]> {
-        let points = points_of(&bundle.camera(state)?, state, &self.places)?;
+        let points = points_of(&bundle.camera(state)?, state, &self.positions)?;
         let plane = FittedPlane::through(&points)
             .ok()?
             .towards(self.plane.normal);
@@ -225,20 +225,20 @@ impl Checkerboard {
 }
 
 /// Returns where the sight of an image point meets a board, in the axes of the camera.
-fn on_plane(camera: &Camera, pose: &Pose, place: DVec2) -> Option<DVec3> {
-    let direction = camera.ray(place).direction;
+fn on_plane(camera: &Camera, pose: &Pose, position: DVec2) -> Option<DVec3> {
+    let direction = camera.ray(position).direction;
     let normal = pose.rotation.z_axis;
     let distance = normal.dot(pose.translation) / normal.dot(direction);
     (distance > 0.0 && distance.is_finite()).then(|| distance * direction)
 }
 
 /// Returns the points of the line on all boards, in the axes of the camera.
-fn points_of(camera: &Camera, state: &State, places: &[Vec<DVec2>]) -> Option<Vec<DVec3>> {
-    let of_board = |(pose, places): (&Pose, &Vec<DVec2>)| {
-        let point = |place: &DVec2| on_plane(camera, pose, *place);
-        places.iter().map(point).collect::<Option<Vec<_>>>()
+fn points_of(camera: &Camera, state: &State, positions: &[Vec<DVec2>]) -> Option<Vec<DVec3>> {
+    let of_board = |(pose, positions): (&Pose, &Vec<DVec2>)| {
+        let point = |position: &DVec2| on_plane(camera, pose, *position);
+        positions.iter().map(point).collect::<Option<Vec<_>>>()
     };
-    let boards: Option<Vec<_>> = state.poses.iter().zip(places).map(of_board).collect();
+    let boards: Option<Vec<_>> = state.poses.iter().zip(positions).map(of_board).collect();
     boards.map(|boards| boards.concat())
 }
 
@@ -266,7 +266,7 @@ fn assemble(
         boards: bundle.images.len(),
         corners,
         rms_reprojection: (solution.sum / corners as f64).sqrt(),
-        line_points: lines.places.iter().map(Vec::len).sum(),
+        line_points: lines.positions.iter().map(Vec::len).sum(),
         outliers: lines.outliers,
         rms_plane: lines.rms,
     };

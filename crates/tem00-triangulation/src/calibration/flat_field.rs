@@ -10,7 +10,7 @@ const SQUARES_PER_COEFFICIENT: usize = 2;
 
 /// Returns the image divided by the illumination of a board in it, whose ordered corners are about known.
 ///
-/// The illumination is a polynomial in the place, of the second or first degree as there are bright squares
+/// The illumination is a polynomial in the position, of the second or first degree as there are bright squares
 /// to fit it to; the mean on the board stays. Without enough of them the image stays as it is.
 ///
 /// A slope of the illumination would move the saddles of the corners:
@@ -47,8 +47,8 @@ pub(super) fn flattened(
         return image.clone();
     };
     Grid::from_fn(image.width(), image.height(), |x, y| {
-        let place = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
-        let terms = terms(place / size);
+        let position = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+        let terms = terms(position / size);
         let light: f64 = coefficients
             .iter()
             .zip(terms)
@@ -61,12 +61,12 @@ pub(super) fn flattened(
     })
 }
 
-/// The mean of the 3 × 3 pixels about a place, or `None` if they are not in the image.
-fn value_at(image: &Grid<f32>, place: DVec2) -> Option<f64> {
+/// The mean of the 3 × 3 pixels about a position, or `None` if they are not in the image.
+fn value_at(image: &Grid<f32>, position: DVec2) -> Option<f64> {
     let inside = |at: f64, size: usize| (1..size.saturating_sub(1)).find(|&i| at < i as f64 + 1.0);
     let (x, y) = (
-        inside(place.x, image.width())?,
-        inside(place.y, image.height())?,
+        inside(position.x, image.width())?,
+        inside(position.y, image.height())?,
     );
     let pixels = (0..9).map(|i| f64::from(image[(x + i % 3 - 1, y + i / 3 - 1)]));
     Some(pixels.sum::<f64>() / 9.0)

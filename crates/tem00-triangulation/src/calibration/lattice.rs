@@ -11,7 +11,7 @@ const SEED_CELLS: usize = 3;
 /// The sine of the least angle between the two directions of a lattice.
 const LEAST_SINE: f64 = 0.5;
 
-/// The places of a lattice: the number of each point by column and row.
+/// The positions of a lattice: the number of each point by column and row.
 type Cells = HashMap<(i32, i32), usize>;
 
 /// Orders points that form a lattice of `columns × rows`: row by row from the upper left, so that rows run
@@ -35,8 +35,8 @@ pub(super) fn ordered(points: &[DVec2], corners: [usize; 2]) -> Result<Vec<DVec2
         if cells.len() > SEED_CELLS {
             cells.values().for_each(|&point| covered[point] = true);
         }
-        if let Some(places) = placed(points, &cells, corners) {
-            return Ok(places);
+        if let Some(positions) = placed(points, &cells, corners) {
+            return Ok(positions);
         }
         largest = largest.max(cells.len());
     }
@@ -96,13 +96,13 @@ fn neighbour(
     if cells.contains_key(&next) {
         return None;
     }
-    let place = |cell: (i32, i32)| cells.get(&cell).map(|&i| points[i]);
-    let here = place(cell)?;
-    let straight = place((cell.0 - step.0, cell.1 - step.1)).map(|before| here - before);
+    let position = |cell: (i32, i32)| cells.get(&cell).map(|&i| points[i]);
+    let here = position(cell)?;
+    let straight = position((cell.0 - step.0, cell.1 - step.1)).map(|before| here - before);
     let beside = |side: i32| {
         let shift = (side * step.1, side * step.0);
-        let from = place((cell.0 + shift.0, cell.1 + shift.1))?;
-        let to = place((next.0 + shift.0, next.1 + shift.1))?;
+        let from = position((cell.0 + shift.0, cell.1 + shift.1))?;
+        let to = position((next.0 + shift.0, next.1 + shift.1))?;
         Some(to - from)
     };
     let offset = straight.or_else(|| beside(1)).or_else(|| beside(-1))?;
@@ -159,12 +159,12 @@ fn placed(points: &[DVec2], cells: &Cells, [columns, rows]: [usize; 2]) -> Optio
     });
     // The rows lie below each other where the columns run to the right; of what is left the lattice that
     // runs most to the right.
-    let right = |places: &[DVec2]| places[columns - 1] - places[0];
-    let down = |places: &[DVec2]| places[(rows - 1) * columns] - places[0];
+    let right = |positions: &[DVec2]| positions[columns - 1] - positions[0];
+    let down = |positions: &[DVec2]| positions[(rows - 1) * columns] - positions[0];
     turns
-        .filter(|places| right(places).perp_dot(down(places)) > 0.0)
+        .filter(|positions| right(positions).perp_dot(down(positions)) > 0.0)
         .max_by(|one, two| {
-            let cosine = |places: &[DVec2]| right(places).normalize_or_zero().x;
+            let cosine = |positions: &[DVec2]| right(positions).normalize_or_zero().x;
             cosine(one).total_cmp(&cosine(two))
         })
 }
@@ -176,12 +176,12 @@ mod tests {
     /// A lattice in perspective, turned by `angle`.
     fn lattice([columns, rows]: [u32; 2], angle: f64) -> Vec<DVec2> {
         let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
-        let place = |(column, row): (u32, u32)| {
+        let position = |(column, row): (u32, u32)| {
             let flat = DVec2::new(f64::from(column), f64::from(row)) * 20.0;
             let nearer = 1.0 + 0.002 * flat.x + 0.003 * flat.y;
             DVec2::from_angle(angle).rotate(flat / nearer) + DVec2::splat(300.0)
         };
-        cells.map(place).collect()
+        cells.map(position).collect()
     }
 
     #[test]
@@ -198,21 +198,21 @@ mod tests {
 
     #[test]
     fn a_board_upside_down_is_turned() {
-        let places = lattice([7, 5], core::f64::consts::PI);
-        let found = ordered(&places, [7, 5]).unwrap();
-        let reversed: Vec<_> = places.into_iter().rev().collect();
+        let positions = lattice([7, 5], core::f64::consts::PI);
+        let found = ordered(&positions, [7, 5]).unwrap();
+        let reversed: Vec<_> = positions.into_iter().rev().collect();
         assert_eq!(found, reversed);
     }
 
     #[test]
     fn a_board_on_its_side_keeps_its_columns() {
-        let places = lattice([7, 5], 1.6);
-        let found = ordered(&places, [5, 7]).unwrap();
+        let positions = lattice([7, 5], 1.6);
+        let found = ordered(&positions, [5, 7]).unwrap();
         assert!(
             found[4].x > found[0].x + 40.0,
             "rows of five run right: {found:?}"
         );
-        let found = ordered(&places, [7, 5]).unwrap();
+        let found = ordered(&positions, [7, 5]).unwrap();
         assert!(
             (found[6].x - found[0].x).abs() < 40.0,
             "rows of seven stand: {found:?}"
@@ -221,10 +221,10 @@ mod tests {
 
     #[test]
     fn another_size_and_missing_corners_are_refused() {
-        let mut places = lattice([7, 5], 0.1);
-        assert_eq!(ordered(&places, [8, 5]), Err(35));
-        places.remove(12);
-        assert_eq!(ordered(&places, [7, 5]), Err(34));
+        let mut positions = lattice([7, 5], 0.1);
+        assert_eq!(ordered(&positions, [8, 5]), Err(35));
+        positions.remove(12);
+        assert_eq!(ordered(&positions, [7, 5]), Err(34));
         assert_eq!(ordered(&[], [7, 5]), Err(0));
         assert_eq!(ordered(&[DVec2::ONE], [7, 5]), Err(0));
     }

@@ -43,7 +43,7 @@ pub(super) struct State {
 #[derive(Clone, Debug)]
 pub(super) struct Bundle<'a> {
     pub model: &'a CameraModel,
-    /// The places of the parameters of the camera that are sought.
+    /// The positions of the parameters of the camera that are sought.
     pub free: Vec<usize>,
     /// The corners on the board, in metres.
     pub board: &'a [DVec3],

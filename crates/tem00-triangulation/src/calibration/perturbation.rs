@@ -16,7 +16,7 @@ const SHARE: f64 = 1e-3;
 /// The cameras that differ from a calibrated one in a single parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Perturbations {
-    /// For each parameter of the camera that is uncertain: its place, the cameras with less and more of
+    /// For each parameter of the camera that is uncertain: its position, the cameras with less and more of
     /// it, and the difference between them.
     cameras: Vec<(usize, [Camera; 2], f64)>,
 }

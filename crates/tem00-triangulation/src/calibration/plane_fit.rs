@@ -166,11 +166,14 @@ pub(super) fn correlation_factor(runs: &[Vec<f64>]) -> f64 {
 /// Returns the values less the straight line that fits them best.
 fn straightened(values: &[f64]) -> Vec<f64> {
     let number = values.len() as f64;
-    let place = |i: usize| i as f64 - (number - 1.0) / 2.0;
+    let position = |i: usize| i as f64 - (number - 1.0) / 2.0;
     let mean = values.iter().sum::<f64>() / number;
-    let weighted = values.iter().enumerate().map(|(i, value)| place(i) * value);
+    let weighted = values
+        .iter()
+        .enumerate()
+        .map(|(i, value)| position(i) * value);
     let slope = 12.0 * weighted.sum::<f64>() / (number * (number * number - 1.0));
-    let rest = |(i, value): (usize, &f64)| value - mean - slope * place(i);
+    let rest = |(i, value): (usize, &f64)| value - mean - slope * position(i);
     values.iter().enumerate().map(rest).collect()
 }
 
@@ -179,9 +182,9 @@ mod tests {
     use super::*;
 
     fn points() -> Vec<DVec3> {
-        let place = |i: u32| DVec3::new(f64::from(i % 10), 0.0, f64::from(i / 10));
+        let position = |i: u32| DVec3::new(f64::from(i % 10), 0.0, f64::from(i / 10));
         (0..100)
-            .map(|i| 1e-3 * place(i) + DVec3::new(0.1, 0.2, 0.3))
+            .map(|i| 1e-3 * position(i) + DVec3::new(0.1, 0.2, 0.3))
             .collect()
     }
 

@@ -30,7 +30,7 @@ const MOST_CANDIDATES: usize = 3;
 /// The part of the response of a typical corner below which a pixel is none.
 const LEAST_RESPONSE: f64 = 0.2;
 
-/// Returns the places that look like corners where four squares meet, the clearest first: local maxima of
+/// Returns the positions that look like corners where four squares meet, the clearest first: local maxima of
 /// a response to rings that are bright, dark, bright and dark.
 ///
 /// `number` corners are expected; what responds much less than these do is left out.
@@ -116,13 +116,16 @@ mod tests {
     fn corners_are_seen_in_every_direction() {
         for degrees in [0.0_f64, 20.0, 45.0, 70.0] {
             let direction = DVec2::from_angle(degrees.to_radians());
-            let places = found(|x, y| {
+            let positions = found(|x, y| {
                 let turned = direction.rotate(DVec2::new(x, y));
                 (turned.x > 0.0) == (turned.y > 0.0)
             });
-            assert_eq!(places.len(), 1, "{degrees}°: {places:?}");
-            // The response hardly falls within two pixels; the place is refined later.
-            assert!(places[0].distance(DVec2::splat(20.0)) < 2.0, "{places:?}");
+            assert_eq!(positions.len(), 1, "{degrees}°: {positions:?}");
+            // The response hardly falls within two pixels; the position is refined later.
+            assert!(
+                positions[0].distance(DVec2::splat(20.0)) < 2.0,
+                "{positions:?}"
+            );
         }
     }
 

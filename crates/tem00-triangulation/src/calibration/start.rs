@@ -35,7 +35,7 @@ pub(super) fn starts(
             .map(|corner| (corner - middle) / scale)
             .collect();
         homography(&plane, &scaled).ok_or(TriangulationError::NotDetermined {
-            what: "the place of a board",
+            what: "the position of a board",
             advice: "its corners must not lie on one line",
         })
     };

@@ -16,7 +16,7 @@
 pub fn pareto_front(points: &[[f64; 2]]) -> Vec<usize> {
     let comparable = |&index: &usize| !points[index].iter().any(|number| number.is_nan());
     let mut order: Vec<usize> = (0..points.len()).filter(comparable).collect();
-    // By the first number, then by the second from the greatest, then by place.
+    // By the first number, then by the second from the greatest, then by position.
     order.sort_by(|&a, &b| {
         let [x, y] = [points[a], points[b]];
         x[0].total_cmp(&y[0]).then(y[1].total_cmp(&x[1]))

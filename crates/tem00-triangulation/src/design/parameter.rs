@@ -60,7 +60,7 @@ impl DesignParameter {
     /// Returns the value in a set-up, in SI units.
     pub fn of(self, description: &SetupDescription) -> f64 {
         let mut description = *description;
-        *self.place(&mut description)
+        *self.field(&mut description)
     }
 
     /// Returns the set-up with another value, in SI units, whether or not it is possible then. An exposure
@@ -69,7 +69,7 @@ impl DesignParameter {
     pub fn set(self, description: &SetupDescription, value: f64) -> SetupDescription {
         let mut description = *description;
         description.auto_exposure &= self != Self::Exposure;
-        *self.place(&mut description) = value;
+        *self.field(&mut description) = value;
         description
     }
 
@@ -101,7 +101,7 @@ impl DesignParameter {
         }
     }
 
-    const fn place(self, description: &mut SetupDescription) -> &mut f64 {
+    const fn field(self, description: &mut SetupDescription) -> &mut f64 {
         match self {
             Self::FNumber => &mut description.camera.f_number,
             Self::Angle => &mut description.camera.angle,

@@ -16,7 +16,7 @@ pub(super) struct Column {
     pub(super) smooth: Smoothed,
 }
 
-/// A line that stands out of a column, before its place is estimated.
+/// A line that stands out of a column, before its position is estimated.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Sighting {
     /// The pixel in the middle of the window: the maximum of the smoothed column.

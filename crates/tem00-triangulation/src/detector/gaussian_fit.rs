@@ -28,7 +28,7 @@ struct Normal {
     right: Vector4<f64>,
 }
 
-/// Fits by the method of Levenberg and Marquardt, from the place and the width of the light on.
+/// Fits by the method of Levenberg and Marquardt, from the position and the width of the light on.
 pub(super) fn fit(profile: &Profile<'_>) -> Option<Estimate> {
     const MOST_STEPS: usize = 200;
     let scale = profile.at(0);

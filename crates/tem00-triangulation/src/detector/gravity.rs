@@ -53,7 +53,7 @@ pub(super) fn iterated(profile: &Profile<'_>) -> Option<f64> {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "places below the first pixel become 0, those beyond the last are cut to it"
+    reason = "positions below the first pixel become 0, those beyond the last are cut to it"
 )]
 fn about(profile: &Profile<'_>, centre: f64, half: f64) -> Option<f64> {
     let (zone, origin) = (&profile.line.zone, profile.line.greatest as f64);

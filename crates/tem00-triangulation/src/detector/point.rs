@@ -1,7 +1,7 @@
 /// A line where it crosses a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinePoint {
-    /// The place along the column, in pixels; the centre of the first pixel is at 0.5.
+    /// The position along the column, in pixels; the centre of the first pixel is at 0.5.
     pub position: f64,
     /// The full width between the points of 1/e², in pixels.
     ///
@@ -35,9 +35,9 @@ pub enum Validity {
     Crowded,
     /// A pixel of the window is not a finite number; it counts as background.
     Missing,
-    /// The estimate did not converge or lies outside of the window; the place is that of the peak.
+    /// The estimate did not converge or lies outside of the window; the position is that of the peak.
     Failed,
-    /// An edge of the part cuts the line, of which but a sliver is seen: its place is that of the edge. Or
+    /// An edge of the part cuts the line, of which but a sliver is seen: its position is that of the edge. Or
     /// there is no line but by noise. Only who knows the line without noise can tell; a detector does not.
     Sliver,
 }

@@ -11,10 +11,10 @@ pub(super) struct Profile<'a> {
     pub(super) line: &'a Sighting,
 }
 
-/// The place of a line.
+/// The position of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Estimate {
-    /// The place along the column.
+    /// The position along the column.
     pub(super) position: f64,
     /// The full width between the points of 1/e², of a method that fits it.
     pub(super) width: Option<f64>,

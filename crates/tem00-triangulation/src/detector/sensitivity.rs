@@ -5,11 +5,11 @@ use super::{
 };
 
 /// The change of a pixel, as a fraction of the peak, over which differences are taken. They err by its
-/// square, and by the rounding of the places divided by it.
+/// square, and by the rounding of the positions divided by it.
 const CHANGE: f64 = 1e-4;
 
 impl LineDetector {
-    /// Returns by how much the place of the line at `point` moves per grey value of each pixel of the
+    /// Returns by how much the position of the line at `point` moves per grey value of each pixel of the
     /// column, in pixels per grey value: the sensitivities of its uncertainty.
     ///
     /// ```text
@@ -24,7 +24,7 @@ impl LineDetector {
     ///
     /// `point` is one that [`detect_column`](Self::detect_column) finds in `column`; the line that is
     /// nearest to it is looked at. A column without lines has no sensitivities: all are zero. So are
-    /// those of a place that could not be estimated.
+    /// those of a position that could not be estimated.
     pub fn sensitivities(&self, column: &[f32], point: &LinePoint) -> Vec<f64> {
         let mut sensitivities = vec![0.0; column.len()];
         let mut found = Column::of(column, &self.settings);
@@ -52,18 +52,18 @@ impl LineDetector {
         sensitivities
     }
 
-    /// By how much the place moves per pixel that the window moves: the central difference; 0 if it cannot
+    /// By how much the position moves per pixel that the window moves: the central difference; 0 if it cannot
     /// be estimated.
     fn by_window(&self, above: &[f64], line: &Sighting) -> f64 {
         let half = self.settings.window / 2;
-        let place = |centre: usize| {
+        let position = |centre: usize| {
             let line = &line.about(centre, half, above.len());
             let estimate = Profile { above, line }.estimate(&self.settings.method)?;
             Some(estimate.position)
         };
-        let before = line.centre.checked_sub(1).and_then(place);
-        let places = before.zip(place(line.centre + 1));
-        places.map_or(0.0, |(before, after)| 0.5 * (after - before))
+        let before = line.centre.checked_sub(1).and_then(position);
+        let positions = before.zip(position(line.centre + 1));
+        positions.map_or(0.0, |(before, after)| 0.5 * (after - before))
     }
 
     /// The pixels that an estimate may look at: the window, also if it was moved onto its result.
@@ -75,17 +75,17 @@ impl LineDetector {
             .filter(move |i| window.contains(i) || (*i as f64 + 0.5 - position).abs() <= reach)
     }
 
-    /// The central difference of the place by one pixel; 0 if it cannot be estimated.
+    /// The central difference of the position by one pixel; 0 if it cannot be estimated.
     fn derivative(&self, above: &mut [f64], line: &Sighting, i: usize) -> f64 {
         let kept = above[i];
         let change = CHANGE * above[line.greatest];
-        let mut place = |value: f64| {
+        let mut position = |value: f64| {
             above[i] = value;
             let estimate = Profile { above, line }.estimate(&self.settings.method)?;
             Some(estimate.position)
         };
-        let places = place(kept + change).zip(place(kept - change));
+        let positions = position(kept + change).zip(position(kept - change));
         above[i] = kept;
-        places.map_or(0.0, |(more, less)| (more - less) / (2.0 * change))
+        positions.map_or(0.0, |(more, less)| (more - less) / (2.0 * change))
     }
 }

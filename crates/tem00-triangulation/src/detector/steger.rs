@@ -51,7 +51,7 @@ impl Kernels {
         }
     }
 
-    /// The weights of a pixel for the value at a place `distance` pixels after it.
+    /// The weights of a pixel for the value at a position `distance` pixels after it.
     fn at(&self, distance: isize) -> [f64; 3] {
         let index = usize::try_from(distance + self.radius).ok();
         index
@@ -73,10 +73,10 @@ pub(super) fn in_column(profile: &Profile<'_>, sigma: f64) -> Option<f64> {
 pub(super) fn in_image(
     profile: &Profile<'_>,
     columns: &Grid<f32>,
-    place: (usize, f64),
+    position: (usize, f64),
     kernels: &Kernels,
 ) -> Option<f64> {
-    let (x, background) = place;
+    let (x, background) = position;
     let window = profile.line.window.clone();
     let mut pixels = vec![[0.0; 3]; window.len()];
     for offset in -kernels.radius..=kernels.radius {
@@ -96,7 +96,7 @@ pub(super) fn in_image(
     ridge(profile, &pixels, kernels)
 }
 
-/// The place of the strongest ridge of the window, along the column, as a distance from the greatest
+/// The position of the strongest ridge of the window, along the column, as a distance from the greatest
 /// pixel; `pixels` holds for each its smoothed value and the derivatives of that along x.
 fn ridge(profile: &Profile<'_>, pixels: &[[f64; 3]], kernels: &Kernels) -> Option<f64> {
     let rows = (0_isize..).take(pixels.len());
@@ -124,7 +124,7 @@ fn ridge(profile: &Profile<'_>, pixels: &[[f64; 3]], kernels: &Kernels) -> Optio
         Some((strength, first + row as f64 + offset))
     })
     .max_by(|a, b| a.0.total_cmp(&b.0))
-    .map(|(_, place)| place)
+    .map(|(_, position)| position)
 }
 
 impl Derivatives {

@@ -8,7 +8,7 @@ struct Track {
     last: usize,
     /// The last column up to which it was seen, or hidden by another line.
     followed_to: usize,
-    /// The last points that tell where the line goes on: column and place.
+    /// The last points that tell where the line goes on: column and position.
     recent: VecDeque<(f64, f64)>,
     points: usize,
     sum: f64,

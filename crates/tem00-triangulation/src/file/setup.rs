@@ -49,7 +49,7 @@ pub(super) const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"
 /// # Errors
 ///
 /// Returns an error if the file cannot be read, is not valid TOML, or does not describe a set-up. It
-/// names key, value and what is allowed, and knows its place in the file.
+/// names key, value and what is allowed, and knows its position in the file.
 pub fn read_setup(path: &Path) -> Result<Setup, ConfigError> {
     read_setup_with(path, FileAccess::WithinFolder, |_, _| Ok(())).map(|(setup, ())| setup)
 }
@@ -234,7 +234,7 @@ fn count(value: &Value<'_>, most: u32) -> Result<u32, Problem> {
     u32::try_from(number).map_err(|_| value.must_be("a number that can be counted"))
 }
 
-/// Places the error of a set-up that is not possible at the key that it is about.
+/// Positions the error of a set-up that is not possible at the key that it is about.
 fn rejected(error: &TriangulationError, sections: &[&Section<'_>]) -> Problem {
     let key = error.parameter().unwrap_or_default();
     let section = sections.iter().find(|section| section.has(key));

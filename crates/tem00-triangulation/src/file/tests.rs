@@ -52,7 +52,7 @@ frames = 1
 independent_speckle = false
 "#;
 
-/// The set-up file with one line in place of another.
+/// The set-up file with one line instead of another.
 fn with(line: &str, instead: &str) -> String {
     assert!(SETUP.contains(line), "{line} is not in\n{SETUP}");
     SETUP.replacen(line, instead, 1)
@@ -159,7 +159,7 @@ fn what_may_be_left_out_has_defaults() {
 
 #[test]
 fn what_is_wrong_is_told_at_its_place() {
-    for (line, instead, place, part) in [
+    for (line, instead, position, part) in [
         ("[laser]", "[lasser]", Some((1, 2)), "did you mean `laser`?"),
         (
             "wavelength = 6.5e-7",
@@ -233,7 +233,7 @@ fn what_is_wrong_is_told_at_its_place() {
     ] {
         let error = parse_setup(&with(line, instead)).unwrap_err();
         assert!(error.to_string().contains(part), "{instead}: {error}");
-        assert_eq!(error.line_column(), place, "{instead}: {error}");
+        assert_eq!(error.line_column(), position, "{instead}: {error}");
     }
 }
 

@@ -182,8 +182,8 @@ fn profiles_keep_what_the_detector_found() {
             if column == 0 { 0.1 } else { point.position }
         },
     );
-    let places: Vec<_> = profile.iter().map(|p| (p.column, p.line)).collect();
-    assert_eq!(places, [(0, 0), (2, 0), (2, 1)]);
+    let positions: Vec<_> = profile.iter().map(|p| (p.column, p.line)).collect();
+    assert_eq!(positions, [(0, 0), (2, 0), (2, 1)]);
     for point in &profile {
         let pixel = triangulator.camera().project(point.point.position).unwrap();
         assert!(pixel.distance(point.pixel) < 1e-9, "{point:?}");

@@ -25,17 +25,17 @@ pub(super) struct Strip {
 }
 
 impl Strip {
-    /// Returns the places of the line where scatterers lie along it: no farther apart than a speckle.
+    /// Returns the positions of the line where scatterers lie along it: no farther apart than a speckle.
     ///
     /// Beside the image the line goes on as it ends, to the half of what is there from either side.
-    pub(super) fn places(&self, centre: impl Fn(f64) -> f64) -> Vec<f64> {
+    pub(super) fn positions(&self, centre: impl Fn(f64) -> f64) -> Vec<f64> {
         let count = self.lattice(0);
         let step = self.period[0] / count as f64;
         let [end, _] = self.size;
         let along = |index: usize| {
-            let place = self.first_sample[0] + index as f64 * step;
-            if place < 0.5 * (end + self.period[0]) {
-                place.min(end)
+            let position = self.first_sample[0] + index as f64 * step;
+            if position < 0.5 * (end + self.period[0]) {
+                position.min(end)
             } else {
                 0.0
             }
@@ -59,19 +59,24 @@ impl Strip {
     ///
     /// Scatterers are half a line or half a speckle apart across the line, from where a sum of normal
     /// amplitudes is the integral to 10⁻⁸. Those beyond the darkness beside the image are left out.
-    pub(super) fn pupil(&self, places: &[f64], seed: u64, part: u64) -> (Grid<Complex<f32>>, f64) {
+    pub(super) fn pupil(
+        &self,
+        positions: &[f64],
+        seed: u64,
+        part: u64,
+    ) -> (Grid<Complex<f32>>, f64) {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(1 << 63 | part);
-        let across = self.across(places);
+        let across = self.across(positions);
         let rows = self.lattice(1);
         let waves = self.waves(rows, across.iter().map(|(distance, _)| *distance));
-        let mut columns = Grid::filled(places.len(), rows, Complex::new(0.0, 0.0));
+        let mut columns = Grid::filled(positions.len(), rows, Complex::new(0.0, 0.0));
         let mut power = 0.0;
-        for (x, &place) in places.iter().enumerate() {
+        for (x, &position) in positions.iter().enumerate() {
             let lit: Vec<_> = across
                 .iter()
                 .map(|&(distance, irradiance)| {
-                    let amplitude = if self.holds(place + distance) {
+                    let amplitude = if self.holds(position + distance) {
                         power += irradiance;
                         (0.5 * irradiance).sqrt()
                     } else {
@@ -83,17 +88,17 @@ impl Strip {
                 .collect();
             for (y, waves) in waves.chunks_exact(across.len().max(1)).enumerate() {
                 let sum: Complex<f64> = waves.iter().zip(&lit).map(|(w, a)| w * a).sum();
-                columns[(x, y)] = sum * self.wave(rows, y, place - self.first_sample[1]);
+                columns[(x, y)] = sum * self.wave(rows, y, position - self.first_sample[1]);
             }
         }
-        (along(&columns), power / places.len() as f64)
+        (along(&columns), power / positions.len() as f64)
     }
 
     /// Returns the distances of scatterers from the middle of the line, and their irradiances.
-    fn across(&self, places: &[f64]) -> Vec<(f64, f64)> {
+    fn across(&self, positions: &[f64]) -> Vec<(f64, f64)> {
         let radius = 0.5 * self.width;
         let spacing = 0.5 * radius.min(self.speckle_size[1]);
-        let range = |start: f64, f: fn(f64, f64) -> f64| places.iter().copied().fold(start, f);
+        let range = |start: f64, f: fn(f64, f64) -> f64| positions.iter().copied().fold(start, f);
         let [low, high] = self.dark();
         let from = (low - range(f64::NEG_INFINITY, f64::max)).max(-REACH * radius);
         let to = (high - range(f64::INFINITY, f64::min)).min(REACH * radius);
@@ -116,9 +121,9 @@ impl Strip {
         [-margin, self.size[1] + margin]
     }
 
-    fn holds(&self, place: f64) -> bool {
+    fn holds(&self, position: f64) -> bool {
         let [low, high] = self.dark();
-        (low..high).contains(&place)
+        (low..high).contains(&position)
     }
 
     /// Returns the wave of a scatterer at a distance across the line in a row of the pupil.
@@ -140,7 +145,7 @@ impl Strip {
     }
 }
 
-/// Transforms each row, with the frequency zero in the middle: places along the line become those in
+/// Transforms each row, with the frequency zero in the middle: positions along the line become those in
 /// the pupil.
 #[expect(
     clippy::cast_possible_truncation,

@@ -32,7 +32,7 @@ fn the_mean_of_many_images_is_the_line_that_the_lens_blurs() {
             let pairs = sum.iter_mut().zip(image.values());
             pairs.for_each(|(sum, &value)| *sum += f64::from(value) / IMAGES as f64);
         }
-        // Over a block of 12 columns, at five places across the line.
+        // Over a block of 12 columns, at five positions across the line.
         for y in [17, 21, 24, 26, 30] {
             for block in 0..8 {
                 let row = 96 * y + 12 * block..96 * y + 12 * (block + 1);
@@ -40,7 +40,7 @@ fn the_mean_of_many_images_is_the_line_that_the_lens_blurs() {
                     sum[row.clone()].iter().sum::<f64>(),
                     mean.values()[row].iter().map(|&v| f64::from(v)).sum(),
                 ];
-                // 200 images of 12 columns, 7.5 speckles, have 1500 independent places: 2.6 % each, four
+                // 200 images of 12 columns, 7.5 speckles, have 1500 independent positions: 2.6 % each, four
                 // of them. What lies in the darkness beside the image comes in at the other side.
                 assert_relative_eq!(found, expected, max_relative = 0.104, epsilon = 1.0);
             }

@@ -27,7 +27,7 @@ const STEP: f64 = 1e-5;
 /// Defocus counts as a Gaussian of 4σ = b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImagedLine {
-    /// The place along the middle column, in pixels, y down.
+    /// The position along the middle column, in pixels, y down.
     pub position: f64,
     /// The full width between the points of 1/e², in pixels, as of a Gaussian.
     pub width: f64,
@@ -107,7 +107,7 @@ impl ImagedLine {
         self.column_electrons * self.profile(distance.abs()).at(distance)
     }
 
-    /// Returns the profile in pixels, for places up to `reach` from the middle of the line.
+    /// Returns the profile in pixels, for positions up to `reach` from the middle of the line.
     pub(crate) fn profile(&self, reach: f64) -> LineProfile {
         self.profile_over(self.sensitive_height, reach)
     }

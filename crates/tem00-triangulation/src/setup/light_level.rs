@@ -42,7 +42,7 @@ impl LightLevel {
                  the exposure or the power by as much as the brightest grains exceed the range"
             }
             Self::Saturated => {
-                "the crest of the line is cut off and its place is wrong: lower the exposure or the \
+                "the crest of the line is cut off and its position is wrong: lower the exposure or the \
                  power, or raise the f-number"
             }
         }

@@ -28,7 +28,7 @@ pub(crate) struct LineProfile {
 }
 
 impl LineProfile {
-    /// Creates the profile for places up to `reach` from the middle of the line. All lengths are in
+    /// Creates the profile for positions up to `reach` from the middle of the line. All lengths are in
     /// pixels.
     pub(crate) fn new(width: f64, speckle_size: f64, pixel: f64, reach: f64) -> Self {
         let period = PERIOD * reach.max(4.0 * (width + speckle_size));

@@ -87,7 +87,7 @@ fn the_height_per_pixel_is_that_of_the_pinhole() {
 }
 
 #[test]
-fn heights_come_back_from_the_places_of_the_line() {
+fn heights_come_back_from_the_positions_of_the_line() {
     for setup in [setup(), scheimpflug()] {
         for height in [-4e-3, 0.0, 6e-3] {
             let line = setup.line_at(height).unwrap();

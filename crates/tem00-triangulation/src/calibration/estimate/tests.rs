@@ -158,12 +158,12 @@ fn the_world_is_the_first_board() {
     assert!(plane.normal().cross(normal).length() < 1e-5, "{plane:?}");
 }
 
-/// Moves every place by normal noise.
+/// Moves every position by normal noise.
 fn noisy(views: &[BoardView], sigma: f64, seed: u64) -> Vec<BoardView> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let normal = Normal::new(0.0, sigma).unwrap();
     let mut moved =
-        |place: &DVec2| place + DVec2::new(normal.sample(&mut rng), normal.sample(&mut rng));
+        |position: &DVec2| position + DVec2::new(normal.sample(&mut rng), normal.sample(&mut rng));
     let mut view = |view: &BoardView| BoardView {
         corners: view.corners.iter().map(&mut moved).collect(),
         line: view.line.iter().map(&mut moved).collect(),

@@ -1,6 +1,6 @@
 use super::*;
 
-/// The estimated less the true place of a pixel-integrated line.
+/// The estimated less the true position of a pixel-integrated line.
 fn bias(method: LineMethod, window: usize, sigma: f64, phase: f64) -> f64 {
     let centre = MIDDLE + phase;
     let point = only(

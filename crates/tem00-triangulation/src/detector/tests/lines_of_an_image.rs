@@ -3,13 +3,13 @@ use super::*;
 const SIGMA: f64 = 2.5;
 const WINDOW: usize = 25;
 
-/// An image of lines whose places depend on the column; a line is where its place is a number.
+/// An image of lines whose positions depend on the column; a line is where its position is a number.
 fn image(width: usize, height: usize, lines: &[&dyn Fn(f64) -> Option<f64>]) -> Grid<f32> {
     let columns: Vec<Vec<f32>> = (0..width)
         .map(|x| {
-            let places = lines.iter().filter_map(|line| line(x as f64 + 0.5));
-            places.fold(vec![5.0; height], |sum, place| {
-                let line = integrated(height, place, SIGMA);
+            let positions = lines.iter().filter_map(|line| line(x as f64 + 0.5));
+            positions.fold(vec![5.0; height], |sum, position| {
+                let line = integrated(height, position, SIGMA);
                 sum.iter().zip(line).map(|(a, b)| a + b).collect()
             })
         })
@@ -27,7 +27,7 @@ fn finder(method: LineMethod, max_lines: usize) -> LineDetector {
     LineDetector::new(settings).unwrap()
 }
 
-/// The places of a line by column, `None` where it has no point.
+/// The positions of a line by column, `None` where it has no point.
 fn of_line(points: &[Vec<LinePoint>], line: usize) -> Vec<Option<f64>> {
     let in_column = |column: &Vec<LinePoint>| {
         let mut points = column.iter().filter(|point| point.line == line);
@@ -55,10 +55,10 @@ fn two_lines_keep_their_numbers_though_one_ends() {
     let (first, second) = (of_line(&points, 0), of_line(&points, 1));
     for x in 0..200 {
         let at = x as f64 + 0.5;
-        let near = |found: Option<f64>, place: Option<f64>| match (found, place) {
+        let near = |found: Option<f64>, position: Option<f64>| match (found, position) {
             (None, None) => true,
             // Rounding of a background of 5 and the light outside of the window, at five σ.
-            (Some(found), Some(place)) => (found - place).abs() < 1e-3,
+            (Some(found), Some(position)) => (found - position).abs() < 1e-3,
             _ => false,
         };
         assert!(near(first[x], upper(at)), "column {x}: {:?}", points[x]);
@@ -75,8 +75,8 @@ fn lines_that_cross_go_on_as_they_came() {
     let image = image(200, 200, &[&down, &up]);
     let points = finder(LineMethod::CentreOfGravity, 2).detect(&image);
     assert_eq!(count(&points), 2, "two lines");
-    // Their mean places are equal but for where they are seen as one: whichever is first.
-    let falls = of_line(&points, 0)[0].is_some_and(|place| place < 100.0);
+    // Their mean positions are equal but for where they are seen as one: whichever is first.
+    let falls = of_line(&points, 0)[0].is_some_and(|position| position < 100.0);
     let (first, second) = (of_line(&points, 0), of_line(&points, 1));
     let (falling, rising) = if falls {
         (first, second)
@@ -85,7 +85,8 @@ fn lines_that_cross_go_on_as_they_came() {
     };
     for x in (0..200).filter(|x| !(60..140).contains(x)) {
         let at = x as f64 + 0.5;
-        let off = |found: Option<f64>, place: Option<f64>| (found.unwrap() - place.unwrap()).abs();
+        let off =
+            |found: Option<f64>, position: Option<f64>| (found.unwrap() - position.unwrap()).abs();
         assert!(
             off(falling[x], down(at)) < 0.05,
             "column {x}: {:?}",
@@ -129,7 +130,7 @@ fn a_line_that_has_ended_takes_no_points_of_one_that_goes_on() {
             let expected: Vec<usize> = [ended(at), second(at)]
                 .into_iter()
                 .zip(0..)
-                .filter_map(|(place, line)| place.map(|_| line))
+                .filter_map(|(position, line)| position.map(|_| line))
                 .collect();
             let found: Vec<usize> = points.iter().map(|point| point.line).collect();
             assert_eq!(found, expected, "column {x}");

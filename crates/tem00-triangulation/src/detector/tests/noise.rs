@@ -6,14 +6,14 @@ use super::*;
 
 const COLUMNS: usize = 4000;
 
-/// Compares the variance of the places found in noisy columns with a law. The variance of n Gaussian
+/// Compares the variance of the positions found in noisy columns with a law. The variance of n Gaussian
 /// numbers has the relative standard error √(2/n), here 2.2 %; 3.3 of them are exceeded once in 1000.
 fn compare(detector: &LineDetector, variance: f64, mut column: impl FnMut(u64) -> Vec<f32>) {
-    let places: Vec<f64> = (0..COLUMNS as u64)
+    let positions: Vec<f64> = (0..COLUMNS as u64)
         .map(|seed| only(detector, &column(seed)).position - MIDDLE)
         .collect();
-    let mean = places.iter().sum::<f64>() / COLUMNS as f64;
-    let squares = places.iter().map(|place| (place - mean).powi(2));
+    let mean = positions.iter().sum::<f64>() / COLUMNS as f64;
+    let squares = positions.iter().map(|position| (position - mean).powi(2));
     let ratio = squares.sum::<f64>() / (COLUMNS as f64 - 1.0) / variance;
     let error = (2.0 / COLUMNS as f64).sqrt();
     assert!(
@@ -33,7 +33,7 @@ fn with_white_noise(line: &[f32], noise: f64, seed: u64) -> Vec<f32> {
 
 #[test]
 fn centre_of_gravity_is_as_good_as_photons_allow() {
-    // The centre of gravity of N electrons scatters as the mean of N places: σ²/N, the bound of Cramér
+    // The centre of gravity of N electrons scatters as the mean of N positions: σ²/N, the bound of Cramér
     // and Rao for a Gaussian; (w/2)/√N. Pixels add their own variance, 1/12.
     let (sigma, electrons) = (3.0, 10_000.0);
     let scale = electrons / (PEAK * TAU.sqrt() * sigma);
@@ -90,7 +90,7 @@ fn the_fit_is_as_good_as_white_noise_allows() {
 
 #[test]
 fn noise_alone_is_no_line() {
-    // Six standard deviations, 1e−9 each, over 200 columns of some 100 independent places.
+    // Six standard deviations, 1e−9 each, over 200 columns of some 100 independent positions.
     let settings = DetectorSettings {
         min_peak: 0.0,
         max_lines: 5,

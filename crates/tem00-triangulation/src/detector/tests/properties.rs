@@ -91,7 +91,7 @@ proptest! {
     }
 
     #[test]
-    fn brighter_lines_are_found_in_the_same_place(
+    fn brighter_lines_are_found_at_the_same_position(
         values in prop::collection::vec(1.0_f32..200.0, 12..30), power in -10_i32..10,
     ) {
         // A power of two changes no digit.

@@ -12,7 +12,7 @@ fn of_the_centre_of_gravity_are_the_lever_arms() {
         let lever = (i as f64 + 0.5 - point.position) / point.integral;
         // The 370 pixels of the background take the sum of the window, 31 · 0.2 / 370 of a pixel. The
         // difference over 1e−4 of the peak errs by the square of that, the rest is rounding over it. The
-        // ends of the window, at e^(−18) of the peak, move the place by 1e−7 for each pixel that it moves.
+        // ends of the window, at e^(−18) of the peak, move the position by 1e−7 for each pixel that it moves.
         let background = 31.0 * 0.2 / (370.0 * point.integral);
         let off = found - lever;
         assert!(
@@ -30,7 +30,7 @@ fn of_the_centre_of_gravity_are_the_lever_arms() {
 
 #[test]
 fn follow_a_line_that_moves_and_ignore_a_background_that_rises() {
-    // Σ g_i dI_i/dc is the derivative of the place by c: 1 but for the derivative of the bias. Rounding
+    // Σ g_i dI_i/dc is the derivative of the position by c: 1 but for the derivative of the bias. Rounding
     // of f32 over the step: 1e−7/1e−2 each.
     let step = 0.01;
     for method in methods() {
@@ -38,15 +38,15 @@ fn follow_a_line_that_moves_and_ignore_a_background_that_rises() {
         for phase in [-0.35, 0.1, 0.2] {
             let at = |off: f64| integrated(LENGTH, MIDDLE + phase + off, SIGMA);
             let (column, more, less) = (at(0.0), at(step), at(-step));
-            let place = |column: &[f32]| only(&detector, column).position;
-            let expected = (place(&more) - place(&less)) / (2.0 * step);
+            let position = |column: &[f32]| only(&detector, column).position;
+            let expected = (position(&more) - position(&less)) / (2.0 * step);
             let sensitivities = detector.sensitivities(&column, &only(&detector, &column));
             let motion = more
                 .iter()
                 .zip(&less)
                 .map(|(m, l)| f64::from(m - l) / (2.0 * step));
             let moved: f64 = sensitivities.iter().zip(motion).map(|(g, d)| g * d).sum();
-            // The difference errs by step²/6 of the third derivative of the place: up to 40 where linear
+            // The difference errs by step²/6 of the third derivative of the position: up to 40 where linear
             // interpolation, whose flanks change at the middle of a pixel, is near to that.
             assert!(
                 (moved - expected).abs() < 7e-4,
@@ -67,7 +67,7 @@ fn follow_a_line_that_moves_and_ignore_a_background_that_rises() {
 
 #[test]
 fn take_the_window_along_with_a_line_that_has_wings() {
-    // A line that moves on by a pixel is found a pixel further on: over all places in a pixel
+    // A line that moves on by a pixel is found a pixel further on: over all positions in a pixel
     // Σ g_i dI_i/dc is 1 in the mean, with the light that the window loses at one end and gains at the other.
     let line = |centre: f64| -> Vec<f32> {
         let wings = |i: usize| 1000.0 / (1.0 + ((i as f64 + 0.5 - centre) / 2.0).powi(2));

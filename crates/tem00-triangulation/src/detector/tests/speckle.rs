@@ -35,7 +35,7 @@ fn columns(radius: f64) -> Vec<Vec<f32>> {
     columns
 }
 
-/// The scatter of the places in the columns.
+/// The scatter of the positions in the columns.
 fn scatter(method: LineMethod, columns: &[Vec<f32>]) -> f64 {
     let settings = DetectorSettings {
         method,
@@ -44,13 +44,16 @@ fn scatter(method: LineMethod, columns: &[Vec<f32>]) -> f64 {
         ..DetectorSettings::default()
     };
     let detector = LineDetector::new(settings).unwrap();
-    let places: Vec<f64> = columns
+    let positions: Vec<f64> = columns
         .iter()
         .map(|column| only(&detector, column).position)
         .collect();
-    let mean = places.iter().sum::<f64>() / places.len() as f64;
-    let squares: f64 = places.iter().map(|place| (place - mean).powi(2)).sum();
-    (squares / (places.len() as f64 - 1.0)).sqrt()
+    let mean = positions.iter().sum::<f64>() / positions.len() as f64;
+    let squares: f64 = positions
+        .iter()
+        .map(|position| (position - mean).powi(2))
+        .sum();
+    (squares / (positions.len() as f64 - 1.0)).sqrt()
 }
 
 #[test]

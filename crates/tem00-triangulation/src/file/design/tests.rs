@@ -145,12 +145,12 @@ fn what_cannot_be_is_refused_where_it_stands() {
         ),
     ];
     let before = SETUP.lines().count();
-    for (text, expected, place) in cases {
+    for (text, expected, position) in cases {
         let error = read(text).unwrap_err();
         let message = format!("{error} {}", error.help().unwrap_or_default());
         assert!(message.contains(expected), "{text}: {message}");
-        let place = place.map(|(line, column)| (before + line, column));
-        assert_eq!(error.line_column(), place, "{text}: {message}");
+        let position = position.map(|(line, column)| (before + line, column));
+        assert_eq!(error.line_column(), position, "{text}: {message}");
     }
 }
 

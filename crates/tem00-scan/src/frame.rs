@@ -299,7 +299,7 @@ fn median_width(lines: &[Vec<LinePoint>]) -> f64 {
     widths.get(widths.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// The light in a column, and how the place of a line depends on it.
+/// The light in a column, and how the position of a line depends on it.
 struct Column {
     electrons: Vec<f64>,
     coherent: Vec<f64>,

@@ -56,8 +56,8 @@ pub struct DesignQuestion {
     pub constraints: Vec<Constraint>,
     /// The figure that is made small.
     pub objective: Objective,
-    /// The most set-ups that may be tried.
-    pub most_setups: usize,
+    /// The maximum number of set-ups that may be tried.
+    pub max_setups: usize,
 }
 
 /// A search among all combinations of the values of some parameters.
@@ -87,8 +87,8 @@ pub struct DesignSearch {
 }
 
 impl DesignSearch {
-    /// The most set-ups that any search may try.
-    pub const MOST_SETUPS: usize = 200_000;
+    /// The maximum number of set-ups that any search may try.
+    pub const MAX_SETUPS: usize = 200_000;
 
     /// Creates a search.
     ///
@@ -100,7 +100,7 @@ impl DesignSearch {
         let DesignQuestion {
             sweeps,
             constraints,
-            most_setups,
+            max_setups,
             ..
         } = &question;
         check_sweeps(sweeps)?;
@@ -113,7 +113,7 @@ impl DesignSearch {
                 });
             }
         }
-        let most = (*most_setups).min(Self::MOST_SETUPS);
+        let most = (*max_setups).min(Self::MAX_SETUPS);
         let product = |count: usize, sweep: &Sweep| count.checked_mul(sweep.values().len());
         let count = sweeps.iter().try_fold(1, product);
         match count.filter(|&count| count <= most) {
@@ -227,7 +227,7 @@ fn check_sweeps(sweeps: &[Sweep]) -> Result<(), TriangulationError> {
 
 fn too_many(sweeps: &[Sweep]) -> TriangulationError {
     TriangulationError::OutOfRange {
-        parameter: "most_setups",
+        parameter: "max_setups",
         value: sweeps
             .iter()
             .map(|sweep| sweep.values().len() as f64)

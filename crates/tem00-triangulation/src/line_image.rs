@@ -16,7 +16,7 @@ use crate::{
 /// frequency of speckle in pixels smaller than it, and less in larger ones.
 const SAMPLES_PER_SPECKLE: f64 = 6.0;
 
-/// The most samples of a pattern.
+/// The maximum number of samples of a pattern.
 const MAXIMUM_SAMPLES: usize = 1 << 25;
 
 /// Dark distance between the images of a pattern that repeats, in speckle sizes.
@@ -225,7 +225,7 @@ fn samples_per_pixel([along, across]: [f64; 2]) -> [usize; 2] {
 }
 
 /// Returns the side of a pattern of `needed` samples, and darkness beside them, that is fast to
-/// transform: the least number without prime factors above 5.
+/// transform: the smallest number without prime factors above 5.
 fn pattern_side(needed: usize, speckle: f64) -> usize {
     #[expect(
         clippy::cast_possible_truncation,

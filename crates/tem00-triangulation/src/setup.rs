@@ -14,7 +14,7 @@ use crate::{DetectorSettings, LaserPlane, LineDetector, Sensor, TriangulationErr
 
 pub(crate) use self::{
     description::within,
-    light_level::{LEAST_SIGNAL, MOST_GRAIN_SATURATION},
+    light_level::{MAX_GRAIN_SATURATION, MIN_SIGNAL},
     line_profile::LineProfile,
 };
 pub use self::{

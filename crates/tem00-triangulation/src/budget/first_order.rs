@@ -9,7 +9,7 @@ use crate::{
 const PHASES: u32 = 8;
 /// The positions of the line within a pixel over which the bias of the detector is averaged.
 const BIAS_PHASES: u32 = 32;
-/// The most speckle sizes that pixels may lie apart for their covariance to be looked at.
+/// The largest distance of two pixels whose covariance counts, in speckle sizes.
 const LONGEST: f64 = 4000.0;
 /// The noise, in grey values, from which on rounding is as random as it.
 const DITHER: f64 = 0.3;

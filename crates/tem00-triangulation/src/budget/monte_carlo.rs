@@ -13,7 +13,7 @@ use crate::{
     DetectorSettings, LineDetector, LineImage, Setup, TriangulationError, Validity, setup::within,
 };
 
-/// The least number of columns of a simulated frame.
+/// The minimum number of columns of a simulated frame.
 const COLUMNS: usize = 128;
 
 /// Options of the simulation of a set-up.
@@ -57,7 +57,7 @@ pub struct Simulation {
 impl Simulation {
     /// The greatest share of columns without a line that can be trusted from which an uncertainty is still
     /// estimated: those that are left are the dark half of the speckle.
-    pub const MOST_INVALID: f64 = 0.5;
+    pub const MAX_INVALID: f64 = 0.5;
 
     /// Returns how the set-up was simulated.
     pub const fn options(&self) -> SimulationOptions {
@@ -297,7 +297,7 @@ fn estimate(
     let squares = outcomes.clone().filter_map(|outcome| outcome.square);
     let count = squares.clone().count() as f64;
     // A scatter takes two.
-    if count < 2.0 || invalid(outcomes) > Simulation::MOST_INVALID {
+    if count < 2.0 || invalid(outcomes) > Simulation::MAX_INVALID {
         return None;
     }
     let mean = squares.clone().sum::<f64>() / count;

@@ -2,7 +2,7 @@ use glam::DVec3;
 
 use crate::TriangulationError;
 
-/// The most corners along a side of a board.
+/// The maximum number of corners along a side of a board.
 const MOST: usize = 50;
 
 /// A checkerboard, by its inner corners: where four squares meet.

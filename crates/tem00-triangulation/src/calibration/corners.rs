@@ -11,20 +11,20 @@ const SMOOTHING: f64 = 0.18;
 /// That of the last one. What uneven light and curved edges do to a position grows with its square.
 const LAST_SMOOTHING: f64 = 0.06;
 
-/// The least standard deviation of the last one, in pixels: steps between pixels hardly show in it.
-const LEAST_SMOOTHING: f64 = 2.0;
+/// The minimum standard deviation of the last one, in pixels: steps between pixels hardly show in it.
+const MIN_SMOOTHING: f64 = 2.0;
 
 /// Reach of its window, in standard deviations.
 const WINDOW: f64 = 4.0;
 
 /// Maximum number of refinements of a position.
-const MOST_STEPS: usize = 30;
+const MAX_STEPS: usize = 30;
 
 /// The change of a position below which it stands, in pixels.
-const LEAST_STEP: f64 = 1e-4;
+const MIN_STEP: f64 = 1e-4;
 
-/// The least size of an image, in pixels, that is worth a look.
-const LEAST_SIZE: usize = 16;
+/// The minimum size of an image, in pixels, that is searched.
+const MIN_SIZE: usize = 16;
 
 /// Maximum number of times that the image is halved if its corners are too blurred for the ring.
 const HALVINGS: u32 = 3;
@@ -87,7 +87,7 @@ pub fn find_corners(
             }
             Err(number) => found = found.max(number),
         }
-        if coarse.width().min(coarse.height()) < 2 * LEAST_SIZE {
+        if coarse.width().min(coarse.height()) < 2 * MIN_SIZE {
             break;
         }
         coarse = halved(&coarse);
@@ -131,7 +131,7 @@ fn refined(
     let of_position = |(i, position): (usize, &DVec2)| {
         let side = side(i);
         let about = saddle(image, *position, SMOOTHING * side)?;
-        let last = (LAST_SMOOTHING * side).max(LEAST_SMOOTHING);
+        let last = (LAST_SMOOTHING * side).max(MIN_SMOOTHING);
         saddle(image, about, last.min(SMOOTHING * side))
     };
     let refined: Vec<_> = positions
@@ -156,7 +156,7 @@ fn refined(
 /// ```
 fn saddle(image: &Grid<f32>, start: DVec2, sigma: f64) -> Option<DVec2> {
     let mut position = start;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let (gradient, second) = derivatives(image, position, sigma);
         let step = -(second.inverse() * gradient);
         let near = (position + step).distance(start) < 2.0 * sigma;
@@ -164,7 +164,7 @@ fn saddle(image: &Grid<f32>, start: DVec2, sigma: f64) -> Option<DVec2> {
             return None;
         }
         position += step;
-        if step.length() < LEAST_STEP {
+        if step.length() < MIN_STEP {
             return Some(position);
         }
     }

@@ -16,8 +16,8 @@ use super::{
 };
 use crate::{LaserPlane, LineDetector, LinePoint, TriangulationError, Validity};
 
-/// The least number of boards.
-const LEAST_BOARDS: usize = 3;
+/// The minimum number of boards.
+const MIN_BOARDS: usize = 3;
 
 /// View of one board by a camera: image points, in pixels.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -60,8 +60,8 @@ impl BoardView {
 
 /// Estimates camera and laser plane from views of a checkerboard.
 ///
-/// The camera and the poses of the boards are those with the least sum of squared distances of the
-/// corners from where they are expected. The laser plane is the one with the least sum of squared
+/// The camera and the poses of the boards are those with the smallest sum of squared distances of the
+/// corners from where they are expected. The laser plane is the one with the smallest sum of squared
 /// distances from the points where the sights to the line meet the boards. The scatter of both
 /// tells the covariance of all parameters: of the corners through the poses into the plane, and of the
 /// line, whose neighbouring points are correlated.
@@ -112,11 +112,11 @@ pub fn calibrate(
 }
 
 fn check_views(board: &Checkerboard, views: &[BoardView]) -> Result<(), TriangulationError> {
-    if views.len() < LEAST_BOARDS {
+    if views.len() < MIN_BOARDS {
         return Err(TriangulationError::TooFew {
             what: "boards",
             got: views.len(),
-            needed: LEAST_BOARDS,
+            needed: MIN_BOARDS,
         });
     }
     let whole = |view: &&BoardView| {

@@ -2,7 +2,7 @@ use glam::DVec2;
 use nalgebra::{DMatrix, DVector};
 use tem00_numerics::Grid;
 
-/// The least illumination that an image is divided by, as a part of its mean on the board.
+/// The minimum illumination that an image is divided by, as a fraction of its mean on the board.
 const LEAST: f64 = 0.1;
 
 /// Minimum number of bright squares per coefficient of the illumination.

@@ -8,8 +8,8 @@ const TOLERANCE: f64 = 0.3;
 /// The number of points with which a lattice begins.
 const SEED_CELLS: usize = 3;
 
-/// The sine of the least angle between the two directions of a lattice.
-const LEAST_SINE: f64 = 0.5;
+/// The sine of the minimum angle between the two directions of a lattice.
+const MIN_SINE: f64 = 0.5;
 
 /// The positions of a lattice: the number of each point by column and row.
 type Cells = HashMap<(i32, i32), usize>;
@@ -79,7 +79,7 @@ fn directions(points: &[DVec2], seed: usize) -> Option<[usize; 2]> {
     let along = offset(&first).normalize_or_zero();
     let across = |i: &usize| {
         let direction = offset(i).normalize_or_zero();
-        along.perp_dot(direction).abs() > LEAST_SINE
+        along.perp_dot(direction).abs() > MIN_SINE
     };
     let second = nearest(&mut (0..points.len()).filter(across))?;
     Some([first, second])

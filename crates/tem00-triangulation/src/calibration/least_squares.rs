@@ -29,11 +29,11 @@ pub(super) struct Solution<S> {
     pub covariance: DMatrix<f64>,
 }
 
-/// The most steps that are tried.
-const MOST_STEPS: usize = 200;
+/// The maximum number of steps that are tried.
+const MAX_STEPS: usize = 200;
 
 /// The relative gain of the sum of squares below which the search ends.
-const LEAST_GAIN: f64 = 1e-12;
+const MIN_GAIN: f64 = 1e-12;
 
 /// Finds the state of least squares near `start` by the damped normal equations, scaled by their
 /// diagonal.
@@ -54,7 +54,7 @@ pub(super) fn minimise<P: LeastSquares>(
     let mut residuals = problem.residuals(&state).ok_or(UNDETERMINED)?;
     let mut damping = 1e-3;
     let (mut normal, mut slope) = normal_equations(problem, &state, &residuals)?;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let sum = residuals.norm_squared();
         let tried = damped(&normal, damping)
             .cholesky()
@@ -75,7 +75,7 @@ pub(super) fn minimise<P: LeastSquares>(
         (state, residuals) = (tried, found);
         (normal, slope) = normal_equations(problem, &state, &residuals)?;
         damping = (damping * 0.1).max(1e-12);
-        if gain <= LEAST_GAIN * sum {
+        if gain <= MIN_GAIN * sum {
             return solution(state, &residuals, &normal);
         }
     }

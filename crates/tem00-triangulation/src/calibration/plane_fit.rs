@@ -6,10 +6,10 @@ use crate::TriangulationError;
 /// Largest distance of a point from the plane, in robust standard deviations.
 const OUTLIER: f64 = 4.0;
 
-/// The least ratio of the spread of the points across the line, and of their scatter off the plane.
-const LEAST_SPREAD: f64 = 10.0;
+/// The minimum ratio of the spread of the points across the line, and of their scatter off the plane.
+const MIN_SPREAD: f64 = 10.0;
 
-/// A plane through points, by the least sum of squared distances.
+/// A plane through points, by the smallest sum of squared distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FittedPlane {
     /// The mean of the points, in metres.
@@ -44,7 +44,7 @@ impl FittedPlane {
         let mut order = [0, 1, 2];
         order.sort_by(|&i, &j| eigen.eigenvalues[i].total_cmp(&eigen.eigenvalues[j]));
         let [least, across, along] = order.map(|i| eigen.eigenvalues[i]);
-        let spread = across > LEAST_SPREAD * LEAST_SPREAD * least && across > 1e-9 * along;
+        let spread = across > MIN_SPREAD * MIN_SPREAD * least && across > 1e-9 * along;
         let normal = eigen.eigenvectors.column(order[0]);
         let normal = DVec3::new(normal[0], normal[1], normal[2]);
         spread.then_some(Self { middle, normal }).ok_or(OPEN)

@@ -25,10 +25,10 @@ const RING: [(i32, i32); 16] = [
 pub(super) const REACH: usize = 5;
 
 /// Maximum number of candidates kept per expected corner.
-const MOST_CANDIDATES: usize = 3;
+const MAX_CANDIDATES: usize = 3;
 
 /// The part of the response of a typical corner below which a pixel is none.
-const LEAST_RESPONSE: f64 = 0.2;
+const MIN_RESPONSE: f64 = 0.2;
 
 /// Returns the positions that look like corners where four squares meet, the clearest first: local maxima of
 /// a response to rings that are bright, dark, bright and dark.
@@ -45,8 +45,8 @@ pub(super) fn corner_candidates(image: &Grid<f32>, number: usize) -> Vec<DVec2> 
     let typical = peaks.get(number / 2).map_or(0.0, |peak| peak.0);
     peaks
         .into_iter()
-        .take_while(|peak| peak.0 > LEAST_RESPONSE * typical)
-        .take(MOST_CANDIDATES * number)
+        .take_while(|peak| peak.0 > MIN_RESPONSE * typical)
+        .take(MAX_CANDIDATES * number)
         .map(|peak| peak.1)
         .collect()
 }

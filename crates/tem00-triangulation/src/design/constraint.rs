@@ -3,7 +3,7 @@ use core::fmt;
 use tem00_config::{DURATION, Dimension, LENGTH, NUMBER, POWER};
 
 use super::DesignFigures;
-use crate::setup::{LEAST_SIGNAL, MOST_GRAIN_SATURATION};
+use crate::setup::{MAX_GRAIN_SATURATION, MIN_SIGNAL};
 
 /// A figure of merit of a set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -108,14 +108,14 @@ impl fmt::Display for DesignFigure {
 pub struct Constraint {
     /// The bounded figure.
     pub figure: DesignFigure,
-    /// The least value of a [gain](DesignFigure::is_gain), the greatest of any other figure, in SI
+    /// The minimum of a [gain](DesignFigure::is_gain), the maximum of any other figure, in SI
     /// units.
     pub bound: f64,
 }
 
 /// The part of what the sensor can hold that the mean of the brightest pixel may fill: it leaves room for
 /// noise where there is hardly any speckle.
-const MOST_SATURATION: f64 = 0.9;
+const MAX_SATURATION: f64 = 0.9;
 
 impl Constraint {
     /// The constraints of a search that names none: set-ups that keep them get the light that they need,
@@ -123,15 +123,15 @@ impl Constraint {
     pub const LIGHT: [Self; 3] = [
         Self {
             figure: DesignFigure::Saturation,
-            bound: MOST_SATURATION,
+            bound: MAX_SATURATION,
         },
         Self {
             figure: DesignFigure::GrainSaturation,
-            bound: MOST_GRAIN_SATURATION,
+            bound: MAX_GRAIN_SATURATION,
         },
         Self {
             figure: DesignFigure::Signal,
-            bound: LEAST_SIGNAL,
+            bound: MIN_SIGNAL,
         },
     ];
 

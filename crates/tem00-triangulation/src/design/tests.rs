@@ -44,7 +44,7 @@ fn question(sweeps: Vec<Sweep>, constraints: &[(DesignFigure, f64)]) -> DesignQu
         sweeps,
         constraints: constraints.iter().map(constraint).collect(),
         objective: Objective::Uncertainty,
-        most_setups: 1_000,
+        max_setups: 1_000,
     }
 }
 
@@ -430,7 +430,7 @@ fn searches_that_ask_for_too_much_or_nothing_are_refused() {
     };
     let many = message(vec![sweep(100), angles(11)], &[]);
     assert!(
-        many.contains("most_setups") && many.contains("1100"),
+        many.contains("max_setups") && many.contains("1100"),
         "{many}"
     );
     assert!(
@@ -446,7 +446,7 @@ fn searches_that_ask_for_too_much_or_nothing_are_refused() {
     let ten_thousand =
         |parameter| Sweep::between(parameter, (0.3, 0.9), 10_000, Spacing::Linear).expect("valid");
     let all = DesignParameter::ALL.map(ten_thousand).to_vec();
-    assert!(message(all, &[]).contains("most_setups"), "10³⁶ set-ups");
+    assert!(message(all, &[]).contains("max_setups"), "10³⁶ set-ups");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::DetectorSettings;
 
 /// A column of an image, with the lines that stand out of it.
 pub(super) struct Column {
-    /// The grey values above the background; what is no finite number counts as background.
+    /// The grey values above the background; values that are not finite count as background.
     pub(super) above: Vec<f64>,
     /// The grey value of the background.
     pub(super) background: f64,
@@ -99,7 +99,7 @@ impl Column {
     }
 }
 
-/// Returns the values, the least of them where one is no finite number.
+/// Returns the values, with the smallest of them in the place of those that are not finite.
 fn finite(column: &[f32]) -> Vec<f64> {
     let finite = || column.iter().copied().filter(|value| value.is_finite());
     let least = finite().reduce(f32::min).unwrap_or(0.0);

@@ -30,7 +30,7 @@ struct Normal {
 
 /// Fits by the method of Levenberg and Marquardt, from the position and the width of the light on.
 pub(super) fn fit(profile: &Profile<'_>) -> Option<Estimate> {
-    const MOST_STEPS: usize = 200;
+    const MAX_STEPS: usize = 200;
     let scale = profile.at(0);
     let extent = Extent::of(profile)?;
     let mut model = Gaussian {
@@ -42,7 +42,7 @@ pub(super) fn fit(profile: &Profile<'_>) -> Option<Estimate> {
     let window = profile.line.window.len() as f64;
     let mut normal = model.normal(profile, scale);
     let mut damping = 1e-3;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let (next, step) = model.improved(&normal, damping)?;
         let is_last = step < Gaussian::STAYS;
         let is_possible = next.radius > 0.1 && next.radius < 4.0 * window;

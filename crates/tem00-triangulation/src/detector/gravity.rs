@@ -34,13 +34,13 @@ fn ends(profile: &Profile<'_>) -> Option<(f64, f64)> {
 
 /// The centre of gravity over a window about itself.
 pub(super) fn iterated(profile: &Profile<'_>) -> Option<f64> {
-    const MOST_STEPS: usize = 500;
+    const MAX_STEPS: usize = 500;
     /// In pixels.
     const STAYS: f64 = 1e-12;
     let (first, last) = ends(profile)?;
     let half = (last - first) / 2.0;
     let start = first + half;
-    let found = (0..MOST_STEPS).try_fold(start, |centre, _| match about(profile, centre, half) {
+    let found = (0..MAX_STEPS).try_fold(start, |centre, _| match about(profile, centre, half) {
         None => ControlFlow::Break(None),
         Some(next) if (next - centre).abs() <= STAYS => ControlFlow::Break(Some(next)),
         Some(next) => ControlFlow::Continue(next),

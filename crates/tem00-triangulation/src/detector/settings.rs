@@ -35,8 +35,8 @@ impl Default for DetectorSettings {
 }
 
 impl DetectorSettings {
-    /// The most pixels of a window.
-    pub const MOST_WINDOW: usize = 1001;
+    /// The maximum number of pixels of a window.
+    pub const MAX_WINDOW: usize = 1001;
     /// The maximum number of lines per column.
     pub const MAX_LINES: usize = 100;
 
@@ -49,7 +49,7 @@ impl DetectorSettings {
             })
         };
         self.method.validate()?;
-        if self.window.is_multiple_of(2) || !(3..=Self::MOST_WINDOW).contains(&self.window) {
+        if self.window.is_multiple_of(2) || !(3..=Self::MAX_WINDOW).contains(&self.window) {
             return refuse(
                 "window",
                 self.window as f64,

@@ -17,11 +17,11 @@ struct Track {
 /// Numbers the points of all columns by the lines that they belong to.
 pub(super) fn number(columns: &mut [Vec<LinePoint>], window: usize) {
     let gate = (window as f64 / 4.0).max(2.0);
-    let most_missing = 2 * window;
+    let max_missing = 2 * window;
     let mut tracks: Vec<Track> = Vec::new();
     let mut active: Vec<usize> = Vec::new();
     for (x, points) in columns.iter_mut().enumerate() {
-        active.retain(|&track| x - tracks[track].last <= most_missing + 1);
+        active.retain(|&track| x - tracks[track].last <= max_missing + 1);
         let expected = Expected::of(&tracks, &active, x);
         let near = near(&expected, points, gate);
         let owners = owners(&near, points.len());

@@ -5,7 +5,7 @@ use crate::{
     SetupDescription, Spacing, Sweep, TriangulationError,
 };
 
-pub(super) const KEYS: &[&str] = &["objective", "most_setups", "vary", "require"];
+pub(super) const KEYS: &[&str] = &["objective", "max_setups", "vary", "require"];
 pub(super) const VARY: &[&str] = &[
     "f_number",
     "angle",
@@ -31,8 +31,8 @@ pub(super) const REQUIRE: &[&str] = &[
     "expanded_uncertainty",
 ];
 
-/// The most set-ups that are tried if the file does not say.
-const MOST_SETUPS: u64 = 20_000;
+/// The maximum number of set-ups that are tried if the file does not say.
+const MAX_SETUPS: u64 = 20_000;
 
 /// Reads the section `[design]` of a set-up file: a search that begins with the set-up.
 ///
@@ -67,8 +67,8 @@ pub fn read_design(
         ("uncertainty", Objective::Uncertainty),
         ("expanded_uncertainty", Objective::ExpandedUncertainty),
     ];
-    let most = DesignSearch::MOST_SETUPS as u64;
-    let most_setups = section.or("most_setups", MOST_SETUPS, |value| value.integer(1..=most))?;
+    let most = DesignSearch::MAX_SETUPS as u64;
+    let max_setups = section.or("max_setups", MAX_SETUPS, |value| value.integer(1..=most))?;
     let question = DesignQuestion {
         base: *base,
         sweeps: sweeps(&section)?,
@@ -76,7 +76,7 @@ pub fn read_design(
         objective: section.or("objective", Objective::default(), |value| {
             value.one_of(&objectives)
         })?,
-        most_setups: usize::try_from(most_setups).unwrap_or(DesignSearch::MOST_SETUPS),
+        max_setups: usize::try_from(max_setups).unwrap_or(DesignSearch::MAX_SETUPS),
     };
     DesignSearch::new(question).map_err(|error| section.problem_with("vary", error))
 }

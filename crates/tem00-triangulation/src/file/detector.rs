@@ -98,7 +98,7 @@ fn filter_order(value: &Value<'_>) -> Result<FilterOrder, Problem> {
 
 /// Reads an odd number of pixels.
 fn window(value: &Value<'_>, least: usize) -> Result<usize, Problem> {
-    let most = DetectorSettings::MOST_WINDOW;
+    let most = DetectorSettings::MAX_WINDOW;
     let pixels = whole(value, least.min(most), most)?;
     if pixels.is_multiple_of(2) {
         return Err(value.must_be("odd, with as many pixels on either side of the peak"));

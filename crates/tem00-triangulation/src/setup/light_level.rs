@@ -50,9 +50,9 @@ impl LightLevel {
 }
 
 /// By how many times its noise a line must stand out of the dark.
-pub(crate) const LEAST_SIGNAL: f64 = 10.0;
+pub(crate) const MIN_SIGNAL: f64 = 10.0;
 /// The part of what the sensor can hold that bright grains may fill.
-pub(crate) const MOST_GRAIN_SATURATION: f64 = 1.0;
+pub(crate) const MAX_GRAIN_SATURATION: f64 = 1.0;
 /// Height of bright grains above the mean, in standard deviations of speckle: of fully developed speckle
 /// in small pixels 2 % are brighter.
 const BRIGHT_GRAINS: f64 = 3.0;
@@ -75,11 +75,11 @@ impl Setup {
         let grey_values = self.description().sensor.gain * signal;
         if self.saturation_of(signal + self.sensor().dark_electrons()) >= 1.0 {
             LightLevel::Saturated
-        } else if self.signal_of(line) < LEAST_SIGNAL
+        } else if self.signal_of(line) < MIN_SIGNAL
             || grey_values < self.description().detector.min_peak
         {
             LightLevel::Dark
-        } else if self.grain_saturation_of(line) > MOST_GRAIN_SATURATION {
+        } else if self.grain_saturation_of(line) > MAX_GRAIN_SATURATION {
             LightLevel::SaturatedGrains
         } else {
             LightLevel::Good

@@ -3,7 +3,7 @@ use super::Setup;
 /// A range of heights, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeightRange {
-    /// The least height.
+    /// The minimum height.
     pub low: f64,
     /// The greatest height.
     pub high: f64,

@@ -38,7 +38,7 @@ fn lists_and_ranges_are_read_with_their_units() {
         r#"
         [design]
         objective = "expanded_uncertainty"
-        most_setups = 100
+        max_setups = 100
         [design.vary]
         f_number = { from = 4, to = 16, steps = 3, scale = "log" }
         angle = ["30 deg", 1]
@@ -129,7 +129,7 @@ fn what_cannot_be_is_refused_where_it_stands() {
             Some((2, 51)),
         ),
         (
-            "[design]\nmost_setups = 3\n[design.vary]\nf_number = [1, 2, 3, 4]\n",
+            "[design]\nmax_setups = 3\n[design.vary]\nf_number = [1, 2, 3, 4]\n",
             "got 4",
             Some((3, 1)),
         ),

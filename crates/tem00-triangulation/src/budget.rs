@@ -150,8 +150,8 @@ impl Budget {
         squares.sum::<f64>().sqrt()
     }
 
-    /// Returns the share of a term in the variance of the height, from 0 to 1.
-    pub fn share(&self, term: &BudgetTerm) -> f64 {
+    /// Returns the fraction of a term in the variance of the height, from 0 to 1.
+    pub fn variance_fraction(&self, term: &BudgetTerm) -> f64 {
         let combined = self.combined();
         if combined > 0.0 {
             (term.contribution() / combined).powi(2)

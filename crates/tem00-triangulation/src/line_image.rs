@@ -168,11 +168,11 @@ impl LineImage {
         let positions = strip.positions(centre);
         let [columns, rows] = self.data.size;
         let mut image = Grid::filled(columns, rows, 0.0_f32);
-        for (share, part) in self.light.shares().iter().zip(0..) {
+        for (fraction, part) in self.light.shares().iter().zip(0..) {
             let (pupil, lit) = strip.pupil(&positions, seed, part);
             let field = PupilField::from_samples(pupil, self.period, self.speckle)?;
             // The pattern is 1 in the mean over its period, in which this much of the light lies.
-            let electrons = share * lit * self.data.column_electrons / period[1];
+            let electrons = fraction * lit * self.data.column_electrons / period[1];
             self.add_pixels(&mut image, field.pattern().values(), electrons);
         }
         Ok(image)

@@ -41,7 +41,7 @@ pub fn effective_degrees_of_freedom(contributions: &[(f64, f64)]) -> f64 {
 /// Returns the factor k by which a standard uncertainty is multiplied for an interval that covers the
 /// value with the probability 95 %: the 97.5 % quantile of Student's t.
 ///
-/// `degrees_of_freedom` is at least 1 and may be infinite, where k is 1.960. Less, or what is no number, counts
+/// `degrees_of_freedom` is at least 1 and may be infinite, where k is 1.960. Less, or NaN, counts
 /// as 1, which has the greatest k: 12.71.
 ///
 /// # References

@@ -55,7 +55,7 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// The greatest share of columns without a line that can be trusted from which an uncertainty is still
+    /// The largest fraction of columns without a line that can be trusted from which an uncertainty is still
     /// estimated: those that are left are the dark half of the speckle.
     pub const MAX_INVALID: f64 = 0.5;
 
@@ -77,7 +77,7 @@ impl Simulation {
         self.total
     }
 
-    /// Returns the share of the columns of all frames in which the detector found no line that can be
+    /// Returns the fraction of the columns of all frames in which the detector found no line that can be
     /// trusted, from 0 to 1.
     pub const fn invalid(&self) -> f64 {
         self.invalid
@@ -92,7 +92,7 @@ type Trial = [Outcome; SIMULATED.len() + 1];
 struct Outcome {
     /// The mean square deviation, in square pixels; `None` without a line that can be trusted.
     square: Option<f64>,
-    /// The share of the columns without one.
+    /// The fraction of the columns without one.
     invalid: f64,
 }
 
@@ -282,7 +282,7 @@ fn positions(detector: &LineDetector, frames: &[Grid<f32>]) -> Positions {
     Positions(frames.iter().map(of_frame).collect())
 }
 
-/// Returns the mean share of columns without a line that can be trusted.
+/// Returns the mean fraction of columns without a line that can be trusted.
 fn invalid(outcomes: impl Iterator<Item = Outcome> + Clone) -> f64 {
     let trials = outcomes.clone().count() as f64;
     outcomes.map(|outcome| outcome.invalid).sum::<f64>() / trials

@@ -54,8 +54,8 @@ fn second_moment_of_airy(reach: f64) -> f64 {
 /// background that it takes from pixels some 25 away.
 fn counted_light(setup: &Setup) -> f64 {
     let line = setup.line();
-    let share = |y: f64| line.pixel_electrons(y - 0.5, 0.0) / line.column_electrons;
-    (-15..=15).map(|y| share(y.into()) - share(25.0)).sum()
+    let fraction = |y: f64| line.pixel_electrons(y - 0.5, 0.0) / line.column_electrons;
+    (-15..=15).map(|y| fraction(y.into()) - fraction(25.0)).sum()
 }
 
 #[test]
@@ -244,8 +244,8 @@ fn the_bias_of_a_parabola_is_that_of_its_three_pixels() {
 #[test]
 fn a_budget_adds_up() {
     let budget = budget_of(|_| ());
-    let shares: f64 = budget.terms().iter().map(|term| budget.share(term)).sum();
-    assert_relative_eq!(shares, 1.0, max_relative = 1e-12);
+    let fractions: f64 = budget.terms().iter().map(|term| budget.variance_fraction(term)).sum();
+    assert_relative_eq!(fractions, 1.0, max_relative = 1e-12);
     let squares = UncertaintySource::ALL.map(|source| budget.contribution(source).powi(2));
     let combined = squares.iter().sum::<f64>().sqrt();
     assert_relative_eq!(budget.combined(), combined, max_relative = 1e-12);
@@ -356,7 +356,7 @@ fn trials_of_everything_at_once_are_the_sum_of_their_terms() {
     assert!(apart < 0.1, "{total:?}, {first:?}");
 }
 
-/// Returns the share of columns in which a pixel is saturated, in frames that are drawn without a
+/// Returns the fraction of columns in which a pixel is saturated, in frames that are drawn without a
 /// detector: speckle, and no noise.
 fn clipped_columns(setup: &Setup) -> f64 {
     let size = [128, 47];

@@ -8,7 +8,7 @@ use crate::{TriangulationError, Triangulator};
 /// The number of parameters within the camera, which come first.
 pub(super) const INTRINSICS: usize = 8;
 
-/// The share of the standard uncertainty of a parameter by which it is changed to see what that does.
+/// The fraction of the standard uncertainty of a parameter by which it is changed to see what that does.
 ///
 /// The error of the central difference is in the order of its square, and rounding that of 1e−16 by it.
 const SHARE: f64 = 1e-3;

@@ -27,7 +27,7 @@ pub(super) const REACH: usize = 5;
 /// Maximum number of candidates kept per expected corner.
 const MAX_CANDIDATES: usize = 3;
 
-/// The part of the response of a typical corner below which a pixel is none.
+/// The minimum response of a corner, as a fraction of that of a typical one.
 const MIN_RESPONSE: f64 = 0.2;
 
 /// Returns the positions that look like corners where four squares meet, the clearest first: local maxima of

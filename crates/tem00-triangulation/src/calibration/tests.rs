@@ -93,7 +93,7 @@ fn what_moves_both_points_alike_leaves_their_step_certain() {
     let points = [DVec3::ZERO, DVec3::new(1e-3, 0.0, 2e-3)];
     let step = calibration.step_uncertainty(points, DVec3::Z).unwrap();
     assert!(step < 1e-18, "{step:e}");
-    // A scale does not: the step is wrong by the share by which the plane is.
+    // A scale does not: the step is wrong by the fraction by which the plane is.
     let plane = with_uncertain(PARAMETERS.len() - 1, 1e-4);
     let step = plane.step_uncertainty(points, DVec3::Z).unwrap();
     let alone = plane.height_uncertainty(points[1], DVec3::Z).unwrap();
@@ -127,7 +127,7 @@ fn impossible_covariances_are_refused() {
         CalibrationCovariance::new(DVec3::ZERO, &rows).is_err()
     };
     assert!(!refused(&|_| ()), "independent parameters");
-    assert!(refused(&|rows| rows[3][3] = f64::NAN), "not a number");
+    assert!(refused(&|rows| rows[3][3] = f64::NAN), "NaN");
     assert!(refused(&|rows| rows[3][3] = -1e-8), "a negative variance");
     assert!(refused(&|rows| rows[3][4] = 1e-9), "not symmetric");
     assert!(

@@ -132,7 +132,7 @@ fn the_best_are_the_least_uncertain_that_keep_every_constraint() {
     assert_eq!(found.counts(), (9, expected.len()));
 }
 
-/// Returns the share of columns with a pixel beyond the full well, in frames drawn without a detector.
+/// Returns the fraction of columns with a pixel beyond the full well, in frames drawn without a detector.
 fn clipped_columns(description: &SetupDescription) -> f64 {
     let setup = crate::Setup::new(*description).expect("possible");
     let size = [128, 47];

@@ -45,9 +45,9 @@ impl LineDetector {
         for (i, motion) in found.smooth.motion(line.centre) {
             sensitivities[i] += by_window * motion;
         }
-        let share = sensitivities.iter().sum::<f64>() / found.background_pixels.len() as f64;
+        let per_pixel = sensitivities.iter().sum::<f64>() / found.background_pixels.len() as f64;
         for i in found.background_pixels {
-            sensitivities[i] -= share;
+            sensitivities[i] -= per_pixel;
         }
         sensitivities
     }

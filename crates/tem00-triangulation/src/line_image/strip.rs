@@ -54,7 +54,7 @@ impl Strip {
         2 * half + 1
     }
 
-    /// Returns the amplitude in the pupil, and the share of the light of the line that the period of
+    /// Returns the amplitude in the pupil, and the fraction of the light of the line that the period of
     /// the image holds.
     ///
     /// Scatterers are half a line or half a speckle apart across the line, from where a sum of normal
@@ -107,10 +107,10 @@ impl Strip {
             reason = "scatterers in the period of an image, at most some ten thousand"
         )]
         let [first, last] = [(from / spacing).ceil(), (to / spacing).floor()].map(|end| end as i64);
-        let share = spacing / radius * core::f64::consts::FRAC_2_PI.sqrt();
+        let peak = spacing / radius * core::f64::consts::FRAC_2_PI.sqrt();
         let scatterer = |index: i64| {
             let distance = index as f64 * spacing;
-            (distance, share * (-2.0 * (distance / radius).powi(2)).exp())
+            (distance, peak * (-2.0 * (distance / radius).powi(2)).exp())
         };
         (first..=last).map(scatterer).collect()
     }

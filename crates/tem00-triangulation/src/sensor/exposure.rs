@@ -59,7 +59,7 @@ impl Sensor {
     ///
     /// # Errors
     ///
-    /// Returns an error if a number of electrons is negative or no number.
+    /// Returns an error if a number of electrons is negative or NaN.
     pub fn expose(&self, electrons: &Grid<f32>, seed: u64) -> Result<RawFrame, TriangulationError> {
         if let Some(&bad) = electrons.values().iter().find(|&&e| e.is_nan() || e < 0.0) {
             return Err(TriangulationError::OutOfRange {
@@ -125,7 +125,7 @@ fn counted(description: &SensorDescription, mean: f64, noise: &mut ChaCha8Rng) -
     if mean > 2.0 * full + 1e3 {
         return full;
     }
-    // No electrons, which is no Poisson distribution, are none.
+    // The Poisson distribution needs a positive mean; without light there are no electrons.
     let count = Poisson::new(mean).map_or(0.0, |poisson| poisson.sample(noise));
     count.min(full)
 }

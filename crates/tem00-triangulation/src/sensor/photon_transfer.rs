@@ -9,7 +9,7 @@ impl Sensor {
     ///
     /// # Errors
     ///
-    /// Returns an error if the number of electrons is negative or no number, or if a side is zero.
+    /// Returns an error if the number of electrons is negative or NaN, or if a side is zero.
     #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     pub fn uniform_frame(
         &self,

@@ -53,7 +53,7 @@ impl LineProfile {
         }
     }
 
-    /// Returns the share of the light per pixel, averaged over the sensitive part of a pixel whose
+    /// Returns the fraction of the light per pixel, averaged over the sensitive part of a pixel whose
     /// middle is `distance` from that of the line.
     pub(crate) fn at(&self, distance: f64) -> f64 {
         let angle = 2.0 * PI * distance / self.period;

@@ -5,7 +5,7 @@ use super::Setup;
 pub struct HeightRange {
     /// The minimum height.
     pub low: f64,
-    /// The greatest height.
+    /// The maximum height.
     pub high: f64,
 }
 

@@ -175,6 +175,6 @@ impl<'a> Frames<'a> {
 
 /// Returns a Poisson distributed number of electrons.
 fn counted(mean: f64, random: &mut ChaCha8Rng) -> f64 {
-    // No electrons, which is no Poisson distribution, are none.
+    // The Poisson distribution needs a positive mean; without light there are no electrons.
     Poisson::new(mean).map_or(0.0, |poisson| poisson.sample(random))
 }

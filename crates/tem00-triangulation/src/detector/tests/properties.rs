@@ -2,7 +2,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// Any grey value: usual ones, none, huge ones and what is no number.
+/// Any grey value: usual ones, zero, huge ones, infinity and NaN.
 fn any_value() -> impl Strategy<Value = f32> {
     prop_oneof![
         6 => 0.0_f32..4095.0,

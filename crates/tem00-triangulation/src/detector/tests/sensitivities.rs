@@ -94,7 +94,7 @@ fn take_the_window_along_with_a_line_that_has_wings() {
         };
         let mean = (0..32).map(follows).sum::<f64>() / 32.0;
         // What the ends of the window are worth changes over a pixel, and the vertex of the smoothed column
-        // does not move evenly: a twentieth of the share of the window.
+        // does not move evenly: a twentieth of the fraction of the window.
         assert!(
             (mean - 1.0).abs() < 1e-3 + 0.05 * by_window,
             "{method}: {mean}"

@@ -85,7 +85,7 @@ impl SpeckleTable {
 
 impl PixelCovariance for SpeckleTable {
     /// Returns the covariance; 0 beyond 12 speckle sizes.
-    fn at(&self, displacement: [f64; 2]) -> f64 {
+    fn covariance(&self, displacement: [f64; 2]) -> f64 {
         let [column, row] = [0, 1].map(|axis| self.index(axis, displacement[axis]));
         match (column, row) {
             (Some(column), Some(row)) => self.values[row * (2 * self.reach[0] + 1) + column],
@@ -126,7 +126,7 @@ mod tests {
             let table = SpeckleTable::new(&speckle(size, side), [0.0; 2]);
             let contrast = pixel_contrast(side / size);
             // Panels of half a speckle leave 10⁻⁷ to four nodes.
-            let error = table.at([0.0; 2]) - contrast * contrast;
+            let error = table.covariance([0.0; 2]) - contrast * contrast;
             assert!(error.abs() < 1e-6, "h = {size}: {error:e}");
         }
     }
@@ -146,7 +146,7 @@ mod tests {
             };
             let (one, three) = (of_columns(1), of_columns(3));
             for lag in 0..6 {
-                let at = |column: f64| table.at([column, lag as f64]);
+                let at = |column: f64| table.covariance([column, lag as f64]);
                 let mean = (3.0 * at(0.0) + 4.0 * at(1.0) + 2.0 * at(2.0)) / 9.0;
                 // Panels of half a speckle leave 10⁻⁷ to four nodes.
                 let errors = [at(0.0) - one.covariance(lag), mean - three.covariance(lag)];
@@ -159,13 +159,16 @@ mod tests {
     fn the_covariance_falls_on_all_sides_alike() {
         let speckle = speckle(2.0, 1.0);
         let table = SpeckleTable::new(&speckle, [0.0; 2]);
-        let beside = table.at([3.0, 1.0]);
-        assert!(beside < 0.1 * table.at([0.0; 2]), "{beside}");
+        let beside = table.covariance([3.0, 1.0]);
+        assert!(beside < 0.1 * table.covariance([0.0; 2]), "{beside}");
         for same in [[-3.0, 1.0], [3.0, -1.0], [1.0, 3.0]] {
-            let other = table.at(same);
+            let other = table.covariance(same);
             assert!((beside - other).abs() < 1e-12, "{same:?}: {other}");
         }
-        assert!(table.at([100.0, 0.0]).abs() < 1e-300, "beyond the table");
+        assert!(
+            table.covariance([100.0, 0.0]).abs() < 1e-300,
+            "beyond the table"
+        );
     }
 
     #[test]
@@ -175,7 +178,7 @@ mod tests {
         let table = SpeckleTable::new(&speckle, offset);
         for displacement in [[0.25, 0.5], [1.25, -0.5], [-0.75, 2.5]] {
             let direct = speckle.covariance(displacement);
-            let found = table.at(displacement);
+            let found = table.covariance(displacement);
             assert!((found - direct).abs() < 1e-14, "{displacement:?}: {found}");
         }
     }

@@ -86,7 +86,7 @@ impl Budget {
     /// Returns [`TriangulationError::NothingMeasured`] if the line
     /// [saturates](LightLevel::Saturated) the sensor, or if the detector finds none even without noise.
     pub fn new(setup: &Setup) -> Result<Self, TriangulationError> {
-        Self::at(setup, 0.0)
+        Self::at_height(setup, 0.0)
     }
 
     /// Returns the budget of a height of about `height`, in metres.
@@ -94,7 +94,7 @@ impl Budget {
     /// # Errors
     ///
     /// Returns the errors of [`new`](Self::new), also if the camera does not see the line there.
-    pub fn at(setup: &Setup, height: f64) -> Result<Self, TriangulationError> {
+    pub fn at_height(setup: &Setup, height: f64) -> Result<Self, TriangulationError> {
         let line = setup.line_at(height).ok_or(NOT_SEEN)?;
         let level = setup.light_level_of(&line);
         if level == LightLevel::Saturated {

@@ -182,7 +182,7 @@ impl DesignSearch {
 
     fn candidate(&self, index: usize) -> Candidate {
         let description = self.description(index);
-        let figures = DesignFigures::of(&description);
+        let figures = DesignFigures::evaluate(&description);
         let broken = figures.as_ref().map_or_else(
             |_| Vec::new(),
             |figures| {

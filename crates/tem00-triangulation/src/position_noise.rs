@@ -57,20 +57,20 @@ pub struct ColumnLight<'a> {
 pub trait PixelCovariance {
     /// Returns the covariance of the speckle factors of two pixels, a displacement in pixels apart:
     /// C² c, at no displacement the square of the contrast in a pixel.
-    fn at(&self, displacement: [f64; 2]) -> f64;
+    fn covariance(&self, displacement: [f64; 2]) -> f64;
 }
 
 impl<C: PixelCovariance> PixelCovariance for &C {
-    fn at(&self, displacement: [f64; 2]) -> f64 {
-        (**self).at(displacement)
+    fn covariance(&self, displacement: [f64; 2]) -> f64 {
+        (**self).covariance(displacement)
     }
 }
 
 impl<C: PixelCovariance> PixelCovariance for Option<C> {
     /// Returns 0 without speckle.
-    fn at(&self, displacement: [f64; 2]) -> f64 {
+    fn covariance(&self, displacement: [f64; 2]) -> f64 {
         self.as_ref()
-            .map_or(0.0, |speckle| speckle.at(displacement))
+            .map_or(0.0, |speckle| speckle.covariance(displacement))
     }
 }
 
@@ -86,7 +86,7 @@ pub struct ColumnSpeckle<'a> {
 
 impl PixelCovariance for ColumnSpeckle<'_> {
     /// Returns the covariance of two pixels of the column, a whole number of rows apart.
-    fn at(&self, [_, rows]: [f64; 2]) -> f64 {
+    fn covariance(&self, [_, rows]: [f64; 2]) -> f64 {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -178,7 +178,7 @@ pub fn speckle_covariance(
         .flat_map(|a| second.iter().map(move |b| (a, b)))
         .map(|(&(row_a, a), &(row_b, b))| {
             let [right, down] = displacement;
-            a * b * speckle.at([right, row_b - row_a + down])
+            a * b * speckle.covariance([right, row_b - row_a + down])
         })
         .sum();
     sensor.gain * sensor.gain * sum

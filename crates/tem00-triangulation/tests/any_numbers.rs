@@ -200,7 +200,7 @@ fn strange_heights_have_no_budget_or_a_finite_one() {
             if let Some(found) = setup.height_at(height) {
                 assert!(found.is_finite(), "{height:e}: {found}");
             }
-            if let Ok(budget) = Budget::at(&setup, height) {
+            if let Ok(budget) = Budget::at_height(&setup, height) {
                 assert!(budget.combined().is_finite(), "{height:e}: {budget:?}");
             }
         }

@@ -125,7 +125,7 @@ pub(super) fn over_range(setup: &Setup) -> Vec<(f64, Option<f64>)> {
     let heights = (0..=HEIGHTS).map(|i| range.low + f64::from(i) * step);
     heights
         .map(|height| {
-            let budget = Budget::at(setup, height).ok();
+            let budget = Budget::at_height(setup, height).ok();
             (height, budget.map(|budget| budget.combined()))
         })
         .collect()

@@ -142,7 +142,9 @@ fn cells(answer: &Answer, term: &BudgetTerm) -> Vec<Cell> {
         sensitivity,
         NUMBER.with_digits(3).cell(term.degrees_of_freedom),
         MICROMETRES.cell(term.contribution()),
-        PERCENT.with_digits(3).cell(answer.budget.variance_fraction(term)),
+        PERCENT
+            .with_digits(3)
+            .cell(answer.budget.variance_fraction(term)),
     ];
     if let Some(trials) = &answer.trials {
         let found = trials.term(term.source);

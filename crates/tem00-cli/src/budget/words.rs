@@ -14,7 +14,9 @@ pub(super) fn verdicts(answer: &Answer, level: LightLevel) -> Vec<String> {
         format!(
             "{} dominates, with {} of the variance: {}.",
             capitalised(dominant.source.name()),
-            PERCENT.with_digits(3).text(budget.variance_fraction(dominant)),
+            PERCENT
+                .with_digits(3)
+                .text(budget.variance_fraction(dominant)),
             dominant.source.remedy()
         ),
         format!(

@@ -92,7 +92,7 @@ fn write_csv(design: &Design<'_>, out: &mut impl Write) -> io::Result<()> {
     for candidate in design.outcome.candidates() {
         write!(out, "{}", candidate.index)?;
         for parameter in sweeps() {
-            write!(out, ",{:e}", parameter.of(&candidate.description))?;
+            write!(out, ",{:e}", parameter.value_in(&candidate.description))?;
         }
         write_figures(candidate, &figures, out)?;
     }
@@ -107,7 +107,7 @@ fn write_figures(
     match &candidate.figures {
         Ok(figures) => {
             for figure in shown {
-                write!(out, ",{:e}", figure.of(figures))?;
+                write!(out, ",{:e}", figure.value_in(figures))?;
             }
             let broken = candidate
                 .broken

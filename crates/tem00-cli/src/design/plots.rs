@@ -41,7 +41,12 @@ pub(super) fn all(design: &Design<'_>, near: &[Neighbours]) -> Vec<Named> {
 fn trade_off(design: &Design<'_>) -> Named {
     let (objective, depth) = (design.objective(), DesignFigure::DepthOfField);
     let [x, y] = [depth, objective].map(units::of_figure);
-    let place = |figures: &DesignFigures| (x.of(depth.of(figures)), y.of(objective.of(figures)));
+    let place = |figures: &DesignFigures| {
+        (
+            x.of(depth.value_in(figures)),
+            y.of(objective.value_in(figures)),
+        )
+    };
     let dots = |allowed: bool| {
         let candidates = design.outcome.candidates().iter();
         let kind = candidates.filter(move |candidate| candidate.broken.is_empty() == allowed);
@@ -127,12 +132,17 @@ fn slice<'a>(
         return Vec::new();
     };
     let same = |candidate: &&Candidate| {
-        let value = parameter.of(&shown.description);
+        let value = parameter.value_in(&shown.description);
         parameter.set(&candidate.description, value) == shown.description
     };
     let candidates = design.outcome.candidates().iter().filter(same);
     let mut slice: Vec<_> = candidates
-        .map(|candidate| (parameter.of(&candidate.description), candidate.possible()))
+        .map(|candidate| {
+            (
+                parameter.value_in(&candidate.description),
+                candidate.possible(),
+            )
+        })
         .collect();
     slice.sort_by(|a, b| a.0.total_cmp(&b.0));
     slice
@@ -178,10 +188,10 @@ fn spacing(sweep: &Sweep) -> Spacing {
 fn sensitivity(design: &Design<'_>, near: &[Neighbours]) -> Named {
     let objective = design.objective();
     let now = design.shown().and_then(Candidate::possible);
-    let now = now.map_or(f64::NAN, |figures| objective.of(figures));
+    let now = now.map_or(f64::NAN, |figures| objective.value_in(figures));
     let change = |figures: Option<&DesignFigures>| {
         figures.map_or(f64::NAN, |figures| {
-            100.0 * (objective.of(figures) / now - 1.0)
+            100.0 * (objective.value_in(figures) / now - 1.0)
         })
     };
     let name = units::words(objective.name());

@@ -154,7 +154,7 @@ fn cells(design: &Design<'_>, figures: &[DesignFigure], candidate: &Candidate) -
     let sweeps = design.search.question().sweeps.iter();
     let varied = sweeps.map(|sweep| {
         let parameter = sweep.parameter();
-        units::of_parameter(parameter).cell(parameter.of(&candidate.description))
+        units::of_parameter(parameter).cell(parameter.value_in(&candidate.description))
     });
     let mut cells: Vec<_> = [candidate.index.into()].into_iter().chain(varied).collect();
     let found = match &candidate.figures {
@@ -167,7 +167,7 @@ fn cells(design: &Design<'_>, figures: &[DesignFigure], candidate: &Candidate) -
     cells.extend(
         figures
             .iter()
-            .map(|figure| units::of_figure(*figure).cell(figure.of(found))),
+            .map(|figure| units::of_figure(*figure).cell(figure.value_in(found))),
     );
     let contributions: Map<String, Value> = found
         .contributions
@@ -228,7 +228,8 @@ fn sensitivities(design: &Design<'_>, near: &[Neighbours]) -> Table {
         let mut cells = vec![Cell::new(name, units::words(name))];
         for figure in figures {
             for side in [&neighbour.less, &neighbour.more] {
-                let cell = |found: &DesignFigures| units::of_figure(figure).cell(figure.of(found));
+                let cell =
+                    |found: &DesignFigures| units::of_figure(figure).cell(figure.value_in(found));
                 cells.push(Cell::or_dash(side.as_ref().map(cell)));
             }
         }

@@ -14,7 +14,7 @@ pub(super) fn verdict(design: &Design<'_>) -> String {
     match design.winner().and_then(|candidate| candidate.allowed()) {
         Some(figures) => {
             let objective = design.objective();
-            let value = units::of_figure(objective).text(objective.of(figures));
+            let value = units::of_figure(objective).text(objective.value_in(figures));
             let name = units::words(objective.name());
             let dominant = figures.dominant.name();
             format!("{counts}. The best: {name} {value}, most of it by {dominant}.")

@@ -55,7 +55,9 @@ fn second_moment_of_airy(reach: f64) -> f64 {
 fn counted_light(setup: &Setup) -> f64 {
     let line = setup.line();
     let fraction = |y: f64| line.pixel_electrons(y - 0.5, 0.0) / line.column_electrons;
-    (-15..=15).map(|y| fraction(y.into()) - fraction(25.0)).sum()
+    (-15..=15)
+        .map(|y| fraction(y.into()) - fraction(25.0))
+        .sum()
 }
 
 #[test]
@@ -244,7 +246,11 @@ fn the_bias_of_a_parabola_is_that_of_its_three_pixels() {
 #[test]
 fn a_budget_adds_up() {
     let budget = budget_of(|_| ());
-    let fractions: f64 = budget.terms().iter().map(|term| budget.variance_fraction(term)).sum();
+    let fractions: f64 = budget
+        .terms()
+        .iter()
+        .map(|term| budget.variance_fraction(term))
+        .sum();
     assert_relative_eq!(fractions, 1.0, max_relative = 1e-12);
     let squares = UncertaintySource::ALL.map(|source| budget.contribution(source).powi(2));
     let combined = squares.iter().sum::<f64>().sqrt();
@@ -284,7 +290,7 @@ fn the_uncertainty_grows_out_of_focus() {
     let far = setup.depth_of_field().low;
     let (near, far) = (
         Budget::new(&setup).unwrap(),
-        Budget::at(&setup, far).unwrap(),
+        Budget::at_height(&setup, far).unwrap(),
     );
     assert!(far.combined() > 1.1 * near.combined(), "{far:?}");
 }
@@ -466,7 +472,7 @@ fn a_line_that_is_not_found_has_no_budget() {
     let options = SimulationOptions::default();
     let error = simulate(&dark, options, |_| (), &AtomicBool::new(false)).unwrap_err();
     assert!(error.to_string().contains("lines"), "{error}");
-    let error = Budget::at(&setup_of(|_| ()), 1e3).unwrap_err();
+    let error = Budget::at_height(&setup_of(|_| ()), 1e3).unwrap_err();
     assert!(
         error.to_string().contains("does not see"),
         "behind the camera: {error}"

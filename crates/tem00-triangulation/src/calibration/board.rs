@@ -47,7 +47,7 @@ impl Checkerboard {
     }
 
     /// Returns the number of inner corners.
-    pub const fn number(&self) -> usize {
+    pub const fn corner_count(&self) -> usize {
         self.corners[0] * self.corners[1]
     }
 
@@ -85,7 +85,7 @@ mod tests {
     fn corners_run_by_rows_from_the_upper_left() {
         let board = Checkerboard::new([4, 3], 2e-3).unwrap();
         let points = board.points();
-        assert_eq!(points.len(), board.number());
+        assert_eq!(points.len(), board.corner_count());
         assert_eq!(points[0], 2e-3 * DVec3::new(0.0, 2.0, 0.0));
         assert_eq!(points[3], 2e-3 * DVec3::new(3.0, 2.0, 0.0));
         assert_eq!(points[11], 2e-3 * DVec3::new(3.0, 0.0, 0.0));

@@ -74,7 +74,7 @@ pub fn find_corners(
     let mut coarse = image.clone();
     let mut found = 0;
     for halving in 0..=HALVINGS {
-        let candidates = corner_candidates(&coarse, board.number());
+        let candidates = corner_candidates(&coarse, board.corner_count());
         match ordered(&candidates, board.corners()) {
             Ok(positions) => {
                 let scale = f64::from(1_u32 << halving);

@@ -121,7 +121,7 @@ fn check_views(board: &Checkerboard, views: &[BoardView]) -> Result<(), Triangul
     }
     let whole = |view: &&BoardView| {
         let positions = view.corners.iter().chain(&view.line);
-        view.corners.len() == board.number() && positions.into_iter().all(|p| p.is_finite())
+        view.corners.len() == board.corner_count() && positions.into_iter().all(|p| p.is_finite())
     };
     match views.iter().find(|view| !whole(view)) {
         None => Ok(()),

@@ -63,7 +63,7 @@ impl DesignFigure {
     }
 
     /// Returns the value of a set-up, in SI units.
-    pub const fn of(self, figures: &DesignFigures) -> f64 {
+    pub const fn value_in(self, figures: &DesignFigures) -> f64 {
         match self {
             Self::Uncertainty => figures.uncertainty,
             Self::ExpandedUncertainty => figures.expanded_uncertainty,
@@ -137,7 +137,7 @@ impl Constraint {
 
     /// Returns whether the bound is kept. To reach it is to keep it.
     pub fn is_kept(&self, figures: &DesignFigures) -> bool {
-        let value = self.figure.of(figures);
+        let value = self.figure.value_in(figures);
         if self.figure.is_gain() {
             value >= self.bound
         } else {
@@ -150,6 +150,6 @@ impl Constraint {
         if self.is_kept(figures) {
             return 0.0;
         }
-        (self.figure.of(figures) / self.bound - 1.0).abs()
+        (self.figure.value_in(figures) / self.bound - 1.0).abs()
     }
 }

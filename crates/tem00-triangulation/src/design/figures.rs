@@ -54,7 +54,7 @@ impl DesignFigures {
     ///
     /// Returns an error if the set-up is not possible, if its line is too fine to be a beam at all, or
     /// the errors of [`Budget::new`].
-    pub fn of(description: &SetupDescription) -> Result<Self, TriangulationError> {
+    pub fn evaluate(description: &SetupDescription) -> Result<Self, TriangulationError> {
         let setup = Setup::new(*description)?;
         let waist = waist_range(description)?;
         let in_focus = setup.depth_of_field();

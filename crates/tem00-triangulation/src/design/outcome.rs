@@ -84,7 +84,7 @@ impl DesignOutcome {
         let mut allowed: Vec<_> = allowed
             .filter_map(|candidate| {
                 let figures = candidate.allowed()?;
-                let objective = three_digits(self.objective.of(figures));
+                let objective = three_digits(self.objective.value_in(figures));
                 Some((candidate, [objective, figures.grain_saturation]))
             })
             .collect();
@@ -107,8 +107,12 @@ impl DesignOutcome {
         };
         let entered: Vec<_> = self.candidates.iter().filter(entered).collect();
         let sign = if against.is_gain() { 1.0 } else { -1.0 };
-        let point =
-            |figures: &DesignFigures| [self.objective.of(figures), sign * against.of(figures)];
+        let point = |figures: &DesignFigures| {
+            [
+                self.objective.value_in(figures),
+                sign * against.value_in(figures),
+            ]
+        };
         let points: Vec<_> = entered
             .iter()
             .filter_map(|candidate| candidate.possible().map(point))
@@ -148,7 +152,7 @@ impl DesignOutcome {
         };
         let keyed = self.candidates.iter().filter_map(|candidate| {
             let figures = candidate.possible()?;
-            Some((missed(figures), self.objective.of(figures), candidate))
+            Some((missed(figures), self.objective.value_in(figures), candidate))
         });
         keyed
             .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))

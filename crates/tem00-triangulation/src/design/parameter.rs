@@ -58,7 +58,7 @@ impl DesignParameter {
     }
 
     /// Returns the value in a set-up, in SI units.
-    pub fn of(self, description: &SetupDescription) -> f64 {
+    pub fn value_in(self, description: &SetupDescription) -> f64 {
         let mut description = *description;
         *self.field(&mut description)
     }

@@ -16,8 +16,8 @@ pub struct Neighbours {
 /// by a part of itself: 0.1 for ±10 %.
 pub fn neighbours(description: &SetupDescription, part: f64) -> Vec<Neighbours> {
     let changed = |parameter: DesignParameter, factor: f64| {
-        let value = factor * parameter.of(description);
-        DesignFigures::of(&parameter.set(description, value)).ok()
+        let value = factor * parameter.value_in(description);
+        DesignFigures::evaluate(&parameter.set(description, value)).ok()
     };
     DesignParameter::ALL
         .into_iter()

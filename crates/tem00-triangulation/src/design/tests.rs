@@ -56,7 +56,7 @@ fn outcome(question: DesignQuestion) -> DesignOutcome {
 }
 
 fn figures(description: &SetupDescription) -> DesignFigures {
-    DesignFigures::of(description).expect("possible")
+    DesignFigures::evaluate(description).expect("possible")
 }
 
 fn contribution(figures: &DesignFigures, name: UncertaintySource) -> f64 {
@@ -95,7 +95,10 @@ fn every_combination_is_tried_once_and_in_order() {
     // What is not varied stays, and the figures are those of the set-up alone.
     for candidate in found.candidates() {
         assert_eq!(candidate.description.laser, base().laser);
-        assert_eq!(candidate.figures, DesignFigures::of(&candidate.description));
+        assert_eq!(
+            candidate.figures,
+            DesignFigures::evaluate(&candidate.description)
+        );
     }
 }
 

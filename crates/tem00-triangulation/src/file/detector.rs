@@ -175,8 +175,8 @@ mod tests {
                 "from 11 to 1001",
                 10,
             ),
-            ("min_peak = -1", "zero or more", 14),
-            ("max_lines = 0", "from 1 to 100", 14),
+            ("min_peak = -1", "zero or more", 12),
+            ("max_lines = 0", "from 1 to 100", 13),
             ("windows = 3", "did you mean `window`?", 1),
         ];
         for (text, expected, column) in cases {

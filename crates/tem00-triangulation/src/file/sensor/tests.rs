@@ -64,7 +64,7 @@ fn a_gain_that_is_not_told_makes_a_full_well_the_largest_value() {
 fn mistakes_are_named_at_their_place() {
     let usual = "[sensor]\nquantum_efficiency = 0.6\nexposure = \"2 ms\"\n";
     let cases = [
-        ("", "scene: the file needs a sensor"),
+        ("", "text: the file needs a sensor"),
         ("[sensor]\nexposure = 1", "`quantum_efficiency`"),
         ("[sensor]\nquantum_efficiency = 0.6", "`exposure`"),
         (

@@ -3,15 +3,16 @@ use super::{FilterOrder, profile::Profile};
 /// The zero of the filtered derivative nearest to the greatest pixel, on the side to which it points.
 pub(super) fn zero(profile: &Profile<'_>, order: FilterOrder) -> Option<f64> {
     let filtered = |at: isize| filter(profile, at, order);
-    let window = &profile.line.window;
-    let greatest = profile.line.greatest;
+    // A window that was moved may have left its greatest pixel.
+    let greatest = profile.line.greatest.cast_signed();
+    let [start, end] = [profile.line.window.start, profile.line.window.end]
+        .map(|end| end.cast_signed() - greatest);
     // The derivative is negative where the line lies further down, for the filter is its negative.
     let crossing = |i: &isize| filtered(*i) <= 0.0 && filtered(*i + 1) > 0.0;
     let found = if filtered(0) <= 0.0 {
-        (0..(window.end - greatest).cast_signed()).find(crossing)
+        (0..end).find(crossing)
     } else {
-        let first = -(greatest - window.start).cast_signed() - 1;
-        (first..0).rev().find(crossing)
+        (start - 1..0).rev().find(crossing)
     };
     found.map(|i| {
         let (before, after) = (filtered(i), filtered(i + 1));

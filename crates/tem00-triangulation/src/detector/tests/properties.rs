@@ -23,6 +23,23 @@ fn finder(method: LineMethod) -> LineDetector {
     .unwrap()
 }
 
+#[test]
+fn sensitivities_are_finite_where_the_window_moves_off_its_greatest_pixel() {
+    let mut column = [0.0; 21];
+    (column[7], column[12]) = (2768.6082, 3648.5037);
+    (column[8], column[15]) = (f32::MIN, f32::MIN);
+    for method in methods() {
+        let detector = finder(method);
+        let points = detector.detect_column(&column);
+        assert!(!points.is_empty(), "{method}");
+        for point in points {
+            let sensitivities = detector.sensitivities(&column, &point);
+            let all = sensitivities.iter().all(|g| g.is_finite());
+            assert!(all, "{method}: {sensitivities:?}");
+        }
+    }
+}
+
 /// A ragged line in the dark, `before` pixels from the top of 160.
 fn ragged(values: &[f32], before: usize) -> Vec<f32> {
     let mut column = vec![0.0; 160];

@@ -108,7 +108,7 @@ impl Calibration {
         }
     }
 
-    /// Returns what turns image points into points in space.
+    /// Returns the geometry that turns image points into points in space.
     pub const fn triangulator(&self) -> &Triangulator {
         &self.triangulator
     }
@@ -128,7 +128,7 @@ impl Calibration {
         self.uncertainty.as_ref().map(|known| &known.covariance)
     }
 
-    /// Returns how well the images fit, if the calibration was estimated.
+    /// Returns the residuals of the images, if the calibration was estimated.
     pub const fn quality(&self) -> Option<&CalibrationQuality> {
         self.quality.as_ref()
     }

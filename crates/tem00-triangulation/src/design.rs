@@ -122,7 +122,7 @@ impl DesignSearch {
         }
     }
 
-    /// Returns what the search was created from.
+    /// Returns the question that the search was created from.
     pub const fn question(&self) -> &DesignQuestion {
         &self.question
     }

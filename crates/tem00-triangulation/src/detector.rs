@@ -46,7 +46,7 @@ impl LineDetector {
         Ok(Self { settings })
     }
 
-    /// Returns what the detector was created from.
+    /// Returns the settings that the detector was created from.
     pub const fn settings(&self) -> &DetectorSettings {
         &self.settings
     }
@@ -141,7 +141,7 @@ impl LineDetector {
         points
     }
 
-    /// Returns what speaks against a line whose position was estimated.
+    /// Returns the validity of a line whose position was estimated.
     fn validity(&self, raw: &[f32], line: &Sighting) -> Validity {
         let half = self.settings.window / 2;
         let window = || raw[line.window.clone()].iter().copied();

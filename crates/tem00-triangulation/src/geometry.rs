@@ -97,7 +97,7 @@ impl Triangulator {
         (distance > 0.0 && distance.is_finite()).then(|| ray.origin + distance * ray.direction)
     }
 
-    /// Returns how the point of the laser plane moves with the image point, in metres per pixel to the
+    /// Returns the derivative of the point of the laser plane by the image point, in metres per pixel to the
     /// right and per pixel *down*, or `None` where there is no point.
     ///
     /// ```text
@@ -135,7 +135,7 @@ impl Triangulator {
         })
     }
 
-    /// Returns how far along a direction from the pupil the plane lies, in multiples of its length.
+    /// Returns the distance of the plane along a direction from the pupil, in multiples of its length.
     fn distance_along(&self, direction: DVec3) -> f64 {
         let normal = self.plane.normal();
         (self.plane.point() - self.camera.position()).dot(normal) / direction.dot(normal)

@@ -119,7 +119,7 @@ impl LineImage {
         })
     }
 
-    /// Returns what the generator was created from.
+    /// Returns the parameters that the generator was created from.
     pub const fn data(&self) -> &LineImageData {
         &self.data
     }
@@ -197,7 +197,7 @@ impl LineImage {
     }
 }
 
-/// Returns how much of each sample of a pixel lies within its sensitive part.
+/// Returns the part of each sample of a pixel that lies within its sensitive part.
 fn cells(samples: usize, side: f64) -> Vec<f64> {
     let [low, high] = [0.5 - 0.5 * side, 0.5 + 0.5 * side];
     let edge = |index: usize| (index as f64 / samples as f64).clamp(low, high);

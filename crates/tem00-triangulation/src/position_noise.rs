@@ -98,7 +98,7 @@ impl PixelCovariance for ColumnSpeckle<'_> {
 }
 
 impl PositionNoise {
-    /// Returns what makes the position of a line uncertain in a column.
+    /// Returns the variances of the position of a line in a column.
     ///
     /// # Panics
     ///
@@ -128,12 +128,12 @@ impl PositionNoise {
         noise
     }
 
-    /// Returns what is new in every frame and every column: shot noise, dark noise and quantisation.
+    /// Returns the variance that is new in every frame and every column: shot noise, dark noise and quantisation.
     pub const fn temporal(&self) -> f64 {
         self.shot + self.dark + self.quantisation
     }
 
-    /// Returns what the pixels keep from frame to frame: PRNU and DSNU.
+    /// Returns the variance that stays the same from frame to frame: PRNU and DSNU.
     pub const fn fixed_pattern(&self) -> f64 {
         self.prnu + self.dsnu
     }

@@ -47,7 +47,7 @@ impl Sensor {
         Ok(Self { description })
     }
 
-    /// Returns what the sensor was created from.
+    /// Returns the description that the sensor was created from.
     pub const fn description(&self) -> &SensorDescription {
         &self.description
     }

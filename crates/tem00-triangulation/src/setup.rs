@@ -101,7 +101,7 @@ impl Setup {
         Ok(setup)
     }
 
-    /// Returns what the set-up was created from.
+    /// Returns the description that the set-up was created from.
     pub const fn description(&self) -> &SetupDescription {
         &self.description
     }
@@ -122,7 +122,7 @@ impl Setup {
         &self.detector
     }
 
-    /// Returns what turns positions in the image into points: the camera and the plane y = 0.
+    /// Returns the geometry that turns positions in the image into points: the camera and the plane y = 0.
     pub const fn triangulator(&self) -> &Triangulator {
         &self.triangulator
     }

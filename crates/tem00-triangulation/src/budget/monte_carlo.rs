@@ -59,7 +59,7 @@ impl Simulation {
     /// estimated: those that are left are the dark half of the speckle.
     pub const MAX_INVALID: f64 = 0.5;
 
-    /// Returns how the set-up was simulated.
+    /// Returns the options of the simulation.
     pub const fn options(&self) -> SimulationOptions {
         self.options
     }
@@ -170,7 +170,7 @@ impl<'a> Simulator<'a> {
         simulator.noise_free_position(0.0).map(|_| simulator)
     }
 
-    /// Returns where the detector finds the line without noise.
+    /// Returns the position at which the detector finds the line without noise.
     fn noise_free_position(&self, phase: f64) -> Result<f64, TriangulationError> {
         let column = first_order::NoiseFreeColumn::new(self.setup, self.setup.line(), phase);
         let found = column.found(self.setup).map(|point| point.position);

@@ -35,7 +35,7 @@ impl UncertaintySource {
         Self::Calibration,
     ];
 
-    /// Returns what to call it in a table.
+    /// Returns its name in a table.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Speckle => "speckle",
@@ -49,7 +49,7 @@ impl UncertaintySource {
         }
     }
 
-    /// Returns what lowers it.
+    /// Returns a measure that lowers it.
     pub const fn remedy(self) -> &'static str {
         match self {
             Self::Speckle => {
@@ -98,7 +98,7 @@ pub enum ErrorDistribution {
 }
 
 impl ErrorDistribution {
-    /// Returns what to call it in a table.
+    /// Returns its name in a table.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Normal => "normal",

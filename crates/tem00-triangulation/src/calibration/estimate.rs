@@ -198,7 +198,7 @@ impl Lines {
         })
     }
 
-    /// Returns how the normal and the offset of the plane change from one state to another.
+    /// Returns the changes of the normal and the offset of the plane from one state to another.
     fn change(&self, bundle: &Bundle<'_>, state: &State) -> Option<[f64; 4]> {
         let points = points_of(&bundle.camera(state)?, state, &self.positions)?;
         let plane = FittedPlane::through(&points)
@@ -224,7 +224,7 @@ impl Checkerboard {
     }
 }
 
-/// Returns where the sight of an image point meets a board, in the axes of the camera.
+/// Returns the point where the sight of an image point meets a board, in the axes of the camera.
 fn on_plane(camera: &Camera, pose: &Pose, position: DVec2) -> Option<DVec3> {
     let direction = camera.ray(position).direction;
     let normal = pose.rotation.z_axis;

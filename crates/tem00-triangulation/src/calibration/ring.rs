@@ -51,7 +51,7 @@ pub(super) fn corner_candidates(image: &Grid<f32>, number: usize) -> Vec<DVec2> 
         .collect()
 }
 
-/// Returns how much the ring about a pixel looks like that of a corner.
+/// Returns the likeness of the ring about a pixel to that of a corner.
 ///
 /// ```text
 /// Σ |I_n + I_{n+8} − I_{n+4} − I_{n+12}|       opposite alike, quarters unlike: four terms

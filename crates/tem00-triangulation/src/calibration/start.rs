@@ -128,7 +128,7 @@ fn pinhole(squared_distance: f64, principal: DVec2) -> Option<Pinhole> {
     })
 }
 
-/// Returns where a board stands before a pinhole, from its map to the image.
+/// Returns the pose of a board before a pinhole, from its map to the image.
 fn pose(map: &DMat3, pinhole: &Pinhole) -> Option<Pose> {
     let sight = |image: DVec3| {
         ((image.truncate() - image.z * pinhole.principal) / pinhole.distance).extend(image.z)

@@ -78,7 +78,7 @@ impl DesignFigure {
         }
     }
 
-    /// Returns whether more of it is better: such a figure is bounded from below, others from above.
+    /// Returns true if more of it is better: such a figure is bounded from below, others from above.
     pub const fn is_gain(self) -> bool {
         matches!(
             self,
@@ -86,7 +86,7 @@ impl DesignFigure {
         )
     }
 
-    /// Returns what kind of quantity it is.
+    /// Returns its kind of quantity.
     pub(crate) const fn dimension(self) -> &'static Dimension {
         match self {
             Self::Power => &POWER,
@@ -135,7 +135,7 @@ impl Constraint {
         },
     ];
 
-    /// Returns whether the bound is kept. To reach it is to keep it.
+    /// Returns true if the bound is kept. To reach it is to keep it.
     pub fn is_kept(&self, figures: &DesignFigures) -> bool {
         let value = self.figure.value_in(figures);
         if self.figure.is_gain() {

@@ -121,7 +121,7 @@ impl DesignOutcome {
         front.into_iter().map(|index| entered[index]).collect()
     }
 
-    /// Returns what each constraint excludes, the one that excludes most first.
+    /// Returns the exclusions by each constraint, the one that excludes most first.
     pub fn exclusions(&self) -> Vec<Exclusion> {
         let breaking = |constraint: &Constraint| {
             let candidates = self.candidates.iter();

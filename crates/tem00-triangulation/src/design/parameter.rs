@@ -73,7 +73,7 @@ impl DesignParameter {
         description
     }
 
-    /// Returns what kind of quantity it is.
+    /// Returns its kind of quantity.
     pub(crate) const fn dimension(self) -> &'static Dimension {
         match self {
             Self::FNumber => &NUMBER,

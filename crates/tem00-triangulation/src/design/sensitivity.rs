@@ -12,7 +12,7 @@ pub struct Neighbours {
     pub more: Option<DesignFigures>,
 }
 
-/// Returns what becomes of a set-up when each of its parameters, one at a time, is smaller and greater
+/// Returns the figures of a set-up when each of its parameters, one at a time, is smaller and greater
 /// by a part of itself: 0.1 for ±10 %.
 pub fn neighbours(description: &SetupDescription, part: f64) -> Vec<Neighbours> {
     let changed = |parameter: DesignParameter, factor: f64| {

@@ -79,7 +79,7 @@ impl Sweep {
         Self::list(parameter, rounded(parameter, &exact))
     }
 
-    /// Returns what is varied.
+    /// Returns the varied parameter.
     pub const fn parameter(&self) -> DesignParameter {
         self.parameter
     }

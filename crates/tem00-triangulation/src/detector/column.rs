@@ -30,7 +30,7 @@ pub(super) struct Sighting {
 }
 
 impl Sighting {
-    /// Returns whether the window reaches beyond a column of `length` pixels.
+    /// Returns true if the window reaches beyond a column of `length` pixels.
     pub(super) const fn is_cut(&self, half: usize, length: usize) -> bool {
         self.centre < half || self.centre + half >= length
     }
@@ -45,7 +45,7 @@ impl Sighting {
         }
     }
 
-    /// Returns whether the window was cut where another line begins.
+    /// Returns true if the window was cut where another line begins.
     pub(super) fn is_crowded(&self, half: usize, length: usize) -> bool {
         self.window != uncut(self.centre, half, length)
     }

@@ -43,7 +43,7 @@ pub enum Validity {
 }
 
 impl Validity {
-    /// Returns what to write into a table: `valid`, `saturated`, `cut`, `crowded`, `missing`,
+    /// Returns its name in a table: `valid`, `saturated`, `cut`, `crowded`, `missing`,
     /// `failed` or `sliver`.
     pub const fn name(&self) -> &'static str {
         match self {

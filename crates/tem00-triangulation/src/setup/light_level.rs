@@ -19,7 +19,7 @@ pub enum LightLevel {
 }
 
 impl LightLevel {
-    /// Returns what to call it in a table.
+    /// Returns its name in a table.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Dark => "too dark",
@@ -29,7 +29,7 @@ impl LightLevel {
         }
     }
 
-    /// Returns what it means and what to change.
+    /// Returns an explanation and a change that helps.
     pub const fn advice(self) -> &'static str {
         match self {
             Self::Dark => {
@@ -61,7 +61,7 @@ const BRIGHT_GRAINS: f64 = 3.0;
 const CHOSEN_GRAIN_SATURATION: f64 = 0.9;
 
 impl Setup {
-    /// Returns whether the sensor gets the light that it needs.
+    /// Returns the verdict on the light that the sensor gets.
     ///
     /// A line is too dark if its [signal](Self::signal) is below 10, or its peak below the detector's least.
     /// Bright grains saturate if they fill [more](Self::grain_saturation) than the sensor can hold.

@@ -39,7 +39,7 @@ impl<'a> Frames<'a> {
         }
     }
 
-    /// Returns where the line truly is, in pixels.
+    /// Returns the true position of the line, in pixels.
     pub(super) const fn centre(&self) -> f64 {
         self.column.centre
     }

@@ -11,7 +11,7 @@ use crate::{CameraDescription, CameraError, Ray, description::check};
 pub use self::lens::{CameraConnection, CameraRay};
 
 /// The sine of the smallest accepted angle between `up` and the viewing direction.
-const SMALLEST_SINE: f64 = 1e-6;
+const MIN_SINE: f64 = 1e-6;
 
 /// Distance beyond the edges of the image up to which its points may be asked for, in pixels: as
 /// far as a reconstruction filter may reach.
@@ -105,7 +105,7 @@ impl Camera {
             })?;
         let across = view.cross(description.up.normalize_or_zero());
         // Rounding alone makes the product of parallel directions about 1e−16 long.
-        let right = (across.length() > SMALLEST_SINE)
+        let right = (across.length() > MIN_SINE)
             .then(|| across.normalize())
             .ok_or(CameraError::Direction {
                 parameter: "up",

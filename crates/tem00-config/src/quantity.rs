@@ -75,12 +75,12 @@ impl Unit {
     /// Returns the shortest number, without an exponent, that reads back as the same bits; `None` if it
     /// would be long.
     fn shortest(&self, value: f64) -> Option<Written> {
-        const MOST_DIGITS: usize = 9;
+        const MAX_DIGITS: usize = 9;
         let number = self.of(value);
         if !(1e-3..1e6).contains(&number.abs()) {
             return None;
         }
-        (1..=MOST_DIGITS).find_map(|digits| {
+        (1..=MAX_DIGITS).find_map(|digits| {
             let rounded: f64 = format!("{number:.*e}", digits - 1).parse().ok()?;
             let is_same = self.si(rounded).to_bits() == value.to_bits();
             is_same.then(|| Written {
@@ -283,11 +283,11 @@ impl Dimension {
     /// the power of ten at or below `step`, which is in SI units, too. It is the value that its text reads
     /// back as.
     pub fn rounded(&self, value: f64, step: f64, symbol: &str) -> f64 {
-        const MOST_DECIMALS: f64 = 15.0;
+        const MAX_DECIMALS: f64 = 15.0;
         const ONE: Unit = unit("", 1.0, 1.0);
         let unit = self.unit(symbol).unwrap_or(&ONE);
         let decimals = -libm::floor(libm::log10(unit.of(step)));
-        if decimals.is_nan() || decimals > MOST_DECIMALS {
+        if decimals.is_nan() || decimals > MAX_DECIMALS {
             return value;
         }
         #[expect(

@@ -30,7 +30,7 @@ const OFF_MIDDLE: f64 = 0.3;
 
 /// Greatest distance of boards before or behind the point where the axis meets the laser plane, as
 /// a fraction of the distance.
-const LARGEST_SHIFT: f64 = 0.1;
+const MAX_SHIFT: f64 = 0.1;
 
 /// The least distance of the squares from the edge of the image, in pixels.
 const MARGIN: f64 = 4.0;
@@ -231,7 +231,7 @@ impl Stage {
         let height = board.square() * (board.corners()[1] - 1) as f64;
         let across = (normal - normal.dot(self.axes.z_axis) * self.axes.z_axis).length();
         let by_line = OFF_MIDDLE * height * across / normal.dot(self.view).abs();
-        by_line.min(LARGEST_SHIFT * self.middle.distance(self.camera.position()))
+        by_line.min(MAX_SHIFT * self.middle.distance(self.camera.position()))
     }
 
     /// Tells whether all squares of a board are in the image.

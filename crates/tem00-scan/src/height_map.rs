@@ -35,7 +35,7 @@ pub enum Raster {
 }
 
 /// The most cells of a map.
-const MOST_CELLS: f64 = 16_777_216.0;
+const MAX_CELLS: f64 = 16_777_216.0;
 
 impl HeightMap {
     /// Arranges profiles, one above the other, in the columns of an image of so many.
@@ -208,7 +208,7 @@ fn extent(
     }
     let cells = [0, 1].map(|axis| ((high[axis] - low[axis]) / pitch).floor() + 1.0);
     let count = cells[0] * cells[1];
-    if count.is_nan() || count > MOST_CELLS {
+    if count.is_nan() || count > MAX_CELLS {
         return Err(TriangulationError::OutOfRange {
             parameter: "pitch",
             value: pitch,

@@ -9,7 +9,7 @@ const AVERAGE_KEYS: &[&str] = &["frames", "columns"];
 const RAW_FORMATS: &[(&str, RawFormat)] = &[("png", RawFormat::Png), ("tiff", RawFormat::Tiff)];
 
 /// More columns than these have no image.
-const MOST_COLUMNS: u64 = 1 << 16;
+const MAX_COLUMNS: u64 = 1 << 16;
 
 /// Reads the section `[scan]` of a scene file.
 ///
@@ -54,7 +54,7 @@ fn averaging(section: &Section<'_>, scene: &Scene) -> Result<Averaging, Problem>
             Ok(u32::try_from(frames).unwrap_or(scene.render.frames))
         })?,
         columns: section.or("columns", default.columns, |value| {
-            let columns = value.integer(1..=MOST_COLUMNS)?;
+            let columns = value.integer(1..=MAX_COLUMNS)?;
             Ok(usize::try_from(columns).unwrap_or(usize::MAX))
         })?,
     })

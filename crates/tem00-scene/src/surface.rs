@@ -117,7 +117,7 @@ fn speckle(section: &Section<'_>) -> Result<SurfaceSpeckle, Problem> {
     };
     Ok(SurfaceSpeckle {
         patterns: speckle.or("patterns", default.patterns, |value| {
-            let patterns = value.integer(1..=MOST_PATTERNS)?;
+            let patterns = value.integer(1..=MAX_PATTERNS)?;
             Ok(u32::try_from(patterns).unwrap_or(default.patterns))
         })?,
         polarisation: speckle.or("polarisation", default.polarisation, |value| {
@@ -127,4 +127,4 @@ fn speckle(section: &Section<'_>) -> Result<SurfaceSpeckle, Problem> {
 }
 
 /// More patterns than these leave a contrast below 1/32, which hardly anybody could tell from none.
-const MOST_PATTERNS: u64 = 1 << 10;
+const MAX_PATTERNS: u64 = 1 << 10;

@@ -10,9 +10,9 @@ const RAYS: u32 = 4096;
 /// Rays of each laser whose way is kept.
 const KEPT: u32 = 64;
 /// The most mirrors and glass that a ray is followed over.
-const MOST_SPECULAR: u32 = 16;
+const MAX_SPECULAR: u32 = 16;
 /// The share of a laser's power from which on it counts as seen in the image.
-const LEAST_SHARE: f64 = 1e-5;
+const MIN_FRACTION: f64 = 1e-5;
 
 /// Fate of a laser's light on its way to the camera, in one frame.
 ///
@@ -80,7 +80,7 @@ pub enum LightFate {
 impl LaserInspection {
     /// Returns whether the camera sees light of the laser: at least a hundred thousandth of it.
     pub fn is_seen(&self) -> bool {
-        self.share_in_image >= LEAST_SHARE || self.share_of(LightFate::Seen) > 0.0
+        self.share_in_image >= MIN_FRACTION || self.share_of(LightFate::Seen) > 0.0
     }
 
     /// Returns the part of the laser's power that meets this fate, from 0 to 1.
@@ -193,7 +193,7 @@ impl Inspector<'_> {
             length: 0.0,
             weight: 1.0,
         };
-        for step in 0..=MOST_SPECULAR {
+        for step in 0..=MAX_SPECULAR {
             arrival.direction = ray.direction;
             let Some(hit) = self.intersector.intersect(&ray) else {
                 way.push(ray.origin + self.far * ray.direction);

@@ -7,7 +7,7 @@ pub(crate) use self::independent::Sampler;
 pub(crate) use self::strata::Strata;
 
 /// The most points that a pixel's samples share before they start afresh.
-const MOST_POINTS: u32 = 1 << 12;
+const MAX_POINTS: u32 = 1 << 12;
 
 /// A set of points that fills the unit square evenly, scrambled anew for every pixel and every use.
 ///
@@ -72,7 +72,7 @@ impl Use {
 impl Sequence {
     /// Prepares the points for pixels of `samples` samples.
     pub(crate) fn new(samples: u32) -> Self {
-        let count = samples.clamp(1, MOST_POINTS).next_power_of_two();
+        let count = samples.clamp(1, MAX_POINTS).next_power_of_two();
         let points = (0..count).map(|index| [index, sobol_second(index).reverse_bits()]);
         Self {
             points: points.collect(),

@@ -199,7 +199,7 @@ impl Scale {
 const PADDING: f64 = 1.0 / (1 << 18) as f64;
 
 /// Components of directions below this count as this: their reciprocals stay finite.
-const SMALLEST_COMPONENT: f32 = 1.0 / (1 << 23) as f32;
+const MIN_COMPONENT: f32 = 1.0 / (1 << 23) as f32;
 
 impl Hierarchy {
     pub(super) fn nodes(&self) -> &[Node] {
@@ -251,7 +251,7 @@ impl Hierarchy {
 fn inverse(component: f32) -> f32 {
     component
         .abs()
-        .max(SMALLEST_COMPONENT)
+        .max(MIN_COMPONENT)
         .copysign(component)
         .recip()
 }

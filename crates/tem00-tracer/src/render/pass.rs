@@ -21,7 +21,7 @@ const STRIP: usize = 32;
 const BATCH: usize = 1024;
 
 /// The most rounds of samples that a pixel gets for a target error, the first one included.
-const MOST_ROUNDS: u64 = 64;
+const MAX_ROUNDS: u64 = 64;
 
 /// The radiance below which a pixel's error is compared with this radiance instead of its own, by the
 /// mean radiance of the image.
@@ -92,7 +92,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
             for pixel in &mut pixels {
                 pixel.sums = locked(film).read(self.in_area(pixel.place));
             }
-            for round in 1..MOST_ROUNDS {
+            for round in 1..MAX_ROUNDS {
                 pixels.retain(|pixel| !is_done(pixel));
                 self.add_round(round, &mut pixels, batch)?;
                 let mut film = locked(film);

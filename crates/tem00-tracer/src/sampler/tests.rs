@@ -108,7 +108,7 @@ fn more_samples_than_points_start_afresh() {
     let of = |index| sequence.pair(sequence.stream(7, index), Use::Lens);
     let (first, second) = (
         of(3).map(f64::to_bits),
-        of(3 + MOST_POINTS).map(f64::to_bits),
+        of(3 + MAX_POINTS).map(f64::to_bits),
     );
     assert_ne!(first, second, "the second set repeats the first");
 }

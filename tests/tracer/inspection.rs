@@ -58,7 +58,7 @@ fn rendered(scene: &Scene) -> f32 {
 }
 
 #[track_caller]
-fn assert_share(found: f64, expected: f64, tolerance: f64) {
+fn assert_fraction(found: f64, expected: f64, tolerance: f64) {
     assert!(
         (found - expected).abs() <= tolerance,
         "{found} is not {expected} ± {tolerance}"
@@ -74,7 +74,7 @@ fn assert_all(scene: &Scene, fate: LightFate, surface: Option<usize>) -> LightPa
         panic!("more than one part: {:?}", found.parts);
     };
     assert_eq!((part.fate, part.surface), (fate, surface));
-    assert_share(part.share, 1.0, 1e-12);
+    assert_fraction(part.fraction, 1.0, 1e-12);
     assert!(rendered(scene) <= 0.0, "the render finds some");
     part.clone()
 }
@@ -84,9 +84,9 @@ fn a_spot_in_the_image_is_seen_where_it_is() {
     let scene = scene(SCENE);
     let found = inspected(&scene);
     assert!(found.is_seen() && rendered(&scene) > 0.0, "{found:?}");
-    assert_share(found.share_of(LightFate::Seen), 1.0, 1e-12);
+    assert_fraction(found.fraction_of(LightFate::Seen), 1.0, 1e-12);
     // 4096 points see the spot on some 60 of them, spread evenly.
-    assert_share(found.share_in_image, 1.0, 0.05);
+    assert_fraction(found.fraction_in_image, 1.0, 0.05);
     let pixel = found.parts[0].pixel.unwrap();
     // A thousandth of the spot's 2.7 pixels.
     assert!(pixel.distance(DVec2::new(24.0, 20.0)) < 0.05, "{pixel}");
@@ -162,10 +162,10 @@ fn half_a_mask_hides_half_of_the_light() {
     // Its edge lies on the axis of the camera: by symmetry it hides as much as it leaves.
     let mask = and("[[surface]]\nrectangle = { centre = [0, -0.01, 0.1], size = [0.02, 0.02] }");
     let found = inspected(&mask);
-    assert_share(found.share_of(LightFate::Seen), 0.5, 0.02);
-    assert_share(found.share_of(LightFate::Hidden { by: 1 }), 0.5, 0.02);
+    assert_fraction(found.fraction_of(LightFate::Seen), 0.5, 0.02);
+    assert_fraction(found.fraction_of(LightFate::Hidden { by: 1 }), 0.5, 0.02);
     // Some 60 points of the image see the spot, half of them behind the mask.
-    assert_share(found.share_in_image, 0.5, 0.2);
+    assert_fraction(found.fraction_in_image, 0.5, 0.2);
 }
 
 #[test]
@@ -183,8 +183,8 @@ fn light_over_a_mirror_counts_as_seen() {
     let found = inspected(&scene(&format!("{text}\n{mirror}")));
     assert!(found.is_seen(), "{found:?}");
     // The mirror, 7 mm beside the axis, hides next to nothing of the spot below it.
-    assert_share(found.share_of(LightFate::Seen), 0.5, 0.01);
-    assert_share(found.share_in_image, 0.0, 1e-12);
+    assert_fraction(found.fraction_of(LightFate::Seen), 0.5, 0.01);
+    assert_fraction(found.fraction_in_image, 0.0, 1e-12);
     assert_eq!(found.ways[0].len(), 3, "{:?}", found.ways[0]);
 }
 
@@ -194,7 +194,7 @@ fn a_spot_behind_glass_counts_as_seen() {
                   rectangle = { centre = [0, 0, 0.2], size = [0.05, 0.05] }\ndielectric = {}";
     let found = inspected(&and(window));
     assert!(found.is_seen(), "{found:?}");
-    assert_share(found.share_of(LightFate::Seen), 0.0, 1e-12);
+    assert_fraction(found.fraction_of(LightFate::Seen), 0.0, 1e-12);
     // One face of glass, through which 96 % of the camera's rays go on.
-    assert!(found.share_in_image > 0.5, "{}", found.share_in_image);
+    assert!(found.fraction_in_image > 0.5, "{}", found.fraction_in_image);
 }

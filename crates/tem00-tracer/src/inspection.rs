@@ -11,7 +11,7 @@ const RAYS: u32 = 4096;
 const KEPT: u32 = 64;
 /// The most mirrors and glass that a ray is followed over.
 const MAX_SPECULAR: u32 = 16;
-/// The share of a laser's power from which on it counts as seen in the image.
+/// The fraction of a laser's power from which on it counts as seen in the image.
 const MIN_FRACTION: f64 = 1e-5;
 
 /// Fate of a laser's light on its way to the camera, in one frame.
@@ -31,7 +31,7 @@ pub struct LaserInspection {
     pub parts: Vec<LightPart>,
     /// The part of the laser's power, from 0 to about 1, on what the image shows: rough surfaces seen
     /// straight, in mirrors or through glass, and lit straight by the laser.
-    pub share_in_image: f64,
+    pub fraction_in_image: f64,
     /// The corners of the ways of the first 64 rays, from the aperture to their first rough surface, or
     /// out of the scene.
     pub ways: Vec<Vec<DVec3>>,
@@ -46,7 +46,7 @@ pub struct LightPart {
     /// The index of the surface that it meets, unless it misses all.
     pub surface: Option<usize>,
     /// The part of the laser's power that it is, from 0 to 1.
-    pub share: f64,
+    pub fraction: f64,
     /// The middle of the lit points, in metres; of the aperture, where it misses.
     pub centre: DVec3,
     /// The image point of the middle, in pixels; `None` where there is none, as behind the camera.
@@ -80,13 +80,13 @@ pub enum LightFate {
 impl LaserInspection {
     /// Returns whether the camera sees light of the laser: at least a hundred thousandth of it.
     pub fn is_seen(&self) -> bool {
-        self.share_in_image >= MIN_FRACTION || self.share_of(LightFate::Seen) > 0.0
+        self.fraction_in_image >= MIN_FRACTION || self.fraction_of(LightFate::Seen) > 0.0
     }
 
     /// Returns the part of the laser's power that meets this fate, from 0 to 1.
-    pub fn share_of(&self, fate: LightFate) -> f64 {
+    pub fn fraction_of(&self, fate: LightFate) -> f64 {
         let parts = self.parts.iter().filter(|part| part.fate == fate);
-        parts.map(|part| part.share).sum()
+        parts.map(|part| part.fraction).sum()
     }
 }
 
@@ -165,18 +165,18 @@ impl Inspector<'_> {
             if index < KEPT {
                 ways.push(way);
             }
-            let share = arrival.weight / f64::from(RAYS);
+            let fraction = arrival.weight / f64::from(RAYS);
             match &arrival.hit {
-                None => parts.add(LightFate::Misses, None, share, ray.origin),
+                None => parts.add(LightFate::Misses, None, fraction, ray.origin),
                 Some(hit) => {
                     let fate = self.fate(hit, arrival.direction, [u, v]);
-                    parts.add(fate, Some(hit.surface), share, hit.position);
+                    parts.add(fate, Some(hit.surface), fraction, hit.position);
                 }
             }
         }
         LaserInspection {
             parts: parts.finish(&self.camera),
-            share_in_image: self.share_in_image(laser),
+            fraction_in_image: self.fraction_in_image(laser),
             ways,
         }
     }
@@ -277,7 +277,7 @@ impl Inspector<'_> {
     /// ```text
     /// P = Σ E cos θ_i dA,    dA = Ω r² / cos θ_o       Ω the solid angle of each camera ray
     /// ```
-    fn share_in_image(&self, laser: &Laser) -> f64 {
+    fn fraction_in_image(&self, laser: &Laser) -> f64 {
         let Crop {
             x,
             y,
@@ -326,31 +326,31 @@ impl Inspector<'_> {
 struct Parts(Vec<LightPart>);
 
 impl Parts {
-    /// Adds a ray; `centre` is the sum of share · point until the end.
-    fn add(&mut self, fate: LightFate, surface: Option<usize>, share: f64, point: DVec3) {
+    /// Adds a ray; `centre` is the sum of fraction · point until the end.
+    fn add(&mut self, fate: LightFate, surface: Option<usize>, fraction: f64, point: DVec3) {
         let same = |part: &&mut LightPart| (part.fate, part.surface) == (fate, surface);
         match self.0.iter_mut().find(same) {
             Some(part) => {
-                part.share += share;
-                part.centre += share * point;
+                part.fraction += fraction;
+                part.centre += fraction * point;
             }
             None => self.0.push(LightPart {
                 fate,
                 surface,
-                share,
-                centre: share * point,
+                fraction,
+                centre: fraction * point,
                 pixel: None,
             }),
         }
     }
 
     fn finish(mut self, camera: &Camera) -> Vec<LightPart> {
-        self.0.retain(|part| part.share > 0.0);
+        self.0.retain(|part| part.fraction > 0.0);
         for part in &mut self.0 {
-            part.centre /= part.share;
+            part.centre /= part.fraction;
             part.pixel = part.surface.and_then(|_| camera.project(part.centre));
         }
-        self.0.sort_by(|a, b| b.share.total_cmp(&a.share));
+        self.0.sort_by(|a, b| b.fraction.total_cmp(&a.fraction));
         self.0
     }
 }

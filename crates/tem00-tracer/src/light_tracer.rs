@@ -23,7 +23,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-pub(crate) use self::job::{LightJob, LightLayers, LightShare, LightTracer};
+pub(crate) use self::job::{LightJob, LightLayers, LightSelection, LightTracer};
 use self::{splats::SplatFilm, walk::Walk};
 use crate::{LaserLayers, RenderError};
 

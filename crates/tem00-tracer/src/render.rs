@@ -12,7 +12,7 @@ pub use self::settings::RenderSettings;
 use crate::{
     FilterSampler, Frame, Intersector, Scene, SpeckleModel,
     integrator::Integrator,
-    light_tracer::{LightJob, LightShare, LightTracer},
+    light_tracer::{LightJob, LightSelection, LightTracer},
 };
 
 impl Scene {
@@ -70,19 +70,19 @@ pub fn render_frame(
     let speckle = speckle.map(|model| model.in_frame(scene, frame));
     let integrator =
         Integrator::new(scene, frame, &intersector, options).with_speckle(speckle.as_ref());
-    let light_share = light_traced(scene, options);
+    let selection = light_traced(scene, options);
     let pass = PathPass {
         integrator: &integrator,
         options,
         filter: FilterSampler::new(options.filter)?,
         frame,
         area,
-        light_traced: light_share.is_some(),
+        light_traced: selection.is_some(),
         progress: &progress,
         cancel,
     };
     let mut rendered = pass.render()?;
-    if let Some(share) = light_share {
+    if let Some(selection) = selection {
         let tracer = LightTracer {
             scene,
             camera: integrator.camera(),
@@ -90,7 +90,7 @@ pub fn render_frame(
             speckle: speckle.as_ref(),
             frame,
             max_depth: options.max_depth,
-            share,
+            selection,
             area,
         };
         add_light_traced(&tracer, options, &mut rendered, &progress, cancel)?;
@@ -102,11 +102,11 @@ pub fn render_frame(
 ///
 /// Paths from the camera find all but the light that a mirror or glass was the first to meet; where
 /// they look for the beams themselves, they find that, too.
-fn light_traced(scene: &Scene, options: &RenderOptions) -> Option<LightShare> {
+fn light_traced(scene: &Scene, options: &RenderOptions) -> Option<LightSelection> {
     match options.method {
-        Method::Light => Some(LightShare::All),
+        Method::Light => Some(LightSelection::All),
         Method::Path if options.samples_beams() || !scene.has_specular_surfaces() => None,
-        Method::Path => Some(LightShare::SpecularFirst),
+        Method::Path => Some(LightSelection::SpecularFirst),
     }
 }
 

@@ -5,7 +5,7 @@ use tem00_tracer::{Crop, LaserInspection, LightFate, LightPart, Scene};
 
 use crate::digits::rounded;
 
-/// The minimum share of a laser's power that is reported.
+/// The minimum fraction of a laser's power that is reported.
 const TOLD: f64 = 0.01;
 
 /// Says what the camera sees of a laser.
@@ -13,17 +13,17 @@ pub(super) fn seen(scene: &Scene, laser: usize, found: &LaserInspection) -> Stri
     let seen: Vec<_> = (found.parts.iter())
         .filter(|part| part.fate == LightFate::Seen)
         .collect();
-    let share: f64 = seen.iter().map(|part| part.share).sum();
+    let fraction: f64 = seen.iter().map(|part| part.fraction).sum();
     if seen.is_empty() {
         return format!(
             "laser {laser}: the camera sees its light in a mirror or through glass, {} of its power",
-            percent(found.share_in_image)
+            percent(found.fraction_in_image)
         );
     }
     let names = seen.iter().map(|part| name_of(scene, part.surface));
     format!(
         "laser {laser}: the camera sees {} of its light, on {}",
-        percent(share),
+        percent(fraction),
         names.collect::<Vec<_>>().join(", ")
     )
 }
@@ -39,9 +39,9 @@ pub(super) fn dark(
     let mut lines = vec![format!(
         "laser {laser}: the camera sees no light of it{frame}:"
     )];
-    let parts = found.parts.iter().filter(|part| part.share >= TOLD);
+    let parts = found.parts.iter().filter(|part| part.fraction >= TOLD);
     lines.extend(parts.map(|part| format!("  {}", why(scene, part))));
-    if found.share_of(LightFate::Misses) >= TOLD {
+    if found.fraction_of(LightFate::Misses) >= TOLD {
         lines.push("  the surfaces stand at".into());
         lines.extend(places(scene));
     }
@@ -56,31 +56,35 @@ const fn is_beside(fate: LightFate) -> bool {
 }
 
 fn why(scene: &Scene, part: &LightPart) -> String {
-    let share = percent(part.share);
+    let fraction = percent(part.fraction);
     let name = name_of(scene, part.surface);
     let place = millimetres(part.centre);
     match part.fate {
-        LightFate::Misses => format!("{share} misses every surface: `look_at` aims the laser"),
+        LightFate::Misses => format!("{fraction} misses every surface: `look_at` aims the laser"),
         LightFate::MeetsBack => format!(
-            "{share} meets the back of {name} at {place}, and {name} is one-sided: turn it round, or \
+            "{fraction} meets the back of {name} at {place}, and {name} is one-sided: turn it round, or \
              leave out `one_sided`"
         ),
         LightFate::LightsFarSide => {
-            format!("{share} lights {name} at {place} on the side away from the camera")
+            format!("{fraction} lights {name} at {place} on the side away from the camera")
         }
-        LightFate::BehindCamera => format!("{share} lights {name} at {place}, behind the camera"),
+        LightFate::BehindCamera => {
+            format!("{fraction} lights {name} at {place}, behind the camera")
+        }
         LightFate::OutsideImage => format!(
-            "{share} lights {name} at {place}, outside the image: {}",
+            "{fraction} lights {name} at {place}, outside the image: {}",
             beside(scene, part)
         ),
         LightFate::Hidden { by } if part.surface == Some(by) => {
-            format!("{share} lights {name} at {place}, where {name} hides itself from the camera")
+            format!(
+                "{fraction} lights {name} at {place}, where {name} hides itself from the camera"
+            )
         }
         LightFate::Hidden { by } => format!(
-            "{share} lights {name} at {place}, which {} hides from the camera",
+            "{fraction} lights {name} at {place}, which {} hides from the camera",
             name_of(scene, Some(by))
         ),
-        _ => format!("{share} lights {name} at {place}"),
+        _ => format!("{fraction} lights {name} at {place}"),
     }
 }
 
@@ -145,8 +149,8 @@ fn name_of(scene: &Scene, surface: Option<usize>) -> String {
     surface.map_or_else(|| "a light".into(), |surface| format!("`{}`", surface.name))
 }
 
-fn percent(share: f64) -> String {
-    format!("{} %", rounded(100.0 * share, 3))
+fn percent(fraction: f64) -> String {
+    format!("{} %", rounded(100.0 * fraction, 3))
 }
 
 fn millimetres(point: DVec3) -> String {

@@ -10,7 +10,7 @@ use super::BoardPlan;
 use crate::Exposure;
 use crate::ScanError;
 
-/// The share of the pixels that may be brighter than the brightest grey value aimed at.
+/// The fraction of the pixels that may be brighter than the brightest grey value aimed at.
 const BRIGHTER: f64 = 1e-3;
 
 /// The part of the full scale at which the exposure aims.

@@ -15,14 +15,14 @@ pub(crate) struct LightTracer<'a> {
     pub frame: u32,
     /// The most surfaces that light may meet between laser and camera; `None` for no limit.
     pub max_depth: Option<u32>,
-    pub share: LightShare,
+    pub selection: LightSelection,
     /// The part of the image that is rendered.
     pub area: Crop,
 }
 
 /// The part of the light that is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LightShare {
+pub(crate) enum LightSelection {
     /// All that reaches the camera from a rough surface.
     All,
     /// That of it which a mirror or glass was the first to meet: all that the path tracer misses.

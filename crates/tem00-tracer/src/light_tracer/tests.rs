@@ -47,10 +47,10 @@ fn whole(scene: &Scene) -> Crop {
 }
 
 /// A scene, the light of it that is followed, and the part of the image.
-type View<'a> = (&'a Scene, LightShare, Crop);
+type View<'a> = (&'a Scene, LightSelection, Crop);
 
 fn try_trace(
-    (scene, share, area): View<'_>,
+    (scene, selection, area): View<'_>,
     job: &LightJob,
     cancelled: bool,
 ) -> Result<LightLayers, RenderError> {
@@ -62,14 +62,14 @@ fn try_trace(
         speckle: None,
         frame: 0,
         max_depth: None,
-        share,
+        selection,
         area,
     };
     tracer.trace(job, &|_| (), &AtomicBool::new(cancelled))
 }
 
 fn trace(scene: &Scene, job: &LightJob) -> LightLayers {
-    try_trace((scene, LightShare::All, whole(scene)), job, false).unwrap()
+    try_trace((scene, LightSelection::All, whole(scene)), job, false).unwrap()
 }
 
 const fn job(paths: u64, seed: u64) -> LightJob {
@@ -99,8 +99,8 @@ fn lit(scene: &Scene, pixel: DVec2, normal: DVec3) -> f64 {
     REFLECTANCE / PI * sum / f64::from(SIDE * SIDE)
 }
 
-/// The share of the laser's light that falls on what a pixel shows.
-fn share_of_light(scene: &Scene, pixel: DVec2) -> f64 {
+/// The fraction of the laser's light that falls on what a pixel shows.
+fn fraction_of_light(scene: &Scene, pixel: DVec2) -> f64 {
     let centre = pixel + 0.5;
     let towards = on_plate(scene, centre) - scene.camera.position();
     let solid_angle = scene.camera.solid_angle_per_pixel(centre);
@@ -120,7 +120,7 @@ fn assert_lit(scene: &Scene, normal: DVec3) {
         let (x, y) = (index % scene.camera.width(), index / scene.camera.width());
         let pixel = DVec2::new(x as f64, y as f64);
         // The sum of fewer paths is not normally distributed.
-        if share_of_light(scene, pixel) * PATHS as f64 > 10.0 {
+        if fraction_of_light(scene, pixel) * PATHS as f64 > 10.0 {
             let values: Vec<_> = images.iter().map(|image| image.values()[index]).collect();
             let test = t_test_mean(&values, lit(scene, pixel, normal)).unwrap();
             probabilities.push(test.p_value);
@@ -169,7 +169,7 @@ fn the_stated_variance_is_that_from_seed_to_seed() {
         stated += variances.sum::<f64>() / SEEDS as f64;
     }
     // Some 60 pixels and 200 seeds give a standard error of √(2 / 12 000) = 1.3 %, and what pixels
-    // share of their paths raises it. Four times that, with as much again to spare.
+    // fraction of their paths raises it. Four times that, with as much again to spare.
     let ratio = stated / seen;
     assert!(
         (ratio - 1.0).abs() < 0.1,
@@ -228,7 +228,7 @@ fn threads_and_the_rest_of_the_image_change_no_bit() {
         width: 7,
         height: 4,
     };
-    let part = try_trace((&scene, LightShare::All, area), &job, false).unwrap();
+    let part = try_trace((&scene, LightSelection::All, area), &job, false).unwrap();
     let pairs = [
         (&part.coherent_before, &image.coherent_before),
         (&part.variance, &image.variance),
@@ -245,7 +245,7 @@ fn threads_and_the_rest_of_the_image_change_no_bit() {
 #[test]
 fn a_cancelled_trace_stops() {
     let scene = plate();
-    let view = (&scene, LightShare::All, whole(&scene));
+    let view = (&scene, LightSelection::All, whole(&scene));
     let cancelled = try_trace(view, &job(1 << 40, 0), true);
     assert_eq!(cancelled, Err(RenderError::Cancelled));
 }
@@ -254,7 +254,7 @@ fn a_cancelled_trace_stops() {
 fn light_that_meets_a_rough_surface_first_is_left_to_the_path_tracer() {
     let mut scene = plate();
     assert!(!scene.has_specular_surfaces(), "a diffuse plate");
-    let view = (&scene, LightShare::SpecularFirst, whole(&scene));
+    let view = (&scene, LightSelection::SpecularFirst, whole(&scene));
     let dark = try_trace(view, &job(1_000, 0), false).unwrap();
     assert!(dark.power_on_target <= 0.0, "{}", dark.power_on_target);
     scene.surfaces[0].material = Material::mirror(0.9).unwrap();

@@ -2,7 +2,7 @@ use glam::{DVec2, DVec3};
 use tem00_camera::Ray;
 
 use super::{
-    LightJob, LightShare, LightTracer,
+    LightJob, LightSelection, LightTracer,
     draws::{DrawKey, Draws},
     splats::{Splat, Splats},
 };
@@ -119,9 +119,9 @@ impl<'a> Walk<'a> {
 
     /// Returns whether light that has met this material first is to be followed.
     fn belongs(&self, first: &Material) -> bool {
-        match self.tracer.share {
-            LightShare::All => true,
-            LightShare::SpecularFirst => first.is_specular(),
+        match self.tracer.selection {
+            LightSelection::All => true,
+            LightSelection::SpecularFirst => first.is_specular(),
         }
     }
 
@@ -271,7 +271,7 @@ impl Vertex<'_> {
         }
     }
 
-    /// Returns the share of the flux that goes towards the unit vector `out`, per steradian, where
+    /// Returns the fraction of the flux that goes towards the unit vector `out`, per steradian, where
     /// light is scattered in these `axes`.
     fn scattered(&self, out: DVec3, axes: &LocalFrame, wavelength: f64) -> f64 {
         let [wo, back] = [out, -self.photon.ray.direction].map(|v| axes.to_local(v));

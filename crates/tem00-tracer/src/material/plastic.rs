@@ -80,7 +80,7 @@ impl Plastic {
         coat * self.facets.reflected_pdf(wo, half_vector(wo, wi)) + (1.0 - coat) * cosine_pdf(wi)
     }
 
-    /// Returns the share of the coat in all that is reflected towards `wo`.
+    /// Returns the fraction of the light reflected towards `wo` that the coat itself reflects.
     fn coat_probability(&self, wo: DVec3) -> f64 {
         let coat = self.albedo.at(wo.z);
         coat / (coat + self.returned * (1.0 - coat))

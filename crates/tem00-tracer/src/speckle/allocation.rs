@@ -57,8 +57,8 @@ impl PatternAllocation {
 /// Position in a stack at which a part of the speckle of a surface is looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Part {
-    /// Its share of the light.
-    pub share: f64,
+    /// Its fraction of the light.
+    pub fraction: f64,
     /// The stack, among those of the allocation.
     pub stack: usize,
     /// Its place in the stack, in periods along x and y.

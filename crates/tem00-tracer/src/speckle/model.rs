@@ -196,13 +196,13 @@ impl SpeckleFrame<'_> {
                 Stack::Derived(stack) => {
                     let mut block = self.coordinates(laser, pattern, stack, points);
                     block.shift(part, stack.size());
-                    block.add(stack, part.share, factors);
+                    block.add(stack, part.fraction, factors);
                 }
                 Stack::AsPrinted(stack, speckle_size) => {
                     for (factor, point) in factors.iter_mut().zip(points) {
                         let [x, y, u] = self.as_printed(laser, pattern, *speckle_size, point);
                         let [x0, y0] = part.place_in(stack.size());
-                        *factor += part.share * stack.intensity_at(x + x0, y + y0, u);
+                        *factor += part.fraction * stack.intensity_at(x + x0, y + y0, u);
                     }
                 }
             }
@@ -268,8 +268,8 @@ impl Block {
         self.y.iter_mut().for_each(|y| *y += y0);
     }
 
-    /// Adds the intensities at the coordinates, times a share, to `sums`.
-    fn add(&self, stack: &SpeckleStack, share: f64, sums: &mut [f64]) {
+    /// Adds the intensities at the coordinates, times a fraction, to `sums`.
+    fn add(&self, stack: &SpeckleStack, fraction: f64, sums: &mut [f64]) {
         let count = sums.len();
         let mut intensities = [0.0; BLOCK];
         stack.intensity_batch(
@@ -279,7 +279,7 @@ impl Block {
             &mut intensities[..count],
         );
         let pairs = sums.iter_mut().zip(&intensities);
-        pairs.for_each(|(sum, intensity)| *sum += share * intensity);
+        pairs.for_each(|(sum, intensity)| *sum += fraction * intensity);
     }
 }
 

@@ -131,7 +131,7 @@ impl Planner<'_> {
     ) -> Result<PatternPlan, TracerError> {
         let surfaces = self.scene.surfaces.iter();
         let sums = surfaces
-            .map(|surface| shares(&surface.speckle))
+            .map(|surface| fractions(&surface.speckle))
             .collect::<Result<Vec<_>, _>>()?;
         let requests = prescans.iter().enumerate();
         let requests: Vec<_> = requests
@@ -196,22 +196,22 @@ impl Planner<'_> {
         let shared = allocations.iter().any(|allocation| allocation.places > 1);
         let surfaces = self.groups.iter().zip(sums);
         surfaces
-            .map(|(&group, shares)| {
+            .map(|(&group, fractions)| {
                 let before = requests[..group].iter().map(|request| request.parts);
                 let first: usize = before.sum();
-                let parts = shares.iter().enumerate();
+                let parts = fractions.iter().enumerate();
                 Place {
                     allocation: if shared { 0 } else { group },
                     reference_point: prescans[group].reference_point,
                     parts: parts
-                        .map(|(number, &share)| match shared {
+                        .map(|(number, &fraction)| match shared {
                             true => Part {
-                                share,
+                                fraction,
                                 stack: 0,
                                 offset: allocation::offset(first + number),
                             },
                             false => Part {
-                                share,
+                                fraction,
                                 stack: number,
                                 offset: [0.0; 2],
                             },
@@ -223,8 +223,8 @@ impl Planner<'_> {
     }
 }
 
-/// The shares of the patterns that the speckle of a surface is the sum of.
-fn shares(speckle: &SurfaceSpeckle) -> Result<Vec<f64>, TracerError> {
+/// The fractions of the light in the patterns that the speckle of a surface is the sum of.
+fn fractions(speckle: &SurfaceSpeckle) -> Result<Vec<f64>, TracerError> {
     let patterns = IncoherentSum::equal(speckle.patterns as usize)?;
     let waves = IncoherentSum::partially_polarised(speckle.polarisation)?;
     Ok(patterns.split_by(&waves)?.shares().to_vec())

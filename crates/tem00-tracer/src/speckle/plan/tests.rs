@@ -218,8 +218,8 @@ fn sums_of_patterns_take_a_stack_for_each_part() {
     let parts = &plan.places()[0].parts;
     for (number, part) in parts.iter().enumerate() {
         assert_eq!(part.stack, number, "{parts:?}");
-        let share = if number % 2 == 0 { 0.25 } else { 1.0 / 12.0 };
-        assert!((part.share - share).abs() < 1e-15, "{parts:?}");
+        let fraction = if number % 2 == 0 { 0.25 } else { 1.0 / 12.0 };
+        assert!((part.fraction - fraction).abs() < 1e-15, "{parts:?}");
     }
     // Less memory than that for six stacks of 32 slices.
     scene.speckle.memory = 143 << 20;

@@ -143,8 +143,8 @@ impl Change {
             item = next.ok_or_else(|| self.nowhere(depth))?;
         }
         let mut value = self.value.clone();
-        let place = item.as_value().map(Value::decor).cloned();
-        *value.decor_mut() = place.unwrap_or_default();
+        let decor = item.as_value().map(Value::decor).cloned();
+        *value.decor_mut() = decor.unwrap_or_default();
         if value.decor().prefix().is_none() {
             value.decor_mut().set_prefix(" ");
         }

@@ -6,7 +6,7 @@ use crate::printable::printable_line;
 /// The most characters of a message.
 const MAX_CHARS: usize = 1000;
 
-/// An error of a file, or of one that it includes, and its place there.
+/// An error of a file, or of one that it includes, and its location there.
 ///
 /// The message names the key, its value and what is allowed. [`Display`](fmt::Display) puts file,
 /// line and column in front of it, as compilers do:
@@ -39,7 +39,7 @@ impl ConfigError {
         self.path.as_deref()
     }
 
-    /// Returns what is wrong, in one sentence without the place.
+    /// Returns what is wrong, in one sentence without the location.
     pub fn message(&self) -> &str {
         &self.problem.message
     }
@@ -54,16 +54,19 @@ impl ConfigError {
         &self.source_text
     }
 
-    /// Returns the place of the error as a range of bytes of the source text, or `None` if the
-    /// error has no place, such as a section that is not there.
+    /// Returns the location of the error as a range of bytes of the source text, or `None` if the
+    /// error has no location, such as a section that is not there.
     pub fn span(&self) -> Option<Range<usize>> {
-        self.problem.place.as_ref().map(|place| place.span.clone())
+        self.problem
+            .location
+            .as_ref()
+            .map(|location| location.span.clone())
     }
 
     /// Returns the line and the column, in characters, where the error begins; both count from 1.
     pub fn line_column(&self) -> Option<(usize, usize)> {
-        let place = self.problem.place.as_ref()?;
-        line_column(&self.source_text, place.span.start)
+        let location = self.problem.location.as_ref()?;
+        line_column(&self.source_text, location.span.start)
     }
 }
 
@@ -102,24 +105,24 @@ pub(crate) struct Location {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     pub(crate) message: String,
-    pub(crate) place: Option<Location>,
+    pub(crate) location: Option<Location>,
     pub(crate) help: Option<String>,
 }
 
 impl Problem {
-    /// Creates a problem without a place. What cannot be printed is escaped, and a long message is cut: it
+    /// Creates a problem without a location. What cannot be printed is escaped, and a long message is cut: it
     /// may quote the file.
     pub fn new(message: impl Into<String>) -> Self {
         Self {
             message: printable_line(&message.into(), MAX_CHARS),
-            place: None,
+            location: None,
             help: None,
         }
     }
 
     /// Places the problem.
-    pub(crate) fn at(mut self, place: Location) -> Self {
-        self.place = Some(place);
+    pub(crate) fn at(mut self, location: Location) -> Self {
+        self.location = Some(location);
         self
     }
 
@@ -146,18 +149,18 @@ mod tests {
     #[test]
     fn lines_and_columns_count_characters_from_one() {
         let text = "a = 1\nµ = 2\nb = 3\n";
-        let place = |needle: &str| {
+        let location = |needle: &str| {
             let start = text.find(needle).unwrap();
             error(text, start..start + 1).line_column()
         };
-        assert_eq!(place("a"), Some((1, 1)), "first character");
+        assert_eq!(location("a"), Some((1, 1)), "first character");
         // µ takes two bytes, so a count of bytes would give column 6.
-        assert_eq!(place("2"), Some((2, 5)), "behind a two-byte character");
-        assert_eq!(place("b"), Some((3, 1)), "start of a line");
+        assert_eq!(location("2"), Some((2, 5)), "behind a two-byte character");
+        assert_eq!(location("b"), Some((3, 1)), "start of a line");
     }
 
     #[test]
-    fn a_place_at_the_end_of_the_text_has_a_line() {
+    fn a_location_at_the_end_of_the_text_has_a_line() {
         assert_eq!(error("ab\n", 3..3).line_column(), Some((2, 1)), "end");
         assert_eq!(error("", 0..0).line_column(), Some((1, 1)), "empty text");
     }
@@ -166,7 +169,7 @@ mod tests {
     fn display_starts_with_file_line_and_column() {
         assert_eq!(error("x\ny", 2..3).to_string(), "a.toml:2:1: no", "placed");
         let nowhere = ConfigError::new(Some(Path::new("a.toml")), "", Problem::new("no"));
-        assert_eq!(nowhere.to_string(), "a.toml: no", "without a place");
+        assert_eq!(nowhere.to_string(), "a.toml: no", "without a location");
         let unnamed = ConfigError::new(None, "x", at(0..1));
         assert_eq!(unnamed.to_string(), "text:1:1: no", "without a file");
     }

@@ -1,4 +1,4 @@
-//! Files from outside: regular ones, of a bounded size.
+//! External files: regular ones, of a bounded size.
 
 use std::{
     fs::{self, File, Metadata},

@@ -16,7 +16,7 @@
 //!
 //! # Scope and non-goals
 //!
-//! No derived deserialisation: it loses the place of a value inside tagged tables. Nothing is written.
+//! No derived deserialisation: it loses the location of a value inside tagged tables. Nothing is written.
 
 mod change;
 mod document;

@@ -1,4 +1,4 @@
-//! Text from outside, as it may be shown.
+//! External text in a form that is safe to show.
 
 use std::borrow::Cow;
 

@@ -199,7 +199,7 @@ impl Dimension {
     }
 
     /// Returns the value, in SI units, of a string such as "650 nm", or `None` if it is no quantity
-    /// of this kind; a number without a unit is none.
+    /// of this kind; a number without a unit is not one.
     pub fn parse(&self, text: &str) -> Option<f64> {
         let (number, unit) = self.split(text)?;
         Some(unit.si(number))

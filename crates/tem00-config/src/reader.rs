@@ -51,8 +51,8 @@ pub fn parse_document<T>(
     format: Format,
     read: impl FnOnce(&Document<'_>) -> Result<T, Problem>,
 ) -> Result<T, ConfigError> {
-    let place = (base_directory, FileAccess::WithinFolder);
-    let sources = Sources::of_text(text.to_owned(), None, place, format)?;
+    let access = (base_directory, FileAccess::WithinFolder);
+    let sources = Sources::of_text(text.to_owned(), None, access, format)?;
     with_document(&sources, read).map_err(|problem| sources.locate(problem))
 }
 

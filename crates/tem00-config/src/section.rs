@@ -22,7 +22,7 @@ pub struct Section<'a> {
     is_root: bool,
     keys: &'static [&'static str],
     table: &'a DeTable<'a>,
-    place: Location,
+    location: Location,
     source: &'a Source,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Section<'a> {
             is_root: true,
             keys: format.keys,
             table: document,
-            place: source.place(0..0),
+            location: source.location(0..0),
             source,
         }
         .checked(None)
@@ -55,7 +55,7 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a problem, placed at the section, if there is none.
+    /// Returns a problem, placed at the section, if it is missing.
     pub fn required(&self, key: &'static str, example: &str) -> Result<Value<'a>, Problem> {
         self.optional(key).ok_or_else(|| {
             self.problem(format_args!("{} needs the key `{key}`", self.header))
@@ -93,7 +93,9 @@ impl<'a> Section<'a> {
         };
         let header = format!("[{}]", self.path_to(key));
         match self.table.get(key).map(Spanned::get_ref) {
-            Some(DeValue::Table(table)) => self.open(header, table, value.place(), keys).map(Some),
+            Some(DeValue::Table(table)) => {
+                self.open(header, table, value.location(), keys).map(Some)
+            }
             _ => Err(value.must_be(format_args!("a table: write `{header}` and its keys below"))),
         }
     }
@@ -113,8 +115,8 @@ impl<'a> Section<'a> {
             return Ok(Vec::new());
         };
         let header = format!("[[{}]]", self.path_to(key));
-        let wrong = |place: &Value<'a>| {
-            place.must_be(format_args!("written `{header}`, with its keys below"))
+        let wrong = |value: &Value<'a>| {
+            value.must_be(format_args!("written `{header}`, with its keys below"))
         };
         let Some(DeValue::Array(items)) = self.table.get(key).map(Spanned::get_ref) else {
             return Err(wrong(&value));
@@ -122,9 +124,12 @@ impl<'a> Section<'a> {
         items
             .iter()
             .map(|item| match item.get_ref() {
-                DeValue::Table(table) => {
-                    self.open(header.clone(), table, self.source.place(item.span()), keys)
-                }
+                DeValue::Table(table) => self.open(
+                    header.clone(),
+                    table,
+                    self.source.location(item.span()),
+                    keys,
+                ),
                 _ => Err(wrong(&Value::new(key, item, self.source))),
             })
             .collect()
@@ -143,18 +148,18 @@ impl<'a> Section<'a> {
     ) -> Result<Option<(&'static str, Self)>, Problem> {
         let mut given: Vec<_> = choices
             .iter()
-            .filter_map(|&(key, keys)| Some((self.optional(key)?.place(), key, keys)))
+            .filter_map(|&(key, keys)| Some((self.optional(key)?.location(), key, keys)))
             .collect();
-        given.sort_by_key(|(place, ..)| place.span.start);
+        given.sort_by_key(|(location, ..)| location.span.start);
         match given.as_slice() {
             [] => Ok(None),
             [(_, key, keys)] => Ok(self.table(key, keys)?.map(|section| (*key, section))),
-            [(_, first, _), (place, second, _), ..] => {
+            [(_, first, _), (location, second, _), ..] => {
                 let header = &self.header;
                 let message =
                     format!("{header} must have one {what}, got `{first}` and `{second}`");
                 Err(Problem::new(message)
-                    .at(place.clone())
+                    .at(location.clone())
                     .with_help(format!("start another {header} for the second")))
             }
         }
@@ -187,12 +192,12 @@ impl<'a> Section<'a> {
         self.source.beside(name)
     }
 
-    /// Names the place of a key as compilers do.
+    /// Names the location of a key as compilers do.
     pub(crate) fn describe(&self, key: &'static str) -> String {
-        let place = self
+        let location = self
             .optional(key)
-            .map_or(self.place.clone(), |value| value.place());
-        self.source.describe(&place)
+            .map_or(self.location.clone(), |value| value.location());
+        self.source.describe(&location)
     }
 
     /// Returns whether the file gives the key.
@@ -202,7 +207,7 @@ impl<'a> Section<'a> {
 
     /// Returns a problem placed at the header of the section.
     pub fn problem(&self, message: impl Display) -> Problem {
-        Problem::new(message.to_string()).at(self.place.clone())
+        Problem::new(message.to_string()).at(self.location.clone())
     }
 
     /// Returns a problem that was found when an object was made of the section, placed at the value
@@ -218,7 +223,7 @@ impl<'a> Section<'a> {
         &self,
         header: String,
         table: &'a DeTable<'a>,
-        place: Location,
+        location: Location,
         keys: &'static [&'static str],
     ) -> Result<Self, Problem> {
         Self {
@@ -226,7 +231,7 @@ impl<'a> Section<'a> {
             is_root: false,
             keys,
             table,
-            place,
+            location,
             source: self.source,
         }
         .checked(Some(self))
@@ -250,8 +255,8 @@ impl<'a> Section<'a> {
         match unknown {
             None => Ok(self),
             Some(key) => {
-                let place = self.source.place(key.span());
-                Err(self.unknown(key.get_ref(), parent).at(place))
+                let location = self.source.location(key.span());
+                Err(self.unknown(key.get_ref(), parent).at(location))
             }
         }
     }

@@ -31,18 +31,18 @@ impl Source {
         self.directory.join(name)
     }
 
-    /// Returns a place in this text.
-    pub(crate) const fn place(&self, span: Range<usize>) -> Location {
+    /// Returns a location in this text.
+    pub(crate) const fn location(&self, span: Range<usize>) -> Location {
         Location {
             source: self.index,
             span,
         }
     }
 
-    /// Names a place as compilers do: "lights.toml:3:1".
-    pub(crate) fn describe(&self, place: &Location) -> String {
+    /// Names a location as compilers do: "lights.toml:3:1".
+    pub(crate) fn describe(&self, location: &Location) -> String {
         let file = self.path.as_deref().unwrap_or(Path::new("text"));
-        match line_column(&self.text, place.span.start) {
+        match line_column(&self.text, location.span.start) {
             Some((line, column)) => format!("{}:{line}:{column}", file.display()),
             None => file.display().to_string(),
         }
@@ -53,8 +53,8 @@ impl Source {
         DeTable::parse(&self.text).map_err(|error| {
             let problem = Problem::new(format!("this is not valid TOML: {}", error.message()));
             match error.span() {
-                Some(span) => problem.at(self.place(span)),
-                None => problem.at(self.place(0..0)),
+                Some(span) => problem.at(self.location(span)),
+                None => problem.at(self.location(0..0)),
             }
         })
     }

@@ -97,7 +97,7 @@ impl Sources {
         &self.format
     }
 
-    /// Returns the files that were read, the scene file first; standard input is none.
+    /// Returns the files that were read, the scene file first; standard input is not one of them.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let paths = self.all.iter().filter_map(|source| source.path.clone());
         paths.filter(|path| !is_standard_input(path)).collect()
@@ -105,7 +105,10 @@ impl Sources {
 
     /// Turns a problem into an error that knows its file.
     pub(crate) fn locate(&self, problem: Problem) -> ConfigError {
-        let index = problem.place.as_ref().map_or(0, |place| place.source);
+        let index = problem
+            .location
+            .as_ref()
+            .map_or(0, |location| location.source);
         let source = self.all.get(index);
         let path = source.and_then(|source| source.path.as_deref());
         match source {
@@ -186,26 +189,26 @@ impl Sources {
 
 /// A problem in a file that is not the scene's own, without what stands there.
 fn unquoted(source: &Source, problem: &Problem) -> Problem {
-    let place = problem.place.as_ref();
-    let place = place.and_then(|place| line_column(&source.text, place.span.start));
-    let place = place.map_or_else(String::new, |(line, column)| {
+    let location = problem.location.as_ref();
+    let location = location.and_then(|location| line_column(&source.text, location.span.start));
+    let location = location.map_or_else(String::new, |(line, column)| {
         format!(" in line {line}, column {column}")
     });
     Problem::new(format!(
-        "there is a mistake{place}; the file lies outside of the document's folder and is not quoted"
+        "there is a mistake{location}; the file lies outside of the document's folder and is not quoted"
     ))
 }
 
 /// A file that another one includes, and where it says so.
 struct Include {
     path: PathBuf,
-    place: Location,
+    location: Location,
 }
 
 impl Include {
     fn problem(&self, what: impl core::fmt::Display) -> Problem {
         let name = self.path.display();
-        Problem::new(format!("`include`: {name} {what}")).at(self.place.clone())
+        Problem::new(format!("`include`: {name} {what}")).at(self.location.clone())
     }
 }
 
@@ -221,7 +224,7 @@ fn includes_of(source: &Source, format: &Format) -> Result<Vec<Include>, Problem
     let include = |file: &crate::value::Value<'_>| {
         Ok(Include {
             path: source.beside(file.string()?),
-            place: file.place(),
+            location: file.location(),
         })
     };
     let files = list.list("a list of files, such as [\"lights.toml\"]")?;
@@ -238,12 +241,12 @@ fn read_text(path: &Path, format: &Format) -> Result<String, ConfigError> {
     String::from_utf8(bytes).map_err(|not_utf8| {
         let valid = not_utf8.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(&not_utf8.as_bytes()[..valid]);
-        let place = Location {
+        let location = Location {
             source: 0,
             span: valid..valid,
         };
         let problem =
-            Problem::new(format!("the {} file must be text in UTF-8", format.noun)).at(place);
+            Problem::new(format!("the {} file must be text in UTF-8", format.noun)).at(location);
         ConfigError::new(Some(path), &text, problem)
     })
 }

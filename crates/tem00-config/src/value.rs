@@ -9,7 +9,7 @@ use crate::error::{Location, Problem};
 use crate::quantity::{DIMENSIONS, Dimension, LENGTH, NUMBER};
 use crate::source::Source;
 
-/// A value of the file, with what it takes to complain about it: its name, its text and its place.
+/// A value of the file, with what it takes to complain about it: its name, its text and its location.
 #[derive(Clone, Debug)]
 pub struct Value<'a> {
     name: String,
@@ -26,15 +26,15 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Returns the place of the value.
-    pub(crate) fn place(&self) -> Location {
-        self.source.place(self.item.span())
+    /// Returns the location of the value.
+    pub(crate) fn location(&self) -> Location {
+        self.source.location(self.item.span())
     }
 
     /// Returns the problem that the value is not `allowed`.
     pub fn must_be(&self, allowed: impl Display) -> Problem {
         let (name, got) = (&self.name, self.as_written());
-        Problem::new(format!("{name} must be {allowed}, got {got}")).at(self.place())
+        Problem::new(format!("{name} must be {allowed}, got {got}")).at(self.location())
     }
 
     /// The value as the file has it, on one line and not too long.
@@ -103,7 +103,7 @@ impl<'a> Value<'a> {
 
     /// Returns a problem placed at the value, whose quantities are told in the unit of the value.
     pub fn problem(&self, message: impl Display) -> Problem {
-        Problem::new(self.retyped(&message.to_string())).at(self.place())
+        Problem::new(self.retyped(&message.to_string())).at(self.location())
     }
 
     /// Returns a message about this value with its quantities in the unit of this value.

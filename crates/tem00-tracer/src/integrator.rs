@@ -115,7 +115,7 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Draws a place in the pupil, as a pair of numbers; a pinhole has only its middle.
+    /// Draws a position in the pupil, as a pair of numbers; a pinhole has only its middle.
     pub(crate) fn lens(&self, stream: Stream) -> [f64; 2] {
         if self.camera.description().depth_of_field {
             self.sequence.pair(stream, Use::Lens)
@@ -187,7 +187,7 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// A lamp that the camera sees has a place, too.
+    /// Records the position of a lamp that the camera sees.
     fn see_lamp(&self, path: &Path, ray: &Ray, hit: Option<&Hit>, batch: &mut Batch<'a>) {
         let Some(hit) = hit.filter(|_| path.depth == 0) else {
             return;

@@ -144,7 +144,7 @@ impl Laser {
     /// Returns the laser carried along by a rigid motion: its aperture, its axis and the direction
     /// of its line.
     ///
-    /// The laser in its new place stands still.
+    /// The laser in its new pose stands still.
     #[must_use]
     pub fn moved(&self, motion: &RigidMotion) -> Self {
         let description = &self.description;

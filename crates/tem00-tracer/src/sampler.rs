@@ -39,15 +39,15 @@ pub(crate) struct Stream {
 /// The use of a pair of random numbers. Different uses have independent numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Use {
-    /// The place in the pixel.
+    /// The position in the pixel.
     Pixel,
-    /// The place in the pupil.
+    /// The position in the pupil.
     Lens,
     /// The direction in which a path goes on from its vertex of this number.
     Scattering(u32),
     /// The decision if a path goes on from its vertex of this number.
     Survival(u32),
-    /// The place on a lamp: number of the vertex, number of the lamp.
+    /// The position on a lamp: number of the vertex, number of the lamp.
     Lamp(u32, u32),
     /// The direction towards a laser: number of the vertex, number of the laser.
     Laser(u32, u32),

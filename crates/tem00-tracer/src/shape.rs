@@ -18,7 +18,7 @@ pub enum Shape {
     Sphere(Sphere),
     /// An open tube.
     Cylinder(Cylinder),
-    /// A mesh of flat triangles in its place.
+    /// A placed mesh of flat triangles.
     Mesh(MeshInstance),
 }
 

@@ -5,7 +5,7 @@ use crate::TracerError;
 
 /// Motion of an object from frame to frame.
 ///
-/// The pose of a frame takes the thing from its place in the scene description to its place in that
+/// The pose of a frame takes the thing from its position in the scene description to that in the
 /// frame: a rotation by R about a pivot P of the scene description, and then a displacement d.
 ///
 /// ```text
@@ -72,7 +72,7 @@ impl Default for Rotation {
 pub struct Keyframe {
     /// The time, in frames; fractions are allowed.
     pub frame: f64,
-    /// The displacement from the place in the scene description, in metres.
+    /// The displacement from the position in the scene description, in metres.
     pub displacement: DVec3,
     /// The rotation from the orientation in the scene description.
     pub rotation: Rotation,
@@ -247,7 +247,7 @@ impl Trajectory {
     /// A rotation about the pivot, and then a displacement.
     fn placed(&self, rotation: DQuat, displacement: DVec3) -> RigidMotion {
         let rotation = DMat3::from_quat(rotation);
-        // What does not turn keeps its place to the last bit, wherever the pivot is.
+        // What does not turn keeps its position to the last bit, wherever the pivot is.
         let kept = if rotation == DMat3::IDENTITY {
             DVec3::ZERO
         } else {

@@ -56,7 +56,7 @@ impl HalfTable {
         self.integral
     }
 
-    /// Returns the place up to which the density integrates to `target`, in [0, 1], and the density
+    /// Returns the position up to which the density integrates to `target`, in [0, 1], and the density
     /// there.
     pub(super) fn sample(&self, target: f64) -> (f64, f64) {
         let behind = self.cumulative.partition_point(|sum| *sum <= target);

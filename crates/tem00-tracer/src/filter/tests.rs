@@ -56,7 +56,7 @@ fn samples_have_the_moments_and_the_frequency_response_of_the_kernel() {
         let norm = integral(filter, |_| 1.0);
         // Where the kernel is small, as at the ends of a long tail and beside zeros, a point stands
         // for a long piece of x: the midpoint rule errs by up to the weight of a point, 2^−17, at
-        // each of up to six such places.
+        // each of up to six such positions.
         let tolerance = 4e-5;
         assert_relative_eq!(mean(filter, |_| 1.0), 1.0, epsilon = tolerance);
         for power in 1..=4 {
@@ -81,7 +81,7 @@ fn samples_have_the_moments_and_the_frequency_response_of_the_kernel() {
 }
 
 #[test]
-fn the_density_is_that_of_the_drawn_places() {
+fn the_density_is_that_of_the_drawn_positions() {
     for filter in filters() {
         let sampler = FilterSampler::new(filter).unwrap();
         let Some(table) = sampler.table else { continue };

@@ -30,14 +30,14 @@ pub(crate) struct Batch<'a> {
     pub(super) rays_followed: u64,
 }
 
-/// A place in the image and in the pupil, and what is found there.
+/// A position in the image and in the pupil, and what is found there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CameraSample {
     /// The number of the pixel, among those that are sampled together.
     pub slot: usize,
     /// The image point, in pixels.
     pub pixel: DVec2,
-    /// The place in the pupil, as a pair of numbers in [0, 1).
+    /// The position in the pupil, as a pair of numbers in [0, 1).
     pub lens: [f64; 2],
     pub stream: Stream,
     /// The weight of the sample in its pixel, of mean 1.

@@ -44,12 +44,12 @@ impl Spectrum {
         let mut wavelengths = Vec::new();
         let of_laser = lasers
             .iter()
-            .map(|laser| place(&mut wavelengths, laser.wavelength()))
+            .map(|laser| index_of(&mut wavelengths, laser.wavelength()))
             .collect();
         let of_lamps = if lamps.is_empty() {
             0
         } else {
-            place(&mut wavelengths, LAMP_WAVELENGTH)
+            index_of(&mut wavelengths, LAMP_WAVELENGTH)
         };
         Self {
             wavelengths,
@@ -59,8 +59,8 @@ impl Spectrum {
     }
 }
 
-/// Returns the place of a wavelength in the list, where it is put if it is not there.
-fn place(wavelengths: &mut Vec<f64>, wavelength: f64) -> usize {
+/// Returns the index of a wavelength in the list, to which it is added if it is not there.
+fn index_of(wavelengths: &mut Vec<f64>, wavelength: f64) -> usize {
     let bits = wavelength.to_bits();
     let found = wavelengths.iter().position(|other| other.to_bits() == bits);
     found.unwrap_or_else(|| {

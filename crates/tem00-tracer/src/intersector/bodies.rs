@@ -6,7 +6,7 @@ use super::{
     lanes::meet_triangles,
     packet::{Packet, set},
     primitive::{Primitive, ShearedRay},
-    query::{Place, Query},
+    query::{PrimitiveIndex, Query},
     traverse::{Leaves, Stacks, follow_many, follow_one},
     triangles::MeshHierarchy,
 };
@@ -58,7 +58,11 @@ impl Body {
     }
 
     /// Returns where a ray meets the body that its query found.
-    pub(super) fn hit(&self, query: &impl Query, (distance, place): (f64, Place)) -> Option<Hit> {
+    pub(super) fn hit(
+        &self,
+        query: &impl Query,
+        (distance, index): (f64, PrimitiveIndex),
+    ) -> Option<Hit> {
         let ray = query.ray();
         let (instance, triangle) = match &self.content {
             Content::Primitive(primitive) => {
@@ -71,7 +75,7 @@ impl Body {
                     surface: self.surface,
                 });
             }
-            Content::Mesh(instance) => (instance, place.triangle),
+            Content::Mesh(instance) => (instance, index.triangle),
             Content::Triangle(instance, triangle) => (instance, *triangle),
         };
         let corners = instance.corners(triangle as usize);
@@ -124,8 +128,8 @@ impl Bodies {
         }
     }
 
-    pub(super) fn body(&self, place: Place) -> &Body {
-        &self.bodies[place.body as usize]
+    pub(super) fn body(&self, index: PrimitiveIndex) -> &Body {
+        &self.bodies[index.body as usize]
     }
 }
 
@@ -144,11 +148,11 @@ impl Leaves for Bodies {
         stacks: &mut Stacks,
     ) {
         let body = self.order[leaf];
-        let place = Place { body, triangle: 0 };
+        let index = PrimitiveIndex { body, triangle: 0 };
         match &self.bodies[body as usize].content {
-            Content::Primitive(primitive) => query.offer(primitive, place),
+            Content::Primitive(primitive) => query.offer(primitive, index),
             Content::Triangle(instance, triangle) => {
-                query.offer(&Primitive::triangle(instance, *triangle), place);
+                query.offer(&Primitive::triangle(instance, *triangle), index);
             }
             Content::Mesh(instance) => {
                 let hierarchy = instance.mesh().hierarchy();
@@ -197,7 +201,7 @@ impl Leaves for Bodies {
     }
 }
 
-/// A mesh in its place, as what the leaves of its hierarchy hold.
+/// A placed mesh, as the content of the leaves of its hierarchy.
 struct Part<'a> {
     hierarchy: &'a MeshHierarchy,
     instance: &'a MeshInstance,
@@ -207,11 +211,11 @@ struct Part<'a> {
 impl Part<'_> {
     #[inline(always)]
     fn offer(&self, triangle: u32, query: &mut impl Query) {
-        let place = Place {
+        let index = PrimitiveIndex {
             body: self.body,
             triangle,
         };
-        query.offer(&Primitive::triangle(self.instance, triangle), place);
+        query.offer(&Primitive::triangle(self.instance, triangle), index);
     }
 }
 

@@ -153,7 +153,7 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// The place of what is given in coordinates of the world.
+    /// The placement of what is given in coordinates of the world.
     pub(super) const WORLD: Self = Self {
         scale: 1.0,
         to_local: DMat3::IDENTITY,
@@ -211,18 +211,18 @@ impl Hierarchy {
         (point - self.centre) / self.radius
     }
 
-    /// Returns the unit of the hierarchy in its place, in metres.
-    pub(super) fn unit(&self, place: &Placement) -> f64 {
-        self.radius * place.scale
+    /// Returns the unit of the placed hierarchy, in metres.
+    pub(super) fn unit(&self, placement: &Placement) -> f64 {
+        self.radius * placement.scale
     }
 
     /// Returns a ray of the world in the unit of the hierarchy, from where it enters the
     /// surroundings of the bounding sphere, and whether it does so; none that is not finite does.
     #[inline(always)]
-    pub(super) fn enter(&self, place: &Placement, ray: &Ray) -> (LocalRay, bool) {
+    pub(super) fn enter(&self, placement: &Placement, ray: &Ray) -> (LocalRay, bool) {
         const REACH: f64 = 1.0 + 2.0 * PADDING;
-        let origin = place.to_local * (ray.origin - place.origin) / place.scale;
-        let direction = place.to_local * ray.direction;
+        let origin = placement.to_local * (ray.origin - placement.origin) / placement.scale;
+        let direction = placement.to_local * ray.direction;
         let offset = (self.centre - origin) / self.radius;
         let middle = offset.dot(direction);
         let miss = offset - middle * direction;
@@ -239,7 +239,7 @@ impl Hierarchy {
                 inverse(direction.z),
             ],
             scale: Scale {
-                unit: self.unit(place),
+                unit: self.unit(placement),
                 start,
             },
         };

@@ -29,11 +29,11 @@ pub(super) struct Packet {
 }
 
 impl Packet {
-    /// Gathers the rays that enter a hierarchy in its place, and returns their set.
+    /// Gathers the rays that enter a placed hierarchy, and returns their set.
     #[inline(always)]
     pub(super) fn gather<Q: Query>(
         hierarchy: &Hierarchy,
-        place: &Placement,
+        placement: &Placement,
         lanes: u64,
         queries: &[Q],
     ) -> (Self, u64) {
@@ -54,7 +54,7 @@ impl Packet {
             inverse: [[0.0; LANES]; 3],
             end: [0.0; LANES],
             start: [0.0; LANES],
-            unit: hierarchy.unit(place),
+            unit: hierarchy.unit(placement),
             beam: Beam::NONE,
         };
         let mut inside = [false; LANES];
@@ -63,7 +63,7 @@ impl Packet {
                 origin: vector(&origins, lane),
                 direction: vector(&directions, lane),
             };
-            let (ray, enters) = hierarchy.enter(place, &ray);
+            let (ray, enters) = hierarchy.enter(placement, &ray);
             for axis in 0..3 {
                 packet.origin[axis][lane] = ray.origin[axis];
                 packet.direction[axis][lane] = ray.direction[axis];

@@ -69,7 +69,7 @@ impl ShearedRay {
 }
 
 impl Primitive {
-    /// Returns a triangle of a mesh in its place.
+    /// Returns a triangle of a placed mesh.
     #[inline(always)]
     pub(super) fn triangle(instance: &MeshInstance, triangle: u32) -> Self {
         Self::Triangle(instance.corners(triangle as usize))

@@ -5,7 +5,7 @@ use super::{primitive::Primitive, segment::Segment};
 
 /// Index of a primitive in a scene: that of the body, and that of the triangle in it.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub(super) struct Place {
+pub(super) struct PrimitiveIndex {
     pub body: u32,
     pub triangle: u32,
 }
@@ -21,7 +21,7 @@ pub(super) trait Query {
     fn end(&self) -> f64;
 
     /// Considers a primitive that the ray may meet.
-    fn offer(&mut self, primitive: &Primitive, place: Place);
+    fn offer(&mut self, primitive: &Primitive, index: PrimitiveIndex);
 
     /// Takes note that something is in the way, well before the end.
     fn settle(&mut self);
@@ -34,7 +34,7 @@ pub(super) trait Query {
 #[derive(Clone, Debug)]
 pub(super) struct Nearest {
     ray: Ray,
-    pub best: Option<(f64, Place)>,
+    pub best: Option<(f64, PrimitiveIndex)>,
 }
 
 impl Nearest {
@@ -57,9 +57,9 @@ impl Query for Nearest {
     }
 
     #[inline(always)]
-    fn offer(&mut self, primitive: &Primitive, place: Place) {
+    fn offer(&mut self, primitive: &Primitive, index: PrimitiveIndex) {
         if let Some(distance) = primitive.distance(&self.ray) {
-            let candidate = (distance, place);
+            let candidate = (distance, index);
             if self.best.is_none_or(|best| candidate < best) {
                 self.best = Some(candidate);
             }
@@ -124,7 +124,7 @@ impl Query for Shadow {
 
     /// A primitive stands in the way unless it is what the ray ends on.
     #[inline(always)]
-    fn offer(&mut self, primitive: &Primitive, _: Place) {
+    fn offer(&mut self, primitive: &Primitive, _: PrimitiveIndex) {
         let Some(distance) = primitive.distance(&self.ray) else {
             return;
         };

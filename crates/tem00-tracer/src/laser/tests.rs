@@ -72,7 +72,7 @@ fn a_tabulated_line_lights_what_its_table_says() {
     assert!(at(-0.21) <= 0.0 && at(0.41) <= 0.0, "outside the table");
 }
 
-/// An elliptic spot with its waists apart, from an oblique place, whose line direction is not across
+/// An elliptic spot with its waists apart, from an oblique position, whose line direction is not across
 /// the axis; its beam; and the three axes.
 fn elliptic_spot() -> (Laser, AstigmaticBeam, [DVec3; 3]) {
     let position = DVec3::new(0.03, -0.02, 0.05);

@@ -42,14 +42,14 @@ impl Albedo {
     }
 
     fn at_root(&self, root: f64) -> f64 {
-        let place = root.clamp(0.0, 1.0) * LAST;
+        let position = root.clamp(0.0, 1.0) * LAST;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "between 0 and the last node"
         )]
-        let first = (place as usize).saturating_sub(1).min(NODES - 4);
-        let t = place - first as f64;
+        let first = (position as usize).saturating_sub(1).min(NODES - 4);
+        let t = position - first as f64;
         let (a, b, c, d) = (t, t - 1.0, t - 2.0, t - 3.0);
         let [e, f, g, h] = [0, 1, 2, 3].map(|i| self.nodes[first + i]);
         (3.0 * a * c * d * f - b * c * d * e + a * b * c * h - 3.0 * a * b * d * g) / 6.0

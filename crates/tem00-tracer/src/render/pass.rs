@@ -43,7 +43,7 @@ pub(super) struct PathPass<'a, P> {
 /// A pixel that is sampled.
 struct Pixel {
     /// Column and row in the whole image.
-    place: [usize; 2],
+    position: [usize; 2],
     sums: PixelSums,
 }
 
@@ -75,7 +75,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
             let mut film = locked(film);
             film.count_rays(batch.take_ray_count());
             for pixel in &pixels {
-                film.write_first(strip, self.in_area(pixel.place), &pixel.sums);
+                film.write_first(strip, self.in_area(pixel.position), &pixel.sums);
             }
             Ok(())
         })
@@ -90,7 +90,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         strips.try_for_each_init(Batch::default, |batch, strip| {
             let mut pixels = self.strip(strip);
             for pixel in &mut pixels {
-                pixel.sums = locked(film).read(self.in_area(pixel.place));
+                pixel.sums = locked(film).read(self.in_area(pixel.position));
             }
             for round in 1..MAX_ROUNDS {
                 pixels.retain(|pixel| !is_done(pixel));
@@ -98,7 +98,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
                 let mut film = locked(film);
                 film.count_rays(batch.take_ray_count());
                 for pixel in &pixels {
-                    film.write(self.in_area(pixel.place), &pixel.sums);
+                    film.write(self.in_area(pixel.position), &pixel.sums);
                 }
             }
             Ok(())
@@ -115,10 +115,10 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         batch.clear();
         let strata = Strata::new(self.options.samples_per_pixel);
         for slot in 0..pixels.len() {
-            let place = pixels[slot].place;
-            let key = self.key(place, round);
+            let position = pixels[slot].position;
+            let key = self.key(position, round);
             for index in 0..strata.samples() {
-                let sample = self.camera_sample(slot, place, key, (strata, index));
+                let sample = self.camera_sample(slot, position, key, (strata, index));
                 batch.samples.push(sample);
                 if batch.samples.len() == BATCH {
                     self.trace(batch, pixels)?;
@@ -182,7 +182,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         let columns = first..self.area.width.min(first + STRIP);
         let lasers = self.integrator.laser_count();
         let pixels = columns.map(|column| Pixel {
-            place: [self.area.x + column, self.area.y + row],
+            position: [self.area.x + column, self.area.y + row],
             sums: PixelSums::new(lasers),
         });
         pixels.collect()

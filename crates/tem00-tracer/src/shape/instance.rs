@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use crate::{RigidMotion, TracerError, TriangleMesh, mesh};
 
-/// A mesh in its place: scaled, turned and moved.
+/// A placed mesh: scaled, turned and moved.
 ///
 /// ```text
 /// x = s R p + t        p: point of the mesh

@@ -26,9 +26,9 @@ pub(super) struct PatternAllocation {
     pub stack: StackPlan,
     /// The number of stacks.
     pub count: usize,
-    /// The number of places in each stack: more than one if the memory does not hold a stack for
+    /// The number of positions in each stack: more than one if the memory does not hold a stack for
     /// each.
-    pub places: usize,
+    pub positions: usize,
     /// The surfaces.
     pub surfaces: Vec<usize>,
 }
@@ -61,23 +61,23 @@ pub(super) struct Part {
     pub fraction: f64,
     /// The stack, among those of the allocation.
     pub stack: usize,
-    /// Its place in the stack, in periods along x and y.
+    /// Its position in the stack, in periods along x and y.
     pub offset: [f64; 2],
 }
 
-/// The number of slices per pupil diameter from which a stack of one's own is worth more than a place
+/// The number of slices per pupil diameter from which a stack of one's own is worth more than a position
 /// in one with more slices: the blend between them then exceeds the correlation law by up to 0.11.
 const ENOUGH_SLICES: f64 = 16.0;
 
-/// Allocates patterns to requests within a memory in bytes: a stack for each pattern, or else a place
+/// Allocates patterns to requests within a memory in bytes: a stack for each pattern, or else a position
 /// in one stack for all. `asked` makes of a plan what the scene file asks for.
 pub(super) fn allocate(
     requests: &[Request],
     memory: u64,
     asked: impl Fn(StackPlan) -> StackPlan,
 ) -> Result<Vec<PatternAllocation>, TracerError> {
-    let places: usize = requests.iter().map(|request| request.parts).sum();
-    if places > 1
+    let positions: usize = requests.iter().map(|request| request.parts).sum();
+    if positions > 1
         && let Some(stacks) = separate(requests, memory, &asked)?
     {
         let pairs = requests.iter().zip(stacks);
@@ -87,7 +87,7 @@ pub(super) fn allocate(
                 shifts: request.shifts,
                 stack,
                 count: request.parts,
-                places: 1,
+                positions: 1,
                 surfaces: request.surfaces.clone(),
             })
             .collect());
@@ -106,7 +106,7 @@ pub(super) fn allocate(
         shifts,
         stack,
         count: 1,
-        places,
+        positions,
         surfaces: requests.iter().flat_map(|r| r.surfaces.clone()).collect(),
     }])
 }
@@ -166,7 +166,7 @@ fn together(requests: &[Request]) -> Option<(StackNeeds, [f64; 2])> {
     })
 }
 
-/// Returns the offset of the pattern `number` among `places` in one stack, in periods along x and y.
+/// Returns the offset of the pattern `number` among several in one stack, in periods along x and y.
 ///
 /// They are the points of the sequence of Roberts (2018), far apart from each other.
 pub(super) fn offset(number: usize) -> [f64; 2] {

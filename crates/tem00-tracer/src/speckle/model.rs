@@ -7,7 +7,7 @@ use super::{
     PatternPlan, SpecklePlan, SpecklePoint,
     allocation::{Part, PatternAllocation},
     change::Change,
-    plan::Place,
+    plan::SurfacePatterns,
     printed::displacement_and_slice,
     upright,
 };
@@ -25,7 +25,7 @@ struct LaserPatterns {
     geometry: ImagingGeometry,
     patterns: Vec<Pattern>,
     /// The patterns in which each surface looks up its speckle.
-    places: Vec<Place>,
+    surface_patterns: Vec<SurfacePatterns>,
 }
 
 /// Independent stacks of one size.
@@ -93,9 +93,9 @@ impl SpeckleModel {
         let change = Change::new(scene, frame);
         let lasers = self.lasers.iter().enumerate();
         let sides = lasers.map(|(index, laser)| {
-            let places = laser.places.iter();
-            let sides =
-                places.map(|p| change.side(index, &laser.geometry, p.reference_point.as_ref()));
+            let surface_patterns = laser.surface_patterns.iter();
+            let sides = surface_patterns
+                .map(|p| change.side(index, &laser.geometry, p.reference_point.as_ref()));
             sides.collect()
         });
         SpeckleFrame {
@@ -115,7 +115,7 @@ impl LaserPatterns {
         Ok(Self {
             geometry,
             patterns,
-            places: plan.places().to_vec(),
+            surface_patterns: plan.surface_patterns().to_vec(),
         })
     }
 }
@@ -186,12 +186,15 @@ impl SpeckleFrame<'_> {
     fn look_up(&self, laser: usize, points: &[SpecklePoint], factors: &mut [f64]) {
         factors.fill(1.0);
         let patterns = &self.model.lasers[laser];
-        let Some(place) = points.first().and_then(|p| patterns.places.get(p.surface)) else {
+        let Some(surface) = points
+            .first()
+            .and_then(|p| patterns.surface_patterns.get(p.surface))
+        else {
             return;
         };
-        let pattern = &patterns.patterns[place.allocation];
+        let pattern = &patterns.patterns[surface.allocation];
         factors.fill(0.0);
-        for part in &place.parts {
+        for part in &surface.parts {
             match &pattern.stacks[part.stack] {
                 Stack::Derived(stack) => {
                     let mut block = self.coordinates(laser, pattern, stack, points);
@@ -201,7 +204,7 @@ impl SpeckleFrame<'_> {
                 Stack::AsPrinted(stack, speckle_size) => {
                     for (factor, point) in factors.iter_mut().zip(points) {
                         let [x, y, u] = self.as_printed(laser, pattern, *speckle_size, point);
-                        let [x0, y0] = part.place_in(stack.size());
+                        let [x0, y0] = part.offset_in(stack.size());
                         *factor += part.fraction * stack.intensity_at(x + x0, y + y0, u);
                     }
                 }
@@ -261,9 +264,9 @@ impl SpeckleFrame<'_> {
 }
 
 impl Block {
-    /// Moves the coordinates to the place of a part.
+    /// Moves the coordinates to the position of a part.
     fn shift(&mut self, part: &Part, size: [usize; 2]) {
-        let [x0, y0] = part.place_in(size);
+        let [x0, y0] = part.offset_in(size);
         self.x.iter_mut().for_each(|x| *x += x0);
         self.y.iter_mut().for_each(|y| *y += y0);
     }
@@ -284,8 +287,8 @@ impl Block {
 }
 
 impl Part {
-    /// Returns where the part starts in a stack of so many samples, in samples.
-    fn place_in(&self, size: [usize; 2]) -> [f64; 2] {
+    /// Returns the position at which the part starts in a stack of so many samples, in samples.
+    fn offset_in(&self, size: [usize; 2]) -> [f64; 2] {
         [0, 1].map(|axis| self.offset[axis] * size[axis] as f64)
     }
 }

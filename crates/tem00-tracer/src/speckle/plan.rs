@@ -30,7 +30,7 @@ pub struct PatternPlan {
     speckle_size: f64,
     allocations: Vec<PatternAllocation>,
     /// The patterns in which each surface looks up its speckle.
-    places: Vec<Place>,
+    surface_patterns: Vec<SurfacePatterns>,
     /// The names of the surfaces.
     names: Vec<String>,
     as_printed: bool,
@@ -40,7 +40,7 @@ pub struct PatternPlan {
 
 /// Patterns in which a surface looks up its speckle.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct SurfacePatterns {
     /// The patterns, among those of the laser.
     pub allocation: usize,
     /// The parts that add up.
@@ -148,7 +148,7 @@ impl Planner<'_> {
         Ok(PatternPlan {
             wavelength: geometry.wavelength(),
             speckle_size: geometry.speckle_size_in_pixels(),
-            places: self.places(&requests, &allocations, &sums, prescans),
+            surface_patterns: self.surface_patterns(&requests, &allocations, &sums, prescans),
             allocations,
             names: self.scene.surfaces.iter().map(|s| s.name.clone()).collect(),
             as_printed,
@@ -186,21 +186,23 @@ impl Planner<'_> {
     }
 
     /// Returns the patterns in which each surface looks up the parts of its speckle.
-    fn places(
+    fn surface_patterns(
         &self,
         requests: &[Request],
         allocations: &[PatternAllocation],
         sums: &[Vec<f64>],
         prescans: &[MotionPrescan],
-    ) -> Vec<Place> {
-        let shared = allocations.iter().any(|allocation| allocation.places > 1);
+    ) -> Vec<SurfacePatterns> {
+        let shared = allocations
+            .iter()
+            .any(|allocation| allocation.positions > 1);
         let surfaces = self.groups.iter().zip(sums);
         surfaces
             .map(|(&group, fractions)| {
                 let before = requests[..group].iter().map(|request| request.parts);
                 let first: usize = before.sum();
                 let parts = fractions.iter().enumerate();
-                Place {
+                SurfacePatterns {
                     allocation: if shared { 0 } else { group },
                     reference_point: prescans[group].reference_point,
                     parts: parts
@@ -268,8 +270,8 @@ impl PatternPlan {
         &self.allocations
     }
 
-    pub(super) fn places(&self) -> &[Place] {
-        &self.places
+    pub(super) fn surface_patterns(&self) -> &[SurfacePatterns] {
+        &self.surface_patterns
     }
 
     pub(super) const fn is_as_printed(&self) -> bool {

@@ -12,7 +12,7 @@ fn all_visible(intersector: &Intersector, segments: &[Segment]) -> Vec<bool> {
     visible
 }
 
-/// Segments from where rays meet a scene to points around a place.
+/// Segments from where rays meet a scene to points around a position.
 fn segments(
     intersector: &Intersector,
     rays: &[Ray],
@@ -122,7 +122,7 @@ fn shadows_are_those_of_a_search_of_all_primitives() {
         for primitive in &primitives {
             query.offer(
                 primitive,
-                query::Place {
+                query::PrimitiveIndex {
                     body: 0,
                     triangle: 0,
                 },

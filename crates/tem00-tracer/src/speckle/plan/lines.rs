@@ -94,12 +94,12 @@ impl PatternPlan {
         if allocation.count > 1 {
             write!(f, "{} patterns that add up; ", allocation.count)?;
         }
-        if allocation.places > 1 {
+        if allocation.positions > 1 {
             write!(
                 f,
-                "{} places in one pattern, for the memory does NOT hold more: each repeats what \
+                "{} positions in one pattern, for the memory does NOT hold more: each repeats what \
                  another shows elsewhere in the image; ",
-                allocation.places
+                allocation.positions
             )?;
         }
         let mebibytes = allocation.memory_bytes() as f64 / f64::from(1 << 20);

@@ -115,8 +115,12 @@ fn surfaces_that_move_apart_have_patterns_of_their_own_each_as_wide_as_it_needs(
         assert!((width - 310.0).abs() < 3.0, "{width} pixels: {plan}");
     }
     assert_ne!(plan.seed_of(0), plan.seed_of(1), "{plan}");
-    let places: Vec<_> = plan.places().iter().map(|place| place.allocation).collect();
-    assert_eq!(places, [0, 1], "{plan}");
+    let allocations: Vec<_> = plan
+        .surface_patterns()
+        .iter()
+        .map(|surface| surface.allocation)
+        .collect();
+    assert_eq!(allocations, [0, 1], "{plan}");
     let lines: Vec<_> = plan.to_string().lines().map(str::to_owned).collect();
     assert_eq!(lines.len(), 2, "{plan}");
     assert!(lines[1].starts_with("`left half`: speckles of"), "{plan}");
@@ -180,14 +184,18 @@ fn a_memory_that_does_not_hold_patterns_for_all_holds_places_for_them() {
     assert_eq!(shared.allocations().len(), 1, "{shared}");
     assert_eq!(shared.stack().path().slice_count(), 32, "{shared}");
     assert!(
-        shared.to_string().contains("2 places in one pattern"),
+        shared.to_string().contains("2 positions in one pattern"),
         "{shared}"
     );
-    let places: Vec<_> = shared.places().iter().map(|p| p.parts[0].offset).collect();
+    let offsets: Vec<_> = shared
+        .surface_patterns()
+        .iter()
+        .map(|p| p.parts[0].offset)
+        .collect();
     // Far apart on the torus of the pattern.
     for axis in [0, 1] {
-        let apart = (places[1][axis] - places[0][axis]).abs();
-        assert!((0.2..0.8).contains(&apart), "{places:?}");
+        let apart = (offsets[1][axis] - offsets[0][axis]).abs();
+        assert!((0.2..0.8).contains(&apart), "{offsets:?}");
     }
 }
 
@@ -198,7 +206,7 @@ fn many_motions_share_what_memory_there_is() {
     scene.surfaces.extend(more);
     let plan = plan_within(64.0, scene).unwrap();
     assert!(plan.memory_bytes() <= 64 << 20, "{plan}");
-    assert!(plan.to_string().contains("101 places"), "{plan}");
+    assert!(plan.to_string().contains("101 positions"), "{plan}");
 }
 
 #[test]
@@ -215,7 +223,7 @@ fn sums_of_patterns_take_a_stack_for_each_part() {
         plan.to_string().contains("6 patterns that add up"),
         "{plan}"
     );
-    let parts = &plan.places()[0].parts;
+    let parts = &plan.surface_patterns()[0].parts;
     for (number, part) in parts.iter().enumerate() {
         assert_eq!(part.stack, number, "{parts:?}");
         let fraction = if number % 2 == 0 { 0.25 } else { 1.0 / 12.0 };
@@ -226,7 +234,7 @@ fn sums_of_patterns_take_a_stack_for_each_part() {
     let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
     let plan = &plan.patterns()[0];
     assert_eq!(plan.memory_bytes(), 64 * (3 << 18), "{plan}");
-    assert!(plan.to_string().contains("6 places"), "{plan}");
+    assert!(plan.to_string().contains("6 positions"), "{plan}");
     for (patterns, polarisation) in [(0, 1.0), (1, 1.5), (1, f64::NAN), (u32::MAX, 1.0)] {
         scene.surfaces[0].speckle = SurfaceSpeckle {
             patterns,

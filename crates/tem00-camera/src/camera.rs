@@ -231,11 +231,11 @@ impl Camera {
     /// Returns `None` for an image point that no ray reaches.
     pub fn sight(&self, pixel: DVec2) -> Option<(DVec3, [DVec3; 2])> {
         let (depth, tangent) = self.seen_by(pixel)?;
-        let place = self.sensor.point(pixel);
+        let position = self.sensor.point(pixel);
         let undo = self.distortion.jacobian(tangent).inverse();
-        // The tangent of the image point is place.xy / place.z.
+        // The tangent of the image point is position.xy / position.z.
         let derivative = |step: DVec3| {
-            let image = (step.truncate() - step.z / depth * place.truncate()) / depth;
+            let image = (step.truncate() - step.z / depth * position.truncate()) / depth;
             self.world((undo * image).extend(0.0))
         };
         let direction = self.world(tangent.extend(1.0));
@@ -337,21 +337,23 @@ impl Camera {
 
     /// Returns the direction of the chief ray in the axes of the camera, of any length.
     fn chief(&self, pixel: DVec2) -> DVec3 {
-        let place = self.sensor.point(pixel);
-        if self.distortion.is_none() || place.z <= 0.0 {
-            return place;
+        let position = self.sensor.point(pixel);
+        if self.distortion.is_none() || position.z <= 0.0 {
+            return position;
         }
-        let tangent = self.distortion.undistorted(place.truncate() / place.z);
-        (place.z * tangent).extend(place.z)
+        let tangent = self
+            .distortion
+            .undistorted(position.truncate() / position.z);
+        (position.z * tangent).extend(position.z)
     }
 
     /// Returns the depth of an image point and the tangent of its chief ray, or `None` before the
     /// lens and where distortion has no ray.
     fn seen_by(&self, pixel: DVec2) -> Option<(f64, DVec2)> {
-        let place = self.sensor.point(pixel);
-        let image = place.truncate() / place.z;
-        (place.z > 0.0 && image.length() < self.distortion.reach())
-            .then(|| (place.z, self.distortion.undistorted(image)))
+        let position = self.sensor.point(pixel);
+        let image = position.truncate() / position.z;
+        (position.z > 0.0 && image.length() < self.distortion.reach())
+            .then(|| (position.z, self.distortion.undistorted(image)))
     }
 
     fn geometry_for(
@@ -385,14 +387,14 @@ impl Camera {
             DVec2::new(-IMAGE_MARGIN, size.y),
             size,
         ];
-        for place in corners.map(|corner| self.sensor.point(corner)) {
+        for position in corners.map(|corner| self.sensor.point(corner)) {
             check(
                 "tilt",
                 tilt,
-                place.z > 0.0,
+                position.z > 0.0,
                 "so small that all of the image stands behind the lens (in radians)",
             )?;
-            let radius = place.truncate().length() / place.z;
+            let radius = position.truncate().length() / position.z;
             check(
                 "distortion",
                 self.distortion.reach(),

@@ -9,7 +9,7 @@ use crate::{
 
 /// Correlation, by speckle, of the line's position in two columns of two frames.
 pub trait SpeckleCorrelation {
-    /// Returns the correlation of the places in columns that lie `columns` apart, the second in the
+    /// Returns the correlation of the positions in columns that lie `columns` apart, the second in the
     /// frame `later` frames after the first.
     fn between(&self, columns: i64, later: u32) -> f64;
 }
@@ -84,10 +84,10 @@ pub fn mean_point(
     seen.point.position = points().map(|p| p.seen.point.position).sum::<DVec3>() / count;
     mean.calibration = points().fold(DMat3::ZERO, |sum, p| sum + p.calibration) * count.recip();
     mean.noise = mean_noise(members, speckle);
-    let place = mean.noise.total().sqrt();
+    let deviation = mean.noise.total().sqrt();
     let along = mean.per_pixel.length();
-    mean.seen.point.uncertainty = place * points().map(seen_per_pixel).sum::<DVec3>() / count;
-    mean.seen.point.along = place * along;
+    mean.seen.point.uncertainty = deviation * points().map(seen_per_pixel).sum::<DVec3>() / count;
+    mean.seen.point.along = deviation * along;
     Some(mean)
 }
 
@@ -96,7 +96,7 @@ fn seen_per_pixel(point: &MeasuredPoint) -> DVec3 {
     point.per_pixel.length() * point.seen.point.direction.abs()
 }
 
-/// The noise of the mean of the places of several points.
+/// The noise of the mean of the positions of several points.
 fn mean_noise(members: &[Member<'_>], speckle: &impl SpeckleCorrelation) -> PositionNoise {
     let squared_count = (members.len() as f64).powi(2);
     let mut sum = PositionNoise::default();

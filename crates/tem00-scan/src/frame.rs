@@ -55,16 +55,16 @@ impl MeasuredPoint {
         DVec3::from_array(DVec3::AXES.map(|axis| self.uncertainty_along(axis)))
     }
 
-    /// Returns the standard uncertainty along a direction of length 1, in metres: that of the place of the
+    /// Returns the standard uncertainty along a direction of length 1, in metres: that of the position of the
     /// line and that of the calibration together.
     pub fn uncertainty_along(&self, direction: DVec3) -> f64 {
-        self.place_uncertainty_along(direction)
+        self.line_uncertainty_along(direction)
             .hypot(self.calibration_uncertainty_along(direction))
     }
 
-    /// Returns the standard uncertainty along a direction of length 1 that comes from the place of the
+    /// Returns the standard uncertainty along a direction of length 1 that comes from the position of the
     /// line, in metres.
-    pub fn place_uncertainty_along(&self, direction: DVec3) -> f64 {
+    pub fn line_uncertainty_along(&self, direction: DVec3) -> f64 {
         self.noise.total().sqrt() * self.per_pixel.dot(direction).abs()
     }
 
@@ -75,7 +75,7 @@ impl MeasuredPoint {
         direction.dot(self.calibration * direction).max(0.0).sqrt()
     }
 
-    /// Returns whether the place of the line can be trusted.
+    /// Returns whether the position of the line can be trusted.
     pub fn is_valid(&self) -> bool {
         self.seen.validity == Validity::Valid
     }
@@ -148,7 +148,7 @@ impl Surroundings<'_> {
         profile.iter().filter_map(measured).collect()
     }
 
-    /// Returns how speckle correlates the place of the line in neighbouring columns, as the pattern
+    /// Returns how speckle correlates the position of the line in neighbouring columns, as the pattern
     /// has changed: for columns from −n to n apart.
     ///
     /// The middle one of the valid points stands for all. A slope of the line makes the correlation
@@ -245,7 +245,7 @@ impl Expected {
         PositionNoise::of_column(sensor, &speckle.as_deref(), &column.light())
     }
 
-    /// The line that there would be without noise at the place of a point, if any.
+    /// The line that there would be without noise at the position of a point, if any.
     fn nearest(&self, seen: &ProfilePoint, reach: f64) -> Option<&LinePoint> {
         let distance = |line: &LinePoint| (line.position - seen.pixel.y).abs();
         self.lines[seen.column]
@@ -257,8 +257,8 @@ impl Expected {
     /// Tells whether an edge of the part cuts the line at a point, or there would be none without
     /// noise.
     ///
-    /// First order would say that such a place is known very well, as little light moves little; it is the
-    /// place of the edge, and not of the line.
+    /// First order would say that such a position is known very well, as little light moves little; it is the
+    /// position of the edge, and not of the line.
     fn is_sliver(&self, seen: &ProfilePoint, reach: f64) -> bool {
         let (pixels, usual) = SLIVER;
         let narrow = pixels.min(usual * self.usual_width);
@@ -266,7 +266,7 @@ impl Expected {
             .is_none_or(|line| line.width < narrow)
     }
 
-    /// The light in the column of a point, and how its place depends on it: as without speckle where
+    /// The light in the column of a point, and how its position depends on it: as without speckle where
     /// there would be a line, too.
     fn column(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> Column {
         let take = |grid: &Grid<f32>| -> Vec<f32> {

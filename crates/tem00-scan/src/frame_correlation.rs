@@ -1,6 +1,6 @@
 use crate::average::SpeckleCorrelation;
 
-/// The correlation of a line's place over columns, for each number of frames between.
+/// The correlation of a line's position over columns, for each number of frames between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameCorrelation {
     /// By number of frames, then by columns, from −reach to reach.

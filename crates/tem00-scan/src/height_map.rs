@@ -6,7 +6,7 @@ use crate::frame::MeasuredPoint;
 
 /// The heights of a part on a grid.
 ///
-/// Row 0 is the first profile, or the least place along the scan; holes are NaN.
+/// Row 0 is the first profile, or the smallest position along the scan; holes are NaN.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightMap {
     /// The heights, in metres; NaN where nothing was measured.
@@ -89,12 +89,13 @@ impl HeightMap {
     ) -> Result<Self, TriangulationError> {
         check_pitch(pitch)?;
         let points = || profiles.iter().flatten().filter(|point| point.is_valid());
-        let place = |point: &MeasuredPoint| [across, along].map(|axis| point.position.dot(axis));
-        let (origin, size) = extent(points().map(place), pitch)?;
+        let coordinates =
+            |point: &MeasuredPoint| [across, along].map(|axis| point.position.dot(axis));
+        let (origin, size) = extent(points().map(coordinates), pitch)?;
         let mut map = Self::empty(size, Raster::Part { origin, pitch });
         let mut sums = Grid::filled(size[0], size[1], [0.0_f64; 3]);
         for point in points() {
-            let cell = place(point);
+            let cell = coordinates(point);
             let cell = [0, 1].map(|axis| index((cell[axis] - origin[axis]) / pitch, size[axis]));
             let uncertainty = point.uncertainty_along(height);
             let sum = &mut sums[(cell[0], cell[1])];
@@ -119,7 +120,7 @@ impl HeightMap {
         }
     }
 
-    /// Returns the least and the greatest height, in metres, or `None` where all are holes.
+    /// Returns the minimum and the maximum height, in metres, or `None` where all are holes.
     pub fn range(&self) -> Option<[f64; 2]> {
         let heights = self.heights.values().iter().filter(|h| !h.is_nan());
         heights.fold(None, |range, &height| {
@@ -186,17 +187,17 @@ pub(super) fn check_pitch(pitch: f64) -> Result<(), TriangulationError> {
     })
 }
 
-/// The lower corner of a grid around all places, in metres, and its number of cells.
+/// The lower corner of a grid around all positions, in metres, and its number of cells.
 fn extent(
-    places: impl Iterator<Item = [f64; 2]>,
+    positions: impl Iterator<Item = [f64; 2]>,
     pitch: f64,
 ) -> Result<([f64; 2], [usize; 2]), TriangulationError> {
     let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    let (low, high) = places.fold(start, |(low, high), place| {
+    let (low, high) = positions.fold(start, |(low, high), position| {
         let axes = [0, 1];
         (
-            axes.map(|axis| low[axis].min(place[axis])),
-            axes.map(|axis| high[axis].max(place[axis])),
+            axes.map(|axis| low[axis].min(position[axis])),
+            axes.map(|axis| high[axis].max(position[axis])),
         )
     });
     if low[0] > high[0] {
@@ -224,13 +225,13 @@ fn extent(
     Ok((low, size))
 }
 
-/// The cell of a place, in cells from the first; the last one holds the upper edge.
-fn index(place: f64, size: usize) -> usize {
+/// The cell of a position, in cells from the first; the last one holds the upper edge.
+fn index(position: f64, size: usize) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "places lie in the grid"
+        reason = "positions lie in the grid"
     )]
-    let index = place.max(0.0) as usize;
+    let index = position.max(0.0) as usize;
     index.min(size - 1)
 }

@@ -174,7 +174,7 @@ impl Measurement {
         Ok(measured)
     }
 
-    /// Returns how speckle correlates the places of the line between a frame and those that follow, up
+    /// Returns how speckle correlates the positions of the line between a frame and those that follow, up
     /// to `frames` of them together, by the law of its motion and decorrelation.
     pub fn frame_correlation(&self, first: &MeasuredFrame, frames: u32) -> FrameCorrelation {
         let surroundings = self.surroundings(first.frame, first.reference_point.is_some());

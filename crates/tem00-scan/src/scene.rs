@@ -32,7 +32,7 @@ impl MeasurementScene {
     /// # Errors
     ///
     /// Returns an error if a file cannot be read or does not describe a scene and a sensor. It names key,
-    /// value and what is allowed, and knows its place in its file.
+    /// value and what is allowed, and knows its location in its file.
     pub fn read<'a>(
         path: &Path,
         reading: impl Into<Reading<'a>>,

@@ -3,7 +3,7 @@ use core::f64::consts::PI;
 use glam::{DMat2, DVec2};
 use tem00_numerics::{cast::to_usize, jinc, quadrature::gauss_legendre};
 
-/// Speckle as the pixels of a sensor see it, at a place of the image.
+/// Speckle as the pixels of a sensor see it, at a position of the image.
 ///
 /// The autocovariance of fully developed speckle behind a circular pupil is that of Airy's pattern,
 /// in directions that the pupil tells apart:

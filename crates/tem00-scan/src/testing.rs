@@ -6,7 +6,7 @@ use tem00_triangulation::{PositionNoise, ProfilePoint, UncertainPoint, Validity}
 
 use crate::frame::MeasuredPoint;
 
-/// A point in a column whose place moves it by 10 µm per pixel along z.
+/// A point in a column whose position moves it by 10 µm per pixel along z.
 pub(super) fn point(column: usize, position: DVec3) -> MeasuredPoint {
     MeasuredPoint {
         seen: ProfilePoint {

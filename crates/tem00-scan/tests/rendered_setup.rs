@@ -27,7 +27,7 @@ fn setup(scheimpflug: bool) -> Setup {
     parse_setup(&text).expect("a set-up")
 }
 
-/// The line as rendered in the middle columns: the electrons of a column, the place and the full width.
+/// The line as rendered in the middle columns: the electrons of a column, the position and the full width.
 fn rendered(setup: &Setup, height: f64) -> [f64; 3] {
     const COLUMNS: usize = 24;
     let line = setup.line_at(height).expect("the line is seen");
@@ -53,17 +53,21 @@ fn rendered(setup: &Setup, height: f64) -> [f64; 3] {
     let frame = frame.expect("it renders");
     let [mut sum, mut first, mut second] = [0.0; 3];
     for (row, y) in frame.lasers[0].coherent_before.rows().zip(0_u32..) {
-        let place = top + f64::from(y) + 0.5;
+        let position = top + f64::from(y) + 0.5;
         let radiance: f64 = row.iter().map(|&value| f64::from(value)).sum();
-        let pixel = DVec2::new(320.0, place);
+        let pixel = DVec2::new(320.0, position);
         let irradiance = radiance * scene.camera.irradiance_per_radiance(pixel) / COLUMNS as f64;
         let electrons = setup.sensor().electrons(irradiance, 650e-9);
         sum += electrons;
-        first += electrons * place;
-        second += electrons * place * place;
+        first += electrons * position;
+        second += electrons * position * position;
     }
-    let place = first / sum;
-    [sum, place, 4.0 * (second / sum - place * place).sqrt()]
+    let position = first / sum;
+    [
+        sum,
+        position,
+        4.0 * (second / sum - position * position).sqrt(),
+    ]
 }
 
 #[test]
@@ -83,16 +87,16 @@ fn a_setup_predicts_what_is_rendered_of_it() {
     for (scheimpflug, height) in [(false, 0.0), (false, 6e-3), (true, 6e-3)] {
         let setup = setup(scheimpflug);
         let line = setup.line_at(height).expect("the line is seen");
-        let [electrons, place, width] = rendered(&setup, height);
+        let [electrons, position, width] = rendered(&setup, height);
         let case = format!("Scheimpflug {scheimpflug}, height {height}");
         // 256 samples in each of 24 · 20 pixels of the line: the rms of their spread, 1 or less, by
         // √123000 is 0.3 %; four times that. At 6 mm the fan is 3 % nearer and the line as much shorter.
         let shorter = 1.0 - height / 0.2;
         let ratio = electrons * shorter / line.column_electrons;
         assert!((ratio - 1.0).abs() < 0.012, "{case}: {ratio}");
-        // The same samples leave W/4 · 0.3 % of the place. Perspective and, out of focus, the disc across
+        // The same samples leave W/4 · 0.3 % of the position. Perspective and, out of focus, the disc across
         // the tilted plate shift the centroid of a line of 0.4 mm by some (W/L) W.
-        let shift = place - line.position;
+        let shift = position - line.position;
         assert!(shift.abs() < 0.1, "{case}: {shift} pixels");
         // The tracer knows no diffraction, a pixel widens σ² by 1/12, and 1 % is chance. The waist of the
         // laser's line is at the height 0, 3 % wider it is at no height here.

@@ -34,7 +34,7 @@ impl MeshFormat {
     ///
     /// # Errors
     ///
-    /// Returns an error if it is none of those above.
+    /// Returns an error if it is not one of those above.
     pub fn from_path(path: &Path) -> Result<Self, MeshFileError> {
         let extension = path.extension().unwrap_or_default();
         let extension = extension.to_string_lossy().to_lowercase();

@@ -37,7 +37,7 @@ pub(crate) const SCENE: Format = Format {
 /// # Errors
 ///
 /// Returns an error if a file cannot be read, is not valid TOML, or if they do not describe a scene.
-/// It names key, value and what is allowed, and knows its place in its file.
+/// It names key, value and what is allowed, and knows its location in its file.
 pub fn read_scene(path: &Path) -> Result<Scene, ConfigError> {
     SceneFile::read(path).map(|file| file.scene)
 }

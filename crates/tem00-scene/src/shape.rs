@@ -24,13 +24,13 @@ const SHADINGS: &[(&str, Shading)] = &[("smooth", Shading::Smooth), ("flat", Sha
 #[derive(Clone, Debug)]
 pub(crate) struct PlacedShape {
     pub(crate) shape: Shape,
-    pub(crate) place: DVec3,
+    pub(crate) position: DVec3,
 }
 
 /// Reads the shape of a surface.
 pub(crate) fn read(section: &Section<'_>, assets: &mut Assets) -> Result<PlacedShape, Problem> {
     let (kind, section) = section.one_of("shape", SHAPES)?;
-    let at = |shape, place| PlacedShape { shape, place };
+    let at = |shape, position| PlacedShape { shape, position };
     Ok(match kind {
         "rectangle" => {
             let rectangle = rectangle(&section)?;
@@ -42,8 +42,8 @@ pub(crate) fn read(section: &Section<'_>, assets: &mut Assets) -> Result<PlacedS
         }
         "cylinder" => cylinder(&section)?,
         _ => {
-            let (mesh, place) = mesh(&section, assets)?;
-            at(Shape::Mesh(mesh), place)
+            let (mesh, position) = mesh(&section, assets)?;
+            at(Shape::Mesh(mesh), position)
         }
     })
 }
@@ -82,7 +82,7 @@ fn cylinder(section: &Section<'_>) -> Result<PlacedShape, Problem> {
     let axis = section.or("axis", DVec3::Z, Value::direction)?;
     let radius = section.required("radius", "\"4 mm\"")?.positive(&LENGTH)?;
     let length = section.required("length", "\"50 mm\"")?.positive(&LENGTH)?;
-    let (place, centre) = match (section.optional("centre"), section.optional("base")) {
+    let (position, centre) = match (section.optional("centre"), section.optional("base")) {
         (Some(_), Some(base)) => return Err(both("centre", "base", "the tube", &base)),
         (_, Some(base)) => {
             let base = base.lengths()?;
@@ -97,11 +97,11 @@ fn cylinder(section: &Section<'_>) -> Result<PlacedShape, Problem> {
     let tube = tube.map_err(|error| rejected(&error, error.parameter(), &[section]))?;
     Ok(PlacedShape {
         shape: Shape::Cylinder(tube),
-        place,
+        position,
     })
 }
 
-/// Reads a mesh file and puts it in its place: scaled, then rotated, then moved by `position` or
+/// Reads a mesh file and places it: scaled, then rotated, then moved by `position` or
 /// until the middle of its box is at `centre`.
 fn mesh(section: &Section<'_>, assets: &mut Assets) -> Result<(MeshInstance, DVec3), Problem> {
     let file = section.required("file", "\"part.ply\"")?;
@@ -158,8 +158,8 @@ fn middle(mesh: &MeshInstance) -> DVec3 {
     0.5 * (low + high)
 }
 
-fn both(one: &str, other: &str, what: &str, place: &Value<'_>) -> Problem {
-    place.problem(format_args!(
+fn both(one: &str, other: &str, what: &str, value: &Value<'_>) -> Problem {
+    value.problem(format_args!(
         "`{one}` and `{other}` both place {what}: give one of the two"
     ))
 }

@@ -69,8 +69,8 @@ fn surface(
         material,
         rms_height,
     } = material::read(section, lasers)?;
-    let PlacedShape { shape, place } = shape::read(section, assets)?;
-    let pivot = pivot(section, place)?;
+    let PlacedShape { shape, position } = shape::read(section, assets)?;
+    let pivot = pivot(section, position)?;
     let surface = Surface {
         name,
         shape,

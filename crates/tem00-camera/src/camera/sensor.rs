@@ -36,13 +36,13 @@ impl Sensor {
         }
     }
 
-    /// Returns the place of an image point, in metres.
+    /// Returns the position of an image point, in metres.
     pub(super) fn point(&self, pixel: DVec2) -> DVec3 {
         let offset = (pixel - self.axis_point) * self.pitch;
         offset.x * self.right - offset.y * self.up + self.distance * DVec3::Z
     }
 
-    /// Returns by how much the place moves per pixel to the right and per pixel down, in metres.
+    /// Returns by how much the position moves per pixel to the right and per pixel down, in metres.
     pub(super) fn steps(&self) -> [DVec3; 2] {
         [self.pitch * self.right, -self.pitch * self.up]
     }

@@ -76,7 +76,7 @@ fn rendered_corners_are_found_where_they_are_projected() {
         }
     }
     // Sampling noise: the pixels on the edges scatter by √(1/6 / 16) of the contrast. By a saddle of the
-    // curvature 1 / (π σ²) a place scatters by its square times √π / (8 σ): 0.033 pixel per axis for a
+    // curvature 1 / (π σ²) a position scatters by its square times √π / (8 σ): 0.033 pixel per axis for a
     // smoothing of 2 pixels. With 140 coordinates the root mean square is 25 % more with 1e-5.
     let rms = (sum / (2.0 * 35.0)).sqrt();
     assert!(rms < 0.06, "{rms}");

@@ -61,11 +61,11 @@ proptest! {
         let pixel = DVec2::from_array(pixel);
         let (normal, _) = tilted_normal(&camera);
         let axes = camera.axes();
-        // The place on the turned sensor, relative to where the axis meets it.
+        // The position on the turned sensor, relative to where the axis meets it.
         let offset = (pixel - DVec2::new(300.0, 260.0)) * 3.45e-6;
         let turn = DQuat::from_rotation_arc(-axes.z_axis, normal);
-        let place = turn * (offset.x * axes.x_axis - offset.y * axes.y_axis);
-        let depth = camera.image_distance() - place.dot(axes.z_axis);
+        let position = turn * (offset.x * axes.x_axis - offset.y * axes.y_axis);
+        let depth = camera.image_distance() - position.dot(axes.z_axis);
         let in_focus = 1.0 / (1.0 / 25e-3 - 1.0 / depth);
         let at_depth = |ray: Ray| {
             let distance = in_focus / -ray.direction.dot(axes.z_axis);

@@ -132,11 +132,11 @@ fn a_tilted_sensor_is_lit_by_the_pupil_at_its_own_angle() {
     .unwrap();
     let (y, distance) = (100.0 * 3.45e-6, 25e-3 * 0.3 / 0.275);
     // The tilted image, upright: up = (0, cos τ, −sin τ) in right, up, view.
-    let place = DVec3::new(0.0, y * tilt.angle.cos(), distance - y * tilt.angle.sin());
+    let position = DVec3::new(0.0, y * tilt.angle.cos(), distance - y * tilt.angle.sin());
     let normal = DVec3::new(0.0, tilt.angle.sin(), tilt.angle.cos());
-    let direction = place.normalize();
+    let direction = position.normalize();
     let area = PI * 3.125e-3 * 3.125e-3 / 4.0;
-    let expected = area * direction.z * direction.dot(normal) / place.length_squared();
+    let expected = area * direction.z * direction.dot(normal) / position.length_squared();
     let got = camera.irradiance_per_radiance(DVec2::new(320.0, 140.0));
     assert_relative_eq!(got, expected, max_relative = 1e-13, epsilon = 0.0);
 }

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use crate::printable::printable_line;
 
-/// The most characters of a message.
+/// The maximum number of characters of a message.
 const MAX_CHARS: usize = 1000;
 
 /// An error of a file, or of one that it includes, and its location there.

@@ -23,7 +23,7 @@ pub enum DocumentKind {
 }
 
 /// Tells by its sections what a document describes, so that a file of another kind can be told by name;
-/// `None` if it is no TOML, or nothing that is known.
+/// `None` if it is not TOML, or of no known kind.
 ///
 /// A scene may have several lasers and surfaces, `[[laser]]` and `[[surface]]`; a set-up has one `[laser]`
 /// and one `[surface]`.

@@ -8,10 +8,10 @@ use std::{
 
 use tem00_numerics::check_memory;
 
-/// The most bytes of a scene file, a set-up file or one that they include: 16 MiB.
+/// The maximum number of bytes of a scene file, a set-up file or one that they include: 16 MiB.
 pub const MAX_TEXT_BYTES: u64 = 16 << 20;
 
-/// The most bytes of a mesh, of a file with its data, and of a map of radiance: 4 GiB.
+/// The maximum number of bytes of a mesh, of a file with its data, and of a map of radiance: 4 GiB.
 pub const MAX_ASSET_BYTES: u64 = 4 << 30;
 
 /// The name that stands for standard input where a text is read.

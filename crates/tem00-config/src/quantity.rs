@@ -205,7 +205,7 @@ impl Dimension {
         Some(unit.si(number))
     }
 
-    /// Returns the number and the unit of a string, or `None` if it is no quantity of this kind.
+    /// Returns the number and the unit of a string, or `None` if it is not a quantity of this kind.
     fn split(&self, text: &str) -> Option<(f64, &Unit)> {
         let text = text.trim();
         // The unit begins at the first letter that is not part of an exponent.
@@ -228,7 +228,7 @@ impl Dimension {
     }
 
     /// Returns a message about `typed` with its lengths, or whatever it is, in the unit that was typed; or
-    /// `None` if it is no quantity of this kind.
+    /// `None` if it is not a quantity of this kind.
     pub(crate) fn retyped(&self, message: &str, typed: &str) -> Option<String> {
         let value = self.parse(typed)?;
         let si = self.units.iter().find(|unit| unit.is_si())?;
@@ -300,7 +300,7 @@ impl Dimension {
         text.parse().map_or(value, |number| unit.si(number))
     }
 
-    /// Returns the size of a unit in SI units, or `None` if it is no unit of this kind.
+    /// Returns the size of a unit in SI units, or `None` if it is not a unit of this kind.
     pub(crate) fn size_of(&self, symbol: &str) -> Option<f64> {
         self.unit(symbol).map(|unit| unit.si(1.0))
     }

@@ -32,7 +32,7 @@ const OFF_MIDDLE: f64 = 0.3;
 /// a fraction of the distance.
 const MAX_SHIFT: f64 = 0.1;
 
-/// The least distance of the squares from the edge of the image, in pixels.
+/// The minimum distance of the squares from the edge of the image, in pixels.
 const MARGIN: f64 = 4.0;
 
 /// The reflectances of bright and dark squares: prints are never black.

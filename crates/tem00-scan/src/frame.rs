@@ -193,7 +193,7 @@ impl Surroundings<'_> {
     }
 }
 
-/// The most columns that a pattern is followed beyond its reach.
+/// The maximum number of columns that a pattern is followed beyond its reach.
 const FARTHEST: f64 = 1024.0;
 
 /// The middle one of the valid points.

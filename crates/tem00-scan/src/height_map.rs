@@ -34,7 +34,7 @@ pub enum Raster {
     },
 }
 
-/// The most cells of a map.
+/// The maximum number of cells of a map.
 const MAX_CELLS: f64 = 16_777_216.0;
 
 impl HeightMap {

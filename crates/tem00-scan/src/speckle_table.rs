@@ -30,7 +30,7 @@ pub(super) struct SpeckleTable {
 /// less than 10⁻⁴ of the first.
 const REACH: f64 = 12.0;
 
-/// The most pixels to either side that are kept.
+/// The maximum number of pixels to either side that are kept.
 const MOST: usize = 256;
 
 impl SpeckleTable {

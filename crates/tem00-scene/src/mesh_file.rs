@@ -63,7 +63,7 @@ impl MeshFormat {
 /// # Errors
 ///
 /// Returns an error that names the file if the scale is not positive and finite, the extension is
-/// that of no format, the file cannot be read or breaks its format, or its content is no mesh (see
+/// that of no format, the file cannot be read or breaks its format, or its content is not a mesh (see
 /// [`TriangleMesh::new`]). Errors of text files say the line. Of glTF, primitives other than
 /// triangles, sparse accessors and extensions that the file requires are refused.
 ///

@@ -31,7 +31,7 @@ use crate::Metal;
 pub struct FinishingProcess {
     /// The name of what it leaves: "milled".
     pub name: &'static str,
-    /// The least and the greatest usual arithmetic mean deviation Ra of the profile, in metres.
+    /// The minimum and the maximum usual arithmetic mean deviation Ra of the profile, in metres.
     pub mean_deviation: [f64; 2],
 }
 

@@ -9,7 +9,7 @@ use crate::{Crop, Hit, Intersector, Laser, LocalFrame, Scene, TracerError, sprea
 const RAYS: u32 = 4096;
 /// Rays of each laser whose way is kept.
 const KEPT: u32 = 64;
-/// The most mirrors and glass that a ray is followed over.
+/// The maximum number of mirrors and glass surfaces that a ray is followed over.
 const MAX_SPECULAR: u32 = 16;
 /// The fraction of a laser's power from which on it counts as seen in the image.
 const MIN_FRACTION: f64 = 1e-5;

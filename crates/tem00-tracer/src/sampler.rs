@@ -6,7 +6,7 @@ mod strata;
 pub(crate) use self::independent::Sampler;
 pub(crate) use self::strata::Strata;
 
-/// The most points that a pixel's samples share before they start afresh.
+/// The maximum number of points that a pixel's samples share before they start afresh.
 const MAX_POINTS: u32 = 1 << 12;
 
 /// A set of points that fills the unit square evenly, scrambled anew for every pixel and every use.

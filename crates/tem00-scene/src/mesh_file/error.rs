@@ -7,7 +7,7 @@ use tem00_tracer::MeshError;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MeshFileError {
-    /// The content is no mesh.
+    /// The content is not a mesh.
     Mesh(MeshError),
     /// The scale, in metres per unit of the file, is not positive and finite.
     Scale(f64),

@@ -174,7 +174,7 @@ pub(super) enum Arrival {
 }
 
 impl Connections {
-    /// The most ways that wait to be tested.
+    /// The maximum number of ways that wait to be tested.
     const CAPACITY: usize = 4096;
 
     pub(super) fn push(&mut self, segment: Segment, arrival: Arrival) {

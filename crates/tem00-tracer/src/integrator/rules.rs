@@ -8,7 +8,7 @@ pub(super) const LAMP_WAVELENGTH: f64 = 550e-9;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PathRules {
     pub formulas: Formulas,
-    /// The most surfaces between source and camera.
+    /// The maximum number of surfaces between source and camera.
     pub max_depth: u32,
     /// True if the lasers' light is found from the camera at all.
     pub finds_lasers: bool,

@@ -68,7 +68,7 @@ pub struct RenderOptions {
     pub seed: u64,
     /// The formulas.
     pub formulas: Formulas,
-    /// The most surfaces that light may meet between source and camera; `None` for no limit.
+    /// The maximum number of surfaces that light may meet between source and camera; `None` for no limit.
     pub max_depth: Option<u32>,
     /// The method by which light is followed.
     pub method: Method,

@@ -17,10 +17,10 @@ use crate::{
 /// The number of neighbouring pixels of a row that one thread works on at a time.
 const STRIP: usize = 32;
 
-/// The most samples that are traced together.
+/// The maximum number of samples that are traced together.
 const BATCH: usize = 1024;
 
-/// The most rounds of samples that a pixel gets for a target error, the first one included.
+/// The maximum number of rounds of samples that a pixel gets for a target error, the first one included.
 const MAX_ROUNDS: u64 = 64;
 
 /// The radiance below which a pixel's error is compared with this radiance instead of its own, by the

@@ -12,7 +12,7 @@ pub struct RenderSettings {
     pub frames: u32,
     /// The frame whose speckle the others' has moved and changed from.
     pub reference_frame: u32,
-    /// The most surfaces that light may meet between source and camera; `None` for no limit.
+    /// The maximum number of surfaces that light may meet between source and camera; `None` for no limit.
     pub max_depth: Option<u32>,
     /// The method by which light is followed.
     pub method: Method,

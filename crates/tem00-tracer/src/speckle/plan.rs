@@ -59,7 +59,7 @@ impl SpecklePlan {
     /// # Errors
     ///
     /// Returns an error if C exceeds Q/2, if the imaging geometry is not possible, if the speckle of
-    /// a surface is no sum of patterns, or if the patterns do not fit the memory that the scene
+    /// a surface is not a sum of patterns, or if the patterns do not fit the memory that the scene
     /// allows.
     pub fn new(scene: &Scene, formulas: Formulas, seed: u64) -> Result<Self, TracerError> {
         let geometries = scene

@@ -18,7 +18,7 @@ const RAYS_PER_SIDE: u32 = 128;
 /// Number of frames that are sampled beside those of the keyframes.
 const FRAMES: u32 = 16;
 
-/// The most keyframes that are sampled.
+/// The maximum number of keyframes that are sampled.
 const KEYFRAMES: usize = 64;
 
 /// Requirements of the image and the motion in a scene on a pattern.

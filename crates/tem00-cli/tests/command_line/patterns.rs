@@ -187,7 +187,12 @@ fn images_without_speckle_are_refused_by_their_name() {
     for (name, width, values, part) in [
         ("tiny.npy", 4, &varied[..16], "4 × 4 pixels"),
         ("row.npy", 400, &varied[..], "400 × 1 pixels"),
-        ("even.npy", 20, &[2.0; 400][..], "more than one value, got 2"),
+        (
+            "even.npy",
+            20,
+            &[2.0; 400][..],
+            "more than one value, got 2",
+        ),
         ("black.npy", 20, &[0.0; 400][..], "0"),
         ("hole.npy", 20, &hole[..], "(3, 1) is NaN"),
     ] {

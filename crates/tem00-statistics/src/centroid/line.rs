@@ -28,7 +28,7 @@ use crate::{
 /// lines, first order in the fluctuations. How wide a line must be depends on what it is made of:
 ///
 /// - a line on a rough surface that a lens images obeys the law within 1 % from w = h on, see
-///   [`imaged_line_centroid_deviation`];
+///   [`imaged_line_centroid_deviation`](crate::imaged_line_centroid_deviation);
 /// - a speckle pattern times the irradiance, as renderers make it, scatters less: within 5 % of the
 ///   law from w = 4.2 h on, within 5 % of the [`SpeckledLine`] from 2 h on, within 7 % of that from h on.
 ///

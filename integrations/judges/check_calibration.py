@@ -115,7 +115,7 @@ def check_camera(verdict: Verdict, folder: Path, theirs: list[Places]) -> None:
         (0, "image distance", ours, distance, IMAGE_DISTANCE),
         (1, "principal point x", camera["principal_point"][0], principal[0], 320.0),
         (2, "principal point y", camera["principal_point"][1], principal[1], 240.0),
-        (5, "k1", camera["distortion"][0], k1, K1),
+        (5, "k1", camera["distortion"]["k1"], k1, K1),
     ]
     for place, name, value, other, true in values:
         sigma = float(np.sqrt(variances[place]))

@@ -8,7 +8,7 @@ use crate::error::Problem;
 use crate::input_file::FileAccess;
 use crate::source::INCLUDE;
 
-/// A key of a scene or of another document, and the value that it is to have instead of the file's.
+/// A key of a document, and the value that it is to have instead of the file's.
 ///
 /// It is written `camera.f_number=8`: the path of the key with dots between tables, and the value as the
 /// file has it. Of several tables, as of lasers, the index counts from 0: `laser[0].power=2 mW`. A value
@@ -34,7 +34,7 @@ pub struct Change {
     value: Value,
 }
 
-/// Settings for reading a scene file, or another document: where the files that it names may lie,
+/// Settings for reading a document: where the files that it names may lie,
 /// and what is to stand in it instead of what does.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading<'a> {

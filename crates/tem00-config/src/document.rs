@@ -31,12 +31,6 @@ impl<'a> Document<'a> {
         self.sources.files()
     }
 
-    /// Returns the problem that a section is missing.
-    pub fn missing(&self, key: &'static str) -> Problem {
-        let noun = self.sources.format().noun;
-        Problem::new(format!("the {noun} needs a section [{key}]"))
-    }
-
     /// Opens the table of a key, which one of the files may have.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use std::{
 
 use tem00_numerics::check_memory;
 
-/// The maximum number of bytes of a scene file, a set-up file or one that they include: 16 MiB.
+/// The maximum number of bytes of a document or of a file that it includes: 16 MiB.
 pub const MAX_TEXT_BYTES: u64 = 16 << 20;
 
 /// The maximum number of bytes of a mesh, of a file with its data, and of a map of radiance: 4 GiB.
@@ -17,7 +17,7 @@ pub const MAX_ASSET_BYTES: u64 = 4 << 30;
 /// The name that stands for standard input where a text is read.
 const STANDARD_INPUT: &str = "-";
 
-/// From where files may be read that a scene file or a set-up file names.
+/// The locations of the files that a document may name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FileAccess {
     /// Files that it includes lie below its own folder, and the data of a glTF file below that of the

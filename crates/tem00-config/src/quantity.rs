@@ -1,4 +1,4 @@
-/// A kind of quantity, with the units in which a scene file may state it.
+/// A kind of quantity, with the units in which a file may state it.
 ///
 /// A bare number is in the SI unit; a string is a number followed by a unit.
 #[derive(Debug)]

@@ -30,12 +30,13 @@ pub fn read_document<'a, T>(
 ///
 /// ```
 /// use std::path::Path;
-/// use tem00_config::{Format, LENGTH, parse_document};
+/// use tem00_config::{Format, LENGTH, Problem, parse_document};
 ///
 /// const PLATE: Format = Format { noun: "plate", keys: &["plate"], help: "write a section [plate]" };
 /// let thickness = |text: &str| {
 ///     parse_document(text, Path::new("."), PLATE, |root| {
-///         let plate = root.table("plate", &["thickness"])?.ok_or_else(|| root.missing("plate"))?;
+///         let plate = root.table("plate", &["thickness"])?;
+///         let plate = plate.ok_or_else(|| Problem::new("a plate needs a section [plate]"))?;
 ///         plate.required("thickness", "\"5 mm\"")?.positive(&LENGTH)
 ///     })
 /// };

@@ -27,7 +27,7 @@ pub(crate) struct Sources {
 }
 
 impl Sources {
-    /// Reads a scene file and all that it includes.
+    /// Reads a file and all that it includes.
     pub(crate) fn of_file(
         path: &Path,
         reading: Reading<'_>,
@@ -97,7 +97,7 @@ impl Sources {
         &self.format
     }
 
-    /// Returns the files that were read, the scene file first; standard input is not one of them.
+    /// Returns the files that were read, the file itself first; standard input is not one of them.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let paths = self.all.iter().filter_map(|source| source.path.clone());
         paths.filter(|path| !is_standard_input(path)).collect()
@@ -119,7 +119,7 @@ impl Sources {
         }
     }
 
-    /// Returns the folder of the scene file.
+    /// Returns the folder of the file.
     pub(crate) const fn folder(&self) -> &Folder {
         &self.folder
     }
@@ -187,7 +187,7 @@ impl Sources {
     }
 }
 
-/// A problem in a file that is not the scene's own, without what stands there.
+/// A problem in a file outside the document's folder, without what stands there.
 fn unquoted(source: &Source, problem: &Problem) -> Problem {
     let location = problem.location.as_ref();
     let location = location.and_then(|location| line_column(&source.text, location.span.start));

@@ -192,7 +192,7 @@ fn name_of_type(tokens: &[Token]) -> Option<&str> {
 
 /// The pages of the documentation.
 fn pages() -> Vec<PathBuf> {
-    let folders = ["docs", "docs/theory"].map(|folder| root().join(folder));
+    let folders = ["docs", "docs/theory", "docs/validation"].map(|folder| root().join(folder));
     let mut pages: Vec<_> = folders.iter().flat_map(|folder| entries(folder)).collect();
     pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
     pages.push(root().join("README.md"));

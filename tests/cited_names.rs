@@ -226,3 +226,26 @@ fn what_the_documentation_names_exists() {
     }
     assert!(missing.is_empty(), "{missing}");
 }
+
+#[test]
+fn theory_validation_and_front_page_of_a_crate_name_each_other() {
+    for theory in entries(&root().join("docs/theory")) {
+        let name = theory.file_name().expect("a page").to_string_lossy();
+        let text = read(&theory);
+        let mut names = text.split('`').filter(|span| span.starts_with("tem00-"));
+        let package = names.next().expect("a page names its crate");
+        let front = read(&root().join(format!("crates/{package}/src/lib.rs")));
+        let validation = read(&root().join(format!("docs/validation/{name}")));
+
+        assert!(front.contains(&format!("docs/theory/{name}")), "{package}");
+        assert!(
+            front.contains(&format!("docs/validation/{name}")),
+            "{package}"
+        );
+        assert!(text.contains(&format!("(../validation/{name})")), "{name}");
+        assert!(
+            validation.contains(&format!("(../theory/{name})")),
+            "{name}"
+        );
+    }
+}

@@ -4,6 +4,9 @@
 //! all queries derive from an energy-flow vector without divergence, and from a phase-space density
 //! whose straight rays reproduce that flow.
 //!
+//! Formulas and their derivation: `docs/theory/beam.md` in the repository; what judges them:
+//! `docs/validation/beam.md`.
+//!
 //! # Conventions
 //!
 //! Lengths are in metres, angles in radians, power in watts. Light travels along +z of its own

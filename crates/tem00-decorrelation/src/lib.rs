@@ -5,6 +5,9 @@
 //! pattern is left: everything a renderer needs to look up the right pattern, and nothing that
 //! depends on how the pattern was made.
 //!
+//! Formulas and their derivation: `docs/theory/decorrelation.md` in the repository; what judges them:
+//! `docs/validation/decorrelation.md`.
+//!
 //! # Conventions
 //!
 //! - SI units and radians; world vectors are [`DVec3`], vectors in the pupil or image [`DVec2`].

@@ -5,6 +5,9 @@
 //! brought to the moving part and averaged by the correlation of their speckle, height maps, point clouds,
 //! and calibrations from boards that are rendered.
 //!
+//! Formulas and their derivation: `docs/theory/triangulation.md` in the repository; what judges them:
+//! `docs/validation/triangulation.md`.
+//!
 //! # Main types
 //!
 //! A [`MeasurementScene`] is read from a scene file with the sections `[sensor]`, `[detector]`,

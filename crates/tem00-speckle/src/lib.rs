@@ -25,7 +25,8 @@
 //! memory; [`NpyReader`], [`write_npy`] and the methods of that name exchange fields and patterns
 //! with NumPy.
 //!
-//! The formulas and their derivation: `docs/theory/speckle.md` in the repository.
+//! Formulas and their derivation: `docs/theory/speckle.md` in the repository; what judges them:
+//! `docs/validation/speckle.md`.
 //!
 //! # Conventions
 //!

@@ -2,6 +2,9 @@
 //!
 //! What speckle theory says of a pattern, what a pattern says of itself, and whether the two agree.
 //!
+//! Formulas and their derivation: `docs/theory/statistics.md` in the repository; what judges them:
+//! `docs/validation/statistics.md`.
+//!
 //! # Conventions
 //!
 //! - Intensities of the closed forms are in units of their mean.

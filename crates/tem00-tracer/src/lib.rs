@@ -5,6 +5,9 @@
 //! of mirrors and glass, is coherent: each camera sample of it is multiplied by the speckle pattern at its
 //! position in the image. All other light is left as it is.
 //!
+//! Formulas and their derivation: `docs/theory/tracing.md` in the repository; what judges them:
+//! `docs/validation/tracing.md`.
+//!
 //! # Conventions
 //!
 //! - Lengths are in metres, powers in watts, radiances in W/(m² sr), all in `f64`; images are `f32`.

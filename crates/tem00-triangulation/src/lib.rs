@@ -5,6 +5,9 @@
 //! detectors that find the line to a fraction of a pixel, the geometry that turns its position into a
 //! point in space, and the uncertainty of that point, to which speckle adds most.
 //!
+//! Formulas and their derivation: `docs/theory/triangulation.md` in the repository; what judges them:
+//! `docs/validation/triangulation.md`.
+//!
 //! # Conventions
 //!
 //! - Lengths are in metres, angles in radians, times in seconds, `f64`; images are `f32` or `u16`.

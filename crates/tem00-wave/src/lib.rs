@@ -5,6 +5,9 @@
 //! nothing is assumed about speckle. The crate is slow and simple on purpose: it is the judge of
 //! models that are neither.
 //!
+//! Formulas and their derivation: `docs/theory/wave.md` in the repository; what judges them:
+//! `docs/validation/wave.md`.
+//!
 //! # Conventions
 //!
 //! - SI units and radians; amplitudes vary in time as `exp(−iωt)`, so that a diverging wave is

@@ -21,7 +21,7 @@ fn render(scene: &str, seed: u64, samples_per_pixel: u32) -> Frame {
     let options = RenderOptions {
         samples_per_pixel,
         seed,
-        ..RenderOptions::from(&scene.render)
+        ..scene.render
     };
     let cancel = AtomicBool::new(false);
     render_frame(&scene, None, 0, &options, |_| (), &cancel).expect("a render")

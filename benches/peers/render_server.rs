@@ -53,7 +53,7 @@ impl Server {
             samples_per_pixel: samples.parse()?,
             seed: seed.parse()?,
             lamp_events,
-            ..RenderOptions::from(&scene.render)
+            ..scene.render
         };
         let never = AtomicBool::new(false);
         Ok(render_frame(scene, None, 0, &options, |_| (), &never)?)

@@ -188,8 +188,8 @@ fn steady(frames: u32, reference: u32) -> (Scene, f64) {
     case.setting.lens.f_number = LENS.focal_length * 0.5 / surface.x;
     case.surface = Step::along(surface);
     let mut scene = case.scene();
-    scene.render.frames = frames;
-    scene.render.reference_frame = reference;
+    scene.frames = frames;
+    scene.reference_frame = reference;
     (scene, case.setting.geometry().speckle_size_in_pixels())
 }
 

@@ -16,7 +16,7 @@ use tem00::triangulation::DVec3;
 /// The scene, with both plates moving by so many metres per frame.
 fn moving(by: DVec3, frames: u32) -> MeasurementScene {
     let mut scene = scene();
-    scene.scene.render.frames = frames;
+    scene.scene.frames = frames;
     for surface in &mut scene.scene.surfaces {
         surface.trajectory = Trajectory::steady(by).expect("a motion");
     }

@@ -166,7 +166,7 @@ impl Prepared {
         let scene = self.measurement.scene();
         let options = RenderOptions {
             samples_per_pixel: 4,
-            ..RenderOptions::from(&scene.render)
+            ..scene.render
         };
         let cancel = AtomicBool::new(false);
         let rendered = render_frame(scene, Some(&self.speckle), frame, &options, |_| (), &cancel);

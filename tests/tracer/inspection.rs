@@ -50,7 +50,7 @@ fn inspected(scene: &Scene) -> LaserInspection {
 fn rendered(scene: &Scene) -> f32 {
     let options = RenderOptions {
         samples_per_pixel: 16,
-        ..RenderOptions::from(&scene.render)
+        ..scene.render
     };
     let frame = render_frame(scene, None, 0, &options, |_| (), &AtomicBool::new(false)).unwrap();
     let pixels = frame.lasers[0].coherent_before.values();

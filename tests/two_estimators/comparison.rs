@@ -67,7 +67,7 @@ impl Series {
                 seed,
                 method: self.method,
                 laser_events: self.laser_events,
-                ..RenderOptions::from(&scene.render)
+                ..scene.render
             };
             let cancel = AtomicBool::new(false);
             render_frame(scene, speckle, 0, &options, |_| (), &cancel).expect("a render")

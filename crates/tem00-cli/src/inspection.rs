@@ -84,7 +84,7 @@ impl<'a> Inspection<'a> {
             lines.push(words::seen(self.scene, laser, &lasers[laser]));
         }
         if let Some((frame, lasers)) = dark.first() {
-            let which = (self.scene.render.frames > 1).then_some(*frame);
+            let which = (self.scene.frames > 1).then_some(*frame);
             lines.extend(words::dark(self.scene, laser, which, &lasers[laser]));
         }
         lines

@@ -8,7 +8,7 @@ mod sequence;
 use std::io::Write;
 
 use tem00_scene::SceneFile;
-use tem00_tracer::{Method, Scene};
+use tem00_tracer::{Formulas, Scene};
 
 pub(crate) use self::job::{frames, tracer_failure};
 use self::{
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &RenderArgs, out: &mut impl Write) -> Result<(), Failure
 
 /// Says what the camera will see of the lasers, and draws the scene.
 fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), Failure> {
-    let frames = frames(args.common.frames, scene.render.frames)?;
+    let frames = frames(args.common.frames, scene.frames)?;
     let found = Inspection::new(scene, frames)
         .map_err(|error| tracer_failure(&args.common.scene, &error))?;
     let name = output::name(&args.common.scene, "scene");
@@ -93,13 +93,16 @@ fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), F
 
 /// Returns the scene with what the command line overrules.
 fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
-    let settings = &mut scene.render;
-    args.common.overrule(settings);
-    settings.method = args.method.map_or(settings.method, Into::into);
-    settings.max_depth = args.max_depth.or(settings.max_depth);
-    settings.target_error = args.target_error.or(settings.target_error);
-    settings.crop = args.crop.or(settings.crop);
-    if let Some(crop) = settings.crop {
+    let options = &mut scene.render;
+    args.common.overrule(options);
+    options.method = args.method.unwrap_or(options.method);
+    options.max_depth = args.max_depth.or(options.max_depth);
+    options.target_error = args.target_error.or(options.target_error);
+    options.crop = args.crop.or(options.crop);
+    if args.paper {
+        options.formulas = Formulas::AsPrinted;
+    }
+    if let Some(crop) = options.crop {
         check_inside(crop, [scene.camera.width(), scene.camera.height()]).map_err(|error| {
             Failure::input(
                 error.to_string(),
@@ -112,20 +115,14 @@ fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
 
 /// Returns the report of the frames of a render.
 fn report(render: &Render<'_>, Sequence { exposure, finished }: &Sequence) -> Report {
-    let (options, camera) = (&render.options, &render.scene.camera);
+    let (options, camera) = (&render.scene.render, &render.scene.camera);
     let mut report = Report::new(format!("{}: rendered", render.name));
     report.data("scene", render.args.common.scene.display().to_string());
     report.data("fingerprint", render.fingerprint.to_string());
     report.data("formulas", render.formulas());
     report.data("seed", options.seed);
     report.data("samples_per_pixel", options.samples_per_pixel);
-    report.data(
-        "method",
-        match options.method {
-            Method::Path => "path",
-            Method::Light => "light",
-        },
-    );
+    report.data("method", options.method.name());
     report.data("max_depth", options.max_depth);
     report.data("target_error", options.target_error);
     report.data("width", camera.width());

@@ -38,7 +38,7 @@ impl<'a> Scan<'a> {
     /// Adds the next frame; frames come in their order.
     pub fn add(&mut self, frame: MeasuredFrame) {
         let frames = self.measurement.settings().average.frames;
-        let is_followed = frame.frame + 1 < self.measurement.scene().render.frames;
+        let is_followed = frame.frame + 1 < self.measurement.scene().frames;
         if self.speckle_change.is_none() && is_followed {
             self.speckle_change = self.measurement.speckle_change(&frame, 1);
         }

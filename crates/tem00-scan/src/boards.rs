@@ -110,8 +110,8 @@ impl BoardPlan {
         let mut lit = self.scene.clone();
         lit.surfaces = vec![squares(0)?, squares(1)?];
         lit.camera_trajectory = Trajectory::default();
-        lit.render.frames = 1;
-        lit.render.reference_frame = 0;
+        lit.frames = 1;
+        lit.reference_frame = 0;
         lit.render.crop = None;
         let mut line = lit.clone();
         lit.lasers.clear();

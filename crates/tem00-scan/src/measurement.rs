@@ -4,8 +4,8 @@ use glam::DMat3;
 use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
 use tem00_tracer::{
-    BeamShape, Filter, Frame, Laser, Method, ReferencePoint, RenderOptions, Scene, SpeckleChange,
-    SpeckleModel, SurfaceSpeckle, render_frame,
+    BeamShape, Filter, Frame, Laser, Method, ReferencePoint, Scene, SpeckleChange, SpeckleModel,
+    SurfaceSpeckle, render_frame,
 };
 use tem00_triangulation::{
     Calibration, DetectorSettings, LineDetector, Sensor, SensorDescription, TriangulationError,
@@ -155,7 +155,7 @@ impl Measurement {
     ///
     /// # Panics
     ///
-    /// Panics unless `frame < scene.render.frames` and `speckle` belongs to the scene.
+    /// Panics unless `frame < scene.frames` and `speckle` belongs to the scene.
     pub fn measure(
         &self,
         speckle: Option<&SpeckleModel>,
@@ -163,10 +163,10 @@ impl Measurement {
         progress: impl Fn(u64) + Sync,
         cancel: &AtomicBool,
     ) -> Result<MeasuredFrame, ScanError> {
-        let options = RenderOptions::from(&self.scene.render);
-        let rendered = render_frame(&self.scene, speckle, frame, &options, progress, cancel)?;
+        let options = &self.scene.render;
+        let rendered = render_frame(&self.scene, speckle, frame, options, progress, cancel)?;
         let exposure = Exposure::of_frame(&rendered, &self.scene.camera, &self.sensor);
-        let seed = noise_seed(self.scene.render.seed, frame);
+        let seed = noise_seed(options.seed, frame);
         let mut measured = self
             .surroundings(frame, speckle.is_some())
             .measure(exposure, frame, seed)?;

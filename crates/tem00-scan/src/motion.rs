@@ -77,7 +77,7 @@ fn moving(scene: &Scene) -> Result<Vec<usize>, ScanError> {
     let Some((_, first)) = moving.first() else {
         return Ok(Vec::new());
     };
-    let frames = scene.render.frames;
+    let frames = scene.frames;
     let other = moving
         .iter()
         .find(|(_, surface)| !alike(&surface.trajectory, &first.trajectory, frames));
@@ -96,11 +96,7 @@ fn head(scene: &Scene) -> Result<Trajectory, ScanError> {
     let Some(laser) = scene.lasers.first() else {
         return Ok(scene.camera_trajectory.clone());
     };
-    if alike(
-        laser.trajectory(),
-        &scene.camera_trajectory,
-        scene.render.frames,
-    ) {
+    if alike(laser.trajectory(), &scene.camera_trajectory, scene.frames) {
         return Ok(scene.camera_trajectory.clone());
     }
     Err(ScanError::Scene(

@@ -50,8 +50,8 @@ fn averaging(section: &Section<'_>, scene: &Scene) -> Result<Averaging, Problem>
     };
     Ok(Averaging {
         frames: section.or("frames", default.frames, |value| {
-            let frames = value.integer(1..=u64::from(scene.render.frames))?;
-            Ok(u32::try_from(frames).unwrap_or(scene.render.frames))
+            let frames = value.integer(1..=u64::from(scene.frames))?;
+            Ok(u32::try_from(frames).unwrap_or(scene.frames))
         })?,
         columns: section.or("columns", default.columns, |value| {
             let columns = value.integer(1..=MAX_COLUMNS)?;

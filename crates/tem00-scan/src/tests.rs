@@ -59,7 +59,7 @@ fn the_part_is_brought_back_along_its_motion() {
     for surface in &mut measured.scene.surfaces {
         surface.trajectory = moving.clone();
     }
-    measured.scene.render.frames = 8;
+    measured.scene.frames = 8;
     let motion = ScanMotion::of_scene(&measured.scene, None).unwrap();
     assert_eq!(motion.surfaces(), [0, 1]);
     let on_part = DVec3::new(0.01, -0.02, 0.03);
@@ -85,7 +85,7 @@ fn a_head_that_moves_sees_what_a_part_that_moves_the_other_way_shows() {
         surface.trajectory = Trajectory::steady(by).unwrap();
     }
     let [head, part] = [head, part].map(|mut scene| {
-        scene.render.frames = 4;
+        scene.frames = 4;
         ScanMotion::of_scene(&scene, None).unwrap()
     });
     let seen = DVec3::new(1e-3, 2e-3, 3e-3);
@@ -116,7 +116,7 @@ fn scenes_that_cannot_be_measured_say_why() {
         assert!(error.to_string().contains(why), "{error}");
     }
     let mut apart = measured(SCENE);
-    apart.scene.render.frames = 2;
+    apart.scene.frames = 2;
     apart.scene.surfaces[0].trajectory = Trajectory::steady(DVec3::X).unwrap();
     apart.scene.surfaces[1].trajectory = Trajectory::steady(DVec3::Y).unwrap();
     let error = Measurement::new(apart.clone()).unwrap_err().to_string();

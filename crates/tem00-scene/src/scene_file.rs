@@ -132,14 +132,14 @@ pub fn parse_scene(text: &str, base_directory: &Path) -> Result<Scene, ConfigErr
 
 fn scene(root: &Document<'_>, assets: &mut Assets) -> Result<Scene, Problem> {
     let camera = camera::read(root)?;
-    let lasers = laser::read(root)?;
-    Ok(Scene {
-        render: settings::render(root, &camera.camera)?,
-        camera: camera.camera,
+    let mut scene = Scene {
         camera_trajectory: camera.trajectory,
-        surfaces: surface::read(root, assets, &lasers)?,
-        lasers,
-        lamps: light::read(root, assets)?,
-        speckle: settings::speckle(root)?,
-    })
+        lasers: laser::read(root)?,
+        ..Scene::new(camera.camera)
+    };
+    settings::render(root, &mut scene)?;
+    scene.surfaces = surface::read(root, assets, &scene.lasers)?;
+    scene.lamps = light::read(root, assets)?;
+    scene.speckle = settings::speckle(root)?;
+    Ok(scene)
 }

@@ -1,6 +1,6 @@
 use tem00_camera::Camera;
 use tem00_config::{Document, MEMORY, NUMBER, Problem, Value};
-use tem00_tracer::{Crop, LaserEvents, Method, RenderSettings, SpeckleSettings};
+use tem00_tracer::{Crop, LaserEvents, Method, RenderOptions, Scene, SpeckleSettings};
 
 use crate::filter;
 
@@ -18,7 +18,6 @@ pub(crate) const RENDER_KEYS: &[&str] = &[
 ];
 pub(crate) const SPECKLE_KEYS: &[&str] = &["size", "diameter", "half_period", "memory"];
 
-const METHODS: &[(&str, Method)] = &[("path", Method::Path), ("light", Method::Light)];
 const LASER_EVENTS: &[(&str, LaserEvents)] = &[
     ("beam", LaserEvents::Beam),
     ("sampled", LaserEvents::Sampled),
@@ -27,36 +26,41 @@ const LASER_EVENTS: &[(&str, LaserEvents)] = &[
 /// The largest pattern size and number of slices: what a memory of a tebibyte could hold.
 const MOST: u64 = 1 << 15;
 
-/// Reads how the image of a camera is rendered.
-pub(crate) fn render(root: &Document<'_>, camera: &Camera) -> Result<RenderSettings, Problem> {
-    let default = RenderSettings::default();
+/// Reads into a scene how the image of its camera is rendered, and its frames.
+pub(crate) fn render(root: &Document<'_>, scene: &mut Scene) -> Result<(), Problem> {
     let Some(section) = root.table("render", RENDER_KEYS)? else {
-        return Ok(default);
+        return Ok(());
     };
-    let frames = section.or("frames", default.frames, count)?;
-    Ok(RenderSettings {
+    let default = scene.render;
+    let methods = Method::ALL.map(|method| (method.name(), method));
+    let frames = section.or("frames", scene.frames, count)?;
+    scene.frames = frames;
+    scene.reference_frame = section.or("reference_frame", scene.reference_frame, |value| {
+        let frame = value.integer(0..=u64::from(frames - 1))?;
+        Ok(u32::try_from(frame).unwrap_or(frames - 1))
+    })?;
+    scene.render = RenderOptions {
         samples_per_pixel: section.or("samples_per_pixel", default.samples_per_pixel, count)?,
         seed: section.or("seed", default.seed, |value| value.integer(0..=u64::MAX))?,
-        frames,
-        reference_frame: section.or("reference_frame", default.reference_frame, |value| {
-            let frame = value.integer(0..=u64::from(frames - 1))?;
-            Ok(u32::try_from(frame).unwrap_or(frames - 1))
-        })?,
         max_depth: section.or("max_depth", default.max_depth, |value| {
             count(value).map(Some)
         })?,
-        method: section.or("method", default.method, |value| value.one_of(METHODS))?,
+        method: section.or("method", default.method, |value| value.one_of(&methods))?,
         laser_events: section.or("laser_events", default.laser_events, |value| {
             value.one_of(LASER_EVENTS)
         })?,
-        crop: section.or("crop", default.crop, |value| crop(value, camera).map(Some))?,
+        crop: section.or("crop", default.crop, |value| {
+            crop(value, &scene.camera).map(Some)
+        })?,
         target_error: section.or("target_error", default.target_error, |value| {
             value
                 .within(&NUMBER, 1e-6..=1.0, "from 1e-6 to 1")
                 .map(Some)
         })?,
         filter: filter::read(&section)?,
-    })
+        ..default
+    };
+    Ok(())
 }
 
 /// Reads a part of the image, `[x, y, width, height]`.

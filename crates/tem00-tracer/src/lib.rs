@@ -75,7 +75,7 @@
 //!     trajectory: Trajectory::steady(37.95e-6 * DVec3::X)?,
 //!     ..Surface::new("plate", Shape::Rectangle(plate), Material::lambertian(0.8)?)
 //! });
-//! scene.render.frames = 2;
+//! scene.frames = 2;
 //!
 //! // Before anything is rendered: the camera sees the spot, and the plate is rough enough for speckle.
 //! assert!(scene.inspect_lasers(0)?[0].is_seen());
@@ -136,8 +136,7 @@ pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery
 pub use mesh::{MeshError, TriangleMesh};
 pub use metal::Metal;
 pub use render::{
-    Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, RenderSettings,
-    render_frame,
+    Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, render_frame,
 };
 pub use scene::{Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 

@@ -1,14 +1,12 @@
 mod error;
 mod options;
 mod pass;
-mod settings;
 
 use core::sync::atomic::AtomicBool;
 
 pub use self::error::RenderError;
 pub use self::options::{Crop, Formulas, LampEvents, LaserEvents, Method, RenderOptions};
 use self::pass::PathPass;
-pub use self::settings::RenderSettings;
 use crate::{
     FilterSampler, Frame, Intersector, Scene, SpeckleModel,
     integrator::Integrator,
@@ -46,7 +44,7 @@ impl Scene {
 ///
 /// # Panics
 ///
-/// Panics unless `frame < scene.render.frames` and `speckle` has a pattern for every laser, as a model
+/// Panics unless `frame < scene.frames` and `speckle` has a pattern for every laser, as a model
 /// of the same scene has.
 pub fn render_frame(
     scene: &Scene,
@@ -57,9 +55,9 @@ pub fn render_frame(
     cancel: &AtomicBool,
 ) -> Result<Frame, RenderError> {
     assert!(
-        frame < scene.render.frames,
+        frame < scene.frames,
         "frame {frame} of a scene with {}",
-        scene.render.frames
+        scene.frames
     );
     assert!(
         speckle.is_none_or(|model| model.pattern_count() >= scene.lasers.len()),

@@ -1,6 +1,6 @@
 use tem00_camera::Camera;
 
-use crate::{Lamp, Laser, Material, RenderSettings, Shape, Trajectory};
+use crate::{Lamp, Laser, Material, RenderOptions, Shape, Trajectory};
 
 /// An object: a shape made of a material, perhaps moving from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,7 +94,11 @@ pub struct Scene {
     /// Choices about the speckle patterns.
     pub speckle: SpeckleSettings,
     /// Choices about the image.
-    pub render: RenderSettings,
+    pub render: RenderOptions,
+    /// The number of frames.
+    pub frames: u32,
+    /// The frame whose speckle the others' has moved and changed from.
+    pub reference_frame: u32,
 }
 
 impl Scene {
@@ -107,7 +111,9 @@ impl Scene {
             surfaces: Vec::new(),
             lamps: Vec::new(),
             speckle: SpeckleSettings::default(),
-            render: RenderSettings::default(),
+            render: RenderOptions::default(),
+            frames: 1,
+            reference_frame: 0,
         }
     }
 
@@ -142,7 +148,7 @@ impl Scene {
     /// Returns whether the speckle of laser `laser` on surface `surface` may differ between two
     /// frames: whether surface, camera or laser move.
     pub(crate) fn speckle_moves(&self, laser: usize, surface: usize) -> bool {
-        self.render.frames > 1
+        self.frames > 1
             && !(self.camera_trajectory.is_still()
                 && self.lasers[laser].trajectory().is_still()
                 && self.surfaces[surface].trajectory.is_still())

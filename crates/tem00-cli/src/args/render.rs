@@ -1,6 +1,9 @@
 //! The command line of `tem00 render`.
 
-use clap::{Args, ValueEnum};
+use clap::{
+    Args,
+    builder::{PossibleValuesParser, TypedValueParser},
+};
 use tem00_tracer::{Crop, Method};
 
 use super::{
@@ -26,9 +29,10 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = crop)]
     pub(crate) crop: Option<Crop>,
 
-    /// The direction in which light is traced [default: from the scene].
-    #[arg(long, value_name = "METHOD")]
-    pub(crate) method: Option<MethodName>,
+    /// The direction in which light is traced: `path` from the camera, `light` from the lasers
+    /// [default: from the scene].
+    #[arg(long, value_name = "METHOD", value_parser = method())]
+    pub(crate) method: Option<Method>,
 
     /// The maximum number of surfaces that light meets between source and camera [default: from the scene].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
@@ -71,22 +75,10 @@ Files:
   <scene>_overview.svg|png  camera, lasers and parts from three sides; with --check, and where the camera
                   sees no light of a laser";
 
-/// The direction in which light is traced, by the names of scene files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum MethodName {
-    /// From the camera.
-    Path,
-    /// From the lasers.
-    Light,
-}
-
-impl From<MethodName> for Method {
-    fn from(name: MethodName) -> Self {
-        match name {
-            MethodName::Path => Self::Path,
-            MethodName::Light => Self::Light,
-        }
-    }
+fn method() -> impl TypedValueParser<Value = Method> {
+    let named = |name: String| Method::ALL.into_iter().find(|method| method.name() == name);
+    PossibleValuesParser::new(Method::ALL.map(Method::name))
+        .map(move |name| named(name).unwrap_or_default())
 }
 
 fn relative_error(text: &str) -> Result<f64, String> {
@@ -133,7 +125,7 @@ mod tests {
             height: 40,
         };
         assert_eq!(args.crop, Some(crop));
-        assert_eq!(args.method, Some(MethodName::Light));
+        assert_eq!(args.method, Some(Method::Light));
         assert_eq!(args.max_depth, Some(5));
         assert_eq!(args.target_error, Some(0.01));
     }

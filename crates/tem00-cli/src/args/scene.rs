@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use tem00_tracer::RenderSettings;
+use tem00_tracer::RenderOptions;
 
 use super::FileArgs;
 
@@ -44,10 +44,10 @@ pub(crate) struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// Replaces the settings of a scene by those of the command line.
-    pub(crate) fn overrule(&self, settings: &mut RenderSettings) {
-        settings.samples_per_pixel = self.spp.unwrap_or(settings.samples_per_pixel);
-        settings.seed = self.seed.unwrap_or(settings.seed);
+    /// Replaces the options of a scene by those of the command line.
+    pub(crate) fn overrule(&self, options: &mut RenderOptions) {
+        options.samples_per_pixel = self.spp.unwrap_or(options.samples_per_pixel);
+        options.seed = self.seed.unwrap_or(options.seed);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use tem00_tracer::{Formulas, RenderOptions, Scene, SpeckleModel, SpecklePlan, TracerError};
+use tem00_tracer::{Formulas, Scene, SpeckleModel, SpecklePlan, TracerError};
 
 use super::{record::Fingerprint, report::note_roughness};
 use crate::{
@@ -23,7 +23,6 @@ pub(super) struct Render<'a> {
     pub(super) frames: FrameRange,
     pub(super) name: String,
     pub(super) folder: PathBuf,
-    pub(super) options: RenderOptions,
     pub(super) plan: Option<SpecklePlan>,
     pub(super) fingerprint: Fingerprint,
     pub(super) _lock: FolderLock,
@@ -37,7 +36,7 @@ impl<'a> Render<'a> {
     ) -> Result<Self, Failure> {
         let name = output::name(&args.common.scene, "scene");
         let folder = output::folder(args.common.output.as_deref(), &name);
-        let options = options(args, &scene);
+        let options = scene.render;
         let plan = (!args.common.no_speckle)
             .then(|| SpecklePlan::new(&scene, options.formulas, options.seed))
             .transpose()
@@ -46,7 +45,7 @@ impl<'a> Render<'a> {
         let changes = args.common.files.reading().changes;
         let choices = (options, plan.is_some(), args.white_level, text, changes);
 
-        let frames = frames(args.common.frames, scene.render.frames)?;
+        let frames = frames(args.common.frames, scene.frames)?;
         check_room(&args.common.scene, &scene)?;
         let fingerprint = Fingerprint::of(&scene, files, &choices)?;
         let lock = match args.common.frames {
@@ -61,7 +60,6 @@ impl<'a> Render<'a> {
             scene,
             name,
             folder,
-            options,
             plan,
         };
         render.check_targets()?;
@@ -70,7 +68,7 @@ impl<'a> Render<'a> {
 
     /// Makes sure, before the work, that no folder stands where a file goes.
     pub(super) fn check_targets(&self) -> Result<(), Failure> {
-        let frames = self.scene.render.frames;
+        let frames = self.scene.frames;
         let of_frames = (self.frames.first..=self.frames.last).flat_map(|number| {
             let paths = FramePaths::new(&self.folder, &self.name, number, frames);
             [paths.preview, paths.layers, paths.record]
@@ -125,11 +123,11 @@ impl<'a> Render<'a> {
     }
 
     pub(super) fn samples_per_frame(&self) -> u64 {
-        self.scene.samples_per_frame(&self.options)
+        self.scene.samples_per_frame(&self.scene.render)
     }
 
     pub(super) const fn formulas(&self) -> &'static str {
-        match self.options.formulas {
+        match self.scene.render.formulas {
             Formulas::Derived => "derived",
             Formulas::AsPrinted => "as printed in Bergmann et al. 2016",
         }
@@ -139,22 +137,11 @@ impl<'a> Render<'a> {
         format!(
             "{}: {} samples per pixel, seed {}, formulas {}, speckle {}",
             self.name,
-            self.options.samples_per_pixel,
-            self.options.seed,
+            self.scene.render.samples_per_pixel,
+            self.scene.render.seed,
             self.formulas(),
             if self.plan.is_some() { "on" } else { "off" }
         )
-    }
-}
-
-pub(super) fn options(args: &RenderArgs, scene: &Scene) -> RenderOptions {
-    RenderOptions {
-        formulas: if args.paper {
-            Formulas::AsPrinted
-        } else {
-            Formulas::Derived
-        },
-        ..RenderOptions::from(&scene.render)
     }
 }
 

@@ -107,12 +107,12 @@ impl Render<'_> {
             Found::Ours { frame, .. } if belong_to(&frame, &self.paths(number)) => Some(frame),
             _ => None,
         };
-        (0..self.scene.render.frames).filter_map(frame).collect()
+        (0..self.scene.frames).filter_map(frame).collect()
     }
 
     fn foreign_record(&self) -> Option<std::path::PathBuf> {
         let foreign = |&number: &u32| matches!(self.find(number), Found::Foreign);
-        let number = (0..self.scene.render.frames).find(foreign)?;
+        let number = (0..self.scene.frames).find(foreign)?;
         Some(self.paths(number).record)
     }
 
@@ -132,7 +132,7 @@ impl Render<'_> {
     }
 
     fn paths(&self, number: u32) -> FramePaths {
-        FramePaths::new(&self.folder, &self.name, number, self.scene.render.frames)
+        FramePaths::new(&self.folder, &self.name, number, self.scene.frames)
     }
 
     fn frame(
@@ -141,12 +141,19 @@ impl Render<'_> {
         model: Option<&SpeckleModel>,
         progress: &FrameProgress,
     ) -> Result<Frame, Failure> {
-        let advance = progress.begin(match self.scene.render.frames {
+        let advance = progress.begin(match self.scene.frames {
             1 => self.name.clone(),
             frames => format!("{} frame {number} of 0..{}", self.name, frames - 1),
         });
         let flag = interrupt::flag();
-        let frame = render_frame(&self.scene, model, number, &self.options, advance, flag);
+        let frame = render_frame(
+            &self.scene,
+            model,
+            number,
+            &self.scene.render,
+            advance,
+            flag,
+        );
         frame.map_err(|error| match error {
             RenderError::Cancelled => Failure::Interrupted,
             RenderError::Scene(error) => tracer_failure(&self.args.common.scene, &error),
@@ -195,7 +202,12 @@ impl Render<'_> {
         let lasers = frame.lasers.iter().zip(&self.scene.lasers).enumerate();
         let lasers = lasers.map(|(index, (layers, laser))| {
             let plan = plans.and_then(|plans| plans.get(index));
-            FrameLaser::measure(layers, laser.power(), plan, self.options.samples_per_pixel)
+            FrameLaser::measure(
+                layers,
+                laser.power(),
+                plan,
+                self.scene.render.samples_per_pixel,
+            )
         });
         let hash = |path: &Path| {
             hash_of_file(path).map_err(|error| {
@@ -219,15 +231,15 @@ impl Render<'_> {
     /// by a fixed number of camera samples.
     fn knows_contrast(&self) -> bool {
         let mut surfaces = self.scene.surfaces.iter();
-        self.options.method == Method::Path
-            && self.options.target_error.is_none()
-            && self.options.filter == Filter::default()
+        self.scene.render.method == Method::Path
+            && self.scene.render.target_error.is_none()
+            && self.scene.render.filter == Filter::default()
             && surfaces.all(|surface| surface.speckle == SurfaceSpeckle::default())
     }
 
     /// Returns the number of samples that a frame took: with a target error, those of its pixels.
     fn samples_of(&self, frame: &Frame) -> u64 {
-        match self.options.target_error {
+        match self.scene.render.target_error {
             None => self.samples_per_frame(),
             #[expect(
                 clippy::cast_possible_truncation,
@@ -245,7 +257,7 @@ impl Render<'_> {
 
     /// Notes the finished frames after an interruption.
     fn note_how_to_go_on(&self, failure: &Failure) {
-        let frames = self.scene.render.frames;
+        let frames = self.scene.frames;
         if frames > 1 && matches!(failure, Failure::Interrupted) {
             note(&format!(
                 "{} of {frames} frames are finished; the same command with --resume goes on",

@@ -57,7 +57,7 @@ impl<'a> Job<'a> {
             .map_err(|error| measurement_failure(&args.common.scene, &error))?;
         Ok(Self {
             args,
-            frames: frames(args.common.frames, measurement.scene().render.frames)?,
+            frames: frames(args.common.frames, measurement.scene().frames)?,
             measurement,
             name,
             files: Files::new(folder, raw)?,
@@ -74,7 +74,7 @@ impl<'a> Job<'a> {
 
     pub(super) fn progress(&self) -> FrameProgress {
         let scene = self.measurement.scene();
-        let samples_per_frame = scene.samples_per_frame(&(&scene.render).into());
+        let samples_per_frame = scene.samples_per_frame(&scene.render);
         let frames = u64::from(self.frames.last - self.frames.first) + 1;
         FrameProgress::new(frames, samples_per_frame)
     }

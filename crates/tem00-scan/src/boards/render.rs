@@ -148,7 +148,7 @@ fn electrons(
         filter: Filter::Box {
             radius: sensor.sensitive_half_width(),
         },
-        ..RenderOptions::from(&scene.render)
+        ..scene.render
     };
     let plan = SpecklePlan::new(scene, options.formulas, seed)?;
     let speckle = SpeckleModel::generate(scene, &plan)?;

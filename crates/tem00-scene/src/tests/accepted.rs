@@ -3,7 +3,7 @@ use glam::DVec3;
 use tem00_beam::{AngularProfile, FocusCurve, LineProfile};
 
 use super::{CAMERA, LASER, SURFACE, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
-use tem00_tracer::{BeamShape, Lamp, Material, Metal, RenderSettings, Shape, SpeckleSettings};
+use tem00_tracer::{BeamShape, Lamp, Material, Metal, RenderOptions, Shape, SpeckleSettings};
 
 /// Asserts that two vectors of length 1 at most are equal but for a few roundings of 1e−16.
 #[track_caller]
@@ -25,7 +25,7 @@ fn a_scene_needs_a_camera_a_laser_and_a_surface_and_no_more() {
     assert_relative_eq!(camera.pixel_pitch, 3.45e-6);
     assert_eq!(scene.lasers.len(), 1, "lasers");
     assert_eq!(scene.surfaces[0].name, "surface 1", "default name");
-    assert_eq!(scene.render, RenderSettings::default(), "settings");
+    assert_eq!(scene.render, RenderOptions::default(), "settings");
     assert_eq!(scene.speckle, SpeckleSettings::default(), "settings");
 
     for (section, missing) in [(CAMERA, "camera"), (LASER, "laser"), (SURFACE, "surface")] {
@@ -227,7 +227,7 @@ fn every_key_reaches_the_scene() {
     let scene = parse(text).unwrap();
     assert_eq!(scene.render.samples_per_pixel, 7, "samples");
     assert_eq!(scene.render.seed, u64::MAX, "seed");
-    assert_eq!(scene.render.frames, 3, "frames");
+    assert_eq!(scene.frames, 3, "frames");
     assert_eq!(scene.speckle.size, Some(512), "size");
     assert_eq!(scene.speckle.diameter, Some(128), "diameter");
     assert_eq!(scene.speckle.half_period, Some(4), "half period");

@@ -36,8 +36,9 @@ fn shape(keys: &str) -> Surface {
 fn the_image_is_rendered_as_the_file_says() {
     let render = "[render]\nframes = 5\nreference_frame = 4\nmax_depth = 3\nmethod = \"light\"\n\
                   laser_events = \"sampled\"\ncrop = [10, 20, 300, 200]\ntarget_error = 0.02\n";
-    let settings = parse(&format!("{render}{}", minimal())).unwrap().render;
-    assert_eq!(settings.reference_frame, 4, "reference frame");
+    let scene = parse(&format!("{render}{}", minimal())).unwrap();
+    let settings = scene.render;
+    assert_eq!(scene.reference_frame, 4, "reference frame");
     assert_eq!(settings.max_depth, Some(3), "depth");
     assert_eq!(settings.method, Method::Light, "method");
     assert_eq!(settings.laser_events, LaserEvents::Sampled, "events");

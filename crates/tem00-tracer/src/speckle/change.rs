@@ -85,7 +85,7 @@ impl BodyChange {
 impl Change {
     /// Finds the motion since the reference frame of a render.
     pub(super) fn new(scene: &Scene, frame: u32) -> Self {
-        Self::between(scene, [scene.render.reference_frame, frame])
+        Self::between(scene, [scene.reference_frame, frame])
     }
 
     /// Finds the motion from one frame, which is the reference, to another.

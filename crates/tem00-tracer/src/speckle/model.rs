@@ -315,8 +315,8 @@ mod tests {
         let camera = testing::camera(0.3 * DVec3::Z, [64, 48]);
         let mut scene = testing::scene(camera, &[red, green], plate(0.0, 0.1e-3 * DVec3::X));
         scene.surfaces.push(plate(1e-3, 0.2e-3 * DVec3::Y));
-        scene.render.frames = 4;
-        scene.render.reference_frame = 1;
+        scene.frames = 4;
+        scene.reference_frame = 1;
         scene.surfaces[1].speckle = SurfaceSpeckle {
             patterns: 2,
             polarisation: 0.5,

@@ -176,7 +176,7 @@ impl Planner<'_> {
                 region: prescan.region().to_array(),
                 speckle_size: geometry.speckle_size_in_pixels(),
                 motion: moves.then_some(prescan.shifts[0] + prescan.shifts[1]),
-                frames: self.scene.render.frames,
+                frames: self.scene.frames,
                 memory_limit: self.scene.speckle.memory,
             },
             shifts: prescan.shifts,

@@ -188,7 +188,7 @@ impl FrameSample {
 
 /// The frames to sample: evenly spread, first and last among them, and those at keyframes.
 fn frames(scene: &Scene) -> BTreeSet<u32> {
-    let last = scene.render.frames.saturating_sub(1);
+    let last = scene.frames.saturating_sub(1);
     let lasers = scene.lasers.iter().map(|laser| laser.trajectory());
     let surfaces = scene.surfaces.iter().map(|surface| &surface.trajectory);
     let trajectories = lasers.chain(surfaces).chain([&scene.camera_trajectory]);

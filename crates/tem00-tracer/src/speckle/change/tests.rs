@@ -14,7 +14,7 @@ fn scene() -> Scene {
     let normal = DVec3::new(0.3, 0.1, 1.0).normalize();
     let plate = testing::plate(DVec3::ZERO, normal, [0.04, 0.04]);
     let mut scene = testing::scene(camera, &[laser], plate);
-    scene.render.frames = 8;
+    scene.frames = 8;
     scene
 }
 
@@ -84,7 +84,7 @@ fn speckle_stays_where_all_moves_as_one() {
 #[test]
 fn speckle_shifts_are_those_of_the_theory_between_two_states() {
     let mut scene = moving();
-    scene.render.reference_frame = 2;
+    scene.reference_frame = 2;
     let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
     let (reference, frame) = (2, 5);
     for place in PLACES {
@@ -153,9 +153,9 @@ fn speckle_shifts_are_those_of_the_theory_between_two_states() {
 fn time_backwards_moves_the_speckle_back() {
     let mut scene = moving();
     for place in PLACES {
-        scene.render.reference_frame = 1;
+        scene.reference_frame = 1;
         let forth = speckle_shift(&scene, 6, place);
-        scene.render.reference_frame = 6;
+        scene.reference_frame = 6;
         let back = speckle_shift(&scene, 1, place);
         let sum = (forth.displacement + back.displacement).length();
         let size = forth.displacement.length();

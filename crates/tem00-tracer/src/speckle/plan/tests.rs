@@ -26,7 +26,7 @@ fn scene(frames: u32, displacement: DVec3) -> Scene {
     };
     let camera = camera(0.3 * DVec3::Z, [300, 200]);
     let mut scene = testing::scene(camera, &[laser], plate(0.0, displacement));
-    scene.render.frames = frames;
+    scene.frames = frames;
     scene
 }
 
@@ -249,7 +249,7 @@ fn sums_of_patterns_take_a_stack_for_each_part() {
 fn motions_before_and_after_the_reference_frame_add_up() {
     // 1 mm a frame behind a pupil of 3.125 mm: 0.64 diameters before, and 0.96 after.
     let mut scene = scene(6, 1e-3 * DVec3::X);
-    scene.render.reference_frame = 2;
+    scene.reference_frame = 2;
     let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
     let allocation = &plan.patterns()[0].allocations()[0];
     for (shift, expected) in allocation.shifts.iter().zip([2.0, 3.0]) {

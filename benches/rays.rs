@@ -5,8 +5,9 @@
 //! 512² image, shadow rays go from where those end to points of the lamp, second rays leave there
 //! as from a diffuse surface, and scattered rays join random points of a sphere.
 //!
-//! The peer is the CWBVH of obvhs, in single precision with its own triangle test, one ray at a
-//! time, over the same triangles; the rectangles are two triangles each.
+//! The peer is the CWBVH of obvhs over the same triangles, one ray at a time; the rectangles are two
+//! triangles each. It follows closest hits twice: in single precision with its own triangle test,
+//! and with the tracer's watertight test in double precision.
 
 #![expect(
     clippy::expect_used,
@@ -161,23 +162,26 @@ fn scattered_rays(random: &mut ChaCha8Rng) -> Vec<Ray> {
 struct Peer {
     boxes: CwBvh,
     triangles: Vec<Triangle>,
+    corners: Vec<[DVec3; 3]>,
 }
 
 impl Peer {
     fn new(mesh: &TriangleMesh) -> Self {
-        let mut triangles: Vec<Triangle> = mesh
-            .triangles()
-            .iter()
-            .map(|corners| triangle(corners.map(|index| mesh.vertices()[index as usize])))
-            .collect();
+        let corners = |corners: &[u32; 3]| corners.map(|index| mesh.vertices()[index as usize]);
+        let mut corners: Vec<_> = mesh.triangles().iter().map(corners).collect();
         for rectangle in rectangles() {
             let [a, b, c, d] = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
                 .map(|(u, v)| rectangle.point(u, v));
-            triangles.extend([triangle([a, b, c]), triangle([a, c, d])]);
+            corners.extend([[a, b, c], [a, c, d]]);
         }
+        let triangles: Vec<_> = corners.iter().copied().map(triangle).collect();
         let preset = BvhBuildParams::slow_build();
         let boxes = build_cwbvh_from_tris(&triangles, preset, &mut Duration::default());
-        Self { boxes, triangles }
+        Self {
+            boxes,
+            triangles,
+            corners,
+        }
     }
 
     fn meet(&self, ray: &obvhs::ray::Ray, slot: usize) -> f32 {
@@ -193,6 +197,25 @@ impl Peer {
         hit.t
     }
 
+    /// Decides in double precision; the bounds of the traversal are not padded for it.
+    fn intersect_exactly(&self, ray: &Ray) -> f64 {
+        let sheared = ShearedRay::new(ray);
+        let mut nearest = f64::INFINITY;
+        let (origin, direction) = (ray.origin.as_vec3a(), ray.direction.as_vec3a());
+        let meet = |_: &obvhs::ray::Ray, slot: usize| {
+            let corners = &self.corners[self.boxes.primitive_indices[slot] as usize];
+            if let Some(distance) = sheared.distance(corners) {
+                nearest = nearest.min(distance);
+            }
+            #[expect(clippy::cast_possible_truncation, reason = "the peer is in f32")]
+            let end = nearest as f32;
+            end
+        };
+        let ray = obvhs::ray::Ray::new(origin, direction, 1e-6, f32::MAX);
+        self.boxes.ray_traverse(ray, &mut RayHit::none(), meet);
+        nearest
+    }
+
     fn visible(&self, segment: &Segment) -> bool {
         let way = segment.to - segment.from;
         let (origin, direction) = (segment.from.as_vec3a(), way.normalize().as_vec3a());
@@ -201,6 +224,46 @@ impl Peer {
         let ray = obvhs::ray::Ray::new(origin, direction, 1e-4, end);
         let meet = |ray: &obvhs::ray::Ray, slot: usize| self.meet(ray, slot);
         self.boxes.ray_traverse_miss(ray, meet)
+    }
+}
+
+/// A ray with the shear that turns it into the third axis (Woop, Benthin and Wald 2013), as in the
+/// tracer.
+struct ShearedRay {
+    origin: DVec3,
+    axes: [usize; 3],
+    shear: DVec3,
+}
+
+impl ShearedRay {
+    fn new(ray: &Ray) -> Self {
+        let direction = ray.direction;
+        let main = direction.abs().max_position();
+        let axes = [(main + 1) % 3, (main + 2) % 3, main];
+        let shear = DVec3::new(direction[axes[0]], direction[axes[1]], 1.0) / direction[main];
+        Self {
+            origin: ray.origin,
+            axes,
+            shear,
+        }
+    }
+
+    fn to_local(&self, point: DVec3) -> DVec3 {
+        let offset = point - self.origin;
+        let [x, y, z] = self.axes.map(|axis| offset[axis]);
+        DVec3::new(x - self.shear.x * z, y - self.shear.y * z, self.shear.z * z)
+    }
+
+    fn distance(&self, corners: &[DVec3; 3]) -> Option<f64> {
+        let [a, b, c] = corners.map(|corner| self.to_local(corner));
+        let weights = DVec3::new(
+            c.x * b.y - c.y * b.x,
+            a.x * c.y - a.y * c.x,
+            b.x * a.y - b.y * a.x,
+        );
+        let outside = weights.min_element() < 0.0 && weights.max_element() > 0.0;
+        let distance = weights.dot(DVec3::new(a.z, b.z, c.z)) / weights.element_sum();
+        (!outside && distance > 0.0).then_some(distance)
     }
 }
 
@@ -236,6 +299,10 @@ fn intersections(criterion: &mut Criterion) {
             });
             group.bench_function(format!("{kind}, obvhs"), |bencher| {
                 bencher.iter(|| rays.iter().map(|ray| peer.intersect(ray)).sum::<f32>());
+            });
+            group.bench_function(format!("{kind}, obvhs with our test"), |bencher| {
+                let exactly = |ray| peer.intersect_exactly(ray);
+                bencher.iter(|| rays.iter().map(exactly).sum::<f64>());
             });
         }
         let mut visible = vec![false; work.shadows.len()];

@@ -151,21 +151,6 @@ fn speckle_moves_light_about_but_keeps_its_power() {
 }
 
 #[test]
-fn a_render_has_the_same_bits_for_any_number_of_threads() {
-    let scene = scene(30.0, 0.0);
-    let with_threads = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .expect("a thread pool");
-        pool.install(|| render(&scene, true, 5))
-    };
-    let one = with_threads(1);
-    assert_eq!(one, with_threads(3));
-    assert_ne!(one, render(&scene, true, 6), "the seed has no effect");
-}
-
-#[test]
 fn a_render_stops_within_a_pixel_when_it_is_told_to() {
     let scene = scene(0.0, 0.0);
     let options = RenderOptions {

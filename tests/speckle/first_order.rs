@@ -9,7 +9,7 @@ use tem00::{
     },
 };
 
-use crate::lattice::{Case, Lattice, Shape, cases, covariance_spread};
+use crate::lattice::{Lattice, Shape, cases, covariance_spread};
 
 proptest! {
     #![proptest_config(ProptestConfig {
@@ -111,30 +111,4 @@ fn the_contrast_of_a_pattern_spreads_as_derived() {
             );
         }
     }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 60, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
-
-    #[test]
-    fn unit_phasors_have_the_mean_of_one_and_gaussian_ones_nearly(case in cases(40..200, 5.0)) {
-        let field = case.field();
-        let pattern = field.pattern_at(case.offset, case.defocus);
-        let values = pattern.values().values();
-        let mean = values.iter().map(|&i| f64::from(i)).sum::<f64>() / values.len() as f64;
-        let tolerance = tolerance_of_the_mean(&case, &field);
-        prop_assert!((mean - 1.0).abs() < tolerance, "mean {mean}");
-    }
-}
-
-/// Parseval fixes the mean of unit phasors, but for the rounding of `f32`. That of Gaussian ones is the
-/// mean of N exponentials: five standard deviations, and the skewness 2/√N of their law.
-fn tolerance_of_the_mean(case: &Case, field: &PupilField) -> f64 {
-    if case.is_unit() {
-        return 1e-6;
-    }
-    let count = Lattice::of(field, case.offset).phasors();
-    5.0 / count.sqrt() * (1.0 + 3.0 / count.sqrt())
 }

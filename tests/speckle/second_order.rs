@@ -7,8 +7,8 @@ use tem00::{
     numerics::Grid,
     speckle::{Phasors, PupilField},
     statistics::{
-        JointIntensity, MEAN_SQUARE_SLOPE, Moments, airy_autocovariance, area_fraction_above,
-        chi_squared, level_crossings, t_test_mean,
+        JointIntensity, MEAN_SQUARE_SLOPE, Moments, area_fraction_above, chi_squared,
+        level_crossings, t_test_mean,
     },
 };
 
@@ -285,32 +285,6 @@ fn level_crossings_and_bright_areas_are_those_of_the_pupil() {
             let shares = tiles.iter().map(|tile| mean_of_pairs(tile, 0, 0, bright));
             let expected = area_fraction_above(level);
             check("area", &shares.collect::<Vec<_>>(), expected, [0.06, 0.0]);
-        }
-    }
-}
-
-/// From half a speckle size to beyond the first zero, and far away.
-#[test]
-fn moments_at_the_lags_of_the_airy_pattern_are_those_of_theory() {
-    let field = PupilField::new(400, 50, 0)
-        .expect("a valid field")
-        .with_phasors(Phasors::Gaussian);
-    let tiles = tiles(&field, SHAPES.len());
-    for lag in [4_usize, 8, 10, 100] {
-        let correlation = airy_autocovariance(lag as f64 / 8.0).sqrt();
-        let law = JointIntensity::new(correlation).expect("a correlation below 1");
-        for (orders, powers) in [([1, 1], [1, 1]), ([2, 1], [2, 1]), ([2, 2], [2, 2])] {
-            let product = |a: f64, b: f64| a.powi(powers[0]) * b.powi(powers[1]);
-            let moments = tiles
-                .iter()
-                .map(|tile| mean_of_pairs(tile, 0, lag, product));
-            // At C = 50 Airy's law of μ² is 3e−3 off, and the moments by four times that at most.
-            check(
-                "moment",
-                &moments.collect::<Vec<_>>(),
-                law.moment(orders),
-                [0.04, 0.01],
-            );
         }
     }
 }

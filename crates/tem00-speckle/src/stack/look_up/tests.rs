@@ -1,7 +1,7 @@
 use num_complex::Complex;
 use proptest::{prelude::*, test_runner::RngSeed};
 use tem00_numerics::Grid;
-use tem00_statistics::{exponential_cumulative, kolmogorov_smirnov, rectangular_pixel_contrast};
+use tem00_statistics::rectangular_pixel_contrast;
 
 use super::*;
 use crate::{Phasors, PupilField, SlicePath, StackOptions, pupil::lattice::unit_phasor};
@@ -140,33 +140,6 @@ proptest! {
     #![proptest_config(ProptestConfig {
         cases: 24, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
     })]
-
-    /// Ensembles of Gaussian phasors, so that the law is exact; one look-up per 4 × 4 samples, which is
-    /// 2 speckles.
-    #[test]
-    fn intensities_are_exponential_at_any_fraction(
-        seed: u32, fx in 0.0_f64..1.0, fy in 0.0_f64..1.0, u in 0.0_f64..12.0,
-        kind in 0_usize..3, straight: bool,
-    ) {
-        let path = if straight {
-            SlicePath::Straight { half_period: 6, length: 3 }
-        } else {
-            circle(6)
-        };
-        let mut samples = Vec::new();
-        for tile in 0..4_u64 {
-            let field = PupilField::new(64, 32, u64::from(seed) * 4 + tile).unwrap();
-            let field = field.with_phasors(Phasors::Gaussian);
-            let stack = stack(&field, path, ALL[kind]);
-            for i in 0..256_u32 {
-                let (x, y) = (f64::from(i % 16), f64::from(i / 16));
-                samples.push(stack.intensity_at(4.0 * x + fx, 4.0 * y + fy, u));
-            }
-        }
-        let outcome = kolmogorov_smirnov(&samples, exponential_cumulative).unwrap();
-        // 24 cases at α = 1e-5: a correct look-up fails one in 4000 times.
-        prop_assert!(outcome.p_value > 1e-5, "{:?}: {outcome:?}", ALL[kind]);
-    }
 
     /// Runs of points at one u, between the same slices and all over the stack.
     #[test]

@@ -5,7 +5,7 @@ use rayon::ThreadPoolBuilder;
 use crate::status::{Failure, Status};
 
 /// The largest number of threads that may be asked for.
-const MOST_THREADS: u32 = 1024;
+const MAX_THREADS: u32 = 1024;
 
 /// Runs `work` on so many threads of its own, or on all cores of the machine for 0.
 pub(crate) fn on_threads<T: Send>(
@@ -15,8 +15,8 @@ pub(crate) fn on_threads<T: Send>(
     if threads == 0 {
         return Ok(work());
     }
-    if threads > MOST_THREADS {
-        let message = format!("threads must be 0 to {MOST_THREADS}, got {threads}");
+    if threads > MAX_THREADS {
+        let message = format!("threads must be 0 to {MAX_THREADS}, got {threads}");
         return Err(Failure::argument("threads", message));
     }
     let pool = ThreadPoolBuilder::new()
@@ -45,7 +45,7 @@ mod tests {
 
     #[test]
     fn more_threads_than_the_limit_are_refused() {
-        let refused = on_threads(MOST_THREADS + 1, || ()).unwrap_err();
+        let refused = on_threads(MAX_THREADS + 1, || ()).unwrap_err();
         assert_eq!(refused.parameter, "threads", "{}", refused.message);
         assert_eq!(refused.message, "threads must be 0 to 1024, got 1025");
     }

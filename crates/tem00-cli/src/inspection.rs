@@ -10,7 +10,7 @@ use tem00_tracer::{LaserInspection, Scene, TracerError};
 use crate::{args::FrameRange, failure::Failure};
 
 /// The most frames that are looked at.
-const MOST_FRAMES: u32 = 8;
+const MAX_FRAMES: u32 = 8;
 
 /// The light of each laser that reaches the camera, in frames spread over the requested ones.
 pub(crate) struct Inspection<'a> {
@@ -93,7 +93,7 @@ impl<'a> Inspection<'a> {
 
 /// Returns frames spread over a range, both ends among them.
 fn spread(FrameRange { first, last }: FrameRange) -> impl Iterator<Item = u32> {
-    let steps = (last - first).min(MOST_FRAMES - 1);
+    let steps = (last - first).min(MAX_FRAMES - 1);
     let length = u64::from(last - first);
     (0..=steps).map(move |step| {
         let offset = length * u64::from(step) / u64::from(steps.max(1));

@@ -33,7 +33,7 @@ const FEWEST_PIXELS: usize = 8;
 const WINDOW: f64 = 20.0;
 
 /// The smallest window in speckle sizes that is taken by default.
-const LEAST_WINDOW: f64 = 8.0;
+const MIN_WINDOW: f64 = 8.0;
 
 /// The smallest window in speckle sizes for which what is taken is known.
 const SMALLEST_WINDOW: f64 = 6.0;
@@ -181,7 +181,7 @@ fn flattened(image: &Grid<f32>, window: Option<usize>) -> Result<FlatImage, Stri
             let size = size_in(&coarse)?;
             // Enough windows to follow the light of a small image.
             let wanted = pixels(WINDOW * size).min(shorter / 3);
-            let window = wanted.max(pixels(LEAST_WINDOW * size)).min(shorter);
+            let window = wanted.max(pixels(MIN_WINDOW * size)).min(shorter);
             FlatImage::new(image, window).map_err(words)?
         }
     };

@@ -127,7 +127,7 @@ methods! {
 pub(crate) struct StackPlan(physics::StackPlan);
 
 /// The largest number of plans to choose from: the longest list of candidates has a hundred.
-const MOST_PLANS: usize = 1 << 16;
+const MAX_PLANS: usize = 1 << 16;
 
 #[pymethods]
 impl StackPlan {
@@ -181,8 +181,8 @@ impl StackPlan {
     #[staticmethod]
     fn first_within(plans: &Bound<'_, PyAny>, memory_limit: Whole<'_>) -> PyResult<Self> {
         let count = plans.len()?;
-        if count > MOST_PLANS {
-            let message = format!("plans must be at most {MOST_PLANS}, got {count}");
+        if count > MAX_PLANS {
+            let message = format!("plans must be at most {MAX_PLANS}, got {count}");
             return Err(refused("plans", message));
         }
         let plans: Vec<PyRef<'_, Self>> = plans.extract()?;

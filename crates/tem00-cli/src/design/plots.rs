@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// The most dots in a diagram.
-const MOST_DOTS: usize = 4_000;
+const MAX_DOTS: usize = 4_000;
 
 /// A drawing with the name of its file and its caption.
 pub(super) struct Named {
@@ -51,7 +51,7 @@ fn trade_off(design: &Design<'_>) -> Named {
         let candidates = design.outcome.candidates().iter();
         let kind = candidates.filter(move |candidate| candidate.broken.is_empty() == allowed);
         let thinned =
-            kind.filter(|candidate| is_drawn(candidate.index, design.search.count(), MOST_DOTS));
+            kind.filter(|candidate| is_drawn(candidate.index, design.search.count(), MAX_DOTS));
         thinned.filter_map(Candidate::possible).map(place)
     };
     let front = design.outcome.front(depth);

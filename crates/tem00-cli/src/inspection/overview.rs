@@ -19,7 +19,7 @@ const SCALE: f64 = 36.0;
 /// Corners of the outline of something round.
 const ROUND: u32 = 72;
 /// The most surfaces that are named.
-const MOST_NAMES: usize = 24;
+const MAX_NAMES: usize = 24;
 
 const PART: &str = "#808080";
 const CAMERA: &str = "#1f5fa8";
@@ -121,7 +121,7 @@ impl Content<'_> {
             self.draw_laser(index, laser, panel, canvas);
         }
         self.draw_camera(panel, canvas);
-        if self.scene.surfaces.len() <= MOST_NAMES {
+        if self.scene.surfaces.len() <= MAX_NAMES {
             for (surface, shape) in self.scene.surfaces.iter().zip(&self.shapes) {
                 let corners = outline(shape, panel.view);
                 let top = corners.into_iter().max_by(|a, b| a.y.total_cmp(&b.y));

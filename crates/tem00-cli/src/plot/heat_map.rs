@@ -11,7 +11,7 @@ use super::{
 };
 
 /// The most cells that are drawn along an axis.
-const MOST_CELLS: usize = 200;
+const MAX_CELLS: usize = 200;
 
 /// Values over a plane, as colours beside a scale; a value that is not finite is a hole.
 ///
@@ -79,7 +79,7 @@ impl HeatMap<'_> {
     /// Returns what is drawn, from the bottom up.
     fn cells(&self) -> Vec<Vec<f64>> {
         let size = [self.values.width(), self.values.height()];
-        let [columns, rows] = size.map(|cells| cells.min(MOST_CELLS));
+        let [columns, rows] = size.map(|cells| cells.min(MAX_CELLS));
         let bounds =
             |index: usize, cells: usize, of: usize| (index * of / cells, (index + 1) * of / cells);
         let cell = |x, y| {
@@ -146,7 +146,7 @@ mod tests {
     fn large_maps_are_drawn_as_means_of_blocks() {
         let values = Grid::from_fn(450, 3, |x, y| if x == 0 { f32::NAN } else { y as f32 });
         let cells = map(&values).cells();
-        assert_eq!((cells.len(), cells[0].len()), (3, MOST_CELLS));
+        assert_eq!((cells.len(), cells[0].len()), (3, MAX_CELLS));
         // The hole is left out of the mean of its block.
         for (row, expected) in cells.iter().zip([0.0, 1.0, 2.0]) {
             assert!(

@@ -12,7 +12,7 @@ use crate::{
 pub(super) const SCRIPT: &str = include_str!("cloud.js");
 
 /// The most points that are drawn.
-pub(crate) const MOST_POINTS: usize = 6_000;
+pub(crate) const MAX_POINTS: usize = 6_000;
 
 /// The number of colours.
 const COLOURS: usize = 32;
@@ -25,7 +25,7 @@ const ELEVATION: f64 = 35.0;
 const RADIUS: f64 = 2100.0;
 
 /// The minimum ratio of a side of the box to its longest: shorter ones are stretched.
-const LEAST_SIDE: f64 = 0.25;
+const MIN_SIDE: f64 = 0.25;
 
 /// Points along the line, along the scan and up, with the names of the axes.
 #[derive(Clone, Debug)]
@@ -54,7 +54,7 @@ impl Cloud<'_> {
         let frame = Frame::about(&self.points, self.to_scale)?;
         let count = self.points.len();
         let drawn = self.points.iter().enumerate();
-        let drawn = drawn.filter(|&(index, _)| is_drawn(index, count, MOST_POINTS));
+        let drawn = drawn.filter(|&(index, _)| is_drawn(index, count, MAX_POINTS));
         let mut dots = vec![String::new(); COLOURS];
         let mut shown = 0;
         for (_, point) in drawn {
@@ -144,7 +144,7 @@ impl Frame {
             if spans[axis] <= 0.0 {
                 0.0
             } else if to_scale {
-                (spans[axis] / longest).max(LEAST_SIDE)
+                (spans[axis] / longest).max(MIN_SIDE)
             } else {
                 wanted[axis]
             }
@@ -318,7 +318,7 @@ mod tests {
         let points = (0..count).map(|n| [f64::from(n % 500), f64::from(n / 500), 1.0]);
         let (svg, caption) = cloud(points.collect()).expect("points");
         let drawn = svg.matches("h0").count();
-        assert!(drawn.abs_diff(MOST_POINTS) < 20, "{drawn}");
+        assert!(drawn.abs_diff(MAX_POINTS) < 20, "{drawn}");
         let said = format!("{drawn} of the 50000 valid points");
         assert!(caption.starts_with(&said), "{caption}");
         // 99 beside 499 is less than a quarter.

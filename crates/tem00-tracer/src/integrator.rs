@@ -1,8 +1,8 @@
 //! From camera samples to radiance: paths, all samples of a few pixels together, stage by stage.
 
 mod batch;
-mod lamps;
 mod lasers;
+mod lights;
 mod rules;
 mod vertex;
 mod weights;

@@ -1,8 +1,8 @@
 //! Rays per second through the tracer's intersector, and camera samples per second of a render.
 //!
 //! An open box of [−1, 1]³ m with a displaced sphere of 1 thousand, 262 thousand and 1 million
-//! triangles, and a square lamp of 0.5 m under its ceiling. Camera rays come 64 to a pixel of a
-//! 512² image, shadow rays go from where those end to points of the lamp, second rays leave there
+//! triangles, and a square area light of 0.5 m under its ceiling. Camera rays come 64 to a pixel of a
+//! 512² image, shadow rays go from where those end to points of the area light, second rays leave there
 //! as from a diffuse surface, and scattered rays join random points of a sphere.
 //!
 //! The peer is the CWBVH of obvhs over the same triangles, one ray at a time; the rectangles are two
@@ -65,7 +65,7 @@ fn direction(cosine: f64, azimuth: f64) -> DVec3 {
     DVec3::new(radius * azimuth.cos(), radius * azimuth.sin(), cosine)
 }
 
-/// The walls of the box, open towards +z, and the lamp.
+/// The walls of the box, open towards +z, and the area light.
 fn rectangles() -> Vec<Rectangle> {
     let [x, y, z] = DVec3::AXES;
     [
@@ -87,7 +87,7 @@ fn shapes(columns: u32, rows: u32) -> Vec<Shape> {
     walls.chain([mesh]).collect()
 }
 
-/// Rays of each kind, and the segments to the lamp.
+/// Rays of each kind, and the segments to the area light.
 struct Work {
     camera: Vec<Ray>,
     second: Vec<Ray>,

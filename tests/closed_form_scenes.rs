@@ -1,4 +1,4 @@
-//! Scenes whose radiance is known in closed form: an integrating sphere, and plates under lamps.
+//! Scenes whose radiance is known in closed form: an integrating sphere, and plates under lights.
 
 #![expect(
     clippy::expect_used,
@@ -85,8 +85,8 @@ fn light_in_an_integrating_sphere_is_the_sum_of_all_its_reflections() {
     );
 }
 
-/// A plate seen from above in its middle, under a lamp.
-fn plate_under(lamp: &str) -> String {
+/// A plate seen from above in its middle, under a light.
+fn plate_under(light: &str) -> String {
     format!(
         r#"
         [camera]
@@ -105,14 +105,14 @@ fn plate_under(lamp: &str) -> String {
         [[surface]]
         rectangle = {{ centre = [0, 0, 0], normal = [0, 0, 1], size = [1, 1] }}
         lambertian = {{ reflectance = 0.6 }}
-        [[lamp]]
-        {lamp}
+        [[light]]
+        {light}
         "#
     )
 }
 
 #[test]
-fn a_point_lamp_obeys_the_inverse_square_and_the_cosine() {
+fn a_point_light_obeys_the_inverse_square_and_the_cosine() {
     let frame = render(
         &plate_under("point = { position = [0.3, 0, 0.4], power = 5 }"),
         0,
@@ -121,7 +121,7 @@ fn a_point_lamp_obeys_the_inverse_square_and_the_cosine() {
     // Intensity P/4π at 0.5 m under cos θ = 0.8, reflected with ρ/π.
     let pi = std::f64::consts::PI;
     let expected = 0.6 / pi * 5.0 / (4.0 * pi) / 0.25 * 0.8;
-    let measured = mean(frame.lamps.values());
+    let measured = mean(frame.lights.values());
     // The plate's points lie within 0.04 mm of the middle: relative change below 1e-4.
     assert!(
         (measured / expected - 1.0).abs() < 2e-4,
@@ -130,11 +130,11 @@ fn a_point_lamp_obeys_the_inverse_square_and_the_cosine() {
 }
 
 #[test]
-fn an_area_lamp_lights_by_its_form_factor() {
+fn an_area_light_lights_by_its_form_factor() {
     let scene = plate_under(
         "rectangle = { centre = [0, 0, 0.2], normal = [0, 0, -1], size = [0.3, 0.3], radiance = 10 }",
     );
-    // The lamp would hide the plate from a camera above it: look from the side.
+    // The light would hide the plate from a camera above it: look from the side.
     let scene = scene.replace("position = [0, 0, 1]\n", "position = [0.5, 0, 0.2]\n");
     // The form factor from a point to a parallel square of half side a at height h, for all four
     // quarters: (2/π) · 2 · X/√(1+X²) atan(X/√(1+X²)) with X = a/h (Howell, Mengüç, Daun & Siegel).
@@ -143,7 +143,7 @@ fn an_area_lamp_lights_by_its_form_factor() {
     let form_factor = 4.0 / std::f64::consts::PI * (x / root) * (x / root).atan();
     let expected = 0.6 * 10.0 * form_factor;
     let radiances: Vec<f64> = (0..20)
-        .map(|seed| mean(render(&scene, seed, 64).lamps.values()))
+        .map(|seed| mean(render(&scene, seed, 64).lights.values()))
         .collect();
     let test = t_test_mean(&radiances, expected).expect("renders with noise");
     assert!(

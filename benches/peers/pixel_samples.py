@@ -6,7 +6,7 @@ The mean squared error of the mean over the pixel, of 4000 pixels, for a step of
 or columns (as the walls of the box in render_scenes.py have), for one in any direction, and for light that
 grows by 1 over the pixel. `jittered` is how tem00 places camera samples: one by chance in each cell of 8 x 8.
 `multi-jittered` has one sample in each of 64 columns and rows as well, and `Sobol` one in each elementary
-rectangle: its points, scrambled by Owen's method, are those that tem00 has for lamps and lenses.
+rectangle: its points, scrambled by Owen's method, are those that tem00 has for lights and lenses.
 """
 
 import numpy as np

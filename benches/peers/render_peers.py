@@ -97,7 +97,7 @@ def report(name, ours, theirs):
 
 
 def compare(row, arguments, folder):
-    name, our_file, their_file, lamps_only = row
+    name, our_file, their_file, lights_only = row
     here = pathlib.Path(__file__).parent
     ours = Program("tem00", [arguments.server])
     theirs = [
@@ -107,7 +107,7 @@ def compare(row, arguments, folder):
     ]
     # Mitsuba's integrator of direct light makes no use of the directions that materials draw.
     ours.task = "connect" if name.startswith("direct") else "render"
-    ours.load(f"{'lamps' if lamps_only else 'load'} {our_file}")
+    ours.load(f"{'lights' if lights_only else 'load'} {our_file}")
     for program in theirs:
         program.load(f"load {their_file} {program.sampler}")
     for seed in range(arguments.rounds + 1):

@@ -84,12 +84,12 @@ spot.waist_radius = "1 mm"
 """
     if light == "area":
         text += f"""
-[[lamp]]
+[[light]]
 rectangle = {{ centre = [0, 0.99, 0], normal = [0, -1, 0], size = [0.5, 0.5], radiance = {RADIANCE} }}
 """
     else:
         text += f"""
-[[lamp]]
+[[light]]
 point = {{ position = [0, 0.9, 0], power = {POWER} }}
 """
     for centre, normal in WALLS:
@@ -205,14 +205,14 @@ def write_scenes(folder):
     folder.mkdir(parents=True, exist_ok=True)
     rows = []
 
-    def add(name, ours, theirs, lamps_only):
+    def add(name, ours, theirs, lights_only):
         theirs_file = folder / f"{len(rows)}.xml"
         theirs_file.write_text(theirs)
         if not isinstance(ours, pathlib.Path):
             file = folder / f"{len(rows)}.toml"
             file.write_text(ours)
             ours = file
-        rows.append((name, ours, theirs_file, lamps_only))
+        rows.append((name, ours, theirs_file, lights_only))
 
     for label, columns in [("1 k", 22), ("1 M", 708)]:
         mesh = folder / f"sphere_{columns}.ply"

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! load scene.toml   reads a scene
-//! lamps scene.toml  reads a scene and leaves its lasers out
+//! lights scene.toml  reads a scene and leaves its lasers out
 //! render 64 1       renders it without speckle: samples per pixel, and seed
-//! connect 64 1      the same, but lamps count only where surfaces are connected to them
+//! connect 64 1      the same, but lights count only where surfaces are connected to them
 //! write image.raw   writes what was rendered as rows of 32-bit floats: the sum of all light
 //! peak              no time: the most memory the process has had, in MiB (Linux)
 //! ```
@@ -21,7 +21,7 @@ use std::{
 };
 
 use tem00::scene::read_scene;
-use tem00::tracer::{Frame, LampEvents, RenderOptions, Scene, render_frame};
+use tem00::tracer::{Frame, LightEvents, RenderOptions, Scene, render_frame};
 
 #[derive(Default)]
 struct Server {
@@ -33,26 +33,26 @@ impl Server {
     fn perform(&mut self, task: &str, arguments: &str) -> Result<(), Box<dyn Error>> {
         match task {
             "load" => self.scene = Some(read_scene(Path::new(arguments))?),
-            "lamps" => {
+            "lights" => {
                 let mut scene = read_scene(Path::new(arguments))?;
                 scene.lasers.clear();
                 self.scene = Some(scene);
             }
-            "render" => self.frame = Some(self.render(arguments, LampEvents::Both)?),
-            "connect" => self.frame = Some(self.render(arguments, LampEvents::NextEvent)?),
+            "render" => self.frame = Some(self.render(arguments, LightEvents::Both)?),
+            "connect" => self.frame = Some(self.render(arguments, LightEvents::NextEvent)?),
             "write" => write(arguments, self.image()?)?,
             _ => return Err(format!("unknown task {task}").into()),
         }
         Ok(())
     }
 
-    fn render(&self, arguments: &str, lamp_events: LampEvents) -> Result<Frame, Box<dyn Error>> {
+    fn render(&self, arguments: &str, light_events: LightEvents) -> Result<Frame, Box<dyn Error>> {
         let scene = self.scene.as_ref().ok_or("no scene")?;
         let (samples, seed) = arguments.split_once(' ').ok_or("samples and a seed")?;
         let options = RenderOptions {
             samples_per_pixel: samples.parse()?,
             seed: seed.parse()?,
-            lamp_events,
+            light_events,
             ..scene.render
         };
         let never = AtomicBool::new(false);
@@ -62,7 +62,7 @@ impl Server {
     /// The radiance of all light, row by row, as bytes.
     fn image(&self) -> Result<Vec<u8>, Box<dyn Error>> {
         let frame = self.frame.as_ref().ok_or("no frame")?;
-        let mut sum = frame.lamps.values().to_vec();
+        let mut sum = frame.lights.values().to_vec();
         for laser in &frame.lasers {
             for layer in [&laser.coherent_after, &laser.incoherent] {
                 for (sum, value) in sum.iter_mut().zip(layer.values()) {

@@ -6,7 +6,7 @@ use std::path::Path;
 use tem00::{
     scene::parse_scene,
     tracer::{
-        Environment, Formulas, Frame, Lamp, LaserEvents, Material, Method, RenderOptions, Scene,
+        Environment, Formulas, Frame, LaserEvents, Light, Material, Method, RenderOptions, Scene,
         render_frame,
     },
 };
@@ -87,9 +87,9 @@ fn a_camera_in_glass_sees_light_compressed_by_the_square_of_the_index() {
     scene.lasers.clear();
     scene.surfaces.remove(0);
     scene.surfaces[0].material = Material::dielectric(1.5).unwrap();
-    scene.lamps = vec![Lamp::Environment(Environment::constant(4.0).unwrap())];
+    scene.lights = vec![Light::Environment(Environment::constant(4.0).unwrap())];
     let frame = render(&scene, Method::Path);
-    let mean = estimate::mean(frame.lamps.values());
+    let mean = estimate::mean(frame.lights.values());
     // From near the centre no ray is reflected totally, and what is reflected comes out later. The
     // chance to end a path scatters one of 9216 samples in twenty-five by a twentieth, at most.
     assert!((mean / (2.25 * 4.0) - 1.0).abs() < 2e-3, "{mean}");

@@ -5,7 +5,7 @@ use glam::DVec3;
 use tem00::{
     scene::parse_scene,
     tracer::{
-        Environment, Frame, Lamp, LampEvents, LaserEvents, Material, Metal, RenderOptions, Scene,
+        Environment, Frame, LaserEvents, Light, LightEvents, Material, Metal, RenderOptions, Scene,
         render_frame,
     },
 };
@@ -66,29 +66,29 @@ fn lossless_bodies_vanish_in_uniform_light() {
     for (name, material, precision) in materials {
         let mut furnace = ball(OUTSIDE);
         furnace.lasers.clear();
-        furnace.lamps = vec![Lamp::Environment(Environment::constant(3.0).unwrap())];
+        furnace.lights = vec![Light::Environment(Environment::constant(3.0).unwrap())];
         furnace.surfaces[0].material = material;
-        for events in [LampEvents::Both, LampEvents::Scattering] {
+        for events in [LightEvents::Both, LightEvents::Scattering] {
             let images: Vec<Frame> = (0..SEEDS)
                 .map(|seed| {
                     render(
                         &furnace,
                         &RenderOptions {
-                            lamp_events: events,
+                            light_events: events,
                             ..options(16, seed)
                         },
                     )
                 })
                 .collect();
             // A material that throws its direction away in proportion to what it reflects is exact.
-            let is_exact = name == "mirror" || name == "white" && events == LampEvents::Scattering;
+            let is_exact = name == "mirror" || name == "white" && events == LightEvents::Scattering;
             if is_exact {
-                for value in images.iter().flat_map(|frame| frame.lamps.values()) {
+                for value in images.iter().flat_map(|frame| frame.lights.values()) {
                     // Roundings to single precision.
                     assert!((value / 3.0 - 1.0).abs() < 2e-7, "{name}: {value}");
                 }
             } else {
-                let means: Vec<f64> = images.iter().map(|f| mean(f.lamps.values())).collect();
+                let means: Vec<f64> = images.iter().map(|f| mean(f.lights.values())).collect();
                 assert_mean(name, &means, 3.0, 3.0 * precision);
             }
         }
@@ -132,9 +132,9 @@ fn a_sphere_keeps_each_reflection_of_the_series() {
 fn environments_light_a_closed_sphere_from_nowhere() {
     let mut sphere = ball(INSIDE);
     sphere.lasers.clear();
-    sphere.lamps = vec![Lamp::Environment(Environment::constant(1.0).unwrap())];
+    sphere.lights = vec![Light::Environment(Environment::constant(1.0).unwrap())];
     let frame = render(&sphere, &options(4, 0));
-    assert!(frame.lamps.values().iter().all(|&v| v == 0.0), "dark");
+    assert!(frame.lights.values().iter().all(|&v| v == 0.0), "dark");
 }
 
 /// The irradiance of a rectangle of radiance 1 on a point, by Lambert's formula for polygons.
@@ -148,8 +148,8 @@ fn polygon_irradiance(corners: [DVec3; 4], point: DVec3, normal: DVec3) -> f64 {
 }
 
 #[test]
-fn a_sphere_under_an_area_lamp_obeys_lamberts_formula() {
-    // A few micrometres of a sphere, 40° from its top, under a lamp 0.2 m square.
+fn a_sphere_under_an_area_light_obeys_lamberts_formula() {
+    // A few micrometres of a sphere, 40° from its top, under a light 0.2 m square.
     let (sin, cos) = 40.0_f64.to_radians().sin_cos();
     let (point, normal) = (
         DVec3::new(0.1 * sin, 0.0, 0.1 * cos),
@@ -174,7 +174,7 @@ fn a_sphere_under_an_area_lamp_obeys_lamberts_formula() {
         [[surface]]
         sphere = {{ centre = [0, 0, 0], radius = 0.1 }}
         lambertian = {{ reflectance = 0.6 }}
-        [[lamp]]
+        [[light]]
         rectangle = {{ centre = [0.05, 0, 0.25], normal = [0, 0, -1], size = [0.2, 0.2], radiance = 10 }}
         "#,
         eye.x, eye.y, eye.z, point.x, point.z
@@ -187,21 +187,21 @@ fn a_sphere_under_an_area_lamp_obeys_lamberts_formula() {
         corner(-1.0, 1.0),
     ];
     let expected = 0.6 / PI * 10.0 * polygon_irradiance(corners, point, normal);
-    for events in [LampEvents::Both, LampEvents::NextEvent] {
+    for events in [LightEvents::Both, LightEvents::NextEvent] {
         let radiances: Vec<f64> = (0..SEEDS)
             .map(|seed| {
                 let options = RenderOptions {
-                    lamp_events: events,
+                    light_events: events,
                     ..options(64, seed)
                 };
-                mean(render(&scene(&text), &options).lamps.values())
+                mean(render(&scene(&text), &options).lights.values())
             })
             .collect();
         assert_mean("sphere", &radiances, expected, 2e-3 * expected);
     }
 }
 
-/// A corner of two walls of different materials under a lamp and a laser.
+/// A corner of two walls of different materials under a light and a laser.
 fn corner(first: Material, second: Material) -> Scene {
     let mut corner = scene(
         r#"
@@ -222,7 +222,7 @@ fn corner(first: Material, second: Material) -> Scene {
         rectangle = { centre = [0.1, 0, 0], normal = [0, 0, 1], size = [0.2, 0.2] }
         [[surface]]
         rectangle = { centre = [0, 0, 0.1], normal = [1, 0, 0], size = [0.2, 0.2] }
-        [[lamp]]
+        [[light]]
         rectangle = { centre = [0.2, 0, 0.2], normal = [-1, 0, -1], size = [0.2, 0.1], radiance = 10 }
         "#,
     );
@@ -232,7 +232,7 @@ fn corner(first: Material, second: Material) -> Scene {
 }
 
 #[test]
-fn all_ways_to_find_a_lamp_agree() {
+fn all_ways_to_find_a_light_agree() {
     let satin = Material::conductor(Metal::Aluminium, 0.3).unwrap();
     let plastic = Material::plastic(0.6, 1.5, 0.2).unwrap();
     let plaster = Material::oren_nayar(0.8, 0.5).unwrap();
@@ -244,17 +244,17 @@ fn all_ways_to_find_a_lamp_agree() {
         corner.lasers.clear();
         let of = |events, seed| {
             let options = RenderOptions {
-                lamp_events: events,
+                light_events: events,
                 max_depth: Some(4),
                 ..options(32, seed)
             };
-            mean(render(&corner, &options).lamps.values())
+            mean(render(&corner, &options).lights.values())
         };
-        let both: Vec<f64> = (0..SEEDS).map(|s| of(LampEvents::Both, s)).collect();
+        let both: Vec<f64> = (0..SEEDS).map(|s| of(LightEvents::Both, s)).collect();
         let scale = both.iter().sum::<f64>() / SEEDS as f64;
         for (events, precision) in [
-            (LampEvents::NextEvent, 0.02),
-            (LampEvents::Scattering, 0.02),
+            (LightEvents::NextEvent, 0.02),
+            (LightEvents::Scattering, 0.02),
         ] {
             let differences: Vec<f64> = (0..SEEDS)
                 .zip(&both)
@@ -271,7 +271,7 @@ fn lasers_light_alike_by_the_beam_and_by_drawn_directions() {
     let white = Material::lambertian(0.8).unwrap();
     for (name, first, second) in [("white", white, white), ("satin", satin, white)] {
         let mut corner = corner(first, second);
-        corner.lamps.clear();
+        corner.lights.clear();
         let of = |events, seed| {
             let options = RenderOptions {
                 laser_events: events,

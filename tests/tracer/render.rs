@@ -10,7 +10,7 @@ use tem00::{
     },
 };
 
-/// Two lasers and a lamp on two plates.
+/// Two lasers and a light on two plates.
 fn scene() -> Scene {
     let text = r#"
         [camera]
@@ -36,7 +36,7 @@ fn scene() -> Scene {
         rectangle = { centre = [0, 0, 0], normal = [0, 0, 1], size = [0.1, 0.1] }
         [[surface]]
         rectangle = { centre = [0, -0.02, 0.02], normal = [0, 1, 0.2], size = [0.1, 0.03] }
-        [[lamp]]
+        [[light]]
         rectangle = { centre = [0, 0.2, 0.2], normal = [0, -1, -1], size = [0.05, 0.05], radiance = 10 }
     "#;
     parse_scene(text, Path::new(".")).unwrap()
@@ -65,8 +65,8 @@ fn with_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
 /// All layers of a frame.
 fn layers(frame: &Frame) -> Vec<&Grid<f32>> {
     let mut all = vec![
-        &frame.lamps,
-        &frame.lamps_variance,
+        &frame.lights,
+        &frame.lights_variance,
         &frame.depth,
         &frame.samples,
     ];
@@ -120,7 +120,7 @@ fn a_crop_has_the_bits_of_the_whole_image() {
         },
     );
     assert_eq!(part.origin, [5, 2], "origin");
-    assert_eq!(part.lamps.width(), 34, "width");
+    assert_eq!(part.lights.width(), 34, "width");
     for (whole, part) in layers(&whole).into_iter().zip(layers(&part)) {
         for (y, row) in part.rows().enumerate() {
             let same = &whole.row(y + crop.y)[crop.x..][..crop.width];
@@ -151,7 +151,7 @@ fn many_lasers_in_one_pass_are_the_lasers_one_by_one() {
 fn depth_and_normal_are_those_of_the_plate() {
     let mut scene = scene();
     scene.surfaces.truncate(1);
-    scene.lamps.clear();
+    scene.lights.clear();
     let frame = render(&scene, &options());
     // The axis is (0, −0.05, −0.3) / |…|; the plate is met where it meets z = 0.
     let middle = f64::from(frame.depth[(20, 4)]);
@@ -197,7 +197,7 @@ fn with_nothing_in_view() -> Scene {
     for surface in &mut scene.surfaces {
         surface.shape = surface.shape.moved(&away);
     }
-    scene.lamps.clear();
+    scene.lights.clear();
     scene
 }
 

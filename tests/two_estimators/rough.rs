@@ -70,7 +70,7 @@ fn a_spot_out_of_focus_looks_the_same_from_both_ends() {
 
 #[test]
 fn beams_and_drawn_directions_light_a_surface_alike() {
-    // A beam that spreads by 0.1 rad from a wide source, so that surfaces see it as a wide lamp.
+    // A beam that spreads by 0.1 rad from a wide source, so that surfaces see it as a wide area light.
     let text = tilted_plate(
         r#"spot = { waist_radius = "8 mm", waist_distance = "0.1 m", m_squared = 4000 }"#,
     );

@@ -267,13 +267,13 @@ def test_a_mirror_on_the_way_leaves_the_speckle() -> None:
 
 
 def test_other_lights_have_no_speckle() -> None:
-    lamps: Node = {
+    lights: Node = {
         "point": {"type": "point", "position": [0.05, 0.0, 0.2]},
         "sky": {"type": "constant", "radiance": 0.2},
     }
     # A laser that shines away from everything makes patterns, too.
     away = Transform().look_at([0.0, 0.1, 0.5], [0.0, 0.1, 1.0], [0.0, 1.0, 0.0])
-    parts = corner(laser={**LASER, "to_world": away}, **lamps)
+    parts = corner(laser={**LASER, "to_world": away}, **lights)
     for depth in (2, -1):
         smooth = picture({**plain(), "max_depth": depth}, **parts)
         assert smooth.min() > 0.0
@@ -311,7 +311,7 @@ def lit_box() -> Node:
             "center": [0.0, 1e-3, 6e-3],
             "bsdf": {"type": "dielectric"},
         },
-        lamp={
+        light={
             "type": "rectangle",
             "to_world": overhead @ Transform().scale(0.05),
             "emitter": {"type": "area", "radiance": 500.0},

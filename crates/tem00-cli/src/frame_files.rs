@@ -73,13 +73,13 @@ impl FramePaths {
 /// Returns the picture that the eye would see.
 pub(crate) fn picture_of(frame: &Frame) -> Picture {
     let mut picture = laser_picture_of(frame);
-    picture.add_white(&frame.lamps);
+    picture.add_white(&frame.lights);
     picture
 }
 
-/// Returns the picture without the light of the lamps.
+/// Returns the picture in the light of the lasers alone.
 fn laser_picture_of(frame: &Frame) -> Picture {
-    let mut picture = Picture::dark(frame.lamps.width(), frame.lamps.height());
+    let mut picture = Picture::dark(frame.lights.width(), frame.lights.height());
     for laser in &frame.lasers {
         picture.add_laser(&laser.coherent_after, laser.wavelength);
         picture.add_laser(&laser.incoherent, laser.wavelength);
@@ -89,7 +89,7 @@ fn laser_picture_of(frame: &Frame) -> Picture {
 
 /// Chooses the white level for the light of the lasers, or for all light if no laser is seen.
 ///
-/// A thin line on an object that a lamp lights is few of the pixels: with the lamp's counted, the
+/// A thin line on an object that another light illuminates is few of the pixels: with those counted, the
 /// line would be burnt out.
 pub(crate) fn automatic_exposure(frame: &Frame) -> Exposure {
     let lasers = laser_picture_of(frame);
@@ -125,7 +125,7 @@ pub(crate) fn write_preview(
 }
 
 /// Writes all layers of a frame of which the whole image has `size` pixels: the picture in linear
-/// sRGB, each laser's, the lamps', and what was seen.
+/// sRGB, each laser's, the lights', and what was seen.
 ///
 /// # Errors
 ///
@@ -152,12 +152,12 @@ fn layers_of<'a>(frame: &'a Frame, [red, green, blue]: &'a [Grid<f32>; 3]) -> Ve
         "all light in linear sRGB, in W/(m^2 sr)",
         [("R", red), ("G", green), ("B", blue)],
     );
-    let lamps = layer(
-        "lamps",
-        "radiance of the lamps in W/(m^2 sr), and its variance",
+    let lights = layer(
+        "lights",
+        "radiance of the lights in W/(m^2 sr), and its variance",
         [
-            ("radiance", &frame.lamps),
-            ("variance", &frame.lamps_variance),
+            ("radiance", &frame.lights),
+            ("variance", &frame.lights_variance),
         ],
     );
     let depth = layer(
@@ -179,7 +179,7 @@ fn layers_of<'a>(frame: &'a Frame, [red, green, blue]: &'a [Grid<f32>; 3]) -> Ve
     let lasers = frame.lasers.iter().enumerate().map(laser_layer);
     core::iter::once(picture)
         .chain(lasers)
-        .chain([lamps, depth, normal, samples])
+        .chain([lights, depth, normal, samples])
         .collect()
 }
 
@@ -220,7 +220,7 @@ mod tests {
     use crate::image::{Reading, read_image};
 
     #[test]
-    fn a_bright_lamp_does_not_burn_out_a_thin_line() {
+    fn a_bright_light_does_not_burn_out_a_thin_line() {
         let line = Grid::from_fn(100, 100, |_, y| if y == 50 { 3.0 } else { 0.0 });
         let dark = Grid::filled(100, 100, 0.0);
         let mut frame = Frame {
@@ -229,7 +229,7 @@ mod tests {
                 coherent_after: line.clone(),
                 ..laser_of(&dark, line)
             }],
-            lamps: Grid::filled(100, 100, 0.2),
+            lights: Grid::filled(100, 100, 0.2),
             ..empty(&dark)
         };
         let white = automatic_exposure(&frame).white_level;
@@ -238,14 +238,14 @@ mod tests {
         let white = automatic_exposure(&frame).white_level;
         assert!(
             (white - 0.2).abs() < 1e-6,
-            "white level {white} of the lamp"
+            "white level {white} of the light"
         );
     }
     fn empty(dark: &Grid<f32>) -> Frame {
         Frame {
             lasers: Vec::new(),
-            lamps: dark.clone(),
-            lamps_variance: dark.clone(),
+            lights: dark.clone(),
+            lights_variance: dark.clone(),
             depth: dark.clone(),
             normal: [dark.clone(), dark.clone(), dark.clone()],
             samples: dark.clone(),
@@ -277,8 +277,8 @@ mod tests {
                 variance: layer(5.0),
                 ..laser_of(&layer(0.0), layer(1.0))
             }],
-            lamps: layer(0.5),
-            lamps_variance: layer(6.0),
+            lights: layer(0.5),
+            lights_variance: layer(6.0),
             depth: layer(7.0),
             normal: [layer(8.0), layer(9.0), layer(10.0)],
             samples: layer(11.0),
@@ -317,21 +317,21 @@ mod tests {
         assert_eq!(read("laser_0.coherent_after"), laser.coherent_after);
         assert_eq!(read("laser_0.incoherent"), laser.incoherent);
         assert_eq!(read("laser_0.variance"), laser.variance);
-        assert_eq!(read("lamps.radiance"), frame.lamps);
-        assert_eq!(read("lamps.variance"), frame.lamps_variance);
+        assert_eq!(read("lights.radiance"), frame.lights);
+        assert_eq!(read("lights.variance"), frame.lights_variance);
         assert_eq!(read("depth.Z"), frame.depth);
         assert_eq!(read("normal.X"), frame.normal[0]);
         assert_eq!(read("normal.Y"), frame.normal[1]);
         assert_eq!(read("normal.Z"), frame.normal[2]);
         assert_eq!(read("samples.count"), frame.samples);
-        // Red laser light and lamps: (3 + 4 + 2 i) + (0.5 + i) at pixel i; blue holds no laser light.
+        // Red laser light and lights: (3 + 4 + 2 i) + (0.5 + i) at pixel i; blue holds no laser light.
         assert!(
             (read("picture.R")[(2, 0)] - 13.5).abs() < 1e-5,
             "red is all light"
         );
         assert!(
             (read("picture.B")[(2, 0)] - 2.5).abs() < 1e-5,
-            "blue is the lamps'"
+            "blue is the lights'"
         );
     }
 

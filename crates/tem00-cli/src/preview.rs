@@ -100,20 +100,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lasers_keep_their_colour_and_lamps_are_white() {
+    fn lasers_keep_their_colour_and_lights_are_white() {
         let mut picture = Picture::dark(2, 1);
         picture.add_laser(
             &Grid::from_fn(2, 1, |x, _| if x == 0 { 2.0 } else { 0.0 }),
             650e-9,
         );
         picture.add_white(&Grid::filled(2, 1, 0.5));
-        let [laser, lamp] = picture.exposed(1.0).values()[..] else {
+        let [laser, light] = picture.exposed(1.0).values()[..] else {
             panic!("two pixels");
         };
         assert!(laser[0] > 2.49 && laser[1] < 0.53, "red on grey: {laser:?}");
         assert!(
-            lamp.iter().all(|c| (c - 0.5).abs() < 1e-7),
-            "grey: {lamp:?}"
+            light.iter().all(|c| (c - 0.5).abs() < 1e-7),
+            "grey: {light:?}"
         );
     }
 

@@ -12,6 +12,9 @@ use crate::value::{Value, nearest};
 /// A table that a section may have: its key, and the keys that it may have itself.
 pub type Choice = (&'static str, &'static [&'static str]);
 
+/// Keys that have another name since: the old and the new one.
+const RENAMED: [(&str, &str); 1] = [("lamp", "light")];
+
 /// One table of the file.
 ///
 /// It is opened with the keys that it may have. A key that is not among them is an error at once,
@@ -263,9 +266,15 @@ impl<'a> Section<'a> {
 
     fn unknown(&self, key: &str, parent: Option<&Self>) -> Problem {
         let header = &self.header;
-        let message = match nearest(key, self.keys) {
-            Some(meant) => format!("unknown key `{key}` in {header}; did you mean `{meant}`?"),
-            None => format!("unknown key `{key}` in {header}"),
+        let renamed = RENAMED
+            .iter()
+            .find(|(old, new)| *old == key && self.keys.contains(new));
+        let message = match (renamed, nearest(key, self.keys)) {
+            (Some((_, new)), _) => format!("`{key}` in {header} is now named `{new}`"),
+            (_, Some(meant)) => {
+                format!("unknown key `{key}` in {header}; did you mean `{meant}`?")
+            }
+            (None, None) => format!("unknown key `{key}` in {header}"),
         };
         let help = match parent {
             Some(parent) if parent.keys.contains(&key) && !parent.is_root => format!(

@@ -10,14 +10,14 @@ use crate::{DecorrelationError, RigidMotion, Wavefront};
 /// ```
 /// use tem00_decorrelation::{DVec3, Illumination, Wavefront};
 ///
-/// let lamp = Illumination::point_source(DVec3::new(0.0, 0.0, 0.5))?;
-/// assert_eq!(lamp.direction_from(DVec3::ZERO), Some(DVec3::Z));
+/// let source = Illumination::point_source(DVec3::new(0.0, 0.0, 0.5))?;
+/// assert_eq!(source.direction_from(DVec3::ZERO), Some(DVec3::Z));
 ///
 /// // A fan along x with its apex at the same point, known where it meets the surface.
 /// let fan = Wavefront::astigmatic(DVec3::Z, DVec3::X, 1.0 / 0.5, 0.0)?;
 /// let line = Illumination::near(DVec3::ZERO, fan)?;
 /// let x = DVec3::new(0.1, 0.0, 0.0);
-/// assert_eq!(line.direction_from(x), lamp.direction_from(x));
+/// assert_eq!(line.direction_from(x), source.direction_from(x));
 /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

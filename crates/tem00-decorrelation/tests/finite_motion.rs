@@ -47,7 +47,7 @@ impl Pose {
 enum Source {
     /// Far away, in this direction.
     Sun(DVec3),
-    Lamp(DVec3),
+    Point(DVec3),
 }
 
 /// One state of a scene. The surface is the plane z = 0 of its body, the pupil that of its own.
@@ -65,7 +65,7 @@ impl State {
         let x = self.surface.at(scatterer);
         let to_source = match self.source {
             Source::Sun(direction) => -direction.normalize().dot(x),
-            Source::Lamp(position) => position.distance(x),
+            Source::Point(position) => position.distance(x),
         };
         (to_source + self.pupil.at(pupil_point).distance(x)) / self.wavelength
     }
@@ -96,7 +96,7 @@ impl State {
     fn illumination(&self) -> Illumination {
         match self.source {
             Source::Sun(direction) => Illumination::collimated(direction).unwrap(),
-            Source::Lamp(position) => Illumination::point_source(position).unwrap(),
+            Source::Point(position) => Illumination::point_source(position).unwrap(),
         }
     }
 
@@ -131,7 +131,7 @@ fn changes() -> Vec<(String, State, State)> {
     let above = Pose::new([0.0; 3], DVec3::new(0.0, 0.0, 0.3));
     let side = Pose::new([10.0, 35.0, 60.0], DVec3::new(0.2, -0.05, 0.28));
     let sun = Source::Sun(DVec3::new(-0.4, 0.1, 1.0));
-    let lamp = Source::Lamp(DVec3::new(-0.1, 0.05, 0.25));
+    let point = Source::Point(DVec3::new(-0.1, 0.05, 0.25));
     let plain = State {
         surface: level,
         pupil: above,
@@ -141,7 +141,7 @@ fn changes() -> Vec<(String, State, State)> {
     let oblique = State {
         surface: Pose::new([-15.0, 20.0, 5.0], DVec3::new(0.01, 0.02, -0.01)),
         pupil: side,
-        source: lamp,
+        source: point,
         wavelength: 650e-9,
     };
     let mut changes = Vec::new();
@@ -206,9 +206,9 @@ fn changes() -> Vec<(String, State, State)> {
                 ..state
             },
         );
-        let nearer = Source::Lamp(DVec3::new(-0.12, 0.03, 0.2));
+        let nearer = Source::Point(DVec3::new(-0.12, 0.03, 0.2));
         add(
-            "lamp",
+            "point source",
             State {
                 source: nearer,
                 ..state
@@ -403,7 +403,7 @@ fn speckle_out_of_focus_moves_as_the_wave_field_does() {
     let state = |surface, pupil| State {
         surface,
         pupil,
-        source: Source::Lamp(DVec3::new(-0.1, 0.0, 0.3)),
+        source: Source::Point(DVec3::new(-0.1, 0.0, 0.3)),
         wavelength: 650e-9,
     };
     let (rest, flat) = (pupil(0.0, 0.3, 0.0), surface(0.0, 0.0, 0.0));

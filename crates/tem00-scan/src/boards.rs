@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec2, DVec3};
 use tem00_camera::Camera;
 use tem00_tracer::{
-    Lamp, Laser, Material, MeshInstance, RigidMotion, Scene, Shape, Surface, SurfaceSpeckle,
+    Laser, Light, Material, MeshInstance, RigidMotion, Scene, Shape, Surface, SurfaceSpeckle,
     TracerError, Trajectory, TriangleMesh,
 };
 use tem00_triangulation::{
@@ -95,8 +95,8 @@ impl BoardPlan {
         &self.poses
     }
 
-    /// Returns the scene of a board in the light of a lamp beside the camera, and that of the board in the
-    /// light of the laser.
+    /// Returns the scene of a board under a point light at the camera, and that of the board under the
+    /// laser.
     ///
     /// # Errors
     ///
@@ -115,9 +115,9 @@ impl BoardPlan {
         lit.render.crop = None;
         let mut line = lit.clone();
         lit.lasers.clear();
-        lit.lamps = vec![Lamp::point(lit.camera.position(), 1.0)?];
+        lit.lights = vec![Light::point(lit.camera.position(), 1.0)?];
         line.lasers = vec![self.laser.clone().with_trajectory(Trajectory::default())];
-        line.lamps.clear();
+        line.lights.clear();
         Ok([lit, line])
     }
 }

@@ -4,8 +4,8 @@ use tem00_numerics::{Grid, cast::to_f32};
 use tem00_tracer::Frame;
 use tem00_triangulation::Sensor;
 
-/// The wavelength at which light of lamps is counted, in metres: white light has its middle there.
-pub const LAMP_WAVELENGTH: f64 = 550e-9;
+/// The wavelength at which white light is counted, in metres: it has its middle there.
+pub const WHITE_LIGHT_WAVELENGTH: f64 = 550e-9;
 
 /// Electrons that a rendered frame frees in the pixels of a sensor, before any noise.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +26,7 @@ impl Exposure {
     /// μ_e      = Σ over the sources of η E A t λ / (h c)
     /// ```
     ///
-    /// The light of each laser counts at its own wavelength, and that of lamps at 550 nm, all with
+    /// The light of each laser counts at its own wavelength, and that of the other lights at 550 nm, all with
     /// the quantum efficiency of the sensor. The frame must have been rendered with the box filter of
     /// the sensitive part of the pixel; its layers are radiances averaged over it.
     ///
@@ -36,10 +36,10 @@ impl Exposure {
     pub fn of_frame(frame: &Frame, camera: &Camera, sensor: &Sensor) -> Self {
         let [width, height] = [camera.width(), camera.height()];
         assert!(
-            frame.lamps.width() == width && frame.lamps.height() == height,
+            frame.lights.width() == width && frame.lights.height() == height,
             "a frame of {} × {} pixels for a camera of {width} × {height}",
-            frame.lamps.width(),
-            frame.lamps.height()
+            frame.lights.width(),
+            frame.lights.height()
         );
         let dark = || Grid::filled(width, height, 0.0_f32);
         let mut exposure = Self {
@@ -66,8 +66,8 @@ impl Exposure {
         let electrons = |radiance: f32, wavelength| {
             sensor.electrons(per_radiance * f64::from(radiance), wavelength)
         };
-        let lamps = electrons(frame.lamps[at], LAMP_WAVELENGTH);
-        let [mut total, mut mean, mut coherent] = [lamps, lamps, 0.0];
+        let lights = electrons(frame.lights[at], WHITE_LIGHT_WAVELENGTH);
+        let [mut total, mut mean, mut coherent] = [lights, lights, 0.0];
         for laser in &frame.lasers {
             let count = |radiance| electrons(radiance, laser.wavelength);
             let [before, after] = [laser.coherent_before[at], laser.coherent_after[at]].map(count);

@@ -46,7 +46,7 @@ pub use self::{
     average::{SpeckleCorrelation, averaged_profile, brightest_points, mean_point},
     boards::{BoardPlan, calibrate_scene},
     error::ScanError,
-    exposure::{Exposure, LAMP_WAVELENGTH},
+    exposure::{Exposure, WHITE_LIGHT_WAVELENGTH},
     frame::{MeasuredFrame, MeasuredPoint},
     frame_correlation::FrameCorrelation,
     height_map::{HeightMap, HeightScale, Raster},

@@ -228,7 +228,7 @@ impl Measurement {
             clippy::cast_sign_loss,
             reason = "lines are found inside of the image"
         )]
-        let row = (middle.seen.pixel.y as usize).min(rendered.lamps.height() - 1);
+        let row = (middle.seen.pixel.y as usize).min(rendered.lights.height() - 1);
         let at = (middle.seen.column, row);
         let [x, y, z] = [0, 1, 2].map(|axis| f64::from(rendered.normal[axis][at]));
         let world = self.motion.head_at(measured.frame);

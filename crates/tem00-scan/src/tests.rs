@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use ply_rs_bw::{parser::Parser, ply::DefaultElement, ply::Property};
-use tem00_tracer::{Environment, Lamp, Rotation, Trajectory};
+use tem00_tracer::{Environment, Light, Rotation, Trajectory};
 use tem00_triangulation::{Sensor, SensorDescription, TriangulationError, Validity};
 
 use crate::ScanError;
@@ -26,14 +26,14 @@ fn an_even_radiance_frees_the_electrons_that_the_aperture_tells() {
         .translated(DVec3::new(1.0, 1.0, -1.0));
     let radiance = 2.5;
     let sky = Environment::constant(radiance).unwrap();
-    measured.scene.lamps = vec![Lamp::Environment(sky)];
+    measured.scene.lights = vec![Light::Environment(sky)];
     let camera = measured.scene.camera;
     let measurement = Measurement::new(measured).unwrap();
     let frame = measurement
         .measure(None, 0, |_| (), &core::sync::atomic::AtomicBool::new(false))
         .unwrap();
 
-    // On the axis E = π L / (4 F²) with the working f-number, at 550 nm for a lamp.
+    // On the axis E = π L / (4 F²) with the working f-number, at 550 nm for white light.
     let f_number = 8.0 * camera.image_distance() / 25e-3;
     let irradiance = core::f64::consts::PI * radiance / (4.0 * f_number * f_number);
     let energy = irradiance * 3.45e-6 * 3.45e-6 * 1e-4;
@@ -44,7 +44,7 @@ fn an_even_radiance_frees_the_electrons_that_the_aperture_tells() {
     assert_eq!(
         frame.exposure.coherent[(16, 12)],
         0.0,
-        "lamps have no speckle"
+        "lights have no speckle"
     );
 }
 

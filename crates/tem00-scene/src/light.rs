@@ -1,6 +1,6 @@
 use glam::DVec3;
 use tem00_config::{Choice, Document, NUMBER, POWER, Problem, RADIANCE, Section, Value, rejected};
-use tem00_tracer::{Environment, Lamp, TracerError};
+use tem00_tracer::{Environment, Light, TracerError};
 
 use crate::assets::Assets;
 use crate::placement::across;
@@ -16,31 +16,31 @@ pub(crate) const SHAPES: &[Choice] = &[
     ),
 ];
 
-pub(crate) fn read(root: &Document<'_>, assets: &mut Assets) -> Result<Vec<Lamp>, Problem> {
-    let sections = root.tables("lamp", KEYS)?;
+pub(crate) fn read(root: &Document<'_>, assets: &mut Assets) -> Result<Vec<Light>, Problem> {
+    let sections = root.tables("light", KEYS)?;
     sections
         .iter()
-        .map(|section| lamp(section, assets))
+        .map(|section| light(section, assets))
         .collect()
 }
 
-fn lamp(section: &Section<'_>, assets: &mut Assets) -> Result<Lamp, Problem> {
+fn light(section: &Section<'_>, assets: &mut Assets) -> Result<Light, Problem> {
     match section.one_of("shape", SHAPES)? {
         ("point", section) => point(&section),
         ("rectangle", section) => area(&section),
-        (_, section) => Ok(Lamp::Environment(environment(&section, assets)?)),
+        (_, section) => Ok(Light::Environment(environment(&section, assets)?)),
     }
 }
 
-fn point(section: &Section<'_>) -> Result<Lamp, Problem> {
+fn point(section: &Section<'_>) -> Result<Light, Problem> {
     let position = section.required("position", "[0, 0, \"1 m\"]")?.lengths()?;
     let power = section.required("power", "\"10 mW\"")?.positive(&POWER)?;
-    Lamp::point(position, power).map_err(|error| rejected(&error, error.parameter(), &[section]))
+    Light::point(position, power).map_err(|error| rejected(&error, error.parameter(), &[section]))
 }
 
-fn area(section: &Section<'_>) -> Result<Lamp, Problem> {
+fn area(section: &Section<'_>) -> Result<Light, Problem> {
     let radiance = section.required("radiance", "0.5")?.positive(&RADIANCE)?;
-    Lamp::area(rectangle(section)?, radiance)
+    Light::area(rectangle(section)?, radiance)
         .map_err(|error| rejected(&error, error.parameter(), &[section]))
 }
 

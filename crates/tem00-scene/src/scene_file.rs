@@ -16,7 +16,7 @@ pub(crate) const SCENE: Format = Format {
         "camera",
         "laser",
         "surface",
-        "lamp",
+        "light",
         "render",
         "speckle",
         "include",
@@ -139,7 +139,7 @@ fn scene(root: &Document<'_>, assets: &mut Assets) -> Result<Scene, Problem> {
     };
     settings::render(root, &mut scene)?;
     scene.surfaces = surface::read(root, assets, &scene.lasers)?;
-    scene.lamps = light::read(root, assets)?;
+    scene.lights = light::read(root, assets)?;
     scene.speckle = settings::speckle(root)?;
     Ok(scene)
 }

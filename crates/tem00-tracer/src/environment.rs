@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use tem00_numerics::{Grid, circle_point_at_turn};
 
 use self::map::RadianceMap;
-use crate::{LampSample, TracerError};
+use crate::{LightSample, TracerError};
 
 /// Light from all around, so far away that it is the same everywhere in the scene.
 ///
@@ -38,11 +38,11 @@ use crate::{LampSample, TracerError};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
-    light: Light,
+    radiance: Radiance,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Light {
+enum Radiance {
     Constant(f64),
     Map {
         map: Arc<RadianceMap>,
@@ -68,7 +68,7 @@ impl Environment {
             });
         }
         Ok(Self {
-            light: Light::Constant(radiance),
+            radiance: Radiance::Constant(radiance),
         })
     }
 
@@ -95,7 +95,7 @@ impl Environment {
                 allowed: "a direction across `up`",
             })?;
         Ok(Self {
-            light: Light::Map {
+            radiance: Radiance::Map {
                 map: Arc::new(RadianceMap::new(map)?),
                 middle,
                 right: middle.cross(up),
@@ -108,10 +108,10 @@ impl Environment {
     /// numbers in [0, 1).
     ///
     /// Returns `None` if the environment is black.
-    pub fn sample(&self, u: [f64; 2]) -> Option<LampSample> {
-        let (direction, radiance, pdf) = match &self.light {
-            Light::Constant(radiance) => (on_sphere(u), *radiance, 0.25 / PI),
-            Light::Map {
+    pub fn sample(&self, u: [f64; 2]) -> Option<LightSample> {
+        let (direction, radiance, pdf) = match &self.radiance {
+            Radiance::Constant(radiance) => (on_sphere(u), *radiance, 0.25 / PI),
+            Radiance::Map {
                 map,
                 middle,
                 right,
@@ -122,7 +122,7 @@ impl Environment {
                 (direction.normalize(), radiance, radiance / map.total())
             }
         };
-        (radiance > 0.0 && pdf > 0.0).then(|| LampSample {
+        (radiance > 0.0 && pdf > 0.0).then(|| LightSample {
             direction,
             distance: f64::INFINITY,
             radiance_over_pdf: radiance / pdf,
@@ -133,9 +133,9 @@ impl Environment {
     /// Returns the density with which [`sample`](Self::sample) draws a direction, of unit length,
     /// per steradian.
     pub fn pdf(&self, direction: DVec3) -> f64 {
-        match &self.light {
-            Light::Constant(radiance) if *radiance > 0.0 => 0.25 / PI,
-            Light::Map { map, .. } if map.total() > 0.0 => {
+        match &self.radiance {
+            Radiance::Constant(radiance) if *radiance > 0.0 => 0.25 / PI,
+            Radiance::Map { map, .. } if map.total() > 0.0 => {
                 self.radiance_along(direction) / map.total()
             }
             _ => 0.0,
@@ -144,9 +144,9 @@ impl Environment {
 
     /// Returns the radiance that comes from a direction, of unit length, in W/(m² sr).
     pub fn radiance_along(&self, direction: DVec3) -> f64 {
-        match &self.light {
-            Light::Constant(radiance) => *radiance,
-            Light::Map {
+        match &self.radiance {
+            Radiance::Constant(radiance) => *radiance,
+            Radiance::Map {
                 map,
                 middle,
                 right,

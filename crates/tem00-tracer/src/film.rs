@@ -19,10 +19,10 @@ use crate::TracerError;
 pub struct Frame {
     /// The layers of each laser, in the order of the scene.
     pub lasers: Vec<LaserLayers>,
-    /// The radiance from incoherent lamps and the environment.
-    pub lamps: Grid<f32>,
-    /// The variance of `lamps`.
-    pub lamps_variance: Grid<f32>,
+    /// The radiance from incoherent lights and the environment.
+    pub lights: Grid<f32>,
+    /// The variance of `lights`.
+    pub lights_variance: Grid<f32>,
     /// The distance from the camera to what is seen, along the axis of the camera, in metres: the
     /// mean over the pixel's first samples that meet something, and 0 where none does.
     pub depth: Grid<f32>,
@@ -96,8 +96,8 @@ impl Film {
         Ok(Self {
             frame: Frame {
                 lasers: lasers.collect(),
-                lamps: layer(),
-                lamps_variance: layer(),
+                lights: layer(),
+                lights_variance: layer(),
                 depth: layer(),
                 normal: [layer(), layer(), layer()],
                 samples: layer(),
@@ -138,8 +138,8 @@ impl Film {
             layers.incoherent[at] = to_f32(pixel.mean(laser.incoherent));
             layers.variance[at] = to_f32(pixel.variance(&laser.radiance));
         }
-        self.frame.lamps[at] = to_f32(pixel.mean(pixel.lamps.sum));
-        self.frame.lamps_variance[at] = to_f32(pixel.variance(&pixel.lamps));
+        self.frame.lights[at] = to_f32(pixel.mean(pixel.lights.sum));
+        self.frame.lights_variance[at] = to_f32(pixel.variance(&pixel.lights));
         self.frame.samples[at] = to_f32(f64::from(pixel.samples));
         if let Some([mean, variance]) = &mut self.total {
             mean[at] = to_f32(pixel.mean(pixel.total.sum));
@@ -175,8 +175,11 @@ impl Film {
             let mean = f64::from(mean[at]);
             moments(mean, variance)
         });
-        let lamps = moments(f64::from(self.frame.lamps[at]), &self.frame.lamps_variance);
-        PixelSums::restored(samples, lasers.collect(), lamps, total.unwrap_or_default())
+        let lights = moments(
+            f64::from(self.frame.lights[at]),
+            &self.frame.lights_variance,
+        );
+        PixelSums::restored(samples, lasers.collect(), lights, total.unwrap_or_default())
     }
 
     /// Returns the mean radiance of all sources over the film; 0 unless the film keeps it.

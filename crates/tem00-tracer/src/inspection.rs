@@ -59,7 +59,7 @@ pub struct LightPart {
 pub enum LightFate {
     /// The camera sees what it lights.
     Seen,
-    /// It meets no rough surface: it leaves the scene, ends on a lamp or stays among mirrors and glass.
+    /// It meets no rough surface: it leaves the scene, ends on a light or stays among mirrors and glass.
     Misses,
     /// It meets a one-sided surface from behind, which scatters nothing.
     MeetsBack,
@@ -69,10 +69,10 @@ pub enum LightFate {
     BehindCamera,
     /// It lights what lies beside the image, or beside the part of it that is rendered.
     OutsideImage,
-    /// Something stands between what it lights and the camera: the surface of this index, or a lamp
+    /// Something stands between what it lights and the camera: the surface of this index, or a light
     /// for an index beyond those of the surfaces.
     Hidden {
-        /// The index among the surfaces, and the area lamps behind them.
+        /// The index among the surfaces, and the area lights behind them.
         by: usize,
     },
 }

@@ -17,7 +17,7 @@ pub(crate) use self::{
     rules::PathRules,
 };
 use crate::{
-    Hit, Intersector, Lamp, Laser, RenderOptions, Scene,
+    Hit, Intersector, Laser, Light, RenderOptions, Scene,
     sampler::{Sequence, Stream, Use},
     speckle::{SpeckleFrame, SpecklePoint},
 };
@@ -36,9 +36,9 @@ pub(crate) struct Integrator<'a> {
     rules: PathRules,
     sequence: Sequence,
     spectrum: Spectrum,
-    /// The lamps that rays can meet, in the order of their shapes behind the surfaces.
-    lamp_shapes: Vec<usize>,
-    /// The lamps that rays meet where they meet nothing else.
+    /// The lights that rays can meet, in the order of their shapes behind the surfaces.
+    light_shapes: Vec<usize>,
+    /// The lights that rays meet where they meet nothing else.
     environments: Vec<usize>,
 }
 
@@ -50,10 +50,10 @@ impl<'a> Integrator<'a> {
         intersector: &'a Intersector,
         options: &RenderOptions,
     ) -> Self {
-        let lamps = |is_meant: fn(&Lamp) -> bool| {
-            let lamps = scene.lamps.iter().enumerate();
-            lamps
-                .filter(|(_, lamp)| is_meant(lamp))
+        let lights = |is_meant: fn(&Light) -> bool| {
+            let lights = scene.lights.iter().enumerate();
+            lights
+                .filter(|(_, light)| is_meant(light))
                 .map(|(index, _)| index)
                 .collect()
         };
@@ -65,9 +65,9 @@ impl<'a> Integrator<'a> {
             speckle: None,
             rules: options.into(),
             sequence: Sequence::new(options.samples_per_pixel),
-            spectrum: Spectrum::of(&scene.lasers, &scene.lamps),
-            lamp_shapes: lamps(|lamp| matches!(lamp, Lamp::Area { .. })),
-            environments: lamps(|lamp| matches!(lamp, Lamp::Environment(_))),
+            spectrum: Spectrum::of(&scene.lasers, &scene.lights),
+            light_shapes: lights(|light| matches!(light, Light::Area { .. })),
+            environments: lights(|light| matches!(light, Light::Environment(_))),
         }
     }
 
@@ -103,13 +103,13 @@ impl<'a> Integrator<'a> {
     pub(crate) fn trace(&self, batch: &mut Batch<'a>) {
         self.start(batch);
         while !batch.paths.is_empty() {
-            // Find the surfaces that the rays meet, and take the light of lamps met by chance.
+            // Find the surfaces that the rays meet, and take the radiance of lights met by chance.
             self.arrive(batch);
             // Look up the speckle of the first rough surface of each path.
             self.look_up_speckle(batch);
             // Connect the surfaces to all sources of light.
             self.connect_to_lasers(batch);
-            self.connect_to_lamps(batch);
+            self.connect_to_lights(batch);
             // Choose where the paths go on.
             self.scatter(batch);
         }
@@ -135,7 +135,7 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Moves every path to the surface that its ray meets; ends those that meet a lamp or nothing.
+    /// Moves every path to the surface that its ray meets; ends those that meet a light or nothing.
     fn arrive(&self, batch: &mut Batch<'a>) {
         batch.hits.resize(batch.rays.len(), None);
         self.intersector
@@ -148,7 +148,7 @@ impl<'a> Integrator<'a> {
             let (mut path, ray) = (batch.paths[index], batch.rays[index]);
             self.take_light(&path, &ray, hit, batch);
             let Some(vertex) = hit.and_then(|hit| self.vertex(&ray, hit)) else {
-                self.see_lamp(&path, &ray, hit, batch);
+                self.see_light(&path, &ray, hit, batch);
                 continue;
             };
             path.depth += 1;
@@ -167,13 +167,13 @@ impl<'a> Integrator<'a> {
         batch.rays.truncate(kept);
     }
 
-    /// Takes the light that a ray meets by chance: that of lamps and of sampled lasers.
+    /// Adds the radiance that a ray meets by chance: that of lights and of sampled lasers.
     fn take_light(&self, path: &Path, ray: &Ray, hit: Option<&Hit>, batch: &mut Batch<'a>) {
-        self.meet_lamps(path, ray, hit, batch);
+        self.meet_lights(path, ray, hit, batch);
         self.meet_lasers(path, ray, hit, batch);
     }
 
-    /// Returns the surface point that a ray meets, or `None` where it meets a lamp.
+    /// Returns the surface point that a ray meets, or `None` where it meets a light.
     fn vertex(&self, ray: &Ray, hit: &Hit) -> Option<Vertex<'a>> {
         let surface = self.scene.surfaces.get(hit.surface)?;
         Vertex::new(ray, hit, &surface.material)
@@ -187,8 +187,8 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Records the position of a lamp that the camera sees.
-    fn see_lamp(&self, path: &Path, ray: &Ray, hit: Option<&Hit>, batch: &mut Batch<'a>) {
+    /// Records the position of a light that the camera sees.
+    fn see_light(&self, path: &Path, ray: &Ray, hit: Option<&Hit>, batch: &mut Batch<'a>) {
         let Some(hit) = hit.filter(|_| path.depth == 0) else {
             return;
         };
@@ -282,11 +282,11 @@ impl<'a> Integrator<'a> {
     /// Tells whether a ray can find light if no surface may follow.
     #[inline(never)] // It is rare beside what surrounds it.
     fn finds_light(&self, ray: &Ray) -> bool {
-        self.may_meet_lamp(ray) || self.rays_meet_lasers()
+        self.may_meet_light(ray) || self.rays_meet_lasers()
     }
 
     /// Tells whether a ray from a surface can still find light where no surface may follow.
     fn meets_light(&self, specular: bool) -> bool {
-        self.rays_meet_lamps(specular) || self.rays_meet_lasers()
+        self.rays_meet_lights(specular) || self.rays_meet_lasers()
     }
 }

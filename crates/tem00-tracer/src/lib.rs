@@ -130,13 +130,13 @@ pub use finish::FinishingProcess;
 pub use inspection::{LaserInspection, LightFate, LightPart};
 pub use intersector::{Intersector, Segment};
 pub use laser::{BeamShape, EmittedRay, Laser, LaserDescription, SampledIllumination};
-pub use light::{Lamp, LampSample};
+pub use light::{Light, LightSample};
 pub use local_frame::LocalFrame;
 pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery};
 pub use mesh::{MeshError, TriangleMesh};
 pub use metal::Metal;
 pub use render::{
-    Crop, Formulas, LampEvents, LaserEvents, Method, RenderError, RenderOptions, render_frame,
+    Crop, Formulas, LaserEvents, LightEvents, Method, RenderError, RenderOptions, render_frame,
 };
 pub use scene::{Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 

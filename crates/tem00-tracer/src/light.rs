@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 
 use glam::DVec3;
 
-pub use self::sample::LampSample;
+pub use self::sample::LightSample;
 use self::spherical_rectangle::SphericalRectangle;
 use crate::{Environment, Rectangle, TracerError};
 
@@ -17,22 +17,22 @@ const SMALL_SOLID_ANGLE: f64 = 1e-4;
 ///
 /// # Examples
 ///
-/// A point lamp of 4π W gives 1 W/m² at 1 m, and a quarter of it at 2 m:
+/// A point light of 4π W gives 1 W/m² at 1 m, and a quarter of it at 2 m:
 ///
 /// ```
 /// use core::f64::consts::PI;
 ///
 /// use glam::DVec3;
-/// use tem00_tracer::Lamp;
+/// use tem00_tracer::Light;
 ///
-/// let lamp = Lamp::point(DVec3::new(0.0, 0.0, 2.0), 4.0 * PI)?;
-/// let light = lamp.sample(DVec3::ZERO, [0.5, 0.5]).expect("light arrives");
-/// assert_eq!((light.direction, light.distance), (DVec3::Z, 2.0));
-/// assert!((light.radiance_over_pdf - 0.25).abs() < 1e-15); // W/m²
+/// let light = Light::point(DVec3::new(0.0, 0.0, 2.0), 4.0 * PI)?;
+/// let sample = light.sample(DVec3::ZERO, [0.5, 0.5]).expect("light arrives");
+/// assert_eq!((sample.direction, sample.distance), (DVec3::Z, 2.0));
+/// assert!((sample.radiance_over_pdf - 0.25).abs() < 1e-15); // W/m²
 /// # Ok::<(), tem00_tracer::TracerError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub enum Lamp {
+pub enum Light {
     /// A point that shines equally in all directions.
     Point {
         /// The position, in metres.
@@ -51,8 +51,8 @@ pub enum Lamp {
     Environment(Environment),
 }
 
-impl Lamp {
-    /// Creates a point lamp of `power` watts at `position`.
+impl Light {
+    /// Creates a point light of `power` watts at `position`.
     ///
     /// # Errors
     ///
@@ -68,7 +68,7 @@ impl Lamp {
         Ok(Self::Point { position, power })
     }
 
-    /// Creates an area lamp of `radiance` W/(m² sr).
+    /// Creates an area light of `radiance` W/(m² sr).
     ///
     /// # Errors
     ///
@@ -86,8 +86,8 @@ impl Lamp {
     ///
     /// Rectangles are drawn uniformly over their area from afar and, nearer than their diagonal, over
     /// the solid angle that they cover; environments in proportion to their radiance. Returns
-    /// `None` where no light comes from the lamp. Whether the way is free is left to the caller.
-    pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<LampSample> {
+    /// `None` where the light does not reach. Whether the way is free is left to the caller.
+    pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match self {
             Self::Point { position, power } => sample_point(*position - from, *power),
             Self::Area {
@@ -102,7 +102,7 @@ impl Lamp {
     /// Returns the density with which [`sample`](Self::sample) draws `direction`, of unit length, at
     /// the point `from`, in metres; per steradian.
     ///
-    /// It is 0 for directions that miss the lamp, and for a point.
+    /// It is 0 for directions that miss the light, and for a point.
     pub fn pdf(&self, from: DVec3, direction: DVec3) -> f64 {
         match self {
             Self::Point { .. } => 0.0,
@@ -116,7 +116,7 @@ impl Lamp {
     }
 
     /// Returns the radiance, in W/(m² sr), that comes along a ray of this direction, of unit length,
-    /// which meets the lamp or, for an environment, nothing at all.
+    /// which meets the light or, for an environment, nothing at all.
     pub fn radiance_along(&self, direction: DVec3) -> f64 {
         match self {
             Self::Point { .. } => 0.0,
@@ -132,11 +132,11 @@ impl Lamp {
     }
 }
 
-fn sample_point(offset: DVec3, power: f64) -> Option<LampSample> {
+fn sample_point(offset: DVec3, power: f64) -> Option<LightSample> {
     let squared = offset.length_squared();
     let direction = offset.try_normalize()?;
     let irradiance = power / (4.0 * PI) / squared;
-    irradiance.is_finite().then_some(LampSample {
+    irradiance.is_finite().then_some(LightSample {
         direction,
         distance: squared.sqrt(),
         radiance_over_pdf: irradiance,
@@ -149,7 +149,7 @@ fn sample_rectangle(
     radiance: f64,
     from: DVec3,
     u: [f64; 2],
-) -> Option<LampSample> {
+) -> Option<LightSample> {
     if !faces(rectangle, from) {
         return None;
     }
@@ -165,7 +165,7 @@ fn sample_rectangle(
         None => pdf_by_area(rectangle, direction, distance),
     };
     // Rounding can put a point before a rectangle onto it.
-    (distance > 0.0 && pdf > 0.0 && pdf.is_finite()).then(|| LampSample {
+    (distance > 0.0 && pdf > 0.0 && pdf.is_finite()).then(|| LightSample {
         direction,
         distance,
         radiance_over_pdf: radiance / pdf,

@@ -5,7 +5,7 @@ mod pass;
 use core::sync::atomic::AtomicBool;
 
 pub use self::error::RenderError;
-pub use self::options::{Crop, Formulas, LampEvents, LaserEvents, Method, RenderOptions};
+pub use self::options::{Crop, Formulas, LaserEvents, LightEvents, Method, RenderOptions};
 use self::pass::PathPass;
 use crate::{
     FilterSampler, Frame, Intersector, Scene, SpeckleModel,
@@ -31,7 +31,7 @@ impl Scene {
 
 /// Renders one frame, on the threads of the current rayon pool.
 ///
-/// One pass over the image serves all lasers and lamps. Without a `speckle` model every speckle factor
+/// One pass over the image serves all lasers and lights. Without a `speckle` model every speckle factor
 /// is 1. `progress` is told, from any thread, the number of camera samples and light paths done since
 /// its last call; once `cancel` is set, the render stops within some thousand of them per thread. The
 /// result has the same bits for any number of threads.

@@ -47,8 +47,8 @@ pub(crate) enum Use {
     Scattering(u32),
     /// The decision if a path goes on from its vertex of this number.
     Survival(u32),
-    /// The position on a lamp: number of the vertex, number of the lamp.
-    Lamp(u32, u32),
+    /// The position on a light: number of the vertex, number of the light.
+    Light(u32, u32),
     /// The direction towards a laser: number of the vertex, number of the laser.
     Laser(u32, u32),
 }
@@ -63,7 +63,7 @@ impl Use {
             Self::Lens => pack(1, 0, 0),
             Self::Scattering(vertex) => pack(2, vertex, 0),
             Self::Survival(vertex) => pack(3, vertex, 0),
-            Self::Lamp(vertex, lamp) => pack(4, vertex, lamp),
+            Self::Light(vertex, light) => pack(4, vertex, light),
             Self::Laser(vertex, laser) => pack(5, vertex, laser),
         }
     }

@@ -1,6 +1,6 @@
 use tem00_camera::Camera;
 
-use crate::{Lamp, Laser, Material, RenderOptions, Shape, Trajectory};
+use crate::{Laser, Light, Material, RenderOptions, Shape, Trajectory};
 
 /// An object: a shape made of a material, perhaps moving from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,7 +90,7 @@ pub struct Scene {
     /// The objects.
     pub surfaces: Vec<Surface>,
     /// The incoherent lights.
-    pub lamps: Vec<Lamp>,
+    pub lights: Vec<Light>,
     /// Choices about the speckle patterns.
     pub speckle: SpeckleSettings,
     /// Choices about the image.
@@ -109,7 +109,7 @@ impl Scene {
             camera_trajectory: Trajectory::default(),
             lasers: Vec::new(),
             surfaces: Vec::new(),
-            lamps: Vec::new(),
+            lights: Vec::new(),
             speckle: SpeckleSettings::default(),
             render: RenderOptions::default(),
             frames: 1,
@@ -131,18 +131,18 @@ impl Scene {
         self.lasers[index].at(frame)
     }
 
-    /// Returns the shapes as they stand in `frame`: the surfaces, then the area lamps, which stand
+    /// Returns the shapes as they stand in `frame`: the surfaces, then the area lights, which stand
     /// still.
     pub fn shapes_at(&self, frame: u32) -> Vec<Shape> {
         let surfaces = self
             .surfaces
             .iter()
             .map(|surface| surface.shape.moved(&surface.trajectory.pose_at(frame)));
-        let lamps = self.lamps.iter().filter_map(|lamp| match lamp {
-            Lamp::Area { rectangle, .. } => Some(Shape::Rectangle(*rectangle)),
-            Lamp::Point { .. } | Lamp::Environment(_) => None,
+        let lights = self.lights.iter().filter_map(|light| match light {
+            Light::Area { rectangle, .. } => Some(Shape::Rectangle(*rectangle)),
+            Light::Point { .. } | Light::Environment(_) => None,
         });
-        surfaces.chain(lamps).collect()
+        surfaces.chain(lights).collect()
     }
 
     /// Returns whether the speckle of laser `laser` on surface `surface` may differ between two

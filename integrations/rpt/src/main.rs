@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Prints `measured | theory` from rpt's own pictures and fails if they disagree. Writes a picture with
-//! a ball, and a lamp whose light has no speckle, to `out/rpt_spot.png`.
+//! a ball, and a point light, which has no speckle, to `out/rpt_spot.png`.
 
 use std::{error::Error, f64::consts::PI, fs};
 

@@ -23,7 +23,7 @@ const MAX_NAMES: usize = 24;
 
 const PART: &str = "#808080";
 const CAMERA: &str = "#1f5fa8";
-const LAMP: &str = "#d2a01a";
+const LIGHT: &str = "#d2a01a";
 const LASERS: [&str; 4] = ["#c02030", "#2a8a5a", "#7a4fa0", "#d2701a"];
 
 /// A direction to look along.
@@ -90,7 +90,7 @@ pub(super) fn draw(scene: &Scene, frame: u32, lasers: &[LaserInspection]) -> Dra
 struct Content<'a> {
     scene: &'a Scene,
     camera: Camera,
-    /// The surfaces, then the area lamps.
+    /// The surfaces, then the area lights.
     shapes: Vec<Shape>,
     lasers: &'a [LaserInspection],
 }
@@ -113,7 +113,7 @@ impl Content<'_> {
             let is_part = index < self.scene.surfaces.len();
             panel.area(
                 &outline(shape, panel.view),
-                if is_part { PART } else { LAMP },
+                if is_part { PART } else { LIGHT },
                 canvas,
             );
         }

@@ -17,7 +17,7 @@ const BRIGHTER: f64 = 1e-3;
 const AIM: f64 = 0.7;
 
 impl BoardPlan {
-    /// Renders the images of a board, as a camera gives them: in the light of a lamp, and in that of the
+    /// Renders the images of a board, as a camera gives them: under a white light, and in that of the
     /// laser, with its speckle. Each is exposed so that a thousandth of its pixels exceeds 70 % of the
     /// full scale.
     ///

@@ -3,7 +3,7 @@ use glam::DVec3;
 use tem00_beam::{AngularProfile, FocusCurve, LineProfile};
 
 use super::{CAMERA, LASER, SURFACE, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
-use tem00_tracer::{BeamShape, Lamp, Material, Metal, RenderOptions, Shape, SpeckleSettings};
+use tem00_tracer::{BeamShape, Light, Material, Metal, RenderOptions, Shape, SpeckleSettings};
 
 /// Asserts that two vectors of length 1 at most are equal but for a few roundings of 1e−16.
 #[track_caller]
@@ -219,9 +219,9 @@ fn every_key_reaches_the_scene() {
         [[surface]]
         rectangle.size = [1, 1]
         conductor.refractive_index = [1.4, 7]
-        [[lamp]]
+        [[light]]
         point = { position = [0, 0, 2], power = "1 uW" }
-        [[lamp]]
+        [[light]]
         rectangle = { centre = [0, 0, 2], normal = [0, 0, -1], size = [1, 1], radiance = 0.5 }
     "#;
     let scene = parse(text).unwrap();
@@ -284,14 +284,14 @@ fn every_key_reaches_the_scene() {
         "index"
     );
     assert!(
-        matches!(scene.lamps[0], Lamp::Point { .. }),
+        matches!(scene.lights[0], Light::Point { .. }),
         "{:?}",
-        scene.lamps
+        scene.lights
     );
-    let Lamp::Area {
+    let Light::Area {
         rectangle,
         radiance,
-    } = &scene.lamps[1]
+    } = &scene.lights[1]
     else {
         panic!("not an area");
     };

@@ -13,7 +13,7 @@ use crate::{SceneFile, read_scene};
 
 use super::{CAMERA, LASER, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
 use tem00_tracer::{
-    Crop, Cylinder, Environment, Filter, Keyframe, Lamp, LaserEvents, Material, Metal, Method,
+    Crop, Cylinder, Environment, Filter, Keyframe, LaserEvents, Light, Material, Metal, Method,
     Rotation, Shape, Surface, SurfaceSpeckle, Trajectory,
 };
 
@@ -371,10 +371,10 @@ fn filters_have_usual_parameters_or_those_of_the_file() {
 
 #[test]
 fn environments_are_even_or_mapped() {
-    let lamp = |keys: &str| format!("{}[[lamp]]\nenvironment = {{ {keys} }}\n", minimal());
-    let even = parse(&lamp("radiance = \"0.5 W/(m² sr)\"")).unwrap();
-    let expected = Lamp::Environment(Environment::constant(0.5).unwrap());
-    assert_eq!(even.lamps, [expected], "even");
+    let light = |keys: &str| format!("{}[[light]]\nenvironment = {{ {keys} }}\n", minimal());
+    let even = parse(&light("radiance = \"0.5 W/(m² sr)\"")).unwrap();
+    let expected = Light::Environment(Environment::constant(0.5).unwrap());
+    assert_eq!(even.lights, [expected], "even");
 
     let folder = TempDir::new().unwrap();
     // Two columns by one row, little endian: what faces away shines with 1, the middle with 3.
@@ -382,14 +382,14 @@ fn environments_are_even_or_mapped() {
     let map = [b"Pf\n2 1\n-1.0\n".to_vec(), pixels].concat();
     fs::write(folder.path().join("sky.pfm"), map).unwrap();
     let read = |keys: &str| {
-        let text = lamp(&format!("file = \"sky.pfm\"{keys}"));
+        let text = light(&format!("file = \"sky.pfm\"{keys}"));
         super::schema::assert_allowed(&text);
         fs::write(folder.path().join("scene.toml"), text).unwrap();
         let file = SceneFile::read(&folder.path().join("scene.toml"));
         let mut file = file.map_err(|error| error.to_string()).unwrap();
         assert!(file.files[1].ends_with("sky.pfm"), "{:?}", file.files);
-        match file.scene.lamps.remove(0) {
-            Lamp::Environment(environment) => environment,
+        match file.scene.lights.remove(0) {
+            Light::Environment(environment) => environment,
             other => panic!("{other:?} is no environment"),
         }
     };

@@ -163,12 +163,12 @@ fn numbers_must_be_finite_and_of_a_size_that_exists() {
 fn sizes_and_powers_must_be_positive() {
     let radius = [CAMERA, LASER, "[[surface]]\nsphere.radius = 0\n"].concat();
     assert_refused(&radius, 9, &["`radius`", "positive", "got 0"]);
-    let lamp = |line: &str| format!("{}[[lamp]]\n{line}\n", minimal());
-    let point = lamp("point = { position = [0, 0, 1], power = 0 }");
+    let light = |line: &str| format!("{}[[light]]\n{line}\n", minimal());
+    let point = light("point = { position = [0, 0, 1], power = 0 }");
     assert_refused(&point, 11, &["`power`", "positive", "got 0"]);
-    let area = lamp("rectangle = { size = [1, 1], radiance = \"-1 W/(m² sr)\" }");
+    let area = light("rectangle = { size = [1, 1], radiance = \"-1 W/(m² sr)\" }");
     assert_refused(&area, 11, &["`radiance`", "positive", "\"-1 W/(m² sr)\""]);
-    assert_refused(&lamp(""), 10, &["needs a shape", "[lamp.point] or"]);
+    assert_refused(&light(""), 10, &["needs a shape", "[light.point] or"]);
 }
 
 #[test]
@@ -225,8 +225,14 @@ fn sections_must_be_tables_of_the_right_kind() {
     assert_refused("camera = 5\n", 1, &["`camera`", "[camera]", "got 5"]);
     let single = with("[[laser]]", "[laser]");
     assert_refused(&single, 3, &["`laser`", "[[laser]]"]);
-    let text = format!("lamp = [1, 2]\n{}", minimal());
-    assert_refused(&text, 1, &["`lamp`", "[[lamp]]", "got 1"]);
+    let text = format!("light = [1, 2]\n{}", minimal());
+    assert_refused(&text, 1, &["`light`", "[[light]]", "got 1"]);
+}
+
+#[test]
+fn old_names_of_keys_are_met_with_the_new_ones() {
+    let text = format!("{}[[lamp]]\npoint.power = 1\n", minimal());
+    assert_refused(&text, 10, &["`lamp` in the scene is now named `light`"]);
 }
 
 #[test]

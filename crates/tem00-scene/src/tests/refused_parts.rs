@@ -260,9 +260,9 @@ fn filters_must_be_possible() {
 
 #[test]
 fn environments_must_be_possible() {
-    let lamp = |keys: &str| format!("{}[[lamp]]\nenvironment = {{ {keys} }}\n", minimal());
+    let light = |keys: &str| format!("{}[[light]]\nenvironment = {{ {keys} }}\n", minimal());
     let cases: [(&str, &[&str]); 7] = [
-        ("", &["[lamp.environment]", "`radiance`"]),
+        ("", &["[light.environment]", "`radiance`"]),
         ("radiance = -1", &["`radiance`", "positive"]),
         (
             "radiance = 1, up = [0, 0, 1]",
@@ -274,6 +274,6 @@ fn environments_must_be_possible() {
         ("file = \"a.exr\", scale = 0", &["`scale`", "positive"]),
     ];
     for (keys, words) in cases {
-        assert_refused(&lamp(keys), 11, words);
+        assert_refused(&light(keys), 11, words);
     }
 }

@@ -47,16 +47,16 @@ pub(super) fn tables() -> BTreeMap<&'static str, &'static [&'static str]> {
         ("surface_speckle", surface::SPECKLE_KEYS),
         ("keyframe", motion::KEYFRAME_KEYS),
         ("rotation", motion::ROTATION_KEYS),
-        ("lamp", light::KEYS),
+        ("light", light::KEYS),
         ("render", settings::RENDER_KEYS),
         ("filter", filter::KEYS),
         ("speckle", settings::SPECKLE_KEYS),
     ];
-    let lamps = light::SHAPES.iter().map(|(name, keys)| match *name {
-        "point" => ("lamp_point", *keys),
-        "rectangle" => ("lamp_rectangle", *keys),
+    let lights = light::SHAPES.iter().map(|(name, keys)| match *name {
+        "point" => ("light_point", *keys),
+        "rectangle" => ("light_rectangle", *keys),
         "environment" => ("environment", *keys),
-        other => panic!("no definition is named for the lamp {other}"),
+        other => panic!("no definition is named for the light {other}"),
     });
     let filters = filter::FILTERS.iter().map(|(name, keys)| match *name {
         "box" | "tent" | "lanczos" => ("filter_radius", *keys),
@@ -68,7 +68,7 @@ pub(super) fn tables() -> BTreeMap<&'static str, &'static [&'static str]> {
     let choices = choices.into_iter().flatten().copied();
     own.into_iter()
         .chain(choices)
-        .chain(lamps)
+        .chain(lights)
         .chain(filters)
         .collect()
 }

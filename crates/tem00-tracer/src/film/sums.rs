@@ -8,8 +8,8 @@ pub(crate) struct PixelSums {
     pub samples: u32,
     /// The sums of each laser.
     pub lasers: Vec<LaserSums>,
-    /// The radiance from lamps.
-    pub lamps: Moments,
+    /// The radiance from lights.
+    pub lights: Moments,
     /// The radiance from all sources.
     pub total: Moments,
     depth: f64,
@@ -83,13 +83,13 @@ impl PixelSums {
     pub(crate) fn restored(
         samples: u32,
         lasers: Vec<LaserSums>,
-        lamps: Moments,
+        lights: Moments,
         total: Moments,
     ) -> Self {
         Self {
             samples,
             lasers,
-            lamps,
+            lights,
             total,
             ..Self::default()
         }
@@ -98,8 +98,8 @@ impl PixelSums {
     /// Adds a camera sample with its values for each laser.
     pub(crate) fn add(&mut self, sample: &CameraSample, lasers: &[LaserSample]) {
         let weight = sample.weight;
-        let lamps = weight * sample.lamps;
-        let mut total = lamps;
+        let lights = weight * sample.lights;
+        let mut total = lights;
         for (sums, laser) in self.lasers.iter_mut().zip(lasers) {
             let radiance = weight * (laser.coherent_after + laser.incoherent);
             sums.coherent_before += weight * laser.coherent_before;
@@ -111,7 +111,7 @@ impl PixelSums {
             total += radiance;
         }
         self.samples += 1;
-        self.lamps.add(lamps);
+        self.lights.add(lights);
         self.total.add(total);
         if let Some(seen) = sample.seen {
             self.hits += 1;

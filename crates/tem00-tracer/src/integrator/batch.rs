@@ -42,8 +42,8 @@ pub(crate) struct CameraSample {
     pub stream: Stream,
     /// The weight of the sample in its pixel, of mean 1.
     pub weight: f64,
-    /// The radiance from lamps.
-    pub lamps: f64,
+    /// The radiance from lights.
+    pub lights: f64,
     /// The surface point seen there, if any.
     pub seen: Option<Seen>,
 }
@@ -169,8 +169,8 @@ pub(super) enum Arrival {
         power: f64,
         coherent: bool,
     },
-    /// Light of a lamp.
-    Lamp { sample: usize, radiance: f64 },
+    /// Radiance of a light that is no laser.
+    Light { sample: usize, radiance: f64 },
 }
 
 impl Connections {
@@ -209,7 +209,7 @@ impl Batch<'_> {
                     laser.add(radiance, coherent);
                     laser.power += power;
                 }
-                Arrival::Lamp { sample, radiance } => self.samples[sample].lamps += radiance,
+                Arrival::Light { sample, radiance } => self.samples[sample].lights += radiance,
             }
         }
         connections.segments.clear();

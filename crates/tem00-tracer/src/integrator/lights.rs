@@ -3,35 +3,35 @@ use tem00_camera::Ray;
 use super::{
     Integrator,
     batch::{Arrival, Batch, Path},
-    rules::LAMP_WAVELENGTH,
+    rules::WHITE_LIGHT_WAVELENGTH,
     weights::{power_heuristic, random_number},
 };
-use crate::{Hit, Lamp, LampEvents, sampler::Use};
+use crate::{Hit, Light, LightEvents, sampler::Use};
 
 impl<'a> Integrator<'a> {
-    /// Connects every rough surface point to a point of every lamp.
-    pub(super) fn connect_to_lamps(&self, batch: &mut Batch<'a>) {
-        if self.rules.lamp_events == LampEvents::Scattering {
+    /// Connects every rough surface point to a point of every light.
+    pub(super) fn connect_to_lights(&self, batch: &mut Batch<'a>) {
+        if self.rules.light_events == LightEvents::Scattering {
             return self.connect_to_points(batch);
         }
-        for (index, lamp) in self.scene.lamps.iter().enumerate() {
-            self.connect_all(index, lamp, batch);
+        for (index, light) in self.scene.lights.iter().enumerate() {
+            self.connect_all(index, light, batch);
         }
     }
 
-    /// Connects to the lamps that no ray can meet.
+    /// Connects to the lights that no ray can meet.
     fn connect_to_points(&self, batch: &mut Batch<'a>) {
-        for (index, lamp) in self.scene.lamps.iter().enumerate() {
-            if !can_be_met(lamp) {
-                self.connect_all(index, lamp, batch);
+        for (index, light) in self.scene.lights.iter().enumerate() {
+            if !can_be_met(light) {
+                self.connect_all(index, light, batch);
             }
         }
     }
 
-    fn connect_all(&self, index: usize, lamp: &Lamp, batch: &mut Batch<'a>) {
+    fn connect_all(&self, index: usize, light: &Light, batch: &mut Batch<'a>) {
         for path in 0..batch.paths.len() {
             if !batch.vertices[path].is_specular() {
-                self.connect_to_lamp(index, lamp, path, batch);
+                self.connect_to_light(index, light, path, batch);
             }
             if batch.connections.is_full() {
                 batch.resolve_connections(self.intersector);
@@ -40,42 +40,42 @@ impl<'a> Integrator<'a> {
         batch.resolve_connections(self.intersector);
     }
 
-    fn connect_to_lamp(&self, index: usize, lamp: &Lamp, path: usize, batch: &mut Batch<'a>) {
+    fn connect_to_light(&self, index: usize, light: &Light, path: usize, batch: &mut Batch<'a>) {
         let (path, vertex) = (batch.paths[path], &batch.vertices[path]);
         let stream = batch.samples[path.sample].stream;
         let u = self
             .sequence
-            .pair(stream, Use::Lamp(path.depth, random_number(index)));
-        let Some(light) = lamp.sample(vertex.position, u) else {
+            .pair(stream, Use::Light(path.depth, random_number(index)));
+        let Some(sample) = light.sample(vertex.position, u) else {
             return;
         };
-        let Some(wi) = vertex.towards(light.direction) else {
+        let Some(wi) = vertex.towards(sample.direction) else {
             return;
         };
-        let reflected = vertex.reflected(wi, LAMP_WAVELENGTH);
-        let radiance = self.lamp_throughput(&path, batch) * light.radiance_over_pdf * reflected;
+        let reflected = vertex.reflected(wi, WHITE_LIGHT_WAVELENGTH);
+        let radiance = self.light_throughput(&path, batch) * sample.radiance_over_pdf * reflected;
         if radiance <= 0.0 {
             return;
         }
-        // Weigh the connection against the chance to meet the lamp by itself.
-        let weight = match (light.pdf, self.rules.lamp_events) {
-            (Some(pdf), LampEvents::Both) => power_heuristic(pdf, vertex.pdf(wi)),
+        // Weigh the connection against the chance to meet the light by itself.
+        let weight = match (sample.pdf, self.rules.light_events) {
+            (Some(pdf), LightEvents::Both) => power_heuristic(pdf, vertex.pdf(wi)),
             _ => 1.0,
         };
-        let segment = if light.distance.is_finite() {
-            vertex.segment_to(vertex.position + light.distance * light.direction)
+        let segment = if sample.distance.is_finite() {
+            vertex.segment_to(vertex.position + sample.distance * sample.direction)
         } else {
-            vertex.segment_along(light.direction)
+            vertex.segment_along(sample.direction)
         };
-        let arrival = Arrival::Lamp {
+        let arrival = Arrival::Light {
             sample: path.sample,
             radiance: weight * radiance,
         };
         batch.connections.push(segment, arrival);
     }
 
-    /// Takes the light of the lamp that a ray meets, or of the environment.
-    pub(super) fn meet_lamps(
+    /// Adds the radiance of the light that a ray meets, or of the environment.
+    pub(super) fn meet_lights(
         &self,
         path: &Path,
         ray: &Ray,
@@ -83,53 +83,53 @@ impl<'a> Integrator<'a> {
         batch: &mut Batch<'a>,
     ) {
         let met = match hit {
-            Some(hit) => self.lamp_at(hit),
+            Some(hit) => self.light_at(hit),
             None => self.environments.as_slice(),
         };
         for &index in met {
-            let lamp = &self.scene.lamps[index];
-            // Weigh the chance against the connection to the lamp.
-            let weight = match (path.scattering_pdf, self.rules.lamp_events) {
-                (None, _) | (_, LampEvents::Scattering) => 1.0,
-                (Some(_), LampEvents::NextEvent) => 0.0,
-                (Some(pdf), LampEvents::Both) => {
-                    power_heuristic(pdf, lamp.pdf(ray.origin, ray.direction))
+            let light = &self.scene.lights[index];
+            // Weigh the chance against the connection to the light.
+            let weight = match (path.scattering_pdf, self.rules.light_events) {
+                (None, _) | (_, LightEvents::Scattering) => 1.0,
+                (Some(_), LightEvents::NextEvent) => 0.0,
+                (Some(pdf), LightEvents::Both) => {
+                    power_heuristic(pdf, light.pdf(ray.origin, ray.direction))
                 }
             };
-            let radiance = self.lamp_throughput(path, batch) * lamp.radiance_along(ray.direction);
-            batch.samples[path.sample].lamps += weight * radiance;
+            let radiance = self.light_throughput(path, batch) * light.radiance_along(ray.direction);
+            batch.samples[path.sample].lights += weight * radiance;
         }
     }
 
-    /// Returns the index of the lamp to which the shape belongs, if it is one.
-    fn lamp_at(&self, hit: &Hit) -> &[usize] {
+    /// Returns the index of the light to which the shape belongs, if it is one.
+    fn light_at(&self, hit: &Hit) -> &[usize] {
         let shape = hit.surface.checked_sub(self.scene.surfaces.len());
-        let lamp = shape.and_then(|shape| self.lamp_shapes.get(shape..=shape));
-        lamp.unwrap_or_default()
+        let light = shape.and_then(|shape| self.light_shapes.get(shape..=shape));
+        light.unwrap_or_default()
     }
 
-    /// Tells whether a ray can find lamps that connections do not, behind a mirror or not.
-    pub(super) fn rays_meet_lamps(&self, specular: bool) -> bool {
-        let is_needed = specular || self.rules.lamp_events != LampEvents::NextEvent;
-        is_needed && self.scene.lamps.iter().any(can_be_met)
+    /// Tells whether a ray can find lights that connections do not, behind a mirror or not.
+    pub(super) fn rays_meet_lights(&self, specular: bool) -> bool {
+        let is_needed = specular || self.rules.light_events != LightEvents::NextEvent;
+        is_needed && self.scene.lights.iter().any(can_be_met)
     }
 
-    /// Tells whether a ray meets light of a lamp if nothing is in its way.
-    pub(super) fn may_meet_lamp(&self, ray: &Ray) -> bool {
-        self.scene.lamps.iter().any(|lamp| match lamp {
-            Lamp::Point { .. } => false,
-            Lamp::Area { .. } => lamp.pdf(ray.origin, ray.direction) > 0.0,
-            Lamp::Environment(_) => true,
+    /// Tells whether a ray meets a light if nothing is in its way.
+    pub(super) fn may_meet_light(&self, ray: &Ray) -> bool {
+        self.scene.lights.iter().any(|light| match light {
+            Light::Point { .. } => false,
+            Light::Area { .. } => light.pdf(ray.origin, ray.direction) > 0.0,
+            Light::Environment(_) => true,
         })
     }
 
-    fn lamp_throughput(&self, path: &Path, batch: &Batch<'_>) -> f64 {
+    fn light_throughput(&self, path: &Path, batch: &Batch<'_>) -> f64 {
         let first = path.sample * self.spectrum.wavelengths.len();
-        batch.throughput[first + self.spectrum.of_lamps]
+        batch.throughput[first + self.spectrum.of_lights]
     }
 }
 
-/// Tells whether a ray can meet the lamp.
-const fn can_be_met(lamp: &Lamp) -> bool {
-    !matches!(lamp, Lamp::Point { .. })
+/// Tells whether a ray can meet the light.
+const fn can_be_met(light: &Light) -> bool {
+    !matches!(light, Light::Point { .. })
 }

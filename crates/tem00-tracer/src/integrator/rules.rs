@@ -1,8 +1,8 @@
-use crate::{Formulas, Lamp, LampEvents, Laser, Method, RenderOptions};
+use crate::{Formulas, Laser, Light, LightEvents, Method, RenderOptions};
 
-/// The wavelength at which materials are evaluated for lamps, in metres: lamps are white and
+/// The wavelength at which materials are evaluated for lights, in metres: lights are white and
 /// materials grey under them.
-pub(super) const LAMP_WAVELENGTH: f64 = 550e-9;
+pub(super) const WHITE_LIGHT_WAVELENGTH: f64 = 550e-9;
 
 /// Rules for the paths that are followed and for the ways in which they find light.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +14,7 @@ pub(crate) struct PathRules {
     pub finds_lasers: bool,
     /// True if directions towards lasers are drawn, and rays meet their beams by chance.
     pub samples_beams: bool,
-    pub lamp_events: LampEvents,
+    pub light_events: LightEvents,
 }
 
 impl From<&RenderOptions> for PathRules {
@@ -24,7 +24,7 @@ impl From<&RenderOptions> for PathRules {
             max_depth: options.max_depth.unwrap_or(u32::MAX),
             finds_lasers: options.method == Method::Path,
             samples_beams: options.samples_beams(),
-            lamp_events: options.lamp_events,
+            light_events: options.light_events,
         }
     }
 }
@@ -35,26 +35,26 @@ pub(super) struct Spectrum {
     pub wavelengths: Vec<f64>,
     /// For each laser, which of them is its own.
     pub of_laser: Vec<usize>,
-    /// The index of the one for the lamps; 0 if there are none.
-    pub of_lamps: usize,
+    /// The index of the one for the lights; 0 if there are none.
+    pub of_lights: usize,
 }
 
 impl Spectrum {
-    pub(super) fn of(lasers: &[Laser], lamps: &[Lamp]) -> Self {
+    pub(super) fn of(lasers: &[Laser], lights: &[Light]) -> Self {
         let mut wavelengths = Vec::new();
         let of_laser = lasers
             .iter()
             .map(|laser| index_of(&mut wavelengths, laser.wavelength()))
             .collect();
-        let of_lamps = if lamps.is_empty() {
+        let of_lights = if lights.is_empty() {
             0
         } else {
-            index_of(&mut wavelengths, LAMP_WAVELENGTH)
+            index_of(&mut wavelengths, WHITE_LIGHT_WAVELENGTH)
         };
         Self {
             wavelengths,
             of_laser,
-            of_lamps,
+            of_lights,
         }
     }
 }

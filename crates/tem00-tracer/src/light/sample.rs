@@ -1,8 +1,8 @@
 use glam::DVec3;
 
-/// A direction from which a lamp sends light to a point.
+/// A direction from which a light illuminates a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LampSample {
+pub struct LightSample {
     /// The direction to the light, of unit length.
     pub direction: DVec3,
     /// The distance to the light, in metres; infinite for an environment.

@@ -9,7 +9,7 @@ pub(crate) struct LightTracer<'a> {
     pub scene: &'a Scene,
     /// The camera as it stands in the frame.
     pub camera: &'a Camera,
-    /// The surfaces as they stand in the frame, and the lamps behind them.
+    /// The surfaces as they stand in the frame, and the area lights behind them.
     pub intersector: &'a Intersector,
     pub speckle: Option<&'a SpeckleFrame<'a>>,
     pub frame: u32,

@@ -106,7 +106,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Returns the light that has met a surface, the `depth`-th of its path; lamps swallow it.
+    /// Returns the light that has met a surface, the `depth`-th of its path; area lights absorb it.
     fn arrive(&self, photons: &[Photon], depth: u32) -> Vec<Vertex<'a>> {
         let rays: Vec<_> = photons.iter().map(|photon| photon.ray).collect();
         let mut hits = vec![None; rays.len()];

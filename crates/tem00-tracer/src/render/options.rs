@@ -18,7 +18,7 @@ pub enum Method {
     /// From the camera; and from the lasers through mirrors and glass, where the scene has them.
     #[default]
     Path,
-    /// From the lasers to the camera; lamps as by the other method. What the camera sees in mirrors
+    /// From the lasers to the camera; lights as by the other method. What the camera sees in mirrors
     /// and through glass has no light of lasers.
     Light,
 }
@@ -46,16 +46,16 @@ pub enum LaserEvents {
     Sampled,
 }
 
-/// The way in which area lamps and the environment are sampled from a surface.
+/// The way in which area lights and the environment are sampled from a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LampEvents {
-    /// By a point of the lamp and by a direction of the material, each weighted by how likely it is to
+pub enum LightEvents {
+    /// By a point of the light and by a direction of the material, each weighted by how likely it is to
     /// find what the other finds.
     #[default]
     Both,
-    /// By a point of the lamp only: fewer rays, but noise where shiny surfaces mirror a lamp.
+    /// By a point of the light only: fewer rays, but noise where shiny surfaces mirror a light.
     NextEvent,
-    /// By a direction of the material only: right for lamps all around, hopeless for small ones.
+    /// By a direction of the material only: right for lights all around, hopeless for small ones.
     Scattering,
 }
 
@@ -87,8 +87,8 @@ pub struct RenderOptions {
     pub method: Method,
     /// The way in which the lasers are sampled from a surface.
     pub laser_events: LaserEvents,
-    /// The way in which lamps are sampled from a surface.
-    pub lamp_events: LampEvents,
+    /// The way in which lights are sampled from a surface.
+    pub light_events: LightEvents,
     /// The filter that weights the samples around a pixel. Light that is followed from the lasers
     /// is averaged over the square of the pixel instead.
     pub filter: Filter,
@@ -119,7 +119,7 @@ impl Default for RenderOptions {
             max_depth: None,
             method: Method::default(),
             laser_events: LaserEvents::default(),
-            lamp_events: LampEvents::default(),
+            light_events: LightEvents::default(),
             filter: Filter::default(),
             crop: None,
             target_error: None,

@@ -159,7 +159,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
             lens: self.integrator.lens(stream),
             stream,
             weight: beside.weight,
-            lamps: 0.0,
+            lights: 0.0,
             seen: None,
         }
     }

@@ -31,7 +31,7 @@ fn one_in_each_cell(points: &[[f64; 2]], columns: usize, rows: usize) -> bool {
 fn every_elementary_rectangle_holds_one_point_of_every_use() {
     const SAMPLES: u32 = 64;
     let sequence = Sequence::new(SAMPLES);
-    let uses = [Use::Lens, Use::Scattering(3), Use::Lamp(1, 2)];
+    let uses = [Use::Lens, Use::Scattering(3), Use::Light(1, 2)];
     for (pixel, purpose) in (0..20).flat_map(|pixel| uses.map(|purpose| (pixel, purpose))) {
         let points = pairs(&sequence, pixel_key(5, [0, pixel, 0]), SAMPLES, purpose);
         for columns in [1, 2, 4, 8, 16, 32, 64] {
@@ -73,8 +73,8 @@ fn uses_and_vertices_are_independent_of_each_other() {
         Use::Scattering(1),
         Use::Scattering(2),
         Use::Survival(1),
-        Use::Lamp(1, 0),
-        Use::Lamp(1, 1),
+        Use::Light(1, 0),
+        Use::Light(1, 1),
         Use::Laser(1, 0),
     ];
     let correlation = |first, second, [k, l]: [usize; 2]| {

@@ -32,32 +32,32 @@ fn a_sheet_one_nanometre_above_half_a_metre_of_floor_hides_the_light() {
 }
 
 #[test]
-fn a_lamp_does_not_hide_itself_but_what_is_before_it_does() {
+fn a_light_does_not_hide_itself_but_what_is_before_it_does() {
     let floor = rectangle(DVec3::ZERO, DVec3::X, DVec3::Y);
-    let lamp = Rectangle::new(
+    let light = Rectangle::new(
         DVec3::new(0.3, 0.1, 0.8),
         DVec3::new(0.1, 0.0, 0.05),
         DVec3::new(0.0, -0.1, 0.0),
     )
     .unwrap();
     let post = sphere(DVec3::new(0.15, 0.05, 0.4), 0.001);
-    let open = build(&[floor.clone(), Shape::Rectangle(lamp)]);
-    let blocked = build(&[floor, Shape::Rectangle(lamp), post]);
+    let open = build(&[floor.clone(), Shape::Rectangle(light)]);
+    let blocked = build(&[floor, Shape::Rectangle(light), post]);
     let mut uniform = uniforms(3);
     for _ in 0..500 {
-        let on_lamp = lamp.point(uniform(), uniform());
+        let on_light = light.point(uniform(), uniform());
         let on_floor = DVec3::new(uniform() - 0.5, uniform() - 0.5, 0.0);
         assert!(
-            open.visible(on_floor, DVec3::Z, on_lamp),
-            "{on_floor} to {on_lamp}"
+            open.visible(on_floor, DVec3::Z, on_light),
+            "{on_floor} to {on_light}"
         );
     }
     assert!(
-        !blocked.visible(DVec3::ZERO, DVec3::Z, lamp.centre()),
+        !blocked.visible(DVec3::ZERO, DVec3::Z, light.centre()),
         "the post is in the middle"
     );
     assert!(
-        blocked.visible(0.1 * DVec3::X, DVec3::Z, lamp.centre()),
+        blocked.visible(0.1 * DVec3::X, DVec3::Z, light.centre()),
         "beside the post"
     );
 }

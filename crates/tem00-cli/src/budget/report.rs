@@ -101,7 +101,7 @@ fn terms(section: &mut Section, answer: &Answer, drawings: Vec<String>) {
         Column::new("sensitivity", "sensitivity"),
         Column::new("degrees_of_freedom", "degrees of freedom"),
         Column::new("contribution", "contribution (µm)"),
-        Column::new("share", "share (%)"),
+        Column::new("variance_fraction", "part of u² (%)"),
     ]
     .into();
     if answer.trials.is_some() {

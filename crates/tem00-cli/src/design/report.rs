@@ -192,16 +192,16 @@ fn sources(figures: &DesignFigures) -> Table {
     let columns = [
         Column::new("source", "source"),
         Column::new("contribution", "contribution (µm)"),
-        Column::new("share", "share of the variance (%)"),
+        Column::new("variance_fraction", "part of u² (%)"),
     ];
     let caption = "Standard uncertainty of a height by source, at the reference plane";
     let mut table = Table::new(caption, columns).under("contributions");
-    let share = |value: f64| (value / figures.uncertainty).powi(2);
+    let fraction = |value: f64| (value / figures.uncertainty).powi(2);
     for &(source, value) in &figures.contributions {
         table.row([
             source.name().into(),
             MICROMETRES.cell(value),
-            PERCENT.with_digits(3).cell(share(value)),
+            PERCENT.with_digits(3).cell(fraction(value)),
         ]);
     }
     table.total([

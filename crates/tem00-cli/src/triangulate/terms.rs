@@ -17,8 +17,8 @@ pub(super) struct Term {
     pub(super) position: Option<f64>,
     /// The standard uncertainty of a height, in metres.
     pub(super) height: f64,
-    /// The share of the variance of a height, from 0 to 1.
-    pub(super) share: f64,
+    /// The part of the variance of a height that it makes, from 0 to 1.
+    pub(super) variance_fraction: f64,
 }
 
 /// The terms, as root mean squares over the valid points.
@@ -74,7 +74,7 @@ impl Terms {
                     name,
                     position: Some(mean(&|point| of(&point.noise)).sqrt()),
                     height: variance.sqrt(),
-                    share: 0.0,
+                    variance_fraction: 0.0,
                 }
             })
             .collect();
@@ -83,11 +83,11 @@ impl Terms {
             name: CALIBRATION,
             position: None,
             height: calibration.sqrt(),
-            share: 0.0,
+            variance_fraction: 0.0,
         });
         let variance: f64 = terms.iter().map(|term| term.height.powi(2)).sum();
         for term in terms.iter_mut().filter(|_| variance > 0.0) {
-            term.share = term.height.powi(2) / variance;
+            term.variance_fraction = term.height.powi(2) / variance;
         }
         Some(Self {
             points,
@@ -100,7 +100,7 @@ impl Terms {
     /// Returns the term that counts most.
     pub(super) fn dominant(&self) -> Option<&Term> {
         let terms = self.terms.iter();
-        terms.max_by(|a, b| a.share.total_cmp(&b.share))
+        terms.max_by(|a, b| a.variance_fraction.total_cmp(&b.variance_fraction))
     }
 
     /// Returns how well heights are known, what dominates and what lowers it.
@@ -109,7 +109,7 @@ impl Terms {
             format!(
                 " What dominates is {}, with {:.0} % of the variance: {}.",
                 term.name,
-                100.0 * term.share,
+                100.0 * term.variance_fraction,
                 remedy(term.name)
             )
         });
@@ -127,7 +127,7 @@ impl Terms {
             Column::new("name", "term"),
             Column::new("position_pixels", "position (px)"),
             Column::new("height", "height (µm)"),
-            Column::new("share", "share (%)"),
+            Column::new("variance_fraction", "part of u² (%)"),
         ];
         let caption = "Root mean squares over all valid points";
         let mut table = Table::new(caption, columns).under("terms");
@@ -136,7 +136,7 @@ impl Terms {
                 term.name.into(),
                 Cell::or_dash(term.position.map(|position| NUMBER.cell(position))),
                 MICROMETRES.cell(term.height),
-                PERCENT.with_digits(3).cell(term.share),
+                PERCENT.with_digits(3).cell(term.variance_fraction),
             ]);
         }
         for (name, length) in [

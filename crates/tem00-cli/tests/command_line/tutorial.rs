@@ -237,7 +237,7 @@ fn formulas_and_trials_agree_as_the_tutorial_says() {
         "budget out/design/best.toml",
     ] {
         for name in ["speckle ", "combined "] {
-            // The last four numbers are contribution, share, by trials and ±.
+            // The last four numbers are contribution, part of u², by trials and ±.
             let numbers = figures(&page, command, name);
             let [formula, _, trials, error] = numbers[numbers.len() - 4..] else {
                 panic!("{numbers:?}");

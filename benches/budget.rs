@@ -1,4 +1,4 @@
-//! How fast set-ups are judged: speckled line images, budgets by formulas and by trials.
+//! Speed of judging set-ups: speckled line images, budgets by formulas and by trials.
 
 #![expect(
     clippy::expect_used,

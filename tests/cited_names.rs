@@ -18,7 +18,7 @@ use sources::{Token, entries, length_of_group, packages, read, root, tokens};
 /// Names of other programs that read like names of tests.
 const FOREIGN: &[&str] = &["llvm_ad_mono_polarized"];
 
-/// What the sources define.
+/// Definitions in the sources.
 #[derive(Debug, Default)]
 struct Names {
     /// Functions and methods of Rust and Python.

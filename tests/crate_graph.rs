@@ -13,7 +13,7 @@ use std::{
 
 use toml::de::{DeTable, DeValue};
 
-/// What each crate may depend on: crates of this workspace, then crates from outside.
+/// Allowed dependencies of each crate: crates of this workspace, then crates from outside.
 const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     (
         "tem00-numerics",

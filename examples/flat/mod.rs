@@ -1,4 +1,4 @@
-//! How the light varies over a picture of speckle: a cubic fit of its local mean.
+//! Variation of the light over a picture of speckle: a cubic fit of its local mean.
 
 use tem00::numerics::Grid;
 

@@ -1,4 +1,4 @@
-//! What the example and the test of thin laser lines share: images of a line on a rough surface by
+//! Common to example and test of thin laser lines: images of a line on a rough surface by
 //! wave optics, the same by a speckle pattern times an irradiance, and what an engineer reads off.
 //!
 //! Lengths are in speckle sizes h, on the surface and in the image alike.

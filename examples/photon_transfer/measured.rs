@@ -1,13 +1,13 @@
-//! What the series tells of the sensor, after EMVA 1288.
+//! Parameters of the sensor from the series, after EMVA 1288.
 
 use tem00::triangulation::{PhotonTransferPoint, RawFrame, SensorDescription, TriangulationError};
 
 use super::Series;
 
-/// The share of the saturation up to which lines are fitted.
+/// The fraction of the saturation up to which lines are fitted.
 const LINEAR: f64 = 0.7;
 
-/// What was measured, in the units of [`SensorDescription`].
+/// Measured parameters, in the units of [`SensorDescription`].
 pub(crate) struct Measured {
     /// Mean and temporal variance above those of darkness.
     pub(crate) points: Vec<(f64, f64)>,

@@ -1,4 +1,4 @@
-//! What the examples share: a picture in a file.
+//! Common to the examples: a picture in a file.
 
 use std::{error::Error, fs, io::BufWriter, path::PathBuf};
 

@@ -1,4 +1,4 @@
-//! What the examples share: a diagram in a file.
+//! Common to the examples: a diagram in a file.
 
 use std::{fs, io, path::PathBuf};
 

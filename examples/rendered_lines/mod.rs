@@ -1,4 +1,4 @@
-//! What the example and the test of the noise of laser lines share: rendered frames of lines on a plate
+//! Common to example and test of the noise of laser lines: rendered frames of lines on a plate
 //! under speckle, and how far their columns scatter.
 
 use std::{error::Error, path::Path, sync::atomic::AtomicBool};

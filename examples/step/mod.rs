@@ -1,4 +1,4 @@
-//! What test and example of the step share: a step between two plates, measured from end to end.
+//! Common to test and example of the step: a step between two plates, measured from end to end.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;

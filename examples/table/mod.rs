@@ -1,8 +1,8 @@
-//! What the examples share: two columns of numbers from a CSV file.
+//! Common to the examples: two columns of numbers from a CSV file.
 
 use std::{fmt, fs};
 
-/// Why an example stopped. Returned from `main`, it is printed as a sentence and not as a value.
+/// Failure of an example. Returned from `main`, it is printed as a sentence and not as a value.
 pub(crate) struct Failure(String);
 
 impl<E: fmt::Display> From<E> for Failure {

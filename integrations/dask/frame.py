@@ -29,7 +29,7 @@ FULL_SCALE = 12.0  # of the brightest pixel without speckle; speckle is brighter
 
 @dataclass(frozen=True)
 class Parameters:
-    """What makes a frame.
+    """Parameters of a frame.
 
     Parameters
     ----------

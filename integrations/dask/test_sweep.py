@@ -39,7 +39,7 @@ def results(folder: Path) -> dict[str, bytes]:
 
 @pytest.fixture(scope="module")
 def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    """What one worker computes."""
+    """Results of one worker."""
     folder = tmp_path_factory.mktemp("one")
     subprocess.run(command(folder, "--workers", "1"), check=True, capture_output=True)
     return results(folder)

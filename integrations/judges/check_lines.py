@@ -73,7 +73,7 @@ JUDGES = [
 
 
 def has_one_peak(values: Floats) -> bool:
-    """Whether one pixel is the greatest: of equal ones everybody may take another."""
+    """Return whether one pixel is the greatest: of equal ones everybody may take another."""
     return int(np.sum(values == values.max())) == 1
 
 

@@ -1,4 +1,4 @@
-"""What the checks share: where things are, and a verdict that is printed and counted."""
+"""Helpers of the checks: paths, and a verdict that is printed and counted."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-//! How far speckle moves a laser line: rendered frames and wave optics against the closed forms.
+//! Displacement of a laser line by speckle: rendered frames and wave optics against the closed forms.
 
 #![expect(
     clippy::expect_used,

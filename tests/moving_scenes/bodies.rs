@@ -1,4 +1,4 @@
-//! Where the speckle goes and what is left of it when plate, camera and laser move and turn.
+//! Displacement and correlation of speckle when plate, camera and laser move and turn.
 
 use core::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! What a scan says of the speckle on tilted sensors, against the frames that it renders: how wide speckle
+//! Statements of a scan about the speckle on tilted sensors, against the frames that it renders: how wide speckle
 //! is, where it goes from frame to frame, what is left of it, and how it correlates the places of a line.
 
 #![expect(clippy::expect_used, reason = "a test ends where something fails")]

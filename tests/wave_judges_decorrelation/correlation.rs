@@ -1,4 +1,4 @@
-//! What is left of the speckle in the image, when the pattern is looked up where the laws say.
+//! Correlation of the speckle in the image, when the pattern is looked up where the laws say.
 
 use core::f64::consts::{PI, TAU};
 

@@ -1,4 +1,4 @@
-//! What the tests of the functions share.
+//! Helpers of the tests of the functions.
 
 use core::ffi::CStr;
 

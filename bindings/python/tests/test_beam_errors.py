@@ -1,4 +1,4 @@
-"""What the beams refuse, what they show of themselves, and how they travel."""
+"""Refusals, representations and pickles of beams."""
 
 import pickle
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""How objects behave in Python: views, pickles, threads, plans."""
+"""Objects in Python: views, pickles, threads, plans."""
 
 import gc
 import pickle

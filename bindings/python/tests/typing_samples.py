@@ -1,4 +1,4 @@
-"""What a type checker must accept and refuse; it is checked, not run.
+"""Samples that a type checker must accept or refuse; it is checked, not run.
 
 Each wrong use bears the comment that silences its error. A stub that is too loose makes the
 comment superfluous, which is an error as well.

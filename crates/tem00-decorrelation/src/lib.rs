@@ -1,4 +1,4 @@
-//! How a speckle pattern moves and changes when the surface, the camera or the laser moves.
+//! Motion and change of a speckle pattern when the surface, the camera or the laser moves.
 //!
 //! Given the optics of a camera and the motion of a surface point, this crate returns where the
 //! speckle goes on the sensor, how far the pattern slides across the pupil, and how much of the old

@@ -1,6 +1,6 @@
 use core::{error, fmt};
 
-/// Why a pupil, a field, a stack or light could not be constructed.
+/// Error of constructing a pupil, a field, a stack or light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SpeckleError {
@@ -10,7 +10,7 @@ pub enum SpeckleError {
         parameter: &'static str,
         /// The rejected value; a number of things is rounded above 2⁵³.
         value: f64,
-        /// What is allowed, with the unit.
+        /// The allowed values, with the unit.
         allowed: &'static str,
     },
     /// A quantity is outside the limits that another argument sets.

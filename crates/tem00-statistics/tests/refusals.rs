@@ -1,4 +1,4 @@
-//! What is refused names the parameter, its value and what is allowed.
+//! A refusal names the parameter, its value and what is allowed.
 
 use std::error::Error;
 

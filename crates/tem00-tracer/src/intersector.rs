@@ -62,7 +62,7 @@ use crate::{Hit, Shape, TracerError};
 #[derive(Clone, Debug)]
 pub struct Intersector {
     bodies: Bodies,
-    /// By how much a computed point may be off its surface, in metres.
+    /// The largest distance of a computed point from its surface, in metres.
     clearance: f64,
     level: Level,
 }

@@ -1,4 +1,4 @@
-//! What is refused names the parameter, its value and what is allowed.
+//! A refusal names the parameter, its value and what is allowed.
 
 use tem00_wave::{
     Amplitudes, Arrangement, BeamDescription, Camera, DMat3, DVec3, FanDescription, Illumination,

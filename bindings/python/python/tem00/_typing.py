@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray: TypeAlias = NDArray[np.float64]
-"""What functions of numbers return for arrays."""
+"""Result of functions of numbers, for arrays."""
 
 RealArray: TypeAlias = (
     NDArray[np.floating] | NDArray[np.integer] | Sequence[float] | Sequence[Sequence[float]]

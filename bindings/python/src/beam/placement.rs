@@ -1,4 +1,4 @@
-//! Where a light stands, and the plain parts of placed lights.
+//! Placements of lights, and the plain parts of placed lights.
 
 use pyo3::prelude::*;
 use tem00_beam as physics;

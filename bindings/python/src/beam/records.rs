@@ -1,4 +1,4 @@
-//! What queries return: named numbers, or named arrays of one shape.
+//! Results of queries: named numbers, or named arrays of one shape.
 
 use pyo3::prelude::*;
 

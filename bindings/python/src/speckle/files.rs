@@ -1,4 +1,4 @@
-//! What errors of files become in Python.
+//! Errors of files as exceptions of Python.
 
 use std::io;
 

@@ -11,7 +11,7 @@ use super::colours::HOLE;
 /// The placeholder of the cells.
 const MARK: &str = "data-cells=\"\"";
 
-/// By how much a cell is drawn over the next.
+/// The overlap of a cell with the next.
 const OVERLAP: f64 = 0.5;
 
 /// The cells of a scene, taken out of it.

@@ -1,4 +1,4 @@
-//! How values move between rows and columns: in blocks as wide as a line of the cache.
+//! Moves of values between rows and columns, in blocks as wide as a line of the cache.
 //!
 //! Between the two passes the spectra of [`COLUMNS`] neighbouring columns lie together,
 //! `[block][ky][column]`, so that both passes read and write whole cache lines.

@@ -1,7 +1,7 @@
 use core::fmt;
 use std::{error, io};
 
-/// Why a NumPy file could not be read.
+/// Error of reading a NumPy file.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum NpyError {

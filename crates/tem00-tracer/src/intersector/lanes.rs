@@ -22,7 +22,7 @@ pub(super) struct TriangleLanes<V> {
     pub tolerance: V,
 }
 
-/// By how much single precision errs about a triangle, in units of the longer edge of the two.
+/// The error of single precision about a triangle, in units of the longer edge of the two.
 ///
 /// In the unit of the hierarchy the origin o of a ray lies within √2 of the centre, the corner c
 /// within 1, and edges e₁, e₂ ≤ L are at most 2 long. With u = 2⁻²⁴ the roundings of inputs and

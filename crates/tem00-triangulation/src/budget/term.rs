@@ -120,7 +120,7 @@ pub struct BudgetTerm {
     /// The standard uncertainty of the input quantity after all averages: of the position of the line, in
     /// pixels, or of a height, in metres, for the calibration.
     pub uncertainty: f64,
-    /// By how much the height changes with the input quantity: in metres per pixel, or 1.
+    /// The change of the height with the input quantity: in metres per pixel, or 1.
     pub sensitivity: f64,
     /// The degrees of freedom of the standard uncertainty; infinite if it is known.
     pub degrees_of_freedom: f64,

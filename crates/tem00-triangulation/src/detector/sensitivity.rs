@@ -52,7 +52,7 @@ impl LineDetector {
         sensitivities
     }
 
-    /// By how much the position moves per pixel that the window moves: the central difference; 0 if it cannot
+    /// The motion of the position per pixel that the window moves: the central difference; 0 if it cannot
     /// be estimated.
     fn by_window(&self, above: &[f64], line: &Sighting) -> f64 {
         let half = self.settings.window / 2;

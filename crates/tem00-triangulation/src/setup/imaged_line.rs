@@ -40,7 +40,7 @@ pub struct ImagedLine {
     /// The speckle size along the rows and along the columns, in pixels: a sensor that is tilted
     /// stretches the speckle along its columns.
     pub speckle_size: [f64; 2],
-    /// By how much the height changes per pixel that the line moves in the image, in metres.
+    /// The change of the height per pixel that the line moves in the image, in metres.
     pub height_per_pixel: f64,
     /// The irradiance on the sensor along the crest of the line, in W/m².
     pub peak_irradiance: f64,

@@ -49,7 +49,7 @@ impl LightLevel {
     }
 }
 
-/// By how many times its noise a line must stand out of the dark.
+/// The least signal of a line over its noise in the dark.
 pub(crate) const MIN_SIGNAL: f64 = 10.0;
 /// The part of what the sensor can hold that bright grains may fill.
 pub(crate) const MAX_GRAIN_SATURATION: f64 = 1.0;

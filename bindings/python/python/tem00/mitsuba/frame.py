@@ -1,4 +1,4 @@
-"""What all lights share: a frame, the energy flow in it, and the rays, as Dr.Jit expressions.
+"""Common parts of all lights: a frame, the energy flow in it, and the rays, as Dr.Jit expressions.
 
 The functions take and return Dr.Jit arrays of any variant and are recorded into the renderer's own
 kernels; nothing here runs once per ray. The formulas are those of the light types of

@@ -25,7 +25,7 @@ _PLASTIC = 1.324717957244746
 
 
 class Place(NamedTuple):
-    """Where the pattern of a laser is looked up.
+    """Place at which the pattern of a laser is looked up.
 
     ``u`` is the slice coordinate, ``shift`` the motion of the pattern in the image, in pixels, x to
     the right and y down.

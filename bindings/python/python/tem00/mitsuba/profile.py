@@ -1,4 +1,4 @@
-"""How a laser line spreads its power along the fan, as Dr.Jit expressions.
+"""Power of a laser line along its fan, as Dr.Jit expressions.
 
 A profile is a density (:class:`Normal`, :class:`Uniform` or :class:`RolledOff`) in a variable of
 the fan angle (:class:`Tan`, :class:`Angle` or :class:`Sin`).

@@ -51,7 +51,7 @@ def refused(name: str, why: str) -> ParameterError:
 
 @dataclass
 class Description:
-    """What a scene says of the beam of a laser.
+    """Description of the beam of a laser in a scene.
 
     ``numbers`` are the properties that are numbers, in the units of the scene and in degrees, and
     ``choices`` those that are words. Properties that follow from others are absent unless given.

@@ -29,7 +29,7 @@ def refused(name: str, why: str) -> ParameterError:
 
 @dataclass(frozen=True)
 class PatternSettings:
-    """How the patterns are made; see the documentation of the integrator for the properties."""
+    """Settings of the patterns; see the documentation of the integrator for the properties."""
 
     speckle_size: float | None
     seed: int
@@ -43,7 +43,7 @@ class PatternSettings:
 
     @property
     def memory_bytes(self) -> int:
-        """What the patterns of all lasers may take, and their tables once more."""
+        """Memory of the patterns of all lasers, and as much again for their tables."""
         return self.memory * _MEBIBYTE
 
     @classmethod

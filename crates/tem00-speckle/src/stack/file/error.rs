@@ -3,7 +3,7 @@ use std::{error, io};
 
 use crate::SpeckleError;
 
-/// Why a stack could not be read from a file.
+/// Error of reading a stack from a file.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum StackFileError {
@@ -26,7 +26,7 @@ pub enum StackFileError {
         parameter: &'static str,
         /// The rejected value.
         value: u64,
-        /// What is allowed.
+        /// The allowed values.
         allowed: &'static str,
     },
     /// The header describes an impossible stack.

@@ -132,7 +132,7 @@ def test_only_differences_of_motions_count() -> None:
 
 
 def disc_overlap(shift: float) -> float:
-    """Return the share of a disc of diameter 1 that its displaced copy covers."""
+    """Return the fraction of a disc of diameter 1 that its displaced copy covers."""
     def chord(x: float) -> float:
         return 4 / math.pi * math.sqrt(max(0.0, 1 - x * x))
 

@@ -30,7 +30,7 @@ def field() -> PupilField:
 
 def test_a_sum_adds_its_patterns_in_their_shares(field: PupilField) -> None:
     light = IncoherentSum.weighted([3.0, 0.0, 1.0])
-    np.testing.assert_allclose(light.shares, [0.75, 0.25], rtol=1e-15)
+    np.testing.assert_allclose(light.weights, [0.75, 0.25], rtol=1e-15)
     first, second = light.fields(field)
     assert first == field
     expected = 0.75 * first.pattern().values + 0.25 * second.pattern().values
@@ -56,7 +56,7 @@ def test_sums_have_the_contrast_of_their_shares() -> None:
     polarised = IncoherentSum.partially_polarised(0.6)
     assert polarised.contrast == pytest.approx(np.sqrt((1 + 0.36) / 2), rel=1e-14)
     both = IncoherentSum.equal(3).split_by(polarised)
-    assert len(both.shares) == 6
+    assert len(both.weights) == 6
     assert both.contrast == pytest.approx(polarised.contrast / np.sqrt(3), rel=1e-14)
     assert both != polarised
 

@@ -115,7 +115,7 @@ def test_two_correlated_intensities_have_a_non_central_chi_squared_law(correlati
 
 
 def overlap(shift: FloatArray | float) -> FloatArray:
-    """Share of a disc of diameter 1 that its displaced copy covers, from SciPy's quadrature."""
+    """Fraction of a disc of diameter 1 that its displaced copy covers, from SciPy's quadrature."""
     def of(s: float) -> float:
         if abs(s) >= 1:
             return 0.0

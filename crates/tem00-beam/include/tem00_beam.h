@@ -110,7 +110,7 @@ typedef struct {
     TEM00_REAL flat;           /* half-width of the uniform part of the profile, in `variable` */
     TEM00_REAL sigma;          /* standard deviation of its Gaussian part, in `variable` */
     TEM00_REAL variable;       /* 0 slope tan(theta), 1 angle theta, 2 sin(theta), 3 a table */
-    TEM00_REAL mass;           /* share of the profile within |theta| < pi/2 */
+    TEM00_REAL mass;           /* fraction of the profile within |theta| < pi/2 */
     TEM00_REAL half_slope;     /* slope of the nominal edge of the fan, tan(alpha/2) */
     TEM00_REAL focus_on_plane; /* 0: waists at the slant distance y.z0; 1: on the plane there */
     TEM00_REAL pad[2];         /* unused, 0 */

@@ -118,7 +118,7 @@ struct Tem00LineLight {
     sigma: f32,
     /// What the profile is a density in: 0 the slope tan θ, 1 the angle θ, 2 sin θ, 3 a table.
     variable: f32,
-    /// The share of the profile that lies within |θ| < π/2.
+    /// The fraction of the profile that lies within |θ| < π/2.
     mass: f32,
     /// Slope of the nominal edge of the fan, tan(α/2).
     half_slope: f32,

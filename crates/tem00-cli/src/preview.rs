@@ -4,10 +4,10 @@ use tem00_numerics::Grid;
 
 use crate::colour::rgb_of_wavelength;
 
-/// The share of the lit pixels that the automatic exposure leaves below white.
+/// The fraction of the lit pixels that the automatic exposure leaves below white.
 const BELOW_WHITE: f64 = 0.995;
 
-/// A pixel counts as lit if it is brighter than this share of the brightest.
+/// A pixel counts as lit if it is brighter than this fraction of the brightest.
 const LIT: f32 = 0.01;
 
 /// A picture in linear sRGB, in the unit of the layers it was made of.

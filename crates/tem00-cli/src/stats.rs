@@ -386,7 +386,7 @@ mod tests {
     fn a_sensor_that_saturates_below_its_file_is_noticed() {
         let share = |limit: f32| {
             let light = window(13).map(|value| (value * 100.0).round().min(limit));
-            row(&measured(light), "saturated share of pixels").measured
+            row(&measured(light), "saturated fraction of pixels").measured
         };
         // The light above 4095 of a mean of 700 is exp(−5.85) = 0.0029, to 30 % in 7500 speckles.
         assert!((0.002..0.004).contains(&share(4_095.0)), "12 bits");

@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn positions_that_are_none_are_rejected() {
+    fn positions_that_are_not_finite_are_rejected() {
         let wave = Wavefront::plane(DVec3::Z).unwrap();
         for bad in [DVec3::NAN, DVec3::INFINITY] {
             for result in [

@@ -168,7 +168,7 @@ impl LineImage {
         let positions = strip.positions(centre);
         let [columns, rows] = self.data.size;
         let mut image = Grid::filled(columns, rows, 0.0_f32);
-        for (fraction, part) in self.light.shares().iter().zip(0..) {
+        for (fraction, part) in self.light.weights().iter().zip(0..) {
             let (pupil, lit) = strip.pupil(&positions, seed, part);
             let field = PupilField::from_samples(pupil, self.period, self.speckle)?;
             // The pattern is 1 in the mean over its period, in which this much of the light lies.

@@ -109,7 +109,7 @@ methods! {
     /// Standard deviation of the Gaussian part of the profile, in its variable; 0 for a top hat.
     field sigma -> f64;
 
-    /// Share of the untruncated profile inside ``|θ| < π/2``; 1 in tan θ.
+    /// Fraction of the untruncated profile inside ``|θ| < π/2``; 1 in tan θ.
     field mass -> f64;
 
     /// Slope of the edges of the fan, the tangent of half the fan angle.

@@ -114,7 +114,7 @@ methods! {
     field correlation -> f64;
 }
 
-/// Refuses what moved so far that the result is no number.
+/// Refuses what moved so far that the result is NaN.
 fn checked(speckle: physics::SpeckleMotion, name: &'static str) -> PyResult<SpeckleMotion> {
     numbers(name, speckle.speckle_displacement())?;
     if speckle.axial_displacement.is_nan() || speckle.correlation.is_nan() {

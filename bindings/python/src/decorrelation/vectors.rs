@@ -45,7 +45,7 @@ pub(super) fn array3(py: Python<'_>, vector: DVec3) -> Array3<'_> {
 ///
 /// # Errors
 ///
-/// Refuses an argument so extreme that the vector is no numbers.
+/// Refuses an argument so extreme that the vector is NaN.
 pub(super) fn array2<'py>(
     py: Python<'py>,
     name: &'static str,
@@ -58,7 +58,7 @@ pub(super) fn array2<'py>(
 ///
 /// # Errors
 ///
-/// Refuses an argument so extreme that the vector is no numbers.
+/// Refuses an argument so extreme that the vector is NaN.
 pub(super) fn numbers(name: &'static str, vector: DVec2) -> PyResult<DVec2> {
     if vector.is_nan() {
         let message = format!("{name} must be less extreme to have a result");

@@ -75,7 +75,7 @@ impl PupilField {
         Ok(Self(field.or_raise()?))
     }
 
-    /// Return a field of samples from outside: a measured or computed amplitude in the pupil plane.
+    /// Return an external field: a measured or computed amplitude in the pupil plane.
     ///
     /// Parameters
     /// ----------
@@ -139,7 +139,7 @@ impl PupilField {
         Ok(Self(field.or_raise()?))
     }
 
-    /// Return the same pupil with another law of phasors; samples from outside stay as they are.
+    /// Return the same pupil with another law of phasors; external samples stay as they are.
     ///
     /// Parameters
     /// ----------
@@ -150,7 +150,7 @@ impl PupilField {
         Ok(Self(self.0.clone().with_phasors(phasors)))
     }
 
-    /// Return the same pupil with another, independent set of phasors; samples from outside stay as
+    /// Return the same pupil with another, independent set of phasors; external samples stay as
     /// they are.
     ///
     /// Parameters
@@ -161,14 +161,14 @@ impl PupilField {
         Ok(Self(self.0.clone().with_seed(seed.unsigned("seed")?)))
     }
 
-    /// Law of the phasors, "unit" or "gaussian", or None for samples from outside.
+    /// Law of the phasors, "unit" or "gaussian", or None for external samples.
     #[getter]
     fn phasors(&self) -> Option<&'static str> {
         let phasors = self.0.phasors();
         phasors.map(|phasors| name_of(&PHASORS, phasors))
     }
 
-    /// Samples from outside, complex64 [row, column], a read-only view; None for random phasors.
+    /// External samples, complex64 [row, column], a read-only view; None for random phasors.
     #[getter]
     fn samples<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyArray2<Complex32>>>> {
         let samples = slf.get().0.samples();
@@ -212,7 +212,7 @@ impl PupilField {
     /// Returns
     /// -------
     /// complex
-    ///     Share of the lattice points that both pupils hold, unless they are weighted.
+    ///     Fraction of the lattice points that both pupils hold, unless they are weighted.
     fn overlap<'py>(
         &self,
         py: Python<'py>,
@@ -351,7 +351,7 @@ methods! {
     /// Shape of the pupil.
     get pupil -> Pupil = Pupil(this.0.pupil().clone());
 
-    /// Seed, or None for samples from outside.
+    /// Seed, or None for external samples.
     get seed -> Option<u64>;
 
     /// Number N of lattice points inside the pupil.

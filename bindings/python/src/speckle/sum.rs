@@ -66,7 +66,7 @@ methods! {
     field path_spread -> f64;
 }
 
-/// Independent speckle patterns whose intensities add, each with its share of the light.
+/// Independent speckle patterns whose intensities add, each with its fraction of the light.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct IncoherentSum(physics::IncoherentSum);
@@ -118,11 +118,11 @@ impl IncoherentSum {
         Ok(Self(self.0.split_by(&other.0).or_raise()?))
     }
 
-    /// Shares of the patterns, which sum to 1, float64 of shape (n,).
+    /// Weights of the patterns, which sum to 1, float64 of shape (n,).
     #[getter]
-    fn shares<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let shares = self.0.shares().to_vec();
-        Ok(array(py, &[shares.len()], shares)?.into_any())
+    fn weights<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        let weights = self.0.weights().to_vec();
+        Ok(array(py, &[weights.len()], weights)?.into_any())
     }
 
     /// Return one field for each pattern: `field` itself, then the same with seeds made from its own.
@@ -136,7 +136,7 @@ impl IncoherentSum {
         Ok(fields.into_iter().map(PupilField).collect())
     }
 
-    /// Return the sum of what `part` makes of each of the fields, in their shares.
+    /// Return the sum of what `part` makes of each of the fields, by their weights.
     ///
     /// Parameters
     /// ----------
@@ -165,7 +165,7 @@ impl IncoherentSum {
     }
 
     /// Return the sum of the intensities that `part` gives for the patterns 0, 1, ..., in their
-    /// shares.
+    /// weights.
     ///
     /// Parameters
     /// ----------
@@ -178,14 +178,14 @@ impl IncoherentSum {
     ///     Sum in the shape of the intensities.
     fn intensity<'py>(&self, py: Python<'py>, part: &Bound<'py, PyAny>) -> PyResult<Values<'py>> {
         let mut sum = 0.0_f64.into_pyobject(py)?.into_any();
-        for (index, share) in self.0.shares().iter().enumerate() {
-            sum = sum.add(part.call1((index,))?.mul(share)?)?;
+        for (index, weight) in self.0.weights().iter().enumerate() {
+            sum = sum.add(part.call1((index,))?.mul(weight)?)?;
         }
         Ok(sum)
     }
 
     fn __repr__(&self) -> String {
-        let (count, contrast) = (self.0.shares().len(), self.0.contrast());
+        let (count, contrast) = (self.0.weights().len(), self.0.contrast());
         format!("<IncoherentSum: {count} patterns, contrast={contrast}>")
     }
 }

@@ -69,7 +69,7 @@ impl GreyLevels {
 methods! {
     impl GreyLevels as this: this.0;
 
-    /// Share of the pixels at the largest level.
+    /// Fraction of the pixels at the largest level.
     get share_of_largest -> f64;
 
     /// Number of levels.

@@ -67,7 +67,7 @@ pub(crate) struct LoadedImage {
     pub(crate) values: Grid<f32>,
     /// A description of what was read from the file and how.
     pub(crate) interpretation: String,
-    /// The share of pixels at the largest value that the file can hold, if it has one.
+    /// The fraction of pixels at the largest value that the file can hold, if it has one.
     pub(crate) saturated: Option<f64>,
 }
 

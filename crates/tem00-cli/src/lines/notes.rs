@@ -6,10 +6,10 @@ use tem00_triangulation::{LinePoint, Validity};
 
 use crate::{args::LinesArgs, image::RawImage};
 
-/// The share of points that may be doubtful without a word.
+/// The fraction of points that may be doubtful without a word.
 const DOUBTFUL: f64 = 0.1;
 
-/// The share of columns in which there should be a line.
+/// The fraction of columns in which there should be a line.
 const LIT: f64 = 0.25;
 
 /// Returns what should be known of the lines of an image.

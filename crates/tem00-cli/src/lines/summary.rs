@@ -142,7 +142,7 @@ impl ImageSummary {
                 name(),
                 line.line.into(),
                 line.columns.into(),
-                valid_share(line),
+                valid_fraction(line),
                 Cell::or_dash(line.position),
                 Cell::or_dash(line.noise),
                 Cell::or_dash(line.width),
@@ -152,7 +152,7 @@ impl ImageSummary {
     }
 }
 
-fn valid_share(line: &LineSummary) -> Cell {
+fn valid_fraction(line: &LineSummary) -> Cell {
     let share = line.valid as f64 / line.columns.max(1) as f64;
     Cell::new(share, format!("{:.1} %", 100.0 * share))
 }
@@ -169,7 +169,7 @@ pub(super) fn report(settings: &DetectorSettings, images: &[ImageSummary]) -> Re
         Column::new("image", "image"),
         Column::new("line", "line"),
         Column::new("columns", "columns"),
-        Column::new("valid_share", "valid"),
+        Column::new("valid_fraction", "valid"),
         Column::new("position_pixels", "position/px"),
         Column::new("noise_pixels", "noise/px"),
         Column::new("width_pixels", "width/px"),

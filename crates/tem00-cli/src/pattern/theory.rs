@@ -219,7 +219,7 @@ fn stride(field: &PupilField) -> usize {
     (AIRY_FIRST_ZERO * field.speckle_size() / narrowest).ceil() as usize
 }
 
-/// Measures the share of the power beyond the pupil's cut-off frequency, one period per speckle.
+/// Measures the fraction of the power beyond the pupil's cut-off frequency, one period per speckle.
 fn support_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, StatisticsError> {
     let spectrum = power_spectrum(values)?;
     let ([size, _], [diameter, _]) = (field.size(), field.diameter());

@@ -26,7 +26,7 @@ pub(super) struct Curves {
 pub(super) struct Bin {
     pub(super) from: f64,
     pub(super) to: f64,
-    /// The share of the pixels over the width of the bin.
+    /// The fraction of the pixels over the width of the bin.
     pub(super) density: f64,
     /// The mean density of the exponential law over the bin.
     pub(super) exponential: f64,

@@ -78,7 +78,7 @@ impl Findings<'_> {
             let theory = Expectation::AtMost {
                 at_most: GreyLevels::CLIPPED_SHARE,
             };
-            self.row("saturated share of pixels", share, theory);
+            self.row("saturated fraction of pixels", share, theory);
         }
     }
 

@@ -85,7 +85,7 @@ fn a_field_from_outside_takes_the_place_of_a_random_one() {
 }
 
 #[test]
-fn fields_that_are_none_are_refused_by_their_name() {
+fn fields_that_are_not_fields_are_refused_by_their_name() {
     let folder = folder();
     let path = folder.path();
     write_field(&path.join("good.npy"), 20, 20);

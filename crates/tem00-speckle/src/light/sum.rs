@@ -4,7 +4,7 @@ use tem00_numerics::cast::{to_f32, to_usize};
 
 use crate::{PupilField, SpeckleError, SpecklePattern};
 
-/// Independent speckle patterns whose intensities add, each with its share of the light.
+/// Independent speckle patterns whose intensities add, each with its fraction of the light.
 ///
 /// ```text
 /// I = Σ wⱼ Iⱼ          Σ wⱼ = 1, Iⱼ independent patterns of mean 1
@@ -51,7 +51,7 @@ use crate::{PupilField, SpeckleError, SpecklePattern};
 /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 3 (sums of speckle patterns).
 #[derive(Clone, Debug, PartialEq)]
 pub struct IncoherentSum {
-    shares: Vec<f64>,
+    weights: Vec<f64>,
 }
 
 /// A narrow Gaussian spectrum on a surface that spreads the optical path. Lengths are in metres.
@@ -83,7 +83,7 @@ impl IncoherentSum {
             return Err(not_a_count(count as f64));
         }
         Ok(Self {
-            shares: vec![(count as f64).recip(); count],
+            weights: vec![(count as f64).recip(); count],
         })
     }
 
@@ -114,7 +114,7 @@ impl IncoherentSum {
             return Err(not_a_count(count as f64));
         }
         Ok(Self {
-            shares: scaled().map(|weight| weight / total).collect(),
+            weights: scaled().map(|weight| weight / total).collect(),
         })
     }
 
@@ -149,7 +149,7 @@ impl IncoherentSum {
     /// ```
     ///
     /// The fields of two wave numbers k and k' correlate by `exp(−(k − k')² σ_L²/2)`. The parts are
-    /// the coherent modes of that spectrum, uncorrelated with each other, whose shares of the power
+    /// the coherent modes of that spectrum, uncorrelated with each other, whose fractions of the power
     /// are the eigenvalues of a Gaussian kernel under a Gaussian weight. A narrow line is one pattern.
     ///
     /// # Validity
@@ -187,7 +187,7 @@ impl IncoherentSum {
     ///   Phenomena*, ed. J. C. Dainty, 1975.
     pub fn polychromatic(bandwidth: Bandwidth) -> Result<Self, SpeckleError> {
         let ratio = bandwidth.mode_ratio()?;
-        // tᴶ is the share of all modes from J on.
+        // tᴶ is the fraction of all modes from J on.
         let modes = match ratio > NEGLIGIBLE_SHARE {
             true => (NEGLIGIBLE_SHARE.ln() / ratio.ln()).ceil(),
             false => 1.0,
@@ -206,23 +206,23 @@ impl IncoherentSum {
     ///
     /// Returns an error if the product of both counts exceeds `MAX_PATTERNS`.
     pub fn split_by(&self, other: &Self) -> Result<Self, SpeckleError> {
-        let count = self.shares.len() * other.shares.len();
+        let count = self.weights.len() * other.weights.len();
         if count > Self::MAX_PATTERNS {
             return Err(not_a_count(count as f64));
         }
-        let products = |share| other.shares.iter().map(move |part| share * part);
-        let weights: Vec<f64> = self.shares.iter().flat_map(products).collect();
+        let products = |weight| other.weights.iter().map(move |part| weight * part);
+        let weights: Vec<f64> = self.weights.iter().flat_map(products).collect();
         Self::weighted(&weights)
     }
 
-    /// Returns the shares of the patterns, which sum to 1.
-    pub fn shares(&self) -> &[f64] {
-        &self.shares
+    /// Returns the weights of the patterns, which sum to 1.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
     }
 
     /// Returns the contrast `√(Σ w²)` of the sum of fully developed patterns.
     pub fn contrast(&self) -> f64 {
-        let squares = self.shares.iter().map(|share| share * share);
+        let squares = self.weights.iter().map(|weight| weight * weight);
         squares.sum::<f64>().sqrt()
     }
 
@@ -237,15 +237,15 @@ impl IncoherentSum {
     /// are no source of independent ones.
     pub fn fields(&self, field: &PupilField) -> Result<Vec<PupilField>, SpeckleError> {
         match field.seed() {
-            None if self.shares.len() > 1 => Err(SpeckleError::NoSeed),
+            None if self.weights.len() > 1 => Err(SpeckleError::NoSeed),
             None => Ok(vec![field.clone()]),
-            Some(seed) => Ok((0..self.shares.len())
+            Some(seed) => Ok((0..self.weights.len())
                 .map(|index| field.clone().with_seed(part_seed(seed, index)))
                 .collect()),
         }
     }
 
-    /// Returns the sum of what `part` makes of each of the [fields](Self::fields), in their shares.
+    /// Returns the sum of what `part` makes of each of the [fields](Self::fields), by their weights.
     ///
     /// # Errors
     ///
@@ -297,30 +297,30 @@ impl IncoherentSum {
         let fields = self.fields(field)?;
         let speckle_size = field.speckle_size();
         let mut sum = part(&fields[0])?.into_values();
-        let first = to_f32(self.shares[0]);
+        let first = to_f32(self.weights[0]);
         sum.values_mut()
             .iter_mut()
             .for_each(|value| *value *= first);
-        for (field, &share) in fields.iter().zip(&self.shares).skip(1) {
-            let share = to_f32(share);
+        for (field, &weight) in fields.iter().zip(&self.weights).skip(1) {
+            let weight = to_f32(weight);
             let values = part(field)?.into_values();
             assert!(
                 values.width() == sum.width() && values.height() == sum.height(),
                 "the patterns of a sum differ in size"
             );
             let pairs = sum.values_mut().iter_mut().zip(values.values());
-            pairs.for_each(|(sum, value)| *sum += share * value);
+            pairs.for_each(|(sum, value)| *sum += weight * value);
         }
         Ok(SpecklePattern::new(sum, speckle_size))
     }
 
     /// Returns the sum of the intensities that `part` gives for the patterns 0, 1, …, in their
-    /// shares.
+    /// weights.
     pub fn intensity(&self, part: impl FnMut(usize) -> f64) -> f64 {
-        let parts = (0..self.shares.len()).map(part);
+        let parts = (0..self.weights.len()).map(part);
         parts
-            .zip(&self.shares)
-            .map(|(value, share)| share * value)
+            .zip(&self.weights)
+            .map(|(value, weight)| weight * value)
             .sum()
     }
 }

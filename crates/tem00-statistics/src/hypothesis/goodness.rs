@@ -92,7 +92,7 @@ impl GoodnessOfFit {
     /// Tests after Kolmogorov and Smirnov, as [`kolmogorov_smirnov`](crate::kolmogorov_smirnov).
     ///
     /// The distance of rounded samples is that at the edges of the levels, or larger by up to half of
-    /// one sample's share of its cell.
+    /// one sample's fraction of its cell.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-/// Values nearer than this share of the greater are the same level: averages of colour channels are
+/// Values nearer than this fraction of the greater are the same level: averages of colour channels are
 /// rounded to `f32`, 16 bits are 16 times as far apart.
 const SAME: f64 = 1.0 / (1 << 20) as f64;
 
@@ -33,12 +33,12 @@ const FINEST: f64 = 3.0 * 65_536.0;
 pub struct GreyLevels {
     levels: Vec<f64>,
     step: f64,
-    /// The share of the pixels at the largest level.
+    /// The fraction of the pixels at the largest level.
     largest: f64,
 }
 
 impl GreyLevels {
-    /// The share of the pixels at the largest level from which on an image counts as clipped.
+    /// The fraction of the pixels at the largest level from which on an image counts as clipped.
     pub const CLIPPED_SHARE: f64 = 1e-3;
 
     /// Finds the levels of an image, if at least every other pixel shares its value with another
@@ -70,7 +70,7 @@ impl GreyLevels {
         })
     }
 
-    /// Returns the share of the pixels at the largest level.
+    /// Returns the fraction of the pixels at the largest level.
     pub const fn share_of_largest(&self) -> f64 {
         self.largest
     }

@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn ratios_that_are_none_are_refused() {
+    fn impossible_ratios_are_refused() {
         for bad in [-1e-9, f64::NAN, f64::INFINITY] {
             let refused = CoherentBackground::new(bad);
             assert!(

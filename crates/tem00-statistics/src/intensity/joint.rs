@@ -14,7 +14,7 @@ use crate::{
 ///
 /// Intensities are in units of their mean, which both points share. For two points a distance r
 /// apart μ² is the [`airy_autocovariance`](crate::airy_autocovariance); for a pupil shifted by a
-/// share of its diameter μ is the overlap of the two discs.
+/// fraction of its diameter μ is the overlap of the two discs.
 ///
 /// # Examples
 ///

@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_that_are_none_are_refused() {
+    fn impossible_lengths_are_refused() {
         let disc = LitArea::Disc { diameter: 1e-3 };
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let refused = ObjectiveSpeckle::new(bad, 1.0, disc);

@@ -231,7 +231,7 @@ fn only_one_polarisation_is_reflected_at_the_brewster_angle() {
 }
 
 #[test]
-fn no_possible_index_gives_a_reflectance_that_is_none() {
+fn no_possible_index_gives_a_reflectance_of_nan() {
     for n in [1e-6, 1.0, 1e6] {
         for k in [0.0, 1e-300, 1.0, 1e6] {
             for cosine in [0.0, 5e-324, 1e-170, 1e-8, 0.5, 1.0] {

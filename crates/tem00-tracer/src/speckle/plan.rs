@@ -229,7 +229,7 @@ impl Planner<'_> {
 fn fractions(speckle: &SurfaceSpeckle) -> Result<Vec<f64>, TracerError> {
     let patterns = IncoherentSum::equal(speckle.patterns as usize)?;
     let waves = IncoherentSum::partially_polarised(speckle.polarisation)?;
-    Ok(patterns.split_by(&waves)?.shares().to_vec())
+    Ok(patterns.split_by(&waves)?.weights().to_vec())
 }
 
 impl PatternPlan {

@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_none_are_on_no_front() {
+    fn nan_is_on_no_front() {
         let points = [
             [f64::NAN, 1.0],
             [1.0, f64::INFINITY],

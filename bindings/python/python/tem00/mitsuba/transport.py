@@ -115,8 +115,8 @@ class PathTracer(NamedTuple):
         ds = mi.DirectionSample3f(self.scene, si, walk.previous)
         by_chance = active & ~walk.specular
         by_event = self.scene.pdf_emitter_direction(walk.previous, ds, by_chance)
-        share = dr.select(by_chance, _share(walk.pdf, by_event), 1.0)
-        walk.radiance += walk.throughput * emitter.eval(si, active) * share
+        weight = dr.select(by_chance, _power_heuristic(walk.pdf, by_event), 1.0)
+        walk.radiance += walk.throughput * emitter.eval(si, active) * weight
 
     def _connect(
         self, walk: Walk, si: mi.SurfaceInteraction3f, sampler: mi.Sampler
@@ -129,7 +129,7 @@ class PathTracer(NamedTuple):
         wo = si.to_local(ds.d)
         if self.meets_light:
             value, pdf = bsdf.eval_pdf(mi.BSDFContext(), si, wo, lit)
-            light *= dr.select(ds.delta, 1.0, _share(ds.pdf, pdf))
+            light *= dr.select(ds.delta, 1.0, _power_heuristic(ds.pdf, pdf))
         else:
             value = bsdf.eval(mi.BSDFContext(), si, wo, lit)
         if self.factor is not None:
@@ -167,8 +167,8 @@ class PathTracer(NamedTuple):
         walk.active &= ~tested | (chance < survival)
 
 
-def _share(own: mi.Float, other: mi.Float) -> mi.Float:
-    """Return the share of one of two ways to find light, by the squares of their densities."""
+def _power_heuristic(own: mi.Float, other: mi.Float) -> mi.Float:
+    """Return the weight of the first of two ways to find light: the power heuristic with exponent 2."""
     square = own * own
     total = square + other * other
     return dr.select(total > 0.0, square / total, 0.0)

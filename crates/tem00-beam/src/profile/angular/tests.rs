@@ -105,7 +105,7 @@ fn the_unit_of_the_powers_is_of_no_account() {
 }
 
 #[test]
-fn tables_that_are_none_are_rejected() {
+fn impossible_tables_are_rejected() {
     let reject = |angles: &[f64], powers: &[f64]| AngularProfile::new(angles, powers).unwrap_err();
     for (angles, powers) in [(3, 2), (1, 1), (0, 0), (2, 3)] {
         let error = reject(&ANGLES[..angles], &POWERS[..powers]);

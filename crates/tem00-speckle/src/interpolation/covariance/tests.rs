@@ -209,7 +209,7 @@ fn the_mean_square_between_slices_is_the_sum_over_the_points_of_both_pupils() {
 }
 
 #[test]
-fn light_from_outside_has_the_covariance_of_what_its_pupils_see() {
+fn an_external_field_has_the_covariance_of_what_its_pupils_see() {
     let field = PupilField::from_speckle_size([40, 48], 2.0, 5).unwrap();
     let responses = Responses::new(&field, Interpolation::Bilinear);
     let shift = [4, -7];

@@ -57,9 +57,9 @@ fn contrasts_are_those_of_the_laws() {
 
 #[test]
 fn polarised_light_is_one_pattern_and_unpolarised_two_equal_ones() {
-    let shares = |degree| IncoherentSum::partially_polarised(degree).unwrap().shares;
-    assert_eq!(shares(1.0), [1.0], "polarised");
-    assert_eq!(shares(0.0), [0.5, 0.5], "unpolarised");
+    let weights = |degree| IncoherentSum::partially_polarised(degree).unwrap().weights;
+    assert_eq!(weights(1.0), [1.0], "polarised");
+    assert_eq!(weights(0.0), [0.5, 0.5], "unpolarised");
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn a_spectrum_has_the_second_and_third_moment_of_its_wavelengths() {
             }
             false => 1.0,
         };
-        // The modes left out hold a share of 1e−4 at most, and C² rises by twice as much of itself.
+        // The modes left out hold a fraction of 1e−4 at most, and C² rises by twice as much of itself.
         let excess = sum.contrast() / contrast - 1.0;
         assert!(
             (-1e-12..=1.01e-4).contains(&excess),
@@ -85,7 +85,7 @@ fn a_spectrum_has_the_second_and_third_moment_of_its_wavelengths() {
         // Three wave numbers of spread σ_k: the mean of exp(−σ_L²/2 Σ Δk²) over all triples is
         // 1/(1 + 3 y²) with y = σ_k σ_L, from the determinant of the quadratic form; it is Σ w³.
         let y = (contrast.powi(-4) - 1.0).max(0.0).sqrt() / 2.0;
-        let cubes: f64 = sum.shares().iter().map(|share| share.powi(3)).sum();
+        let cubes: f64 = sum.weights().iter().map(|weight| weight.powi(3)).sum();
         let excess = cubes * (1.0 + 3.0 * y * y) - 1.0;
         assert!(
             (-1e-9..=3.1e-4).contains(&excess),
@@ -115,7 +115,7 @@ fn means_are_one_and_contrasts_follow_the_shares() {
         // One pattern's C² has the variance s², the mean product of two of them s²/4: together
         // Σw⁴ s² + 4 Σ_{i<j} wᵢ²wⱼ² s²/4. Four standard deviations, α = 6e−5.
         let [squares, fourths] = [2, 4].map(|power| {
-            let powers = sum.shares().iter().map(|share| share.powi(power));
+            let powers = sum.weights().iter().map(|weight| weight.powi(power));
             powers.sum::<f64>()
         });
         let spread = contrast_squared_spread(DIAMETER as f64);
@@ -143,7 +143,7 @@ fn intensities_follow_the_laws_of_sums() {
     let check = |sum: &IncoherentSum, law: &dyn Fn(f64) -> f64| {
         let outcome = kolmogorov_smirnov(&samples(sum), law).unwrap();
         // α = 1e−4 each.
-        assert!(outcome.p_value > 1e-4, "{:?}: {outcome:?}", sum.shares());
+        assert!(outcome.p_value > 1e-4, "{:?}: {outcome:?}", sum.weights());
     };
     let gamma = GammaIntensity::new(3.0).unwrap();
     check(&IncoherentSum::equal(3).unwrap(), &|i| gamma.cumulative(i));
@@ -151,7 +151,7 @@ fn intensities_follow_the_laws_of_sums() {
     let sum = IncoherentSum::partially_polarised(0.5).unwrap();
     check(&sum, &|i| polarised.cumulative(i));
     let sum = IncoherentSum::polychromatic(LED).unwrap();
-    let law = WeightedSum::new(sum.shares()).unwrap();
+    let law = WeightedSum::new(sum.weights()).unwrap();
     check(&sum, &|i| law.cumulative(i));
 }
 
@@ -192,7 +192,7 @@ fn both_together_split_every_pattern() {
     let lasers = IncoherentSum::weighted(&[2.0, 1.0]).unwrap();
     let polarised = IncoherentSum::partially_polarised(0.6).unwrap();
     let both = lasers.split_by(&polarised).unwrap();
-    assert_eq!(both.shares().len(), 4, "{both:?}");
+    assert_eq!(both.weights().len(), 4, "{both:?}");
     let product = lasers.contrast() * polarised.contrast();
     assert!((both.contrast() - product).abs() < 1e-15, "{both:?}");
     let many = IncoherentSum::equal(100).unwrap();
@@ -216,7 +216,7 @@ fn sums_take_whatever_makes_a_pattern_of_a_field() {
 }
 
 #[test]
-fn samples_from_outside_make_one_pattern_only() {
+fn external_samples_make_one_pattern_only() {
     let samples = Grid::from_fn(20, 20, |x, y| Complex::cis((x * x + 3 * y) as f32));
     let field = PupilField::from_samples(samples, [40, 40], 2.5).unwrap();
     let one = IncoherentSum::equal(1).unwrap();
@@ -296,7 +296,7 @@ proptest! {
     fn shares_of_any_weights_sum_to_one(exponents in prop::collection::vec(-300.0..300.0_f64, 1..20)) {
         let weights: Vec<f64> = exponents.iter().map(|&e| 10.0_f64.powf(e)).collect();
         let sum = IncoherentSum::weighted(&weights).unwrap();
-        let total: f64 = sum.shares().iter().sum();
+        let total: f64 = sum.weights().iter().sum();
         prop_assert!((total - 1.0).abs() < 1e-14, "{}", total);
         prop_assert!(sum.contrast() <= 1.0 + 1e-15, "{}", sum.contrast());
     }

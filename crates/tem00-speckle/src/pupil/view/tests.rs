@@ -381,7 +381,7 @@ fn reused_memory_changes_no_bit() {
 
 #[test]
 #[should_panic(expected = "is not finite")]
-fn an_offset_that_is_no_number_panics() {
+fn an_offset_of_nan_panics() {
     let _ = PupilField::new(32, 16, 1)
         .unwrap()
         .pattern_at([f64::NAN, 0.0], 0.0);

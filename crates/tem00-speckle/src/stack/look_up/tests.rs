@@ -36,7 +36,7 @@ fn stack(field: &PupilField, path: SlicePath, interpolation: Interpolation) -> S
     SpeckleStack::generate_with(field, path, options(interpolation)).unwrap()
 }
 
-/// Light from outside: phasors under an envelope that falls to one side, so that no two pupils
+/// An external field: phasors under an envelope that falls to one side, so that no two pupils
 /// see the same.
 fn measured(size: [usize; 2], speckle_size: f64) -> PupilField {
     let samples = Grid::from_fn(48, 48, |x, y| {
@@ -107,7 +107,7 @@ fn the_nearest_sample_is_the_nearest() {
 }
 
 #[test]
-fn light_from_outside_has_the_mean_of_one_between_samples() {
+fn an_external_field_has_the_mean_of_one_between_samples() {
     for interpolation in ALL {
         let stack = stack(&measured([48, 40], 2.5), circle(2), interpolation);
         for fractions in [[0.0, 0.0], [0.5, 0.5], [0.3, 0.8]] {
@@ -270,7 +270,7 @@ fn batches_of_unlike_lengths_are_refused() {
     stack.intensity_batch(&[0.0], &[0.0, 1.0], &[0.0], &mut [0.0]);
 }
 
-/// The look-up between two slices of light from outside against fields from single transforms, and their
+/// The look-up between two slices of an external field against fields from single transforms, and their
 /// mean square over the whole tile.
 #[test]
 fn slices_of_unlike_light_are_blended_in_one_frame() {

@@ -18,7 +18,7 @@ fn hard_direction(uniform: &mut impl FnMut() -> f64) -> DVec3 {
 }
 
 #[test]
-fn no_direction_gives_a_number_that_is_none() {
+fn no_direction_gives_nan() {
     let mut uniform = uniforms(7);
     let materials = [
         Material::lambertian(1.0).unwrap(),

@@ -1,5 +1,5 @@
-//! The ground floor of tem00: grids, a pruned two-dimensional Fourier transform, quadrature, and the
-//! special functions of circular pupils.
+//! The ground floor of tem00: grids, a pruned two-dimensional Fourier transform, quadrature, least
+//! squares, and the special functions of circular pupils.
 //!
 //! # Conventions
 //!
@@ -10,7 +10,7 @@
 //! # Scope and non-goals
 //!
 //! Only what more than one crate above needs and no library has. This is no array library: there is
-//! no slicing, no broadcasting and no linear algebra.
+//! no slicing, no broadcasting and no linear algebra beyond the few equations of least squares.
 //!
 //! # Example
 //!
@@ -28,6 +28,7 @@ mod circle;
 #[cfg(feature = "fft")]
 mod fft;
 mod grid;
+mod least_squares;
 mod memory;
 mod pupil;
 pub mod quadrature;
@@ -38,6 +39,7 @@ pub use circle::{circle_point_at_eighth, circle_point_at_turn};
 #[cfg(feature = "fft")]
 pub use fft::{Fft2, Fft2Error, Fft2Scratch};
 pub use grid::{Grid, GridError, wrap_coordinate};
+pub use least_squares::{LeastSquaresError, Minimum, NormalEquations, minimise};
 pub use memory::{MemoryError, available_memory, check_memory};
 pub use pupil::{
     circular_path_overlap, circular_path_overlap_inverse, disc_overlap, disc_overlap_inverse, jinc,

@@ -1,5 +1,5 @@
 use glam::{DMat3, DVec2, DVec3};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use tem00_camera::Camera;
 use tem00_decorrelation::RigidMotion;
 use tem00_numerics::Grid;
@@ -8,7 +8,7 @@ use super::{
     Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard, PARAMETERS,
     corners::find_corners,
     covariance::COUNT,
-    least_squares::{LeastSquares, Solution, minimise},
+    least_squares::{Residuals, Solution, minimise},
     model::{Bundle, Pose, State},
     perturbation::INTRINSICS,
     plane_fit::{FittedPlane, correlation_factor, without_outliers},
@@ -299,7 +299,7 @@ fn covariance(
     }
     for (i, &increment) in increments.iter().enumerate() {
         let changed = |by: f64| {
-            let mut step = DVector::zeros(increments.len());
+            let mut step = vec![0.0; increments.len()];
             step[i] = by;
             lines.change(bundle, &bundle.stepped(&solution.state, &step))
         };

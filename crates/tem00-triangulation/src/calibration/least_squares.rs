@@ -1,16 +1,17 @@
 use nalgebra::{DMatrix, DVector};
+use tem00_numerics::NormalEquations;
 
 use crate::TriangulationError;
 
-/// A problem of least squares: residuals that depend on a state, which changes by small steps.
+/// Residuals that depend on a state, which changes by small steps.
 ///
 /// The step of a state is a vector of its own, as a rotation is no vector.
-pub(super) trait LeastSquares {
+pub(super) trait Residuals {
     /// The sought parameters.
-    type State: Clone;
+    type State;
 
     /// Returns the state changed by a step.
-    fn stepped(&self, state: &Self::State, step: &DVector<f64>) -> Self::State;
+    fn stepped(&self, state: &Self::State, step: &[f64]) -> Self::State;
 
     /// Returns the residuals, or `None` for a state that is not possible.
     fn residuals(&self, state: &Self::State) -> Option<DVector<f64>>;
@@ -29,57 +30,32 @@ pub(super) struct Solution<S> {
     pub covariance: DMatrix<f64>,
 }
 
-/// The maximum number of steps that are tried.
-const MAX_STEPS: usize = 200;
-
-/// The relative gain of the sum of squares below which the search ends.
-const MIN_GAIN: f64 = 1e-12;
-
-/// Finds the state of least squares near `start` by the damped normal equations, scaled by their
-/// diagonal.
+/// Finds the state of least squares near `start`, with the variance of a residual from their scatter.
 ///
 /// # Errors
 ///
 /// Returns an error if the start is not possible, if the search does not end, or if the residuals leave
 /// a direction of the state open.
-///
-/// # References
-///
-/// - D. W. Marquardt, *An Algorithm for Least-Squares Estimation of Nonlinear Parameters*, 1963.
-pub(super) fn minimise<P: LeastSquares>(
-    problem: &P,
-    start: P::State,
-) -> Result<Solution<P::State>, TriangulationError> {
-    let mut state = start;
-    let mut residuals = problem.residuals(&state).ok_or(UNDETERMINED)?;
-    let mut damping = 1e-3;
-    let (mut normal, mut slope) = normal_equations(problem, &state, &residuals)?;
-    for _ in 0..MAX_STEPS {
-        let sum = residuals.norm_squared();
-        let tried = damped(&normal, damping)
-            .cholesky()
-            .map(|factor| problem.stepped(&state, &-factor.solve(&slope)));
-        let better = tried.and_then(|tried| {
-            let found = problem.residuals(&tried)?;
-            (found.norm_squared() <= sum).then_some((tried, found))
-        });
-        let Some((tried, found)) = better else {
-            damping *= 10.0;
-            // The step is nothing but rounding: no smaller one helps.
-            if damping > 1e12 {
-                return solution(state, &residuals, &normal);
-            }
-            continue;
-        };
-        let gain = sum - found.norm_squared();
-        (state, residuals) = (tried, found);
-        (normal, slope) = normal_equations(problem, &state, &residuals)?;
-        damping = (damping * 0.1).max(1e-12);
-        if gain <= MIN_GAIN * sum {
-            return solution(state, &residuals, &normal);
-        }
+pub(super) fn minimise<R: Residuals>(
+    problem: &R,
+    start: R::State,
+) -> Result<Solution<R::State>, TriangulationError> {
+    let count = problem.residuals(&start).ok_or(UNDETERMINED)?.len();
+    let stepped = |state: &_, step: &[f64]| problem.stepped(state, step);
+    let equations = |state: &_| normal_equations(problem, state);
+    let found = tem00_numerics::minimise(start, stepped, equations).map_err(|_| UNDETERMINED)?;
+    let parameters = found.covariance.len();
+    let freedom = count.saturating_sub(parameters);
+    if freedom == 0 {
+        return Err(UNDETERMINED);
     }
-    Err(UNDETERMINED)
+    let variance = found.sum_of_squares / freedom as f64;
+    let unit = |i: usize, j: usize| found.covariance[i][j];
+    Ok(Solution {
+        covariance: DMatrix::from_fn(parameters, parameters, |i, j| variance * unit(i, j)),
+        state: found.state,
+        sum: found.sum_of_squares,
+    })
 }
 
 const UNDETERMINED: TriangulationError = TriangulationError::NotDetermined {
@@ -87,68 +63,26 @@ const UNDETERMINED: TriangulationError = TriangulationError::NotDetermined {
     advice: "take more boards, tilted about different axes",
 };
 
-/// Returns `JᵀJ` and `Jᵀr`, the derivatives by central differences.
-fn normal_equations<P: LeastSquares>(
-    problem: &P,
-    state: &P::State,
-    residuals: &DVector<f64>,
-) -> Result<(DMatrix<f64>, DVector<f64>), TriangulationError> {
+/// Returns the normal equations, the derivatives by central differences.
+fn normal_equations<R: Residuals>(problem: &R, state: &R::State) -> Option<NormalEquations> {
+    let residuals = problem.residuals(state)?;
     let increments = problem.increments(state);
-    let mut jacobian = DMatrix::zeros(residuals.len(), increments.len());
-    for (i, &increment) in increments.iter().enumerate() {
+    let derivative = |(i, &increment): (usize, &f64)| {
         let at = |by: f64| {
-            let mut step = DVector::zeros(increments.len());
+            let mut step = vec![0.0; increments.len()];
             step[i] = by;
             problem.residuals(&problem.stepped(state, &step))
         };
-        let (more, less) = at(increment).zip(at(-increment)).ok_or(UNDETERMINED)?;
-        jacobian.set_column(i, &((more - less) / (2.0 * increment)));
-    }
-    let slope = jacobian.tr_mul(residuals);
-    Ok((jacobian.tr_mul(&jacobian), slope))
-}
-
-fn damped(normal: &DMatrix<f64>, damping: f64) -> DMatrix<f64> {
-    let mut damped = normal.clone();
-    for i in 0..damped.nrows() {
-        damped[(i, i)] *= 1.0 + damping;
-    }
-    damped
-}
-
-fn solution<S>(
-    state: S,
-    residuals: &DVector<f64>,
-    normal: &DMatrix<f64>,
-) -> Result<Solution<S>, TriangulationError> {
-    let freedom = residuals.len().saturating_sub(normal.nrows());
-    let sum = residuals.norm_squared();
-    if freedom == 0 {
-        return Err(UNDETERMINED);
-    }
-    let variance = sum / freedom as f64;
-    let covariance = inverse(normal).ok_or(UNDETERMINED)? * variance;
-    Ok(Solution {
-        state,
-        sum,
-        covariance,
-    })
-}
-
-/// Returns the inverse of a positive definite matrix, whose rows are first scaled alike.
-fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scales = matrix.diagonal().map(|v| 1.0 / v.sqrt());
-    if !scales.iter().all(|scale| scale.is_finite()) {
-        return None;
-    }
-    let scaled = |matrix: &DMatrix<f64>| {
-        DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
-            scales[i] * matrix[(i, j)] * scales[j]
-        })
+        Some((at(increment)? - at(-increment)?) / (2.0 * increment))
     };
-    let inverse = scaled(matrix).cholesky()?.inverse();
-    let symmetric = (&inverse + inverse.transpose()) * 0.5;
-    Some(scaled(&symmetric))
+    let columns = increments.iter().enumerate().map(derivative);
+    let columns: Vec<_> = columns.collect::<Option<_>>()?;
+    let mut equations = NormalEquations::new(columns.len());
+    for (i, &residual) in residuals.iter().enumerate() {
+        let slopes: Vec<f64> = columns.iter().map(|column| column[i]).collect();
+        equations.add(residual, &slopes);
+    }
+    Some(equations)
 }
 
 #[cfg(test)]
@@ -158,10 +92,10 @@ mod tests {
     /// y = a exp(b x), whose state changes by (a, b).
     struct Exponential(Vec<[f64; 2]>);
 
-    impl LeastSquares for Exponential {
+    impl Residuals for Exponential {
         type State = [f64; 2];
 
-        fn stepped(&self, state: &[f64; 2], step: &DVector<f64>) -> [f64; 2] {
+        fn stepped(&self, state: &[f64; 2], step: &[f64]) -> [f64; 2] {
             [state[0] + step[0], state[1] + step[1]]
         }
 

@@ -4,7 +4,7 @@ use tem00_camera::{Camera, CameraDescription, RadialDistortion};
 
 use super::{
     CameraModel,
-    least_squares::LeastSquares,
+    least_squares::Residuals,
     perturbation::{INTRINSICS, focal_length, tilt_of},
 };
 
@@ -92,15 +92,15 @@ impl Bundle<'_> {
     }
 }
 
-impl LeastSquares for Bundle<'_> {
+impl Residuals for Bundle<'_> {
     type State = State;
 
-    fn stepped(&self, state: &State, step: &DVector<f64>) -> State {
+    fn stepped(&self, state: &State, step: &[f64]) -> State {
         let mut next = state.clone();
-        for (&parameter, by) in self.free.iter().zip(step.iter()) {
+        for (&parameter, by) in self.free.iter().zip(step) {
             next.intrinsics[parameter] += by;
         }
-        let of_poses = step.as_slice()[self.free.len()..].chunks_exact(6);
+        let of_poses = step[self.free.len()..].chunks_exact(6);
         for (pose, step) in next.poses.iter_mut().zip(of_poses) {
             *pose = pose.stepped(step);
         }

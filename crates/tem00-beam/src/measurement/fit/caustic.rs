@@ -1,7 +1,9 @@
 use core::f64::consts::PI;
 
+use tem00_numerics::Minimum;
+
 use super::error::FitError;
-use super::least_squares::{Minimum, Residual, minimise};
+use super::least_squares::{Residual, minimise};
 use super::positions::{Axis, Estimate, check_count};
 use crate::range::{check_length, check_lengths};
 use crate::{BeamError, GaussianBeam, LocatedBeam};
@@ -120,7 +122,7 @@ impl CausticFit {
     fn from_minimum(
         wavelength: f64,
         data: &Caustic<'_>,
-        minimum: &Minimum<PARAMETERS>,
+        minimum: &Minimum<[f64; PARAMETERS]>,
         variance: f64,
     ) -> Self {
         let (scale, residual_unit) = match data.errors {
@@ -129,7 +131,7 @@ impl CausticFit {
             RadiusErrors::Known(_) => (1.0, 1.0),
         };
         let covariance = |i: usize, j: usize| scale * minimum.covariance[i][j];
-        let [ln_waist, coordinate, ln_divergence] = minimum.parameters;
+        let [ln_waist, coordinate, ln_divergence] = minimum.state;
         let waist_radius = data.unit * ln_waist.exp();
         let divergence = data.unit / data.axis.half_range * ln_divergence.exp();
         let (of_waist, of_divergence) = (covariance(0, 0), covariance(2, 2));
@@ -292,9 +294,9 @@ impl<'a> Caustic<'a> {
         shows(0) && shows(2)
     }
 
-    fn search(&self, start: [f64; PARAMETERS]) -> Result<Minimum<PARAMETERS>, FitError> {
+    fn search(&self, start: [f64; PARAMETERS]) -> Result<Minimum<[f64; PARAMETERS]>, FitError> {
         let minimum = minimise(start, self.radii.len(), |p, i| self.residual(p, i))?;
-        if self.show(&minimum.parameters) {
+        if self.show(&minimum.state) {
             Ok(minimum)
         } else {
             Err(FitError::Undetermined)
@@ -314,7 +316,7 @@ impl<'a> Caustic<'a> {
                 slopes: slopes.map(|slope| -slope / deviation),
             }
         });
-        let [a, b, c] = minimum.ok()?.parameters;
+        let [a, b, c] = minimum.ok()?.state;
         let waist = a - b * b / (4.0 * c);
         let start = [0.5 * waist.ln(), -b / (2.0 * c), 0.5 * c.ln()];
         (c > 0.0 && waist > 0.0).then_some(start)

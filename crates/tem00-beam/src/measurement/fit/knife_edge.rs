@@ -1,7 +1,9 @@
 use core::f64::consts::{FRAC_2_SQRT_PI, SQRT_2};
 
+use tem00_numerics::Minimum;
+
 use super::error::FitError;
-use super::least_squares::{Minimum, Residual, minimise};
+use super::least_squares::{Residual, minimise};
 use super::positions::{Axis, Estimate, check_count};
 use crate::range::{check_list, is_coordinate};
 
@@ -83,10 +85,10 @@ impl KnifeEdgeFit {
 
     fn from_minimum<const N: usize>(
         trace: &Trace,
-        minimum: &Minimum<N>,
+        minimum: &Minimum<[f64; N]>,
         variance: f64,
     ) -> Result<Self, FitError> {
-        let p = &minimum.parameters;
+        let p = &minimum.state;
         let variance_of = |i: usize| variance * minimum.covariance[i][i];
         if p[POWER] <= 0.0 {
             return Err(FitError::NoEdge);

@@ -1,0 +1,251 @@
+//! Nonlinear least squares by damped Gauss–Newton steps.
+//!
+//! Levenberg's and Marquardt's damping (D. W. Marquardt, J. Soc. Indust. Appl. Math. 11, 431, 1963):
+//! each diagonal element of the normal matrix grows by the same factor, so that the units of the
+//! parameters make no difference.
+
+use core::{error, fmt};
+
+const MAX_STEPS: usize = 300;
+const FIRST_DAMPING: f64 = 1e-3;
+const MIN_DAMPING: f64 = 1e-10;
+
+/// Steps that are damped more than this are nothing but rounding: the minimum is found, …
+const MAX_DAMPING: f64 = 1e12;
+
+/// … as it is after so many steps in a row that neither lowered the sum of squares by more than its rounding nor
+/// halved the gain to be had.
+const MAX_IDLE_STEPS: u32 = 4;
+
+/// The fraction of the sum of squares below which no gain is worth a step: the parameters would move by
+/// less than 1e−10 of their standard errors.
+const NEGLIGIBLE_GAIN: f64 = 1e-22;
+
+/// The largest relative rise of the sum of squares that a step may have: near its minimum it is flat, and
+/// its rounding hides steps that the normal equations still tell.
+const ROUNDING: f64 = 1e-12;
+
+/// The smallest pivot of the normal matrix, scaled to a unit diagonal, that is no rounding error.
+const MIN_PIVOT: f64 = 1e-13;
+
+/// The normal equations at one state: with the residuals `r` and the matrix `J` of their derivatives by the
+/// parameters, the matrix `JᵀJ`, the vector `Jᵀr` and the sum `rᵀr`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NormalEquations {
+    /// Row by row, up to the diagonal.
+    rows: Vec<Vec<f64>>,
+    gradient: Vec<f64>,
+    sum_of_squares: f64,
+}
+
+/// The state of least squares.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Minimum<S> {
+    /// The state.
+    pub state: S,
+    /// The sum of the squared residuals.
+    pub sum_of_squares: f64,
+    /// The covariance of the step from the true state if the residuals have unit variance.
+    pub covariance: Vec<Vec<f64>>,
+}
+
+/// Reasons why no minimum was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LeastSquaresError {
+    /// The residuals leave a direction of the state open.
+    Undetermined,
+    /// The search did not come to an end, or the start is not possible.
+    NotConverged,
+}
+
+impl fmt::Display for LeastSquaresError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Undetermined => "the residuals do not determine all parameters",
+            Self::NotConverged => "the search for the least squares did not converge",
+        })
+    }
+}
+
+impl error::Error for LeastSquaresError {}
+
+/// Finds the state of least squares near `start`.
+///
+/// `stepped` changes a state by a step, one number per parameter: a state need not be a vector itself, as a
+/// rotation is none. `equations` returns the normal equations of all residuals, or `None` for a state that
+/// is not possible. The search ends where a full step would move the parameters by less than 1e−10 of their
+/// standard errors, or where rounding hides any gain: of residuals without noise, or whose derivatives are
+/// differences.
+///
+/// # Errors
+///
+/// Returns an error if the start is not possible, if the search does not end, or if the residuals leave
+/// a direction of the state open.
+///
+/// # Examples
+///
+/// The root of 2 is where `x² − 2` has the smallest square:
+///
+/// ```
+/// use tem00_numerics::{NormalEquations, minimise};
+///
+/// let equations = |x: &f64| {
+///     let mut equations = NormalEquations::new(1);
+///     equations.add(x * x - 2.0, &[2.0 * x]);
+///     Some(equations)
+/// };
+/// let minimum = minimise(1.0, |x, step| x + step[0], equations)?;
+/// assert!((minimum.state - 2.0_f64.sqrt()).abs() < 1e-15);
+/// # Ok::<(), tem00_numerics::LeastSquaresError>(())
+/// ```
+pub fn minimise<S>(
+    start: S,
+    stepped: impl Fn(&S, &[f64]) -> S,
+    equations: impl Fn(&S) -> Option<NormalEquations>,
+) -> Result<Minimum<S>, LeastSquaresError> {
+    let mut state = start;
+    let mut system = equations(&state)
+        .filter(|system| system.sum_of_squares.is_finite())
+        .ok_or(LeastSquaresError::NotConverged)?;
+    let mut damping = FIRST_DAMPING;
+    let mut gain = system.gain();
+    let (mut least_sum, mut least_gain, mut idle) = (system.sum_of_squares, gain, 0);
+    for _ in 0..MAX_STEPS {
+        let is_done = gain <= NEGLIGIBLE_GAIN * system.sum_of_squares;
+        if is_done || damping > MAX_DAMPING || idle == MAX_IDLE_STEPS {
+            return system.minimum(state);
+        }
+        let better = system.step(damping).and_then(|step| {
+            let next = stepped(&state, &step);
+            let found = equations(&next)?;
+            let limit = (1.0 + ROUNDING) * system.sum_of_squares;
+            (found.sum_of_squares <= limit).then_some((next, found))
+        });
+        if let Some(better) = better {
+            (state, system) = better;
+            damping = (0.1 * damping).max(MIN_DAMPING);
+            gain = system.gain();
+            let is_lower =
+                gain < 0.5 * least_gain || system.sum_of_squares < (1.0 - ROUNDING) * least_sum;
+            if is_lower {
+                (least_sum, least_gain, idle) = (system.sum_of_squares, gain, 0);
+            } else {
+                idle += 1;
+            }
+        } else {
+            damping *= 10.0;
+        }
+    }
+    system
+        .minimum(state)
+        .and(Err(LeastSquaresError::NotConverged))
+}
+
+impl NormalEquations {
+    /// Returns the equations of a number of parameters, without residuals.
+    pub fn new(parameters: usize) -> Self {
+        Self {
+            rows: (1..=parameters).map(|length| vec![0.0; length]).collect(),
+            gradient: vec![0.0; parameters],
+            sum_of_squares: 0.0,
+        }
+    }
+
+    /// Adds a residual with its derivatives by the parameters.
+    pub fn add(&mut self, residual: f64, slopes: &[f64]) {
+        for (row, slope) in self.rows.iter_mut().zip(slopes) {
+            for (element, other) in row.iter_mut().zip(slopes) {
+                *element += slope * other;
+            }
+        }
+        for (element, slope) in self.gradient.iter_mut().zip(slopes) {
+            *element += slope * residual;
+        }
+        self.sum_of_squares += residual * residual;
+    }
+
+    /// Returns the step to the minimum of the damped system.
+    fn step(&self, damping: f64) -> Option<Vec<f64>> {
+        let mut step = Factor::new(&self.rows, damping)?.solve(&self.gradient);
+        step.iter_mut().for_each(|by| *by = -*by);
+        Some(step)
+    }
+
+    /// Returns by how much a full step would lower the sum of squares if the residuals were linear; NaN
+    /// without such a step.
+    fn gain(&self) -> f64 {
+        self.step(0.0).map_or(f64::NAN, |step| {
+            let gains = step.iter().zip(&self.gradient);
+            -gains.map(|(by, slope)| by * slope).sum::<f64>()
+        })
+    }
+
+    fn minimum<S>(&self, state: S) -> Result<Minimum<S>, LeastSquaresError> {
+        let factor = Factor::new(&self.rows, 0.0).ok_or(LeastSquaresError::Undetermined)?;
+        let count = self.gradient.len();
+        let column = |i: usize| {
+            let mut unit = vec![0.0; count];
+            unit[i] = 1.0;
+            factor.solve(&unit)
+        };
+        Ok(Minimum {
+            state,
+            sum_of_squares: self.sum_of_squares,
+            covariance: (0..count).map(column).collect(),
+        })
+    }
+}
+
+/// The Cholesky factor of a normal matrix, scaled to a unit diagonal and damped.
+struct Factor {
+    scale: Vec<f64>,
+    lower: Vec<Vec<f64>>,
+}
+
+impl Factor {
+    /// Returns nothing if the matrix is singular, or not finite.
+    fn new(rows: &[Vec<f64>], damping: f64) -> Option<Self> {
+        let diagonal = rows.iter().filter_map(|row| row.last());
+        let scale: Vec<f64> = diagonal.map(|element| 1.0 / element.sqrt()).collect();
+        if !scale.iter().all(|s| s.is_finite()) {
+            return None;
+        }
+        let mut lower: Vec<Vec<f64>> = Vec::with_capacity(rows.len());
+        for (i, row) in rows.iter().enumerate() {
+            let mut found: Vec<f64> = Vec::with_capacity(i + 1);
+            for (j, other) in lower.iter().enumerate() {
+                let scaled = row[j] * scale[i] * scale[j];
+                found.push((scaled - dot(&found, other)) / other[j]);
+            }
+            let pivot = 1.0 + damping - dot(&found, &found);
+            if pivot <= MIN_PIVOT || pivot.is_nan() {
+                return None;
+            }
+            found.push(pivot.sqrt());
+            lower.push(found);
+        }
+        Some(Self { scale, lower })
+    }
+
+    fn solve(&self, right: &[f64]) -> Vec<f64> {
+        let mut x: Vec<f64> = Vec::with_capacity(right.len());
+        for (i, row) in self.lower.iter().enumerate() {
+            x.push((right[i] * self.scale[i] - dot(&x, row)) / row[i]);
+        }
+        for i in (0..x.len()).rev() {
+            let below = self.lower.iter().zip(&x).skip(i + 1);
+            let known: f64 = below.map(|(row, x)| row[i] * x).sum();
+            x[i] = (x[i] - known) / self.lower[i][i];
+        }
+        let scaled = x.iter().zip(&self.scale);
+        scaled.map(|(x, scale)| x * scale).collect()
+    }
+}
+
+/// Returns the sum of the products as far as both lists go.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests;

@@ -13,7 +13,7 @@ use tem00::triangulation::{Budget, LineImage, Setup, SimulationOptions, parse_se
 fn setup() -> Setup {
     parse_setup(
         r#"
-        laser = { wavelength = "650 nm", power = "5 mW", line_width = "0.2 mm", line_length = "50 mm" }
+        laser = { wavelength = "650 nm", power = "5 mW", line_thickness = "0.2 mm", line_length = "50 mm" }
         surface = { reflectance = 0.5 }
         sensor = { quantum_efficiency = 0.6, exposure = "0.1 ms" }
         [camera]

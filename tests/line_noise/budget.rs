@@ -27,10 +27,10 @@ const PITCH: f64 = 3.45e-6;
 const DISTANCE: f64 = 0.3;
 
 /// A lens of 25 mm at f/8, 0.3 m from a line of this width that is seen at 30°.
-fn setup(line_width: &str, window: usize) -> Setup {
+fn setup(line_thickness: &str, window: usize) -> Setup {
     let text = format!(
         r#"
-        laser = {{ wavelength = "660 nm", power = "10 mW", line_width = "{line_width}", line_length = "70 mm" }}
+        laser = {{ wavelength = "660 nm", power = "10 mW", line_thickness = "{line_thickness}", line_length = "70 mm" }}
         surface = {{ reflectance = 0.4 }}
         sensor = {{ quantum_efficiency = 0.6, exposure = "0.06 ms" }}
         detector = {{ method = "centre_of_gravity", window = {window} }}
@@ -70,7 +70,7 @@ impl Waves {
         };
         // On the part, in units of a pixel.
         let pixel = PITCH * DISTANCE / lens.pupil_to_image;
-        let radius = 0.5 * line.line_width;
+        let radius = 0.5 * line.projected_thickness;
         let speckle = line.speckle_size[1];
         let light = Illumination::fan(&FanDescription {
             wavelength: WAVELENGTH,
@@ -162,8 +162,8 @@ fn root_mean(squares: &[f64]) -> [f64; 2] {
 }
 
 /// Holds trials and formula to waves; the formula may say too much by the part `excess`.
-fn judge(line_width: &str, window: usize, images: u64, excess: f64) {
-    let setup = setup(line_width, window);
+fn judge(line_thickness: &str, window: usize, images: u64, excess: f64) {
+    let setup = setup(line_thickness, window);
     let [waves, error] = root_mean(&squares(&setup, images));
     let budget = Budget::new(&setup).expect("a line");
     let speckle = |term: &&BudgetTerm| term.source == UncertaintySource::Speckle;
@@ -179,7 +179,7 @@ fn judge(line_width: &str, window: usize, images: u64, excess: f64) {
     let [tried, error_of_trials] =
         [trials.uncertainty, trials.standard_error].map(|u| u / per_pixel);
     let found = format!(
-        "{line_width}: waves {waves:.4} ± {error:.4}, trials {tried:.4} ± {error_of_trials:.4}, formula \
+        "{line_thickness}: waves {waves:.4} ± {error:.4}, trials {tried:.4} ± {error_of_trials:.4}, formula \
          {formula:.4} pixels"
     );
     let chance = 3.3 * error.hypot(error_of_trials);

@@ -13,7 +13,7 @@ use crate::value::{Value, nearest};
 pub type Choice = (&'static str, &'static [&'static str]);
 
 /// Keys that have another name since: the old and the new one.
-const RENAMED: [(&str, &str); 1] = [("lamp", "light")];
+const RENAMED: [(&str, &str); 2] = [("lamp", "light"), ("line_width", "line_thickness")];
 
 /// One table of the file.
 ///

@@ -11,7 +11,7 @@ use tem00_triangulation::{DVec2, DVec3, Setup, parse_setup};
 fn setup(scheimpflug: bool) -> Setup {
     let text = format!(
         r#"
-        laser = {{ wavelength = "650 nm", power = "5 mW", line_width = "0.4 mm", line_length = "50 mm" }}
+        laser = {{ wavelength = "650 nm", power = "5 mW", line_thickness = "0.4 mm", line_length = "50 mm" }}
         surface = {{ reflectance = 0.5 }}
         sensor = {{ quantum_efficiency = 0.6, exposure = "0.1 ms" }}
         [camera]
@@ -101,7 +101,7 @@ fn a_setup_predicts_what_is_rendered_of_it() {
         // The tracer knows no diffraction, a pixel widens σ² by 1/12, and 1 % is chance. The waist of the
         // laser's line is at the height 0, 3 % wider it is at no height here.
         let pixel = 4.0 / 12.0_f64.sqrt();
-        let expected = line.line_width.hypot(line.blur).hypot(pixel);
+        let expected = line.projected_thickness.hypot(line.blur).hypot(pixel);
         assert!(
             (width / expected - 1.0).abs() < 0.02,
             "{case}: {width}, {expected}"

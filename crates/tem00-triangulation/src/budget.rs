@@ -48,7 +48,7 @@ pub use self::{
 ///
 /// let setup = parse_setup(
 ///     r#"
-///     laser = { wavelength = "650 nm", power = "5 mW", line_width = "0.2 mm", line_length = "50 mm" }
+///     laser = { wavelength = "650 nm", power = "5 mW", line_thickness = "0.2 mm", line_length = "50 mm" }
 ///     surface = { reflectance = 0.5 }
 ///     sensor = { quantum_efficiency = 0.6, exposure = "auto" }
 ///     [camera]
@@ -116,7 +116,7 @@ impl Budget {
         } else {
             1.0
         };
-        let radius = 0.5 * line.line_width.hypot(line.blur) / across;
+        let radius = 0.5 * line.projected_thickness.hypot(line.blur) / across;
         let row_height = f64::from(d.average.columns) / along;
         let deviation = imaged_line_centroid_deviation(radius, row_height);
         let position = contrast * across * deviation / frames.sqrt();

@@ -110,7 +110,7 @@ impl LineImage {
         let (line, surface) = (setup.line(), &setup.description().surface);
         Self::new(LineImageData {
             size,
-            width: line.line_width.hypot(line.blur),
+            width: line.projected_thickness.hypot(line.blur),
             column_electrons: line.column_electrons,
             speckle_size: line.speckle_size,
             sensitive_side: line.sensitive_height,

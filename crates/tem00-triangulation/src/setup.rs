@@ -174,7 +174,12 @@ impl Setup {
         within("f_number", per_pixel[1], (least, greatest), allowed)?;
         let allowed = "such that the line is from 0.1 pixel to a third of the image wide in it; its \
                        width there, in pixels, is the value";
-        within("line_width", self.line.width, (0.1, rows / 3.0), allowed)?;
+        within(
+            "line_thickness",
+            self.line.width,
+            (0.1, rows / 3.0),
+            allowed,
+        )?;
         let window = self.description.detector.window as f64;
         let allowed = "at most the number of rows of the image";
         within("window", window, (1.0, rows), allowed)?;

@@ -32,7 +32,7 @@ fn description() -> SetupDescription {
         laser: LaserLineData {
             wavelength: 650e-9,
             power: 5e-3,
-            line_width: 0.2e-3,
+            line_thickness: 0.2e-3,
             line_length: 50e-3,
         },
         camera: SetupCamera {
@@ -69,7 +69,7 @@ type Field = fn(&mut SetupDescription) -> &mut f64;
 const FIELDS: [(&str, Field); 25] = [
     ("wavelength", |d| &mut d.laser.wavelength),
     ("power", |d| &mut d.laser.power),
-    ("line_width", |d| &mut d.laser.line_width),
+    ("line_thickness", |d| &mut d.laser.line_thickness),
     ("line_length", |d| &mut d.laser.line_length),
     ("focal_length", |d| &mut d.camera.focal_length),
     ("f_number", |d| &mut d.camera.f_number),

@@ -179,11 +179,11 @@ fn image(section: &mut Section, setup: &Setup) {
     let detector = description.detector.method.name();
     section
         .fact(
-            "line_width_pixels",
-            "line width in the image (1/e²)",
+            "imaged_width_pixels",
+            "width of the line in the image (1/e²)",
             PIXELS.quantity(line.width).and(format!(
                 ", {} of the line itself and {} of the lens",
-                PIXELS.text(line.line_width),
+                PIXELS.text(line.projected_thickness),
                 PIXELS.text(line.diffraction_width)
             )),
         )
@@ -243,8 +243,8 @@ fn image(section: &mut Section, setup: &Setup) {
         )
         .fact("averages", "averages", averages(setup))
         .data("magnification", setup.magnification())
-        .data("line_width_of_line_pixels", line.line_width)
-        .data("line_width_of_lens_pixels", line.diffraction_width)
+        .data("imaged_width_of_line_pixels", line.projected_thickness)
+        .data("imaged_width_of_lens_pixels", line.diffraction_width)
         .data("peak_electrons", setup.peak_electrons())
         .data("column_electrons", line.column_electrons)
         .data("grain_saturation", setup.grain_saturation())

@@ -138,7 +138,7 @@ fn columns(design: &Design<'_>, figures: &[DesignFigure]) -> Vec<Column> {
     let last = [
         Column::new("dominant", "dominated by"),
         Column::data("contributions"),
-        Column::data("line_width_pixels"),
+        Column::data("imaged_width_pixels"),
         Column::data("speckle_size_pixels"),
         Column::data("broken"),
     ];
@@ -181,7 +181,7 @@ fn cells(design: &Design<'_>, figures: &[DesignFigure], candidate: &Candidate) -
     cells.extend([
         found.dominant.name().into(),
         Cell::new(contributions, ""),
-        Cell::new(found.line_width, ""),
+        Cell::new(found.imaged_width, ""),
         Cell::new(found.speckle_size, ""),
         Cell::new(broken.collect::<Vec<_>>(), ""),
     ]);

@@ -14,9 +14,9 @@ pub(super) const fn of_parameter(parameter: DesignParameter) -> Unit {
         DesignParameter::PixelPitch => MICROMETRES,
         DesignParameter::Power => MILLIWATTS,
         DesignParameter::Exposure => MILLISECONDS,
-        DesignParameter::LineWidth | DesignParameter::FocalLength | DesignParameter::Distance => {
-            MILLIMETRES
-        }
+        DesignParameter::LineThickness
+        | DesignParameter::FocalLength
+        | DesignParameter::Distance => MILLIMETRES,
         _ => NUMBER,
     }
 }

@@ -9,7 +9,7 @@ pub(super) const SETUP: &str = r#"
 [laser]
 wavelength = "650 nm"
 power = "5 mW"
-line_width = "0.2 mm"
+line_thickness = "0.2 mm"
 line_length = "50 mm"
 
 [camera]
@@ -91,7 +91,7 @@ fn a_budget_is_a_table_and_five_files() {
     );
     let page = fs::read_to_string(out.join("budget.html")).expect("the report");
     assert!(
-        page.contains("<svg") && page.contains("line_width = &quot;0.2 mm&quot;"),
+        page.contains("<svg") && page.contains("line_thickness = &quot;0.2 mm&quot;"),
         "{page}"
     );
 }
@@ -222,8 +222,8 @@ fn a_set_up_without_a_line_has_no_uncertainty() {
 #[test]
 fn below_half_of_the_columns_there_is_no_uncertainty() {
     // The mean of the brightest pixel fills 93 % of the range; so wide a line has several grains in a column.
-    let from = "line_width = \"0.2 mm\"\nline_length = \"50 mm\"";
-    let to = "line_width = \"0.5 mm\"\nline_length = \"6 mm\"";
+    let from = "line_thickness = \"0.2 mm\"\nline_length = \"50 mm\"";
+    let to = "line_thickness = \"0.5 mm\"\nline_length = \"6 mm\"";
     assert_no_number(
         from,
         to,

@@ -10,7 +10,7 @@ pub(super) const SETUP: &str = r#"
 [laser]
 wavelength = "660 nm"
 power = "10 mW"
-line_width = "0.2 mm"
+line_thickness = "0.2 mm"
 line_length = "60 mm"
 
 [camera]

@@ -15,8 +15,8 @@ const SMALLER: [(&str, &str, &str); 5] = [
     ("setups/design.toml", "steps = 6", "steps = 2"),
     (
         "setups/design.toml",
-        "line_width = [\"0.08 mm\", \"0.1 mm\", ",
-        "line_width = [",
+        "line_thickness = [\"0.08 mm\", \"0.1 mm\", ",
+        "line_thickness = [",
     ),
     (
         "scenes/triangulation/step_gauge.toml",

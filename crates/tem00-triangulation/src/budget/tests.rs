@@ -68,7 +68,7 @@ fn shot_noise_of_a_centre_of_gravity_is_the_bound_and_that_of_the_wings() {
     // by what is in the window of the Airy pattern.
     let h = line.speckle_size[1];
     let lens = h * h * second_moment_of_airy(15.5 / h);
-    let variance = line.line_width.powi(2) / 16.0 + 1.0 / 12.0 + lens;
+    let variance = line.projected_thickness.powi(2) / 16.0 + 1.0 / 12.0 + lens;
     let bound = (variance / line.column_electrons).sqrt() / counted_light(&setup);
     // The background is that of 25 pixels away to a fifth, 1e−3 of the light in the window; the window that
     // follows the noise adds the ends' 1 % of a motion that is no larger than that of the position.
@@ -106,7 +106,7 @@ fn noise_of_pixels_counts_by_their_distance_to_the_line() {
     // s² Σ n² y²/N² = s² σ/(4 √π) for a Gaussian of the standard deviation σ, here of a line that is
     // wide enough for its pixels to be points, of which the wings take 1 % of the light.
     let wide = setup_of(|d| {
-        d.laser.line_width = 0.6e-3;
+        d.laser.line_thickness = 0.6e-3;
         d.detector.window = 61;
     });
     let sigma = wide.line().width / 4.0;
@@ -137,16 +137,16 @@ fn blurred_line_times_pattern(radius: f64, row_height: f64) -> f64 {
 
 #[test]
 fn speckle_of_a_wide_centre_of_gravity_is_that_of_the_blurred_line_in_first_order() {
-    for (f_number, line_width) in [(22.0, 0.3e-3), (16.0, 0.6e-3)] {
+    for (f_number, line_thickness) in [(22.0, 0.3e-3), (16.0, 0.6e-3)] {
         let setup = setup_of(|d| {
             d.camera.f_number = f_number;
-            d.laser.line_width = line_width;
+            d.laser.line_thickness = line_thickness;
             d.laser.power *= 4.0;
             d.detector.window = 101;
         });
         let (line, budget) = (setup.line(), Budget::new(&setup).unwrap());
         let h = line.speckle_size[1];
-        let law = blurred_line_times_pattern(0.5 * line.line_width / h, 1.0 / h);
+        let law = blurred_line_times_pattern(0.5 * line.projected_thickness / h, 1.0 / h);
         let found = position(&budget, UncertaintySource::Speckle) / h;
         // Eleven speckles to each side leave 1 % of the light and a fifth of the moments of what is farther
         // out; the window follows the crest, by another per cent.
@@ -277,8 +277,10 @@ fn closed_forms_stand_beside_the_budget() {
     assert_relative_eq!(budget.dorsch(), dorsch, max_relative = 1e-12);
     // The line law at 4.56 pixels of full width on speckle of 1.644 pixels, as high as a pixel.
     let h = setup.line().speckle_size[1];
-    let wide =
-        tem00_statistics::line_centroid_deviation(0.5 * setup.line().line_width / h, 1.0 / h);
+    let wide = tem00_statistics::line_centroid_deviation(
+        0.5 * setup.line().projected_thickness / h,
+        1.0 / h,
+    );
     let law = wide * h * setup.line().height_per_pixel;
     // Waves are within 1 % of the limit of wide lines at w = 1.4 h.
     assert_relative_eq!(budget.line_law(), law, max_relative = 0.01);

@@ -34,7 +34,7 @@ pub struct DesignFigures {
     /// The mean of the brightest pixel by its noise in the dark; see [`Setup::signal`].
     pub signal: f64,
     /// The full width of the line in the image between the points of 1/e², in pixels.
-    pub line_width: f64,
+    pub imaged_width: f64,
     /// The speckle size along rows and columns, in pixels.
     pub speckle_size: [f64; 2],
 }
@@ -43,11 +43,11 @@ impl DesignFigures {
     /// Returns the figures of a set-up.
     ///
     /// The laser line is a Gaussian beam across, its waist on the reference plane and as wide as the
-    /// line: diffraction makes a fine line spread within its Rayleigh range, which ends the depth of
+    /// line is thick: diffraction makes a fine line spread within its Rayleigh range, which ends the depth of
     /// field where the lens does not.
     ///
     /// ```text
-    /// |z| ≤ z_R = π w₀² / λ      w₀ = line_width / 2
+    /// |z| ≤ z_R = π w₀² / λ      w₀ = line_thickness / 2
     /// ```
     ///
     /// # Errors
@@ -76,7 +76,7 @@ impl DesignFigures {
             saturation: setup.saturation(),
             grain_saturation: setup.grain_saturation(),
             signal: setup.signal(),
-            line_width: setup.line().width,
+            imaged_width: setup.line().width,
             speckle_size: setup.line().speckle_size,
         })
     }
@@ -85,10 +85,10 @@ impl DesignFigures {
 /// Returns the heights at which the laser line is at most √2 times as wide as on the reference plane.
 fn waist_range(description: &SetupDescription) -> Result<HeightRange, TriangulationError> {
     let laser = &description.laser;
-    let beam = GaussianBeam::from_waist(laser.wavelength, 0.5 * laser.line_width);
+    let beam = GaussianBeam::from_waist(laser.wavelength, 0.5 * laser.line_thickness);
     let beam = beam.map_err(|_| TriangulationError::OutOfRange {
-        parameter: "line_width",
-        value: laser.line_width,
+        parameter: "line_thickness",
+        value: laser.line_thickness,
         allowed: "at least 4 λ / π: a finer line is no beam",
     })?;
     let rayleigh_range = beam.rayleigh_range();

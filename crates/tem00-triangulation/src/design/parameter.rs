@@ -12,8 +12,8 @@ pub enum DesignParameter {
     FNumber,
     /// The angle between optical axis and laser plane, in radians.
     Angle,
-    /// The full width of the line on the part, in metres.
-    LineWidth,
+    /// The full 1/e² thickness of the line on the part, in metres.
+    LineThickness,
     /// The vacuum wavelength of the laser, in metres.
     Wavelength,
     /// The power in the line, in watts.
@@ -33,7 +33,7 @@ impl DesignParameter {
     pub const ALL: [Self; 9] = [
         Self::FNumber,
         Self::Angle,
-        Self::LineWidth,
+        Self::LineThickness,
         Self::Wavelength,
         Self::Power,
         Self::Exposure,
@@ -47,7 +47,7 @@ impl DesignParameter {
         match self {
             Self::FNumber => "f_number",
             Self::Angle => "angle",
-            Self::LineWidth => "line_width",
+            Self::LineThickness => "line_thickness",
             Self::Wavelength => "wavelength",
             Self::Power => "power",
             Self::Exposure => "exposure",
@@ -80,7 +80,7 @@ impl DesignParameter {
             Self::Angle => &ANGLE,
             Self::Power => &POWER,
             Self::Exposure => &DURATION,
-            Self::LineWidth
+            Self::LineThickness
             | Self::Wavelength
             | Self::PixelPitch
             | Self::FocalLength
@@ -97,7 +97,7 @@ impl DesignParameter {
             Self::Exposure => "ms",
             Self::Wavelength => "nm",
             Self::PixelPitch => "um",
-            Self::LineWidth | Self::FocalLength | Self::Distance => "mm",
+            Self::LineThickness | Self::FocalLength | Self::Distance => "mm",
         }
     }
 
@@ -105,7 +105,7 @@ impl DesignParameter {
         match self {
             Self::FNumber => &mut description.camera.f_number,
             Self::Angle => &mut description.camera.angle,
-            Self::LineWidth => &mut description.laser.line_width,
+            Self::LineThickness => &mut description.laser.line_thickness,
             Self::Wavelength => &mut description.laser.wavelength,
             Self::Power => &mut description.laser.power,
             Self::Exposure => &mut description.sensor.exposure_time,

@@ -12,7 +12,7 @@ fn base() -> SetupDescription {
         [laser]
         wavelength = "650 nm"
         power = "5 mW"
-        line_width = "0.4 mm"
+        line_thickness = "0.4 mm"
         line_length = "50 mm"
         [camera]
         focal_length = "25 mm"
@@ -161,7 +161,7 @@ fn a_search_allows_only_what_a_budget_finds_in_good_light() {
         ),
     ];
     let mut asked = question(sweeps, &[]);
-    asked.base.laser.line_width = 0.2e-3;
+    asked.base.laser.line_thickness = 0.2e-3;
     asked.constraints = Constraint::LIGHT.to_vec();
     let found = outcome(asked);
     let mut levels = Vec::new();
@@ -284,7 +284,7 @@ fn speckle_grows_as_the_root_of_the_f_number_for_fine_pixels() {
     // A speckle of 2 pixels, a line 31 times as wide: diffraction adds less than 1e-3 to its width,
     // and the law for wide lines is off by less than 1e-3.
     let mut description = base();
-    description.laser.line_width = 4e-3;
+    description.laser.line_thickness = 4e-3;
     description.sensor.exposure_time = 1e-3;
     description.sensor.pixel_pitch = 4.0e-6;
     description.camera.resolution = [64, 600];
@@ -303,7 +303,7 @@ fn speckle_grows_as_the_root_of_the_f_number_for_fine_pixels() {
 fn speckle_and_shot_noise_grow_as_the_f_number_for_coarse_pixels() {
     // A pixel of 11 speckles, a line of 24 pixels.
     let mut description = base();
-    description.laser.line_width = 6e-3;
+    description.laser.line_thickness = 6e-3;
     description.sensor.exposure_time = 0.01e-3;
     description.sensor.pixel_pitch = 20e-6;
     description.camera.resolution = [64, 480];
@@ -356,7 +356,7 @@ fn depth_of_field_is_that_of_the_lens_or_of_the_fine_line() {
     );
     // A line of 20 µm: twice its Rayleigh range of π w₀² / λ, whatever the lens does.
     let mut fine = description;
-    fine.laser.line_width = 20e-6;
+    fine.laser.line_thickness = 20e-6;
     fine.camera.scheimpflug = true;
     let twice = 2.0 * core::f64::consts::PI * 10e-6_f64.powi(2) / 650e-9;
     let found = figures(&fine);

@@ -9,7 +9,7 @@ pub(super) const KEYS: &[&str] = &["objective", "max_setups", "vary", "require"]
 pub(super) const VARY: &[&str] = &[
     "f_number",
     "angle",
-    "line_width",
+    "line_thickness",
     "wavelength",
     "power",
     "exposure",

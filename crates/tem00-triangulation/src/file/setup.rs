@@ -28,7 +28,7 @@ const SETUP: Format = Format {
     ],
     help: "setups/ has some, and docs/setup_file.md tells how to write them",
 };
-pub(super) const LASER: &[&str] = &["wavelength", "power", "line_width", "line_length"];
+pub(super) const LASER: &[&str] = &["wavelength", "power", "line_thickness", "line_length"];
 pub(super) const CAMERA: &[&str] = &[
     "focal_length",
     "f_number",
@@ -84,7 +84,7 @@ pub fn read_setup_with<'a, T>(
 ///     [laser]
 ///     wavelength = "650 nm"
 ///     power = "5 mW"
-///     line_width = "0.2 mm"
+///     line_thickness = "0.2 mm"
 ///     line_length = "50 mm"
 ///
 ///     [camera]
@@ -188,7 +188,7 @@ fn read_laser(section: &Section<'_>) -> Result<LaserLineData, Problem> {
     Ok(LaserLineData {
         wavelength: length("wavelength", "\"650 nm\"")?,
         power: section.required("power", "\"5 mW\"")?.positive(&POWER)?,
-        line_width: length("line_width", "\"0.2 mm\"")?,
+        line_thickness: length("line_thickness", "\"0.2 mm\"")?,
         line_length: length("line_length", "\"50 mm\"")?,
     })
 }

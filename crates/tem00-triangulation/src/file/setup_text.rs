@@ -44,7 +44,7 @@ impl Sections {
         self.section("laser")
             .length("wavelength", laser.wavelength, "nm")
             .quantity("power", laser.power, (&POWER, "mW"))
-            .length("line_width", laser.line_width, "mm")
+            .length("line_thickness", laser.line_thickness, "mm")
             .note("between the points of 1/e², on the part")
             .length("line_length", laser.line_length, "mm");
     }

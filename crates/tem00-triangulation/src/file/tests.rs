@@ -6,7 +6,7 @@ use crate::{
 const SETUP: &str = r#"[laser]
 wavelength = 6.5e-7
 power = 0.005
-line_width = 2e-4
+line_thickness = 2e-4
 line_length = 0.05
 
 [camera]
@@ -73,7 +73,7 @@ fn a_written_set_up_is_what_a_person_would_write() {
     for line in [
         "wavelength = \"650 nm\"",
         "power = \"5 mW\"",
-        "line_width = \"0.2 mm\" # between the points of 1/e², on the part",
+        "line_thickness = \"0.2 mm\" # between the points of 1/e², on the part",
         "f_number = 8",
         "pixel_pitch = \"3.45 um\"",
         "angle = \"40 deg\" # between the optical axis and the plane of the laser",
@@ -187,10 +187,16 @@ fn what_is_wrong_is_told_at_its_place() {
         ),
         ("power = 0.005", "power = 1e300", Some((3, 9)), "at most"),
         (
+            "line_thickness = 2e-4",
+            "line_width = 2e-4",
+            Some((4, 1)),
+            "`line_width` in [laser] is now named `line_thickness`",
+        ),
+        (
             "line_length = 0.05",
             "line_length = 1e-5",
             Some((5, 15)),
-            "width of the line",
+            "thickness of the line",
         ),
         (
             "f_number = 8",

@@ -32,8 +32,8 @@ pub struct LaserLineData {
     pub wavelength: f64,
     /// The power in the line, in watts.
     pub power: f64,
-    /// The full width of the line between the points of 1/e², on the part, in metres.
-    pub line_width: f64,
+    /// The full 1/e² thickness of the line on the part, in metres.
+    pub line_thickness: f64,
     /// The length of the line on the part, in metres.
     pub line_length: f64,
 }
@@ -144,7 +144,7 @@ impl SetupDescription {
         let LaserLineData {
             wavelength,
             power,
-            line_width,
+            line_thickness,
             line_length,
         } = self.laser;
         let allowed = "from 100 nm to 100 µm (in metres)";
@@ -152,9 +152,9 @@ impl SetupDescription {
         let allowed = "positive, at most 1 kW (in watts)";
         within("power", power, (f64::MIN_POSITIVE, 1e3), allowed)?;
         let allowed = "from 1 µm to 1 m (in metres)";
-        within("line_width", line_width, (1e-6, 1.0), allowed)?;
-        let allowed = "from the width of the line to 100 m (in metres)";
-        within("line_length", line_length, (line_width, 100.0), allowed)?;
+        within("line_thickness", line_thickness, (1e-6, 1.0), allowed)?;
+        let allowed = "from the thickness of the line to 100 m (in metres)";
+        within("line_length", line_length, (line_thickness, 100.0), allowed)?;
         let pitch = self.sensor.pixel_pitch;
         let allowed = "from 0.1 µm to 1 mm (in metres)";
         within("pixel_pitch", pitch, (0.1e-6, 1e-3), allowed)

@@ -17,7 +17,7 @@ const STEP: f64 = 1e-5;
 ///
 /// ```text
 /// W² = W_line² + W_lens² + b²
-/// W_line   the projection of the line on the part, m · line_width · cos θ to first order
+/// W_line   the projection of the line on the part, m · line_thickness · cos θ to first order
 /// W_lens   = 4√2 h / π, the Gaussian of the same curvature as the peak of the lens's Airy disc
 /// b        = D s |1/Z_focus − 1/Z|, the diameter of the disc of defocus, whose 4σ across is b
 /// ```
@@ -31,8 +31,8 @@ pub struct ImagedLine {
     pub position: f64,
     /// The full width between the points of 1/e², in pixels, as of a Gaussian.
     pub width: f64,
-    /// The part of the width that is the line itself, in pixels.
-    pub line_width: f64,
+    /// The part of the width by the thickness of the line itself, in pixels.
+    pub projected_thickness: f64,
     /// The part of the width by diffraction at the pupil, in pixels.
     pub diffraction_width: f64,
     /// The part of the width by defocus, in pixels.
@@ -56,8 +56,8 @@ impl ImagedLine {
         let laser = &description.laser;
         let pitch = description.sensor.pixel_pitch;
         let row = |y: f64, z: f64| camera.project(DVec3::new(0.0, y, z)).map(|pixel| pixel.y);
-        let half = 0.5 * laser.line_width;
-        let line_width = (row(half, height)? - row(-half, height)?).abs();
+        let half = 0.5 * laser.line_thickness;
+        let projected_thickness = (row(half, height)? - row(-half, height)?).abs();
         let step = STEP * description.camera.distance;
         let moved = row(0.0, height - step)? - row(0.0, height + step)?;
         let pixel = camera.project(DVec3::new(0.0, 0.0, height))?;
@@ -70,17 +70,17 @@ impl ImagedLine {
         let defocus = geometry.defocus_at(depth).abs();
         let disc = geometry.pupil_diameter() * geometry.principal_distance() * defocus;
         let blur = disc * stretch / pitch;
-        let width = line_width.hypot(diffraction_width).hypot(blur);
-        let on_part = laser.power / laser.line_length * (8.0 / PI).sqrt() / laser.line_width;
+        let width = projected_thickness.hypot(diffraction_width).hypot(blur);
+        let on_part = laser.power / laser.line_length * (8.0 / PI).sqrt() / laser.line_thickness;
         let radiance = description.surface.reflectance * on_part / PI;
         // Of a line as it is on the part; the lens spreads what a column gets.
         let unwidened = radiance * camera.irradiance_per_radiance(pixel);
-        let column = unwidened * line_width * (PI / 8.0).sqrt();
+        let column = unwidened * projected_thickness * (PI / 8.0).sqrt();
         let sensor = Sensor::new(description.sensor).ok()?;
         let mut line = Self {
             position: pixel.y,
             width,
-            line_width,
+            projected_thickness,
             diffraction_width,
             blur,
             speckle_size: [speckle, speckle * stretch],
@@ -113,7 +113,7 @@ impl ImagedLine {
     }
 
     fn profile_over(&self, pixel: f64, reach: f64) -> LineProfile {
-        let gaussian = self.line_width.hypot(self.blur);
+        let gaussian = self.projected_thickness.hypot(self.blur);
         LineProfile::new(gaussian, self.speckle_size[1], pixel, reach)
     }
 

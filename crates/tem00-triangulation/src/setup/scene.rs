@@ -21,7 +21,7 @@ impl Setup {
              wavelength = {wavelength:e}\npower = {power:e}\nposition = [0, 0, {distance:e}]\n\
              look_at = [0, 0, 0]\nline_direction = [1, 0, 0]\n\
              [laser.line]\n\
-             fan_angle = {fan_angle:e}\nthickness = {line_width:e}\nprofile = \"uniform\"\n\n\
+             fan_angle = {fan_angle:e}\nthickness = {line_thickness:e}\nprofile = \"uniform\"\n\n\
              [[surface]]\nname = \"plate\"\n\
              [surface.rectangle]\n\
              centre = [0, 0, {height:e}]\nnormal = [0, 0, 1]\nsize = [{plate:e}, {plate:e}]\n\
@@ -36,7 +36,7 @@ impl Setup {
             wavelength = laser.wavelength,
             power = laser.power,
             distance = camera.distance,
-            line_width = laser.line_width,
+            line_thickness = laser.line_thickness,
             reflectance = d.surface.reflectance,
         )
     }

@@ -9,7 +9,7 @@ pub(crate) fn description() -> SetupDescription {
         laser: LaserLineData {
             wavelength: 650e-9,
             power: 5e-3,
-            line_width: 0.2e-3,
+            line_thickness: 0.2e-3,
             line_length: 50e-3,
         },
         camera: SetupCamera {
@@ -126,7 +126,7 @@ fn the_line_is_as_wide_as_its_projection_the_lens_and_defocus_make_it() {
     let magnification = setup().magnification();
     let flat = magnification * 0.2e-3 * 0.75_f64.sqrt() / 3.45e-6;
     // To second order in W/L = 7e−4.
-    assert_relative_eq!(line.line_width, flat, max_relative = 1e-6);
+    assert_relative_eq!(line.projected_thickness, flat, max_relative = 1e-6);
     let speckle = 650e-9 * 8.0 * (1.0 + magnification) / 3.45e-6;
     assert_relative_eq!(line.speckle_size[0], speckle, max_relative = 1e-12);
     assert_relative_eq!(line.speckle_size[1], speckle, max_relative = 1e-12);
@@ -235,8 +235,8 @@ fn impossible_setups_are_rejected_by_name() {
     let bad: [(&str, Change); 18] = [
         ("wavelength", |d| d.laser.wavelength = f64::NAN),
         ("power", |d| d.laser.power = 0.0),
-        ("line_width", |d| d.laser.line_width = f64::INFINITY),
-        ("line_width", |d| d.laser.line_width = 20e-3),
+        ("line_thickness", |d| d.laser.line_thickness = f64::INFINITY),
+        ("line_thickness", |d| d.laser.line_thickness = 20e-3),
         ("line_length", |d| d.laser.line_length = 0.1e-3),
         ("pixel_pitch", |d| d.sensor.pixel_pitch = -1.0),
         ("focal_length", |d| d.camera.focal_length = 0.0),

@@ -9,7 +9,7 @@ const SETUP: &str = r#"
 [laser]
 wavelength = "650 nm"
 power = "5 mW"
-line_width = "0.2 mm"
+line_thickness = "0.2 mm"
 line_length = "50 mm"
 [camera]
 focal_length = "25 mm"
@@ -91,6 +91,11 @@ fn what_cannot_be_is_refused_where_it_stands() {
         (
             "[design.vary]\nf_numbr = [1]\n",
             "did you mean `f_number`",
+            Some((2, 1)),
+        ),
+        (
+            "[design.vary]\nline_width = [1e-4]\n",
+            "is now named `line_thickness`",
             Some((2, 1)),
         ),
         (

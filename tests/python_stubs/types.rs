@@ -54,7 +54,7 @@ const RESULTS: &[(&str, &str)] = &[
     ("usize", "int"),
     ("str", "str"),
     ("Vector", "FloatArray"),
-    ("Matrix3", "FloatArray"),
+    ("Matrix", "FloatArray"),
     ("Array", "FloatArray"),
     ("Array2", "FloatArray"),
     ("Array3", "FloatArray"),

@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 pub(crate) use columns::{Column, columns, evaluate};
 pub(crate) use images::{ComplexImage, Image, image_array};
 pub(crate) use numbers::{Components, Named, Numbers, Samples, Table, Vectors, length};
-pub(crate) use results::{Array, Matrix3, Values, Vector, array, vector_array};
+pub(crate) use results::{Array, Matrix, Values, Vector, array, vector_array};
 pub(crate) use whole::Whole;
 
 /// Applies `f` to `N` arguments broadcast together, without the interpreter's lock: a float for

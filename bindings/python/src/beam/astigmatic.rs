@@ -102,13 +102,6 @@ impl AstigmaticBeam {
         Ok(Self(beam.or_raise_as(&[("determinant", "systems")])?))
     }
 
-    /// The beams along the first and the second principal axis.
-    #[getter]
-    fn axes(&self) -> (LocatedBeam, LocatedBeam) {
-        let [x, y] = self.0.axes();
-        (LocatedBeam(*x), LocatedBeam(*y))
-    }
-
     /// Return the beam radii (1/e²) along the principal axes, in metres.
     ///
     /// Parameters
@@ -197,6 +190,9 @@ impl AstigmaticBeam {
 
 methods! {
     impl AstigmaticBeam as this: this.0;
+
+    /// The beams along the first and the second principal axis.
+    get axes -> (LocatedBeam, LocatedBeam) = this.0.axes().map(LocatedBeam).into();
 
     /// Angle from x to the first principal axis, in radians.
     get rotation -> f64;

@@ -4,10 +4,7 @@ use pyo3::{prelude::*, types::PyComplex};
 use tem00_beam as physics;
 
 use super::arguments::{OrRaiseAs, try_map};
-use crate::{
-    arrays::{Numbers, Values},
-    pickling::{Recipe, by_constructor},
-};
+use crate::arrays::{Numbers, Values};
 
 /// The complex beam parameter ``q = z + i z_R`` of a Gaussian beam in one plane.
 ///
@@ -91,16 +88,6 @@ impl ComplexBeamParameter {
         let q = self.0.to_complex();
         PyComplex::from_doubles(py, q.re, q.im)
     }
-
-    fn __repr__(&self) -> String {
-        let (distance, range) = (self.0.distance_from_waist(), self.0.rayleigh_range());
-        format!("ComplexBeamParameter(distance_from_waist={distance:?}, rayleigh_range={range:?})")
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        let parts = (self.0.distance_from_waist(), self.0.rayleigh_range());
-        by_constructor::<Self>(py, "__call__", parts)
-    }
 }
 
 methods! {
@@ -117,4 +104,6 @@ methods! {
 
     /// Gouy phase, in radians.
     get gouy_phase -> f64;
+
+    made_by new(distance_from_waist, rayleigh_range);
 }

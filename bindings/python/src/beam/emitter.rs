@@ -9,7 +9,7 @@ use super::{
     records::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
     rows::{Precision, array_of},
 };
-use crate::arrays::{Array, Numbers, Values, Vectors, evaluate};
+use crate::arrays::{Array, Numbers, Values, Vector, Vectors, evaluate};
 
 /// A light that a renderer can evaluate and sample: what all placed lights have in common.
 ///
@@ -29,30 +29,6 @@ pub(crate) struct Emitter(pub(super) Light);
 
 #[pymethods]
 impl Emitter {
-    /// Centre of the aperture (the lens of a laser line), in metres, shape (3,).
-    #[getter]
-    fn origin<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.vector(py, 0)
-    }
-
-    /// Unit vector of the local x axis, along which a fan opens, shape (3,).
-    #[getter]
-    fn ex<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.vector(py, 1)
-    }
-
-    /// Unit vector of the local y axis, the normal of the plane of a fan, shape (3,).
-    #[getter]
-    fn ey<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.vector(py, 2)
-    }
-
-    /// Unit vector along the direction of travel, shape (3,).
-    #[getter]
-    fn ez<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.vector(py, 3)
-    }
-
     /// Return the fields of the light in the order of memory, as rows of four.
     ///
     /// They are what a kernel or a shader reads; the class of each light says which field is where.
@@ -368,6 +344,18 @@ impl Emitter {
 methods! {
     impl Emitter as this: this.0;
 
+    /// Centre of the aperture (the lens of a laser line), in metres, shape (3,).
+    get origin -> Vector<3> = this.vector(0);
+
+    /// Unit vector of the local x axis, along which a fan opens, shape (3,).
+    get ex -> Vector<3> = this.vector(1);
+
+    /// Unit vector of the local y axis, the normal of the plane of a fan, shape (3,).
+    get ey -> Vector<3> = this.vector(2);
+
+    /// Unit vector along the direction of travel, shape (3,).
+    get ez -> Vector<3> = this.vector(3);
+
     /// Power, in watts.
     get power -> f64 = this.0.frame_rows()[0][3];
 
@@ -377,8 +365,9 @@ methods! {
 }
 
 impl Emitter {
-    fn vector<'py>(&self, py: Python<'py>, row: usize) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.0.frame_rows()[row][..3])
+    fn vector(&self, row: usize) -> Vector<3> {
+        let [x, y, z, _] = self.0.frame_rows()[row];
+        [x, y, z].into()
     }
 }
 

@@ -17,7 +17,7 @@ use super::{
     rows::array_of,
 };
 use crate::{
-    arrays::{Array, Numbers, Vector},
+    arrays::{Array, Matrix, Numbers, Vector},
     error::OrRaise,
 };
 
@@ -53,24 +53,6 @@ impl SecondMoments {
         })
     }
 
-    /// Covariance of the position, in m², shape (2, 2).
-    #[getter]
-    fn position<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array_of(py, &rows_of(self.0.position))
-    }
-
-    /// Covariance of position (rows) and slope (columns), in metres, shape (2, 2).
-    #[getter]
-    fn mixed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array_of(py, &rows_of(self.0.mixed))
-    }
-
-    /// Covariance of the slope, shape (2, 2).
-    #[getter]
-    fn slope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array_of(py, &rows_of(self.0.slope))
-    }
-
     fn __repr__(&self) -> String {
         let (position, mixed, slope) = self.__getnewargs__();
         format!("SecondMoments(position={position:?}, mixed={mixed:?}, slope={slope:?})")
@@ -82,6 +64,19 @@ impl SecondMoments {
             .map(rows_of)
             .into()
     }
+}
+
+methods! {
+    impl SecondMoments as this: this.0;
+
+    /// Covariance of the position, in m², shape (2, 2).
+    field position -> Matrix<2>;
+
+    /// Covariance of position (rows) and slope (columns), in metres, shape (2, 2).
+    field mixed -> Matrix<2>;
+
+    /// Covariance of the slope, shape (2, 2).
+    field slope -> Matrix<2>;
 }
 
 /// A Gaussian beam with general astigmatism: the ellipse of its irradiance may turn on its way, and it
@@ -152,18 +147,6 @@ impl GeneralAstigmaticBeam {
     /// system : AstigmaticSystem
     fn through(&self, system: &AstigmaticSystem) -> PyResult<Self> {
         Ok(Self(self.0.through(&system.0).or_raise()?))
-    }
-
-    /// Covariance of the positions of all rays of one slope, in m², shape (2, 2).
-    #[getter]
-    fn position_spread<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array_of(py, &rows_of(self.0.position_spread()))
-    }
-
-    /// Matrix, in metres, shape (2, 2), that takes a slope to the mean position of its rays at z = 0.
-    #[getter]
-    fn position_per_slope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array_of(py, &rows_of(self.0.position_per_slope()))
     }
 
     /// Return the second moments at a plane.
@@ -278,6 +261,12 @@ impl GeneralAstigmaticBeam {
 
 methods! {
     impl GeneralAstigmaticBeam as this: this.0;
+
+    /// Covariance of the positions of all rays of one slope, in m², shape (2, 2).
+    get position_spread -> Matrix<2>;
+
+    /// Matrix, in metres, shape (2, 2), that takes a slope to the mean position of its rays at z = 0.
+    get position_per_slope -> Matrix<2>;
 
     /// Wavelength in the medium the beam travels in, in metres.
     get wavelength -> f64;

@@ -1,6 +1,5 @@
 //! Placed beams.
 
-use numpy::PyArray2;
 use pyo3::prelude::*;
 use tem00_beam as physics;
 
@@ -14,7 +13,7 @@ use super::{
     rows::{Rows, array_of},
 };
 use crate::{
-    arrays::Table,
+    arrays::{Matrix, Table},
     error::OrRaise,
     pickling::{Recipe, by_constructor},
 };
@@ -162,12 +161,6 @@ impl AstigmaticLight {
         Self::of(py, physics::AstigmaticLight::from_rows(rows.0))
     }
 
-    /// K: mean position on the aperture plane per slope, in metres, shape (2, 2).
-    #[getter]
-    fn position_per_slope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array_of(py, &self.0.position_per_slope)
-    }
-
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         let rows = array_of(py, &self.0.to_rows())?;
         by_constructor::<Self>(py, "from_rows", (rows,))
@@ -176,6 +169,9 @@ impl AstigmaticLight {
 
 methods! {
     impl AstigmaticLight as this: this.0;
+
+    /// K: mean position on the aperture plane per slope, in metres, shape (2, 2).
+    field position_per_slope -> Matrix<2>;
 
     /// W: squared radii of the position on the aperture plane of rays with a given slope, in m².
     get position -> Ellipse = Ellipse(this.0.position);

@@ -51,15 +51,6 @@ impl FanGeometry {
         })
     }
 
-    /// Surface on which the line is thinnest off the axis, ``"equal_distance"`` or ``"equal_plane"``.
-    #[getter]
-    fn focus_curve(&self) -> &'static str {
-        match self.0.focus_curve {
-            physics::FocusCurve::EqualDistance => EQUAL_DISTANCE,
-            physics::FocusCurve::EqualPlane => EQUAL_PLANE,
-        }
-    }
-
     fn __repr__(&self) -> String {
         let (fan_angle, apex_offset, focus_distance, curve) = self.__getnewargs__();
         format!(
@@ -77,6 +68,12 @@ impl FanGeometry {
 
 methods! {
     impl FanGeometry as this: this.0;
+
+    /// Surface on which the line is thinnest off the axis, ``"equal_distance"`` or ``"equal_plane"``.
+    get focus_curve -> &'static str = match this.0.focus_curve {
+        physics::FocusCurve::EqualDistance => EQUAL_DISTANCE,
+        physics::FocusCurve::EqualPlane => EQUAL_PLANE,
+    };
 
     /// Full angle between the edges of the line, in radians.
     field fan_angle -> f64;

@@ -72,18 +72,6 @@ impl LineLight {
         Self::of(py, physics::LineLight::from_rows(rows.0))
     }
 
-    /// The variable of the profile: 0 for tan θ, 1 for θ, 2 for sin θ, 3 for a table kept elsewhere.
-    #[getter]
-    fn variable(&self) -> u8 {
-        // One of four codes, as `Rows::check_fan` and placing make sure.
-        match self.0.variable {
-            v if v < 0.5 => 0,
-            v if v < 1.5 => 1,
-            v if v < 2.5 => 2,
-            _ => 3,
-        }
-    }
-
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
         let rows = array_of(py, &self.0.to_rows())?;
         by_constructor::<Self>(py, "from_rows", (rows,))
@@ -92,6 +80,15 @@ impl LineLight {
 
 methods! {
     impl LineLight as this: this.0;
+
+    /// The variable of the profile: 0 for tan θ, 1 for θ, 2 for sin θ, 3 for a table kept elsewhere.
+    get variable -> u8 = match this.0.variable {
+        // One of four codes, as `Rows::check_fan` and placing make sure.
+        v if v < 0.5 => 0,
+        v if v < 1.5 => 1,
+        v if v < 2.5 => 2,
+        _ => 3,
+    };
 
     /// Distance of the virtual apex behind the lens, in metres.
     field apex_offset -> f64;

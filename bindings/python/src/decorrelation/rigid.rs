@@ -3,7 +3,7 @@ use tem00_decorrelation as physics;
 
 use super::vectors::{Array3, array3, mat3, shown, shown33, vec3};
 use crate::{
-    arrays::{Components, Matrix3, Table, Vector},
+    arrays::{Components, Matrix, Table, Vector},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -102,7 +102,7 @@ methods! {
     impl RigidMotion as this: this.0;
 
     /// Rotation matrix of shape (3, 3).
-    get rotation -> Matrix3;
+    get rotation -> Matrix<3>;
 
     /// Translation in metres, of shape (3,).
     get translation -> Vector<3>;

@@ -3,7 +3,7 @@ use tem00_decorrelation as physics;
 
 use super::vectors::{Array3, array3, mat3, shown, shown33, vec3};
 use crate::{
-    arrays::{Components, Matrix3, Table, Vector},
+    arrays::{Components, Matrix, Table, Vector},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -123,7 +123,7 @@ methods! {
     get direction_to_source -> Vector<3>;
 
     /// Symmetric curvature tensor in 1/m, of shape (3, 3).
-    get curvature -> Matrix3;
+    get curvature -> Matrix<3>;
 }
 
 fn check_finite(name: &'static str, value: f64) -> PyResult<()> {

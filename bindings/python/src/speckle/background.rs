@@ -7,10 +7,7 @@ use super::{
     images::check_room,
     pattern::{SpeckleField, SpecklePattern},
 };
-use crate::{
-    arrays::{Numbers, map},
-    pickling::{Recipe, by_constructor},
-};
+use crate::arrays::{Numbers, map};
 
 /// A uniform wave that interferes with the speckle: partially developed speckle.
 ///
@@ -72,15 +69,6 @@ impl CoherentBackground {
         check_room(field.0.size(), 4)?;
         Ok(SpecklePattern(py.detach(|| self.0.pattern(&field.0))))
     }
-
-    fn __repr__(&self) -> String {
-        let (ratio, phase) = (self.0.beam_ratio(), self.0.phase());
-        format!("CoherentBackground(beam_ratio={ratio}, phase={phase})")
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "__call__", (self.0.beam_ratio(), self.0.phase()))
-    }
 }
 
 methods! {
@@ -96,4 +84,6 @@ methods! {
 
     /// Contrast on fully developed speckle.
     get contrast -> f64;
+
+    made_by new(beam_ratio, phase);
 }

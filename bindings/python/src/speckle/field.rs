@@ -161,13 +161,6 @@ impl PupilField {
         Ok(Self(self.0.clone().with_seed(seed.unsigned("seed")?)))
     }
 
-    /// Law of the phasors, "unit" or "gaussian", or None for external samples.
-    #[getter]
-    fn phasors(&self) -> Option<&'static str> {
-        let phasors = self.0.phasors();
-        phasors.map(|phasors| name_of(&PHASORS, phasors))
-    }
-
     /// External samples, complex64 [row, column], a read-only view; None for random phasors.
     #[getter]
     fn samples<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyArray2<Complex32>>>> {
@@ -338,6 +331,10 @@ impl PupilField {
 
 methods! {
     impl PupilField as this: this.0;
+
+    /// Law of the phasors, "unit" or "gaussian", or None for external samples.
+    get phasors -> Option<&'static str> =
+        this.0.phasors().map(|phasors| name_of(&PHASORS, phasors));
 
     /// Width and height of the pattern in samples.
     get size -> (usize, usize);

@@ -57,35 +57,6 @@ impl SlicePath {
         })
     }
 
-    /// "still", "circle" or "straight".
-    #[getter]
-    const fn kind(&self) -> &'static str {
-        match self.0 {
-            physics::SlicePath::Still => "still",
-            physics::SlicePath::Circle { .. } => "circle",
-            physics::SlicePath::Straight { .. } => "straight",
-        }
-    }
-
-    /// Half the number of slices, M, or None of a still path.
-    #[getter]
-    const fn half_period(&self) -> Option<usize> {
-        match self.0 {
-            physics::SlicePath::Still => None,
-            physics::SlicePath::Circle { half_period }
-            | physics::SlicePath::Straight { half_period, .. } => Some(half_period),
-        }
-    }
-
-    /// Length of a straight path in pupil diameters, or None.
-    #[getter]
-    const fn length(&self) -> Option<usize> {
-        match self.0 {
-            physics::SlicePath::Straight { length, .. } => Some(length),
-            _ => None,
-        }
-    }
-
     /// Return the bytes of a stack of width x height samples along this path: 8 per sample.
     ///
     /// Parameters
@@ -125,6 +96,26 @@ impl SlicePath {
 
 methods! {
     impl SlicePath as this: this.0;
+
+    /// "still", "circle" or "straight".
+    get kind -> &'static str = match this.0 {
+        physics::SlicePath::Still => "still",
+        physics::SlicePath::Circle { .. } => "circle",
+        physics::SlicePath::Straight { .. } => "straight",
+    };
+
+    /// Half the number of slices, M, or None of a still path.
+    get half_period -> Option<usize> = match this.0 {
+        physics::SlicePath::Still => None,
+        physics::SlicePath::Circle { half_period }
+        | physics::SlicePath::Straight { half_period, .. } => Some(half_period),
+    };
+
+    /// Length of a straight path in pupil diameters, or None.
+    get length -> Option<usize> = match this.0 {
+        physics::SlicePath::Straight { length, .. } => Some(length),
+        _ => None,
+    };
 
     /// Number of slices: 1, or 2 M.
     get slice_count -> usize;

@@ -66,18 +66,6 @@ impl Pupil {
         Self(physics::Pupil::Sampled(transmission.0.clone()))
     }
 
-    /// "circle", "annulus", "rectangle", "gaussian" or "sampled".
-    #[getter]
-    const fn kind(&self) -> &'static str {
-        match self.0 {
-            physics::Pupil::Circle => "circle",
-            physics::Pupil::Annulus { .. } => "annulus",
-            physics::Pupil::Rectangle { .. } => "rectangle",
-            physics::Pupil::Gaussian { .. } => "gaussian",
-            physics::Pupil::Sampled(_) => "sampled",
-        }
-    }
-
     pub(super) fn __repr__(&self) -> String {
         match &self.0 {
             physics::Pupil::Circle => "Pupil.circle()".to_owned(),
@@ -113,6 +101,15 @@ impl Pupil {
 
 methods! {
     impl Pupil as this: this.0;
+
+    /// "circle", "annulus", "rectangle", "gaussian" or "sampled".
+    get kind -> &'static str = match this.0 {
+        physics::Pupil::Circle => "circle",
+        physics::Pupil::Annulus { .. } => "annulus",
+        physics::Pupil::Rectangle { .. } => "rectangle",
+        physics::Pupil::Gaussian { .. } => "gaussian",
+        physics::Pupil::Sampled(_) => "sampled",
+    };
 
     /// Return the overlap of the pupil with itself, displaced by x and y diameters.
     ///

@@ -2,6 +2,8 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use tem00_speckle as physics;
 
+use crate::arrays::Vector;
+
 /// The closed forms of a slice, for look-ups that run where no library can be called.
 ///
 /// With the fraction f of the way between the slices i and i + 1, and fx, fy between samples:
@@ -34,15 +36,16 @@ impl SliceLaw {
         PyArray1::from_slice(py, self.0.covariance.as_flattened()).reshape([6, 6])
     }
 
-    /// Turns of phase per sample along x and y, from the frame of the next slice to that of this
-    /// one, float64 of shape (2,).
-    #[getter]
-    fn turns<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.0.turns)
-    }
-
     fn __repr__(&self) -> String {
         let [x, y] = self.0.turns;
         format!("<SliceLaw: turns=[{x}, {y}]>")
     }
+}
+
+methods! {
+    impl SliceLaw as this: this.0;
+
+    /// Turns of phase per sample along x and y, from the frame of the next slice to that of this
+    /// one, float64 of shape (2,).
+    field turns -> Vector<2>;
 }

@@ -3,10 +3,7 @@ use core::f64::consts::FRAC_PI_2;
 use pyo3::prelude::*;
 use tem00_statistics as physics;
 
-use crate::{
-    arrays::{Numbers, Values, map},
-    pickling::{Recipe, by_constructor},
-};
+use crate::arrays::{Numbers, Values, map};
 
 /// Light of a narrow Gaussian spectrum, and the contrast of the speckle it makes.
 ///
@@ -19,18 +16,6 @@ use crate::{
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct GaussianSpectrum(physics::GaussianSpectrum);
-
-#[pymethods]
-impl GaussianSpectrum {
-    fn __repr__(&self) -> String {
-        let (wavelength, linewidth) = (self.0.wavelength(), self.0.linewidth());
-        format!("GaussianSpectrum(wavelength={wavelength:?}, linewidth={linewidth:?})")
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "__call__", (self.0.wavelength(), self.0.linewidth()))
-    }
-}
 
 methods! {
     impl GaussianSpectrum as this: this.0;
@@ -63,6 +48,8 @@ methods! {
     /// path_spread : float or array
     ///     Standard deviation of the optical path, in metres, 0 or more.
     map contrast(path_spread: not_negative);
+
+    made_by new(wavelength, linewidth);
 }
 
 /// Return the standard deviation of the optical path of light reflected by a rough surface.

@@ -2,10 +2,7 @@ use pyo3::prelude::*;
 use tem00_statistics as physics;
 
 use super::phasors::checked_order;
-use crate::{
-    arrays::{Numbers, Values, Whole, map},
-    pickling::{Recipe, by_constructor},
-};
+use crate::arrays::{Numbers, Values, Whole, map};
 
 /// The joint law of the intensities at two points of fully developed speckle, or at one point of two
 /// correlated patterns.
@@ -42,15 +39,6 @@ impl JointIntensity {
         let orders = [checked_order("orders", m)?, checked_order("orders", n)?];
         Ok(self.0.moment(orders))
     }
-
-    fn __repr__(&self) -> String {
-        let correlation = self.0.amplitude_correlation();
-        format!("JointIntensity(amplitude_correlation={correlation:?})")
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
-        by_constructor::<Self>(py, "__call__", (self.0.amplitude_correlation(),))
-    }
 }
 
 methods! {
@@ -85,4 +73,6 @@ methods! {
 
     /// Return the variance of the intensity at one point where that at the other is `given`.
     map conditional_variance(given: not_negative);
+
+    made_by new(amplitude_correlation);
 }

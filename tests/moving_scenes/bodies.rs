@@ -217,7 +217,7 @@ fn a_plate_that_swings_through_its_place_has_other_speckle_on_either_side() {
     let way = DVec3::new(20.0 * 11.0 * LENS.pixel_pitch, 0.0, 0.0);
     let at = |frame, displacement| Keyframe {
         displacement,
-        ..Keyframe::at(frame)
+        ..Keyframe::unmoved(frame)
     };
     let keyframes = [at(0.0, DVec3::ZERO), at(1.0, way), at(2.0, -way)];
     let swing = Trajectory::keyframed(DVec3::ZERO, keyframes).expect("a motion");

@@ -175,7 +175,10 @@ impl Surroundings<'_> {
         let table = if moved == DVec2::ZERO {
             speckle.table(pixel)
         } else {
-            Cow::Owned(SpeckleTable::new(&speckle.at(pixel), [-moved.x, -moved.y]))
+            Cow::Owned(SpeckleTable::new(
+                &speckle.speckle_at(pixel),
+                [-moved.x, -moved.y],
+            ))
         };
         let covariance = |columns: f64| {
             let apart = [columns - moved.x, -moved.y];

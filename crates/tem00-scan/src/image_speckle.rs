@@ -52,7 +52,7 @@ impl ImageSpeckle {
     }
 
     /// Returns the speckle at an image point.
-    pub(super) fn at(&self, pixel: DVec2) -> SensorSpeckle {
+    pub(super) fn speckle_at(&self, pixel: DVec2) -> SensorSpeckle {
         let local = speckles_per_pixel(&self.camera, pixel, self.wavelength);
         SensorSpeckle {
             speckles_per_pixel: local.unwrap_or(self.middle.speckles_per_pixel),
@@ -79,7 +79,7 @@ impl ImageSpeckle {
     /// The covariances in the middle of the image where they hold at an image point, as on a plain
     /// sensor, or else the speckle there.
     fn known(&self, pixel: DVec2) -> Result<&SpeckleTable, SensorSpeckle> {
-        let local = self.at(pixel);
+        let local = self.speckle_at(pixel);
         if local == self.middle {
             return Ok(&self.table);
         }

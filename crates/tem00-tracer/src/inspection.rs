@@ -105,7 +105,7 @@ impl Scene {
             intersector: Intersector::build(&self.shapes_at(frame))?,
             far: self.reach(),
         };
-        let lasers = self.lasers.iter().map(|laser| laser.at(frame));
+        let lasers = self.lasers.iter().map(|laser| laser.in_frame(frame));
         Ok(lasers.map(|laser| inspector.laser(&laser)).collect())
     }
 

@@ -60,12 +60,16 @@ impl<'a> Integrator<'a> {
         Self {
             scene,
             camera: scene.camera_at(frame),
-            lasers: scene.lasers.iter().map(|laser| laser.at(frame)).collect(),
+            lasers: scene
+                .lasers
+                .iter()
+                .map(|laser| laser.in_frame(frame))
+                .collect(),
             intersector,
             speckle: None,
             rules: options.into(),
             sequence: Sequence::new(options.samples_per_pixel),
-            spectrum: Spectrum::of(&scene.lasers, &scene.lights),
+            spectrum: Spectrum::new(&scene.lasers, &scene.lights),
             light_shapes: lights(|light| matches!(light, Light::Area { .. })),
             environments: lights(|light| matches!(light, Light::Environment(_))),
         }
@@ -264,7 +268,7 @@ impl<'a> Integrator<'a> {
         let compression = path.compression * event.eta_squared;
         if path.depth > CERTAIN_BOUNCES {
             let survival = (largest * compression).min(0.95);
-            if self.sequence.single(stream, Use::Survival(path.depth)) >= survival {
+            if self.sequence.uniform(stream, Use::Survival(path.depth)) >= survival {
                 return None;
             }
             throughput.iter_mut().for_each(|value| *value /= survival);

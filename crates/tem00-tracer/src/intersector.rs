@@ -88,7 +88,7 @@ impl Intersector {
             }
         }
         let bodies = shapes.iter().enumerate();
-        let bodies = bodies.flat_map(|(surface, shape)| Body::of(surface, shape, reach));
+        let bodies = bodies.flat_map(|(surface, shape)| Body::parts_of(surface, shape, reach));
         Ok(Self {
             bodies: Bodies::build(bodies.collect()),
             clearance: clearance(reach),

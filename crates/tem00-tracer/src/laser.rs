@@ -137,7 +137,7 @@ impl Laser {
 
     /// Returns the laser as it stands in `frame`.
     #[must_use]
-    pub fn at(&self, frame: u32) -> Self {
+    pub fn in_frame(&self, frame: u32) -> Self {
         self.moved(&self.trajectory.pose_at(frame))
     }
 

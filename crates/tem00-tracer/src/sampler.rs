@@ -105,7 +105,7 @@ impl Sequence {
     }
 
     /// Returns one number in (0, 1): the first of the pair.
-    pub(crate) fn single(&self, stream: Stream, purpose: Use) -> f64 {
+    pub(crate) fn uniform(&self, stream: Stream, purpose: Use) -> f64 {
         let [order, first, _] = seeds(stream, purpose);
         let [x, _] = self.points[self.shuffled(stream.index, order)];
         fraction(scrambled(x, first).reverse_bits())

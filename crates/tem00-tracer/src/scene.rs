@@ -128,7 +128,7 @@ impl Scene {
     ///
     /// Panics unless `index < lasers.len()`.
     pub fn laser_at(&self, index: usize, frame: u32) -> Laser {
-        self.lasers[index].at(frame)
+        self.lasers[index].in_frame(frame)
     }
 
     /// Returns the shapes as they stand in `frame`: the surfaces, then the area lights, which stand

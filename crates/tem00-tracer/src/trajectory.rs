@@ -30,7 +30,7 @@ use crate::TracerError;
 /// assert!((quarter - DVec3::Y).length() < 1e-15);
 ///
 /// let turned = Rotation { axis: DVec3::Z, angle: 360_f64.to_radians() };
-/// let keyframes = [Keyframe::at(0.0), Keyframe { rotation: turned, ..Keyframe::at(10.0) }];
+/// let keyframes = [Keyframe::unmoved(0.0), Keyframe { rotation: turned, ..Keyframe::unmoved(10.0) }];
 /// let turning = Trajectory::keyframed(DVec3::ZERO, keyframes)?;
 /// let half = turning.pose_at(5).point(DVec3::X);
 /// assert!((half + DVec3::X).length() < 1e-15);
@@ -80,7 +80,7 @@ pub struct Keyframe {
 
 impl Keyframe {
     /// Returns the keyframe at which something is where the scene description has it.
-    pub const fn at(frame: f64) -> Self {
+    pub const fn unmoved(frame: f64) -> Self {
         Self {
             frame,
             displacement: DVec3::ZERO,

@@ -226,7 +226,7 @@ fn things_move_through_keyframes() {
             angle: 720.0 * PI / 180.0,
         },
     };
-    let expected = Trajectory::keyframed(DVec3::ZERO, [Keyframe::at(-1.5), turned]).unwrap();
+    let expected = Trajectory::keyframed(DVec3::ZERO, [Keyframe::unmoved(-1.5), turned]).unwrap();
     assert_eq!(surface(keyframes).trajectory, expected, "as sections");
     let inline = "keyframe = [{ frame = -1.5 }, { frame = 10, displacement = [\"1 mm\", 0, 0], \
                   rotation = { axis = [0, 1, 0], angle = \"720 deg\" } }]";

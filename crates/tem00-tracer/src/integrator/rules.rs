@@ -40,7 +40,7 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
-    pub(super) fn of(lasers: &[Laser], lights: &[Light]) -> Self {
+    pub(super) fn new(lasers: &[Laser], lights: &[Light]) -> Self {
         let mut wavelengths = Vec::new();
         let of_laser = lasers
             .iter()

@@ -29,7 +29,7 @@ enum Content {
 
 impl Body {
     /// Returns the parts of a shape in a scene where no coordinate exceeds `reach`, in metres.
-    pub(super) fn of(surface: usize, shape: &Shape, reach: f64) -> Vec<Self> {
+    pub(super) fn parts_of(surface: usize, shape: &Shape, reach: f64) -> Vec<Self> {
         let body = |content| Self { content, surface };
         match shape {
             Shape::Rectangle(shape) => vec![body(Content::Primitive(Primitive::Rectangle(*shape)))],

@@ -249,10 +249,13 @@ fn a_laser_stands_where_its_trajectory_says() {
     let moving = laser
         .clone()
         .with_trajectory(Trajectory::steady(step).unwrap());
-    let there = moving.at(3).description().position;
+    let there = moving.in_frame(3).description().position;
     let expected = laser.description().position + 3.0 * step;
     assert!(there.distance(expected) < 1e-16, "{there} | {expected}");
-    assert!(moving.at(3).trajectory().is_still(), "it has been moved");
+    assert!(
+        moving.in_frame(3).trajectory().is_still(),
+        "it has been moved"
+    );
 }
 
 #[test]

@@ -39,7 +39,7 @@ impl Scene {
             hit.and_then(|hit| self.surfaces.get(hit.surface))
                 .is_some_and(|surface| surface.material.is_specular())
         };
-        let lasers = self.lasers.iter().map(|laser| laser.at(frame));
+        let lasers = self.lasers.iter().map(|laser| laser.in_frame(frame));
         let mut emitted =
             lasers.flat_map(|laser| (0..RAYS).map(move |i| laser.sample_ray(even(i)).ray));
         let camera = self.camera_at(frame);

@@ -60,7 +60,7 @@ impl<'a> Walk<'a> {
         Self {
             tracer,
             job: *job,
-            laser: tracer.scene.lasers[job.laser].at(tracer.frame),
+            laser: tracer.scene.lasers[job.laser].in_frame(tracer.frame),
         }
     }
 

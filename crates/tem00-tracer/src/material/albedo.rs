@@ -31,7 +31,7 @@ impl Albedo {
     }
 
     /// Returns the albedo seen from a direction with this `cosine`.
-    pub(super) fn at(&self, cosine: f64) -> f64 {
+    pub(super) fn at_cosine(&self, cosine: f64) -> f64 {
         self.at_root(cosine.sqrt().sqrt())
     }
 

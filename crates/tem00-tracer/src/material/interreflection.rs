@@ -27,7 +27,7 @@ impl Interreflection {
     }
 
     pub(super) fn evaluate(&self, wo: DVec3, wi: DVec3, wavelength: f64) -> f64 {
-        let lost = (1.0 - self.white.at(wo.z)) * (1.0 - self.white.at(wi.z));
+        let lost = (1.0 - self.white.at_cosine(wo.z)) * (1.0 - self.white.at_cosine(wi.z));
         self.facets.evaluate(wo, wi, wavelength) + self.many(wavelength) * lost
     }
 
@@ -37,7 +37,7 @@ impl Interreflection {
         [u, v]: [f64; 2],
         wavelength: f64,
     ) -> Option<BsdfSample> {
-        let (once, u) = choose_first(self.white.at(wo.z), u);
+        let (once, u) = choose_first(self.white.at_cosine(wo.z), u);
         let wi = if once {
             self.facets.facets.reflect(wo, [u, v])
         } else {
@@ -50,7 +50,7 @@ impl Interreflection {
     }
 
     pub(super) fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        let once = self.white.at(wo.z);
+        let once = self.white.at_cosine(wo.z);
         once * self.facets.pdf(wo, wi) + (1.0 - once) * cosine_pdf(wi)
     }
 

@@ -59,7 +59,7 @@ impl Plastic {
         let coat = refraction(cosine, self.index).reflectance
             * self.facets.density(facet)
             * self.facets.visibility(wo, wi);
-        coat + self.base * (1.0 - self.albedo.at(wo.z)) * (1.0 - self.albedo.at(wi.z))
+        coat + self.base * (1.0 - self.albedo.at_cosine(wo.z)) * (1.0 - self.albedo.at_cosine(wi.z))
     }
 
     pub(super) fn sample(&self, wo: DVec3, [u, v]: [f64; 2]) -> Option<BsdfSample> {
@@ -82,7 +82,7 @@ impl Plastic {
 
     /// Returns the fraction of the light reflected towards `wo` that the coat itself reflects.
     fn coat_probability(&self, wo: DVec3) -> f64 {
-        let coat = self.albedo.at(wo.z);
+        let coat = self.albedo.at_cosine(wo.z);
         coat / (coat + self.returned * (1.0 - coat))
     }
 }

@@ -102,7 +102,7 @@ impl Change {
             axes: CameraFrame::from_axes(scene.camera_at(reference).axes()).ok(),
             frames: f64::from(frame) - f64::from(reference),
             cameras: [scene.camera_at(reference), scene.camera_at(frame)],
-            perspective: Perspective::of(scene.camera_at(frame)),
+            perspective: Perspective::new(scene.camera_at(frame)),
             camera: body(&scene.camera_trajectory),
             lasers: scene.lasers.iter().enumerate().map(laser).collect(),
             surfaces: scene.surfaces.iter().map(|s| body(&s.trajectory)).collect(),

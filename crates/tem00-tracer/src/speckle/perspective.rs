@@ -19,7 +19,7 @@ pub(super) struct Perspective {
 const EDGE_POINTS: u32 = 32;
 
 impl Perspective {
-    pub(super) fn of(camera: Camera) -> Self {
+    pub(super) fn new(camera: Camera) -> Self {
         let description = camera.description();
         let tilted = description.tilt != SensorTilt::default();
         Self {
@@ -126,7 +126,7 @@ mod tests {
             },
             ..description()
         });
-        let bent = Perspective::of(bent.unwrap());
+        let bent = Perspective::new(bent.unwrap());
         let [low, high] = bent.image();
         for i in 0..100_u32 {
             let (x, y) = (f64::from(i % 10) - 4.5, f64::from(i / 10) - 4.5);
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn a_plain_camera_sees_the_perspective_itself() {
-        let plain = Perspective::of(Camera::new(description()).unwrap());
+        let plain = Perspective::new(Camera::new(description()).unwrap());
         let pixel = DVec2::new(12.3, 400.7);
         assert_eq!(plain.point(pixel), pixel);
         assert_eq!(plain.pixel(pixel), Some(pixel));
@@ -164,7 +164,7 @@ mod tests {
             },
             ..description()
         };
-        let tilted = Perspective::of(Camera::new(tilted).unwrap());
+        let tilted = Perspective::new(Camera::new(tilted).unwrap());
         let camera = tilted.camera;
         let on_axis = camera.imaging_geometry(650e-9).unwrap();
         let (origin, normal) = camera.plane_in_focus();

@@ -51,7 +51,7 @@ struct FrameSample {
 
 impl MotionPrescan {
     fn of_image(camera: &Camera) -> Self {
-        let [low, high] = Perspective::of(*camera).image();
+        let [low, high] = Perspective::new(*camera).image();
         Self {
             image: high - low,
             low,

@@ -22,7 +22,8 @@ fn what_does_not_move_has_the_same_pose_in_every_frame() {
         Trajectory::default(),
         Trajectory::steady(DVec3::ZERO).unwrap(),
         Trajectory::turning(DVec3::ONE, turn(DVec3::X, 0.0), DVec3::ZERO).unwrap(),
-        Trajectory::keyframed(DVec3::ONE, [Keyframe::at(0.0), Keyframe::at(3.5)]).unwrap(),
+        Trajectory::keyframed(DVec3::ONE, [Keyframe::unmoved(0.0), Keyframe::unmoved(3.5)])
+            .unwrap(),
     ];
     for trajectory in still {
         assert!(trajectory.is_still(), "{trajectory:?}");
@@ -34,7 +35,7 @@ fn what_does_not_move_has_the_same_pose_in_every_frame() {
     let elsewhere = Keyframe {
         displacement: DVec3::X,
         rotation: turn(DVec3::Y, 1.0),
-        ..Keyframe::at(0.0)
+        ..Keyframe::unmoved(0.0)
     };
     let elsewhere = Trajectory::keyframed(DVec3::ZERO, [elsewhere]).unwrap();
     assert!(elsewhere.is_still(), "{elsewhere:?}");
@@ -66,11 +67,11 @@ fn steady_motions_turn_about_their_pivot_and_go_on_from_there() {
 fn whole_turns_between_keyframes_are_made() {
     let twice = Keyframe {
         rotation: turn(-DVec3::Z, -2.0 * TAU),
-        ..Keyframe::at(16.0)
+        ..Keyframe::unmoved(16.0)
     };
     let start = Keyframe {
         rotation: turn(DVec3::Z, FRAC_PI_2),
-        ..Keyframe::at(0.0)
+        ..Keyframe::unmoved(0.0)
     };
     let trajectory = Trajectory::keyframed(DVec3::X, [start, twice]).unwrap();
     for frame in 0..=16 {
@@ -92,7 +93,7 @@ fn between_rotations_about_different_axes_the_shortest_way_is_taken() {
     for [from, to] in [ends, [ends[1], ends[0]]] {
         let keyframes = [(0.0, from), (2.0, to)].map(|(frame, rotation)| Keyframe {
             rotation,
-            ..Keyframe::at(frame)
+            ..Keyframe::unmoved(frame)
         });
         let trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
         let half = difference(&trajectory.pose_at(1), &RigidMotion::IDENTITY);
@@ -108,7 +109,7 @@ fn half_a_turn_about_any_axis_is_made_at_a_constant_rate() {
     for (from, to) in [(a, b), (Rotation::NONE, tilted), (tilted, a)] {
         let keyframes = [(0.0, from), (8.0, to)].map(|(frame, rotation)| Keyframe {
             rotation,
-            ..Keyframe::at(frame)
+            ..Keyframe::unmoved(frame)
         });
         let trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
         let angle = |i: u32| {
@@ -221,8 +222,8 @@ fn impossible_motions_are_refused() {
     };
     let good = turn(DVec3::X, 0.1);
     let turning = |pivot, rotation| Trajectory::turning(pivot, rotation, DVec3::ZERO);
-    let through = |keyframe| Trajectory::keyframed(DVec3::ZERO, [Keyframe::at(1.0), keyframe]);
-    let later = Keyframe::at(2.0);
+    let through = |keyframe| Trajectory::keyframed(DVec3::ZERO, [Keyframe::unmoved(1.0), keyframe]);
+    let later = Keyframe::unmoved(2.0);
     let cases = [
         ("displacement_per_frame", Trajectory::steady(DVec3::NAN)),
         (
@@ -235,9 +236,9 @@ fn impossible_motions_are_refused() {
         ("angle", turning(DVec3::ZERO, turn(DVec3::X, f64::NAN))),
         ("angle", turning(DVec3::ZERO, turn(DVec3::X, 1e300))),
         ("pivot", Trajectory::keyframed(DVec3::NAN, [later])),
-        ("frame", through(Keyframe::at(1.0))),
-        ("frame", through(Keyframe::at(f64::NAN))),
-        ("frame", through(Keyframe::at(f64::INFINITY))),
+        ("frame", through(Keyframe::unmoved(1.0))),
+        ("frame", through(Keyframe::unmoved(f64::NAN))),
+        ("frame", through(Keyframe::unmoved(f64::INFINITY))),
         (
             "displacement",
             through(Keyframe {

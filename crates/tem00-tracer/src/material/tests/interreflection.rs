@@ -27,7 +27,7 @@ fn an_albedo_is_never_more_than_all() {
         let alpha = f64::from(thousandth) * 1e-3;
         let table = Albedo::new(Ggx { alpha }, |_| 1.0);
         for i in 0..=2000 {
-            let albedo = table.at((f64::from(i) / 2000.0).powi(4));
+            let albedo = table.at_cosine((f64::from(i) / 2000.0).powi(4));
             assert!((0.0..=1.0).contains(&albedo), "α = {alpha}: {albedo}");
         }
     }
@@ -64,7 +64,7 @@ fn a_white_table_is_that_of_a_perfect_metal() {
     let table = Albedo::new(Ggx { alpha: 1.0 }, |_| 1.0);
     for cosine in [0.001_f64, 0.03, 0.3, 0.71, 1.0] {
         let closed = 1.0 - cosine * cosine.recip().ln_1p();
-        let got = table.at(cosine);
+        let got = table.at_cosine(cosine);
         assert!(
             (got - closed).abs() < 3e-4,
             "cos = {cosine}: {got}, not {closed}"

@@ -92,7 +92,7 @@ fn the_table_of_a_coat_is_its_albedo() {
         for cosine in [0.004, 0.05, 0.11, 0.37, 0.77, 1.0] {
             let wo = direction(cosine, 0.0);
             let want = albedo_of_facets(&coat, wo);
-            let got = table.at(cosine);
+            let got = table.at_cosine(cosine);
             // Interpolation 2e-4, quadrature 1e-4.
             assert!(
                 (got - want).abs() < 3e-4,
@@ -102,7 +102,7 @@ fn the_table_of_a_coat_is_its_albedo() {
         let rings = 20_000;
         let mean: f64 = (0..rings)
             .map(|i| (f64::from(i) + 0.5) / f64::from(rings))
-            .map(|cosine| 2.0 * cosine * table.at(cosine) / f64::from(rings))
+            .map(|cosine| 2.0 * cosine * table.at_cosine(cosine) / f64::from(rings))
             .sum();
         // The midpoint rule meets a derivative of 1/cos^(3/4) at 0.
         assert!(

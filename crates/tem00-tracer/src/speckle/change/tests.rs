@@ -173,9 +173,9 @@ fn points_that_the_theory_does_not_know_have_speckle_of_their_own() {
     let keyframes = [
         Keyframe {
             displacement: DVec3::new(0.0, 0.0, 0.5),
-            ..Keyframe::at(0.0)
+            ..Keyframe::unmoved(0.0)
         },
-        Keyframe::at(3.0),
+        Keyframe::unmoved(3.0),
     ];
     scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
     let expected = SpeckleShift {

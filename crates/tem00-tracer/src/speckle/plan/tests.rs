@@ -160,7 +160,7 @@ fn surfaces_that_move_alike_share_a_pattern_wherever_they_turn() {
             ..surface
         })
     };
-    let keyframes = [Keyframe::at(0.0), Keyframe::at(1.0)];
+    let keyframes = [Keyframe::unmoved(0.0), Keyframe::unmoved(1.0)];
     let keyframed = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
     let standing = [more(&Trajectory::default()), more(&keyframed)];
     let still = plan_with(2, DVec3::ZERO, standing.concat());
@@ -269,9 +269,9 @@ fn a_motion_between_two_sampled_frames_is_found_by_its_keyframes() {
     let mut scene = scene(1001, DVec3::ZERO);
     let away = Keyframe {
         displacement: DVec3::new(2e-3, 0.0, 0.0),
-        ..Keyframe::at(501.0)
+        ..Keyframe::unmoved(501.0)
     };
-    let keyframes = [Keyframe::at(500.0), away, Keyframe::at(502.0)];
+    let keyframes = [Keyframe::unmoved(500.0), away, Keyframe::unmoved(502.0)];
     scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
     let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
     let shift = plan.patterns()[0].largest_shift();

@@ -146,6 +146,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-triangulation",
         ],
         &[
+            "annotate-snippets",
             "base64",
             "clap",
             "clap_complete",
@@ -155,7 +156,6 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "glam",
             "indicatif",
             "kuva",
-            "miette",
             "num-complex",
             "png",
             "rayon",

@@ -1,10 +1,12 @@
 //! Failures of the program and their exit codes.
 
-use std::{io, path::Path};
+use std::{
+    io::{self, IsTerminal},
+    path::Path,
+};
 
-use miette::{Diagnostic, Report, SourceSpan};
+use annotate_snippets::{Group, Level, Renderer};
 use tem00_config::{ConfigError, printable_line};
-use thiserror::Error;
 
 use crate::excerpt::Excerpt;
 
@@ -12,11 +14,11 @@ use crate::excerpt::Excerpt;
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// The user gave something that cannot be used. Exit code 2.
-    Input(Report),
+    Input(Box<Problem>),
     /// The work itself failed. Exit code 1.
-    Running(Report),
+    Running(Box<Problem>),
     /// The work was done and has no result: nothing was measured, or nothing found. Exit code 3.
-    NoResult(Report),
+    NoResult(Box<Problem>),
     /// The user asked for the end. Exit code 130, as shells count it.
     Interrupted,
     /// Nobody reads standard output any more, as after `| head`. Exit code 0: they had enough.
@@ -26,17 +28,19 @@ pub(crate) enum Failure {
 impl Failure {
     /// Returns a complaint about the input: what is wrong with which value, and what is allowed.
     pub(crate) fn input(message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self::Input(Report::new(Problem::new(message.into(), Some(help.into()))))
+        Self::Input(Problem::new(message.into(), Some(help.into())).into())
     }
 
     /// Returns why work that was done has no result, and what to change.
     pub(crate) fn no_result(message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self::NoResult(Report::new(Problem {
-            message: message.into(),
-            help: Some(help.into()),
-            source_code: None,
-            span: None,
-        }))
+        Self::NoResult(
+            Problem {
+                message: message.into(),
+                help: Some(help.into()),
+                excerpt: None,
+            }
+            .into(),
+        )
     }
 
     /// Returns a complaint about a position in a text file.
@@ -46,12 +50,13 @@ impl Failure {
         (file, text): (&Path, &str),
         span: core::ops::Range<usize>,
     ) -> Self {
-        let (excerpt, span) = Excerpt::around(file, text, &span);
-        Self::Input(Report::new(Problem {
-            source_code: Some(excerpt),
-            span: Some(span.into()),
-            ..Problem::new(message.into(), help)
-        }))
+        Self::Input(
+            Problem {
+                excerpt: Some(Excerpt::around(file, text, &span)),
+                ..Problem::new(message.into(), help)
+            }
+            .into(),
+        )
     }
 
     /// Returns a complaint about a scene file, a set-up file or one that they include, with `otherwise`
@@ -70,7 +75,7 @@ impl Failure {
 
     /// Returns a failure of the work itself.
     pub(crate) fn running(message: impl Into<String>) -> Self {
-        Self::Running(Report::new(Problem::new(message.into(), None)))
+        Self::Running(Problem::new(message.into(), None).into())
     }
 
     /// Returns the failure to write a file.
@@ -101,8 +106,8 @@ impl Failure {
     /// Returns what to print on standard error, if anything.
     pub(crate) fn report(&self) -> Option<String> {
         match self {
-            Self::Input(report) | Self::Running(report) | Self::NoResult(report) => {
-                Some(format!("{report:?}"))
+            Self::Input(problem) | Self::Running(problem) | Self::NoResult(problem) => {
+                Some(problem.printed())
             }
             Self::Interrupted => Some("tem00: interrupted\n".into()),
             Self::NoReader => None,
@@ -111,16 +116,11 @@ impl Failure {
 }
 
 /// One message with the position it is about.
-#[derive(Debug, Diagnostic, Error)]
-#[error("{message}")]
-struct Problem {
+#[derive(Debug)]
+pub(crate) struct Problem {
     message: String,
-    #[help]
     help: Option<String>,
-    #[source_code]
-    source_code: Option<Excerpt>,
-    #[label("here")]
-    span: Option<SourceSpan>,
+    excerpt: Option<Excerpt>,
 }
 
 impl Problem {
@@ -133,8 +133,26 @@ impl Problem {
         Self {
             message: shown(message),
             help: help.map(shown),
-            source_code: None,
-            span: None,
+            excerpt: None,
         }
+    }
+
+    /// Returns the text for standard error, in colours where that is a terminal.
+    fn printed(&self) -> String {
+        let title = Level::ERROR.primary_title(&self.message);
+        let mut group = match &self.excerpt {
+            Some(excerpt) => excerpt.under(title),
+            None => Group::with_title(title),
+        };
+        if let Some(help) = &self.help {
+            group = group.element(Level::HELP.message(help));
+        }
+        let plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let renderer = if io::stderr().is_terminal() && !plain {
+            Renderer::styled()
+        } else {
+            Renderer::plain()
+        };
+        renderer.render(&[group]) + "\n"
     }
 }

@@ -1,16 +1,24 @@
 //! The command line.
 
+#[cfg(feature = "full")]
 mod budget;
+#[cfg(feature = "full")]
 mod calibrate;
+#[cfg(feature = "full")]
 mod design;
 mod files;
+#[cfg(feature = "full")]
 mod lines;
+#[cfg(feature = "full")]
 mod list;
 mod render;
 mod scene;
+#[cfg(feature = "full")]
 mod setup;
+#[cfg(feature = "full")]
 mod shell;
 mod speckle;
+#[cfg(feature = "full")]
 mod triangulate;
 mod values;
 
@@ -21,19 +29,22 @@ use tem00_speckle::Pupil;
 use tem00_tracer::Crop;
 
 use self::values::{crop, pupil};
+#[cfg(feature = "full")]
 pub(crate) use self::{
     budget::BudgetArgs,
     calibrate::CalibrateArgs,
     design::DesignArgs,
-    files::FileArgs,
     lines::LinesArgs,
     list::{ListArgs, Listed},
-    render::RenderArgs,
-    scene::{FrameRange, SceneArgs},
     setup::SetupArgs,
     shell::{CompletionsArgs, ManArgs},
-    speckle::SpeckleArgs,
     triangulate::TriangulateArgs,
+};
+pub(crate) use self::{
+    files::FileArgs,
+    render::RenderArgs,
+    scene::{FrameRange, SceneArgs},
+    speckle::SpeckleArgs,
 };
 use crate::image::Transfer;
 
@@ -71,15 +82,24 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     Render(RenderArgs),
     Pattern(PatternArgs),
+    #[cfg(feature = "full")]
     Stats(StatsArgs),
+    #[cfg(feature = "full")]
     Lines(LinesArgs),
+    #[cfg(feature = "full")]
     Calibrate(CalibrateArgs),
+    #[cfg(feature = "full")]
     Triangulate(TriangulateArgs),
     Speckle(SpeckleArgs),
+    #[cfg(feature = "full")]
     Budget(BudgetArgs),
+    #[cfg(feature = "full")]
     Design(DesignArgs),
+    #[cfg(feature = "full")]
     List(ListArgs),
+    #[cfg(feature = "full")]
     Completions(CompletionsArgs),
+    #[cfg(feature = "full")]
     Man(ManArgs),
 }
 
@@ -182,6 +202,36 @@ Examples:
   tem00 stats photo.png --channel R --transfer srgb
   tem00 stats out/spot/spot.exr --channel speckle --json";
 
+/// The commands that are built with the feature `full` alone.
+#[cfg(any(test, not(feature = "full")))]
+const OTHERS: [&str; 9] = [
+    "stats",
+    "lines",
+    "calibrate",
+    "triangulate",
+    "budget",
+    "design",
+    "list",
+    "completions",
+    "man",
+];
+
+/// Returns how to get what this build leaves out.
+#[cfg(not(feature = "full"))]
+pub(crate) fn without(what: &str) -> String {
+    format!("this build has no {what}: build it without `--no-default-features`")
+}
+
+/// Returns what is wrong with a command line that asks for a command which this build leaves out.
+#[cfg(not(feature = "full"))]
+pub(crate) fn left_out(error: &clap::Error) -> Option<String> {
+    let name = error.get(clap::error::ContextKind::InvalidSubcommand)?;
+    let name = name.to_string();
+    OTHERS
+        .contains(&name.as_str())
+        .then(|| without(&format!("command `{name}`")))
+}
+
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory;
@@ -195,6 +245,19 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[cfg(feature = "full")]
+    #[test]
+    fn every_command_is_built_always_or_with_the_feature_full() {
+        let program = Cli::command();
+        let commands = program.get_subcommands().map(clap::Command::get_name);
+        let others = commands.filter(|name| !["render", "pattern", "speckle"].contains(name));
+        let mut others: Vec<_> = others.collect();
+        let mut expected = OTHERS.to_vec();
+        others.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(others, expected);
     }
 
     /// Summaries of options begin with a noun or a verb, and use the terms that a reader searches for.

@@ -1,5 +1,6 @@
 //! Inspection of a scene before it is rendered: the laser light that the camera will see.
 
+#[cfg(feature = "full")]
 mod overview;
 mod words;
 
@@ -7,6 +8,8 @@ use std::path::Path;
 
 use tem00_tracer::{LaserInspection, Scene, TracerError};
 
+#[cfg(not(feature = "full"))]
+use crate::args::without;
 use crate::{args::FrameRange, failure::Failure};
 
 /// The most frames that are looked at.
@@ -50,13 +53,14 @@ impl<'a> Inspection<'a> {
         lasers.flat_map(|laser| self.words(laser)).collect()
     }
 
-    /// Draws camera, lasers and parts as they stand in the first frame in which a laser is not seen, or
-    /// else in the first.
+    /// Draws camera, lasers and parts into NAME.svg in a folder, as they stand in the first frame in which a
+    /// laser is not seen, or else in the first; tells where it is.
     ///
     /// # Errors
     ///
-    /// Returns a failure if a file cannot be written.
-    pub(crate) fn draw(&self, folder: &Path, name: &str) -> Result<(), Failure> {
+    /// Returns a failure if the file cannot be written.
+    #[cfg(feature = "full")]
+    pub(crate) fn draw(&self, folder: &Path, name: &str) -> Result<String, Failure> {
         let dark = |(_, lasers): &&(u32, Vec<LaserInspection>)| {
             !lasers.iter().all(LaserInspection::is_seen)
         };
@@ -64,7 +68,19 @@ impl<'a> Inspection<'a> {
         if let Some((frame, lasers)) = frame {
             overview::draw(self.scene, *frame, lasers).save(folder, name)?;
         }
-        Ok(())
+        let file = folder.join(name).with_extension("svg");
+        Ok(format!("drawn in {}", file.display()))
+    }
+
+    /// Tells how to get a drawing.
+    #[cfg(not(feature = "full"))]
+    #[expect(
+        clippy::unused_self,
+        clippy::unnecessary_wraps,
+        reason = "as where it draws"
+    )]
+    pub(crate) fn draw(&self, _: &Path, _: &str) -> Result<String, Failure> {
+        Ok(without("drawing of the scene"))
     }
 
     fn is_seen(&self, laser: usize) -> bool {

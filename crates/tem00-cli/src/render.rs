@@ -76,10 +76,8 @@ fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), F
     let name = output::name(&args.common.scene, "scene");
     let folder = output::folder(args.common.output.as_deref(), &name);
     output::prepare(&folder)?;
-    let drawing = format!("{name}_overview");
-    found.draw(&folder, &drawing)?;
     let mut lines = found.lines();
-    lines.push(folder.join(format!("{drawing}.svg")).display().to_string());
+    lines.push(found.draw(&folder, &format!("{name}_overview"))?);
     writeln!(out, "{}", lines.join("\n")).map_err(|error| Failure::stdout(&error))?;
     if found.sees_all_lasers() {
         Ok(())

@@ -1,10 +1,14 @@
 //! Reports: the results of a command as one value, shown on a terminal, as JSON and as a page.
 
 mod cell;
+#[cfg(feature = "full")]
 mod cloud;
+#[cfg(feature = "full")]
 mod escape;
+#[cfg(feature = "full")]
 mod html;
 mod json;
+#[cfg(feature = "full")]
 mod style;
 mod table;
 mod terminal;
@@ -13,9 +17,10 @@ pub(crate) mod units;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+#[cfg(feature = "full")]
+pub(crate) use self::cloud::Cloud;
 pub(crate) use self::{
     cell::Cell,
-    cloud::Cloud,
     table::{Column, Table},
     units::Unit,
 };
@@ -180,6 +185,7 @@ impl Section {
     }
 
     /// Adds points in space that the reader may turn, if there are any.
+    #[cfg(feature = "full")]
     pub(crate) fn cloud(&mut self, cloud: Cloud<'_>) -> &mut Self {
         match cloud.draw() {
             Some((svg, caption)) => self.push(Block::Figure(Figure::Cloud(svg, caption))),

@@ -1,4 +1,5 @@
 mod error;
+#[cfg(feature = "gltf")]
 mod gltf;
 mod obj;
 mod ply;
@@ -19,7 +20,7 @@ pub use error::MeshFileError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum MeshFormat {
-    /// glTF 2.0, text (`.gltf`) or binary (`.glb`).
+    /// glTF 2.0, text (`.gltf`) or binary (`.glb`), with the feature `gltf`.
     Gltf,
     /// Wavefront OBJ (`.obj`).
     Obj,
@@ -149,7 +150,13 @@ fn parse(
     folder: Option<(&Path, FileAccess)>,
 ) -> Result<Polygons, MeshFileError> {
     match format {
+        #[cfg(feature = "gltf")]
         MeshFormat::Gltf => gltf::parse(content, folder),
+        #[cfg(not(feature = "gltf"))]
+        MeshFormat::Gltf => {
+            let _ = folder;
+            Err(MeshFileError::LeftOut)
+        }
         MeshFormat::Obj => obj::parse(content),
         MeshFormat::Ply => ply::parse(content),
         MeshFormat::Stl => stl::parse(content),

@@ -80,12 +80,14 @@ pub(crate) enum ImageError {
     PngDecoding(#[from] png::DecodingError),
     #[error("{0}")]
     PngEncoding(#[from] png::EncodingError),
+    #[cfg(feature = "full")]
     #[error("TIFF: {0}")]
     Tiff(#[from] tiff::TiffError),
     #[error("OpenEXR: {0}")]
     Exr(#[from] exr::error::Error),
     #[error("{0}")]
     Npy(#[from] tem00_speckle::NpyError),
+    #[cfg(feature = "full")]
     #[error("not a readable JPEG file: {0}")]
     Jpeg(#[from] zune_jpeg::errors::DecodeErrors),
     #[error("not a readable BMP file: {0}")]

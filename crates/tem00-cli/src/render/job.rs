@@ -98,12 +98,8 @@ impl<'a> Render<'a> {
             return Ok(());
         }
         warnings.iter().for_each(|line| note(line));
-        let name = format!("{}_overview", self.name);
-        note(&format!(
-            "drawn in {}",
-            self.folder.join(format!("{name}.svg")).display()
-        ));
-        found.draw(&self.folder, &name)
+        note(&found.draw(&self.folder, &format!("{}_overview", self.name))?);
+        Ok(())
     }
 
     pub(super) fn speckle(&self) -> Result<Option<SpeckleModel>, Failure> {

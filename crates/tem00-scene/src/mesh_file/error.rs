@@ -13,6 +13,8 @@ pub enum MeshFileError {
     Scale(f64),
     /// The extension of the file name is that of no mesh format known here.
     Extension(String),
+    /// The file is in glTF, which the crate reads with its feature `gltf`.
+    LeftOut,
     /// The file could not be opened or read; the text is the system's.
     Read(String),
     /// The file does not follow its format.
@@ -64,6 +66,10 @@ impl fmt::Display for MeshFileError {
                     "mesh format must be .obj, .ply, .stl, .gltf or .glb, got {got:?}"
                 )
             }
+            Self::LeftOut => f.write_str(
+                "this build reads no glTF: build it with the feature `gltf` (the program without \
+                 `--no-default-features`), or use .obj, .ply or .stl",
+            ),
             Self::Read(message) => write!(f, "{message}"),
             Self::Format {
                 line: Some(line),

@@ -38,7 +38,7 @@ fn contrast(
         .clone()
         .flat_map(|y| along.clone().map(move |x| (x, y)));
     let values: Vec<f64> = lattice.map(|(x, y)| look_up(place(x), place(y))).collect();
-    Ok(Contrast::of(&values)?.value())
+    Ok(Contrast::from_samples(&values)?.value())
 }
 
 /// One way between two look-ups without error, at a fraction of which the contrast is given.

@@ -105,8 +105,8 @@ fn reconstructed(path: &str) -> Result<Grid<Complex<f32>>, Box<dyn Error>> {
 
 /// The mean contrast of the patches, and their mean speckle size in samples.
 fn measure(patches: &[Grid<f32>]) -> Result<[f64; 2], StatisticsError> {
-    let contrast_of = |patch: &Grid<f32>| Ok(Contrast::of(patch.values())?.value());
-    let size_of = |patch| Ok(SpeckleSize::of(patch, Boundary::Finite)?.mean());
+    let contrast_of = |patch: &Grid<f32>| Ok(Contrast::from_samples(patch.values())?.value());
+    let size_of = |patch| Ok(SpeckleSize::from_image(patch, Boundary::Finite)?.mean());
     Ok([
         mean(patches.iter().map(contrast_of))?,
         mean(patches.iter().map(size_of))?,

@@ -25,7 +25,7 @@ fn measured(patterns: &[SpecklePattern], width: f64) -> Result<f64, Box<dyn Erro
     for pattern in patterns {
         let side = width * pattern.speckle_size();
         let pixels = PixelArray::new([128; 2], [4.0; 2])?.with_size([side; 2])?;
-        sum += Contrast::of(pixels.image(pattern).values())?.value();
+        sum += Contrast::from_samples(pixels.image(pattern).values())?.value();
     }
     Ok(sum / patterns.len() as f64)
 }

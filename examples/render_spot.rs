@@ -49,7 +49,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // A pixel integrates 1/h of a speckle along each side.
     let speckle_size = plan.patterns()[0].speckle_size_in_pixels();
-    let measured = Contrast::of(laser.speckle.values())?.with_speckle_size(speckle_size)?;
+    let measured =
+        Contrast::from_samples(laser.speckle.values())?.with_speckle_size(speckle_size)?;
     println!(
         "speckle contrast     {:.3} ± {:.3} | {:.3}",
         measured.value(),

@@ -42,14 +42,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let field = PupilField::new(1024, 256, 1)?;
     let pattern = field.pattern();
     let image = pattern.values();
-    let contrast = Contrast::of(image.values())?.with_speckle_size(pattern.speckle_size())?;
-    let size = SpeckleSize::of(image, Boundary::Periodic)?;
+    let contrast =
+        Contrast::from_samples(image.values())?.with_speckle_size(pattern.speckle_size())?;
+    let size = SpeckleSize::from_image(image, Boundary::Periodic)?;
     // Every fifth pixel: the first zero of the autocovariance lies at 1.22 speckle sizes.
     let samples = decorrelated_samples(image, 5)?;
     let exponential = kolmogorov_smirnov(&samples, exponential_cumulative)?;
 
     println!("{:<22} measured | theory", "");
-    row("mean", Moments::of(image.values())?.mean(), 1.0);
+    row("mean", Moments::from_samples(image.values())?.mean(), 1.0);
     let theory = contrast_of_phasor_sum(field.phasor_count());
     row("contrast", contrast.value(), theory);
     println!("{:<22} ±{:.4}", "", contrast.standard_error());

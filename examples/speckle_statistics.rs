@@ -24,8 +24,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let image = pattern.values();
 
     println!("{:<28} {:>9}   theory", "quantity", "measured");
-    row("mean", Moments::of(image.values())?.mean(), 1.0);
-    let contrast = Contrast::of(image.values())?.with_speckle_size(h)?;
+    row("mean", Moments::from_samples(image.values())?.mean(), 1.0);
+    let contrast = Contrast::from_samples(image.values())?.with_speckle_size(h)?;
     let theory = contrast_of_phasor_sum(field.phasor_count());
     row("contrast", contrast.value(), theory);
     let spread = 0.5 * contrast_squared_spread(128.0);

@@ -175,7 +175,7 @@ def measure(smooth: Floats, speckle: Floats, camera: ImagingGeometry) -> Row:
     return {
         "speckle_size": size,
         "line_radius": radius,
-        "contrast": Contrast.of(lit).value,
+        "contrast": Contrast.from_samples(lit).value,
         "contrast_theory": float(pixel_contrast(1.0 / size)),
         "line_noise": math.sqrt(np.mean(noise**2)),
         "line_noise_theory": line_noise(size, radius),

@@ -66,7 +66,9 @@ fn few_phasors_lack_one_over_their_number() {
         // The mean of 4000 patterns is normal; six shapes with two moments: α = 6e−5.
         let test = t_test_mean(&squared, 1.0 - 1.0 / count).expect("contrasts");
         assert!(test.p_value > 5e-6, "{shape:?}, N = {count}: {test:?}");
-        let error = Moments::of(&squared).expect("contrasts").standard_error();
+        let error = Moments::from_samples(&squared)
+            .expect("contrasts")
+            .standard_error();
         assert!(1.0 / count > 3.0 * error, "1/N is not seen: {error}");
         if (count - field.phasor_count() as f64).abs() < 1e-9 {
             let cubes: Vec<_> = tiles().map(|tile| moment(&tile, 3)).collect();
@@ -91,7 +93,7 @@ fn the_contrast_of_a_pattern_spreads_as_derived() {
         let squared: Vec<_> = (0..TILES)
             .map(|seed| moment(&field.clone().with_seed(seed), 2))
             .collect();
-        let measured = Moments::of(&squared)
+        let measured = Moments::from_samples(&squared)
             .expect("contrasts")
             .standard_deviation();
         let correlations = Lattice::of(&field, [0.0; 2]).correlations();

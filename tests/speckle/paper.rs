@@ -14,7 +14,7 @@ fn squared_contrast(size: usize, [fx, fy]: [f64; 2], look_up: impl Fn(f64, f64) 
     let cells = size - 1;
     let at = |i: usize| look_up((i % cells) as f64 + fx, (i / cells) as f64 + fy);
     let values: Vec<_> = (0..cells * cells).map(at).collect();
-    Contrast::of(&values)
+    Contrast::from_samples(&values)
         .expect("a bright pattern")
         .value()
         .powi(2)
@@ -97,7 +97,7 @@ proptest! {
 /// The figures of the documentation: contrasts half-way.
 #[test]
 fn the_gain_is_as_stated() {
-    let root = |shares: &[f64]| Moments::of(shares).expect("tiles").mean().sqrt();
+    let root = |shares: &[f64]| Moments::from_samples(shares).expect("tiles").mean().sqrt();
     for (size, stated) in [(96, 0.757), (192, 0.927), (384, 0.981)] {
         let field = PupilField::new(size, 48, 0).expect("a valid field");
         let [printed, ours] = shares(&field, 1, [0.5; 2], 0.0).map(|shares| root(&shares));

@@ -183,7 +183,7 @@ const SHAPES: [Shape; 4] = [
 /// is right at 1e−6, and the standard error below `resolution` of the expectation. `bias` is what the
 /// sampling may leave, relative.
 fn check(of: &str, measured: &[f64], expected: f64, [resolution, bias]: [f64; 2]) {
-    let moments = Moments::of(measured).expect("tiles");
+    let moments = Moments::from_samples(measured).expect("tiles");
     let error = moments.standard_error() / expected;
     assert!(
         error < resolution,

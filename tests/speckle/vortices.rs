@@ -54,11 +54,11 @@ proptest! {
             .map(|tile| {
                 let field = field.clone().with_seed(seed.wrapping_add(tile));
                 let tile = field.speckle(offset, defocus);
-                VortexDensity::of(tile.values(), Boundary::Periodic).expect("a field").value()
+                VortexDensity::from_field(tile.values(), Boundary::Periodic).expect("a field").value()
             })
             .collect();
         let [expected, excess] = expected_density(&field, offset);
-        let moments = Moments::of(&densities).expect("densities");
+        let moments = Moments::from_samples(&densities).expect("densities");
         let error = moments.standard_error() / expected;
         prop_assert!(error < 0.04, "nothing is seen with an error of {error}");
         let nearest = moments.mean().clamp(expected, expected * (1.0 + 1.5 * excess));
@@ -76,7 +76,7 @@ fn the_density_behind_a_disc_is_pi_over_eight_squared_speckle_sizes() {
     let densities: Vec<_> = (0..24)
         .map(|seed| {
             let tile = field.clone().with_seed(seed).field();
-            VortexDensity::of(tile.values(), Boundary::Periodic)
+            VortexDensity::from_field(tile.values(), Boundary::Periodic)
                 .expect("a field")
                 .value()
         })
@@ -85,7 +85,7 @@ fn the_density_behind_a_disc_is_pi_over_eight_squared_speckle_sizes() {
     let disc = VORTEX_DENSITY / 256.0;
     // The lattice disc of 797 points is narrower than its rim: its second moment is 0.9 % off.
     assert!((expected / disc - 1.0).abs() < 0.012, "{expected} | {disc}");
-    let moments = Moments::of(&densities).expect("densities");
+    let moments = Moments::from_samples(&densities).expect("densities");
     let error = moments.standard_error() / expected;
     assert!(error < 0.01, "nothing is seen with an error of {error}");
     // Cells 1/16 of a speckle wide find 1.5/256 too many; α = 1e−5.

@@ -13,7 +13,7 @@ from tem00 import statistics as st
 
 SPECTRUM = st.GaussianSpectrum(650e-9, 1e-9)
 PAIR = st.JointIntensity(0.5)
-LEVELS = st.GreyLevels.of([0.0, 1.0, 2.0, 1.0] * 20)
+LEVELS = st.GreyLevels.from_values([0.0, 1.0, 2.0, 1.0] * 20)
 assert LEVELS is not None
 
 LENS = dc.LensData(
@@ -99,7 +99,7 @@ def test_arrays_too_large_to_copy_are_a_memory_error() -> None:
         lambda: st.pixel_contrast(wide),
         lambda: st.WeightedSum(wide),
         lambda: st.t_test_mean(wide, 1.0),
-        lambda: st.Moments.of(wide),
+        lambda: st.Moments.from_samples(wide),
         lambda: dc.pupil_overlap_correlation(wide),
     ]
     for call in calls:

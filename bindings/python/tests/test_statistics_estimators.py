@@ -31,19 +31,19 @@ SAMPLES = np.random.default_rng(1).gamma(3.0, 2.0, size=(50, 40))
 
 
 def test_moments_and_contrast_are_those_of_numpy() -> None:
-    moments = st.Moments.of(SAMPLES)
+    moments = st.Moments.from_samples(SAMPLES)
     assert moments.count == SAMPLES.size
     # Sums of 2000 terms: 2000 ulp at most.
     assert math.isclose(moments.mean, SAMPLES.mean(), rel_tol=1e-13)
     assert math.isclose(moments.standard_deviation, SAMPLES.std(ddof=1), rel_tol=1e-13)
     assert math.isclose(moments.standard_error, scipy_stats.sem(SAMPLES, axis=None), rel_tol=1e-13)
-    contrast = st.Contrast.of(SAMPLES)
+    contrast = st.Contrast.from_samples(SAMPLES)
     assert math.isclose(contrast.value, scipy_stats.variation(SAMPLES, axis=None, ddof=1))
 
 
 def test_the_error_of_the_contrast_is_that_of_a_bootstrap() -> None:
     samples = SAMPLES.ravel()
-    contrast = st.Contrast.of(samples)
+    contrast = st.Contrast.from_samples(samples)
     again = np.random.default_rng(2).choice(samples, size=(2_000, samples.size))
     spread = (again.std(axis=1, ddof=1) / again.mean(axis=1)).std()
     # The spread of 2000 draws is good to 1/√4000 = 1.6 %; four of these, and 1 % of bias.
@@ -67,7 +67,7 @@ def test_gamma_fits_are_those_of_scipy() -> None:
     assert math.isclose(fit.mean, shape * scale, rel_tol=1e-7)
     by_moments = st.GammaFit.by_moments(SAMPLES)
     assert math.isclose(by_moments.shape, (SAMPLES.mean() / SAMPLES.std(ddof=1)) ** 2)
-    assert fit.law() == st.GammaIntensity(fit.shape)
+    assert fit.distribution() == st.GammaIntensity(fit.shape)
     # Information of the shape: n (ψ′(M) − 1/M).
     from scipy.special import polygamma
 
@@ -145,7 +145,7 @@ def test_every_stride_th_pixel_is_a_sample() -> None:
 
 
 def test_speckles_have_the_size_they_were_made_with() -> None:
-    sizes = [st.SpeckleSize.of(pattern(seed), "periodic") for seed in range(20, 30)]
+    sizes = [st.SpeckleSize.from_image(pattern(seed), "periodic") for seed in range(20, 30)]
     measured = np.array([[size.x, size.y] for size in sizes])
     # Speckles of 256/64 = 4 pixels, 64 of them across: 0.62/64 per image, less along one axis
     # each; the mean of ten images within four standard errors of 4 · 1.5 % /√10. The size shrinks
@@ -167,7 +167,7 @@ def test_singularities_are_where_the_phase_turns() -> None:
     expected = [(x, y, charges[y, x]) for y, x in zip(*np.nonzero(charges))]
     assert [(s.x, s.y, s.charge) for s in found] == expected
     assert sum(s.charge for s in found) == 0
-    density = st.VortexDensity.of(wave, "periodic")
+    density = st.VortexDensity.from_field(wave, "periodic")
     assert density.count == len(found)
     assert density.value == len(found) / 96**2
     # π/8 per h², h = 4: within four standard errors and the stated 1.5/h² of false pairs.
@@ -207,7 +207,7 @@ def test_rounded_samples_are_compared_at_the_edges_of_their_levels() -> None:
     law: Any = scipy_stats.expon(scale=3.0).cdf
 
     assert scipy_stats.kstest(rounded, law).pvalue < 1e-6
-    levels = st.GreyLevels.of(rounded)
+    levels = st.GreyLevels.from_values(rounded)
     assert levels is not None
     assert levels.cell(2) == (1.5, 2.5)
     assert levels.step == 1.0
@@ -225,22 +225,22 @@ def test_rounded_samples_are_compared_at_the_edges_of_their_levels() -> None:
     contrast = math.sqrt(float((p * n**2).sum()) - mean**2) / mean
     assert math.isclose(levels.exponential_mean(mean), 3.0, rel_tol=1e-10)
     assert math.isclose(levels.exponential_contrast(mean), contrast, rel_tol=1e-10)
-    assert st.GreyLevels.of(light) is None
+    assert st.GreyLevels.from_values(light) is None
     assert np.ptp(levels.spread(rounded)) < rounded.max() + 1
 
 
 IMAGE = np.ones((4, 4))
-LEVELS = cast(st.GreyLevels, st.GreyLevels.of([0.0, 0.0, 1.0, 1.0, 2.0, 2.0]))
+LEVELS = cast(st.GreyLevels, st.GreyLevels.from_values([0.0, 0.0, 1.0, 1.0, 2.0, 2.0]))
 HOLE = np.array([[1.0, math.nan], [1.0, 2.0]])
 REFUSALS: list[tuple[Callable[[], object], str]] = [
-    (lambda: st.Moments.of([1.0]), "samples"),
-    (lambda: st.Moments.of([1.0, math.nan]), "samples"),
-    (lambda: st.Contrast.of([-1.0, 1.0]), "samples"),
-    (lambda: st.Contrast.of([2.0, 1.0]).with_speckle_size(0.0), "speckle_size"),
-    (lambda: st.Contrast.of([2.0, 1.0]).confidence_interval(1.0), "level"),
+    (lambda: st.Moments.from_samples([1.0]), "samples"),
+    (lambda: st.Moments.from_samples([1.0, math.nan]), "samples"),
+    (lambda: st.Contrast.from_samples([-1.0, 1.0]), "samples"),
+    (lambda: st.Contrast.from_samples([2.0, 1.0]).with_speckle_size(0.0), "speckle_size"),
+    (lambda: st.Contrast.from_samples([2.0, 1.0]).confidence_interval(1.0), "level"),
     (lambda: st.GammaFit.by_likelihood([0.0, 1.0]), "samples"),
     (lambda: st.GammaFit.by_moments([1.0, 1.0]), "samples"),
-    (lambda: st.GammaFit.by_moments([0.0, 0.0, 0.0, 9.0]).law(), "shape"),
+    (lambda: st.GammaFit.by_moments([0.0, 0.0, 0.0, 9.0]).distribution(), "shape"),
     (lambda: st.pearson_correlation(pattern(1), IMAGE), "second"),
     (lambda: st.pearson_correlation(HOLE, IMAGE), "first"),
     (lambda: st.autocovariance(IMAGE, "periodic"), "image"),
@@ -255,11 +255,11 @@ REFUSALS: list[tuple[Callable[[], object], str]] = [
     (lambda: st.decorrelated_samples(IMAGE, -1), "stride"),
     (lambda: st.local_contrast(IMAGE, 9), "window"),
     (lambda: st.local_contrast(-IMAGE, 2), "image"),
-    (lambda: st.SpeckleSize.of(IMAGE, "finite"), "image"),
+    (lambda: st.SpeckleSize.from_image(IMAGE, "finite"), "image"),
     (lambda: st.SpeckleSize.from_autocovariance(IMAGE), "lags"),
     (lambda: st.SpeckleSize.along("z", IMAGE), "axis"),  # type: ignore[arg-type]
     (lambda: st.phase_singularities(np.full((2, 2), np.nan), "finite"), "field"),
-    (lambda: st.VortexDensity.of(np.ones((1, 4)), "finite"), "field"),
+    (lambda: st.VortexDensity.from_field(np.ones((1, 4)), "finite"), "field"),
     (lambda: st.kolmogorov_smirnov([], scipy_stats.expon.cdf), "samples"),
     (lambda: st.kolmogorov_smirnov([1.0], lambda x: 2 * x), "cumulative"),
     (lambda: st.kolmogorov_smirnov([1.0], lambda x: [0.5, 0.5]), "cumulative"),

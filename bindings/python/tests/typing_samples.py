@@ -49,7 +49,7 @@ def callbacks() -> None:
 
 def optional_results() -> None:
     """What may be missing must be checked."""
-    levels = statistics.GreyLevels.of([0.0, 0.0, 1.0, 1.0])
+    levels = statistics.GreyLevels.from_values([0.0, 0.0, 1.0, 1.0])
     levels.count  # type: ignore[union-attr]
     if levels is not None:
         assert_type(levels.cell(0), tuple[float, float])

@@ -166,7 +166,8 @@ impl Measurement {
 /// Divides an image by its mean over windows of so many pixels, or as many as its speckle wants.
 fn flattened(image: &Grid<f32>, window: Option<usize>) -> Result<FlatImage, String> {
     let words = |error: StatisticsError| error.to_string();
-    let size_in = |flat: &FlatImage| match SpeckleSize::of(flat.values(), Boundary::Finite) {
+    let size_in = |flat: &FlatImage| match SpeckleSize::from_image(flat.values(), Boundary::Finite)
+    {
         Ok(size) => Ok(size.mean()),
         Err(StatisticsError::Unresolved { .. }) => Ok(1.0),
         Err(error) => Err(words(error)),
@@ -211,7 +212,7 @@ fn measure(
     image: &LoadedImage,
     flat: Option<&FlatImage>,
 ) -> Result<Measurement, StatisticsError> {
-    let original = GreyLevels::of(image.values.values());
+    let original = GreyLevels::from_values(image.values.values());
     let values = flat.map_or(&image.values, FlatImage::values);
     // Quotients lie between the levels.
     let levels = original.as_ref().filter(|_| flat.is_none());
@@ -219,13 +220,13 @@ fn measure(
         values,
         flat,
         levels,
-        mean: Moments::of(values.values())?.mean(),
-        contrast: Contrast::of(values.values())?,
+        mean: Moments::from_samples(values.values())?.mean(),
+        contrast: Contrast::from_samples(values.values())?,
         rows: Vec::new(),
         warnings: Vec::new(),
         assumptions: Vec::new(),
     };
-    let mean = Moments::of(image.values.values())?.mean();
+    let mean = Moments::from_samples(image.values.values())?.mean();
     found.brightness(mean, image.saturated, original.as_ref());
     let lags = autocovariance(values, Boundary::Finite)?;
     let size = found.size(&lags)?;
@@ -239,7 +240,7 @@ fn measure(
         mean: found.mean,
         contrast: found.contrast.value(),
         size,
-        gamma: fit.and_then(|fit| fit.law().ok()),
+        gamma: fit.and_then(|fit| fit.distribution().ok()),
     };
     Ok(Measurement {
         image: path.display().to_string(),

@@ -141,7 +141,7 @@ fn contrast(
         .filter(|&(_, &radiance)| radiance > 0.0)
         .map(|(&factor, _)| factor)
         .collect();
-    let contrast = Contrast::of(&lit)?.with_speckle_size(speckle_size)?;
+    let contrast = Contrast::from_samples(&lit)?.with_speckle_size(speckle_size)?;
     Ok(ContrastSummary {
         measured: contrast.value(),
         expected: expected_contrast(speckle_size, samples_per_pixel),
@@ -205,7 +205,9 @@ mod tests {
             0.25 * (cell(0, 0) + cell(0, 1) + cell(1, 0) + cell(1, 1))
         };
         let pixels = Grid::from_fn(64, 64, pixel);
-        let measured = Contrast::of(pixels.values()).expect("it varies").value();
+        let measured = Contrast::from_samples(pixels.values())
+            .expect("it varies")
+            .value();
         // Half a speckle to the pixel; the contrast of one tile spreads by about 0.765/128.
         let expected = expected_contrast(0.5, 4);
         assert_abs_diff_eq!(measured, expected, epsilon = 4.0 * 0.006 + 0.01);

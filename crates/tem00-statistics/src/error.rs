@@ -126,7 +126,7 @@ impl StatisticsError {
     ///
     /// let name = |error: StatisticsError| error.parameter();
     /// assert_eq!(GammaIntensity::new(0.5).map_err(name), Err("shape"));
-    /// assert_eq!(Moments::of(&[1.0]).map_err(name), Err("samples"));
+    /// assert_eq!(Moments::from_samples(&[1.0]).map_err(name), Err("samples"));
     /// ```
     pub const fn parameter(&self) -> &'static str {
         match self {

@@ -53,7 +53,7 @@
 //! let quantile = |i| -(1.0 - (f64::from(i) + 0.5) / 10_000.0_f64).ln();
 //! let samples: Vec<f64> = (0..10_000).map(quantile).collect();
 //!
-//! let contrast = Contrast::of(&samples)?;
+//! let contrast = Contrast::from_samples(&samples)?;
 //! assert!((contrast.value() - 1.0).abs() < contrast.standard_error());
 //! assert!(kolmogorov_smirnov(&samples, exponential_cumulative)?.p_value > 0.99);
 //! # Ok::<(), tem00_statistics::StatisticsError>(())

@@ -11,7 +11,7 @@ fn refusals_name_the_parameter_the_value_and_what_is_allowed() {
     let spot = s::LitArea::Disc { diameter: -1.0 };
     let image = Grid::filled(4, 4, 1.0);
     let other = Grid::filled(4, 5, 1.0);
-    let dark = s::Contrast::of(&[-1.0, 0.5]);
+    let dark = s::Contrast::from_samples(&[-1.0, 0.5]);
     let rows = [
         (
             s::GammaIntensity::new(0.5).err(),
@@ -67,7 +67,7 @@ fn refusals_name_the_parameter_the_value_and_what_is_allowed() {
             "radius must be from 0.01 to 1e6, got 0",
         ),
         (
-            s::Contrast::of(&[1.0, 2.0])
+            s::Contrast::from_samples(&[1.0, 2.0])
                 .and_then(|c| c.confidence_interval(95.0))
                 .err(),
             "level must be between 0 and 1, got 95",
@@ -77,7 +77,7 @@ fn refusals_name_the_parameter_the_value_and_what_is_allowed() {
             "samples must be of a mean that is positive and above their rounding errors, got -0.25",
         ),
         (
-            s::Moments::of(&[1.0]).err(),
+            s::Moments::from_samples(&[1.0]).err(),
             "samples must number at least 2, got 1",
         ),
         (

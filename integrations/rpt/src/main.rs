@@ -138,7 +138,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let lit = pairs.filter(|(mean, _)| **mean > 0.02 * WHITE);
     let speckle: Vec<f64> = lit.map(|(mean, value)| value / mean).collect();
     let size = geometry.speckle_size_in_pixels();
-    let contrast = Contrast::of(&speckle)?.with_speckle_size(size)?;
+    let contrast = Contrast::from_samples(&speckle)?.with_speckle_size(size)?;
     let pair = [contrast.value(), pixel_contrast(1.0 / size)];
     Ok(agree(
         "speckle contrast",

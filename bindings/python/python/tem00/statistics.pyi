@@ -271,7 +271,7 @@ class GoodnessOfFit:
 
 @final
 class GreyLevels:
-    CLIPPED_SHARE: ClassVar[float]
+    CLIPPED_FRACTION: ClassVar[float]
     @staticmethod
     def of(values: RealArray) -> GreyLevels | None: ...
     def index(self, value: float) -> int: ...

@@ -21,9 +21,11 @@ impl Moments {
     /// samples : array
     ///     At least two finite samples, in any shape.
     #[staticmethod]
-    fn of(py: Python<'_>, samples: Samples<'_>) -> PyResult<Self> {
+    fn from_samples(py: Python<'_>, samples: Samples<'_>) -> PyResult<Self> {
         let samples = samples.values()?;
-        let moments = py.detach(|| physics::Moments::of(samples)).or_raise()?;
+        let moments = py
+            .detach(|| physics::Moments::from_samples(samples))
+            .or_raise()?;
         Ok(Self(moments))
     }
 
@@ -64,9 +66,11 @@ impl Contrast {
     /// samples : array
     ///     At least two finite samples of a positive mean, in any shape.
     #[staticmethod]
-    fn of(py: Python<'_>, samples: Samples<'_>) -> PyResult<Self> {
+    fn from_samples(py: Python<'_>, samples: Samples<'_>) -> PyResult<Self> {
         let samples = samples.values()?;
-        let contrast = py.detach(|| physics::Contrast::of(samples)).or_raise()?;
+        let contrast = py
+            .detach(|| physics::Contrast::from_samples(samples))
+            .or_raise()?;
         Ok(Self(contrast))
     }
 
@@ -130,8 +134,8 @@ impl GammaFit {
     }
 
     /// Return the law of the intensity in units of the mean; its shape must be 1 at least.
-    fn law(&self) -> PyResult<GammaIntensity> {
-        Ok(GammaIntensity(self.0.law().or_raise()?))
+    fn distribution(&self) -> PyResult<GammaIntensity> {
+        Ok(GammaIntensity(self.0.distribution().or_raise()?))
     }
 
     fn __repr__(&self) -> String {

@@ -177,9 +177,9 @@ impl SpeckleSize {
     /// boundary : {"periodic", "finite"}
     ///     Whether the image repeats, or nothing is known beyond its edges.
     #[staticmethod]
-    fn of(py: Python<'_>, image: Image<'_>, boundary: &str) -> PyResult<Self> {
+    fn from_image(py: Python<'_>, image: Image<'_>, boundary: &str) -> PyResult<Self> {
         let (image, boundary) = (image.grid("image")?, boundary_of(boundary)?);
-        let size = py.detach(|| physics::SpeckleSize::of(&image, boundary));
+        let size = py.detach(|| physics::SpeckleSize::from_image(&image, boundary));
         Ok(Self(size.or_raise_renamed(VALUES, "image")?))
     }
 

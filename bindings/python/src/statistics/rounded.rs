@@ -19,13 +19,15 @@ pub(crate) struct GreyLevels(physics::GreyLevels);
 impl GreyLevels {
     /// The fraction of the pixels at the largest level from which on an image counts as clipped.
     #[classattr]
-    const CLIPPED_SHARE: f64 = physics::GreyLevels::CLIPPED_SHARE;
+    const CLIPPED_FRACTION: f64 = physics::GreyLevels::CLIPPED_FRACTION;
 
     /// Find the levels of an image, in any shape; `None` if it is not rounded.
     #[staticmethod]
-    fn of(py: Python<'_>, values: Samples<'_>) -> PyResult<Option<Self>> {
+    fn from_values(py: Python<'_>, values: Samples<'_>) -> PyResult<Option<Self>> {
         let values = values.values()?;
-        Ok(py.detach(|| physics::GreyLevels::of(values)).map(Self))
+        Ok(py
+            .detach(|| physics::GreyLevels::from_values(values))
+            .map(Self))
     }
 
     /// Return the position of the largest level that is not above a value, or 0.

@@ -66,9 +66,9 @@ impl VortexDensity {
     /// boundary : {"periodic", "finite"}
     ///     Whether the field repeats, or nothing is known beyond its edges.
     #[staticmethod]
-    fn of(py: Python<'_>, field: ComplexImage<'_>, boundary: &str) -> PyResult<Self> {
+    fn from_field(py: Python<'_>, field: ComplexImage<'_>, boundary: &str) -> PyResult<Self> {
         let (field, boundary) = (field.grid("field")?, boundary_of(boundary)?);
-        let density = py.detach(|| physics::VortexDensity::of(&field, boundary));
+        let density = py.detach(|| physics::VortexDensity::from_field(&field, boundary));
         Ok(Self(density.or_raise_renamed(&["samples"], "field")?))
     }
 

@@ -85,7 +85,7 @@ pub(super) fn compare(field: &PupilField, pattern: &SpecklePattern) -> Result<Co
 }
 
 fn mean_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, StatisticsError> {
-    let mean = Moments::of(values.values())?.mean();
+    let mean = Moments::from_samples(values.values())?.mean();
     // Parseval fixes the mean of unit phasors; what is left is the rounding of an f32 transform.
     let rounding = 1e-5;
     let spread = match field.phasors() {
@@ -96,7 +96,7 @@ fn mean_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, StatisticsErr
 }
 
 fn contrast_row(field: &PupilField, values: &Grid<f32>) -> Result<Row, StatisticsError> {
-    let contrast = Contrast::of(values.values())?.value();
+    let contrast = Contrast::from_samples(values.values())?.value();
     let mut tolerance = SIGMAS * 0.5 * contrast_squared_spread(field);
     let theory = match field.phasors() {
         Some(_) => contrast_of_phasor_sum(field.phasor_count()),

@@ -210,7 +210,7 @@ mod tests {
         // Sums of at most 80 rounded shares.
         assert!((shares(&curves(&image(), None)) - 1.0).abs() < 1e-13, "raw");
         let rounded = image().map(|value| value.round());
-        let levels = GreyLevels::of(rounded.values()).expect("few levels");
+        let levels = GreyLevels::from_values(rounded.values()).expect("few levels");
         let found = curves(&rounded, Some(&levels));
         assert!((shares(&found) - 1.0).abs() < 1e-13, "rounded");
         // Each bin holds whole levels: none lies within half a step of its edge.

@@ -76,7 +76,7 @@ impl Findings<'_> {
             .map(GreyLevels::share_of_largest);
         if let Some(share) = saturated.into_iter().chain(at_largest).reduce(f64::max) {
             let theory = Expectation::AtMost {
-                at_most: GreyLevels::CLIPPED_SHARE,
+                at_most: GreyLevels::CLIPPED_FRACTION,
             };
             self.row("saturated fraction of pixels", share, theory);
         }
@@ -280,7 +280,7 @@ impl Findings<'_> {
             fit.standard_error(),
             Expectation::Open,
         );
-        if let Ok(law) = fit.law() {
+        if let Ok(law) = fit.distribution() {
             let cumulative = |light: f64| law.cumulative(light / self.mean);
             let gamma = self.goodness(samples, cumulative)?;
             self.tests("Gamma", &gamma, 3)?;

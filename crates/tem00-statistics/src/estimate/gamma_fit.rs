@@ -135,7 +135,7 @@ impl GammaFit {
     ///
     /// Returns an error unless `1 ≤ shape ≤ 10⁶`. A fit to few samples of fully developed speckle
     /// often falls just short of 1.
-    pub fn law(&self) -> Result<GammaIntensity, StatisticsError> {
+    pub fn distribution(&self) -> Result<GammaIntensity, StatisticsError> {
         GammaIntensity::new(self.shape)
     }
 }
@@ -148,7 +148,7 @@ where
     let scaled = Scaled::new(samples)?;
     scaled.check_varies()?;
     if scaled.mean <= f64::EPSILON {
-        let mean = Moments::of(samples)?.mean();
+        let mean = Moments::from_samples(samples)?.mean();
         return Err(StatisticsError::refused(
             "samples",
             mean,
@@ -249,8 +249,8 @@ mod tests {
                 moments.push(GammaFit::by_moments(&samples).unwrap().shape());
                 likelihood.push(GammaFit::by_likelihood(&samples).unwrap().shape());
             }
-            let by_moments = Moments::of(&moments).unwrap();
-            let by_likelihood = Moments::of(&likelihood).unwrap();
+            let by_moments = Moments::from_samples(&moments).unwrap();
+            let by_likelihood = Moments::from_samples(&likelihood).unwrap();
             // A spread from 1500 fits is known to 1.8 %, here 3.3 σ; the first order errs by 10/n.
             let tolerance = 3.3 * 0.018 + 10.0 / n;
             let spread = (2.0 * m * (m + 1.0) / n).sqrt();
@@ -306,9 +306,9 @@ mod tests {
         let fit = GammaFit::by_moments(&samples).unwrap();
         let exact = (fit.shape() * (fit.shape() + 1.0) / 200.0).sqrt();
         assert_relative_eq!(fit.standard_error(), exact, max_relative = 1e-14);
-        let contrast = crate::Contrast::of(&samples).unwrap().value();
+        let contrast = crate::Contrast::from_samples(&samples).unwrap().value();
         assert_relative_eq!(
-            fit.law().unwrap().contrast(),
+            fit.distribution().unwrap().contrast(),
             contrast,
             max_relative = 1e-12
         );

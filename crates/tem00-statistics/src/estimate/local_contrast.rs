@@ -106,7 +106,7 @@ mod tests {
         assert_eq!((map.width(), map.height()), (16, 9));
         for (x, y) in [(0, 0), (15, 0), (3, 8), (15, 8)] {
             let window = Grid::from_fn(5, 5, |i, j| image[(x + i, y + j)]);
-            let contrast = Contrast::of(window.values()).unwrap().value();
+            let contrast = Contrast::from_samples(window.values()).unwrap().value();
             assert_relative_eq!(f64::from(map[(x, y)]), contrast, max_relative = 1e-7);
         }
     }
@@ -136,12 +136,12 @@ mod tests {
             for y in (0..contrasts.height()).step_by(12) {
                 for x in (0..contrasts.width()).step_by(12) {
                     let corner = Grid::from_fn(7, 7, |i, j| tile[(x + i, y + j)]);
-                    let mean = Moments::of(corner.values()).unwrap().mean();
+                    let mean = Moments::from_samples(corner.values()).unwrap().mean();
                     variances.push((f64::from(contrasts[(x, y)]) * mean).powi(2));
                 }
             }
         }
-        let measured = Moments::of(&variances).unwrap();
+        let measured = Moments::from_samples(&variances).unwrap();
         let n = f64::from(window).powi(2);
         let law = (1.0 - mean_covariance(u32::from(window), 4.0)) * n / (n - 1.0);
         // 3.3 σ, and 1/N of the 800 phasors.

@@ -18,7 +18,7 @@ use crate::{StatisticsError, space::second_order::pixels_per_contrast_sample};
 /// ```
 /// use tem00_statistics::Moments;
 ///
-/// let moments = Moments::of(&[1.0, 2.0, 3.0, 4.0])?;
+/// let moments = Moments::from_samples(&[1.0, 2.0, 3.0, 4.0])?;
 /// assert_eq!(moments.mean(), 2.5);
 /// assert!((moments.standard_deviation() - 1.290_994).abs() < 1e-6); // √(5/3)
 /// # Ok::<(), tem00_statistics::StatisticsError>(())
@@ -36,7 +36,7 @@ impl Moments {
     /// # Errors
     ///
     /// Returns an error if there are fewer than two samples or one is not finite.
-    pub fn of<T>(samples: &[T]) -> Result<Self, StatisticsError>
+    pub fn from_samples<T>(samples: &[T]) -> Result<Self, StatisticsError>
     where
         T: Copy + Into<f64>,
     {
@@ -91,7 +91,7 @@ impl Moments {
 /// ```
 /// use tem00_statistics::Contrast;
 ///
-/// let contrast = Contrast::of(&[1.0, 3.0])?;
+/// let contrast = Contrast::from_samples(&[1.0, 3.0])?;
 /// assert!((contrast.value() - 0.5_f64.sqrt()).abs() < 1e-15);
 /// # Ok::<(), tem00_statistics::StatisticsError>(())
 /// ```
@@ -108,7 +108,7 @@ impl Contrast {
     ///
     /// Returns an error if there are fewer than two samples, one is not finite, or the mean is not
     /// positive.
-    pub fn of<T>(samples: &[T]) -> Result<Self, StatisticsError>
+    pub fn from_samples<T>(samples: &[T]) -> Result<Self, StatisticsError>
     where
         T: Copy + Into<f64>,
     {
@@ -195,7 +195,7 @@ impl Contrast {
     /// let quantile = |i| -(1.0 - (f64::from(i) + 0.5) / 10_000.0_f64).ln();
     /// let samples: Vec<f64> = (0..10_000).map(quantile).collect();
     ///
-    /// let [low, high] = Contrast::of(&samples)?.confidence_interval(0.95)?;
+    /// let [low, high] = Contrast::from_samples(&samples)?.confidence_interval(0.95)?;
     /// assert!((low - 0.98).abs() < 2e-3 && (high - 1.02).abs() < 2e-3); // ± 1.96 / √n
     /// # Ok::<(), tem00_statistics::StatisticsError>(())
     /// ```

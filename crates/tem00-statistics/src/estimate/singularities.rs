@@ -141,7 +141,7 @@ fn crossing(a: Complex<f32>, b: Complex<f32>) -> i8 {
 /// use tem00_statistics::{Boundary, VortexDensity};
 ///
 /// let vortex = Grid::from_fn(11, 11, |x, y| Complex::new(x as f32 - 4.5, y as f32 - 3.5));
-/// let density = VortexDensity::of(&vortex, Boundary::Finite)?;
+/// let density = VortexDensity::from_field(&vortex, Boundary::Finite)?;
 /// assert_eq!((density.count(), density.value()), (1, 0.01));
 /// # Ok::<(), tem00_statistics::StatisticsError>(())
 /// ```
@@ -161,7 +161,10 @@ impl VortexDensity {
     ///
     /// Returns an error if a component of the field is not finite or a finite field is less than
     /// two samples wide or high.
-    pub fn of(field: &Grid<Complex<f32>>, boundary: Boundary) -> Result<Self, StatisticsError> {
+    pub fn from_field(
+        field: &Grid<Complex<f32>>,
+        boundary: Boundary,
+    ) -> Result<Self, StatisticsError> {
         let (columns, rows) = cells(field, boundary);
         if columns * rows == 0 {
             return Err(StatisticsError::Samples {

@@ -52,7 +52,7 @@ impl SpeckleSize {
     ///
     /// Returns the errors of [`autocovariance`] and of
     /// [`from_autocovariance`](Self::from_autocovariance).
-    pub fn of(image: &Grid<f32>, boundary: Boundary) -> Result<Self, StatisticsError> {
+    pub fn from_image(image: &Grid<f32>, boundary: Boundary) -> Result<Self, StatisticsError> {
         Self::from_autocovariance(&autocovariance(image, boundary)?)
     }
 
@@ -197,7 +197,7 @@ mod tests {
             let mut sum = 0.0;
             for seed in 0..TILES {
                 let (tile, _) = speckle_tile(size, diameter, seed);
-                let measured = SpeckleSize::of(&tile, boundary).unwrap();
+                let measured = SpeckleSize::from_image(&tile, boundary).unwrap();
                 sum += measured.x() + measured.y();
             }
             let mean = sum / (2 * TILES) as f64;
@@ -216,10 +216,13 @@ mod tests {
         let mut samples = Vec::new();
         for seed in 0..TILES {
             let (tile, _) = speckle_tile(size, diameter, seed);
-            let measured = SpeckleSize::of(&tile, Boundary::Periodic).unwrap();
+            let measured = SpeckleSize::from_image(&tile, Boundary::Periodic).unwrap();
             samples.push(measured.x());
         }
-        let spread = crate::Moments::of(&samples).unwrap().standard_deviation() / 2.0;
+        let spread = crate::Moments::from_samples(&samples)
+            .unwrap()
+            .standard_deviation()
+            / 2.0;
         // A spread from 100 samples is known to 1/√200 = 7 %, here 3.3 σ, in the first order of
         // 1/C.
         let tolerance = 3.3 * 0.07 + 2.0 / diameter as f64;

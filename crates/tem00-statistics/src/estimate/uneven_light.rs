@@ -332,8 +332,11 @@ mod tests {
                 let image = Grid::from_fn(256, 256, |x, y| tiles.iter().map(|t| t[(x, y)]).sum());
                 let flat = FlatImage::new(&image, window_size).unwrap();
                 let of = |image: &Grid<f32>, boundary| {
-                    let contrast = Contrast::of(image.values()).unwrap().value();
-                    [contrast, SpeckleSize::of(image, boundary).unwrap().mean()]
+                    let contrast = Contrast::from_samples(image.values()).unwrap().value();
+                    [
+                        contrast,
+                        SpeckleSize::from_image(image, boundary).unwrap().mean(),
+                    ]
                 };
                 // The whole tile knows its mean.
                 let [contrast, size] = of(&image, Boundary::Periodic);
@@ -346,7 +349,7 @@ mod tests {
                 );
             }
             for change in changes {
-                let change = Moments::of(&change).unwrap();
+                let change = Moments::from_samples(&change).unwrap();
                 // Windows of 6 and 10 speckle sizes, cut at the edges: s is 0.045 and 0.019, and the
                 // second order some 2 s².
                 let second_order = if window_size == 24 { 4e-3 } else { 1.5e-3 };
@@ -390,7 +393,9 @@ mod tests {
         let flat = FlatImage::new(&uneven, 41).unwrap();
         assert_eq!(found(flat.values()), None);
         // Speckle of two pixels: 0.77 / 150 of it at 4 σ.
-        let contrast = Contrast::of(flat.values().values()).unwrap().value();
+        let contrast = Contrast::from_samples(flat.values().values())
+            .unwrap()
+            .value();
         let before = flat.contrast_before(contrast, 2.0);
         assert_relative_eq!(before, 1.0, epsilon = 0.02);
     }

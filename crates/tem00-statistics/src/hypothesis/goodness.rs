@@ -35,7 +35,7 @@ const BINS: u32 = 20;
 /// let rounded: Vec<f64> = (0..2_000).map(|i| quantile(i).round()).collect();
 /// assert!(kolmogorov_smirnov(&rounded, law)?.p_value < 1e-6);
 ///
-/// let levels = GreyLevels::of(&rounded).expect("a few whole numbers");
+/// let levels = GreyLevels::from_values(&rounded).expect("a few whole numbers");
 /// let fit = GoodnessOfFit::of_rounded(&rounded, &levels, law)?;
 /// assert!(fit.kolmogorov_smirnov()?.p_value > 0.999);
 /// assert!(fit.chi_squared(1)?.p_value > 0.999);
@@ -180,7 +180,7 @@ mod tests {
         let rounded: Vec<f64> = samples.iter().map(|sample| sample.round()).collect();
         #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
         let values: Vec<f32> = rounded.iter().map(|&value| value as f32).collect();
-        let levels = GreyLevels::of(&values).expect("few levels");
+        let levels = GreyLevels::from_values(&values).expect("few levels");
         (rounded, levels)
     }
 

@@ -20,7 +20,7 @@ const FINEST: f64 = 3.0 * 65_536.0;
 ///
 /// let quantile = |i| -0.5 * (1.0 - (f64::from(i) + 0.5) / 10_000.0_f64).ln();
 /// let rounded: Vec<f64> = (0..10_000).map(|i| quantile(i).round()).collect();
-/// let levels = GreyLevels::of(&rounded).expect("a few whole numbers");
+/// let levels = GreyLevels::from_values(&rounded).expect("a few whole numbers");
 /// assert_eq!(levels.cell(1), [0.5, 1.5]);
 ///
 /// // Rounding lowers the mean from 0.5 to 1 / 2 sinh(1) = 0.4255, and raises the contrast.
@@ -39,7 +39,7 @@ pub struct GreyLevels {
 
 impl GreyLevels {
     /// The fraction of the pixels at the largest level from which on an image counts as clipped.
-    pub const CLIPPED_SHARE: f64 = 1e-3;
+    pub const CLIPPED_FRACTION: f64 = 1e-3;
 
     /// Finds the levels of an image, if at least every other pixel shares its value with another
     /// and the levels are no finer than those of files, 3 · 2¹⁶ steps.
@@ -47,7 +47,7 @@ impl GreyLevels {
     /// Values that differ by less than 10⁻⁶ of the greater are one level. Returns `None` for an
     /// image that is not rounded, is all of one value, or has no light: with a value that is
     /// negative or not finite.
-    pub fn of<T: Copy + Into<f64>>(values: &[T]) -> Option<Self> {
+    pub fn from_values<T: Copy + Into<f64>>(values: &[T]) -> Option<Self> {
         let mut levels: Vec<f64> = values.iter().map(|&value| value.into()).collect();
         if !levels
             .iter()
@@ -103,7 +103,7 @@ impl GreyLevels {
         match index {
             0 => (self.levels[0] - half).max(0.0),
             _ if index < self.levels.len() => 0.5 * (self.levels[index - 1] + self.levels[index]),
-            _ if self.largest > Self::CLIPPED_SHARE => f64::INFINITY,
+            _ if self.largest > Self::CLIPPED_FRACTION => f64::INFINITY,
             _ => self.levels[self.levels.len() - 1] + half,
         }
     }
@@ -221,7 +221,7 @@ mod tests {
             .flat_map(|level| core::iter::repeat_n(f32::from(level), 400))
             .collect();
         values.extend(core::iter::repeat_n(f32::from(last), times));
-        GreyLevels::of(&values).expect("the values are few")
+        GreyLevels::from_values(&values).expect("the values are few")
     }
 
     #[test]
@@ -229,7 +229,7 @@ mod tests {
         let levels = levels(3, 1);
         let cells: Vec<_> = (0..4).map(|index| levels.cell(index)).collect();
         assert_eq!(cells, [[0.0, 0.5], [0.5, 1.5], [1.5, 2.5], [2.5, 3.5]]);
-        let uneven = GreyLevels::of(&[2.0, 2.0, 3.0, 3.0, 7.0, 7.0]).expect("few values");
+        let uneven = GreyLevels::from_values(&[2.0, 2.0, 3.0, 3.0, 7.0, 7.0]).expect("few values");
         let cells: Vec<_> = (0..3).map(|index| uneven.cell(index)).collect();
         assert_eq!(cells, [[1.5, 2.5], [2.5, 5.0], [5.0, f64::INFINITY]]);
         assert_eq!([2.0, 6.9, 7.0].map(|value| uneven.index(value)), [0, 1, 2]);
@@ -241,12 +241,15 @@ mod tests {
     #[test]
     fn values_that_hardly_repeat_are_no_levels() {
         let distinct: Vec<f32> = (0..100_u16).map(f32::from).collect();
-        assert!(GreyLevels::of(&distinct).is_none(), "all differ");
-        assert!(GreyLevels::of(&[2.0; 9]).is_none(), "one value");
-        assert!(GreyLevels::of::<f32>(&[]).is_none(), "no value");
+        assert!(GreyLevels::from_values(&distinct).is_none(), "all differ");
+        assert!(GreyLevels::from_values(&[2.0; 9]).is_none(), "one value");
+        assert!(GreyLevels::from_values::<f32>(&[]).is_none(), "no value");
         for bad in [-1.0, f64::NAN, f64::INFINITY] {
             let values = [bad, bad, 1.0, 1.0, 2.0, 2.0];
-            assert!(GreyLevels::of(&values).is_none(), "{bad} is no light");
+            assert!(
+                GreyLevels::from_values(&values).is_none(),
+                "{bad} is no light"
+            );
         }
     }
 
@@ -257,8 +260,14 @@ mod tests {
             let near_one = (0..200_u16).map(|i| 1.0 - f32::from(i / 2) * f32::from(steps) * 2e-6);
             near_one.collect()
         };
-        assert!(GreyLevels::of(&fine(1)).is_none(), "2e-6 of the largest");
-        assert!(GreyLevels::of(&fine(4)).is_some(), "8e-6 of the largest");
+        assert!(
+            GreyLevels::from_values(&fine(1)).is_none(),
+            "2e-6 of the largest"
+        );
+        assert!(
+            GreyLevels::from_values(&fine(4)).is_some(),
+            "8e-6 of the largest"
+        );
     }
 
     #[test]
@@ -266,14 +275,14 @@ mod tests {
         // All others lie within 1e-6 of it from zero.
         let mut values: Vec<f32> = (0..100_u16).map(|i| 1.0 + f32::from(i) / 99.0).collect();
         values.push(1e7);
-        assert_eq!(GreyLevels::of(&values), None, "a hundred values");
+        assert_eq!(GreyLevels::from_values(&values), None, "a hundred values");
     }
 
     #[test]
     fn rounding_of_an_average_of_channels_splits_no_level() {
         let third = 1.0_f32 / 3.0;
         let values = [third, third.next_up(), third, 1.0, 1.0, 1.0_f32.next_down()];
-        let levels = GreyLevels::of(&values).expect("two levels");
+        let levels = GreyLevels::from_values(&values).expect("two levels");
         assert_eq!(levels.count(), 2);
         assert_eq!(
             values.map(|value| levels.index(value.into())),
@@ -304,7 +313,7 @@ mod tests {
     #[test]
     fn levels_that_are_no_multiples_leave_the_law_alone() {
         let values = [0.0, 0.0, 1.0, 1.0, 2.5, 2.5];
-        let levels = GreyLevels::of(&values).expect("three levels");
+        let levels = GreyLevels::from_values(&values).expect("three levels");
         assert!(!levels.are_multiples(), "2.5 is no multiple of 1");
         assert_relative_eq!(levels.exponential_mean(0.7), 0.7, max_relative = 1e-15);
         assert_relative_eq!(levels.exponential_contrast(0.7), 1.0, max_relative = 1e-15);

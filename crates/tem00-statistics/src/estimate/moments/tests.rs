@@ -15,7 +15,7 @@ fn exponential_samples(count: usize, rng: &mut ChaCha8Rng) -> Vec<f64> {
 
 #[test]
 fn moments_of_small_integers_are_exact() {
-    let moments = Moments::of(&[2_u8, 4, 4, 4, 5, 5, 7, 9]).unwrap();
+    let moments = Moments::from_samples(&[2_u8, 4, 4, 4, 5, 5, 7, 9]).unwrap();
     assert_eq!(moments.count(), 8);
     // The sum of squares about 5 is 32.
     assert_relative_eq!(moments.mean(), 5.0, max_relative = 1e-15);
@@ -34,10 +34,10 @@ fn contrast_of_few_exponential_samples_is_biased_as_stated() {
     const LENGTH: usize = 50;
     let mut rng = ChaCha8Rng::seed_from_u64(11);
     let contrasts: Vec<_> = (0..BLOCKS)
-        .map(|_| Contrast::of(&exponential_samples(LENGTH, &mut rng)).unwrap())
+        .map(|_| Contrast::from_samples(&exponential_samples(LENGTH, &mut rng)).unwrap())
         .collect();
     let values: Vec<_> = contrasts.iter().map(Contrast::value).collect();
-    let moments = Moments::of(&values).unwrap();
+    let moments = Moments::from_samples(&values).unwrap();
     let length = LENGTH as f64;
     // 3.3 σ is α = 0.001; the next order in 1/n is 1/n² times a number of order one.
     let tolerance = 3.3 * moments.standard_error() + 3.0 / (length * length);
@@ -51,12 +51,12 @@ fn standard_error_of_the_contrast_is_that_of_many_trials() {
     const LENGTH: usize = 500;
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let contrasts: Vec<_> = (0..TRIALS)
-        .map(|_| Contrast::of(&exponential_samples(LENGTH, &mut rng)).unwrap())
+        .map(|_| Contrast::from_samples(&exponential_samples(LENGTH, &mut rng)).unwrap())
         .collect();
     let values: Vec<_> = contrasts.iter().map(Contrast::value).collect();
     let errors: f64 = contrasts.iter().map(|c| c.standard_error().powi(2)).sum();
     let estimated = (errors / f64::from(TRIALS)).sqrt();
-    let spread = Moments::of(&values).unwrap().standard_deviation();
+    let spread = Moments::from_samples(&values).unwrap().standard_deviation();
     // 1/√n for exponential samples; a standard deviation from 2000 trials is known to 1/√4000
     // = 1.6 %, here 3.3 σ, and the first order in 1/n errs by some 10/n = 2 %.
     assert_relative_eq!(spread, 500.0_f64.sqrt().recip(), max_relative = 0.072);
@@ -70,13 +70,13 @@ fn speckle_size_widens_the_error_of_the_contrast_as_tiles_do() {
         let speckle_size = size as f64 / diameter as f64;
         let contrast = |seed| {
             let (tile, _) = speckle_tile(size, diameter, seed);
-            let contrast = Contrast::of(tile.values()).unwrap();
+            let contrast = Contrast::from_samples(tile.values()).unwrap();
             contrast.with_speckle_size(speckle_size).unwrap()
         };
         let contrasts: Vec<_> = (0..TILES).map(contrast).collect();
         let values: Vec<_> = contrasts.iter().map(Contrast::value).collect();
         let errors: f64 = contrasts.iter().map(Contrast::standard_error).sum();
-        let spread = Moments::of(&values).unwrap().standard_deviation();
+        let spread = Moments::from_samples(&values).unwrap().standard_deviation();
         // A spread from 300 tiles is known to 1/√600 = 4.1 %, here 3.3 σ; the first order in
         // 1/C errs by some 2/C.
         let tolerance = 3.3 * 0.041 + 2.0 / diameter as f64;
@@ -124,21 +124,21 @@ fn independent_patterns_do_not_correlate() {
 #[test]
 fn samples_that_determine_nothing_are_refused() {
     assert_eq!(
-        Moments::of::<f64>(&[]),
+        Moments::from_samples::<f64>(&[]),
         Err(StatisticsError::Samples {
             given: 0,
             needed: 2
         })
     );
     assert_eq!(
-        Contrast::of(&[1.0]),
+        Contrast::from_samples(&[1.0]),
         Err(StatisticsError::Samples {
             given: 1,
             needed: 2
         })
     );
     assert_eq!(
-        Contrast::of(&[1.0, f64::INFINITY]),
+        Contrast::from_samples(&[1.0, f64::INFINITY]),
         Err(StatisticsError::ValueOutOfRange {
             parameter: "samples",
             index: 1,
@@ -149,7 +149,7 @@ fn samples_that_determine_nothing_are_refused() {
     for dark in [[0.0, 0.0], [-1.0, 1.0], [-2.0, 1.0]] {
         assert!(
             matches!(
-                Contrast::of(&dark),
+                Contrast::from_samples(&dark),
                 Err(StatisticsError::OutOfRange {
                     parameter: "samples",
                     ..
@@ -176,7 +176,7 @@ fn samples_that_determine_nothing_are_refused() {
             second: (4, 1)
         })
     );
-    let contrast = Contrast::of(&[1.0, 2.0]).unwrap();
+    let contrast = Contrast::from_samples(&[1.0, 2.0]).unwrap();
     for size in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(
             matches!(
@@ -193,7 +193,7 @@ fn samples_that_determine_nothing_are_refused() {
 
 #[test]
 fn equal_samples_have_no_contrast_and_no_error() {
-    let contrast = Contrast::of(&[0.1, 0.1, 0.1]).unwrap();
+    let contrast = Contrast::from_samples(&[0.1, 0.1, 0.1]).unwrap();
     assert!(contrast.value().abs() < f64::MIN_POSITIVE, "{contrast:?}");
     assert!(contrast.standard_error().abs() < f64::MIN_POSITIVE);
 }
@@ -205,11 +205,11 @@ proptest! {
         exponent in -1_074..1,
     ) {
         let scaled: Vec<f64> = samples.iter().map(|&x| libm::ldexp(x, exponent)).collect();
-        let moments = Moments::of(&scaled).unwrap();
+        let moments = Moments::from_samples(&scaled).unwrap();
         prop_assert!(moments.mean().is_finite(), "{moments:?}");
         // √2 · f64::MAX is the largest standard deviation, of two opposite samples.
         prop_assert!(!moments.standard_deviation().is_nan(), "{moments:?}");
-        if let Ok(contrast) = Contrast::of(&scaled) {
+        if let Ok(contrast) = Contrast::from_samples(&scaled) {
             prop_assert!(contrast.value().is_finite(), "{contrast:?}");
             prop_assert!(contrast.standard_error().is_finite(), "{contrast:?}");
         }
@@ -220,7 +220,7 @@ proptest! {
         let samples = [0.3, 1.7, 0.2, 2.9];
         let scaled = samples.map(|x| libm::ldexp(x, exponent));
         // A power of two changes no bit.
-        prop_assert_eq!(Contrast::of(&samples), Contrast::of(&scaled));
+        prop_assert_eq!(Contrast::from_samples(&samples), Contrast::from_samples(&scaled));
     }
 }
 
@@ -230,7 +230,7 @@ fn confidence_intervals_hold_the_contrast_as_often_as_stated() {
     let mut rng = ChaCha8Rng::seed_from_u64(21);
     for (length, stated) in [(100, 0.90), (1_000, 0.94)] {
         let held = (0..TRIALS).filter(|_| {
-            let contrast = Contrast::of(&exponential_samples(length, &mut rng)).unwrap();
+            let contrast = Contrast::from_samples(&exponential_samples(length, &mut rng)).unwrap();
             let [low, high] = contrast.confidence_interval(0.95).unwrap();
             low <= 1.0 && 1.0 <= high
         });
@@ -242,13 +242,15 @@ fn confidence_intervals_hold_the_contrast_as_often_as_stated() {
 
 #[test]
 fn confidence_intervals_are_those_of_the_logarithm() {
-    let contrast = Contrast::of(&[1.0, 2.0, 4.0, 9.0]).unwrap();
+    let contrast = Contrast::from_samples(&[1.0, 2.0, 4.0, 9.0]).unwrap();
     let [low, high] = contrast.confidence_interval(0.682_689_492_137_086).unwrap();
     // One standard error.
     let share = contrast.standard_error() / contrast.value();
     assert_relative_eq!(high, contrast.value() * share.exp(), max_relative = 1e-12);
     assert_relative_eq!(low, contrast.value() / share.exp(), max_relative = 1e-12);
-    let none = Contrast::of(&[2.0, 2.0]).unwrap().confidence_interval(0.9);
+    let none = Contrast::from_samples(&[2.0, 2.0])
+        .unwrap()
+        .confidence_interval(0.9);
     assert_eq!(none, Ok([0.0, 0.0]));
     for level in [0.0, 1.0, 95.0, -0.1, f64::NAN] {
         let refused = contrast.confidence_interval(level);

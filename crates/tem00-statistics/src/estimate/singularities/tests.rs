@@ -126,11 +126,12 @@ fn coarse_samples_show_too_many_as_stated() {
 fn drawn_speckle_has_the_density_and_its_spread_as_stated() {
     const TILES: u64 = 150;
     let (size, diameter) = (128, 16);
-    let measure =
-        |seed| VortexDensity::of(&field_tile(size, diameter, seed), Boundary::Periodic).unwrap();
+    let measure = |seed| {
+        VortexDensity::from_field(&field_tile(size, diameter, seed), Boundary::Periodic).unwrap()
+    };
     let densities: Vec<_> = (0..TILES).map(measure).collect();
     let values: Vec<_> = densities.iter().map(VortexDensity::value).collect();
-    let moments = Moments::of(&values).unwrap();
+    let moments = Moments::from_samples(&values).unwrap();
     let error = densities
         .iter()
         .map(VortexDensity::standard_error)
@@ -163,12 +164,12 @@ fn fields_without_an_answer_are_refused() {
         );
     }
     let line = Grid::filled(1, 9, Complex::new(1.0, 0.0));
-    let refused = VortexDensity::of(&line, Boundary::Finite);
+    let refused = VortexDensity::from_field(&line, Boundary::Finite);
     assert!(
         matches!(refused, Err(StatisticsError::Samples { .. })),
         "{refused:?}"
     );
-    let none = VortexDensity::of(&line, Boundary::Periodic).unwrap();
+    let none = VortexDensity::from_field(&line, Boundary::Periodic).unwrap();
     assert_eq!((none.count(), none.speckle_size()), (0, None));
 }
 

@@ -213,7 +213,7 @@ fn student_has_its_tabulated_critical_values() {
     ];
     for (freedom, t, p) in table {
         let samples: Vec<f64> = (0..=freedom).map(|i| f64::from(i * i)).collect();
-        let moments = crate::Moments::of(&samples).unwrap();
+        let moments = crate::Moments::from_samples(&samples).unwrap();
         let mean = moments.mean() + t * moments.standard_error();
         let outcome = t_test_mean(&samples, mean).unwrap();
         assert_relative_eq!(outcome.statistic, t, max_relative = 1e-13);
@@ -225,7 +225,7 @@ fn student_has_its_tabulated_critical_values() {
 #[test]
 fn student_becomes_normal_for_many_samples() {
     let samples: Vec<f64> = (0..200_001).map(|i| f64::from(i % 7)).collect();
-    let moments = crate::Moments::of(&samples).unwrap();
+    let moments = crate::Moments::from_samples(&samples).unwrap();
     for t in [0.1, 1.0, 3.0] {
         let mean = moments.mean() - t * moments.standard_error();
         let p = t_test_mean(&samples, mean).unwrap().p_value;

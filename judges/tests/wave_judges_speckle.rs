@@ -6,7 +6,7 @@
     reason = "a scene that cannot be made fails its test"
 )]
 
-#[path = "../examples/line_image/mod.rs"]
+#[path = "../../examples/line_image/mod.rs"]
 mod line_image;
 
 use core::f64::consts::PI;

@@ -4,13 +4,13 @@
 mod overview;
 mod words;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use tem00_tracer::{LaserInspection, Scene, TracerError};
 
-#[cfg(not(feature = "full"))]
-use crate::args::without;
 use crate::{args::FrameRange, failure::Failure};
+#[cfg(not(feature = "full"))]
+use crate::{args::without, output::note};
 
 /// The most frames that are looked at.
 const MAX_FRAMES: u32 = 8;
@@ -54,13 +54,13 @@ impl<'a> Inspection<'a> {
     }
 
     /// Draws camera, lasers and parts into NAME.svg in a folder, as they stand in the first frame in which a
-    /// laser is not seen, or else in the first; tells where it is.
+    /// laser is not seen, or else in the first; returns the path, or `None` if this build draws nothing.
     ///
     /// # Errors
     ///
     /// Returns a failure if the file cannot be written.
     #[cfg(feature = "full")]
-    pub(crate) fn draw(&self, folder: &Path, name: &str) -> Result<String, Failure> {
+    pub(crate) fn draw(&self, folder: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
         let dark = |(_, lasers): &&(u32, Vec<LaserInspection>)| {
             !lasers.iter().all(LaserInspection::is_seen)
         };
@@ -68,19 +68,19 @@ impl<'a> Inspection<'a> {
         if let Some((frame, lasers)) = frame {
             overview::draw(self.scene, *frame, lasers).save(folder, name)?;
         }
-        let file = folder.join(name).with_extension("svg");
-        Ok(format!("drawn in {}", file.display()))
+        Ok(Some(folder.join(format!("{name}.svg"))))
     }
 
-    /// Tells how to get a drawing.
+    /// Says how to get a drawing.
     #[cfg(not(feature = "full"))]
     #[expect(
         clippy::unused_self,
         clippy::unnecessary_wraps,
         reason = "as where it draws"
     )]
-    pub(crate) fn draw(&self, _: &Path, _: &str) -> Result<String, Failure> {
-        Ok(without("drawing of the scene"))
+    pub(crate) fn draw(&self, _: &Path, _: &str) -> Result<Option<PathBuf>, Failure> {
+        note(&without("drawing of the scene"));
+        Ok(None)
     }
 
     fn is_seen(&self, laser: usize) -> bool {

@@ -77,7 +77,8 @@ fn check(args: &RenderArgs, scene: &Scene, out: &mut impl Write) -> Result<(), F
     let folder = output::folder(args.common.output.as_deref(), &name);
     output::prepare(&folder)?;
     let mut lines = found.lines();
-    lines.push(found.draw(&folder, &format!("{name}_overview"))?);
+    let drawing = found.draw(&folder, &format!("{name}_overview"))?;
+    lines.extend(drawing.map(|path| path.display().to_string()));
     writeln!(out, "{}", lines.join("\n")).map_err(|error| Failure::stdout(&error))?;
     if found.sees_all_lasers() {
         Ok(())

@@ -98,7 +98,9 @@ impl<'a> Render<'a> {
             return Ok(());
         }
         warnings.iter().for_each(|line| note(line));
-        note(&found.draw(&self.folder, &format!("{}_overview", self.name))?);
+        if let Some(path) = found.draw(&self.folder, &format!("{}_overview", self.name))? {
+            note(&format!("drawn in {}", path.display()));
+        }
         Ok(())
     }
 

@@ -7,10 +7,10 @@ cd "$(dirname "$0")/../.."
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 for scene in scenes/*.toml; do
-    cargo run --locked --release -- render "$scene" --spp "${1:-256}" -o "$work"
+    cargo run --locked --release -p tem00-cli -- render "$scene" --spp "${1:-256}" -o "$work"
 done
 for scene in spot line_on_metal grazing_waist; do
-    cargo run --locked --release -- render "scenes/$scene.toml" --spp "${1:-256}" --no-speckle -o "$work/without"
+    cargo run --locked --release -p tem00-cli -- render "scenes/$scene.toml" --spp "${1:-256}" --no-speckle -o "$work/without"
     cp "$work/without/$scene.png" "docs/figures/${scene}_without_speckle.png"
 done
 cp "$work"/*.png docs/figures/
@@ -22,7 +22,7 @@ done
 cargo run --locked --release --example decorrelation_curves
 cp out/decorrelation_both.svg docs/figures/
 # What the tutorial shows.
-tem00() { cargo run --locked --release -- "$@"; }
+tem00() { cargo run --locked --release -p tem00-cli -- "$@"; }
 tem00 design setups/design.toml -o "$work/design"
 cp "$work/design/trade_off.svg" docs/figures/triangulation_trade_off.svg
 tem00 triangulate scenes/triangulation/step_gauge.toml -o "$work/gauge"

@@ -234,7 +234,7 @@ fn theory_validation_and_front_page_of_a_crate_name_each_other() {
         let text = read(&theory);
         let mut names = text.split('`').filter(|span| span.starts_with("tem00-"));
         let package = names.next().expect("a page names its crate");
-        let front = read(&root().join(format!("crates/{package}/src/lib.rs")));
+        let front = read(&root().join(format!("crates/{package}/README.md")));
         let validation = read(&root().join(format!("docs/validation/{name}")));
 
         assert!(front.contains(&format!("docs/theory/{name}")), "{package}");

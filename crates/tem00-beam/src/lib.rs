@@ -1,11 +1,4 @@
-//! Gaussian beams and laser lines as light sources that a renderer can evaluate and sample.
-//!
-//! Whatever the orientation of the surface a laser falls on, it receives the power of the laser:
-//! all queries derive from an energy-flow vector without divergence, and from a phase-space density
-//! whose straight rays reproduce that flow.
-//!
-//! Formulas and their derivation: `docs/theory/beam.md` in the repository; what judges them:
-//! `docs/validation/beam.md`.
+#![doc = include_str!("../README.md")]
 //!
 //! # Conventions
 //!
@@ -34,27 +27,6 @@
 //! mirrors and interfaces. Not here: aberrations, beams wider than 0.5 rad, higher modes other than
 //! through M², pulses, polarisation, interference between beams, and what a surface does with the
 //! light. It is no laser-safety tool.
-//!
-//! # Examples
-//!
-//! Light one point of a scene with a 5 mW laser:
-//!
-//! ```
-//! use tem00_beam::{DVec3, Emitter, GaussianBeam, Placement, SpotLight};
-//!
-//! let beam = GaussianBeam::from_waist(650e-9, 0.1e-3)?;
-//! let placement = Placement {
-//!     origin: DVec3::new(0.0, 0.0, 0.3),
-//!     direction: DVec3::NEG_Z,
-//!     fan_axis: DVec3::X,
-//! };
-//! let light = SpotLight::place(&beam, 0.3, &placement, 5e-3)?;
-//!
-//! let event = light.next_event([0.0, 0.0, 0.0]).expect("the point is in the beam");
-//! assert_eq!(event.wi, [0.0, 0.0, 1.0]);
-//! assert!((event.e_perp / 318.3e3 - 1.0).abs() < 1e-3); // W/m²
-//! # Ok::<(), tem00_beam::BeamError>(())
-//! ```
 
 mod astigmatic;
 pub mod closed_form;

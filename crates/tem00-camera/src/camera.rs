@@ -44,37 +44,7 @@ pub const IMAGE_MARGIN: f64 = 16.0;
 /// is no vignetting, and the pupil is a disc across the axis. Image points may lie up to 16 pixels
 /// beyond the edges of the image.
 ///
-/// # Examples
-///
-/// A 25 mm lens at f/8 focused on 30 cm images at 1:11:
-///
-/// ```
-/// use glam::{DVec2, DVec3};
-/// use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
-///
-/// let camera = Camera::new(CameraDescription {
-///     position: DVec3::new(0.0, 0.0, 0.3),
-///     look_at: DVec3::ZERO,
-///     up: DVec3::Y,
-///     focal_length: 25e-3,
-///     f_number: 8.0,
-///     focus_distance: 0.3,
-///     pixel_pitch: 3.45e-6,
-///     resolution: [640, 480],
-///     principal_point: None,
-///     tilt: SensorTilt::default(),
-///     distortion: RadialDistortion::default(),
-///     depth_of_field: true,
-/// })?;
-/// assert!((camera.image_distance() - 27.27e-3).abs() < 0.01e-3);
-///
-/// // One pixel to the right is 11 pixel pitches to the right in the scene.
-/// let middle = camera.project(DVec3::ZERO);
-/// let right = camera.project(DVec3::new(11.0 * 3.45e-6, 0.0, 0.0));
-/// assert_eq!(middle, Some(DVec2::new(320.0, 240.0)));
-/// assert!(right.is_some_and(|right| right.distance(DVec2::new(321.0, 240.0)) < 1e-9));
-/// # Ok::<(), tem00_camera::CameraError>(())
-/// ```
+/// The [front page](crate) has an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     description: CameraDescription,

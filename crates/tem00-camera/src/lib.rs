@@ -1,5 +1,4 @@
-//! A camera with a thin lens and a sensor: where a point is imaged, what a pixel sees, how sharp, and the
-//! imaging geometry from which speckle follows.
+#![doc = include_str!("../README.md")]
 //!
 //! # Conventions
 //!

@@ -1,5 +1,4 @@
-//! Files of keys: TOML with units, includes and changes from a command line, and errors that name key,
-//! value and what is allowed, at line and column.
+#![doc = include_str!("../README.md")]
 //!
 //! # Conventions
 //!

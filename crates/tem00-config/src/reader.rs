@@ -26,26 +26,7 @@ pub fn read_document<'a, T>(
 ///
 /// Returns the errors of [`read_document`].
 ///
-/// # Examples
-///
-/// ```
-/// use std::path::Path;
-/// use tem00_config::{Format, LENGTH, Problem, parse_document};
-///
-/// const PLATE: Format = Format { noun: "plate", keys: &["plate"], help: "write a section [plate]" };
-/// let thickness = |text: &str| {
-///     parse_document(text, Path::new("."), PLATE, |root| {
-///         let plate = root.table("plate", &["thickness"])?;
-///         let plate = plate.ok_or_else(|| Problem::new("a plate needs a section [plate]"))?;
-///         plate.required("thickness", "\"5 mm\"")?.positive(&LENGTH)
-///     })
-/// };
-/// assert_eq!(thickness("[plate]\nthickness = \"5 mm\""), Ok(5e-3));
-///
-/// let error = thickness("[plate]\nthikness = \"5 mm\"").unwrap_err();
-/// assert_eq!(error.line_column(), Some((2, 1)));
-/// assert!(error.message().contains("did you mean `thickness`?"));
-/// ```
+/// The [front page](crate) has an example.
 pub fn parse_document<T>(
     text: &str,
     base_directory: &Path,

@@ -1,12 +1,4 @@
-//! Motion and change of a speckle pattern when the surface, the camera or the laser moves.
-//!
-//! Given the optics of a camera and the motion of a surface point, this crate returns where the
-//! speckle goes on the sensor, how far the pattern slides across the pupil, and how much of the old
-//! pattern is left: everything a renderer needs to look up the right pattern, and nothing that
-//! depends on how the pattern was made.
-//!
-//! Formulas and their derivation: `docs/theory/decorrelation.md` in the repository; what judges them:
-//! `docs/validation/decorrelation.md`.
+#![doc = include_str!("../README.md")]
 //!
 //! # Conventions
 //!
@@ -56,40 +48,6 @@
 //!   does.
 //! - Not covered: surfaces that deform, volume scattering, lenses telecentric towards the surface,
 //!   annular and other pupils.
-//!
-//! # Example
-//!
-//! A surface under a collimated laser moves sideways by a quarter of a millimetre:
-//!
-//! ```
-//! use tem00_decorrelation::{
-//!     CameraFrame, DVec3, ImageOrientation, ImagingGeometry, LensData, LineOfSight, Motion,
-//!     SpeckleMotion, SurfacePoint, Wavefront,
-//! };
-//!
-//! let geometry = ImagingGeometry::from_lens(LensData {
-//!     wavelength: 650e-9,
-//!     focal_length: 25e-3,
-//!     f_number: 8.0,
-//!     surface_to_pupil: 0.3,
-//!     pixel_pitch: 3.45e-6,
-//! })?;
-//! let eye = DVec3::new(0.0, 0.0, 0.3);
-//! let camera = CameraFrame::look_at(eye, DVec3::ZERO, DVec3::Y)?;
-//! let point = SurfacePoint::new(
-//!     LineOfSight::new(&camera, eye)?,
-//!     DVec3::Z,
-//!     Wavefront::plane(DVec3::new(1.0, 0.0, 1.0))?,
-//! )?;
-//!
-//! let motion = Motion { surface: DVec3::new(0.25e-3, 0.0, 0.0), ..Motion::default() };
-//! let speckle = SpeckleMotion::new(&geometry, &point, &motion, ImageOrientation::ScreenUpright);
-//!
-//! let pixels = speckle.image_displacement / geometry.pixel_pitch();
-//! assert!((pixels.x - 6.588).abs() < 1e-3);
-//! assert!((speckle.correlation - 0.807).abs() < 1e-3);
-//! # Ok::<(), tem00_decorrelation::DecorrelationError>(())
-//! ```
 //!
 //! # References
 //!

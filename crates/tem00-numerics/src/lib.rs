@@ -1,5 +1,4 @@
-//! The ground floor of tem00: grids, a pruned two-dimensional Fourier transform, quadrature, least
-//! squares, and the special functions of circular pupils.
+#![doc = include_str!("../README.md")]
 //!
 //! # Conventions
 //!
@@ -11,17 +10,6 @@
 //!
 //! Only what more than one crate above needs and no library has. This is no array library: there is
 //! no slicing, no broadcasting and no linear algebra beyond the few equations of least squares.
-//!
-//! # Example
-//!
-//! ```
-//! use tem00_numerics::{disc_overlap, disc_overlap_inverse};
-//!
-//! // Two discs whose centres are half a diameter apart share 39.1 % of their area.
-//! let overlap = disc_overlap(0.5);
-//! assert!((overlap - 0.391_002_218_955_771).abs() < 1e-14);
-//! assert!((disc_overlap_inverse(overlap) - 0.5).abs() < 1e-12);
-//! ```
 
 pub mod cast;
 mod circle;

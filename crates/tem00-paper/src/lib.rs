@@ -1,8 +1,6 @@
-//! The formulas of Bergmann et al. 2016 as printed, where they differ from those of the other crates
-//! or are a special case of them.
+#![doc = include_str!("../README.md")]
 //!
-//! They reproduce the figures of that paper and show what the difference amounts to; `tem00 render
-//! --paper` renders with them. Nothing else uses them.
+//! # Printed and correct
 //!
 //! | printed | here | instead of | what is wrong |
 //! |---|---|---|---|
@@ -33,39 +31,6 @@
 //!
 //! The example `paper_errors` of the workspace computes these numbers. Vectors are in *surface
 //! coordinates* n1, n2, n3, with n3 the normal; [`EulerAngles::between`] provides them.
-//!
-//! # Examples
-//!
-//! The look-up of the paper from end to end, for a surface that moves by 0.1 mm along x under a
-//! camera tilted by 45° and a laser emitter 0.5 m above:
-//!
-//! ```
-//! use tem00_decorrelation::{CameraFrame, DVec2, DVec3, ImagingGeometry, LensData};
-//! use tem00_paper::{self as paper, Emitter, EulerAngles};
-//!
-//! let geometry = ImagingGeometry::from_lens(LensData {
-//!     wavelength: 650e-9,
-//!     focal_length: 25e-3,
-//!     f_number: 8.0,
-//!     surface_to_pupil: 0.3,
-//!     pixel_pitch: 3.45e-6,
-//! })?;
-//! let camera = CameraFrame::look_at(DVec3::new(1.0, 0.0, 1.0), DVec3::ZERO, DVec3::Y)?;
-//! let (surface_axes, angles) = EulerAngles::between(&camera, DVec3::Z).expect("a normal");
-//! let to_surface = surface_axes.transpose();
-//! let a = to_surface * DVec3::new(0.1e-3, 0.0, 0.0);
-//! let emitter = Emitter { direction: to_surface * DVec3::Z, distance: 0.5 };
-//!
-//! let on_sensor = paper::image_displacement(geometry.magnification(), angles, a);
-//! let in_pupil = paper::pupil_displacement(angles, emitter, 0.3, a).unwrap_or(DVec2::ZERO);
-//! let (pixel, h_p, half_period) = (DVec2::new(320.0, 240.0), 4.0, 16);
-//! let c = paper::pattern_coordinate(&geometry, pixel, on_sensor, h_p);
-//! let u = paper::slice_coordinate(&geometry, in_pupil, 0.0, half_period);
-//!
-//! assert!((c - DVec2::new(773.9, 583.9)).length() < 0.1);
-//! assert!((u - 0.796).abs() < 1e-3);
-//! # Ok::<(), tem00_decorrelation::DecorrelationError>(())
-//! ```
 //!
 //! # References
 //!

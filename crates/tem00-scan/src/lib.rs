@@ -1,12 +1,4 @@
-//! From a scene to what a triangulation sensor measures of it, frame by frame.
-//!
-//! The path tracer renders what falls on the sensor; `tem00-triangulation` finds the line, and makes points
-//! and their uncertainty of it. This crate brings the two together: exposures of rendered frames, points
-//! brought to the moving part and averaged by the correlation of their speckle, height maps, point clouds,
-//! and calibrations from boards that are rendered.
-//!
-//! Formulas and their derivation: `docs/theory/triangulation.md` in the repository; what judges them:
-//! `docs/validation/triangulation.md`.
+#![doc = include_str!("../README.md")]
 //!
 //! # Main types
 //!

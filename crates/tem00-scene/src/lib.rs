@@ -1,4 +1,4 @@
-//! Scene files, meshes and maps of radiance, read into scenes for `tem00-tracer`.
+#![doc = include_str!("../README.md")]
 //!
 //! # Conventions
 //!
@@ -15,47 +15,6 @@
 //! # Scope and non-goals
 //!
 //! Geometry only of meshes: no colours, materials, textures or animations. Nothing is written.
-//!
-//! # Example
-//!
-//! ```
-//! use std::{path::Path, sync::atomic::AtomicBool};
-//!
-//! use tem00_scene::parse_scene;
-//! use tem00_tracer::{RenderOptions, SpeckleModel, SpecklePlan, render_frame};
-//!
-//! let scene = parse_scene(
-//!     r#"
-//!     [camera]
-//!     position = ["0 mm", "0 mm", "300 mm"]
-//!     look_at = ["0 mm", "0 mm", "0 mm"]
-//!     focal_length = "25 mm"
-//!     f_number = 8
-//!     pixel_pitch = "3.45 um"
-//!     resolution = [32, 32]
-//!
-//!     [[laser]]
-//!     wavelength = "650 nm"
-//!     power = "1 mW"
-//!     position = ["100 mm", "0 mm", "300 mm"]
-//!     look_at = ["0 mm", "0 mm", "0 mm"]
-//!     spot = { waist_radius = "0.1 mm" }
-//!
-//!     [[surface]]
-//!     rectangle = { centre = [0, 0, 0], normal = [0, 0, 1], size = ["20 mm", "20 mm"] }
-//!     "#,
-//!     Path::new("."),
-//! )?;
-//! let options = RenderOptions { samples_per_pixel: 4, ..RenderOptions::default() };
-//! let plan = SpecklePlan::new(&scene, options.formulas, options.seed)?;
-//! let speckle = SpeckleModel::generate(&scene, &plan)?;
-//!
-//! let frame = render_frame(&scene, Some(&speckle), 0, &options, |_| (), &AtomicBool::new(false))?;
-//!
-//! // The whole spot is in the image.
-//! assert!((frame.lasers[0].power_on_target / 1e-3 - 1.0).abs() < 0.02);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
 
 mod assets;
 mod camera;

@@ -1,32 +1,10 @@
-//! Speckle patterns, correlated stacks of them, and look-ups that keep the statistics exact.
+#![doc = include_str!("../README.md")]
 //!
-//! Coherent light on a rough surface reaches every camera pixel as a sum of many contributions of
-//! random phase. This crate generates the intensity that results, with mean 1, for a renderer to
-//! multiply onto what it would show without interference.
+//! # Files
 //!
-//! ```text
-//! PupilField ──▶ SpecklePattern      one pattern, I = |U|²
-//!            ├─▶ SpeckleField        its complex amplitude U
-//!            └─▶ SpeckleStack        patterns that move and decorrelate: I(x, y, u)
-//! ```
-//!
-//! Light that is more than one wave, and the sensor that sees it, work on these:
-//!
-//! ```text
-//! IncoherentSum          several lasers, partial polarisation, a broad spectrum
-//! CoherentBackground     a mirror reflection, a reference wave
-//! Exposure               a pattern that moves or boils while it is exposed
-//! PixelArray             boxes of any size at any pitch
-//! ObjectiveSpeckle       a lit area instead of a pupil: speckle without a lens
-//! PupilField::from_scatterers    a few point sources: partially developed speckle
-//! ```
-//!
-//! Files: [`SpeckleStack::write_to`] keeps a stack with its bits, to be read again or mapped into
+//! [`SpeckleStack::write_to`] keeps a stack with its bits, to be read again or mapped into
 //! memory; [`NpyReader`], [`write_npy`] and the methods of that name exchange fields and patterns
 //! with NumPy.
-//!
-//! Formulas and their derivation: `docs/theory/speckle.md` in the repository; what judges them:
-//! `docs/validation/speckle.md`.
 //!
 //! # Conventions
 //!
@@ -52,22 +30,6 @@
 //! pixels what light and sensor make of that. The geometry that moves and decorrelates it belongs to
 //! the crate above; so does the light that it modulates. A stack has the speckle of one wave: its
 //! look-ups are summed as [`IncoherentSum`] says.
-//!
-//! # Example
-//!
-//! ```
-//! use tem00_speckle::{PupilField, SlicePath, SpeckleStack};
-//!
-//! // 256 × 256 samples, speckles of 4 samples, 16 slices.
-//! let field = PupilField::new(256, 64, 42)?;
-//! let stack = SpeckleStack::generate(&field, SlicePath::Circle { half_period: 8 })?;
-//!
-//! // A surface whose motion leaves a correlation of 0.8 shows the same speckle, changed.
-//! let u = stack.coordinate_of(0.8);
-//! let (before, after) = (stack.intensity_at(10.3, 7.9, 0.0), stack.intensity_at(10.3, 7.9, u));
-//! assert!(before >= 0.0 && after >= 0.0);
-//! # Ok::<(), tem00_speckle::SpeckleError>(())
-//! ```
 
 mod error;
 mod interpolation;

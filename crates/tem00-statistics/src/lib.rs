@@ -1,9 +1,4 @@
-//! Closed forms, estimators and hypothesis tests of speckle statistics.
-//!
-//! What speckle theory says of a pattern, what a pattern says of itself, and whether the two agree.
-//!
-//! Formulas and their derivation: `docs/theory/statistics.md` in the repository; what judges them:
-//! `docs/validation/statistics.md`.
+#![doc = include_str!("../README.md")]
 //!
 //! # Conventions
 //!
@@ -43,21 +38,6 @@
 //! First- and second-order statistics of the intensity. What has a speckle size is behind a circular
 //! pupil, unless it says otherwise. No plotting, no general statistics: the distributions behind the
 //! tests come from `statrs`.
-//!
-//! # Example
-//!
-//! ```
-//! use tem00_statistics::{Contrast, exponential_cumulative, kolmogorov_smirnov};
-//!
-//! // The quantiles of an exponential law stand for a measured pattern.
-//! let quantile = |i| -(1.0 - (f64::from(i) + 0.5) / 10_000.0_f64).ln();
-//! let samples: Vec<f64> = (0..10_000).map(quantile).collect();
-//!
-//! let contrast = Contrast::from_samples(&samples)?;
-//! assert!((contrast.value() - 1.0).abs() < contrast.standard_error());
-//! assert!(kolmogorov_smirnov(&samples, exponential_cumulative)?.p_value > 0.99);
-//! # Ok::<(), tem00_statistics::StatisticsError>(())
-//! ```
 
 mod axis;
 mod centroid;

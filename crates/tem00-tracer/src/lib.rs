@@ -1,12 +1,4 @@
-//! A reference path tracer that shows how laser beams, speckle and its decorrelation meet.
-//!
-//! A [`Scene`] of surfaces, lasers and lights is seen by a [`Camera`](tem00_camera::Camera) with a real lens
-//! and sensor. Light that meets *one* rough surface on its way from a laser to the camera, and any number
-//! of mirrors and glass, is coherent: each camera sample of it is multiplied by the speckle pattern at its
-//! position in the image. All other light is left as it is.
-//!
-//! Formulas and their derivation: `docs/theory/tracing.md` in the repository; what judges them:
-//! `docs/validation/tracing.md`.
+#![doc = include_str!("../README.md")]
 //!
 //! # Conventions
 //!
@@ -29,73 +21,6 @@
 //! white. There is no polarisation, no dispersion, and nothing scatters between surfaces. Laser light that
 //! meets mirrors or glass both before and after a rough surface is not found unless lasers are
 //! [sampled](LaserEvents::Sampled). Nothing is read from files.
-//!
-//! # Example
-//!
-//! A plate under a laser spot, which moves by 11 pixel pitches where the lens images at 1:11:
-//!
-//! ```
-//! use std::sync::atomic::AtomicBool;
-//!
-//! use glam::DVec3;
-//! use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
-//! use tem00_tracer::{
-//!     BeamShape, Laser, LaserDescription, Material, Rectangle, ReferencePoint, RenderOptions, Scene,
-//!     Shape, SpeckleChange, SpeckleModel, SpecklePlan, Surface, Trajectory, render_frame,
-//! };
-//!
-//! let mut scene = Scene::new(Camera::new(CameraDescription {
-//!     position: 0.3 * DVec3::Z,
-//!     look_at: DVec3::ZERO,
-//!     up: DVec3::Y,
-//!     focal_length: 25e-3,
-//!     f_number: 8.0,
-//!     focus_distance: 0.3,
-//!     pixel_pitch: 3.45e-6,
-//!     resolution: [32, 32],
-//!     principal_point: None,
-//!     tilt: SensorTilt::default(),
-//!     distortion: RadialDistortion::default(),
-//!     depth_of_field: true,
-//! })?);
-//! scene.lasers.push(Laser::new(LaserDescription {
-//!     wavelength: 650e-9,
-//!     power: 1e-3,
-//!     position: DVec3::new(0.1, 0.0, 0.3),
-//!     look_at: DVec3::ZERO,
-//!     line_direction: DVec3::X,
-//!     shape: BeamShape::Spot {
-//!         waist_radius: [0.1e-3; 2],
-//!         waist_distance: [0.316; 2],
-//!         m_squared: [1.0; 2],
-//!     },
-//! })?);
-//! let plate = Rectangle::new(DVec3::ZERO, 0.01 * DVec3::X, 0.01 * DVec3::Y)?;
-//! scene.surfaces.push(Surface {
-//!     trajectory: Trajectory::steady(37.95e-6 * DVec3::X)?,
-//!     ..Surface::new("plate", Shape::Rectangle(plate), Material::lambertian(0.8)?)
-//! });
-//! scene.frames = 2;
-//!
-//! // Before anything is rendered: the camera sees the spot, and the plate is rough enough for speckle.
-//! assert!(scene.inspect_lasers(0)?[0].is_seen());
-//! assert!(scene.roughness_notes()?.is_empty());
-//!
-//! let options = RenderOptions { samples_per_pixel: 4, ..RenderOptions::default() };
-//! let plan = SpecklePlan::new(&scene, options.formulas, options.seed)?;
-//! let speckle = SpeckleModel::generate(&scene, &plan)?;
-//! let frame = render_frame(&scene, Some(&speckle), 0, &options, |_| (), &AtomicBool::new(false))?;
-//!
-//! // The whole spot is in the image.
-//! assert!((frame.lasers[0].power_on_target / 1e-3 - 1.0).abs() < 0.02);
-//!
-//! // In the next frame the speckle has moved by a pixel and is nearly the same.
-//! let point = ReferencePoint { surface: 0, position: DVec3::ZERO, normal: DVec3::Z };
-//! let change = SpeckleChange::between(&scene, 0, &point, [0, 1]).unwrap();
-//! assert!((change.displacement.x - 1.0).abs() < 1e-2);
-//! assert!((0.95..1.0).contains(&change.correlation));
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
 
 mod environment;
 mod error;

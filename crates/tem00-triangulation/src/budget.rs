@@ -41,31 +41,7 @@ pub use self::{
 /// columns have a line that can be trusted. Pixels count as linear, also where bright grains of speckle
 /// exceed the sensor's range; see [`Setup::light_level`].
 ///
-/// # Examples
-///
-/// ```
-/// use tem00_triangulation::{Budget, UncertaintySource, parse_setup};
-///
-/// let setup = parse_setup(
-///     r#"
-///     laser = { wavelength = "650 nm", power = "5 mW", line_thickness = "0.2 mm", line_length = "50 mm" }
-///     surface = { reflectance = 0.5 }
-///     sensor = { quantum_efficiency = 0.6, exposure = "auto" }
-///     [camera]
-///     focal_length = "25 mm"
-///     f_number = 8
-///     pixel_pitch = "3.45 um"
-///     resolution = [640, 480]
-///     distance = "300 mm"
-///     angle = "30 deg"
-///     "#,
-/// )?;
-/// let budget = Budget::new(&setup)?;
-/// assert_eq!(budget.dominant().source, UncertaintySource::Speckle);
-/// let micrometres = budget.combined() * 1e6;
-/// assert!((10.0..40.0).contains(&micrometres), "{micrometres}");
-/// # Ok::<(), Box<dyn core::error::Error>>(())
-/// ```
+/// The [front page](crate) has an example.
 ///
 /// # References
 ///

@@ -1,12 +1,4 @@
-//! Laser triangulation, from light on a sensor to a profile and its uncertainty.
-//!
-//! A laser line on a surface, seen from the side, tells the height of the surface by its position in the
-//! image. This crate holds what lies between the image and the height: a sensor that counts photons,
-//! detectors that find the line to a fraction of a pixel, the geometry that turns its position into a
-//! point in space, and the uncertainty of that point, to which speckle adds most.
-//!
-//! Formulas and their derivation: `docs/theory/triangulation.md` in the repository; what judges them:
-//! `docs/validation/triangulation.md`.
+#![doc = include_str!("../README.md")]
 //!
 //! # Conventions
 //!

@@ -1,12 +1,4 @@
-//! First-principles scalar wave optics of a rough surface.
-//!
-//! Many point scatterers, lit by a coherent wave, send out spherical waves; their sum is the speckle
-//! on a plane, and an ideal lens makes an image of it. Distances are exact, motions are finite, and
-//! nothing is assumed about speckle. The crate is slow and simple on purpose: it is the judge of
-//! models that are neither.
-//!
-//! Formulas and their derivation: `docs/theory/wave.md` in the repository; what judges them:
-//! `docs/validation/wave.md`.
+#![doc = include_str!("../README.md")]
 //!
 //! # Conventions
 //!
@@ -35,42 +27,6 @@
 //! One scattering per light path, one polarisation, no shadowing, no diffraction by the edges of the
 //! scene, no aberrations. The brightness of a surface is on a scale of its own: there is no
 //! reflectance model.
-//!
-//! # Example
-//!
-//! How far does the speckle on a lens move when a surface under collimated light moves by 100 µm
-//! sideways? By twice as far if the light comes from the distance of the lens, and just as far here:
-//!
-//! ```
-//! use tem00_wave::{
-//!     Amplitudes, Arrangement, Camera, DVec3, Illumination, Lens, PatchDescription, RigidMotion,
-//!     Roughness, RoughSurface, displacement_between,
-//! };
-//!
-//! let surface = RoughSurface::patch(&PatchDescription {
-//!     centre: DVec3::ZERO,
-//!     normal: DVec3::Z,
-//!     along: DVec3::X,
-//!     size: [1e-3, 1e-3],
-//!     scatterers: [40, 40],
-//!     arrangement: Arrangement::Lattice,
-//!     roughness: Roughness::FullyDeveloped(Amplitudes::ComplexGaussian),
-//!     seed: 1,
-//! })?;
-//! let light = Illumination::plane(650e-9, DVec3::NEG_Z)?;
-//! let lens = Lens { pupil_diameter: 5e-3, focus_distance: 0.3, pupil_to_image: 0.06 };
-//! let camera = Camera::look_at([DVec3::new(0.0, 0.0, 0.3), DVec3::ZERO], DVec3::Y, lens)?;
-//!
-//! // Speckles on the lens are λL/W = 195 µm wide.
-//! let pupil = camera.pupil_plane(50e-6, 64)?;
-//! let motion = RigidMotion::translation(DVec3::new(100e-6, 0.0, 0.0))?;
-//! let before = surface.lit_by(&light).field_on(&pupil).intensity();
-//! let after = surface.moved(&motion).lit_by(&light).field_on(&pupil).intensity();
-//!
-//! let shift = displacement_between(&before, &after).ok_or("no maximum")?;
-//! assert!((shift.offset.x * 50e-6 - 100e-6).abs() < 2e-6);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
 //!
 //! # References
 //!

@@ -1,4 +1,4 @@
-//! The arrows between the crates point down, and the physics crates stay light.
+//! The arrows between the crates point down, the physics crates stay light, and all have one version.
 
 #![expect(
     clippy::expect_used,
@@ -273,4 +273,25 @@ fn physics_crates_bring_no_threads_unless_asked() {
             "{name} must have no default features"
         );
     }
+}
+
+#[test]
+fn one_version_stands_everywhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |name| fs::read_to_string(root.join(name)).expect("a readable file");
+    let version = env!("CARGO_PKG_VERSION");
+    let manifest = read("Cargo.toml");
+    let mut named = 0;
+    for line in manifest.lines().filter(|line| line.contains("path = \"crates/")) {
+        let wanted = format!("version = \"{version}\"");
+        assert!(line.contains(&wanted), "{line}: not {version}");
+        named += 1;
+    }
+    // Those of the workspace but the bindings, which no crate depends on, and the program.
+    assert_eq!(named, ALLOWED.len() - 3, "crates with a version");
+    let citation = read("CITATION.cff");
+    let cited = citation
+        .lines()
+        .any(|line| line == format!("version: {version}"));
+    assert!(cited, "CITATION.cff: not {version}");
 }

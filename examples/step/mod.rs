@@ -14,7 +14,12 @@ pub(crate) const STEP: f64 = 1e-3;
 pub(crate) const PLATES: [core::ops::Range<usize>; 2] = [4..40, 56..92];
 
 pub(crate) fn scene() -> MeasurementScene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/step/step.toml");
+    // Of the root of the workspace, or of a package in it.
+    let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let path = folders
+        .map(|folder| folder.join("examples/step/step.toml"))
+        .find(|path| path.exists())
+        .expect("the scene is there");
     MeasurementScene::read(&path, FileAccess::WithinFolder)
         .expect("the scene is one")
         .0

@@ -1,7 +1,8 @@
 //! Python bindings of tem00, the extension module `tem00._tem00`.
 //!
 //! One file for each physics crate; `arrays` takes NumPy arrays in and gives them out, `error`
-//! makes Python exceptions of the errors; `methods` declares what only hands on.
+//! makes Python exceptions of the errors; `methods` declares what only hands on. `main` is the
+//! program.
 
 #[macro_use]
 mod methods;
@@ -14,13 +15,22 @@ mod pickling;
 mod speckle;
 mod statistics;
 
+use std::ffi::OsString;
+
 use pyo3::prelude::*;
+
+/// Runs the program `tem00` with the arguments of this process; returns the exit code.
+#[pyfunction]
+fn main(py: Python<'_>) -> PyResult<u8> {
+    let arguments: Vec<OsString> = py.import("sys")?.getattr("argv")?.extract()?;
+    Ok(py.detach(|| tem00_cli::run(&arguments)))
+}
 
 #[pymodule]
 mod _tem00 {
     #[pymodule_export]
     use super::{
-        beam::beam, decorrelation::decorrelation, error::ParameterError, speckle::speckle,
+        beam::beam, decorrelation::decorrelation, error::ParameterError, main, speckle::speckle,
         statistics::statistics,
     };
 

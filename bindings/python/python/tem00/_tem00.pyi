@@ -8,11 +8,14 @@ __all__ = [
     "__version__",
     "beam",
     "decorrelation",
+    "main",
     "speckle",
     "statistics",
 ]
 
 __version__: str
+
+def main() -> int: ...
 
 class ParameterError(ValueError):
     """A parameter lies outside what is allowed."""

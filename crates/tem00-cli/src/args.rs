@@ -66,9 +66,18 @@ Data goes to standard output, everything else to standard error.
 Exit codes: 0 success, 1 failure while running, 2 bad input or usage, 3 nothing measured or found,
 130 interrupted.";
 
+fn after_help() -> String {
+    let left_out = if cfg!(feature = "full") {
+        ""
+    } else {
+        "\n\nThis build has render, pattern and speckle; without `--no-default-features` it has all."
+    };
+    format!("{EXAMPLES}{left_out}")
+}
+
 /// Laser light with speckle, from scene file to image, and from data sheet to height uncertainty.
 #[derive(Debug, Parser)]
-#[command(name = "tem00", version, max_term_width = 100, after_help = EXAMPLES)]
+#[command(name = "tem00", version, max_term_width = 100, after_help = after_help())]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,

@@ -14,15 +14,18 @@ const MIN_DAMPING: f64 = 1e-10;
 const MAX_DAMPING: f64 = 1e12;
 
 /// … as it is after so many steps in a row that neither lowered the sum of squares by more than its rounding nor
-/// halved the gain to be had.
-const MAX_IDLE_STEPS: u32 = 4;
+/// halved the gain to be had, …
+const MAX_IDLE_STEPS: u32 = 8;
+
+/// … and where no more than this fraction of the first sum of squares is left: the residuals are those of rounding.
+const NOTHING_LEFT: f64 = 1e-28;
 
 /// The fraction of the sum of squares below which no gain is worth a step: the parameters would move by
 /// less than 1e−10 of their standard errors.
 const NEGLIGIBLE_GAIN: f64 = 1e-22;
 
-/// The largest relative rise of the sum of squares that a step may have: near its minimum it is flat, and
-/// its rounding hides steps that the normal equations still tell.
+/// The relative change of the sum of squares that its rounding hides: the sum is flat near its minimum, and there a
+/// step is judged by the gain that it leaves.
 const ROUNDING: f64 = 1e-12;
 
 /// The smallest pivot of the normal matrix, scaled to a unit diagonal, that is no rounding error.
@@ -109,31 +112,34 @@ pub fn minimise<S>(
         .ok_or(LeastSquaresError::NotConverged)?;
     let mut damping = FIRST_DAMPING;
     let mut gain = system.gain();
-    let (mut least_sum, mut least_gain, mut idle) = (system.sum_of_squares, gain, 0);
+    let (mut least_gain, mut idle) = (gain, 0);
+    let nothing = NOTHING_LEFT * system.sum_of_squares;
     for _ in 0..MAX_STEPS {
-        let is_done = gain <= NEGLIGIBLE_GAIN * system.sum_of_squares;
+        let sum = system.sum_of_squares;
+        let is_done = gain <= NEGLIGIBLE_GAIN * sum || sum <= nothing;
         if is_done || damping > MAX_DAMPING || idle == MAX_IDLE_STEPS {
             return system.minimum(state);
         }
-        let better = system.step(damping).and_then(|step| {
+        let next = system.step(damping).and_then(|step| {
             let next = stepped(&state, &step);
-            let found = equations(&next)?;
-            let limit = (1.0 + ROUNDING) * system.sum_of_squares;
-            (found.sum_of_squares <= limit).then_some((next, found))
+            equations(&next).map(|found| (next, found.gain(), found))
         });
-        if let Some(better) = better {
-            (state, system) = better;
-            damping = (0.1 * damping).max(MIN_DAMPING);
-            gain = system.gain();
-            let is_lower =
-                gain < 0.5 * least_gain || system.sum_of_squares < (1.0 - ROUNDING) * least_sum;
-            if is_lower {
-                (least_sum, least_gain, idle) = (system.sum_of_squares, gain, 0);
-            } else {
+        match next {
+            Some((next, next_gain, found)) if found.is_better(next_gain, sum, gain) => {
+                let is_lower = found.sum_of_squares < (1.0 - ROUNDING) * sum;
+                (state, system, gain) = (next, found, next_gain);
+                if is_lower || gain < 0.5 * least_gain {
+                    (least_gain, idle) = (gain, 0);
+                } else {
+                    idle += 1;
+                }
+                damping = (0.1 * damping).max(MIN_DAMPING);
+            }
+            Some((_, _, found)) if found.sum_of_squares <= (1.0 + ROUNDING) * sum => {
+                damping *= 10.0;
                 idle += 1;
             }
-        } else {
-            damping *= 10.0;
+            _ => damping *= 10.0,
         }
     }
     system
@@ -178,6 +184,12 @@ impl NormalEquations {
             let gains = step.iter().zip(&self.gradient);
             -gains.map(|(by, slope)| by * slope).sum::<f64>()
         })
+    }
+
+    /// Whether these equations are nearer to a minimum than those of the sum of squares `sum` and the gain `gain`.
+    fn is_better(&self, own_gain: f64, sum: f64, gain: f64) -> bool {
+        let is_lower = self.sum_of_squares < (1.0 - ROUNDING) * sum;
+        is_lower || self.sum_of_squares <= (1.0 + ROUNDING) * sum && own_gain < gain
     }
 
     fn minimum<S>(&self, state: S) -> Result<Minimum<S>, LeastSquaresError> {

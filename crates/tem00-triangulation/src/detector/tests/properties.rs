@@ -47,6 +47,35 @@ fn ragged(values: &[f32], before: usize) -> Vec<f32> {
     column
 }
 
+/// Nearly flat about its minimum, and much of the light is left over: Gauss-Newton's steps shrink slowly.
+#[test]
+fn a_fit_of_slow_steps_is_mirrored_too() {
+    let values = [
+        49.048534, 137.73564, 167.82512, 149.71228, 6.5042915, 152.32921, 83.945366, 167.01836,
+        124.788536, 175.42479, 76.27158, 81.605034, 124.190186, 75.99101, 67.471, 5.089039,
+        112.10621,
+    ];
+    is_found_mirrored(&values).unwrap();
+}
+
+/// Holds positions of a line and of its mirror image together.
+fn is_found_mirrored(values: &[f32]) -> Result<(), TestCaseError> {
+    let column = ragged(values, 60);
+    let mirrored: Vec<f32> = column.iter().rev().copied().collect();
+    for method in methods() {
+        let here = finder(method).detect_column(&column);
+        let there = finder(method).detect_column(&mirrored);
+        prop_assert_eq!(here.len(), there.len());
+        for (a, b) in here.iter().zip(there.iter().rev()) {
+            prop_assert!(
+                (a.position + b.position - 160.0).abs() < 1e-7,
+                "{method}: {a:?} {b:?}"
+            );
+        }
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
@@ -95,16 +124,7 @@ proptest! {
 
     #[test]
     fn a_mirrored_line_is_found_mirrored(values in prop::collection::vec(1.0_f32..200.0, 12..30)) {
-        let column = ragged(&values, 60);
-        let mirrored: Vec<f32> = column.iter().rev().copied().collect();
-        for method in methods() {
-            let here = finder(method).detect_column(&column);
-            let there = finder(method).detect_column(&mirrored);
-            prop_assert_eq!(here.len(), there.len());
-            for (a, b) in here.iter().zip(there.iter().rev()) {
-                prop_assert!((a.position + b.position - 160.0).abs() < 1e-7, "{method}: {a:?} {b:?}");
-            }
-        }
+        is_found_mirrored(&values)?;
     }
 
     #[test]

@@ -37,7 +37,7 @@ impl Names {
                 names.add_folder(&package.join(folder));
             }
         }
-        for folder in ["scenes", "setups", "integrations"] {
+        for folder in ["book", "scenes", "setups", "integrations"] {
             names.add_folder(&root().join(folder));
         }
         names

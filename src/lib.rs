@@ -2,7 +2,7 @@
 //!
 //! This facade re-exports the crates of the workspace under one name. A renderer that wants only
 //! one of them depends on that one: none of the three physics crates imports another, and they meet
-//! through plain numbers.
+//! through plain numbers. How: `docs/integration.md` in the repository.
 //!
 //! | module | crate | what it holds |
 //! |---|---|---|

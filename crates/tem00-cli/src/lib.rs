@@ -1,4 +1,5 @@
 //! The program `tem00`, to be started by its own binary or from the Python package.
+//! Its commands: `docs/program.md` in the repository.
 
 #![cfg_attr(
     not(feature = "full"),

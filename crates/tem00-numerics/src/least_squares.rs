@@ -15,7 +15,7 @@ const MAX_DAMPING: f64 = 1e12;
 
 /// … as it is after so many steps in a row that neither lowered the sum of squares by more than its rounding nor
 /// halved the gain to be had, …
-const MAX_IDLE_STEPS: u32 = 8;
+const MAX_IDLE_STEPS: u32 = 16;
 
 /// … and where no more than this fraction of the first sum of squares is left: the residuals are those of rounding.
 const NOTHING_LEFT: f64 = 1e-28;

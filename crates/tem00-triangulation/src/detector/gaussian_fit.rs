@@ -32,7 +32,7 @@ pub(super) fn fit(profile: &Profile<'_>) -> Option<Estimate> {
     };
     let equations = |model: &Gaussian| model.normal_equations(profile);
     let found = minimise(start, Gaussian::stepped, equations).ok()?;
-    found.state.estimate(profile.line.window.len() as f64)
+    found.state.estimate(profile)
 }
 
 impl Gaussian {
@@ -60,10 +60,15 @@ impl Gaussian {
         Some(equations)
     }
 
-    /// The estimate, if the pixels hold a line: they tell nothing of one much thinner than a pixel or
-    /// wider than the window, and the fit ran into its bounds.
-    fn estimate(&self, window: f64) -> Option<Estimate> {
-        let is_line = self.amplitude > 0.0 && self.radius > 0.2 && self.radius < window;
+    /// The estimate, if the pixels hold a line: they tell nothing of one beside them, much thinner than one of them
+    /// or wider than the window, and the fit ran away.
+    fn estimate(&self, profile: &Profile<'_>) -> Option<Estimate> {
+        let window = profile.line.window.len() as f64;
+        let is_wide = self.radius > 0.2 && self.radius < window;
+        let is_inside = profile
+            .pixels()
+            .any(|(y, _)| (y - self.centre).abs() <= 0.5);
+        let is_line = self.amplitude > 0.0 && is_wide && is_inside;
         is_line.then_some(Estimate {
             position: self.centre,
             width: Some(2.0 * self.radius),

@@ -1,6 +1,6 @@
 //! Law, mean and contrast of the intensity.
 
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 use tem00::{
     speckle::PupilField,
     statistics::{
@@ -12,9 +12,7 @@ use tem00::{
 use crate::lattice::{Lattice, Shape, cases, covariance_spread};
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 40, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(40))]
 
     #[test]
     fn intensity_is_negative_exponential(case in cases(260..420, 3.5)) {

@@ -1,7 +1,7 @@
 //! The look-ups as printed in Bergmann et al. 2016 against ours: what of the contrast is left between
 //! samples and between slices.
 
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 use tem00::{
     speckle::{PupilField, SlicePath, SpeckleStack},
     statistics::{Contrast, Moments, t_test_mean},
@@ -60,9 +60,7 @@ fn shares(field: &PupilField, half_period: usize, fractions: [f64; 2], u: f64) -
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 10, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(10))]
 
     #[test]
     fn between_samples_the_printed_contrast_falls_as_its_closed_form_and_ours_does_not(

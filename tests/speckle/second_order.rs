@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 use tem00::{
     numerics::Grid,
     speckle::{Phasors, PupilField},
@@ -112,9 +112,7 @@ fn pairs_of(
 const TILES: u64 = 10;
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 16, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(16))]
 
     #[test]
     fn two_points_of_a_pattern_have_the_joint_law(

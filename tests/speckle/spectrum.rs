@@ -1,6 +1,6 @@
 //! Autocovariance and power spectrum of the intensity.
 
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 use tem00::{numerics::Grid, speckle::PupilField, statistics::power_spectrum};
 
 use crate::lattice::{Lattice, Shape, cases, centred, covariance_spread, signed};
@@ -18,9 +18,7 @@ fn covariance(pattern: &Grid<f32>, [x, y]: [i64; 2]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 20, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(20))]
 
     #[test]
     fn autocovariance_is_the_squared_transform_of_the_pupil(
@@ -71,9 +69,7 @@ fn in_diameters(field: &PupilField, [x, y]: [usize; 2]) -> [f64; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 60, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(60))]
 
     #[test]
     fn there_are_no_fringes_finer_than_the_pupil_allows(case in cases(24..130, 6.0)) {

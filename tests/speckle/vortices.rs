@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 use tem00::{
     speckle::{Phasors, PupilField},
     statistics::{
@@ -13,9 +13,7 @@ use tem00::{
 use crate::lattice::{Lattice, cases, shapes};
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 60, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(60))]
 
     #[test]
     fn the_charges_of_a_tile_cancel(case in cases(20..120, 8.0)) {
@@ -36,9 +34,7 @@ fn expected_density(field: &PupilField, offset: [f64; 2]) -> [f64; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 12, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(12))]
 
     #[test]
     fn singularities_are_as_dense_as_the_wave_numbers_spread(

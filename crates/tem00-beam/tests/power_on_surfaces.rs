@@ -12,7 +12,6 @@ mod lines;
 
 use lines::{REACH, profiles, slopes};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use tem00_beam::optics::AstigmaticSystem;
 use tem00_beam::{
     AstigmaticBeam, AstigmaticLight, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam,
@@ -243,17 +242,8 @@ fn elliptic_beams() -> impl Strategy<Value = AstigmaticBeam> {
     })
 }
 
-fn config() -> ProptestConfig {
-    ProptestConfig {
-        cases: 48,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    }
-}
-
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
     fn a_tilted_plane_receives_the_power_of_a_beam(

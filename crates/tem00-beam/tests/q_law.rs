@@ -4,7 +4,7 @@
 
 use core::f64::consts::PI;
 
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_beam::optics::AbcdMatrix;
@@ -192,12 +192,7 @@ fn moments_behind(m: &AbcdMatrix, [xx, xs, ss]: [f64; 3], sign: fn(f64) -> f64) 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 1_000,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(1_000))]
 
     #[test]
     fn beams_follow_the_rays_through_random_systems(

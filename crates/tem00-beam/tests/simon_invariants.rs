@@ -8,7 +8,6 @@
 use core::f64::consts::PI;
 
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tem00_beam::optics::{AbcdMatrix, AstigmaticSystem};
@@ -120,12 +119,7 @@ fn element(kind: u32, length: f64, angle: f64) -> Result<AstigmaticSystem, BeamE
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 400,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
     fn no_chain_of_elements_changes_the_quality_of_a_beam(

@@ -437,12 +437,6 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig {
-            failure_persistence: None,
-            rng_seed: proptest::test_runner::RngSeed::Fixed(1),
-            ..ProptestConfig::default()
-        })]
-
         #[test]
         fn a_point_source_stays_where_it_is(
             source in directions(),

@@ -1,7 +1,6 @@
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::*;
 use crate::{GaussianBeam, LocatedBeam};
@@ -572,12 +571,7 @@ fn impossible_moments_are_rejected() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 2_000,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(2_000))]
 
     #[test]
     fn no_query_leaves_the_numbers(

@@ -1,7 +1,6 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::*;
 
@@ -61,15 +60,6 @@ fn largest_product_error(law: CorrelationLaw) -> (f64, f64, f64) {
         }
     }
     worst
-}
-
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    }
 }
 
 #[test]
@@ -232,8 +222,6 @@ fn motion_that_leaves_the_pattern_has_no_multiple() {
 }
 
 proptest! {
-    #![proptest_config(config(256))]
-
     #[test]
     fn inverses_have_the_correlation_asked_for(gamma in 0.0_f64..1.0) {
         // Rounding of s by ε changes γ by up to 4ε.

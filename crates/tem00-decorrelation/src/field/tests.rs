@@ -1,6 +1,5 @@
 use glam::DVec2;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::*;
 use crate::{LensData, LineOfSight, SurfacePoint, Wavefront, correlation};
@@ -355,12 +354,7 @@ fn any_finite() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 512,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(512))]
 
     #[test]
     fn any_finite_point_has_results(row in prop::array::uniform17(any_finite())) {

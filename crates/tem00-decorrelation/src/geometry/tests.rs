@@ -567,13 +567,6 @@ fn impossible_lenses_are_rejected() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 256,
-        failure_persistence: None,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
-
     #[test]
     fn image_obeys_the_lens_equation(
         focal_length in 1e-3_f64..1.0,

@@ -244,12 +244,6 @@ prop_compose! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        failure_persistence: None,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
-
     #[test]
     fn sjodahls_pair_is_the_general_law_on_the_axis(
         q1 in -1.2_f64..1.2,

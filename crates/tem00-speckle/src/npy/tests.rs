@@ -1,4 +1,4 @@
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::*;
 use crate::PupilField;
@@ -251,10 +251,6 @@ fn memory_is_only_asked_for_as_the_file_fills_it() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 256, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
-
     #[test]
     fn no_bytes_make_the_reader_panic(
         at in 0_usize..140, new in proptest::collection::vec(any::<u8>(), 0..24), cut in 0_usize..200,

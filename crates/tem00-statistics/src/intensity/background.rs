@@ -123,7 +123,7 @@ impl CoherentBackground {
 mod tests {
     use approx::assert_relative_eq;
     use core::f64::consts::TAU;
-    use proptest::{prelude::*, test_runner::RngSeed};
+    use proptest::prelude::*;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -231,13 +231,6 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig {
-            cases: 256,
-            failure_persistence: None,
-            rng_seed: RngSeed::Fixed(1),
-            ..ProptestConfig::default()
-        })]
-
         #[test]
         fn law_is_finite_and_a_probability(
             ratio in prop_oneof![

@@ -156,7 +156,7 @@ fn factorial(n: u32) -> f64 {
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
-    use proptest::{prelude::*, test_runner::RngSeed};
+    use proptest::prelude::*;
 
     use super::*;
     use crate::{airy_autocovariance, synthetic};
@@ -281,13 +281,6 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig {
-            cases: 256,
-            failure_persistence: None,
-            rng_seed: RngSeed::Fixed(1),
-            ..ProptestConfig::default()
-        })]
-
         #[test]
         fn law_is_finite_and_symmetric(
             mu in prop_oneof![0.0_f64..1.0, Just(1.0 - f64::EPSILON)],

@@ -167,7 +167,7 @@ impl WeightedSum {
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
-    use proptest::{prelude::*, test_runner::RngSeed};
+    use proptest::prelude::*;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -368,12 +368,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig {
-            cases: 128,
-            failure_persistence: None,
-            rng_seed: RngSeed::Fixed(1),
-            ..ProptestConfig::default()
-        })]
+        #![proptest_config(ProptestConfig::with_cases(128))]
 
         #[test]
         fn law_is_finite_and_a_probability(

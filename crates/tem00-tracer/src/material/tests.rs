@@ -214,12 +214,6 @@ fn tabulated(roughness: f64) -> [Material; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        failure_persistence: None,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
-
     #[test]
     fn light_may_travel_backwards(
         roughness in 0.01_f64..=1.0,

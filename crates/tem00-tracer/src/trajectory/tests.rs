@@ -1,6 +1,6 @@
 use core::f64::consts::{FRAC_PI_2, TAU};
 
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::*;
 
@@ -158,12 +158,7 @@ prop_compose! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 200,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn poses_pass_through_the_keyframes(keyframes in keyframes(), pivot in vectors(1.0)) {

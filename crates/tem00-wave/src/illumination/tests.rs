@@ -1,5 +1,5 @@
 use approx::assert_relative_eq;
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::*;
 
@@ -315,9 +315,7 @@ fn constructors_name_what_they_reject() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 2_000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(2_000))]
 
     #[test]
     fn light_is_finite_at_every_finite_point(

@@ -1,7 +1,7 @@
 use core::f64::consts::PI;
 
 use super::*;
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use crate::{DMat3, Illumination, Lens, RigidMotion, RoughSurface, Scatterer};
 
@@ -324,9 +324,7 @@ fn constructors_name_what_they_reject() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 300, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
     fn a_window_is_rejected_or_has_a_finite_image(

@@ -1,4 +1,4 @@
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::*;
 use crate::{Arrangement, Complex, DVec2};
@@ -302,9 +302,7 @@ fn constructors_name_what_they_reject() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 300, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
     fn a_patch_is_rejected_or_finite(

@@ -1,7 +1,6 @@
 use core::f64::consts::SQRT_2;
 
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::*;
 
@@ -450,17 +449,8 @@ fn radii_that_are_not_lengths_are_rejected() {
     }
 }
 
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    }
-}
-
 proptest! {
-    #![proptest_config(config(200))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn power_in_a_circle_keeps_its_symmetries_and_grows(

@@ -1,6 +1,6 @@
 use core::f64::consts::FRAC_PI_2;
 
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::elements::ThickLens;
 use super::*;
@@ -248,12 +248,7 @@ fn extreme_element() -> impl Strategy<Value = AbcdMatrix> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 2_000,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(2_000))]
 
     #[test]
     fn no_extreme_system_yields_nan(

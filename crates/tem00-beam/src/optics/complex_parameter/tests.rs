@@ -1,6 +1,6 @@
 use core::f64::consts::FRAC_1_SQRT_2;
 
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::*;
 
@@ -142,12 +142,7 @@ fn a_parameter_beyond_the_paraxial_limit_makes_no_beam() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 512,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(512))]
 
     #[test]
     fn no_query_yields_nan(

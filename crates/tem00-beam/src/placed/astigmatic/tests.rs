@@ -2,7 +2,6 @@ use core::mem::{offset_of, size_of};
 
 use glam::DVec3;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
@@ -388,12 +387,7 @@ fn single_precision_is_refused_where_it_cannot_hold_the_light() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 24,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     /// Rounding moves a point by ε|p| and that changes ln E by 4 x/w² times as much, x ≤ ρ w.
     #[test]

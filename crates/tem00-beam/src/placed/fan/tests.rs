@@ -1,6 +1,5 @@
 use glam::DVec3;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::super::{Emitter, Placement, TabulatedLineLight};
 use super::*;
@@ -291,15 +290,6 @@ fn a_ray_that_overflows_passes_the_light() {
     assert_eq!(pdf.position.to_bits(), 0, "{pdf:?}");
 }
 
-fn config() -> ProptestConfig {
-    ProptestConfig {
-        cases: 256,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    }
-}
-
 fn finite() -> impl Strategy<Value = f64> {
     prop_oneof![
         proptest::num::f64::NORMAL | proptest::num::f64::ZERO,
@@ -343,8 +333,6 @@ fn check<T: Real>(
 }
 
 proptest! {
-    #![proptest_config(config())]
-
     #[test]
     fn no_finite_point_yields_nan(
         index in 0..14_usize,

@@ -1,5 +1,4 @@
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::*;
 
@@ -201,13 +200,6 @@ fn tables() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 256,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
-
     /// Where there is power, p(angle(p)) = p but for the 1e−12 that a drawn angle keeps off a knot:
     /// the angle is rounded by 2e−16 times a density that a narrow piece may raise to 1e6.
     #[test]

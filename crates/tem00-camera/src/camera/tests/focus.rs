@@ -1,7 +1,6 @@
 use core::f64::consts::PI;
 
 use glam::DQuat;
-use proptest::test_runner::RngSeed;
 
 use super::*;
 use crate::Ray;
@@ -24,12 +23,6 @@ fn in_focus(camera: &Camera, ray: &Ray) -> DVec3 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
-
     #[test]
     fn all_of_the_lens_sees_the_same_point_of_the_plane_in_focus(
         angle in -0.15_f64..0.15,

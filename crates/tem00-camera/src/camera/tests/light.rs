@@ -1,7 +1,5 @@
 use core::f64::consts::PI;
 
-use proptest::test_runner::RngSeed;
-
 use super::*;
 
 /// The solid angle per pixel of the rays through one point of the lens, by central differences.
@@ -19,12 +17,6 @@ fn solid_angle(camera: &Camera, pixel: DVec2, lens: [f64; 2]) -> f64 {
 const DIFFERENCES: f64 = 1e-8;
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
-
     #[test]
     fn pixels_see_the_solid_angle_of_their_rays(
         pixel in [1.0_f64..639.0, 1.0_f64..479.0],

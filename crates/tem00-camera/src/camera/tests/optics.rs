@@ -1,5 +1,3 @@
-use proptest::test_runner::RngSeed;
-
 use super::*;
 use crate::CameraError;
 
@@ -182,12 +180,6 @@ fn what_moves_with_the_camera_stays_in_the_image() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
-
     #[test]
     fn projection_inverts_the_ray_of_any_camera(
         k in [-15.0_f64..15.0, -1e3_f64..1e3, -1e4_f64..1e4],

@@ -1,15 +1,6 @@
-use proptest::{collection::vec, prelude::*, test_runner::RngSeed};
+use proptest::{collection::vec, prelude::*};
 
 use super::*;
-
-fn config() -> ProptestConfig {
-    ProptestConfig {
-        cases: 4096,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    }
-}
 
 fn valid_files() -> [(MeshFormat, Vec<u8>); 7] {
     let nodes = r#"[{ "children": [1, 2] }, { "mesh": 0, "scale": [2, 2, 2] }, { "mesh": 2 }]"#;
@@ -42,7 +33,7 @@ fn check(content: &[u8], format: MeshFormat) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(ProptestConfig::with_cases(4096))]
 
     #[test]
     fn damaged_files_are_errors_or_meshes_but_never_a_panic(

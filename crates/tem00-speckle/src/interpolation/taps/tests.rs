@@ -1,4 +1,4 @@
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::*;
 
@@ -47,10 +47,7 @@ fn place(x: f64, cells: usize) -> (f64, Option<f64>) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 4_000, failure_persistence: None, rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(4_000))]
 
     /// Multiplication by 1/Q takes off whole periods as exactly as integers do, and so does the
     /// remainder that takes over at 2⁵⁰.

@@ -1,4 +1,4 @@
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 use tem00_numerics::{cast::to_signed, disc_overlap};
 use tem00_statistics::{boiling_contrast, t_test_mean, translation_contrast};
 
@@ -164,12 +164,7 @@ fn drifts_outside_their_range_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 48,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
     fn any_exposure_has_the_mean_one_and_no_negative_intensity(

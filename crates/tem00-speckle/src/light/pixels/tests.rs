@@ -1,4 +1,4 @@
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 use tem00_numerics::cast::to_signed;
 use tem00_statistics::{pixel_contrast, rectangular_pixel_contrast, t_test_mean};
 
@@ -164,12 +164,7 @@ fn pixels_outside_their_range_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 64,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
     fn any_pixel_sees_a_finite_intensity_below_the_greatest(

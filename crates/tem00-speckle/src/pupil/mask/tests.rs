@@ -1,4 +1,4 @@
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::*;
 use crate::Transmission;
@@ -95,7 +95,7 @@ fn the_points_of_an_ellipse_are_counted_in_whole_numbers() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn a_displaced_mask_holds_the_points_around_its_centre(

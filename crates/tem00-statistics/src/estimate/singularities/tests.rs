@@ -1,7 +1,7 @@
 use core::f64::consts::{PI, TAU};
 
 use approx::assert_relative_eq;
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::*;
 use crate::{Moments, synthetic::field_tile};
@@ -174,13 +174,6 @@ fn fields_without_an_answer_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 256,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
-
     #[test]
     fn charges_cancel_in_any_periodic_field(
         width in 1_usize..7,

@@ -1,4 +1,4 @@
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::*;
 
@@ -35,12 +35,6 @@ fn no_ray_leaves_a_closed_mesh_through_an_edge_or_a_corner() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
-
     #[test]
     fn a_ray_that_leaves_a_surface_does_not_meet_it_again(
         (x, y) in (-0.9_f64..0.9, -0.9_f64..0.9),

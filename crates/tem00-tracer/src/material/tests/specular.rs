@@ -115,12 +115,7 @@ fn light_in_glass_is_reflected_totally_beyond_the_critical_angle() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 512,
-        failure_persistence: None,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(512))]
 
     /// Snell's law in vectors: `n wo × z` is the same on both sides, but for its sign.
     #[test]

@@ -1,5 +1,4 @@
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::*;
 use crate::measurement::fit::synthetic::{assert_chi_squared, assert_standard_normal, noise, pull};
@@ -375,12 +374,7 @@ fn cones_and_caustics_that_bend_the_wrong_way_leave_a_parameter_open() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 300,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
     fn any_data_end_in_numbers_or_in_an_error(

@@ -1,6 +1,6 @@
 use core::f64::consts::PI;
 
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::*;
 use crate::optics::abcd::tests::{lens, mirror, space};
@@ -92,12 +92,7 @@ fn a_weak_lens_keeps_a_mode_to_full_precision() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 2_000,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(2_000))]
 
     #[test]
     fn two_mirrors_are_stable_where_the_product_of_their_g_is_between_0_and_1(

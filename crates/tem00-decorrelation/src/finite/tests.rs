@@ -1,7 +1,7 @@
 use core::f64::consts::PI;
 
 use glam::EulerRot;
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 
 use super::*;
 use crate::{
@@ -459,18 +459,15 @@ fn differences(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 200,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn small_translations_follow_the_law_of_first_order(
         (data, wavefront) in scenes(),
         unit in [vectors(1.0), vectors(1.0), vectors(1.0)],
     ) {
+        // 4e−4 × 2√3 m × 3 m⁻¹ turn the light by 0.004: what grazes the surface could end behind it.
+        prop_assume!(data.normal.normalize().dot(wavefront.direction_to_source()).abs() > 0.01);
         let [surface, camera, source] = unit;
         let unit = Motion { surface, camera, source };
         let [coarse, half, quarter] =

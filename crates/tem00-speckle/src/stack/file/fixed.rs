@@ -119,11 +119,12 @@ impl Fixed {
     }
 
     fn header_bytes(&self) -> u64 {
-        let bytes = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height) * 8;
+        let samples = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
         let slices = u64::from(self.slices) * SLICE as u64;
-        [slices, bytes(self.transmission), bytes(self.samples)]
+        [samples(self.transmission), samples(self.samples)]
+            .map(|samples| samples.saturating_mul(8))
             .iter()
-            .fold(FIXED as u64, |sum, part| sum.saturating_add(*part))
+            .fold(FIXED as u64 + slices, |sum, part| sum.saturating_add(*part))
             .checked_next_multiple_of(BLOCK as u64)
             .unwrap_or(u64::MAX)
     }

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use proptest::{prelude::*, test_runner::RngSeed};
+use proptest::prelude::*;
 use tem00::{
     numerics::Grid,
     speckle::{Complex, Interpolation, Phasors, PupilField, SlicePath, SpeckleStack, StackOptions},
@@ -61,12 +61,19 @@ fn shift(stack: &SpeckleStack, from: usize, to: usize) -> [i64; 2] {
     [if 2 * x < period { x } else { x - period }, b[1] - a[1]]
 }
 
-/// What two slices share by counting; on a lattice that has closed, from both sides.
-fn counted_overlap(lattice: &Lattice, [x, y]: [i64; 2], period: i64) -> Complex<f64> {
-    [x - period, x, x + period]
-        .map(|x| lattice.overlap([x, y]))
-        .iter()
-        .sum()
+/// What two slices share by counting; on a lattice that has closed, from both sides: as one wave where it
+/// closes with the pattern, else as waves that the tile averages apart.
+fn counted_overlaps(
+    lattice: &Lattice,
+    [x, y]: [i64; 2],
+    [period, width]: [i64; 2],
+) -> [Complex<f64>; 3] {
+    let sides = [x, x - period, x + period].map(|x| lattice.overlap([x, y]));
+    if period % width == 0 {
+        [sides.iter().sum(), Complex::ZERO, Complex::ZERO]
+    } else {
+        sides
+    }
 }
 
 /// The mean over the tile of one amplitude times the conjugate of the other, in the frame of the lattice.
@@ -110,9 +117,7 @@ fn intensity(stack: &SpeckleStack, index: usize) -> Grid<f32> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 24, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
     fn slices_are_the_fields_on_demand(case in cases(20..90, 5.0), path in paths()) {
@@ -143,9 +148,10 @@ proptest! {
                 }
             }
             let rms = (square / pattern.values().values().len() as f64).sqrt();
-            // The stated 4.3e−3 of the field at a speckle size of 2 falls with its fourth power;
-            // |U|² doubles it.
-            let stated = 2.0 * 4.3e-3 * (2.0 / stack.speckle_size()).powi(4) + 1e-6;
+            // The stated 4.3e−3 of the field at a speckle size of 2, twice that behind a square, falls with
+            // its fourth power; |U|² doubles it.
+            let corners = if matches!(case.shape, Shape::Rectangle(_) | Shape::Aberrated(_)) { 2.0 } else { 1.0 };
+            let stated = corners * 2.0 * 4.3e-3 * (2.0 / stack.speckle_size()).powi(4) + 1e-6;
             prop_assert!(rms < stated, "slice {index}: {rms:e}, stated {stated:e}");
         }
     }
@@ -161,14 +167,16 @@ proptest! {
         let first = first % stack.slice_count();
         for second in 0..stack.slice_count() {
             let step = shift(&stack, first, second);
-            let overlap = counted_overlap(&lattice, step, period(&stack));
+            let closes = [period(&stack), signed(stack.size()[0])];
+            let overlaps = counted_overlaps(&lattice, step, closes);
             if is_alone(&stack, step) {
                 let measured = correlation_in_the_lattice(&stack, first, second);
                 // By Parseval, but for the rounding of f32.
-                prop_assert!((measured - overlap).norm() < 2e-6, "{measured} | {overlap}");
+                prop_assert!((measured - overlaps[0]).norm() < 2e-6, "{measured} | {overlaps:?}");
             }
             let gamma = stack.correlation_between(first as f64, second as f64);
-            prop_assert!((gamma - overlap.norm_sqr()).abs() < 1e-6, "γ = {gamma} | {overlap}");
+            let shared: f64 = overlaps.iter().map(Complex::norm_sqr).sum();
+            prop_assert!((gamma - shared).abs() < 1e-6, "γ = {gamma} | {overlaps:?}");
             if first == second {
                 continue;
             }
@@ -280,7 +288,8 @@ proptest! {
             }
         }
         let mean = sum / (width * height) as f64;
-        // By Parseval the mean holds no noise, only the rounding of f32: the stated 3e−6.
-        prop_assert!((mean - 1.0).abs() < 3e-6, "mean {mean}");
+        // By Parseval the mean holds no noise, only the stated rounding and odd parts of the covariance.
+        let stated = if matches!(case.shape, Shape::Aberrated(_)) { 2e-5 } else { 3e-6 };
+        prop_assert!((mean - 1.0).abs() < stated, "mean {mean}");
     }
 }

@@ -403,15 +403,23 @@ impl PupilField {
     /// approximated. [`Pupil::overlap`] is its limit for a fine lattice.
     pub fn overlap(&self, shift: [i64; 2]) -> Complex<f64> {
         let [x, y] = self.lattice.nearest(shift);
-        let [period_x, period_y] = self.lattice.period;
         // On a lattice that closes early a displaced pupil may be met from both sides.
-        let mut sum = Complex::new(0.0, 0.0);
-        for x in [x - period_x, x, x + period_x] {
-            for y in [y - period_y, y, y + period_y] {
-                sum += self.mask.overlap([x, y]);
-            }
-        }
-        sum / self.mask.power()
+        self.sides()
+            .map(|side| self.overlap_on_one_side([x + side[0], y + side[1]]))
+            .sum()
+    }
+
+    /// That of two pupils which lie `shift` apart, not also the other way round.
+    pub(crate) fn overlap_on_one_side(&self, shift: [i64; 2]) -> Complex<f64> {
+        self.mask.overlap(shift) / self.mask.power()
+    }
+
+    /// The displacements by up to one period of the lattice.
+    pub(crate) fn sides(&self) -> impl Iterator<Item = [i64; 2]> {
+        let [x, y] = self.lattice.period;
+        [-x, 0, x]
+            .into_iter()
+            .flat_map(move |x| [-y, 0, y].map(|y| [x, y]))
     }
 }
 

@@ -9,6 +9,7 @@
 //! | [`beam`] | `tem00-beam` | Gaussian beams and laser lines as lights to evaluate and sample |
 //! | [`speckle`] | `tem00-speckle` | pupil field → pattern → stack → look-up |
 //! | [`decorrelation`] | `tem00-decorrelation` | imaging geometry → displacement → correlation |
+//! | [`coherence`] | `tem00-coherence` | linewidth → contrast, grain and line noise of speckle |
 //! | [`camera`] | `tem00-camera` | lens and sensor: projection, focus, tilt, distortion |
 //! | [`numerics`] | `tem00-numerics` | grids, pruned Fourier transform, pupil functions |
 #![cfg_attr(
@@ -38,6 +39,7 @@
 
 pub use tem00_beam as beam;
 pub use tem00_camera as camera;
+pub use tem00_coherence as coherence;
 #[cfg(any(feature = "tracer", feature = "triangulation"))]
 pub use tem00_config as config;
 pub use tem00_decorrelation as decorrelation;

@@ -35,6 +35,11 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &["tem00-numerics"],
         &["num-complex", "rand_chacha", "rand_core", "rayon"],
     ),
+    (
+        "tem00-coherence",
+        &["tem00-numerics"],
+        &["glam", "libm", "num-complex"],
+    ),
     ("tem00-decorrelation", &["tem00-numerics"], &["glam"]),
     (
         "tem00-camera",
@@ -196,6 +201,7 @@ const PHYSICS: &[&str] = &[
     "tem00-beam",
     "tem00-speckle",
     "tem00-decorrelation",
+    "tem00-coherence",
     "tem00-wave",
 ];
 

@@ -1,0 +1,304 @@
+use core::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
+
+use glam::DVec3;
+use num_complex::Complex;
+use tem00_numerics::{
+    cast::to_usize,
+    disc_overlap,
+    quadrature::{for_each_node, integrate},
+};
+
+use crate::{CoherenceError, lens};
+
+/// How a camera sees a rough surface that a source lights, for [`ResolutionCell::new`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellGeometry {
+    /// Direction from the surface to the source, of any length.
+    pub to_source: DVec3,
+    /// Direction from the surface to the centre of the pupil, of any length.
+    pub to_pupil: DVec3,
+    /// Normal of the surface, of any length.
+    pub normal: DVec3,
+    /// Aperture of the lens, `sin u = D / 2L`: half the pupil's diameter over its distance.
+    pub sin_aperture: f64,
+    /// Wavelength, in metres.
+    pub wavelength: f64,
+}
+
+/// The relief of a surface that is finer than a resolution cell. Lengths in metres.
+///
+/// What is longer than a cell tilts it and spreads no paths: the roughness of a drawing, over 0.8 mm, says little.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Relief {
+    /// Root mean square height.
+    pub rms_height: f64,
+    /// Distance ℓ at which the correlation `exp(−d²/ℓ²)` of the heights falls to 1/e. 0 stands for heights that differ
+    /// as soon as scatterers do.
+    pub correlation_length: f64,
+}
+
+/// The paths of the light that one resolution cell of a camera brings to one point of the image.
+///
+/// The sum of both directions splits into a part across the line of sight and one along the normal,
+///
+/// ```text
+/// l_S + l = v + q n,     v ⊥ l,     q = (1 + l_S·l) / n·l
+/// ```
+///
+/// so that a scatterer of the height z that is imaged at ξ has the path −v·ξ − qz. With κ the difference of two wave
+/// numbers, the fields of both correlate by
+///
+/// ```text
+/// |P̂(κ)| = chat(|κ|/κ_t) exp(−κ² σ_L²/2)     κ_t = 4π sin u / (λ |v|),   σ_L = q R_q
+/// ```
+///
+/// The first factor is the *tilt* of the cell: another wavelength sees the pupil displaced, as by a motion. In the plane
+/// of incidence, both angles positive on one side of the normal, `|v| = |sin θᵢ + sin θₒ| / cos θₒ` and
+/// `q = (1 + cos(θᵢ − θₒ)) / cos θₒ`, which is `cos θᵢ + cos θₒ` for θₒ = 0 and for mirror directions only: a height
+/// also shifts the image.
+///
+/// # Validity
+///
+/// Rough surfaces, `σ_L > λ/2`; many scatterers to a cell; normal heights without shadows and multiple scattering. A
+/// bandwidth small against the wavelength.
+///
+/// # References
+///
+/// - G. Parry, *Speckle patterns in partially coherent light*, in *Laser Speckle and Related Phenomena*, ed. J. C.
+///   Dainty, 1975.
+/// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 6.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ResolutionCell {
+    wavelength: f64,
+    sin_aperture: f64,
+    tilt: DVec3,
+    height_factor: f64,
+    relief: Relief,
+    defocus: f64,
+}
+
+impl ResolutionCell {
+    /// Creates the cell of a surface without relief, in focus.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless source and pupil stand on the side of the normal, `0 < sin_aperture ≤ 1` and the wavelength is
+    /// positive and finite.
+    pub fn new(geometry: CellGeometry) -> Result<Self, CoherenceError> {
+        let unit = |parameter, value: DVec3| {
+            let allowed = "finite and not zero";
+            value.try_normalize().ok_or(CoherenceError::Direction {
+                parameter,
+                value,
+                allowed,
+            })
+        };
+        let normal = unit("normal", geometry.normal)?;
+        let above = |parameter, value| {
+            let direction = unit(parameter, value)?;
+            let allowed = "on the side of the normal";
+            let refused = CoherenceError::Direction {
+                parameter,
+                value,
+                allowed,
+            };
+            (direction.dot(normal) > 1e-6)
+                .then_some(direction)
+                .ok_or(refused)
+        };
+        let (source, pupil) = (
+            above("to_source", geometry.to_source)?,
+            above("to_pupil", geometry.to_pupil)?,
+        );
+        let sin_aperture = geometry.sin_aperture;
+        if !(sin_aperture > 0.0 && sin_aperture <= 1.0) {
+            let allowed = "positive and at most 1";
+            return Err(CoherenceError::refused(
+                "sin_aperture",
+                sin_aperture,
+                allowed,
+            ));
+        }
+        check_length("wavelength", geometry.wavelength, geometry.wavelength > 0.0)?;
+        let height_factor = (1.0 + source.dot(pupil)) / normal.dot(pupil);
+        Ok(Self {
+            wavelength: geometry.wavelength,
+            sin_aperture,
+            tilt: source + pupil - height_factor * normal,
+            height_factor,
+            relief: Relief::default(),
+            defocus: 0.0,
+        })
+    }
+
+    /// Returns the cell of a surface with a relief.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless both lengths are finite and not negative.
+    pub fn with_relief(self, relief: Relief) -> Result<Self, CoherenceError> {
+        for (parameter, length) in [
+            ("rms_height", relief.rms_height),
+            ("correlation_length", relief.correlation_length),
+        ] {
+            check_length(parameter, length, length >= 0.0)?;
+        }
+        Ok(Self { relief, ..self })
+    }
+
+    /// Returns the cell out of focus, by the distance of the surface from the plane of focus, in metres, of either sign.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the distance is not finite.
+    pub fn with_defocus(self, defocus: f64) -> Result<Self, CoherenceError> {
+        if !defocus.is_finite() {
+            return Err(CoherenceError::refused(
+                "defocus",
+                defocus,
+                "finite, in metres",
+            ));
+        }
+        Ok(Self { defocus, ..self })
+    }
+
+    /// Returns the tilt v of the cell, across the line of sight: path per length on the object.
+    pub const fn tilt(&self) -> DVec3 {
+        self.tilt
+    }
+
+    /// Returns the path q per height.
+    pub const fn height_factor(&self) -> f64 {
+        self.height_factor
+    }
+
+    /// Returns the standard deviation `σ_L` of the paths by heights, in metres.
+    pub fn path_spread(&self) -> f64 {
+        self.height_factor * self.relief.rms_height
+    }
+
+    /// Returns the difference of wave numbers `κ_t`, in rad/m, by which the tilt displaces the field by the diameter of
+    /// the pupil; infinite without a tilt.
+    pub fn tilt_wave_number(&self) -> f64 {
+        2.0 * TAU * self.sin_aperture / (self.wavelength * self.tilt.length())
+    }
+
+    /// Returns the size of a speckle on the object, `λ / (2 sin u)`, in metres.
+    pub fn speckle_size(&self) -> f64 {
+        0.5 * self.wavelength / self.sin_aperture
+    }
+
+    /// Returns the width in rad/m of the finest feature of [`field_correlation`](Self::field_correlation).
+    pub(crate) fn scale(&self) -> f64 {
+        let blur = self.tilt.length() * self.defocus.abs() * self.sin_aperture;
+        let tilt = self.tilt_wave_number();
+        tilt.min(self.path_spread().recip()).min(2.0 / blur)
+    }
+
+    /// Returns the correlation P̂ of the fields of two wave numbers that differ by κ, in rad/m, in one point of the
+    /// image, for a dense relief without correlation length.
+    pub fn field_correlation(&self, kappa: f64) -> Complex<f64> {
+        self.shared_pupil(kappa) * self.height_correlation(kappa)
+    }
+
+    /// Returns the mean of `|P̂|²`, with the correlation length of the relief.
+    ///
+    /// ```text
+    /// ⟨|P̂|²⟩ = ∬ |h|² |h'|² exp(−κ² σ_L² (1 − ρ) + iκ v·(ξ − ξ'))     h the image of a point
+    /// ```
+    ///
+    /// The correlation length is taken into account in focus, and left out beside it.
+    pub fn squared_correlation(&self, kappa: f64) -> f64 {
+        let dense = self.field_correlation(kappa).norm_sqr();
+        let length = self.relief.correlation_length / self.speckle_size();
+        if length == 0.0 || self.relief.rms_height == 0.0 || self.defocus != 0.0 {
+            return dense;
+        }
+        let exponent = (kappa * self.path_spread()).powi(2);
+        let turns = TAU * kappa / self.tilt_wave_number();
+        let excess = |lag: f64| {
+            let correlation = (-(lag / length).powi(2)).exp();
+            let excess = (-exponent * (1.0 - correlation)).exp() - (-exponent).exp();
+            TAU * lag * image_autocorrelation(lag) * excess * libm::j0(turns * lag)
+        };
+        // The excess falls from lag 0 on over ℓ or, if heights are large, over less; the images over a speckle.
+        let width = length / (1.0 + exponent).sqrt();
+        let reach = 6.0 * length;
+        let near = (6.0 * width).min(reach);
+        let step = |width: f64| width.min(1.0).min(1.0 / turns.abs().max(1e-3));
+        let inner = integrate(excess, [0.0, near], step(width));
+        dense + inner + integrate(excess, [near, reach], step(length))
+    }
+
+    /// Returns `exp(−κ² σ_L²/2)`.
+    pub(crate) fn height_correlation(&self, kappa: f64) -> f64 {
+        (-0.5 * (kappa * self.path_spread()).powi(2)).exp()
+    }
+
+    /// Returns the part of the pupil that two wave numbers share, with the phases of defocus.
+    fn shared_pupil(&self, kappa: f64) -> Complex<f64> {
+        let shift = kappa / self.tilt_wave_number();
+        if self.defocus == 0.0 {
+            return disc_overlap(shift).into();
+        }
+        let depth = 0.5 * kappa * self.defocus * self.sin_aperture.powi(2);
+        let linear = 2.0 * depth * self.tilt.length() / self.sin_aperture;
+        lens::mean_over_lens(
+            shift,
+            [linear.abs() + depth.abs(), depth.abs()],
+            |along, across| linear * along - depth * (along * along + across * across),
+        )
+    }
+}
+
+/// Lags per speckle of the table of the autocorrelation, and the last one, after which a series is as good.
+const LAGS: f64 = 64.0;
+const LAST_LAG: f64 = 30.0;
+
+/// Returns the autocorrelation of the intensity of a point's image, in units of a speckle, of unit area.
+fn image_autocorrelation(lag: f64) -> f64 {
+    static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
+    if lag >= LAST_LAG {
+        // Of the cusp of chat² at 0: −8ρ/π + 4ρ³/3π.
+        return 2.0 / (PI * lag).powi(3) + 0.75 / (PI * lag).powi(5);
+    }
+    let table = TABLE.get_or_init(|| {
+        let count = to_usize(LAST_LAG * LAGS) + 3;
+        (0..count)
+            .map(|i| image_autocorrelation_by_frequencies(i as f64 / LAGS))
+            .collect()
+    });
+    let at = lag * LAGS;
+    let (first, t) = (to_usize(at), at.fract());
+    // Four points; the function is even.
+    let [a, b, c, d] = [first.abs_diff(1), first, first + 1, first + 2].map(|i| table[i]);
+    let [a, d] = [a * (1.0 - t) * (2.0 - t), d * (1.0 + t) * (1.0 - t)];
+    let inner = b * (1.0 - t) * (2.0 - t) * (1.0 + t) + c * t * (1.0 + t) * (2.0 - t);
+    0.5 * inner - t * (a + d) / 6.0
+}
+
+/// The transform of chat².
+fn image_autocorrelation_by_frequencies(lag: f64) -> f64 {
+    let mut sum = 0.0;
+    for_each_node([0.0, 1.0], 1.0 / (1.0 + lag), |frequency, weight| {
+        let transfer = disc_overlap(frequency).powi(2);
+        sum += weight * TAU * frequency * transfer * libm::j0(TAU * frequency * lag);
+    });
+    sum
+}
+
+fn check_length(parameter: &'static str, value: f64, possible: bool) -> Result<(), CoherenceError> {
+    if possible && value.is_finite() {
+        Ok(())
+    } else {
+        Err(CoherenceError::refused(
+            parameter,
+            value,
+            "finite and not negative, in metres",
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,187 @@
+use approx::assert_relative_eq;
+use proptest::prelude::*;
+
+use super::*;
+use tem00_numerics::jinc;
+
+fn geometry() -> CellGeometry {
+    CellGeometry {
+        to_source: DVec3::Z,
+        to_pupil: DVec3::new(0.5, 0.0, 0.75_f64.sqrt()),
+        normal: DVec3::Z,
+        sin_aperture: 0.025,
+        wavelength: 450e-9,
+    }
+}
+
+fn direction(degrees: f64) -> DVec3 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    DVec3::new(sin, 0.0, cos)
+}
+
+#[test]
+fn tilt_and_height_factor_are_those_of_the_plane_of_incidence() {
+    for [incidence, observation] in [
+        [0.0, 30.0],
+        [30.0, 0.0],
+        [-30.0, 30.0],
+        [20.0, 45.0],
+        [-50.0, 10.0],
+    ] {
+        let cell = ResolutionCell::new(CellGeometry {
+            to_source: 3.0 * direction(incidence),
+            to_pupil: direction(observation),
+            ..geometry()
+        });
+        let cell = cell.unwrap();
+        let [i, o] = [incidence, observation].map(f64::to_radians);
+        let tilt = (i.sin() + o.sin()).abs() / o.cos();
+        assert_relative_eq!(cell.tilt().length(), tilt, epsilon = 1e-12);
+        let factor = (1.0 + (i - o).cos()) / o.cos();
+        assert_relative_eq!(cell.height_factor(), factor, max_relative = 1e-12);
+        assert!(cell.tilt().dot(direction(observation)).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_image_of_a_point_is_like_itself() {
+    for lag in [0.0, 0.003, 0.31, 1.7, 12.345] {
+        let exact = image_autocorrelation_by_frequencies(lag);
+        assert_relative_eq!(image_autocorrelation(lag), exact, epsilon = 1e-7);
+    }
+    let [table, series] = [29.99, 30.01].map(image_autocorrelation);
+    assert_relative_eq!(table, series, max_relative = 0.05);
+}
+
+/// The sum over powers of the correlation, each a Gaussian about the tilt, by sums over two dimensions.
+#[test]
+fn correlated_heights_are_the_sum_of_their_powers() {
+    for (angle, length, kappa) in [
+        (0.0, 0.7, 2e5),
+        (0.0, 3.0, 5e5),
+        (30.0, 0.7, 2e5),
+        (30.0, 2.0, 1e5),
+    ] {
+        let cell = ResolutionCell::new(CellGeometry {
+            to_pupil: direction(angle),
+            ..geometry()
+        })
+        .unwrap();
+        let relief = Relief {
+            rms_height: 1.6e-6,
+            correlation_length: length * cell.speckle_size(),
+        };
+        let cell = cell.with_relief(relief).unwrap();
+        let shift = kappa / cell.tilt_wave_number();
+        let a = (kappa * cell.path_spread()).powi(2);
+        let mut power = (-a).exp();
+        let mut sum = power * disc_overlap(shift).powi(2);
+        for n in 1..60 {
+            let n = f64::from(n);
+            power *= a / n;
+            let sharp = (PI * length).powi(2) / n;
+            let density = |x: f64, y: f64| {
+                let apart = (x - shift).powi(2) + y * y;
+                disc_overlap(x.hypot(y)).powi(2) * sharp / PI * (-sharp * apart).exp()
+            };
+            let row = |y: f64| integrate(|x| density(x, y), [-1.0, 1.0], 0.25);
+            sum += power * 2.0 * integrate(row, [0.0, 1.0], 0.25);
+        }
+        assert_relative_eq!(cell.squared_correlation(kappa), sum, max_relative = 2e-4);
+    }
+}
+
+#[test]
+fn far_out_of_focus_a_tilt_acts_by_the_blur() {
+    let cell = ResolutionCell::new(geometry())
+        .unwrap()
+        .with_defocus(30e-3)
+        .unwrap();
+    // Some blurs beside a speckle: a jinc of the paths across the blur.
+    for kappa in [2e3, 4e3, 6e3] {
+        let x = kappa * cell.tilt().length() * 30e-3 * 0.025;
+        let found = cell.field_correlation(kappa).norm();
+        assert_relative_eq!(found, jinc(x).abs(), epsilon = 0.01);
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_name() {
+    let name = |geometry| ResolutionCell::new(geometry).unwrap_err().parameter();
+    assert_eq!(
+        name(CellGeometry {
+            normal: DVec3::ZERO,
+            ..geometry()
+        }),
+        "normal"
+    );
+    assert_eq!(
+        name(CellGeometry {
+            to_source: -DVec3::Z,
+            ..geometry()
+        }),
+        "to_source"
+    );
+    assert_eq!(
+        name(CellGeometry {
+            to_pupil: DVec3::NAN,
+            ..geometry()
+        }),
+        "to_pupil"
+    );
+    for bad in [0.0, -0.1, 1.1, f64::NAN] {
+        assert_eq!(
+            name(CellGeometry {
+                sin_aperture: bad,
+                ..geometry()
+            }),
+            "sin_aperture",
+            "{bad}"
+        );
+    }
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(
+            name(CellGeometry {
+                wavelength: bad,
+                ..geometry()
+            }),
+            "wavelength",
+            "{bad}"
+        );
+    }
+    let cell = ResolutionCell::new(geometry()).unwrap();
+    let relief = |rms_height, correlation_length| {
+        cell.with_relief(Relief {
+            rms_height,
+            correlation_length,
+        })
+        .unwrap_err()
+        .parameter()
+    };
+    assert_eq!(relief(-1e-6, 0.0), "rms_height");
+    assert_eq!(relief(1e-6, f64::NAN), "correlation_length");
+    assert_eq!(
+        cell.with_defocus(f64::NAN).unwrap_err().parameter(),
+        "defocus"
+    );
+}
+
+proptest! {
+    #[test]
+    fn correlations_are_one_at_most(
+        angles in prop::array::uniform2(-80.0..80.0_f64), height in 0.0..1e-4_f64, kappa in -1e6..1e6_f64,
+        defocus in -1e-3..1e-3_f64,
+    ) {
+        let cell = ResolutionCell::new(CellGeometry {
+            to_source: direction(angles[0]),
+            to_pupil: direction(angles[1]),
+            ..geometry()
+        });
+        let relief = Relief { rms_height: height, correlation_length: 0.0 };
+        let cell = cell.unwrap().with_relief(relief).unwrap();
+        for cell in [cell, cell.with_defocus(defocus).unwrap()] {
+            let squared = cell.squared_correlation(kappa);
+            prop_assert!((0.0..=1.0 + 1e-9).contains(&squared), "{squared}");
+        }
+    }
+}

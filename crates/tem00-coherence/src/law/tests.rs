@@ -1,0 +1,291 @@
+use approx::assert_relative_eq;
+use core::f64::consts::PI;
+use libm::{erf, erfc};
+
+use super::*;
+use crate::{CellGeometry, DVec3, LineShape, Relief};
+
+/// A camera of sin u = 0.025 and a source in one plane, by their angles in degrees.
+fn cell(wavelength: f64, incidence: f64, observation: f64, rms_height: f64) -> ResolutionCell {
+    let direction = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        DVec3::new(sin, 0.0, cos)
+    };
+    let geometry = CellGeometry {
+        to_source: direction(incidence),
+        to_pupil: direction(observation),
+        normal: DVec3::Z,
+        sin_aperture: 0.025,
+        wavelength,
+    };
+    let relief = Relief {
+        rms_height,
+        correlation_length: 0.0,
+    };
+    ResolutionCell::new(geometry)
+        .unwrap()
+        .with_relief(relief)
+        .unwrap()
+}
+
+fn gaussian(wavelength: f64, linewidth: f64) -> SpectralLine {
+    SpectralLine::new(wavelength, linewidth, LineShape::Gaussian).unwrap()
+}
+
+fn contrast(line: &SpectralLine, cell: &ResolutionCell) -> f64 {
+    PolychromaticSpeckle { line, cell }.contrast()
+}
+
+#[test]
+fn without_a_tilt_contrasts_have_closed_forms() {
+    let cell = cell(450e-9, -30.0, 30.0, 1.6e-6);
+    let r = cell.path_spread();
+    let lines = |shape| SpectralLine::new(450e-9, 7e-9, shape).unwrap();
+    let full = 2.0 * PI * 7e-9 / 450e-9_f64.powi(2);
+    let squares = [
+        (LineShape::Gaussian, {
+            let sigma = full / (8.0 * core::f64::consts::LN_2).sqrt();
+            (1.0 + (2.0 * sigma * r).powi(2)).sqrt().recip()
+        }),
+        (
+            LineShape::Lorentzian,
+            (full * r).powi(2).exp() * erfc(full * r),
+        ),
+        (LineShape::Rectangular, {
+            let b = full * r;
+            PI.sqrt() * erf(b) / b - (1.0 - (-b * b).exp()) / (b * b)
+        }),
+    ];
+    for (shape, squared) in squares {
+        let found = contrast(&lines(shape), &cell);
+        assert_relative_eq!(found * found, squared, max_relative = 1e-8);
+    }
+    let two = SpectralLine::from_peaks(&[[450e-9, 2.0], [453e-9, 1.0]]).unwrap();
+    let kappa = 2.0 * PI * (1.0 / 450e-9 - 1.0 / 453e-9);
+    let squared = (4.0 + 1.0 + 4.0 * (-(kappa * r).powi(2)).exp()) / 9.0;
+    assert_relative_eq!(contrast(&two, &cell).powi(2), squared, max_relative = 1e-12);
+}
+
+#[test]
+fn a_table_of_contrasts_and_line_noise_is_met() {
+    // λ in nm, height in µm; then C and σ_x over one wavelength at 1, 5, 20 and 40 nm.
+    let table = [
+        (
+            450.0,
+            0.4,
+            [0.984, 0.921, 0.716, 0.551],
+            [0.991, 0.950, 0.788, 0.625],
+        ),
+        (
+            450.0,
+            1.6,
+            [0.982, 0.888, 0.595, 0.435],
+            [0.989, 0.913, 0.631, 0.463],
+        ),
+        (
+            450.0,
+            6.0,
+            [0.959, 0.684, 0.364, 0.258],
+            [0.964, 0.695, 0.371, 0.263],
+        ),
+        (
+            660.0,
+            0.4,
+            [0.989, 0.947, 0.800, 0.652],
+            [0.994, 0.967, 0.863, 0.733],
+        ),
+        (
+            660.0,
+            6.0,
+            [0.983, 0.849, 0.514, 0.369],
+            [0.988, 0.863, 0.528, 0.379],
+        ),
+    ];
+    for (wavelength, height, contrasts, noises) in table {
+        let cell = cell(wavelength * 1e-9, 0.0, 30.0, height * 1e-6);
+        for (i, linewidth) in [1e-9, 5e-9, 20e-9, 40e-9].into_iter().enumerate() {
+            let line = gaussian(wavelength * 1e-9, linewidth);
+            let speckle = PolychromaticSpeckle {
+                line: &line,
+                cell: &cell,
+            };
+            assert_relative_eq!(speckle.contrast(), contrasts[i], epsilon = 1.1e-3);
+            assert_relative_eq!(
+                speckle.line_noise(Rows::Thin).sqrt(),
+                noises[i],
+                epsilon = 1.1e-3
+            );
+        }
+    }
+}
+
+#[test]
+fn shapes_of_one_width_differ() {
+    let cell = cell(450e-9, 0.0, 30.0, 1.6e-6);
+    let shaped = |shape| SpectralLine::new(450e-9, 10e-9, shape).unwrap();
+    let lines = [
+        (shaped(LineShape::Lorentzian), 0.556),
+        (
+            SpectralLine::from_peaks(&[[445e-9, 1.0], [455e-9, 1.0]]).unwrap(),
+            0.757,
+        ),
+        (shaped(LineShape::Gaussian), 0.765),
+        (SpectralLine::comb(450e-9, 10e-9, 5).unwrap(), 0.798),
+        (shaped(LineShape::Rectangular), 0.835),
+    ];
+    for (line, expected) in lines {
+        assert_relative_eq!(contrast(&line, &cell), expected, epsilon = 6e-4);
+    }
+}
+
+#[test]
+fn a_gaussian_line_has_an_approximate_closed_form() {
+    for (incidence, observation, height, linewidth) in [
+        (0.0, 30.0, 0.4e-6, 20e-9),
+        (0.0, 30.0, 1.6e-6, 5e-9),
+        (20.0, 45.0, 2.5e-6, 15e-9),
+        (30.0, 0.0, 6e-6, 10e-9),
+    ] {
+        let (cell, line) = (
+            cell(450e-9, incidence, observation, height),
+            gaussian(450e-9, linewidth),
+        );
+        let (sigma, tilt) = (line.wave_number_spread(), cell.tilt_wave_number());
+        let speckle = PolychromaticSpeckle {
+            line: &line,
+            cell: &cell,
+        };
+        let approximate = |linear: f64, square: f64| {
+            let q =
+                1.0 + 4.0 * sigma.powi(2) * (cell.path_spread().powi(2) + square / tilt.powi(2));
+            let x = linear * sigma / (tilt * q.sqrt());
+            ((x * x).exp() * erfc(x) / q.sqrt()).sqrt()
+        };
+        assert_relative_eq!(speckle.contrast(), approximate(2.40, 2.80), epsilon = 3e-3);
+        assert_relative_eq!(
+            speckle.line_noise(Rows::Thin).sqrt(),
+            approximate(1.30, 2.31),
+            epsilon = 4e-3
+        );
+        assert_relative_eq!(
+            speckle.line_noise(Rows::Tall).sqrt(),
+            approximate(1.05, 1.97),
+            epsilon = 4e-3
+        );
+    }
+}
+
+/// Sums over a lattice of wave numbers and of points of two displaced pupils, which know no chat.
+#[test]
+fn frames_and_grains_of_a_tilted_cell() {
+    let cell = cell(450e-9, 0.0, 30.0, 0.0);
+    let spread = 0.15 * cell.tilt_wave_number();
+    let linewidth =
+        spread * (8.0 * core::f64::consts::LN_2).sqrt() * 450e-9_f64.powi(2) / (2.0 * PI);
+    let line = gaussian(450e-9, linewidth);
+    let speckle = PolychromaticSpeckle {
+        line: &line,
+        cell: &cell,
+    };
+    let lattice = |shift: [f64; 2], lag: [f64; 2]| {
+        let (mut sum, mut count) = (Complex::ZERO, 0.0);
+        let places = || (-60..=60).map(|i| f64::from(i) / 60.25);
+        for (x, y) in places().flat_map(|x| places().map(move |y| (x, y))) {
+            let is_first = x.hypot(y) < 1.0;
+            let is_second = (x + 2.0 * shift[0]).hypot(y + 2.0 * shift[1]) < 1.0;
+            count += f64::from(u8::from(is_first));
+            if is_first && is_second {
+                sum += Complex::cis(PI * (lag[0] * x + lag[1] * y));
+            }
+        }
+        (sum / count).norm_sqr()
+    };
+    let mean = |displacement: [f64; 2], lag: [f64; 2]| {
+        let steps = (-60..=60).map(|i| f64::from(i) / 15.0);
+        let weight = |x: f64| (-0.25 * x * x).exp();
+        let total: f64 = steps.clone().map(weight).sum();
+        let values =
+            steps.map(|x| weight(x) * lattice([displacement[0] + 0.15 * x, displacement[1]], lag));
+        values.sum::<f64>() / total
+    };
+    for displacement in [[0.0, 0.0], [0.25, 0.0], [0.0, 0.25], [0.5, 0.0], [0.0, 0.5]] {
+        let expected = mean(displacement, [0.0, 0.0]);
+        assert_relative_eq!(speckle.covariance(displacement), expected, epsilon = 4e-3);
+    }
+    for lag in [[1.0, 0.0], [0.0, 1.0], [0.4, 0.3]] {
+        let expected = mean([0.0, 0.0], lag);
+        assert_relative_eq!(speckle.autocovariance(lag), expected, epsilon = 3e-3);
+    }
+    assert_relative_eq!(
+        speckle.covariance([0.0, 0.0]),
+        speckle.contrast().powi(2),
+        max_relative = 1e-12
+    );
+}
+
+#[test]
+fn long_relief_spreads_no_paths() {
+    let (line, cell) = (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 0.0, 1.6e-6));
+    let long = |length: f64| {
+        let relief = Relief {
+            rms_height: 1.6e-6,
+            correlation_length: length * cell.speckle_size(),
+        };
+        contrast(&line, &cell.with_relief(relief).unwrap())
+    };
+    assert_relative_eq!(long(1e-3), contrast(&line, &cell), epsilon = 1e-3);
+    // Waves over scatterers, whose errors are 0.006, 0.007, 0.005 and 0.004.
+    for (length, waves) in [(0.5, 0.757), (1.0, 0.815), (2.0, 0.885), (4.0, 0.937)] {
+        assert_relative_eq!(long(length), waves, epsilon = 3e-3);
+    }
+    assert!(long(300.0) > 0.999);
+}
+
+#[test]
+fn a_defocused_cell_mixes_the_paths_of_its_blur() {
+    let (line, cell) = (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 0.0));
+    for defocus in [1.5e-3, -1.5e-3] {
+        let cell = cell.with_defocus(defocus).unwrap();
+        assert_relative_eq!(contrast(&line, &cell), 0.401, epsilon = 1e-3);
+    }
+}
+
+#[test]
+fn squares_of_modes_sum_to_the_squared_contrast() {
+    let lorentzian = SpectralLine::new(450e-9, 4e-9, LineShape::Lorentzian).unwrap();
+    let comb = SpectralLine::comb(450e-9, 10e-9, 5).unwrap();
+    let tilted = cell(450e-9, 0.0, 30.0, 0.0);
+    for (line, cell) in [
+        (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 1.6e-6)),
+        (gaussian(450e-9, 20e-9), tilted),
+        (
+            gaussian(450e-9, 20e-9),
+            tilted.with_defocus(0.5e-3).unwrap(),
+        ),
+        (lorentzian, cell(450e-9, 0.0, 30.0, 1.6e-6)),
+        (comb, cell(450e-9, 0.0, 30.0, 1.6e-6)),
+    ] {
+        let speckle = PolychromaticSpeckle {
+            line: &line,
+            cell: &cell,
+        };
+        let modes = speckle.modes();
+        let squares: f64 = modes.iter().map(|mode| mode * mode).sum();
+        assert_relative_eq!(squares.sqrt(), speckle.contrast(), epsilon = 1.2e-3);
+        assert_relative_eq!(modes.iter().sum::<f64>(), 1.0, max_relative = 1e-12);
+    }
+}
+
+#[test]
+fn modes_of_heights_alone_fall_by_one_ratio() {
+    let (line, cell) = (gaussian(450e-9, 10e-9), cell(450e-9, -30.0, 30.0, 1.6e-6));
+    let speckle = PolychromaticSpeckle {
+        line: &line,
+        cell: &cell,
+    };
+    let squared = speckle.contrast().powi(2);
+    let ratio = (1.0 - squared) / (1.0 + squared);
+    for (n, mode) in (0..5).zip(speckle.modes()) {
+        assert_relative_eq!(mode, (1.0 - ratio) * ratio.powi(n), epsilon = 1e-4);
+    }
+}

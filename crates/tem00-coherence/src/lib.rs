@@ -1,0 +1,35 @@
+#![doc = include_str!("../README.md")]
+//!
+//! # Conventions
+//!
+//! - SI units and radians. Wave numbers are those of vacuum, in rad/m; κ is the difference of two.
+//! - Directions lead *away from the surface*: to the source, to the pupil.
+//! - Displacements across the pupil are in pupil diameters, lags on the object in speckle sizes `λ / (2 sin u)`; both
+//!   along the tilt of the resolution cell, then across it.
+//! - Paths are *group* paths: in glass every length counts with the group index.
+//!
+//! # Main types
+//!
+//! | question | answer |
+//! |---|---|
+//! | Which light? | [`SpectralLine`], [`LineShape`] |
+//! | Which paths does one point of the image see? | [`ResolutionCell`], [`Relief`] |
+//! | What happens to the speckle? | [`PolychromaticSpeckle`] |
+//!
+//! # Scope and non-goals
+//!
+//! One transverse mode; no dispersion of the line by the colour of the surface; scattering within one relief happens
+//! once. Surfaces are rough: below `σ_L = λ/2` a mirror part is left that these laws do not know.
+
+mod cell;
+mod eigenvalues;
+mod error;
+mod law;
+mod lens;
+mod line;
+
+pub use cell::{CellGeometry, Relief, ResolutionCell};
+pub use error::CoherenceError;
+pub use glam::DVec3;
+pub use law::{PolychromaticSpeckle, Rows};
+pub use line::{LineShape, SpectralLine};

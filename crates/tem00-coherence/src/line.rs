@@ -1,0 +1,394 @@
+use core::f64::consts::{FRAC_PI_2, LN_2, PI, TAU};
+
+use num_complex::Complex;
+use tem00_numerics::{
+    quadrature::{for_each_node, integrate},
+    sinc,
+};
+
+use crate::CoherenceError;
+
+/// The spectrum of a laser or of another narrow source.
+///
+/// ```text
+/// S(k) = Σ wⱼ P(k − kⱼ)              Σ wⱼ = 1, P of unit area
+/// γ(l) = ∫ S(k) e^{i(k − k₀)l} dk    degree of coherence at the path difference l
+/// R(κ) = ∫ S(k) S(k + κ) dk          density of the difference of two draws of the wave number
+/// ```
+///
+/// One peak stands for a single line, several for the modes of a cavity; all peaks have one shape P. Linewidths are
+/// full widths at half maximum of the power per wavelength; inside, everything is a wave number.
+///
+/// # Validity
+///
+/// Widths small against the wavelength, at most a tenth of it: to there a shape in wavelength is as good as the same
+/// shape in wave number, and a pupil in units of the wavelength is the same for all of the line.
+///
+/// # Examples
+///
+/// A single-mode laser is coherent over its paths, a superluminescent diode of 20 nm over some 20 µm:
+///
+/// ```
+/// use tem00_coherence::{LineShape, SpectralLine};
+///
+/// let laser = SpectralLine::monochromatic(650e-9)?;
+/// assert_eq!(laser.squared_coherence(1.0), 1.0);
+/// let diode = SpectralLine::new(650e-9, 20e-9, LineShape::Gaussian)?;
+/// assert!((diode.coherence_length() - 14.03e-6).abs() < 0.01e-6);
+/// # Ok::<(), tem00_coherence::CoherenceError>(())
+/// ```
+///
+/// # References
+///
+/// - J. W. Goodman, *Statistical Optics*, 1985, ch. 5.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpectralLine {
+    wave_number: f64,
+    shape: LineShape,
+    /// Standard deviation, half width or full width of a peak in rad/m, by its shape; 0 without a width.
+    width: f64,
+    peaks: Vec<Peak>,
+}
+
+/// The shape of a peak.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LineShape {
+    /// A normal distribution: many modes under a gain curve, inhomogeneous broadening, a filter.
+    #[default]
+    Gaussian,
+    /// A Cauchy distribution, of long wings: spontaneous emission, a single mode of a diode.
+    Lorentzian,
+    /// Constant between two ends: a wavelength that is swept during the exposure.
+    Rectangular,
+}
+
+/// A peak of a spectrum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Peak {
+    /// Wave number less that of the line, in rad/m.
+    offset: f64,
+    /// The fraction of the power.
+    weight: f64,
+}
+
+/// The largest linewidth in wavelengths.
+const MAX_RELATIVE_WIDTH: f64 = 0.1;
+const LINEWIDTH: &str = "from 0 to a tenth of the wavelength, in metres; the two may be swapped";
+/// The largest number of peaks whose widths count for modes.
+const MAX_WIDE_PEAKS: usize = 24;
+const WAVELENGTH: &str = "positive and finite, in metres";
+
+/// Standard deviations of a Gaussian and half widths of a Lorentzian after which nothing is left: 1e−16 of the first,
+/// 1e−12 of the second.
+const GAUSSIAN_REACH: f64 = 8.5;
+const LORENTZIAN_REACH: f64 = 1e12;
+
+impl SpectralLine {
+    /// The largest number of peaks.
+    pub const MAX_PEAKS: usize = 256;
+
+    /// Creates light of one wavelength, in metres.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless it is positive and finite.
+    pub fn monochromatic(wavelength: f64) -> Result<Self, CoherenceError> {
+        Self::new(wavelength, 0.0, LineShape::Gaussian)
+    }
+
+    /// Creates a line from its central wavelength and its linewidth, both in metres.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless the wavelength is positive and finite and the linewidth lies between 0 and a tenth of it.
+    pub fn new(wavelength: f64, linewidth: f64, shape: LineShape) -> Result<Self, CoherenceError> {
+        let single = Peak {
+            offset: 0.0,
+            weight: 1.0,
+        };
+        Self::checked(wavelength, vec![single])?.with_linewidth(linewidth, shape)
+    }
+
+    /// Creates `count` equal peaks without a width, the first and the last `span` apart, in metres: the longitudinal
+    /// modes of a cavity.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new) for the span, and unless there are between 1 and `MAX_PEAKS`.
+    pub fn comb(wavelength: f64, span: f64, count: usize) -> Result<Self, CoherenceError> {
+        let width = full_width(wavelength, span, "span")?;
+        let place = |j: usize| match count {
+            1 => 0.0,
+            _ => j as f64 / (count - 1) as f64 - 0.5,
+        };
+        let peaks = (0..count).map(|j| Peak {
+            offset: width * place(j),
+            weight: (count as f64).recip(),
+        });
+        Self::checked(wavelength, peaks.take(Self::MAX_PEAKS + 1).collect())
+    }
+
+    /// Creates peaks without a width from wavelengths in metres, each with its power in any unit. The wavelength of
+    /// the line is that of the mean wave number.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless there are between 1 and `MAX_PEAKS`, within a tenth of the wavelength, and powers are finite
+    /// and positive.
+    pub fn from_peaks(peaks: &[[f64; 2]]) -> Result<Self, CoherenceError> {
+        check_count(peaks.len())?;
+        for &[wavelength, power] in peaks {
+            check_wavelength(wavelength)?;
+            if !(power > 0.0 && power.is_finite()) {
+                return Err(CoherenceError::refused(
+                    "power",
+                    power,
+                    "positive and finite",
+                ));
+            }
+        }
+        let largest = peaks.iter().fold(0.0, |most: f64, peak| most.max(peak[1]));
+        let total: f64 = peaks.iter().map(|peak| peak[1] / largest).sum();
+        let peaks = peaks.iter().map(|&[wavelength, power]| Peak {
+            offset: TAU / wavelength,
+            weight: power / largest / total,
+        });
+        let mut peaks: Vec<Peak> = peaks.collect();
+        let mean: f64 = peaks.iter().map(|peak| peak.offset * peak.weight).sum();
+        for peak in &mut peaks {
+            peak.offset -= mean;
+            if peak.offset.abs() > MAX_RELATIVE_WIDTH * mean {
+                let wavelength = TAU / (peak.offset + mean);
+                let allowed = "within a tenth of the mean, in metres";
+                return Err(CoherenceError::refused("wavelength", wavelength, allowed));
+            }
+        }
+        Self::checked(TAU / mean, peaks)
+    }
+
+    /// Returns the line with a linewidth and a shape for each of its peaks.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn with_linewidth(self, linewidth: f64, shape: LineShape) -> Result<Self, CoherenceError> {
+        let full = full_width(self.wavelength(), linewidth, "linewidth")?;
+        let width = match shape {
+            LineShape::Gaussian => full / (8.0 * LN_2).sqrt(),
+            LineShape::Lorentzian => 0.5 * full,
+            LineShape::Rectangular => full,
+        };
+        Ok(Self {
+            shape,
+            width,
+            ..self
+        })
+    }
+
+    fn checked(wavelength: f64, peaks: Vec<Peak>) -> Result<Self, CoherenceError> {
+        check_wavelength(wavelength)?;
+        check_count(peaks.len())?;
+        Ok(Self {
+            wave_number: TAU / wavelength,
+            shape: LineShape::Gaussian,
+            width: 0.0,
+            peaks,
+        })
+    }
+
+    /// Returns the wavelength of the mean wave number, in metres.
+    pub fn wavelength(&self) -> f64 {
+        TAU / self.wave_number
+    }
+
+    /// Returns the mean wave number k₀ = 2π/λ, in rad/m.
+    pub const fn wave_number(&self) -> f64 {
+        self.wave_number
+    }
+
+    /// Whether all of the light has one wavelength.
+    pub fn is_monochromatic(&self) -> bool {
+        self.width == 0.0 && self.peaks.len() == 1
+    }
+
+    /// Returns the standard deviation of the wave number in rad/m: infinite for a Lorentzian.
+    pub fn wave_number_spread(&self) -> f64 {
+        let within = match self.shape {
+            LineShape::Gaussian => self.width.powi(2),
+            LineShape::Lorentzian if self.width > 0.0 => f64::INFINITY,
+            LineShape::Lorentzian => 0.0,
+            LineShape::Rectangular => self.width.powi(2) / 12.0,
+        };
+        let moment = |power| {
+            self.peaks
+                .iter()
+                .map(move |peak| peak.weight * peak.offset.powi(power))
+        };
+        let between = moment(2).sum::<f64>() - moment(1).sum::<f64>().powi(2);
+        (within + between.max(0.0)).sqrt()
+    }
+
+    /// Returns the complex degree of coherence γ at a path difference, in metres, without the phase of the mean wave.
+    pub fn coherence(&self, path: f64) -> Complex<f64> {
+        let x = self.width * path;
+        let within = match self.shape {
+            LineShape::Gaussian => (-0.5 * x * x).exp(),
+            LineShape::Lorentzian => (-x.abs()).exp(),
+            LineShape::Rectangular => sinc(0.5 * x),
+        };
+        let peaks = self.peaks.iter();
+        let between = peaks.map(|peak| Complex::from_polar(peak.weight, peak.offset * path));
+        within * between.sum::<Complex<f64>>()
+    }
+
+    /// Returns `|γ|²` at a path difference, in metres.
+    pub fn squared_coherence(&self, path: f64) -> f64 {
+        self.coherence(path).norm_sqr()
+    }
+
+    /// Returns the coherence length ∫ |γ|² dl over all path differences, in metres: for one Gaussian peak
+    /// 0.664 λ²/Δλ. It is infinite for peaks without a width.
+    pub fn coherence_length(&self) -> f64 {
+        TAU * self.mean_over_differences(f64::INFINITY, |_| 1.0, true)
+    }
+
+    /// Returns the mean `∫ R(κ) f(κ) dκ` of a function over the difference κ of two wave numbers of the line, in rad/m.
+    ///
+    /// `scale` is the width of the finest feature of f; f may have a cusp at 0, and falls or stays as it is far away.
+    pub fn mean_over_pairs(&self, scale: f64, f: impl Fn(f64) -> f64) -> f64 {
+        self.mean_over_differences(scale, f, false)
+    }
+
+    /// The mean over the differences of two wave numbers; or, of the density of differences, the value at zero.
+    fn mean_over_differences(&self, scale: f64, f: impl Fn(f64) -> f64, density: bool) -> f64 {
+        let mut sum = 0.0;
+        for first in &self.peaks {
+            for second in &self.peaks {
+                let (weight, offset) = (first.weight * second.weight, first.offset - second.offset);
+                sum += weight
+                    * match (density, self.width > 0.0) {
+                        (true, true) => self.pair_density(offset),
+                        (true, false) => f64::INFINITY,
+                        (false, false) => f(offset),
+                        (false, true) => self.mean_about(offset, scale, &f),
+                    };
+            }
+        }
+        sum
+    }
+
+    /// Returns wave numbers, less the mean one, with the fractions of the power for which they stand in an integral:
+    /// some for each peak with a width. Of more than 24 peaks the widths are left out.
+    pub(crate) fn nodes(&self) -> Vec<[f64; 2]> {
+        let is_wide = self.width > 0.0 && self.peaks.len() <= MAX_WIDE_PEAKS;
+        let mut nodes = Vec::new();
+        for peak in &self.peaks {
+            if is_wide {
+                let panels = if self.peaks.len() <= 4 { 4.0 } else { 1.0 };
+                self.shape.for_each_node(panels, |x, weight| {
+                    nodes.push([peak.offset + self.width * x, peak.weight * weight]);
+                });
+            } else {
+                nodes.push([peak.offset, peak.weight]);
+            }
+        }
+        nodes
+    }
+
+    /// The density of the difference of two draws from one peak.
+    fn pair_density(&self, kappa: f64) -> f64 {
+        let x = kappa / self.width;
+        let shape = match self.shape {
+            LineShape::Gaussian => (-0.25 * x * x).exp() / (4.0 * PI).sqrt(),
+            LineShape::Lorentzian => 2.0 / (PI * (4.0 + x * x)),
+            LineShape::Rectangular => (1.0 - x.abs()).max(0.0),
+        };
+        shape / self.width
+    }
+
+    /// ∫ f(κ) times the density of the difference of two draws from two peaks that are `offset` apart.
+    fn mean_about(&self, offset: f64, scale: f64, f: &impl Fn(f64) -> f64) -> f64 {
+        let reach = match self.shape {
+            LineShape::Gaussian => 2.0_f64.sqrt() * GAUSSIAN_REACH * self.width,
+            LineShape::Lorentzian => LORENTZIAN_REACH * self.width,
+            LineShape::Rectangular => self.width,
+        };
+        let integrand = |kappa: f64| self.pair_density(kappa - offset) * f(kappa);
+        let mut breaks = Vec::new();
+        for (centre, width) in [(offset, self.width), (0.0, scale)] {
+            if width.is_finite() && width > 0.0 {
+                let steps = ladder()
+                    .map(|step| step * width)
+                    .take_while(|step| *step < 4.0 * reach);
+                breaks.extend(steps.flat_map(|step| [centre - step, centre + step]));
+            }
+            breaks.push(centre);
+        }
+        breaks.retain(|at| (at - offset).abs() < reach);
+        breaks.extend([offset - reach, offset + reach]);
+        breaks.sort_unstable_by(f64::total_cmp);
+        breaks
+            .windows(2)
+            .map(|ends| integrate(integrand, [ends[0], ends[1]], f64::INFINITY))
+            .sum()
+    }
+}
+
+impl LineShape {
+    /// Calls `visit` with nodes of a peak of width 1 and their fractions of its power, 16 on each panel.
+    fn for_each_node(self, panels: f64, mut visit: impl FnMut(f64, f64)) {
+        let (reach, width) = match self {
+            Self::Gaussian => (5.5, 11.0),
+            Self::Lorentzian => (FRAC_PI_2, PI),
+            Self::Rectangular => (0.5, 1.0),
+        };
+        for_each_node([-reach, reach], width / panels, |x, weight| match self {
+            Self::Gaussian => visit(x, weight * (-0.5 * x * x).exp() / TAU.sqrt()),
+            Self::Lorentzian => visit(x.tan(), weight / PI),
+            Self::Rectangular => visit(x, weight),
+        });
+    }
+}
+
+/// Steps away from a feature of width 1: even ones beside it, doubling ones far away.
+fn ladder() -> impl Iterator<Item = f64> {
+    let near = (1..=16).map(|step| 0.5 * f64::from(step));
+    near.chain((4..60).map(|power| 2.0_f64.powi(power)))
+}
+
+fn check_count(peaks: usize) -> Result<(), CoherenceError> {
+    if (1..=SpectralLine::MAX_PEAKS).contains(&peaks) {
+        Ok(())
+    } else {
+        Err(CoherenceError::refused(
+            "peaks",
+            peaks as f64,
+            "from 1 to 256",
+        ))
+    }
+}
+
+fn check_wavelength(wavelength: f64) -> Result<(), CoherenceError> {
+    if wavelength > 0.0 && wavelength.is_finite() {
+        Ok(())
+    } else {
+        Err(CoherenceError::refused(
+            "wavelength",
+            wavelength,
+            WAVELENGTH,
+        ))
+    }
+}
+
+/// Returns a width in wavelength as one in wave number.
+fn full_width(wavelength: f64, width: f64, parameter: &'static str) -> Result<f64, CoherenceError> {
+    check_wavelength(wavelength)?;
+    if width >= 0.0 && width <= MAX_RELATIVE_WIDTH * wavelength {
+        Ok(TAU / wavelength * (width / wavelength))
+    } else {
+        Err(CoherenceError::refused(parameter, width, LINEWIDTH))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,151 @@
+use approx::assert_relative_eq;
+use proptest::prelude::*;
+
+use super::*;
+
+const SHAPES: [LineShape; 3] = [
+    LineShape::Gaussian,
+    LineShape::Lorentzian,
+    LineShape::Rectangular,
+];
+
+fn shaped(linewidth: f64, shape: LineShape) -> SpectralLine {
+    SpectralLine::new(650e-9, linewidth, shape).unwrap()
+}
+
+#[test]
+fn coherence_lengths_have_closed_forms() {
+    let unit = 650e-9_f64.powi(2) / 3e-9;
+    let factors = [(2.0 * LN_2 / PI).sqrt(), PI.recip(), 1.0];
+    for (shape, factor) in SHAPES.into_iter().zip(factors) {
+        let line = shaped(3e-9, shape);
+        assert_relative_eq!(line.coherence_length(), factor * unit, max_relative = 1e-12);
+    }
+    let single = SpectralLine::monochromatic(650e-9).unwrap();
+    assert_eq!(single.coherence_length().to_bits(), f64::INFINITY.to_bits());
+}
+
+#[test]
+fn the_squared_coherence_is_the_transform_of_the_pairs() {
+    let single = |shape| shaped(3e-9, shape);
+    let comb = |shape| {
+        SpectralLine::comb(650e-9, 5e-9, 4)
+            .unwrap()
+            .with_linewidth(0.3e-9, shape)
+            .unwrap()
+    };
+    for line in SHAPES
+        .into_iter()
+        .flat_map(|shape| [single(shape), comb(shape)])
+    {
+        if line.shape == LineShape::Lorentzian {
+            continue;
+        }
+        for path in [1e-6, 20e-6, 90e-6, 200e-6] {
+            let mut sum = 0.0;
+            for (first, second) in line
+                .peaks
+                .iter()
+                .flat_map(|a| line.peaks.iter().map(move |b| (a, b)))
+            {
+                let offset = first.offset - second.offset;
+                let part = |kappa: f64| line.pair_density(kappa) * ((kappa + offset) * path).cos();
+                let half = [[-12.0 * line.width, 0.0], [0.0, 12.0 * line.width]];
+                let part: f64 = half
+                    .into_iter()
+                    .map(|ends| integrate(part, ends, 0.25 * line.width))
+                    .sum();
+                sum += first.weight * second.weight * part;
+            }
+            assert_relative_eq!(sum, line.squared_coherence(path), epsilon = 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_cavity_is_coherent_again_after_a_round_trip() {
+    let comb = SpectralLine::comb(450e-9, 1e-9, 21).unwrap();
+    let spacing = 1e-9 / 20.0;
+    let round_trip = 450e-9_f64.powi(2) / spacing;
+    assert_relative_eq!(comb.squared_coherence(round_trip), 1.0, epsilon = 1e-12);
+    assert!(comb.squared_coherence(0.5 * round_trip) < 0.01);
+    let modes = comb
+        .with_linewidth(0.002e-9, LineShape::Lorentzian)
+        .unwrap();
+    let alone = SpectralLine::new(450e-9, 0.002e-9, LineShape::Lorentzian).unwrap();
+    let (again, once) = (
+        modes.squared_coherence(round_trip),
+        alone.squared_coherence(round_trip),
+    );
+    assert_relative_eq!(again, once, max_relative = 1e-12);
+}
+
+#[test]
+fn spreads_are_those_of_the_shapes() {
+    let full = TAU * 3e-9 / 650e-9_f64.powi(2);
+    let gaussian = shaped(3e-9, LineShape::Gaussian).wave_number_spread();
+    assert_relative_eq!(gaussian, full / (8.0 * LN_2).sqrt(), max_relative = 1e-12);
+    let rectangular = shaped(3e-9, LineShape::Rectangular).wave_number_spread();
+    assert_relative_eq!(rectangular, full / 12.0_f64.sqrt(), max_relative = 1e-12);
+    let two = SpectralLine::comb(650e-9, 3e-9, 2)
+        .unwrap()
+        .wave_number_spread();
+    assert_relative_eq!(two, 0.5 * full, max_relative = 1e-12);
+}
+
+#[test]
+fn peaks_stand_about_their_mean() {
+    let line = SpectralLine::from_peaks(&[[650e-9, 3e300], [651e-9, 1e300]]).unwrap();
+    let mean = 0.75 * TAU / 650e-9 + 0.25 * TAU / 651e-9;
+    assert_relative_eq!(line.wave_number(), mean, max_relative = 1e-14);
+    let moment: f64 = line
+        .peaks
+        .iter()
+        .map(|peak| peak.offset * peak.weight)
+        .sum();
+    assert!(moment.abs() < 1e-9 * line.wave_number_spread(), "{moment}");
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_name() {
+    let name = |line: Result<SpectralLine, CoherenceError>| line.unwrap_err().parameter();
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(
+            name(SpectralLine::monochromatic(bad)),
+            "wavelength",
+            "{bad}"
+        );
+    }
+    for bad in [-1e-9, f64::NAN, f64::INFINITY, 66e-9] {
+        let line = SpectralLine::new(650e-9, bad, LineShape::Gaussian);
+        assert_eq!(name(line), "linewidth", "{bad}");
+        assert_eq!(name(SpectralLine::comb(650e-9, bad, 3)), "span", "{bad}");
+    }
+    for count in [0, 257, usize::MAX] {
+        assert_eq!(
+            name(SpectralLine::comb(650e-9, 1e-9, count)),
+            "peaks",
+            "{count}"
+        );
+    }
+    assert_eq!(name(SpectralLine::from_peaks(&[])), "peaks");
+    assert_eq!(name(SpectralLine::from_peaks(&[[650e-9, 0.0]])), "power");
+    assert_eq!(
+        name(SpectralLine::from_peaks(&[[650e-9, 1.0], [450e-9, 1.0]])),
+        "wavelength"
+    );
+}
+
+proptest! {
+    #[test]
+    fn coherence_is_one_at_most(
+        linewidth in 0.0..60e-9_f64, shape in 0..3_usize, count in 1..30_usize, path in -1e3..1e3_f64,
+    ) {
+        let line = SpectralLine::comb(650e-9, linewidth, count).unwrap();
+        let line = line.with_linewidth(0.1 * linewidth, SHAPES[shape]).unwrap();
+        let squared = line.squared_coherence(path);
+        prop_assert!((0.0..=1.0 + 1e-12).contains(&squared), "{squared}");
+        let mean = line.mean_over_pairs(f64::INFINITY, |_| 1.0);
+        prop_assert!((mean - 1.0).abs() < 2e-9, "{mean}");
+    }
+}

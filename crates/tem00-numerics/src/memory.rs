@@ -76,8 +76,9 @@ const SMALL: u64 = 16 << 20;
 
 /// Memory that a limit leaves beside what `threads` set aside, as many of them as can.
 fn left(limit: u64, taken: u64, threads: u64) -> u64 {
-    let rest = limit.saturating_sub(taken).saturating_sub(SMALL);
-    rest - threads.min(rest / ARENA) * ARENA
+    let free = limit.saturating_sub(taken);
+    let shared = free - threads.min(free / ARENA) * ARENA;
+    shared.saturating_sub(SMALL)
 }
 
 #[cfg(test)]
@@ -114,6 +115,9 @@ mod tests {
         assert_eq!(address_space_limit(""), None);
         assert_eq!(left(400 << 20, 100 << 20, 3), 92 << 20);
         assert_eq!(left(200 << 20, 100 << 20, 3), 20 << 20);
+        // What a thread can set aside is gone, even where all that is small needs it.
+        assert_eq!(left(170 << 20, 100 << 20, 3), 0);
+        assert_eq!(left(163 << 20, 100 << 20, 3), 47 << 20);
         assert_eq!(left(800, 900, 3), 0);
     }
 

@@ -23,7 +23,9 @@
 
 mod cell;
 mod eigenvalues;
+
 mod error;
+mod heights;
 mod law;
 mod lens;
 mod line;
@@ -31,5 +33,6 @@ mod line;
 pub use cell::{CellGeometry, Relief, ResolutionCell};
 pub use error::CoherenceError;
 pub use glam::DVec3;
+pub use heights::representative_heights;
 pub use law::{PolychromaticSpeckle, Rows};
 pub use line::{LineShape, SpectralLine};

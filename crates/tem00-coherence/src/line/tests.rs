@@ -136,6 +136,57 @@ fn what_cannot_be_is_refused_by_name() {
     );
 }
 
+#[test]
+fn draws_follow_the_line() {
+    let single = |shape| shaped(3e-9, shape);
+    let comb = SpectralLine::comb(650e-9, 5e-9, 3).unwrap();
+    let modes = comb
+        .clone()
+        .with_linewidth(0.3e-9, LineShape::Gaussian)
+        .unwrap();
+    for line in [
+        single(LineShape::Gaussian),
+        single(LineShape::Rectangular),
+        comb,
+        modes,
+    ] {
+        // Characteristic function of the draws against the degree of coherence.
+        for path in [10e-6, 40e-6, 120e-6] {
+            let count = 20_000;
+            let draws = (0..count).map(|i| line.draw((f64::from(i) + 0.5) / f64::from(count)));
+            let mean = draws
+                .map(|kappa| Complex::cis(kappa * path))
+                .sum::<Complex<f64>>()
+                / f64::from(count);
+            assert!(
+                (mean - line.coherence(path)).norm() < 3e-4,
+                "{line:?} {path}"
+            );
+        }
+    }
+    // Half of a Lorentzian lies within its half width.
+    let line = single(LineShape::Lorentzian);
+    assert_relative_eq!(line.draw(0.75), line.width, max_relative = 1e-12);
+    assert_relative_eq!(line.draw(0.25), -line.width, max_relative = 1e-12);
+    assert_relative_eq!(
+        line.draw(1.0),
+        0.1 * line.wave_number(),
+        max_relative = 1e-12
+    );
+}
+
+#[test]
+fn the_normal_quantile_undoes_the_distribution() {
+    for u in [1e-15, 1e-6, 0.02, 0.3, 0.5, 0.5001, 0.9, 0.999_999] {
+        let x = normal_quantile(u);
+        let below = 0.5 * libm::erfc(-x / 2.0_f64.sqrt());
+        assert_relative_eq!(below, u, max_relative = 1e-12);
+    }
+    let gaussian = shaped(3e-9, LineShape::Gaussian);
+    let spread = gaussian.effective_spread();
+    assert_relative_eq!(spread, gaussian.wave_number_spread(), max_relative = 1e-6);
+}
+
 proptest! {
     #[test]
     fn coherence_is_one_at_most(

@@ -1,5 +1,6 @@
 //! The look-up of a stack: at a point, at many, and as the mean over a box.
 
+use num_complex::Complex;
 use tem00_numerics::vectorised;
 
 use crate::{
@@ -24,6 +25,23 @@ impl SpeckleStack {
             Interpolation::CubicSpline => self.intensity::<4>(x, y, u),
             Interpolation::Bilinear => self.intensity::<2>(x, y, u),
             Interpolation::Nearest => self.intensity::<1>(x, y, u),
+        }
+    }
+
+    /// Returns the amplitude, of mean square 1, whose squared magnitude [`intensity_at`](Self::intensity_at)
+    /// returns: for light whose fields add.
+    ///
+    /// It is the field in the frame of the pupil of the slice at u or before it. Stacks along one path have one
+    /// frame, so that their amplitudes add.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `x`, `y` and `u` are finite.
+    pub fn amplitude_at(&self, x: f64, y: f64, u: f64) -> Complex<f64> {
+        match self.interpolation {
+            Interpolation::CubicSpline => self.amplitude::<4>(x, y, u),
+            Interpolation::Bilinear => self.amplitude::<2>(x, y, u),
+            Interpolation::Nearest => self.amplitude::<1>(x, y, u),
         }
     }
 
@@ -113,6 +131,18 @@ impl SpeckleStack {
             Interpolation::Bilinear => self.weighted::<2>(&nodes, u),
             Interpolation::Nearest => self.weighted::<1>(&nodes, u),
         }
+    }
+
+    fn amplitude<const N: usize>(&self, x: f64, y: f64, u: f64) -> Complex<f64>
+    where
+        Taps<N, 1>: Kernel<1>,
+    {
+        let positions = self.positions(&[u]);
+        let layer = self.layer(positions.slices[0], positions.between[0]);
+        let [along_x, along_y, _] = &self.periods;
+        let (x, y) = (Taps::around(&[x], along_x), Taps::around(&[y], along_y));
+        let ([re, im], mean_square) = layer.amplitudes::<N, 1>(&x, &y, &positions.fractions);
+        Complex::new(f64::from(re[0]), f64::from(im[0])) / f64::from(mean_square[0]).sqrt()
     }
 
     #[inline(always)]

@@ -63,6 +63,24 @@ impl Layer<'_> {
         period / (period / speckle_size + step.abs())
     }
 
+    /// The amplitudes, as real and imaginary parts, at points whose fractions of the way to the next slice
+    /// are `f`, and their mean squares.
+    #[inline(always)]
+    pub(super) fn amplitudes<const N: usize, const L: usize>(
+        &self,
+        x: &Taps<N, L>,
+        y: &Taps<N, L>,
+        f: &[f32; L],
+    ) -> ([[f32; L]; 2], [f32; L]) {
+        let mut amplitude = amplitudes(&self.here.coefficients, x, y);
+        let mut mean_square = even_at(&self.here.mean_square, &x.fractions, &y.fractions);
+        if let Some(next) = self.next {
+            self.blend(next, &mut amplitude, [x, y], f);
+            mean_square = self.blended_square(next, &mean_square, [x, y], f);
+        }
+        (amplitude, mean_square)
+    }
+
     /// The intensities at points whose fractions of the way to the next slice are `f`.
     #[inline(always)]
     pub(super) fn intensities<const N: usize, const L: usize>(
@@ -71,12 +89,7 @@ impl Layer<'_> {
         y: &Taps<N, L>,
         f: &[f32; L],
     ) -> [f64; L] {
-        let mut amplitude = amplitudes(&self.here.coefficients, x, y);
-        let mut mean_square = even_at(&self.here.mean_square, &x.fractions, &y.fractions);
-        if let Some(next) = self.next {
-            self.blend(next, &mut amplitude, [x, y], f);
-            mean_square = self.blended_square(next, &mean_square, [x, y], f);
-        }
+        let (amplitude, mean_square) = self.amplitudes(x, y, f);
         let mut intensity = [0.0; L];
         for (i, intensity) in intensity.iter_mut().enumerate() {
             let [re, im] = [amplitude[0][i], amplitude[1][i]];

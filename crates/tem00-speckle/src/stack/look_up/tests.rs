@@ -339,3 +339,26 @@ fn fringes_between_slices_are_those_of_both_pupils_together() {
         }
     }
 }
+
+#[test]
+fn fields_of_two_stacks_add_to_speckle_of_the_same_law() {
+    let field = |seed| PupilField::new(128, 64, seed).unwrap();
+    let stacks = [1, 2].map(|seed| stack(&field(seed), PATHS[2], Interpolation::CubicSpline));
+    let (mut mean, mut square) = (0.0, 0.0);
+    let count = 40_000;
+    for i in 0..count {
+        let (x, y) = (f64::from(i) * 0.377, f64::from(i) * 1.913);
+        let u = f64::from(i % 7) * 0.25;
+        let amplitudes = [0, 1].map(|part: usize| stacks[part].amplitude_at(x, y, u));
+        let alone = stacks[0].intensity_at(x, y, u);
+        assert!(
+            (amplitudes[0].norm_sqr() - alone).abs() <= 1e-6 * (1.0 + alone),
+            "{u}"
+        );
+        let sum = 0.6 * amplitudes[0] + Complex::new(0.0, 0.8) * amplitudes[1];
+        mean += sum.norm_sqr() / f64::from(count);
+        square += sum.norm_sqr().powi(2) / f64::from(count);
+    }
+    assert!((mean - 1.0).abs() < 0.02, "{mean}");
+    assert!((square / (mean * mean) - 2.0).abs() < 0.08, "{square}");
+}

@@ -48,7 +48,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     ),
     (
         "tem00-config",
-        &["tem00-numerics"],
+        &["tem00-coherence", "tem00-numerics"],
         &["glam", "libm", "strsim", "toml", "toml_edit"],
     ),
     (
@@ -71,6 +71,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &[
             "tem00-beam",
             "tem00-camera",
+            "tem00-coherence",
             "tem00-decorrelation",
             "tem00-numerics",
             "tem00-paper",

@@ -40,6 +40,16 @@ impl CoherenceError {
         }
     }
 
+    /// Returns the error with another name of the parameter, if it is about `own`.
+    pub(crate) fn about(mut self, own: &str, other: &'static str) -> Self {
+        if let Self::OutOfRange { parameter, .. } = &mut self
+            && *parameter == own
+        {
+            *parameter = other;
+        }
+        self
+    }
+
     /// Returns the name of the parameter that is refused.
     pub const fn parameter(&self) -> &'static str {
         match self {

@@ -12,7 +12,7 @@
 //!
 //! | question | answer |
 //! |---|---|
-//! | Which light? | [`SpectralLine`], [`LineShape`] |
+//! | Which light? | [`SpectralLine`], [`LineShape`]; as files state it, [`LaserLight`] |
 //! | Which paths does one point of the image see? | [`ResolutionCell`], [`Relief`] |
 //! | What happens to the speckle? | [`PolychromaticSpeckle`] |
 //!
@@ -29,6 +29,7 @@ mod heights;
 mod law;
 mod lens;
 mod line;
+mod spectrum;
 
 pub use cell::{CellGeometry, Relief, ResolutionCell};
 pub use error::CoherenceError;
@@ -36,3 +37,4 @@ pub use glam::DVec3;
 pub use heights::representative_heights;
 pub use law::{PolychromaticSpeckle, Rows};
 pub use line::{LineShape, SpectralLine};
+pub use spectrum::{LaserLight, Spectrum};

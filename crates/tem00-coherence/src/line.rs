@@ -43,7 +43,7 @@ use crate::CoherenceError;
 /// - J. W. Goodman, *Statistical Optics*, 1985, ch. 5.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpectralLine {
-    wave_number: f64,
+    wavelength: f64,
     shape: LineShape,
     /// Standard deviation, half width or full width of a peak in rad/m, by its shape; 0 without a width.
     width: f64,
@@ -189,7 +189,7 @@ impl SpectralLine {
         check_wavelength(wavelength)?;
         check_count(peaks.len())?;
         Ok(Self {
-            wave_number: TAU / wavelength,
+            wavelength,
             shape: LineShape::Gaussian,
             width: 0.0,
             peaks,
@@ -197,13 +197,13 @@ impl SpectralLine {
     }
 
     /// Returns the wavelength of the mean wave number, in metres.
-    pub fn wavelength(&self) -> f64 {
-        TAU / self.wave_number
+    pub const fn wavelength(&self) -> f64 {
+        self.wavelength
     }
 
     /// Returns the mean wave number k₀ = 2π/λ, in rad/m.
     pub const fn wave_number(&self) -> f64 {
-        self.wave_number
+        TAU / self.wavelength
     }
 
     /// Whether all of the light has one wavelength.

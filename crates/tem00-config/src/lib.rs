@@ -11,7 +11,7 @@
 //! # Main types
 //!
 //! [`read_document`] opens a file of a [`Format`] as a [`Document`] of [`Section`]s, whose [`Value`]s are
-//! read one by one. What is wrong is a [`Problem`], which becomes a [`ConfigError`] once its file is known.
+//! read one by one; [`read_laser_light`] reads the keys that scenes and set-ups have in common. What is wrong is a [`Problem`], which becomes a [`ConfigError`] once its file is known.
 //!
 //! # Scope and non-goals
 //!
@@ -23,6 +23,7 @@ mod error;
 mod folder;
 mod format;
 mod input_file;
+mod laser_light;
 mod printable;
 mod quantity;
 mod reader;
@@ -39,6 +40,7 @@ pub use format::{DocumentKind, Format, kind_of_document};
 pub use input_file::{
     FileAccess, MAX_ASSET_BYTES, MAX_TEXT_BYTES, is_standard_input, open_input, read_input,
 };
+pub use laser_light::{LASER_LIGHT, read_laser_light};
 pub use printable::{is_hazard, printable, printable_line};
 pub use quantity::{
     ANGLE, DIMENSIONS, DURATION, Dimension, LENGTH, MEMORY, NUMBER, POWER, RADIANCE,

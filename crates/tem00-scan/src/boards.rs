@@ -7,8 +7,8 @@ use std::sync::Arc;
 use glam::{DMat3, DVec2, DVec3};
 use tem00_camera::Camera;
 use tem00_tracer::{
-    Laser, Light, Material, MeshInstance, RigidMotion, Scene, Shape, Surface, SurfaceSpeckle,
-    TracerError, Trajectory, TriangleMesh,
+    Laser, Light, Material, MeshInstance, Relief, RigidMotion, Scene, Shape, Surface,
+    SurfaceSpeckle, TracerError, Trajectory, TriangleMesh,
 };
 use tem00_triangulation::{
     BoardSettings, Checkerboard, LaserPlane, TriangulationError, Triangulator,
@@ -152,7 +152,7 @@ fn surface(board: &Checkerboard, pose: &RigidMotion, parity: usize) -> Result<Su
         material: Material::lambertian(REFLECTANCE[parity])?,
         trajectory: Trajectory::default(),
         speckle: SurfaceSpeckle::default(),
-        rms_height: None,
+        relief: Relief::default(),
     })
 }
 

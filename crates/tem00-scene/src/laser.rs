@@ -4,7 +4,8 @@ use core::ops::Bound;
 use glam::DVec3;
 use tem00_beam::{AngularProfile, BeamError, FanGeometry, FocusCurve, GaussianBeam, LineProfile};
 use tem00_config::{
-    ANGLE, Choice, Document, LENGTH, NUMBER, POWER, Problem, Section, Value, rejected,
+    ANGLE, Choice, Document, LENGTH, NUMBER, POWER, Problem, Section, Value, read_laser_light,
+    rejected,
 };
 use tem00_tracer::{BeamShape, Laser, LaserDescription};
 
@@ -13,6 +14,9 @@ use crate::placement::{Placement, across};
 
 pub(crate) const KEYS: &[&str] = &[
     "wavelength",
+    "linewidth",
+    "spectrum",
+    "lines",
     "power",
     "position",
     "look_at",
@@ -60,11 +64,11 @@ pub(crate) fn read(root: &Document<'_>) -> Result<Vec<Laser>, Problem> {
 }
 
 fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
-    let wavelength = section.required("wavelength", "\"650 nm\"")?.within(
-        &LENGTH,
-        10e-9..=1e-3,
-        "from 10 nm to 1 mm",
-    )?;
+    let light = read_laser_light(section)?;
+    let spectral_line = light
+        .line()
+        .map_err(|error| rejected(&error, Some(error.parameter()), &[section]))?;
+    let wavelength = spectral_line.wavelength();
     let placement = Placement::read(section)?;
     let axis = placement.axis();
     let (kind, beam) = section.one_of("shape", SHAPES)?;
@@ -74,7 +78,7 @@ fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
     };
     let sideways = across(axis, DVec3::X, DVec3::Y);
     let description = LaserDescription {
-        wavelength,
+        line: spectral_line,
         power: section.required("power", "\"5 mW\"")?.positive(&POWER)?,
         position: placement.position,
         look_at: placement.look_at,

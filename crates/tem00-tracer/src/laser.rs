@@ -6,6 +6,7 @@ use tem00_beam::{
     AstigmaticBeam, BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight,
     LineProfile, LocatedBeam, NextEvent, Placement, SpotLight, TabulatedLineLight,
 };
+use tem00_coherence::SpectralLine;
 use tem00_decorrelation::RigidMotion;
 
 pub use self::emission::{EmittedRay, SampledIllumination};
@@ -14,8 +15,8 @@ use crate::{TracerError, Trajectory};
 /// Parameters of a [`Laser`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserDescription {
-    /// The vacuum wavelength, in metres.
-    pub wavelength: f64,
+    /// The vacuum wavelength and the spectrum about it. The beam is that of its middle.
+    pub line: SpectralLine,
     /// The power of the beam, in watts.
     pub power: f64,
     /// The centre of the aperture, in metres.
@@ -89,7 +90,7 @@ impl Laser {
             direction: description.look_at - description.position,
             fan_axis: description.line_direction,
         };
-        let (wavelength, power) = (description.wavelength, description.power);
+        let (wavelength, power) = (description.line.wavelength(), description.power);
         let source = match &description.shape {
             &BeamShape::Spot {
                 waist_radius,
@@ -165,9 +166,14 @@ impl Laser {
         &self.description
     }
 
-    /// Returns the vacuum wavelength, in metres.
+    /// Returns the vacuum wavelength of the middle of the line, in metres.
     pub const fn wavelength(&self) -> f64 {
-        self.description.wavelength
+        self.description.line.wavelength()
+    }
+
+    /// Returns the spectrum of the light.
+    pub const fn spectral_line(&self) -> &SpectralLine {
+        &self.description.line
     }
 
     /// Returns the power of the beam, in watts.

@@ -74,5 +74,8 @@ pub use trajectory::{Keyframe, Rotation, Trajectory};
 /// The beam types that a scene is described with.
 pub use tem00_beam::{FanGeometry, LineProfile};
 
+/// The spectrum of a laser and the relief of a surface.
+pub use tem00_coherence::{LineShape, Relief, SpectralLine};
+
 /// Motion of rigid bodies.
 pub use tem00_decorrelation::RigidMotion;

@@ -1,4 +1,5 @@
 use tem00_camera::Camera;
+use tem00_coherence::Relief;
 
 use crate::{Laser, Light, Material, RenderOptions, Shape, Trajectory};
 
@@ -15,8 +16,8 @@ pub struct Surface {
     pub trajectory: Trajectory,
     /// The composition of its speckle.
     pub speckle: SurfaceSpeckle,
-    /// The standard deviation of the height of its microscopic relief, in metres, if it is known.
-    pub rms_height: Option<f64>,
+    /// The relief that is finer than what the camera resolves; of no height where it is not known.
+    pub relief: Relief,
 }
 
 impl Surface {
@@ -28,7 +29,7 @@ impl Surface {
             material,
             trajectory: Trajectory::default(),
             speckle: SurfaceSpeckle::default(),
-            rms_height: None,
+            relief: Relief::default(),
         }
     }
 }

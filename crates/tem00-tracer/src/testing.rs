@@ -3,7 +3,9 @@
 use glam::DVec3;
 use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 
-use crate::{BeamShape, Laser, LaserDescription, Material, Rectangle, Scene, Shape, Surface};
+use crate::{
+    BeamShape, Laser, LaserDescription, Material, Rectangle, Scene, Shape, SpectralLine, Surface,
+};
 
 /// A camera of 25 mm at f/8 that looks at the origin, in focus there.
 pub(crate) fn camera(position: DVec3, resolution: [usize; 2]) -> CameraDescription {
@@ -26,7 +28,7 @@ pub(crate) fn camera(position: DVec3, resolution: [usize; 2]) -> CameraDescripti
 /// A round spot of 650 nm and 1 mW whose waist lies at the origin, where it is aimed at.
 pub(crate) fn spot(position: DVec3, waist_radius: f64) -> LaserDescription {
     LaserDescription {
-        wavelength: 650e-9,
+        line: SpectralLine::monochromatic(650e-9).unwrap(),
         power: 1e-3,
         position,
         look_at: DVec3::ZERO,

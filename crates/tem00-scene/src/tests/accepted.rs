@@ -245,7 +245,7 @@ fn every_key_reaches_the_scene() {
     assert_relative_eq!(camera.focus_distance, 0.9);
     assert_relative_eq!(camera.pixel_pitch, 5e-6);
     let laser = scene.lasers[0].description();
-    assert_relative_eq!(laser.wavelength, 532e-9);
+    assert_relative_eq!(laser.line.wavelength(), 532e-9);
     assert_eq!(laser.look_at, 1e-3 * DVec3::Y, "look_at");
     let diagonal = DVec3::new(1.0, 1.0, 0.0).normalize();
     assert_near(laser.line_direction, diagonal);

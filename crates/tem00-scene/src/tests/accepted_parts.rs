@@ -13,8 +13,8 @@ use crate::{SceneFile, read_scene};
 
 use super::{CAMERA, LASER, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
 use tem00_tracer::{
-    Crop, Cylinder, Environment, Filter, Keyframe, LaserEvents, Light, Material, Metal, Method,
-    Rotation, Shape, Surface, SurfaceSpeckle, Trajectory,
+    Crop, Cylinder, Environment, Filter, Keyframe, LaserEvents, Light, LineShape, Material, Metal,
+    Method, Relief, Rotation, Shape, SpectralLine, Surface, SurfaceSpeckle, Trajectory,
 };
 
 /// Reads the minimal scene with further keys of its surface.
@@ -130,28 +130,65 @@ fn a_finish_names_the_metal_and_its_height() {
     let iron = Material::conductor(Metal::Iron, 0.3);
     assert_eq!(milled.material, iron.unwrap(), "steel");
     // √(π/2) √(0.8 · 6.3) µm.
-    let height = milled.rms_height.unwrap();
+    let height = milled.relief.rms_height;
     assert!((height - 2.8137e-6).abs() < 1e-10, "{height}");
     let given = "rms_height = \"1 um\"\n\
                  conductor = { finish = \"ground stainless steel\", roughness = 0.1 }";
     let ground = surface(given);
     let steel = Material::conductor(Metal::StainlessSteel, 0.1);
     assert_eq!(ground.material, steel.unwrap(), "stainless steel");
-    assert_eq!(ground.rms_height, Some(1e-6), "the one that is given");
+    assert_eq!(ground.relief.rms_height, 1e-6, "the one that is given");
 }
 
 #[test]
 fn surfaces_tell_what_their_speckle_is_made_of() {
     let plain = surface("");
     assert_eq!(plain.speckle, SurfaceSpeckle::default(), "one pattern");
-    assert_eq!(plain.rms_height, None, "the height is not known");
+    assert_eq!(plain.relief, Relief::default(), "the height is not known");
     let paper = surface("rms_height = \"2 um\"\nspeckle = { patterns = 3, polarisation = 0.25 }");
     let expected = SurfaceSpeckle {
         patterns: 3,
         polarisation: 0.25,
     };
     assert_eq!(paper.speckle, expected, "three patterns");
-    assert_eq!(paper.rms_height, Some(2e-6), "2 µm");
+    let relief = Relief {
+        rms_height: 2e-6,
+        correlation_length: 0.0,
+    };
+    assert_eq!(paper.relief, relief, "finer than any scatterer");
+    let relief = Relief {
+        correlation_length: 5e-6,
+        ..relief
+    };
+    let longer = surface("rms_height = \"2 um\"\ncorrelation_length = \"5 um\"");
+    assert_eq!(longer.relief, relief, "correlated over 5 µm");
+}
+
+#[test]
+fn lasers_tell_their_spectra() {
+    let line = |keys: &str| {
+        let scene = parse(&with("wavelength = \"650 nm\"", keys)).map_err(|e| e.to_string());
+        scene.unwrap().lasers[0].spectral_line().clone()
+    };
+    let middle = 650e-9;
+    let single = SpectralLine::monochromatic(middle).unwrap();
+    assert_eq!(line("wavelength = \"650 nm\""), single);
+    assert_eq!(line("wavelength = \"650 nm\"\nlinewidth = 0"), single);
+    for (name, shape) in [
+        ("gaussian", LineShape::Gaussian),
+        ("lorentzian", LineShape::Lorentzian),
+        ("rectangular", LineShape::Rectangular),
+    ] {
+        let keys = format!("wavelength = \"650 nm\"\nlinewidth = \"8 nm\"\nspectrum = \"{name}\"");
+        assert_eq!(line(&keys), SpectralLine::new(middle, 8e-9, shape).unwrap());
+    }
+    let comb = "wavelength = \"650 nm\"\nlinewidth = \"2 nm\"\nspectrum = \"comb\"\nlines = 5";
+    assert_eq!(line(comb), SpectralLine::comb(middle, 2e-9, 5).unwrap());
+    let peaks = SpectralLine::from_peaks(&[[448e-9, 1.0], [451e-9, 2.0]]).unwrap();
+    let listed = "spectrum = [[\"448 nm\", 1], [\"451 nm\", 2]]";
+    assert_eq!(line(listed), peaks);
+    let wide = peaks.with_linewidth(1e-9, LineShape::Gaussian).unwrap();
+    assert_eq!(line(&format!("{listed}\nlinewidth = \"1 nm\"")), wide);
 }
 
 #[test]

@@ -142,7 +142,7 @@ fn motion_must_be_one_that_can_be_followed() {
 
 #[test]
 fn materials_must_be_possible() {
-    let cases: [(&str, &[&str]); 17] = [
+    let cases: [(&str, &[&str]); 19] = [
         (
             "oren_nayar.roughness = \"91 deg\"",
             &["`roughness`", "from 0° to 90°"],
@@ -181,6 +181,14 @@ fn materials_must_be_possible() {
         ("one_sided = 1", &["`one_sided`", "true or false"]),
         ("rms_height = 0", &["`rms_height`", "positive"]),
         ("rms_height = \"1 W\"", &["`rms_height`", "a length in"]),
+        (
+            "correlation_length = \"1 um\"",
+            &["`correlation_length`", "relief of a known height"],
+        ),
+        (
+            "correlation_length = \"-1 um\"\nrms_height = 1e-6",
+            &["`correlation_length`", "zero or positive"],
+        ),
     ];
     for (keys, words) in cases {
         assert_refused(&surface(keys), 10, words);
@@ -275,5 +283,68 @@ fn environments_must_be_possible() {
     ];
     for (keys, words) in cases {
         assert_refused(&light(keys), 11, words);
+    }
+}
+
+#[test]
+fn spectra_must_be_possible() {
+    let laser = |keys: &str| with("wavelength = \"650 nm\"", keys);
+    let cases: [(&str, usize, &[&str]); 13] = [
+        ("linewidth = 1e-9", 3, &["`wavelength`"]),
+        (
+            "wavelength = 650e-9\nlinewidth = -1e-9",
+            5,
+            &["`linewidth`", "zero or positive"],
+        ),
+        (
+            "wavelength = 650e-9\nlinewidth = \"100 nm\"",
+            5,
+            &["linewidth", "a tenth of the wavelength", "100 nm"],
+        ),
+        (
+            "wavelength = 650e-9\nspectrum = \"comb\"",
+            5,
+            &["`spectrum`", "`linewidth`"],
+        ),
+        (
+            "wavelength = 650e-9\nlinewidth = 1e-9\nspectrum = \"gausian\"",
+            6,
+            &["`spectrum`", "\"gaussian\""],
+        ),
+        (
+            "wavelength = 650e-9\nlinewidth = 1e-9\nspectrum = 3",
+            6,
+            &["`spectrum`", "[wavelength, power]"],
+        ),
+        (
+            "wavelength = 650e-9\nlinewidth = 1e-9\nspectrum = \"comb\"",
+            3,
+            &["`lines`"],
+        ),
+        (
+            "wavelength = 650e-9\nlinewidth = 1e-9\nspectrum = \"comb\"\nlines = 0",
+            7,
+            &["`lines`", "from 1 to 256"],
+        ),
+        (
+            "wavelength = 650e-9\nlinewidth = 1e-9\nlines = 5",
+            6,
+            &["`lines`", "\"comb\""],
+        ),
+        (
+            "wavelength = 650e-9\nspectrum = [[650e-9, 1]]",
+            4,
+            &["`wavelength`", "`spectrum`", "one of the two"],
+        ),
+        ("spectrum = []", 4, &["peaks", "from 1 to 256"]),
+        (
+            "spectrum = [[650e-9, 1], [450e-9, 1]]",
+            4,
+            &["wavelength", "within a tenth of the mean"],
+        ),
+        ("spectrum = [[650e-9, 0]]", 4, &["element 2", "positive"]),
+    ];
+    for (keys, line, words) in cases {
+        assert_refused(&laser(keys), line, words);
     }
 }

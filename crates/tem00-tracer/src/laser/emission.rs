@@ -40,10 +40,10 @@ impl Laser {
     ///
     /// ```
     /// use glam::DVec3;
-    /// use tem00_tracer::{BeamShape, Laser, LaserDescription};
+    /// use tem00_tracer::{BeamShape, Laser, LaserDescription, SpectralLine};
     ///
     /// let laser = Laser::new(LaserDescription {
-    ///     wavelength: 650e-9,
+    ///     line: SpectralLine::monochromatic(650e-9)?,
     ///     power: 5e-3,
     ///     position: DVec3::new(0.0, 0.0, 0.3),
     ///     look_at: DVec3::ZERO,

@@ -298,13 +298,15 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::{Formulas, LaserDescription, Surface, SurfaceSpeckle, Trajectory, testing};
+    use crate::{
+        Formulas, LaserDescription, SpectralLine, Surface, SurfaceSpeckle, Trajectory, testing,
+    };
 
     /// Two plates that move apart under two lasers, one of them with a sum of patterns.
     fn scene() -> Scene {
         let red = testing::spot(DVec3::new(0.1, 0.0, 0.25), 2e-3);
         let green = LaserDescription {
-            wavelength: 532e-9,
+            line: SpectralLine::monochromatic(532e-9).unwrap(),
             position: DVec3::new(-0.1, 0.0, 0.25),
             ..red.clone()
         };

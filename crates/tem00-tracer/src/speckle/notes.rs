@@ -51,7 +51,7 @@ impl Scene {
                     incidence: 0.0,
                     viewing: 0.0,
                     resolution_cell: geometry.object_speckle_size(),
-                    rms_height: surface.rms_height,
+                    rms_height: Some(surface.relief.rms_height).filter(|height| *height > 0.0),
                 })?;
                 let smooth = roughness.filter(|roughness| !roughness.is_fully_developed());
                 notes.extend(smooth.map(|roughness| RoughnessNote {
@@ -70,7 +70,7 @@ mod tests {
     use glam::DVec3;
 
     use crate::{
-        LaserDescription, Material, Metal,
+        LaserDescription, Material, Metal, SpectralLine,
         testing::{self, camera, plate, spot},
     };
 
@@ -78,7 +78,7 @@ mod tests {
     fn scene() -> crate::Scene {
         let red = spot(DVec3::new(0.1, 0.0, 0.3), 0.1e-3);
         let green = LaserDescription {
-            wavelength: 532e-9,
+            line: SpectralLine::monochromatic(532e-9).unwrap(),
             ..red.clone()
         };
         let plate = plate(DVec3::ZERO, DVec3::Z, [0.02, 0.02]);
@@ -90,7 +90,7 @@ mod tests {
         let mut scene = scene();
         let mut noted = |material: Material, rms_height: Option<f64>| -> Vec<usize> {
             scene.surfaces[0].material = material;
-            scene.surfaces[0].rms_height = rms_height;
+            scene.surfaces[0].relief.rms_height = rms_height.unwrap_or(0.0);
             let notes = scene.roughness_notes().unwrap();
             notes.iter().map(|note| note.laser).collect()
         };

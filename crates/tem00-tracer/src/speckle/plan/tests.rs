@@ -2,7 +2,7 @@ use glam::DVec3;
 
 use super::*;
 use crate::{
-    BeamShape, Keyframe, Laser, LaserDescription, Material, Shape, Sphere, Surface,
+    BeamShape, Keyframe, Laser, LaserDescription, Material, Shape, SpectralLine, Sphere, Surface,
     testing::{self, camera},
 };
 
@@ -377,7 +377,7 @@ fn printed_formulas_get_the_circle_of_the_paper() {
 #[test]
 fn lasers_have_seeds_of_their_own() {
     let second = LaserDescription {
-        wavelength: 532e-9,
+        line: SpectralLine::monochromatic(532e-9).unwrap(),
         ..testing::spot(DVec3::new(0.1, 0.0, 0.2), 1e-3)
     };
     let mut scene = scene(2, DVec3::ZERO);

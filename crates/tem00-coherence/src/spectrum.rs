@@ -1,0 +1,134 @@
+use crate::{CoherenceError, LineShape, SpectralLine};
+
+/// The light of a laser as a data sheet or a file states it: numbers as they were given. Lengths in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LaserLight {
+    /// The wavelength in vacuum of the middle of the line.
+    pub wavelength: f64,
+    /// The linewidth, full width at half maximum; 0 for light of one wavelength.
+    pub linewidth: f64,
+    /// What lies within.
+    pub spectrum: Spectrum,
+}
+
+/// The form of a spectrum.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Spectrum {
+    /// One peak, as wide as the linewidth.
+    Peak(LineShape),
+    /// So many equal lines without a width, the first and the last a linewidth apart: the longitudinal modes of a
+    /// cavity.
+    Comb(u32),
+    /// Pairs of a wavelength, in metres, and a power, in any unit. Each of them is a Gaussian peak of the linewidth.
+    Peaks(Vec<[f64; 2]>),
+}
+
+impl Default for Spectrum {
+    fn default() -> Self {
+        Self::Peak(LineShape::Gaussian)
+    }
+}
+
+impl LaserLight {
+    /// Creates light of one wavelength, in metres.
+    pub fn monochromatic(wavelength: f64) -> Self {
+        Self {
+            wavelength,
+            linewidth: 0.0,
+            spectrum: Spectrum::default(),
+        }
+    }
+
+    /// Creates the light of peaks, see [`Spectrum::Peaks`], about the wavelength of their mean wave number.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`SpectralLine::from_peaks`].
+    pub fn of_peaks(peaks: Vec<[f64; 2]>, linewidth: f64) -> Result<Self, CoherenceError> {
+        Ok(Self {
+            wavelength: SpectralLine::from_peaks(&peaks)?.wavelength(),
+            linewidth,
+            spectrum: Spectrum::Peaks(peaks),
+        })
+    }
+
+    /// Returns the spectral line.
+    ///
+    /// # Errors
+    ///
+    /// Those of the constructors of [`SpectralLine`], and an error for a wavelength that is not that of its
+    /// [`Peaks`](Spectrum::Peaks).
+    pub fn line(&self) -> Result<SpectralLine, CoherenceError> {
+        let &Self {
+            wavelength,
+            linewidth,
+            ref spectrum,
+        } = self;
+        match spectrum {
+            &Spectrum::Peak(shape) => SpectralLine::new(wavelength, linewidth, shape),
+            &Spectrum::Comb(lines) => SpectralLine::comb(wavelength, linewidth, lines as usize)
+                .map_err(|error| error.about("span", "linewidth").about("peaks", "lines")),
+            Spectrum::Peaks(peaks) => {
+                let line = SpectralLine::from_peaks(peaks)?;
+                // The mean of the same numbers: the same bits.
+                if line.wavelength().to_bits() == wavelength.to_bits() {
+                    line.with_linewidth(linewidth, LineShape::Gaussian)
+                } else {
+                    let allowed = "that of the mean wave number of the peaks";
+                    Err(CoherenceError::refused("wavelength", wavelength, allowed))
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_that_of_its_light() {
+        let light = |spectrum| LaserLight {
+            wavelength: 450e-9,
+            linewidth: 4e-9,
+            spectrum,
+        };
+        for shape in [
+            LineShape::Gaussian,
+            LineShape::Lorentzian,
+            LineShape::Rectangular,
+        ] {
+            let line = SpectralLine::new(450e-9, 4e-9, shape);
+            assert_eq!(light(Spectrum::Peak(shape)).line(), line);
+        }
+        assert_eq!(
+            light(Spectrum::Comb(5)).line(),
+            SpectralLine::comb(450e-9, 4e-9, 5)
+        );
+        let single = SpectralLine::monochromatic(450e-9);
+        assert_eq!(LaserLight::monochromatic(450e-9).line(), single);
+        let peaks = vec![[448e-9, 1.0], [453e-9, 3.0]];
+        let listed = LaserLight::of_peaks(peaks.clone(), 1e-9).unwrap();
+        let line = SpectralLine::from_peaks(&peaks).unwrap();
+        assert_eq!(
+            listed.line(),
+            line.with_linewidth(1e-9, LineShape::Gaussian)
+        );
+    }
+
+    #[test]
+    fn what_is_no_light_is_refused_by_the_name_of_a_field() {
+        let refused = |light: LaserLight| light.line().unwrap_err().parameter();
+        let light = |linewidth, spectrum| LaserLight {
+            wavelength: 450e-9,
+            linewidth,
+            spectrum,
+        };
+        assert_eq!(refused(LaserLight::monochromatic(f64::NAN)), "wavelength");
+        assert_eq!(refused(light(50e-9, Spectrum::default())), "linewidth");
+        assert_eq!(refused(light(50e-9, Spectrum::Comb(3))), "linewidth");
+        assert_eq!(refused(light(1e-9, Spectrum::Comb(0))), "lines");
+        let peaks = Spectrum::Peaks(vec![[448e-9, 1.0], [453e-9, 3.0]]);
+        assert_eq!(refused(light(0.0, peaks)), "wavelength");
+    }
+}

@@ -288,7 +288,7 @@ impl SpectralLine {
         for (index, peak) in self.peaks.iter().enumerate() {
             if rest <= peak.weight || index == last {
                 let within = (rest / peak.weight).clamp(1e-15, 1.0 - 1e-15);
-                let reach = MAX_RELATIVE_WIDTH * self.wave_number;
+                let reach = MAX_RELATIVE_WIDTH * self.wave_number();
                 let drawn = self.width * self.shape.quantile(within);
                 return peak.offset + drawn.clamp(-reach, reach);
             }

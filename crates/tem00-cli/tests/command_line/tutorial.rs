@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::{folder, message, tem00, text};
 
 /// What is made smaller, so that the commands take seconds: file, what it has, what it gets.
-const SMALLER: [(&str, &str, &str); 5] = [
+const SMALLER: [(&str, &str, &str); 6] = [
     ("setups/design.toml", "steps = 7", "steps = 2"),
     ("setups/design.toml", "steps = 6", "steps = 2"),
     (
@@ -27,6 +27,11 @@ const SMALLER: [(&str, &str, &str); 5] = [
         "scenes/triangulation/calibration.toml",
         "samples_per_pixel = 16",
         "samples_per_pixel = 1",
+    ),
+    (
+        "scenes/triangulation/calibration.toml",
+        "boards = 8",
+        "boards = 4",
     ),
 ];
 
@@ -120,7 +125,7 @@ fn the_commands_of_the_tutorial_work() {
     assert_eq!(others, ["cargo install --path crates/tem00-cli"]);
     for command in commands {
         let trials = if command.starts_with("budget") {
-            " --trials 100"
+            " --trials 20"
         } else {
             ""
         };

@@ -163,6 +163,11 @@ impl ResolutionCell {
         Ok(Self { defocus, ..self })
     }
 
+    /// Returns the relief.
+    pub const fn relief(&self) -> Relief {
+        self.relief
+    }
+
     /// Returns the tilt v of the cell, across the line of sight: path per length on the object.
     pub const fn tilt(&self) -> DVec3 {
         self.tilt

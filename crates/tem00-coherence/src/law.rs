@@ -73,6 +73,9 @@ pub enum Rows {
 /// The largest fraction of the light in the last modes that are left out.
 const NEGLIGIBLE_FRACTION: f64 = 1e-4;
 
+/// The largest number of wave numbers that stand for a line in its modes.
+const MAX_NODES: usize = 400;
+
 impl PolychromaticSpeckle<'_> {
     /// Returns the contrast, standard deviation over mean, `C² = ∫ R(κ) |P̂(κ)|² dκ`.
     pub fn contrast(&self) -> f64 {
@@ -145,8 +148,14 @@ impl PolychromaticSpeckle<'_> {
     /// They are the eigenvalues of `√S(k) P̂(k − k') √S(k')`: the intensity is the sum of as many independent speckle
     /// patterns. The last modes, of together 10⁻⁴ of the light, are left out. The correlation length of the relief is left
     /// out.
+    ///
+    /// Where the paths are spread so widely that more than some hundred modes would count, the fractions fall by one
+    /// ratio, which is exact for a Gaussian line and heights alone, and keep the contrast.
     pub fn modes(&self) -> Vec<f64> {
-        let nodes = self.line.nodes();
+        let nodes = self.line.nodes(self.cell.scale());
+        if nodes.len() > MAX_NODES {
+            return self.geometric_modes();
+        }
         let mut matrix = vec![Complex::ZERO; nodes.len() * nodes.len()];
         for (i, first) in nodes.iter().enumerate() {
             for (j, second) in nodes.iter().enumerate() {
@@ -165,6 +174,18 @@ impl PolychromaticSpeckle<'_> {
         });
         let kept: f64 = modes.iter().sum();
         modes.iter().map(|mode| mode / kept).collect()
+    }
+
+    /// Fractions (1 − t) tⁿ with the contrast of the law.
+    fn geometric_modes(&self) -> Vec<f64> {
+        let squared = self.contrast().powi(2);
+        let ratio = (1.0 - squared) / (1.0 + squared);
+        let powers = core::iter::successors(Some(1.0), |power| Some(power * ratio));
+        let powers: Vec<f64> = powers
+            .take_while(|power| *power > NEGLIGIBLE_FRACTION)
+            .collect();
+        let total: f64 = powers.iter().sum();
+        powers.iter().map(|power| power / total).collect()
     }
 
     fn mean(&self, f: impl Fn(f64) -> f64) -> f64 {

@@ -23,7 +23,6 @@
 
 mod cell;
 mod eigenvalues;
-
 mod error;
 mod heights;
 mod law;

@@ -305,13 +305,15 @@ impl SpectralLine {
     }
 
     /// Returns wave numbers, less the mean one, with the fractions of the power for which they stand in an integral:
-    /// some for each peak with a width. Of more than 24 peaks the widths are left out.
-    pub(crate) fn nodes(&self) -> Vec<[f64; 2]> {
+    /// 16 or more for each peak with a width, as a function asks whose finest feature is `scale` wide. Of more than 24
+    /// peaks the widths are left out.
+    pub(crate) fn nodes(&self, scale: f64) -> Vec<[f64; 2]> {
         let is_wide = self.width > 0.0 && self.peaks.len() <= MAX_WIDE_PEAKS;
+        let fewest = if self.peaks.len() <= 4 { 4.0 } else { 1.0 };
+        let panels = (self.width / scale).ceil().max(fewest);
         let mut nodes = Vec::new();
         for peak in &self.peaks {
             if is_wide {
-                let panels = if self.peaks.len() <= 4 { 4.0 } else { 1.0 };
                 self.shape.for_each_node(panels, |x, weight| {
                     nodes.push([peak.offset + self.width * x, peak.weight * weight]);
                 });

@@ -214,6 +214,7 @@ impl<'a> Integrator<'a> {
                     position: vertex.position,
                     normal: vertex.seen_normal(),
                     surface: vertex.surface,
+                    wave: self.drawn_wave(batch.samples[path.sample].stream),
                 };
                 batch.speckle.push(path.sample, point);
             }
@@ -223,6 +224,19 @@ impl<'a> Integrator<'a> {
             for (sample, factor) in batch.speckle.factors(speckle, laser) {
                 batch.laser_samples[sample * lasers + laser].speckle = factor;
             }
+        }
+    }
+
+    /// Draws the place in the lines of the lasers, if one of them has a width.
+    fn drawn_wave(&self, stream: Stream) -> f64 {
+        let lasers = self.lasers.iter();
+        let is_wide = lasers
+            .map(|laser| laser.spectral_line())
+            .any(|line| !line.is_monochromatic());
+        if is_wide {
+            self.sequence.uniform(stream, Use::Wave)
+        } else {
+            0.5
         }
     }
 

@@ -49,6 +49,8 @@ pub(crate) enum Use {
     Survival(u32),
     /// The position on a light: number of the vertex, number of the light.
     Light(u32, u32),
+    /// The wave number within the line of a laser.
+    Wave,
     /// The direction towards a laser: number of the vertex, number of the laser.
     Laser(u32, u32),
 }
@@ -64,6 +66,7 @@ impl Use {
             Self::Scattering(vertex) => pack(2, vertex, 0),
             Self::Survival(vertex) => pack(3, vertex, 0),
             Self::Light(vertex, light) => pack(4, vertex, light),
+            Self::Wave => pack(6, 0, 0),
             Self::Laser(vertex, laser) => pack(5, vertex, laser),
         }
     }

@@ -1,6 +1,7 @@
 //! From the camera and the motion in a scene to the speckle factor of a camera sample.
 
 mod allocation;
+mod bandwidth;
 mod between_frames;
 mod change;
 mod model;
@@ -33,6 +34,8 @@ pub(crate) struct SpecklePoint {
     pub normal: DVec3,
     /// The index of the surface in the scene.
     pub surface: usize,
+    /// A number between 0 and 1 that draws the wave number from the line of a laser.
+    pub wave: f64,
 }
 
 /// Turns an image vector with y down, in pixels, into one with y up, and back.

@@ -4,10 +4,7 @@ use std::path::{Path, PathBuf};
 
 use tem00_tracer::{Formulas, Scene, SpeckleModel, SpecklePlan, TracerError};
 
-use super::{
-    record::Fingerprint,
-    report::{note_linewidths, note_roughness},
-};
+use super::{record::Fingerprint, report::note_roughness};
 use crate::{
     args::{FrameRange, RenderArgs},
     failure::Failure,
@@ -115,7 +112,6 @@ impl<'a> Render<'a> {
         for line in plan.to_string().lines() {
             note(&format!("speckle: {line}"));
         }
-        note_linewidths(&self.scene);
         let notes = self.scene.roughness_notes();
         note_roughness(&notes.map_err(|error| tracer_failure(&self.args.common.scene, &error))?);
         let model = SpeckleModel::generate(&self.scene, plan)

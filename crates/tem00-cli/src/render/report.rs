@@ -16,17 +16,6 @@ pub(super) fn note_invisible_lasers(scene: &Scene) {
     }
 }
 
-/// Warns about lasers whose linewidth the render leaves out.
-pub(super) fn note_linewidths(scene: &Scene) {
-    for (index, laser) in scene.lasers.iter().enumerate() {
-        if !laser.spectral_line().is_monochromatic() {
-            note(&format!(
-                "speckle: laser {index}: rendered in light of one wavelength; its linewidth would lower the contrast"
-            ));
-        }
-    }
-}
-
 /// Warns about surfaces that are too smooth for the theory of speckle, the first few of many.
 pub(super) fn note_roughness(notes: &[RoughnessNote]) {
     const TOLD: usize = 8;

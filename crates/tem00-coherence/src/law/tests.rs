@@ -264,6 +264,8 @@ fn squares_of_modes_sum_to_the_squared_contrast() {
         ),
         (lorentzian, cell(450e-9, 0.0, 30.0, 1.6e-6)),
         (comb, cell(450e-9, 0.0, 30.0, 1.6e-6)),
+        (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 20e-6)),
+        (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 90e-6)),
     ] {
         let speckle = PolychromaticSpeckle {
             line: &line,

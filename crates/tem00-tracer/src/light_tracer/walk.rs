@@ -49,6 +49,8 @@ struct Connection<'a> {
     normal: DVec3,
     /// The number of the pixel in the part of the image that is rendered.
     index: usize,
+    /// Draws the wave number from the line of the laser.
+    wave: f64,
     /// In W/(m² sr).
     radiance: f64,
     /// The power on the first rough surface, on the side that the camera sees, in watts.
@@ -144,7 +146,9 @@ impl<'a> Walk<'a> {
         let rough = |vertex: &&Vertex<'_>| !vertex.material.is_specular();
         for vertex in vertices.iter().filter(rough) {
             let lens = draws.uniform_2d();
-            if let Some((connection, segment)) = self.connection(vertex, lens) {
+            let is_single = self.laser.spectral_line().is_monochromatic();
+            let wave = if is_single { 0.5 } else { draws.uniform() };
+            if let Some((connection, segment)) = self.connection(vertex, lens, wave) {
                 connections.push(connection);
                 segments.push(segment);
             }
@@ -162,6 +166,7 @@ impl<'a> Walk<'a> {
         &self,
         vertex: &'v Vertex<'a>,
         lens: [f64; 2],
+        wave: f64,
     ) -> Option<(Connection<'v>, Segment)> {
         let from = vertex.hit.position;
         let seen = self.tracer.camera.connect(from, lens)?;
@@ -176,6 +181,7 @@ impl<'a> Walk<'a> {
             pixel: seen.pixel,
             normal: axes.normal() * axes.normal().dot(towards).signum(),
             index,
+            wave,
             radiance,
             power,
         };
@@ -219,6 +225,7 @@ impl<'a> Walk<'a> {
             position: hit.position,
             normal: connection.normal,
             surface: hit.surface,
+            wave: connection.wave,
         };
         tracer
             .speckle

@@ -76,6 +76,7 @@ impl SpeckleChange {
             position,
             normal: carried.direction(point.normal),
             surface: point.surface,
+            wave: 0.5,
         };
         let geometry = scene.camera.imaging_geometry(wavelength).ok()?;
         let shift = change.known_shift(laser, &geometry, &seen)?;

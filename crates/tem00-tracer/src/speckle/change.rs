@@ -1,5 +1,8 @@
+use core::f64::consts::TAU;
+
 use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
+use tem00_coherence::{CellGeometry, ResolutionCell};
 use tem00_decorrelation::{
     CameraFrame, Configuration, ConfigurationData, Illumination, ImageOrientation, ImagingGeometry,
     RigidMotion, RigidMotions, SpeckleMotion, equivalent_pupil_shift,
@@ -46,6 +49,17 @@ pub(super) struct SpeckleShift {
     pub displacement: DVec2,
     /// The displacement of the pupil over the speckle, in pupil diameters, never negative.
     pub pupil: f64,
+}
+
+/// Change of the speckle of a point with the wave number.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct SpectralShift {
+    /// The displacement of the speckle in the image in perspective, in pixels with y down: none in focus.
+    pub displacement: DVec2,
+    /// The displacement of the pupil over the speckle to the right and up, in pupil diameters.
+    pub pupil: DVec2,
+    /// The change of the phase with the height, in radians per metre.
+    pub phase_per_height: f64,
 }
 
 /// A point of a surface whose speckle the pupil has moved over.
@@ -142,6 +156,7 @@ impl Change {
                 position: body.forth.point(reference_point.position),
                 normal: body.forth.direction(reference_point.normal),
                 surface: reference_point.surface,
+                wave: 0.5,
             };
             Some(self.way(laser, geometry, &point)?.dot(reference_point.way))
         });
@@ -160,13 +175,22 @@ impl Change {
         geometry: &ImagingGeometry,
         point: &SpecklePoint,
     ) -> Option<ReferencePoint> {
+        self.reference_point_along(point, self.way(laser, geometry, point)?)
+    }
+
+    /// Returns the point with a way of the pupil over its speckle.
+    pub(super) fn reference_point_along(
+        &self,
+        point: &SpecklePoint,
+        way: DVec3,
+    ) -> Option<ReferencePoint> {
         let body = self.surfaces.get(point.surface)?;
         Some(ReferencePoint {
             surface: point.surface,
             pixel: point.pixel,
             position: body.back.point(point.position),
             normal: body.back.direction(point.normal),
-            way: self.way(laser, geometry, point)?,
+            way,
         })
     }
 
@@ -245,6 +269,52 @@ impl Change {
         })
     }
 
+    /// Returns what becomes of the speckle of a laser at a point, now, in light whose wave number differs by `kappa`, in
+    /// rad/m, from the mean one, if the theory has a value.
+    pub(super) fn spectral_shift(
+        &self,
+        laser: usize,
+        geometry: &ImagingGeometry,
+        point: &SpecklePoint,
+        kappa: f64,
+    ) -> Option<SpectralShift> {
+        let [_, mean] = self.states(laser, point)?;
+        let other = mean
+            .with_wavelength(TAU / (TAU / mean.wavelength() + kappa))
+            .ok()?;
+        let pixels_per_tangent = geometry.principal_distance() / geometry.pixel_pitch();
+        let geometry = &self.perspective.geometry(geometry, point.pixel);
+        let speckle =
+            SpeckleMotion::between(geometry, &mean, &other, ImageOrientation::ScreenUpright);
+        let tangents = speckle.speckle_displacement() / geometry.principal_distance();
+        Some(SpectralShift {
+            displacement: upright(tangents * pixels_per_tangent),
+            pupil: speckle.pupil_displacement? / geometry.pupil_diameter(),
+            phase_per_height: mean.height_phase_change(&other)?,
+        })
+        .filter(SpectralShift::is_finite)
+    }
+
+    /// Returns the resolution cell at a point, now, if there is one.
+    pub(super) fn resolution_cell(
+        &self,
+        laser: usize,
+        geometry: &ImagingGeometry,
+        point: &SpecklePoint,
+    ) -> Option<ResolutionCell> {
+        let [_, now] = self.states(laser, point)?;
+        let geometry = &self.perspective.geometry(geometry, point.pixel);
+        let to_pupil = self.cameras[1].position() - point.position;
+        ResolutionCell::new(CellGeometry {
+            to_source: now.direction_to_source(),
+            to_pupil,
+            normal: point.normal,
+            sin_aperture: (0.5 * geometry.pupil_diameter() / to_pupil.length()).min(1.0),
+            wavelength: now.wavelength(),
+        })
+        .ok()
+    }
+
     /// The point with its light and its camera, in the reference frame and now.
     fn states(&self, laser: usize, point: &SpecklePoint) -> Option<[Configuration; 2]> {
         let body = self.surfaces.get(point.surface)?;
@@ -285,6 +355,19 @@ impl Change {
             surface: point.position - then,
             camera: self.cameras[1].position() - self.cameras[0].position(),
         }
+    }
+}
+
+impl ReferencePoint {
+    /// Returns the way of the pupil across the line of sight, to the right and up.
+    pub(super) fn way_across(&self) -> DVec2 {
+        self.way.truncate()
+    }
+}
+
+impl SpectralShift {
+    fn is_finite(&self) -> bool {
+        self.displacement.is_finite() && self.pupil.is_finite() && self.phase_per_height.is_finite()
     }
 }
 

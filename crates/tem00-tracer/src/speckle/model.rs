@@ -1,11 +1,13 @@
 use glam::DVec2;
+
 use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
 use tem00_paper::BilinearStack;
-use tem00_speckle::{IncoherentSum, SpeckleStack};
+use tem00_speckle::{Complex, IncoherentSum, SpeckleStack};
 
 use super::{
     PatternPlan, SpecklePlan, SpecklePoint,
     allocation::{Part, PatternAllocation},
+    bandwidth::Bandwidth,
     change::Change,
     plan::SurfacePatterns,
     printed::displacement_and_slice,
@@ -194,6 +196,12 @@ impl SpeckleFrame<'_> {
         };
         let pattern = &patterns.patterns[surface.allocation];
         factors.fill(0.0);
+        if let Some(bandwidth) = &surface.bandwidth {
+            for (factor, point) in factors.iter_mut().zip(points) {
+                *factor = self.of_one_wave(laser, surface, bandwidth, point);
+            }
+            return;
+        }
         for part in &surface.parts {
             match &pattern.stacks[part.stack] {
                 Stack::Derived(stack) => {
@@ -210,6 +218,57 @@ impl SpeckleFrame<'_> {
                 }
             }
         }
+    }
+
+    /// The speckle factor of a point in light of one wave number, drawn from the line of the laser.
+    ///
+    /// Another wave number sees the pupil displaced along the axis of the surface, as after a motion; and the heights of
+    /// the relief in other phases.
+    fn of_one_wave(
+        &self,
+        laser: usize,
+        surface: &SurfacePatterns,
+        bandwidth: &Bandwidth,
+        point: &SpecklePoint,
+    ) -> f64 {
+        let patterns = &self.model.lasers[laser];
+        let (geometry, pattern) = (&patterns.geometry, &patterns.patterns[surface.allocation]);
+        let kappa = self.change.laser(laser).spectral_line().draw(point.wave);
+        let wave = self.change.spectral_shift(laser, geometry, point, kappa);
+        let wave = wave.unwrap_or_default();
+        let motion = self.change.speckle_shift(laser, geometry, point);
+        let sign = self.sides[laser].get(point.surface).copied().unwrap_or(1.0);
+        let tilt = wave.pupil.length() * wave.pupil.dot(bandwidth.axis).signum();
+        let u = pattern.slices_per_diameter * (tilt + sign * motion.pupil);
+        let pixel =
+            self.change.perspective().point(point.pixel) - motion.displacement - wave.displacement;
+        let fields = surface.parts.chunks(bandwidth.heights.len());
+        fields
+            .map(|parts| {
+                let amplitudes =
+                    parts
+                        .iter()
+                        .zip(&bandwidth.heights)
+                        .map(|(part, [height, root])| {
+                            let Stack::Derived(stack) = &pattern.stacks[part.stack] else {
+                                return Complex::ZERO;
+                            };
+                            let c = geometry.pattern_coordinate(
+                                upright(pixel),
+                                DVec2::ZERO,
+                                stack.speckle_size(),
+                            );
+                            let [x0, y0] = part.offset_in(stack.size());
+                            let (x, y) = (
+                                bandwidth.axis.dot(c) + x0,
+                                bandwidth.axis.perp().dot(c) + y0,
+                            );
+                            let phase = Complex::cis(wave.phase_per_height * height);
+                            stack.amplitude_at(x, y, u) * phase * root
+                        });
+                parts[0].fraction * amplitudes.sum::<Complex<f64>>().norm_sqr()
+            })
+            .sum()
     }
 
     /// Coordinates of the points of a surface in its pattern.
@@ -343,6 +402,7 @@ mod tests {
                     position,
                     normal: DVec3::Z,
                     surface,
+                    wave: 0.5,
                 }
             })
             .collect()
@@ -397,6 +457,7 @@ mod tests {
                         position: far * direction,
                         normal,
                         surface: 1,
+                        wave: 0.5,
                     };
                     let factor = speckle.factor(0, &point);
                     assert!(factor.is_finite() && factor >= 0.0, "{factor}: {point:?}");

@@ -1,10 +1,12 @@
 mod lines;
 
+use glam::DVec2;
 use tem00_decorrelation::ImagingGeometry;
 use tem00_speckle::{IncoherentSum, SlicePath, StackNeeds, StackPlan};
 
 use super::{
     allocation::{self, Part, PatternAllocation, Request},
+    bandwidth::{Bandwidth, SurfaceLight, laser_lights},
     change::ReferencePoint,
     prescan::{LaserGroups, MotionPrescan, prescan},
 };
@@ -47,6 +49,8 @@ pub(super) struct SurfacePatterns {
     pub parts: Vec<Part>,
     /// The point that tells one side of the reference frame from the other.
     pub reference_point: Option<ReferencePoint>,
+    /// What the linewidth of the laser asks. Each part is then several, one after the other, whose fields add.
+    pub bandwidth: Option<Bandwidth>,
 }
 
 impl SpecklePlan {
@@ -74,6 +78,12 @@ impl SpecklePlan {
         };
         let memory = scene.speckle.memory / scene.lasers.len().max(1) as u64;
         let prescans = prescan(scene, laser_groups)?;
+        let lights = match formulas {
+            Formulas::Derived => laser_lights(scene, laser_groups)?,
+            Formulas::AsPrinted => {
+                vec![vec![SurfaceLight::single(); scene.surfaces.len()]; scene.lasers.len()]
+            }
+        };
         let lasers = prescans.iter().zip(&geometries).enumerate();
         let patterns = lasers
             .map(|(laser, (prescans, geometry))| {
@@ -82,6 +92,7 @@ impl SpecklePlan {
                     laser,
                     formulas,
                     groups: &groups,
+                    lights: &lights[laser],
                 };
                 planner.plan(prescans, geometry, seed, memory)
             })
@@ -119,6 +130,23 @@ struct Planner<'a> {
     laser: usize,
     formulas: Formulas,
     groups: &'a [usize],
+    /// The light of the laser on each surface.
+    lights: &'a [SurfaceLight],
+}
+
+/// The patterns that the speckle of a surface is the sum of.
+#[derive(Clone, Debug)]
+struct Sum {
+    /// Fractions of the light whose intensities add.
+    fractions: Vec<f64>,
+    /// The number of patterns of each whose fields add.
+    fields: usize,
+}
+
+impl Sum {
+    const fn parts(&self) -> usize {
+        self.fractions.len() * self.fields
+    }
 }
 
 impl Planner<'_> {
@@ -129,9 +157,9 @@ impl Planner<'_> {
         seed: u64,
         memory: u64,
     ) -> Result<PatternPlan, TracerError> {
-        let surfaces = self.scene.surfaces.iter();
+        let surfaces = self.scene.surfaces.iter().zip(self.lights);
         let sums = surfaces
-            .map(|surface| fractions(&surface.speckle))
+            .map(|(surface, light)| Sum::new(&surface.speckle, light))
             .collect::<Result<Vec<_>, _>>()?;
         let requests = prescans.iter().enumerate();
         let requests: Vec<_> = requests
@@ -162,24 +190,39 @@ impl Planner<'_> {
         &self,
         group: usize,
         prescan: &MotionPrescan,
-        sums: &[Vec<f64>],
+        sums: &[Sum],
         geometry: &ImagingGeometry,
     ) -> Request {
         let of_group = |&surface: &usize| self.groups[surface] == group;
         let surfaces: Vec<_> = (0..self.groups.len()).filter(of_group).collect();
         let moves = |&surface: &usize| self.scene.speckle_moves(self.laser, surface);
         let moves = surfaces.iter().any(moves);
-        let parts = surfaces.iter().map(|&surface| sums[surface].len());
+        let parts = surfaces.iter().map(|&surface| sums[surface].parts());
+        let bandwidths = surfaces
+            .iter()
+            .filter_map(|&surface| self.lights[surface].bandwidth.as_ref());
+        let (mut region, mut shifts) = (prescan.region(), prescan.shifts);
+        let mut reach = 0.0_f64;
+        for bandwidth in bandwidths {
+            // Turned so that the slices stand along the axis.
+            let [along, across] = [bandwidth.axis.abs(), bandwidth.axis.perp().abs()];
+            let turned = DVec2::new(along.dot(prescan.region()), across.dot(prescan.region()));
+            region = region.max(turned);
+            reach = reach.max(bandwidth.reach);
+        }
+        if reach > 0.0 {
+            shifts = [shifts[0].max(shifts[1]) + reach; 2];
+        }
         Request {
             needs: StackNeeds {
                 image: prescan.image.to_array(),
-                region: prescan.region().to_array(),
+                region: region.to_array(),
                 speckle_size: geometry.speckle_size_in_pixels(),
-                motion: moves.then_some(prescan.shifts[0] + prescan.shifts[1]),
+                motion: (moves || reach > 0.0).then_some(shifts[0] + shifts[1]),
                 frames: self.scene.frames,
                 memory_limit: self.scene.speckle.memory,
             },
-            shifts: prescan.shifts,
+            shifts,
             parts: parts.max().unwrap_or(1),
             surfaces,
         }
@@ -190,21 +233,31 @@ impl Planner<'_> {
         &self,
         requests: &[Request],
         allocations: &[PatternAllocation],
-        sums: &[Vec<f64>],
+        sums: &[Sum],
         prescans: &[MotionPrescan],
     ) -> Vec<SurfacePatterns> {
         let shared = allocations
             .iter()
             .any(|allocation| allocation.positions > 1);
-        let surfaces = self.groups.iter().zip(sums);
+        let surfaces = self.groups.iter().zip(sums).zip(self.lights);
         surfaces
-            .map(|(&group, fractions)| {
+            .map(|((&group, sum), light)| {
                 let before = requests[..group].iter().map(|request| request.parts);
                 let first: usize = before.sum();
-                let parts = fractions.iter().enumerate();
+                let fractions = sum.fractions.iter();
+                let fields =
+                    fractions.flat_map(|fraction| core::iter::repeat_n(fraction, sum.fields));
+                let parts = fields.enumerate();
+                let moving = prescans[group].reference_point;
+                let bandwidth = light.bandwidth.as_ref();
+                let bandwidth = bandwidth.map(|bandwidth| bandwidth.beside(moving.as_ref()));
+                let along_axis = bandwidth
+                    .as_ref()
+                    .map(|bandwidth| bandwidth.reference_point);
                 SurfacePatterns {
                     allocation: if shared { 0 } else { group },
-                    reference_point: prescans[group].reference_point,
+                    reference_point: along_axis.or(moving),
+                    bandwidth,
                     parts: parts
                         .map(|(number, &fraction)| match shared {
                             true => Part {
@@ -225,11 +278,23 @@ impl Planner<'_> {
     }
 }
 
-/// The fractions of the light in the patterns that the speckle of a surface is the sum of.
-fn fractions(speckle: &SurfaceSpeckle) -> Result<Vec<f64>, TracerError> {
-    let patterns = IncoherentSum::equal(speckle.patterns as usize)?;
-    let waves = IncoherentSum::partially_polarised(speckle.polarisation)?;
-    Ok(patterns.split_by(&waves)?.weights().to_vec())
+impl Sum {
+    fn new(speckle: &SurfaceSpeckle, light: &SurfaceLight) -> Result<Self, TracerError> {
+        let patterns = IncoherentSum::equal(speckle.patterns as usize)?;
+        let waves = IncoherentSum::partially_polarised(speckle.polarisation)?;
+        let modes = IncoherentSum::weighted(&light.modes)?;
+        Ok(Self {
+            fractions: patterns
+                .split_by(&waves)?
+                .split_by(&modes)?
+                .weights()
+                .to_vec(),
+            fields: light
+                .bandwidth
+                .as_ref()
+                .map_or(1, |bandwidth| bandwidth.heights.len()),
+        })
+    }
 }
 
 impl PatternPlan {
@@ -264,6 +329,14 @@ impl PatternPlan {
     /// The patterns of the first group of surfaces, of which there is always one.
     fn first(&self) -> &PatternAllocation {
         &self.allocations[0]
+    }
+
+    /// What the linewidth asks of the surface of an allocation that asks for most.
+    fn bandwidth(&self, allocation: &PatternAllocation) -> Option<&Bandwidth> {
+        let surfaces = allocation.surfaces.iter();
+        let bandwidths =
+            surfaces.filter_map(|&index| self.surface_patterns[index].bandwidth.as_ref());
+        bandwidths.max_by(|a, b| a.reach.total_cmp(&b.reach))
     }
 
     pub(super) fn allocations(&self) -> &[PatternAllocation] {

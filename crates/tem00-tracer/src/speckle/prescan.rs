@@ -150,7 +150,7 @@ fn frame_samples(
     let groups = laser_groups.groups.iter().max().map_or(0, |last| last + 1);
     let mut samples = vec![vec![none; groups]; laser_groups.geometries.len()];
     let intersector = Intersector::build(&scene.shapes_at(frame))?;
-    for pixel in pixels(image_size(change.camera())) {
+    for pixel in pixels_of(change.camera()) {
         let Some(hit) = intersector.intersect(&change.camera().ray(pixel)) else {
             continue;
         };
@@ -162,6 +162,7 @@ fn frame_samples(
             position: hit.position,
             normal: hit.normal,
             surface: hit.surface,
+            wave: 0.5,
         };
         for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
             if change.laser(laser).illuminate(hit.position).is_some() {
@@ -214,16 +215,14 @@ fn spread(last: u32) -> impl Iterator<Item = u32> {
         .take(if last == 0 { 1 } else { FRAMES as usize })
 }
 
-fn pixels(size: DVec2) -> impl Iterator<Item = DVec2> {
+/// Image points evenly spread over the image, in pixels.
+pub(super) fn pixels_of(camera: &Camera) -> impl Iterator<Item = DVec2> + use<> {
+    let size = DVec2::new(camera.width() as f64, camera.height() as f64);
     let position = |index: u32| (f64::from(index) + 0.5) / f64::from(RAYS_PER_SIDE);
     (0..RAYS_PER_SIDE * RAYS_PER_SIDE).map(move |index| {
         let (column, row) = (index % RAYS_PER_SIDE, index / RAYS_PER_SIDE);
         DVec2::new(position(column), position(row)) * size
     })
-}
-
-fn image_size(camera: &Camera) -> DVec2 {
-    DVec2::new(camera.width() as f64, camera.height() as f64)
 }
 
 #[cfg(test)]

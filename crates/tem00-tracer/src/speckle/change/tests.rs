@@ -41,6 +41,7 @@ fn point(scene: &Scene, frame: u32, fractions: [f64; 2]) -> SpecklePoint {
     let [u, v] = fractions;
     let position = plate.centre() + u * plate.half_u() + v * plate.half_v();
     SpecklePoint {
+        wave: 0.5,
         pixel: scene.camera_at(frame).project(position).unwrap(),
         position,
         normal: plate.normal(),

@@ -91,6 +91,18 @@ impl PatternPlan {
                 }
             )?,
         }
+        if let Some(bandwidth) = self.bandwidth(allocation) {
+            write!(
+                f,
+                "a linewidth that displaces the pupil by up to {:.2} diameters{}; ",
+                bandwidth.reach,
+                if bandwidth.is_crossed {
+                    ", ACROSS the motion: frames correlate as if it were along"
+                } else {
+                    ""
+                }
+            )?;
+        }
         if allocation.count > 1 {
             write!(f, "{} patterns that add up; ", allocation.count)?;
         }

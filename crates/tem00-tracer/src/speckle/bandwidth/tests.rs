@@ -1,0 +1,164 @@
+use glam::DVec3;
+use tem00_camera::Camera;
+use tem00_coherence::LineShape;
+
+use super::*;
+use crate::{Formulas, LaserDescription, Scene, SpeckleModel, SpecklePlan, Trajectory, testing};
+
+/// A plate under a laser along its normal, seen under 30° about the axis y.
+fn scene(line: SpectralLine, rms_height: f64) -> Scene {
+    let laser = LaserDescription {
+        line,
+        ..testing::spot(DVec3::new(0.0, 0.0, 3.0), 50e-3)
+    };
+    let mut plate = testing::plate(DVec3::ZERO, DVec3::Z, [0.05, 0.05]);
+    plate.relief = Relief {
+        rms_height,
+        correlation_length: 0.0,
+    };
+    let (sin, cos) = 30_f64.to_radians().sin_cos();
+    let camera = testing::camera(0.3 * DVec3::new(sin, 0.0, cos), [480, 360]);
+    testing::scene(camera, &[laser], plate)
+}
+
+fn gaussian(linewidth: f64) -> SpectralLine {
+    SpectralLine::new(650e-9, linewidth, LineShape::Gaussian).unwrap()
+}
+
+/// Means over the line of the speckle factor in a frame, at image points some `offset` from a lattice that is wider than
+/// a speckle, in pixels.
+fn picture(
+    scene: &Scene,
+    model: &SpeckleModel,
+    frame: u32,
+    offset: impl Fn(DVec2) -> DVec2,
+) -> Vec<f64> {
+    const WAVES: u32 = 24;
+    let speckle = model.in_frame(scene, frame);
+    let camera = scene.camera_at(frame);
+    let places = (0..64).flat_map(|i| (0..56).map(move |j| DVec2::new(f64::from(i), f64::from(j))));
+    places
+        .map(|place| {
+            let pixel = DVec2::new(40.0, 40.0) + 4.3 * place;
+            let point = seen(&camera, pixel + offset(pixel));
+            let waves = (0..WAVES).map(|wave| {
+                let wave = (f64::from(wave) + 0.5) / f64::from(WAVES);
+                speckle.factor(0, &SpecklePoint { wave, ..point })
+            });
+            waves.sum::<f64>() / f64::from(WAVES)
+        })
+        .collect()
+}
+
+/// The point of the plate at an image point.
+fn seen(camera: &Camera, pixel: DVec2) -> SpecklePoint {
+    let ray = camera.ray(pixel);
+    SpecklePoint {
+        pixel,
+        position: ray.origin - ray.direction * (ray.origin.z / ray.direction.z),
+        normal: DVec3::Z,
+        surface: 0,
+        wave: 0.5,
+    }
+}
+
+fn model(scene: &Scene) -> SpeckleModel {
+    let plan = SpecklePlan::new(scene, Formulas::Derived, 11).unwrap();
+    SpeckleModel::generate(scene, &plan).unwrap()
+}
+
+/// The covariance of two pictures over the product of their means.
+fn covariance(a: &[f64], b: &[f64]) -> f64 {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let products: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+    products / a.len() as f64 / (mean(a) * mean(b)) - 1.0
+}
+
+/// The resolution cell in the middle of the picture.
+fn cell(scene: &Scene) -> ResolutionCell {
+    let change = Change::new(scene, 0);
+    let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
+    let point = seen(&scene.camera, DVec2::new(240.0, 180.0));
+    let cell = change.resolution_cell(0, &geometry, &point).unwrap();
+    cell.with_relief(scene.surfaces[0].relief).unwrap()
+}
+
+#[test]
+fn contrasts_are_those_of_the_law() {
+    let comb = SpectralLine::comb(650e-9, 8e-9, 5).unwrap();
+    for (line, height) in [
+        (gaussian(5e-9), 0.0),
+        (gaussian(5e-9), 2e-6),
+        (comb, 2e-6),
+        (gaussian(30e-9), 20e-6),
+    ] {
+        let scene = scene(line, height);
+        let values = picture(&scene, &model(&scene), 0, |_| DVec2::ZERO);
+        let (line, cell) = (scene.lasers[0].spectral_line(), cell(&scene));
+        let law = PolychromaticSpeckle { line, cell: &cell }.contrast();
+        let found = covariance(&values, &values).sqrt();
+        assert!(
+            (found / law - 1.0).abs() < 0.045,
+            "{height}: {found} for {law}"
+        );
+    }
+}
+
+#[test]
+fn frames_of_a_motion_along_the_tilt_are_those_of_the_law() {
+    let mut scene = scene(gaussian(5e-9), 0.0);
+    scene.frames = 5;
+    scene.reference_frame = 2;
+    // The camera sees the plate move along the tilt, by a quarter of its pupil a frame.
+    let step = 0.25 * 3.125e-3 / 30_f64.to_radians().cos();
+    scene.surfaces[0].trajectory = Trajectory::steady(step * DVec3::X).unwrap();
+    let model = model(&scene);
+    let cell = cell(&scene);
+    let (line, geometry) = (
+        scene.lasers[0].spectral_line().clone(),
+        scene.camera.imaging_geometry(650e-9).unwrap(),
+    );
+    let law = PolychromaticSpeckle {
+        line: &line,
+        cell: &cell,
+    };
+    let here = picture(&scene, &model, 2, |_| DVec2::ZERO);
+    for frame in [1, 4] {
+        // The same speckle, where it went.
+        let (change, camera) = (Change::new(&scene, frame), scene.camera_at(frame));
+        let shift = |pixel: DVec2| change.speckle_shift(0, &geometry, &seen(&camera, pixel));
+        let there = picture(&scene, &model, frame, |pixel| {
+            let near = shift(pixel).displacement;
+            shift(pixel + near).displacement
+        });
+        let shift = shift(DVec2::new(240.0, 180.0));
+        let found = covariance(&here, &there);
+        let expected = law.covariance([shift.pupil, 0.0]);
+        assert!(
+            (found - expected).abs() < 0.04,
+            "{frame}: {found} for {expected}"
+        );
+    }
+}
+
+#[test]
+fn grains_are_longer_along_the_tilt() {
+    let scene = scene(gaussian(10e-9), 0.0);
+    let model = model(&scene);
+    let size = scene
+        .camera
+        .imaging_geometry(650e-9)
+        .unwrap()
+        .speckle_size_in_pixels();
+    let (line, cell) = (scene.lasers[0].spectral_line(), cell(&scene));
+    let law = PolychromaticSpeckle { line, cell: &cell };
+    let here = picture(&scene, &model, 0, |_| DVec2::ZERO);
+    for lag in [[1.0, 0.0], [0.0, 1.0]] {
+        let there = picture(&scene, &model, 0, |_| size * DVec2::from_array(lag));
+        let (found, expected) = (covariance(&here, &there), law.autocovariance(lag));
+        assert!(
+            (found - expected).abs() < 0.02,
+            "{lag:?}: {found} for {expected}"
+        );
+    }
+}

@@ -6,8 +6,8 @@ use super::super::{LoadedImage, Transfer};
 use super::{RawFormat, RawImage, decode};
 use crate::image::ImageError;
 
-const GREY_JPEG: &[u8] = include_bytes!("../../../tests/data/grey.jpg");
-const COLOUR_JPEG: &[u8] = include_bytes!("../../../tests/data/colour.jpg");
+const GREY_JPEG: &[u8] = include_bytes!("data/grey.jpg");
+const COLOUR_JPEG: &[u8] = include_bytes!("data/colour.jpg");
 
 fn raw(file: &[u8], format: RawFormat, channel: Option<&str>) -> Result<RawImage, ImageError> {
     decode(Cursor::new(file), format)?.image(channel)

@@ -1,0 +1,94 @@
+//! How far speckle of a broad source moves a laser line.
+
+use tem00::{
+    coherence::{PolychromaticSpeckle, Rows},
+    wave::Estimate,
+};
+
+use crate::{
+    bench::{Bench, Spectrum, View, plane_of_incidence},
+    contrast::cell,
+    heights::Heights,
+    sums::{assert_agrees, assert_refutes, for_surfaces},
+};
+
+/// Radius of the line, in speckles, to 1/e² of its intensity.
+const WIDTH: f64 = 4.0;
+const STEPS: i32 = 9;
+
+/// Mean squares of the first moments of one surface, of all wave numbers together and of single ones.
+type Squares = [f64; 2];
+
+/// Returns the moments of the rows of an image about the middle of the line, in pixels.
+fn moments(image: &[f64], columns: usize) -> Vec<f64> {
+    let place = |x: usize| {
+        let is_left = 2 * x >= columns;
+        x as f64 - if is_left { columns as f64 } else { 0.0 }
+    };
+    let moment = |row: &[f64]| row.iter().enumerate().map(|(x, i)| place(x) * i).sum();
+    image.chunks_exact(columns).map(moment).collect()
+}
+
+fn mean_square(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64
+}
+
+/// The mean over all rows, as a row has that is much taller than a speckle.
+fn tall(moments: &[f64]) -> Vec<f64> {
+    vec![moments.iter().sum::<f64>() / moments.len() as f64]
+}
+
+/// Returns the root of the ratio of two mean squares, and its error from leaving out one surface at a time.
+fn ratio(surfaces: &[Squares]) -> Estimate {
+    let sum = |i: usize| surfaces.iter().map(|squares| squares[i]).sum::<f64>();
+    let total = [sum(0), sum(1)];
+    let without = |squares: &Squares| ((total[0] - squares[0]) / (total[1] - squares[1])).sqrt();
+    let partial: Vec<f64> = surfaces.iter().map(without).collect();
+    let spread = Estimate::of_repetitions(&partial).expect("surfaces");
+    Estimate {
+        value: (total[0] / total[1]).sqrt(),
+        standard_error: spread.standard_error * (surfaces.len() - 1) as f64,
+    }
+}
+
+#[test]
+fn lines_of_a_broad_source_scatter_as_the_law_says_and_not_as_their_contrast() {
+    let view = plane_of_incidence(0.0, 30.0);
+    let mut bench = Bench::new(view, [24, 8], Heights::Flat);
+    bench.step *= 2.0;
+    let spectrum = Spectrum::gaussian(&bench, STEPS, 20e-9);
+    let columns = bench.pixels()[0];
+    let surfaces = for_surfaces(400, 4, |random| {
+        let surface = bench.surface(random, |x| (-(x / WIDTH).powi(2)).exp());
+        let images = &bench.images(&surface, STEPS, &[View::default()], random)[0];
+        let mixed = moments(&spectrum.mix(images), columns);
+        let single: Vec<_> = images.iter().map(|image| moments(image, columns)).collect();
+        let all_single = |pixel: fn(&[f64]) -> Vec<f64>| {
+            single
+                .iter()
+                .map(|rows| mean_square(&pixel(rows)))
+                .sum::<f64>()
+                / single.len() as f64
+        };
+        [
+            [mean_square(&mixed), all_single(<[f64]>::to_vec)],
+            [mean_square(&tall(&mixed)), all_single(tall)],
+        ]
+    });
+    let cell = cell(view, 0.0, 0.0);
+    let law = PolychromaticSpeckle {
+        line: &spectrum.line,
+        cell: &cell,
+    };
+    for (i, (rows, tolerance)) in [(Rows::Thin, 0.015), (Rows::Tall, 0.06)]
+        .into_iter()
+        .enumerate()
+    {
+        let waves = ratio(&surfaces.iter().map(|s| s[i]).collect::<Vec<_>>());
+        let expected = law.line_noise(rows).sqrt();
+        assert_agrees(&format!("{rows:?}"), waves, expected, tolerance);
+        if rows == Rows::Thin {
+            assert_refutes("contrast", waves, law.contrast());
+        }
+    }
+}

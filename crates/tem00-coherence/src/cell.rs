@@ -61,7 +61,8 @@ pub struct Relief {
 /// # Validity
 ///
 /// Rough surfaces, `σ_L > λ/2`; many scatterers to a cell; normal heights without shadows and multiple scattering. A
-/// bandwidth small against the wavelength.
+/// bandwidth small against the wavelength: the sizes of speckle differ over it, which is left out. Where neither tilt
+/// nor heights tell wave numbers apart, contrasts are too large by `0.48 Δλ/λ`, 2 % at 20 nm of 450 nm.
 ///
 /// # References
 ///

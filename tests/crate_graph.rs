@@ -184,6 +184,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &[
             "tem00-beam",
             "tem00-cli",
+            "tem00-coherence",
             "tem00-decorrelation",
             "tem00-numerics",
             "tem00-speckle",

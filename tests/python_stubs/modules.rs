@@ -14,6 +14,7 @@ use crate::{
 const MODULES: &[(&str, &str, &str)] = &[
     ("beam", "beam.rs", "beam/__init__.pyi"),
     ("closed_form", "beam/closed_form.rs", "beam/closed_form.pyi"),
+    ("coherence", "coherence.rs", "coherence.pyi"),
     ("decorrelation", "decorrelation.rs", "decorrelation.pyi"),
     ("speckle", "speckle.rs", "speckle.pyi"),
     ("statistics", "statistics.rs", "statistics.pyi"),

@@ -4,6 +4,7 @@ use pyo3::{
     prelude::*,
 };
 use tem00_beam::BeamError;
+use tem00_coherence::CoherenceError;
 use tem00_decorrelation::DecorrelationError;
 use tem00_speckle::SpeckleError;
 use tem00_statistics::StatisticsError;
@@ -37,6 +38,12 @@ pub(crate) trait IntoPython {
 }
 
 impl IntoPython for BeamError {
+    fn into_python(self) -> PyErr {
+        refused(self.parameter(), self.to_string())
+    }
+}
+
+impl IntoPython for CoherenceError {
     fn into_python(self) -> PyErr {
         refused(self.parameter(), self.to_string())
     }

@@ -9,6 +9,7 @@ mod methods;
 
 mod arrays;
 mod beam;
+mod coherence;
 mod decorrelation;
 mod error;
 mod pickling;
@@ -30,8 +31,8 @@ fn main(py: Python<'_>) -> PyResult<u8> {
 mod _tem00 {
     #[pymodule_export]
     use super::{
-        beam::beam, decorrelation::decorrelation, error::ParameterError, main, speckle::speckle,
-        statistics::statistics,
+        beam::beam, coherence::coherence, decorrelation::decorrelation, error::ParameterError,
+        main, speckle::speckle, statistics::statistics,
     };
 
     #[pymodule_export]

@@ -38,6 +38,6 @@ pub(crate) mod speckle {
         pupil::{Pupil, Transmission},
         slice_law::SliceLaw,
         stack::SpeckleStack,
-        sum::{Bandwidth, IncoherentSum},
+        sum::IncoherentSum,
     };
 }

@@ -1,6 +1,5 @@
 mod contrasts;
 mod estimators;
-mod gaussian_spectrum;
 mod hypotheses;
 mod images;
 mod joint;
@@ -28,7 +27,6 @@ pub(crate) mod statistics {
             translation_contrast,
         },
         estimators::{Contrast, GammaFit, Moments, pearson_correlation},
-        gaussian_spectrum::{GaussianSpectrum, path_spread_of_reflection},
         hypotheses::{TestOutcome, chi_squared, kolmogorov_smirnov, t_test_mean},
         images::{
             Ring, SpeckleSize, autocovariance, decorrelated_samples, local_contrast,

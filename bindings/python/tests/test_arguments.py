@@ -11,7 +11,6 @@ from tem00 import decorrelation as dc
 from tem00 import speckle as sp
 from tem00 import statistics as st
 
-SPECTRUM = st.GaussianSpectrum(650e-9, 1e-9)
 PAIR = st.JointIntensity(0.5)
 LEVELS = st.GreyLevels.from_values([0.0, 1.0, 2.0, 1.0] * 20)
 assert LEVELS is not None
@@ -40,9 +39,6 @@ SIZES: list[tuple[str, Callable[[float], object]]] = [
     ("row_height", lambda x: st.imaged_line_centroid_deviation(1.0, x)),
     ("radius", st.gaussian_spot_centroid_deviation),
     ("radius", st.disc_spot_centroid_deviation),
-    ("path_spread", SPECTRUM.contrast),
-    ("path_spread", lambda x: SPECTRUM.correlation(0.0, x)),
-    ("height_spread", lambda x: st.path_spread_of_reflection(x, (0.0, 0.0))),
     ("measured", st.size_before_pixels),
     ("given", PAIR.conditional_mean),
     ("given", PAIR.conditional_variance),
@@ -84,12 +80,6 @@ def test_one_bad_element_refuses_an_array() -> None:
     with pytest.raises(tem00.ParameterError, match=r"pixel_size must be 0 or more, got -0.25"):
         st.pixel_contrast(sizes)
     np.testing.assert_allclose(st.pixel_contrast(np.zeros(2)), 1.0, atol=1e-12)
-
-
-def test_angles_behind_the_surface_are_refused() -> None:
-    for angles in ((2.0, 0.0), (0.0, -1.6)):
-        with pytest.raises(tem00.ParameterError, match="angles must be between"):
-            st.path_spread_of_reflection(1e-6, angles)
 
 
 def test_arrays_too_large_to_copy_are_a_memory_error() -> None:

@@ -8,7 +8,6 @@ import pytest
 
 import tem00
 from tem00.speckle import (
-    Bandwidth,
     CoherentBackground,
     Exposure,
     IncoherentSum,
@@ -84,9 +83,6 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: IncoherentSum.equal(0), "count", "0"),
     (lambda: IncoherentSum.weighted([1.0, -1.5]), "weights", "-1.5"),
     (lambda: IncoherentSum.partially_polarised(1.5), "degree", "1.5"),
-    (lambda: IncoherentSum.polychromatic(Bandwidth(1e-6, 2e-7, 0)), "linewidth", "2e-7"),
-    (lambda: IncoherentSum.polychromatic(Bandwidth(-1e-6, 0, 0)), "wavelength", "-1e-6"),
-    (lambda: IncoherentSum.polychromatic(Bandwidth(1e-6, 0, -1)), "path_spread", "-1"),
     (lambda: IncoherentSum.equal(2).fields(MEASURED), "field", "seed"),
     (lambda: CoherentBackground(-3.0, 0.0), "beam_ratio", "-3"),
     (lambda: CoherentBackground(1.0, np.inf), "phase", "inf"),

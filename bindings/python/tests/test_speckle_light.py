@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy import fft, integrate, stats
+from scipy import fft, stats
 
 from tem00.speckle import (
-    Bandwidth,
     CoherentBackground,
     Exposure,
     IncoherentSum,
@@ -69,19 +68,6 @@ def test_equal_sums_have_the_gamma_law() -> None:
         [light.pattern(field.with_seed(seed)).values[::5, ::5].ravel() for seed in range(4)]
     )
     assert stats.kstest(samples, stats.gamma(3, scale=1 / 3).cdf).pvalue > 1e-3
-
-
-def test_a_spectrum_has_the_contrast_of_its_coherence() -> None:
-    wavelength, linewidth, spread = 650e-9, 20e-9, 10e-6
-    light = IncoherentSum.polychromatic(Bandwidth(wavelength, linewidth, spread))
-    # A Gaussian spectrum of wave numbers of that width at half maximum, on a Gaussian surface:
-    # C² = ∫∫ S(k) S(k') exp(-(k - k')² spread²) dk dk', in units of its standard deviation.
-    sigma = 2 * np.pi * linewidth / wavelength**2 / np.sqrt(8 * np.log(2))
-    # The difference of two such wave numbers is Gaussian with the variance 2.
-    law = stats.norm(scale=np.sqrt(2)).pdf
-    square, _ = integrate.quad(lambda d: law(d) * np.exp(-((d * sigma * spread) ** 2)), -12, 12)
-    # The last modes, 1e-4 of the light, are left out.
-    assert light.contrast == pytest.approx(np.sqrt(square), rel=2e-4)
 
 
 def test_a_background_interferes(field: PupilField) -> None:

@@ -197,20 +197,6 @@ def test_the_contrast_of_exposures_and_filters_is_an_integral(amount: float) -> 
     assert abs(st.gaussian_filter_contrast(amount) - filtered) < 1e-6
 
 
-def test_a_broad_spectrum_lowers_the_contrast_as_its_wavelengths_average() -> None:
-    spectrum = st.GaussianSpectrum(650e-9, 20e-9)
-    spread = st.path_spread_of_reflection(5e-6, (0.2, 0.5))
-    assert math.isclose(spread, (math.cos(0.2) + math.cos(0.5)) * 5e-6, rel_tol=1e-15)
-    # C² averages the correlation over the difference of two wavelengths, of √2 times the spread.
-    sigma = math.sqrt(2) * 20e-9 / math.sqrt(8 * math.log(2))
-    law = scipy_stats.norm(scale=sigma)
-    averaged = integrate.quad(
-        lambda d: law.pdf(d) * spectrum.correlation(d, spread), -9 * sigma, 9 * sigma,
-        epsabs=1e-12,
-    )[0]
-    assert math.isclose(spectrum.contrast(spread) ** 2, averaged, rel_tol=1e-9)
-
-
 def test_objective_speckle_is_the_transform_of_the_lit_area() -> None:
     wavelength, distance = 650e-9, 2.0
     lags = np.linspace(0, 3e-3, 7)
@@ -261,8 +247,6 @@ REFUSALS: list[tuple[Callable[[], object], str]] = [
     (lambda: st.moment_of_phasor_sum(4, 21), "order"),
     (lambda: st.JointIntensity(1.0), "amplitude_correlation"),
     (lambda: st.JointIntensity(0.5).moment((2, 21)), "orders"),
-    (lambda: st.GaussianSpectrum(0.0, 1e-9), "wavelength"),
-    (lambda: st.GaussianSpectrum(1e-9, 650e-9), "linewidth"),
     (lambda: st.ObjectiveSpeckle(0.0, 1.0, st.LitArea.disc(1.0)), "wavelength"),
     (lambda: st.ObjectiveSpeckle(650e-9, math.inf, st.LitArea.disc(1.0)), "distance"),
     (lambda: st.LitArea.rectangle(1.0, 0.0), "height"),

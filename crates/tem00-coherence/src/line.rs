@@ -237,7 +237,13 @@ impl SpectralLine {
             LineShape::Rectangular => sinc(0.5 * x),
         };
         let peaks = self.peaks.iter();
-        let between = peaks.map(|peak| Complex::from_polar(peak.weight, peak.offset * path));
+        // A phase that no number holds stands for any.
+        let phase = |peak: &Peak| Some(peak.offset * path).filter(|phase| phase.is_finite());
+        let between = peaks.map(|peak| {
+            phase(peak).map_or(Complex::ZERO, |phase| {
+                Complex::from_polar(peak.weight, phase)
+            })
+        });
         within * between.sum::<Complex<f64>>()
     }
 

@@ -41,7 +41,7 @@ mod stack;
 pub use error::SpeckleError;
 pub use interpolation::Interpolation;
 pub use light::{
-    Bandwidth, CoherentBackground, Exposure, IncoherentSum, LitArea, ObjectiveSpeckle, PixelArray,
+    CoherentBackground, Exposure, IncoherentSum, LitArea, ObjectiveSpeckle, PixelArray,
 };
 pub use npy::{NpyError, NpyReader, write_npy, write_real_npy};
 /// The complex number of [`SpeckleField`], from `num-complex`.

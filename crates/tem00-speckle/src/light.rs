@@ -11,4 +11,4 @@ pub use background::CoherentBackground;
 pub use exposure::Exposure;
 pub use objective::{LitArea, ObjectiveSpeckle};
 pub use pixels::PixelArray;
-pub use sum::{Bandwidth, IncoherentSum};
+pub use sum::IncoherentSum;

@@ -1,6 +1,5 @@
-//! The contrast that pixels, exposures and broad light leave.
+//! The contrast that pixels and exposures leave.
 
-pub(crate) mod bandwidth;
 pub(crate) mod exposure;
 pub(crate) mod pixel;
 pub(crate) mod rectangular_pixel;

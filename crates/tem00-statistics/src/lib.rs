@@ -19,7 +19,7 @@
 //!   [`PhasorSum`], [`JointIntensity`].
 //! - Contrast: [`pixel_contrast`], [`rectangular_pixel_contrast`], [`gaussian_filter_contrast`],
 //!   [`contrast_of_exposure`], [`boiling_contrast`], [`translation_contrast`],
-//!   [`GaussianSpectrum`], [`contrast_of_phasor_sum`], [`contrast_squared_spread`].
+//!   [`contrast_of_phasor_sum`], [`contrast_squared_spread`].
 //! - In space: [`airy_autocovariance`], [`airy_power_spectrum`], [`ObjectiveSpeckle`],
 //!   [`COHERENCE_AREA`], [`VORTEX_DENSITY`], [`level_crossings`], [`area_fraction_above`].
 //! - Laser lines and spots under speckle: [`line_centroid_deviation`], [`SpeckledLine`],
@@ -59,7 +59,6 @@ pub use centroid::{
     spot::{disc_spot_centroid_deviation, gaussian_spot_centroid_deviation},
 };
 pub use contrast::{
-    bandwidth::{GaussianSpectrum, path_spread_of_reflection},
     exposure::{boiling_contrast, contrast_of_exposure, translation_contrast},
     pixel::pixel_contrast,
     rectangular_pixel::{gaussian_filter_contrast, rectangular_pixel_contrast},

@@ -12,6 +12,7 @@ from tem00._tem00 import (
     ParameterError,
     __version__,
     beam,
+    coherence,
     decorrelation,
     speckle,
     statistics,
@@ -29,13 +30,14 @@ def _register(module: ModuleType, name: str) -> None:
             inner.__module__ = name
 
 
-for _short in ("beam", "decorrelation", "speckle", "statistics"):
+for _short in ("beam", "coherence", "decorrelation", "speckle", "statistics"):
     _register(getattr(_tem00, _short), f"tem00.{_short}")
 
 __all__ = [
     "ParameterError",
     "__version__",
     "beam",
+    "coherence",
     "decorrelation",
     "speckle",
     "statistics",

@@ -1,4 +1,5 @@
 from tem00 import beam as beam
+from tem00 import coherence as coherence
 from tem00 import decorrelation as decorrelation
 from tem00 import speckle as speckle
 from tem00 import statistics as statistics
@@ -7,6 +8,7 @@ __all__ = [
     "ParameterError",
     "__version__",
     "beam",
+    "coherence",
     "decorrelation",
     "main",
     "speckle",

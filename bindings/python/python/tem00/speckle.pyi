@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 from tem00._typing import ComplexArray, Counts, File, FloatArray, Interpolation, Numbers, Phasors, Real, RealArray, Vector
 
 __all__ = [
-    "Bandwidth",
     "CoherentBackground",
     "Exposure",
     "IncoherentSum",
@@ -25,19 +24,6 @@ __all__ = [
     "Transmission",
 ]
 
-
-@final
-class Bandwidth:
-    def __new__(cls, wavelength: float, linewidth: float, path_spread: float) -> Bandwidth: ...
-    @property
-    def wavelength(self) -> float: ...
-    @property
-    def linewidth(self) -> float: ...
-    @property
-    def path_spread(self) -> float: ...
-    def __eq__(self, value: object, /) -> bool: ...
-    def __ne__(self, value: object, /) -> bool: ...
-    __hash__: ClassVar[None]  # type: ignore[assignment]
 
 @final
 class CoherentBackground:
@@ -84,8 +70,6 @@ class IncoherentSum:
     def equal(count: SupportsIndex) -> IncoherentSum: ...
     @staticmethod
     def weighted(weights: Vector) -> IncoherentSum: ...
-    @staticmethod
-    def polychromatic(bandwidth: Bandwidth) -> IncoherentSum: ...
     def split_by(self, other: IncoherentSum) -> IncoherentSum: ...
     @property
     def weights(self) -> FloatArray: ...

@@ -1,7 +1,4 @@
-use pyo3::{
-    prelude::*,
-    types::{PyTuple, PyType},
-};
+use pyo3::prelude::*;
 use tem00_speckle::{self as physics, SpeckleError};
 
 use super::{field::PupilField, images::check_room, pattern::SpecklePattern};
@@ -9,62 +6,6 @@ use crate::{
     arrays::{Array, Components, Values, Whole, array},
     error::{IntoPython, OrRaise, refused},
 };
-
-/// A narrow Gaussian spectrum on a surface that spreads the optical path.
-///
-/// Parameters
-/// ----------
-/// wavelength : float
-///     Central wavelength in metres.
-/// linewidth : float
-///     Full width at half maximum of the power per wavelength, in metres.
-/// `path_spread` : float
-///     Standard deviation of the optical path over the light that meets in a point, in metres: twice
-///     that of the height, for a rough surface lit and seen along its normal.
-#[pyclass(frozen, eq, module = "tem00.speckle")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Bandwidth(physics::Bandwidth);
-
-#[pymethods]
-impl Bandwidth {
-    #[new]
-    const fn new(wavelength: f64, linewidth: f64, path_spread: f64) -> Self {
-        Self(physics::Bandwidth {
-            wavelength,
-            linewidth,
-            path_spread,
-        })
-    }
-
-    fn __repr__(&self) -> String {
-        let Self(band) = self;
-        format!(
-            "Bandwidth(wavelength={:e}, linewidth={:e}, path_spread={:e})",
-            band.wavelength, band.linewidth, band.path_spread
-        )
-    }
-
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyType>, Bound<'py, PyTuple>)> {
-        let Self(band) = slf.get();
-        let arguments = (band.wavelength, band.linewidth, band.path_spread);
-        Ok((slf.get_type(), arguments.into_pyobject(slf.py())?))
-    }
-}
-
-methods! {
-    impl Bandwidth as this: this.0;
-
-    /// Central wavelength in metres.
-    field wavelength -> f64;
-
-    /// Full width at half maximum in metres.
-    field linewidth -> f64;
-
-    /// Standard deviation of the optical path in metres.
-    field path_spread -> f64;
-}
 
 /// Independent speckle patterns whose intensities add, each with its fraction of the light.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
@@ -98,18 +39,6 @@ impl IncoherentSum {
     #[staticmethod]
     fn weighted(weights: Components<'_>) -> PyResult<Self> {
         let sum = physics::IncoherentSum::weighted(weights.finite("weights")?);
-        Ok(Self(sum.or_raise()?))
-    }
-
-    /// Return light of a Gaussian spectrum.
-    ///
-    /// Parameters
-    /// ----------
-    /// bandwidth : `Bandwidth`
-    ///     Spectrum of the light and path spread of the surface.
-    #[staticmethod]
-    fn polychromatic(bandwidth: &Bandwidth) -> PyResult<Self> {
-        let sum = physics::IncoherentSum::polychromatic(bandwidth.0);
         Ok(Self(sum.or_raise()?))
     }
 

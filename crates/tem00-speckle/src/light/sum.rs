@@ -1,6 +1,4 @@
-use core::f64::consts::{LN_2, PI};
-
-use tem00_numerics::cast::{to_f32, to_usize};
+use tem00_numerics::cast::to_f32;
 
 use crate::{PupilField, SpeckleError, SpecklePattern};
 
@@ -11,7 +9,7 @@ use crate::{PupilField, SpeckleError, SpecklePattern};
 /// C = √(Σ wⱼ²)         contrast, for fully developed patterns
 /// ```
 ///
-/// Several lasers, both polarisations and the parts of a broad spectrum are all of this form, and
+/// Several lasers, both polarisations and the coherent modes of a broad spectrum are all of this form, and
 /// [`split_by`](Self::split_by) combines them. The mean is exactly 1 where that of every pattern is.
 ///
 /// # Patterns and stacks
@@ -53,21 +51,6 @@ use crate::{PupilField, SpeckleError, SpecklePattern};
 pub struct IncoherentSum {
     weights: Vec<f64>,
 }
-
-/// A narrow Gaussian spectrum on a surface that spreads the optical path. Lengths are in metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bandwidth {
-    /// The central wavelength λ.
-    pub wavelength: f64,
-    /// The linewidth Δλ, full width at half maximum of the power per wavelength.
-    pub linewidth: f64,
-    /// The standard deviation `σ_L` of the optical path over the light that meets in one point of
-    /// the image: twice that of the height, for a rough surface lit and seen along its normal.
-    pub path_spread: f64,
-}
-
-/// Largest fraction of the light in the last parts of a spectrum that are left out.
-const NEGLIGIBLE_SHARE: f64 = 1e-4;
 
 impl IncoherentSum {
     /// The largest number of patterns in a sum.
@@ -139,65 +122,6 @@ impl IncoherentSum {
             ));
         }
         Self::weighted(&[0.5 * (1.0 + degree), 0.5 * (1.0 - degree)])
-    }
-
-    /// Creates light of a Gaussian spectrum.
-    ///
-    /// ```text
-    /// C² = 1 / √(1 + x²)       x = √(4π) σ_L / l_c = 2 σ_k σ_L,   l_c = √(2 ln 2 / π) λ² / Δλ
-    /// wⱼ = (1 − t) tʲ          t = (1 − C²) / (1 + C²)
-    /// ```
-    ///
-    /// The fields of two wave numbers k and k' correlate by `exp(−(k − k')² σ_L²/2)`. The parts are
-    /// the coherent modes of that spectrum, uncorrelated with each other, whose fractions of the power
-    /// are the eigenvalues of a Gaussian kernel under a Gaussian weight. A narrow line is one pattern.
-    ///
-    /// # Validity
-    ///
-    /// The law of the intensity is exact but for the last modes, of together 10⁻⁴ of the light, that
-    /// are left out; the contrast is up to 10⁻⁴ of itself too high for that. Path spreads are
-    /// large against the wavelength, so that each wavelength makes fully developed speckle. That a
-    /// pattern also grows with its wavelength is left out.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error unless all lengths are finite, `wavelength > 0`, `0 ≤ linewidth ≤ 0.1
-    /// wavelength` and `path_spread ≥ 0`, or if the contrast is below some 0.07, for which
-    /// `MAX_PATTERNS` are too few. [`equal`](Self::equal) with 1/C² patterns then has the same
-    /// contrast, and nearly the same law.
-    ///
-    /// # Examples
-    ///
-    /// An LED of 20 nm on paper with a roughness of 5 µm:
-    ///
-    /// ```
-    /// use tem00_speckle::{Bandwidth, IncoherentSum};
-    ///
-    /// let led = Bandwidth { wavelength: 650e-9, linewidth: 20e-9, path_spread: 10e-6 };
-    /// let light = IncoherentSum::polychromatic(led)?;
-    /// assert!((light.contrast() - 0.607).abs() < 1e-3);
-    /// # Ok::<(), tem00_speckle::SpeckleError>(())
-    /// ```
-    ///
-    /// # References
-    ///
-    /// - A. Starikov and E. Wolf, *Coherent-mode representation of Gaussian Schell-model sources and
-    ///   of their radiation fields*, 1982.
-    /// - G. Parry, *Speckle patterns in partially coherent light*, in *Laser Speckle and Related
-    ///   Phenomena*, ed. J. C. Dainty, 1975.
-    pub fn polychromatic(bandwidth: Bandwidth) -> Result<Self, SpeckleError> {
-        let ratio = bandwidth.mode_ratio()?;
-        // tᴶ is the fraction of all modes from J on.
-        let modes = match ratio > NEGLIGIBLE_SHARE {
-            true => (NEGLIGIBLE_SHARE.ln() / ratio.ln()).ceil(),
-            false => 1.0,
-        };
-        if modes > Self::MAX_PATTERNS as f64 {
-            return Err(not_a_count(modes));
-        }
-        let powers = core::iter::successors(Some(1.0), |power| Some(power * ratio));
-        let weights: Vec<f64> = powers.take(to_usize(modes)).collect();
-        Self::weighted(&weights)
     }
 
     /// Returns this sum with every pattern split as `other` is: light that both laws divide.
@@ -322,50 +246,6 @@ impl IncoherentSum {
             .zip(&self.weights)
             .map(|(value, weight)| weight * value)
             .sum()
-    }
-}
-
-impl Bandwidth {
-    /// The ratio t of the powers of successive modes.
-    fn mode_ratio(self) -> Result<f64, SpeckleError> {
-        let Self {
-            wavelength,
-            linewidth,
-            path_spread,
-        } = self;
-        if !(wavelength > 0.0 && wavelength.is_finite()) {
-            let allowed = "a positive finite number of metres";
-            return Err(SpeckleError::out_of_range(
-                "wavelength",
-                wavelength,
-                allowed,
-            ));
-        }
-        let maximum = 0.1 * wavelength;
-        if !(linewidth >= 0.0 && linewidth <= maximum) {
-            let (limits, unit) = ([0.0, maximum], "m, a tenth of the wavelength");
-            return Err(SpeckleError::out_of_limits(
-                "linewidth",
-                linewidth,
-                limits,
-                unit,
-            ));
-        }
-        if !(path_spread >= 0.0 && path_spread.is_finite()) {
-            let allowed = "finite and not negative, in metres";
-            return Err(SpeckleError::out_of_range(
-                "path_spread",
-                path_spread,
-                allowed,
-            ));
-        }
-        let relative_width = linewidth / wavelength;
-        // √(4π) / √(2 ln 2 / π)
-        let factor = PI * (2.0 / LN_2).sqrt();
-        let x = (factor * relative_width * (path_spread / wavelength)).min(1e150);
-        // With R = 1/C² = √(1 + x²), t is (R − 1) / (R + 1).
-        let root = x / (1.0 + 1.0_f64.hypot(x));
-        Ok(root * root)
     }
 }
 

@@ -1,0 +1,14 @@
+mod cell;
+mod line;
+
+use pyo3::prelude::*;
+
+/// Speckle in light that is not of one wavelength.
+///
+/// Directions are arrays of shape (3,) and lead away from the surface. Displacements across the pupil are in pupil
+/// diameters, lags on the object in speckle sizes; both along the tilt of the resolution cell, then across it.
+#[pymodule(submodule)]
+pub(crate) mod coherence {
+    #[pymodule_export]
+    use super::{cell::ResolutionCell, line::SpectralLine};
+}

@@ -1,0 +1,103 @@
+"""Speckle in light that is not of one wavelength, against quadrature by SciPy."""
+
+import math
+
+import numpy as np
+import pytest
+import tem00
+from scipy import integrate
+from tem00.coherence import ResolutionCell, SpectralLine
+
+WAVELENGTH, SIN_APERTURE, LINEWIDTH = 450e-9, 0.025, 20e-9
+SPREAD = 2 * math.pi * LINEWIDTH / WAVELENGTH**2 / math.sqrt(8 * math.log(2))
+
+
+def cell(rms_height: float = 0.0, defocus: float = 0.0) -> ResolutionCell:
+    """Lit along the normal, seen under 30 degrees."""
+    to_pupil = (0.5, 0.0, math.sqrt(0.75))
+    return ResolutionCell(
+        (0, 0, 1), to_pupil, (0, 0, 1), SIN_APERTURE, WAVELENGTH,
+        rms_height=rms_height, defocus=defocus,
+    )
+
+
+def overlap(shift: float) -> float:
+    s = min(abs(shift), 1.0)
+    return 2 / math.pi * (math.acos(s) - s * math.sqrt(1 - s * s))
+
+
+@pytest.mark.parametrize("height", [0.0, 0.4e-6, 6e-6])
+def test_contrast_and_line_noise_are_means_over_pairs_of_wave_numbers(height: float) -> None:
+    tilt = math.tan(math.radians(30))
+    factor = (1 + math.cos(math.radians(30))) / math.cos(math.radians(30))
+    full = 4 * math.pi * SIN_APERTURE / (WAVELENGTH * tilt)
+    assert cell(height).tilt_wave_number == pytest.approx(full, rel=1e-12)
+    assert cell(height).path_spread == pytest.approx(factor * height, rel=1e-12)
+
+    def mean(shared: object) -> float:
+        assert callable(shared)
+
+        def integrand(x: float) -> float:
+            kappa = 2 * SPREAD * x
+            weight = math.exp(-x * x - (kappa * factor * height) ** 2) / math.sqrt(math.pi)
+            return float(weight * shared(min(abs(kappa) / full, 1.0)))
+
+        return float(2 * integrate.quad(integrand, 0, 8, epsabs=1e-12, limit=200)[0])
+
+    line = SpectralLine(WAVELENGTH, LINEWIDTH)
+    assert cell(height).contrast(line) ** 2 == pytest.approx(mean(lambda s: overlap(s) ** 2), rel=1e-7)
+    thin = mean(lambda s: 1 - 1.5 * s + 0.5 * s**3)
+    assert cell(height).line_noise(line) == pytest.approx(thin, rel=1e-7)
+    assert cell(height).line_noise(line, tall_rows=True) == pytest.approx(mean(overlap), rel=1e-7)
+    modes = cell(height).modes(line)
+    assert modes.sum() == pytest.approx(1)
+    assert np.sqrt((modes**2).sum()) == pytest.approx(cell(height).contrast(line), abs=2e-3)
+
+
+def test_frames_grains_and_defocus() -> None:
+    line = SpectralLine(WAVELENGTH, LINEWIDTH)
+    tilted = cell()
+    assert tilted.covariance(line, (0, 0)) == pytest.approx(tilted.contrast(line) ** 2)
+    assert tilted.covariance(line, (0.3, 0)) > tilted.covariance(line, (0, 0.3))
+    assert tilted.autocovariance(line, (1, 0)) > tilted.autocovariance(line, (0, 1))
+    assert cell(defocus=1.5e-3).contrast(line) == pytest.approx(0.401, abs=1e-3)
+    np.testing.assert_allclose(tilted.tilt @ (0.5, 0, math.sqrt(0.75)), 0, atol=1e-15)
+
+
+def test_lines_have_the_coherence_of_their_shapes() -> None:
+    unit = WAVELENGTH**2 / LINEWIDTH
+    assert SpectralLine(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(
+        math.sqrt(2 * math.log(2) / math.pi) * unit
+    )
+    assert SpectralLine.lorentzian(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(unit / math.pi)
+    assert SpectralLine.rectangular(WAVELENGTH, LINEWIDTH).coherence_length == pytest.approx(unit)
+    comb = SpectralLine.comb(WAVELENGTH, 1e-9, 3)
+    again = WAVELENGTH**2 / 0.5e-9
+    np.testing.assert_allclose(comb.squared_coherence(np.array([0.0, again])), 1, atol=1e-9)
+    assert comb.squared_coherence(again / 3) == pytest.approx(0, abs=1e-9)
+    two = SpectralLine.from_peaks([450e-9, 451e-9], [1.0, 3.0])
+    assert 450e-9 < two.wavelength < 451e-9
+    assert SpectralLine(WAVELENGTH).coherence_length == math.inf
+    assert comb.squared_coherence(1e308) == pytest.approx(1 / 9)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "parameter"),
+    [
+        (lambda: SpectralLine(0.0), "wavelength"),
+        (lambda: SpectralLine(1e-9, 650e-9), "linewidth"),
+        (lambda: SpectralLine.comb(650e-9, 1e-9, 0), "count"),
+        (lambda: SpectralLine.from_peaks([650e-9], [-1.0]), "powers"),
+        (lambda: SpectralLine.from_peaks([650e-9], [1.0, 2.0]), "powers"),
+        (lambda: ResolutionCell((0, 0, -1), (0, 0, 1), (0, 0, 1), 0.1, 1e-6), "to_source"),
+        (lambda: ResolutionCell((0, 0, 1), (0, 0, 1), (0, 0, 1), 2.0, 1e-6), "sin_aperture"),
+        (lambda: cell(rms_height=-1.0), "rms_height"),
+        (lambda: cell(defocus=math.inf), "defocus"),
+        (lambda: cell().autocovariance(SpectralLine(650e-9), (1e9, 0)), "lag"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_name(wrong: object, parameter: str) -> None:
+    assert callable(wrong)
+    with pytest.raises(tem00.ParameterError) as caught:
+        wrong()
+    assert caught.value.parameter == parameter

@@ -21,6 +21,8 @@ for example in beam_caustic correlated_slices defocus focus_by_lens interpolatio
 done
 cargo run --locked --release --example decorrelation_curves
 cp out/decorrelation_both.svg docs/figures/
+cargo run --locked --release --example will_a_broader_source_help
+cp out/broader_source_{noise,aperture}.svg docs/figures/
 # What the tutorial shows.
 tem00() { cargo run --locked --release -p tem00-cli -- "$@"; }
 tem00 design setups/design.toml -o "$work/design"

@@ -88,7 +88,7 @@ fn contrasts_are_those_of_the_law() {
     let comb = SpectralLine::comb(650e-9, 8e-9, 5).unwrap();
     for (line, height) in [
         (gaussian(5e-9), 0.0),
-        (gaussian(5e-9), 2e-6),
+        (gaussian(10e-9), 8e-6),
         (comb, 2e-6),
         (gaussian(30e-9), 20e-6),
     ] {

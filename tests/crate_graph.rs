@@ -104,6 +104,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &[
             "tem00-beam",
             "tem00-camera",
+            "tem00-coherence",
             "tem00-config",
             "tem00-decorrelation",
             "tem00-numerics",

@@ -52,7 +52,7 @@ pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure
         output::remove(&folder, &["best"], &["toml"])?;
     }
     let shown = design.shown().ok_or_else(|| words::nothing(&design))?;
-    let shown = *Design::setup_of(shown)?.description();
+    let shown = Design::setup_of(shown)?.description().clone();
     let near = pool.install(|| neighbours(&shown, PART));
     let (report, written) = files::write(&design, &near, &folder)?;
     report.print(args.common.json, &written, out)?;

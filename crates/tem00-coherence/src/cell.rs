@@ -217,24 +217,38 @@ impl ResolutionCell {
     /// The correlation length is taken into account in focus, and left out beside it.
     pub fn squared_correlation(&self, kappa: f64) -> f64 {
         let dense = self.field_correlation(kappa).norm_sqr();
-        let length = self.relief.correlation_length / self.speckle_size();
-        if length == 0.0 || self.relief.rms_height == 0.0 || self.defocus != 0.0 {
+        if self.defocus != 0.0 {
             return dense;
+        }
+        dense + self.height_excess(kappa, image_autocorrelation)
+    }
+
+    /// The correlation length of the relief in speckles.
+    pub(crate) fn correlation_length(&self) -> f64 {
+        self.relief.correlation_length / self.speckle_size()
+    }
+
+    /// Returns what the correlation length of the relief adds to a mean of `exp(−κ² σ_L² (1 − ρ) + iκ v·η)` over lags η,
+    /// in speckles, with the weights of an isotropic kernel.
+    pub(crate) fn height_excess(&self, kappa: f64, kernel: impl Fn(f64) -> f64) -> f64 {
+        let length = self.correlation_length();
+        if length == 0.0 || self.relief.rms_height == 0.0 {
+            return 0.0;
         }
         let exponent = (kappa * self.path_spread()).powi(2);
         let turns = TAU * kappa / self.tilt_wave_number();
         let excess = |lag: f64| {
             let correlation = (-(lag / length).powi(2)).exp();
             let excess = (-exponent * (1.0 - correlation)).exp() - (-exponent).exp();
-            TAU * lag * image_autocorrelation(lag) * excess * libm::j0(turns * lag)
+            TAU * lag * kernel(lag) * excess * libm::j0(turns * lag)
         };
         // The excess falls from lag 0 on over ℓ or, if heights are large, over less; the images over a speckle.
         let width = length / (1.0 + exponent).sqrt();
         let reach = 6.0 * length;
         let near = (6.0 * width).min(reach);
         let step = |width: f64| width.min(1.0).min(1.0 / turns.abs().max(1e-3));
-        let inner = integrate(excess, [0.0, near], step(width));
-        dense + inner + integrate(excess, [near, reach], step(length))
+        let inner = integrate(&excess, [0.0, near], step(width));
+        inner + integrate(&excess, [near, reach], step(length))
     }
 
     /// Returns `exp(−κ² σ_L²/2)`.
@@ -262,8 +276,15 @@ impl ResolutionCell {
 const LAGS: f64 = 64.0;
 const LAST_LAG: f64 = 30.0;
 
+/// Returns the intensity of a point's image, in units of a speckle, of unit area.
+pub(crate) fn image_of_point(lag: f64) -> f64 {
+    let x = PI * lag;
+    let amplitude = if x < 1e-6 { 1.0 } else { 2.0 * libm::j1(x) / x };
+    0.25 * PI * amplitude * amplitude
+}
+
 /// Returns the autocorrelation of the intensity of a point's image, in units of a speckle, of unit area.
-fn image_autocorrelation(lag: f64) -> f64 {
+pub(crate) fn image_autocorrelation(lag: f64) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
     if lag >= LAST_LAG {
         // Of the cusp of chat² at 0: −8ρ/π + 4ρ³/3π.

@@ -11,19 +11,20 @@
 //! # Main types
 //!
 //! [`read_document`] opens a file of a [`Format`] as a [`Document`] of [`Section`]s, whose [`Value`]s are
-//! read one by one; [`read_laser_light`] reads the keys that scenes and set-ups have in common. What is wrong is a [`Problem`], which becomes a [`ConfigError`] once its file is known.
+//! read one by one; [`read_laser_light`] and [`read_relief`] read keys that
+//! scenes and set-ups have in common. What is wrong is a [`Problem`], which becomes a [`ConfigError`] once its file is known.
 //!
 //! # Scope and non-goals
 //!
 //! No derived deserialisation: it loses the location of a value inside tagged tables. Nothing is written.
 
 mod change;
+mod coherence;
 mod document;
 mod error;
 mod folder;
 mod format;
 mod input_file;
-mod laser_light;
 mod printable;
 mod quantity;
 mod reader;
@@ -33,6 +34,7 @@ mod sources;
 mod value;
 
 pub use change::{Change, Reading};
+pub use coherence::{Wavelengths, read_laser_light, read_relief};
 pub use document::Document;
 pub use error::{ConfigError, Problem};
 pub use folder::Folder;
@@ -40,7 +42,6 @@ pub use format::{DocumentKind, Format, kind_of_document};
 pub use input_file::{
     FileAccess, MAX_ASSET_BYTES, MAX_TEXT_BYTES, is_standard_input, open_input, read_input,
 };
-pub use laser_light::{LASER_LIGHT, read_laser_light};
 pub use printable::{is_hazard, printable, printable_line};
 pub use quantity::{
     ANGLE, DIMENSIONS, DURATION, Dimension, LENGTH, MEMORY, NUMBER, POWER, RADIANCE,

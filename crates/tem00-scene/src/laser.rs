@@ -64,7 +64,7 @@ pub(crate) fn read(root: &Document<'_>) -> Result<Vec<Laser>, Problem> {
 }
 
 fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
-    let light = read_laser_light(section)?;
+    let light = read_laser_light(section, &(10e-9..=1e-3, "from 10 nm to 1 mm"))?;
     let spectral_line = light
         .line()
         .map_err(|error| rejected(&error, Some(error.parameter()), &[section]))?;

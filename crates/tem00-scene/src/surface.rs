@@ -1,7 +1,7 @@
 use glam::DVec3;
-use tem00_config::{Document, LENGTH, NUMBER, Problem, Section, Value, rejected};
+use tem00_config::{Document, NUMBER, Problem, Section, Value, read_relief, rejected};
 use tem00_decorrelation::RigidMotion;
-use tem00_tracer::{Laser, Relief, Surface, SurfaceSpeckle};
+use tem00_tracer::{Laser, Surface, SurfaceSpeckle};
 
 use crate::assets::Assets;
 use crate::material::{self, Finished};
@@ -78,7 +78,7 @@ fn surface(
         material,
         trajectory: trajectory(section, pivot)?,
         speckle: speckle(section)?,
-        relief: relief(section, rms_height)?,
+        relief: read_relief(section, rms_height)?,
     };
     Ok(PlacedSurface { surface, pivot })
 }
@@ -107,25 +107,6 @@ fn instances(
         })
     };
     listed.iter().enumerate().map(instance).collect()
-}
-
-/// Reads the relief of a surface, whose finish may have a usual height.
-fn relief(section: &Section<'_>, usual: Option<f64>) -> Result<Relief, Problem> {
-    let height = section.or("rms_height", usual, |value| {
-        value.positive(&LENGTH).map(Some)
-    })?;
-    match (height, section.optional("correlation_length")) {
-        (None, None) => Ok(Relief::default()),
-        (Some(rms_height), length) => Ok(Relief {
-            rms_height,
-            correlation_length: length.map_or(Ok(0.0), |value| {
-                value.within(&LENGTH, 0.0.., "zero or positive")
-            })?,
-        }),
-        (None, Some(length)) => Err(length
-            .problem("`correlation_length` belongs to a relief of a known height")
-            .with_help("write `rms_height` as well")),
-    }
 }
 
 fn speckle(section: &Section<'_>) -> Result<SurfaceSpeckle, Problem> {

@@ -95,12 +95,13 @@ impl Budget {
         let radius = 0.5 * line.projected_thickness.hypot(line.blur) / across;
         let row_height = f64::from(d.average.columns) / along;
         let deviation = imaged_line_centroid_deviation(radius, row_height);
+        let bandwidth = line.bandwidth;
         let position = contrast * across * deviation / frames.sqrt();
         Some(Self {
             height,
             terms,
-            line_law: position * line.height_per_pixel.abs(),
-            dorsch: dorsch(setup, contrast)?,
+            line_law: position * line.height_per_pixel.abs() * bandwidth.line_noise.sqrt(),
+            dorsch: dorsch(setup, contrast)? * bandwidth.spot_noise.sqrt(),
         })
     }
 
@@ -202,7 +203,7 @@ const fn no_line(level: LightLevel) -> TriangulationError {
 fn dorsch(setup: &Setup, contrast: f64) -> Option<f64> {
     let d = setup.description();
     let sensor = Dorsch {
-        wavelength: d.laser.wavelength,
+        wavelength: d.laser.light.wavelength,
         contrast,
         aperture_angle: (0.5 * setup.camera().pupil_diameter() / d.camera.distance).asin(),
         triangulation_angle: d.camera.angle,

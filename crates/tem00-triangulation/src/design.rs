@@ -141,7 +141,7 @@ impl DesignSearch {
     pub fn description(&self, index: usize) -> SetupDescription {
         assert!(index < self.count, "{index} < {}", self.count);
         let mut rest = index;
-        let mut description = self.question.base;
+        let mut description = self.question.base.clone();
         for sweep in self.question.sweeps.iter().rev() {
             let values = sweep.values();
             description = sweep

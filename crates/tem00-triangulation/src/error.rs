@@ -1,6 +1,7 @@
 use core::{error, fmt};
 
 use tem00_camera::CameraError;
+use tem00_coherence::CoherenceError;
 use tem00_speckle::SpeckleError;
 
 /// Reason why a part of a triangulation set-up could not be constructed or evaluated.
@@ -55,6 +56,8 @@ pub enum TriangulationError {
     },
     /// The camera is not possible.
     Camera(CameraError),
+    /// The spectrum of the laser is not possible.
+    Coherence(CoherenceError),
     /// A speckle pattern is not possible.
     Speckle(SpeckleError),
     /// The caller asked to stop.
@@ -69,6 +72,7 @@ impl TriangulationError {
                 Some(parameter)
             }
             Self::Camera(source) => source.parameter(),
+            Self::Coherence(source) => Some(source.parameter()),
             _ => None,
         }
     }
@@ -101,6 +105,7 @@ impl fmt::Display for TriangulationError {
                 write!(f, "nothing can be measured: {why}; {advice}")
             }
             Self::Camera(source) => source.fmt(f),
+            Self::Coherence(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
             Self::Cancelled => write!(f, "the work was cancelled"),
         }
@@ -112,6 +117,12 @@ impl error::Error for TriangulationError {}
 impl From<CameraError> for TriangulationError {
     fn from(source: CameraError) -> Self {
         Self::Camera(source)
+    }
+}
+
+impl From<CoherenceError> for TriangulationError {
+    fn from(source: CoherenceError) -> Self {
+        Self::Coherence(source)
     }
 }
 

@@ -49,9 +49,12 @@ pub use position_noise::{
 };
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
-    Averages, HeightRange, ImagedLine, LaserLineData, LightLevel, Setup, SetupCamera,
-    SetupDescription, SetupSurface,
+    Averages, BandwidthEffect, HeightRange, ImagedLine, LaserLineData, LightLevel, Setup,
+    SetupCamera, SetupDescription, SetupSurface,
 };
+
+/// The light of a laser and the relief of a surface.
+pub use tem00_coherence::{LaserLight, LineShape, Relief, Spectrum};
 
 /// The positions and directions of this crate.
 pub use glam::{DVec2, DVec3};

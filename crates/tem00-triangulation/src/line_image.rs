@@ -105,8 +105,15 @@ impl LineImage {
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new), and an error for a laser with a linewidth: this light is of one wavelength.
     pub fn of_setup(setup: &Setup, size: [usize; 2]) -> Result<Self, TriangulationError> {
+        if !setup.is_monochromatic() {
+            return Err(TriangulationError::OutOfRange {
+                parameter: "linewidth",
+                value: setup.description().laser.light.linewidth,
+                allowed: "0 for trials, whose light is of one wavelength",
+            });
+        }
         let (line, surface) = (setup.line(), &setup.description().surface);
         Self::new(LineImageData {
             size,

@@ -19,7 +19,7 @@ pub(crate) use self::{
 };
 pub use self::{
     description::{Averages, LaserLineData, SetupCamera, SetupDescription, SetupSurface},
-    imaged_line::ImagedLine,
+    imaged_line::{BandwidthEffect, ImagedLine},
     light_level::LightLevel,
     range::HeightRange,
 };
@@ -47,7 +47,7 @@ const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
 /// The light falls straight down on a surface that lies flat, Lambertian and rough enough for fully
 /// developed speckle; the line has the same width all over the measuring range. The lens has no
 /// distortion and loses no light.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     description: SetupDescription,
     triangulator: Triangulator,
@@ -72,7 +72,7 @@ impl Setup {
     pub fn new(mut description: SetupDescription) -> Result<Self, TriangulationError> {
         if description.auto_exposure {
             description.sensor.exposure_time = 1.0;
-            let exposed = Self::exposed(description)?;
+            let exposed = Self::exposed(description.clone())?;
             description.sensor.exposure_time = exposed.grain_exposure()?;
         }
         Self::exposed(description)
@@ -104,6 +104,11 @@ impl Setup {
     /// Returns the description that the set-up was created from.
     pub const fn description(&self) -> &SetupDescription {
         &self.description
+    }
+
+    /// Whether the light of the laser is of one wavelength.
+    pub fn is_monochromatic(&self) -> bool {
+        self.line.bandwidth == BandwidthEffect::NONE
     }
 
     /// Returns the camera.

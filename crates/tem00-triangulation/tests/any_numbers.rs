@@ -3,9 +3,9 @@
 use core::sync::atomic::AtomicBool;
 
 use tem00_triangulation::{
-    Averages, Budget, DVec3, DetectorSettings, Dorsch, LaserLineData, LaserPlane, LineImage,
-    LineImageData, LineMethod, SensorDescription, Setup, SetupCamera, SetupDescription,
-    SetupSurface, SimulationOptions, UncertaintySource, coverage_factor,
+    Averages, Budget, DVec3, DetectorSettings, Dorsch, LaserLight, LaserLineData, LaserPlane,
+    LineImage, LineImageData, LineMethod, Relief, SensorDescription, Setup, SetupCamera,
+    SetupDescription, SetupSurface, SimulationOptions, UncertaintySource, coverage_factor,
     effective_degrees_of_freedom, simulate,
 };
 
@@ -30,7 +30,7 @@ const STRANGE: [f64; 14] = [
 fn description() -> SetupDescription {
     SetupDescription {
         laser: LaserLineData {
-            wavelength: 650e-9,
+            light: LaserLight::monochromatic(650e-9),
             power: 5e-3,
             line_thickness: 0.2e-3,
             line_length: 50e-3,
@@ -53,6 +53,7 @@ fn description() -> SetupDescription {
             reflectance: 0.5,
             patterns: 1,
             polarisation: 1.0,
+            relief: Relief::default(),
         },
         detector: DetectorSettings {
             min_peak: 1.0,
@@ -66,8 +67,9 @@ fn description() -> SetupDescription {
 /// A number in a description.
 type Field = fn(&mut SetupDescription) -> &mut f64;
 
-const FIELDS: [(&str, Field); 25] = [
-    ("wavelength", |d| &mut d.laser.wavelength),
+const FIELDS: [(&str, Field); 28] = [
+    ("wavelength", |d| &mut d.laser.light.wavelength),
+    ("linewidth", |d| &mut d.laser.light.linewidth),
     ("power", |d| &mut d.laser.power),
     ("line_thickness", |d| &mut d.laser.line_thickness),
     ("line_length", |d| &mut d.laser.line_length),
@@ -77,6 +79,10 @@ const FIELDS: [(&str, Field); 25] = [
     ("angle", |d| &mut d.camera.angle),
     ("reflectance", |d| &mut d.surface.reflectance),
     ("polarisation", |d| &mut d.surface.polarisation),
+    ("rms_height", |d| &mut d.surface.relief.rms_height),
+    ("correlation_length", |d| {
+        &mut d.surface.relief.correlation_length
+    }),
     ("uncertainty", |d| &mut d.calibration_uncertainty),
     ("quantum_efficiency", |d| &mut d.sensor.quantum_efficiency),
     ("gain", |d| &mut d.sensor.gain),
@@ -225,7 +231,7 @@ fn counts_of_nothing_are_refused() {
     ] {
         let mut description = description();
         change(&mut description);
-        assert!(Setup::new(description).is_err(), "{description:?}");
+        assert!(Setup::new(description.clone()).is_err(), "{description:?}");
     }
 }
 

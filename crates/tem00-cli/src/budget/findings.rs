@@ -72,7 +72,9 @@ impl Answer {
         setup: &Setup,
         budget: Budget,
     ) -> Result<Result<Self, Refusal>, Failure> {
-        let trials = (args.trials > 0).then(|| tried(args, setup)).transpose()?;
+        // Trials draw light of one wavelength.
+        let is_tried = args.trials > 0 && setup.is_monochromatic();
+        let trials = is_tried.then(|| tried(args, setup)).transpose()?;
         if let Some(found) = trials.as_ref().filter(|found| found.total().is_none()) {
             return Ok(Err(Refusal {
                 why: format!(

@@ -1,7 +1,7 @@
 //! The report of a budget.
 
 use serde_json::json;
-use tem00_triangulation::{Budget, BudgetTerm, Setup, UncertaintySource};
+use tem00_triangulation::{BandwidthEffect, Budget, BudgetTerm, Setup, UncertaintySource};
 
 use super::{
     findings::{Answer, Findings},
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::report::{
     Cell, Column, Report, Section, Table,
-    units::{MICROMETRES, MILLIMETRES, MILLISECONDS, NUMBER, PERCENT, PIXELS},
+    units::{MICROMETRES, MILLIMETRES, MILLISECONDS, NANOMETRES, NUMBER, PERCENT, PIXELS},
 };
 
 /// Returns the report; the numbers of a set-up that measures nothing are `null`.
@@ -23,7 +23,7 @@ pub(super) fn report(findings: &Findings<'_>, drawings: Vec<String>) -> Report {
     report.data("setup", &file);
     report.data("reason", refusal.map(|refusal| &refusal.why));
     let verdicts = match &findings.answer {
-        Ok(answer) => words::verdicts(answer, setup.light_level()),
+        Ok(answer) => words::verdicts(answer, setup),
         Err(refusal) => words::refusal(refusal).into(),
     };
     verdicts.into_iter().for_each(|line| report.verdict(line));
@@ -197,6 +197,7 @@ fn image(section: &mut Section, setup: &Setup) {
             "speckle contrast in a pixel",
             NUMBER.quantity(setup.contrast()),
         )
+        .fact("bandwidth", "linewidth of the laser", bandwidth(setup))
         .fact(
             "saturation",
             "light",
@@ -249,6 +250,29 @@ fn image(section: &mut Section, setup: &Setup) {
         .data("column_electrons", line.column_electrons)
         .data("grain_saturation", setup.grain_saturation())
         .data("light", setup.light_level().name());
+}
+
+/// Returns what the linewidth does to speckle: which number counts for what.
+fn bandwidth(setup: &Setup) -> Cell {
+    let (light, effect) = (&setup.description().laser.light, setup.line().bandwidth);
+    let data = json!({
+        "linewidth": light.linewidth,
+        "contrast_ratio": effect.contrast,
+        "line_noise_ratio": effect.line_noise.sqrt(),
+        "spot_noise_ratio": effect.spot_noise.sqrt(),
+    });
+    if effect == BandwidthEffect::NONE {
+        return Cell::new(data, "none: light of one wavelength".to_owned());
+    }
+    let ratio = |value: f64| NUMBER.with_digits(3).text(value);
+    let words = format!(
+        "{}: it leaves {} of the noise of the line, which counts for the uncertainty, and {} of the contrast, which \
+         counts for what is seen and for bright grains",
+        NANOMETRES.text(light.linewidth),
+        ratio(effect.line_noise.sqrt()),
+        ratio(effect.contrast),
+    );
+    Cell::new(data, words)
 }
 
 fn averages(setup: &Setup) -> Cell {

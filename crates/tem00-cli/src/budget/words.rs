@@ -1,12 +1,13 @@
 //! A budget in sentences.
 
-use tem00_triangulation::LightLevel;
+use tem00_triangulation::{LightLevel, Setup};
 
 use super::findings::{Answer, Refusal};
 use crate::report::units::{MICROMETRES, NUMBER, PERCENT};
 
 /// Returns what the budget comes to.
-pub(super) fn verdicts(answer: &Answer, level: LightLevel) -> Vec<String> {
+pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
+    let level = setup.light_level();
     let budget = &answer.budget;
     let dominant = budget.dominant();
     let mut lines = vec![
@@ -28,6 +29,11 @@ pub(super) fn verdicts(answer: &Answer, level: LightLevel) -> Vec<String> {
     ];
     if level != LightLevel::Good {
         lines.push(format!("The light is not right: {}.", level.advice()));
+    }
+    if !setup.is_monochromatic() {
+        lines.push(
+            "There are no trials: they draw light of one wavelength, and this laser has a linewidth.".into(),
+        );
     }
     lines.extend(of_trials(answer));
     lines

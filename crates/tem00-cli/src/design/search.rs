@@ -54,7 +54,7 @@ impl<'a> Design<'a> {
 
     /// Returns a set-up, with an exposure that the light chooses as it is then.
     pub(super) fn setup_of(shown: &Candidate) -> Result<Setup, Failure> {
-        Setup::new(shown.description).map_err(|error| Failure::running(error.to_string()))
+        Setup::new(shown.description.clone()).map_err(|error| Failure::running(error.to_string()))
     }
 
     /// Returns the figure that is minimised.

@@ -10,7 +10,7 @@ use crate::report::units::{
 pub(super) const fn of_parameter(parameter: DesignParameter) -> Unit {
     match parameter {
         DesignParameter::Angle => DEGREES,
-        DesignParameter::Wavelength => NANOMETRES,
+        DesignParameter::Wavelength | DesignParameter::Linewidth => NANOMETRES,
         DesignParameter::PixelPitch => MICROMETRES,
         DesignParameter::Power => MILLIWATTS,
         DesignParameter::Exposure => MILLISECONDS,

@@ -111,7 +111,7 @@ fn position_noise(setup: &Setup, line: &ImagedLine) -> Option<PositionNoise> {
     let (autocovariance, fewer) = autocovariance(d, line)?;
     let speckle = Some(ColumnSpeckle {
         autocovariance: &autocovariance,
-        variance: d.surface.contrast().powi(2) * fewer,
+        variance: d.surface.contrast().powi(2) * line.bandwidth.line_noise * fewer,
     });
     let mut sum = PositionNoise::default();
     for phase in 0..PHASES {

@@ -120,7 +120,7 @@ const SIMULATED: [UncertaintySource; 7] = [
 /// # Errors
 ///
 /// Returns an error if there are fewer than 10 trials or more than 10⁶, if the detector finds no line
-/// even without noise, if averages are so large that their pattern has more than 2²⁵ samples, or if the
+/// even without noise, if the laser has a linewidth, if averages are so large that their pattern has more than 2²⁵ samples, or if the
 /// work was cancelled.
 pub fn simulate(
     setup: &Setup,

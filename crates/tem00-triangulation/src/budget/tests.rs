@@ -480,3 +480,39 @@ fn a_line_that_is_not_found_has_no_budget() {
         "behind the camera: {error}"
     );
 }
+
+#[test]
+fn a_linewidth_scales_speckle_by_the_noise_of_the_line_and_nothing_else() {
+    let mut wide = description();
+    let single = Setup::new(wide.clone()).unwrap();
+    wide.laser.light.linewidth = 20e-9;
+    wide.surface.relief.rms_height = 0.4e-6;
+    let wide = Setup::new(wide).unwrap();
+    let [before, after] = [&single, &wide].map(|setup| Budget::new(setup).unwrap());
+    let effect = wide.line().bandwidth;
+    assert!(effect.contrast < effect.line_noise.sqrt(), "{effect:?}");
+    for (a, b) in before.terms().iter().zip(after.terms()) {
+        let ratio = b.contribution() / a.contribution();
+        let expected = match a.source {
+            UncertaintySource::Speckle => effect.line_noise.sqrt(),
+            _ => 1.0,
+        };
+        assert!((ratio - expected).abs() < 1e-12, "{}: {ratio}", a.source);
+    }
+    let ratio = after.line_law() / before.line_law();
+    assert!((ratio - effect.line_noise.sqrt()).abs() < 1e-12, "{ratio}");
+    let ratio = wide.contrast() / single.contrast();
+    assert!((ratio - effect.contrast).abs() < 1e-12, "{ratio}");
+    let options = SimulationOptions::default();
+    let trials = simulate(&wide, options, |_| (), &AtomicBool::new(false));
+    assert!(
+        matches!(
+            trials,
+            Err(TriangulationError::OutOfRange {
+                parameter: "linewidth",
+                ..
+            })
+        ),
+        "{trials:?}"
+    );
+}

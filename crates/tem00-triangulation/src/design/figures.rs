@@ -55,7 +55,7 @@ impl DesignFigures {
     /// Returns an error if the set-up is not possible, if its line is too fine to be a beam at all, or
     /// the errors of [`Budget::new`].
     pub fn evaluate(description: &SetupDescription) -> Result<Self, TriangulationError> {
-        let setup = Setup::new(*description)?;
+        let setup = Setup::new(description.clone())?;
         let waist = waist_range(description)?;
         let in_focus = setup.depth_of_field();
         let budget = Budget::new(&setup)?;
@@ -85,7 +85,7 @@ impl DesignFigures {
 /// Returns the heights at which the laser line is at most √2 times as wide as on the reference plane.
 fn waist_range(description: &SetupDescription) -> Result<HeightRange, TriangulationError> {
     let laser = &description.laser;
-    let beam = GaussianBeam::from_waist(laser.wavelength, 0.5 * laser.line_thickness);
+    let beam = GaussianBeam::from_waist(laser.light.wavelength, 0.5 * laser.line_thickness);
     let beam = beam.map_err(|_| TriangulationError::OutOfRange {
         parameter: "line_thickness",
         value: laser.line_thickness,

@@ -16,6 +16,8 @@ pub enum DesignParameter {
     LineThickness,
     /// The vacuum wavelength of the laser, in metres.
     Wavelength,
+    /// The linewidth of the laser, in metres.
+    Linewidth,
     /// The power in the line, in watts.
     Power,
     /// The exposure time, in seconds.
@@ -30,11 +32,12 @@ pub enum DesignParameter {
 
 impl DesignParameter {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::FNumber,
         Self::Angle,
         Self::LineThickness,
         Self::Wavelength,
+        Self::Linewidth,
         Self::Power,
         Self::Exposure,
         Self::PixelPitch,
@@ -49,6 +52,7 @@ impl DesignParameter {
             Self::Angle => "angle",
             Self::LineThickness => "line_thickness",
             Self::Wavelength => "wavelength",
+            Self::Linewidth => "linewidth",
             Self::Power => "power",
             Self::Exposure => "exposure",
             Self::PixelPitch => "pixel_pitch",
@@ -59,7 +63,7 @@ impl DesignParameter {
 
     /// Returns the value in a set-up, in SI units.
     pub fn value_in(self, description: &SetupDescription) -> f64 {
-        let mut description = *description;
+        let mut description = description.clone();
         *self.field(&mut description)
     }
 
@@ -67,7 +71,7 @@ impl DesignParameter {
     /// that is set is no longer chosen by the light.
     #[must_use]
     pub fn set(self, description: &SetupDescription, value: f64) -> SetupDescription {
-        let mut description = *description;
+        let mut description = description.clone();
         description.auto_exposure &= self != Self::Exposure;
         *self.field(&mut description) = value;
         description
@@ -82,6 +86,7 @@ impl DesignParameter {
             Self::Exposure => &DURATION,
             Self::LineThickness
             | Self::Wavelength
+            | Self::Linewidth
             | Self::PixelPitch
             | Self::FocalLength
             | Self::Distance => &LENGTH,
@@ -95,7 +100,7 @@ impl DesignParameter {
             Self::Angle => "deg",
             Self::Power => "mW",
             Self::Exposure => "ms",
-            Self::Wavelength => "nm",
+            Self::Wavelength | Self::Linewidth => "nm",
             Self::PixelPitch => "um",
             Self::LineThickness | Self::FocalLength | Self::Distance => "mm",
         }
@@ -106,7 +111,8 @@ impl DesignParameter {
             Self::FNumber => &mut description.camera.f_number,
             Self::Angle => &mut description.camera.angle,
             Self::LineThickness => &mut description.laser.line_thickness,
-            Self::Wavelength => &mut description.laser.wavelength,
+            Self::Wavelength => &mut description.laser.light.wavelength,
+            Self::Linewidth => &mut description.laser.light.linewidth,
             Self::Power => &mut description.laser.power,
             Self::Exposure => &mut description.sensor.exposure_time,
             Self::PixelPitch => &mut description.sensor.pixel_pitch,

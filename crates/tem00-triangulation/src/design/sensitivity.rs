@@ -13,7 +13,7 @@ pub struct Neighbours {
 }
 
 /// Returns the figures of a set-up when each of its parameters, one at a time, is smaller and greater
-/// by a part of itself: 0.1 for ±10 %.
+/// by a part of itself: 0.1 for ±10 %. Those that are 0 are left out: a linewidth.
 pub fn neighbours(description: &SetupDescription, part: f64) -> Vec<Neighbours> {
     let changed = |parameter: DesignParameter, factor: f64| {
         let value = factor * parameter.value_in(description);
@@ -21,6 +21,7 @@ pub fn neighbours(description: &SetupDescription, part: f64) -> Vec<Neighbours> 
     };
     DesignParameter::ALL
         .into_iter()
+        .filter(|parameter| parameter.value_in(description) > 0.0)
         .map(|parameter| Neighbours {
             parameter,
             less: changed(parameter, 1.0 - part),

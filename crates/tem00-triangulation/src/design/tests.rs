@@ -30,7 +30,7 @@ fn base() -> SetupDescription {
         window = 61
         "#,
     );
-    *setup.expect("a set-up").description()
+    setup.expect("a set-up").description().clone()
 }
 
 fn list(parameter: DesignParameter, values: &[f64]) -> Sweep {
@@ -137,7 +137,7 @@ fn the_best_are_the_least_uncertain_that_keep_every_constraint() {
 
 /// Returns the fraction of columns with a pixel beyond the full well, in frames drawn without a detector.
 fn clipped_columns(description: &SetupDescription) -> f64 {
-    let setup = crate::Setup::new(*description).expect("possible");
+    let setup = crate::Setup::new(description.clone()).expect("possible");
     let size = [128, 47];
     let image = crate::LineImage::of_setup(&setup, size).expect("a line");
     let full = setup.description().sensor.full_well;
@@ -166,7 +166,7 @@ fn a_search_allows_only_what_a_budget_finds_in_good_light() {
     let found = outcome(asked);
     let mut levels = Vec::new();
     for candidate in found.candidates() {
-        let setup = crate::Setup::new(candidate.description).expect("possible");
+        let setup = crate::Setup::new(candidate.description.clone()).expect("possible");
         let measures = crate::Budget::new(&setup).is_ok();
         let level = setup.light_level();
         let good = measures && level == crate::LightLevel::Good;
@@ -272,7 +272,7 @@ fn growth(base: &SetupDescription, numbers: [f64; 2], source: UncertaintySource)
 /// Returns how √(h ℓ(p/h)) goes with the speckle size h at the pixel pitch p: the noise of a wide line.
 fn law(base: &SetupDescription, numbers: [f64; 2]) -> f64 {
     let sizes = numbers.map(|number| {
-        let size = base.laser.wavelength * number * base.camera.distance
+        let size = base.laser.light.wavelength * number * base.camera.distance
             / (base.camera.distance - base.camera.focal_length);
         (size * speckle_length(base.sensor.pixel_pitch / size)).sqrt()
     });
@@ -344,7 +344,7 @@ fn depth_of_field_is_that_of_the_lens_or_of_the_fine_line() {
     let description = base();
     let camera = description.camera;
     let image_distance = 1.0 / (1.0 / camera.focal_length - 1.0 / camera.distance);
-    let setup = crate::Setup::new(description).expect("possible");
+    let setup = crate::Setup::new(description.clone()).expect("possible");
     let width = setup.line().width * description.sensor.pixel_pitch;
     let vergence = width / (camera.focal_length / camera.f_number * image_distance);
     let depths = [1.0, -1.0].map(|sign| 1.0 / (1.0 / camera.distance - sign * vergence));
@@ -463,7 +463,20 @@ fn a_search_that_is_cancelled_ends() {
 fn neighbours_differ_in_one_parameter() {
     let description = base();
     let near = neighbours(&description, 0.1);
-    assert_eq!(near.len(), DesignParameter::ALL.len());
+    // All but the linewidth of its laser, which has none.
+    assert_eq!(near.len(), DesignParameter::ALL.len() - 1);
+    let mut wide = description.clone();
+    wide.laser.light.linewidth = 5e-9;
+    let near_wide = neighbours(&wide, 0.1);
+    let linewidth = near_wide
+        .iter()
+        .find(|near| near.parameter == DesignParameter::Linewidth)
+        .expect("it has one");
+    let [less, more] = [&linewidth.less, &linewidth.more].map(|near| {
+        let near = near.as_ref().expect("possible");
+        contribution(near, UncertaintySource::Speckle)
+    });
+    assert!(more < less, "{more:e} m with more, {less:e} m with less");
     let power = near
         .iter()
         .find(|near| near.parameter == DesignParameter::Power)

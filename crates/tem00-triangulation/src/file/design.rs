@@ -11,6 +11,7 @@ pub(super) const VARY: &[&str] = &[
     "angle",
     "line_thickness",
     "wavelength",
+    "linewidth",
     "power",
     "exposure",
     "pixel_pitch",
@@ -70,7 +71,7 @@ pub fn read_design(
     let most = DesignSearch::MAX_SETUPS as u64;
     let max_setups = section.or("max_setups", MAX_SETUPS, |value| value.integer(1..=most))?;
     let question = DesignQuestion {
-        base: *base,
+        base: base.clone(),
         sweeps: sweeps(&section)?,
         constraints: constraints(&section)?,
         objective: section.or("objective", Objective::default(), |value| {

@@ -2,7 +2,7 @@ use std::path::Path;
 
 use tem00_config::{
     ANGLE, ConfigError, Document, FileAccess, Format, LENGTH, NUMBER, POWER, Problem, Reading,
-    Section, Value, parse_document, read_document,
+    Section, Value, parse_document, read_document, read_laser_light, read_relief,
 };
 
 use super::{read_detector, sensor::read_sensor_or_auto};
@@ -28,7 +28,15 @@ const SETUP: Format = Format {
     ],
     help: "setups/ has some, and docs/setup_file.md tells how to write them",
 };
-pub(super) const LASER: &[&str] = &["wavelength", "power", "line_thickness", "line_length"];
+pub(super) const LASER: &[&str] = &[
+    "wavelength",
+    "linewidth",
+    "spectrum",
+    "lines",
+    "power",
+    "line_thickness",
+    "line_length",
+];
 pub(super) const CAMERA: &[&str] = &[
     "focal_length",
     "f_number",
@@ -38,7 +46,13 @@ pub(super) const CAMERA: &[&str] = &[
     "angle",
     "scheimpflug",
 ];
-pub(super) const SURFACE: &[&str] = &["reflectance", "patterns", "polarisation"];
+pub(super) const SURFACE: &[&str] = &[
+    "reflectance",
+    "patterns",
+    "polarisation",
+    "rms_height",
+    "correlation_length",
+];
 pub(super) const CALIBRATION: &[&str] = &["uncertainty"];
 pub(super) const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"];
 
@@ -186,7 +200,7 @@ fn needed<'a>(
 fn read_laser(section: &Section<'_>) -> Result<LaserLineData, Problem> {
     let length = |key, example| section.required(key, example)?.positive(&LENGTH);
     Ok(LaserLineData {
-        wavelength: length("wavelength", "\"650 nm\"")?,
+        light: read_laser_light(section, &(100e-9..=100e-6, "from 100 nm to 100 µm"))?,
         power: section.required("power", "\"5 mW\"")?.positive(&POWER)?,
         line_thickness: length("line_thickness", "\"0.2 mm\"")?,
         line_length: length("line_length", "\"50 mm\"")?,
@@ -218,6 +232,7 @@ fn read_surface(section: &Section<'_>) -> Result<SetupSurface, Problem> {
         reflectance: fraction(&section.required("reflectance", "0.5")?)?,
         patterns: section.or("patterns", 1, |value| count(value, 64))?,
         polarisation: section.or("polarisation", 1.0, fraction)?,
+        relief: read_relief(section, None)?,
     })
 }
 

@@ -1,8 +1,11 @@
 use core::fmt::Write;
 
+use tem00_coherence::{LaserLight, LineShape, Relief, Spectrum};
 use tem00_config::{ANGLE, DURATION, Dimension, LENGTH, NUMBER, POWER};
 
-use crate::{Averages, DetectorSettings, LineMethod, SensorDescription, SetupDescription};
+use crate::{
+    Averages, DetectorSettings, LineMethod, SensorDescription, SetupDescription, SetupSurface,
+};
 
 impl SetupDescription {
     /// Returns the text of a set-up file with this description, as a person would write it: with units, and
@@ -14,11 +17,7 @@ impl SetupDescription {
         text.laser(self);
         text.camera(self);
         text.sensor(self);
-        text.section("surface")
-            .number("reflectance", self.surface.reflectance)
-            .value("patterns", self.surface.patterns)
-            .note("independent speckle patterns that add up")
-            .number("polarisation", self.surface.polarisation);
+        text.surface(&self.surface);
         text.detector(&self.detector);
         if self.calibration_uncertainty > 0.0 {
             text.section("calibration")
@@ -35,6 +34,20 @@ impl SetupDescription {
     }
 }
 
+/// Returns the keys of the light of a laser, as set-up files and scene files have them.
+pub(crate) fn light_keys(light: &LaserLight) -> String {
+    let mut text = Sections(String::new());
+    text.light(light);
+    text.0
+}
+
+/// Returns the keys of a relief.
+pub(crate) fn relief_keys(relief: Relief) -> String {
+    let mut text = Sections(String::new());
+    text.relief(relief);
+    text.0
+}
+
 /// Text that grows section by section.
 struct Sections(String);
 
@@ -42,11 +55,40 @@ impl Sections {
     fn laser(&mut self, description: &SetupDescription) {
         let laser = &description.laser;
         self.section("laser")
-            .length("wavelength", laser.wavelength, "nm")
+            .light(&laser.light)
             .quantity("power", laser.power, (&POWER, "mW"))
             .length("line_thickness", laser.line_thickness, "mm")
             .note("between the points of 1/e², on the part")
             .length("line_length", laser.line_length, "mm");
+    }
+
+    fn light(&mut self, light: &LaserLight) -> &mut Self {
+        if let Spectrum::Peaks(peaks) = &light.spectrum {
+            let pair = |&[wavelength, power]: &[f64; 2]| {
+                let wavelength = LENGTH.text(wavelength, "nm");
+                format!("[{wavelength}, {}]", NUMBER.text(power, ""))
+            };
+            let pairs: Vec<String> = peaks.iter().map(pair).collect();
+            self.value("spectrum", format_args!("[{}]", pairs.join(", ")));
+        } else {
+            self.length("wavelength", light.wavelength, "nm");
+        }
+        if light.linewidth > 0.0 {
+            self.length("linewidth", light.linewidth, "nm")
+                .note("full width at half maximum");
+        }
+        match light.spectrum {
+            Spectrum::Peak(LineShape::Lorentzian) if light.linewidth > 0.0 => {
+                self.value("spectrum", "\"lorentzian\"")
+            }
+            Spectrum::Peak(LineShape::Rectangular) if light.linewidth > 0.0 => {
+                self.value("spectrum", "\"rectangular\"")
+            }
+            Spectrum::Comb(lines) if light.linewidth > 0.0 => {
+                self.value("spectrum", "\"comb\"").value("lines", lines)
+            }
+            _ => self,
+        }
     }
 
     fn camera(&mut self, description: &SetupDescription) {
@@ -97,6 +139,25 @@ impl Sections {
             .unless("fill_factor", sensor.fill_factor, typical.fill_factor);
         if sensor.serial_number != typical.serial_number {
             self.value("serial_number", sensor.serial_number);
+        }
+    }
+
+    fn surface(&mut self, surface: &SetupSurface) {
+        self.section("surface")
+            .number("reflectance", surface.reflectance)
+            .value("patterns", surface.patterns)
+            .note("independent speckle patterns that add up")
+            .number("polarisation", surface.polarisation);
+        self.relief(surface.relief);
+    }
+
+    fn relief(&mut self, relief: Relief) {
+        if relief.rms_height > 0.0 {
+            self.length("rms_height", relief.rms_height, "um")
+                .note("of the relief finer than a resolution cell");
+        }
+        if relief.correlation_length > 0.0 {
+            self.length("correlation_length", relief.correlation_length, "um");
         }
     }
 

@@ -1,10 +1,12 @@
+use tem00_coherence::{LaserLight, Relief};
+
 use crate::{DetectorSettings, SensorDescription, TriangulationError};
 
 /// Description of a triangulation set-up by its data sheets.
 ///
 /// The laser plane stands upright on the reference plane, the camera looks at the line from the side;
 /// see [`Setup`](crate::Setup) for the geometry.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SetupDescription {
     /// The laser and its line.
     pub laser: LaserLineData,
@@ -26,10 +28,10 @@ pub struct SetupDescription {
 }
 
 /// A laser line on the part: of uniform power along the line, of Gaussian profile across it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LaserLineData {
-    /// The vacuum wavelength, in metres.
-    pub wavelength: f64,
+    /// The vacuum wavelength and the spectrum about it.
+    pub light: LaserLight,
     /// The power in the line, in watts.
     pub power: f64,
     /// The full 1/e² thickness of the line on the part, in metres.
@@ -64,6 +66,8 @@ pub struct SetupSurface {
     pub patterns: u32,
     /// The degree of polarisation of the scattered light, from 0 to 1.
     pub polarisation: f64,
+    /// The relief that is finer than what the camera resolves; of no height where it is not known.
+    pub relief: Relief,
 }
 
 /// Numbers of columns and frames that a height is averaged over.
@@ -90,7 +94,7 @@ impl Default for Averages {
 }
 
 impl SetupSurface {
-    /// Returns the contrast of the speckle before pixels average over it.
+    /// Returns the contrast of the speckle in light of one wavelength, before pixels average over it.
     ///
     /// ```text
     /// C = √((1 + P²) / (2 N))      P: degree of polarisation, N: independent patterns
@@ -142,13 +146,14 @@ impl SetupDescription {
 
     fn check_lengths(&self) -> Result<(), TriangulationError> {
         let LaserLineData {
-            wavelength,
+            ref light,
             power,
             line_thickness,
             line_length,
         } = self.laser;
         let allowed = "from 100 nm to 100 µm (in metres)";
-        within("wavelength", wavelength, (100e-9, 100e-6), allowed)?;
+        within("wavelength", light.wavelength, (100e-9, 100e-6), allowed)?;
+        light.line()?;
         let allowed = "positive, at most 1 kW (in watts)";
         within("power", power, (f64::MIN_POSITIVE, 1e3), allowed)?;
         let allowed = "from 1 µm to 1 m (in metres)";
@@ -189,7 +194,12 @@ impl SetupDescription {
             reflectance,
             patterns,
             polarisation,
+            relief,
         } = self.surface;
+        let allowed = "from 0 to 1 m, of the relief finer than a resolution cell";
+        within("rms_height", relief.rms_height, (0.0, 1.0), allowed)?;
+        let length = relief.correlation_length;
+        within("correlation_length", length, (0.0, 1.0), "from 0 to 1 m")?;
         let allowed = "positive, at most 1";
         within(
             "reflectance",

@@ -2,6 +2,8 @@ use core::f64::consts::{PI, SQRT_2};
 
 use glam::DVec3;
 use tem00_camera::Camera;
+use tem00_coherence::{CellGeometry, PolychromaticSpeckle, ResolutionCell, Rows, SpectralLine};
+use tem00_decorrelation::ImagingGeometry;
 
 use super::{SetupDescription, line_profile::LineProfile};
 use crate::Sensor;
@@ -48,6 +50,45 @@ pub struct ImagedLine {
     pub column_electrons: f64,
     /// The height of the sensitive part of a pixel, in pixels.
     pub sensitive_height: f64,
+    /// What the linewidth of the laser makes of speckle.
+    pub bandwidth: BandwidthEffect,
+}
+
+/// What the linewidth of the laser makes of the speckle of a line, over light of one wavelength.
+///
+/// # Validity
+///
+/// That of [`PolychromaticSpeckle`], with the surface square to the light, as everywhere in a set-up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandwidthEffect {
+    /// The ratio of the contrast in a point. Pixels larger than a speckle lose less than this.
+    pub contrast: f64,
+    /// The ratio of the variance of the position of the line, over the columns that are averaged.
+    pub line_noise: f64,
+    /// The ratio of the variance of the position of a round spot.
+    pub spot_noise: f64,
+}
+
+impl BandwidthEffect {
+    /// That of light of one wavelength.
+    pub const NONE: Self = Self {
+        contrast: 1.0,
+        line_noise: 1.0,
+        spot_noise: 1.0,
+    };
+
+    /// Returns the effect for a resolution cell and rows of a height in speckle sizes.
+    fn new(line: &SpectralLine, cell: &ResolutionCell, rows: f64) -> Self {
+        if line.is_monochromatic() {
+            return Self::NONE;
+        }
+        let speckle = PolychromaticSpeckle { line, cell };
+        Self {
+            contrast: speckle.contrast(),
+            line_noise: speckle.line_noise(Rows::Height(rows)),
+            spot_noise: speckle.line_noise(Rows::Tall),
+        }
+    }
 }
 
 impl ImagedLine {
@@ -61,7 +102,9 @@ impl ImagedLine {
         let step = STEP * description.camera.distance;
         let moved = row(0.0, height - step)? - row(0.0, height + step)?;
         let pixel = camera.project(DVec3::new(0.0, 0.0, height))?;
-        let geometry = camera.imaging_geometry_at(pixel, laser.wavelength).ok()?;
+        let geometry = camera
+            .imaging_geometry_at(pixel, laser.light.wavelength)
+            .ok()?;
         let stretch = 1.0 / camera.description().tilt.angle.cos();
         let speckle = geometry.speckle_size() / pitch;
         let diffraction_width = 4.0 * SQRT_2 / PI * speckle * stretch;
@@ -86,8 +129,13 @@ impl ImagedLine {
             speckle_size: [speckle, speckle * stretch],
             height_per_pixel: 2.0 * step / moved,
             peak_irradiance: 0.0,
-            column_electrons: sensor.electrons(column, laser.wavelength),
+            column_electrons: sensor.electrons(column, laser.light.wavelength),
             sensitive_height: 2.0 * sensor.sensitive_half_width(),
+            bandwidth: BandwidthEffect::new(
+                &laser.light.line().ok()?,
+                &resolution_cell(description, camera, height, &geometry)?,
+                f64::from(description.average.columns) / speckle,
+            ),
         };
         line.peak_irradiance = column * line.profile_over(0.0, 0.0).at(0.0);
         (depth > 0.0 && sin > 0.0 && line.height_per_pixel.is_finite()).then_some(line)
@@ -122,4 +170,34 @@ impl ImagedLine {
     pub(super) fn peak_electrons(&self) -> f64 {
         self.pixel_electrons(-0.5, 0.0)
     }
+}
+
+/// Returns what a resolution cell of the camera holds of the surface at a height.
+fn resolution_cell(
+    description: &SetupDescription,
+    camera: &Camera,
+    height: f64,
+    geometry: &ImagingGeometry,
+) -> Option<ResolutionCell> {
+    let to_pupil = camera.position() - height * DVec3::Z;
+    let distance = to_pupil.length();
+    let (_, cos) = description.camera.angle.sin_cos();
+    let depth = description.camera.distance - height * cos;
+    let in_focus = (depth.recip() - geometry.defocus_at(depth)).recip();
+    let cell = ResolutionCell::new(CellGeometry {
+        to_source: DVec3::Z,
+        to_pupil,
+        normal: DVec3::Z,
+        sin_aperture: 0.5 * geometry.pupil_diameter() / distance,
+        wavelength: description.laser.light.wavelength,
+    });
+    // The plane in focus is that of this image point; less than a nanometre beside it is rounding.
+    let defocus = in_focus - depth;
+    let defocus = if defocus.abs() < 1e-9 { 0.0 } else { defocus };
+    let relief = description.surface.relief;
+    cell.ok()?
+        .with_relief(relief)
+        .ok()?
+        .with_defocus(defocus)
+        .ok()
 }

@@ -87,6 +87,8 @@ impl Setup {
     }
 
     /// Returns the contrast of the speckle in the pixels, which average over it.
+    ///
+    /// With a linewidth it is exact for pixels small against a speckle; larger ones have somewhat more.
     pub fn contrast(&self) -> f64 {
         self.contrast_of(self.line())
     }
@@ -94,7 +96,7 @@ impl Setup {
     fn contrast_of(&self, line: &ImagedLine) -> f64 {
         let side = |size: f64| line.sensitive_height / size;
         let pixel = rectangular_pixel_contrast(line.speckle_size.map(side));
-        self.description().surface.contrast() * pixel
+        self.description().surface.contrast() * line.bandwidth.contrast * pixel
     }
 
     /// Returns the mean number of electrons in the brightest pixel, by light and dark current, for a

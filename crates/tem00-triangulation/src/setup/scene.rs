@@ -1,4 +1,5 @@
 use super::Setup;
+use crate::file::{light_keys, relief_keys};
 
 impl Setup {
     /// Returns the set-up as a scene file with a flat plate at a height, in metres, to be rendered.
@@ -18,11 +19,11 @@ impl Setup {
              focal_length = {focal_length:e}\nf_number = {f_number:e}\npixel_pitch = {pitch:e}\n\
              resolution = [{width}, {rows}]\ntilt = {{ angle = {tilt:e} }}\n\n\
              [[laser]]\n\
-             wavelength = {wavelength:e}\npower = {power:e}\nposition = [0, 0, {distance:e}]\n\
+             {light}power = {power:e}\nposition = [0, 0, {distance:e}]\n\
              look_at = [0, 0, 0]\nline_direction = [1, 0, 0]\n\
              [laser.line]\n\
              fan_angle = {fan_angle:e}\nthickness = {line_thickness:e}\nprofile = \"uniform\"\n\n\
-             [[surface]]\nname = \"plate\"\n\
+             [[surface]]\nname = \"plate\"\n{relief}\
              [surface.rectangle]\n\
              centre = [0, 0, {height:e}]\nnormal = [0, 0, 1]\nsize = [{plate:e}, {plate:e}]\n\
              [surface.lambertian]\nreflectance = {reflectance:e}\n",
@@ -33,7 +34,8 @@ impl Setup {
             f_number = camera.f_number,
             pitch = d.sensor.pixel_pitch,
             tilt = self.camera().description().tilt.angle,
-            wavelength = laser.wavelength,
+            light = light_keys(&laser.light),
+            relief = relief_keys(d.surface.relief),
             power = laser.power,
             distance = camera.distance,
             line_thickness = laser.line_thickness,

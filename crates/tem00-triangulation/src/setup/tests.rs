@@ -1,13 +1,13 @@
 use approx::assert_relative_eq;
 
 use super::*;
-use crate::{LineMethod, SensorDescription};
+use crate::{LaserLight, LineMethod, Relief, SensorDescription};
 
 /// A 25 mm lens at f/8 that looks from 300 mm at 30°, at a line of 0.2 mm.
 pub(crate) fn description() -> SetupDescription {
     SetupDescription {
         laser: LaserLineData {
-            wavelength: 650e-9,
+            light: LaserLight::monochromatic(650e-9),
             power: 5e-3,
             line_thickness: 0.2e-3,
             line_length: 50e-3,
@@ -31,6 +31,7 @@ pub(crate) fn description() -> SetupDescription {
             reflectance: 0.5,
             patterns: 1,
             polarisation: 1.0,
+            relief: Relief::default(),
         },
         detector: DetectorSettings {
             method: LineMethod::CentreOfGravity,
@@ -107,7 +108,7 @@ fn light_through_the_pupil_frees_the_electrons_of_a_column() {
     let pupil = core::f64::consts::PI * (0.5_f64 * 25e-3 / 8.0).powi(2);
     let cosine = d.camera.angle.cos();
     let power = scattered * cosine / core::f64::consts::PI * pupil / (0.3 * 0.3);
-    let photon = 6.626_070_15e-34 * 299_792_458.0 / d.laser.wavelength;
+    let photon = 6.626_070_15e-34 * 299_792_458.0 / d.laser.light.wavelength;
     let electrons = power * d.sensor.exposure_time / photon * d.sensor.quantum_efficiency;
     // The width of the line in perspective differs by (W/2L)² from the first-order one.
     assert_relative_eq!(line.column_electrons, electrons, max_relative = 1e-6);
@@ -219,7 +220,7 @@ fn a_chosen_exposure_leaves_room_for_bright_grains_and_not_much_more() {
             chosen += 1;
         }
         // What was chosen is a time like any other.
-        let mut fixed = *setup.description();
+        let mut fixed = setup.description().clone();
         fixed.auto_exposure = false;
         assert_eq!(Setup::new(fixed).unwrap().line(), setup.line());
         let milliseconds: f64 = format!("{:.1e}", 1e3 * d.exposure_time).parse().unwrap();
@@ -233,7 +234,7 @@ fn a_chosen_exposure_leaves_room_for_bright_grains_and_not_much_more() {
 fn impossible_setups_are_rejected_by_name() {
     type Change = fn(&mut SetupDescription);
     let bad: [(&str, Change); 18] = [
-        ("wavelength", |d| d.laser.wavelength = f64::NAN),
+        ("wavelength", |d| d.laser.light.wavelength = f64::NAN),
         ("power", |d| d.laser.power = 0.0),
         ("line_thickness", |d| d.laser.line_thickness = f64::INFINITY),
         ("line_thickness", |d| d.laser.line_thickness = 20e-3),

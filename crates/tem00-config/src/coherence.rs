@@ -1,14 +1,12 @@
 use core::ops::RangeInclusive;
 
-use tem00_coherence::{LaserLight, LineShape, SpectralLine, Spectrum};
+use tem00_coherence::{LaserLight, LineShape, Relief, SpectralLine, Spectrum};
 
 use crate::{LENGTH, NUMBER, Problem, Section, Value};
 
-/// Keys of the light of a laser, in scene files and in set-up files: those that [`read_laser_light`] reads.
-pub const LASER_LIGHT: &[&str] = &["wavelength", "linewidth", "spectrum", "lines"];
+/// Allowed wavelengths in metres, and in words.
+pub type Wavelengths = (RangeInclusive<f64>, &'static str);
 
-const WAVELENGTHS: RangeInclusive<f64> = 10e-9..=1e-3;
-const WAVELENGTH: &str = "from 10 nm to 1 mm";
 const PEAKS: &str =
     "a list of pairs [wavelength, power], such as [[\"448 nm\", 1], [\"451 nm\", 2]]";
 const SPECTRA: &[(&str, Spectrum)] = &[
@@ -19,13 +17,19 @@ const SPECTRA: &[(&str, Spectrum)] = &[
     ("comb", Spectrum::Comb(0)),
 ];
 
-/// Reads wavelength, linewidth and spectrum of a laser.
+/// Reads the keys of the light of a laser, in scene files and in set-up files: `wavelength`, `linewidth`, `spectrum` and
+/// `lines`.
 ///
 /// # Errors
 ///
 /// Returns a problem, placed at a key, if one is missing, beyond its range or contradicts another. Whether the light
 /// [has a line](LaserLight::line) is left to the caller.
-pub fn read_laser_light(section: &Section<'_>) -> Result<LaserLight, Problem> {
+pub fn read_laser_light(
+    section: &Section<'_>,
+    wavelengths: &Wavelengths,
+) -> Result<LaserLight, Problem> {
+    let wavelength =
+        |value: &Value<'_>| value.within(&LENGTH, wavelengths.0.clone(), wavelengths.1);
     let linewidth = section.or("linewidth", 0.0, |value| {
         value.within(&LENGTH, 0.0.., "zero or positive")
     })?;
@@ -34,15 +38,11 @@ pub fn read_laser_light(section: &Section<'_>) -> Result<LaserLight, Problem> {
             if section.has("wavelength") {
                 return Err(follows(section, "wavelength", "spectrum"));
             }
-            let peaks = peaks(&list)?;
+            let peaks = peaks(&list, wavelength)?;
             LaserLight::of_peaks(peaks, linewidth).map_err(|error| list.problem(error))
         }
         spectrum => Ok(LaserLight {
-            wavelength: section.required("wavelength", "\"650 nm\"")?.within(
-                &LENGTH,
-                WAVELENGTHS,
-                WAVELENGTH,
-            )?,
+            wavelength: wavelength(&section.required("wavelength", "\"650 nm\"")?)?,
             linewidth,
             spectrum: named_spectrum(section, spectrum.as_ref())?,
         }),
@@ -92,13 +92,37 @@ fn named_spectrum(
     }
 }
 
-fn peaks(list: &Value<'_>) -> Result<Vec<[f64; 2]>, Problem> {
+fn peaks(
+    list: &Value<'_>,
+    wavelength: impl Fn(&Value<'_>) -> Result<f64, Problem>,
+) -> Result<Vec<[f64; 2]>, Problem> {
     let peak = |pair: &Value<'_>| {
-        let [wavelength, power] = pair.elements("a pair [wavelength, power]")?;
-        Ok([
-            wavelength.within(&LENGTH, WAVELENGTHS, WAVELENGTH)?,
-            power.positive(&NUMBER)?,
-        ])
+        let [of_peak, power] = pair.elements("a pair [wavelength, power]")?;
+        Ok([wavelength(&of_peak)?, power.positive(&NUMBER)?])
     };
     list.list(PEAKS)?.iter().map(peak).collect()
+}
+
+/// Reads the keys of the relief of a surface, in scene files and in set-up files: `rms_height`, with a `usual` one, and
+/// `correlation_length`.
+///
+/// # Errors
+///
+/// Returns a problem, placed at a key, if one is beyond its range, or a correlation length without a height.
+pub fn read_relief(section: &Section<'_>, usual: Option<f64>) -> Result<Relief, Problem> {
+    let height = section.or("rms_height", usual, |value| {
+        value.positive(&LENGTH).map(Some)
+    })?;
+    match (height, section.optional("correlation_length")) {
+        (None, None) => Ok(Relief::default()),
+        (Some(rms_height), length) => Ok(Relief {
+            rms_height,
+            correlation_length: length.map_or(Ok(0.0), |value| {
+                value.within(&LENGTH, 0.0.., "zero or positive")
+            })?,
+        }),
+        (None, Some(length)) => Err(length
+            .problem("`correlation_length` belongs to a relief of a known height")
+            .with_help("write `rms_height` as well")),
+    }
 }

@@ -244,8 +244,12 @@ impl ResolutionCell {
         };
         // The excess falls from lag 0 on over ℓ or, if heights are large, over less; the images over a speckle.
         let width = length / (1.0 + exponent).sqrt();
-        let reach = 6.0 * length;
-        let near = (6.0 * width).min(reach);
+        // Kernels have no frequency above 1 per speckle, and the excess hardly any above 1 per width.
+        if (turns.abs() - TAU) * width > 12.0 {
+            return 0.0;
+        }
+        let reach = if exponent > 50.0 { 0.0 } else { 6.0 * length };
+        let near = 6.0 * width;
         let step = |width: f64| width.min(1.0).min(1.0 / turns.abs().max(1e-3));
         let inner = integrate(&excess, [0.0, near], step(width));
         inner + integrate(&excess, [near, reach], step(length))

@@ -357,3 +357,19 @@ fn long_relief_leaves_a_line_its_noise() {
         assert_relative_eq!(noise(Rows::Thin, case), limit, epsilon = 2e-3);
     }
 }
+
+#[test]
+fn the_wings_of_a_lorentzian_end_on_a_long_relief() {
+    let relief = Relief {
+        rms_height: 1.6e-6,
+        correlation_length: 2e-6,
+    };
+    let cell = cell(450e-9, 0.0, 30.0, 0.0).with_relief(relief).unwrap();
+    let line = SpectralLine::new(450e-9, 1e-9, LineShape::Lorentzian).unwrap();
+    let speckle = PolychromaticSpeckle {
+        line: &line,
+        cell: &cell,
+    };
+    let noise = speckle.line_noise(Rows::Thin).sqrt();
+    assert!(speckle.contrast() < noise && noise < 1.0, "{noise}");
+}

@@ -251,8 +251,8 @@ impl ResolutionCell {
         let reach = if exponent > 50.0 { 0.0 } else { 6.0 * length };
         let near = 6.0 * width;
         let step = |width: f64| width.min(1.0).min(1.0 / turns.abs().max(1e-3));
-        let inner = integrate(&excess, [0.0, near], step(width));
-        inner + integrate(&excess, [near, reach], step(length))
+        let inner = integrate(excess, [0.0, near], step(width));
+        inner + integrate(excess, [near, reach], step(length))
     }
 
     /// Returns `exp(−κ² σ_L²/2)`.

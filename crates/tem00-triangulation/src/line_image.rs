@@ -1,9 +1,13 @@
+mod bandwidth;
 mod strip;
 
 use tem00_numerics::Grid;
 use tem00_speckle::{IncoherentSum, PupilField};
 
-use self::strip::Strip;
+use self::{
+    bandwidth::{Bandwidth, PolychromaticLight},
+    strip::Strip,
+};
 use crate::{
     Setup, TriangulationError,
     setup::{LineProfile, within},
@@ -68,6 +72,8 @@ pub struct LineImage {
     period: [usize; 2],
     /// The speckle size in samples.
     speckle: f64,
+    /// What the linewidth of the laser asks.
+    bandwidth: Option<Bandwidth>,
 }
 
 impl LineImage {
@@ -97,25 +103,19 @@ impl LineImage {
             light: IncoherentSum::equal(data.patterns as usize)?.split_by(&polarised)?,
             period,
             speckle,
+            bandwidth: None,
         })
     }
 
     /// Creates the generator of images of the line of a set-up on the reference plane, of `size` =
-    /// [columns, rows].
+    /// [columns, rows], in the light of its laser.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`new`](Self::new), and an error for a laser with a linewidth: this light is of one wavelength.
+    /// Returns the errors of [`new`](Self::new).
     pub fn of_setup(setup: &Setup, size: [usize; 2]) -> Result<Self, TriangulationError> {
-        if !setup.is_monochromatic() {
-            return Err(TriangulationError::OutOfRange {
-                parameter: "linewidth",
-                value: setup.description().laser.light.linewidth,
-                allowed: "0 for trials, whose light is of one wavelength",
-            });
-        }
         let (line, surface) = (setup.line(), &setup.description().surface);
-        Self::new(LineImageData {
+        let mut image = Self::new(LineImageData {
             size,
             width: line.projected_thickness.hypot(line.blur),
             column_electrons: line.column_electrons,
@@ -123,7 +123,12 @@ impl LineImage {
             sensitive_side: line.sensitive_height,
             patterns: surface.patterns,
             polarisation: surface.polarisation,
-        })
+        })?;
+        if let Some(light) = PolychromaticLight::of_setup(setup)? {
+            image.light = image.light.split_by(&light.modes)?;
+            image.bandwidth = light.bandwidth;
+        }
+        Ok(image)
     }
 
     /// Returns the parameters that the generator was created from.
@@ -171,16 +176,24 @@ impl LineImage {
             period,
             speckle_size: [0, 1].map(|axis| self.speckle / self.samples[axis] as f64),
             first_sample: self.samples.map(|samples| 0.5 / samples as f64),
+            widest_tilt: self.bandwidth.as_ref().map_or(0.0, Bandwidth::widest_tilt),
         };
         let positions = strip.positions(centre);
         let [columns, rows] = self.data.size;
         let mut image = Grid::filled(columns, rows, 0.0_f32);
         for (fraction, part) in self.light.weights().iter().zip(0..) {
-            let (pupil, lit) = strip.pupil(&positions, seed, part);
-            let field = PupilField::from_samples(pupil, self.period, self.speckle)?;
-            // The pattern is 1 in the mean over its period, in which this much of the light lies.
-            let electrons = fraction * lit * self.data.column_electrons / period[1];
-            self.add_pixels(&mut image, field.pattern().values(), electrons);
+            let strip = |stream, tilt| strip.pupil(&positions, seed, stream, tilt);
+            let pupils = match &self.bandwidth {
+                None => vec![strip(part, 0.0)],
+                Some(bandwidth) => bandwidth.pupils(part, strip),
+            };
+            let fraction = fraction / pupils.len() as f64;
+            for (pupil, lit) in pupils {
+                let field = PupilField::from_samples(pupil, self.period, self.speckle)?;
+                // The pattern is 1 in the mean over its period, in which this much of the light lies.
+                let electrons = fraction * lit * self.data.column_electrons / period[1];
+                self.add_pixels(&mut image, field.pattern().values(), electrons);
+            }
         }
         Ok(image)
     }

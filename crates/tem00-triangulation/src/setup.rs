@@ -9,6 +9,7 @@ mod scene;
 
 use glam::{DVec2, DVec3};
 use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+use tem00_coherence::ResolutionCell;
 
 use crate::{DetectorSettings, LaserPlane, LineDetector, Sensor, TriangulationError, Triangulator};
 
@@ -106,9 +107,11 @@ impl Setup {
         &self.description
     }
 
-    /// Whether the light of the laser is of one wavelength.
-    pub fn is_monochromatic(&self) -> bool {
-        self.line.bandwidth == BandwidthEffect::NONE
+    /// Returns what a resolution cell of the camera holds of the reference plane, or `None` if its paths have no law.
+    pub(crate) fn resolution_cell(&self) -> Option<ResolutionCell> {
+        let (camera, wavelength) = (self.camera(), self.description.laser.light.wavelength);
+        let geometry = camera.imaging_geometry_at(camera.project(DVec3::ZERO)?, wavelength);
+        imaged_line::resolution_cell(&self.description, camera, 0.0, &geometry.ok()?)
     }
 
     /// Returns the camera.

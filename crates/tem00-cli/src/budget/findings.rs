@@ -72,8 +72,7 @@ impl Answer {
         setup: &Setup,
         budget: Budget,
     ) -> Result<Result<Self, Refusal>, Failure> {
-        // Trials draw light of one wavelength.
-        let is_tried = args.trials > 0 && setup.is_monochromatic();
+        let is_tried = args.trials > 0;
         let trials = is_tried.then(|| tried(args, setup)).transpose()?;
         if let Some(found) = trials.as_ref().filter(|found| found.total().is_none()) {
             return Ok(Err(Refusal {

@@ -30,11 +30,6 @@ pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
     if level != LightLevel::Good {
         lines.push(format!("The light is not right: {}.", level.advice()));
     }
-    if !setup.is_monochromatic() {
-        lines.push(
-            "There are no trials: they draw light of one wavelength, and this laser has a linewidth.".into(),
-        );
-    }
     lines.extend(of_trials(answer));
     lines
 }

@@ -22,6 +22,8 @@ pub(super) struct Strip {
     pub(super) speckle_size: [f64; 2],
     /// The position of the first sample of the image.
     pub(super) first_sample: [f64; 2],
+    /// The largest displacement of the pupil across the line, in its diameters.
+    pub(super) widest_tilt: f64,
 }
 
 impl Strip {
@@ -54,8 +56,8 @@ impl Strip {
         2 * half + 1
     }
 
-    /// Returns the amplitude in the pupil, and the fraction of the light of the line that the period of
-    /// the image holds.
+    /// Returns the amplitude in the pupil, displaced by `tilt` diameters across the line, and the fraction of the light
+    /// of the line that the period of the image holds.
     ///
     /// Scatterers are half a line or half a speckle apart across the line, from where a sum of normal
     /// amplitudes is the integral to 10⁻⁸. Those beyond the darkness beside the image are left out.
@@ -64,6 +66,7 @@ impl Strip {
         positions: &[f64],
         seed: u64,
         part: u64,
+        tilt: f64,
     ) -> (Grid<Complex<f32>>, f64) {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(1 << 63 | part);
@@ -83,7 +86,12 @@ impl Strip {
                         0.0
                     };
                     let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
-                    Complex::new(normal(), normal()) * amplitude
+                    let scattered = Complex::new(normal(), normal()) * amplitude;
+                    if tilt == 0.0 {
+                        return scattered;
+                    }
+                    let turns = tilt * (position + distance) / self.speckle_size[1];
+                    scattered * Complex::cis(TAU * turns)
                 })
                 .collect();
             for (y, waves) in waves.chunks_exact(across.len().max(1)).enumerate() {
@@ -97,7 +105,9 @@ impl Strip {
     /// Returns the distances of scatterers from the middle of the line, and their irradiances.
     fn across(&self, positions: &[f64]) -> Vec<(f64, f64)> {
         let radius = 0.5 * self.width;
-        let spacing = 0.5 * radius.min(self.speckle_size[1]);
+        // A pupil that is displaced by more than a diameter sees finer fringes of them.
+        let finest = self.speckle_size[1] / self.widest_tilt.max(1.0);
+        let spacing = 0.5 * radius.min(finest);
         let range = |start: f64, f: fn(f64, f64) -> f64| positions.iter().copied().fold(start, f);
         let [low, high] = self.dark();
         let from = (low - range(f64::NEG_INFINITY, f64::max)).max(-REACH * radius);

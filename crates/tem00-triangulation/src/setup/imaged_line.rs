@@ -173,7 +173,7 @@ impl ImagedLine {
 }
 
 /// Returns what a resolution cell of the camera holds of the surface at a height.
-fn resolution_cell(
+pub(super) fn resolution_cell(
     description: &SetupDescription,
     camera: &Camera,
     height: f64,

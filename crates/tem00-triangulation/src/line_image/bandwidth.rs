@@ -1,0 +1,151 @@
+//! Images of a line in light that is not of one wavelength.
+
+use tem00_coherence::{
+    PolychromaticSpeckle, Relief, ResolutionCell, Rows, SpectralLine, representative_heights,
+};
+use tem00_numerics::{Grid, cast::to_usize};
+use tem00_speckle::{Complex, IncoherentSum};
+
+use crate::{Setup, TriangulationError};
+
+/// The light of a laser with a linewidth on the surface of a set-up.
+pub(super) struct PolychromaticLight {
+    /// The coherent modes, if heights dominate; one otherwise.
+    pub(super) modes: IncoherentSum,
+    pub(super) bandwidth: Option<Bandwidth>,
+}
+
+/// Wave numbers that stand for a line. Each sees the pupil displaced across the line by the tilt of the resolution cell,
+/// and heights of the relief in other phases.
+#[derive(Clone, Debug)]
+pub(super) struct Bandwidth {
+    /// Displacements of the pupil in its diameters, with the differences of wave numbers, in rad/m.
+    waves: Vec<[f64; 2]>,
+    /// Paths that stand for those by heights, in metres, with the roots of their fractions of the light. Their fields add.
+    paths: Vec<[f64; 2]>,
+}
+
+/// The numbers of wave numbers that stand for a line: more for contrasts that are lower.
+const WAVES: [f64; 2] = [16.0, 96.0];
+const WAVES_PER_PATTERN: f64 = 8.0;
+
+/// The largest displacement of the pupil, in its diameters: farther wings find new speckle there, too.
+const MAX_TILT: f64 = 6.0;
+
+/// The pupil of a strip, and how much of the line's light it holds.
+type Pupil = (Grid<Complex<f32>>, f64);
+
+impl PolychromaticLight {
+    /// Returns nothing for light of one wavelength.
+    pub(super) fn of_setup(setup: &Setup) -> Result<Option<Self>, TriangulationError> {
+        let line = setup.description().laser.light.line();
+        let (Ok(line), Some(cell)) = (line, setup.resolution_cell()) else {
+            return Ok(None);
+        };
+        if line.is_monochromatic() {
+            return Ok(None);
+        }
+        let cell = of_dense_relief(&line, &cell);
+        let speckle = PolychromaticSpeckle {
+            line: &line,
+            cell: &cell,
+        };
+        let heights = representative_heights(2.0 * line.effective_spread() * cell.path_spread());
+        Ok(Some(match heights {
+            None => Self {
+                modes: IncoherentSum::weighted(&speckle.modes())?,
+                bandwidth: None,
+            },
+            Some(heights) => Self {
+                modes: IncoherentSum::equal(1)?,
+                bandwidth: Some(Bandwidth::new(&speckle, &heights)),
+            },
+        }))
+    }
+}
+
+impl Bandwidth {
+    fn new(speckle: &PolychromaticSpeckle<'_>, heights: &[[f64; 2]]) -> Self {
+        let PolychromaticSpeckle { line, cell } = speckle;
+        let [least, most] = WAVES;
+        let count = (WAVES_PER_PATTERN / speckle.contrast().powi(2))
+            .clamp(least, most)
+            .ceil();
+        let full = cell.tilt_wave_number();
+        let waves = (0..to_usize(count)).map(|i| {
+            let kappa = line.draw((i as f64 + 0.5) / count);
+            [(kappa / full).clamp(-MAX_TILT, MAX_TILT), kappa]
+        });
+        let spread = cell.path_spread();
+        Self {
+            waves: waves.collect(),
+            paths: heights
+                .iter()
+                .map(|[z, w]| [z * spread, w.sqrt()])
+                .collect(),
+        }
+    }
+
+    pub(super) fn widest_tilt(&self) -> f64 {
+        self.waves
+            .iter()
+            .fold(0.0, |most: f64, wave| most.max(wave[0].abs()))
+    }
+
+    /// Returns the pupil of each wave number. `strip` makes one from the number of its random stream and its
+    /// displacement.
+    #[expect(clippy::cast_possible_truncation, reason = "pupils are f32")]
+    pub(super) fn pupils(&self, part: u64, strip: impl Fn(u64, f64) -> Pupil) -> Vec<Pupil> {
+        let streams = part * self.paths.len() as u64..;
+        let of_wave = |&[tilt, kappa]: &[f64; 2]| {
+            let fields = self
+                .paths
+                .iter()
+                .zip(streams.clone())
+                .map(|([path, root], stream)| {
+                    let (mut pupil, lit) = strip(stream, tilt);
+                    let factor = Complex::from_polar(*root, kappa * path);
+                    let factor = Complex::new(factor.re as f32, factor.im as f32);
+                    pupil
+                        .values_mut()
+                        .iter_mut()
+                        .for_each(|value| *value *= factor);
+                    (pupil, lit)
+                });
+            let sum = fields.reduce(|(mut sum, lit), (pupil, _)| {
+                let pairs = sum.values_mut().iter_mut().zip(pupil.values());
+                pairs.for_each(|(sum, value)| *sum += value);
+                (sum, lit)
+            });
+            sum.unwrap_or_else(|| strip(part, tilt))
+        };
+        self.waves.iter().map(of_wave).collect()
+    }
+}
+
+/// Returns the cell with a relief without correlation length that leaves a line the same noise.
+fn of_dense_relief(line: &SpectralLine, cell: &ResolutionCell) -> ResolutionCell {
+    let relief = cell.relief();
+    if relief.correlation_length == 0.0 {
+        return *cell;
+    }
+    let with_height = |rms_height| {
+        let dense = Relief {
+            rms_height,
+            correlation_length: 0.0,
+        };
+        cell.with_relief(dense).unwrap_or(*cell)
+    };
+    let noise = |cell: &ResolutionCell| PolychromaticSpeckle { line, cell }.line_noise(Rows::Thin);
+    let wanted = noise(cell);
+    let [mut low, mut high] = [0.0, relief.rms_height];
+    for _ in 0..12 {
+        let middle = 0.5 * (low + high);
+        if noise(&with_height(middle)) > wanted {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    with_height(0.5 * (low + high))
+}

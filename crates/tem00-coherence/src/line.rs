@@ -332,35 +332,29 @@ impl SpectralLine {
 
     /// The density of the difference of two draws from one peak.
     fn pair_density(&self, kappa: f64) -> f64 {
-        let x = kappa / self.width;
-        let shape = match self.shape {
-            LineShape::Gaussian => (-0.25 * x * x).exp() / (4.0 * PI).sqrt(),
-            LineShape::Lorentzian => 2.0 / (PI * (4.0 + x * x)),
-            LineShape::Rectangular => (1.0 - x.abs()).max(0.0),
-        };
-        shape / self.width
+        self.shape.pair_density(kappa / self.width) / self.width
     }
 
     /// ∫ f(κ) times the density of the difference of two draws from two peaks that are `offset` apart.
     fn mean_about(&self, offset: f64, scale: f64, f: &impl Fn(f64) -> f64) -> f64 {
+        // In widths of a peak, of which there may be no reciprocal.
+        let width = self.width;
         let reach = match self.shape {
-            LineShape::Gaussian => 2.0_f64.sqrt() * GAUSSIAN_REACH * self.width,
-            LineShape::Lorentzian => LORENTZIAN_REACH * self.width,
-            LineShape::Rectangular => self.width,
+            LineShape::Gaussian => 2.0_f64.sqrt() * GAUSSIAN_REACH,
+            LineShape::Lorentzian => LORENTZIAN_REACH,
+            LineShape::Rectangular => 1.0,
         };
-        let integrand = |kappa: f64| self.pair_density(kappa - offset) * f(kappa);
+        let integrand = |x: f64| self.shape.pair_density(x) * f(offset + width * x);
         let mut breaks = Vec::new();
-        for (centre, width) in [(offset, self.width), (0.0, scale)] {
-            if width.is_finite() && width > 0.0 {
-                let steps = ladder()
-                    .map(|step| step * width)
-                    .take_while(|step| *step < 4.0 * reach);
-                breaks.extend(steps.flat_map(|step| [centre - step, centre + step]));
-            }
+        for (centre, feature) in [(0.0, 1.0), (-offset / width, scale / width)] {
+            let steps = ladder()
+                .map(|step| step * feature)
+                .take_while(|step| *step < 4.0 * reach);
+            breaks.extend(steps.flat_map(|step| [centre - step, centre + step]));
             breaks.push(centre);
         }
-        breaks.retain(|at| (at - offset).abs() < reach);
-        breaks.extend([offset - reach, offset + reach]);
+        breaks.retain(|x: &f64| x.abs() < reach);
+        breaks.extend([-reach, reach]);
         breaks.sort_unstable_by(f64::total_cmp);
         breaks
             .windows(2)
@@ -370,6 +364,15 @@ impl SpectralLine {
 }
 
 impl LineShape {
+    /// The density of the difference of two draws from a peak of width 1.
+    fn pair_density(self, x: f64) -> f64 {
+        match self {
+            Self::Gaussian => (-0.25 * x * x).exp() / (4.0 * PI).sqrt(),
+            Self::Lorentzian => 2.0 / (PI * (4.0 + x * x)),
+            Self::Rectangular => (1.0 - x.abs()).max(0.0),
+        }
+    }
+
     /// The value that a draw from a peak of width 1 does not exceed with the probability `u`.
     fn quantile(self, u: f64) -> f64 {
         match self {

@@ -373,3 +373,18 @@ fn the_wings_of_a_lorentzian_end_on_a_long_relief() {
     let noise = speckle.line_noise(Rows::Thin).sqrt();
     assert!(speckle.contrast() < noise && noise < 1.0, "{noise}");
 }
+
+#[test]
+fn lines_too_narrow_for_a_reciprocal_are_of_one_wavelength() {
+    let cell = cell(450e-9, 0.0, 30.0, 1.6e-6);
+    for shape in [
+        LineShape::Gaussian,
+        LineShape::Lorentzian,
+        LineShape::Rectangular,
+    ] {
+        for linewidth in [5e-324, 1e-300, 1e-30] {
+            let line = SpectralLine::new(450e-9, linewidth, shape).unwrap();
+            assert_relative_eq!(contrast(&line, &cell), 1.0, epsilon = 1e-9);
+        }
+    }
+}

@@ -2,6 +2,7 @@ use core::{error, fmt};
 
 use tem00_beam::BeamError;
 use tem00_camera::CameraError;
+use tem00_coherence::CoherenceError;
 use tem00_decorrelation::DecorrelationError;
 use tem00_speckle::SpeckleError;
 
@@ -27,6 +28,8 @@ pub enum TracerError {
     },
     /// The camera is not possible.
     Camera(CameraError),
+    /// The spectrum of a laser is not possible.
+    Spectrum(CoherenceError),
     /// The laser's beam is not possible.
     Beam(BeamError),
     /// The camera's imaging geometry is not possible.
@@ -85,6 +88,7 @@ impl fmt::Display for TracerError {
             } => write!(f, "{parameter} must be {allowed}, got {value}"),
             Self::Direction { parameter, allowed } => write!(f, "{parameter} must be {allowed}"),
             Self::Camera(source) => source.fmt(f),
+            Self::Spectrum(source) => source.fmt(f),
             Self::Beam(source) => source.fmt(f),
             Self::Imaging(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
@@ -112,6 +116,12 @@ impl From<BeamError> for TracerError {
 impl From<CameraError> for TracerError {
     fn from(source: CameraError) -> Self {
         Self::Camera(source)
+    }
+}
+
+impl From<CoherenceError> for TracerError {
+    fn from(source: CoherenceError) -> Self {
+        Self::Spectrum(source)
     }
 }
 

@@ -5,7 +5,7 @@ use glam::DVec3;
 use num_complex::Complex;
 use tem00_numerics::{
     cast::to_usize,
-    disc_overlap,
+    disc_overlap, jinc,
     quadrature::{for_each_node, integrate},
 };
 
@@ -282,9 +282,7 @@ const LAST_LAG: f64 = 30.0;
 
 /// Returns the intensity of a point's image, in units of a speckle, of unit area.
 pub(crate) fn image_of_point(lag: f64) -> f64 {
-    let x = PI * lag;
-    let amplitude = if x < 1e-6 { 1.0 } else { 2.0 * libm::j1(x) / x };
-    0.25 * PI * amplitude * amplitude
+    0.25 * PI * jinc(PI * lag).powi(2)
 }
 
 /// Returns the autocorrelation of the intensity of a point's image, in units of a speckle, of unit area.

@@ -1,10 +1,10 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use num_complex::Complex;
-use tem00_numerics::{cast::to_usize, disc_overlap, quadrature::integrate};
+use tem00_numerics::{cast::to_usize, disc_overlap, quadrature::integrate, sinc_pi_squared};
 
 use crate::{
-    ResolutionCell, SpectralLine,
+    Relief, ResolutionCell, SpectralLine,
     cell::{image_autocorrelation, image_of_point},
     eigenvalues::hermitian_eigenvalues,
     lens,
@@ -123,18 +123,10 @@ impl Rows {
 /// ∫ A(s, g) sinc²(πag) dg.
 fn power_in(height: f64, s: f64) -> f64 {
     let reach = (1.0 - s * s).sqrt();
-    let mean_of_row = |g: f64| {
-        let turn = PI * height * g;
-        if turn < 1e-6 {
-            1.0
-        } else {
-            (turn.sin() / turn).powi(2)
-        }
-    };
     // The overlap ends with a root.
     let by_angle = |angle: f64| {
         let (sin, cos) = angle.sin_cos();
-        lens_overlap(s, reach * sin) * mean_of_row(reach * sin) * reach * cos
+        lens_overlap(s, reach * sin) * sinc_pi_squared(height * reach * sin) * reach * cos
     };
     integrate(by_angle, [0.0, FRAC_PI_2], (0.5 / height).min(1.0))
 }
@@ -271,6 +263,43 @@ impl PolychromaticSpeckle<'_> {
         });
         let kept: f64 = modes.iter().sum();
         modes.iter().map(|mode| mode / kept).collect()
+    }
+
+    /// Returns the cell with a relief without correlation length that leaves `measure`, a contrast or a noise, as it is.
+    ///
+    /// What draws light in a few representative heights knows no correlation length; this one is as good for one measure.
+    pub fn dense_equivalent(
+        &self,
+        measure: impl Fn(&PolychromaticSpeckle<'_>) -> f64,
+    ) -> ResolutionCell {
+        let relief = self.cell.relief();
+        if relief.correlation_length == 0.0 {
+            return *self.cell;
+        }
+        let with_height = |rms_height| {
+            let dense = Relief {
+                rms_height,
+                correlation_length: 0.0,
+            };
+            self.cell.with_relief(dense).unwrap_or(*self.cell)
+        };
+        let of = |cell: &ResolutionCell| {
+            measure(&PolychromaticSpeckle {
+                line: self.line,
+                cell,
+            })
+        };
+        let wanted = of(self.cell);
+        let [mut low, mut high] = [0.0, relief.rms_height];
+        for _ in 0..12 {
+            let middle = 0.5 * (low + high);
+            if of(&with_height(middle)) > wanted {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        with_height(0.5 * (low + high))
     }
 
     /// Fractions (1 − t) tⁿ with the contrast of the law.

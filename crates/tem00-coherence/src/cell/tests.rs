@@ -2,7 +2,6 @@ use approx::assert_relative_eq;
 use proptest::prelude::*;
 
 use super::*;
-use tem00_numerics::jinc;
 
 fn geometry() -> CellGeometry {
     CellGeometry {

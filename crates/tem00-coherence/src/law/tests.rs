@@ -388,3 +388,23 @@ fn lines_too_narrow_for_a_reciprocal_are_of_one_wavelength() {
         }
     }
 }
+
+#[test]
+fn a_dense_relief_can_stand_for_a_correlated_one() {
+    let relief = Relief {
+        rms_height: 1.6e-6,
+        correlation_length: 9e-6,
+    };
+    let cell = cell(450e-9, 0.0, 30.0, 0.0).with_relief(relief).unwrap();
+    let line = gaussian(450e-9, 20e-9);
+    let speckle = PolychromaticSpeckle {
+        line: &line,
+        cell: &cell,
+    };
+    let dense = speckle.dense_equivalent(|speckle| speckle.contrast());
+    assert_relative_eq!(contrast(&line, &dense), speckle.contrast(), epsilon = 2e-4);
+    assert!(
+        dense.relief().rms_height < 0.8 * relief.rms_height,
+        "{dense:?}"
+    );
+}

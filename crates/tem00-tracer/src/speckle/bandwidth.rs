@@ -2,9 +2,7 @@
 
 use glam::DVec2;
 use rayon::prelude::*;
-use tem00_coherence::{
-    PolychromaticSpeckle, Relief, ResolutionCell, SpectralLine, representative_heights,
-};
+use tem00_coherence::{PolychromaticSpeckle, representative_heights};
 use tem00_decorrelation::ImagingGeometry;
 
 use super::{
@@ -126,33 +124,6 @@ pub(super) fn laser_lights(
     Ok(lights.collect())
 }
 
-/// Returns the cell with a relief without correlation length that leaves the same contrast.
-fn of_dense_relief(line: &SpectralLine, cell: &ResolutionCell) -> ResolutionCell {
-    let relief = cell.relief();
-    if relief.correlation_length == 0.0 {
-        return *cell;
-    }
-    let with_height = |rms_height| {
-        let dense = Relief {
-            rms_height,
-            correlation_length: 0.0,
-        };
-        cell.with_relief(dense).unwrap_or(*cell)
-    };
-    let contrast = |cell: &ResolutionCell| PolychromaticSpeckle { line, cell }.contrast();
-    let wanted = contrast(cell);
-    let [mut low, mut high] = [0.0, relief.rms_height];
-    for _ in 0..12 {
-        let middle = 0.5 * (low + high);
-        if contrast(&with_height(middle)) > wanted {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    with_height(0.5 * (low + high))
-}
-
 /// One laser in the reference frame.
 struct Survey<'a> {
     scene: &'a Scene,
@@ -192,7 +163,8 @@ impl Survey<'_> {
         let Some(cell) = cell.and_then(|cell| cell.with_relief(relief).ok()) else {
             return single;
         };
-        let cell = of_dense_relief(line, &cell);
+        let speckle = PolychromaticSpeckle { line, cell: &cell };
+        let cell = speckle.dense_equivalent(|speckle| speckle.contrast());
         let spread = line.effective_spread();
         let heights = 2.0 * spread * cell.path_spread();
         if spread * tilt < NEGLIGIBLE_TILT && heights < NEGLIGIBLE_HEIGHTS {

@@ -1,8 +1,6 @@
 //! Images of a line in light that is not of one wavelength.
 
-use tem00_coherence::{
-    PolychromaticSpeckle, Relief, ResolutionCell, Rows, SpectralLine, representative_heights,
-};
+use tem00_coherence::{PolychromaticSpeckle, Rows, representative_heights};
 use tem00_numerics::{Grid, cast::to_usize};
 use tem00_speckle::{Complex, IncoherentSum};
 
@@ -45,7 +43,11 @@ impl PolychromaticLight {
         if line.is_monochromatic() {
             return Ok(None);
         }
-        let cell = of_dense_relief(&line, &cell);
+        let speckle = PolychromaticSpeckle {
+            line: &line,
+            cell: &cell,
+        };
+        let cell = speckle.dense_equivalent(|speckle| speckle.line_noise(Rows::Thin));
         let speckle = PolychromaticSpeckle {
             line: &line,
             cell: &cell,
@@ -121,31 +123,4 @@ impl Bandwidth {
         };
         self.waves.iter().map(of_wave).collect()
     }
-}
-
-/// Returns the cell with a relief without correlation length that leaves a line the same noise.
-fn of_dense_relief(line: &SpectralLine, cell: &ResolutionCell) -> ResolutionCell {
-    let relief = cell.relief();
-    if relief.correlation_length == 0.0 {
-        return *cell;
-    }
-    let with_height = |rms_height| {
-        let dense = Relief {
-            rms_height,
-            correlation_length: 0.0,
-        };
-        cell.with_relief(dense).unwrap_or(*cell)
-    };
-    let noise = |cell: &ResolutionCell| PolychromaticSpeckle { line, cell }.line_noise(Rows::Thin);
-    let wanted = noise(cell);
-    let [mut low, mut high] = [0.0, relief.rms_height];
-    for _ in 0..12 {
-        let middle = 0.5 * (low + high);
-        if noise(&with_height(middle)) > wanted {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    with_height(0.5 * (low + high))
 }

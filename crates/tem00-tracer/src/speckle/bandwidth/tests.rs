@@ -1,6 +1,6 @@
 use glam::DVec3;
 use tem00_camera::Camera;
-use tem00_coherence::LineShape;
+use tem00_coherence::{LineShape, Relief, ResolutionCell, SpectralLine};
 
 use super::*;
 use crate::{Formulas, LaserDescription, Scene, SpeckleModel, SpecklePlan, Trajectory, testing};

@@ -7,7 +7,7 @@ use crate::{
     Relief, ResolutionCell, SpectralLine,
     cell::{image_autocorrelation, image_of_point},
     eigenvalues::hermitian_eigenvalues,
-    lens,
+    lens, mode_ratio,
 };
 
 /// The speckle that light of a finite bandwidth makes of one rough surface.
@@ -304,8 +304,7 @@ impl PolychromaticSpeckle<'_> {
 
     /// Fractions (1 − t) tⁿ with the contrast of the law.
     fn geometric_modes(&self) -> Vec<f64> {
-        let squared = self.contrast().powi(2);
-        let ratio = (1.0 - squared) / (1.0 + squared);
+        let ratio = mode_ratio(self.contrast().powi(2));
         let powers = core::iter::successors(Some(1.0), |power| Some(power * ratio));
         let powers: Vec<f64> = powers
             .take_while(|power| *power > NEGLIGIBLE_FRACTION)

@@ -15,6 +15,7 @@
 //! | Which light? | [`SpectralLine`], [`LineShape`]; as files state it, [`LaserLight`] |
 //! | Which paths does one point of the image see? | [`ResolutionCell`], [`Relief`] |
 //! | What happens to the speckle? | [`PolychromaticSpeckle`] |
+//! | How coherent is light that met several rough surfaces? | [`PathPairs`], of [`DelayedLight`] |
 //!
 //! # Scope and non-goals
 //!
@@ -28,6 +29,7 @@ mod heights;
 mod law;
 mod lens;
 mod line;
+mod paths;
 mod spectrum;
 
 pub use cell::{CellGeometry, Relief, ResolutionCell};
@@ -36,4 +38,5 @@ pub use glam::DVec3;
 pub use heights::representative_heights;
 pub use law::{PolychromaticSpeckle, Rows};
 pub use line::{LineShape, SpectralLine};
+pub use paths::{DelayedLight, PathPairs, mode_ratio};
 pub use spectrum::{LaserLight, Spectrum};

@@ -1,0 +1,136 @@
+use approx::assert_relative_eq;
+
+use super::*;
+use crate::LineShape;
+
+const WAVELENGTH: f64 = 450e-9;
+
+fn line(linewidth: f64, shape: LineShape) -> SpectralLine {
+    SpectralLine::new(WAVELENGTH, linewidth, shape).expect("a line")
+}
+
+fn pairs(line: &SpectralLine, paths: &[DelayedLight]) -> [f64; 2] {
+    let mut pairs = PathPairs::default();
+    pairs.add(line, paths, paths);
+    [pairs.self_coherence(), pairs.coherence_with_single()].map(|c| c.expect("light"))
+}
+
+/// Normally distributed delays, as nodes of the trapezoidal rule.
+fn normal(mean: f64, spread: f64) -> Vec<DelayedLight> {
+    let node = |i: i32| {
+        let z = f64::from(i) / 16.0;
+        DelayedLight {
+            weight: (-0.5 * z * z).exp(),
+            delay: mean + spread * z,
+        }
+    };
+    (-112..=112).map(node).collect()
+}
+
+#[test]
+fn normal_delays_have_closed_forms() {
+    for (linewidth, mean, spread) in [
+        (0.05e-9, 0.82e-3, 38e-6),
+        (0.2e-9, 0.3e-3, 0.2e-3),
+        (1e-9, 0.0, 0.1e-3),
+    ] {
+        let line = line(linewidth, LineShape::Gaussian);
+        let (s, m) = (
+            line.wave_number_spread() * spread,
+            line.wave_number_spread() * mean,
+        );
+        let [c22, c12] = pairs(&line, &normal(mean, spread));
+        assert_relative_eq!(c22, (1.0 + 4.0 * s * s).powf(-0.5), max_relative = 1e-9);
+        let with_single = (1.0 + 2.0 * s * s).powf(-0.5) * (-m * m / (1.0 + 2.0 * s * s)).exp();
+        assert_relative_eq!(c12, with_single, max_relative = 1e-9);
+    }
+}
+
+#[test]
+fn pairs_of_normal_delays_are_the_integral_over_differences_of_wave_numbers() {
+    let (mean, spread) = (0.3e-3, 0.1e-3);
+    for shape in [LineShape::Lorentzian, LineShape::Rectangular] {
+        let line = line(0.3e-9, shape);
+        let [c22, c12] = pairs(&line, &normal(mean, spread));
+        // ∫ R(κ) P₂(κ) P*ⱼ(κ) dκ.
+        let by_differences = |common: f64, shift: f64| {
+            line.mean_over_pairs(1.0 / mean, |kappa| {
+                (-common * (kappa * spread).powi(2)).exp() * (kappa * shift).cos()
+            })
+        };
+        // The cusp of |γ|² of a Lorentzian lies between nodes.
+        assert_relative_eq!(c22, by_differences(1.0, 0.0), max_relative = 2e-3);
+        assert_relative_eq!(c12, by_differences(0.5, mean), max_relative = 2e-3);
+    }
+}
+
+#[test]
+fn two_paths_have_closed_forms() {
+    let shares = [0.3, 0.7];
+    let delays = [0.2e-3, 0.9e-3];
+    let paths = [0, 1].map(|i| DelayedLight {
+        weight: 5.0 * shares[i],
+        delay: delays[i],
+    });
+    for shape in [
+        LineShape::Gaussian,
+        LineShape::Lorentzian,
+        LineShape::Rectangular,
+    ] {
+        let line = line(0.2e-9, shape);
+        let between = line.squared_coherence(0.7e-3);
+        let [c22, c12] = pairs(&line, &paths);
+        assert_relative_eq!(c22, 0.58 + 0.42 * between, max_relative = 1e-12);
+        let single = delays.map(|delay| line.squared_coherence(delay));
+        let mean = 0.3 * single[0] + 0.7 * single[1];
+        assert_relative_eq!(c12, mean, max_relative = 1e-12);
+    }
+}
+
+#[test]
+fn light_of_one_wavelength_is_coherent_over_all_paths() {
+    let line = SpectralLine::monochromatic(WAVELENGTH).expect("a line");
+    assert_eq!(pairs(&line, &normal(1.3, 0.7)), [1.0, 1.0]);
+}
+
+#[test]
+fn without_light_there_is_no_coherence() {
+    let line = line(1e-9, LineShape::Gaussian);
+    let mut none = PathPairs::default();
+    let dark = [DelayedLight {
+        weight: 0.0,
+        delay: 1.0,
+    }];
+    none.add(&line, &dark, &dark);
+    none.add(&line, &[], &dark);
+    assert_eq!(none.self_coherence(), None);
+    assert_eq!(none.coherence_with_single(), None);
+}
+
+#[test]
+fn sums_of_neighbours_count_with_their_factors() {
+    let line = line(0.5e-9, LineShape::Gaussian);
+    let (near, far) = (normal(0.0, 1e-5), normal(1e-3, 1e-4));
+    let mut mixed = PathPairs::default();
+    for (paths, factor) in [(&near, 0.25), (&far, 0.75)] {
+        let mut pairs = PathPairs::default();
+        pairs.add(&line, paths, paths);
+        mixed.add_scaled(&pairs, factor);
+    }
+    let [first, second] = [&near, &far].map(|paths| pairs(&line, paths));
+    let mean = |i: usize| 0.25 * first[i] + 0.75 * second[i];
+    let c22 = mixed.self_coherence().expect("light");
+    assert_relative_eq!(c22, mean(0), max_relative = 1e-12);
+    let c12 = mixed.coherence_with_single().expect("light");
+    assert_relative_eq!(c12, mean(1), max_relative = 1e-12);
+}
+
+#[test]
+fn patterns_that_fall_by_the_ratio_have_the_contrast() {
+    for squared in [0.05, 0.4, 0.95, 1.0] {
+        let t = mode_ratio(squared);
+        let shares = (0..400).map(|n| (1.0 - t) * t.powi(n));
+        let sum: f64 = shares.map(|share| share * share).sum();
+        assert_relative_eq!(sum, squared, max_relative = 1e-12);
+    }
+}

@@ -16,11 +16,12 @@
 //! | Which paths does one point of the image see? | [`ResolutionCell`], [`Relief`] |
 //! | What happens to the speckle? | [`PolychromaticSpeckle`] |
 //! | How coherent is light that met several rough surfaces? | [`PathPairs`], of [`DelayedLight`] |
+//! | What is left of the contrast with such light? | [`MixedLight`], [`cascade_variance`] |
 //!
 //! # Scope and non-goals
 //!
 //! One transverse mode; no dispersion of the line by the colour of the surface; scattering within one relief happens
-//! once. Surfaces are rough: below `σ_L = λ/2` a mirror part is left that these laws do not know.
+//! once. Paths over several surfaces are given, not found. Surfaces are rough: below `σ_L = λ/2` a mirror part is left that these laws do not know.
 
 mod cell;
 mod eigenvalues;
@@ -29,6 +30,7 @@ mod heights;
 mod law;
 mod lens;
 mod line;
+mod mixed;
 mod paths;
 mod spectrum;
 
@@ -38,5 +40,6 @@ pub use glam::DVec3;
 pub use heights::representative_heights;
 pub use law::{PolychromaticSpeckle, Rows};
 pub use line::{LineShape, SpectralLine};
+pub use mixed::{MixedLight, cascade_variance};
 pub use paths::{DelayedLight, PathPairs, mode_ratio};
 pub use spectrum::{LaserLight, Spectrum};

@@ -1,0 +1,139 @@
+use tem00_numerics::{disc_overlap, quadrature::integrate};
+
+use crate::CoherenceError;
+
+/// The light of a pixel that met one rough surface, *single*, mixed with light that met several, *multiple*.
+///
+/// Each is a circular Gaussian field over the wave numbers, and fields add. With the fractions f of both, their degrees
+/// of polarisation P in the same two components, and what paths share of their coherence,
+///
+/// ```text
+/// C² = f₁² c₁₁ (1 + P₁²)/2 + f₁ f₂ c₁₂ (1 + P₁ P₂) + f₂² c₂₂ (1 + P₂²)/2
+/// cᵢⱼ = ∬ pᵢ(l) pⱼ(l') |γ(l − l')|² dl dl'
+/// ```
+///
+/// The default is polarised light of one wavelength without any multiple light: C = 1.
+///
+/// # Validity
+///
+/// Many scatterers share a resolution cell, and of the other surface so much is lit that its own speckle is much finer
+/// than the cell: see [`cascade_variance`].
+///
+/// # Examples
+///
+/// A corner with 30 parts of multiple to 100 of single light, behind a laser of one wavelength and behind one so broad
+/// that only the single light interferes:
+///
+/// ```
+/// use tem00_coherence::MixedLight;
+///
+/// let coherent = MixedLight { multiple: 0.3 / 1.3, ..MixedLight::default() };
+/// assert!((coherent.contrast()? - 1.0).abs() < 1e-12);
+/// let broad = MixedLight { with_single: 0.0, within_multiple: 0.0, ..coherent };
+/// assert!((broad.contrast()? - 1.0 / 1.3).abs() < 1e-12);
+/// # Ok::<(), tem00_coherence::CoherenceError>(())
+/// ```
+///
+/// # References
+///
+/// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 3: sums of patterns that are partly correlated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MixedLight {
+    /// The fraction f₂ of the multiple light, from 0 to 1.
+    pub multiple: f64,
+    /// c₁₁, the squared contrast of the polarised single light alone, from 0 to 1: that of
+    /// [`PolychromaticSpeckle`](crate::PolychromaticSpeckle).
+    pub within_single: f64,
+    /// c₁₂ of single with multiple light, from 0 to 1: of [`PathPairs`](crate::PathPairs), as the next.
+    pub with_single: f64,
+    /// c₂₂ of the multiple light with itself, from 0 to 1.
+    pub within_multiple: f64,
+    /// Degrees of polarisation of the single and of the multiple light, from 0 to 1.
+    pub polarisation: [f64; 2],
+}
+
+impl Default for MixedLight {
+    fn default() -> Self {
+        Self {
+            multiple: 0.0,
+            within_single: 1.0,
+            with_single: 1.0,
+            within_multiple: 1.0,
+            polarisation: [1.0; 2],
+        }
+    }
+}
+
+impl MixedLight {
+    /// Returns the contrast, standard deviation over mean.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless all fields lie between 0 and 1.
+    pub fn contrast(&self) -> Result<f64, CoherenceError> {
+        let [first, second] = self.polarisation;
+        let fields = [
+            ("multiple", self.multiple),
+            ("within_single", self.within_single),
+            ("with_single", self.with_single),
+            ("within_multiple", self.within_multiple),
+            ("polarisation of single light", first),
+            ("polarisation of multiple light", second),
+        ];
+        for (name, value) in fields {
+            if !(0.0..=1.0).contains(&value) {
+                return Err(CoherenceError::refused(name, value, "from 0 to 1"));
+            }
+        }
+        let single = 1.0 - self.multiple;
+        // What two coherency matrices of these degrees have in common, the trace of their product.
+        let shared = |a: f64, b: f64| 0.5 * (1.0 + a * b);
+        let squared = single.powi(2) * self.within_single * shared(first, first)
+            + 2.0 * single * self.multiple * self.with_single * shared(first, second)
+            + self.multiple.powi(2) * self.within_multiple * shared(second, second);
+        Ok(squared.sqrt())
+    }
+}
+
+/// Returns the relative variance 1/M, over a resolution cell, of the light that the speckle of a small lit part of
+/// another surface sends there.
+///
+/// ```text
+/// 1/M = ∫ chat²(ν) chat(ν/r) ν dν / ∫ chat(ν/r) ν dν
+/// C²  = 1 + 2/M                                         multiple light alone, of one wavelength
+/// ```
+///
+/// for a round part of the half-angle α seen from the cell, r = sin α / sin u. A part much smaller than the aperture of
+/// the camera, r → 0, makes the squared contrast 3, as of a K distribution: speckle of speckle. With single light and a
+/// linewidth f₂² (1 + c₂₂) / M is added to the squared contrast of [`MixedLight`].
+///
+/// # Errors
+///
+/// Returns an error if r is negative or not a number.
+///
+/// # Examples
+///
+/// A wall that fills ten times the aperture leaves nothing to see of its own speckle:
+///
+/// ```
+/// use tem00_coherence::cascade_variance;
+///
+/// assert!((1.0 + 2.0 * cascade_variance(0.1)?).sqrt() > 1.66);
+/// assert!((1.0 + 2.0 * cascade_variance(10.0)?).sqrt() < 1.005);
+/// # Ok::<(), tem00_coherence::CoherenceError>(())
+/// ```
+pub fn cascade_variance(relative_aperture: f64) -> Result<f64, CoherenceError> {
+    let r = relative_aperture;
+    if r.is_nan() || r < 0.0 {
+        let allowed = "0 or positive, the sine of the lit part's half-angle over the aperture's";
+        return Err(CoherenceError::refused("relative_aperture", r, allowed));
+    }
+    // Over the wider of both spectra, the narrower ends the integral.
+    let (of_pupil, of_part) = if r < 1.0 { (r, 1.0) } else { (1.0, r.recip()) };
+    let integrand = |t: f64| disc_overlap(of_pupil * t).powi(2) * disc_overlap(of_part * t) * t;
+    // ∫ chat(t) t dt = 1/8.
+    Ok(8.0 * of_part.powi(2) * integrate(integrand, [0.0, 1.0], 0.25))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,131 @@
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use proptest::prelude::*;
+
+use super::*;
+
+fn squared(light: MixedLight) -> f64 {
+    light.contrast().expect("a contrast").powi(2)
+}
+
+#[test]
+fn light_of_one_wavelength_is_fully_developed_whatever_its_paths() {
+    for multiple in [0.0, 0.2, 0.5, 1.0] {
+        let light = MixedLight {
+            multiple,
+            ..MixedLight::default()
+        };
+        assert_relative_eq!(squared(light), 1.0, max_relative = 1e-15);
+    }
+}
+
+#[test]
+fn depolarised_multiple_light_adds_to_one_of_two_components() {
+    let [single, multiple] = [1.0 / 1.3, 0.3 / 1.3];
+    let light = MixedLight {
+        multiple,
+        within_single: 0.9,
+        with_single: 0.4,
+        within_multiple: 0.7,
+        polarisation: [1.0, 0.0],
+    };
+    // f₁² c₁₁ + f₁ f₂ c₁₂ + f₂² c₂₂ / 2.
+    let expected = 0.9 * single * single + 0.4 * single * multiple + 0.35 * multiple * multiple;
+    assert_relative_eq!(squared(light), expected, max_relative = 1e-14);
+    let coherent = MixedLight {
+        multiple,
+        polarisation: [1.0, 0.0],
+        ..MixedLight::default()
+    };
+    assert_abs_diff_eq!(squared(coherent).sqrt(), 0.892, epsilon = 5e-4);
+}
+
+#[test]
+fn one_degree_of_polarisation_for_all_light_is_one_factor() {
+    let polarised = MixedLight {
+        multiple: 0.4,
+        within_single: 0.8,
+        with_single: 0.3,
+        within_multiple: 0.6,
+        polarisation: [1.0; 2],
+    };
+    let partly = MixedLight {
+        polarisation: [0.6; 2],
+        ..polarised
+    };
+    let factor = 0.5 * (1.0 + 0.36);
+    assert_relative_eq!(
+        squared(partly),
+        factor * squared(polarised),
+        max_relative = 1e-14
+    );
+}
+
+proptest! {
+    /// Each of the two components is a mixture of its own, of light without a polarisation.
+    #[test]
+    fn components_add_as_independent_patterns(
+        multiple in 0.0..1.0, c in prop::array::uniform3(0.0..1.0), degrees in prop::array::uniform2(0.0..1.0)
+    ) {
+        let light = MixedLight {
+            multiple,
+            within_single: c[0],
+            with_single: c[1],
+            within_multiple: c[2],
+            polarisation: degrees,
+        };
+        let of_component = |sign: f64| {
+            let [first, second] = degrees.map(|degree| 0.5 * (1.0 + sign * degree));
+            let (a, b) = ((1.0 - multiple) * first, multiple * second);
+            a * a * c[0] + 2.0 * a * b * c[1] + b * b * c[2]
+        };
+        let sum = of_component(1.0) + of_component(-1.0);
+        prop_assert!((squared(light) - sum).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn speckle_of_speckle_has_the_contrasts_of_its_table() {
+    let table = [
+        (0.0, 3.0_f64.sqrt()),
+        (0.1, 1.667),
+        (0.25, 1.573),
+        (0.5, 1.435),
+        (1.0, 1.237),
+        (2.0, 1.086),
+        (5.0, 1.017),
+        (10.0, 1.004),
+        (f64::INFINITY, 1.0),
+    ];
+    for (r, contrast) in table {
+        let variance = cascade_variance(r).expect("a ratio");
+        assert_abs_diff_eq!((1.0 + 2.0 * variance).sqrt(), contrast, epsilon = 6e-4);
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_its_name() {
+    let good = MixedLight::default();
+    let refused = |light: MixedLight| light.contrast().expect_err("a refusal").parameter();
+    let name = refused(MixedLight {
+        multiple: 1.1,
+        ..good
+    });
+    assert_eq!(name, "multiple");
+    let name = refused(MixedLight {
+        with_single: f64::NAN,
+        ..good
+    });
+    assert_eq!(name, "with_single");
+    let name = refused(MixedLight {
+        polarisation: [1.0, -0.1],
+        ..good
+    });
+    assert_eq!(name, "polarisation of multiple light");
+    let error = cascade_variance(-1.0).expect_err("a refusal");
+    assert!(
+        error
+            .to_string()
+            .contains("relative_aperture must be 0 or positive")
+    );
+    assert!(cascade_variance(f64::NAN).is_err());
+}

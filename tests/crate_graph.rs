@@ -1,4 +1,5 @@
-//! The arrows between the crates point down, the physics crates stay light, and all have one version.
+//! The arrows between the crates point down, the physics crates stay light, their packages stand alone, and all have
+//! one version.
 
 #![expect(
     clippy::expect_used,
@@ -283,6 +284,44 @@ fn physics_crates_bring_no_threads_unless_asked() {
             "{name} must have no default features"
         );
     }
+}
+
+/// Shows every file that is `path` or lies below it.
+fn visit(path: &Path, show: &mut impl FnMut(&Path)) {
+    if path.is_file() {
+        show(path);
+    } else if let Ok(entries) = fs::read_dir(path) {
+        for entry in entries {
+            visit(&entry.expect("an entry").path(), show);
+        }
+    }
+}
+
+/// Tests that read pages or scenes of the repository stand in `tests`, which no package holds.
+#[test]
+fn packages_read_nothing_beside_themselves() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let manifest = fs::read_to_string(root.join("Cargo.toml")).expect("a manifest");
+    let included = manifest.split_once("\ninclude = [\"/");
+    let (_, included) = included.expect("the manifest says what a package holds");
+    let included = included.split("\"]").next().unwrap_or(included);
+    let packages = ALLOWED.iter().map(|(name, ..)| folder(name));
+    let mut sources = 0;
+    for package in packages.chain([root.to_owned()]) {
+        for path in included.split("\", \"/") {
+            visit(&package.join(path), &mut |path| {
+                if path.extension().is_none_or(|extension| extension != "rs") {
+                    return;
+                }
+                let text = fs::read_to_string(path).expect("a source is text");
+                for outside in ["CARGO_MANIFEST_DIR", "../../"] {
+                    assert!(!text.contains(outside), "{}: {outside}", path.display());
+                }
+                sources += 1;
+            });
+        }
+    }
+    assert!(sources > 300, "{sources} sources");
 }
 
 #[test]

@@ -59,36 +59,3 @@ fn averaging(section: &Section<'_>, scene: &Scene) -> Result<Averaging, Problem>
         })?,
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn file(name: &str) -> String {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/");
-        std::fs::read_to_string(format!("{folder}{name}")).unwrap()
-    }
-
-    #[test]
-    fn page_and_schema_have_exactly_the_keys_of_the_reader() {
-        let schema: serde_json::Value = serde_json::from_str(&file("scene.schema.json")).unwrap();
-        let scan = &schema["properties"]["scan"];
-        for (section, keys) in [(scan, KEYS), (&scan["properties"]["average"], AVERAGE_KEYS)] {
-            let mut listed: Vec<_> = section["properties"].as_object().unwrap().keys().collect();
-            let mut keys = keys.to_vec();
-            listed.sort();
-            keys.sort_unstable();
-            assert_eq!(listed, keys, "{section}");
-            assert_eq!(section["additionalProperties"], false, "{section}");
-        }
-        let page = file("scene_file.md");
-        let (_, scan) = page.split_once("# `[scan]`\n").unwrap();
-        let rows = scan.split("\n#").next().unwrap().lines();
-        let named = rows.filter_map(|row| row.strip_prefix("| `")?.split_once('`'));
-        let mut named: Vec<_> = named.map(|(key, _)| key).collect();
-        let mut keys = KEYS.to_vec();
-        named.sort_unstable();
-        keys.sort_unstable();
-        assert_eq!(named, keys);
-    }
-}

@@ -6,7 +6,7 @@ use tem00_tracer::Trajectory;
 use crate::motion::{pivot, trajectory};
 use crate::placement::{Placement, across};
 
-pub(crate) const KEYS: &[&str] = &[
+const KEYS: &[&str] = &[
     "position",
     "look_at",
     "up",
@@ -25,7 +25,7 @@ pub(crate) const KEYS: &[&str] = &[
     "keyframe",
 ];
 
-pub(crate) const TILT_KEYS: &[&str] = &["angle", "azimuth"];
+const TILT_KEYS: &[&str] = &["angle", "azimuth"];
 
 /// The camera of a scene and how it moves.
 #[derive(Clone, Debug)]

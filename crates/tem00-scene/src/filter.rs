@@ -1,8 +1,8 @@
 use tem00_config::{Choice, NUMBER, Problem, Section, rejected};
 use tem00_tracer::{Filter, FilterSampler};
 
-pub(crate) const KEYS: &[&str] = &["box", "tent", "gaussian", "mitchell_netravali", "lanczos"];
-pub(crate) const FILTERS: &[Choice] = &[
+const KEYS: &[&str] = &["box", "tent", "gaussian", "mitchell_netravali", "lanczos"];
+const FILTERS: &[Choice] = &[
     ("box", &["radius"]),
     ("tent", &["radius"]),
     ("gaussian", &["radius", "standard_deviation"]),

@@ -12,7 +12,7 @@ use tem00_tracer::{BeamShape, Laser, LaserDescription};
 use crate::motion::{pivot, trajectory};
 use crate::placement::{Placement, across};
 
-pub(crate) const KEYS: &[&str] = &[
+const KEYS: &[&str] = &[
     "wavelength",
     "linewidth",
     "spectrum",
@@ -28,7 +28,7 @@ pub(crate) const KEYS: &[&str] = &[
     "spot",
     "line",
 ];
-pub(crate) const SPOT_KEYS: &[&str] = &["waist_radius", "waist_distance", "m_squared"];
+const SPOT_KEYS: &[&str] = &["waist_radius", "waist_distance", "m_squared"];
 const LINE_KEYS: &[&str] = &[
     "fan_angle",
     "thickness",
@@ -39,7 +39,7 @@ const LINE_KEYS: &[&str] = &[
     "edge",
     "m_squared",
 ];
-pub(crate) const SHAPES: &[Choice] = &[("spot", SPOT_KEYS), ("line", LINE_KEYS)];
+const SHAPES: &[Choice] = &[("spot", SPOT_KEYS), ("line", LINE_KEYS)];
 const PROFILES: &[(&str, LineProfile)] = &[
     ("gaussian", LineProfile::GaussianTan),
     ("gaussian_angle", LineProfile::GaussianAngle),
@@ -49,7 +49,7 @@ const PROFILES: &[(&str, LineProfile)] = &[
     ("powell", LineProfile::Powell { edge: 0.05 }),
 ];
 
-pub(crate) const TABLE_KEYS: &[&str] = &["angles", "powers"];
+const TABLE_KEYS: &[&str] = &["angles", "powers"];
 const FOCUS_CURVES: &[(&str, FocusCurve)] = &[
     ("distance", FocusCurve::EqualDistance),
     ("plane", FocusCurve::EqualPlane),

@@ -30,8 +30,6 @@ mod scene_file;
 mod settings;
 mod shape;
 mod surface;
-#[cfg(test)]
-mod tests;
 
 pub use material::MATERIALS;
 pub use mesh_file::{MeshFileError, MeshFormat, read_mesh, read_mesh_bytes};

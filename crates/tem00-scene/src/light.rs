@@ -6,8 +6,8 @@ use crate::assets::Assets;
 use crate::placement::across;
 use crate::shape::rectangle;
 
-pub(crate) const KEYS: &[&str] = &["point", "rectangle", "environment"];
-pub(crate) const SHAPES: &[Choice] = &[
+const KEYS: &[&str] = &["point", "rectangle", "environment"];
+const SHAPES: &[Choice] = &[
     ("point", &["position", "power"]),
     ("rectangle", &["centre", "normal", "up", "size", "radiance"]),
     (

@@ -2,8 +2,8 @@ use glam::DVec3;
 use tem00_config::{ANGLE, NUMBER, Problem, Section, Value, rejected};
 use tem00_tracer::{Keyframe, Rotation, Trajectory};
 
-pub(crate) const KEYFRAME_KEYS: &[&str] = &["frame", "displacement", "rotation"];
-pub(crate) const ROTATION_KEYS: &[&str] = &["axis", "angle"];
+const KEYFRAME_KEYS: &[&str] = &["frame", "displacement", "rotation"];
+const ROTATION_KEYS: &[&str] = &["axis", "angle"];
 
 /// Reads the point that a thing turns about: the `default`, in metres, unless it is given.
 pub(crate) fn pivot(section: &Section<'_>, default: DVec3) -> Result<DVec3, Problem> {

@@ -10,7 +10,7 @@ use crate::{assets::Assets, camera, laser, light, settings, surface};
 /// Files of scenes.
 ///
 /// The last four sections are for what becomes of the image: they are not read with the scene.
-pub(crate) const SCENE: Format = Format {
+const SCENE: Format = Format {
     noun: "scene",
     keys: &[
         "camera",

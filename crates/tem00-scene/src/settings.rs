@@ -4,7 +4,7 @@ use tem00_tracer::{Crop, LaserEvents, Method, RenderOptions, Scene, SpeckleSetti
 
 use crate::filter;
 
-pub(crate) const RENDER_KEYS: &[&str] = &[
+const RENDER_KEYS: &[&str] = &[
     "samples_per_pixel",
     "seed",
     "frames",
@@ -16,7 +16,7 @@ pub(crate) const RENDER_KEYS: &[&str] = &[
     "target_error",
     "filter",
 ];
-pub(crate) const SPECKLE_KEYS: &[&str] = &["size", "diameter", "half_period", "memory"];
+const SPECKLE_KEYS: &[&str] = &["size", "diameter", "half_period", "memory"];
 
 const LASER_EVENTS: &[(&str, LaserEvents)] = &[
     ("beam", LaserEvents::Beam),

@@ -7,7 +7,7 @@ use crate::assets::{Assets, Shading};
 use crate::motion::rotation;
 use crate::placement::across;
 
-pub(crate) const SHAPES: &[Choice] = &[
+const SHAPES: &[Choice] = &[
     ("rectangle", &["centre", "normal", "up", "size"]),
     ("sphere", &["centre", "radius"]),
     ("cylinder", &["centre", "base", "axis", "radius", "length"]),

@@ -8,7 +8,7 @@ use crate::material::{self, Finished};
 use crate::motion::{pivot, rotation, trajectory};
 use crate::shape::{self, PlacedShape};
 
-pub(crate) const KEYS: &[&str] = &[
+const KEYS: &[&str] = &[
     "name",
     "displacement_per_frame",
     "rotation_per_frame",
@@ -30,8 +30,8 @@ pub(crate) const KEYS: &[&str] = &[
     "correlation_length",
     "speckle",
 ];
-pub(crate) const INSTANCE_KEYS: &[&str] = &["displacement", "rotation"];
-pub(crate) const SPECKLE_KEYS: &[&str] = &["patterns", "polarisation"];
+const INSTANCE_KEYS: &[&str] = &["displacement", "rotation"];
+const SPECKLE_KEYS: &[&str] = &["patterns", "polarisation"];
 
 pub(crate) fn read(
     root: &Document<'_>,

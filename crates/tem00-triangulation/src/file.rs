@@ -17,8 +17,4 @@ pub use self::setup::{parse_setup, parse_setup_with, read_setup, read_setup_with
 pub(crate) use self::setup_text::{light_keys, relief_keys};
 
 #[cfg(test)]
-mod documentation;
-#[cfg(test)]
-mod scene_page;
-#[cfg(test)]
 mod tests;

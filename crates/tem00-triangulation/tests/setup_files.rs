@@ -1,11 +1,13 @@
-//! The set-up files of the repository and those of `docs/setup_file.md` are what the reader reads.
+//! The set-up files of the repository and those of `docs/setup_file.md` are what the reader reads, and the page has the
+//! keys of the reader.
 
 #![expect(clippy::expect_used, reason = "a test fails by panicking")]
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tem00_triangulation::{parse_setup, read_setup};
+use tem00_triangulation::{LineMethod, parse_setup, parse_setup_with, read_design, read_setup};
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -75,5 +77,96 @@ fn what_has_no_default_is_all_that_a_setup_needs() {
             row.is_some_and(|row| row.ends_with("| required |")),
             "{key} is required: {row:?}"
         );
+    }
+}
+
+/// Returns the keys that the reader says are allowed where the `line` of a `section` has another.
+fn keys(page: &str, section: &str, line: &str) -> BTreeSet<String> {
+    let setup = snippets(page)[0];
+    let header = format!("[{section}]\n");
+    let with_line = format!("{header}{}\n", line.replace('?', "unheard_of = 0"));
+    let text = match setup.contains(&header) {
+        true => setup.replace(&header, &with_line),
+        false => format!("{setup}{with_line}"),
+    };
+    let error = parse_setup_with(&text, |document, setup| {
+        read_design(document, setup.description()).map(|_| ())
+    });
+    let error = error.expect_err("a key is unknown");
+    assert!(error.message().contains("`unheard_of`"), "{error}");
+    let help = error
+        .help()
+        .and_then(|help| help.strip_prefix("allowed here: "));
+    let keys = help.expect("the keys are told").split(", ");
+    keys.map(str::to_owned).collect()
+}
+
+/// Returns the text under a heading, up to the next one.
+fn under<'a>(page: &'a str, heading: &str) -> &'a str {
+    let after = page.split_once(&format!("# `[{heading}]`\n"));
+    let (_, after) = after.expect("the heading is there");
+    after.split("\n#").next().unwrap_or(after)
+}
+
+/// Returns what stands between backticks.
+fn in_backticks(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`').skip(1).step_by(2)
+}
+
+/// Returns the keys that the first cells of a section's tables name; quoted ones are values.
+fn documented(page: &str, heading: &str) -> BTreeSet<String> {
+    let rows = under(page, heading).lines();
+    let cells = rows.filter_map(|line| line.strip_prefix("| ")?.split(" |").next());
+    let named = cells.flat_map(in_backticks);
+    let keys = named.filter(|key| {
+        key.bytes()
+            .all(|byte| byte == b'_' || byte.is_ascii_lowercase())
+    });
+    keys.map(str::to_owned).collect()
+}
+
+#[test]
+fn the_page_has_exactly_the_keys_of_the_reader() {
+    let page = documentation();
+    for section in [
+        "laser",
+        "camera",
+        "sensor",
+        "surface",
+        "calibration",
+        "average",
+        "design",
+    ] {
+        let keys = keys(&page, section, "?");
+        assert_eq!(documented(&page, section), keys, "[{section}]");
+    }
+    let range = keys(&page, "design", "vary = { f_number = { ? } }");
+    assert_eq!(documented(&page, "design.vary"), range, "a range");
+    let vary = "vary = { f_number = [4] }\nrequire = { ? }";
+    let require = keys(&page, "design", vary);
+    assert_eq!(documented(&page, "design.require"), require, "bounds");
+}
+
+#[test]
+fn the_page_has_the_keys_of_the_detector_and_its_methods() {
+    let page = documentation();
+    let text = under(&page, "detector");
+    let keys = keys(&page, "detector", "?");
+    let others = &documented(&page, "detector") - &keys;
+    assert!(others.is_empty(), "{others:?} are no keys");
+    for key in keys {
+        assert!(text.contains(&format!("| `{key}` |")), "{key}");
+    }
+    for method in LineMethod::ALL {
+        assert!(text.contains(&format!("`\"{method}\"`")), "{method}");
+    }
+}
+
+#[test]
+fn the_page_has_what_a_search_can_vary() {
+    let page = documentation();
+    let text = under(&page, "design.vary");
+    for key in keys(&page, "design", "vary = { ? }") {
+        assert!(in_backticks(text).any(|name| name == key), "{key}");
     }
 }

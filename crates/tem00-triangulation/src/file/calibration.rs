@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use tem00_config::{Document, LENGTH, Problem, Section};
 
 /// The keys of the section `[calibration]`.
-pub(super) const KEYS: &[&str] = &[
+const KEYS: &[&str] = &[
     "method",
     "uncertainty",
     "corners",

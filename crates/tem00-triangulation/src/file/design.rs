@@ -5,8 +5,8 @@ use crate::{
     SetupDescription, Spacing, Sweep, TriangulationError,
 };
 
-pub(super) const KEYS: &[&str] = &["objective", "max_setups", "vary", "require"];
-pub(super) const VARY: &[&str] = &[
+const KEYS: &[&str] = &["objective", "max_setups", "vary", "require"];
+const VARY: &[&str] = &[
     "f_number",
     "angle",
     "line_thickness",
@@ -18,8 +18,8 @@ pub(super) const VARY: &[&str] = &[
     "focal_length",
     "distance",
 ];
-pub(super) const RANGE: &[&str] = &["from", "to", "steps", "scale"];
-pub(super) const REQUIRE: &[&str] = &[
+const RANGE: &[&str] = &["from", "to", "steps", "scale"];
+const REQUIRE: &[&str] = &[
     "range",
     "depth_of_field",
     "field_width",

@@ -2,7 +2,7 @@ use tem00_config::{Document, NUMBER, Problem, Section, Value};
 
 use crate::{DetectorSettings, FilterOrder, LineDetector, LineMethod};
 
-pub(super) const KEYS: &[&str] = &[
+const KEYS: &[&str] = &[
     "method",
     "window",
     "threshold",

@@ -28,7 +28,7 @@ const SETUP: Format = Format {
     ],
     help: "setups/ has some, and docs/setup_file.md tells how to write them",
 };
-pub(super) const LASER: &[&str] = &[
+const LASER: &[&str] = &[
     "wavelength",
     "linewidth",
     "spectrum",
@@ -37,7 +37,7 @@ pub(super) const LASER: &[&str] = &[
     "line_thickness",
     "line_length",
 ];
-pub(super) const CAMERA: &[&str] = &[
+const CAMERA: &[&str] = &[
     "focal_length",
     "f_number",
     "pixel_pitch",
@@ -46,15 +46,15 @@ pub(super) const CAMERA: &[&str] = &[
     "angle",
     "scheimpflug",
 ];
-pub(super) const SURFACE: &[&str] = &[
+const SURFACE: &[&str] = &[
     "reflectance",
     "patterns",
     "polarisation",
     "rms_height",
     "correlation_length",
 ];
-pub(super) const CALIBRATION: &[&str] = &["uncertainty"];
-pub(super) const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"];
+const CALIBRATION: &[&str] = &["uncertainty"];
+const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"];
 
 /// Reads a set-up file.
 ///

@@ -7,7 +7,7 @@ use super::{CAMERA, LASER, SURFACE, TETRAHEDRON, parse};
 use tem00_config::ConfigError;
 use tem00_tracer::Scene;
 
-use crate::{SceneFile, read_scene};
+use tem00_scene::{SceneFile, read_scene};
 
 /// Writes files and reads the scene `scene.toml` among them.
 fn read(files: &[(&str, &str)]) -> Result<Scene, ConfigError> {

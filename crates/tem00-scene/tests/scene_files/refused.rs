@@ -3,7 +3,7 @@ use std::fs;
 use tempfile::TempDir;
 
 use super::{CAMERA, LASER, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
-use crate::read_scene;
+use tem00_scene::read_scene;
 
 /// Asserts that `text` is refused at `line`, with a message that contains all of `words`.
 #[track_caller]

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use super::schema::{assert_allowed, tables};
 use super::{CAMERA, LASER, SURFACE, TETRAHEDRON};
-use crate::{parse_scene, read_scene};
+use tem00_scene::{parse_scene, read_scene};
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

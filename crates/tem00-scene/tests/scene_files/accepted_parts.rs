@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use tem00_camera::{RadialDistortion, SensorTilt};
 use tempfile::TempDir;
 
-use crate::{SceneFile, read_scene};
+use tem00_scene::{SceneFile, read_scene};
 
 use super::{CAMERA, LASER, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
 use tem00_tracer::{

@@ -1,3 +1,11 @@
+//! What the reader of scene files accepts and refuses, and that their page and their JSON schema say the same.
+
+#![expect(
+    clippy::expect_used,
+    clippy::unwrap_used,
+    reason = "a test fails by panicking"
+)]
+
 mod accepted;
 mod accepted_parts;
 mod any_text;
@@ -13,9 +21,8 @@ use std::path::Path;
 use tempfile::TempDir;
 
 use tem00_config::ConfigError;
+use tem00_scene::{parse_scene, read_scene};
 use tem00_tracer::Scene;
-
-use crate::{parse_scene, read_scene};
 
 const CAMERA: &str = "[camera]\nposition = [0, 0, \"300 mm\"]\n";
 const LASER: &str = "[[laser]]\nwavelength = \"650 nm\"\npower = \"5 mW\"\n\

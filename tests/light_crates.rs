@@ -191,7 +191,7 @@ fn every_type_of_the_laboratory_of_beams_crosses_threads() {
 fn every_type_of_speckle_crosses_threads() {
     use tem00::speckle::*;
     let names = names_of_shared! {
-        CoherentBackground, Complex<f32>, Exposure, IncoherentSum, Interpolation,
+        Complex<f32>, Exposure, Interpolation,
         LitArea, NpyError, NpyReader<&'static [u8]>, ObjectiveSpeckle, Phasors, PixelArray,
         Pupil, PupilField, SliceLaw, SlicePath, SpeckleError, SpeckleField, SpecklePattern,
         SpeckleScratch, SpeckleStack, StackFileError, StackNeeds, StackOptions, StackPlan,

@@ -11,7 +11,7 @@ const ARGUMENTS: &[(&str, &str)] = &[
     ("curvature", "Sequence[Numbers]"),
     ("interpolation", "Interpolation"),
     ("orientation", "Orientation"),
-    ("part", "Callable[[PupilField], SpecklePattern]"),
+    ("patterns", "Iterable[SpecklePattern]"),
     ("phasors", "Phasors"),
     ("plans", "Sequence[StackPlan]"),
 ];
@@ -36,14 +36,6 @@ const RESULTS: &[(&str, &str)] = &[
 /// Methods whose result depends on their arguments in a way of its own, as they stand in the stub.
 const METHODS: &[(&str, &str)] = &[
     (
-        "CoherentBackground.intensity",
-        "    @overload
-    def intensity(self, amplitude: complex) -> float: ...
-    @overload
-    def intensity(self, amplitude: ComplexArray | RealArray) -> FloatArray: ...
-",
-    ),
-    (
         "Emitter.next_event",
         "    @overload
     def next_event(self, x: float, y: float, z: float) -> NextEvent | None: ...
@@ -54,10 +46,6 @@ const METHODS: &[(&str, &str)] = &[
     (
         "Emitter.to_rows",
         "    def to_rows(self, dtype: Dtype = ...) -> NDArray[np.floating]: ...\n",
-    ),
-    (
-        "IncoherentSum.intensity",
-        "    def intensity(self, part: Callable[[int], Real]) -> Real: ...\n",
     ),
     (
         "PupilField.amplitude_correlation",

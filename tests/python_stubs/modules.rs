@@ -22,7 +22,7 @@ const MODULES: &[(&str, &str, &str)] = &[
 
 /// Where the words of stubs come from.
 const WORDS: &[(&str, &[&str])] = &[
-    ("collections.abc", &["Callable", "Sequence"]),
+    ("collections.abc", &["Callable", "Iterable", "Sequence"]),
     (
         "typing",
         &[
@@ -55,7 +55,6 @@ const WORDS: &[(&str, &[&str])] = &[
             "Orientation",
             "Pair",
             "Phasors",
-            "Real",
             "RealArray",
             "Table",
             "Triple",

@@ -3,7 +3,6 @@
 use pyo3::prelude::*;
 
 mod arguments;
-mod background;
 mod exposure;
 mod field;
 mod files;
@@ -26,7 +25,6 @@ mod sum;
 pub(crate) mod speckle {
     #[pymodule_export]
     use super::{
-        background::CoherentBackground,
         exposure::Exposure,
         field::PupilField,
         objective::{LitArea, ObjectiveSpeckle},
@@ -38,6 +36,6 @@ pub(crate) mod speckle {
         pupil::{Pupil, Transmission},
         slice_law::SliceLaw,
         stack::SpeckleStack,
-        sum::IncoherentSum,
+        sum::incoherent_fractions,
     };
 }

@@ -34,7 +34,7 @@ pub(crate) mod statistics {
         },
         joint::JointIntensity,
         laws::{
-            CoherentBackground, GammaIntensity, PartiallyPolarised, WeightedSum,
+            CoherentBackground, GammaIntensity, IncoherentSum, PartiallyPolarised,
             exponential_cumulative, exponential_density,
         },
         lines::{

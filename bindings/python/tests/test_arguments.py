@@ -87,7 +87,7 @@ def test_arrays_too_large_to_copy_are_a_memory_error() -> None:
     wide = np.broadcast_to(np.float64(1.0), 1 << 40)
     calls: list[Callable[[], object]] = [
         lambda: st.pixel_contrast(wide),
-        lambda: st.WeightedSum(wide),
+        lambda: st.IncoherentSum(wide),
         lambda: st.t_test_mean(wide, 1.0),
         lambda: st.Moments.from_samples(wide),
         lambda: dc.pupil_overlap_correlation(wide),
@@ -113,10 +113,10 @@ def test_as_many_plans_as_no_list_holds_are_refused() -> None:
 
 def test_sums_of_many_patterns_are_those_of_the_gamma_law() -> None:
     weights = 1 + 1e-14 * np.arange(1000)
-    law, gamma = st.WeightedSum(weights), st.GammaIntensity(1000.0)
+    law, gamma = st.IncoherentSum(weights), st.GammaIntensity(1000.0)
     intensity = np.array([0.9, 1.0, 1.1])
     np.testing.assert_allclose(law.cumulative(intensity), gamma.cumulative(intensity), rtol=1e-10)
-    equal = st.WeightedSum(np.ones(1 << 20))
+    equal = st.IncoherentSum(np.ones(1 << 20))
     assert equal.cumulative(1.0) == pytest.approx(0.5 + 1 / (3 * np.sqrt(2 * np.pi) * 1024), abs=1e-9)
     with pytest.raises(tem00.ParameterError, match="at most 65536 different values, got 65537"):
-        st.WeightedSum(np.arange(1.0, 65538.0))
+        st.IncoherentSum(np.arange(1.0, 65538.0))

@@ -151,7 +151,7 @@ def test_errors_survive_pickling() -> None:
 LAWS = [
     st.GammaIntensity(2.5),
     st.PartiallyPolarised(0.3),
-    st.WeightedSum([2.0, 1.0, 0.1]),
+    st.IncoherentSum([2.0, 1.0, 0.1]),
     st.CoherentBackground.from_contrast(0.7),
     st.PhasorSum(12),
     st.JointIntensity(0.3),

@@ -8,20 +8,20 @@ import pytest
 
 import tem00
 from tem00.speckle import (
-    CoherentBackground,
     Exposure,
-    IncoherentSum,
     LitArea,
     ObjectiveSpeckle,
     PixelArray,
     Pupil,
     PupilField,
     SlicePath,
+    SpecklePattern,
     SpeckleStack,
     StackNeeds,
     StackOptions,
     StackPlan,
     Transmission,
+    incoherent_fractions,
 )
 
 FIELD = PupilField(64, 16, 7)
@@ -80,13 +80,14 @@ REFUSED: list[tuple[Callable[[], object], str, str]] = [
     (lambda: needs(frames=2**32), "frames", "4294967296"),
     (lambda: StackPlan(NEEDS).with_half_period(0), "half_period", "0"),
     (lambda: StackPlan(NEEDS).with_square(64, 33), "diameter", "33"),
-    (lambda: IncoherentSum.equal(0), "count", "0"),
-    (lambda: IncoherentSum.weighted([1.0, -1.5]), "weights", "-1.5"),
-    (lambda: IncoherentSum.partially_polarised(1.5), "degree", "1.5"),
-    (lambda: IncoherentSum.equal(2).fields(MEASURED), "field", "seed"),
-    (lambda: CoherentBackground(-3.0, 0.0), "beam_ratio", "-3"),
-    (lambda: CoherentBackground(1.0, np.inf), "phase", "inf"),
-    (lambda: CoherentBackground(1.0, 0.0).intensity(1e300), "amplitude", "1e300"),
+    (lambda: incoherent_fractions(0, 1.0, [1.0]), "patterns", "0"),
+    (lambda: incoherent_fractions(1, 1.0, [1.0, -1.5]), "weights", "-1.5"),
+    (lambda: incoherent_fractions(1, 1.5, [1.0]), "polarisation", "1.5"),
+    (lambda: MEASURED.independent(2), "field", "seed"),
+    (lambda: FIELD.independent(0), "patterns", "0"),
+    (lambda: SpecklePattern.weighted_mean([1.0], []), "patterns", "0"),
+    (lambda: FIELD.field().on_background(-3.0, 0.0), "beam_ratio", "-3"),
+    (lambda: FIELD.field().on_background(1.0, np.inf), "phase", "inf"),
     (lambda: Exposure().with_image_drift((2e6, 0.0)), "drift", "2000000"),
     (lambda: Exposure().with_pupil_drift((0.0, 129.0)), "drift", "129"),
     (lambda: Exposure().pattern_at(FIELD, (0.0, np.nan), 0.0), "offset", "NaN"),
@@ -142,15 +143,11 @@ def test_what_memory_cannot_hold_is_a_memory_error(call: Callable[[], object]) -
         call()
 
 
-def no_pattern(part: PupilField) -> None:
-    """Return what is no pattern."""
-
-
 WRONG_TYPES: list[Callable[[], object]] = [
     lambda: PupilField(64.0, 16, 0),  # type: ignore[arg-type]
     lambda: PupilField.from_speckle_size(64, 4.0, 0),  # type: ignore[arg-type]
     lambda: STACK.intensity_at("1", 0.0, 0.0),  # type: ignore[arg-type]
-    lambda: IncoherentSum.equal(2).pattern(FIELD, no_pattern),  # type: ignore[arg-type]
+    lambda: SpecklePattern.weighted_mean([1.0], [FIELD]),  # type: ignore[list-item]
     lambda: FIELD.with_pupil(SlicePath.still()),  # type: ignore[arg-type]
 ]
 
@@ -161,14 +158,13 @@ def test_arguments_of_another_type_are_type_errors(call: Callable[[], object]) -
         call()
 
 
-def test_errors_of_a_part_come_through_a_sum() -> None:
-    light = IncoherentSum.equal(3)
+def test_errors_of_patterns_come_through_their_mean() -> None:
     with pytest.raises(ZeroDivisionError):
-        light.pattern(FIELD, lambda part: PupilField(1 // 0, 16, 0).pattern())
-    sizes = iter([64, 128, 64])
-    with pytest.raises(tem00.ParameterError, match=r"\[64, 64\], got \[128, 128\]") as caught:
-        light.pattern(FIELD, lambda part: PupilField(next(sizes), 16, 0).pattern())
-    assert caught.value.parameter == "part"
+        SpecklePattern.weighted_mean([1.0], (PupilField(1 // side, 16, 0).pattern() for side in [0]))
+    patterns = (PupilField(side, 16, 0).pattern() for side in [64, 128])
+    with pytest.raises(tem00.ParameterError, match="all of one size, got 128") as caught:
+        SpecklePattern.weighted_mean([1.0, 1.0], patterns)
+    assert caught.value.parameter == "patterns"
 
 
 def test_files_that_are_not_there_are_os_errors(tmp_path: Path) -> None:

@@ -6,17 +6,18 @@ from numpy.typing import NDArray
 from scipy import fft, stats
 
 from tem00.speckle import (
-    CoherentBackground,
     Exposure,
-    IncoherentSum,
     LitArea,
     ObjectiveSpeckle,
     PixelArray,
     Pupil,
     PupilField,
     SlicePath,
+    SpecklePattern,
     SpeckleStack,
+    incoherent_fractions,
 )
+from tem00.statistics import IncoherentSum
 
 # Sums of patterns in single precision, whose brightest speckle has the intensity 10.
 SINGLE = 1e-5
@@ -27,59 +28,42 @@ def field() -> PupilField:
     return PupilField(128, 48, 21)
 
 
-def test_a_sum_adds_its_patterns_in_their_shares(field: PupilField) -> None:
-    light = IncoherentSum.weighted([3.0, 0.0, 1.0])
-    np.testing.assert_allclose(light.weights, [0.75, 0.25], rtol=1e-15)
-    first, second = light.fields(field)
+def test_a_mean_adds_its_patterns_in_their_shares(field: PupilField) -> None:
+    fractions = incoherent_fractions(1, 1.0, [3.0, 0.0, 1.0])
+    np.testing.assert_allclose(fractions, [0.75, 0.25], rtol=1e-15)
+    first, second = field.independent(2)
     assert first == field
     expected = 0.75 * first.pattern().values + 0.25 * second.pattern().values
-    np.testing.assert_allclose(light.pattern(field).values, expected, atol=SINGLE)
-    moved = light.pattern(field, lambda part: part.pattern_at((0.5, 0.0), 0.0))
-    expected = 0.75 * first.pattern_at((0.5, 0.0), 0.0).values
-    expected = expected + 0.25 * second.pattern_at((0.5, 0.0), 0.0).values
-    np.testing.assert_allclose(moved.values, expected, atol=SINGLE)
+    patterns = (part.pattern() for part in (first, second))
+    mean = SpecklePattern.weighted_mean([3.0, 1.0], patterns)
+    np.testing.assert_allclose(mean.values, expected, atol=SINGLE)
+    assert mean.speckle_size == field.speckle_size
 
 
-def test_a_sum_weighs_look_ups(field: PupilField) -> None:
-    light = IncoherentSum.weighted([3.0, 1.0])
-    stacks = [SpeckleStack.generate(part, SlicePath.still()) for part in light.fields(field)]
-    x = np.linspace(0.0, 10.0, 7)
-    intensity = light.intensity(lambda part: stacks[part].intensity_at(x, 3.0, 0.0))
-    expected = [stack.intensity_at(x, 3.0, 0.0) for stack in stacks]
-    np.testing.assert_allclose(intensity, 0.75 * expected[0] + 0.25 * expected[1], rtol=1e-15)
-    assert light.intensity(lambda part: float(part)) == 0.25
-
-
-def test_sums_have_the_contrast_of_their_shares() -> None:
-    assert IncoherentSum.equal(9).contrast == pytest.approx(1 / 3, rel=1e-14)
-    polarised = IncoherentSum.partially_polarised(0.6)
-    assert polarised.contrast == pytest.approx(np.sqrt((1 + 0.36) / 2), rel=1e-14)
-    both = IncoherentSum.equal(3).split_by(polarised)
-    assert len(both.weights) == 6
-    assert both.contrast == pytest.approx(polarised.contrast / np.sqrt(3), rel=1e-14)
-    assert both != polarised
+def test_fractions_have_the_contrast_of_their_law() -> None:
+    polarised = np.sqrt((1 + 0.36) / 2)
+    fractions = incoherent_fractions(3, 0.6, [1.0])
+    assert len(fractions) == 6
+    law = IncoherentSum(fractions)
+    assert law.contrast == pytest.approx(polarised / np.sqrt(3), rel=1e-14)
 
 
 def test_equal_sums_have_the_gamma_law() -> None:
     field = PupilField(256, 64, 0).with_phasors("gaussian")
-    light = IncoherentSum.equal(3)
+
+    def pattern(seed: int) -> SpecklePattern:
+        parts = field.with_seed(seed).independent(3)
+        return SpecklePattern.weighted_mean([1.0] * 3, (part.pattern() for part in parts))
+
     # Beyond the first zero of the autocovariance, 1.22 speckle sizes of 4 samples.
-    samples = np.concatenate(
-        [light.pattern(field.with_seed(seed)).values[::5, ::5].ravel() for seed in range(4)]
-    )
+    samples = np.concatenate([pattern(seed).values[::5, ::5].ravel() for seed in range(4)])
     assert stats.kstest(samples, stats.gamma(3, scale=1 / 3).cdf).pvalue > 1e-3
 
 
 def test_a_background_interferes(field: PupilField) -> None:
-    background = CoherentBackground(2.5, 0.7)
-    assert background.contrast == pytest.approx(np.sqrt(6) / 3.5, rel=1e-14)
     amplitude = field.field()
     expected = np.abs(amplitude.values + np.sqrt(2.5) * np.exp(0.7j)) ** 2 / 3.5
-    np.testing.assert_allclose(background.intensity(amplitude.values), expected, rtol=1e-5)
-    np.testing.assert_allclose(background.pattern(amplitude).values, expected, rtol=1e-5)
-    one = background.intensity(0.5 - 0.25j)
-    assert isinstance(one, float)
-    assert one == pytest.approx(abs(0.5 - 0.25j + np.sqrt(2.5) * np.exp(0.7j)) ** 2 / 3.5)
+    np.testing.assert_allclose(amplitude.on_background(2.5, 0.7).values, expected, rtol=1e-5)
 
 
 def test_a_drift_over_the_sensor_is_a_sinc_in_the_spectrum(field: PupilField) -> None:

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from tem00 import speckle
 from tem00.speckle import (
-    CoherentBackground,
     Exposure,
     LitArea,
     ObjectiveSpeckle,
@@ -134,7 +133,6 @@ PICKLED = [
     STACK,
     SpeckleStack.generate(FIELD, SlicePath.straight(half_period=2, length=3)),
     SpeckleStack.generate(MEASURED, SlicePath.still(), StackOptions("nearest")),
-    CoherentBackground(1.5, 0.25),
     Exposure().with_image_drift((1.0, 2.0)).with_pupil_drift((0.1, 0.2)),
     PixelArray((4, 5), (1.5, 2.0)).with_size((1.0, 1.0)).with_origin((3.0, -4.0)),
     LitArea.disc(diameter=1e-3),

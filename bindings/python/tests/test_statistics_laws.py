@@ -61,12 +61,12 @@ def test_polarised_parts_add_up_to_their_hypoexponential_law(degree: float) -> N
     # Cancellation of two terms of the size 1/degree.
     np.testing.assert_allclose(law.density(INTENSITIES), expected, atol=1e-14)
     np.testing.assert_allclose(
-        st.WeightedSum(means).density(INTENSITIES), expected, atol=1e-14
+        st.IncoherentSum(means).density(INTENSITIES), expected, atol=1e-14
     )
 
 
 def test_equal_patterns_add_up_to_a_gamma_law() -> None:
-    check(st.WeightedSum([3.0] * 5), scipy_stats.gamma(5, scale=1 / 5), 1e-12)
+    check(st.IncoherentSum([3.0] * 5), scipy_stats.gamma(5, scale=1 / 5), 1e-12)
 
 
 @pytest.mark.parametrize("beam_ratio", [0.0, 0.5, 4.0, 50.0])
@@ -236,8 +236,8 @@ REFUSALS: list[tuple[Callable[[], object], str]] = [
     (lambda: st.GammaIntensity(0.5), "shape"),
     (lambda: st.GammaIntensity.from_contrast(math.nan), "contrast"),
     (lambda: st.PartiallyPolarised(1.5), "degree"),
-    (lambda: st.WeightedSum([1.0, -1.0]), "weights"),
-    (lambda: st.WeightedSum([]), "weights"),
+    (lambda: st.IncoherentSum([1.0, -1.0]), "weights"),
+    (lambda: st.IncoherentSum([]), "weights"),
     (lambda: st.CoherentBackground(-1.0), "beam_ratio"),
     (lambda: st.CoherentBackground.from_contrast(2.0), "contrast"),
     (lambda: st.PhasorSum(3), "count"),

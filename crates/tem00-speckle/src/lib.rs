@@ -29,7 +29,7 @@
 //! fully developed, polarised and monochromatic by itself, and in sums, on backgrounds and over
 //! pixels what light and sensor make of that. The geometry that moves and decorrelates it belongs to
 //! the crate above; so does the light that it modulates. A stack has the speckle of one wave: its
-//! look-ups are summed as [`IncoherentSum`] says.
+//! look-ups are summed in [`incoherent_fractions`].
 
 mod error;
 mod interpolation;
@@ -40,9 +40,7 @@ mod stack;
 
 pub use error::SpeckleError;
 pub use interpolation::Interpolation;
-pub use light::{
-    CoherentBackground, Exposure, IncoherentSum, LitArea, ObjectiveSpeckle, PixelArray,
-};
+pub use light::{Exposure, LitArea, ObjectiveSpeckle, PixelArray, incoherent_fractions};
 pub use npy::{NpyError, NpyReader, write_npy, write_real_npy};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;

@@ -7,8 +7,7 @@ mod pixels;
 mod sum;
 mod transform;
 
-pub use background::CoherentBackground;
 pub use exposure::Exposure;
 pub use objective::{LitArea, ObjectiveSpeckle};
 pub use pixels::PixelArray;
-pub use sum::IncoherentSum;
+pub use sum::incoherent_fractions;

@@ -15,7 +15,7 @@
 //! # Main items
 //!
 //! - Laws of the intensity: [`exponential_density`], [`exponential_cumulative`],
-//!   [`GammaIntensity`], [`PartiallyPolarised`], [`WeightedSum`], [`CoherentBackground`],
+//!   [`GammaIntensity`], [`PartiallyPolarised`], [`IncoherentSum`], [`CoherentBackground`],
 //!   [`PhasorSum`], [`JointIntensity`].
 //! - Contrast: [`pixel_contrast`], [`rectangular_pixel_contrast`], [`gaussian_filter_contrast`],
 //!   [`contrast_of_exposure`], [`boiling_contrast`], [`translation_contrast`],
@@ -89,7 +89,7 @@ pub use intensity::{
     joint::JointIntensity,
     phasor_sum::{PhasorSum, moment_of_phasor_sum},
     polarisation::PartiallyPolarised,
-    sums::WeightedSum,
+    sums::IncoherentSum,
 };
 pub use space::{
     objective::{LitArea, ObjectiveSpeckle},

@@ -34,11 +34,11 @@ fn refusals_name_the_parameter_the_value_and_what_is_allowed() {
             "beam_ratio must be finite and not negative, got -1",
         ),
         (
-            s::WeightedSum::new(&[1.0, 2.0, -3.0]).err(),
+            s::IncoherentSum::new(&[1.0, 2.0, -3.0]).err(),
             "weights must be finite and not negative, got -3 at position 2",
         ),
         (
-            s::WeightedSum::new(&[0.0]).err(),
+            s::IncoherentSum::new(&[0.0]).err(),
             "weights must be of a positive sum, got 0",
         ),
         (
@@ -122,7 +122,7 @@ fn the_parameter_is_the_argument_that_was_given() {
     let image = Grid::filled(4, 4, 1.0);
     let other = Grid::filled(4, 5, 1.0);
     let refusals = [
-        (s::WeightedSum::new(&[-1.0]).err(), "weights"),
+        (s::IncoherentSum::new(&[-1.0]).err(), "weights"),
         (s::pearson_correlation(&image, &other).err(), "second"),
         (s::kolmogorov_smirnov(&[1.0], |_| 2.0).err(), "cumulative"),
         (s::chi_squared(&[1], &[], 0).err(), "expected"),

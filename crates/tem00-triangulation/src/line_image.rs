@@ -2,7 +2,7 @@ mod bandwidth;
 mod strip;
 
 use tem00_numerics::Grid;
-use tem00_speckle::{IncoherentSum, PupilField};
+use tem00_speckle::{PupilField, SpeckleError, incoherent_fractions};
 
 use self::{
     bandwidth::{Bandwidth, PolychromaticLight},
@@ -67,7 +67,8 @@ pub struct LineImageData {
 pub struct LineImage {
     data: LineImageData,
     samples: [usize; 2],
-    light: IncoherentSum,
+    /// Fractions of the light in patterns whose intensities add.
+    fractions: Vec<f64>,
     /// The numbers of samples after which the image repeats.
     period: [usize; 2],
     /// The speckle size in samples.
@@ -96,11 +97,10 @@ impl LineImage {
                 allowed: "so large that at most 2^25 samples resolve the speckle of the image",
             });
         }
-        let polarised = IncoherentSum::partially_polarised(data.polarisation)?;
         Ok(Self {
             data,
             samples,
-            light: IncoherentSum::equal(data.patterns as usize)?.split_by(&polarised)?,
+            fractions: fractions(&data, &[1.0])?,
             period,
             speckle,
             bandwidth: None,
@@ -124,8 +124,8 @@ impl LineImage {
             patterns: surface.patterns,
             polarisation: surface.polarisation,
         })?;
-        if let Some(light) = PolychromaticLight::of_setup(setup)? {
-            image.light = image.light.split_by(&light.modes)?;
+        if let Some(light) = PolychromaticLight::of_setup(setup) {
+            image.fractions = fractions(&image.data, &light.modes)?;
             image.bandwidth = light.bandwidth;
         }
         Ok(image)
@@ -181,7 +181,7 @@ impl LineImage {
         let positions = strip.positions(centre);
         let [columns, rows] = self.data.size;
         let mut image = Grid::filled(columns, rows, 0.0_f32);
-        for (fraction, part) in self.light.weights().iter().zip(0..) {
+        for (fraction, part) in self.fractions.iter().zip(0..) {
             let strip = |stream, tilt| strip.pupil(&positions, seed, stream, tilt);
             let pupils = match &self.bandwidth {
                 None => vec![strip(part, 0.0)],
@@ -215,6 +215,10 @@ impl LineImage {
             }
         });
     }
+}
+
+fn fractions(data: &LineImageData, modes: &[f64]) -> Result<Vec<f64>, SpeckleError> {
+    incoherent_fractions(data.patterns as usize, data.polarisation, modes)
 }
 
 /// Returns the part of each sample of a pixel that lies within its sensitive part.

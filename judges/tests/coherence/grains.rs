@@ -5,7 +5,7 @@ use core::f64::consts::{LN_2, TAU};
 use tem00::{
     coherence::PolychromaticSpeckle,
     numerics::disc_overlap,
-    statistics::{WeightedSum, kolmogorov_smirnov},
+    statistics::{IncoherentSum, kolmogorov_smirnov},
 };
 
 use crate::{
@@ -123,11 +123,11 @@ fn judge_first_order_law(name: &str, mut samples: Vec<f64>, law: &PolychromaticS
     let test = |cumulative: &dyn Fn(f64) -> f64| {
         kolmogorov_smirnov(&samples, cumulative).expect("samples")
     };
-    let modes = WeightedSum::new(&law.modes()).expect("modes");
+    let modes = IncoherentSum::new(&law.modes()).expect("modes");
     let right = test(&|x| modes.cumulative(x));
     assert!(right.p_value > 1e-3, "{name}: {right:?}");
 
-    let patterns = WeightedSum::new(&[1.0; 2]).expect("two patterns");
+    let patterns = IncoherentSum::new(&[1.0; 2]).expect("two patterns");
     let contrast = law.contrast();
     let with_mean = |x: f64| -(-(x - 1.0 + contrast).max(0.0) / contrast).exp_m1();
     for (rule, wrong) in [

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from os import PathLike
-from typing import Literal, SupportsIndex, TypeAlias, TypeVar
+from typing import Literal, SupportsIndex, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,8 +52,6 @@ Values: TypeAlias = float | FloatArray
 
 Cumulative: TypeAlias = Callable[[FloatArray], RealArray]
 """A distribution function."""
-
-Real = TypeVar("Real", float, FloatArray)
 
 File: TypeAlias = str | PathLike[str]
 """The path of a file."""

@@ -161,6 +161,20 @@ impl PupilField {
         Ok(Self(self.0.clone().with_seed(seed.unsigned("seed")?)))
     }
 
+    /// Return fields of as many independent patterns: this one, then the same with seeds made from its own.
+    ///
+    /// Parameters
+    /// ----------
+    /// patterns : int
+    ///     Number of patterns, 1 to 1024.
+    fn independent(&self, patterns: Whole<'_>) -> PyResult<Vec<Self>> {
+        let fields = self
+            .0
+            .independent(patterns.unsigned("patterns")?)
+            .or_raise()?;
+        Ok(fields.into_iter().map(Self).collect())
+    }
+
     /// External samples, complex64 [row, column], a read-only view; None for random phasors.
     #[getter]
     fn samples<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyArray2<Complex32>>>> {

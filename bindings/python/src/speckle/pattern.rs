@@ -4,7 +4,8 @@ use numpy::{Complex32, PyArray2};
 use pyo3::prelude::*;
 use tem00_speckle as physics;
 
-use super::images::view;
+use super::images::{check_room, view};
+use crate::{arrays::Components, error::OrRaise};
 
 /// A speckle pattern: intensity with mean 1, periodic in both axes.
 #[pyclass(frozen, eq, module = "tem00.speckle")]
@@ -18,6 +19,28 @@ impl SpecklePattern {
     fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         // SAFETY: the values lie in this object, which is frozen.
         unsafe { view(slf.clone().into_any(), slf.get().0.values()) }
+    }
+
+    /// Return the mean of patterns with weights: light that adds by intensities.
+    ///
+    /// Parameters
+    /// ----------
+    /// weights : `array_like`, shape (n,)
+    ///     Mean intensities in any unit, 0 or more.
+    /// patterns : iterable of `SpecklePattern`
+    ///     As many patterns, of one size. They are drawn one by one.
+    #[staticmethod]
+    fn weighted_mean(weights: Components<'_>, patterns: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let mut failed = None;
+        let patterns = patterns.try_iter()?.map_while(|pattern| {
+            let pattern = pattern.and_then(|p| Ok(p.cast::<Self>()?.get().0.clone()));
+            pattern.map_err(|error| failed = Some(error)).ok()
+        });
+        let mean = physics::SpecklePattern::weighted_mean(weights.finite("weights")?, patterns);
+        match failed {
+            Some(error) => Err(error),
+            None => Ok(Self(mean.or_raise()?)),
+        }
     }
 
     /// Write the intensity as an NPY file of float32, to be read by `numpy.load`.
@@ -64,6 +87,27 @@ impl SpeckleField {
     /// Return the intensity, the squared magnitude of the amplitude.
     fn to_pattern(&self, py: Python<'_>) -> SpecklePattern {
         SpecklePattern(py.detach(|| self.0.to_pattern()))
+    }
+
+    /// Return the intensity on a uniform wave that interferes: partially developed speckle.
+    ///
+    /// Its law is `tem00.statistics.CoherentBackground`.
+    ///
+    /// Parameters
+    /// ----------
+    /// `beam_ratio` : float
+    ///     Intensity of the wave over the mean of the speckle, 0 to 1e12.
+    /// phase : float
+    ///     Phase in radians.
+    fn on_background(
+        &self,
+        py: Python<'_>,
+        beam_ratio: f64,
+        phase: f64,
+    ) -> PyResult<SpecklePattern> {
+        check_room(self.0.size(), 4)?;
+        let pattern = py.detach(|| self.0.on_background(beam_ratio, phase));
+        Ok(SpecklePattern(pattern.or_raise()?))
     }
 
     /// Write the amplitude as an NPY file of complex64, to be read by `numpy.load`.

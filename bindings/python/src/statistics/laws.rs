@@ -97,22 +97,22 @@ methods! {
 ///     65,536 different values. Each of these takes some 10 µs of the time of a density.
 #[pyclass(frozen, eq, module = "tem00.statistics")]
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct WeightedSum {
-    law: physics::WeightedSum,
+pub(crate) struct IncoherentSum {
+    law: physics::IncoherentSum,
     weights: Vec<f64>,
 }
 
 #[pymethods]
-impl WeightedSum {
+impl IncoherentSum {
     #[new]
     fn new(weights: Components<'_>) -> PyResult<Self> {
         let weights = weights.values()?.to_vec();
-        let law = physics::WeightedSum::new(&weights).or_raise()?;
+        let law = physics::IncoherentSum::new(&weights).or_raise()?;
         Ok(Self { law, weights })
     }
 
     fn __repr__(&self) -> String {
-        format!("WeightedSum(weights={:?})", self.weights)
+        format!("IncoherentSum(weights={:?})", self.weights)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Recipe<'py>> {
@@ -121,7 +121,7 @@ impl WeightedSum {
 }
 
 methods! {
-    impl WeightedSum as this: this.law;
+    impl IncoherentSum as this: this.law;
 
     /// Contrast, standard deviation over mean.
     get contrast -> f64;

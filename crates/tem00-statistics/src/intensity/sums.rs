@@ -28,9 +28,9 @@ use crate::{
 /// A second laser of half the power:
 ///
 /// ```
-/// use tem00_statistics::WeightedSum;
+/// use tem00_statistics::IncoherentSum;
 ///
-/// let law = WeightedSum::new(&[2.0, 1.0])?;
+/// let law = IncoherentSum::new(&[2.0, 1.0])?;
 /// assert!((law.contrast() - 5.0_f64.sqrt() / 3.0).abs() < 1e-15);
 /// // F(x) = 1 − 2 exp(−3x/2) + exp(−3x)
 /// assert!((law.cumulative(1.0) - 0.603_526_748_1).abs() < 1e-10);
@@ -41,7 +41,7 @@ use crate::{
 ///
 /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 3 (sums of speckle patterns).
 #[derive(Clone, Debug, PartialEq)]
-pub struct WeightedSum {
+pub struct IncoherentSum {
     /// The weights over their sum, the largest first.
     shares: Vec<Share>,
 }
@@ -58,7 +58,7 @@ struct Share {
 /// A pattern of a smaller share changes no digit and is left out.
 const NEGLIGIBLE_SHARE: f64 = 1e-30;
 
-impl WeightedSum {
+impl IncoherentSum {
     /// The largest number of different weights: each value then takes half a second.
     pub const MAX_DIFFERENT: usize = 1 << 16;
 
@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn weights_far_apart_are_the_sum_of_partial_fractions() {
         let shares = [0.5, 0.3, 0.15, 0.05];
-        let law = WeightedSum::new(&[1.5, 3.0, 0.5, 5.0]).unwrap();
+        let law = IncoherentSum::new(&[1.5, 3.0, 0.5, 5.0]).unwrap();
         for x in [0.2, 0.9, 2.0, 9.0] {
             let (density, cumulative) = by_partial_fractions(&shares, x);
             // The fractions cancel four digits.
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn equal_weights_are_the_gamma_law() {
         for count in [1_u8, 2, 7, 60] {
-            let law = WeightedSum::new(&vec![1e-200; usize::from(count)]).unwrap();
+            let law = IncoherentSum::new(&vec![1e-200; usize::from(count)]).unwrap();
             let gamma = GammaIntensity::new(f64::from(count)).unwrap();
             for x in [1e-3, 0.3, 1.0, 2.5] {
                 // Relative, from 1e−180 on: n k roundings of some 1e−16, and the exponent of Γ.
@@ -233,7 +233,7 @@ mod tests {
         for (count, tolerance) in [(1_000_u32, 1e-11), (5_000, 1e-10)] {
             // Weights that differ by 5e−11 change the law by less than that.
             let weights: Vec<f64> = (0..count).map(|i| 1.0 + 1e-14 * f64::from(i)).collect();
-            let law = WeightedSum::new(&weights).unwrap();
+            let law = IncoherentSum::new(&weights).unwrap();
             let gamma = GammaIntensity::new(f64::from(count)).unwrap();
             for x in [0.93, 1.0, 1.04] {
                 let (density, cumulative) = (gamma.density(x), gamma.cumulative(x));
@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn a_million_equal_weights_are_one_factor() {
-        let law = WeightedSum::new(&vec![0.3; 1_000_000]).unwrap();
+        let law = IncoherentSum::new(&vec![0.3; 1_000_000]).unwrap();
         // The density and the distribution of the Gamma law, by SciPy 1.17: `stats.gamma`.
         let reference = [
             (0.997, 4.405_267_011_036, 0.001_338_104_167_313_6),
@@ -264,7 +264,7 @@ mod tests {
         let weights: Vec<f64> = (0..60).map(|i| 0.5_f64.powi(i)).collect();
         let total: f64 = weights.iter().sum();
         let shares: Vec<f64> = weights.iter().map(|weight| weight / total).collect();
-        let law = WeightedSum::new(&weights).unwrap();
+        let law = IncoherentSum::new(&weights).unwrap();
         for x in [0.3, 1.0, 1.7, 8.0, 40.0] {
             let (density, cumulative) = by_partial_fractions(&shares, x);
             assert_relative_eq!(law.density(x), density, max_relative = 1e-12);
@@ -274,9 +274,9 @@ mod tests {
 
     #[test]
     fn more_different_weights_than_the_limit_are_refused() {
-        let many = WeightedSum::MAX_DIFFERENT + 1;
+        let many = IncoherentSum::MAX_DIFFERENT + 1;
         let weights: Vec<f64> = (1..=many).map(|i| i as f64).collect();
-        let refused = WeightedSum::new(&weights);
+        let refused = IncoherentSum::new(&weights);
         assert_eq!(
             refused,
             Err(StatisticsError::refused(
@@ -285,13 +285,16 @@ mod tests {
                 "of at most 65536 different values"
             ))
         );
-        assert!(WeightedSum::new(&weights[1..]).is_ok(), "the limit itself");
+        assert!(
+            IncoherentSum::new(&weights[1..]).is_ok(),
+            "the limit itself"
+        );
     }
 
     #[test]
     fn two_weights_are_the_partially_polarised_law_however_close() {
         for degree in [0.0, 1e-15, 1e-8, 1e-3, 0.4, 1.0 - 1e-6] {
-            let law = WeightedSum::new(&[1.0 + degree, 1.0 - degree]).unwrap();
+            let law = IncoherentSum::new(&[1.0 + degree, 1.0 - degree]).unwrap();
             let polarised = PartiallyPolarised::new(degree).unwrap();
             for x in [1e-8, 0.1, 1.0, 12.0, 300.0] {
                 // At P → 1 the rounding of 1 − P is 1e−16 / 1e−6.
@@ -308,20 +311,20 @@ mod tests {
 
     #[test]
     fn one_pattern_and_negligible_others_are_the_exponential_law() {
-        let law = WeightedSum::new(&[3.0, 0.0, 1e-40]).unwrap();
+        let law = IncoherentSum::new(&[3.0, 0.0, 1e-40]).unwrap();
         for x in [0.0, 0.5, 700.0] {
             let exact = exponential_density(x);
             assert_relative_eq!(law.density(x), exact, epsilon = 0.0, max_relative = 1e-13);
         }
         // 1e−25 of another pattern bends only the first 1e−24.
-        let law = WeightedSum::new(&[1.0, 1e-25]).unwrap();
+        let law = IncoherentSum::new(&[1.0, 1e-25]).unwrap();
         assert_relative_eq!(law.density(0.5), (-0.5_f64).exp(), max_relative = 1e-13);
     }
 
     #[test]
     fn drawn_sums_follow_the_law() {
         let weights = [1.0, 0.9, 0.9, 0.2, 0.01];
-        let law = WeightedSum::new(&weights).unwrap();
+        let law = IncoherentSum::new(&weights).unwrap();
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         let total: f64 = weights.iter().sum();
         let mut draw = |weight: &f64| -weight * (1.0 - rng.random::<f64>()).ln() / total;
@@ -336,7 +339,7 @@ mod tests {
     #[test]
     fn weights_that_are_no_intensities_are_refused() {
         for bad in [-1.0, f64::NAN, f64::INFINITY] {
-            let refused = WeightedSum::new(&[1.0, bad]);
+            let refused = IncoherentSum::new(&[1.0, bad]);
             assert!(
                 matches!(
                     refused,
@@ -350,7 +353,7 @@ mod tests {
             );
         }
         assert_eq!(
-            WeightedSum::new(&[]),
+            IncoherentSum::new(&[]),
             Err(StatisticsError::refused(
                 "weights",
                 0.0,
@@ -358,7 +361,7 @@ mod tests {
             ))
         );
         assert_eq!(
-            WeightedSum::new(&[0.0; 2]),
+            IncoherentSum::new(&[0.0; 2]),
             Err(StatisticsError::refused(
                 "weights",
                 0.0,
@@ -376,7 +379,7 @@ mod tests {
             exponent in -300.0_f64..300.0,
         ) {
             let weights: Vec<f64> = exponents.iter().map(|&e| 10.0_f64.powf(e)).collect();
-            let law = WeightedSum::new(&weights).unwrap();
+            let law = IncoherentSum::new(&weights).unwrap();
             for x in [10.0_f64.powf(exponent), exponent.abs(), 0.0, f64::INFINITY] {
                 prop_assert!(law.density(x).is_finite() && law.density(x) >= 0.0, "{x}");
                 prop_assert!((0.0..=1.0).contains(&law.cumulative(x)), "{x}");

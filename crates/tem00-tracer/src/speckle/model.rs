@@ -2,7 +2,7 @@ use glam::DVec2;
 
 use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
 use tem00_paper::BilinearStack;
-use tem00_speckle::{Complex, IncoherentSum, SpeckleStack};
+use tem00_speckle::{Complex, SpeckleStack};
 
 use super::{
     PatternPlan, SpecklePlan, SpecklePoint,
@@ -129,8 +129,8 @@ impl Pattern {
         seed: u64,
     ) -> Result<Self, TracerError> {
         let first = allocation.stack.field(seed)?;
-        let stacks = IncoherentSum::equal(allocation.count)?
-            .fields(&first)?
+        let stacks = first
+            .independent(allocation.count)?
             .into_iter()
             .map(|field| {
                 if plan.is_as_printed() {

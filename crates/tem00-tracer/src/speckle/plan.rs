@@ -2,7 +2,7 @@ mod lines;
 
 use glam::DVec2;
 use tem00_decorrelation::ImagingGeometry;
-use tem00_speckle::{IncoherentSum, SlicePath, StackNeeds, StackPlan};
+use tem00_speckle::{SlicePath, StackNeeds, StackPlan, incoherent_fractions};
 
 use super::{
     allocation::{self, Part, PatternAllocation, Request},
@@ -280,15 +280,12 @@ impl Planner<'_> {
 
 impl Sum {
     fn new(speckle: &SurfaceSpeckle, light: &SurfaceLight) -> Result<Self, TracerError> {
-        let patterns = IncoherentSum::equal(speckle.patterns as usize)?;
-        let waves = IncoherentSum::partially_polarised(speckle.polarisation)?;
-        let modes = IncoherentSum::weighted(&light.modes)?;
         Ok(Self {
-            fractions: patterns
-                .split_by(&waves)?
-                .split_by(&modes)?
-                .weights()
-                .to_vec(),
+            fractions: incoherent_fractions(
+                speckle.patterns as usize,
+                speckle.polarisation,
+                &light.modes,
+            )?,
             fields: light
                 .bandwidth
                 .as_ref()

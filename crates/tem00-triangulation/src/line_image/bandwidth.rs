@@ -2,14 +2,14 @@
 
 use tem00_coherence::{PolychromaticSpeckle, Rows, representative_heights};
 use tem00_numerics::{Grid, cast::to_usize};
-use tem00_speckle::{Complex, IncoherentSum};
+use tem00_speckle::Complex;
 
-use crate::{Setup, TriangulationError};
+use crate::Setup;
 
 /// The light of a laser with a linewidth on the surface of a set-up.
 pub(super) struct PolychromaticLight {
     /// The coherent modes, if heights dominate; one otherwise.
-    pub(super) modes: IncoherentSum,
+    pub(super) modes: Vec<f64>,
     pub(super) bandwidth: Option<Bandwidth>,
 }
 
@@ -35,13 +35,13 @@ type Pupil = (Grid<Complex<f32>>, f64);
 
 impl PolychromaticLight {
     /// Returns nothing for light of one wavelength.
-    pub(super) fn of_setup(setup: &Setup) -> Result<Option<Self>, TriangulationError> {
+    pub(super) fn of_setup(setup: &Setup) -> Option<Self> {
         let line = setup.description().laser.light.line();
         let (Ok(line), Some(cell)) = (line, setup.resolution_cell()) else {
-            return Ok(None);
+            return None;
         };
         if line.is_monochromatic() {
-            return Ok(None);
+            return None;
         }
         let speckle = PolychromaticSpeckle {
             line: &line,
@@ -53,16 +53,16 @@ impl PolychromaticLight {
             cell: &cell,
         };
         let heights = representative_heights(2.0 * line.effective_spread() * cell.path_spread());
-        Ok(Some(match heights {
+        Some(match heights {
             None => Self {
-                modes: IncoherentSum::weighted(&speckle.modes())?,
+                modes: speckle.modes(),
                 bandwidth: None,
             },
             Some(heights) => Self {
-                modes: IncoherentSum::equal(1)?,
+                modes: vec![1.0],
                 bandwidth: Some(Bandwidth::new(&speckle, &heights)),
             },
-        }))
+        })
     }
 }
 

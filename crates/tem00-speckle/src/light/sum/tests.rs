@@ -2,27 +2,31 @@ use num_complex::Complex;
 use proptest::prelude::*;
 use tem00_numerics::Grid;
 use tem00_statistics::{
-    GammaIntensity, PartiallyPolarised, WeightedSum, contrast_squared_spread, decorrelated_samples,
-    kolmogorov_smirnov, pearson_correlation,
+    GammaIntensity, IncoherentSum, PartiallyPolarised, contrast_squared_spread,
+    decorrelated_samples, kolmogorov_smirnov, pearson_correlation,
 };
 
 use super::*;
 use crate::{Exposure, error::assert_refused};
 
-/// Modes that fall by one ratio: the light of a Gaussian line on a relief.
-fn modes() -> IncoherentSum {
+/// Fractions that fall by one ratio: the modes of a Gaussian line on a relief.
+fn modes() -> Vec<f64> {
     let powers = (0..20).map(|n| 0.5_f64.powi(n));
-    IncoherentSum::weighted(&powers.collect::<Vec<_>>()).unwrap()
+    incoherent_fractions(1, 1.0, &powers.collect::<Vec<_>>()).unwrap()
 }
 
-fn sums() -> Vec<IncoherentSum> {
-    vec![
-        IncoherentSum::equal(1).unwrap(),
-        IncoherentSum::equal(5).unwrap(),
-        IncoherentSum::weighted(&[3.0, 2.0, 0.5]).unwrap(),
-        IncoherentSum::partially_polarised(0.4).unwrap(),
-        modes(),
-    ]
+fn equal(patterns: usize) -> Vec<f64> {
+    incoherent_fractions(patterns, 1.0, &[1.0]).unwrap()
+}
+
+fn polarised(degree: f64) -> Vec<f64> {
+    incoherent_fractions(1, degree, &[1.0]).unwrap()
+}
+
+fn pattern(fractions: &[f64], field: &PupilField) -> SpecklePattern {
+    let fields = field.independent(fractions.len()).unwrap();
+    let patterns = fields.iter().map(PupilField::pattern);
+    SpecklePattern::weighted_mean(fractions, patterns).unwrap()
 }
 
 fn mean(values: &Grid<f32>, of: impl Fn(f64) -> f64) -> f64 {
@@ -30,12 +34,10 @@ fn mean(values: &Grid<f32>, of: impl Fn(f64) -> f64) -> f64 {
     sum / values.values().len() as f64
 }
 
-const COUNT: &str = "count must be 1 to 1024 patterns";
-
 #[test]
 fn contrasts_are_those_of_the_laws() {
     for degree in [0.0, 1e-9, 0.3, 0.9, 1.0] {
-        let sum = IncoherentSum::partially_polarised(degree).unwrap();
+        let sum = IncoherentSum::new(&polarised(degree)).unwrap();
         let law = PartiallyPolarised::new(degree).unwrap();
         // Rounding.
         assert!(
@@ -44,22 +46,20 @@ fn contrasts_are_those_of_the_laws() {
         );
     }
     for weights in [&[1.0][..], &[2.0, 1.0], &[1e-3, 5.0, 0.0, 1e3]] {
-        let sum = IncoherentSum::weighted(weights).unwrap();
-        let law = WeightedSum::new(weights).unwrap();
-        assert!(
-            (sum.contrast() - law.contrast()).abs() < 1e-15,
-            "{weights:?}"
-        );
+        let fractions = incoherent_fractions(9, 0.4, weights).unwrap();
+        let sum = IncoherentSum::new(&fractions).unwrap().contrast();
+        let weights = IncoherentSum::new(weights).unwrap().contrast();
+        let law = PartiallyPolarised::new(0.4).unwrap().contrast() / 3.0 * weights;
+        assert!((sum - law).abs() < 1e-15, "{weights:?}");
     }
-    let equal = IncoherentSum::equal(9).unwrap();
-    assert!((equal.contrast() - 1.0 / 3.0).abs() < 1e-15, "{equal:?}");
 }
 
 #[test]
-fn polarised_light_is_one_pattern_and_unpolarised_two_equal_ones() {
-    let weights = |degree| IncoherentSum::partially_polarised(degree).unwrap().weights;
-    assert_eq!(weights(1.0), [1.0], "polarised");
-    assert_eq!(weights(0.0), [0.5, 0.5], "unpolarised");
+fn parts_without_light_are_left_out() {
+    assert_eq!(polarised(1.0), [1.0], "polarised");
+    assert_eq!(polarised(0.0), [0.5, 0.5], "unpolarised");
+    let lasers = incoherent_fractions(1, 1.0, &[3.0, 0.0, 1.0]).unwrap();
+    assert_eq!(lasers, [0.75, 0.25], "one laser is dark");
 }
 
 #[test]
@@ -67,14 +67,12 @@ fn means_are_one_and_contrasts_follow_the_shares() {
     const TILES: u64 = 16;
     const DIAMETER: usize = 32;
     let bias = 1.0 / PupilField::new(64, DIAMETER, 0).unwrap().phasor_count() as f64;
-    for sum in sums() {
+    let uneven = incoherent_fractions(1, 1.0, &[3.0, 2.0, 0.5]).unwrap();
+    for fractions in [equal(1), equal(5), uneven, polarised(0.4), modes()] {
         let mut squared = 0.0;
         for seed in 0..TILES {
             let field = PupilField::new(64, DIAMETER, seed).unwrap();
-            let pattern = sum
-                .pattern(&field, PupilField::pattern)
-                .unwrap()
-                .into_values();
+            let pattern = pattern(&fractions, &field).into_values();
             // Parseval, for every pattern of the sum; rounding to f32.
             let mean_intensity = mean(&pattern, |i| i);
             assert!((mean_intensity - 1.0).abs() < 2e-6, "mean {mean_intensity}");
@@ -83,7 +81,7 @@ fn means_are_one_and_contrasts_follow_the_shares() {
         // One pattern's C² has the variance s², the mean product of two of them s²/4: together
         // Σw⁴ s² + 4 Σ_{i<j} wᵢ²wⱼ² s²/4. Four standard deviations, α = 6e−5.
         let [squares, fourths] = [2, 4].map(|power| {
-            let powers = sum.weights().iter().map(|weight| weight.powi(power));
+            let powers = fractions.iter().map(|fraction| fraction.powi(power));
             powers.sum::<f64>()
         });
         let spread = contrast_squared_spread(DIAMETER as f64);
@@ -100,49 +98,39 @@ fn means_are_one_and_contrasts_follow_the_shares() {
 #[test]
 fn intensities_follow_the_laws_of_sums() {
     // Samples 5 apart at a speckle size of 4: beyond the first zero at 4.9.
-    let samples = |sum: &IncoherentSum| -> Vec<f64> {
+    let samples = |fractions: &[f64]| -> Vec<f64> {
         let tile = |seed| {
-            let field = PupilField::new(256, 64, seed).unwrap();
-            let pattern = sum.pattern(&field, PupilField::pattern).unwrap();
+            let pattern = pattern(fractions, &PupilField::new(256, 64, seed).unwrap());
             decorrelated_samples(pattern.values(), 5).unwrap()
         };
         [100, 200].into_iter().flat_map(tile).collect()
     };
-    let check = |sum: &IncoherentSum, law: &dyn Fn(f64) -> f64| {
-        let outcome = kolmogorov_smirnov(&samples(sum), law).unwrap();
+    let check = |fractions: &[f64], law: &dyn Fn(f64) -> f64| {
+        let outcome = kolmogorov_smirnov(&samples(fractions), law).unwrap();
         // α = 1e−4 each.
-        assert!(outcome.p_value > 1e-4, "{:?}: {outcome:?}", sum.weights());
+        assert!(outcome.p_value > 1e-4, "{fractions:?}: {outcome:?}");
     };
     let gamma = GammaIntensity::new(3.0).unwrap();
-    check(&IncoherentSum::equal(3).unwrap(), &|i| gamma.cumulative(i));
-    let polarised = PartiallyPolarised::new(0.5).unwrap();
-    let sum = IncoherentSum::partially_polarised(0.5).unwrap();
-    check(&sum, &|i| polarised.cumulative(i));
-    let sum = modes();
-    let law = WeightedSum::new(sum.weights()).unwrap();
-    check(&sum, &|i| law.cumulative(i));
+    check(&equal(3), &|i| gamma.cumulative(i));
+    let law = PartiallyPolarised::new(0.5).unwrap();
+    check(&polarised(0.5), &|i| law.cumulative(i));
+    let law = IncoherentSum::new(&modes()).unwrap();
+    check(&modes(), &|i| law.cumulative(i));
 }
 
 #[test]
 fn one_pattern_is_the_pattern_itself() {
     let field = PupilField::new(32, 16, 5).unwrap();
-    let sum = IncoherentSum::equal(1).unwrap();
-    let offset = |part: &PupilField| part.pattern_at([0.3, 0.1], 0.5);
-    assert_eq!(
-        sum.pattern(&field, offset).unwrap(),
-        offset(&field),
-        "bit for bit"
-    );
+    assert_eq!(pattern(&[2.0], &field), field.pattern(), "bit for bit");
 }
 
 #[test]
 fn parts_are_independent_of_each_other_and_of_neighbouring_seeds() {
-    let sum = IncoherentSum::equal(3).unwrap();
     let patterns: Vec<_> = [7, 8]
         .into_iter()
         .flat_map(|seed| {
-            sum.fields(&PupilField::new(128, 64, seed).unwrap())
-                .unwrap()
+            let field = PupilField::new(128, 64, seed).unwrap();
+            field.independent(3).unwrap()
         })
         .map(|field| field.pattern())
         .collect();
@@ -156,30 +144,17 @@ fn parts_are_independent_of_each_other_and_of_neighbouring_seeds() {
 }
 
 #[test]
-fn both_together_split_every_pattern() {
-    let lasers = IncoherentSum::weighted(&[2.0, 1.0]).unwrap();
-    let polarised = IncoherentSum::partially_polarised(0.6).unwrap();
-    let both = lasers.split_by(&polarised).unwrap();
-    assert_eq!(both.weights().len(), 4, "{both:?}");
-    let product = lasers.contrast() * polarised.contrast();
-    assert!((both.contrast() - product).abs() < 1e-15, "{both:?}");
-    let many = IncoherentSum::equal(100).unwrap();
-    assert_refused(many.split_by(&many), COUNT, 10_000);
-}
-
-#[test]
-fn sums_take_whatever_makes_a_pattern_of_a_field() {
+fn means_take_whatever_makes_a_pattern_of_a_field() {
     let field = PupilField::new(32, 16, 5).unwrap();
     let exposure = Exposure::default().with_image_drift([3.0, 0.0]).unwrap();
-    let sum = IncoherentSum::partially_polarised(0.2).unwrap();
-    let pattern = sum.pattern(&field, |part| exposure.pattern(part)).unwrap();
-    let parts = sum.fields(&field).unwrap();
-    let parts: Vec<_> = parts.iter().map(|part| exposure.pattern(part)).collect();
-    for (x, y) in [(0, 0), (7, 30), (31, 2)] {
-        let intensity = sum.intensity(|part| f64::from(parts[part].values()[(x, y)]));
+    let fields = field.independent(2).unwrap();
+    let parts: Vec<_> = fields.iter().map(|part| exposure.pattern(part)).collect();
+    let mean = SpecklePattern::weighted_mean(&[3.0, 2.0], parts.clone()).unwrap();
+    for at in [(0, 0), (7, 30), (31, 2)] {
+        let [a, b] = [0, 1].map(|part: usize| f64::from(parts[part].values()[at]));
         // Rounding to f32 of values below ten.
-        let difference = intensity - f64::from(pattern.values()[(x, y)]);
-        assert!(difference.abs() < 2e-6, "{difference} at {x}, {y}");
+        let difference = 0.6 * a + 0.4 * b - f64::from(mean.values()[at]);
+        assert!(difference.abs() < 2e-6, "{difference} at {at:?}");
     }
 }
 
@@ -187,43 +162,55 @@ fn sums_take_whatever_makes_a_pattern_of_a_field() {
 fn external_samples_make_one_pattern_only() {
     let samples = Grid::from_fn(20, 20, |x, y| Complex::cis((x * x + 3 * y) as f32));
     let field = PupilField::from_samples(samples, [40, 40], 2.5).unwrap();
-    let one = IncoherentSum::equal(1).unwrap();
-    assert_eq!(
-        one.pattern(&field, PupilField::pattern),
-        Ok(field.pattern())
-    );
-    let two = IncoherentSum::equal(2).unwrap();
-    assert_eq!(
-        two.pattern(&field, PupilField::pattern),
-        Err(SpeckleError::NoSeed)
-    );
+    assert_eq!(field.independent(1), Ok(vec![field.clone()]));
+    assert_eq!(field.independent(2), Err(SpeckleError::NoSeed));
 }
 
 #[test]
 fn numbers_outside_their_range_are_refused() {
+    const COUNT: &str = "patterns must be 1 to 1024 in all";
+    let field = PupilField::new(32, 16, 5).unwrap();
     for count in [0, 1025, usize::MAX] {
-        assert_refused(IncoherentSum::equal(count), COUNT, count as f64);
+        assert_refused(
+            incoherent_fractions(count, 1.0, &[1.0]),
+            COUNT,
+            count as f64,
+        );
+        assert_refused(field.independent(count), COUNT, count as f64);
     }
-    assert_refused(IncoherentSum::weighted(&[]), COUNT, 0);
-    assert_refused(IncoherentSum::weighted(&[0.0]), COUNT, 0);
+    assert_refused(incoherent_fractions(100, 0.0, &[1.0; 100]), COUNT, 20_000);
+    for dark in [&[][..], &[0.0]] {
+        let fractions = incoherent_fractions(1, 1.0, dark);
+        assert_refused(fractions, "weights must be of a positive sum", 0);
+    }
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
-        let weights = IncoherentSum::weighted(&[1.0, bad]);
+        let weights = SpecklePattern::weighted_mean(&[1.0, bad], []);
         assert!(
             matches!(weights, Err(SpeckleError::Weight { index: 1, .. })),
             "{bad}"
         );
-        let polarised = IncoherentSum::partially_polarised(bad);
-        assert_refused(polarised, "degree must be between 0 and 1", bad);
+        let polarised = incoherent_fractions(1, bad, &[1.0]);
+        assert_refused(polarised, "polarisation must be between 0 and 1", bad);
     }
+}
+
+#[test]
+fn means_need_a_pattern_of_one_size_for_each_weight() {
+    let pattern = |size| PupilField::new(size, 16, 5).unwrap().pattern();
+    for count in [0, 1, 3] {
+        let mean = SpecklePattern::weighted_mean(&[1.0; 2], vec![pattern(32); count]);
+        let rule = "patterns must be as many as there are weights";
+        assert_refused(mean, rule, count as f64);
+    }
+    let mean = SpecklePattern::weighted_mean(&[1.0; 2], [pattern(32), pattern(64)]);
+    assert_refused(mean, "patterns must be all of one size", 64);
 }
 
 proptest! {
     #[test]
-    fn shares_of_any_weights_sum_to_one(exponents in prop::collection::vec(-300.0..300.0_f64, 1..20)) {
+    fn fractions_of_any_weights_sum_to_one(exponents in prop::collection::vec(-300.0..300.0_f64, 1..20)) {
         let weights: Vec<f64> = exponents.iter().map(|&e| 10.0_f64.powf(e)).collect();
-        let sum = IncoherentSum::weighted(&weights).unwrap();
-        let total: f64 = sum.weights().iter().sum();
+        let total: f64 = incoherent_fractions(2, 0.3, &weights).unwrap().iter().sum();
         prop_assert!((total - 1.0).abs() < 1e-14, "{}", total);
-        prop_assert!(sum.contrast() <= 1.0 + 1e-15, "{}", sum.contrast());
     }
 }

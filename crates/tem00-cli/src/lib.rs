@@ -12,6 +12,8 @@
 mod args;
 mod atomic;
 #[cfg(feature = "full")]
+mod bandwidth;
+#[cfg(feature = "full")]
 mod budget;
 #[cfg(feature = "full")]
 mod calibrate;

@@ -1,15 +1,18 @@
 //! The report of a budget.
 
 use serde_json::json;
-use tem00_triangulation::{BandwidthEffect, Budget, BudgetTerm, Setup, UncertaintySource};
+use tem00_triangulation::{Budget, BudgetTerm, Setup, UncertaintySource};
 
 use super::{
     findings::{Answer, Findings},
     words,
 };
-use crate::report::{
-    Cell, Column, Report, Section, Table,
-    units::{MICROMETRES, MILLIMETRES, MILLISECONDS, NANOMETRES, NUMBER, PERCENT, PIXELS},
+use crate::{
+    bandwidth::bandwidth,
+    report::{
+        Cell, Column, Report, Section, Table,
+        units::{MICROMETRES, MILLIMETRES, MILLISECONDS, NUMBER, PERCENT, PIXELS},
+    },
 };
 
 /// Returns the report; the numbers of a set-up that measures nothing are `null`.
@@ -250,29 +253,6 @@ fn image(section: &mut Section, setup: &Setup) {
         .data("column_electrons", line.column_electrons)
         .data("grain_saturation", setup.grain_saturation())
         .data("light", setup.light_level().name());
-}
-
-/// Returns what the linewidth does to speckle: which number counts for what.
-fn bandwidth(setup: &Setup) -> Cell {
-    let (light, effect) = (&setup.description().laser.light, setup.line().bandwidth);
-    let data = json!({
-        "linewidth": light.linewidth,
-        "contrast_ratio": effect.contrast,
-        "line_noise_ratio": effect.line_noise.sqrt(),
-        "spot_noise_ratio": effect.spot_noise.sqrt(),
-    });
-    if effect == BandwidthEffect::NONE {
-        return Cell::new(data, "none: light of one wavelength".to_owned());
-    }
-    let ratio = |value: f64| NUMBER.with_digits(3).text(value);
-    let words = format!(
-        "{}: it leaves {} of the noise of the line, which counts for the uncertainty, and {} of the contrast, which \
-         counts for what is seen and for bright grains",
-        NANOMETRES.text(light.linewidth),
-        ratio(effect.line_noise.sqrt()),
-        ratio(effect.contrast),
-    );
-    Cell::new(data, words)
 }
 
 fn averages(setup: &Setup) -> Cell {

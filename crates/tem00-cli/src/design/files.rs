@@ -88,7 +88,10 @@ fn write_csv(design: &Design<'_>, out: &mut impl Write) -> io::Result<()> {
     for figure in &figures {
         write!(out, ",{figure}{}", units::si_of_figure(*figure))?;
     }
-    writeln!(out, ",dominant,allowed,why_not")?;
+    writeln!(
+        out,
+        ",line_noise_ratio,contrast_ratio,dominant,allowed,why_not"
+    )?;
     for candidate in design.outcome.candidates() {
         write!(out, "{}", candidate.index)?;
         for parameter in sweeps() {
@@ -109,6 +112,8 @@ fn write_figures(
             for figure in shown {
                 write!(out, ",{:e}", figure.value_in(figures))?;
             }
+            let effect = figures.bandwidth;
+            write!(out, ",{:e},{:e}", effect.line_noise.sqrt(), effect.contrast)?;
             let broken = candidate
                 .broken
                 .iter()
@@ -119,7 +124,7 @@ fn write_figures(
         }
         Err(why) => {
             let why = why.to_string().replace('"', "\"\"");
-            writeln!(out, "{},,false,\"{why}\"", ",".repeat(shown.len()))
+            writeln!(out, "{},,false,\"{why}\"", ",".repeat(shown.len() + 2))
         }
     }
 }

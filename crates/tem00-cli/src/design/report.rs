@@ -1,14 +1,15 @@
 //! The report of a search.
 
 use serde_json::{Map, Value, json};
-use tem00_triangulation::{Candidate, DesignFigure, DesignFigures, Neighbours};
+use tem00_triangulation::{BandwidthEffect, Candidate, DesignFigure, DesignFigures, Neighbours};
 
 use super::{search::Design, units, words};
 use crate::{
+    bandwidth::bandwidth,
     failure::Failure,
     report::{
         Cell, Column, Report, Section, Table,
-        units::{MICROMETRES, PERCENT},
+        units::{MICROMETRES, NUMBER, PERCENT},
     },
 };
 
@@ -52,10 +53,12 @@ pub(super) fn report(
         .shown()
         .and_then(|shown| Some((shown, shown.possible()?)))
     {
-        let level = Design::setup_of(shown)?.light_level();
+        let setup = Design::setup_of(shown)?;
+        let level = setup.light_level();
         let section = report
             .section("What makes its heights uncertain")
-            .in_detail();
+            .in_detail()
+            .fact("bandwidth", "linewidth of the laser", bandwidth(&setup));
         section.table(sources(figures)).paragraph(format!(
             "Light: {}; {}.",
             level.name(),
@@ -92,7 +95,7 @@ fn list(report: &mut Report, design: &Design<'_>) {
     };
     report.data(others, json!([]));
     let figures = figures(design);
-    let columns = columns(design, &figures);
+    let columns = columns(design, &figures, &listed);
     let mut table = Table::new(
         "Standard and expanded (95 %) uncertainty of a height",
         columns,
@@ -120,7 +123,7 @@ fn figures(design: &Design<'_>) -> Vec<DesignFigure> {
         .collect()
 }
 
-fn columns(design: &Design<'_>, figures: &[DesignFigure]) -> Vec<Column> {
+fn columns(design: &Design<'_>, figures: &[DesignFigure], listed: &[&Candidate]) -> Vec<Column> {
     let sweeps = design.search.question().sweeps.iter();
     let varied = sweeps.map(|sweep| {
         let parameter = sweep.parameter();
@@ -135,7 +138,18 @@ fn columns(design: &Design<'_>, figures: &[DesignFigure]) -> Vec<Column> {
             Column::data(figure.name())
         }
     });
+    let is_broad = |found: &&Candidate| {
+        let effect = found.possible().map(|figures| figures.bandwidth);
+        effect.is_some_and(|effect| effect != BandwidthEffect::NONE)
+    };
+    let is_broad = listed.iter().any(is_broad);
+    let ratio = |key, label: &str| match is_broad {
+        true => Column::new(key, label),
+        false => Column::data(key),
+    };
     let last = [
+        ratio("line_noise_ratio", "line noise over one wavelength"),
+        ratio("contrast_ratio", "contrast over one wavelength"),
         Column::new("dominant", "dominated by"),
         Column::data("contributions"),
         Column::data("imaged_width_pixels"),
@@ -178,7 +192,10 @@ fn cells(design: &Design<'_>, figures: &[DesignFigure], candidate: &Candidate) -
         .broken
         .iter()
         .map(|constraint| constraint.figure.name());
+    let ratio = NUMBER.with_digits(3);
     cells.extend([
+        ratio.cell(found.bandwidth.line_noise.sqrt()),
+        ratio.cell(found.bandwidth.contrast),
         found.dominant.name().into(),
         Cell::new(contributions, ""),
         Cell::new(found.imaged_width, ""),

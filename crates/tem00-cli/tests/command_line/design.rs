@@ -49,6 +49,41 @@ fn json(path: &Path) -> serde_json::Value {
 }
 
 #[test]
+fn a_search_over_linewidths_says_what_each_leaves_of_noise_and_contrast() {
+    let folder = folder();
+    let file = folder.path().join("a.toml");
+    let broad = SETUP.replace("angle = [", "linewidth = [\"1 nm\", \"20 nm\"]\nangle = [");
+    fs::write(&file, broad).expect("the set-up is written");
+    let output = run(folder.path(), "design a.toml --best 2");
+    assert_code(&output, 0);
+    let (report, table) = (
+        json(&folder.path().join("out/a/design.json")),
+        text(&output.stdout),
+    );
+    for column in [
+        "line noise over one wavelength",
+        "contrast over one wavelength",
+    ] {
+        assert!(table.contains(column), "{column}: {table}");
+    }
+    let winner = read_setup(&folder.path().join("out/a/best.toml")).expect("a set-up file");
+    let effect = winner.line().bandwidth;
+    let best = &report["best"][0];
+    assert_eq!(best["linewidth"], 20e-9, "{best}");
+    assert_eq!(best["line_noise_ratio"], effect.line_noise.sqrt(), "{best}");
+    assert_eq!(best["contrast_ratio"], effect.contrast, "{best}");
+    let words = "of the noise of the line, which counts for the uncertainty";
+    let page = fs::read_to_string(folder.path().join("out/a/design.html")).expect("text");
+    assert!(page.contains(words), "{words}");
+
+    fs::write(&file, SETUP).expect("the set-up is written");
+    let output = run(folder.path(), "design a.toml --best 2");
+    assert_code(&output, 0);
+    let table = text(&output.stdout);
+    assert!(!table.contains("contrast over"), "one wavelength: {table}");
+}
+
+#[test]
 fn a_search_writes_its_files_and_a_winner_that_reads_back() {
     let folder = setup_folder("saturation = 0.9\ndepth_of_field = \"15 mm\"");
     let output = run(folder.path(), "design a.toml --best 2");

@@ -1,6 +1,9 @@
 use tem00_beam::GaussianBeam;
 
-use crate::{Budget, HeightRange, Setup, SetupDescription, TriangulationError, UncertaintySource};
+use crate::{
+    BandwidthEffect, Budget, HeightRange, Setup, SetupDescription, TriangulationError,
+    UncertaintySource,
+};
 
 /// Figures of a set-up that searches compare.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +40,8 @@ pub struct DesignFigures {
     pub imaged_width: f64,
     /// The speckle size along rows and columns, in pixels.
     pub speckle_size: [f64; 2],
+    /// What the linewidth of the laser makes of speckle.
+    pub bandwidth: BandwidthEffect,
 }
 
 impl DesignFigures {
@@ -78,6 +83,7 @@ impl DesignFigures {
             signal: setup.signal(),
             imaged_width: setup.line().width,
             speckle_size: setup.line().speckle_size,
+            bandwidth: setup.line().bandwidth,
         })
     }
 }

@@ -7,7 +7,9 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tem00_triangulation::{LineMethod, parse_setup, parse_setup_with, read_design, read_setup};
+use tem00_triangulation::{
+    Budget, LineMethod, parse_setup, parse_setup_with, read_design, read_setup,
+};
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -32,7 +34,7 @@ fn the_setups_of_the_repository_are_read() {
     let paths: Vec<PathBuf> = entries
         .map(|entry| entry.expect("the entry is read").path())
         .collect();
-    assert!(paths.len() >= 3, "{paths:?}");
+    assert!(paths.len() >= 4, "{paths:?}");
     for path in paths {
         let setup = read_setup(&path).map_err(|error| error.to_string());
         let setup = setup.expect("a set-up");
@@ -40,6 +42,22 @@ fn the_setups_of_the_repository_are_read() {
         let peak = setup.saturation();
         assert!((0.05..0.7).contains(&peak), "{path:?}: {peak} of full");
     }
+}
+
+#[test]
+fn the_decision_about_a_broader_source_has_the_uncertainty_of_its_setup() {
+    let read = |name: &str| fs::read_to_string(repository().join(name)).expect(name);
+    let expanded = |text: &str| {
+        let setup = parse_setup(text).map_err(|error| error.to_string());
+        1e6 * Budget::new(&setup.expect("a set-up"))
+            .expect("a budget")
+            .expanded()
+    };
+    let broad = read("setups/superluminescent.toml");
+    let stated = format!("U = {:.1} µm", expanded(&broad));
+    assert!(read("docs/broader_source.md").contains(&stated), "{stated}");
+    let single = expanded(&broad.replace("linewidth", "# linewidth"));
+    assert!(expanded(&broad) < 0.6 * single, "of {single} µm");
 }
 
 #[test]

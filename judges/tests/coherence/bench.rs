@@ -270,10 +270,10 @@ impl Spectrum {
     }
 
     /// A Gaussian line by its full width, in metres.
-    pub(crate) fn gaussian(bench: &Bench, steps: i32, linewidth: f64) -> Self {
-        let line = SpectralLine::new(bench.view.wavelength, linewidth, LineShape::Gaussian);
-        let full = TAU * linewidth / bench.view.wavelength.powi(2);
-        let spread = full / (8.0 * core::f64::consts::LN_2).sqrt() / bench.step;
+    pub(crate) fn gaussian(wavelength: f64, step: f64, steps: i32, linewidth: f64) -> Self {
+        let line = SpectralLine::new(wavelength, linewidth, LineShape::Gaussian);
+        let full = TAU * linewidth / wavelength.powi(2);
+        let spread = full / (8.0 * core::f64::consts::LN_2).sqrt() / step;
         Self {
             name: "gaussian",
             weights: weights(steps, |i| (-0.5 * (i / spread).powi(2)).exp()),

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// Wave numbers on each side of the mean one.
-const STEPS: i32 = 10;
+pub(crate) const STEPS: i32 = 10;
 
 pub(crate) fn cell(view: CellGeometry, rms_height: f64, defocus: f64) -> ResolutionCell {
     let relief = Relief {
@@ -29,14 +29,13 @@ pub(crate) fn cell(view: CellGeometry, rms_height: f64, defocus: f64) -> Resolut
         .expect("a cell")
 }
 
-/// Lines of all shapes, some steps of the bench wide.
-fn spectra(bench: &Bench) -> Vec<Spectrum> {
-    let wavelength = bench.view.wavelength;
-    let per_step = bench.step * wavelength.powi(2) / TAU;
+/// Lines of all shapes, some steps between wave numbers wide.
+pub(crate) fn spectra(wavelength: f64, step: f64) -> Vec<Spectrum> {
+    let per_step = step * wavelength.powi(2) / TAU;
     let peaks = |weights: &[f64]| {
         let peak = |(i, &weight): (usize, &f64)| {
             let steps = i as f64 - f64::from(STEPS);
-            [TAU / (TAU / wavelength + steps * bench.step), weight]
+            [TAU / (TAU / wavelength + steps * step), weight]
         };
         let lit = weights
             .iter()
@@ -59,7 +58,7 @@ fn spectra(bench: &Bench) -> Vec<Spectrum> {
     let inside = |is_inside: bool| f64::from(u8::from(is_inside));
     vec![
         // 3.4 standard deviations on each side.
-        Spectrum::gaussian(bench, STEPS, 7.0 * per_step),
+        Spectrum::gaussian(wavelength, step, STEPS, 7.0 * per_step),
         Spectrum {
             name: "rectangular",
             weights: weights(STEPS, |i| inside(2.0 * i.abs() < full_width)),
@@ -143,7 +142,7 @@ fn compare(geometry: u64, random: &mut Random) -> Vec<Comparison> {
         defocus,
         ..View::default()
     });
-    let spectra = spectra(&bench);
+    let spectra = spectra(view.wavelength, bench.step);
     let surfaces = for_surfaces(44, 100 + geometry, |random| {
         let surface = bench.surface(random, |_| 1.0);
         let images = bench.images(&surface, STEPS, &views, random);
@@ -266,7 +265,7 @@ fn contrasts_of_known_scenes_are_those_of_waves() {
         let view = plane_of_incidence(incidence, observation);
         let mut bench = Bench::with_step(view, [24, 8], scene.heights, 2.5e4);
         bench.step *= scene.steps;
-        let spectrum = Spectrum::gaussian(&bench, 9, scene.linewidth);
+        let spectrum = Spectrum::gaussian(view.wavelength, bench.step, 9, scene.linewidth);
         let seen = View {
             defocus: scene.defocus,
             ..View::default()
@@ -319,7 +318,7 @@ fn two_wavelengths_share_what_the_law_leaves_of_the_pupil() {
 fn wide_bands_cost_contrast_without_a_tilt_as_the_stated_limit_says() {
     let view = plane_of_incidence(0.0, 0.0);
     let bench = Bench::with_step(view, [10, 10], Heights::Flat, 1.0e5);
-    let spectrum = Spectrum::gaussian(&bench, 9, 20e-9);
+    let spectrum = Spectrum::gaussian(view.wavelength, bench.step, 9, 20e-9);
     let surfaces = for_surfaces(150, 5, |random| {
         let surface = bench.surface(random, |_| 1.0);
         let images = &bench.images(&surface, 9, &[View::default()], random)[0];

@@ -35,7 +35,7 @@ fn tilted(heights: Heights) -> (Bench, Spectrum) {
     let bench = Bench::new(view, [20, 8], heights);
     let spread = 0.15 * 20.0 * bench.step;
     let linewidth = spread * (8.0 * LN_2).sqrt() * view.wavelength.powi(2) / TAU;
-    let spectrum = Spectrum::gaussian(&bench, STEPS, linewidth);
+    let spectrum = Spectrum::gaussian(bench.view.wavelength, bench.step, STEPS, linewidth);
     (bench, spectrum)
 }
 

@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use tem00::wave::Complex;
 
 /// Random numbers by `SplitMix64` (Steele, Lea, Flood 2014).
+#[derive(Clone)]
 pub(crate) struct Random(u64);
 
 impl Random {

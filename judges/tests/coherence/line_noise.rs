@@ -56,7 +56,7 @@ fn lines_of_a_broad_source_scatter_as_the_law_says_and_not_as_their_contrast() {
     let view = plane_of_incidence(0.0, 30.0);
     let mut bench = Bench::new(view, [24, 8], Heights::Flat);
     bench.step *= 2.0;
-    let spectrum = Spectrum::gaussian(&bench, STEPS, 20e-9);
+    let spectrum = Spectrum::gaussian(bench.view.wavelength, bench.step, STEPS, 20e-9);
     let columns = bench.pixels()[0];
     let surfaces = for_surfaces(400, 4, |random| {
         let surface = bench.surface(random, |x| (-(x / WIDTH).powi(2)).exp());

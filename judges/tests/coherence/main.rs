@@ -10,8 +10,13 @@
 
 mod bench;
 mod contrast;
+mod corner;
 mod grains;
 mod heights;
 mod line_noise;
+mod moving_corner;
 mod relief;
+mod several_surfaces;
+mod slab;
+mod speckle_of_speckle;
 mod sums;

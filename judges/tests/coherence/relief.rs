@@ -16,7 +16,7 @@ fn relief_as_long_as_a_speckle_spreads_fewer_paths() {
         let head_on = plane_of_incidence(0.0, 0.0);
         let heights = Heights::Correlated { rms, length };
         let bench = Bench::with_step(head_on, [16, 16], heights, 3.25e4);
-        let spectrum = Spectrum::gaussian(&bench, 7, 5e-9);
+        let spectrum = Spectrum::gaussian(bench.view.wavelength, bench.step, 7, 5e-9);
         let surfaces = for_surfaces(44, 7, |random| {
             let surface = bench.surface(random, |_| 1.0);
             let images = &bench.images(&surface, 7, &[View::default()], random)[0];

@@ -178,7 +178,12 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
     ),
     (
         "tem00-capi",
-        &["tem00-beam", "tem00-decorrelation", "tem00-speckle"],
+        &[
+            "tem00-beam",
+            "tem00-coherence",
+            "tem00-decorrelation",
+            "tem00-speckle",
+        ],
         &["rayon"],
     ),
     (

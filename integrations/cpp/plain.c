@@ -1,6 +1,6 @@
 /*
- * The header in C99: a light from its description, a batch, a refusal and its message, and the plain
- * numbers of the light in the closed forms of tem00_beam.h.
+ * The header in C99: a light from its description, a batch, a linewidth, a refusal and its message, and the
+ * plain numbers of the light in the closed forms of tem00_beam.h.
  */
 #include <math.h>
 #include <stdio.h>
@@ -83,6 +83,36 @@ static void ask(const tem00_light *light) {
     expect(closed, "the closed form agrees in single precision");
 }
 
+/* A superluminescent diode, head-on, seen under 30 degrees. */
+static void broaden(void) {
+    const tem00_bandwidth_description diode = {
+        .wavelength = 450e-9,
+        .linewidth = 20e-9,
+        .shape = TEM00_LINE_SHAPE_GAUSSIAN,
+        .to_source = {0, 0, 1},
+        .to_pupil = {0.5, 0, sqrt(0.75)},
+        .normal = {0, 0, 1},
+        .sin_aperture = 0.025,
+    };
+    tem00_bandwidth *light = NULL;
+    tem00_bandwidth_info info;
+    tem00_wave first, last;
+    double noise = 0;
+    expect(tem00_bandwidth_create(&diode, &light) == TEM00_STATUS_OK &&
+               tem00_bandwidth_describe(light, &info) == TEM00_STATUS_OK &&
+               tem00_bandwidth_line_noise(light, 0, &noise) == TEM00_STATUS_OK &&
+               tem00_bandwidth_draw(light, 0.1, &first) == TEM00_STATUS_OK &&
+               tem00_bandwidth_draw(light, 0.9, &last) == TEM00_STATUS_OK,
+           "a linewidth is answered");
+    expect(fabs(info.contrast - 0.731) < 1e-3, "20 nm leave 0.731 of the contrast");
+    expect(fabs(noise - 0.809) < 1e-3, "and 0.809 of the noise of a line");
+    expect(fabs(first.pupil_shift + last.pupil_shift) < 1e-6 && last.pupil_shift > 0.1,
+           "waves see the pupil displaced to either side");
+    expect(info.pattern_count == 1 && info.patterns[0] == 1 && info.height_count == 1,
+           "without a relief one stack stands for all");
+    tem00_bandwidth_destroy(light);
+}
+
 static void refuse(void) {
     tem00_line_description wrong = line;
     wrong.fan_angle = 4;
@@ -106,6 +136,7 @@ int main(void) {
     }
     ask(light);
     tem00_light_destroy(light);
+    broaden();
     refuse();
     return failures != 0;
 }

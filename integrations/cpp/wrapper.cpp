@@ -124,6 +124,30 @@ void stacks(const std::string &path) {
     expect(std::abs(mean - 1) < 1e-4, "the mean over the period is 1");
 }
 
+void linewidths() {
+    const double peaks[] = {448e-9, 1, 452e-9, 1};
+    tem00_bandwidth_description description = {};
+    description.linewidth = 1e-9;
+    description.peaks = peaks;
+    description.peak_count = 2;
+    description.to_source[2] = description.to_pupil[2] = description.normal[2] = 1;
+    description.to_pupil[0] = 0.5;
+    description.sin_aperture = 0.025;
+    const tem00::bandwidth light(description);
+    const double contrast = light.info().contrast;
+    expect(contrast < 1 && std::abs(light.covariance({0, 0}) / (contrast * contrast) - 1) < 1e-9,
+           "two frames without a motion share all of the contrast");
+    expect(light.line_noise(0) > contrast, "the noise of a line falls less than the contrast");
+    expect(light.draw(0.25).wave_number > light.draw(0.75).wave_number, "peaks stand in their order");
+    const tem00::stack stack(stack_description());
+    expect(std::abs(std::norm(stack.amplitude(3, 5, 0.5)) - stack.intensity(3, 5, 0.5)) < 1e-5,
+           "an amplitude squared is the intensity");
+    description.linewidth = 1e-6;
+    expect(thrown([&] { tem00::bandwidth broad(description); }) ==
+               refusal(TEM00_STATUS_INVALID_ARGUMENT, "linewidth"),
+           "a linewidth above the wavelength is refused by name");
+}
+
 void cameras() {
     const tem00::imaging camera(tem00_pupil_distances{632.8e-9, 0.3, 75e-3, 10e-3, 3.45e-6});
     expect(std::abs(camera.info().speckle_size - 632.8e-9 * 7.5) < 1e-18,
@@ -177,6 +201,7 @@ int main(int count, char **arguments) {
         lights();
         refusals();
         stacks(arguments[1]);
+        linewidths();
         cameras();
         threads();
     } catch (const std::exception &error) {

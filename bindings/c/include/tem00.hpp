@@ -20,6 +20,7 @@
 #define TEM00_HPP
 
 #include <array>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -236,6 +237,13 @@ public:
         check(tem00_stack_intensity_batch(get(), x, y, u, count, intensity));
     }
 
+    /** Amplitude whose squared magnitude is the intensity, for light whose fields add. */
+    std::complex<double> amplitude(double x, double y, double u) const {
+        vec2 amplitude{};
+        check(tem00_stack_amplitude(get(), x, y, u, amplitude.data()));
+        return {amplitude[0], amplitude[1]};
+    }
+
     /** Mean of the intensity over a box of `size` samples about `centre`. */
     double average(const vec2 &centre, const vec2 &size, double u) const {
         double average = 0;
@@ -289,6 +297,54 @@ private:
     explicit stack(tem00_stack *handle) noexcept : handle_(handle) {}
 
     std::unique_ptr<tem00_stack, destroy> handle_;
+};
+
+/** The light of a laser with a linewidth in one resolution cell. Any number of threads may ask it at once. */
+class bandwidth {
+public:
+    explicit bandwidth(const tem00_bandwidth_description &description) {
+        tem00_bandwidth *handle = nullptr;
+        check(tem00_bandwidth_create(&description, &handle));
+        handle_.reset(handle);
+    }
+
+    /** What the linewidth makes of speckle, and what stands for it; pointers belong to this object. */
+    tem00_bandwidth_info info() const {
+        tem00_bandwidth_info info;
+        check(tem00_bandwidth_describe(get(), &info));
+        return info;
+    }
+
+    /** A wave number drawn with a random number. */
+    tem00_wave draw(double uniform) const {
+        tem00_wave wave;
+        check(tem00_bandwidth_draw(get(), uniform, &wave));
+        return wave;
+    }
+
+    /** Covariance of two frames, after a motion in pupil diameters along the tilt and across it. */
+    double covariance(const vec2 &displacement) const {
+        double covariance = 0;
+        check(tem00_bandwidth_covariance(get(), displacement.data(), &covariance));
+        return covariance;
+    }
+
+    /** Deviation of the position of a line over that in light of one wavelength. */
+    double line_noise(double row_height) const {
+        double ratio = 0;
+        check(tem00_bandwidth_line_noise(get(), row_height, &ratio));
+        return ratio;
+    }
+
+    /** The handle, for what is called in C. */
+    const tem00_bandwidth *get() const noexcept { return handle_.get(); }
+
+private:
+    struct destroy {
+        void operator()(tem00_bandwidth *handle) const noexcept { tem00_bandwidth_destroy(handle); }
+    };
+
+    std::unique_ptr<tem00_bandwidth, destroy> handle_;
 };
 
 /** The axes of a camera at `position` that looks at `target`. */

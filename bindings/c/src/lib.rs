@@ -30,8 +30,11 @@ mod light;
 
 mod stack;
 
+mod bandwidth;
+
 mod imaging;
 
+pub use bandwidth::*;
 pub use imaging::*;
 pub use light::*;
 pub use stack::*;

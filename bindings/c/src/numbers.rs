@@ -39,6 +39,13 @@ pub(crate) fn check_length(name: &str, value: f64) -> Result<(), Failure> {
     })
 }
 
+/// Checks a length of a relief that is finer than a speckle.
+pub(crate) fn check_relief(name: &str, value: f64) -> Result<(), Failure> {
+    check_all(name, &[value], "from 0 to 1e-3", |x| {
+        (0.0..=1e-3).contains(&x)
+    })
+}
+
 /// Checks a size: a length that is not zero.
 pub(crate) fn check_size(name: &str, value: f64) -> Result<(), Failure> {
     let allowed = "above 0 and at most 1e30";

@@ -7,6 +7,7 @@ use std::{
 };
 
 use tem00_beam::BeamError;
+use tem00_coherence::CoherenceError;
 use tem00_decorrelation::DecorrelationError;
 use tem00_speckle::{SpeckleError, StackFileError};
 
@@ -61,6 +62,12 @@ impl Failure {
 
 impl From<BeamError> for Failure {
     fn from(error: BeamError) -> Self {
+        Self::argument(error.parameter(), error)
+    }
+}
+
+impl From<CoherenceError> for Failure {
+    fn from(error: CoherenceError) -> Self {
         Self::argument(error.parameter(), error)
     }
 }

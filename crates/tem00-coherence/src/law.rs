@@ -241,10 +241,9 @@ impl PolychromaticSpeckle<'_> {
     /// Where the paths are spread so widely that more than some hundred modes would count, the fractions fall by one
     /// ratio, which is exact for a Gaussian line and heights alone, and keep the contrast.
     pub fn modes(&self) -> Vec<f64> {
-        let nodes = self.line.nodes(self.cell.scale());
-        if nodes.len() > MAX_NODES {
+        let Some(nodes) = self.line.nodes(self.cell.scale(), MAX_NODES) else {
             return self.geometric_modes();
-        }
+        };
         let mut matrix = vec![Complex::ZERO; nodes.len() * nodes.len()];
         for (i, first) in nodes.iter().enumerate() {
             for (j, second) in nodes.iter().enumerate() {

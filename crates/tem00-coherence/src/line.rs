@@ -311,12 +311,15 @@ impl SpectralLine {
     }
 
     /// Returns wave numbers, less the mean one, with the fractions of the power for which they stand in an integral:
-    /// 16 or more for each peak with a width, as a function asks whose finest feature is `scale` wide. Of more than 24
-    /// peaks the widths are left out.
-    pub(crate) fn nodes(&self, scale: f64) -> Vec<[f64; 2]> {
+    /// 16 or more for each peak with a width, as a function asks whose finest feature is `scale` wide; nothing if that
+    /// takes more than `most`. Of more than 24 peaks the widths are left out.
+    pub(crate) fn nodes(&self, scale: f64, most: usize) -> Option<Vec<[f64; 2]>> {
         let is_wide = self.width > 0.0 && self.peaks.len() <= MAX_WIDE_PEAKS;
         let fewest = if self.peaks.len() <= 4 { 4.0 } else { 1.0 };
         let panels = (self.width / scale).ceil().max(fewest);
+        if is_wide && panels > most as f64 {
+            return None;
+        }
         let mut nodes = Vec::new();
         for peak in &self.peaks {
             if is_wide {
@@ -327,7 +330,7 @@ impl SpectralLine {
                 nodes.push([peak.offset, peak.weight]);
             }
         }
-        nodes
+        Some(nodes).filter(|nodes| nodes.len() <= most)
     }
 
     /// The density of the difference of two draws from one peak.

@@ -1,3 +1,5 @@
+use tem00_speckle::SpeckleStack;
+
 use super::{
     Stack,
     description::{Interpolation, SlicePath, path_numbers},
@@ -73,6 +75,28 @@ unsafe fn ask<R>(
     })
 }
 
+/// Asks a stack about a place.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+unsafe fn ask_at<R>(
+    stack: *const Stack,
+    place: [f64; 3],
+    answer: (&'static str, *mut R),
+    question: impl FnOnce(&SpeckleStack) -> R,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        ask(stack, answer, |Stack(stack)| {
+            for (name, value) in ["x", "y", "u"].iter().zip(place) {
+                check_coordinates(name, &[value])?;
+            }
+            Ok(question(stack))
+        })
+    }
+}
+
 fn check_slice(name: &str, Stack(stack): &Stack, index: usize) -> Result<usize, Failure> {
     let count = stack.slice_count();
     if index < count {
@@ -109,13 +133,37 @@ pub unsafe extern "C" fn tem00_stack_intensity(
     u: f64,
     intensity: *mut f64,
 ) -> Status {
+    let answer = ("intensity", intensity);
     // SAFETY: by the contract of this function.
     unsafe {
-        ask(stack, ("intensity", intensity), |Stack(stack)| {
-            for (name, value) in [("x", x), ("y", y), ("u", u)] {
-                check_coordinates(name, &[value])?;
-            }
-            Ok(stack.intensity_at(x, y, u))
+        ask_at(stack, [x, y, u], answer, |stack| {
+            stack.intensity_at(x, y, u)
+        })
+    }
+}
+
+/// Looks up the amplitude whose squared magnitude is the intensity, for light whose fields add: `amplitude` holds its
+/// real and imaginary part.
+///
+/// It is the field in the frame of the pupil of the slice at u or before it: stacks along one path have one frame.
+///
+/// # Safety
+///
+/// The pointers are null or valid, `amplitude` for two numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_amplitude(
+    stack: *const Stack,
+    x: f64,
+    y: f64,
+    u: f64,
+    amplitude: *mut f64,
+) -> Status {
+    let answer = ("amplitude", amplitude.cast::<[f64; 2]>());
+    // SAFETY: by the contract of this function.
+    unsafe {
+        ask_at(stack, [x, y, u], answer, |stack| {
+            let amplitude = stack.amplitude_at(x, y, u);
+            [amplitude.re, amplitude.im]
         })
     }
 }

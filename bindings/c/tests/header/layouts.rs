@@ -21,7 +21,7 @@ macro_rules! structs {
     };
 }
 
-const STRUCTS: [(&str, usize, &str, usize); 28] = structs![
+const STRUCTS: [(&str, usize, &str, usize); 31] = structs![
     Placement "placement" fan_axis,
     SpotDescription "spot_description" m_squared,
     EllipticDescription "elliptic_description" rotation,
@@ -39,6 +39,9 @@ const STRUCTS: [(&str, usize, &str, usize); 28] = structs![
     StackDescription "stack_description" threads,
     StackNeeds "stack_needs" memory_limit,
     StackInfo "stack_info" memory_bytes,
+    BandwidthDescription "bandwidth_description" correlation_length,
+    BandwidthInfo "bandwidth_info" height_count,
+    Wave "wave" phase_per_height,
     LensDescription "lens_description" pixel_pitch,
     PupilDistances "pupil_distances" pixel_pitch,
     ImagingInfo "imaging_info" axial_decorrelation_length,
@@ -53,9 +56,10 @@ const STRUCTS: [(&str, usize, &str, usize); 28] = structs![
 ];
 
 /// The last constant of each enumeration, and its number.
-const CONSTANTS: [(&str, u32); 9] = [
+const CONSTANTS: [(&str, u32); 10] = [
     ("STATUS_PANIC", Status::Panic as u32),
     ("FOCUS_CURVE_EQUAL_PLANE", FocusCurve::EqualPlane as u32),
+    ("LINE_SHAPE_RECTANGULAR", LineShape::Rectangular as u32),
     ("LINE_PROFILE_TABULATED", LineProfile::Tabulated as u32),
     ("LIGHT_KIND_TABULATED_LINE", LightKind::TabulatedLine as u32),
     ("SLICE_PATH_STRAIGHT", SlicePath::Straight as u32),

@@ -29,6 +29,11 @@ fn look_ups_are_those_of_the_library_to_the_last_bit() {
         // SAFETY: the handle and the pointers are valid.
         unsafe {
             let one = answer(0.0, |out| tem00_stack_intensity(stack.0, x, y, u, out));
+            let amplitude = answer([0.0; 2], |out| {
+                tem00_stack_amplitude(stack.0, x, y, u, out.cast())
+            });
+            let field = library.amplitude_at(x, y, u);
+            assert_eq!(amplitude, [field.re, field.im], "at ({x}, {y}, {u})");
             let mean = answer(0.0, |out| {
                 tem00_stack_average(stack.0, centre.as_ptr(), size.as_ptr(), u, out)
             });

@@ -1,0 +1,267 @@
+//! Light that is not of one wavelength: described, then asked what it makes of speckle and how to show it.
+
+mod description;
+
+pub use description::*;
+
+use tem00_coherence::{
+    PolychromaticSpeckle, ResolutionCell, Rows, SpectralLine, representative_heights,
+};
+
+use crate::{
+    numbers::{check_coordinates, check_length, check_variates},
+    pointers::{self, borrow, read, write},
+    status::{Status, call},
+};
+
+/// The light of a laser with a linewidth in one resolution cell of a camera. It never changes: any number of threads may ask it
+/// at once.
+///
+/// To show it, draw a wave for each camera sample, and look it up in the stacks of its patterns j and heights h:
+///
+/// I = sum_j patterns[j] |sum_h heights[2h + 1] exp(i heights[2h] wave.phase_per_height) U_jh(x, y, u)|^2
+///
+/// with U_jh of tem00_stack_amplitude. Stacks of one description but their own seeds, on a straight path whose x axis
+/// leads along `tilt` in the image; u larger by wave.pupil_shift in slices, 2 half_period / length of them to a diameter:
+/// with 32 of them the contrast is right to 1 %, with 8 it is 4 % too high.
+/// Without heights the intensities of one wavelength add: I = sum_j patterns[j] I_j.
+#[derive(Debug)]
+pub struct Bandwidth {
+    line: SpectralLine,
+    cell: ResolutionCell,
+    /// The cell with a relief without correlation length that has the same contrast.
+    dense: ResolutionCell,
+    contrast: f64,
+    patterns: Vec<f64>,
+    heights: Vec<[f64; 2]>,
+}
+
+/// What a linewidth makes of speckle, and what stands for it in a renderer.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandwidthInfo {
+    /// Contrast of polarised speckle, from 0 to 1: what is seen, and not the noise of a line.
+    pub contrast: f64,
+    /// Coherence length in metres; infinite for peaks without a width.
+    pub coherence_length: f64,
+    /// Unit vector along which the field moves across the pupil where the wave number grows; 0, 0, 0 without a tilt of the cell.
+    pub tilt: [f64; 3],
+    /// Difference of wave numbers that moves it by the pupil's diameter, in rad/m; infinite without a tilt.
+    pub tilt_wave_number: f64,
+    /// Fractions of the light in patterns whose intensities add: one, or the coherent modes where heights dominate; none
+    /// below a contrast of 0.07, which has a thousand. They belong to the handle.
+    pub patterns: *const f64,
+    /// Number of patterns.
+    pub pattern_count: usize,
+    /// Heights of the relief in metres whose fields add, each with the root of its fraction of the light. They belong
+    /// to the handle.
+    pub heights: *const f64,
+    /// Number of heights; 0 if each pattern is looked up as in one wavelength.
+    pub height_count: usize,
+}
+
+/// A wave number drawn from the light.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wave {
+    /// The wave number less the mean one, in rad/m.
+    pub wave_number: f64,
+    /// Displacement of the field across the pupil, along `tilt`, in pupil diameters.
+    pub pupil_shift: f64,
+    /// Phase per height of the relief, in rad/m.
+    pub phase_per_height: f64,
+}
+
+/// The contrast below which patterns are not told: it takes a thousand of them.
+const LEAST_CONTRAST: f64 = 0.07;
+
+impl Bandwidth {
+    fn new(line: SpectralLine, cell: ResolutionCell) -> Self {
+        let speckle = PolychromaticSpeckle {
+            line: &line,
+            cell: &cell,
+        };
+        let contrast = speckle.contrast();
+        let dense = speckle.dense_equivalent(|speckle| speckle.contrast());
+        let speckle = PolychromaticSpeckle {
+            line: &line,
+            cell: &dense,
+        };
+        let heights = representative_heights(2.0 * line.effective_spread() * dense.path_spread());
+        let patterns = match heights {
+            Some(_) => vec![1.0],
+            None if contrast < LEAST_CONTRAST => Vec::new(),
+            None => speckle.modes(),
+        };
+        let rms_height = dense.relief().rms_height;
+        let node = |[z, fraction]: [f64; 2]| [z * rms_height, fraction.sqrt()];
+        Self {
+            contrast,
+            patterns,
+            heights: heights.into_iter().flatten().map(node).collect(),
+            line,
+            cell,
+            dense,
+        }
+    }
+
+    const fn speckle(&self) -> PolychromaticSpeckle<'_> {
+        PolychromaticSpeckle {
+            line: &self.line,
+            cell: &self.cell,
+        }
+    }
+
+    fn info(&self) -> BandwidthInfo {
+        BandwidthInfo {
+            contrast: self.contrast,
+            coherence_length: self.line.coherence_length(),
+            tilt: (-self.cell.tilt()).normalize_or_zero().to_array(),
+            tilt_wave_number: self.cell.tilt_wave_number(),
+            patterns: self.patterns.as_ptr(),
+            pattern_count: self.patterns.len(),
+            heights: self.heights.as_ptr().cast(),
+            height_count: self.heights.len(),
+        }
+    }
+
+    fn wave(&self, uniform: f64) -> Wave {
+        let wave_number = self.line.draw(uniform);
+        Wave {
+            wave_number,
+            pupil_shift: wave_number / self.cell.tilt_wave_number(),
+            phase_per_height: wave_number * self.cell.height_factor(),
+        }
+    }
+}
+
+/// Prepares the light of a laser with a linewidth: in milliseconds, or in seconds for a correlation length of a thousand
+/// speckles. One serves all places at which the directions differ by little.
+///
+/// On failure `*bandwidth` is null.
+///
+/// # Safety
+///
+/// The pointers are null or valid, that to peaks for two numbers each.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_bandwidth_create(
+    description: *const BandwidthDescription,
+    bandwidth: *mut *mut Bandwidth,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    call(|| unsafe {
+        pointers::create("bandwidth", bandwidth, || {
+            let description = borrow("description", description)?;
+            let line = description.line()?;
+            let cell = description.cell(line.wavelength())?;
+            Ok(Bandwidth::new(line, cell))
+        })
+    })
+}
+
+/// Frees the light; null is allowed. No thread may be using it, and it must not be used again.
+///
+/// # Safety
+///
+/// `bandwidth` is null, or came from `tem00_bandwidth_create` and was not destroyed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_bandwidth_destroy(bandwidth: *mut Bandwidth) {
+    // SAFETY: by the contract of this function.
+    unsafe { pointers::destroy(bandwidth) };
+}
+
+/// Tells what the linewidth makes of speckle, and what stands for it.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_bandwidth_describe(
+    bandwidth: *const Bandwidth,
+    info: *mut BandwidthInfo,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let result = unsafe { borrow("bandwidth", bandwidth) }?.info();
+        // SAFETY: by the contract of this function.
+        unsafe { write("info", info, result) }
+    })
+}
+
+/// Draws a wave number with a random number from 0 to 1: stratified ones, among the samples of a pixel, leave the least noise.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_bandwidth_draw(
+    bandwidth: *const Bandwidth,
+    uniform: f64,
+    wave: *mut Wave,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let bandwidth = unsafe { borrow("bandwidth", bandwidth) }?;
+        check_variates("uniform", &[uniform])?;
+        // SAFETY: by the contract of this function.
+        unsafe { write("wave", wave, bandwidth.wave(uniform)) }
+    })
+}
+
+/// Computes the covariance of two frames over the square of the mean intensity: what a motion leaves of the contrast squared.
+///
+/// `displacement` holds the motion of the field between them, in pupil diameters along the tilt and across it. In focus.
+///
+/// # Safety
+///
+/// The pointers are null or valid, that to the displacement for two numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_bandwidth_covariance(
+    bandwidth: *const Bandwidth,
+    displacement: *const f64,
+    covariance: *mut f64,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let Bandwidth { line, dense, .. } = unsafe { borrow("bandwidth", bandwidth) }?;
+        // SAFETY: by the contract of this function.
+        let displacement: [f64; 2] = unsafe { read("displacement", displacement) }?;
+        check_coordinates("displacement", &displacement)?;
+        let speckle = PolychromaticSpeckle { line, cell: dense };
+        // SAFETY: by the contract of this function.
+        unsafe { write("covariance", covariance, speckle.covariance(displacement)) }
+    })
+}
+
+/// Computes the standard deviation of the position of a laser line over that in light of one wavelength: what counts for its
+/// noise, where the contrast does not.
+///
+/// `row_height` is the height of the rows along which the line is looked for, in speckle sizes: 0 for rows finer than a
+/// speckle; rows taller than 40 count as tall, and so do round spots.
+///
+/// # Safety
+///
+/// The pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_bandwidth_line_noise(
+    bandwidth: *const Bandwidth,
+    row_height: f64,
+    ratio: *mut f64,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let bandwidth = unsafe { borrow("bandwidth", bandwidth) }?;
+        check_length("row_height", row_height)?;
+        let rows = if row_height > 0.0 {
+            Rows::Height(row_height)
+        } else {
+            Rows::Thin
+        };
+        let result = bandwidth.speckle().line_noise(rows).sqrt();
+        // SAFETY: by the contract of this function.
+        unsafe { write("ratio", ratio, result) }
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,6 @@
 mod cell;
 mod line;
+mod mixed;
 
 use pyo3::prelude::*;
 
@@ -10,5 +11,9 @@ use pyo3::prelude::*;
 #[pymodule(submodule)]
 pub(crate) mod coherence {
     #[pymodule_export]
-    use super::{cell::ResolutionCell, line::SpectralLine};
+    use super::{
+        cell::ResolutionCell,
+        line::SpectralLine,
+        mixed::{cascade_variance, mixed_contrast},
+    };
 }

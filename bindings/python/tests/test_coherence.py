@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import tem00
 from scipy import integrate
-from tem00.coherence import ResolutionCell, SpectralLine
+from tem00.coherence import ResolutionCell, SpectralLine, cascade_variance, mixed_contrast
 
 WAVELENGTH, SIN_APERTURE, LINEWIDTH = 450e-9, 0.025, 20e-9
 SPREAD = 2 * math.pi * LINEWIDTH / WAVELENGTH**2 / math.sqrt(8 * math.log(2))
@@ -101,3 +101,26 @@ def test_what_cannot_be_is_refused_by_name(wrong: object, parameter: str) -> Non
     with pytest.raises(tem00.ParameterError) as caught:
         wrong()
     assert caught.value.parameter == parameter
+
+
+def test_multiple_light_counts_with_what_its_paths_share() -> None:
+    """Normally distributed delays, by sums over pairs of random paths."""
+    line = SpectralLine(WAVELENGTH, 0.1e-9)
+    delays = np.random.default_rng(1).normal(0.82e-3, 0.3e-3, 1500)
+    within = float(np.mean(line.squared_coherence(delays[:, None] - delays)))
+    shared = float(np.mean(line.squared_coherence(delays)))
+    spread = 2 * math.pi * 0.1e-9 / WAVELENGTH**2 / math.sqrt(8 * math.log(2))
+    assert within == pytest.approx((1 + (2 * spread * 0.3e-3) ** 2) ** -0.5, abs=0.02)
+
+    f = 0.3 / 1.3
+    contrast = mixed_contrast(f, with_single=shared, within_multiple=within, polarisation=(1, 0))
+    squared = (1 - f) ** 2 + f * (1 - f) * shared + f**2 * within / 2
+    assert contrast == pytest.approx(math.sqrt(squared), rel=1e-12)
+    assert mixed_contrast(f) == pytest.approx(1)
+    with pytest.raises(tem00.ParameterError, match=r"^within_multiple must be from 0 to 1, got 1\.5$"):
+        mixed_contrast(f, within_multiple=1.5)
+
+
+def test_a_small_lit_part_makes_speckle_of_speckle() -> None:
+    assert math.sqrt(1 + 2 * cascade_variance(1.0)) == pytest.approx(1.237, abs=5e-4)
+    assert cascade_variance(0) == pytest.approx(1)

@@ -77,8 +77,8 @@ impl MixedLight {
             ("within_single", self.within_single),
             ("with_single", self.with_single),
             ("within_multiple", self.within_multiple),
-            ("polarisation of single light", first),
-            ("polarisation of multiple light", second),
+            ("polarisation", first),
+            ("polarisation", second),
         ];
         for (name, value) in fields {
             if !(0.0..=1.0).contains(&value) {

@@ -4,8 +4,19 @@ from tem00._typing import FloatArray, RealArray, Vector
 __all__ = [
     "ResolutionCell",
     "SpectralLine",
+    "cascade_variance",
+    "mixed_contrast",
 ]
 
+def cascade_variance(relative_aperture: float) -> float: ...
+def mixed_contrast(
+    multiple: float,
+    *,
+    within_single: float = ...,
+    with_single: float = ...,
+    within_multiple: float = ...,
+    polarisation: Vector = ...,
+) -> float: ...
 
 @final
 class ResolutionCell:

@@ -19,14 +19,15 @@ const PLATES: usize = 20;
 /// What is left of squared correlations in a patch that has 99.3 % of the light of a point.
 const PATCH: f64 = 0.9932 * 0.9932;
 
-/// The squared overlap of the pupil with itself, displaced by so many metres.
+/// The overlap of the pupil with itself, displaced by so many metres.
 fn of_pupil(corner: &Corner, across: f64) -> f64 {
-    disc_overlap(across / (2.0 * DISTANCE * corner.view.sin_aperture)).powi(2)
+    disc_overlap(across / (2.0 * DISTANCE * corner.view.sin_aperture))
 }
 
-/// The correlation of two frames of the multiple light: it moves across the pupil as if the plate were the source, and
-/// the path by way of each place of the wall changes by another length.
-fn multiple(corner: &Corner, motion: &RigidMotion) -> f64 {
+/// The correlation of the fields of two frames of the multiple light, against the change of phase of the single light: it
+/// moves across the pupil as if the plate were the source, and the path by way of each place of the wall changes by
+/// another length.
+fn multiple(corner: &Corner, motion: &RigidMotion) -> Complex<f64> {
     let to_pupil = corner.view.to_pupil.normalize();
     let pupil = to_pupil * DISTANCE;
     let across = (motion.point(pupil) - pupil).reject_from(to_pupil);
@@ -36,15 +37,16 @@ fn multiple(corner: &Corner, motion: &RigidMotion) -> f64 {
         let moved = motion.point(from);
         let source = corner.path_from_source(moved) - corner.path_from_source(from);
         let change = source + moved.distance(seen) - from.length();
+        let change = change - corner.path_from_source(seen);
         let weight = from.length_squared().recip();
         sum += Complex::from_polar(weight, TAU / corner.view.wavelength * change);
         all += weight;
     }
-    of_pupil(corner, across.length()) * (sum / all).norm_sqr()
+    of_pupil(corner, across.length()) * sum / all
 }
 
-/// The correlation of two frames of the single light of a far source, before and after a turn in the plane of incidence
-/// and a shift across it.
+/// The correlation of the fields of two frames of the single light of a far source, before and after a turn in the plane
+/// of incidence and a shift across it.
 fn single(corner: &Corner, turn: f64, shift: f64) -> f64 {
     let [cos_in, cos_out] =
         [corner.view.to_source, corner.view.to_pupil].map(|direction| direction.normalize().z);
@@ -65,7 +67,7 @@ struct Scene {
 }
 
 #[test]
-fn turns_and_diverging_light_change_multiple_light_faster_and_shifts_in_collimated_light_do_not() {
+fn frames_of_single_multiple_and_mixed_light_follow_the_paths_that_a_motion_changes() {
     let scenes = [
         Scene {
             name: "turn by 0.3 mrad",
@@ -116,26 +118,34 @@ fn turns_and_diverging_light_change_multiple_light_faster_and_shifts_in_collimat
             [
                 of([0, 1].map(|i| frames[i].intensities(0.0, false))),
                 of([0, 1].map(|i| frames[i].multiple_alone())),
+                of([0, 1].map(|i| frames[i].intensities(1.0, false))),
             ]
         });
         // A point source joins the pupil at its own distance, which is that of the camera.
         let doubled = if scene.source.is_some() { 2.0 } else { 1.0 };
+        let first = single(&corner, scene.turn, doubled * scene.shift);
+        let second = multiple(&corner, &motion);
         let laws = [
-            single(&corner, scene.turn, doubled * scene.shift),
-            multiple(&corner, &motion),
+            first.powi(2),
+            second.norm_sqr(),
+            (0.5 * (first + second)).norm_sqr(),
         ];
-        let waves = [0, 1].map(|i| covariance(&surfaces.iter().map(|s| s[i]).collect::<Vec<_>>()));
-        for (i, light) in ["single", "multiple"].into_iter().enumerate() {
+        let waves =
+            [0, 1, 2].map(|i| covariance(&surfaces.iter().map(|s| s[i]).collect::<Vec<_>>()));
+        for (i, light) in ["single", "multiple", "mixed"].into_iter().enumerate() {
             let name = format!("{light} light, {}", scene.name);
-            assert!(
-                (laws[i] - scene.known[i]).abs() < 0.015,
-                "{name}: {}",
-                laws[i]
-            );
             assert_agrees(&name, waves[i], laws[i] / PATCH, 0.02);
+        }
+        for (law, known) in laws.iter().zip(scene.known) {
+            assert!((law - known).abs() < 0.015, "{}: {law}", scene.name);
         }
         if laws[0] - laws[1] > 0.01 {
             assert_refutes("multiple as single light", waves[1], laws[0] / PATCH);
+            // Patterns of their own for both, whose common phase is lost.
+            let without_phase = (0.5 * (first + second.norm())).powi(2) / PATCH;
+            if without_phase - laws[2] > 0.1 {
+                assert_refutes("mixed light without a phase", waves[2], without_phase);
+            }
         }
     }
 }

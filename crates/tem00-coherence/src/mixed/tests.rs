@@ -102,6 +102,30 @@ fn speckle_of_speckle_has_the_contrasts_of_its_table() {
     }
 }
 
+/// Two directions of the light share the overlap of two pupils, as far apart as they are.
+#[test]
+fn speckle_of_speckle_is_a_mean_over_pairs_of_directions() {
+    let count = 1000;
+    let direction = |i: u32| {
+        let radius = ((f64::from(i) + 0.5) / f64::from(count)).sqrt();
+        let (sin, cos) = (2.399_963 * f64::from(i)).sin_cos();
+        [radius * cos, radius * sin]
+    };
+    let all: Vec<[f64; 2]> = (0..count).map(direction).collect();
+    for r in [0.3, 1.0, 3.0] {
+        let shared = |a: &[f64; 2], b: &[f64; 2]| {
+            disc_overlap(0.5 * r * (a[0] - b[0]).hypot(a[1] - b[1])).powi(2)
+        };
+        let pairs = all
+            .iter()
+            .flat_map(|a| all.iter().map(move |b| shared(a, b)));
+        let mean = pairs.sum::<f64>() / f64::from(count).powi(2);
+        let variance = cascade_variance(r).expect("a ratio");
+        // Each direction is paired with itself, too.
+        assert_abs_diff_eq!(variance, mean, epsilon = 1e-3);
+    }
+}
+
 #[test]
 fn what_cannot_be_is_refused_by_its_name() {
     let good = MixedLight::default();

@@ -26,12 +26,12 @@ fn within(kibibytes: u32, folder: &Path, line: &str) -> Output {
 /// Asserts that the program ends by itself, whatever memory it has, and that much is enough.
 #[track_caller]
 fn assert_ends(folder: &Path, line: &str, limits: impl Iterator<Item = u32>) {
-    let mut refused = 0;
+    let [mut refused, mut done] = [0, 0];
     for kibibytes in limits {
         let output = within(kibibytes, folder, line);
         let told = text(&output.stderr);
         match output.status.code() {
-            Some(0) => {}
+            Some(0) => done += 1,
             Some(1 | 2) => {
                 refused += 1;
                 let words = ["memory", "threads", "listen for Ctrl-C"];
@@ -42,7 +42,10 @@ fn assert_ends(folder: &Path, line: &str, limits: impl Iterator<Item = u32>) {
         }
     }
     assert!(refused > 0, "{line} was never refused");
-    assert_code(&run(folder, line), 0);
+    // More threads than those of two cores need more memory.
+    if done == 0 {
+        assert_code(&run(folder, line), 0);
+    }
 }
 
 #[test]

@@ -55,6 +55,14 @@ const METHODS: &[(&str, &str)] = &[
     def amplitude_correlation(self, x: Numbers, y: Numbers) -> NDArray[np.complex128]: ...
 ",
     ),
+    (
+        "SpeckleStack.amplitude_at",
+        "    @overload
+    def amplitude_at(self, x: float, y: float, u: float) -> complex: ...
+    @overload
+    def amplitude_at(self, x: Numbers, y: Numbers, u: Numbers) -> NDArray[np.complex128]: ...
+",
+    ),
 ];
 
 /// The type of an argument.

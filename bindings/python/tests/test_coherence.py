@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 import tem00
 from scipy import integrate
-from tem00.coherence import ResolutionCell, SpectralLine, cascade_variance, mixed_contrast
+from numpy.typing import NDArray
+from tem00.coherence import (
+    ResolutionCell,
+    SpectralLine,
+    cascade_variance,
+    mixed_contrast,
+    representative_heights,
+)
+from tem00.speckle import PupilField, SlicePath, SpeckleStack
 
 WAVELENGTH, SIN_APERTURE, LINEWIDTH = 450e-9, 0.025, 20e-9
 SPREAD = 2 * math.pi * LINEWIDTH / WAVELENGTH**2 / math.sqrt(8 * math.log(2))
@@ -124,3 +132,31 @@ def test_multiple_light_counts_with_what_its_paths_share() -> None:
 def test_a_small_lit_part_makes_speckle_of_speckle() -> None:
     assert math.sqrt(1 + 2 * cascade_variance(1.0)) == pytest.approx(1.237, abs=5e-4)
     assert cascade_variance(0) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("height", [0.0, 0.8e-6])
+def test_light_that_is_drawn_has_the_contrast_of_the_law(height: float) -> None:
+    line, tilted = SpectralLine(WAVELENGTH, LINEWIDTH), cell(height)
+    heights = representative_heights(2 * line.effective_spread * tilted.path_spread)
+    assert heights is not None
+    slices = 2 * 48 / 3
+    path = SlicePath.straight(half_period=48, length=3)
+    fields = PupilField(256, 64, 1).independent(len(heights))
+    stacks = [SpeckleStack.generate(field, path) for field in fields]
+    x, y = np.meshgrid(np.arange(51) * 5.0, np.arange(51) * 5.0)
+    waves = line.draw((np.arange(64) + 0.5) / 64)
+
+    def intensity(kappa: float) -> NDArray[np.floating]:
+        u = slices * kappa / tilted.tilt_wave_number
+        parts = [
+            np.sqrt(fraction) * np.exp(1j * kappa * tilted.path_spread * z) * stack.amplitude_at(x, y, u)
+            for stack, (z, fraction) in zip(stacks, heights)
+        ]
+        return np.asarray(np.abs(sum(parts)) ** 2)
+
+    exposed = np.mean([intensity(kappa) for kappa in waves], axis=0)
+    # Some 2000 speckles, and 1 % each by slices and heights.
+    assert exposed.std() / exposed.mean() == pytest.approx(tilted.contrast(line), rel=0.045)
+    assert representative_heights(4.1) is None
+    with pytest.raises(tem00.ParameterError, match="spread must be zero or positive"):
+        representative_heights(-1.0)

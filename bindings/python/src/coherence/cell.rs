@@ -5,7 +5,7 @@ use tem00_coherence::{self as physics, DVec3, PolychromaticSpeckle, Rows};
 use super::line::SpectralLine;
 use crate::{
     arrays::{Array, Components, array, vector_array},
-    error::OrRaise,
+    error::{OrRaise, refused},
 };
 
 /// The paths of the light that one resolution cell of a camera brings to one point of the image.
@@ -99,7 +99,7 @@ impl ResolutionCell {
     ) -> PyResult<f64> {
         let lag: [f64; 2] = lag.vector("lag")?;
         if lag[0].hypot(lag[1]) > 1e3 {
-            return Err(crate::error::refused(
+            return Err(refused(
                 "lag",
                 format!("lag must be at most 1000 speckles long, got {lag:?}"),
             ));
@@ -112,6 +112,27 @@ impl ResolutionCell {
         let modes = py.detach(|| self.speckle(line).modes());
         Ok(array(py, &[modes.len()], modes)?.into_any())
     }
+}
+
+/// Return heights that stand for a normal distribution in light of a finite bandwidth, float64 of shape (n, 2): each in units
+/// of the root mean square height, with its fraction of the light; None above a spread of 4.
+///
+/// Parameters
+/// ----------
+/// spread : float
+///     Twice the spread of the wave numbers times that of the paths.
+#[pyfunction]
+pub(super) fn representative_heights(py: Python<'_>, spread: f64) -> PyResult<Option<Array<'_>>> {
+    if !(0.0..).contains(&spread) {
+        let message = format!("spread must be zero or positive, got {spread}");
+        return Err(refused("spread", message));
+    }
+    let heights = physics::representative_heights(spread);
+    let rows = |heights: Vec<[f64; 2]>| {
+        let values = array(py, &[heights.len(), 2], heights.into_flattened())?;
+        Ok(values.into_any())
+    };
+    heights.map(rows).transpose()
 }
 
 impl ResolutionCell {

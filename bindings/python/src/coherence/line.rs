@@ -98,4 +98,16 @@ methods! {
     /// path : float or array
     ///     Path difference in metres.
     map squared_coherence(path);
+
+    /// Standard deviation, in rad/m, of a Gaussian line that is as wide between the quantiles where that has half its
+    /// maximum.
+    get effective_spread -> f64;
+
+    /// Return the difference between a wave number drawn from the line and the mean one, in rad/m.
+    ///
+    /// Parameters
+    /// ----------
+    /// uniform : float or array
+    ///     Random numbers from 0 to 1.
+    map draw(uniform);
 }

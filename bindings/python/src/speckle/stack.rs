@@ -5,7 +5,10 @@ use std::{
 };
 
 use numpy::{Complex32, PyArray2};
-use pyo3::{prelude::*, types::PyBytes};
+use pyo3::{
+    prelude::*,
+    types::{PyBytes, PyComplex},
+};
 use tem00_speckle as physics;
 
 use super::{
@@ -18,7 +21,7 @@ use super::{
     slice_law::SliceLaw,
 };
 use crate::{
-    arrays::{Numbers, Values, Whole, fill, map},
+    arrays::{Numbers, Values, Whole, fill, map, map_many},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -151,6 +154,35 @@ impl SpeckleStack {
             self.0.intensity_batch(x, y, u, intensity);
         })?;
         Ok(intensity)
+    }
+
+    /// Return the amplitude whose squared magnitude is the intensity, for light whose fields add.
+    ///
+    /// Stacks along one path have one frame, so that their amplitudes add.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y : `array_like`
+    ///     Position in samples; the period is the size.
+    /// u : `array_like`
+    ///     Coordinate in slices; the period is `slice_count`.
+    ///
+    /// Returns
+    /// -------
+    /// complex or numpy.ndarray of complex
+    ///     Amplitude in the common shape of the arguments.
+    fn amplitude_at<'py>(
+        &self,
+        py: Python<'py>,
+        x: Numbers<'py>,
+        y: Numbers<'py>,
+        u: Numbers<'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let [re, im] = map_many(py, [("x", &x), ("y", &y), ("u", &u)], |[x, y, u]| {
+            let amplitude = self.0.amplitude_at(x, y, u);
+            [amplitude.re, amplitude.im]
+        })?;
+        re.add(im.mul(PyComplex::from_doubles(py, 0.0, 1.0))?)
     }
 
     /// Return the mean of the intensity over boxes: what pixels see whose whole area takes part.

@@ -246,14 +246,14 @@ typedef enum {
  * The light of a laser with a linewidth in one resolution cell of a camera. It never changes: any number of threads may ask it
  * at once.
  *
- * To show it, draw a wave for each camera sample, and look it up in the stacks of its patterns j and heights h:
+ * To show it, draw a wave for each camera sample, and add what it finds in the stacks of pattern j and height h:
  *
- * I = sum_j patterns[j] |sum_h heights[2h + 1] exp(i heights[2h] wave.phase_per_height) U_jh(x, y, u)|^2
+ * `I = sum_j patterns[j] |sum_h heights[2h + 1] exp(i heights[2h] wave.phase_per_height) U_jh(x, y, u)|^2`
  *
- * with U_jh of tem00_stack_amplitude. Stacks of one description but their own seeds, on a straight path whose x axis
- * leads along `tilt` in the image; u larger by wave.pupil_shift in slices, 2 half_period / length of them to a diameter:
- * with 32 of them the contrast is right to 1 %, with 8 it is 4 % too high.
- * Without heights the intensities of one wavelength add: I = sum_j patterns[j] I_j.
+ * `U_jh` is `tem00_stack_amplitude` of stacks of one description but their own seeds, on a straight path whose x axis
+ * leads along `tilt` in the image. The shift of the wave adds to u: `wave.pupil_shift` times the slices of a diameter,
+ * `2 half_period / length`. With 32 of them the contrast is right to 1 %, with 8 it is 4 % too high. Without heights
+ * the intensities of one wavelength add, `I = sum_j patterns[j] I_j`.
  */
 typedef struct tem00_bandwidth tem00_bandwidth;
 

@@ -341,7 +341,8 @@ fn senseless_numbers_are_refused_by_name() {
         ("linewidth", |d| d.linewidth = 50e-9),
         ("shape", |d| d.shape = 3),
         ("peaks", |d| {
-            (d.peak_count, d.peaks) = (257, [1.0; 514].as_ptr())
+            static MANY: [f64; 514] = [1.0; 514];
+            (d.peak_count, d.peaks) = (257, MANY.as_ptr());
         }),
         ("to_source", |d| d.to_source = [0.0; 3]),
         ("to_pupil", |d| d.to_pupil = [0.0, 0.0, -1.0]),

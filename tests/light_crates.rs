@@ -192,7 +192,7 @@ fn every_type_of_speckle_crosses_threads() {
     use tem00::speckle::*;
     let names = names_of_shared! {
         Complex<f32>, Exposure, Interpolation,
-        LitArea, NpyError, NpyReader<&'static [u8]>, ObjectiveSpeckle, Phasors, PixelArray,
+        NpyError, NpyReader<&'static [u8]>, Phasors, PixelArray,
         Pupil, PupilField, SliceLaw, SlicePath, SpeckleError, SpeckleField, SpecklePattern,
         SpeckleScratch, SpeckleStack, StackFileError, StackNeeds, StackOptions, StackPlan,
         Transmission,

@@ -7,7 +7,6 @@ mod exposure;
 mod field;
 mod files;
 mod images;
-mod objective;
 mod options;
 mod path;
 mod pattern;
@@ -27,7 +26,6 @@ pub(crate) mod speckle {
     use super::{
         exposure::Exposure,
         field::PupilField,
-        objective::{LitArea, ObjectiveSpeckle},
         options::StackOptions,
         path::SlicePath,
         pattern::{SpeckleField, SpecklePattern},

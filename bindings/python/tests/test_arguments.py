@@ -50,8 +50,6 @@ SIZES: list[tuple[str, Callable[[float], object]]] = [
     ("width", lambda x: st.LitArea.rectangle(x, 1.0)),
     ("height", lambda x: st.LitArea.rectangle(1.0, x)),
     ("radius", st.LitArea.gaussian_spot),
-    ("diameter", sp.LitArea.disc),
-    ("radius", sp.LitArea.gaussian_spot),
     ("depth", lambda x: dc.ImagingGeometry.from_lens(LENS).defocus_at(x)),
     ("depth", lambda x: dc.ImagingGeometry.from_lens(LENS).axial_decorrelation_length_at(x)),
     ("radius", lambda x: beam.GaussianBeam.from_waist(650e-9, 1e-4).encircled_power(x, 0.0)),

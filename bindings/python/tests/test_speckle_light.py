@@ -1,4 +1,4 @@
-"""Sums, backgrounds, exposures, pixels and speckle without a lens, against NumPy and SciPy."""
+"""Sums, backgrounds, exposures and pixels, against NumPy and SciPy."""
 
 import numpy as np
 import pytest
@@ -7,10 +7,7 @@ from scipy import fft, stats
 
 from tem00.speckle import (
     Exposure,
-    LitArea,
-    ObjectiveSpeckle,
     PixelArray,
-    Pupil,
     PupilField,
     SlicePath,
     SpecklePattern,
@@ -106,28 +103,3 @@ def test_pixels_are_integrals_of_the_interpolated_pattern(field: PupilField) -> 
     assert image.dtype == np.float32
     assert image.shape == (4, 5)
     np.testing.assert_allclose(image, expected, atol=SINGLE)
-
-
-def test_a_lit_area_is_a_pupil_without_a_lens() -> None:
-    spot = ObjectiveSpeckle(650e-9, 2.0, LitArea.disc(diameter=1e-3))
-    assert spot.speckle_size == pytest.approx(650e-9 * 2.0 / 1e-3, rel=1e-14)
-    field = spot.field((256, 192), 0.5e-3, 1)
-    assert field == PupilField.from_speckle_size((256, 192), field.speckle_size, 1)
-    assert field.speckle_size == pytest.approx(2.6, rel=1e-14)
-    assert spot.offset((0.1e-3, -0.2e-3)) == pytest.approx((-0.1, 0.2), rel=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("area", "width", "pupil"),
-    [
-        (LitArea.ring(outer=2e-3, inner=1e-3), 2e-3, Pupil.annulus(0.5)),
-        (LitArea.rectangle(width=2e-3, height=1e-3), 2e-3, Pupil.rectangle(0.5)),
-        (LitArea.gaussian_spot(radius=0.4e-3), 2e-3, Pupil.gaussian(0.2)),
-    ],
-    ids=repr,
-)
-def test_lit_areas_have_the_shape_of_a_pupil(area: LitArea, width: float, pupil: Pupil) -> None:
-    speckle = ObjectiveSpeckle(500e-9, 1.0, area)
-    assert speckle.speckle_size == pytest.approx(500e-9 / width, rel=1e-14)
-    field = speckle.field((256, 256), speckle.speckle_size / 2, 1)
-    assert field.pupil == pupil

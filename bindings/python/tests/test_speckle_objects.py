@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 from tem00 import speckle
 from tem00.speckle import (
     Exposure,
-    LitArea,
-    ObjectiveSpeckle,
     PixelArray,
     Pupil,
     PupilField,
@@ -135,11 +133,6 @@ PICKLED = [
     SpeckleStack.generate(MEASURED, SlicePath.still(), StackOptions("nearest")),
     Exposure().with_image_drift((1.0, 2.0)).with_pupil_drift((0.1, 0.2)),
     PixelArray((4, 5), (1.5, 2.0)).with_size((1.0, 1.0)).with_origin((3.0, -4.0)),
-    LitArea.disc(diameter=1e-3),
-    LitArea.ring(outer=2e-3, inner=1e-3),
-    LitArea.rectangle(width=2e-3, height=1e-3),
-    LitArea.gaussian_spot(radius=1e-3),
-    ObjectiveSpeckle(650e-9, 2.0, LitArea.disc(diameter=1e-3)),
 ]
 
 

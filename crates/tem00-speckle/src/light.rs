@@ -2,12 +2,10 @@
 
 mod background;
 mod exposure;
-mod objective;
 mod pixels;
 mod sum;
 mod transform;
 
 pub use exposure::Exposure;
-pub use objective::{LitArea, ObjectiveSpeckle};
 pub use pixels::PixelArray;
 pub use sum::incoherent_fractions;

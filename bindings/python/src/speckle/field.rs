@@ -56,6 +56,9 @@ impl PupilField {
 
     /// Return a field of unit phasors behind a circular pupil, for speckles of a given size.
     ///
+    /// Without a lens a lit area takes the place of the pupil: of the width w it makes speckles of the wavelength
+    /// times the distance over w, and `with_pupil` gives its shape. The law is `tem00.statistics.ObjectiveSpeckle`.
+    ///
     /// Parameters
     /// ----------
     /// size : (int, int)

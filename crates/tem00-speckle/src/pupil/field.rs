@@ -138,6 +138,14 @@ impl PupilField {
     /// The speckle size h is the period of the intensity's cut-off frequency. The pupil is an ellipse
     /// of W/h by H/h lattice points.
     ///
+    /// # Speckle without a lens
+    ///
+    /// On a screen at the distance z, parallel to a rough surface and near the axis, the lit area takes the place of the
+    /// pupil: of the width w it makes speckles of `λz / w`, and [`with_pupil`](Self::with_pupil) gives its shape. A
+    /// Gaussian spot is cut off, at five radii in w for a pupil of the radius 0.2. A surface that has moved by d through
+    /// the light displaces the pupil by `−d / w`: its speckle boils and does not move. The law is
+    /// `tem00_statistics::ObjectiveSpeckle`.
+    ///
     /// # Errors
     ///
     /// Returns an error unless both sides are at most `MAX_SIZE` and
@@ -151,6 +159,12 @@ impl PupilField {
     /// let field = PupilField::from_speckle_size([640, 480], 3.2, 7)?;
     /// assert_eq!(field.diameter(), [200.0, 150.0]);
     /// assert_eq!(field.pattern().values().height(), 480);
+    ///
+    /// // A red laser spot of 1 mm on a wall, at 2 m on pixels of 0.5 mm, before and after the wall moved by 0.1 mm.
+    /// let speckle_size = 650e-9 * 2.0 / 1e-3;
+    /// let wall = PupilField::from_speckle_size([256, 192], speckle_size / 0.5e-3, 1)?;
+    /// let (before, after) = (wall.pattern(), wall.pattern_at([-0.1, 0.0], 0.0));
+    /// assert_ne!(before, after);
     /// # Ok::<(), tem00_speckle::SpeckleError>(())
     /// ```
     pub fn from_speckle_size(

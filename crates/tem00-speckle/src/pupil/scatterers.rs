@@ -24,7 +24,7 @@ impl PupilField {
     /// ```
     ///
     /// Every point of the image gets light from each of the N sources: scatterers on a spot seen
-    /// without a lens ([`ObjectiveSpeckle`]), the spots of a diffractive projector or the ends of
+    /// without a lens, the spots of a diffractive projector or the ends of
     /// fibres in a pupil. One source makes no speckle, two make fringes, from some fifty on speckle
     /// counts as fully developed. `size` and `speckle_size` are those of
     /// [`from_speckle_size`](Self::from_speckle_size).
@@ -60,8 +60,6 @@ impl PupilField {
     ///
     /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 3 (a finite number of equal-length
     ///   components).
-    ///
-    /// [`ObjectiveSpeckle`]: crate::ObjectiveSpeckle
     pub fn from_scatterers(
         count: usize,
         size: [usize; 2],

@@ -1,4 +1,5 @@
 use tem00_numerics::cast::to_signed;
+use tem00_statistics::{LitArea, ObjectiveSpeckle};
 
 use super::*;
 use crate::{SpecklePattern, error::assert_refused};
@@ -184,4 +185,78 @@ fn samples_that_are_no_field_are_refused() {
     samples[(3, 2)].im = f32::NAN;
     let refused = PupilField::from_samples(samples, [64; 2], 4.0);
     assert_eq!(refused, Err(SpeckleError::Sample { x: 3, y: 2 }));
+}
+
+#[test]
+fn without_a_lens_the_field_is_correlated_as_the_lit_area_demands() {
+    let (wavelength, distance) = (532e-9, 0.8);
+    let (width, height, radius) = (1.5e-3, 0.9e-3, 0.3e-3);
+    let pitch = wavelength * distance / width / 2.5;
+    let areas = [
+        (Pupil::Circle, LitArea::Disc { diameter: width }, 2e-3),
+        // 161 by 73 lattice points for 160 by 72 have speckles finer by 1/160 and 1/72, and the correlation a slope of
+        // 1.1 per logarithm of the lag at most.
+        (
+            Pupil::Rectangle {
+                height: height / width,
+            },
+            LitArea::Rectangle { width, height },
+            1.1 / 72.0,
+        ),
+        // Cut off at 2.5 radii, which leaves √4e−6 of the amplitude.
+        (
+            Pupil::Gaussian {
+                radius: radius / width,
+            },
+            LitArea::GaussianSpot { radius },
+            2e-3,
+        ),
+    ];
+    for (pupil, area, tolerance) in areas {
+        let law = ObjectiveSpeckle::new(wavelength, distance, area).unwrap();
+        let field = PupilField::from_speckle_size([400, 300], 2.5, 1).unwrap();
+        let field = field.with_pupil(pupil).unwrap();
+        for lag in [
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [0.0, 1.5],
+            [2.0, 2.5],
+            [-4.0, 3.0],
+            [6.5, 0.0],
+        ] {
+            let exact = field.amplitude_correlation(lag).norm_sqr();
+            let expected = law.autocovariance(lag.map(|samples| samples * pitch));
+            assert!(
+                (exact - expected).abs() < tolerance,
+                "{exact} for {expected} of {area:?} at {lag:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_surface_that_moves_takes_its_phasors_along() {
+    let field = PupilField::from_speckle_size([64, 64], 8.0 / 3.0, 3).unwrap();
+    // By a quarter of the lit width to the right: what was at its centre is then right of it, and the pupil's centre
+    // stands to its left on the lattice.
+    let after = field.speckle([-0.25, 0.0], 0.0);
+    let before = field.speckle([0.0, 0.0], 0.0);
+    let pairs = after.values().values().iter().zip(before.values().values());
+    let shift = -0.25 * field.diameter()[0];
+    let sum: Complex<f64> = pairs
+        .enumerate()
+        .map(|(index, (a, b))| {
+            let product = a * b.conj();
+            // Into the frame of the lattice.
+            let turns = -shift.round() * f64::from(u8::try_from(index % 64).unwrap()) / 64.0;
+            let common = Complex::cis(core::f64::consts::TAU * turns);
+            Complex::new(f64::from(product.re), f64::from(product.im)) * common
+        })
+        .sum();
+    let overlap = Pupil::Circle.overlap([0.25, 0.0]);
+    // The rim of a disc of 24 points is counted to one in a hundred.
+    assert!(
+        (sum.norm() / 4096.0 - overlap).abs() < 0.02,
+        "{sum} for {overlap}"
+    );
 }

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use tem00_triangulation::{
-    Budget, LineMethod, parse_setup, parse_setup_with, read_design, read_setup,
+    Budget, LineImage, LineMethod, parse_setup, parse_setup_with, read_design, read_setup,
 };
 
 fn repository() -> PathBuf {
@@ -58,6 +58,20 @@ fn the_decision_about_a_broader_source_has_the_uncertainty_of_its_setup() {
     assert!(read("docs/broader_source.md").contains(&stated), "{stated}");
     let single = expanded(&broad.replace("linewidth", "# linewidth"));
     assert!(expanded(&broad) < 0.6 * single, "of {single} µm");
+}
+
+#[test]
+fn a_relief_of_too_many_patterns_is_refused_by_its_name() {
+    let path = repository().join("setups/superluminescent.toml");
+    let text = fs::read_to_string(path).expect("the set-up");
+    let image = |height: &str| {
+        let text = text.replace("\"0.4 um\"", height);
+        let setup = parse_setup(&text).map_err(|error| error.to_string());
+        LineImage::of_setup(&setup.expect("a set-up"), [64, 64]).map(|_| ())
+    };
+    assert_eq!(image("\"0.1 mm\""), Ok(()));
+    let refused = image("\"0.5 mm\"").expect_err("1263 patterns");
+    assert_eq!(refused.parameter(), Some("rms_height"), "{refused}");
 }
 
 #[test]

@@ -73,6 +73,9 @@ pub struct Relief {
 pub struct ResolutionCell {
     wavelength: f64,
     sin_aperture: f64,
+    source: DVec3,
+    pupil: DVec3,
+    normal: DVec3,
     tilt: DVec3,
     height_factor: f64,
     relief: Relief,
@@ -126,6 +129,9 @@ impl ResolutionCell {
         Ok(Self {
             wavelength: geometry.wavelength,
             sin_aperture,
+            source,
+            pupil,
+            normal,
             tilt: source + pupil - height_factor * normal,
             height_factor,
             relief: Relief::default(),
@@ -177,6 +183,30 @@ impl ResolutionCell {
     /// Returns the path q per height.
     pub const fn height_factor(&self) -> f64 {
         self.height_factor
+    }
+
+    /// Returns the unit vector from the surface to the source.
+    pub(crate) const fn source(&self) -> DVec3 {
+        self.source
+    }
+
+    /// Returns the change of the tilt and of the path per height when the unit vector to the source changes by `change`.
+    ///
+    /// Both are linear in that vector. The speckle moves across the pupil by the change of the tilt times the distance.
+    pub(crate) fn change_with_source(&self, change: DVec3) -> (DVec3, f64) {
+        let height_factor = change.dot(self.pupil) / self.normal.dot(self.pupil);
+        (change - height_factor * self.normal, height_factor)
+    }
+
+    /// Returns the greatest change of the path per height that a radian of the direction to the source makes.
+    pub(crate) fn height_per_angle(&self) -> f64 {
+        self.normal.dot(self.pupil).recip()
+    }
+
+    /// Returns the gradient of the phase over the object, in rad/m, by which a field is displaced by the diameter of the
+    /// pupil.
+    pub(crate) fn full_displacement(&self) -> f64 {
+        2.0 * TAU * self.sin_aperture / self.wavelength
     }
 
     /// Returns the standard deviation `σ_L` of the paths by heights, in metres.

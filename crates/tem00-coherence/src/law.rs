@@ -312,7 +312,7 @@ impl PolychromaticSpeckle<'_> {
         powers.iter().map(|power| power / total).collect()
     }
 
-    fn mean(&self, f: impl Fn(f64) -> f64) -> f64 {
+    pub(crate) fn mean(&self, f: impl Fn(f64) -> f64) -> f64 {
         self.line.mean_over_pairs(self.cell.scale(), f)
     }
 }

@@ -15,17 +15,19 @@
 //! | Which light? | [`SpectralLine`], [`LineShape`]; as files state it, [`LaserLight`] |
 //! | Which paths does one point of the image see? | [`ResolutionCell`], [`Relief`] |
 //! | What happens to the speckle? | [`PolychromaticSpeckle`] |
+//! | What if the source is not one point? | [`SourceExtent`] |
 //! | How coherent is light that met several rough surfaces? | [`PathPairs`], of [`DelayedLight`] |
 //! | What is left of the contrast with such light? | [`MixedLight`], [`cascade_variance`] |
 //!
 //! # Scope and non-goals
 //!
-//! One transverse mode; no dispersion of the line by the colour of the surface; scattering within one relief happens
+//! No dispersion of the line by the colour of the surface; scattering within one relief happens
 //! once. Paths over several surfaces are given, not found. Surfaces are rough: below `σ_L = λ/2` a mirror part is left that these laws do not know.
 
 mod cell;
 mod eigenvalues;
 mod error;
+mod extent;
 mod heights;
 mod law;
 mod lens;
@@ -36,6 +38,7 @@ mod spectrum;
 
 pub use cell::{CellGeometry, Relief, ResolutionCell};
 pub use error::CoherenceError;
+pub use extent::SourceExtent;
 pub use glam::DVec3;
 pub use heights::representative_heights;
 pub use law::{PolychromaticSpeckle, Rows};

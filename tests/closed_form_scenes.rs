@@ -64,7 +64,7 @@ fn light_in_an_integrating_sphere_is_the_sum_of_all_its_reflections() {
     let irradiance = REFLECTANCE * POWER / (area * (1.0 - REFLECTANCE));
     let expected = REFLECTANCE * irradiance / std::f64::consts::PI;
     let radiances: Vec<f64> = (0..20)
-        .map(|seed| mean(render(&scene, seed, 16).lasers[0].incoherent.values()))
+        .map(|seed| mean(render(&scene, seed, 16).lasers[0].multiple.values()))
         .collect();
     let test = t_test_mean(&radiances, expected).expect("renders with noise");
     assert!(
@@ -247,7 +247,7 @@ mod facing_plates {
             // The laser's aperture must not lie behind the plate.
             above = GAP * (1.0 + 1e-9),
         );
-        mean(render(&scene, seed, 256).lasers[0].incoherent.values())
+        mean(render(&scene, seed, 256).lasers[0].multiple.values())
     }
 
     #[test]

@@ -99,7 +99,7 @@ fn the_spot_has_the_radius_and_the_radiance_of_the_beam() {
     let expected_along = expected_across / incidence.to_radians().cos();
     let (mut along, mut across, mut flux) = (Vec::new(), Vec::new(), Vec::new());
     for seed in 0..SEEDS {
-        let layer = render(&scene, false, seed).lasers.remove(0).coherent_before;
+        let layer = render(&scene, false, seed).lasers.remove(0).single;
         let (mut sum, mut xx, mut yy) = (0.0, 0.0, 0.0);
         for (y, row) in layer.rows().enumerate() {
             for (x, &radiance) in row.iter().enumerate() {
@@ -137,7 +137,7 @@ fn speckle_moves_light_about_but_keeps_its_power() {
         .map(|seed| {
             let layers = render(&scene, true, seed).lasers.remove(0);
             let sum = |values: &[f32]| values.iter().map(|&v| f64::from(v)).sum::<f64>();
-            sum(layers.coherent_after.values()) / sum(layers.coherent_before.values())
+            sum(layers.radiance.values()) / sum(layers.single.values())
         })
         .collect();
     let test = t_test_mean(&ratio, 1.0).expect("renders with speckle");

@@ -64,10 +64,8 @@ impl Server {
         let frame = self.frame.as_ref().ok_or("no frame")?;
         let mut sum = frame.lights.values().to_vec();
         for laser in &frame.lasers {
-            for layer in [&laser.coherent_after, &laser.incoherent] {
-                for (sum, value) in sum.iter_mut().zip(layer.values()) {
-                    *sum += value;
-                }
+            for (sum, value) in sum.iter_mut().zip(laser.radiance.values()) {
+                *sum += value;
             }
         }
         Ok(sum.into_iter().flat_map(f32::to_le_bytes).collect())

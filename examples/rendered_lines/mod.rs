@@ -172,7 +172,7 @@ impl LineFrames {
             let cancel = AtomicBool::new(false);
             let frame = render_frame(&scene, Some(&model), 0, &options, |_| (), &cancel)?;
             let layers = &frame.lasers[0];
-            let [speckled, even] = [&layers.coherent_after, &layers.coherent_before];
+            let [speckled, even] = [&layers.radiance, &layers.single];
             for x in 0..columns {
                 let [speckled, even] =
                     [speckled, even].map(|image| between_dark((0..rows).map(|y| image[(x, y)])));

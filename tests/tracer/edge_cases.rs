@@ -54,10 +54,7 @@ fn render(scene: &Scene, method: Method) -> Frame {
 fn radiance(frame: &Frame) -> f64 {
     let lasers = frame.lasers.iter();
     lasers
-        .flat_map(|laser| {
-            let layers = laser.coherent_after.values().iter();
-            layers.chain(laser.incoherent.values())
-        })
+        .flat_map(|laser| laser.radiance.values())
         .map(|&value| f64::from(value))
         .sum()
 }
@@ -182,7 +179,7 @@ fn in_glass_both_ends_find_the_light_of_a_laser_outside() {
         };
         let cancel = AtomicBool::new(false);
         let frame = render_frame(&scene, None, 0, &options, |_| (), &cancel).unwrap();
-        estimate::mean(frame.lasers[0].coherent_before.values())
+        estimate::mean(frame.lasers[0].single.values())
     };
     let ratios: Vec<f64> = (0..12)
         .map(|seed| {

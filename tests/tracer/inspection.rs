@@ -53,7 +53,7 @@ fn rendered(scene: &Scene) -> f32 {
         ..scene.render
     };
     let frame = render_frame(scene, None, 0, &options, |_| (), &AtomicBool::new(false)).unwrap();
-    let pixels = frame.lasers[0].coherent_before.values();
+    let pixels = frame.lasers[0].single.values();
     pixels.iter().copied().fold(0.0, f32::max)
 }
 

@@ -109,7 +109,7 @@ fn a_sphere_keeps_each_reflection_of_the_series() {
                     max_depth: Some(depth.unsigned_abs()),
                     ..options(16, seed)
                 };
-                mean(render(&sphere, &options).lasers[0].incoherent.values())
+                mean(render(&sphere, &options).lasers[0].multiple.values())
             })
             .collect();
         let expected: f64 = (2..=depth).map(|k| once * REFLECTANCE.powi(k)).sum();
@@ -122,10 +122,10 @@ fn a_sphere_keeps_each_reflection_of_the_series() {
     };
     let direct = render(&sphere, &direct).lasers.remove(0);
     assert!(
-        direct.incoherent.values().iter().all(|&v| v == 0.0),
+        direct.multiple.values().iter().all(|&v| v == 0.0),
         "one surface only"
     );
-    assert!(mean(direct.coherent_before.values()) > 0.0, "lit");
+    assert!(mean(direct.single.values()) > 0.0, "lit");
 }
 
 #[test]
@@ -279,7 +279,7 @@ fn lasers_light_alike_by_the_beam_and_by_drawn_directions() {
                 ..options(16, seed)
             };
             let layers = render(&corner, &options).lasers.remove(0);
-            [&layers.coherent_before, &layers.incoherent].map(|layer| mean(layer.values()))
+            [&layers.single, &layers.multiple].map(|layer| mean(layer.values()))
         };
         let beam: Vec<[f64; 2]> = (0..SEEDS).map(|s| of(LaserEvents::Beam, s)).collect();
         let drawn: Vec<[f64; 2]> = (0..SEEDS)
@@ -332,8 +332,8 @@ fn a_mirror_shows_coherent_light_dimmed_by_its_reflectance() {
             ..options(16, seed)
         };
         let layers = render(scene, &options).lasers.remove(0);
-        assert!(mean(layers.incoherent.values()) == 0.0, "one rough surface");
-        mean(layers.coherent_before.values())
+        assert!(mean(layers.multiple.values()) == 0.0, "one rough surface");
+        mean(layers.single.values())
     };
     let ratios: Vec<f64> = (0..SEEDS)
         .map(|seed| of(&over, 2, seed) / of(&straight, 2, 100 + seed))
@@ -348,7 +348,7 @@ fn a_laser_inside_a_body_lights_nothing_outside() {
     let frame = render(&hidden, &options(4, 0));
     let layers = &frame.lasers[0];
     assert!(
-        layers.coherent_before.values().iter().all(|&v| v == 0.0),
+        layers.single.values().iter().all(|&v| v == 0.0),
         "the laser is hidden"
     );
     assert!(layers.power_on_target == 0.0, "power");

@@ -73,10 +73,10 @@ fn layers(frame: &Frame) -> Vec<&Grid<f32>> {
     all.extend(&frame.normal);
     for laser in &frame.lasers {
         all.extend([
-            &laser.coherent_before,
+            &laser.single,
+            &laser.multiple,
             &laser.speckle,
-            &laser.coherent_after,
-            &laser.incoherent,
+            &laser.radiance,
             &laser.variance,
         ]);
     }
@@ -140,8 +140,8 @@ fn many_lasers_in_one_pass_are_the_lasers_one_by_one() {
         let one = render_frame(&alone, None, 0, &options(), |_| (), &cancel).unwrap();
         let (one, together) = (&one.lasers[0], &together.lasers[index]);
         // White surfaces leave the paths of all wavelengths the same.
-        assert_eq!(one.coherent_before, together.coherent_before, "{index}");
-        assert_eq!(one.incoherent, together.incoherent, "{index}");
+        assert_eq!(one.single, together.single, "{index}");
+        assert_eq!(one.multiple, together.multiple, "{index}");
         let relative = one.power_on_target / together.power_on_target - 1.0;
         assert!(relative.abs() < 1e-15, "{index}: {relative:e}");
     }
@@ -247,13 +247,8 @@ fn stated_variances_are_those_between_renders() {
         };
         let frame = render_smooth(&scene, &options);
         let laser = &frame.lasers[0];
-        let pixels = laser.incoherent.values().len() as f64;
-        for (value, variance) in laser
-            .incoherent
-            .values()
-            .iter()
-            .zip(laser.variance.values())
-        {
+        let pixels = laser.multiple.values().len() as f64;
+        for (value, variance) in laser.multiple.values().iter().zip(laser.variance.values()) {
             squares += (f64::from(*value) - radiance).powi(2) / pixels;
             stated += f64::from(*variance) / pixels;
         }
@@ -267,13 +262,13 @@ fn stated_variances_are_those_between_renders() {
 #[test]
 fn adaptive_samples_reach_the_error_that_is_asked_for() {
     const TARGET: f64 = 0.2;
-    let (scene, incoherent) = sphere();
+    let (scene, multiple) = sphere();
     let direct = RenderOptions {
         max_depth: Some(1),
         samples_per_pixel: 256,
         ..RenderOptions::default()
     };
-    let coherent = render_smooth(&scene, &direct).lasers.remove(0);
+    let single = render_smooth(&scene, &direct).lasers.remove(0);
     let (mut squares, mut biases) = (Vec::new(), Vec::new());
     for seed in 0..12 {
         let options = RenderOptions {
@@ -289,11 +284,10 @@ fn adaptive_samples_reach_the_error_that_is_asked_for() {
             samples.iter().all(|&n| n > 16.0 && n < 1024.0),
             "numbers of samples: {samples:?}"
         );
-        let errors: Vec<f64> = (0..laser.incoherent.values().len())
+        let errors: Vec<f64> = (0..laser.multiple.values().len())
             .map(|i| {
-                let truth = incoherent + f64::from(coherent.coherent_before.values()[i]);
-                let value = laser.incoherent.values()[i] + laser.coherent_after.values()[i];
-                f64::from(value) / truth - 1.0
+                let truth = multiple + f64::from(single.single.values()[i]);
+                f64::from(laser.radiance.values()[i]) / truth - 1.0
             })
             .collect();
         let n = errors.len() as f64;

@@ -107,7 +107,7 @@ def their_pictures(figure: Figure) -> Array:
 def pair(figure: Figure, folder: Path) -> Pair:
     """Return both pictures of a figure."""
     layers = our_layers(figure, folder)
-    ours = layers["laser_0.coherent_after"] + layers["laser_0.incoherent"]
+    ours = layers["laser_0.radiance"]
     theirs = their_pictures(figure)
     # The variance that `tem00 render` writes is that of independent samples: an upper bound, as its
     # own are spread more evenly.
@@ -157,8 +157,8 @@ def test_mitsuba_and_tem00_render_the_same_figure(figure: Figure, tmp_path: Path
 @pytest.mark.parametrize("figure", FIGURES[2:], ids=lambda figure: f"figure_{figure.number}")
 def test_another_seed_gives_another_pattern(figure: Figure, tmp_path: Path) -> None:
     layers = our_layers(figure, tmp_path)
-    before = np.maximum(layers["laser_0.coherent_before"], 1e-6)
-    ours = layers["laser_0.coherent_after"] / before
+    before = np.maximum(layers["laser_0.single"], 1e-6)
+    ours = layers["laser_0.radiance"] / before
     scene = {seed: mi.load_file(str(figure.theirs), seed=seed) for seed in (SEED, SEED + 1)}
     smooth = np.array(mi.render(mi.load_file(str(figure.theirs), speckle=False), spp=64))[..., 0]
     x, y, width, height = (0, 0, *smooth.shape[::-1]) if WHOLE else figure.window

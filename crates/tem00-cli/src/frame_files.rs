@@ -81,8 +81,7 @@ pub(crate) fn picture_of(frame: &Frame) -> Picture {
 fn laser_picture_of(frame: &Frame) -> Picture {
     let mut picture = Picture::dark(frame.lights.width(), frame.lights.height());
     for laser in &frame.lasers {
-        picture.add_laser(&laser.coherent_after, laser.wavelength);
-        picture.add_laser(&laser.incoherent, laser.wavelength);
+        picture.add_laser(&laser.radiance, laser.wavelength);
     }
     picture
 }
@@ -188,13 +187,13 @@ fn laser_layer((index, laser): (usize, &LaserLayers)) -> Layer<'_> {
         wavelength: Some(laser.wavelength),
         ..layer(
             &format!("laser_{index}"),
-            "radiance in W/(m^2 sr); speckle is a factor with mean 1; variance is that of \
-             coherent_after + incoherent",
+            "radiance in W/(m^2 sr): single and multiple after one rough surface or more, before \
+             speckle, a factor with mean 1; radiance with it; variance is that of radiance",
             [
-                ("coherent_before", &laser.coherent_before),
+                ("single", &laser.single),
+                ("multiple", &laser.multiple),
                 ("speckle", &laser.speckle),
-                ("coherent_after", &laser.coherent_after),
-                ("incoherent", &laser.incoherent),
+                ("radiance", &laser.radiance),
                 ("variance", &laser.variance),
             ],
         )
@@ -226,7 +225,7 @@ mod tests {
         let mut frame = Frame {
             lasers: vec![LaserLayers {
                 speckle: Grid::filled(100, 100, 1.0),
-                coherent_after: line.clone(),
+                radiance: line.clone(),
                 ..laser_of(&dark, line)
             }],
             lights: Grid::filled(100, 100, 0.2),
@@ -234,7 +233,7 @@ mod tests {
         };
         let white = automatic_exposure(&frame).white_level;
         assert!((white - 3.0).abs() < 1e-6, "white level {white}");
-        frame.lasers[0].coherent_after = dark;
+        frame.lasers[0].radiance = dark;
         let white = automatic_exposure(&frame).white_level;
         assert!(
             (white - 0.2).abs() < 1e-6,
@@ -254,13 +253,13 @@ mod tests {
         }
     }
 
-    fn laser_of(dark: &Grid<f32>, coherent_before: Grid<f32>) -> LaserLayers {
+    fn laser_of(dark: &Grid<f32>, single: Grid<f32>) -> LaserLayers {
         LaserLayers {
             wavelength: 650e-9,
-            coherent_before,
+            single,
             speckle: dark.clone(),
-            coherent_after: dark.clone(),
-            incoherent: dark.clone(),
+            radiance: dark.clone(),
+            multiple: dark.clone(),
             variance: dark.clone(),
             power_on_target: 1e-3,
         }
@@ -272,8 +271,8 @@ mod tests {
         Frame {
             lasers: vec![LaserLayers {
                 speckle: layer(2.0),
-                coherent_after: layer(3.0),
-                incoherent: layer(4.0),
+                radiance: layer(3.0),
+                multiple: layer(4.0),
                 variance: layer(5.0),
                 ..laser_of(&layer(0.0), layer(1.0))
             }],
@@ -312,10 +311,10 @@ mod tests {
                 .values
         };
         let laser = &frame.lasers[0];
-        assert_eq!(read("laser_0.coherent_before"), laser.coherent_before);
+        assert_eq!(read("laser_0.single"), laser.single);
         assert_eq!(read("laser_0.speckle"), laser.speckle);
-        assert_eq!(read("laser_0.coherent_after"), laser.coherent_after);
-        assert_eq!(read("laser_0.incoherent"), laser.incoherent);
+        assert_eq!(read("laser_0.radiance"), laser.radiance);
+        assert_eq!(read("laser_0.multiple"), laser.multiple);
         assert_eq!(read("laser_0.variance"), laser.variance);
         assert_eq!(read("lights.radiance"), frame.lights);
         assert_eq!(read("lights.variance"), frame.lights_variance);

@@ -132,11 +132,7 @@ fn contrast(
     speckle_size: f64,
     samples_per_pixel: u32,
 ) -> Result<ContrastSummary, StatisticsError> {
-    let pixels = layers
-        .speckle
-        .values()
-        .iter()
-        .zip(layers.coherent_before.values());
+    let pixels = layers.speckle.values().iter().zip(layers.single.values());
     let lit: Vec<f32> = pixels
         .filter(|&(_, &radiance)| radiance > 0.0)
         .map(|(&factor, _)| factor)
@@ -219,7 +215,7 @@ mod tests {
         let lit = |x: usize| x < 200;
         let layers = LaserLayers {
             wavelength: 650e-9,
-            coherent_before: Grid::from_fn(256, 256, |x, _| if lit(x) { 2.0 } else { 0.0 }),
+            single: Grid::from_fn(256, 256, |x, _| if lit(x) { 2.0 } else { 0.0 }),
             speckle: Grid::from_fn(256, 256, |x, y| {
                 if lit(x) {
                     pattern.values()[(x, y)]
@@ -227,8 +223,8 @@ mod tests {
                     1.0
                 }
             }),
-            coherent_after: Grid::filled(256, 256, 0.0),
-            incoherent: Grid::filled(256, 256, 0.0),
+            radiance: Grid::filled(256, 256, 0.0),
+            multiple: Grid::filled(256, 256, 0.0),
             variance: Grid::filled(256, 256, 0.0),
             power_on_target: 1e-3,
         };
@@ -246,10 +242,10 @@ mod tests {
         let dark = || Grid::filled(4, 4, 0.0);
         let layers = LaserLayers {
             wavelength: 650e-9,
-            coherent_before: dark(),
+            single: dark(),
             speckle: Grid::filled(4, 4, 1.0),
-            coherent_after: dark(),
-            incoherent: dark(),
+            radiance: dark(),
+            multiple: dark(),
             variance: dark(),
             power_on_target: 0.0,
         };

@@ -70,11 +70,10 @@ impl Exposure {
         let [mut total, mut mean, mut coherent] = [lights, lights, 0.0];
         for laser in &frame.lasers {
             let count = |radiance| electrons(radiance, laser.wavelength);
-            let [before, after] = [laser.coherent_before[at], laser.coherent_after[at]].map(count);
-            let incoherent = count(laser.incoherent[at]);
-            total += after + incoherent;
-            mean += before + incoherent;
-            coherent += before;
+            let smooth = count(laser.single[at]) + count(laser.multiple[at]);
+            total += count(laser.radiance[at]);
+            mean += smooth;
+            coherent += smooth;
         }
         self.electrons[at] = to_f32(total);
         self.without_speckle[at] = to_f32(mean);

@@ -52,7 +52,7 @@ fn rendered(setup: &Setup, height: f64) -> [f64; 3] {
     let frame = render_frame(&scene, None, 0, &options, |_| (), &AtomicBool::new(false));
     let frame = frame.expect("it renders");
     let [mut sum, mut first, mut second] = [0.0; 3];
-    for (row, y) in frame.lasers[0].coherent_before.rows().zip(0_u32..) {
+    for (row, y) in frame.lasers[0].single.rows().zip(0_u32..) {
         let position = top + f64::from(y) + 0.5;
         let radiance: f64 = row.iter().map(|&value| f64::from(value)).sum();
         let pixel = DVec2::new(320.0, position);

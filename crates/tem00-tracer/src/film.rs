@@ -44,16 +44,16 @@ pub struct LaserLayers {
     /// The vacuum wavelength, in metres.
     pub wavelength: f64,
     /// Radiance of the light that has met one rough surface, before speckle.
-    pub coherent_before: Grid<f32>,
+    pub single: Grid<f32>,
+    /// Radiance of the light that has met more than one rough surface, before speckle.
+    pub multiple: Grid<f32>,
     /// The speckle factor, averaged over the pixel without regard to the light; 1 where the pixel
     /// sees no rough surface.
     pub speckle: Grid<f32>,
-    /// Radiance of the light that has met one rough surface, each camera sample of it multiplied by
-    /// its speckle factor.
-    pub coherent_after: Grid<f32>,
-    /// Radiance that has met more than one rough surface, which carries no speckle.
-    pub incoherent: Grid<f32>,
-    /// The variance of the sum of `coherent_after` and `incoherent`.
+    /// Radiance of all light of the laser, each camera sample multiplied by its speckle factor. The
+    /// formulas as printed leave the light that has met more than one rough surface without speckle.
+    pub radiance: Grid<f32>,
+    /// The variance of `radiance`.
     pub variance: Grid<f32>,
     /// The power that the laser brings to the surfaces seen in the image, in watts.
     ///
@@ -86,10 +86,10 @@ impl Film {
         let layer = || Grid::filled(area.width, area.height, 0.0_f32);
         let lasers = layout.wavelengths.iter().map(|&wavelength| LaserLayers {
             wavelength,
-            coherent_before: layer(),
+            single: layer(),
+            multiple: layer(),
             speckle: layer(),
-            coherent_after: layer(),
-            incoherent: layer(),
+            radiance: layer(),
             variance: layer(),
             power_on_target: 0.0,
         });
@@ -132,10 +132,10 @@ impl Film {
     pub(crate) fn write(&mut self, [x, y]: [usize; 2], pixel: &PixelSums) {
         let at = (x, y);
         for (layers, laser) in self.frame.lasers.iter_mut().zip(&pixel.lasers) {
-            layers.coherent_before[at] = to_f32(pixel.mean(laser.coherent_before));
+            layers.single[at] = to_f32(pixel.mean(laser.single));
+            layers.multiple[at] = to_f32(pixel.mean(laser.multiple));
             layers.speckle[at] = to_f32(pixel.mean(laser.speckle));
-            layers.coherent_after[at] = to_f32(pixel.mean(laser.coherent_after));
-            layers.incoherent[at] = to_f32(pixel.mean(laser.incoherent));
+            layers.radiance[at] = to_f32(pixel.mean(laser.radiance.sum));
             layers.variance[at] = to_f32(pixel.variance(&laser.radiance));
         }
         self.frame.lights[at] = to_f32(pixel.mean(pixel.lights.sum));
@@ -161,14 +161,10 @@ impl Film {
             Moments::restored(samples, mean, f64::from(variance[at]))
         };
         let lasers = self.frame.lasers.iter().map(|layers| LaserSums {
-            coherent_before: sum(&layers.coherent_before),
+            single: sum(&layers.single),
+            multiple: sum(&layers.multiple),
             speckle: sum(&layers.speckle),
-            coherent_after: sum(&layers.coherent_after),
-            incoherent: sum(&layers.incoherent),
-            radiance: moments(
-                f64::from(layers.coherent_after[at]) + f64::from(layers.incoherent[at]),
-                &layers.variance,
-            ),
+            radiance: moments(f64::from(layers.radiance[at]), &layers.variance),
             power: 0.0,
         });
         let total = self.total.as_ref().map(|[mean, variance]| {

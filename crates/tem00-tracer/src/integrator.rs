@@ -109,11 +109,11 @@ impl<'a> Integrator<'a> {
         while !batch.paths.is_empty() {
             // Find the surfaces that the rays meet, and take the radiance of lights met by chance.
             self.arrive(batch);
-            // Look up the speckle of the first rough surface of each path.
-            self.look_up_speckle(batch);
             // Connect the surfaces to all sources of light.
             self.connect_to_lasers(batch);
             self.connect_to_lights(batch);
+            // Look up the speckle of the first rough surface of each path.
+            self.look_up_speckle(batch);
             // Choose where the paths go on.
             self.scatter(batch);
         }
@@ -205,7 +205,6 @@ impl<'a> Integrator<'a> {
 
     /// Looks up the speckle factors where paths meet their first rough surface.
     fn look_up_speckle(&self, batch: &mut Batch<'a>) {
-        let Some(speckle) = self.speckle else { return };
         batch.speckle.clear();
         for (path, vertex) in batch.paths.iter().zip(&batch.vertices) {
             if path.rough == 0 && !vertex.is_specular() {
@@ -221,8 +220,8 @@ impl<'a> Integrator<'a> {
         }
         let lasers = self.lasers.len();
         for laser in 0..lasers {
-            for (sample, factor) in batch.speckle.factors(speckle, laser) {
-                batch.laser_samples[sample * lasers + laser].speckle = factor;
+            for (sample, factor) in batch.speckle.factors(self.speckle, laser) {
+                batch.laser_samples[sample * lasers + laser].settle(factor, self.rules.formulas);
             }
         }
     }

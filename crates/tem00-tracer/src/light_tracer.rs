@@ -100,9 +100,9 @@ impl LightLayers {
     /// Adds the light to the layers of its laser.
     pub(crate) fn add_to(&self, layers: &mut LaserLayers) {
         let pairs = [
-            (&mut layers.coherent_before, &self.coherent_before),
-            (&mut layers.coherent_after, &self.coherent_after),
-            (&mut layers.incoherent, &self.incoherent),
+            (&mut layers.single, &self.single),
+            (&mut layers.multiple, &self.multiple),
+            (&mut layers.radiance, &self.radiance),
             (&mut layers.variance, &self.variance),
         ];
         for (sum, light) in pairs {

@@ -86,6 +86,7 @@ pub fn render_frame(
             camera: integrator.camera(),
             intersector: &intersector,
             speckle: speckle.as_ref(),
+            formulas: options.formulas,
             frame,
             max_depth: options.max_depth,
             selection,

@@ -65,7 +65,7 @@ fn on_plate(scene: &Scene, image_point: DVec2) -> DVec3 {
 
 /// The power on the plate and the beam radii along x and y, from the radiance of its image.
 fn power_and_radii(scene: &Scene, frame: &Frame) -> [f64; 3] {
-    let layer = &frame.lasers[0].coherent_before;
+    let layer = &frame.lasers[0].single;
     let (mut power, mut moments) = (0.0, DVec2::ZERO);
     for (index, &radiance) in layer.values().iter().enumerate() {
         let (x, y) = (index % layer.width(), index / layer.width());

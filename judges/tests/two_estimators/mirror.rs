@@ -111,9 +111,9 @@ fn a_mirror_lights_a_surface_as_the_image_of_the_laser_does() {
     let speckle = SpeckleModel::generate(&direct, &plan).expect("a small pattern");
     let path = PATHS.render(&direct, Some(&speckle));
     let light = PATHS.render(&folded, Some(&speckle));
-    assert_agree(&path, &light, |layers| &layers.coherent_before, 0.1);
+    assert_agree(&path, &light, |layers| &layers.single, 0.1);
     // The speckle is kept: both have the pattern at the image point.
-    assert_agree(&path, &light, |layers| &layers.coherent_after, 0.1);
+    assert_agree(&path, &light, |layers| &layers.radiance, 0.1);
     for frame in light {
         let power = frame.lasers[0].power_on_target;
         // The edges of the image are 2.2 radii and more from the middle of the spot.
@@ -141,8 +141,8 @@ fn light_past_a_mirror_and_light_from_it_add_up_to_all() {
     scene.surfaces.push(wall);
     let sums = |method| -> Vec<f64> {
         let sum = |layers: &LaserLayers| {
-            let values = layers.coherent_before.values().iter();
-            let all = values.chain(layers.incoherent.values());
+            let values = layers.single.values().iter();
+            let all = values.chain(layers.multiple.values());
             all.map(|&value| f64::from(value)).sum()
         };
         let frames = Series::of(method, 100).render(&scene, None);
@@ -190,5 +190,5 @@ fn rays_from_the_camera_find_a_wide_beam_in_a_mirror_as_light_paths_do() {
     };
     let path = sampled.render(&scene, None);
     let light = Series::of(Method::Path, 600).render(&scene, None);
-    assert_agree(&path, &light, |layers| &layers.coherent_before, 0.1);
+    assert_agree(&path, &light, |layers| &layers.single, 0.1);
 }

@@ -41,7 +41,7 @@ fn assert_both_find(scene: &Scene) {
 fn assert_images_agree(scene: &Scene, [of_paths, of_light]: [u32; 2]) {
     let path = Series::of(Method::Path, of_paths).render(scene, None);
     let light = Series::of(Method::Light, of_light).render(scene, None);
-    assert_agree(&path, &light, |layers| &layers.coherent_before, 0.1);
+    assert_agree(&path, &light, |layers| &layers.single, 0.1);
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn beams_and_drawn_directions_light_a_surface_alike() {
     };
     let light = Series::of(Method::Light, 1000);
     let (path, light) = (sampled.render(&scene, None), light.render(&scene, None));
-    assert_agree(&path, &light, |layers| &layers.coherent_before, 0.1);
+    assert_agree(&path, &light, |layers| &layers.single, 0.1);
 }
 
 #[test]
@@ -129,8 +129,8 @@ fn interreflection_in_a_corner_looks_the_same_from_both_ends() {
         scene.render.max_depth = max_depth;
         let path = Series::of(Method::Path, 128).render(&scene, None);
         let light = Series::of(Method::Light, 128).render(&scene, None);
-        assert_agree(&path, &light, |layers| &layers.coherent_before, 0.1);
-        assert_agree(&path, &light, |layers| &layers.incoherent, 0.1);
+        assert_agree(&path, &light, |layers| &layers.single, 0.1);
+        assert_agree(&path, &light, |layers| &layers.multiple, 0.1);
     }
 }
 
@@ -182,7 +182,7 @@ fn lasers_in_an_integrating_sphere_lose_no_power() {
         let means: Vec<f64> = frames
             .iter()
             .map(|frame| {
-                let values = frame.lasers[index].incoherent.values();
+                let values = frame.lasers[index].multiple.values();
                 let sum: f64 = values.iter().map(|&value| f64::from(value)).sum();
                 sum / values.len() as f64 / expected
             })

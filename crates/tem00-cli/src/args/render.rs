@@ -68,7 +68,7 @@ Examples:
 
 Files:
   <scene>.png     preview, 16 bits, in the colour of the laser; <scene>_0000.png … for several frames
-  <scene>.exr     layers per laser: coherent_before, speckle, coherent_after, incoherent, in W/(m² sr),
+  <scene>.exr     layers per laser: single, multiple, speckle, radiance, in W/(m² sr),
                   and variance; lights, depth, normal, samples
   <scene>.json    power on the target, speckle size, contrast, exposure, speed; and one per frame of
                   several, which --resume reads

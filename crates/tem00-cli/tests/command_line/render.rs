@@ -204,7 +204,7 @@ fn a_crop_is_a_part_of_the_image() {
     assert_eq!(summary["samples"], 24 * 20 * 4);
 }
 
-/// Returns origin, size and values of the first laser's layer `coherent_after`.
+/// Returns origin, size and values of the first laser's layer `radiance`.
 fn channel(path: &Path) -> ([usize; 2], [usize; 2], Vec<f32>) {
     use exr::prelude::*;
     let image = read_all_flat_layers_from_file(path).expect("an OpenEXR file");
@@ -212,7 +212,7 @@ fn channel(path: &Path) -> ([usize; 2], [usize; 2], Vec<f32>) {
     let channel = layer.channel_data.list.iter();
     let channel = channel
         .clone()
-        .find(|channel| channel.name.to_string() == "coherent_after");
+        .find(|channel| channel.name.to_string() == "radiance");
     let position = layer.attributes.layer_position;
     let origin = [position.x(), position.y()].map(|p| usize::try_from(p).expect("inside"));
     let values = channel.expect("the channel").sample_data.values_as_f32();
@@ -225,12 +225,12 @@ fn options_overrule_the_scene() {
     let line = "render a.toml -o . --method light --max-depth 1 --no-speckle";
     assert_code(&run(folder.path(), line), 0);
     // The light tracer finds what the path tracer finds.
-    let light = mean_of(folder.path(), "a.exr", "laser_0.coherent_before");
+    let light = mean_of(folder.path(), "a.exr", "laser_0.single");
     assert_code(
         &run(folder.path(), "render a.toml -o . --no-speckle --spp 64"),
         0,
     );
-    let path = mean_of(folder.path(), "a.exr", "laser_0.coherent_before");
+    let path = mean_of(folder.path(), "a.exr", "laser_0.single");
     // 7680 photons of which nearly all reach the image: 1.2 % of noise in the mean.
     assert!((light / path - 1.0).abs() < 0.06, "{light} is not {path}");
     let summary = fs::read(folder.path().join("a.json")).expect("a summary");

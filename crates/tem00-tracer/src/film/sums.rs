@@ -21,11 +21,10 @@ pub(crate) struct PixelSums {
 /// Sums over the samples of one pixel for one laser.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LaserSums {
-    pub coherent_before: f64,
+    pub single: f64,
+    pub multiple: f64,
     pub speckle: f64,
-    pub coherent_after: f64,
-    pub incoherent: f64,
-    /// The coherent radiance after speckle, and the incoherent one.
+    /// The radiance with its speckle.
     pub radiance: Moments,
     pub power: f64,
 }
@@ -101,11 +100,10 @@ impl PixelSums {
         let lights = weight * sample.lights;
         let mut total = lights;
         for (sums, laser) in self.lasers.iter_mut().zip(lasers) {
-            let radiance = weight * (laser.coherent_after + laser.incoherent);
-            sums.coherent_before += weight * laser.coherent_before;
+            let radiance = weight * laser.radiance;
+            sums.single += weight * laser.single;
+            sums.multiple += weight * laser.multiple;
             sums.speckle += weight * laser.speckle;
-            sums.coherent_after += weight * laser.coherent_after;
-            sums.incoherent += weight * laser.incoherent;
             sums.radiance.add(radiance);
             sums.power += weight * laser.power;
             total += radiance;

@@ -3,7 +3,7 @@ use tem00_camera::Ray;
 
 use super::Vertex;
 use crate::{
-    Hit, Intersector, Segment,
+    Formulas, Hit, Intersector, Segment,
     sampler::Stream,
     speckle::{SpeckleFrame, SpecklePoint},
 };
@@ -60,30 +60,50 @@ pub(crate) struct Seen {
 /// Radiance that a camera sample finds from one laser.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LaserSample {
-    pub coherent_before: f64,
+    /// Before speckle: of light that has met one rough surface, or more.
+    pub single: f64,
+    pub multiple: f64,
     pub speckle: f64,
-    pub coherent_after: f64,
-    pub incoherent: f64,
+    /// With its speckle.
+    pub radiance: f64,
     pub power: f64,
+    /// The factor of light that has met more than one rough surface.
+    speckle_of_multiple: f64,
+    /// Light of the surface point at hand, whose speckle is not yet known.
+    unsettled: f64,
 }
 
 impl LaserSample {
     const DARK: Self = Self {
-        coherent_before: 0.0,
+        single: 0.0,
+        multiple: 0.0,
         speckle: 1.0,
-        coherent_after: 0.0,
-        incoherent: 0.0,
+        radiance: 0.0,
         power: 0.0,
+        speckle_of_multiple: 1.0,
+        unsettled: 0.0,
     };
 
-    /// Adds radiance that has met one rough surface, or more.
-    pub(super) fn add(&mut self, radiance: f64, coherent: bool) {
-        if coherent {
-            self.coherent_before += radiance;
-            self.coherent_after += radiance * self.speckle;
+    /// Adds light of a point whose speckle is known, which has met this rough surface alone or others before.
+    pub(super) fn add(&mut self, radiance: f64, is_single: bool) {
+        if is_single {
+            self.single += radiance;
+            self.radiance += radiance * self.speckle;
         } else {
-            self.incoherent += radiance;
+            self.multiple += radiance;
+            self.radiance += radiance * self.speckle_of_multiple;
         }
+    }
+
+    /// Gives the light of a point its speckle.
+    pub(super) fn settle(&mut self, speckle: f64, formulas: Formulas) {
+        self.speckle = speckle;
+        self.speckle_of_multiple = match formulas {
+            Formulas::Derived => speckle,
+            Formulas::AsPrinted => 1.0,
+        };
+        let unsettled = core::mem::take(&mut self.unsettled);
+        self.add(unsettled, true);
     }
 }
 
@@ -167,7 +187,8 @@ pub(super) enum Arrival {
         radiance: f64,
         /// The power on the area that the sample covers.
         power: f64,
-        coherent: bool,
+        /// True if the light has met one rough surface.
+        is_single: bool,
     },
     /// Radiance of a light that is no laser.
     Light { sample: usize, radiance: f64 },
@@ -203,10 +224,14 @@ impl Batch<'_> {
                     slot,
                     radiance,
                     power,
-                    coherent,
+                    is_single,
                 } => {
                     let laser = &mut self.laser_samples[slot];
-                    laser.add(radiance, coherent);
+                    if is_single {
+                        laser.unsettled += radiance;
+                    } else {
+                        laser.add(radiance, false);
+                    }
                     laser.power += power;
                 }
                 Arrival::Light { sample, radiance } => self.samples[sample].lights += radiance,
@@ -236,14 +261,17 @@ impl SpeckleLookUps {
         self.points.push(point);
     }
 
-    /// Returns the samples, each with its speckle factor for a laser.
+    /// Returns the samples, each with its speckle factor for a laser: 1 without a model.
     pub(super) fn factors(
         &mut self,
-        speckle: &SpeckleFrame<'_>,
+        speckle: Option<&SpeckleFrame<'_>>,
         laser: usize,
     ) -> impl Iterator<Item = (usize, f64)> {
-        self.factors.resize(self.points.len(), 0.0);
-        speckle.factors(laser, &self.points, &mut self.factors);
+        self.factors.clear();
+        self.factors.resize(self.points.len(), 1.0);
+        if let Some(speckle) = speckle {
+            speckle.factors(laser, &self.points, &mut self.factors);
+        }
         let factors = self.factors.iter().copied();
         self.samples.iter().copied().zip(factors)
     }

@@ -52,7 +52,7 @@ impl<'a> Integrator<'a> {
                 slot: path.sample * self.lasers.len() + laser,
                 radiance,
                 power,
-                coherent: path.rough == 0,
+                is_single: path.rough == 0,
             };
             let segment = vertex.segment_to(light.source);
             batch.connections.push(segment, arrival);

@@ -1,7 +1,7 @@
 use tem00_camera::Camera;
 use tem00_numerics::Grid;
 
-use crate::{Crop, Intersector, Scene, speckle::SpeckleFrame};
+use crate::{Crop, Formulas, Intersector, Scene, speckle::SpeckleFrame};
 
 /// Follows light from the lasers to the camera, in one frame.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +12,7 @@ pub(crate) struct LightTracer<'a> {
     /// The surfaces as they stand in the frame, and the area lights behind them.
     pub intersector: &'a Intersector,
     pub speckle: Option<&'a SpeckleFrame<'a>>,
+    pub formulas: Formulas,
     pub frame: u32,
     /// The maximum number of surfaces that light may meet between laser and camera; `None` for no limit.
     pub max_depth: Option<u32>,
@@ -46,13 +47,12 @@ pub(crate) struct LightJob {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LightLayers {
     /// Radiance of the light that has met one rough surface, before speckle.
-    pub coherent_before: Grid<f32>,
-    /// The same, each path multiplied by its speckle factor.
-    pub coherent_after: Grid<f32>,
-    /// Radiance of the light that has met more than one rough surface.
-    pub incoherent: Grid<f32>,
-    /// The variance of the sum of the last two, without bias: from groups of paths that are
-    /// independent of each other.
+    pub single: Grid<f32>,
+    /// Radiance of the light that has met more than one, before speckle.
+    pub multiple: Grid<f32>,
+    /// Radiance of both, each path multiplied by its speckle factor.
+    pub radiance: Grid<f32>,
+    /// The variance of that, without bias: from groups of paths that are independent of each other.
     pub variance: Grid<f32>,
     /// The power that the light paths bring to the first rough surface where that is seen in the
     /// image, in watts.

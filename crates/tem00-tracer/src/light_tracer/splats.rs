@@ -8,9 +8,9 @@ use crate::Crop;
 pub(super) struct Splat {
     /// The number of the pixel in the part of the image that is rendered.
     pub pixel: usize,
-    pub coherent_before: f64,
-    pub coherent_after: f64,
-    pub incoherent: f64,
+    pub single: f64,
+    pub multiple: f64,
+    pub radiance: f64,
 }
 
 /// Contribution of a group of light paths to the image.
@@ -34,9 +34,9 @@ impl Splats {
         self.list.dedup_by(|next, sum| {
             let same = next.pixel == sum.pixel;
             if same {
-                sum.coherent_before += next.coherent_before;
-                sum.coherent_after += next.coherent_after;
-                sum.incoherent += next.incoherent;
+                sum.single += next.single;
+                sum.multiple += next.multiple;
+                sum.radiance += next.radiance;
             }
             same
         });
@@ -53,9 +53,9 @@ pub(super) struct SplatFilm {
 
 #[derive(Clone, Copy, Debug, Default)]
 struct PixelSums {
-    coherent_before: f64,
-    coherent_after: f64,
-    incoherent: f64,
+    single: f64,
+    multiple: f64,
+    radiance: f64,
     /// The sum over groups of the square of what the group brings.
     squares: f64,
 }
@@ -73,10 +73,10 @@ impl SplatFilm {
     pub(super) fn add(&mut self, splats: &Splats) {
         for splat in &splats.list {
             let pixel = &mut self.pixels[splat.pixel];
-            pixel.coherent_before += splat.coherent_before;
-            pixel.coherent_after += splat.coherent_after;
-            pixel.incoherent += splat.incoherent;
-            pixel.squares += (splat.coherent_after + splat.incoherent).powi(2);
+            pixel.single += splat.single;
+            pixel.multiple += splat.multiple;
+            pixel.radiance += splat.radiance;
+            pixel.squares += splat.radiance.powi(2);
         }
         self.power += splats.power;
     }
@@ -88,15 +88,14 @@ impl SplatFilm {
             if groups < 2.0 {
                 return f64::INFINITY;
             }
-            let sum = pixel.coherent_after + pixel.incoherent;
             // Rounding alone can make it negative.
-            let scatter = (pixel.squares - sum * sum / groups).max(0.0);
+            let scatter = (pixel.squares - pixel.radiance.powi(2) / groups).max(0.0);
             groups / (groups - 1.0) * scatter / (paths * paths)
         };
         LightLayers {
-            coherent_before: self.layer(|pixel| pixel.coherent_before / paths),
-            coherent_after: self.layer(|pixel| pixel.coherent_after / paths),
-            incoherent: self.layer(|pixel| pixel.incoherent / paths),
+            single: self.layer(|pixel| pixel.single / paths),
+            multiple: self.layer(|pixel| pixel.multiple / paths),
+            radiance: self.layer(|pixel| pixel.radiance / paths),
             variance: self.layer(variance),
             power_on_target: self.power / paths,
         }

@@ -9,8 +9,8 @@ use super::{
     *,
 };
 use crate::{
-    Crop, Intersector, LaserDescription, Material, Rectangle, Scene, Shape, Surface, TriangleMesh,
-    testing,
+    Crop, Formulas, Intersector, LaserDescription, Material, Rectangle, Scene, Shape, Surface,
+    TriangleMesh, testing,
 };
 
 /// A correct light tracer fails a comparison with this probability at the fixed seeds.
@@ -60,6 +60,7 @@ fn try_trace(
         camera: &scene.camera,
         intersector: &intersector,
         speckle: None,
+        formulas: Formulas::Derived,
         frame: 0,
         max_depth: None,
         selection,
@@ -113,7 +114,7 @@ fn assert_lit(scene: &Scene, normal: DVec3) {
     const SEEDS: u64 = 24;
     const PATHS: u64 = 30_000;
     let images: Vec<_> = (0..SEEDS)
-        .map(|seed| trace(scene, &job(PATHS, seed)).coherent_before)
+        .map(|seed| trace(scene, &job(PATHS, seed)).single)
         .collect();
     let mut probabilities = Vec::new();
     for index in 0..images[0].values().len() {
@@ -160,7 +161,7 @@ fn the_stated_variance_is_that_from_seed_to_seed() {
     for index in 0..images[0].variance.values().len() {
         let values = images
             .iter()
-            .map(|image| f64::from(image.coherent_after.values()[index]));
+            .map(|image| f64::from(image.radiance.values()[index]));
         let mean = values.clone().sum::<f64>() / SEEDS as f64;
         seen += values.map(|v| (v - mean).powi(2)).sum::<f64>() / (SEEDS - 1) as f64;
         let variances = images
@@ -230,7 +231,7 @@ fn threads_and_the_rest_of_the_image_change_no_bit() {
     };
     let part = try_trace((&scene, LightSelection::All, area), &job, false).unwrap();
     let pairs = [
-        (&part.coherent_before, &image.coherent_before),
+        (&part.single, &image.single),
         (&part.variance, &image.variance),
     ];
     for (inside, outside) in pairs {

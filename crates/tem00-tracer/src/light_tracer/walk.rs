@@ -6,7 +6,9 @@ use super::{
     draws::{DrawKey, Draws},
     splats::{Splat, Splats},
 };
-use crate::{Crop, EmittedRay, Hit, Laser, LocalFrame, Material, Segment, speckle::SpecklePoint};
+use crate::{
+    Crop, EmittedRay, Formulas, Hit, Laser, LocalFrame, Material, Segment, speckle::SpecklePoint,
+};
 
 /// Surfaces that a light path always leaves again before it may end by chance.
 const CERTAIN_BOUNCES: u32 = 2;
@@ -202,19 +204,22 @@ impl<'a> Walk<'a> {
             power,
             ..
         } = *connection;
-        let mut splat = Splat {
-            pixel: index,
-            ..Splat::default()
-        };
-        if vertex.photon.rough == 0 {
-            // The first rough surface: the light is coherent.
-            splat.coherent_before = radiance;
-            splat.coherent_after = radiance * self.speckle_factor(connection);
-            splats.power += power;
+        let is_single = vertex.photon.rough == 0;
+        let has_speckle = is_single || self.tracer.formulas == Formulas::Derived;
+        let speckle = if has_speckle {
+            self.speckle_factor(connection)
         } else {
-            splat.incoherent = radiance;
+            1.0
+        };
+        splats.push(Splat {
+            pixel: index,
+            single: if is_single { radiance } else { 0.0 },
+            multiple: if is_single { 0.0 } else { radiance },
+            radiance: radiance * speckle,
+        });
+        if is_single {
+            splats.power += power;
         }
-        splats.push(splat);
     }
 
     fn speckle_factor(&self, connection: &Connection<'_>) -> f64 {

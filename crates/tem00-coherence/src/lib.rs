@@ -34,6 +34,7 @@ mod lens;
 mod line;
 mod mixed;
 mod paths;
+mod recombination;
 mod spectrum;
 
 pub use cell::{CellGeometry, Relief, ResolutionCell};
@@ -45,4 +46,5 @@ pub use law::{PolychromaticSpeckle, Rows};
 pub use line::{LineShape, SpectralLine};
 pub use mixed::{MixedLight, cascade_variance};
 pub use paths::{DelayedLight, PathPairs, mode_ratio};
+pub use recombination::Recombination;
 pub use spectrum::{LaserLight, Spectrum};

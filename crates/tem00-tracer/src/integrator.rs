@@ -218,12 +218,7 @@ impl<'a> Integrator<'a> {
                 batch.speckle.push(path.sample, point);
             }
         }
-        let lasers = self.lasers.len();
-        for laser in 0..lasers {
-            for (sample, factor) in batch.speckle.factors(self.speckle, laser) {
-                batch.laser_samples[sample * lasers + laser].settle(factor, self.rules.formulas);
-            }
-        }
+        batch.settle(self.speckle, self.rules.formulas);
     }
 
     /// Draws the place in the lines of the lasers, if one of them has a width.

@@ -43,6 +43,7 @@ mod scene;
 mod shape;
 mod speckle;
 mod spread;
+mod survey;
 #[cfg(test)]
 mod testing;
 mod trajectory;

@@ -15,6 +15,7 @@
 
 mod draws;
 mod job;
+mod lit;
 mod specular_search;
 mod splats;
 mod walk;
@@ -24,6 +25,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 pub(crate) use self::job::{LightJob, LightLayers, LightSelection, LightTracer};
+pub(crate) use self::lit::LitPoint;
 use self::{splats::SplatFilm, walk::Walk};
 use crate::{LaserLayers, RenderError};
 

@@ -11,7 +11,11 @@ use crate::{
     FilterSampler, Frame, Intersector, Scene, SpeckleModel,
     integrator::Integrator,
     light_tracer::{LightJob, LightSelection, LightTracer},
+    survey::Survey,
 };
+
+/// Cells along the longer side of an image in which multiple light is surveyed.
+const SURVEY_CELLS: usize = 64;
 
 impl Scene {
     /// Returns the number of camera samples and light paths that one frame takes, of which
@@ -65,7 +69,22 @@ pub fn render_frame(
     );
     let area = options.area(&scene.camera)?;
     let intersector = Intersector::build(&scene.shapes_at(frame))?;
-    let speckle = speckle.map(|model| model.in_frame(scene, frame));
+    let speckle = speckle.map(|model| {
+        let speckle = model.in_frame(scene, frame);
+        let map = scene.asks_for_survey(frame, options).then(|| {
+            let survey = Survey {
+                scene,
+                frame,
+                intersector: &intersector,
+                change: speckle.change(),
+                seed: options.seed,
+                max_depth: options.max_depth,
+                cells: SURVEY_CELLS,
+            };
+            survey.map()
+        });
+        speckle.with_multiple_light(map.flatten())
+    });
     let integrator =
         Integrator::new(scene, frame, &intersector, options).with_speckle(speckle.as_ref());
     let selection = light_traced(scene, options);

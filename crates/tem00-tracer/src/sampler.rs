@@ -131,6 +131,16 @@ pub(crate) fn independent_pair(stream: Stream, purpose: Use) -> [f64; 2] {
     [fraction(bits as u32), fraction((bits >> 32) as u32)]
 }
 
+/// Returns the two numbers in (0, 1) of a key.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the words are taken one by one"
+)]
+pub(crate) fn point_in_square(key: u64) -> [f64; 2] {
+    let bits = mixed(key);
+    [fraction(bits as u32), fraction((bits >> 32) as u32)]
+}
+
 /// Combines the seed of a render with the numbers of a frame, a pixel and a round of samples.
 pub(crate) fn pixel_key(seed: u64, [frame, pixel, round]: [u64; 3]) -> u64 {
     let key = mixed(mixed(seed) ^ frame);

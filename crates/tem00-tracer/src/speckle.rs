@@ -5,6 +5,7 @@ mod bandwidth;
 mod between_frames;
 mod change;
 mod model;
+mod multiple;
 mod notes;
 mod perspective;
 mod plan;
@@ -14,8 +15,10 @@ mod printed;
 use glam::{DVec2, DVec3};
 
 pub use between_frames::{ReferencePoint, SpeckleChange};
+pub(crate) use change::Change;
 pub(crate) use model::SpeckleFrame;
 pub use model::SpeckleModel;
+pub(crate) use multiple::{Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums, SamplePair};
 pub use notes::RoughnessNote;
 pub use plan::{PatternPlan, SpecklePlan};
 
@@ -24,7 +27,7 @@ pub use plan::{PatternPlan, SpecklePlan};
 /// The point need not lie on the chief ray of its pixel: out of focus it is seen beside it, and in a
 /// mirror somewhere else. Its speckle counts as moving by as much as the point would move seen directly,
 /// which in a plane mirror is right but for the reflection.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SpecklePoint {
     /// The image point of the sample, in pixels.
     pub pixel: DVec2,

@@ -96,7 +96,7 @@ impl LaserSample {
     }
 
     /// Gives the light of a point its speckle.
-    pub(super) fn settle(&mut self, speckle: f64, formulas: Formulas) {
+    fn settle(&mut self, speckle: f64, formulas: Formulas) {
         self.speckle = speckle;
         self.speckle_of_multiple = match formulas {
             Formulas::Derived => speckle,
@@ -248,6 +248,8 @@ pub(super) struct SpeckleLookUps {
     samples: Vec<usize>,
     points: Vec<SpecklePoint>,
     factors: Vec<f64>,
+    /// The radiance of the light of a laser that has met the surface of each point only.
+    singles: Vec<f64>,
 }
 
 impl SpeckleLookUps {
@@ -261,18 +263,36 @@ impl SpeckleLookUps {
         self.points.push(point);
     }
 
-    /// Returns the samples, each with its speckle factor for a laser: 1 without a model.
-    pub(super) fn factors(
+    /// Looks up the factors of a laser beside the single light of each point; 1 without a model.
+    fn look_up(
         &mut self,
         speckle: Option<&SpeckleFrame<'_>>,
         laser: usize,
-    ) -> impl Iterator<Item = (usize, f64)> {
+        single: impl Fn(usize) -> f64,
+    ) {
         self.factors.clear();
         self.factors.resize(self.points.len(), 1.0);
         if let Some(speckle) = speckle {
-            speckle.factors(laser, &self.points, &mut self.factors);
+            self.singles.clear();
+            self.singles
+                .extend(self.samples.iter().map(|&sample| single(sample)));
+            speckle.factors(laser, &self.points, &self.singles, &mut self.factors);
         }
-        let factors = self.factors.iter().copied();
-        self.samples.iter().copied().zip(factors)
+    }
+}
+
+impl Batch<'_> {
+    /// Gives the light of the points at hand its speckle.
+    pub(super) fn settle(&mut self, speckle: Option<&SpeckleFrame<'_>>, formulas: Formulas) {
+        let lasers = self.laser_samples.len() / self.samples.len().max(1);
+        for laser in 0..lasers {
+            let values = &self.laser_samples;
+            let single = |sample: usize| values[sample * lasers + laser].unsettled;
+            self.speckle.look_up(speckle, laser, single);
+            let factors = self.speckle.samples.iter().zip(&self.speckle.factors);
+            for (sample, factor) in factors {
+                self.laser_samples[sample * lasers + laser].settle(*factor, formulas);
+            }
+        }
     }
 }

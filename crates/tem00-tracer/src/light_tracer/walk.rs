@@ -24,18 +24,23 @@ pub(super) struct Walk<'a> {
 
 /// Light on its way.
 #[derive(Clone, Copy, Debug)]
-struct Photon {
+pub(super) struct Photon {
+    /// Its number in the group.
+    pub number: usize,
     ray: Ray,
     /// The power, in watts, as if the path were the only one.
     flux: f64,
     /// The number of rough surfaces it has met.
     rough: u32,
+    /// The index of the medium.
+    pub index: f64,
 }
 
 /// Light at a surface.
-struct Vertex<'a> {
-    photon: Photon,
-    hit: Hit,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertex<'a> {
+    pub photon: Photon,
+    pub hit: Hit,
     /// Local axes whose z is the normal with which light is scattered.
     axes: LocalFrame,
     /// The direction back along the path, in local axes.
@@ -70,23 +75,40 @@ impl<'a> Walk<'a> {
 
     /// Follows a group of `paths` light paths and returns what they bring to the image.
     pub(super) fn group(&self, group: u64, paths: u64) -> Splats {
+        let mut splats = Splats::default();
+        self.follow(group, paths, |vertices, draws| {
+            // Connect those that scatter to the camera.
+            self.connect(vertices, draws, &mut splats);
+        });
+        splats.merge();
+        splats
+    }
+
+    /// Follows a group of `paths` light paths, and shows `visit` the surfaces that they meet, one bounce after the other.
+    pub(super) fn follow(
+        &self,
+        group: u64,
+        paths: u64,
+        mut visit: impl FnMut(&[Vertex<'a>], &mut Draws),
+    ) {
         let mut draws = Draws::new(DrawKey {
             seed: self.job.seed,
             frame: self.tracer.frame,
             laser: self.job.laser,
             group,
         });
-        let mut splats = Splats::default();
         // Draw rays from the phase space of the beam.
         let mut photons: Vec<_> = (0..paths).map(|_| self.emit(&mut draws)).collect();
+        for (number, photon) in photons.iter_mut().enumerate() {
+            photon.number = number;
+        }
         for depth in 1..=self.tracer.max_depth.unwrap_or(u32::MAX) {
             // Find the surfaces that they meet.
             let vertices = self.arrive(&photons, depth);
             if vertices.is_empty() {
                 break;
             }
-            // Connect those that scatter to the camera.
-            self.connect(&vertices, &mut draws, &mut splats);
+            visit(&vertices, &mut draws);
             // Choose where the light goes on.
             photons.clear();
             photons.extend(
@@ -95,8 +117,6 @@ impl<'a> Walk<'a> {
                     .filter_map(|vertex| self.scatter(vertex, depth, &mut draws)),
             );
         }
-        splats.merge();
-        splats
     }
 
     fn emit(&self, draws: &mut Draws) -> Photon {
@@ -104,9 +124,11 @@ impl<'a> Walk<'a> {
         // The aperture may lie in a surface.
         let intersector = self.tracer.intersector;
         Photon {
+            number: 0,
             ray: intersector.ray_from(ray.origin, ray.direction, ray.direction),
             flux,
             rough: 0,
+            index: 1.0,
         }
     }
 
@@ -266,11 +288,25 @@ impl<'a> Walk<'a> {
             ray,
             flux,
             rough: vertex.photon.rough + u32::from(!sample.specular),
+            // Refraction changes radiance by the square of the index.
+            index: vertex.photon.index * sample.eta_squared.sqrt(),
+            ..vertex.photon
         })
     }
 }
 
 impl Vertex<'_> {
+    /// Tells whether the surface scatters light.
+    pub(super) fn is_rough(&self) -> bool {
+        !self.material.is_specular()
+    }
+
+    /// Returns the radiant intensity of the light that leaves towards the unit vector `out`, in W/sr.
+    pub(super) fn intensity_towards(&self, out: DVec3, wavelength: f64) -> f64 {
+        let axes = self.hit.axes_seen_from(out);
+        self.photon.flux * self.scattered(out, &axes, wavelength)
+    }
+
     /// Returns the power with which light that has met no rough surface before lights the side that
     /// is seen from the unit direction `out`, in watts.
     fn power_seen_from(&self, out: DVec3) -> f64 {

@@ -166,6 +166,15 @@ fn together(requests: &[Request]) -> Option<(StackNeeds, [f64; 2])> {
     })
 }
 
+/// Returns how far beside its own position a surface looks up a further pattern, in periods along x and y; 0 is its own.
+pub(super) fn position_beside(number: usize) -> [f64; 2] {
+    if number == 0 {
+        [0.0; 2]
+    } else {
+        offset(number)
+    }
+}
+
 /// Returns the offset of the pattern `number` among several in one stack, in periods along x and y.
 ///
 /// They are the points of the sequence of Roberts (2018), far apart from each other.

@@ -13,7 +13,7 @@ use crate::{Laser, Scene};
 
 /// Motion of the scene between the reference frame and another.
 #[derive(Clone, Debug)]
-pub(super) struct Change {
+pub(crate) struct Change {
     /// The number of frames since the reference frame, negative before it.
     frames: f64,
     /// The camera in the reference frame and now.
@@ -98,7 +98,7 @@ impl BodyChange {
 
 impl Change {
     /// Finds the motion since the reference frame of a render.
-    pub(super) fn new(scene: &Scene, frame: u32) -> Self {
+    pub(crate) fn new(scene: &Scene, frame: u32) -> Self {
         Self::between(scene, [scene.reference_frame, frame])
     }
 
@@ -123,8 +123,13 @@ impl Change {
         }
     }
 
+    /// Tells whether now is the reference frame.
+    pub(super) fn is_reference(&self) -> bool {
+        self.frames == 0.0
+    }
+
     /// Returns the camera now.
-    pub(super) const fn camera(&self) -> &Camera {
+    pub(crate) const fn camera(&self) -> &Camera {
         &self.cameras[1]
     }
 
@@ -134,7 +139,7 @@ impl Change {
     }
 
     /// Returns laser `index` now.
-    pub(super) fn laser(&self, index: usize) -> &Laser {
+    pub(crate) fn laser(&self, index: usize) -> &Laser {
         &self.lasers[index].now
     }
 
@@ -237,18 +242,31 @@ impl Change {
         if self.is_still(laser, point.surface) {
             return Some(SpeckleShift::default());
         }
-        self.theoretical_shift(laser, geometry, point)
-            .filter(SpeckleShift::is_finite)
+        self.shift_between(geometry, point, self.states(laser, point)?)
     }
 
-    /// The law of speckle motion between two states, however far apart.
-    fn theoretical_shift(
+    /// Returns what has become of the speckle at a point of light that keeps its phases where it meets the surface, if
+    /// the theory has a value.
+    pub(super) fn shift_without_source(
         &self,
         laser: usize,
         geometry: &ImagingGeometry,
         point: &SpecklePoint,
     ) -> Option<SpeckleShift> {
         let [before, now] = self.states(laser, point)?;
+        let body = self.surfaces.get(point.surface)?;
+        let carried = body.forth.direction(before.direction_to_source());
+        let now = now.with_illumination(Illumination::collimated(carried).ok()?);
+        self.shift_between(geometry, point, [before, now.ok()?])
+    }
+
+    /// The law of speckle motion between two states, however far apart.
+    fn shift_between(
+        &self,
+        geometry: &ImagingGeometry,
+        point: &SpecklePoint,
+        [before, now]: [Configuration; 2],
+    ) -> Option<SpeckleShift> {
         let screen = ImageOrientation::ScreenUpright;
         let pixels_per_tangent = geometry.principal_distance() / geometry.pixel_pitch();
         let geometry = &self.perspective.geometry(geometry, point.pixel);
@@ -267,6 +285,23 @@ impl Change {
             displacement,
             pupil,
         })
+        .filter(SpeckleShift::is_finite)
+    }
+
+    /// Returns where a point of a surface stood in the reference frame, in metres.
+    pub(crate) fn origin(&self, surface: usize, point: DVec3) -> DVec3 {
+        let body = self.surfaces.get(surface);
+        body.map_or(point, |body| body.back.point(point))
+    }
+
+    /// Returns the optical path of a laser to a point of a surface, in metres: now, and where both stood in the
+    /// reference frame.
+    pub(crate) fn paths_to(&self, laser: usize, surface: usize, point: DVec3) -> Option<[f64; 2]> {
+        let LaserChange { before, now, .. } = &self.lasers[laser];
+        Some([
+            now.path_to(point)?,
+            before.path_to(self.origin(surface, point))?,
+        ])
     }
 
     /// Returns what becomes of the speckle of a laser at a point, now, in light whose wave number differs by `kappa`, in

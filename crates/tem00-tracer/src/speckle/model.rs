@@ -1,14 +1,15 @@
 use glam::DVec2;
 
+use tem00_coherence::Recombination;
 use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
 use tem00_paper::BilinearStack;
 use tem00_speckle::{Complex, SpeckleStack};
 
 use super::{
     PatternPlan, SpecklePlan, SpecklePoint,
-    allocation::{Part, PatternAllocation},
-    bandwidth::Bandwidth,
-    change::Change,
+    allocation::{self, Part, PatternAllocation},
+    change::{Change, SpeckleShift},
+    multiple::{MultipleLight, MultipleMap},
     plan::SurfacePatterns,
     printed::displacement_and_slice,
     upright,
@@ -56,7 +57,12 @@ pub(crate) struct SpeckleFrame<'a> {
     change: Change,
     /// On which side of the reference frame each surface is for each laser, as 1 or −1.
     sides: Vec<Vec<f64>>,
+    /// The light that has met several rough surfaces, where its speckle is not simply that of the single light.
+    multiple: Option<MultipleMap>,
 }
+
+/// Multiple light at a point, and its fraction of the light there.
+type Mix = (MultipleLight, f64);
 
 /// Points that are looked up together.
 const BLOCK: usize = 64;
@@ -104,6 +110,7 @@ impl SpeckleModel {
             model: self,
             sides: sides.collect(),
             change,
+            multiple: None,
         }
     }
 }
@@ -151,41 +158,86 @@ impl Pattern {
     }
 }
 
+impl Pattern {
+    /// Returns the coordinate in slices where the pupil has moved by so many of its diameters to one side.
+    fn coordinate_of(&self, stack: &SpeckleStack, pupil: f64, sign: f64) -> f64 {
+        // Beyond the reach the speckle is new to the reference frame, wherever the pupil stands.
+        let shift = pupil.min(self.reaches[usize::from(sign > 0.0)]);
+        // Where the blend of two slices has kept as much of the reference frame as that shift, and
+        // on along the path once nothing is left.
+        let u = stack.coordinate_of(pupil_overlap_correlation(shift));
+        sign * u.max(shift * self.slices_per_diameter)
+    }
+}
+
+/// Where a point is looked up.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// The image point in perspective, in pixels with y down.
+    pixel: DVec2,
+    /// The coordinate in slices.
+    u: f64,
+    /// The change of the phase with the height, in radians per metre.
+    phase_per_height: f64,
+}
+
 impl SpeckleFrame<'_> {
-    /// Returns the speckle factor of laser `laser` at a surface point.
+    /// Returns the motion since the reference frame.
+    pub(crate) const fn change(&self) -> &Change {
+        &self.change
+    }
+
+    /// Looks up the speckle of multiple light by what a survey has found.
+    pub(crate) fn with_multiple_light(mut self, map: Option<MultipleMap>) -> Self {
+        self.multiple = map;
+        self
+    }
+
+    /// Returns the speckle factor of laser `laser` at a surface point, beside single light as it is around there.
     pub(crate) fn factor(&self, laser: usize, point: &SpecklePoint) -> f64 {
+        let key = (laser, point.surface);
+        let map = self.multiple.as_ref();
+        let light = map.and_then(|map| map.at(point.pixel, key));
         let mut factor = [0.0];
-        self.factors(laser, core::slice::from_ref(point), &mut factor);
+        let single = light.map_or(0.0, |light| light.single);
+        self.factors(laser, core::slice::from_ref(point), &[single], &mut factor);
         factor[0]
     }
 
-    /// Writes the speckle factors of laser `laser` at many surface points into `factors`, the same
-    /// bits as [`factor`](Self::factor) one by one.
+    /// Writes the speckle factors of laser `laser` at many surface points into `factors`, the same bits as one by one.
+    ///
+    /// `singles` are the radiances of the light that has met this surface only.
     ///
     /// Neighbouring points of one surface, one after the other, are looked up fastest.
     ///
     /// # Panics
     ///
-    /// Panics unless both slices have the same length and the model has patterns for the laser.
-    pub(crate) fn factors(&self, laser: usize, points: &[SpecklePoint], factors: &mut [f64]) {
+    /// Panics unless the slices have the same length and the model has patterns for the laser.
+    pub(crate) fn factors(
+        &self,
+        laser: usize,
+        points: &[SpecklePoint],
+        singles: &[f64],
+        factors: &mut [f64],
+    ) {
         assert!(
-            points.len() == factors.len(),
+            points.len() == factors.len() && singles.len() == points.len(),
             "{} points for {} factors",
             points.len(),
             factors.len()
         );
-        let mut rest = factors;
+        let mut done = 0;
         for run in points.chunk_by(|a, b| a.surface == b.surface) {
             for points in run.chunks(BLOCK) {
-                let (block, others) = rest.split_at_mut(points.len());
-                self.look_up(laser, points, block);
-                rest = others;
+                let block = done..done + points.len();
+                done = block.end;
+                self.look_up(laser, points, &singles[block.clone()], &mut factors[block]);
             }
         }
     }
 
     /// Looks up a block of points on one surface.
-    fn look_up(&self, laser: usize, points: &[SpecklePoint], factors: &mut [f64]) {
+    fn look_up(&self, laser: usize, points: &[SpecklePoint], singles: &[f64], factors: &mut [f64]) {
         factors.fill(1.0);
         let patterns = &self.model.lasers[laser];
         let Some(surface) = points
@@ -195,17 +247,25 @@ impl SpeckleFrame<'_> {
             return;
         };
         let pattern = &patterns.patterns[surface.allocation];
-        factors.fill(0.0);
-        if let Some(bandwidth) = &surface.bandwidth {
-            for (factor, point) in factors.iter_mut().zip(points) {
-                *factor = self.of_one_wave(laser, surface, bandwidth, point);
+        let mixes: Vec<_> = points
+            .iter()
+            .zip(singles)
+            .map(|(point, &single)| self.mix(laser, point, single))
+            .collect();
+        let is_one_pattern = |mix: &Option<Mix>| {
+            mix.is_none_or(|(light, _)| light.is_coherent(surface.polarisation))
+        };
+        if surface.bandwidth.is_some() || !mixes.iter().all(is_one_pattern) {
+            for ((factor, point), mix) in factors.iter_mut().zip(points).zip(&mixes) {
+                *factor = self.of_one_wave(laser, surface, point, mix.as_ref());
             }
             return;
         }
+        factors.fill(0.0);
         for part in &surface.parts {
             match &pattern.stacks[part.stack] {
                 Stack::Derived(stack) => {
-                    let mut block = self.coordinates(laser, pattern, stack, points);
+                    let mut block = self.coordinates(laser, pattern, stack, (points, &mixes));
                     block.shift(part, stack.size());
                     block.add(stack, part.fraction, factors);
                 }
@@ -220,55 +280,142 @@ impl SpeckleFrame<'_> {
         }
     }
 
+    /// The multiple light at a point, beside single light of a radiance.
+    fn mix(&self, laser: usize, point: &SpecklePoint, single: f64) -> Option<Mix> {
+        let map = self.multiple.as_ref()?;
+        let light = map.at(point.pixel, (laser, point.surface))?;
+        Some((light, light.fraction_beside(single)))
+    }
+
+    /// What has become of the speckle of a point since the reference frame.
+    fn shift(
+        &self,
+        laser: usize,
+        geometry: &ImagingGeometry,
+        point: &SpecklePoint,
+        mix: Option<&Mix>,
+    ) -> SpeckleShift {
+        match mix {
+            None => self.change.speckle_shift(laser, geometry, point),
+            Some((light, fraction)) => {
+                light.shift(&self.change, (laser, geometry), point, *fraction)
+            }
+        }
+    }
+
     /// The speckle factor of a point in light of one wave number, drawn from the line of the laser.
     ///
     /// Another wave number sees the pupil displaced along the axis of the surface, as after a motion; and the heights of
-    /// the relief in other phases.
+    /// the relief in other phases. Multiple light adds patterns, each at a position of its own.
     fn of_one_wave(
         &self,
         laser: usize,
         surface: &SurfacePatterns,
-        bandwidth: &Bandwidth,
         point: &SpecklePoint,
+        mix: Option<&Mix>,
     ) -> f64 {
+        let place = self.place(laser, surface, point, mix);
+        let components = [1.0, -1.0].map(|sign| {
+            let of_component = |degree: f64| 0.5 * (1.0 + sign * degree);
+            let single = of_component(surface.polarisation);
+            let Some((light, fraction)) = mix else {
+                return Recombination::new([single, 0.0], 1.0, 1.0);
+            };
+            let radiances = [
+                (1.0 - fraction) * single,
+                fraction * of_component(light.polarisation),
+            ];
+            Recombination::new(radiances, light.with_single, light.within)
+        });
+        let intensity = |component: usize, number: usize, fraction: f64| {
+            if fraction == 0.0 {
+                return 0.0;
+            }
+            fraction * self.intensity(laser, surface, &place, [component, number])
+        };
+        let sums = components.iter().enumerate().map(|(component, mix)| {
+            let patterns = mix.patterns.iter().enumerate();
+            let patterns =
+                patterns.map(|(number, &fraction)| intensity(component, number, fraction));
+            mix.even + patterns.sum::<f64>()
+        });
+        sums.sum()
+    }
+
+    /// Where a point is looked up.
+    fn place(
+        &self,
+        laser: usize,
+        surface: &SurfacePatterns,
+        point: &SpecklePoint,
+        mix: Option<&Mix>,
+    ) -> Place {
         let patterns = &self.model.lasers[laser];
         let (geometry, pattern) = (&patterns.geometry, &patterns.patterns[surface.allocation]);
+        let motion = self.shift(laser, geometry, point, mix);
+        let sign = self.sides[laser].get(point.surface).copied().unwrap_or(1.0);
+        let mut pixel = self.change.perspective().point(point.pixel) - motion.displacement;
+        let Some(bandwidth) = &surface.bandwidth else {
+            let u = match &pattern.stacks[0] {
+                Stack::Derived(stack) => pattern.coordinate_of(stack, motion.pupil, sign),
+                Stack::AsPrinted(..) => 0.0,
+            };
+            return Place {
+                pixel,
+                u,
+                phase_per_height: 0.0,
+            };
+        };
         let kappa = self.change.laser(laser).spectral_line().draw(point.wave);
         let wave = self.change.spectral_shift(laser, geometry, point, kappa);
         let wave = wave.unwrap_or_default();
-        let motion = self.change.speckle_shift(laser, geometry, point);
-        let sign = self.sides[laser].get(point.surface).copied().unwrap_or(1.0);
+        pixel -= wave.displacement;
         let tilt = wave.pupil.length() * wave.pupil.dot(bandwidth.axis).signum();
-        let u = pattern.slices_per_diameter * (tilt + sign * motion.pupil);
-        let pixel =
-            self.change.perspective().point(point.pixel) - motion.displacement - wave.displacement;
-        let fields = surface.parts.chunks(bandwidth.heights.len());
-        fields
-            .map(|parts| {
-                let amplitudes =
-                    parts
-                        .iter()
-                        .zip(&bandwidth.heights)
-                        .map(|(part, [height, root])| {
-                            let Stack::Derived(stack) = &pattern.stacks[part.stack] else {
-                                return Complex::ZERO;
-                            };
-                            let c = geometry.pattern_coordinate(
-                                upright(pixel),
-                                DVec2::ZERO,
-                                stack.speckle_size(),
-                            );
-                            let [x0, y0] = part.offset_in(stack.size());
-                            let (x, y) = (
-                                bandwidth.axis.dot(c) + x0,
-                                bandwidth.axis.perp().dot(c) + y0,
-                            );
-                            let phase = Complex::cis(wave.phase_per_height * height);
-                            stack.amplitude_at(x, y, u) * phase * root
-                        });
-                parts[0].fraction * amplitudes.sum::<Complex<f64>>().norm_sqr()
-            })
-            .sum()
+        Place {
+            pixel,
+            u: pattern.slices_per_diameter * (tilt + sign * motion.pupil),
+            phase_per_height: wave.phase_per_height,
+        }
+    }
+
+    /// The intensity of one of the independent patterns of a component of polarisation, of mean 1.
+    fn intensity(
+        &self,
+        laser: usize,
+        surface: &SurfacePatterns,
+        place: &Place,
+        [component, number]: [usize; 2],
+    ) -> f64 {
+        let single = [[0.0, 1.0]];
+        let (heights, axis) = match &surface.bandwidth {
+            Some(bandwidth) => (bandwidth.heights.as_slice(), bandwidth.axis),
+            None => (single.as_slice(), DVec2::X),
+        };
+        let patterns = &self.model.lasers[laser];
+        let (geometry, pattern) = (&patterns.geometry, &patterns.patterns[surface.allocation]);
+        // A component that the single light does not have takes positions of its own.
+        let planned = component.min(surface.components - 1);
+        let number = number + (component - planned) * Recombination::PATTERNS;
+        let beside = allocation::position_beside(number);
+        let (mut sum, mut whole) = (0.0, 0.0);
+        for fields in surface.fields_of(planned, heights.len()) {
+            let amplitudes = fields.iter().zip(heights).map(|(part, [height, root])| {
+                let Stack::Derived(stack) = &pattern.stacks[part.stack] else {
+                    return Complex::ZERO;
+                };
+                let pixel = upright(place.pixel);
+                let c = geometry.pattern_coordinate(pixel, DVec2::ZERO, stack.speckle_size());
+                let [x0, y0] = part.offset_in(stack.size());
+                let [x1, y1] = [0, 1].map(|i| beside[i] * stack.size()[i] as f64);
+                let x = axis.dot(c) + x0 + x1;
+                let y = axis.perp().dot(c) + y0 + y1;
+                let phase = Complex::cis(place.phase_per_height * height);
+                stack.amplitude_at(x, y, place.u) * phase * root
+            });
+            sum += fields[0].fraction * amplitudes.sum::<Complex<f64>>().norm_sqr();
+            whole += fields[0].fraction;
+        }
+        sum / whole
     }
 
     /// Coordinates of the points of a surface in its pattern.
@@ -277,28 +424,22 @@ impl SpeckleFrame<'_> {
         laser: usize,
         pattern: &Pattern,
         stack: &SpeckleStack,
-        points: &[SpecklePoint],
+        (points, mixes): (&[SpecklePoint], &[Option<Mix>]),
     ) -> Block {
         let geometry = &self.model.lasers[laser].geometry;
         let sides = &self.sides[laser];
         let side = points.first().and_then(|p| sides.get(p.surface));
         let sign = side.copied().unwrap_or(1.0);
-        let reach = pattern.reaches[usize::from(sign > 0.0)];
         let mut block = Block {
             x: [0.0; BLOCK],
             y: [0.0; BLOCK],
             u: [0.0; BLOCK],
         };
-        for (i, point) in points.iter().enumerate() {
-            let shift = self.change.speckle_shift(laser, geometry, point);
+        for (i, (point, mix)) in points.iter().zip(mixes).enumerate() {
+            let shift = self.shift(laser, geometry, point, mix.as_ref());
             let pixel = self.change.perspective().point(point.pixel) - shift.displacement;
             let c = geometry.pattern_coordinate(upright(pixel), DVec2::ZERO, stack.speckle_size());
-            // Beyond the reach the speckle is new to the reference frame, wherever the pupil stands.
-            let shift = shift.pupil.min(reach);
-            // Where the blend of two slices has kept as much of the reference frame as that shift, and
-            // on along the path once nothing is left.
-            let u = stack.coordinate_of(pupil_overlap_correlation(shift));
-            block.u[i] = sign * u.max(shift * pattern.slices_per_diameter);
+            block.u[i] = pattern.coordinate_of(stack, shift.pupil, sign);
             [block.x[i], block.y[i]] = c.to_array();
         }
         block
@@ -418,7 +559,7 @@ mod tests {
                 let speckle = model.in_frame(&scene, frame);
                 for laser in 0..2 {
                     let mut factors = vec![f64::NAN; points.len()];
-                    speckle.factors(laser, &points, &mut factors);
+                    speckle.factors(laser, &points, &vec![0.0; points.len()], &mut factors);
                     for (point, factor) in points.iter().zip(&factors) {
                         let alone = speckle.factor(laser, point);
                         assert_eq!(alone.to_bits(), factor.to_bits(), "{frame}: {point:?}");

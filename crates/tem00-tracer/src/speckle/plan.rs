@@ -8,7 +8,7 @@ use super::{
     allocation::{self, Part, PatternAllocation, Request},
     bandwidth::{Bandwidth, SurfaceLight, laser_lights},
     change::ReferencePoint,
-    prescan::{LaserGroups, MotionPrescan, prescan},
+    prescan::{LaserGroups, MotionPrescan, SurveyOfFrame, prescan},
 };
 use crate::{Formulas, Scene, SpeckleSettings, SurfaceSpeckle, TracerError, Trajectory};
 
@@ -45,27 +45,44 @@ pub struct PatternPlan {
 pub(super) struct SurfacePatterns {
     /// The patterns, among those of the laser.
     pub allocation: usize,
-    /// The parts that add up.
+    /// The parts that add up: for each equal pattern, for each component of polarisation, for each mode.
     pub parts: Vec<Part>,
+    /// The degree of polarisation, and the number of components that have light.
+    pub polarisation: f64,
+    pub components: usize,
+    /// The number of modes.
+    pub modes: usize,
     /// The point that tells one side of the reference frame from the other.
     pub reference_point: Option<ReferencePoint>,
     /// What the linewidth of the laser asks. Each part is then several, one after the other, whose fields add.
     pub bandwidth: Option<Bandwidth>,
 }
 
+impl SurfacePatterns {
+    /// Returns the parts of one component of polarisation, so many whose fields add together.
+    pub(super) fn fields_of(
+        &self,
+        component: usize,
+        fields: usize,
+    ) -> impl Iterator<Item = &[Part]> {
+        let groups = self.parts.chunks(fields).enumerate();
+        let of_component = move |index: usize| index / self.modes % self.components == component;
+        groups
+            .filter(move |(index, _)| of_component(*index))
+            .map(|(_, parts)| parts)
+    }
+}
+
 impl SpecklePlan {
-    /// Chooses the patterns for a scene.
+    /// Chooses the patterns for a scene as [`new`](Self::new) does.
     ///
-    /// Each is the [`StackPlan`] for the image, the part of the scene that moves into it, and the
-    /// longest way by which the frames carry the pupil. What the scene file sets is kept. What the
-    /// motion asks for beyond the memory is left out, and said so.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if C exceeds Q/2, if the imaging geometry is not possible, if the speckle of
-    /// a surface is not a sum of patterns, or if the patterns do not fit the memory that the scene
-    /// allows.
-    pub fn new(scene: &Scene, formulas: Formulas, seed: u64) -> Result<Self, TracerError> {
+    /// `survey` finds the multiple light in a frame.
+    pub(crate) fn with_survey(
+        scene: &Scene,
+        formulas: Formulas,
+        seed: u64,
+        survey: &SurveyOfFrame<'_>,
+    ) -> Result<Self, TracerError> {
         let geometries = scene
             .lasers
             .iter()
@@ -77,7 +94,7 @@ impl SpecklePlan {
             groups: &groups,
         };
         let memory = scene.speckle.memory / scene.lasers.len().max(1) as u64;
-        let prescans = prescan(scene, laser_groups)?;
+        let prescans = prescan(scene, laser_groups, survey)?;
         let lights = match formulas {
             Formulas::Derived => laser_lights(scene, laser_groups)?,
             Formulas::AsPrinted => {
@@ -141,6 +158,9 @@ struct Sum {
     fractions: Vec<f64>,
     /// The number of patterns of each whose fields add.
     fields: usize,
+    polarisation: f64,
+    components: usize,
+    modes: usize,
 }
 
 impl Sum {
@@ -202,6 +222,7 @@ impl Planner<'_> {
             .iter()
             .filter_map(|&surface| self.lights[surface].bandwidth.as_ref());
         let (mut region, mut shifts) = (prescan.region(), prescan.shifts);
+        let moves = moves || shifts.iter().any(|shift| *shift > 0.0);
         let mut reach = 0.0_f64;
         for bandwidth in bandwidths {
             // Turned so that the slices stand along the axis.
@@ -255,6 +276,9 @@ impl Planner<'_> {
                     .as_ref()
                     .map(|bandwidth| bandwidth.reference_point);
                 SurfacePatterns {
+                    polarisation: sum.polarisation,
+                    components: sum.components,
+                    modes: sum.modes,
                     allocation: if shared { 0 } else { group },
                     reference_point: along_axis.or(moving),
                     bandwidth,
@@ -280,12 +304,14 @@ impl Planner<'_> {
 
 impl Sum {
     fn new(speckle: &SurfaceSpeckle, light: &SurfaceLight) -> Result<Self, TracerError> {
+        let patterns = speckle.patterns as usize;
+        let fractions = incoherent_fractions(patterns, speckle.polarisation, &light.modes)?;
+        let components = if speckle.polarisation < 1.0 { 2 } else { 1 };
         Ok(Self {
-            fractions: incoherent_fractions(
-                speckle.patterns as usize,
-                speckle.polarisation,
-                &light.modes,
-            )?,
+            polarisation: speckle.polarisation,
+            components,
+            modes: fractions.len() / (patterns * components),
+            fractions,
             fields: light
                 .bandwidth
                 .as_ref()

@@ -8,6 +8,7 @@ use tem00_decorrelation::ImagingGeometry;
 use super::{
     SpecklePoint,
     change::{Change, ReferencePoint},
+    multiple::MultipleMap,
     perspective::Perspective,
 };
 use crate::{Intersector, Scene, TracerError};
@@ -76,6 +77,10 @@ pub(super) struct LaserGroups<'a> {
     pub groups: &'a [usize],
 }
 
+/// Returns the multiple light in a frame, if it asks for slices of its own.
+pub(crate) type SurveyOfFrame<'a> =
+    dyn Fn(u32, &Intersector, &Change) -> Option<MultipleMap> + Sync + 'a;
+
 /// Follows rays to the points that the lasers light, in frames spread over the sequence, and returns
 /// what each laser asks of the pattern of each group of surfaces.
 ///
@@ -83,6 +88,7 @@ pub(super) struct LaserGroups<'a> {
 pub(super) fn prescan(
     scene: &Scene,
     laser_groups: LaserGroups<'_>,
+    survey: &SurveyOfFrame<'_>,
 ) -> Result<Vec<Vec<MotionPrescan>>, TracerError> {
     let groups = laser_groups.groups.iter().max().map_or(0, |last| last + 1);
     let still = vec![vec![MotionPrescan::of_image(&scene.camera); groups]; scene.lasers.len()];
@@ -98,7 +104,14 @@ pub(super) fn prescan(
     let samples = frames
         .par_iter()
         .zip(&changes)
-        .map(|(&frame, change)| frame_samples(scene, laser_groups, frame, change))
+        .map(|(&frame, change)| {
+            let intersector = Intersector::build(&scene.shapes_at(frame))?;
+            let mut samples = frame_samples(laser_groups, &intersector, change);
+            if let Some(map) = survey(frame, &intersector, change) {
+                add_multiple_light(&mut samples, laser_groups, &map, change);
+            }
+            Ok(samples)
+        })
         .collect::<Result<Vec<_>, TracerError>>()?;
     let mut prescans = still;
     for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
@@ -136,11 +149,10 @@ impl MotionPrescan {
 
 /// Returns the requirements of one frame on the pattern of each laser and group.
 fn frame_samples(
-    scene: &Scene,
     laser_groups: LaserGroups<'_>,
-    frame: u32,
+    intersector: &Intersector,
     change: &Change,
-) -> Result<Vec<Vec<FrameSample>>, TracerError> {
+) -> Vec<Vec<FrameSample>> {
     let none = FrameSample {
         low: DVec2::INFINITY,
         high: DVec2::NEG_INFINITY,
@@ -149,7 +161,6 @@ fn frame_samples(
     };
     let groups = laser_groups.groups.iter().max().map_or(0, |last| last + 1);
     let mut samples = vec![vec![none; groups]; laser_groups.geometries.len()];
-    let intersector = Intersector::build(&scene.shapes_at(frame))?;
     for pixel in pixels_of(change.camera()) {
         let Some(hit) = intersector.intersect(&change.camera().ray(pixel)) else {
             continue;
@@ -172,7 +183,36 @@ fn frame_samples(
             }
         }
     }
-    Ok(samples)
+    samples
+}
+
+/// The part of the brightest light below which multiple light asks for no slices.
+const FAINT: f64 = 0.02;
+
+/// Adds what the speckle of light that has met several surfaces asks for.
+fn add_multiple_light(
+    samples: &mut [Vec<FrameSample>],
+    laser_groups: LaserGroups<'_>,
+    map: &MultipleMap,
+    change: &Change,
+) {
+    for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
+        let of_laser = || map.iter().filter(|((of, _), _)| *of == laser);
+        let radiances = of_laser().map(|(_, light)| light.radiance + light.single);
+        let brightest = radiances.fold(0.0, f64::max);
+        for ((_, surface), light) in of_laser() {
+            if light.radiance < FAINT * brightest {
+                continue;
+            }
+            let point = &light.point;
+            let fraction = light.fraction_beside(light.single);
+            let shift = light.shift(change, (laser, geometry), point, fraction);
+            let origin = change.perspective().point(point.pixel) - shift.displacement;
+            if let Some(&group) = laser_groups.groups.get(surface) {
+                samples[laser][group].add(point, origin, shift.pupil);
+            }
+        }
+    }
 }
 
 impl FrameSample {

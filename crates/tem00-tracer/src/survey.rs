@@ -1,0 +1,311 @@
+//! A survey of the light that has met several rough surfaces, before a frame is rendered.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use crate::{
+    Crop, Formulas, Hit, Intersector, LocalFrame, Material, RenderOptions, Scene, Segment, Shape,
+    SpecklePlan, TracerError,
+    light_tracer::{LightJob, LightSelection, LightTracer, LitPoint},
+    sampler::{pixel_key, point_in_square},
+    speckle::{
+        Change, Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums, SamplePair,
+        SpecklePoint,
+    },
+};
+
+/// Which frame is surveyed, and how finely.
+pub(crate) struct Survey<'a> {
+    pub scene: &'a Scene,
+    pub frame: u32,
+    /// The surfaces as they stand in the frame.
+    pub intersector: &'a Intersector,
+    /// The motion since the reference frame.
+    pub change: &'a Change,
+    pub seed: u64,
+    /// The maximum number of surfaces that light may meet between laser and camera; `None` for no limit.
+    pub max_depth: Option<u32>,
+    /// The number of cells along the longer side of the image.
+    pub cells: usize,
+}
+
+/// Tells the random numbers of a survey from those of a render.
+const SEED: u64 = 0x005e_ed0f;
+
+impl Scene {
+    /// Tells whether a frame shows multiple light whose speckle is not simply that of the single light: its paths differ by
+    /// a length that counts, by a motion, or by polarisation.
+    pub(crate) fn asks_for_survey(&self, frame: u32, options: &RenderOptions) -> bool {
+        let [first, ..] = self.surfaces.as_slice() else {
+            return false;
+        };
+        let is_plate = self.surfaces.len() == 1 && matches!(first.shape, Shape::Rectangle(_));
+        let is_single = is_plate || options.max_depth == Some(1);
+        let is_broad = self
+            .lasers
+            .iter()
+            .any(|l| !l.spectral_line().is_monochromatic());
+        let is_depolarised = self.surfaces.iter().any(|s| s.speckle.polarisation < 1.0);
+        let is_other_frame = frame != self.reference_frame && self.moves();
+        options.formulas == Formulas::Derived
+            && !is_single
+            && (is_broad || is_depolarised || is_other_frame)
+    }
+
+    /// Tells whether anything that matters to speckle moves.
+    pub(crate) fn moves(&self) -> bool {
+        let mut lasers = 0..self.lasers.len();
+        lasers
+            .any(|laser| (0..self.surfaces.len()).any(|surface| self.speckle_moves(laser, surface)))
+    }
+}
+
+/// The cells of a survey that plans the slices.
+const PLANNED_CELLS: usize = 16;
+
+impl SpecklePlan {
+    /// Chooses the patterns for a scene.
+    ///
+    /// Each is the [`StackPlan`] for the image, the part of the scene that moves into it, and the
+    /// longest way by which the frames carry the pupil. What the scene file sets is kept. What the
+    /// motion asks for beyond the memory is left out, and said so.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if C exceeds Q/2, if the imaging geometry is not possible, if the speckle of
+    /// a surface is not a sum of patterns, or if the patterns do not fit the memory that the scene
+    /// allows.
+    pub fn new(scene: &Scene, formulas: Formulas, seed: u64) -> Result<Self, TracerError> {
+        let options = RenderOptions {
+            formulas,
+            ..scene.render
+        };
+        Self::with_survey(scene, formulas, seed, &|frame, intersector, change| {
+            let survey = Survey {
+                scene,
+                frame,
+                intersector,
+                change,
+                seed,
+                max_depth: options.max_depth,
+                cells: PLANNED_CELLS,
+            };
+            scene
+                .asks_for_survey(frame, &options)
+                .then(|| survey.map())?
+        })
+    }
+}
+
+/// The groups of light paths of a laser, and the paths in each. A place of the image sees two groups, which are
+/// independent of each other; the places beside it see others.
+const GROUPS: usize = 16;
+const PATHS: usize = 32;
+
+/// The paths of the second group with which each of the first makes a pair.
+const PARTNERS: usize = 8;
+
+/// Of each laser, of each group, of each path: the rough surfaces that it has met.
+type LitPoints<'a> = Vec<Vec<Vec<Vec<LitPoint<'a>>>>>;
+
+impl<'a> Survey<'a> {
+    /// Follows light from the lasers, connects what it meets with points that the camera sees, and returns the multiple
+    /// light found there, if any.
+    pub(crate) fn map(&self) -> Option<MultipleMap> {
+        let camera = self.change.camera();
+        let tracer = self.light_tracer();
+        let lit = self.lit_points(&tracer);
+        let lattice = Lattice::over([camera.width(), camera.height()], self.cells);
+        let cells = (0..lattice.columns * lattice.rows).into_par_iter();
+        let sums: Vec<_> = cells.map(|cell| self.cell(&lit, lattice, cell)).collect();
+        MultipleMap::new(lattice, &sums)
+    }
+
+    fn light_tracer(&self) -> LightTracer<'a> {
+        let camera = self.change.camera();
+        LightTracer {
+            scene: self.scene,
+            camera,
+            intersector: self.intersector,
+            speckle: None,
+            formulas: Formulas::Derived,
+            frame: self.frame,
+            // The surface that the camera sees is one more.
+            max_depth: self.max_depth.map(|depth| depth.saturating_sub(1)),
+            selection: LightSelection::All,
+            area: Crop {
+                x: 0,
+                y: 0,
+                width: camera.width(),
+                height: camera.height(),
+            },
+        }
+    }
+
+    fn lit_points<'t>(&self, tracer: &'t LightTracer<'t>) -> LitPoints<'t> {
+        let groups = |laser: usize| {
+            let job = LightJob {
+                laser,
+                paths: PATHS as u64,
+                seed: self.seed ^ SEED,
+            };
+            let groups = (0..GROUPS).into_par_iter();
+            groups
+                .map(|group| tracer.lit_points(&job, group as u64, self.change))
+                .collect()
+        };
+        (0..self.scene.lasers.len()).map(groups).collect()
+    }
+
+    /// Sums over pairs of paths to a point of one cell.
+    fn cell(
+        &self,
+        lit: &LitPoints<'_>,
+        lattice: Lattice,
+        cell: usize,
+    ) -> BTreeMap<LightKey, MultipleSums> {
+        let mut sums = BTreeMap::new();
+        let Some(seen) = self.seen(lattice, cell) else {
+            return sums;
+        };
+        for (laser, groups) in lit.iter().enumerate() {
+            let line = self.scene.lasers[laser].spectral_line();
+            let single = self.single(laser, &seen);
+            let number = 2 * (cell % lattice.columns + 3 * (cell / lattice.columns));
+            let [first, second] = [0, 1].map(|i| {
+                let paths = groups[(number + i) % GROUPS].iter();
+                let paths = paths.map(|points| self.multiple(laser, &seen, points));
+                paths.collect::<Vec<_>>()
+            });
+            let mut of_laser = MultipleSums::new(seen.point);
+            for (index, path) in first.iter().enumerate() {
+                for partner in 0..PARTNERS {
+                    let other = &second[(index + partner * (PATHS / PARTNERS)) % PATHS];
+                    of_laser.add(
+                        line,
+                        &SamplePair {
+                            single,
+                            multiple: [path, other],
+                        },
+                    );
+                }
+            }
+            sums.insert((laser, seen.point.surface), of_laser);
+        }
+        sums
+    }
+
+    /// The rough surface that the camera sees at some point of a cell.
+    fn seen(&self, lattice: Lattice, cell: usize) -> Option<SeenPoint<'a>> {
+        let camera = self.change.camera();
+        let corner = DVec2::new(
+            (cell % lattice.columns) as f64,
+            (cell / lattice.columns) as f64,
+        );
+        let size = DVec2::new(camera.width() as f64, camera.height() as f64);
+        // The same point in every frame: what is found does not flicker.
+        let within = point_in_square(pixel_key(self.seed ^ SEED, [0, cell as u64, 0]));
+        let pixel = (lattice.side as f64 * (corner + DVec2::from_array(within))).min(size);
+        let ray = camera.ray(pixel);
+        let hit = self.intersector.intersect(&ray)?;
+        let material = &self.scene.surfaces.get(hit.surface)?.material;
+        let axes = hit.axes_seen_from(-ray.direction);
+        let wo = axes.to_local(-ray.direction);
+        (!material.is_specular()).then_some(SeenPoint {
+            point: SpecklePoint {
+                pixel,
+                position: hit.position,
+                normal: axes.normal() * wo.z.signum(),
+                surface: hit.surface,
+                wave: 0.5,
+            },
+            hit,
+            axes,
+            wo,
+            material,
+        })
+    }
+
+    /// The radiance of the light of a laser that has met this surface only.
+    fn single(&self, laser: usize, seen: &SeenPoint<'_>) -> f64 {
+        let laser = self.change.laser(laser);
+        let Some(light) = laser.illuminate(seen.point.position) else {
+            return 0.0;
+        };
+        let radiance = light.irradiance * seen.reflected(light.direction, laser.wavelength());
+        let segment = Segment {
+            from: seen.point.position,
+            from_normal: seen.hit.normal,
+            to: light.source,
+        };
+        if radiance > 0.0 && self.is_free(segment) {
+            radiance
+        } else {
+            0.0
+        }
+    }
+
+    /// The light of one path from a laser that arrives over the rough surfaces it has met.
+    fn multiple(
+        &self,
+        laser: usize,
+        seen: &SeenPoint<'_>,
+        points: &[LitPoint<'_>],
+    ) -> Vec<MultiplePath> {
+        let (position, surface) = (seen.point.position, seen.point.surface);
+        let origin = self.change.origin(surface, position);
+        let [now, before] = self
+            .change
+            .paths_to(laser, surface, position)
+            .unwrap_or_default();
+        let wavelength = self.change.laser(laser).wavelength();
+        let paths = points.iter().filter_map(|lit| {
+            let (irradiance, wi) = lit.irradiance_at(position, wavelength)?;
+            let radiance = irradiance * seen.reflected(wi, wavelength);
+            if radiance <= 0.0 || !self.is_free(lit.segment_to(position)) {
+                return None;
+            }
+            let way = lit.way_to(position, origin);
+            Some(MultiplePath {
+                radiance,
+                delay: way.length - now,
+                added: way.change - (now - before),
+                polarisation: way.polarisation * self.scene.surfaces[surface].speckle.polarisation,
+            })
+        });
+        paths.collect()
+    }
+
+    fn is_free(&self, segment: Segment) -> bool {
+        let mut free = [false];
+        self.intersector.visible_batch(&[segment], &mut free);
+        free[0]
+    }
+}
+
+/// A point that the camera sees.
+struct SeenPoint<'a> {
+    point: SpecklePoint,
+    hit: Hit,
+    /// Local axes whose z is the normal by which light is scattered.
+    axes: LocalFrame,
+    /// The direction to the camera, in local axes.
+    wo: DVec3,
+    material: &'a Material,
+}
+
+impl SeenPoint<'_> {
+    /// The BSDF times |cos θ| for light from a unit direction.
+    fn reflected(&self, direction: DVec3, wavelength: f64) -> f64 {
+        let wi = self.axes.to_local(direction);
+        if wi.z * self.hit.normal.dot(direction) <= 0.0 {
+            return 0.0;
+        }
+        self.material.evaluate(self.wo, wi, wavelength) * wi.z.abs()
+    }
+}
+
+#[cfg(test)]
+mod tests;

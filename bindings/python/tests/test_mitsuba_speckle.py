@@ -228,13 +228,14 @@ def corner(**lights: Node) -> Node:
     return {"plate": PLATE, "wall": wall, **lights}
 
 
-def test_light_that_met_two_rough_surfaces_is_left_alone() -> None:
+def test_light_that_met_two_rough_surfaces_has_the_speckle_of_the_last() -> None:
     # The camera sees by scattered light only: what the laser lights faces away.
     parts = hidden_plate()
-    smooth = picture({**plain(), "max_depth": 3}, 64, **parts)
-    speckled = picture({**DIRECT, "max_depth": 3}, 64, **parts)
-    assert smooth.max() > 0.0
-    assert np.array_equal(smooth, speckled)
+    smooth = picture({**plain(), "max_depth": 3}, 1024, **parts)
+    speckled = picture({**DIRECT, "max_depth": 3}, 1024, **parts)
+    assert smooth.min() > 0.0
+    ratio = speckled / smooth
+    assert np.corrcoef(ratio.ravel(), pixel_means(stack_of()).ravel())[0, 1] > 0.99
 
 
 def hidden_plate() -> Node:

@@ -68,7 +68,8 @@ pub use scene::{Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
 pub use speckle::{
-    PatternPlan, ReferencePoint, RoughnessNote, SpeckleChange, SpeckleModel, SpecklePlan,
+    CascadeNote, PatternPlan, ReferencePoint, RoughnessNote, SpeckleChange, SpeckleModel,
+    SpecklePlan,
 };
 pub use trajectory::{Keyframe, Rotation, Trajectory};
 

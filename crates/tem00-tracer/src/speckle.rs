@@ -18,8 +18,8 @@ pub use between_frames::{ReferencePoint, SpeckleChange};
 pub(crate) use change::Change;
 pub(crate) use model::SpeckleFrame;
 pub use model::SpeckleModel;
-pub(crate) use multiple::{Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums, SamplePair};
-pub use notes::RoughnessNote;
+pub(crate) use multiple::{Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums};
+pub use notes::{CascadeNote, RoughnessNote};
 pub use plan::{PatternPlan, SpecklePlan};
 
 /// A point of a surface that a path has met, and where in the image it is seen.

@@ -11,7 +11,7 @@ use crate::{
     light_tracer::{LightJob, LightSelection, LightTracer, LitPoint},
     sampler::{pixel_key, point_in_square},
     speckle::{
-        Change, Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums, SamplePair,
+        CascadeNote, Change, Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums,
         SpecklePoint,
     },
 };
@@ -38,11 +38,6 @@ impl Scene {
     /// Tells whether a frame shows multiple light whose speckle is not simply that of the single light: its paths differ by
     /// a length that counts, by a motion, or by polarisation.
     pub(crate) fn asks_for_survey(&self, frame: u32, options: &RenderOptions) -> bool {
-        let [first, ..] = self.surfaces.as_slice() else {
-            return false;
-        };
-        let is_plate = self.surfaces.len() == 1 && matches!(first.shape, Shape::Rectangle(_));
-        let is_single = is_plate || options.max_depth == Some(1);
         let is_broad = self
             .lasers
             .iter()
@@ -50,8 +45,15 @@ impl Scene {
         let is_depolarised = self.surfaces.iter().any(|s| s.speckle.polarisation < 1.0);
         let is_other_frame = frame != self.reference_frame && self.moves();
         options.formulas == Formulas::Derived
-            && !is_single
+            && !self.is_single(options)
             && (is_broad || is_depolarised || is_other_frame)
+    }
+
+    /// Tells whether light cannot meet more than one rough surface.
+    fn is_single(&self, options: &RenderOptions) -> bool {
+        let shapes: Vec<_> = self.surfaces.iter().map(|surface| &surface.shape).collect();
+        let is_plate = matches!(shapes.as_slice(), [] | [Shape::Rectangle(_)]);
+        is_plate || options.max_depth == Some(1)
     }
 
     /// Tells whether anything that matters to speckle moves.
@@ -104,11 +106,47 @@ impl SpecklePlan {
 const GROUPS: usize = 16;
 const PATHS: usize = 32;
 
-/// The paths of the second group with which each of the first makes a pair.
-const PARTNERS: usize = 8;
-
 /// Of each laser, of each group, of each path: the rough surfaces that it has met.
 type LitPoints<'a> = Vec<Vec<Vec<Vec<LitPoint<'a>>>>>;
+
+impl Scene {
+    /// Returns a note for each laser and surface where multiple light comes from so small a part of another surface that
+    /// its own speckle is as coarse as what the camera resolves: the speckle of speckle is left out.
+    ///
+    /// The reference frame is judged, where the light is not faint.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the geometry cannot be built.
+    pub fn cascade_notes(&self) -> Result<Vec<CascadeNote>, TracerError> {
+        if self.is_single(&self.render) {
+            return Ok(Vec::new());
+        }
+        let frame = self.reference_frame;
+        let survey = Survey {
+            scene: self,
+            frame,
+            intersector: &Intersector::build(&self.shapes_at(frame))?,
+            change: &Change::new(self, frame),
+            seed: 0,
+            max_depth: self.render.max_depth,
+            cells: PLANNED_CELLS,
+        };
+        let map = survey.map();
+        let notes = map.iter().flat_map(MultipleMap::strongest_cascades);
+        Ok(notes
+            .filter(|(_, variance)| *variance > CASCADE)
+            .map(|((laser, surface), variance)| CascadeNote {
+                surface: self.surfaces[surface].name.clone(),
+                laser,
+                contrast: (1.0 + variance).sqrt(),
+            })
+            .collect())
+    }
+}
+
+/// The excess of the squared contrast from which speckle of speckle is worth a note.
+const CASCADE: f64 = 0.05;
 
 impl<'a> Survey<'a> {
     /// Follows light from the lasers, connects what it meets with points that the camera sees, and returns the multiple
@@ -172,26 +210,14 @@ impl<'a> Survey<'a> {
         };
         for (laser, groups) in lit.iter().enumerate() {
             let line = self.scene.lasers[laser].spectral_line();
-            let single = self.single(laser, &seen);
             let number = 2 * (cell % lattice.columns + 3 * (cell / lattice.columns));
             let [first, second] = [0, 1].map(|i| {
                 let paths = groups[(number + i) % GROUPS].iter();
-                let paths = paths.map(|points| self.multiple(laser, &seen, points));
+                let paths = paths.flat_map(|points| self.multiple(laser, &seen, points));
                 paths.collect::<Vec<_>>()
             });
-            let mut of_laser = MultipleSums::new(seen.point);
-            for (index, path) in first.iter().enumerate() {
-                for partner in 0..PARTNERS {
-                    let other = &second[(index + partner * (PATHS / PARTNERS)) % PATHS];
-                    of_laser.add(
-                        line,
-                        &SamplePair {
-                            single,
-                            multiple: [path, other],
-                        },
-                    );
-                }
-            }
+            let place = (seen.point, self.single(laser, &seen));
+            let of_laser = MultipleSums::of_groups(line, place, [&first, &second], PATHS);
             sums.insert((laser, seen.point.surface), of_laser);
         }
         sums
@@ -205,7 +231,7 @@ impl<'a> Survey<'a> {
             (cell / lattice.columns) as f64,
         );
         let size = DVec2::new(camera.width() as f64, camera.height() as f64);
-        // The same point in every frame: what is found does not flicker.
+        // The same point in every frame.
         let within = point_in_square(pixel_key(self.seed ^ SEED, [0, cell as u64, 0]));
         let pixel = (lattice.side as f64 * (corner + DVec2::from_array(within))).min(size);
         let ray = camera.ray(pixel);
@@ -224,6 +250,10 @@ impl<'a> Survey<'a> {
             hit,
             axes,
             wo,
+            to_pupil: -ray.direction,
+            sin_aperture: (0.5 * camera.pupil_diameter()
+                / (camera.position() - hit.position).length())
+            .min(1.0),
             material,
         })
     }
@@ -273,6 +303,7 @@ impl<'a> Survey<'a> {
                 delay: way.length - now,
                 added: way.change - (now - before),
                 polarisation: way.polarisation * self.scene.surfaces[surface].speckle.polarisation,
+                pupil: seen.pupil_of(wi),
             })
         });
         paths.collect()
@@ -293,10 +324,21 @@ struct SeenPoint<'a> {
     axes: LocalFrame,
     /// The direction to the camera, in local axes.
     wo: DVec3,
+    /// The unit direction to the pupil, and the sine of the half-angle that it fills.
+    to_pupil: DVec3,
+    sin_aperture: f64,
     material: &'a Material,
 }
 
 impl SeenPoint<'_> {
+    /// Where in the pupil a change of the unit direction from which light arrives moves the field, in pupil diameters:
+    /// its part across the line of sight, the other being along the normal.
+    fn pupil_of(&self, direction: DVec3) -> DVec3 {
+        let normal = self.point.normal;
+        let along = direction.dot(self.to_pupil) / normal.dot(self.to_pupil);
+        (direction - along * normal) / (2.0 * self.sin_aperture)
+    }
+
     /// The BSDF times |cos θ| for light from a unit direction.
     fn reflected(&self, direction: DVec3, wavelength: f64) -> f64 {
         let wi = self.axes.to_local(direction);

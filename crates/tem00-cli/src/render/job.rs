@@ -114,6 +114,10 @@ impl<'a> Render<'a> {
         }
         let notes = self.scene.roughness_notes();
         note_roughness(&notes.map_err(|error| tracer_failure(&self.args.common.scene, &error))?);
+        let cascades = self.scene.cascade_notes();
+        for line in cascades.map_err(|error| tracer_failure(&self.args.common.scene, &error))? {
+            note(&format!("speckle: {line}"));
+        }
         let model = SpeckleModel::generate(&self.scene, plan)
             .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;
         interrupt::check()?;

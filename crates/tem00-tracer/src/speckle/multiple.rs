@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use tem00_coherence::{DelayedLight, PathPairs, SpectralLine};
 use tem00_decorrelation::{ImagingGeometry, equivalent_pupil_shift, pupil_overlap_correlation};
 use tem00_numerics::cast::to_usize;
@@ -28,11 +28,13 @@ pub(crate) struct MultipleLight {
     pub kept_with_single: f64,
     /// The degree of polarisation.
     pub polarisation: f64,
+    /// The relative variance over a resolution cell of the speckle that the lit surfaces send there.
+    pub cascade: f64,
     /// A point where it is seen.
     pub point: SpecklePoint,
 }
 
-/// Sums over pairs of camera samples of a place of the image.
+/// Sums over pairs of light paths to a place of the image.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MultipleSums {
     samples: f64,
@@ -44,16 +46,9 @@ pub(crate) struct MultipleSums {
     kept: [f64; 2],
     /// Σ E cos k(δ − δ₁), with the change δ₁ of the single light.
     kept_with_single: f64,
+    /// Σ E E' chat² of the displacement of the pupil between the directions of two paths.
+    cascade: f64,
     point: SpecklePoint,
-}
-
-/// What two independent camera samples of one point of a surface have found of a laser.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SamplePair<'a> {
-    /// The radiance of the light that has met this surface only, in W/(m² sr).
-    pub single: f64,
-    /// The light that has met others, of each sample.
-    pub multiple: [&'a [MultiplePath]; 2],
 }
 
 /// A path over several rough surfaces.
@@ -65,10 +60,12 @@ pub(crate) struct MultiplePath {
     pub delay: f64,
     pub added: f64,
     pub polarisation: f64,
+    /// Where in the pupil a change of the direction from which it arrives moves the field, in pupil diameters.
+    pub pupil: DVec3,
 }
 
 impl MultipleSums {
-    pub(crate) fn new(point: SpecklePoint) -> Self {
+    fn new(point: SpecklePoint) -> Self {
         Self {
             samples: 0.0,
             radiance: 0.0,
@@ -77,40 +74,51 @@ impl MultipleSums {
             paths: PathPairs::default(),
             kept: [0.0; 2],
             kept_with_single: 0.0,
+            cascade: 0.0,
             point,
         }
     }
 
-    /// Adds a pair of samples.
-    pub(crate) fn add(&mut self, line: &SpectralLine, pair: &SamplePair<'_>) {
-        self.samples += 2.0;
-        self.single += 2.0 * pair.single;
-        let [first, second] = pair.multiple;
-        let delayed = |paths: &[MultiplePath]| -> Vec<DelayedLight> {
-            let paths = paths.iter();
-            paths
-                .map(|path| DelayedLight {
-                    weight: path.radiance,
-                    delay: path.delay,
-                })
-                .collect()
+    /// Sums over the pairs of two independent groups, of so many paths each, to a point that has the radiance `single` of
+    /// light which has met its surface only.
+    pub(crate) fn of_groups(
+        line: &SpectralLine,
+        (point, single): (SpecklePoint, f64),
+        groups: [&[MultiplePath]; 2],
+        paths: usize,
+    ) -> Self {
+        let samples = 2.0 * paths as f64;
+        let mut sums = Self {
+            samples,
+            single: samples * single,
+            ..Self::new(point)
         };
-        let [delayed_first, delayed_second] = [first, second].map(delayed);
-        self.paths.add(line, &delayed_first, &delayed_second);
-        self.paths.add(line, &delayed_second, &delayed_first);
+        let delayed = groups.map(|group| -> Vec<_> {
+            let delayed = |path: &MultiplePath| DelayedLight {
+                weight: path.radiance,
+                delay: path.delay,
+            };
+            group.iter().map(delayed).collect()
+        });
+        let [first, second] = &delayed;
+        sums.paths.add(line, first, second);
+        sums.paths.add(line, second, first);
         let phase = |path: f64| (line.wave_number() * path).cos();
-        for path in first.iter().chain(second) {
-            self.radiance += path.radiance;
-            self.polarised += path.radiance * path.polarisation;
-            self.kept_with_single += path.radiance * phase(path.added);
+        for path in groups.into_iter().flatten() {
+            sums.radiance += path.radiance;
+            sums.polarised += path.radiance * path.polarisation;
+            sums.kept_with_single += path.radiance * phase(path.added);
         }
-        for path in first {
-            for other in second {
+        for path in groups[0] {
+            for other in groups[1] {
                 let energy = path.radiance * other.radiance;
-                self.kept[0] += energy * phase(path.added - other.added);
-                self.kept[1] += energy;
+                sums.kept[0] += energy * phase(path.added - other.added);
+                sums.kept[1] += energy;
+                let shift = path.pupil.distance(other.pupil);
+                sums.cascade += energy * pupil_overlap_correlation(shift);
             }
         }
+        sums
     }
 
     fn add_scaled(&mut self, other: &Self, factor: f64) {
@@ -123,6 +131,7 @@ impl MultipleSums {
             *sum += factor * value;
         }
         self.kept_with_single += factor * other.kept_with_single;
+        self.cascade += factor * other.cascade;
     }
 
     /// Returns what the sums say of the light, if there is any.
@@ -137,6 +146,7 @@ impl MultipleSums {
             kept: ratio(self.kept[0], self.kept[1])?.clamp(0.0, 1.0),
             kept_with_single: ratio(self.kept_with_single, self.radiance)?.clamp(-1.0, 1.0),
             polarisation: ratio(self.polarised, self.radiance)?.clamp(0.0, 1.0),
+            cascade: ratio(self.cascade, self.kept[1])?,
             point: self.point,
         })
     }
@@ -144,6 +154,9 @@ impl MultipleSums {
 
 /// The laser and the surface whose light is meant.
 pub(crate) type LightKey = (usize, usize);
+
+/// The part of the brightest light of a laser below which light is faint.
+pub(super) const FAINT: f64 = 0.02;
 
 /// The multiple light over the image, on a lattice of cells.
 #[derive(Clone, Debug)]
@@ -209,6 +222,26 @@ impl MultipleMap {
     pub(crate) fn iter(&self) -> impl Iterator<Item = (LightKey, &MultipleLight)> {
         let cells = self.cells.iter().flatten();
         cells.map(|(key, light)| (*key, light))
+    }
+
+    /// Returns, for each laser and surface, the greatest squared contrast that the speckle of the lit surfaces adds where
+    /// the light is not faint.
+    pub(crate) fn strongest_cascades(&self) -> BTreeMap<LightKey, f64> {
+        let mut brightest = BTreeMap::new();
+        for ((laser, _), light) in self.iter() {
+            let most: &mut f64 = brightest.entry(laser).or_default();
+            *most = most.max(light.radiance + light.single);
+        }
+        let mut strongest = BTreeMap::new();
+        for (key, light) in self.iter() {
+            if light.radiance + light.single > FAINT * brightest[&key.0] {
+                let fraction = light.fraction_beside(light.single);
+                let added = 2.0 * fraction * fraction * light.cascade;
+                let most: &mut f64 = strongest.entry(key).or_default();
+                *most = most.max(added);
+            }
+        }
+        strongest
     }
 
     /// Returns the light at an image point, in pixels, of a laser on a surface; nothing where none was found.
@@ -290,6 +323,7 @@ impl MultipleLight {
             kept: mean(self.kept, other.kept),
             kept_with_single: mean(self.kept_with_single, other.kept_with_single),
             polarisation: mean(self.polarisation, other.polarisation),
+            cascade: mean(self.cascade, other.cascade),
             point: self.point,
         }
     }

@@ -29,6 +29,34 @@ impl fmt::Display for RoughnessNote {
     }
 }
 
+/// A surface that gets light of a laser from so small a part of another that the speckle of that part shows.
+///
+/// Its `Display` is one line that says why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CascadeNote {
+    /// The name of the surface that is seen.
+    pub surface: String,
+    /// The index of the laser.
+    pub laser: usize,
+    /// The contrast of the speckle there, at its highest, in light of one wavelength.
+    pub contrast: f64,
+}
+
+impl fmt::Display for CascadeNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            surface,
+            laser,
+            contrast,
+        } = self;
+        write!(
+            f,
+            "surface `{surface}` gets light of laser {laser} from a small part of another surface, whose own speckle would \
+             raise the contrast to {contrast:.2}; it is rendered as 1 at most"
+        )
+    }
+}
+
 impl Scene {
     /// Returns a note for each surface and laser whose speckle the theory does not hold for, in the
     /// order of the surfaces.

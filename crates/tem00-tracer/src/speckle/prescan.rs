@@ -8,7 +8,7 @@ use tem00_decorrelation::ImagingGeometry;
 use super::{
     SpecklePoint,
     change::{Change, ReferencePoint},
-    multiple::MultipleMap,
+    multiple::{FAINT, MultipleMap},
     perspective::Perspective,
 };
 use crate::{Intersector, Scene, TracerError};
@@ -186,10 +186,7 @@ fn frame_samples(
     samples
 }
 
-/// The part of the brightest light below which multiple light asks for no slices.
-const FAINT: f64 = 0.02;
-
-/// Adds what the speckle of light that has met several surfaces asks for.
+/// Adds what the speckle of light that has met several surfaces asks for, where it is not faint.
 fn add_multiple_light(
     samples: &mut [Vec<FrameSample>],
     laser_groups: LaserGroups<'_>,

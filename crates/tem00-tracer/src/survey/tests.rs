@@ -5,6 +5,7 @@ use core::sync::atomic::AtomicBool;
 use glam::{DVec2, DVec3};
 use tem00_camera::Camera;
 use tem00_coherence::{DelayedLight, LineShape, MixedLight, PathPairs, SpectralLine};
+use tem00_decorrelation::pupil_overlap_correlation;
 
 use core::f64::consts::{PI, TAU};
 
@@ -174,6 +175,45 @@ fn frames_of_a_survey_have_the_same_bits_for_any_number_of_threads() {
         pool.build().unwrap().install(|| render(&scene, 0, 3))
     };
     assert_eq!(render_on(1), render_on(3), "one thread and three");
+}
+
+#[test]
+fn a_small_spot_on_the_wall_makes_speckle_of_speckle() {
+    for waist_radius in [0.05e-3, 0.15e-3] {
+        let scene = corner(gaussian(0.0), waist_radius);
+        let floor = DVec3::new(12e-3, 0.0, 0.0);
+        let to_pupil = scene.camera.position() - floor;
+        let sin_aperture = 0.5 * scene.camera.pupil_diameter() / to_pupil.length();
+        let l = to_pupil.normalize();
+        // The spot on the wall, in steps of a quarter of its radius, as directions across the line of sight.
+        let axis = || (-8..=8).map(|i| 0.25 * f64::from(i) * waist_radius);
+        let spot: Vec<_> = axis()
+            .flat_map(|y| axis().map(move |z| DVec3::new(0.0, y, 15e-3 + z)))
+            .filter_map(|wall| {
+                let lit = scene.lasers[0].illuminate(wall)?;
+                let direction = (wall - floor).normalize();
+                let across = direction - direction.dot(l) / l.z * DVec3::Z;
+                Some((across / (2.0 * sin_aperture), lit.irradiance))
+            })
+            .collect();
+        let (mut sum, mut whole) = (0.0, 0.0);
+        for (a, first) in &spot {
+            for (b, second) in &spot {
+                sum += first * second * pupil_overlap_correlation(a.distance(*b));
+                whole += first * second;
+            }
+        }
+        let law = (1.0 + 2.0 * sum / whole).sqrt();
+        let notes = scene.cascade_notes().unwrap();
+        let [note] = notes.as_slice() else {
+            panic!("{notes:?}")
+        };
+        assert_eq!((note.surface.as_str(), note.laser), ("plate", 0));
+        // The note has the place where it is highest, of an image that is small against its distance from the wall.
+        assert!((note.contrast - law).abs() < 0.05, "{note} for {law}");
+    }
+    let wide = corner(gaussian(0.0), 20e-3);
+    assert_eq!(wide.cascade_notes().unwrap(), []);
 }
 
 #[test]

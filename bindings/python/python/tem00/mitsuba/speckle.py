@@ -1,4 +1,4 @@
-"""The integrator ``speckle``: paths whose coherent light carries the speckle of its laser."""
+"""The integrator ``speckle``: paths whose light carries the speckle of its laser."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
     """Return the class of the integrator in ``variant``, which must be the current one."""
 
     class Speckle(mi.SamplingIntegrator):
-        """A path tracer that multiplies direct light of lasers by their speckle.
+        """A path tracer that multiplies the light of lasers by their speckle.
 
-        Light of an emitter with the private flag bit 0x1000 that meets exactly one rough surface on
-        its way to the camera is multiplied by the intensity of the laser's pattern at the place of
-        the camera sample on the film. All other light is left alone.
+        Light of an emitter with the private flag bit 0x1000 is multiplied by the intensity of the
+        laser's pattern at the place of the camera sample on the film, however many surfaces it
+        meets: of one wavelength, it interferes all the same. All other light is left alone.
         """
 
         def __init__(self, props: mi.Properties) -> None:

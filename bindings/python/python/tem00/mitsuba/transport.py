@@ -1,4 +1,4 @@
-"""Paths from the camera, with a factor on light that has met one rough surface only."""
+"""Paths from the camera, with a factor on the light of some emitters."""
 
 from __future__ import annotations
 
@@ -21,10 +21,9 @@ if TYPE_CHECKING:
 class Walk:
     """Paths on their way, side by side.
 
-    ``depth`` counts the surfaces met, ``eta`` is the product of the refractive indices passed, and
-    ``coherent`` says that none of the surfaces left behind was rough. ``previous`` is the point
-    that the ray left and ``pdf`` the density of its direction, per steradian, where it was not
-    ``specular``.
+    ``depth`` counts the surfaces met and ``eta`` is the product of the refractive indices passed.
+    ``previous`` is the point that the ray left and ``pdf`` the density of its direction, per
+    steradian, where it was not ``specular``.
     """
 
     ray: mi.Ray3f
@@ -32,7 +31,6 @@ class Walk:
     throughput: mi.Spectrum
     eta: mi.Float
     depth: mi.UInt32
-    coherent: mi.Bool
     specular: mi.Bool
     pdf: mi.Float
     previous: mi.Interaction3f
@@ -48,7 +46,6 @@ class Walk:
             throughput=mi.Spectrum(1.0),
             eta=mi.Float(1.0),
             depth=mi.UInt32(0),
-            coherent=mi.Bool(True),
             specular=mi.Bool(True),
             pdf=mi.Float(1.0),
             previous=dr.zeros(mi.Interaction3f),
@@ -133,7 +130,7 @@ class PathTracer(NamedTuple):
         else:
             value = bsdf.eval(mi.BSDFContext(), si, wo, lit)
         if self.factor is not None:
-            light *= self.factor(ds.emitter, lit & walk.coherent)
+            light *= self.factor(ds.emitter, lit)
         walk.radiance += dr.select(lit, walk.throughput * value * light, 0.0)
 
     def _scatter(
@@ -146,9 +143,6 @@ class PathTracer(NamedTuple):
         walk.throughput *= weight
         walk.eta *= sample.eta
         walk.specular = mi.has_flag(sample.sampled_type, mi.BSDFFlags.Delta)
-        # A surface that lets rays pass as they are is no surface.
-        passed = mi.has_flag(sample.sampled_type, mi.BSDFFlags.Null)
-        walk.coherent &= walk.specular | passed
         walk.pdf = sample.pdf
         walk.previous = mi.Interaction3f(si)
         walk.ray = si.spawn_ray(si.to_world(sample.wo))

@@ -323,9 +323,9 @@ mod tests {
         assert_eq!(read("normal.Y"), frame.normal[1]);
         assert_eq!(read("normal.Z"), frame.normal[2]);
         assert_eq!(read("samples.count"), frame.samples);
-        // Red laser light and lights: (3 + 4 + 2 i) + (0.5 + i) at pixel i; blue holds no laser light.
+        // Red laser light and lights: (3 + i) + (0.5 + i) at pixel i; blue holds no laser light.
         assert!(
-            (read("picture.R")[(2, 0)] - 13.5).abs() < 1e-5,
+            (read("picture.R")[(2, 0)] - 7.5).abs() < 1e-5,
             "red is all light"
         );
         assert!(
@@ -338,14 +338,14 @@ mod tests {
     fn the_preview_shows_the_white_level_as_white() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("a.png");
-        write_preview(&path, &picture_of(&frame()), 27.0, "").expect("written");
+        write_preview(&path, &picture_of(&frame()), 17.0, "").expect("written");
         let reading = Reading {
             channel: Some("R"),
             ..Reading::default()
         };
         let red = read_image(&path, &reading).expect("a preview").values;
-        // 27 W/(m² sr) first reached where 7.5 + 3 i ≥ 27, at i = 7; half a step of 2.27/65535.
-        assert!((red[(0, 0)] - 7.5 / 27.0).abs() < 2e-5, "{}", red[(0, 0)]);
+        // 17 W/(m² sr) first reached where 3.5 + 2 i ≥ 17, at i = 7; half a step of 2.27/65535.
+        assert!((red[(0, 0)] - 3.5 / 17.0).abs() < 2e-5, "{}", red[(0, 0)]);
         assert!(
             red[(0, 1)] < 1.0 && red[(1, 1)] >= 1.0,
             "white begins at the white level"

@@ -16,39 +16,48 @@ impl Recombination {
 
     /// Finds the patterns of polarised light.
     ///
-    /// The multiple light is a sum of modes with the fractions `bₙ = (1 − t) tⁿ` of it, with `Σ bₙ² = c₂₂`; the first
-    /// shares the coherence c₁₂ with the single light. Their two fields are those of the eigenvalues of
+    /// The multiple light is a sum of modes of the fractions bₙ of it, with `Σ bₙ² = c₂₂`; the first shares the coherence
+    /// c₁₂ with the single light. Their two fields are those of the eigenvalues of
     ///
     /// ```text
     /// ( L₁            √(c₁₂ L₁ L₂) )
     /// ( √(c₁₂ L₁ L₂)  b₀ L₂        )
     /// ```
     ///
-    /// so that the sum of the patterns has the mean `L₁ + L₂` and the variance `L₁² + 2 c₁₂ L₁ L₂ + c₂₂ L₂²`, but for
-    /// `c₁₂ > b₀`, which no pair of such fields has and which counts as b₀, and for the modes from the fifth on, which
-    /// are taken as even: the variance then lacks less than 0.03 L₂².
+    /// so that the sum of the patterns has the mean `L₁ + L₂` and the variance `L₁² + 2 c₁₂ L₁ L₂ + c₂₂ L₂²`. The modes
+    /// fall by one ratio, unless c₁₂ asks for more in the first; those from the fifth on are even, and the three before
+    /// carry their variance.
     ///
     /// `radiances` are L₁ of the single and L₂ of the multiple light; `with_single` is c₁₂ and `within_multiple` c₂₂,
-    /// both from 0 to 1.
+    /// both from 0 to 1. By Schwarz's inequality `c₁₂² ≤ c₂₂`: of estimates that are not so c₁₂ counts as `√c₂₂`.
     pub fn new(radiances: [f64; 2], with_single: f64, within_multiple: f64) -> Self {
         let [single, multiple] = radiances;
-        let ratio = mode_ratio(within_multiple);
-        let first = 1.0 - ratio;
-        let overlap = with_single.min(first) * single * multiple;
+        let with_single = with_single.min(within_multiple.sqrt());
+        let first = (1.0 - mode_ratio(within_multiple)).max(with_single);
+        let overlap = with_single * single * multiple;
         let (mean, half) = (
             0.5 * (single + first * multiple),
             0.5 * (single - first * multiple),
         );
         let root = (half * half + overlap).sqrt();
         let mut patterns = [mean + root, (mean - root).max(0.0), 0.0, 0.0, 0.0];
-        let mut mode = first * multiple;
-        for fraction in &mut patterns[2..] {
-            mode *= ratio;
-            *fraction = mode;
+        let rest = (1.0 - first) * multiple;
+        let mut even = rest;
+        if rest > 0.0 {
+            let squared = (within_multiple - first * first) / (1.0 - first).powi(2);
+            let squared = squared.clamp(0.0, 1.0); // Of rounding.
+            let ratio = mode_ratio(squared);
+            // Squares of three modes are those of all modes: Σ (1 − t)² t²ⁿ to the third lacks t⁶ of it.
+            let mut mode = rest * (squared / (1.0 + ratio * ratio + ratio.powi(4))).sqrt();
+            for fraction in &mut patterns[2..] {
+                *fraction = mode;
+                even -= mode;
+                mode *= ratio;
+            }
         }
         Self {
             patterns,
-            even: multiple * ratio.powi(4),
+            even: even.max(0.0),
         }
     }
 }
@@ -71,18 +80,17 @@ mod tests {
     #[test]
     fn mean_and_variance_are_those_of_the_mix() {
         for [single, multiple] in [[1.0, 0.0], [0.0, 1.0], [1.0, 0.3], [0.4, 2.0]] {
-            for within in [1.0, 0.7, 0.4, 0.1, 0.0] {
+            for within in [1.0, 1.0 - 1e-9, 0.7, 0.4, 0.1, 0.0] {
                 let first = 1.0 - mode_ratio(within);
-                for with_single in [0.0, 0.5 * first, first] {
+                let largest = within.sqrt();
+                for with_single in [0.0, 0.5 * first, first, largest] {
                     let mix = Recombination::new([single, multiple], with_single, within);
                     let [mean, variance] = moments(&mix);
                     assert!((mean - single - multiple).abs() < 1e-14, "{mix:?}");
                     let cross = 2.0 * with_single * single * multiple;
                     let law = single * single + cross + within * multiple * multiple;
-                    // The squares of the modes from the fourth on: c₂₂ t⁸.
-                    let left_out = within * mode_ratio(within).powi(8) * multiple * multiple;
-                    assert!((variance + left_out - law).abs() < 1e-13, "{mix:?}");
-                    assert!(left_out < 0.03 * multiple * multiple, "{left_out}");
+                    assert!((variance - law).abs() < 1e-13, "{mix:?}");
+                    assert!(mix.even >= 0.0, "{mix:?}");
                     assert!(
                         mix.patterns.iter().all(|&fraction| fraction >= 0.0),
                         "{mix:?}"

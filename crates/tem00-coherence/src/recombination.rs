@@ -31,9 +31,27 @@ impl Recombination {
     /// `radiances` are L₁ of the single and L₂ of the multiple light; `with_single` is c₁₂ and `within_multiple` c₂₂,
     /// both from 0 to 1. By Schwarz's inequality `c₁₂² ≤ c₂₂`: of estimates that are not so c₁₂ counts as `√c₂₂`.
     pub fn new(radiances: [f64; 2], with_single: f64, within_multiple: f64) -> Self {
-        let [single, multiple] = radiances;
         let with_single = with_single.min(within_multiple.sqrt());
         let first = (1.0 - mode_ratio(within_multiple)).max(with_single);
+        Self::with_first(first, radiances, with_single, within_multiple)
+    }
+
+    /// Finds two patterns of the same mean and variance: the first mode of the multiple light, √c₂₂ of it, carries all of
+    /// its variance, and the rest is even.
+    ///
+    /// The law of the intensities is that of [`new`](Self::new) only where c₂₂ is 0 or 1; for light that is too faint to
+    /// tell.
+    pub fn of_two(radiances: [f64; 2], with_single: f64, within_multiple: f64) -> Self {
+        let first = within_multiple.sqrt();
+        Self::with_first(first, radiances, with_single.min(first), within_multiple)
+    }
+
+    fn with_first(
+        first: f64,
+        [single, multiple]: [f64; 2],
+        with_single: f64,
+        within_multiple: f64,
+    ) -> Self {
         let overlap = with_single * single * multiple;
         let (mean, half) = (
             0.5 * (single + first * multiple),
@@ -84,17 +102,19 @@ mod tests {
                 let first = 1.0 - mode_ratio(within);
                 let largest = within.sqrt();
                 for with_single in [0.0, 0.5 * first, first, largest] {
-                    let mix = Recombination::new([single, multiple], with_single, within);
-                    let [mean, variance] = moments(&mix);
-                    assert!((mean - single - multiple).abs() < 1e-14, "{mix:?}");
-                    let cross = 2.0 * with_single * single * multiple;
-                    let law = single * single + cross + within * multiple * multiple;
-                    assert!((variance - law).abs() < 1e-13, "{mix:?}");
-                    assert!(mix.even >= 0.0, "{mix:?}");
-                    assert!(
-                        mix.patterns.iter().all(|&fraction| fraction >= 0.0),
-                        "{mix:?}"
-                    );
+                    for find in [Recombination::new, Recombination::of_two] {
+                        let mix = find([single, multiple], with_single, within);
+                        let [mean, variance] = moments(&mix);
+                        assert!((mean - single - multiple).abs() < 1e-14, "{mix:?}");
+                        let cross = 2.0 * with_single * single * multiple;
+                        let law = single * single + cross + within * multiple * multiple;
+                        assert!((variance - law).abs() < 1e-13, "{mix:?}");
+                        assert!(mix.even >= 0.0, "{mix:?}");
+                        assert!(
+                            mix.patterns.iter().all(|&fraction| fraction >= 0.0),
+                            "{mix:?}"
+                        );
+                    }
                 }
             }
         }

@@ -7,7 +7,7 @@ use tem00_speckle::{Complex, SpeckleStack};
 
 use super::{
     PatternPlan, SpecklePlan, SpecklePoint,
-    allocation::{self, Part, PatternAllocation},
+    allocation::{self, PatternAllocation},
     change::{Change, SpeckleShift},
     multiple::{MultipleLight, MultipleMap},
     plan::SurfacePatterns,
@@ -61,8 +61,18 @@ pub(crate) struct SpeckleFrame<'a> {
     multiple: Option<MultipleMap>,
 }
 
-/// Multiple light at a point, and its fraction of the light there.
-type Mix = (MultipleLight, f64);
+/// Multiple light beside single light at a point.
+#[derive(Clone, Copy, Debug)]
+struct Mix {
+    multiple: MultipleLight,
+    /// The fraction of the multiple light.
+    fraction: f64,
+    /// Whether the light is faint.
+    is_faint: bool,
+}
+
+/// The fraction of light below which a pattern counts as even: many such leave a contrast below 0.04.
+const FAINT_PATTERN: f64 = 0.02;
 
 /// Points that are looked up together.
 const BLOCK: usize = 64;
@@ -197,7 +207,8 @@ impl SpeckleFrame<'_> {
     pub(crate) fn factor(&self, laser: usize, point: &SpecklePoint) -> f64 {
         let key = (laser, point.surface);
         let map = self.multiple.as_ref();
-        let light = map.and_then(|map| map.at(point.pixel, key));
+        let layer = map.and_then(|map| map.layer(key));
+        let light = layer.map(|layer| layer.at(point.pixel));
         let mut factor = [0.0];
         let single = light.map_or(0.0, |light| light.single);
         self.factors(laser, core::slice::from_ref(point), &[single], &mut factor);
@@ -247,44 +258,44 @@ impl SpeckleFrame<'_> {
             return;
         };
         let pattern = &patterns.patterns[surface.allocation];
-        let mixes: Vec<_> = points
-            .iter()
-            .zip(singles)
-            .map(|(point, &single)| self.mix(laser, point, single))
-            .collect();
+        let map = self.multiple.as_ref();
+        let layer = map.and_then(|map| map.layer((laser, points[0].surface)));
+        let mut mixes = [const { None }; BLOCK];
+        if let Some(layer) = layer {
+            for ((mix, point), single) in mixes.iter_mut().zip(points).zip(singles) {
+                let multiple = layer.at(point.pixel);
+                *mix = Some(Mix {
+                    multiple,
+                    fraction: multiple.fraction_beside(*single),
+                    is_faint: multiple.radiance + single < layer.faint,
+                });
+            }
+        }
+        let mixes = &mixes[..points.len()];
         let is_one_pattern = |mix: &Option<Mix>| {
-            mix.is_none_or(|(light, _)| light.is_coherent(surface.polarisation))
+            mix.is_none_or(|mix| mix.multiple.is_coherent(surface.polarisation))
         };
         if surface.bandwidth.is_some() || !mixes.iter().all(is_one_pattern) {
-            for ((factor, point), mix) in factors.iter_mut().zip(points).zip(&mixes) {
-                *factor = self.of_one_wave(laser, surface, point, mix.as_ref());
-            }
+            self.look_up_mixes(laser, surface, (points, mixes), factors);
             return;
         }
         factors.fill(0.0);
         for part in &surface.parts {
             match &pattern.stacks[part.stack] {
                 Stack::Derived(stack) => {
-                    let mut block = self.coordinates(laser, pattern, stack, (points, &mixes));
-                    block.shift(part, stack.size());
+                    let mut block = self.coordinates(laser, pattern, stack, (points, mixes));
+                    block.shift(part.offset, stack.size());
                     block.add(stack, part.fraction, factors);
                 }
                 Stack::AsPrinted(stack, speckle_size) => {
                     for (factor, point) in factors.iter_mut().zip(points) {
                         let [x, y, u] = self.as_printed(laser, pattern, *speckle_size, point);
-                        let [x0, y0] = part.offset_in(stack.size());
+                        let [x0, y0] = in_samples(part.offset, stack.size());
                         *factor += part.fraction * stack.intensity_at(x + x0, y + y0, u);
                     }
                 }
             }
         }
-    }
-
-    /// The multiple light at a point, beside single light of a radiance.
-    fn mix(&self, laser: usize, point: &SpecklePoint, single: f64) -> Option<Mix> {
-        let map = self.multiple.as_ref()?;
-        let light = map.at(point.pixel, (laser, point.surface))?;
-        Some((light, light.fraction_beside(single)))
     }
 
     /// What has become of the speckle of a point since the reference frame.
@@ -297,49 +308,57 @@ impl SpeckleFrame<'_> {
     ) -> SpeckleShift {
         match mix {
             None => self.change.speckle_shift(laser, geometry, point),
-            Some((light, fraction)) => {
-                light.shift(&self.change, (laser, geometry), point, *fraction)
+            Some(mix) => {
+                let of_laser = (laser, geometry);
+                mix.multiple
+                    .shift(&self.change, of_laser, point, mix.fraction)
             }
         }
     }
 
-    /// The speckle factor of a point in light of one wave number, drawn from the line of the laser.
+    /// Looks up points in light of one wave number each, drawn from the line of the laser, and in sums of patterns.
     ///
     /// Another wave number sees the pupil displaced along the axis of the surface, as after a motion; and the heights of
     /// the relief in other phases. Multiple light adds patterns, each at a position of its own.
-    fn of_one_wave(
+    fn look_up_mixes(
         &self,
         laser: usize,
         surface: &SurfacePatterns,
-        point: &SpecklePoint,
-        mix: Option<&Mix>,
-    ) -> f64 {
-        let place = self.place(laser, surface, point, mix);
-        let components = [1.0, -1.0].map(|sign| {
-            let of_component = |degree: f64| 0.5 * (1.0 + sign * degree);
-            let single = of_component(surface.polarisation);
-            let Some((light, fraction)) = mix else {
-                return Recombination::new([single, 0.0], 1.0, 1.0);
-            };
-            let radiances = [
-                (1.0 - fraction) * single,
-                fraction * of_component(light.polarisation),
-            ];
-            Recombination::new(radiances, light.with_single, light.within)
-        });
-        let intensity = |component: usize, number: usize, fraction: f64| {
-            if fraction == 0.0 {
-                return 0.0;
+        (points, mixes): (&[SpecklePoint], &[Option<Mix>]),
+        factors: &mut [f64],
+    ) {
+        let mixed = points.iter().zip(mixes);
+        let places: Vec<_> = mixed
+            .map(|(point, mix)| self.place(laser, surface, point, mix.as_ref()))
+            .collect();
+        for component in [0, 1] {
+            let sums: Vec<_> = mixes
+                .iter()
+                .map(|mix| recombined(surface.polarisation, mix.as_ref(), component))
+                .collect();
+            for (factor, sum) in factors.iter_mut().zip(&sums) {
+                *factor = sum.even + if component == 0 { 0.0 } else { *factor };
             }
-            fraction * self.intensity(laser, surface, &place, [component, number])
-        };
-        let sums = components.iter().enumerate().map(|(component, mix)| {
-            let patterns = mix.patterns.iter().enumerate();
-            let patterns =
-                patterns.map(|(number, &fraction)| intensity(component, number, fraction));
-            mix.even + patterns.sum::<f64>()
-        });
-        sums.sum()
+            for number in 0..Recombination::PATTERNS {
+                let lit: Vec<_> = (0..points.len())
+                    .filter(|&i| sums[i].patterns[number] >= FAINT_PATTERN)
+                    .collect();
+                let lit_places = lit.iter().map(|&i| places[i]).collect::<Vec<_>>();
+                let intensities =
+                    self.intensities(laser, surface, &lit_places, [component, number]);
+                for (sum, factor) in sums.iter().zip(factors.iter_mut()) {
+                    let fraction = sum.patterns[number];
+                    *factor += if fraction < FAINT_PATTERN {
+                        fraction
+                    } else {
+                        0.0
+                    };
+                }
+                for (i, intensity) in lit.into_iter().zip(intensities) {
+                    factors[i] += sums[i].patterns[number] * intensity;
+                }
+            }
+        }
     }
 
     /// Where a point is looked up.
@@ -378,44 +397,72 @@ impl SpeckleFrame<'_> {
         }
     }
 
-    /// The intensity of one of the independent patterns of a component of polarisation, of mean 1.
-    fn intensity(
+    /// The intensities, of mean 1, of one of the independent patterns of a component of polarisation.
+    fn intensities(
         &self,
         laser: usize,
         surface: &SurfacePatterns,
-        place: &Place,
+        places: &[Place],
         [component, number]: [usize; 2],
-    ) -> f64 {
+    ) -> Vec<f64> {
         let single = [[0.0, 1.0]];
         let (heights, axis) = match &surface.bandwidth {
             Some(bandwidth) => (bandwidth.heights.as_slice(), bandwidth.axis),
             None => (single.as_slice(), DVec2::X),
         };
-        let patterns = &self.model.lasers[laser];
-        let (geometry, pattern) = (&patterns.geometry, &patterns.patterns[surface.allocation]);
+        let mut sums = vec![0.0; places.len()];
+        if places.is_empty() {
+            return sums;
+        }
+        let pattern = &self.model.lasers[laser].patterns[surface.allocation];
         // A component that the single light does not have takes positions of its own.
         let planned = component.min(surface.components - 1);
         let number = number + (component - planned) * Recombination::PATTERNS;
         let beside = allocation::position_beside(number);
-        let (mut sum, mut whole) = (0.0, 0.0);
+        let mut whole = 0.0;
         for fields in surface.fields_of(planned, heights.len()) {
-            let amplitudes = fields.iter().zip(heights).map(|(part, [height, root])| {
+            let fraction = fields[0].fraction;
+            whole += fraction;
+            if let ([part], Stack::Derived(stack)) = (fields, &pattern.stacks[fields[0].stack]) {
+                let mut block = self.block(laser, stack, places, axis);
+                block.shift(part.offset, stack.size());
+                block.shift(beside, stack.size());
+                block.add(stack, fraction, &mut sums);
+                continue;
+            }
+            let mut amplitudes = vec![Complex::<f64>::ZERO; places.len()];
+            for (part, [height, root]) in fields.iter().zip(heights) {
                 let Stack::Derived(stack) = &pattern.stacks[part.stack] else {
-                    return Complex::ZERO;
+                    continue;
                 };
-                let pixel = upright(place.pixel);
-                let c = geometry.pattern_coordinate(pixel, DVec2::ZERO, stack.speckle_size());
-                let [x0, y0] = part.offset_in(stack.size());
-                let [x1, y1] = [0, 1].map(|i| beside[i] * stack.size()[i] as f64);
-                let x = axis.dot(c) + x0 + x1;
-                let y = axis.perp().dot(c) + y0 + y1;
-                let phase = Complex::cis(place.phase_per_height * height);
-                stack.amplitude_at(x, y, place.u) * phase * root
-            });
-            sum += fields[0].fraction * amplitudes.sum::<Complex<f64>>().norm_sqr();
-            whole += fields[0].fraction;
+                let mut block = self.block(laser, stack, places, axis);
+                block.shift(part.offset, stack.size());
+                block.shift(beside, stack.size());
+                for (i, (amplitude, place)) in amplitudes.iter_mut().zip(places).enumerate() {
+                    let phase = Complex::cis(place.phase_per_height * height);
+                    let field = stack.amplitude_at(block.x[i], block.y[i], block.u[i]);
+                    *amplitude += field * phase * root;
+                }
+            }
+            for (sum, amplitude) in sums.iter_mut().zip(&amplitudes) {
+                *sum += fraction * amplitude.norm_sqr();
+            }
         }
-        sum / whole
+        sums.iter_mut().for_each(|sum| *sum /= whole);
+        sums
+    }
+
+    /// Coordinates of places in a stack whose slices stand along an axis.
+    fn block(&self, laser: usize, stack: &SpeckleStack, places: &[Place], axis: DVec2) -> Block {
+        let geometry = &self.model.lasers[laser].geometry;
+        let mut block = Block::default();
+        for (i, place) in places.iter().enumerate() {
+            let pixel = upright(place.pixel);
+            let c = geometry.pattern_coordinate(pixel, DVec2::ZERO, stack.speckle_size());
+            (block.x[i], block.y[i]) = (axis.dot(c), axis.perp().dot(c));
+            block.u[i] = place.u;
+        }
+        block
     }
 
     /// Coordinates of the points of a surface in its pattern.
@@ -430,11 +477,7 @@ impl SpeckleFrame<'_> {
         let sides = &self.sides[laser];
         let side = points.first().and_then(|p| sides.get(p.surface));
         let sign = side.copied().unwrap_or(1.0);
-        let mut block = Block {
-            x: [0.0; BLOCK],
-            y: [0.0; BLOCK],
-            u: [0.0; BLOCK],
-        };
+        let mut block = Block::default();
         for (i, (point, mix)) in points.iter().zip(mixes).enumerate() {
             let shift = self.shift(laser, geometry, point, mix.as_ref());
             let pixel = self.change.perspective().point(point.pixel) - shift.displacement;
@@ -463,10 +506,20 @@ impl SpeckleFrame<'_> {
     }
 }
 
+impl Default for Block {
+    fn default() -> Self {
+        Self {
+            x: [0.0; BLOCK],
+            y: [0.0; BLOCK],
+            u: [0.0; BLOCK],
+        }
+    }
+}
+
 impl Block {
-    /// Moves the coordinates to the position of a part.
-    fn shift(&mut self, part: &Part, size: [usize; 2]) {
-        let [x0, y0] = part.offset_in(size);
+    /// Moves the coordinates by an offset in periods of a stack of so many samples.
+    fn shift(&mut self, offset: [f64; 2], size: [usize; 2]) {
+        let [x0, y0] = in_samples(offset, size);
         self.x.iter_mut().for_each(|x| *x += x0);
         self.y.iter_mut().for_each(|y| *y += y0);
     }
@@ -486,11 +539,26 @@ impl Block {
     }
 }
 
-impl Part {
-    /// Returns the position at which the part starts in a stack of so many samples, in samples.
-    fn offset_in(&self, size: [usize; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| self.offset[axis] * size[axis] as f64)
-    }
+/// An offset in periods of a stack, in samples.
+fn in_samples(offset: [f64; 2], size: [usize; 2]) -> [f64; 2] {
+    [0, 1].map(|axis| offset[axis] * size[axis] as f64)
+}
+
+/// The patterns of a component of polarisation, as fractions of all light.
+fn recombined(polarisation: f64, mix: Option<&Mix>, component: usize) -> Recombination {
+    let of_component = |degree: f64| 0.5 * (1.0 + if component == 0 { degree } else { -degree });
+    let single = of_component(polarisation);
+    let Some(mix) = mix else {
+        return Recombination::new([single, 0.0], 1.0, 1.0);
+    };
+    let light = &mix.multiple;
+    let multiple = mix.fraction * of_component(light.polarisation);
+    let radiances = [(1.0 - mix.fraction) * single, multiple];
+    let recombination = match mix.is_faint {
+        true => Recombination::of_two,
+        false => Recombination::new,
+    };
+    recombination(radiances, light.with_single, light.within)
 }
 
 #[cfg(test)]

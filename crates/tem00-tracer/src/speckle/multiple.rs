@@ -156,15 +156,25 @@ impl MultipleSums {
 pub(crate) type LightKey = (usize, usize);
 
 /// The part of the brightest light of a laser below which light is faint.
-pub(super) const FAINT: f64 = 0.02;
+const FAINT: f64 = 0.02;
 
 /// The multiple light over the image, on a lattice of cells.
 #[derive(Clone, Debug)]
 pub(crate) struct MultipleMap {
+    layers: BTreeMap<LightKey, MultipleLayer>,
+}
+
+/// The multiple light of a laser on a surface.
+#[derive(Clone, Debug)]
+pub(crate) struct MultipleLayer {
     lattice: Lattice,
-    cells: Vec<BTreeMap<LightKey, MultipleLight>>,
+    /// The light that was found in cells, and for each cell its number among it.
+    lights: Vec<MultipleLight>,
+    cells: Vec<Option<u32>>,
     /// The mean over the image.
-    overall: BTreeMap<LightKey, MultipleLight>,
+    overall: MultipleLight,
+    /// The radiance below which light is faint beside the brightest of the laser, in W/(m² sr).
+    pub(super) faint: f64,
 }
 
 /// Square cells over an image.
@@ -191,64 +201,92 @@ impl MultipleMap {
                 .or_insert_with(|| MultipleSums::new(sums.point))
                 .add_scaled(sums, 1.0);
         }
-        let light = |(key, sums): (&LightKey, &MultipleSums)| Some((*key, sums.light()?));
-        let overall: BTreeMap<_, _> = all.iter().filter_map(light).collect();
-        if overall.is_empty() {
-            return None;
-        }
-        let cells = (0..sums.len()).map(|index| {
-            let keys = sums[index].iter();
-            keys.filter_map(|(key, own)| {
-                let mut mean = MultipleSums::new(own.point);
-                for neighbour in lattice.neighbours(index) {
-                    if let Some(other) = sums[neighbour].get(key) {
-                        mean.add_scaled(other, 1.0);
-                    }
-                }
-                let total = all.get(key)?;
-                mean.add_scaled(total, PART_OF_ALL * own.samples / total.samples);
-                Some((*key, mean.light()?))
+        let mut layers: BTreeMap<_, _> = all
+            .iter()
+            .filter_map(|(key, total)| {
+                let of_key = |cell: usize| sums[cell].get(key);
+                Some((*key, MultipleLayer::new(lattice, total, of_key)?))
             })
-            .collect()
-        });
-        Some(Self {
-            lattice,
-            cells: cells.collect(),
-            overall,
+            .collect();
+        let brightest = brightest(&layers);
+        for ((laser, _), layer) in &mut layers {
+            layer.faint = FAINT * brightest[laser];
+        }
+        (!layers.is_empty()).then_some(Self { layers })
+    }
+
+    /// Returns the light of the cells that is not faint.
+    pub(super) fn bright(&self) -> impl Iterator<Item = (LightKey, &MultipleLight)> {
+        let layers = self.layers.iter();
+        layers.flat_map(|(key, layer)| {
+            let lights = layer.lights.iter();
+            let bright = lights.filter(|light| light.radiance + light.single > layer.faint);
+            bright.map(|light| (*key, light))
         })
     }
 
-    /// Returns the light of the cells.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (LightKey, &MultipleLight)> {
-        let cells = self.cells.iter().flatten();
-        cells.map(|(key, light)| (*key, light))
+    /// Returns the light of a laser on a surface; nothing where none was found.
+    pub(crate) fn layer(&self, key: LightKey) -> Option<&MultipleLayer> {
+        self.layers.get(&key)
     }
 
     /// Returns, for each laser and surface, the greatest squared contrast that the speckle of the lit surfaces adds where
     /// the light is not faint.
     pub(crate) fn strongest_cascades(&self) -> BTreeMap<LightKey, f64> {
-        let mut brightest = BTreeMap::new();
-        for ((laser, _), light) in self.iter() {
-            let most: &mut f64 = brightest.entry(laser).or_default();
-            *most = most.max(light.radiance + light.single);
-        }
         let mut strongest = BTreeMap::new();
-        for (key, light) in self.iter() {
-            if light.radiance + light.single > FAINT * brightest[&key.0] {
-                let fraction = light.fraction_beside(light.single);
-                let added = 2.0 * fraction * fraction * light.cascade;
-                let most: &mut f64 = strongest.entry(key).or_default();
-                *most = most.max(added);
-            }
+        for (key, light) in self.bright() {
+            let fraction = light.fraction_beside(light.single);
+            let added = 2.0 * fraction * fraction * light.cascade;
+            let most: &mut f64 = strongest.entry(key).or_default();
+            *most = most.max(added);
         }
         strongest
     }
+}
 
-    /// Returns the light at an image point, in pixels, of a laser on a surface; nothing where none was found.
-    pub(crate) fn at(&self, pixel: DVec2, key: LightKey) -> Option<MultipleLight> {
+/// The greatest radiance of each laser.
+fn brightest(layers: &BTreeMap<LightKey, MultipleLayer>) -> BTreeMap<usize, f64> {
+    let mut brightest = BTreeMap::new();
+    for ((laser, _), layer) in layers {
+        let radiances = layer.lights.iter();
+        let most: &mut f64 = brightest.entry(*laser).or_default();
+        *most = radiances.fold(*most, |most, light| most.max(light.radiance + light.single));
+    }
+    brightest
+}
+
+impl MultipleLayer {
+    fn new<'s>(
+        lattice: Lattice,
+        total: &MultipleSums,
+        sums: impl Fn(usize) -> Option<&'s MultipleSums>,
+    ) -> Option<Self> {
+        let mut lights = Vec::new();
+        let cells = (0..lattice.columns * lattice.rows).map(|index| {
+            let own = sums(index)?;
+            let mut mean = MultipleSums::new(own.point);
+            for other in lattice.neighbours(index).filter_map(&sums) {
+                mean.add_scaled(other, 1.0);
+            }
+            mean.add_scaled(total, PART_OF_ALL * own.samples / total.samples);
+            lights.push(mean.light()?);
+            u32::try_from(lights.len() - 1).ok()
+        });
+        let cells = cells.collect();
+        Some(Self {
+            lattice,
+            cells,
+            lights,
+            overall: total.light()?,
+            faint: 0.0,
+        })
+    }
+
+    /// Returns the light at an image point, in pixels.
+    pub(crate) fn at(&self, pixel: DVec2) -> MultipleLight {
         let mut mean: Option<(MultipleLight, f64)> = None;
         for (cell, weight) in self.lattice.around(pixel) {
-            let Some(light) = self.cells[cell].get(&key) else {
+            let Some(light) = self.cells[cell].map(|index| &self.lights[index as usize]) else {
                 continue;
             };
             mean = Some(match mean {
@@ -256,8 +294,7 @@ impl MultipleMap {
                 Some((sum, total)) => (sum.mixed(light, weight / (total + weight)), total + weight),
             });
         }
-        let mean = mean.map(|(light, _)| light);
-        mean.or_else(|| self.overall.get(&key).copied())
+        mean.map_or(self.overall, |(light, _)| light)
     }
 }
 

@@ -8,7 +8,7 @@ use tem00_decorrelation::ImagingGeometry;
 use super::{
     SpecklePoint,
     change::{Change, ReferencePoint},
-    multiple::{FAINT, MultipleMap},
+    multiple::MultipleMap,
     perspective::Perspective,
 };
 use crate::{Intersector, Scene, TracerError};
@@ -194,13 +194,7 @@ fn add_multiple_light(
     change: &Change,
 ) {
     for (laser, geometry) in laser_groups.geometries.iter().enumerate() {
-        let of_laser = || map.iter().filter(|((of, _), _)| *of == laser);
-        let radiances = of_laser().map(|(_, light)| light.radiance + light.single);
-        let brightest = radiances.fold(0.0, f64::max);
-        for ((_, surface), light) in of_laser() {
-            if light.radiance < FAINT * brightest {
-                continue;
-            }
+        for ((_, surface), light) in map.bright().filter(|((of, _), _)| *of == laser) {
             let point = &light.point;
             let fraction = light.fraction_beside(light.single);
             let shift = light.shift(change, (laser, geometry), point, fraction);

@@ -11,10 +11,11 @@ use core::mem::take;
 
 use tem00_camera::{Camera, Ray};
 
-use self::{batch::Path, rules::Spectrum, vertex::Vertex};
+use self::{batch::Path, rules::Spectrum};
 pub(crate) use self::{
     batch::{Batch, CameraSample, LaserSample, Seen},
     rules::PathRules,
+    vertex::Vertex,
 };
 use crate::{
     Hit, Intersector, Laser, Light, RenderOptions, Scene,

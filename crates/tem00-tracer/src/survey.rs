@@ -1,13 +1,15 @@
 //! A survey of the light that has met several rough surfaces, before a frame is rendered.
 
+mod from_camera;
+
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::{
-    Crop, Formulas, Hit, Intersector, LocalFrame, Material, RenderOptions, Scene, Segment, Shape,
-    SpecklePlan, TracerError,
+    Crop, Formulas, Intersector, RenderOptions, Scene, Segment, Shape, SpecklePlan, TracerError,
+    integrator::Vertex,
     light_tracer::{LightJob, LightSelection, LightTracer, LitPoint},
     sampler::{pixel_key, point_in_square},
     speckle::{
@@ -158,7 +160,25 @@ impl<'a> Survey<'a> {
         let lattice = Lattice::over([camera.width(), camera.height()], self.cells);
         let cells = (0..lattice.columns * lattice.rows).into_par_iter();
         let sums: Vec<_> = cells.map(|cell| self.cell(&lit, lattice, cell)).collect();
-        MultipleMap::new(lattice, &sums)
+        MultipleMap::new(lattice, &self.better(sums))
+    }
+
+    /// Chooses the way in which the light of each laser was found by more paths.
+    fn better(&self, sums: Vec<BTreeMap<LightKey, [MultipleSums; 2]>>) -> Vec<CellSums> {
+        let mut found = vec![[0.0; 2]; self.scene.lasers.len()];
+        for ((laser, _), ways) in sums.iter().flatten() {
+            for (found, sums) in found[*laser].iter_mut().zip(ways) {
+                *found += sums.effective_paths();
+            }
+        }
+        let way = |laser: usize| usize::from(found[laser][1] > found[laser][0]);
+        let cells = sums.into_iter();
+        cells
+            .map(|cell| {
+                let chosen = cell.into_iter();
+                chosen.map(|(key, ways)| (key, ways[way(key.0)])).collect()
+            })
+            .collect()
     }
 
     fn light_tracer(&self) -> LightTracer<'a> {
@@ -197,28 +217,42 @@ impl<'a> Survey<'a> {
         (0..self.scene.lasers.len()).map(groups).collect()
     }
 
-    /// Sums over pairs of paths to a point of one cell.
+    /// Sums over pairs of paths to a point of one cell, found from the laser and from the camera.
+    ///
+    /// A beam narrow against what is seen hides from paths that start at the camera, and what is small in a wide beam from
+    /// paths that start at the laser.
     fn cell(
         &self,
         lit: &LitPoints<'_>,
         lattice: Lattice,
         cell: usize,
-    ) -> BTreeMap<LightKey, MultipleSums> {
+    ) -> BTreeMap<LightKey, [MultipleSums; 2]> {
         let mut sums = BTreeMap::new();
         let Some(seen) = self.seen(lattice, cell) else {
             return sums;
         };
         for (laser, groups) in lit.iter().enumerate() {
             let line = self.scene.lasers[laser].spectral_line();
+            let place = (seen.point, self.single(laser, &seen.vertex));
+            let of_groups = |groups: [Vec<MultiplePath>; 2]| {
+                let [first, second] = &groups;
+                MultipleSums::of_groups(line, place, [first, second], PATHS)
+            };
             let number = 2 * (cell % lattice.columns + 3 * (cell / lattice.columns));
-            let [first, second] = [0, 1].map(|i| {
+            let from_laser = [0, 1].map(|i| {
                 let paths = groups[(number + i) % GROUPS].iter();
                 let paths = paths.flat_map(|points| self.multiple(laser, &seen, points));
-                paths.collect::<Vec<_>>()
+                paths.collect()
             });
-            let place = (seen.point, self.single(laser, &seen));
-            let of_laser = MultipleSums::of_groups(line, place, [&first, &second], PATHS);
-            sums.insert((laser, seen.point.surface), of_laser);
+            let from_camera = [0, 1].map(|i| {
+                let first = (2 * cell + i) * PATHS + 1;
+                let keys = first..first + PATHS;
+                let paths =
+                    keys.flat_map(|key| self.multiple_from_camera(laser, &seen, key as u64));
+                paths.collect()
+            });
+            let key = (laser, seen.point.surface);
+            sums.insert(key, [from_laser, from_camera].map(of_groups));
         }
         sums
     }
@@ -237,44 +271,39 @@ impl<'a> Survey<'a> {
         let ray = camera.ray(pixel);
         let hit = self.intersector.intersect(&ray)?;
         let material = &self.scene.surfaces.get(hit.surface)?.material;
-        let axes = hit.axes_seen_from(-ray.direction);
-        let wo = axes.to_local(-ray.direction);
-        (!material.is_specular()).then_some(SeenPoint {
+        let vertex = Vertex::new(&ray, &hit, material)?;
+        let distance = (camera.position() - hit.position).length();
+        (!vertex.is_specular()).then_some(SeenPoint {
             point: SpecklePoint {
                 pixel,
                 position: hit.position,
-                normal: axes.normal() * wo.z.signum(),
+                normal: vertex.seen_normal(),
                 surface: hit.surface,
                 wave: 0.5,
             },
-            hit,
-            axes,
-            wo,
+            vertex,
             to_pupil: -ray.direction,
-            sin_aperture: (0.5 * camera.pupil_diameter()
-                / (camera.position() - hit.position).length())
-            .min(1.0),
-            material,
+            sin_aperture: (0.5 * camera.pupil_diameter() / distance).min(1.0),
         })
     }
 
-    /// The radiance of the light of a laser that has met this surface only.
-    fn single(&self, laser: usize, seen: &SeenPoint<'_>) -> f64 {
+    /// The radiance at a vertex of the light of a laser that has met its surface only.
+    fn single(&self, laser: usize, vertex: &Vertex<'_>) -> f64 {
         let laser = self.change.laser(laser);
-        let Some(light) = laser.illuminate(seen.point.position) else {
+        let Some(light) = laser.illuminate(vertex.position) else {
             return 0.0;
         };
-        let radiance = light.irradiance * seen.reflected(light.direction, laser.wavelength());
-        let segment = Segment {
-            from: seen.point.position,
-            from_normal: seen.hit.normal,
-            to: light.source,
-        };
-        if radiance > 0.0 && self.is_free(segment) {
+        let reflected = vertex.reflected_from(light.direction, laser.wavelength());
+        let radiance = light.irradiance * reflected;
+        if radiance > 0.0 && self.is_free(vertex.segment_to(light.source)) {
             radiance
         } else {
             0.0
         }
+    }
+
+    fn polarisation_of(&self, surface: usize) -> f64 {
+        self.scene.surfaces[surface].speckle.polarisation
     }
 
     /// The light of one path from a laser that arrives over the rough surfaces it has met.
@@ -293,7 +322,7 @@ impl<'a> Survey<'a> {
         let wavelength = self.change.laser(laser).wavelength();
         let paths = points.iter().filter_map(|lit| {
             let (irradiance, wi) = lit.irradiance_at(position, wavelength)?;
-            let radiance = irradiance * seen.reflected(wi, wavelength);
+            let radiance = irradiance * seen.vertex.reflected_from(wi, wavelength);
             if radiance <= 0.0 || !self.is_free(lit.segment_to(position)) {
                 return None;
             }
@@ -302,7 +331,7 @@ impl<'a> Survey<'a> {
                 radiance,
                 delay: way.length - now,
                 added: way.change - (now - before),
-                polarisation: way.polarisation * self.scene.surfaces[surface].speckle.polarisation,
+                polarisation: way.polarisation * self.polarisation_of(surface),
                 pupil: seen.pupil_of(wi),
             })
         });
@@ -316,18 +345,16 @@ impl<'a> Survey<'a> {
     }
 }
 
+/// The sums of a cell.
+type CellSums = BTreeMap<LightKey, MultipleSums>;
+
 /// A point that the camera sees.
 struct SeenPoint<'a> {
     point: SpecklePoint,
-    hit: Hit,
-    /// Local axes whose z is the normal by which light is scattered.
-    axes: LocalFrame,
-    /// The direction to the camera, in local axes.
-    wo: DVec3,
+    vertex: Vertex<'a>,
     /// The unit direction to the pupil, and the sine of the half-angle that it fills.
     to_pupil: DVec3,
     sin_aperture: f64,
-    material: &'a Material,
 }
 
 impl SeenPoint<'_> {
@@ -337,15 +364,6 @@ impl SeenPoint<'_> {
         let normal = self.point.normal;
         let along = direction.dot(self.to_pupil) / normal.dot(self.to_pupil);
         (direction - along * normal) / (2.0 * self.sin_aperture)
-    }
-
-    /// The BSDF times |cos θ| for light from a unit direction.
-    fn reflected(&self, direction: DVec3, wavelength: f64) -> f64 {
-        let wi = self.axes.to_local(direction);
-        if wi.z * self.hit.normal.dot(direction) <= 0.0 {
-            return 0.0;
-        }
-        self.material.evaluate(self.wo, wi, wavelength) * wi.z.abs()
     }
 }
 

@@ -16,6 +16,7 @@ mod heights;
 mod line_noise;
 mod moving_corner;
 mod relief;
+mod rendered_corner;
 mod several_surfaces;
 mod slab;
 mod speckle_of_speckle;

@@ -5,7 +5,7 @@ use crate::{BsdfSample, Hit, Intersector, LocalFrame, Material, Segment};
 
 /// A surface point that a path has met.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Vertex<'a> {
+pub(crate) struct Vertex<'a> {
     pub position: DVec3,
     /// The distance along the ray, in metres.
     pub distance: f64,
@@ -25,7 +25,7 @@ pub(super) struct Vertex<'a> {
 impl<'a> Vertex<'a> {
     /// Creates the point where a ray hits a surface; `None` for a ray along the surface, which sees
     /// no area of it.
-    pub(super) fn new(ray: &Ray, hit: &Hit, material: &'a Material) -> Option<Self> {
+    pub(crate) fn new(ray: &Ray, hit: &Hit, material: &'a Material) -> Option<Self> {
         let back = -ray.direction;
         let cosine = hit.normal.dot(back);
         let axes = hit.axes_seen_from(back);
@@ -43,56 +43,62 @@ impl<'a> Vertex<'a> {
     }
 
     /// Tells whether the material only mirrors and refracts.
-    pub(super) fn is_specular(&self) -> bool {
+    pub(crate) fn is_specular(&self) -> bool {
         self.material.is_specular()
     }
 
     /// Returns the normal by which light is scattered, on the side that is seen.
-    pub(super) fn seen_normal(&self) -> DVec3 {
+    pub(crate) fn seen_normal(&self) -> DVec3 {
         self.axes.normal() * self.wo.z.signum()
     }
 
     /// Returns the local components of a direction towards light, or `None` if the surface and the
     /// shading disagree about the side from which it comes.
-    pub(super) fn towards(&self, direction: DVec3) -> Option<DVec3> {
+    pub(crate) fn towards(&self, direction: DVec3) -> Option<DVec3> {
         let wi = self.axes.to_local(direction);
         (wi.z * self.normal.dot(direction) > 0.0).then_some(wi)
     }
 
     /// Returns the BSDF times |cos θ| for light from the local direction `wi`.
-    pub(super) fn reflected(&self, wi: DVec3, wavelength: f64) -> f64 {
+    pub(crate) fn reflected(&self, wi: DVec3, wavelength: f64) -> f64 {
         self.material.evaluate(self.wo, wi, wavelength) * wi.z.abs()
     }
 
+    /// Returns the BSDF times |cos θ| for light from a unit direction in space.
+    pub(crate) fn reflected_from(&self, direction: DVec3, wavelength: f64) -> f64 {
+        self.towards(direction)
+            .map_or(0.0, |wi| self.reflected(wi, wavelength))
+    }
+
     /// Returns the density with which [`sample`](Self::sample) draws `wi`, per steradian.
-    pub(super) fn pdf(&self, wi: DVec3) -> f64 {
+    pub(crate) fn pdf(&self, wi: DVec3) -> f64 {
         self.material.pdf(self.wo, wi)
     }
 
     /// Tells whether the local direction is on the side from which the path came.
-    pub(super) fn is_seen_side(&self, wi: DVec3) -> bool {
+    pub(crate) fn is_seen_side(&self, wi: DVec3) -> bool {
         wi.z * self.wo.z > 0.0
     }
 
     /// Draws a direction from the material.
-    pub(super) fn sample(&self, u: [f64; 2], wavelength: f64) -> Option<BsdfSample> {
+    pub(crate) fn sample(&self, u: [f64; 2], wavelength: f64) -> Option<BsdfSample> {
         let event = self.material.sample(self.wo, u, wavelength)?;
         self.towards(self.axes.to_world(event.wi))?;
         Some(event)
     }
 
     /// Returns the weight of a drawn direction at a wavelength.
-    pub(super) fn weight(&self, event: &BsdfSample, wavelength: f64) -> f64 {
+    pub(crate) fn weight(&self, event: &BsdfSample, wavelength: f64) -> f64 {
         self.material.reweighted(self.wo, event, wavelength)
     }
 
     /// Returns the ray that leaves the surface in the local direction `wi`.
-    pub(super) fn leave(&self, intersector: &Intersector, wi: DVec3) -> Ray {
+    pub(crate) fn leave(&self, intersector: &Intersector, wi: DVec3) -> Ray {
         intersector.ray_from(self.position, self.normal, self.axes.to_world(wi))
     }
 
     /// Returns the way from the surface to a point.
-    pub(super) const fn segment_to(&self, point: DVec3) -> Segment {
+    pub(crate) const fn segment_to(&self, point: DVec3) -> Segment {
         Segment {
             from: self.position,
             from_normal: self.normal,
@@ -101,7 +107,7 @@ impl<'a> Vertex<'a> {
     }
 
     /// Returns the way from the surface out of the scene.
-    pub(super) fn segment_along(&self, direction: DVec3) -> Segment {
+    pub(crate) fn segment_along(&self, direction: DVec3) -> Segment {
         Segment::to_infinity(self.position, self.normal, direction)
     }
 }

@@ -39,6 +39,8 @@ pub(crate) struct MultipleLight {
 pub(crate) struct MultipleSums {
     samples: f64,
     radiance: f64,
+    /// Σ E².
+    squares: f64,
     single: f64,
     polarised: f64,
     paths: PathPairs,
@@ -69,6 +71,7 @@ impl MultipleSums {
         Self {
             samples: 0.0,
             radiance: 0.0,
+            squares: 0.0,
             single: 0.0,
             polarised: 0.0,
             paths: PathPairs::default(),
@@ -106,6 +109,7 @@ impl MultipleSums {
         let phase = |path: f64| (line.wave_number() * path).cos();
         for path in groups.into_iter().flatten() {
             sums.radiance += path.radiance;
+            sums.squares += path.radiance * path.radiance;
             sums.polarised += path.radiance * path.polarisation;
             sums.kept_with_single += path.radiance * phase(path.added);
         }
@@ -119,6 +123,15 @@ impl MultipleSums {
             }
         }
         sums
+    }
+
+    /// Returns the number of paths of equal light that would tell as much.
+    pub(crate) fn effective_paths(&self) -> f64 {
+        if self.squares > 0.0 {
+            self.radiance * self.radiance / self.squares
+        } else {
+            0.0
+        }
     }
 
     fn add_scaled(&mut self, other: &Self, factor: f64) {

@@ -72,7 +72,7 @@ const PLANNED_CELLS: usize = 16;
 impl SpecklePlan {
     /// Chooses the patterns for a scene.
     ///
-    /// Each is the [`StackPlan`] for the image, the part of the scene that moves into it, and the
+    /// Each is the [`StackPlan`](tem00_speckle::StackPlan) for the image, the part of the scene that moves into it, and the
     /// longest way by which the frames carry the pupil. What the scene file sets is kept. What the
     /// motion asks for beyond the memory is left out, and said so.
     ///

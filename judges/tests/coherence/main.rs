@@ -9,6 +9,7 @@
 )]
 
 mod bench;
+mod comparison;
 mod contrast;
 mod corner;
 mod grains;

@@ -1,13 +1,13 @@
-use glam::DVec2;
+mod mixes;
 
-use tem00_coherence::Recombination;
+use glam::DVec2;
 use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
 use tem00_paper::BilinearStack;
-use tem00_speckle::{Complex, SpeckleStack};
+use tem00_speckle::SpeckleStack;
 
 use super::{
     PatternPlan, SpecklePlan, SpecklePoint,
-    allocation::{self, PatternAllocation},
+    allocation::PatternAllocation,
     change::{Change, SpeckleShift},
     multiple::{MultipleLight, MultipleMap},
     plan::SurfacePatterns,
@@ -70,9 +70,6 @@ struct Mix {
     /// Whether the light is faint.
     is_faint: bool,
 }
-
-/// The fraction of light below which a pattern counts as even: many such leave a contrast below 0.04.
-const FAINT_PATTERN: f64 = 0.02;
 
 /// Points that are looked up together.
 const BLOCK: usize = 64;
@@ -166,9 +163,7 @@ impl Pattern {
             stacks,
         })
     }
-}
 
-impl Pattern {
     /// Returns the coordinate in slices where the pupil has moved by so many of its diameters to one side.
     fn coordinate_of(&self, stack: &SpeckleStack, pupil: f64, sign: f64) -> f64 {
         // Beyond the reach the speckle is new to the reference frame, wherever the pupil stands.
@@ -178,17 +173,6 @@ impl Pattern {
         let u = stack.coordinate_of(pupil_overlap_correlation(shift));
         sign * u.max(shift * self.slices_per_diameter)
     }
-}
-
-/// Where a point is looked up.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    /// The image point in perspective, in pixels with y down.
-    pixel: DVec2,
-    /// The coordinate in slices.
-    u: f64,
-    /// The change of the phase with the height, in radians per metre.
-    phase_per_height: f64,
 }
 
 impl SpeckleFrame<'_> {
@@ -316,155 +300,6 @@ impl SpeckleFrame<'_> {
         }
     }
 
-    /// Looks up points in light of one wave number each, drawn from the line of the laser, and in sums of patterns.
-    ///
-    /// Another wave number sees the pupil displaced along the axis of the surface, as after a motion; and the heights of
-    /// the relief in other phases. Multiple light adds patterns, each at a position of its own.
-    fn look_up_mixes(
-        &self,
-        laser: usize,
-        surface: &SurfacePatterns,
-        (points, mixes): (&[SpecklePoint], &[Option<Mix>]),
-        factors: &mut [f64],
-    ) {
-        let mixed = points.iter().zip(mixes);
-        let places: Vec<_> = mixed
-            .map(|(point, mix)| self.place(laser, surface, point, mix.as_ref()))
-            .collect();
-        for component in [0, 1] {
-            let sums: Vec<_> = mixes
-                .iter()
-                .map(|mix| recombined(surface.polarisation, mix.as_ref(), component))
-                .collect();
-            for (factor, sum) in factors.iter_mut().zip(&sums) {
-                *factor = sum.even + if component == 0 { 0.0 } else { *factor };
-            }
-            for number in 0..Recombination::PATTERNS {
-                let lit: Vec<_> = (0..points.len())
-                    .filter(|&i| sums[i].patterns[number] >= FAINT_PATTERN)
-                    .collect();
-                let lit_places = lit.iter().map(|&i| places[i]).collect::<Vec<_>>();
-                let intensities =
-                    self.intensities(laser, surface, &lit_places, [component, number]);
-                for (sum, factor) in sums.iter().zip(factors.iter_mut()) {
-                    let fraction = sum.patterns[number];
-                    *factor += if fraction < FAINT_PATTERN {
-                        fraction
-                    } else {
-                        0.0
-                    };
-                }
-                for (i, intensity) in lit.into_iter().zip(intensities) {
-                    factors[i] += sums[i].patterns[number] * intensity;
-                }
-            }
-        }
-    }
-
-    /// Where a point is looked up.
-    fn place(
-        &self,
-        laser: usize,
-        surface: &SurfacePatterns,
-        point: &SpecklePoint,
-        mix: Option<&Mix>,
-    ) -> Place {
-        let patterns = &self.model.lasers[laser];
-        let (geometry, pattern) = (&patterns.geometry, &patterns.patterns[surface.allocation]);
-        let motion = self.shift(laser, geometry, point, mix);
-        let sign = self.sides[laser].get(point.surface).copied().unwrap_or(1.0);
-        let mut pixel = self.change.perspective().point(point.pixel) - motion.displacement;
-        let Some(bandwidth) = &surface.bandwidth else {
-            let u = match &pattern.stacks[0] {
-                Stack::Derived(stack) => pattern.coordinate_of(stack, motion.pupil, sign),
-                Stack::AsPrinted(..) => 0.0,
-            };
-            return Place {
-                pixel,
-                u,
-                phase_per_height: 0.0,
-            };
-        };
-        let kappa = self.change.laser(laser).spectral_line().draw(point.wave);
-        let wave = self.change.spectral_shift(laser, geometry, point, kappa);
-        let wave = wave.unwrap_or_default();
-        pixel -= wave.displacement;
-        let tilt = wave.pupil.length() * wave.pupil.dot(bandwidth.axis).signum();
-        Place {
-            pixel,
-            u: pattern.slices_per_diameter * (tilt + sign * motion.pupil),
-            phase_per_height: wave.phase_per_height,
-        }
-    }
-
-    /// The intensities, of mean 1, of one of the independent patterns of a component of polarisation.
-    fn intensities(
-        &self,
-        laser: usize,
-        surface: &SurfacePatterns,
-        places: &[Place],
-        [component, number]: [usize; 2],
-    ) -> Vec<f64> {
-        let single = [[0.0, 1.0]];
-        let (heights, axis) = match &surface.bandwidth {
-            Some(bandwidth) => (bandwidth.heights.as_slice(), bandwidth.axis),
-            None => (single.as_slice(), DVec2::X),
-        };
-        let mut sums = vec![0.0; places.len()];
-        if places.is_empty() {
-            return sums;
-        }
-        let pattern = &self.model.lasers[laser].patterns[surface.allocation];
-        // A component that the single light does not have takes positions of its own.
-        let planned = component.min(surface.components - 1);
-        let number = number + (component - planned) * Recombination::PATTERNS;
-        let beside = allocation::position_beside(number);
-        let mut whole = 0.0;
-        for fields in surface.fields_of(planned, heights.len()) {
-            let fraction = fields[0].fraction;
-            whole += fraction;
-            if let ([part], Stack::Derived(stack)) = (fields, &pattern.stacks[fields[0].stack]) {
-                let mut block = self.block(laser, stack, places, axis);
-                block.shift(part.offset, stack.size());
-                block.shift(beside, stack.size());
-                block.add(stack, fraction, &mut sums);
-                continue;
-            }
-            let mut amplitudes = vec![Complex::<f64>::ZERO; places.len()];
-            for (part, [height, root]) in fields.iter().zip(heights) {
-                let Stack::Derived(stack) = &pattern.stacks[part.stack] else {
-                    continue;
-                };
-                let mut block = self.block(laser, stack, places, axis);
-                block.shift(part.offset, stack.size());
-                block.shift(beside, stack.size());
-                for (i, (amplitude, place)) in amplitudes.iter_mut().zip(places).enumerate() {
-                    let phase = Complex::cis(place.phase_per_height * height);
-                    let field = stack.amplitude_at(block.x[i], block.y[i], block.u[i]);
-                    *amplitude += field * phase * root;
-                }
-            }
-            for (sum, amplitude) in sums.iter_mut().zip(&amplitudes) {
-                *sum += fraction * amplitude.norm_sqr();
-            }
-        }
-        sums.iter_mut().for_each(|sum| *sum /= whole);
-        sums
-    }
-
-    /// Coordinates of places in a stack whose slices stand along an axis.
-    fn block(&self, laser: usize, stack: &SpeckleStack, places: &[Place], axis: DVec2) -> Block {
-        let geometry = &self.model.lasers[laser].geometry;
-        let mut block = Block::default();
-        for (i, place) in places.iter().enumerate() {
-            let pixel = upright(place.pixel);
-            let c = geometry.pattern_coordinate(pixel, DVec2::ZERO, stack.speckle_size());
-            (block.x[i], block.y[i]) = (axis.dot(c), axis.perp().dot(c));
-            block.u[i] = place.u;
-        }
-        block
-    }
-
     /// Coordinates of the points of a surface in its pattern.
     fn coordinates(
         &self,
@@ -542,23 +377,6 @@ impl Block {
 /// An offset in periods of a stack, in samples.
 fn in_samples(offset: [f64; 2], size: [usize; 2]) -> [f64; 2] {
     [0, 1].map(|axis| offset[axis] * size[axis] as f64)
-}
-
-/// The patterns of a component of polarisation, as fractions of all light.
-fn recombined(polarisation: f64, mix: Option<&Mix>, component: usize) -> Recombination {
-    let of_component = |degree: f64| 0.5 * (1.0 + if component == 0 { degree } else { -degree });
-    let single = of_component(polarisation);
-    let Some(mix) = mix else {
-        return Recombination::new([single, 0.0], 1.0, 1.0);
-    };
-    let light = &mix.multiple;
-    let multiple = mix.fraction * of_component(light.polarisation);
-    let radiances = [(1.0 - mix.fraction) * single, multiple];
-    let recombination = match mix.is_faint {
-        true => Recombination::of_two,
-        false => Recombination::new,
-    };
-    recombination(radiances, light.with_single, light.within)
 }
 
 #[cfg(test)]

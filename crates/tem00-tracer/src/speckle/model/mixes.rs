@@ -1,0 +1,187 @@
+//! Look-ups of points whose light is a sum of patterns, or of one wave number of a line.
+
+use glam::DVec2;
+use tem00_coherence::Recombination;
+use tem00_speckle::{Complex, SpeckleStack};
+
+use super::{
+    super::{SpecklePoint, allocation, plan::SurfacePatterns, upright},
+    Block, Mix, SpeckleFrame, Stack,
+};
+
+/// The fraction of light below which a pattern counts as even: many such leave a contrast below 0.04.
+const FAINT_PATTERN: f64 = 0.02;
+
+/// Where a point is looked up.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// The image point in perspective, in pixels with y down.
+    pixel: DVec2,
+    /// The coordinate in slices.
+    u: f64,
+    /// The change of the phase with the height, in radians per metre.
+    phase_per_height: f64,
+}
+
+impl SpeckleFrame<'_> {
+    /// Looks up points in light of one wave number each, drawn from the line of the laser, and in sums of patterns.
+    ///
+    /// Another wave number sees the pupil displaced along the axis of the surface, as after a motion; and the heights of
+    /// the relief in other phases. Multiple light adds patterns, each at a position of its own.
+    pub(super) fn look_up_mixes(
+        &self,
+        laser: usize,
+        surface: &SurfacePatterns,
+        (points, mixes): (&[SpecklePoint], &[Option<Mix>]),
+        factors: &mut [f64],
+    ) {
+        let mixed = points.iter().zip(mixes);
+        let places: Vec<_> = mixed
+            .map(|(point, mix)| self.place(laser, surface, point, mix.as_ref()))
+            .collect();
+        factors.fill(0.0);
+        for component in [0, 1] {
+            let sums: Vec<_> = mixes
+                .iter()
+                .map(|mix| recombined(surface.polarisation, mix.as_ref(), component))
+                .collect();
+            for (factor, sum) in factors.iter_mut().zip(&sums) {
+                let faint = sum.patterns.iter().filter(|&&f| f < FAINT_PATTERN);
+                *factor += sum.even + faint.sum::<f64>();
+            }
+            for number in 0..Recombination::PATTERNS {
+                let fraction = |index: usize| sums[index].patterns[number];
+                let lit: Vec<_> = (0..points.len())
+                    .filter(|&index| fraction(index) >= FAINT_PATTERN)
+                    .collect();
+                let lit_places: Vec<_> = lit.iter().map(|&index| places[index]).collect();
+                let pattern = [component, number];
+                let intensities = self.intensities(laser, surface, &lit_places, pattern);
+                for (index, intensity) in lit.into_iter().zip(intensities) {
+                    factors[index] += fraction(index) * intensity;
+                }
+            }
+        }
+    }
+
+    /// Where a point is looked up.
+    fn place(
+        &self,
+        laser: usize,
+        surface: &SurfacePatterns,
+        point: &SpecklePoint,
+        mix: Option<&Mix>,
+    ) -> Place {
+        let patterns = &self.model.lasers[laser];
+        let (geometry, pattern) = (&patterns.geometry, &patterns.patterns[surface.allocation]);
+        let motion = self.shift(laser, geometry, point, mix);
+        let sign = self.sides[laser].get(point.surface).copied().unwrap_or(1.0);
+        let mut pixel = self.change.perspective().point(point.pixel) - motion.displacement;
+        let Some(bandwidth) = &surface.bandwidth else {
+            let u = match &pattern.stacks[0] {
+                Stack::Derived(stack) => pattern.coordinate_of(stack, motion.pupil, sign),
+                Stack::AsPrinted(..) => 0.0,
+            };
+            return Place {
+                pixel,
+                u,
+                phase_per_height: 0.0,
+            };
+        };
+        let kappa = self.change.laser(laser).spectral_line().draw(point.wave);
+        let wave = self.change.spectral_shift(laser, geometry, point, kappa);
+        let wave = wave.unwrap_or_default();
+        pixel -= wave.displacement;
+        let tilt = wave.pupil.length() * wave.pupil.dot(bandwidth.axis).signum();
+        Place {
+            pixel,
+            u: pattern.slices_per_diameter * (tilt + sign * motion.pupil),
+            phase_per_height: wave.phase_per_height,
+        }
+    }
+
+    /// The intensities, of mean 1, of one of the independent patterns of a component of polarisation.
+    fn intensities(
+        &self,
+        laser: usize,
+        surface: &SurfacePatterns,
+        places: &[Place],
+        [component, number]: [usize; 2],
+    ) -> Vec<f64> {
+        let single = [[0.0, 1.0]];
+        let (heights, axis) = match &surface.bandwidth {
+            Some(bandwidth) => (bandwidth.heights.as_slice(), bandwidth.axis),
+            None => (single.as_slice(), DVec2::X),
+        };
+        let mut sums = vec![0.0; places.len()];
+        if places.is_empty() {
+            return sums;
+        }
+        let pattern = &self.model.lasers[laser].patterns[surface.allocation];
+        // A component that the single light does not have takes positions of its own.
+        let planned = component.min(surface.components - 1);
+        let number = number + (component - planned) * Recombination::PATTERNS;
+        let beside = allocation::position_beside(number);
+        let mut whole = 0.0;
+        for fields in surface.fields_of(planned, heights.len()) {
+            let fraction = fields[0].fraction;
+            whole += fraction;
+            if let ([part], Stack::Derived(stack)) = (fields, &pattern.stacks[fields[0].stack]) {
+                let mut block = self.block(laser, stack, places, axis);
+                block.shift(part.offset, stack.size());
+                block.shift(beside, stack.size());
+                block.add(stack, fraction, &mut sums);
+                continue;
+            }
+            let mut amplitudes = vec![Complex::<f64>::ZERO; places.len()];
+            for (part, [height, root]) in fields.iter().zip(heights) {
+                let Stack::Derived(stack) = &pattern.stacks[part.stack] else {
+                    continue;
+                };
+                let mut block = self.block(laser, stack, places, axis);
+                block.shift(part.offset, stack.size());
+                block.shift(beside, stack.size());
+                for (i, (amplitude, place)) in amplitudes.iter_mut().zip(places).enumerate() {
+                    let phase = Complex::cis(place.phase_per_height * height);
+                    let field = stack.amplitude_at(block.x[i], block.y[i], block.u[i]);
+                    *amplitude += field * phase * root;
+                }
+            }
+            for (sum, amplitude) in sums.iter_mut().zip(&amplitudes) {
+                *sum += fraction * amplitude.norm_sqr();
+            }
+        }
+        sums.iter_mut().for_each(|sum| *sum /= whole);
+        sums
+    }
+
+    /// Coordinates of places in a stack whose slices stand along an axis.
+    fn block(&self, laser: usize, stack: &SpeckleStack, places: &[Place], axis: DVec2) -> Block {
+        let geometry = &self.model.lasers[laser].geometry;
+        let mut block = Block::default();
+        for (i, place) in places.iter().enumerate() {
+            let pixel = upright(place.pixel);
+            let c = geometry.pattern_coordinate(pixel, DVec2::ZERO, stack.speckle_size());
+            (block.x[i], block.y[i]) = (axis.dot(c), axis.perp().dot(c));
+            block.u[i] = place.u;
+        }
+        block
+    }
+}
+
+/// The patterns of a component of polarisation, as fractions of all light.
+fn recombined(polarisation: f64, mix: Option<&Mix>, component: usize) -> Recombination {
+    let of_component = |degree: f64| 0.5 * (1.0 + if component == 0 { degree } else { -degree });
+    let single = of_component(polarisation);
+    let Some(mix) = mix else {
+        return Recombination::new([single, 0.0], 1.0, 1.0);
+    };
+    let light = &mix.multiple;
+    let multiple = mix.fraction * of_component(light.polarisation);
+    let radiances = [(1.0 - mix.fraction) * single, multiple];
+    let recombination = match mix.is_faint {
+        true => Recombination::of_two,
+        false => Recombination::new,
+    };
+    recombination(radiances, light.with_single, light.within)
+}

@@ -1,0 +1,9 @@
+//! What runs on a card against the library. Without a card Mesa's software adapter does it: on Debian the package
+//! `mesa-vulkan-drivers`.
+
+#![expect(
+    clippy::expect_used,
+    reason = "a test stops at what it does not expect"
+)]
+
+mod kernel;

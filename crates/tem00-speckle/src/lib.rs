@@ -31,6 +31,7 @@
 //! the crate above; so does the light that it modulates. A stack has the speckle of one wave: its
 //! look-ups are summed in [`incoherent_fractions`].
 
+pub mod closed_form;
 mod error;
 mod interpolation;
 mod light;

@@ -7,3 +7,4 @@
 )]
 
 mod kernel;
+mod phasors;

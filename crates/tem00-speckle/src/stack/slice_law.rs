@@ -1,3 +1,7 @@
+use core::array::from_fn;
+
+use tem00_numerics::cast::to_f32;
+
 use crate::{
     SpeckleStack,
     interpolation::covariance::{EVEN, SHAPES},
@@ -47,6 +51,35 @@ pub struct SliceLaw {
     /// The turns of phase per sample, along x and y, from the frame of the next slice to that of this
     /// one.
     pub turns: [f64; 2],
+}
+
+impl SliceLaw {
+    /// The number of [`rows`](Self::rows).
+    pub const ROWS: usize = 14;
+
+    /// Returns the law in rows of four numbers, as the functions of [`closed_form`](crate::closed_form) read it, for a
+    /// stack of `size` samples.
+    ///
+    /// ```text
+    /// 0 to 3     mean_square[ny]
+    /// 4 to 9     covariance[ny], nx = 0 to 3
+    /// 10 to 12   covariance[ny], nx = 4 and 5, of ny = 0 and 1, 2 and 3, 4 and 5
+    /// 13         the step −turns · size in lattice points along x and y, 1 if a term with an odd shape is not 0, 0
+    /// ```
+    pub fn rows(&self, size: [usize; 2]) -> [[f32; 4]; Self::ROWS] {
+        let table = &self.covariance;
+        let step = [0, 1].map(|axis| to_f32((-self.turns[axis] * size[axis] as f64).round()));
+        let even = |ny: usize, nx: usize| ny < EVEN && nx < EVEN;
+        let is_odd = (0..SHAPES * SHAPES)
+            .map(|entry| (entry / SHAPES, entry % SHAPES))
+            .any(|(ny, nx)| !even(ny, nx) && table[ny][nx].abs() > 0.0);
+        from_fn(|row| match row {
+            0..4 => self.mean_square[row],
+            4..10 => from_fn(|nx| table[row - 4][nx]),
+            10..13 => from_fn(|i| table[2 * (row - 10) + i / 2][EVEN + i % 2]),
+            _ => [step[0], step[1], f32::from(u8::from(is_odd)), 0.0],
+        })
+    }
 }
 
 impl SpeckleStack {

@@ -166,6 +166,7 @@ def changed(light: beam.Emitter, row: int, place: int, value: float) -> np.ndarr
         (5, 3, 2, "mass"),
         (6, 0, 0, "half_slope"),
         (6, 1, 0.5, "focus_on_plane"),
+        (6, 2, 0, "wavelength"),
     ],
 )
 def test_rows_of_no_light_are_refused(row: int, place: int, value: float, field: str) -> None:
@@ -176,6 +177,8 @@ def test_rows_of_no_light_are_refused(row: int, place: int, value: float, field:
 
 def test_ellipses_of_no_light_are_refused() -> None:
     light = beam.AstigmaticLight.place(GENERAL, PLACEMENT, 1e-3)
+    with pytest.raises(ParameterError, match="wavelength"):
+        beam.AstigmaticLight.from_rows(changed(light, 2, 3, 0))
     for row in (4, 5):
         with pytest.raises(ParameterError, match="positive definite"):
             beam.AstigmaticLight.from_rows(changed(light, row, 1, light.to_rows()[row, 0]))

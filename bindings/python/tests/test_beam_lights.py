@@ -240,7 +240,7 @@ def test_single_points_have_the_bits_of_arrays(name: str) -> None:
 def test_rows_are_the_fields_in_the_order_of_memory() -> None:
     light = elliptic()
     rows = light.to_rows()
-    expected = [[*light.origin, POWER], [*light.ex, 4], [*light.ey, 0], [*light.ez, 0]]
+    expected = [[*light.origin, POWER], [*light.ex, 4], [*light.ey, light.wavelength], [*light.ez, 0]]
     expected += [[a.w0_sq, a.theta_sq, a.z0, 0] for a in (light.x, light.y)]
     np.testing.assert_array_equal(rows, expected)
     np.testing.assert_array_equal(light.to_rows("float32"), rows.astype(np.float32))
@@ -248,7 +248,9 @@ def test_rows_are_the_fields_in_the_order_of_memory() -> None:
     assert isinstance(fan, beam.LineLight)
     profile = [fan.flat, fan.sigma, fan.variable, fan.mass]
     np.testing.assert_array_equal(fan.to_rows()[5], profile)
-    np.testing.assert_array_equal(fan.to_rows()[6], [fan.half_slope, fan.focus_on_plane, 0, 0])
+    np.testing.assert_array_equal(
+        fan.to_rows()[6], [fan.half_slope, fan.focus_on_plane, fan.wavelength, 0]
+    )
     assert fan.to_rows(np.float32).dtype == np.float32
     table = line("table")
     assert table.to_rows("float32").shape == (7, 4)

@@ -61,16 +61,16 @@ typedef struct {
 
 /* A Gaussian beam, circular or elliptic, with its waists at z = x.z0 and z = y.z0. */
 typedef struct {
-    TEM00_REAL origin[3]; /* centre of the aperture, in metres */
-    TEM00_REAL power;     /* in watts */
-    TEM00_REAL ex[3];     /* unit vector of the local x axis */
-    TEM00_REAL cutoff;    /* distance from the axis, in beam radii, beyond which it is dark */
-    TEM00_REAL ey[3];     /* unit vector of the local y axis */
-    TEM00_REAL pad_ey;    /* unused, 0 */
-    TEM00_REAL ez[3];     /* unit vector along the direction of travel */
-    TEM00_REAL pad_ez;    /* unused, 0 */
-    TEM00_TYPE(Axis) x;   /* beam radius along x */
-    TEM00_TYPE(Axis) y;   /* beam radius along y */
+    TEM00_REAL origin[3];  /* centre of the aperture, in metres */
+    TEM00_REAL power;      /* in watts */
+    TEM00_REAL ex[3];      /* unit vector of the local x axis */
+    TEM00_REAL cutoff;     /* distance from the axis, in beam radii, beyond which it is dark */
+    TEM00_REAL ey[3];      /* unit vector of the local y axis */
+    TEM00_REAL wavelength; /* in the medium, in metres */
+    TEM00_REAL ez[3];      /* unit vector along the direction of travel */
+    TEM00_REAL pad_ez;     /* unused, 0 */
+    TEM00_TYPE(Axis) x;    /* beam radius along x */
+    TEM00_TYPE(Axis) y;    /* beam radius along y */
 } TEM00_TYPE(SpotLight);
 
 /* Squared radii as a symmetric matrix M: the ellipse is x' M^-1 x = 1. */
@@ -88,7 +88,7 @@ typedef struct {
     TEM00_REAL ex[3];             /* unit vector of the local x axis */
     TEM00_REAL cutoff;            /* distance from the axis, in beam radii, where it gets dark */
     TEM00_REAL ey[3];             /* unit vector of the local y axis */
-    TEM00_REAL pad_ey;            /* unused, 0 */
+    TEM00_REAL wavelength;        /* in the medium, in metres */
     TEM00_REAL ez[3];             /* unit vector along the direction of travel */
     TEM00_REAL pad_ez;            /* unused, 0 */
     TEM00_TYPE(Ellipse) position; /* W: of the position at the aperture given the slope, in m^2 */
@@ -113,7 +113,8 @@ typedef struct {
     TEM00_REAL mass;           /* fraction of the profile within |theta| < pi/2 */
     TEM00_REAL half_slope;     /* slope of the nominal edge of the fan, tan(alpha/2) */
     TEM00_REAL focus_on_plane; /* 0: waists at the slant distance y.z0; 1: on the plane there */
-    TEM00_REAL pad[2];         /* unused, 0 */
+    TEM00_REAL wavelength;     /* in the medium, in metres */
+    TEM00_REAL pad;            /* unused, 0 */
 } TEM00_TYPE(LineLight);
 
 /* The light at a point, as one direction and one irradiance; all 0 where it is dark. */

@@ -42,8 +42,8 @@ struct Tem00SpotLight {
     cutoff: f32,
     /// Unit vector of the local y axis.
     ey: vec3<f32>,
-    /// Unused, 0.
-    pad_ey: f32,
+    /// Wavelength in the medium, in metres.
+    wavelength: f32,
     /// Unit vector along the direction of travel.
     ez: vec3<f32>,
     /// Unused, 0.
@@ -78,8 +78,8 @@ struct Tem00AstigmaticLight {
     cutoff: f32,
     /// Unit vector of the local y axis.
     ey: vec3<f32>,
-    /// Unused, 0.
-    pad_ey: f32,
+    /// Wavelength in the medium, in metres.
+    wavelength: f32,
     /// Unit vector along the direction of travel.
     ez: vec3<f32>,
     /// Unused, 0.
@@ -124,8 +124,10 @@ struct Tem00LineLight {
     half_slope: f32,
     /// 0: the waists are at the slant distance y.z0; 1: on the plane that far from the apex.
     focus_on_plane: f32,
+    /// Wavelength in the medium, in metres.
+    wavelength: f32,
     /// Unused, 0.
-    pad: vec2<f32>,
+    pad: f32,
 }
 
 /// The light that arrives at a point, as one direction and one irradiance; all 0 where it is dark.

@@ -357,7 +357,10 @@ methods! {
     get ez -> Vector<3> = this.vector(3);
 
     /// Power, in watts.
-    get power -> f64 = this.0.frame_rows()[0][3];
+    get power -> f64 = this.0.ask(|light| light.power());
+
+    /// Wavelength in the medium, in metres.
+    get wavelength -> f64 = this.0.ask(|light| light.wavelength());
 
     /// Distance from the axis, in beam radii, beyond which no light arrives; in a laser line that
     /// from the plane of the fan.

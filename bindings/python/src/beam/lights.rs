@@ -27,7 +27,7 @@ use crate::{
 ///
 /// The rows of ``to_rows`` are::
 ///
-///     origin, power | ex, cutoff | ey, 0 | ez, 0 | x: w0_sq, theta_sq, z0, 0 | y: likewise
+///     origin, power | ex, cutoff | ey, wavelength | ez, 0 | x: w0_sq, theta_sq, z0, 0 | y: likewise
 #[pyclass(frozen, extends = Emitter, module = "tem00.beam")]
 #[derive(Debug)]
 pub(crate) struct SpotLight(pub(super) physics::SpotLight<f64>);
@@ -87,6 +87,7 @@ impl SpotLight {
     #[staticmethod]
     fn from_rows(py: Python<'_>, rows: Table<'_>) -> PyResult<Py<Self>> {
         let rows = Rows::placed(&rows)?;
+        rows.check_wavelength(2, 3)?;
         rows.check_axis(4)?;
         rows.check_axis(5)?;
         Self::of(py, physics::SpotLight::from_rows(rows.0))
@@ -121,7 +122,7 @@ impl SpotLight {
 /// twisted about the axis. A ray has the slope ``s ~ N(0, S/4)`` and crosses the aperture plane at
 /// ``K s + e``, with an independent ``e ~ N(0, W/4)``. The rows of ``to_rows`` are::
 ///
-///     origin, power | ex, cutoff | ey, 0 | ez, 0 | W: xx, xy, yy, 0 | S: likewise | K: xx, xy, yx, yy
+///     origin, power | ex, cutoff | ey, wavelength | ez, 0 | W: xx, xy, yy, 0 | S: likewise | K: xx, xy, yx, yy
 #[pyclass(frozen, extends = Emitter, module = "tem00.beam")]
 #[derive(Debug)]
 pub(crate) struct AstigmaticLight(physics::AstigmaticLight<f64>);
@@ -156,6 +157,7 @@ impl AstigmaticLight {
     #[staticmethod]
     fn from_rows(py: Python<'_>, rows: Table<'_>) -> PyResult<Py<Self>> {
         let rows = Rows::placed(&rows)?;
+        rows.check_wavelength(2, 3)?;
         rows.check_ellipse(4)?;
         rows.check_ellipse(5)?;
         Self::of(py, physics::AstigmaticLight::from_rows(rows.0))

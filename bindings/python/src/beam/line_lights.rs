@@ -31,7 +31,7 @@ use crate::{
 /// ``|y| ≤ cutoff · w`` and ``|v| ≤ flat + 2 cutoff · sigma``. The rows of ``to_rows`` are::
 ///
 ///     origin, power | ex, cutoff | ey, apex_offset | ez, source_radius | y: w0_sq, theta_sq, z0, 0
-///     | flat, sigma, variable, mass | half_slope, focus_on_plane, 0, 0
+///     | flat, sigma, variable, mass | half_slope, focus_on_plane, wavelength, 0
 #[pyclass(frozen, extends = Emitter, module = "tem00.beam")]
 #[derive(Debug)]
 pub(crate) struct LineLight(pub(super) physics::LineLight<f64>);

@@ -31,6 +31,11 @@ impl<const N: usize> Rows<N> {
         Ok(rows)
     }
 
+    /// Checks that a place holds a wavelength.
+    pub(super) fn check_wavelength(&self, row: usize, place: usize) -> PyResult<()> {
+        self.within(row, place, "wavelength", 1e-30..=1e30)
+    }
+
     /// Checks that a row is the squared radius of a beam.
     pub(super) fn check_axis(&self, row: usize) -> PyResult<()> {
         self.within(row, 0, "w0_sq", 1e-60..=1e60)?;
@@ -61,7 +66,8 @@ impl<const N: usize> Rows<N> {
         self.code(5, 2, "variable", 3)?;
         self.within(5, 3, "mass", 1e-3..=1.0)?;
         self.within(6, 0, "half_slope", 1e-30..=1e30)?;
-        self.code(6, 1, "focus_on_plane", 1)
+        self.code(6, 1, "focus_on_plane", 1)?;
+        self.check_wavelength(6, 2)
     }
 
     /// Checks that a place holds a whole number from 0 to `largest`.

@@ -80,8 +80,8 @@ pub struct AstigmaticLight<T> {
     pub cutoff: T,
     /// Unit vector of the local y axis.
     pub ey: [T; 3],
-    /// Unused, 0. Completes a row of four.
-    pub pad_ey: T,
+    /// Wavelength in the medium, in metres.
+    pub wavelength: T,
     /// Unit vector along the direction of travel.
     pub ez: [T; 3],
     /// Unused, 0. Completes a row of four.
@@ -122,7 +122,7 @@ impl AstigmaticLight<f64> {
             ex: frame.ex,
             cutoff: DEFAULT_CUTOFF,
             ey: frame.ey,
-            pad_ey: 0.0,
+            wavelength: beam.wavelength(),
             ez: frame.ez,
             pad_ez: 0.0,
             position: ellipse(beam.position_spread()),
@@ -161,7 +161,7 @@ impl<T: Real> AstigmaticLight<T> {
         [
             row(self.origin, self.power),
             row(self.ex, self.cutoff),
-            row(self.ey, self.pad_ey),
+            row(self.ey, self.wavelength),
             row(self.ez, self.pad_ez),
             self.position.to_row(),
             self.slope.to_row(),
@@ -177,7 +177,7 @@ impl<T: Real> AstigmaticLight<T> {
             ex: first_three(ex),
             cutoff: ex[3],
             ey: first_three(ey),
-            pad_ey: ey[3],
+            wavelength: ey[3],
             ez: first_three(ez),
             pad_ez: ez[3],
             position: Ellipse::from_row(position),
@@ -217,7 +217,15 @@ impl<T: Real> AstigmaticLight<T> {
     }
 }
 
-impl<T: Real> Emitter<T> for AstigmaticLight<T> {}
+impl<T: Real> Emitter<T> for AstigmaticLight<T> {
+    fn power(&self) -> T {
+        self.power
+    }
+
+    fn wavelength(&self) -> T {
+        self.wavelength
+    }
+}
 
 impl<T: Real> PhaseSpace<T> for AstigmaticLight<T> {
     #[inline(always)]
@@ -228,10 +236,6 @@ impl<T: Real> PhaseSpace<T> for AstigmaticLight<T> {
             ey: self.ey,
             ez: self.ez,
         }
-    }
-
-    fn power(&self) -> T {
-        self.power
     }
 
     #[inline(always)]

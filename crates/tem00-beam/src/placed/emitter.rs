@@ -61,7 +61,49 @@ use crate::real::Real;
 /// assert!((irradiance / upright - 0.5).abs() < 1e-12);
 /// # Ok::<(), tem00_beam::BeamError>(())
 /// ```
+///
+/// A scene holds lights of several kinds as trait objects:
+///
+/// ```
+/// # use tem00_beam::{AstigmaticLight, Emitter, GaussianBeam, GeneralAstigmaticBeam, LocatedBeam};
+/// # use tem00_beam::{AstigmaticBeam, DVec3, Placement, SpotLight};
+/// # let placement = Placement {
+/// #     origin: DVec3::new(0.0, 0.0, 0.5),
+/// #     direction: DVec3::NEG_Z,
+/// #     fan_axis: DVec3::X,
+/// # };
+/// # let red = GaussianBeam::from_waist(650e-9, 0.2e-3)?;
+/// # let green = LocatedBeam::new(GaussianBeam::from_waist(532e-9, 0.1e-3)?, 0.5)?;
+/// # let green = GeneralAstigmaticBeam::from(AstigmaticBeam::stigmatic(green));
+/// let lights: Vec<Box<dyn Emitter<f64>>> = vec![
+///     Box::new(SpotLight::place(&red, 0.5, &placement, 5e-3)?),
+///     Box::new(AstigmaticLight::place(&green, &placement, 1e-3)?),
+/// ];
+/// let p = [0.1e-3, 0.0, 0.0];
+/// let brightest = lights.iter().max_by(|a, b| a.irradiance(p).total_cmp(&b.irradiance(p)));
+/// let brightest = brightest.expect("there are lights");
+/// assert!((brightest.power() - 5e-3).abs() < 1e-18);
+/// assert!((brightest.wavelength() - 650e-9).abs() < 1e-18);
+/// assert!(brightest.axis()[2] < -0.999_999);
+/// # Ok::<(), tem00_beam::BeamError>(())
+/// ```
 pub trait Emitter<T: Real>: PhaseSpace<T> {
+    /// Returns the power, in watts.
+    fn power(&self) -> T;
+
+    /// Returns the wavelength in the medium, in metres.
+    fn wavelength(&self) -> T;
+
+    /// Returns the centre of the aperture, in metres.
+    fn origin(&self) -> [T; 3] {
+        self.frame().origin
+    }
+
+    /// Returns the unit vector along the direction of travel.
+    fn axis(&self) -> [T; 3] {
+        self.frame().ez
+    }
+
     /// Returns the irradiance, in W/m², of a plane through `p` at right angles to the axis.
     #[inline]
     fn irradiance(&self, p: [T; 3]) -> T {

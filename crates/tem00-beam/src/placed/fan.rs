@@ -41,10 +41,6 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         }
     }
 
-    fn power(&self) -> T {
-        self.line().power
-    }
-
     fn run(&self, batch: Batch<'_, T>) {
         self.run_batch(batch);
     }
@@ -184,7 +180,15 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
     }
 }
 
-impl<T: Real> Emitter<T> for LineLight<T> {}
+impl<T: Real> Emitter<T> for LineLight<T> {
+    fn power(&self) -> T {
+        self.power
+    }
+
+    fn wavelength(&self) -> T {
+        self.wavelength
+    }
+}
 
 impl<T: Real> Fan for LineLight<T> {
     type Scalar = T;

@@ -107,8 +107,10 @@ pub struct LineLight<T> {
     pub half_slope: T,
     /// 1 if the waist lies on a plane square to the axis, 0 if on a circle about the virtual apex.
     pub focus_on_plane: T,
+    /// Wavelength in the medium, in metres.
+    pub wavelength: T,
     /// Unused, 0. Completes a row of four.
-    pub pad: [T; 2],
+    pub pad: T,
 }
 
 impl LineLight<f64> {
@@ -155,7 +157,8 @@ impl LineLight<f64> {
                 FocusCurve::EqualDistance => 0.0,
                 FocusCurve::EqualPlane => 1.0,
             },
-            pad: [0.0; 2],
+            wavelength: line.focus().wavelength(),
+            pad: 0.0,
         })
     }
 
@@ -188,8 +191,8 @@ impl<T: Real> LineLight<T> {
             [
                 self.half_slope,
                 self.focus_on_plane,
-                self.pad[0],
-                self.pad[1],
+                self.wavelength,
+                self.pad,
             ],
         ]
     }
@@ -212,7 +215,8 @@ impl<T: Real> LineLight<T> {
             mass: profile[3],
             half_slope: fan[0],
             focus_on_plane: fan[1],
-            pad: [fan[2], fan[3]],
+            wavelength: fan[2],
+            pad: fan[3],
         }
     }
 

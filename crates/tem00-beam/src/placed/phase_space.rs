@@ -10,7 +10,6 @@ use tem00_numerics::vectorised;
 /// The laws of a light in its own frame: +z travel, z = 0 the aperture plane.
 pub trait PhaseSpace<T: Real> {
     fn frame(&self) -> Frame<T>;
-    fn power(&self) -> T;
 
     /// Returns the energy flow, with an irradiance of 0 outside the cut-off.
     ///

@@ -61,8 +61,8 @@ pub struct SpotLight<T> {
     pub cutoff: T,
     /// Unit vector of the local y axis.
     pub ey: [T; 3],
-    /// Unused, 0. Completes a row of four.
-    pub pad_ey: T,
+    /// Wavelength in the medium, in metres.
+    pub wavelength: T,
     /// Unit vector along the direction of travel.
     pub ez: [T; 3],
     /// Unused, 0. Completes a row of four.
@@ -119,7 +119,7 @@ impl SpotLight<f64> {
             ex: frame.ex,
             cutoff: DEFAULT_CUTOFF,
             ey: frame.ey,
-            pad_ey: 0.0,
+            wavelength: beam.wavelength(),
             ez: frame.ez,
             pad_ez: 0.0,
             x,
@@ -147,7 +147,7 @@ impl<T: Real> SpotLight<T> {
         [
             row(self.origin, self.power),
             row(self.ex, self.cutoff),
-            row(self.ey, self.pad_ey),
+            row(self.ey, self.wavelength),
             row(self.ez, self.pad_ez),
             self.x.to_row(),
             self.y.to_row(),
@@ -162,7 +162,7 @@ impl<T: Real> SpotLight<T> {
             ex: first_three(ex),
             cutoff: ex[3],
             ey: first_three(ey),
-            pad_ey: ey[3],
+            wavelength: ey[3],
             ez: first_three(ez),
             pad_ez: ez[3],
             x: Axis::from_row(x),
@@ -171,7 +171,15 @@ impl<T: Real> SpotLight<T> {
     }
 }
 
-impl<T: Real> Emitter<T> for SpotLight<T> {}
+impl<T: Real> Emitter<T> for SpotLight<T> {
+    fn power(&self) -> T {
+        self.power
+    }
+
+    fn wavelength(&self) -> T {
+        self.wavelength
+    }
+}
 
 impl<T: Real> PhaseSpace<T> for SpotLight<T> {
     #[inline(always)]
@@ -182,10 +190,6 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
             ey: self.ey,
             ez: self.ez,
         }
-    }
-
-    fn power(&self) -> T {
-        self.power
     }
 
     #[inline(always)]

@@ -95,7 +95,15 @@ impl<'a> TabulatedLineLight<'a, f64> {
     }
 }
 
-impl<T: Real> Emitter<T> for TabulatedLineLight<'_, T> {}
+impl<T: Real> Emitter<T> for TabulatedLineLight<'_, T> {
+    fn power(&self) -> T {
+        self.line.power
+    }
+
+    fn wavelength(&self) -> T {
+        self.line.wavelength
+    }
+}
 
 impl<'a, T: Real> Fan for TabulatedLineLight<'a, T> {
     type Scalar = T;

@@ -12,7 +12,9 @@ use crate::GaussianBeam;
 use crate::profile::SlopeProfile;
 use crate::real::Real;
 use crate::real::sealed::Scalar;
-use crate::{AstigmaticBeam, FanGeometry, FocusCurve, LaserLine, LineProfile, LocatedBeam};
+use crate::{
+    AngularProfile, AstigmaticBeam, FanGeometry, FocusCurve, LaserLine, LineProfile, LocatedBeam,
+};
 
 const ORIGIN: DVec3 = DVec3::new(0.1, -0.2, 0.3);
 const POWER: f64 = 5e-3;
@@ -94,6 +96,7 @@ fn rows_hold_the_fields_in_the_order_of_memory() {
     let checks = [
         (spot.power, offset_of!(SpotLight<f64>, power)),
         (spot.cutoff, offset_of!(SpotLight<f64>, cutoff)),
+        (spot.wavelength, offset_of!(SpotLight<f64>, wavelength)),
         (spot.ez[0], offset_of!(SpotLight<f64>, ez)),
         (spot.y.w0_sq, offset_of!(SpotLight<f64>, y)),
         (line.apex_offset, offset_of!(LineLight<f64>, apex_offset)),
@@ -111,6 +114,7 @@ fn rows_hold_the_fields_in_the_order_of_memory() {
             line.focus_on_plane,
             offset_of!(LineLight<f64>, focus_on_plane),
         ),
+        (line.wavelength, offset_of!(LineLight<f64>, wavelength)),
     ];
     for (index, bytes) in checks {
         assert!((index * 8.0 - bytes as f64).abs() < 0.5, "{index}: {bytes}");
@@ -166,6 +170,27 @@ fn a_placed_elliptic_beam_is_the_beam_in_another_frame() {
         assert!(
             flux.distance(expected) <= 1e-10 * expected.length(),
             "{local}: {flux}"
+        );
+    }
+}
+
+#[test]
+fn lights_say_what_they_were_placed_with() {
+    let astigmatic = AstigmaticLight::place(&elliptic().into(), &placement(), POWER).unwrap();
+    let tabulated = laser_line(LineProfile::Tabulated(
+        AngularProfile::new(&[-0.2, 0.2], &[1.0, 1.0]).unwrap(),
+    ));
+    let tabulated = TabulatedLineLight::place(&tabulated, &placement(), POWER).unwrap();
+    let (spot, line) = (spot(), line());
+    let lights: [&dyn Emitter<f64>; 4] = [&spot, &astigmatic, &line, &tabulated];
+    for light in lights {
+        let said = [light.power(), light.wavelength()];
+        assert_eq!(said.map(f64::to_bits), [POWER, 650e-9].map(f64::to_bits));
+        assert_eq!(DVec3::from(light.origin()), ORIGIN);
+        let axis = DVec3::from(light.axis());
+        assert!(
+            axis.distance(placement().direction.normalize()) < 1e-15,
+            "{axis}"
         );
     }
 }

@@ -22,7 +22,7 @@ pub(crate) fn layouts() -> [(&'static str, Layout); 6] {
         ("Tem00Axis", layout_of!(Axis<f32>: w0_sq theta_sq z0 pad)),
         (
             "Tem00SpotLight",
-            layout_of!(SpotLight<f32>: origin power ex cutoff ey pad_ey ez pad_ez x y),
+            layout_of!(SpotLight<f32>: origin power ex cutoff ey wavelength ez pad_ez x y),
         ),
         (
             "Tem00NextEvent",
@@ -33,7 +33,7 @@ pub(crate) fn layouts() -> [(&'static str, Layout); 6] {
             "Tem00AstigmaticLight",
             layout_of!(
                 AstigmaticLight<f32>:
-                origin power ex cutoff ey pad_ey ez pad_ez position slope position_per_slope
+                origin power ex cutoff ey wavelength ez pad_ez position slope position_per_slope
             ),
         ),
         (
@@ -41,7 +41,7 @@ pub(crate) fn layouts() -> [(&'static str, Layout); 6] {
             layout_of!(
                 LineLight<f32>:
                 origin power ex cutoff ey apex_offset ez source_radius y
-                flat sigma variable mass half_slope focus_on_plane pad
+                flat sigma variable mass half_slope focus_on_plane wavelength pad
             ),
         ),
     ]

@@ -84,7 +84,7 @@ static void print_layout(void) {
     MEMBER(Axis, w0_sq), MEMBER(Axis, theta_sq), MEMBER(Axis, z0), MEMBER(Axis, pad);
     SIZE(Axis);
     MEMBER(SpotLight, origin), MEMBER(SpotLight, power), MEMBER(SpotLight, ex);
-    MEMBER(SpotLight, cutoff), MEMBER(SpotLight, ey), MEMBER(SpotLight, pad_ey);
+    MEMBER(SpotLight, cutoff), MEMBER(SpotLight, ey), MEMBER(SpotLight, wavelength);
     MEMBER(SpotLight, ez), MEMBER(SpotLight, pad_ez), MEMBER(SpotLight, x), MEMBER(SpotLight, y);
     SIZE(SpotLight);
     MEMBER(NextEvent, point), MEMBER(NextEvent, distance), MEMBER(NextEvent, wi);
@@ -93,7 +93,7 @@ static void print_layout(void) {
     MEMBER(Ellipse, xx), MEMBER(Ellipse, xy), MEMBER(Ellipse, yy), MEMBER(Ellipse, pad);
     SIZE(Ellipse);
     MEMBER(AstigmaticLight, origin), MEMBER(AstigmaticLight, power), MEMBER(AstigmaticLight, ex);
-    MEMBER(AstigmaticLight, cutoff), MEMBER(AstigmaticLight, ey), MEMBER(AstigmaticLight, pad_ey);
+    MEMBER(AstigmaticLight, cutoff), MEMBER(AstigmaticLight, ey), MEMBER(AstigmaticLight, wavelength);
     MEMBER(AstigmaticLight, ez), MEMBER(AstigmaticLight, pad_ez);
     MEMBER(AstigmaticLight, position), MEMBER(AstigmaticLight, slope);
     MEMBER(AstigmaticLight, position_per_slope);
@@ -103,7 +103,7 @@ static void print_layout(void) {
     MEMBER(LineLight, ez), MEMBER(LineLight, source_radius), MEMBER(LineLight, y);
     MEMBER(LineLight, flat), MEMBER(LineLight, sigma), MEMBER(LineLight, variable);
     MEMBER(LineLight, mass), MEMBER(LineLight, half_slope), MEMBER(LineLight, focus_on_plane);
-    MEMBER(LineLight, pad);
+    MEMBER(LineLight, wavelength), MEMBER(LineLight, pad);
     SIZE(LineLight);
 }
 

@@ -217,7 +217,7 @@ impl PathLaw {
     }
 
     /// The overlap of the pupils of two slices.
-    fn between(&self, i: f64, j: f64) -> f64 {
+    pub(super) fn between(&self, i: f64, j: f64) -> f64 {
         match self.path {
             SlicePath::Still => 1.0,
             SlicePath::Circle { half_period } => {

@@ -4,6 +4,7 @@ mod slices;
 mod tests;
 
 use glam::DVec3;
+use tem00_numerics::cast::to_f32;
 
 use crate::{CameraFrame, DecorrelationError, ImageOrientation, ImagingGeometry, Motion};
 
@@ -192,6 +193,32 @@ impl MotionField {
             seen: motion.surface_seen_by_camera(),
             within_illumination: motion.surface_within_illumination(),
             ..self
+        }
+    }
+
+    /// Returns the camera and the pattern as the struct `Tem00Imaging` of the functions for
+    /// [kernels](crate::closed_form), byte for byte. Shared motions are not part of it.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a number overflows in single precision.
+    pub fn to_rows(&self) -> Result<[[f32; 4]; 4], DecorrelationError> {
+        let camera = &self.setup.camera;
+        let row = |axis: DVec3, number: f64| axis.extend(number).to_array();
+        let rows = [
+            row(camera.right(), self.signed_principal_distance),
+            row(camera.up(), self.per_surface_to_pupil),
+            row(camera.towards_camera(), self.per_pupil_diameter),
+            [self.per_axial_length, self.samples_per_metre, 0.0, 0.0],
+        ];
+        let largest = |number: &&f64| number.abs() > f64::from(f32::MAX);
+        match rows.as_flattened().iter().find(largest) {
+            Some(&number) => Err(DecorrelationError::refused(
+                "geometry",
+                number,
+                "of lengths whose ratios are numbers in f32",
+            )),
+            None => Ok(rows.map(|row| row.map(to_f32))),
         }
     }
 

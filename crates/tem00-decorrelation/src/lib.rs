@@ -20,6 +20,7 @@
 //! | What moved or turned a lot, or has other light? | [`Configuration`], [`RigidMotions`], [`Illumination`] |
 //! | What happens to the speckle? | [`SpeckleMotion`] |
 //! | What happens at many points at once? | [`MotionField`] |
+//! | What does my kernel on a GPU compute? | [`closed_form`] |
 //! | Where do I look in the pattern? | [`ImagingGeometry::pattern_coordinate`] |
 //!
 //! # Two laws of motion
@@ -58,6 +59,7 @@
 //! - S. Bergmann et al., *A Phenomenological Approach to Integrating Gaussian Beam Properties and
 //!   Speckle into a Physically-Based Renderer*, 2016, §6.3 and §6.4.
 
+pub mod closed_form;
 mod configuration;
 mod correlation;
 mod error;

@@ -7,4 +7,5 @@
 )]
 
 mod kernel;
+mod motion;
 mod phasors;

@@ -3,9 +3,11 @@
 
 #![expect(
     clippy::expect_used,
+    clippy::unwrap_used,
     reason = "a test stops at what it does not expect"
 )]
 
 mod kernel;
+mod lights;
 mod motion;
 mod phasors;

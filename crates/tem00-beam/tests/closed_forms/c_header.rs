@@ -7,7 +7,7 @@ use tem00_beam::Emitter;
 
 use super::comparison::{Answer, Judge};
 use super::layouts::layouts;
-use super::lights::{Sample, astigmatic_beams, lines, single_precision, spots};
+use super::samples::{Sample, astigmatic_beams, lines, single_precision, spots};
 
 /// The scalar type that the program works in.
 #[derive(Clone, Copy, Debug, PartialEq)]

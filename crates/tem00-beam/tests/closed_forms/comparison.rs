@@ -2,7 +2,7 @@
 
 use tem00_beam::{Emitter, NextEvent};
 
-use super::lights::Sample;
+use super::samples::Sample;
 
 /// The irradiance, then the next event: point, distance, `wi` and `e_perp`. All 0 where it is dark.
 pub(crate) type Answer = [f64; 9];

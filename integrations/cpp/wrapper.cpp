@@ -79,7 +79,7 @@ void lights() {
     const tem00::vec3 way = {ray.direction[0], ray.direction[1], ray.direction[2]};
     const auto density = light.ray_pdf(origin, way);
     const double flux = light.radiance(origin, way) * ray.cos /
-                        (density.position * density.direction);
+                        (density.position * density.direction_given_position);
     expect(std::abs(flux / 5e-3 - 1) < 1e-9, "a ray carries the power of the laser");
 
     const std::vector<float> zero(100, 0);

@@ -524,6 +524,30 @@ typedef struct {
 } tem00_sampled_event;
 
 /**
+ * The probability densities of a ray, whose joint density factors in two ways: position times
+ * direction given position, which bidirectional methods want, and direction times position given
+ * direction, which a ray is drawn from. Positions are those on the aperture plane.
+ */
+typedef struct {
+    /**
+     * Density of the position, whatever the direction, per m² of the aperture plane.
+     */
+    double position;
+    /**
+     * Density of the direction at this position, per steradian.
+     */
+    double direction_given_position;
+    /**
+     * Density of the direction, wherever the ray starts, per steradian.
+     */
+    double direction;
+    /**
+     * Density of the position among the rays of this direction, per m² of the aperture plane.
+     */
+    double position_given_direction;
+} tem00_ray_pdf;
+
+/**
  * A ray that leaves the aperture.
  */
 typedef struct {
@@ -544,28 +568,10 @@ typedef struct {
      */
     double cos;
     /**
-     * Probability density of `origin` given the direction, per m² of the aperture plane.
+     * Probability densities of the ray.
      */
-    double pdf_position;
-    /**
-     * Probability density of `direction`, per steradian.
-     */
-    double pdf_direction;
+    tem00_ray_pdf pdf;
 } tem00_ray_sample;
-
-/**
- * The probability densities of a ray; their product is the joint density.
- */
-typedef struct {
-    /**
-     * Density of the position given the direction, per m² of the aperture plane.
-     */
-    double position;
-    /**
-     * Density of the direction, per steradian.
-     */
-    double direction;
-} tem00_ray_pdf;
 
 /**
  * Bounds of the light in space and direction, as a light hierarchy stores them.

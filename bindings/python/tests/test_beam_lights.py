@@ -175,11 +175,19 @@ def test_densities_and_radiance_of_rays_agree(name: str) -> None:
     pdf = light.ray_pdf(*further, rays.direction)
     # The source of a line is a micrometre wide: points at 0.5 m are rounded by 1e-16 of it, and a
     # density at five deviations changes by 5 · 1e-16 / 3e-7.
-    np.testing.assert_allclose(pdf.position, rays.pdf_position, rtol=1e-7)
-    np.testing.assert_allclose(pdf.direction, rays.pdf_direction, rtol=1e-7)
-    joint = np.asarray(pdf.position) * np.asarray(pdf.direction)
+    for member in (
+        "position",
+        "direction_given_position",
+        "direction",
+        "position_given_direction",
+    ):
+        drawn = getattr(rays.pdf, member)
+        np.testing.assert_allclose(getattr(pdf, member), drawn, rtol=1e-7, err_msg=member)
+    joint = np.asarray(pdf.position) * np.asarray(pdf.direction_given_position)
+    other = np.asarray(pdf.direction) * np.asarray(pdf.position_given_direction)
+    np.testing.assert_allclose(joint, other, rtol=1e-11)
     radiance = light.radiance(*further, rays.direction)
-    np.testing.assert_allclose(radiance, POWER * joint / np.asarray(rays.cos), rtol=1e-12)
+    np.testing.assert_allclose(radiance, POWER * other / np.asarray(rays.cos), rtol=1e-12)
     x, y, z = further
     np.testing.assert_array_equal(light.radiance(x, y, z, -rays.direction), 0)
 

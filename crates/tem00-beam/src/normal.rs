@@ -1,5 +1,7 @@
 //! The normal distribution: density, and variates by inversion.
 
+use core::f64::consts::FRAC_1_SQRT_2;
+
 use crate::real::Real;
 
 /// The density of a normal distribution of mean 0.
@@ -15,6 +17,19 @@ pub(crate) fn joint_normal_density<T: Real>(x: [T; 2], sigma: [T; 2]) -> T {
     const INV_TAU: f64 = 0.159_154_943_091_895_35;
     let t = [x[0] / sigma[0], x[1] / sigma[1]];
     T::of(INV_TAU) / sigma[0] / sigma[1] * (T::of(-0.5) * (t[0] * t[0] + t[1] * t[1])).exp()
+}
+
+/// The probability that a standard normal variate lies between `a` and `b`, `a` ≤ `b`.
+pub(crate) fn normal_between(a: f64, b: f64) -> f64 {
+    let beyond = |t: f64| 0.5 * libm::erfc(t * FRAC_1_SQRT_2);
+    // Tails keep their digits where 1 minus them has none.
+    if a > 0.0 {
+        beyond(a) - beyond(b)
+    } else if b < 0.0 {
+        beyond(-b) - beyond(-a)
+    } else {
+        1.0 - beyond(b) - beyond(-a)
+    }
 }
 
 /// The standard normal variate below which the fraction `u` in [0, 1) lies.

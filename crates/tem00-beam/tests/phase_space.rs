@@ -508,15 +508,16 @@ fn radiance_times_cosine_over_densities_is_the_power() {
             // Rounding of world coordinates, 1e−16 m, beside a source of 4e−7 m, five σ out.
             let tolerance = 1e-8;
             assert!(
-                (pdf.position / ray.pdf_position - 1.0).abs() < tolerance,
+                (pdf.position_given_direction / ray.pdf.position_given_direction - 1.0).abs()
+                    < tolerance,
                 "{ray:?}: {pdf:?}"
             );
             assert!(
-                (pdf.direction / ray.pdf_direction - 1.0).abs() < tolerance,
+                (pdf.direction / ray.pdf.direction - 1.0).abs() < tolerance,
                 "{ray:?}: {pdf:?}"
             );
             let radiance = light.radiance(ray.origin, ray.direction);
-            let flux = radiance * ray.cos / (ray.pdf_position * ray.pdf_direction);
+            let flux = radiance * ray.cos / (ray.pdf.position_given_direction * ray.pdf.direction);
             assert!((flux / ray.flux - 1.0).abs() < tolerance, "{ray:?}: {flux}");
         }
     }
@@ -572,7 +573,7 @@ fn position_density_integrates_to_one_over_the_aperture() {
             for j in -INTERVALS / 2..=INTERVALS / 2 {
                 let offset = DVec3::new(f64::from(i) * h[0], f64::from(j) * h[1], 0.0);
                 let p = world(line_axes(), centre + offset);
-                sum += light.ray_pdf(p, direction).position * h[0] * h[1];
+                sum += light.ray_pdf(p, direction).position_given_direction * h[0] * h[1];
             }
         }
         assert!((sum - 1.0).abs() < 1e-9, "{line:?}: {sum}");
@@ -701,7 +702,10 @@ fn uniforms_at_their_ends_give_finite_rays() {
             let direction = DVec3::from(ray.direction);
             assert!(DVec3::from(ray.origin).is_finite(), "{ray:?}");
             assert!((direction.length() - 1.0).abs() < 1e-15, "{ray:?}");
-            assert!(ray.pdf_position > 0.0 && ray.pdf_direction > 0.0, "{ray:?}");
+            assert!(
+                ray.pdf.position_given_direction > 0.0 && ray.pdf.direction > 0.0,
+                "{ray:?}"
+            );
         }
     }
 }

@@ -63,20 +63,24 @@ pub struct RaySample {
     pub direction: [f64; 3],
     /// Cosine of the angle between the ray and the axis.
     pub cos: f64,
-    /// Probability density of `origin` given the direction, per m² of the aperture plane.
-    pub pdf_position: f64,
-    /// Probability density of `direction`, per steradian.
-    pub pdf_direction: f64,
+    /// Probability densities of the ray.
+    pub pdf: RayPdf,
 }
 
-/// The probability densities of a ray; their product is the joint density.
+/// The probability densities of a ray, whose joint density factors in two ways: position times
+/// direction given position, which bidirectional methods want, and direction times position given
+/// direction, which a ray is drawn from. Positions are those on the aperture plane.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RayPdf {
-    /// Density of the position given the direction, per m² of the aperture plane.
+    /// Density of the position, whatever the direction, per m² of the aperture plane.
     pub position: f64,
-    /// Density of the direction, per steradian.
+    /// Density of the direction at this position, per steradian.
+    pub direction_given_position: f64,
+    /// Density of the direction, wherever the ray starts, per steradian.
     pub direction: f64,
+    /// Density of the position among the rays of this direction, per m² of the aperture plane.
+    pub position_given_direction: f64,
 }
 
 /// Bounds of the light in space and direction, as a light hierarchy stores them.
@@ -412,8 +416,7 @@ impl From<tem00_beam::RaySample<f64>> for RaySample {
             flux: ray.flux,
             direction: ray.direction,
             cos: ray.cos,
-            pdf_position: ray.pdf_position,
-            pdf_direction: ray.pdf_direction,
+            pdf: ray.pdf.into(),
         }
     }
 }
@@ -422,7 +425,9 @@ impl From<tem00_beam::RayPdf<f64>> for RayPdf {
     fn from(pdf: tem00_beam::RayPdf<f64>) -> Self {
         Self {
             position: pdf.position,
+            direction_given_position: pdf.direction_given_position,
             direction: pdf.direction,
+            position_given_direction: pdf.position_given_direction,
         }
     }
 }

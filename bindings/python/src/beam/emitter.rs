@@ -238,16 +238,15 @@ impl Emitter {
     ///     The rays, in the shape of ``u[..., 0]``.
     fn sample_ray<'py>(&self, py: Python<'py>, u: Vectors<'py>) -> PyResult<RaySample> {
         let columns = uniforms::<4>(&u)?;
-        let inner: [&[usize]; 6] = [&[3], &[], &[3], &[], &[], &[]];
-        let [origin, flux, direction, cos, pdf_position, pdf_direction] =
+        let inner: [&[usize]; 8] = [&[3], &[], &[3], &[], &[], &[], &[], &[]];
+        let [origin, flux, direction, cos, pdf @ ..] =
             evaluate(py, columns, inner, |columns, out| self.0.rays(columns, out))?;
         Ok(RaySample {
             origin: origin.unbind(),
             flux: flux.unbind(),
             direction: direction.unbind(),
             cos: cos.unbind(),
-            pdf_position: pdf_position.unbind(),
-            pdf_direction: pdf_direction.unbind(),
+            pdf: Py::new(py, RayPdf::of(pdf))?.into_any(),
         })
     }
 
@@ -278,13 +277,10 @@ impl Emitter {
         let [x, y, z] = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
         let [d_x, d_y, d_z] = components(("d", &d))?;
         let columns = [x, y, z, d_x, d_y, d_z];
-        let [position, direction] = evaluate(py, columns, [&[]; 2], |columns, out| {
+        let pdf = evaluate(py, columns, [&[]; 4], |columns, out| {
             self.0.ray_pdfs(columns, out);
         })?;
-        Ok(RayPdf {
-            position: position.unbind(),
-            direction: direction.unbind(),
-        })
+        Ok(RayPdf::of(pdf))
     }
 
     /// Return the radiance, in W/(m² sr), of the rays through points.

@@ -2,7 +2,7 @@
 
 use tem00_beam::{
     self as physics, AngularProfile, AstigmaticLight, BeamError, LineLight, NextEventSlices,
-    SpotLight, TabulatedLineLight,
+    RayPdf, SpotLight, TabulatedLineLight,
 };
 
 /// A light as the beam crate holds it.
@@ -100,25 +100,37 @@ impl Light {
     }
 
     /// Writes the members of each sampled ray.
-    pub(super) fn rays(&self, columns: [&[f64]; 4], out: [&mut [f64]; 6]) {
-        let [origin, flux, direction, cos, pdf_position, pdf_direction] = out;
+    pub(super) fn rays(&self, columns: [&[f64]; 4], out: [&mut [f64]; 8]) {
+        let [origin, flux, direction, cos, mut pdf @ ..] = out;
         for (i, (origin, direction)) in vectors(origin).zip(vectors(direction)).enumerate() {
             let u = columns.map(|column| column[i]);
             let ray = self.ask(|light| light.sample_ray(u));
             (*origin, *direction) = (ray.origin, ray.direction);
             (flux[i], cos[i]) = (ray.flux, ray.cos);
-            (pdf_position[i], pdf_direction[i]) = (ray.pdf_position, ray.pdf_direction);
+            put(ray.pdf, i, &mut pdf);
         }
     }
 
-    /// Writes the densities of the position and the direction of each ray.
-    pub(super) fn ray_pdfs(&self, columns: [&[f64]; 6], out: [&mut [f64]; 2]) {
-        let [positions, directions] = out;
-        for i in 0..positions.len() {
+    /// Writes the densities of each ray, in the order of the fields of `RayPdf`.
+    pub(super) fn ray_pdfs(&self, columns: [&[f64]; 6], mut out: [&mut [f64]; 4]) {
+        for i in 0..out[0].len() {
             let [x, y, z, d @ ..] = columns.map(|column| column[i]);
             let pdf = self.ask(|light| light.ray_pdf([x, y, z], d));
-            (positions[i], directions[i]) = (pdf.position, pdf.direction);
+            put(pdf, i, &mut out);
         }
+    }
+}
+
+/// Writes densities, in the order of their fields, to the place `i` of each column.
+fn put(pdf: RayPdf<f64>, i: usize, columns: &mut [&mut [f64]; 4]) {
+    let values = [
+        pdf.position,
+        pdf.direction_given_position,
+        pdf.direction,
+        pdf.position_given_direction,
+    ];
+    for (column, value) in columns.iter_mut().zip(values) {
+        column[i] = value;
     }
 }
 

@@ -2,6 +2,8 @@
 
 use pyo3::prelude::*;
 
+use crate::arrays::Values;
+
 /// Defines a frozen class of named values with a constructor, a repr and pickling. The types are for
 /// the stubs: `Values` are numbers or arrays.
 macro_rules! record {
@@ -84,22 +86,28 @@ record! {
         direction: Array,
         /// Cosine of the angle between the ray and the axis, shape (...).
         cos: Values,
-        /// Probability density of ``origin`` given the direction, per m² of the aperture plane,
-        /// shape (...).
-        pdf_position: Values,
-        /// Probability density of ``direction``, per steradian, shape (...).
-        pdf_direction: Values,
+        /// Probability densities of the ray.
+        pdf: RayPdf,
     }
 }
 
 record! {
     "tem00.beam",
-    /// The probability densities of a ray; their product is the joint density.
+    /// The probability densities of a ray, whose joint density factors in two ways.
+    ///
+    /// ``position · direction_given_position = direction · position_given_direction``. Bidirectional
+    /// methods want the left side, the right side is what a ray is drawn from. Positions are those on
+    /// the aperture plane.
     RayPdf {
-        /// Density of the position given the direction, per m² of the aperture plane, shape (...).
+        /// Density of the position, whatever the direction, per m² of the aperture plane, shape (...).
         position: Values,
-        /// Density of the direction, per steradian, shape (...).
+        /// Density of the direction at this position, per steradian, shape (...).
+        direction_given_position: Values,
+        /// Density of the direction, wherever the ray starts, per steradian, shape (...).
         direction: Values,
+        /// Density of the position among the rays of this direction, per m² of the aperture plane,
+        /// shape (...).
+        position_given_direction: Values,
     }
 }
 
@@ -115,6 +123,24 @@ record! {
         axis: Array,
         /// Half-angle, in radians, of the cone about ``axis`` that the light travels in.
         half_angle: f64,
+    }
+}
+
+impl RayPdf {
+    /// Names densities, in the order of the fields.
+    pub(super) fn of(columns: [Values<'_>; 4]) -> Self {
+        let [
+            position,
+            direction_given_position,
+            direction,
+            position_given_direction,
+        ] = columns.map(Bound::unbind);
+        Self {
+            position,
+            direction_given_position,
+            direction,
+            position_given_direction,
+        }
     }
 }
 

@@ -298,9 +298,13 @@ impl<T: Real> PhaseSpace<T> for AstigmaticLight<T> {
         let deviation = [0, 1].map(|i| position[i] - (k[i][0] * slope[0] + k[i][1] * slope[1]));
         // dω = cos³ ds_x ds_y
         let sec = secant(slope);
+        let (radii_sq, determinant) = self.radii_sq(k);
+        let [x, y] = position;
+        let density = radii_sq.factors_with(determinant).density(position);
         RayPdf {
-            position: self.position.factors().density(deviation),
             direction: self.slope.factors().density(slope) * sec * sec * sec,
+            position_given_direction: self.position.factors().density(deviation),
+            ..RayPdf::from_position(density, || self.slope_pdf([x, y, T::ZERO], slope))
         }
     }
 

@@ -178,27 +178,25 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     /// distance:
     ///
     /// ```text
-    /// radiance · cos / (pdf_position · pdf_direction) = power
+    /// radiance · cos = power · pdf.direction · pdf.position_given_direction
     /// ```
     #[inline]
     fn sample_ray(&self, u: [T; 4]) -> RaySample<T> {
         let frame = self.frame();
         let (position, slope) = self.draw(u);
-        let pdf = self.densities(position, slope);
         RaySample {
             origin: frame.world_from_aperture(position),
             flux: self.power(),
             direction: frame.world_from_local_vector(direction(slope)),
             cos: T::ONE / secant(slope),
-            pdf_position: pdf.position,
-            pdf_direction: pdf.direction,
+            pdf: self.densities(position, slope),
         }
     }
 
     /// Returns the densities with which [`sample_ray`](Self::sample_ray) draws the ray through `o`
     /// along the unit vector `d`; 0 for a ray against the axis.
     ///
-    /// Any point `o` of the ray will do: the position density is that of the ray's point on the
+    /// Any point `o` of the ray will do: the densities of position are those of the ray's point on the
     /// aperture plane. In `f32` this needs the coordinates to resolve the source, which for a line
     /// is about a micrometre wide.
     fn ray_pdf(&self, o: [T; 3], d: [T; 3]) -> RayPdf<T> {
@@ -208,10 +206,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
                 let position = aperture_point(frame.local_from_world_point(o), slope);
                 self.densities(position, slope)
             }
-            None => RayPdf {
-                position: T::ZERO,
-                direction: T::ZERO,
-            },
+            None => RayPdf::from_position(T::ZERO, || T::ZERO),
         }
     }
 
@@ -226,7 +221,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
             Some(slope) => {
                 let position = aperture_point(frame.local_from_world_point(o), slope);
                 let pdf = self.densities(position, slope);
-                self.power() * pdf.position * pdf.direction * secant(slope)
+                self.power() * pdf.position_given_direction * pdf.direction * secant(slope)
             }
             None => T::ZERO,
         }

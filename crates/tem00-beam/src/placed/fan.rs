@@ -29,6 +29,25 @@ pub trait Fan {
     }
 }
 
+/// Returns the density of the position on the aperture plane, per m², whatever the direction.
+///
+/// ```text
+/// ∫ δ(x − z_a tan θ − b sec θ) f(θ) G(b) dθ db = (f * G(σ_b/r)) cos² θ / z_a     at tan θ = x / z_a
+/// ```
+///
+/// to second order in `σ_b/r`, the angle that the rays of a point differ by, and to first order
+/// within that angle of an abrupt end.
+fn position_density<T: Real>(fan: &impl Fan<Scalar = T>, [x, y]: [T; 2]) -> T {
+    let line = fan.line();
+    let u = x / line.apex_offset;
+    let sec = secant(u);
+    let r = line.apex_offset * sec;
+    let sigma = T::of(0.5) * line.source_radius / r;
+    let w_sq = line.axis_towards(sec).radius_sq_at(r);
+    let across = normal_density(y, T::of(0.5) * w_sq.sqrt());
+    fan.profile().spread_per_angle(u, sigma) / (r * sec) * across
+}
+
 impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
     #[inline(always)]
     fn frame(&self) -> Frame<T> {
@@ -145,18 +164,25 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         let along = (x * slope[0] + line.apex_offset) / sec_fan;
         let y_waist = y - s * (along - line.axis_towards(sec_fan).z0);
 
-        let source = normal_density(b, T::of(0.5) * line.source_radius);
+        let sigma_b = T::of(0.5) * line.source_radius;
+        let source = normal_density(b, sigma_b);
         let f = self.profile().per_angle(slope[0]);
         let elevation = normal_density(s, sigma_s) * sec_elevation * sec_elevation * sec_elevation;
-        let position = source * normal_density(y_waist, sigma_y) / sec_fan;
+        let given_direction = source * normal_density(y_waist, sigma_y) / sec_fan;
+        // A ray that overflows, so that 0 meets infinity, passes far from the light.
+        let given_direction = if given_direction > T::ZERO {
+            given_direction
+        } else {
+            T::ZERO
+        };
+        let direction = f * elevation;
+        let position = position_density(self, [x, y]);
         RayPdf {
-            // A ray that overflows, so that 0 meets infinity, passes far from the light.
-            position: if position > T::ZERO {
-                position
-            } else {
-                T::ZERO
-            },
-            direction: f * elevation,
+            direction,
+            position_given_direction: given_direction,
+            ..RayPdf::from_position(position, || {
+                T::of(direction.wide() * given_direction.wide() / position.wide())
+            })
         }
     }
 

@@ -1,5 +1,7 @@
 //! Results of the queries of a placed light.
 
+use crate::real::Real;
+
 /// The light that arrives at a point, as one direction and one irradiance.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,20 +57,44 @@ pub struct RaySample<T> {
     pub direction: [T; 3],
     /// Cosine of the angle between the ray and the axis.
     pub cos: T,
-    /// Probability density of `origin` given the direction, per m² of the aperture plane.
-    pub pdf_position: T,
-    /// Probability density of `direction`, per steradian.
-    pub pdf_direction: T,
+    /// Probability densities of the ray.
+    pub pdf: RayPdf<T>,
 }
 
-/// The probability densities of a ray; their product is the joint density.
+/// The probability densities of a ray, whose joint density factors in two ways:
+///
+/// ```text
+/// position · direction_given_position = direction · position_given_direction
+/// ```
+///
+/// Positions are those on the aperture plane. Bidirectional methods want the left side, whose factors
+/// are those of the first and of the second vertex of a path; the right side is what a ray is drawn
+/// from.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayPdf<T> {
-    /// Density of the position given the direction, per m² of the aperture plane.
+    /// Density of the position, whatever the direction, per m² of the aperture plane.
     pub position: T,
-    /// Density of the direction, per steradian.
+    /// Density of the direction at this position, per steradian.
+    pub direction_given_position: T,
+    /// Density of the direction, wherever the ray starts, per steradian.
     pub direction: T,
+    /// Density of the position among the rays of this direction, per m² of the aperture plane.
+    pub position_given_direction: T,
+}
+
+impl<T: Real> RayPdf<T> {
+    /// Returns the factors that begin with the position, the second of them 0 where the first is: far
+    /// from the light, where the closed forms meet infinities.
+    pub(super) fn from_position(position: T, direction: impl FnOnce() -> T) -> Self {
+        let met = position > T::ZERO;
+        Self {
+            position: position.only_if(met),
+            direction_given_position: if met { direction() } else { T::ZERO },
+            direction: T::ZERO,
+            position_given_direction: T::ZERO,
+        }
+    }
 }
 
 /// Bounds of the light in space and direction, as a light hierarchy stores them.

@@ -250,9 +250,15 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
         let ((waist_x, slope_x), (waist_y, slope_y)) = (self.x.deviations(), self.y.deviations());
         // dω = cos³ ds_x ds_y
         let sec = secant(slope);
+        let radius_sq = [&self.x, &self.y].map(|axis| axis.radius_sq_at(T::ZERO));
+        let deviations = radius_sq.map(|w_sq| T::of(0.5) * w_sq.sqrt());
+        let [x, y] = position;
         RayPdf {
-            position: joint_normal_density(waist, [waist_x, waist_y]),
             direction: joint_normal_density(slope, [slope_x, slope_y]) * sec * sec * sec,
+            position_given_direction: joint_normal_density(waist, [waist_x, waist_y]),
+            ..RayPdf::from_position(joint_normal_density(position, deviations), || {
+                self.slope_pdf([x, y, T::ZERO], slope)
+            })
         }
     }
 

@@ -69,7 +69,7 @@ fn lights_fill_rows_of_four_scalars() {
     assert_eq!(size_of::<LineLight<f64>>(), 224, "line, f64");
     assert_eq!(align_of::<SpotLight<f32>>(), 4, "spot, f32");
     assert_eq!(size_of::<NextEvent<f32>>(), 32, "next event");
-    assert_eq!(size_of::<RaySample<f32>>(), 40, "ray");
+    assert_eq!(size_of::<RaySample<f32>>(), 48, "ray");
 }
 
 #[test]

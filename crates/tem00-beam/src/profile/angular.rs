@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use super::density::{SlopeProfile, Variable};
 use crate::BeamError;
-use crate::normal::interior;
+use crate::normal::{interior, normal_between, normal_density};
 use crate::range::check_list;
 use crate::real::Real;
 
@@ -12,6 +12,9 @@ const MIN_SPACING: f64 = 1e-12;
 
 /// The part of the power between two knots that no drawn angle comes closer to either than.
 const MIN_PART: f64 = 1e-12;
+
+/// The deviations beyond which a normal distribution has no part that `f64` would notice.
+const NORMAL_REACH: f64 = 9.0;
 
 /// The power of a laser line per fan angle, from a table: a data sheet, or a measurement.
 ///
@@ -221,6 +224,23 @@ impl<'a, T: Real> AngularTable<'a, T> {
         }
     }
 
+    /// Returns the density per radian at an angle that a normal deviate has been added to.
+    fn spread_at(self, angle: f64, sigma: f64) -> f64 {
+        let reach = NORMAL_REACH * sigma;
+        let near = self
+            .0
+            .partition_point(|knot| knot.angle.wide() < angle - reach);
+        let knots = &self.0[near.saturating_sub(1)..];
+        let intervals = knots.windows(2).map(|pair| Interval {
+            start: pair[0].wide(),
+            end: pair[1].wide(),
+        });
+        let met = intervals.take_while(|interval| interval.start.angle <= angle + reach);
+        met.map(|interval| interval.spread_at(angle, sigma))
+            .sum::<f64>()
+            .max(0.0)
+    }
+
     /// Returns the fraction of the power below an angle.
     fn cumulative_at(self, angle: f64) -> f64 {
         self.interval_at(angle)
@@ -285,6 +305,19 @@ impl Interval {
         self.start.density + part * (self.end.density - self.start.density)
     }
 
+    /// Returns the density at an angle to which a normal deviate of the density φ has been added, as far
+    /// as the interval is its source. In units of `sigma` from the angle, the density is α + m t:
+    ///
+    /// ```text
+    /// ∫ (α + m t) φ(t) dt = α (Φ(b) − Φ(a)) − m (φ(b) − φ(a))     from a to b
+    /// ```
+    fn spread_at(&self, angle: f64, sigma: f64) -> f64 {
+        let [a, b] = [&self.start, &self.end].map(|knot| (knot.angle - angle) / sigma);
+        let m = (self.end.density - self.start.density) / (b - a);
+        let alpha = self.start.density - m * a;
+        alpha * normal_between(a, b) - m * (normal_density(b, 1.0) - normal_density(a, 1.0))
+    }
+
     /// The density is linear, so its mean up to an angle is that of its ends.
     fn cumulative_at(&self, angle: f64) -> f64 {
         let part = self.part_below(angle);
@@ -317,6 +350,10 @@ impl<T: Real> SlopeProfile<T> for AngularTable<'_, T> {
 
     fn per_angle(&self, u: T) -> T {
         T::of(self.density_at(u.wide().atan()))
+    }
+
+    fn spread_per_angle(&self, u: T, sigma: T) -> T {
+        T::of(self.spread_at(u.wide().atan(), sigma.wide()))
     }
 
     /// The table itself says where the light ends.

@@ -19,6 +19,11 @@ pub trait SlopeProfile<T: Real> {
     /// Returns the density per radian, `f(θ) = g(u) / cos² θ`.
     fn per_angle(&self, u: T) -> T;
 
+    /// Returns the density per radian after a normal deviate of standard deviation `sigma`, in
+    /// radians, has been added to the angle; to first order in `sigma` where the angle is not the
+    /// variable of the profile.
+    fn spread_per_angle(&self, u: T, sigma: T) -> T;
+
     /// Returns whether the slope is within the cut-off, given in half-widths at 1/e².
     fn reaches(&self, u: T, cutoff: T) -> bool;
 
@@ -152,6 +157,18 @@ impl<T: Real> SlopeProfile<T> for SlopeDensity<T> {
             }
             Variable::Tabulated => T::ZERO,
         }
+    }
+
+    /// Normal distributions add their variances.
+    fn spread_per_angle(&self, u: T, sigma: T) -> T {
+        let sec_sq = T::ONE + u * u;
+        let added = match self.variable() {
+            Variable::Tan | Variable::Tabulated => sigma * sec_sq,
+            Variable::Angle => sigma,
+            Variable::Sin => sigma / sec_sq.sqrt(),
+        };
+        let sigma = (self.sigma * self.sigma + added * added).sqrt();
+        Self { sigma, ..*self }.per_angle(u)
     }
 
     #[inline(always)]

@@ -297,7 +297,9 @@ fn no_place_and_no_direction_however_far_gives_a_nan() {
                     f64::from(single.e_perp + single.distance),
                     f64::from(single.wi.iter().chain(&single.point).sum::<f32>()),
                     pdf.position,
+                    pdf.direction_given_position,
                     pdf.direction,
+                    pdf.position_given_direction,
                     drawn.pdf,
                     drawn.value,
                     answer(|out| tem00_light_next_event_pdf(light, point, way, out)),
@@ -354,24 +356,25 @@ fn records_keep_each_number_under_its_name() {
         fields(&drawn),
         "sampled event"
     );
-    let ray = tem00_beam::RaySample {
-        origin: a,
-        flux: 10.0,
-        direction: b,
-        cos: 11.0,
-        pdf_position: 12.0,
-        pdf_direction: 13.0,
-    };
-    assert_eq!(fields(&RaySample::from(ray)), fields(&ray), "ray");
     let pdf = tem00_beam::RayPdf {
         position: 10.0,
-        direction: 11.0,
+        direction_given_position: 11.0,
+        direction: 12.0,
+        position_given_direction: 13.0,
     };
     assert_eq!(
         fields(&RayPdf::from(pdf)),
         fields(&pdf),
         "densities of a ray"
     );
+    let ray = tem00_beam::RaySample {
+        origin: a,
+        flux: 10.0,
+        direction: b,
+        cos: 11.0,
+        pdf,
+    };
+    assert_eq!(fields(&RaySample::from(ray)), fields(&ray), "ray");
     let bounds = tem00_beam::Bounds {
         min: a,
         max: b,

@@ -722,12 +722,22 @@ class Placement:
 
 @final
 class RayPdf:
-    def __new__(cls, position: Values, direction: Values) -> RayPdf: ...
+    def __new__(
+        cls,
+        position: Values,
+        direction_given_position: Values,
+        direction: Values,
+        position_given_direction: Values,
+    ) -> RayPdf: ...
     def __getnewargs__(self) -> tuple[object, ...]: ...
     @property
     def position(self) -> Values: ...
     @property
+    def direction_given_position(self) -> Values: ...
+    @property
     def direction(self) -> Values: ...
+    @property
+    def position_given_direction(self) -> Values: ...
 
 @final
 class RaySample:
@@ -737,8 +747,7 @@ class RaySample:
         flux: Values,
         direction: FloatArray,
         cos: Values,
-        pdf_position: Values,
-        pdf_direction: Values,
+        pdf: RayPdf,
     ) -> RaySample: ...
     def __getnewargs__(self) -> tuple[object, ...]: ...
     @property
@@ -750,9 +759,7 @@ class RaySample:
     @property
     def cos(self) -> Values: ...
     @property
-    def pdf_position(self) -> Values: ...
-    @property
-    def pdf_direction(self) -> Values: ...
+    def pdf(self) -> RayPdf: ...
 
 @final
 class SampledEvent:

@@ -134,8 +134,15 @@ fn a_beam_with_simple_astigmatism_is_that_of_a_spot() {
             let drawn = light.next_event_sampled(p, [0.3, 0.8]).unwrap();
             let direction = drawn.wi.map(|x| -x);
             let (a, b) = (light.ray_pdf(p, direction), spot.ray_pdf(p, direction));
-            assert!((a.position / b.position - 1.0).abs() < 1e-9, "{local}");
-            assert!((a.direction / b.direction - 1.0).abs() < 1e-9, "{local}");
+            let densities = [
+                [a.position, b.position],
+                [a.direction_given_position, b.direction_given_position],
+                [a.direction, b.direction],
+                [a.position_given_direction, b.position_given_direction],
+            ];
+            for [a, b] in densities {
+                assert!((a / b - 1.0).abs() < 1e-9, "{local}: {a}, {b}");
+            }
             let ratio = light.radiance(p, direction) / spot.radiance(p, direction);
             assert!((ratio - 1.0).abs() < 1e-9, "{local}: {ratio}");
         }
@@ -173,7 +180,7 @@ fn densities_of_rays_integrate_to_one() {
     let position = integrate(widest, |x, y| {
         light
             .densities([centre[0] + x, centre[1] + y], slope)
-            .position
+            .position_given_direction
     });
     assert!((position - 1.0).abs() < 1e-8, "{position}");
 }
@@ -216,15 +223,15 @@ fn samples_carry_their_own_densities() {
         let pdf = light.ray_pdf(ray.origin, ray.direction);
         // The waist of 1e−5 m is found with 1e−16 m of rounding, and 4 deviations off centre.
         assert!(
-            (pdf.position / ray.pdf_position - 1.0).abs() < 1e-9,
+            (pdf.position_given_direction / ray.pdf.position_given_direction - 1.0).abs() < 1e-9,
             "{u:?}"
         );
         assert!(
-            (pdf.direction / ray.pdf_direction - 1.0).abs() < 1e-9,
+            (pdf.direction / ray.pdf.direction - 1.0).abs() < 1e-9,
             "{u:?}"
         );
         let radiance = light.radiance(ray.origin, ray.direction);
-        let flux = radiance * ray.cos / (ray.pdf_position * ray.pdf_direction);
+        let flux = radiance * ray.cos / (ray.pdf.position_given_direction * ray.pdf.direction);
         assert!((flux / ray.flux - 1.0).abs() < 1e-9, "{u:?}: {flux}");
     }
     for (local, u) in lit_points().zip([[0.3, 0.9], [0.5, 0.04], [0.77, 0.6]].iter().cycle()) {

@@ -1,0 +1,242 @@
+//! The joint density of a ray in both of its factorings: they agree, their parts integrate to 1, and
+//! rays are where the density of the position says.
+//!
+//! All seeds are fixed. The lights stand at the origin and shine along z, so that world coordinates
+//! are theirs.
+#![expect(clippy::expect_used, reason = "helpers of tests")]
+
+mod lines;
+
+use lines::{profiles, slopes};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use tem00_beam::optics::AstigmaticSystem;
+use tem00_beam::{
+    AstigmaticBeam, AstigmaticLight, DVec3, Emitter, FanGeometry, FocusCurve, GaussianBeam,
+    GeneralAstigmaticBeam, LaserLine, LineLight, LineProfile, LocatedBeam, Placement, RayPdf,
+    SpotLight, TabulatedLineLight,
+};
+
+const PLACEMENT: Placement = Placement {
+    origin: DVec3::ZERO,
+    direction: DVec3::Z,
+    fan_axis: DVec3::X,
+};
+const POWER: f64 = 5e-3;
+/// σ_b/r: the angle, on the axis, that the rays of a point of the lens differ by.
+const APEX_ANGLE: f64 = 4.1e-4;
+
+fn beam(waist: f64) -> GaussianBeam {
+    GaussianBeam::from_waist(650e-9, waist).expect("a valid beam")
+}
+
+/// A line 1 mm long on its lens, so that its source is as wide as tests can resolve.
+fn fans() -> impl Iterator<Item = LaserLine> {
+    let curves = [FocusCurve::EqualDistance, FocusCurve::EqualPlane];
+    curves.into_iter().flat_map(|focus_curve| {
+        let fan = FanGeometry {
+            fan_angle: 0.5,
+            apex_offset: 1e-3,
+            focus_distance: 0.1,
+            focus_curve,
+        };
+        profiles(fan.fan_angle)
+            .map(|profile| LaserLine::new(beam(50e-6), fan, profile).expect("a valid line"))
+    })
+}
+
+/// Places a line as the light that its profile needs.
+fn place(line: &LaserLine) -> Box<dyn Emitter<f64> + '_> {
+    match line.profile() {
+        LineProfile::Tabulated(_) => {
+            Box::new(TabulatedLineLight::place(line, &PLACEMENT, POWER).expect("a valid light"))
+        }
+        _ => Box::new(LineLight::place(line, &PLACEMENT, POWER).expect("a valid light")),
+    }
+}
+
+/// An elliptic beam, and what a turned cylinder lens makes of it.
+fn beams() -> [Box<dyn Emitter<f64>>; 2] {
+    let axes = [(30e-6, 0.05), (60e-6, -0.02)];
+    let axes = axes.map(|(w, z)| LocatedBeam::new(beam(w), z).expect("a valid beam"));
+    let elliptic = AstigmaticBeam::new(axes[0], axes[1]).expect("a valid beam");
+    let lens = AstigmaticSystem::cylinder_lens(0.08, 0.9).expect("a valid lens");
+    let general = GeneralAstigmaticBeam::from(elliptic)
+        .through(&lens)
+        .expect("a valid beam");
+    let spot = SpotLight::place_astigmatic(&elliptic, &PLACEMENT, POWER).expect("a valid light");
+    let twisted = AstigmaticLight::place(&general, &PLACEMENT, POWER).expect("a valid light");
+    [Box::new(spot), Box::new(twisted)]
+}
+
+fn pdf(light: &dyn Emitter<f64>, [x, y]: [f64; 2], [s, t]: [f64; 2]) -> RayPdf<f64> {
+    let direction = DVec3::new(s, t, 1.0).normalize();
+    light.ray_pdf([x, y, 0.0], direction.to_array())
+}
+
+/// ∫ f(s) ds over `count` steps of `h` on either side of `centre`.
+fn integrate(centre: f64, h: f64, count: i32, f: impl Fn(f64) -> f64) -> f64 {
+    (-count..=count)
+        .map(|i| f(centre + f64::from(i) * h))
+        .sum::<f64>()
+        * h
+}
+
+#[test]
+fn both_factorings_are_the_joint_density_of_drawn_rays() {
+    let lasers: Vec<LaserLine> = fans().collect();
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    for light in lasers.iter().map(place).chain(beams()) {
+        for _ in 0..2000 {
+            let ray = light.sample_ray(rng.random());
+            let RayPdf {
+                position,
+                direction_given_position,
+                direction,
+                position_given_direction,
+            } = ray.pdf;
+            let [a, b] = [
+                position * direction_given_position,
+                direction * position_given_direction,
+            ];
+            // Up to 20 from exponents of as many units, cancelled down from 1e−4 m.
+            assert!(a > 0.0 && (a / b - 1.0).abs() < 1e-11, "{ray:?}");
+        }
+    }
+}
+
+#[test]
+fn the_direction_at_a_position_of_a_beam_has_a_density() {
+    for light in beams() {
+        let mut rng = ChaCha8Rng::seed_from_u64(6);
+        for _ in 0..8 {
+            let [x, y, _] = light.sample_ray(rng.random()).origin;
+            let mean = light
+                .flux([x, y, 0.0])
+                .map(|f| f / light.irradiance([x, y, 0.0]));
+            // Slopes up to 0.1 on either side of the mean, which 20 σ do not exceed.
+            let sum = integrate(mean[0], 2e-4, 500, |s| {
+                integrate(mean[1], 2e-4, 500, |t| {
+                    let cos = (1.0 + s * s + t * t).sqrt().recip();
+                    pdf(&*light, [x, y], [s, t]).direction_given_position * cos.powi(3)
+                })
+            });
+            assert!((sum - 1.0).abs() < 1e-9, "{x}, {y}: {sum}");
+        }
+    }
+}
+
+/// The slope at which the light of the line ends, or has fallen off, on one side.
+fn end_of(line: &LaserLine) -> f64 {
+    match line.profile() {
+        LineProfile::Tabulated(table) => table.knots().last().expect("a knot").angle.tan(),
+        _ => line.half_slope(),
+    }
+}
+
+/// ∫ of the density of the direction at (x, y) on the lens of a line, over all directions.
+fn directions_at(line: &LaserLine, [x, y]: [f64; 2]) -> f64 {
+    let light = place(line);
+    let z_a = line.fan().apex_offset;
+    let sec = 1_f64.hypot(x / z_a);
+    let from_waist = z_a * sec - line.waist_slant_distance_at(x / z_a);
+    let focus = line.focus();
+    let w = focus.radius_at(from_waist);
+    let spread = 0.5 * focus.waist_radius() * focus.divergence() / w * sec;
+    let mean = y * focus.curvature_at(from_waist) * sec;
+    let width = 0.5 * line.source_radius() / z_a * sec;
+    // The density jumps at the ends of some profiles, which are to lie in the middle of a step.
+    let (h, end) = (0.01 * width, end_of(line));
+    let centre = end + (((x / z_a - end) / h).round() + 0.5) * h;
+    integrate(centre, h, 800, |s| {
+        integrate(mean, 0.5 * spread, 16, |t| {
+            let cos = (1.0 + s * s + t * t).sqrt().recip();
+            pdf(&*light, [x, y], [s, t]).direction_given_position * cos.powi(3)
+        })
+    })
+}
+
+#[test]
+fn the_direction_at_a_position_of_a_line_has_a_density() {
+    for line in fans() {
+        assert!(0.5 * line.source_radius() < APEX_ANGLE * 1e-3, "{line:?}");
+        for x in [0.0, 0.1e-3, -0.2e-3] {
+            let sum = directions_at(&line, [x, 2e-4]);
+            assert!((sum - 1.0).abs() < 1e-5, "{line:?}, {x}: {sum}");
+        }
+    }
+}
+
+#[test]
+fn beside_an_abrupt_end_the_density_is_good_to_first_order() {
+    for line in fans() {
+        let end = end_of(&line) * line.fan().apex_offset;
+        for deviations in [-2.0, -0.5, 0.0, 0.5, 2.0] {
+            let x = end + deviations * 0.5 * line.source_radius();
+            let sum = directions_at(&line, [x, 2e-4]);
+            assert!((sum - 1.0).abs() < 4.0 * APEX_ANGLE, "{line:?}, {x}: {sum}");
+        }
+    }
+}
+
+#[test]
+fn the_density_of_the_position_on_the_lens_integrates_to_one() {
+    for line in fans() {
+        let light = place(&line);
+        let z_a = line.fan().apex_offset;
+        let mut sum = 0.0;
+        for (u, du) in slopes(&line) {
+            let r = z_a * 1_f64.hypot(u);
+            let w = line.focus().radius_at(r - line.waist_slant_distance_at(u));
+            let across = |y| pdf(&*light, [u * z_a, y], [u, 0.0]).position;
+            sum += integrate(0.0, 0.25 * w, 16, across) * z_a * du;
+        }
+        // What an abrupt end loses beyond itself, 0.4 σ of the 2 × 0.26 in slope, at both ends.
+        assert!((sum - 1.0).abs() < 2.0 * APEX_ANGLE, "{line:?}: {sum}");
+    }
+}
+
+/// χ² of the positions of drawn rays along x, in bins up to ±`half`, against their density there.
+fn chi_square_of_positions(light: &dyn Emitter<f64>, half: f64, y: f64) -> f64 {
+    const RAYS: u32 = 60_000;
+    const FINE: i32 = 10;
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    let mut counts = [0_u32; BINS];
+    for _ in 0..RAYS {
+        let x = light.sample_ray(rng.random()).origin[0];
+        let place = (0.5 * (x / half + 1.0) * BINS as f64).floor();
+        if let Some(bin) = (0..BINS).find(|&bin| bin as f64 == place) {
+            counts[bin] += 1;
+        }
+    }
+    let width = 2.0 * half / BINS as f64;
+    let along = |x| integrate(0.0, 0.02 * y, 50, |y| pdf(light, [x, y], [0.0; 2]).position);
+    let expected = |bin: usize| {
+        let middle = (bin as f64 + 0.5) * width - half;
+        let h = width / f64::from(2 * FINE + 1);
+        f64::from(RAYS) * integrate(middle, h, FINE, along)
+    };
+    let terms = counts.iter().enumerate().map(|(bin, &count)| {
+        let expected = expected(bin);
+        assert!(expected > 10.0, "{bin}: {expected}");
+        (f64::from(count) - expected).powi(2) / expected
+    });
+    terms.sum()
+}
+
+/// Bins of positions. χ² with as many degrees of freedom exceeds the limit with probability 1e−4
+/// (Wilson and Hilferty 1931).
+const BINS: usize = 16;
+const CHI_SQUARE_LIMIT: f64 = 46.0;
+
+#[test]
+fn rays_leave_the_aperture_with_the_density_of_their_positions() {
+    for (light, [wide, high]) in beams().into_iter().zip([[150e-6, 1e-3], [300e-6, 2e-3]]) {
+        let chi_square = chi_square_of_positions(&*light, wide, high);
+        assert!(chi_square < CHI_SQUARE_LIMIT, "{chi_square}");
+    }
+    for line in fans() {
+        let chi_square = chi_square_of_positions(&*place(&line), 0.2e-3, 2e-3);
+        assert!(chi_square < CHI_SQUARE_LIMIT, "{line:?}: {chi_square}");
+    }
+}

@@ -5,13 +5,20 @@
 //
 // The law is that between two states of a scene, of any size: `SpeckleMotion::between` of the crate,
 // with the correlation of `MotionField`, to which it comes down for small motions. The camera stands
-// still: motions are relative to it, so for a camera that moves by c give the motion a − c. A part
-// that slides, lifts and tilts under a point source and its speckle at the point p:
+// still: motions are relative to it, so for a camera that moves by c give the motion a − c.
 //
-//     let motion = tem00_rotation_change(rotation, p - pivot) + translation;
+// A part turns about a pivot and slides, under a point source. A kernel that sees its point `seen`, of
+// the normal `n`, takes both back to where they were, and asks for the motion from there:
+//
+//     let turned = seen - translation - pivot;
+//     let backwards = vec4(-rotation.xyz, rotation.w);
+//     let change = tem00_rotation_change(backwards, turned);
+//     let p = pivot + turned + change;
+//     let normal = n + tem00_rotation_change(backwards, n);
+//     let motion = translation - change;
 //     let light = tem00_point_source(source - p, motion);
 //     let moved = tem00_speckle_motion(imaging, pupil_centre - p, normal, motion, rotation, light);
-//     let u = tem00_slice_coordinate(moved.correlation, slices);
+//     let u = tem00_slice_coordinate(moved.correlation, entries);
 //     // … the intensity of the stack at moved.pattern_coordinate, u
 //
 // The host defines one function, a table of the stack's overlaps, `SlicePath::overlaps`:
@@ -64,7 +71,8 @@ struct Tem00SpeckleMotion {
     speckle_displacement: vec2<f32>,
     /// Motion of the speckle field across the pupil, in metres; 1e18 in both where it is decorrelated.
     pupil_displacement: vec2<f32>,
-    /// Position to look the pattern up at, in samples from the optical axis, not wrapped.
+    /// Where to look the pattern up, in samples from the optical axis, not wrapped: at the image that the
+    /// point had before, less what out of focus the speckle moves beside it.
     pattern_coordinate: vec2<f32>,
     /// Correlation γ of the intensity with the pattern before, in [0, 1].
     correlation: f32,
@@ -156,14 +164,15 @@ fn tem00_speckle_motion(
         let shift = step + distance * tem00_in_camera_(imaging, turn.change);
         let pupil = shift.xy - leaving.xy * (shift.z / leaving.z);
         let defocus = 0.5 * (1.0 / sight.z + 1.0 / depth) - imaging.per_surface_to_pupil;
-        moved.speckle_displacement -= (c * defocus) * pupil;
+        let beside = (-c * defocus) * pupil;
+        moved.speckle_displacement += beside;
+        moved.pattern_coordinate -= imaging.samples_per_metre * beside;
         moved.pupil_displacement = pupil;
         moved.correlation = tem00_correlation(
             length(pupil) * imaging.per_pupil_diameter,
             step.z / (sight.z * depth) * imaging.per_axial_length,
         );
     }
-    moved.pattern_coordinate -= imaging.samples_per_metre * moved.speckle_displacement;
     return moved;
 }
 

@@ -239,7 +239,7 @@ fn compare(field: &MotionField, inputs: &[Input]) -> [usize; 2] {
         assert!(error < close * scale, "speckle off by {error:e}, {input:?}");
         let error = (f64::from(output[6]) - left).abs();
         assert!(error < 3e-6, "γ off by {error:e}, {input:?}: {left}");
-        let image = image_of(field, input);
+        let image = image_of(field, vector(input, 22) - vector(input, 16));
         let error = (pair(&output, 4) - (image - speckle) * samples).length();
         // The axes of the camera have units of 6e-8.
         let close = samples * (5e-7 * geometry.principal_distance() + close * scale);
@@ -249,15 +249,14 @@ fn compare(field: &MotionField, inputs: &[Input]) -> [usize; 2] {
     [gone, partial]
 }
 
-/// The image of the point, in metres.
-fn image_of(field: &MotionField, input: &Input) -> DVec2 {
+/// The image of a point, from the pupil, in metres.
+fn image_of(field: &MotionField, from_pupil: DVec3) -> DVec2 {
     let FieldSetup {
         geometry,
         camera,
         orientation,
         ..
     } = field.setup();
-    let from_pupil = -vector(input, 16);
     let across = DVec2::new(from_pupil.dot(camera.right()), from_pupil.dot(camera.up()));
     let tangents = across / -from_pupil.dot(camera.towards_camera());
     let sign = match orientation {

@@ -191,11 +191,11 @@ fn every_type_of_the_laboratory_of_beams_crosses_threads() {
 fn every_type_of_speckle_crosses_threads() {
     use tem00::speckle::*;
     let names = names_of_shared! {
-        Complex<f32>, Exposure, Interpolation,
+        Aperture<'static>, Complex<f32>, Exposure, Interpolation,
         NpyError, NpyReader<&'static [u8]>, Phasors, PixelArray,
         Pupil, PupilField, SliceLaw, SlicePath, SpeckleError, SpeckleField, SpecklePattern,
         SpeckleScratch, SpeckleStack, StackFileError, StackNeeds, StackOptions, StackPlan,
-        Transmission,
+        StackSource, Transmission,
     };
     let listed: BTreeSet<_> = names.collect();
     assert_eq!(exported("speckle"), listed, "types of tem00-speckle");

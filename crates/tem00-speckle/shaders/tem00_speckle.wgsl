@@ -150,6 +150,11 @@ fn tem00_turns(count: u32, period: u32) -> u32 {
     return count * unit + u32(f32(count) * f32(rest) / f32(period));
 }
 
+/// Returns the product of two complex numbers.
+fn tem00_complex_product(a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
+}
+
 /// An amplitude and its expected square.
 struct Tem00Blend_ {
     amplitude: vec2<f32>,
@@ -177,7 +182,7 @@ fn tem00_stack_blend_(
     }
     let next = tem00_slice_(stack, select(here + 1u, 0u, here + 1u == stack.slices), place);
     let join = tem00_stack_law(here, 13u);
-    let turned = tem00_product_(tem00_unit_phasor(tem00_join_phase_(stack, join.xy, place)), next.amplitude);
+    let turned = tem00_complex_product(tem00_unit_phasor(tem00_join_phase_(stack, join.xy, place)), next.amplitude);
     let f = slice_fraction;
     let g = 1.0 - f;
     let both = tem00_covariance_(here, join.z != 0.0, place.fraction);
@@ -300,10 +305,6 @@ fn tem00_cubic_weights_(f: f32) -> vec4<f32> {
         2.0 / 3.0 - 0.5 * g * g * (2.0 - g),
         (1.0 / 6.0) * f * f * f,
     );
-}
-
-fn tem00_product_(a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
-    return vec2<f32>(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
 }
 
 /// n modulo `period`, in [0, period).

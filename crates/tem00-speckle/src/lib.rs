@@ -46,8 +46,10 @@ pub use npy::{NpyError, NpyReader, write_npy, write_real_npy};
 /// The complex number of [`SpeckleField`], from `num-complex`.
 pub use num_complex::Complex;
 pub use pupil::{
-    Phasors, Pupil, PupilField, SpeckleField, SpecklePattern, SpeckleScratch, Transmission,
+    Aperture, Phasors, Pupil, PupilField, SpeckleField, SpecklePattern, SpeckleScratch,
+    Transmission,
 };
 pub use stack::{
     SliceLaw, SlicePath, SpeckleStack, StackFileError, StackNeeds, StackOptions, StackPlan,
+    StackSource,
 };

@@ -1,5 +1,6 @@
 //! The pupil and the field in it, and the patterns behind it.
 
+mod aperture;
 mod field;
 pub(crate) mod lattice;
 pub(crate) mod mask;
@@ -9,6 +10,7 @@ mod shape;
 mod transmission;
 mod view;
 
+pub use aperture::Aperture;
 pub use field::PupilField;
 pub(crate) use field::{Layout, too_large};
 pub use pattern::{SpeckleField, SpecklePattern};

@@ -3,10 +3,7 @@ use tem00_numerics::Grid;
 
 use crate::{
     Interpolation, PupilField, SpeckleError,
-    interpolation::{
-        spline::{Variance, prefilters},
-        taps::Period,
-    },
+    interpolation::{spline::Variance, taps::Period},
 };
 
 mod blend;
@@ -19,6 +16,7 @@ mod path;
 mod plan;
 mod quadrature;
 mod slice_law;
+mod source;
 mod workers;
 
 pub use file::StackFileError;
@@ -30,6 +28,7 @@ use path::PathLaw;
 pub use path::SlicePath;
 pub use plan::{StackNeeds, StackPlan};
 pub use slice_law::SliceLaw;
+pub use source::StackSource;
 use workers::map_with_scratch;
 
 /// Speckle that moves and decorrelates: slices of one random field behind a moving pupil.
@@ -146,18 +145,20 @@ impl SpeckleStack {
         path: SlicePath,
         options: StackOptions,
     ) -> Result<Self, SpeckleError> {
-        path.check()?;
-        check_limit(path.memory_bytes(field.size()), options.memory_limit)?;
-        let field = path.close(field);
-        let filters = prefilters(&field, options.interpolation);
+        let source = StackSource::new(field, path, options)?;
+        let field = source.field();
         let slices = map_with_scratch(reserve(path, field.size())?, |index, room, scratch| {
             let mut slice = dark(room, field.size())?;
-            let view = field.view_of_point(path.centre(index, &field));
-            field.amplitude_into(&view, Some(&filters), &mut slice, scratch);
+            field.amplitude_into(&source.slice(index), &mut slice, scratch);
             Ok(slice)
         });
         let slices = slices.into_iter().collect::<Result<_, _>>()?;
-        Ok(Self::assemble(field, path, options.interpolation, slices))
+        Ok(Self::assemble(
+            source.into_field(),
+            path,
+            options.interpolation,
+            slices,
+        ))
     }
 
     /// Joins the coefficients of the slices of `field`, a field that the path has closed.
@@ -206,6 +207,15 @@ impl SpeckleStack {
     /// Panics unless `index < slice_count`.
     pub fn coefficients(&self, index: usize) -> &Grid<Complex<f32>> {
         &self.slices[index].coefficients
+    }
+
+    /// Returns the closed forms of slice `index` and of its join to the next.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `index < slice_count`.
+    pub fn slice_law(&self, index: usize) -> SliceLaw {
+        SliceLaw::of(&self.slices[index])
     }
 
     /// Returns the periods in the plane, in samples: the width and the height.

@@ -170,6 +170,11 @@ impl Mask {
         self.weights.as_ref().map(|weights| weights.row(y))
     }
 
+    /// The transmission over the box, unless it is 1 wherever a row says so.
+    pub(crate) const fn transmission(&self) -> Option<&Grid<Complex<f32>>> {
+        self.weights.as_ref()
+    }
+
     /// The columns of row `y` of the box that belong to the pupil, each with its |t|².
     pub(crate) fn powers(&self, y: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let weights = self.weights(y);

@@ -14,8 +14,8 @@ use crate::{
 
 /// The interpolation's coefficients of one slice, and how it joins the next.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Slice {
-    pub(crate) coefficients: Grid<Complex<f32>>,
+pub(crate) struct Slice<C = Grid<Complex<f32>>> {
+    pub(crate) coefficients: C,
     pub(crate) centre: [i64; 2],
     /// The mean square of the interpolated amplitude.
     pub(crate) mean_square: Even,
@@ -46,12 +46,12 @@ struct Joiner<'a> {
 
 /// Joins the coefficients of the slices of `field`, and returns the variances: one for all slices of
 /// random phasors, one for each of external light.
-pub(super) fn join_all(
+pub(super) fn join_all<C: Send>(
     field: &PupilField,
     path: SlicePath,
     interpolation: Interpolation,
-    coefficients: Vec<Grid<Complex<f32>>>,
-) -> (Vec<Slice>, Vec<Variance>) {
+    coefficients: Vec<C>,
+) -> (Vec<Slice<C>>, Vec<Variance>) {
     let count = coefficients.len();
     let joiner = Joiner {
         field,

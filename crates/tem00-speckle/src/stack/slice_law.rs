@@ -3,14 +3,14 @@ use core::array::from_fn;
 use tem00_numerics::cast::to_f32;
 
 use crate::{
-    SpeckleStack,
     interpolation::covariance::{EVEN, SHAPES},
+    stack::Slice,
 };
 
 /// The closed forms of a slice, for look-ups that run where no library can be called.
 ///
 /// A kernel on a GPU, or of a renderer that compiles its own, interpolates the
-/// [`coefficients`](SpeckleStack::coefficients) of the slice i and of the next in one plane. With the
+/// [`coefficients`](crate::SpeckleStack::coefficients) of the slice i and of the next in one plane. With the
 /// fraction f of the way between them and the fractions `fx`, `fy` of the way between the samples, the
 /// intensity is
 ///
@@ -23,8 +23,8 @@ use crate::{
 /// s(f) = 1, p, p², p³, o, o p          p = f (1 − f),  o = p (1 − 2 f)
 /// ```
 ///
-/// as [`intensity_at`](SpeckleStack::intensity_at) has it. On a slice, where f is 0, it is |`U_i`|² / `v_i`.
-/// x and y lie in one period, from 0 to the [size](SpeckleStack::size). For the nearest sample
+/// as [`intensity_at`](crate::SpeckleStack::intensity_at) has it. On a slice, where f is 0, it is |`U_i`|² / `v_i`.
+/// x and y lie in one period, from 0 to the [size](crate::SpeckleStack::size). For the nearest sample
 /// both are those of the sample, and `fx` and `fy` are 0.
 ///
 /// # Examples
@@ -57,6 +57,14 @@ impl SliceLaw {
     /// The number of [`rows`](Self::rows).
     pub const ROWS: usize = 14;
 
+    pub(crate) fn of<C>(slice: &Slice<C>) -> Self {
+        Self {
+            mean_square: slice.mean_square,
+            covariance: slice.join.covariance.table(),
+            turns: slice.join.turns,
+        }
+    }
+
     /// Returns the law in rows of four numbers, as the functions of [`closed_form`](crate::closed_form) read it, for a
     /// stack of `size` samples.
     ///
@@ -79,22 +87,6 @@ impl SliceLaw {
             10..13 => from_fn(|i| table[2 * (row - 10) + i / 2][EVEN + i % 2]),
             _ => [step[0], step[1], f32::from(u8::from(is_odd)), 0.0],
         })
-    }
-}
-
-impl SpeckleStack {
-    /// Returns the closed forms of slice `index` and of its join to the next.
-    ///
-    /// # Panics
-    ///
-    /// Panics unless `index < slice_count`.
-    pub fn slice_law(&self, index: usize) -> SliceLaw {
-        let slice = &self.slices[index];
-        SliceLaw {
-            mean_square: slice.mean_square,
-            covariance: slice.join.covariance.table(),
-            turns: slice.join.turns,
-        }
     }
 }
 

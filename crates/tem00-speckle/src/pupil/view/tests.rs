@@ -1,3 +1,5 @@
+use core::f64::consts::TAU;
+
 use proptest::prelude::*;
 
 use super::*;
@@ -252,25 +254,6 @@ fn a_pupil_that_has_moved_far_meets_new_phasors() {
 }
 
 #[test]
-fn offsets_of_whole_lattice_points_are_on_the_lattice() {
-    for diameter in [49.0, 50.0, 64.0, 57.6, 333.25] {
-        for point in (-3_000..3_000).chain([1 << 35, (1 << 35) + 1]) {
-            let offset = point as f64 / diameter;
-            assert_eq!(
-                lattice_point(offset, diameter),
-                (point, 0.0),
-                "C = {diameter}"
-            );
-        }
-        let (point, fraction) = lattice_point(17.25 / diameter, diameter);
-        assert!(
-            point == 17 && (fraction - 0.25).abs() < 1e-14,
-            "{point} + {fraction}"
-        );
-    }
-}
-
-#[test]
 fn no_finite_view_fails() {
     let field = PupilField::new(32, 16, 1).unwrap();
     for x in [
@@ -332,17 +315,16 @@ fn an_aperture_is_the_same_in_pieces() {
     ];
     for field in &fields {
         for (offset, defocus) in [([0.0; 2], 0.0), ([0.1, -0.77], 0.4)] {
-            let view = field.view(offset, defocus);
-            let selection = field.selection(&view, None);
-            let [width, height] = view.mask.extent();
+            let aperture = field.aperture(offset, defocus);
+            let [width, height] = aperture.extent();
             for y in 0..height {
                 let mut whole = vec![ZERO; width];
-                selection.fill(0..width, y, &mut whole);
+                aperture.fill(0..width, y, &mut whole);
                 for piece in [1, 7, 8, 64] {
                     let mut pieces = vec![Complex::new(f32::NAN, 0.0); width];
                     for (index, values) in pieces.chunks_mut(piece).enumerate() {
                         let start = index * piece;
-                        selection.fill(start..start + values.len(), y, values);
+                        aperture.fill(start..start + values.len(), y, values);
                     }
                     assert_eq!(pieces, whole, "row {y} in pieces of {piece}");
                 }

@@ -3,8 +3,7 @@ use core::f64::consts::TAU;
 use num_complex::Complex;
 use tem00_numerics::cast::to_signed;
 
-use super::*;
-use crate::{Interpolation, PupilField, SlicePath, StackOptions};
+use crate::{Interpolation, PupilField, SlicePath, SpeckleStack, StackOptions};
 
 /// The place of a coordinate: cell, fraction, and taps with their weights.
 struct Place {

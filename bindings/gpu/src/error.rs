@@ -1,5 +1,7 @@
 use core::{error::Error, fmt};
 
+use tem00_speckle::{PupilField, SpeckleError};
+
 /// What a graphics card did not do.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -10,6 +12,19 @@ pub enum GpuError {
     NoDevice(String),
     /// The device refused an order, or was lost on the way.
     Device(String),
+    /// A side of a pattern has a prime factor above 5: its samples.
+    Size(usize),
+    /// The device has no buffer that holds something.
+    TooLarge {
+        /// What was to be held.
+        what: &'static str,
+        /// Its bytes.
+        needed: u64,
+        /// The bytes of the largest buffer that a kernel reads.
+        allowed: u64,
+    },
+    /// The path or the memory limit of a stack.
+    Speckle(SpeckleError),
 }
 
 impl fmt::Display for GpuError {
@@ -22,8 +37,52 @@ impl fmt::Display for GpuError {
             ),
             Self::NoDevice(reason) => write!(f, "the graphics adapter gives no device: {reason}"),
             Self::Device(reason) => write!(f, "the graphics device failed: {reason}"),
+            Self::Size(side) => write!(
+                f,
+                "size must have no prime factor above 5 on a graphics card and be at most {}, got {side}: {} is the next",
+                PupilField::MAX_SIZE,
+                next_size(*side),
+            ),
+            Self::TooLarge {
+                what,
+                needed,
+                allowed,
+            } => write!(
+                f,
+                "a buffer of the graphics device must be at most {allowed} bytes, got {needed} for {what}: \
+                 take fewer slices or a smaller pattern"
+            ),
+            Self::Speckle(error) => error.fmt(f),
         }
     }
 }
 
-impl Error for GpuError {}
+impl Error for GpuError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Speckle(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl From<SpeckleError> for GpuError {
+    fn from(error: SpeckleError) -> Self {
+        Self::Speckle(error)
+    }
+}
+
+/// The next side that is transformed.
+fn next_size(side: usize) -> usize {
+    let allowed = |&side: &usize| {
+        [2, 3, 5].into_iter().fold(side, |mut rest, prime| {
+            while rest > 1 && rest.is_multiple_of(prime) {
+                rest /= prime;
+            }
+            rest
+        }) == 1
+    };
+    (side.max(1)..=PupilField::MAX_SIZE)
+        .find(allowed)
+        .unwrap_or(PupilField::MAX_SIZE)
+}

@@ -1,5 +1,12 @@
+use std::{
+    collections::HashMap,
+    sync::{Arc, Mutex, PoisonError},
+};
+
 use wgpu::{
-    DeviceDescriptor, Instance, InstanceDescriptor, MapMode, PollType, RequestAdapterOptions,
+    ComputePipeline, ComputePipelineDescriptor, DeviceDescriptor, ErrorFilter, Instance,
+    InstanceDescriptor, MapMode, PipelineCompilationOptions, PipelineLayout, PollType,
+    RequestAdapterOptions, ShaderModuleDescriptor, ShaderSource,
 };
 
 use crate::GpuError;
@@ -12,6 +19,8 @@ pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
     name: String,
+    /// The kernels that have been compiled, by their text.
+    kernels: Arc<Mutex<HashMap<String, ComputePipeline>>>,
 }
 
 impl Gpu {
@@ -31,19 +40,16 @@ impl Gpu {
             ..DeviceDescriptor::default()
         }))
         .map_err(|error| GpuError::NoDevice(error.to_string()))?;
-        Ok(Self {
-            device,
-            queue,
-            name: adapter.get_info().name,
-        })
+        Ok(Self::of(device, queue, adapter.get_info().name))
     }
 
     /// Uses a device and a queue of the caller's, whose name is only for messages.
-    pub const fn of(device: wgpu::Device, queue: wgpu::Queue, name: String) -> Self {
+    pub fn of(device: wgpu::Device, queue: wgpu::Queue, name: String) -> Self {
         Self {
             device,
             queue,
             name,
+            kernels: Arc::default(),
         }
     }
 
@@ -88,5 +94,55 @@ impl Gpu {
         drop(bytes);
         buffer.unmap();
         Ok(values)
+    }
+
+    /// The kernel of this text, compiled once; without a layout, all bindings in group 0.
+    pub(crate) fn pipeline(&self, text: &str, layout: Option<&PipelineLayout>) -> ComputePipeline {
+        let mut kernels = self.kernels.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(kernel) = kernels.get(text) {
+            return kernel.clone();
+        }
+        let kernel = self.compiled(text, layout);
+        kernels.insert(text.to_owned(), kernel.clone());
+        kernel
+    }
+
+    fn compiled(&self, text: &str, layout: Option<&PipelineLayout>) -> ComputePipeline {
+        let module = self.device.create_shader_module(ShaderModuleDescriptor {
+            label: Some("tem00"),
+            source: ShaderSource::Wgsl(text.into()),
+        });
+        self.device
+            .create_compute_pipeline(&ComputePipelineDescriptor {
+                label: Some("tem00"),
+                layout,
+                module: &module,
+                entry_point: None,
+                compilation_options: PipelineCompilationOptions::default(),
+                cache: None,
+            })
+    }
+
+    /// What the device refuses on the way is an error, not a panic.
+    pub(crate) fn guarded<T>(
+        &self,
+        orders: impl FnOnce() -> Result<T, GpuError>,
+    ) -> Result<T, GpuError> {
+        let scope = |filter| self.device.push_error_scope(filter);
+        let scopes = [
+            scope(ErrorFilter::Internal),
+            scope(ErrorFilter::Validation),
+            scope(ErrorFilter::OutOfMemory),
+        ];
+        let result = orders();
+        let errors: Vec<_> = scopes
+            .into_iter()
+            .rev()
+            .filter_map(|scope| pollster::block_on(scope.pop()))
+            .collect();
+        match errors.first() {
+            Some(error) => result.and(Err(GpuError::Device(error.to_string()))),
+            None => result,
+        }
     }
 }

@@ -9,5 +9,7 @@
 
 mod kernel;
 mod lights;
+mod look_up;
 mod motion;
+mod patterns;
 mod phasors;

@@ -1,0 +1,118 @@
+//! Patterns from one seed, of the library and of the card.
+
+use tem00_gpu::{Gpu, GpuError, GpuPattern};
+use tem00_numerics::Grid;
+use tem00_speckle::{Complex, Phasors, Pupil, PupilField, Transmission};
+
+/// The rms and the largest deviation of one pattern from the other, of the mean.
+fn deviations(card: &[f32], library: &[f32]) -> [f64; 2] {
+    assert_eq!(card.len(), library.len());
+    let errors = card
+        .iter()
+        .zip(library)
+        .map(|(a, b)| (f64::from(*a) - f64::from(*b)).abs());
+    let [square, worst] = errors.fold([0.0_f64; 2], |[square, worst], error| {
+        [square + error * error, worst.max(error)]
+    });
+    [(square / card.len() as f64).sqrt(), worst]
+}
+
+fn assert_agree(gpu: &Gpu, name: &str, field: &PupilField, offset: [f64; 2], defocus: f64) {
+    let card = GpuPattern::generate(gpu, field, offset, defocus).expect(name);
+    let card = card.values().expect(name);
+    let library = field.pattern_at(offset, defocus);
+    let [rms, worst] = deviations(&card, library.values().values());
+    assert!(
+        rms < 3e-6 && worst < 3e-5,
+        "{name}: {rms:e} rms, {worst:e} at worst"
+    );
+}
+
+#[test]
+fn patterns_of_the_planners_sizes_agree() {
+    let gpu = Gpu::new().expect("an adapter");
+    // Twice the smooth multiples of 8; one stage along an axis, and every radix.
+    for (size, speckle_size) in [
+        ([16, 16], 2.0),
+        ([64, 64], 2.0),
+        ([80, 144], 3.3),
+        ([240, 1_600], 2.0),
+        ([1_296, 400], 4.0),
+        ([486, 250], 2.5),
+        ([2_048, 2_048], 2.0),
+    ] {
+        let field = PupilField::from_speckle_size(size, speckle_size, 11).expect("a field");
+        assert_agree(&gpu, &format!("{size:?}"), &field, [0.0; 2], 0.0);
+    }
+}
+
+/// A pupil without symmetry, with aberrations.
+fn aberrated() -> Pupil {
+    let grid = Grid::from_fn(37, 53, |x, y| {
+        let place = (2 * x + y * y % 31) as f32;
+        Complex::from_polar(1.0 / (1.0 + 0.01 * place), 0.1 * place)
+    });
+    Pupil::Sampled(Transmission::from_complex(grid).expect("a transmission"))
+}
+
+#[test]
+fn patterns_behind_every_pupil_agree() {
+    let gpu = Gpu::new().expect("an adapter");
+    for pupil in [
+        Pupil::Circle,
+        Pupil::Annulus { inner: 0.4 },
+        Pupil::Rectangle { height: 0.6 },
+        Pupil::Gaussian { radius: 0.3 },
+        aberrated(),
+    ] {
+        for phasors in [Phasors::Unit, Phasors::Gaussian] {
+            let field = PupilField::from_speckle_size([180, 128], 2.4, 3)
+                .and_then(|field| field.with_pupil(pupil.clone()))
+                .expect("a field")
+                .with_phasors(phasors);
+            // On the lattice and between, far along it, before its origin and where words begin anew.
+            for (offset, defocus) in [
+                ([0.0; 2], 0.0),
+                ([0.31, -0.77], 0.0),
+                ([-4.0, 1e5], 0.4),
+                ([(1_u64 << 31) as f64 / 75.0, 1e12], -3.0),
+            ] {
+                let name = format!("{pupil:?}, {phasors:?} at {offset:?}, {defocus}");
+                assert_agree(&gpu, &name, &field, offset, defocus);
+            }
+        }
+    }
+}
+
+#[test]
+fn patterns_of_external_samples_agree() {
+    let gpu = Gpu::new().expect("an adapter");
+    let samples = Grid::from_fn(70, 61, |x, y| {
+        Complex::from_polar(1e-20 * (1 + x % 7) as f32, (x * x + 3 * y * x) as f32)
+    });
+    let field = PupilField::from_samples(samples, [160, 128], 2.5).expect("a field");
+    for (offset, defocus) in [([0.0; 2], 0.0), ([0.4, -0.25], 0.7), ([9.0, 0.0], 0.0)] {
+        assert_agree(&gpu, &format!("{offset:?}"), &field, offset, defocus);
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_what_would() {
+    let gpu = Gpu::new().expect("an adapter");
+    let odd = PupilField::new(2 * 77, 64, 1).expect("a field");
+    let refused = GpuPattern::generate(&gpu, &odd, [0.0; 2], 0.0).expect_err("a size");
+    assert_eq!(refused, GpuError::Size(154));
+    assert_eq!(
+        refused.to_string(),
+        "size must have no prime factor above 5 on a graphics card and be at most 32768, got 154: 160 is the next"
+    );
+    let large = PupilField::new(PupilField::MAX_SIZE, 8, 1).expect("a field");
+    let refused = GpuPattern::generate(&gpu, &large, [0.0; 2], 0.0).expect_err("memory");
+    let GpuError::TooLarge {
+        needed, allowed, ..
+    } = refused
+    else {
+        panic!("{refused}");
+    };
+    assert!(needed > allowed && allowed >= 1 << 27, "{refused}");
+}

@@ -157,7 +157,7 @@ fn exported_by(file: &str) -> BTreeSet<String> {
 fn every_type_of_beam_crosses_threads() {
     use tem00::beam::*;
     let names = names_of_shared! {
-        AngularKnot<f64>, AngularProfile, AstigmaticBeam, AstigmaticLight<f64>,
+        AngularKnot<f64>, AngularProfile, ApertureHit<f64>, AstigmaticBeam, AstigmaticLight<f64>,
         Axis<f64>, BeamError, Bounds<f64>, Complex64,
         DMat2, DVec2, DVec3, Ellipse<f64>, FanGeometry, FocusCurve, GaussianBeam, GeneralAstigmaticBeam,
         LaserLine, LineLight<f64>, LineProfile, LocatedBeam, NextEvent<f64>,

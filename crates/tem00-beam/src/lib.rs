@@ -52,8 +52,8 @@ pub use line::{FanGeometry, FocusCurve, LaserLine};
 pub use located::LocatedBeam;
 pub use num_complex::Complex64;
 pub use placed::{
-    AstigmaticLight, Axis, Bounds, Ellipse, Emitter, LineLight, NextEvent, NextEventSlices,
-    Placement, RayPdf, RaySample, SampledEvent, SpotLight, TabulatedLineLight,
+    ApertureHit, AstigmaticLight, Axis, Bounds, Ellipse, Emitter, LineLight, NextEvent,
+    NextEventSlices, Placement, RayPdf, RaySample, SampledEvent, SpotLight, TabulatedLineLight,
 };
 pub use profile::{AngularKnot, AngularProfile, LineProfile};
 pub use real::Real;

@@ -8,6 +8,7 @@ mod fan;
 mod frame;
 mod line;
 mod phase_space;
+mod power_bound;
 mod record;
 mod rows;
 mod slope;
@@ -20,7 +21,9 @@ pub use ellipse::Ellipse;
 pub use emitter::Emitter;
 pub use frame::Placement;
 pub use line::LineLight;
-pub use record::{Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent};
+pub use record::{
+    ApertureHit, Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent,
+};
 pub use spot::SpotLight;
 pub use tabulated::TabulatedLineLight;
 

@@ -2,10 +2,12 @@ use core::f64::consts::FRAC_2_PI;
 
 use glam::DMat2;
 
+use super::axis::Axis;
 use super::ellipse::{Ellipse, Factors};
 use super::emitter::Emitter;
 use super::frame::{Frame, Placement};
 use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
+use super::power_bound::{LocalBox, chance};
 use super::record::RayPdf;
 use super::rows::{DEFAULT_CUTOFF, check_digits, checked_power, first_three, row, to_single};
 use super::slope::secant;
@@ -193,6 +195,24 @@ impl<T: Real> AstigmaticLight<T> {
         [[xx + z, xy], [yx, yy + z]]
     }
 
+    /// Returns the radii of the beam along x and along y, each with the distance to where it is
+    /// smallest.
+    ///
+    /// ```text
+    /// V_xx(z) = W_xx + K_xy² det S / S_xx + S_xx (z + (K S)_xx / S_xx)²
+    /// ```
+    fn axes(&self) -> [Axis<T>; 2] {
+        let [[xx, xy], [yx, yy]] = self.position_per_slope;
+        let (w, s, determinant) = (self.position, self.slope, self.slope.determinant());
+        let axis = |w: T, s: T, along: T, across: T| Axis {
+            w0_sq: w + across * across * determinant / s,
+            theta_sq: s,
+            z0: -(along + across * self.slope.xy / s),
+            pad: T::ZERO,
+        };
+        [axis(w.xx, s.xx, xx, xy), axis(w.yy, s.yy, yy, yx)]
+    }
+
     /// Returns the squared radii V of the beam, and their determinant.
     #[inline(always)]
     fn radii_sq(&self, m: [[T; 2]; 2]) -> (Ellipse<T>, T) {
@@ -306,6 +326,32 @@ impl<T: Real> PhaseSpace<T> for AstigmaticLight<T> {
             position_given_direction: self.position.factors().density(deviation),
             ..RayPdf::from_position(density, || self.slope_pdf([x, y, T::ZERO], slope))
         }
+    }
+
+    /// The smallest of the bounds for x alone, for y alone, and for the middle of the box: no more than
+    /// the largest density there times the area that rays of the box pass, `d` off their mean slope.
+    ///
+    /// ```text
+    /// E[(a_x + 2 h |d_x|) (a_y + 2 h |d_y|)] ≤ (a_x + 2 h σ_x) (a_y + 2 h σ_y)
+    /// ```
+    fn fraction_bound(&self, target: &LocalBox) -> f64 {
+        let light = AstigmaticLight::from_rows(self.to_rows().map(|row| row.map(T::wide)));
+        let [along_x, along_y] = light
+            .axes()
+            .map(|axis| (axis, target.z.map(|z| z - axis.z0)));
+        let x = chance(&along_x.0, along_x.1, target.x, light.cutoff);
+        let y = chance(&along_y.0, along_y.1, target.y, light.cutoff);
+        let [near, far] = target.z;
+        let m = light.position_per_slope_at(0.5 * (near + far));
+        let (radii_sq, determinant) = light.radii_sq(m);
+        let peak = radii_sq.factors_with(determinant).density([0.0; 2]);
+        let conditional = light.conditional_slope(m, determinant).inverse_diagonal();
+        let steepest = light.cutoff * light.slope.largest().sqrt();
+        let sides = [target.x, target.y].into_iter().zip(conditional);
+        let sides = sides.map(|([low, high], slope_sq)| {
+            high - low + (far - near) * (steepest + 0.5 * slope_sq.sqrt())
+        });
+        x.min(y).min(peak * sides.product::<f64>())
     }
 
     /// The mean slope s̄ = S Mᵀ V⁻¹ x is within the cut-off of S: s̄ᵀ S⁻¹ s̄ ≤ xᵀ V⁻¹ x, as

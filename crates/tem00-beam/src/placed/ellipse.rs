@@ -136,6 +136,14 @@ impl<T: Real> Factors<T> {
         self.x * along * along + self.y * v[1] * v[1]
     }
 
+    /// Returns the diagonal of `M⁻¹`.
+    pub(super) fn inverse_diagonal(&self) -> [T; 2] {
+        [
+            T::ONE / self.x + self.tilt * self.tilt / self.y,
+            T::ONE / self.y,
+        ]
+    }
+
     /// Returns `M⁻¹ v`.
     #[inline(always)]
     pub(super) fn solve(&self, v: [T; 2]) -> [T; 2] {

@@ -1,5 +1,8 @@
 use super::phase_space::{Batch, PhaseSpace, event_at, irradiance_at};
-use super::record::{Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent};
+use super::power_bound::LocalBox;
+use super::record::{
+    ApertureHit, Bounds, NextEvent, NextEventSlices, RayPdf, RaySample, SampledEvent,
+};
 use super::slope::{aperture_point, direction, secant, slope_of, towards_light};
 use crate::real::Real;
 
@@ -13,8 +16,9 @@ use crate::real::Real;
 ///
 /// - [`next_event`](Self::next_event) takes the mean direction of the energy flow, a *delta* light:
 ///   `L = f · |n·wi| · V · e_perp`. No other technique can find that direction.
-/// - [`next_event_sampled`](Self::next_event_sampled), [`sample_ray`](Self::sample_ray),
-///   [`ray_pdf`](Self::ray_pdf) and [`radiance`](Self::radiance) share the phase-space density of
+/// - [`next_event_sampled`](Self::next_event_sampled), [`hit`](Self::hit),
+///   [`sample_ray`](Self::sample_ray), [`ray_pdf`](Self::ray_pdf) and
+///   [`radiance`](Self::radiance) share the phase-space density of
 ///   the light and may be combined by multiple importance sampling.
 ///
 /// Light beyond the cut-off (the field `cutoff`, in beam radii, 4 by default) is dropped by
@@ -172,6 +176,31 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
         }
     }
 
+    /// Returns the light that a ray from `p` along the unit vector `wi` meets: the other technique
+    /// beside [`next_event_sampled`](Self::next_event_sampled).
+    ///
+    /// A material has drawn `wi` with the density `q`, per steradian. What it reflects of the light is
+    /// estimated by `f · |n·wi| · V · radiance / q`, which multiple importance sampling weighs by
+    /// `q / (q + pdf)`; the sampled event then has the weight `pdf / (pdf + q)`. The aperture is in
+    /// nobody's way: only a hit nearer than `distance` hides it.
+    ///
+    /// Returns `None` where [`next_event_sampled`](Self::next_event_sampled) does, for a ray that runs
+    /// with the light or along its aperture, and for one that meets no light.
+    fn hit(&self, p: [T; 3], wi: [T; 3]) -> Option<ApertureHit<T>> {
+        let frame = self.frame();
+        let local = frame.local_from_world_point(p);
+        self.lit_flow(local)?;
+        let slope = slope_of(frame.local_from_world_vector(towards_light(wi)))?;
+        let position = aperture_point(local, slope);
+        let hit = ApertureHit {
+            point: frame.world_from_aperture(position),
+            distance: local[2] * secant(slope),
+            radiance: radiance_of(self, position, slope),
+            pdf: self.slope_pdf(local, slope),
+        };
+        Some(hit).filter(|hit| hit.radiance > T::ZERO)
+    }
+
     /// Draws a ray that leaves the aperture.
     ///
     /// Every ray stands for the same power, so straight rays reproduce the irradiance at every
@@ -220,8 +249,7 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
         match slope_of(frame.local_from_world_vector(d)) {
             Some(slope) => {
                 let position = aperture_point(frame.local_from_world_point(o), slope);
-                let pdf = self.densities(position, slope);
-                self.power() * pdf.position_given_direction * pdf.direction * secant(slope)
+                radiance_of(self, position, slope)
             }
             None => T::ZERO,
         }
@@ -250,6 +278,29 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
         bounds
     }
 
+    /// Returns a bound of the power, in watts, that reaches the axis-aligned box from `min` to `max`,
+    /// whose coordinates are finite; 0 if the box is behind the aperture, beyond the cut-off or empty.
+    ///
+    /// A light hierarchy that holds surfaces in boxes visits no light whose bound is 0, and chooses
+    /// among the others by their bounds. All light within the cut-off counts that passes through the
+    /// box, were nothing in its way.
+    ///
+    /// # Validity
+    ///
+    /// Never less than the power. Of a box within the beam, as long as it is wide, the bound is less
+    /// than four times the power, plus what a box as wide that is turned into the axes of the light
+    /// receives more. It is worse for a box that is longer than the depth of focus and beside it.
+    fn power_bound(&self, min: [T; 3], max: [T; 3]) -> T {
+        match LocalBox::around(&self.frame(), min, max) {
+            Some(target) => {
+                let bound = self.power().wide() * self.fraction_bound(&target);
+                // Larger than any rounding on the way.
+                T::of(bound * (1.0 + 1e-6)).smaller(self.power())
+            }
+            None => T::ZERO,
+        }
+    }
+
     /// Writes the [`irradiance`](Self::irradiance) at the points `(x[i], y[i], z[i])` to `out[i]`.
     ///
     /// # Panics
@@ -272,6 +323,45 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
         check_lengths([x, y, z], lengths);
         self.run(Batch::NextEvents([x, y, z], out));
     }
+
+    /// Writes the [`next_event_sampled`](Self::next_event_sampled) at the points `p[i]` with the
+    /// uniforms `u[i]` to `out[i]`. Where no light arrives, all of it is 0.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `p.len() == u.len() == out.len()`.
+    fn next_event_sampled_batch(&self, p: &[[T; 3]], u: &[[T; 2]], out: &mut [SampledEvent<T>]) {
+        let (points, uniforms, events) = (p.len(), u.len(), out.len());
+        assert!(
+            points == uniforms && points == events,
+            "p, u and out must be of equal length, got {points}, {uniforms} and {events}",
+        );
+        for ((&p, &u), out) in p.iter().zip(u).zip(out) {
+            *out = self.next_event_sampled(p, u).unwrap_or(SampledEvent::DARK);
+        }
+    }
+
+    /// Writes the [`sample_ray`](Self::sample_ray) of the uniforms `u[i]` to `out[i]`.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `u.len() == out.len()`.
+    fn sample_ray_batch(&self, u: &[[T; 4]], out: &mut [RaySample<T>]) {
+        let (uniforms, rays) = (u.len(), out.len());
+        assert!(
+            uniforms == rays,
+            "u and out must be of equal length, got {uniforms} and {rays}",
+        );
+        for (&u, out) in u.iter().zip(out) {
+            *out = self.sample_ray(u);
+        }
+    }
+}
+
+/// Returns the radiance of a ray from a point of the aperture plane.
+fn radiance_of<T: Real>(light: &(impl Emitter<T> + ?Sized), position: [T; 2], slope: [T; 2]) -> T {
+    let pdf = light.densities(position, slope);
+    light.power() * pdf.position_given_direction * pdf.direction * secant(slope)
 }
 
 /// Panics unless all slices of a batch are of equal length.

@@ -1,10 +1,13 @@
 //! The laws of a laser line, whatever its profile along the fan.
 #![expect(unnameable_types, reason = "it belongs to a sealed trait")]
 
+use core::f64::consts::FRAC_PI_2;
+
 use super::emitter::Emitter;
 use super::frame::Frame;
 use super::line::LineLight;
 use super::phase_space::{Batch, Flow, PhaseSpace, Reach, SlopeSample};
+use super::power_bound::{LocalBox, ROUNDING, chance};
 use super::record::RayPdf;
 use crate::normal::{normal_density, standard_normal};
 use crate::profile::{SlopeDensity, SlopeProfile, Variable, secant};
@@ -186,6 +189,31 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         }
     }
 
+    /// The part of the fan that meets the box, times the part of its light across that does.
+    fn fraction_bound(&self, target: &LocalBox) -> f64 {
+        let line = self.line().wide();
+        let [near, far] = target.z.map(|z| z + line.apex_offset);
+        // Rays within the cut-off pass the apex at no more than this distance.
+        let source = line.cutoff * line.source_radius;
+        let turn = (source / near).min(1.0).asin();
+        let widest = self.profile().largest_slope(self.line().cutoff).wide();
+        let outwards = |x: f64| {
+            let slope = if x > 0.0 { x / near } else { x / far };
+            let angle = (slope.atan() + turn).min(FRAC_PI_2);
+            let slope = angle.tan().min(widest);
+            slope + 4.0 * T::HALF_SPACING * slope.abs()
+        };
+        let [low, high] = [-outwards(-target.x[0]), outwards(target.x[1])];
+        if low > high || high < -widest || low > widest {
+            return 0.0;
+        }
+        let along = self.profile().between(T::of(low), T::of(high)).wide() + ROUNDING;
+        let steepest = low.abs().max(high.abs());
+        let secants = [secant(low.max(-high).max(0.0)), secant(steepest)];
+        let dz = line.from_waist([near, far], secants, source * steepest);
+        along.min(1.0) * chance(&line.y, dz, target.y, line.cutoff)
+    }
+
     /// In double precision, because the squares of a slope next to infinity overflow.
     fn reach(&self, l: T) -> Reach<T> {
         let slope = self.profile().largest_slope(self.line().cutoff).wide();
@@ -249,6 +277,26 @@ impl<T: Real> Fan for LineLight<T> {
         } else {
             batch.over(self);
         }
+    }
+}
+
+impl LineLight<f64> {
+    /// Returns the range of the distances from the waist, along rays whose secants are in a range, at
+    /// distances from the plane of the apex that are in another, each ±`slack`.
+    fn from_waist(&self, [near, far]: [f64; 2], secants: [f64; 2], slack: f64) -> [f64; 2] {
+        let [near, far, slant] = if self.focus_on_plane > 0.0 {
+            [near - self.y.z0, far - self.y.z0, 0.0]
+        } else {
+            [near, far, self.y.z0]
+        };
+        let [narrow, wide] = secants;
+        let first = if near > 0.0 {
+            near * narrow
+        } else {
+            near * wide
+        };
+        let last = if far > 0.0 { far * wide } else { far * narrow };
+        [first - slant - slack, last - slant + slack]
     }
 }
 

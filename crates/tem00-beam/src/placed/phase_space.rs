@@ -2,6 +2,7 @@
 #![expect(unnameable_types, reason = "the trait is sealed")]
 
 use super::frame::Frame;
+use super::power_bound::LocalBox;
 use super::record::{NextEvent, NextEventSlices, RayPdf};
 use super::slope::{aperture_point, direction, secant, towards_light};
 use crate::real::Real;
@@ -30,6 +31,9 @@ pub trait PhaseSpace<T: Real> {
 
     /// Returns how far the light reaches up to the distance `l`.
     fn reach(&self, l: T) -> Reach<T>;
+
+    /// Returns a bound of the part of the power, within the cut-off, that reaches a box.
+    fn fraction_bound(&self, target: &LocalBox) -> f64;
 
     /// Answers a query at many points.
     fn run(&self, batch: Batch<'_, T>) {

@@ -45,6 +45,30 @@ pub struct SampledEvent<T> {
     pub pdf: T,
 }
 
+impl<T: Real> SampledEvent<T> {
+    pub(super) const DARK: Self = Self {
+        point: [T::ZERO; 3],
+        distance: T::ZERO,
+        wi: [T::ZERO; 3],
+        value: T::ZERO,
+        pdf: T::ZERO,
+    };
+}
+
+/// The light that a ray meets on its way to the aperture.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ApertureHit<T> {
+    /// Point of the aperture plane.
+    pub point: [T; 3],
+    /// Distance to `point`, in metres.
+    pub distance: T,
+    /// Radiance that arrives along the ray, in W/(m² sr).
+    pub radiance: T,
+    /// Probability density with which a sampled next event has this direction, per steradian.
+    pub pdf: T,
+}
+
 /// A ray that leaves the aperture.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]

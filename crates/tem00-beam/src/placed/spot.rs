@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::emitter::Emitter;
 use super::frame::{Frame, Placement};
 use super::phase_space::{Flow, PhaseSpace, Reach, SlopeSample};
+use super::power_bound::{LocalBox, chance};
 use super::record::RayPdf;
 use super::rows::{DEFAULT_CUTOFF, check_digits, checked_power, first_three, row, to_single};
 use super::slope::secant;
@@ -260,6 +261,15 @@ impl<T: Real> PhaseSpace<T> for SpotLight<T> {
                 self.slope_pdf([x, y, T::ZERO], slope)
             })
         }
+    }
+
+    fn fraction_bound(&self, target: &LocalBox) -> f64 {
+        let along = |axis: &Axis<T>, range: [f64; 2]| {
+            let axis = Axis::from_row(axis.to_row().map(T::wide));
+            let dz = target.z.map(|z| z - axis.z0);
+            chance(&axis, dz, range, self.cutoff.wide())
+        };
+        along(&self.x, target.x) * along(&self.y, target.y)
     }
 
     fn reach(&self, l: T) -> Reach<T> {

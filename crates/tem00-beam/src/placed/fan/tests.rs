@@ -333,6 +333,12 @@ fn check<T: Real>(
     }
     prop_assert!(valid(light.radiance(p, d)), "radiance");
     prop_assert!(valid(light.next_event_pdf(p, d)), "density");
+    if let Some(hit) = light.hit(p, d) {
+        prop_assert!(valid(hit.radiance) && valid(hit.pdf), "{:?}", hit);
+    }
+    let end = core::array::from_fn(|i| p[i] + T::of(10.0) * d[i].abs());
+    let bound = light.power_bound(p, end);
+    prop_assert!(valid(bound) && bound <= light.power(), "{:?}", bound);
     let pdf = light.ray_pdf(p, d);
     prop_assert!(densities(pdf).into_iter().all(valid), "{:?}", pdf);
     let ray = light.sample_ray(u);

@@ -1,0 +1,12 @@
+//! What renderers ask of a light, over all lights: densities of rays, rays that materials draw, power
+//! in boxes.
+//!
+//! All seeds are fixed.
+#![expect(clippy::expect_used, reason = "helpers of tests")]
+
+mod boxes;
+mod densities;
+mod hits;
+mod lights;
+#[path = "../lines/mod.rs"]
+mod lines;

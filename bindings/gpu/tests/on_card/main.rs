@@ -11,5 +11,7 @@ mod kernel;
 mod lights;
 mod look_up;
 mod motion;
+mod passes;
 mod patterns;
 mod phasors;
+mod stacks;

@@ -143,7 +143,7 @@ fn tem00_lattice_nearest(k: i32, period: u32) -> i32 {
     return i32(point) - select(0, i32(period), point >= period - point);
 }
 
-/// Returns `count` / `period` turns in units of 2⁻³², within two of them, for 0 ≤ count < period < 2²⁴.
+/// Returns `count` / `period` turns in units of 2⁻³², within two of them, for count < period ≤ 2²².
 fn tem00_turns(count: u32, period: u32) -> u32 {
     let unit = 0xffffffffu / period;
     let rest = 0u - unit * period;

@@ -40,6 +40,8 @@ fn patterns_of_the_planners_sizes_agree() {
         ([1_296, 400], 4.0),
         ([486, 250], 2.5),
         ([2_048, 2_048], 2.0),
+        ([32_768, 64], 2.0),
+        ([40, 24_000], 2.5),
     ] {
         let field = PupilField::from_speckle_size(size, speckle_size, 11).expect("a field");
         assert_agree(&gpu, &format!("{size:?}"), &field, [0.0; 2], 0.0);

@@ -116,6 +116,23 @@ fn magnitudes_have_the_logarithm_of_their_word() {
 }
 
 #[test]
+fn shares_of_a_turn_are_as_exact_as_their_units() {
+    let mut inputs = Vec::new();
+    for period in [1, 2, 3, 250, 2_048, 6_250, 24_000, 32_768, 3_999_971] {
+        inputs.extend((0..1_000).map(|i| [(i * 7_919_u32) % period, period]));
+        inputs.push([period - 1, period]);
+    }
+    let body = "let turns = tem00_turns(word(0), word(1));
+        output(0, f32(turns >> 16u)); output(1, f32(turns & 0xffffu));";
+    let halves: Vec<[f32; 2]> = on_card(body, &inputs);
+    for ([count, period], [high, low]) in inputs.into_iter().zip(halves) {
+        let got = 65_536.0 * f64::from(high) + f64::from(low);
+        let expected = f64::from(count) / f64::from(period) * 4_294_967_296.0;
+        assert!((got - expected).abs() < 2.0, "{count} of {period}: {got}");
+    }
+}
+
+#[test]
 fn lattices_close_about_their_origin() {
     let points = [0, 1, 5, 6, 11, 12, 13, -1, -6, -7, i32::MAX, i32::MIN];
     let inputs: Vec<_> = points

@@ -59,7 +59,6 @@ struct Scene {
     position: [Vec<f64>; 3],
     normal: [Vec<f64>; 3],
     motion: [Vec<f64>; 3],
-    pixel: [Vec<f64>; 3],
     curvature: [Vec<f64>; 6],
 }
 
@@ -88,7 +87,6 @@ impl Scene {
             position,
             normal: vectors(DVec3::Z, 0.8),
             motion: vectors(DVec3::new(0.3e-3, 0.0, 5e-3), 1e-3),
-            pixel: vectors(DVec3::splat(500.0), 1_000.0),
             curvature,
         }
     }
@@ -98,7 +96,6 @@ impl Scene {
             position: slices(&self.position),
             normal: slices(&self.normal),
             motion: slices(&self.motion),
-            pixel: slices(&self.pixel),
             light,
         }
     }
@@ -116,6 +113,13 @@ fn output(out: &mut [Vec<f64>; 7]) -> FieldSlices<'_> {
         correlation: e,
         pattern_coordinate: [f, g],
     }
+}
+
+/// The tangents of the angle at which the camera sees a point, to the right and up.
+fn tangents(setup: &FieldSetup, position: DVec3) -> DVec2 {
+    let (camera, to_pupil) = (setup.camera, setup.pupil_centre - position);
+    let across = DVec2::new(to_pupil.dot(camera.right()), to_pupil.dot(camera.up()));
+    across / -to_pupil.dot(camera.towards_camera())
 }
 
 /// The same results from one call after another.
@@ -145,9 +149,10 @@ fn by_calls(
     };
     let point = point.expect("a valid point");
     let speckle = SpeckleMotion::new(&setup.geometry, &point, &motion, setup.orientation);
+    let scale = setup.geometry.principal_distance() / setup.geometry.pixel_pitch();
     let pattern = setup.geometry.pattern_coordinate(
-        DVec2::new(points.pixel[0][i], points.pixel[1][i]),
-        speckle.image_displacement,
+        tangents(setup, position) * scale,
+        speckle.defocus_displacement,
         setup.pattern_speckle_size,
     );
     [pattern.x, pattern.y, speckle.correlation]
@@ -161,7 +166,7 @@ fn plain_loop(setup: &FieldSetup, points: &FieldPoints<'_>, out: &mut [Vec<f64>;
         setup.camera.up(),
         setup.camera.towards_camera(),
     );
-    for i in 0..points.pixel[0].len() {
+    for i in 0..points.position[0].len() {
         let to_pupil = setup.pupil_centre - vector(&points.position, i);
         let a = vector(&points.motion, i);
         let depth = to_pupil.dot(b3);
@@ -181,16 +186,15 @@ fn plain_loop(setup: &FieldSetup, points: &FieldPoints<'_>, out: &mut [Vec<f64>;
         let sinc = if z == 0.0 { 1.0 } else { z.sin() / z };
         let (h_p, h) = (setup.pattern_speckle_size, geometry.speckle_size());
         let amplitude = overlap * sinc.abs();
-        let pattern =
-            |pixel: f64, moved| pixel * h_p / geometry.speckle_size_in_pixels() - moved * h_p / h;
+        let image = tangents(setup, vector(&points.position, i)) * geometry.pupil_to_image();
         let results = [
             speckle[0],
             speckle[1],
             x,
             y,
             amplitude * amplitude,
-            pattern(points.pixel[0][i], speckle[0]),
-            pattern(points.pixel[1][i], speckle[1]),
+            (image.x - x * beside) * h_p / h,
+            (image.y - y * beside) * h_p / h,
         ];
         for (column, result) in out.iter_mut().zip(results) {
             column[i] = result;

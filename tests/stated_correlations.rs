@@ -62,7 +62,6 @@ fn correlations_of_motions<const N: usize>(motions: [f64; N]) -> [f64; N] {
             position: [&zero; 3],
             normal: [&zero, &zero, &one],
             motion: [&motions, &zero, &zero],
-            pixel: [&zero; 2],
             light: FieldLight::Collimated,
         },
         FieldSlices {

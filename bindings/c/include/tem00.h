@@ -1185,10 +1185,6 @@ typedef struct {
      */
     const double *motion[3];
     /**
-     * Positions of the pixels in the image, to the right and upwards, in pixels.
-     */
-    const double *pixel[2];
-    /**
      * The light on the points: a `tem00_field_light`.
      */
     uint32_t light;
@@ -1220,7 +1216,9 @@ typedef struct {
      */
     double *correlation;
     /**
-     * Coordinates at which to look the pattern up, in pattern samples and not wrapped.
+     * Coordinates at which to look the pattern up, in pattern samples from the optical axis, to the
+     * right and upwards, not wrapped: at the images of the points in the reference state, less what
+     * their speckle moves beside them out of focus. 0 out of sight.
      */
     double *pattern_coordinate[2];
 } tem00_field_results;

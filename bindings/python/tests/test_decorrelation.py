@@ -268,10 +268,9 @@ def test_a_field_is_the_motion_of_each_of_its_points() -> None:
     motion = random.uniform(-1e-4, 1e-4, (3, count))
     normal = (0.1, -0.2, 1.0)
     light = dc.FieldLight.point_source(bench.source)
-    pixel = random.uniform(0, 500, (2, count))
     shared = dc.Motion(camera=[1e-5, 0, 0], source=[0, 2e-5, 0])
     whole = field().with_shared_motion(shared).evaluate(
-        position=position, normal=normal, motion=motion, pixel=pixel, light=light
+        position=position, normal=normal, motion=motion, light=light
     )
     for i in range(count):
         point = position[:, i]
@@ -293,9 +292,10 @@ def test_a_field_is_the_motion_of_each_of_its_points() -> None:
         along = one.axial_displacement / CAMERA.axial_decorrelation_length_at(depth)
         product = dc.correlation(across, along)
         assert math.isclose(correlation, product, rel_tol=1e-9, abs_tol=1e-12)
-        x, y = CAMERA.pattern_coordinate(
-            (float(pixel[0, i]), float(pixel[1, i])), (float(at[0]), float(at[1])), 4.0
-        )
+        scale = CAMERA.principal_distance / CAMERA.pixel_pitch / depth
+        pixel = [float(scale * np.dot(point - bench.eye, axis))
+                 for axis in (bench.frame.right, bench.frame.up)]
+        x, y = CAMERA.pattern_coordinate(pixel, one.defocus_displacement, 4.0)
         np.testing.assert_allclose(np.array(whole.pattern_coordinate)[:, i], [x, y], rtol=1e-12)
 
 
@@ -306,7 +306,6 @@ def test_light_of_any_curvature_is_taken_as_six_components() -> None:
     common = {
         "normal": (0.0, 0.0, 1.0),
         "motion": (1e-5, 0.0, 2e-5),
-        "pixel": (0.0, 0.0),
     }
     to_source = bench.source - np.stack([x, zero, zero], axis=-1)
     distance = np.linalg.norm(to_source, axis=-1)[..., None, None]
@@ -331,9 +330,9 @@ def test_a_point_behind_the_camera_is_decorrelated() -> None:
         position=(0.0, 0.0, 5.0),
         normal=(0.0, 0.0, 1.0),
         motion=(1e-6, 0.0, 0.0),
-        pixel=(0.0, 0.0),
         light=dc.FieldLight.collimated(),
     )
+    assert result.pattern_coordinate == (0.0, 0.0)
     assert result.correlation == 0.0
     assert result.pupil_displacement == (math.inf, math.inf)
 

@@ -28,8 +28,8 @@ pub struct FieldSetup {
 /// Changes of the speckle by motions at many surface points, such as those behind the pixels of an
 /// image.
 ///
-/// It is [`SpeckleMotion`](crate::SpeckleMotion) for slices, with the coordinate of the look-up in the
-/// pattern added: everything that the points share is worked out once, and the loop over them needs no
+/// It is [`SpeckleMotion`](crate::SpeckleMotion) for slices, from world points to the coordinate of the
+/// look-up in the pattern: everything that the points share is worked out once, and the loop over them needs no
 /// more than arithmetic and square roots. A stack of patterns turns the correlation into a coordinate
 /// along its own path. The results of a point do not depend, to the last bit, on the
 /// points around it. They differ from those of [`SpeckleMotion::new`](crate::SpeckleMotion::new) by
@@ -61,7 +61,7 @@ pub struct FieldSetup {
 ///
 /// ```
 /// use tem00_decorrelation::{
-///     CameraFrame, DVec3, FieldLight, FieldPoints, FieldSetup, FieldSlices, ImageOrientation,
+///     CameraFrame, DVec2, DVec3, FieldLight, FieldPoints, FieldSetup, FieldSlices, ImageOrientation,
 ///     ImagingGeometry, LensData, MotionField,
 /// };
 ///
@@ -85,7 +85,6 @@ pub struct FieldSetup {
 ///     position: [&[0.0, 1e-3], &zero, &zero],
 ///     normal: [&zero, &zero, &one],
 ///     motion: [&[0.0, 0.25e-3], &zero, &zero],
-///     pixel: [&[0.0, 26.35], &zero],
 ///     light: FieldLight::Collimated,
 /// };
 /// let mut out = [[0.0; 2]; 7];
@@ -100,6 +99,8 @@ pub struct FieldSetup {
 /// assert_eq!(correlation[0], 1.0);
 /// assert!((speckle_x[1] / 3.45e-6 - 6.588).abs() < 1e-3);
 /// assert!((correlation[1] - 0.807).abs() < 1e-3);
+/// // In focus the pattern moves with the point: it is looked up at the image that the point had.
+/// assert_eq!(Some(DVec2::new(pattern_x[1], pattern_y[1])), field.pattern_coordinate(DVec3::X * 1e-3));
 /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,7 +114,6 @@ pub struct MotionField {
     per_pupil_diameter: f64,
     /// The axial decorrelation length at a depth of 1 m, inverted: 1/(8 λ (1 m/D)²), in 1/m.
     per_axial_length: f64,
-    samples_per_pixel: f64,
     samples_per_metre: f64,
     /// Added to the `motion` of the points to give `a − c` and `a − s`.
     seen: DVec3,
@@ -164,7 +164,6 @@ impl MotionField {
             per_surface_to_pupil: 1.0 / geometry.surface_to_pupil(),
             per_pupil_diameter: 1.0 / geometry.pupil_diameter(),
             per_axial_length: 1.0 / geometry.axial_decorrelation_length_at(1.0),
-            samples_per_pixel: pattern_speckle_size / geometry.speckle_size_in_pixels(),
             samples_per_metre: pattern_speckle_size / geometry.speckle_size(),
             seen: DVec3::ZERO,
             within_illumination: DVec3::ZERO,
@@ -172,7 +171,6 @@ impl MotionField {
         let scales = [
             field.per_pupil_diameter,
             field.per_axial_length,
-            field.samples_per_pixel,
             field.samples_per_metre,
         ];
         match scales.into_iter().find(|scale| *scale > LARGEST_SCALE) {

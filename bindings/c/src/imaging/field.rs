@@ -48,8 +48,6 @@ pub struct FieldPoints {
     pub normal: [*const f64; 3],
     /// Translations x, y, z of the surface since the reference state, in metres.
     pub motion: [*const f64; 3],
-    /// Positions of the pixels in the image, to the right and upwards, in pixels.
-    pub pixel: [*const f64; 2],
     /// The light on the points: a `tem00_field_light`.
     pub light: u32,
     /// The point source in world coordinates, in metres; not read for other lights.
@@ -69,7 +67,9 @@ pub struct FieldResults {
     /// Correlation of intensity with the pattern before, in [0, 1]; for
     /// `tem00_stack_coordinate_of`.
     pub correlation: *mut f64,
-    /// Coordinates at which to look the pattern up, in pattern samples and not wrapped.
+    /// Coordinates at which to look the pattern up, in pattern samples from the optical axis, to the
+    /// right and upwards, not wrapped: at the images of the points in the reference state, less what
+    /// their speckle moves beside them out of focus. 0 out of sight.
     pub pattern_coordinate: [*mut f64; 2],
 }
 
@@ -90,7 +90,7 @@ impl FieldSetup {
     }
 }
 
-const INPUTS: [&str; 17] = [
+const INPUTS: [&str; 15] = [
     "position",
     "position",
     "position",
@@ -100,8 +100,6 @@ const INPUTS: [&str; 17] = [
     "motion",
     "motion",
     "motion",
-    "pixel",
-    "pixel",
     "curvature",
     "curvature",
     "curvature",
@@ -112,18 +110,15 @@ const INPUTS: [&str; 17] = [
 
 impl FieldPoints {
     /// The columns in order; those of the curvature repeat others where the light needs none.
-    fn columns(&self, light: FieldLight) -> [Named<*const f64>; 17] {
+    fn columns(&self, light: FieldLight) -> [Named<*const f64>; 15] {
         let [px, py, pz] = self.position;
         let [nx, ny, nz] = self.normal;
         let [ax, ay, az] = self.motion;
-        let [tx, ty] = self.pixel;
         let [xx, xy, xz, yy, yz, zz] = match light {
             FieldLight::Curvature => self.curvature,
             FieldLight::Collimated | FieldLight::PointSource => [px; 6],
         };
-        let pointers = [
-            px, py, pz, nx, ny, nz, ax, ay, az, tx, ty, xx, xy, xz, yy, yz, zz,
-        ];
+        let pointers = [px, py, pz, nx, ny, nz, ax, ay, az, xx, xy, xz, yy, yz, zz];
         core::array::from_fn(|i| (INPUTS[i], pointers[i]))
     }
 
@@ -144,33 +139,14 @@ impl FieldPoints {
     fn borrowed<'a>(
         &self,
         light: FieldLight,
-        columns: [&'a [f64]; 17],
+        columns: [&'a [f64]; 15],
     ) -> tem00_decorrelation::FieldPoints<'a> {
         use tem00_decorrelation::FieldLight as L;
-        let [
-            px,
-            py,
-            pz,
-            nx,
-            ny,
-            nz,
-            ax,
-            ay,
-            az,
-            tx,
-            ty,
-            xx,
-            xy,
-            xz,
-            yy,
-            yz,
-            zz,
-        ] = columns;
+        let [px, py, pz, nx, ny, nz, ax, ay, az, xx, xy, xz, yy, yz, zz] = columns;
         tem00_decorrelation::FieldPoints {
             position: [px, py, pz],
             normal: [nx, ny, nz],
             motion: [ax, ay, az],
-            pixel: [tx, ty],
             light: match light {
                 FieldLight::Collimated => L::Collimated,
                 FieldLight::PointSource => L::PointSource(DVec3::from_array(self.source)),

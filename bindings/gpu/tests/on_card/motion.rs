@@ -372,7 +372,6 @@ fn in_field(field: &MotionField, input: &Input) -> [f64; 7] {
         position: [&px, &py, &pz],
         normal: normal.each_ref().map(|x| x.as_slice()),
         motion: motion.each_ref().map(|x| x.as_slice()),
-        pixel: [&[0.0], &[0.0]],
         light: match input[29] {
             0.0 => FieldLight::Collimated,
             1.0 => FieldLight::PointSource(position + vector(input, 30)),

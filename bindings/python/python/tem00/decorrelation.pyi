@@ -336,7 +336,6 @@ class MotionField:
         position: Triple,
         normal: Triple,
         motion: Triple,
-        pixel: Pair,
         light: FieldLight,
     ) -> FieldSlices: ...
     @property

@@ -180,6 +180,9 @@ impl FieldSlices {
     }
 
     /// Coordinates at which to look the pattern up, in pattern samples and not wrapped.
+    ///
+    /// They are those of the images of the points in the reference state from the optical axis, less what
+    /// their speckle moves beside them out of focus; 0 out of sight.
     #[getter]
     fn pattern_coordinate(&self, py: Python<'_>) -> (Field, Field) {
         self.pair(py, 5)
@@ -232,8 +235,6 @@ impl MotionField {
     ///     Surface normals of any length, to either side.
     /// motion : three floats or arrays
     ///     Translations of the surface since the reference state, in metres.
-    /// pixel : two floats or arrays
-    ///     Positions in the image in pixels, along b1 and b2.
     /// light : FieldLight
     ///     The light on the points.
     ///
@@ -241,26 +242,22 @@ impl MotionField {
     /// -------
     /// FieldSlices
     ///     The results, in the common shape.
-    #[pyo3(signature = (*, position, normal, motion, pixel, light))]
+    #[pyo3(signature = (*, position, normal, motion, light))]
     fn evaluate<'py>(
         &self,
         py: Python<'py>,
         position: [Numbers<'py>; 3],
         normal: [Numbers<'py>; 3],
         motion: [Numbers<'py>; 3],
-        pixel: [Numbers<'py>; 2],
         light: PyRef<'py, FieldLight>,
     ) -> PyResult<FieldSlices> {
         let points = [&position, &normal, &motion];
         let results = match &light.0 {
-            Light::Collimated => self.run(py, points, &pixel, physics::FieldLight::Collimated),
-            Light::PointSource(source) => self.run(
-                py,
-                points,
-                &pixel,
-                physics::FieldLight::PointSource(*source),
-            ),
-            Light::Curvature(tensor) => self.run_curved(py, points, &pixel, tensor),
+            Light::Collimated => self.run(py, points, physics::FieldLight::Collimated),
+            Light::PointSource(source) => {
+                self.run(py, points, physics::FieldLight::PointSource(*source))
+            }
+            Light::Curvature(tensor) => self.run_curved(py, points, tensor),
         };
         Ok(FieldSlices(results?.map(Bound::unbind)))
     }
@@ -286,18 +283,15 @@ impl MotionField {
         &self,
         py: Python<'py>,
         points: [&[Numbers<'py>; 3]; 3],
-        pixel: &[Numbers<'py>; 2],
         light: physics::FieldLight<'static>,
     ) -> PyResult<Results<'py>> {
-        let [p, n, a] = points;
-        let named: [Named<'_, 'py>; 11] = named_points([p, n, a], pixel);
+        let named: [Named<'_, 'py>; 9] = named_points(points);
         fill(py, named, |columns, out| {
-            let [px, py, pz, nx, ny, nz, ax, ay, az, tx, ty] = columns;
+            let [px, py, pz, nx, ny, nz, ax, ay, az] = columns;
             let points = physics::FieldPoints {
                 position: [px, py, pz],
                 normal: [nx, ny, nz],
                 motion: [ax, ay, az],
-                pixel: [tx, ty],
                 light,
             };
             self.field.evaluate(&points, slices(out));
@@ -309,43 +303,23 @@ impl MotionField {
         &self,
         py: Python<'py>,
         points: [&[Numbers<'py>; 3]; 3],
-        pixel: &[Numbers<'py>; 2],
         tensor: &[Py<PyAny>; 6],
     ) -> PyResult<Results<'py>> {
         let tensor: Vec<Numbers<'py>> = tensor
             .iter()
             .map(|component| component.bind(py).extract())
             .collect::<PyResult<_>>()?;
-        let mut named: [Named<'_, 'py>; 17] = [("curvature", &tensor[0]); 17];
-        named[..11].copy_from_slice(&named_points(points, pixel));
-        for (named, component) in named[11..].iter_mut().zip(&tensor) {
+        let mut named: [Named<'_, 'py>; 15] = [("curvature", &tensor[0]); 15];
+        named[..9].copy_from_slice(&named_points(points));
+        for (named, component) in named[9..].iter_mut().zip(&tensor) {
             named.1 = component;
         }
         fill(py, named, |columns, out| {
-            let [
-                px,
-                py,
-                pz,
-                nx,
-                ny,
-                nz,
-                ax,
-                ay,
-                az,
-                tx,
-                ty,
-                xx,
-                xy,
-                xz,
-                yy,
-                yz,
-                zz,
-            ] = columns;
+            let [px, py, pz, nx, ny, nz, ax, ay, az, xx, xy, xz, yy, yz, zz] = columns;
             let points = physics::FieldPoints {
                 position: [px, py, pz],
                 normal: [nx, ny, nz],
                 motion: [ax, ay, az],
-                pixel: [tx, ty],
                 light: physics::FieldLight::Curvature([xx, xy, xz, yy, yz, zz]),
             };
             self.field.evaluate(&points, slices(out));
@@ -356,10 +330,8 @@ impl MotionField {
 /// The components of points with their names, in order.
 fn named_points<'a, 'py>(
     [position, normal, motion]: [&'a [Numbers<'py>; 3]; 3],
-    pixel: &'a [Numbers<'py>; 2],
-) -> [Named<'a, 'py>; 11] {
-    let [[px, py, pz], [nx, ny, nz]] = [position, normal];
-    let ([ax, ay, az], [tx, ty]) = (motion, pixel);
+) -> [Named<'a, 'py>; 9] {
+    let [[px, py, pz], [nx, ny, nz], [ax, ay, az]] = [position, normal, motion];
     [
         ("position", px),
         ("position", py),
@@ -370,8 +342,6 @@ fn named_points<'a, 'py>(
         ("motion", ax),
         ("motion", ay),
         ("motion", az),
-        ("pixel", tx),
-        ("pixel", ty),
     ]
 }
 

@@ -13,12 +13,11 @@ const BLOCK: usize = 32;
 /// The columns of a block of points.
 type Block<const COLUMNS: usize> = [[f64; BLOCK]; COLUMNS];
 
-/// A surface point, its motion and its pixel.
+/// A surface point, its motion and its light.
 pub(super) struct Point {
     position: DVec3,
     normal: DVec3,
     motion: DVec3,
-    pixel: DVec2,
     /// The components of K: xx, xy, xz, and yy, yz, zz.
     curvature: [DVec3; 2],
 }
@@ -26,30 +25,11 @@ pub(super) struct Point {
 impl Point {
     #[inline(always)]
     fn of(block: &Block<INPUTS>, i: usize) -> Self {
-        let [
-            px,
-            py,
-            pz,
-            nx,
-            ny,
-            nz,
-            ax,
-            ay,
-            az,
-            x,
-            y,
-            xx,
-            xy,
-            xz,
-            yy,
-            yz,
-            zz,
-        ] = block;
+        let [px, py, pz, nx, ny, nz, ax, ay, az, xx, xy, xz, yy, yz, zz] = block;
         Self {
             position: DVec3::new(px[i], py[i], pz[i]),
             normal: DVec3::new(nx[i], ny[i], nz[i]),
             motion: DVec3::new(ax[i], ay[i], az[i]),
-            pixel: DVec2::new(x[i], y[i]),
             curvature: [
                 DVec3::new(xx[i], xy[i], xz[i]),
                 DVec3::new(yy[i], yz[i], zz[i]),
@@ -175,7 +155,10 @@ impl MotionField {
         let motion = self.in_camera(point.motion + self.seen);
         let seen = sight.project(motion);
         let image = seen * (self.signed_principal_distance * sight.per_depth);
-        let visible = (sight.depth > GRAZING_COSINE * distance_squared.sqrt()) & is_finite(image);
+        let reference = self.image_at(&sight);
+        let visible = (sight.depth > GRAZING_COSINE * distance_squared.sqrt())
+            & is_finite(image)
+            & is_finite(reference);
 
         let (mut pupil, mut known) = (seen, visible);
         if let Some(turn) = turn(point, point.motion + self.within_illumination) {
@@ -195,14 +178,32 @@ impl MotionField {
         let axial = motion.z * (sight.per_depth * sight.per_depth) * self.per_axial_length;
         let left = select(known, correlation(shift, axial), 0.0);
         let image = either(visible, image, DVec2::ZERO);
-        let speckle = image + either(known, beside, DVec2::ZERO);
+        let beside = either(known, beside, DVec2::ZERO);
         Outcome {
-            speckle_displacement: speckle,
+            speckle_displacement: image + beside,
             pupil_displacement: either(known, pupil, DVec2::INFINITY),
             correlation: left,
-            pattern_coordinate: point.pixel * self.samples_per_pixel
-                - speckle * self.samples_per_metre,
+            pattern_coordinate: (either(visible, reference, DVec2::ZERO) - beside)
+                * self.samples_per_metre,
         }
+    }
+
+    /// The image of a point, in metres from the optical axis.
+    #[inline(always)]
+    fn image_at(&self, sight: &Sight) -> DVec2 {
+        sight.slope * -self.signed_principal_distance
+    }
+
+    /// Returns where to look up the pattern of a point at rest, in pattern samples from the optical axis:
+    /// at its image, or `None` if the camera cannot see it.
+    ///
+    /// It is what [`evaluate`](Self::evaluate) returns for a point that has not moved.
+    pub fn pattern_coordinate(&self, position: DVec3) -> Option<DVec2> {
+        let to_pupil = self.setup.pupil_centre - position;
+        let sight = Sight::new(self.in_camera(to_pupil));
+        let coordinate = self.image_at(&sight) * self.samples_per_metre;
+        let visible = sight.depth > GRAZING_COSINE * to_pupil.length();
+        (visible && coordinate.is_finite()).then_some(coordinate)
     }
 
     /// Returns the components of a vector along b1, b2 and b3.

@@ -11,8 +11,6 @@ pub struct FieldPoints<'a> {
     pub normal: [&'a [f64]; 3],
     /// Translations x, y, z of the surface since the reference state, in metres.
     pub motion: [&'a [f64]; 3],
-    /// Positions of the pixels in the image x, y, in pixels, along b1 and b2 like the displacement.
-    pub pixel: [&'a [f64]; 2],
     /// The light on the points.
     pub light: FieldLight<'a>,
 }
@@ -44,13 +42,14 @@ pub struct FieldSlices<'a> {
     /// [`correlation`](crate::correlation). A stack looks it up at the coordinate where its own path has
     /// that correlation to the first slice.
     pub correlation: &'a mut [f64],
-    /// Position at which to look the pattern up, in pattern samples and not wrapped:
-    /// [`pattern_coordinate`](crate::ImagingGeometry::pattern_coordinate).
+    /// Position at which to look the pattern up, in pattern samples from the optical axis and not
+    /// wrapped: the image of the point in the reference state, less what its speckle moves beside the
+    /// image out of focus. 0 for a point that the camera cannot see.
     pub pattern_coordinate: [&'a mut [f64]; 2],
 }
 
-/// Slices that a point is read from: position, normal, motion, pixel, curvature.
-pub(super) const INPUTS: usize = 17;
+/// Slices that a point is read from: position, normal, motion, curvature.
+pub(super) const INPUTS: usize = 15;
 /// Slices that a result is written to, in the order of [`FieldSlices`].
 pub(super) const OUTPUTS: usize = 7;
 
@@ -60,14 +59,11 @@ impl<'a> FieldPoints<'a> {
         let [px, py, pz] = self.position;
         let [nx, ny, nz] = self.normal;
         let [ax, ay, az] = self.motion;
-        let [tx, ty] = self.pixel;
         let [xx, xy, xz, yy, yz, zz] = match self.light {
             FieldLight::Curvature(tensor) => tensor,
             FieldLight::Collimated | FieldLight::PointSource(_) => [[].as_slice(); 6],
         };
-        [
-            px, py, pz, nx, ny, nz, ax, ay, az, tx, ty, xx, xy, xz, yy, yz, zz,
-        ]
+        [px, py, pz, nx, ny, nz, ax, ay, az, xx, xy, xz, yy, yz, zz]
     }
 
     /// Returns how many of the [`columns`](Self::columns) there are.

@@ -73,6 +73,12 @@ void lights() {
     const tem00::vec3 wi = {drawn->wi[0], drawn->wi[1], drawn->wi[2]};
     const double pdf = light.next_event_pdf({0, 0, 0}, wi);
     expect(std::abs(pdf / drawn->pdf - 1) < 1e-9, "a sampled event has its density");
+    const auto hit = light.hit({0, 0, 0}, wi);
+    expect(hit && std::abs(hit->radiance / (drawn->value * hit->pdf) - 1) < 1e-9,
+           "a ray towards the light hits it");
+    expect(!light.hit({0, 0, 0}, {0, 0, -1}), "a ray away from the light misses it");
+    expect(light.power_bound({-1, -1, -1}, {1, 1, 0}) == light.describe().power,
+           "a large box has all of the power");
 
     const auto ray = light.sample_ray({0.2, 0.4, 0.6, 0.8});
     const tem00::vec3 origin = {ray.origin[0], ray.origin[1], ray.origin[2]};

@@ -596,6 +596,50 @@ typedef struct {
 } tem00_bounds;
 
 /**
+ * What a light was made with.
+ */
+typedef struct {
+    /**
+     * Centre of the aperture, in metres.
+     */
+    double origin[3];
+    /**
+     * Power, in watts.
+     */
+    double power;
+    /**
+     * Unit vector along the direction of travel.
+     */
+    double axis[3];
+    /**
+     * Wavelength in the medium, in metres.
+     */
+    double wavelength;
+} tem00_light_info;
+
+/**
+ * The light that a ray meets on its way to the aperture; all 0 if it meets none.
+ */
+typedef struct {
+    /**
+     * Point of the aperture plane, in metres.
+     */
+    double point[3];
+    /**
+     * Distance to that point, in metres.
+     */
+    double distance;
+    /**
+     * Radiance that arrives along the ray, in W/(m² sr).
+     */
+    double radiance;
+    /**
+     * Probability density with which a sampled next event has this direction, per steradian.
+     */
+    double pdf;
+} tem00_aperture_hit;
+
+/**
  * Destination of the next events at many points: pointers to as many numbers as there are points.
  *
  * The point of the aperture plane is p + distance * wi.
@@ -1412,6 +1456,41 @@ tem00_status tem00_light_radiance(const tem00_light *light,
  * The pointers are null or valid.
  */
 tem00_status tem00_light_bounds(const tem00_light *light, double distance, tem00_bounds *bounds);
+
+/**
+ * Tells what a light was made with.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_describe(const tem00_light *light, tem00_light_info *info);
+
+/**
+ * Finds the light that a ray from `point` along `wi` meets, for a direction that a material has drawn:
+ * the other technique beside `tem00_light_next_event_sampled`.
+ *
+ * A direction of the density q, per steradian, has the weight q / (q + `pdf`) of the balance
+ * heuristic. Only what is nearer than `distance` hides the light. Where the ray meets none, all of
+ * `hit` is 0. `point` and `wi`, of any length but 0, hold x, y, z.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_hit(const tem00_light *light,
+                             const double *point,
+                             const double *wi,
+                             tem00_aperture_hit *hit);
+
+/**
+ * Computes a bound of the power, in watts, that reaches the box from `min` to `max`, for a hierarchy
+ * of lights: 0 if the box is behind the aperture, beyond the cut-off or empty.
+ *
+ * `min` and `max` hold x, y, z in metres.
+ *
+ * The pointers are null or valid.
+ */
+tem00_status tem00_light_power_bound(const tem00_light *light,
+                                     const double *min,
+                                     const double *max,
+                                     double *bound);
 
 /**
  * Computes the irradiances, in W/m², of planes through `count` points at right angles to the axis:

@@ -132,6 +132,27 @@ public:
         return radiance;
     }
 
+    /** The light that a ray from `point` along `wi` meets; nothing where it meets none. */
+    std::optional<tem00_aperture_hit> hit(const vec3 &point, const vec3 &wi) const {
+        tem00_aperture_hit hit;
+        check(tem00_light_hit(get(), point.data(), wi.data(), &hit));
+        return hit.radiance > 0 ? std::optional(hit) : std::nullopt;
+    }
+
+    /** Bound of the power, in watts, that reaches a box. */
+    double power_bound(const vec3 &min, const vec3 &max) const {
+        double bound = 0;
+        check(tem00_light_power_bound(get(), min.data(), max.data(), &bound));
+        return bound;
+    }
+
+    /** What the light was made with. */
+    tem00_light_info describe() const {
+        tem00_light_info info;
+        check(tem00_light_describe(get(), &info));
+        return info;
+    }
+
     /** Bounds from the aperture to `distance`, in metres, along the axis. */
     tem00_bounds bounds(double distance) const {
         tem00_bounds bounds;

@@ -8,6 +8,8 @@ mod description;
 
 mod queries;
 
+mod targets;
+
 mod batch;
 
 mod plain;
@@ -16,6 +18,7 @@ pub use batch::*;
 pub use description::*;
 pub use plain::*;
 pub use queries::*;
+pub use targets::*;
 
 use tem00_beam::{
     AngularKnot, AngularProfile, AstigmaticLight, BeamError, Emitter, LineLight, Real, SpotLight,

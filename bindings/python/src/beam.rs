@@ -49,6 +49,6 @@ pub(crate) mod beam {
         located::LocatedBeam,
         placement::{Axis, Ellipse, Placement},
         profile::{AngularProfile, LineProfile},
-        records::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
+        records::{ApertureHit, Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
     };
 }

@@ -90,6 +90,10 @@ def test_extreme_points_of_lights_give_numbers_or_an_error(profile: str) -> None
         results = [event.wi, event.e_perp, event.point, drawn.wi, drawn.value, drawn.pdf]
         results += [ray.origin, ray.direction, light.radiance(x, y, z, d)]
         results += [light.ray_pdf(x, y, z, d).position]
+        hit = light.hit(x, y, z, -d)
+        assert hit is not None
+        corners = np.stack((x, y, z), axis=-1)
+        results += [hit.radiance, hit.pdf, light.power_bound(corners, corners[::-1])]
         assert all(np.isfinite(np.asarray(result)).all() for result in results)
         for reach in values:
             assert np.isfinite(light.bounds(reach).max).all()

@@ -245,6 +245,34 @@ def test_single_points_have_the_bits_of_arrays(name: str) -> None:
             assert np.array_equal(getattr(drawn, member), getattr(sampled, member)[i]), member
 
 
+@lights
+def test_rays_towards_the_light_hit_it(name: str) -> None:
+    light = LIGHTS[name]
+    x, y, z = (float(c) for c in lit_points(light, 1)[0])
+    drawn = light.next_event_sampled(x, y, z, np.random.default_rng(9).random((100, 2)))
+    assert drawn is not None
+    hit = light.hit(x, y, z, drawn.wi)
+    assert hit is not None
+    np.testing.assert_allclose(hit.pdf, drawn.pdf, rtol=1e-7)
+    np.testing.assert_allclose(hit.radiance, np.asarray(drawn.value) * drawn.pdf, rtol=1e-7)
+    np.testing.assert_allclose(hit.point, drawn.point, rtol=0, atol=1e-15)
+    assert light.hit(x, y, z, -drawn.wi[0]) is None
+    away = light.hit(x, y, z, -drawn.wi)
+    assert away is not None and not np.any(away.radiance)
+
+
+@lights
+def test_a_box_has_all_of_the_power_or_some_or_none(name: str) -> None:
+    light = LIGHTS[name]
+    point = np.array(lit_points(light, 1)[0])
+    behind = light.origin - 0.1 * light.ez
+    centres = np.array([point, point, behind])
+    sides = np.array([[10.0], [1e-6], [1e-6]])
+    whole, some, none = np.asarray(light.power_bound(centres - sides, centres + sides))
+    assert none == 0 < some < whole <= POWER == light.power
+    np.testing.assert_allclose(whole, POWER, rtol=1e-5)
+
+
 def test_rows_are_the_fields_in_the_order_of_memory() -> None:
     light = elliptic()
     rows = light.to_rows()

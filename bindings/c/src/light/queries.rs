@@ -102,7 +102,7 @@ pub struct Bounds {
 /// # Safety
 ///
 /// The pointers are null or valid, `point` for three numbers.
-unsafe fn ask_at<R>(
+pub(super) unsafe fn ask_at<R>(
     light: *const Light,
     point: (&'static str, *const f64),
     answer: (&'static str, *mut R),
@@ -123,7 +123,7 @@ unsafe fn ask_at<R>(
 /// # Safety
 ///
 /// The pointer is null or valid for three numbers.
-unsafe fn read_direction(name: &str, pointer: *const f64) -> Result<[f64; 3], Failure> {
+pub(super) unsafe fn read_direction(name: &str, pointer: *const f64) -> Result<[f64; 3], Failure> {
     // SAFETY: by the contract of this function.
     unit_vector(name, unsafe { read(name, pointer) }?)
 }

@@ -21,7 +21,7 @@ macro_rules! structs {
     };
 }
 
-const STRUCTS: [(&str, usize, &str, usize); 31] = structs![
+const STRUCTS: [(&str, usize, &str, usize); 33] = structs![
     Placement "placement" fan_axis,
     SpotDescription "spot_description" m_squared,
     EllipticDescription "elliptic_description" rotation,
@@ -33,6 +33,8 @@ const STRUCTS: [(&str, usize, &str, usize); 31] = structs![
     RaySample "ray_sample" pdf,
     RayPdf "ray_pdf" position_given_direction,
     Bounds "bounds" half_angle,
+    LightInfo "light_info" wavelength,
+    ApertureHit "aperture_hit" pdf,
     NextEventColumns "next_event_columns" e_perp,
     NextEventColumnsF32 "next_event_columns_f32" e_perp,
     LightData "light_data" fields,

@@ -6,7 +6,7 @@ use pyo3::{prelude::*, types::PyFloat};
 use super::{
     arguments::{OrRaiseAs, components, coordinate, coordinates, map_inner, uniforms},
     light::Light,
-    records::{Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
+    records::{ApertureHit, Bounds, NextEvent, RayPdf, RaySample, SampledEvent},
     rows::{Precision, array_of},
 };
 use crate::arrays::{Array, Numbers, Values, Vector, Vectors, evaluate};
@@ -222,6 +222,75 @@ impl Emitter {
         let columns = [x, y, z, wi_x, wi_y, wi_z];
         map_inner(py, columns, &[], |[x, y, z, wi @ ..]| {
             [self.0.ask(|light| light.next_event_pdf([x, y, z], wi))]
+        })
+    }
+
+    /// Return the light that rays from points meet, for directions that a material has drawn.
+    ///
+    /// It is the other technique beside ``next_event_sampled``: a direction of the density ``q`` has
+    /// the weight ``q / (q + pdf)`` of the balance heuristic. Only what is nearer than ``distance``
+    /// hides the light.
+    ///
+    /// Parameters
+    /// ----------
+    /// x, y, z : float or array_like
+    ///     Coordinates of the points, in metres; they broadcast together and with ``wi[..., 0]``.
+    /// wi : array_like, shape (..., 3)
+    ///     Unit vectors towards the light.
+    ///
+    /// Returns
+    /// -------
+    /// ApertureHit or None
+    ///     For numbers None where the ray meets no light. For arrays all members are 0 there.
+    fn hit<'py>(
+        &self,
+        py: Python<'py>,
+        x: Numbers<'py>,
+        y: Numbers<'py>,
+        z: Numbers<'py>,
+        wi: Vectors<'py>,
+    ) -> PyResult<Option<ApertureHit>> {
+        let [x, y, z] = coordinates([("x", &x), ("y", &y), ("z", &z)])?;
+        let [wi_x, wi_y, wi_z] = components(("wi", &wi))?;
+        let columns = [x, y, z, wi_x, wi_y, wi_z];
+        let inner: [&[usize]; 4] = [&[3], &[], &[], &[]];
+        let [point, distance, radiance, pdf] = evaluate(py, columns, inner, |columns, out| {
+            self.0.hits(columns, out);
+        })?;
+        let dark = is_dark_number(&radiance);
+        let hit = ApertureHit {
+            point: point.unbind(),
+            distance: distance.unbind(),
+            radiance: radiance.unbind(),
+            pdf: pdf.unbind(),
+        };
+        Ok((!dark).then_some(hit))
+    }
+
+    /// Return bounds of the power, in watts, that reaches axis-aligned boxes.
+    ///
+    /// A hierarchy of lights visits none whose bound is 0: behind the aperture, beyond the cut-off, or
+    /// for an empty box. The bound of a box within the beam is a small multiple of its power.
+    ///
+    /// Parameters
+    /// ----------
+    /// min, max : array_like, shape (..., 3)
+    ///     Corners of the boxes, in metres, within ±1e30; they broadcast together.
+    ///
+    /// Returns
+    /// -------
+    /// float or ndarray
+    ///     Bounds, in the common shape.
+    fn power_bound<'py>(
+        &self,
+        py: Python<'py>,
+        min: Vectors<'py>,
+        max: Vectors<'py>,
+    ) -> PyResult<Values<'py>> {
+        let [a, b, c] = components(("min", &min))?;
+        let [d, e, f] = components(("max", &max))?;
+        map_inner(py, [a, b, c, d, e, f], &[], |[a, b, c, max @ ..]| {
+            [self.0.ask(|light| light.power_bound([a, b, c], max))]
         })
     }
 

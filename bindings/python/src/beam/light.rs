@@ -99,6 +99,18 @@ impl Light {
         }
     }
 
+    /// Writes the point, distance, radiance and density of each hit.
+    pub(super) fn hits(&self, columns: [&[f64]; 6], out: [&mut [f64]; 4]) {
+        let [point, distance, radiance, pdf] = out;
+        for (i, point) in vectors(point).enumerate() {
+            let [x, y, z, wi @ ..] = columns.map(|column| column[i]);
+            if let Some(hit) = self.ask(|light| light.hit([x, y, z], wi)) {
+                *point = hit.point;
+                (distance[i], radiance[i], pdf[i]) = (hit.distance, hit.radiance, hit.pdf);
+            }
+        }
+    }
+
     /// Writes the members of each sampled ray.
     pub(super) fn rays(&self, columns: [&[f64]; 4], out: [&mut [f64]; 8]) {
         let [origin, flux, direction, cos, mut pdf @ ..] = out;

@@ -75,6 +75,24 @@ record! {
 
 record! {
     "tem00.beam",
+    /// The light that a ray meets on its way to the aperture.
+    ///
+    /// For arrays of rays all members are arrays, and 0 where a ray meets none.
+    ApertureHit {
+        /// Point of the aperture plane, shape (..., 3).
+        point: Array,
+        /// Distance to ``point``, in metres, shape (...).
+        distance: Values,
+        /// Radiance that arrives along the ray, in W/(m² sr), shape (...).
+        radiance: Values,
+        /// Probability density with which a sampled next event has this direction, per steradian,
+        /// shape (...).
+        pdf: Values,
+    }
+}
+
+record! {
+    "tem00.beam",
     /// A ray that leaves the aperture, or arrays of them.
     RaySample {
         /// Point of the aperture plane, shape (..., 3).

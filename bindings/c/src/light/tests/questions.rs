@@ -118,6 +118,57 @@ fn bounds_are_those_of_the_library() {
     }
 }
 
+#[test]
+fn a_light_tells_what_it_was_made_with() {
+    for Pair { name, handle, peer } in &pairs() {
+        // SAFETY: the handle and the pointer are valid.
+        let info: LightInfo = answer(|out| unsafe { tem00_light_describe(*handle, out) });
+        let expected = peer.ask(|light| LightInfo {
+            origin: light.origin(),
+            power: light.power(),
+            axis: light.axis(),
+            wavelength: light.wavelength(),
+        });
+        assert_eq!(info, expected, "{name}");
+        assert!((400e-9..700e-9).contains(&info.wavelength), "{info:?}");
+    }
+}
+
+#[test]
+fn hits_and_bounds_of_power_are_those_of_the_library() {
+    for Pair { name, handle, peer } in &pairs() {
+        let light = handle.cast_const();
+        let mut hits = Vec::new();
+        for p in peer.points() {
+            let towards = peer.ask(|light| light.next_event_sampled(p, [0.3, 0.8]));
+            let wi = towards.map_or([0.1, 0.2, 0.3], |event| event.wi.map(|x| 2.0 * x));
+            // SAFETY: the handle and the pointers are valid.
+            let hit: ApertureHit =
+                answer(|out| unsafe { tem00_light_hit(light, p.as_ptr(), wi.as_ptr(), out) });
+            hits.push(hit.radiance);
+            let expected = towards.map_or_else(ApertureHit::default, |event| {
+                peer.ask(|light| light.hit(p, event.wi))
+                    .map(ApertureHit::from)
+                    .unwrap_or_default()
+            });
+            let ratio = (hit.radiance + 1e-300) / (expected.radiance + 1e-300);
+            // The unit vector has been made again.
+            assert!(
+                (ratio - 1.0).abs() < 1e-7,
+                "{name} at {p:?}: {hit:?}, {expected:?}"
+            );
+
+            let end = p.map(|x| x + 0.01);
+            // SAFETY: the handle and the pointers are valid.
+            let bound: f64 = answer(|out| unsafe {
+                tem00_light_power_bound(light, p.as_ptr(), end.as_ptr(), out)
+            });
+            assert_eq!(bound, peer.ask(|light| light.power_bound(p, end)), "{name}");
+        }
+        both_lit_and_dark(name, hits.into_iter());
+    }
+}
+
 /// Five columns of answers.
 fn room<T: Copy + Default>(count: usize) -> [Vec<T>; 5] {
     [(); 5].map(|()| vec![T::default(); count])
@@ -304,6 +355,8 @@ fn no_place_and_no_direction_however_far_gives_a_nan() {
                     drawn.value,
                     answer(|out| tem00_light_next_event_pdf(light, point, way, out)),
                     answer(|out| tem00_light_radiance(light, point, way, out)),
+                    answer(|out| tem00_light_hit(light, point, way, out)).radiance,
+                    answer(|out| tem00_light_power_bound(light, point, point, out)),
                 ]
             };
             assert!(

@@ -20,6 +20,7 @@ fn senseless_numbers_are_refused_by_name_and_nothing_is_written() {
     let mut pdf = RayPdf::default();
     let mut event = NextEvent::default();
     let mut bounds = Bounds::default();
+    let mut hit = ApertureHit::default();
     // SAFETY: the handle and the pointers are valid.
     unsafe {
         let cases = [
@@ -86,6 +87,26 @@ fn senseless_numbers_are_refused_by_name_and_nothing_is_written() {
             (
                 "distance",
                 tem00_light_bounds(light, -1.0, &raw mut bounds),
+                last_parameter(),
+            ),
+            (
+                "point",
+                tem00_light_hit(light, nan, unit, &raw mut hit),
+                last_parameter(),
+            ),
+            (
+                "wi",
+                tem00_light_hit(light, point, zero, &raw mut hit),
+                last_parameter(),
+            ),
+            (
+                "min",
+                tem00_light_power_bound(light, nan, point, out),
+                last_parameter(),
+            ),
+            (
+                "max",
+                tem00_light_power_bound(light, point, nan, out),
                 last_parameter(),
             ),
         ];
@@ -186,6 +207,19 @@ fn null_is_refused_for_every_pointer() {
             (
                 "bounds",
                 refusal(tem00_light_bounds(light, 1.0, ptr::null_mut())),
+            ),
+            (
+                "info",
+                refusal(tem00_light_describe(light, ptr::null_mut())),
+            ),
+            (
+                "max",
+                refusal(tem00_light_power_bound(
+                    light,
+                    point,
+                    ptr::null(),
+                    &raw mut number,
+                )),
             ),
             (
                 "data",

@@ -46,20 +46,7 @@ const GROUP: usize = 64;
 /// # In a pass of your own
 ///
 /// A shader begins with [`wgsl`](Self::wgsl), its pipeline has [`bind_group_layout`](Self::bind_group_layout) at that group,
-/// and its pass sets [`bind_group`](Self::bind_group) there. `Gpu::of` takes the device and the queue of the
-/// renderer; the example `render_pass` does so.
-///
-/// ```
-/// use tem00_gpu::GpuStack;
-///
-/// let shader = GpuStack::wgsl(1) + "
-///     @fragment
-///     fn shade(@location(0) at: vec3<f32>) -> @location(0) vec4<f32> {
-///         return vec4<f32>(tem00_stack_intensity(tem00_stack, at.x, at.y, at.z));
-///     }
-/// ";
-/// # assert!(shader.contains("@group(1)"));
-/// ```
+/// and its pass sets [`bind_group`](Self::bind_group) there. [`Gpu::of`] takes the device and the queue of the renderer.
 #[derive(Clone)]
 pub struct GpuStack {
     gpu: Gpu,

@@ -6,6 +6,11 @@
 //! memory; [`NpyReader`], [`write_npy`] and the methods of that name exchange fields and patterns
 //! with NumPy.
 //!
+//! # On a graphics card
+//!
+//! [`closed_form`] has phasors and look-ups as text for kernels, [`Aperture`] and [`StackSource`] what a transform there
+//! takes. The crate `tem00-gpu` does it on `wgpu`.
+//!
 //! # Conventions
 //!
 //! - **Intensity** is dimensionless with mean 1.

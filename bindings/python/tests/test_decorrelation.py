@@ -227,6 +227,11 @@ def test_an_astigmatic_wave_has_the_curvature_tensor_of_its_axes() -> None:
     np.testing.assert_allclose(wave.curvature, expected, atol=1e-14)
     again = dc.Wavefront.from_tensor(direction, expected)
     np.testing.assert_allclose(again.curvature, expected, atol=1e-14)
+    u, v = np.array([1.0, 0.2, 0.5]), np.array([-0.3, 1.0, 0.1])
+    again = dc.Wavefront.from_differentials(
+        direction, dpdu=u, dpdv=v, dldu=-expected @ u, dldv=-expected @ v
+    )
+    np.testing.assert_allclose(again.curvature, expected, atol=1e-13)
 
 
 def test_rigid_motions_are_matrices() -> None:

@@ -167,6 +167,71 @@ impl Wavefront {
         })
     }
 
+    /// Creates a wave from the direction to its source, of any length, and from how that direction turns
+    /// along a surface, as a renderer has it from its ray differentials: after mirrors and lenses, too.
+    ///
+    /// ```text
+    /// K t = −∂l_S/∂t
+    /// ```
+    ///
+    /// `dp` are the differentials of the surface point by two parameters, in metres, `∂p/∂u` and `∂p/∂v`, and
+    /// `dl` those of the unit vector to the source by the same two. At a mirror of the normal n they follow
+    /// from `∂n/∂u` and `∂n/∂v` and from the direction d in which the light arrives: that of the reflected light
+    /// is d − 2 n (n·d), and `l_S` leads against it. Only the symmetric part across the direction counts; the
+    /// rays of one wave have no other.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the direction is zero or not finite, if differentials are not finite, or if
+    /// the light sees those of the point along one line, within 2⁻²⁶: in a grazing light, or where a
+    /// parametrisation is singular.
+    ///
+    /// # Examples
+    ///
+    /// The light of a source at 0.25 m on a surface at 45° to it:
+    ///
+    /// ```
+    /// use tem00_decorrelation::{DVec3, Wavefront};
+    ///
+    /// let dp = [DVec3::new(1.0, 0.0, 1.0), DVec3::Y];
+    /// let dl = [DVec3::new(-4.0, 0.0, 0.0), DVec3::new(0.0, -4.0, 0.0)];
+    /// let wave = Wavefront::from_differentials(DVec3::Z, dp, dl)?;
+    /// assert_eq!(wave, Wavefront::spherical(DVec3::Z, 1.0 / 0.25)?);
+    /// # Ok::<(), tem00_decorrelation::DecorrelationError>(())
+    /// ```
+    pub fn from_differentials(
+        direction_to_source: DVec3,
+        dp: [DVec3; 2],
+        dl: [DVec3; 2],
+    ) -> Result<Self, DecorrelationError> {
+        let direction = unit_direction(direction_to_source)?;
+        let [u, v] = dp.map(|t| t - direction * direction.dot(t));
+        let area = direction.dot(u.cross(v));
+        let [du, dv] = [v.cross(direction) / area, direction.cross(u) / area];
+        // Not a number fails.
+        if !(area.abs() > GRAZING_COSINE * dp[0].length() * dp[1].length()
+            && du.is_finite()
+            && dv.is_finite())
+        {
+            return Err(DecorrelationError::matrix(
+                "dp",
+                DMat3::from_cols(dp[0], dp[1], direction),
+                "finite, in metres, and two directions as the light sees them (the third column)",
+            ));
+        }
+        let turn =
+            |by: DVec3, along: DVec3| DMat3::from_cols(by * along.x, by * along.y, by * along.z);
+        let curvature = -(turn(dl[0], du) + turn(dl[1], dv));
+        if !curvature.is_finite() {
+            return Err(DecorrelationError::matrix(
+                "dl",
+                DMat3::from_cols(dl[0], dl[1], direction),
+                "finite, and so small that the curvature is a number (the third column is the direction)",
+            ));
+        }
+        Self::from_tensor(direction, (curvature + curvature.transpose()) * 0.5)
+    }
+
     /// Returns the unit vector to the source as it is seen at the distance `offset`, in metres, from
     /// the point that the wave is described for, or `None` in a focus, where there is no direction.
     ///
@@ -250,250 +315,4 @@ fn outer(v: DVec3) -> DMat3 {
 }
 
 #[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    const NOT_DIRECTIONS: [DVec3; 3] = [
-        DVec3::ZERO,
-        DVec3::splat(f64::NAN),
-        DVec3::splat(f64::INFINITY),
-    ];
-
-    fn norm(m: DMat3) -> f64 {
-        m.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt()
-    }
-
-    #[test]
-    fn invalid_directions_and_curvatures_are_rejected() {
-        use DecorrelationError as E;
-        for bad in NOT_DIRECTIONS {
-            let plane = Wavefront::plane(bad);
-            assert!(
-                matches!(
-                    plane,
-                    Err(E::Vector {
-                        parameter: "direction_to_source",
-                        ..
-                    })
-                ),
-                "{plane:?}"
-            );
-            let fan = Wavefront::astigmatic(bad, DVec3::X, 1.0, 1.0);
-            assert!(
-                matches!(
-                    fan,
-                    Err(E::Vector {
-                        parameter: "direction_to_source",
-                        ..
-                    })
-                ),
-                "{fan:?}"
-            );
-            let fan = Wavefront::astigmatic(DVec3::Z, bad, 1.0, 1.0);
-            assert!(
-                matches!(
-                    fan,
-                    Err(E::Vector {
-                        parameter: "axis",
-                        ..
-                    })
-                ),
-                "{fan:?}"
-            );
-        }
-        let parallel = Wavefront::astigmatic(DVec3::Z, DVec3::NEG_Z, 1.0, 1.0);
-        assert!(
-            matches!(
-                parallel,
-                Err(E::Vector {
-                    parameter: "axis",
-                    ..
-                })
-            ),
-            "{parallel:?}"
-        );
-        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let sphere = Wavefront::spherical(DVec3::Z, bad);
-            assert!(
-                matches!(
-                    sphere,
-                    Err(E::OutOfRange {
-                        parameter: "curvature",
-                        ..
-                    })
-                ),
-                "{sphere:?}"
-            );
-            let fan = Wavefront::astigmatic(DVec3::Z, DVec3::X, bad, 0.0);
-            assert!(
-                matches!(
-                    fan,
-                    Err(E::OutOfRange {
-                        parameter: "curvature",
-                        ..
-                    })
-                ),
-                "{fan:?}"
-            );
-            let fan = Wavefront::astigmatic(DVec3::Z, DVec3::X, 0.0, bad);
-            assert!(
-                matches!(
-                    fan,
-                    Err(E::OutOfRange {
-                        parameter: "curvature",
-                        ..
-                    })
-                ),
-                "{fan:?}"
-            );
-        }
-    }
-
-    #[test]
-    fn only_the_part_of_the_axis_across_the_light_counts() {
-        let direction = DVec3::new(1.0, 0.0, 1.0);
-        let skewed = Wavefront::astigmatic(direction, DVec3::X * 3.0, 5.0, -2.0).unwrap();
-        let square =
-            Wavefront::astigmatic(direction, DVec3::new(1.0, 0.0, -1.0), 5.0, -2.0).unwrap();
-        // Rounding of entries of size 5.
-        let difference = norm(skewed.curvature() - square.curvature());
-        assert!(difference < 1e-14, "difference {difference:e}");
-    }
-
-    #[test]
-    fn tensors_that_are_no_curvature_are_rejected() {
-        let skew = DMat3::from_cols(DVec3::X, DVec3::new(1e-5, 1.0, 0.0), DVec3::ZERO);
-        let nan = DMat3::from_diagonal(DVec3::new(1.0, f64::NAN, 0.0));
-        for bad in [skew, nan, DMat3::IDENTITY * f64::INFINITY] {
-            let result = Wavefront::from_tensor(DVec3::Z, bad);
-            assert!(
-                matches!(
-                    result,
-                    Err(DecorrelationError::Matrix {
-                        parameter: "curvature",
-                        ..
-                    })
-                ),
-                "{result:?}"
-            );
-        }
-        let result = Wavefront::from_tensor(DVec3::ZERO, DMat3::IDENTITY);
-        assert!(
-            matches!(
-                result,
-                Err(DecorrelationError::Vector {
-                    parameter: "direction_to_source",
-                    ..
-                })
-            ),
-            "{result:?}"
-        );
-    }
-
-    #[test]
-    fn tensor_of_a_phase_is_that_of_its_wave() {
-        // The path of a point source at 0.25 m, by central differences over h.
-        let source = DVec3::new(0.09, -0.12, 0.2);
-        let path = |x: DVec3| (x - source).length();
-        let h = 1e-4;
-        let second = |a: DVec3, b: DVec3| {
-            let (a, b) = (a * h, b * h);
-            (path(a + b) - path(a - b) - path(b - a) + path(-a - b)) / (4.0 * h * h)
-        };
-        let column = |a| {
-            DVec3::new(
-                second(DVec3::X, a),
-                second(DVec3::Y, a),
-                second(DVec3::Z, a),
-            )
-        };
-        let tensor = DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z));
-        let measured = Wavefront::from_tensor(source, tensor).unwrap();
-        let sphere = Wavefront::spherical(source, 4.0).unwrap();
-        // (h/R)² R⁻¹ of truncation and ε R / h² of rounding.
-        let difference = norm(measured.curvature() - sphere.curvature());
-        assert!(difference < 1e-5, "difference {difference:e}");
-    }
-
-    #[test]
-    fn a_focus_is_seen_from_no_direction() {
-        let wave = Wavefront::astigmatic(DVec3::Z, DVec3::X, 4.0, -8.0).unwrap();
-        // The apex of the fan is 0.25 m up, its line focus 0.125 m down.
-        for focus in [DVec3::new(0.1, 0.0, 0.25), DVec3::new(0.0, 0.2, -0.125)] {
-            assert_eq!(wave.direction_from(focus), None, "at {focus}");
-        }
-        // Past the line focus the light still comes from above, and has crossed over.
-        let past = wave.direction_from(DVec3::new(0.0, 0.1, -0.25)).unwrap();
-        let expected = DVec3::new(0.0, -0.8, 1.0).normalize();
-        assert!((past - expected).length() < 1e-15, "{past}");
-    }
-
-    prop_compose! {
-        fn directions()(x in -1.0_f64..1.0, y in -1.0_f64..1.0, z in 0.1_f64..1.0) -> DVec3 {
-            DVec3::new(x, y, z)
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn a_point_source_stays_where_it_is(
-            source in directions(),
-            distance in 0.05_f64..5.0,
-            offset in directions(),
-            size in -0.9_f64..0.9,
-        ) {
-            let source = source.normalize() * distance;
-            let offset = offset.normalize() * (size * distance);
-            let wave = Wavefront::spherical(source, 1.0 / distance).unwrap();
-            let direction = wave.direction_from(offset).unwrap();
-            // A tenth of the distance is left at least, and amplifies rounding squared.
-            prop_assert!((direction - (source - offset).normalize()).length() < 1e-13);
-        }
-
-        #[test]
-        fn waves_of_any_size_have_a_direction_or_none(
-            direction in directions(),
-            axis in directions(),
-            offset in directions(),
-            exponents in [-30.0_f64..30.0, -30.0..30.0, -30.0..30.0],
-        ) {
-            let [along, across, size] = exponents.map(|x| 10.0_f64.powf(x));
-            if let Ok(wave) = Wavefront::astigmatic(direction, axis, along, -across)
-                && let Some(seen) = wave.direction_from(offset * size)
-            {
-                prop_assert!((seen.length() - 1.0).abs() < 1e-14, "{}", seen);
-            }
-        }
-
-        #[test]
-        fn equal_curvatures_make_a_sphere(
-            direction in directions(),
-            axis in directions(),
-            curvature in -100.0_f64..100.0,
-        ) {
-            let sine = direction.normalize().cross(axis.normalize()).length();
-            prop_assume!(sine > 1e-3);
-            let fan = Wavefront::astigmatic(direction, axis, curvature, curvature).unwrap();
-            let sphere = Wavefront::spherical(direction, curvature).unwrap();
-            // The axes round by ε over the sine between the axis and the direction.
-            let tolerance = 10.0 * f64::EPSILON * curvature.abs() / sine;
-            prop_assert!(norm(fan.curvature() - sphere.curvature()) <= tolerance);
-        }
-
-        #[test]
-        fn wave_is_not_curved_along_its_direction(
-            direction in directions(),
-            axis in directions(),
-            along in -100.0_f64..100.0,
-            across in -100.0_f64..100.0,
-        ) {
-            let sine = direction.normalize().cross(axis.normalize()).length();
-            prop_assume!(sine > 1e-3);
-            let fan = Wavefront::astigmatic(direction, axis, along, across).unwrap();
-            let turned = fan.curvature() * fan.direction_to_source();
-            prop_assert!(turned.length() <= 10.0 * f64::EPSILON * (along.abs() + across.abs()) / sine);
-        }
-    }
-}
+mod tests;

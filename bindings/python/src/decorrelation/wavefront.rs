@@ -80,6 +80,32 @@ impl Wavefront {
         Ok(Self(wave.or_raise()?))
     }
 
+    /// Return the wave whose direction turns along a surface as a renderer's ray differentials say.
+    ///
+    /// Parameters
+    /// ----------
+    /// direction_to_source : array of shape (3,)
+    ///     Direction to the source, of any length.
+    /// dpdu, dpdv : array of shape (3,)
+    ///     Differentials of the surface point by two parameters, in metres.
+    /// dldu, dldv : array of shape (3,)
+    ///     Differentials of the unit vector to the source by the same parameters.
+    #[staticmethod]
+    #[pyo3(signature = (direction_to_source, *, dpdu, dpdv, dldu, dldv))]
+    fn from_differentials(
+        direction_to_source: Components<'_>,
+        dpdu: Components<'_>,
+        dpdv: Components<'_>,
+        dldu: Components<'_>,
+        dldv: Components<'_>,
+    ) -> PyResult<Self> {
+        let direction = vec3("direction_to_source", &direction_to_source)?;
+        let dp = [vec3("dpdu", &dpdu)?, vec3("dpdv", &dpdv)?];
+        let dl = [vec3("dldu", &dldu)?, vec3("dldv", &dldv)?];
+        let wave = physics::Wavefront::from_differentials(direction, dp, dl);
+        Ok(Self(wave.or_raise()?))
+    }
+
     /// Return the unit vector to the source from beside the point that the wave is described for.
     ///
     /// Parameters

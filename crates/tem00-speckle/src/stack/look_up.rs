@@ -10,6 +10,7 @@ use crate::{
 };
 
 mod layer;
+mod single;
 
 /// Points of a batch that are looked up together.
 const LANES: usize = 16;

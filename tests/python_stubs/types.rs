@@ -75,7 +75,7 @@ pub(crate) fn argument(ty: &Type, class: &str) -> Python {
             let inner = || inner(&last.arguments).map(|ty| argument(ty, class));
             match last.ident.to_string().as_str() {
                 "Python" => Python::Hidden,
-                "Numbers" => Python::Either("float", "Numbers"),
+                "Numbers" | "Floats" => Python::Either("float", "Numbers"),
                 "Self" => Python::One(class.to_owned()),
                 "Option" => Python::One(format!("{} | None", text_of(inner()))),
                 "PyRef" | "Bound" => inner().unwrap_or(Python::Hidden),

@@ -1656,6 +1656,37 @@ tem00_status tem00_stack_intensity_batch(const tem00_stack *stack,
                                          double *intensity);
 
 /**
+ * As `tem00_stack_intensity_batch`, in single precision: the intensities at these coordinates, rounded.
+ *
+ * A place that is rounded to single precision moves by up to 3e-8 of its distance from 0: take off
+ * whole periods before.
+ *
+ * The pointers are null or valid for `count` numbers.
+ */
+tem00_status tem00_stack_intensity_batch_f32(const tem00_stack *stack,
+                                             const float *x,
+                                             const float *y,
+                                             const float *u,
+                                             size_t count,
+                                             float *intensity);
+
+/**
+ * Computes the means of the intensity over boxes about `count` points, in single precision: those of
+ * `tem00_stack_average` at these coordinates, rounded.
+ *
+ * `size` holds the width and the height of the boxes, in samples.
+ *
+ * The pointers are null or valid for `count` numbers, `size` for two.
+ */
+tem00_status tem00_stack_average_batch_f32(const tem00_stack *stack,
+                                           const float *x,
+                                           const float *y,
+                                           const double *size,
+                                           const float *u,
+                                           size_t count,
+                                           float *average);
+
+/**
  * Computes the mean of the intensity over a box about `centre`, at `u`: what a pixel sees whose whole
  * area takes part.
  *

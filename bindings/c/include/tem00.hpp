@@ -258,6 +258,18 @@ public:
         check(tem00_stack_intensity_batch(get(), x, y, u, count, intensity));
     }
 
+    /** Intensities at `count` points in single precision. */
+    void intensity(const float *x, const float *y, const float *u, std::size_t count,
+                   float *intensity) const {
+        check(tem00_stack_intensity_batch_f32(get(), x, y, u, count, intensity));
+    }
+
+    /** Means of the intensity over boxes of `size` samples about `count` points. */
+    void average(const float *x, const float *y, const vec2 &size, const float *u,
+                 std::size_t count, float *average) const {
+        check(tem00_stack_average_batch_f32(get(), x, y, size.data(), u, count, average));
+    }
+
     /** Amplitude whose squared magnitude is the intensity, for light whose fields add. */
     std::complex<double> amplitude(double x, double y, double u) const {
         vec2 amplitude{};

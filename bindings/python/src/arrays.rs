@@ -6,6 +6,7 @@
 
 mod blocks;
 mod columns;
+mod floats;
 mod images;
 mod numbers;
 mod results;
@@ -14,6 +15,7 @@ mod whole;
 use pyo3::prelude::*;
 
 pub(crate) use columns::{Column, columns, evaluate};
+pub(crate) use floats::{Floats, fill_in_kind};
 pub(crate) use images::{ComplexImage, Image, image_array};
 pub(crate) use numbers::{Components, Named, Numbers, Samples, Table, Vectors, length};
 pub(crate) use results::{Array, Matrix, Values, Vector, array, vector_array};

@@ -276,3 +276,24 @@ def test_a_stack_file_keeps_the_bits(stack: SpeckleStack, tmp_path: Path) -> Non
     assert SpeckleStack.read_from(file, 1 << 20) == stack
     with pytest.raises(MemoryError, match="at most 1000 bytes"):
         SpeckleStack.read_from(file, 1000)
+
+
+def test_arrays_in_single_precision_are_answered_in_it(stack: SpeckleStack) -> None:
+    x, y = (places.astype(np.float32) for places in points(5000))
+    u = 0.25
+    answers = (
+        (stack.intensity_at(x, y, u), stack.intensity_at(np.float64(x), np.float64(y), u)),
+        (
+            stack.average_over(x[:50], y[:50], (2.0, 3.0), u),
+            stack.average_over(np.float64(x[:50]), np.float64(y[:50]), (2.0, 3.0), u),
+        ),
+    )
+    for single, double in answers:
+        assert np.asarray(single).dtype == np.float32
+        assert np.asarray(double).dtype == np.float64
+        np.testing.assert_array_equal(single, np.asarray(double).astype(np.float32))
+    wide = stack.intensity_at(x, y, np.full(len(x), u))
+    assert np.asarray(wide).dtype == np.float64
+    grid = stack.intensity_at(x[:3, None], y[:4], u)
+    assert np.asarray(grid).dtype == np.float32 and np.shape(grid) == (3, 4)
+    assert isinstance(stack.intensity_at(0.5, 0.5, 0), float)

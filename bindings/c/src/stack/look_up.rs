@@ -200,6 +200,110 @@ pub unsafe extern "C" fn tem00_stack_intensity_batch(
     })
 }
 
+/// As `tem00_stack_intensity_batch`, in single precision: the intensities at these coordinates, rounded.
+///
+/// A place that is rounded to single precision moves by up to 3e-8 of its distance from 0: take off
+/// whole periods before.
+///
+/// # Safety
+///
+/// The pointers are null or valid for `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_intensity_batch_f32(
+    stack: *const Stack,
+    x: *const f32,
+    y: *const f32,
+    u: *const f32,
+    count: usize,
+    intensity: *mut f32,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        single(
+            stack,
+            [x, y, u],
+            count,
+            ("intensity", intensity),
+            |stack, [x, y, u], out| {
+                stack.intensity_batch_f32(x, y, u, out);
+                Ok(())
+            },
+        )
+    }
+}
+
+/// Computes the means of the intensity over boxes about `count` points, in single precision: those of
+/// `tem00_stack_average` at these coordinates, rounded.
+///
+/// `size` holds the width and the height of the boxes, in samples.
+///
+/// # Safety
+///
+/// The pointers are null or valid for `count` numbers, `size` for two.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_stack_average_batch_f32(
+    stack: *const Stack,
+    x: *const f32,
+    y: *const f32,
+    size: *const f64,
+    u: *const f32,
+    count: usize,
+    average: *mut f32,
+) -> Status {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        single(
+            stack,
+            [x, y, u],
+            count,
+            ("average", average),
+            |stack, [x, y, u], out| {
+                let size = read_size(size)?;
+                stack.average_batch_f32([x, y], size, u, out);
+                Ok(())
+            },
+        )
+    }
+}
+
+/// Asks a stack about `count` places in single precision.
+///
+/// # Safety
+///
+/// The pointers are null or valid for `count` numbers.
+unsafe fn single(
+    stack: *const Stack,
+    [x, y, u]: [*const f32; 3],
+    count: usize,
+    answer: (&'static str, *mut f32),
+    question: impl FnOnce(&SpeckleStack, [&[f32]; 3], &mut [f32]) -> Result<(), Failure>,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let Stack(stack) = unsafe { borrow("stack", stack) }?;
+        let names = [("x", x), ("y", y), ("u", u)];
+        // SAFETY: by the contract of this function.
+        let (coordinates, [out]) = unsafe { columns(count, names, [answer]) }?;
+        for ((name, _), values) in names.iter().zip(coordinates) {
+            check_coordinates(name, values)?;
+        }
+        question(stack, coordinates, out)
+    })
+}
+
+/// Reads the sides of a box.
+///
+/// # Safety
+///
+/// The pointer is null or valid for two numbers.
+unsafe fn read_size(size: *const f64) -> Result<[f64; 2], Failure> {
+    // SAFETY: by the contract of this function.
+    let size: [f64; 2] = unsafe { read("size", size) }?;
+    size.iter()
+        .try_for_each(|side| check_length("size", *side))?;
+    Ok(size)
+}
+
 /// Computes the mean of the intensity over a box about `centre`, at `u`: what a pixel sees whose whole
 /// area takes part.
 ///
@@ -221,10 +325,8 @@ pub unsafe extern "C" fn tem00_stack_average(
     unsafe {
         ask(stack, ("average", average), |Stack(stack)| {
             let centre: [f64; 2] = read("centre", centre)?;
-            let size: [f64; 2] = read("size", size)?;
             check_coordinates("centre", &centre)?;
-            size.iter()
-                .try_for_each(|side| check_length("size", *side))?;
+            let size = read_size(size)?;
             check_coordinates("u", &[u])?;
             Ok(stack.average_over(centre, size, u))
         })

@@ -8,19 +8,19 @@ use crate::error::refused;
 const BLOCK: usize = 4096;
 
 /// Arguments broadcast together, to be walked through block by block.
-pub(super) struct Blocks<'a, const N: usize> {
+pub(super) struct Blocks<'a, T, const N: usize> {
     shape: Vec<usize>,
     length: usize,
-    views: [ArrayViewD<'a, f64>; N],
+    views: [ArrayViewD<'a, T>; N],
 }
 
-impl<'a, const N: usize> Blocks<'a, N> {
+impl<'a, T: Copy, const N: usize> Blocks<'a, T, N> {
     /// Broadcasts the values of arguments by NumPy's rule.
     ///
     /// # Errors
     ///
     /// Refuses shapes that do not fit together, and more elements than an address counts.
-    pub(super) fn new(names: [&'static str; N], views: [ArrayViewD<'a, f64>; N]) -> PyResult<Self> {
+    pub(super) fn new(names: [&'static str; N], views: [ArrayViewD<'a, T>; N]) -> PyResult<Self> {
         let shape = common_shape(&names, &views)?;
         Ok(Self {
             length: element_count(&shape)?,
@@ -35,7 +35,7 @@ impl<'a, const N: usize> Blocks<'a, N> {
     }
 
     /// Calls `f` with the arguments as slices of equal length, from the first elements to the last.
-    pub(super) fn run(&self, mut f: impl FnMut([&[f64]; N])) {
+    pub(super) fn run(&self, mut f: impl FnMut([&[T]; N])) {
         let wide = self
             .views
             .each_ref()
@@ -53,18 +53,18 @@ impl<'a, const N: usize> Blocks<'a, N> {
 }
 
 /// One argument as the elements of the common shape.
-enum Column<'a> {
+enum Column<'a, T> {
     /// It has that shape, and is read where it lies.
-    Whole(&'a [f64]),
+    Whole(&'a [T]),
     /// It is one number, repeated over a block.
-    Same(Vec<f64>),
+    Same(Vec<T>),
     /// It repeats along some axes.
-    Spread(Iter<'a, f64, IxDyn>, Vec<f64>),
+    Spread(Iter<'a, T, IxDyn>, Vec<T>),
 }
 
-impl<'a> Column<'a> {
+impl<'a, T: Copy> Column<'a, T> {
     /// Nothing is ever read of a column without a view: there are no elements then.
-    fn new(wide: Option<&'a ArrayViewD<'a, f64>>, length: usize) -> Self {
+    fn new(wide: Option<&'a ArrayViewD<'a, T>>, length: usize) -> Self {
         let Some(wide) = wide else {
             return Self::Whole(&[]);
         };
@@ -80,7 +80,7 @@ impl<'a> Column<'a> {
     }
 
     /// Returns the next elements.
-    fn next(&mut self, count: usize) -> &[f64] {
+    fn next(&mut self, count: usize) -> &[T] {
         match self {
             Self::Whole(rest) => {
                 let (block, after) = rest.split_at(count);
@@ -98,9 +98,9 @@ impl<'a> Column<'a> {
 }
 
 /// The shape that all arguments broadcast to, by NumPy's rule.
-fn common_shape<const N: usize>(
+fn common_shape<T, const N: usize>(
     names: &[&'static str; N],
-    views: &[ArrayViewD<'_, f64>; N],
+    views: &[ArrayViewD<'_, T>; N],
 ) -> PyResult<Vec<usize>> {
     let mut common: Vec<usize> = Vec::new();
     for (name, view) in names.iter().zip(views) {

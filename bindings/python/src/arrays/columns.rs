@@ -1,4 +1,7 @@
-use numpy::ndarray::{ArrayViewD, Axis};
+use numpy::{
+    Element,
+    ndarray::{ArrayViewD, Axis},
+};
 use pyo3::{exceptions::PyRuntimeError, prelude::*};
 
 use super::{
@@ -8,12 +11,18 @@ use super::{
 };
 use crate::error::refused;
 
+/// The numbers of arrays: `f32` and `f64`.
+pub(crate) trait Float: Element + Copy + Default + Into<f64> + Send + Sync {}
+
+impl Float for f32 {}
+impl Float for f64 {}
+
 /// The values of an argument, or of one component of an argument that holds vectors.
-pub(crate) struct Column<'a> {
+pub(crate) struct Column<'a, T = f64> {
     /// The name of the argument.
     pub(crate) name: &'static str,
     /// The values, in a shape that broadcasts with the others.
-    pub(crate) values: ArrayViewD<'a, f64>,
+    pub(crate) values: ArrayViewD<'a, T>,
     /// The largest magnitude that is allowed.
     pub(crate) limit: f64,
 }
@@ -51,13 +60,16 @@ impl<'a> Column<'a> {
             limit,
         }))
     }
+}
 
+impl<T: Float> Column<'_, T> {
     /// Refuses values beyond the limit, and such that are not finite.
-    fn check(&self, values: &[f64]) -> PyResult<()> {
-        let allowed = |value: &f64| value.abs() <= self.limit;
+    fn check(&self, values: &[T]) -> PyResult<()> {
+        let allowed = |value: &T| (*value).into().abs() <= self.limit;
         match values.iter().find(|value| !allowed(value)) {
             None => Ok(()),
-            Some(value) => {
+            Some(&value) => {
+                let value: f64 = value.into();
                 let (name, limit) = (self.name, self.limit);
                 let within = match limit {
                     f64::MAX => String::new(),
@@ -95,11 +107,11 @@ pub(crate) fn columns<'a, const N: usize>(
 ///
 /// Refuses values beyond their limit or not finite, shapes that do not fit together, and what memory
 /// does not hold.
-pub(crate) fn evaluate<'py, const N: usize, const M: usize>(
+pub(crate) fn evaluate<'py, T: Float, const N: usize, const M: usize>(
     py: Python<'py>,
-    columns: [Column<'_>; N],
+    columns: [Column<'_, T>; N],
     inner: [&[usize]; M],
-    mut f: impl FnMut([&[f64]; N], [&mut [f64]; M]) + Send,
+    mut f: impl FnMut([&[T]; N], [&mut [T]; M]) + Send,
 ) -> PyResult<[results::Values<'py>; M]> {
     let names = columns.each_ref().map(|column| column.name);
     let blocks = Blocks::new(names, columns.each_ref().map(|column| column.values.view()))?;
@@ -138,15 +150,15 @@ pub(crate) fn evaluate<'py, const N: usize, const M: usize>(
 }
 
 /// Refuses results that are not numbers.
-fn check_numbers<const N: usize>(
+fn check_numbers<T: Float, const N: usize>(
     names: [&'static str; N],
-    values: [&[f64]; N],
-    results: &[&mut [f64]],
+    values: [&[T]; N],
+    results: &[&mut [T]],
 ) -> PyResult<()> {
     for result in results {
-        if let Some(place) = result.iter().position(|value| value.is_nan()) {
+        if let Some(place) = result.iter().position(|&value| value.into().is_nan()) {
             let index = place * values[0].len() / result.len();
-            return Err(nan_result(names, values.map(|column| column[index])));
+            return Err(nan_result(names, values.map(|column| column[index].into())));
         }
     }
     Ok(())

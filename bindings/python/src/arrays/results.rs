@@ -162,13 +162,13 @@ pub(crate) fn vector_array<'py, const K: usize>(
 }
 
 /// A float for the shape of a number, else an array.
-pub(super) fn array_or_float<'py>(
+pub(super) fn array_or_float<'py, T: Element + Copy + Into<f64>>(
     py: Python<'py>,
     shape: &[usize],
-    values: Vec<f64>,
+    values: Vec<T>,
 ) -> PyResult<Bound<'py, PyAny>> {
     match (shape, values.as_slice()) {
-        ([], [value]) => Ok(PyFloat::new(py, *value).into_any()),
+        ([], [value]) => Ok(PyFloat::new(py, (*value).into()).into_any()),
         _ => Ok(array(py, shape, values)?.into_any()),
     }
 }

@@ -21,7 +21,7 @@ use super::{
     slice_law::SliceLaw,
 };
 use crate::{
-    arrays::{Numbers, Values, Whole, fill, map, map_many},
+    arrays::{Floats, Numbers, Values, Whole, fill_in_kind, map, map_many},
     error::{OrRaise, refused},
     pickling::{Recipe, by_constructor},
 };
@@ -141,19 +141,21 @@ impl SpeckleStack {
     /// Returns
     /// -------
     /// float or numpy.ndarray
-    ///     Intensity in the common shape of the arguments.
+    ///     Intensity in the common shape of the arguments; in float32 where all arrays are, for their
+    ///     rounded coordinates.
     fn intensity_at<'py>(
         &self,
         py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
-        u: Numbers<'py>,
+        x: Floats<'py>,
+        y: Floats<'py>,
+        u: Floats<'py>,
     ) -> PyResult<Values<'py>> {
-        let arguments = [("x", &x), ("y", &y), ("u", &u)];
-        let [intensity] = fill(py, arguments, |[x, y, u], [intensity]| {
-            self.0.intensity_batch(x, y, u, intensity);
-        })?;
-        Ok(intensity)
+        fill_in_kind(
+            py,
+            [("x", x), ("y", y), ("u", u)],
+            |[x, y, u], intensity| self.0.intensity_batch_f32(x, y, u, intensity),
+            |[x, y, u], intensity| self.0.intensity_batch(x, y, u, intensity),
+        )
     }
 
     /// Return the amplitude whose squared magnitude is the intensity, for light whose fields add.
@@ -199,14 +201,14 @@ impl SpeckleStack {
     /// Returns
     /// -------
     /// float or numpy.ndarray
-    ///     Mean intensity in the common shape of x, y and u.
+    ///     Mean intensity in the common shape of x, y and u; in float32 where all their arrays are.
     fn average_over<'py>(
         &self,
         py: Python<'py>,
-        x: Numbers<'py>,
-        y: Numbers<'py>,
+        x: Floats<'py>,
+        y: Floats<'py>,
         size: [f64; 2],
-        u: Numbers<'py>,
+        u: Floats<'py>,
     ) -> PyResult<Values<'py>> {
         let size = finite_pair("size", size)?;
         if let Some(bad) = size.into_iter().find(|side| *side < 0.0) {
@@ -215,9 +217,16 @@ impl SpeckleStack {
                 format!("size must be 0 or more, got {bad}"),
             ));
         }
-        map(py, [("x", &x), ("y", &y), ("u", &u)], |[x, y, u]| {
-            self.0.average_over([x, y], size, u)
-        })
+        fill_in_kind(
+            py,
+            [("x", x), ("y", y), ("u", u)],
+            |[x, y, u], average| self.0.average_batch_f32([x, y], size, u, average),
+            |[x, y, u], average| {
+                for (i, average) in average.iter_mut().enumerate() {
+                    *average = self.0.average_over([x[i], y[i]], size, u[i]);
+                }
+            },
+        )
     }
 
     /// Makes a stack again from the bytes of its file.

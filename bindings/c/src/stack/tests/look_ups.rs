@@ -48,6 +48,29 @@ fn look_ups_are_those_of_the_library_to_the_last_bit() {
 }
 
 #[test]
+fn look_ups_in_single_precision_are_those_of_the_library() {
+    let stack = Owned::new(&DESCRIPTION);
+    let library = stack.library();
+    let [x, y, u] = places().map(|column| column.into_iter().map(|x| x as f32).collect::<Vec<_>>());
+    let size = [3.0, 0.5];
+    let mut out = [(); 2].map(|()| vec![0.0_f32; x.len()]);
+    let mut expected = out.clone();
+    library.intensity_batch_f32(&x, &y, &u, &mut expected[0]);
+    library.average_batch_f32([&x, &y], size, &u, &mut expected[1]);
+    let [intensity, average] = out.each_mut().map(|out| out.as_mut_ptr());
+    let ([px, py, pu], count) = ([&x, &y, &u].map(|column| column.as_ptr()), x.len());
+    // SAFETY: the handle and the columns are valid.
+    let statuses = unsafe {
+        [
+            tem00_stack_intensity_batch_f32(stack.0, px, py, pu, count, intensity),
+            tem00_stack_average_batch_f32(stack.0, px, py, size.as_ptr(), pu, count, average),
+        ]
+    };
+    assert_eq!(statuses, [Status::Ok; 2], "{}", last_parameter());
+    assert_eq!(out, expected);
+}
+
+#[test]
 fn correlations_offsets_and_coefficients_are_those_of_the_library() {
     let stack = Owned::new(&DESCRIPTION);
     let (handle, library) = (stack.0.cast_const(), stack.library());

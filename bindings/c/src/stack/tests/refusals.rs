@@ -157,6 +157,29 @@ fn look_ups_are_refused_by_the_name_of_what_is_wrong() {
                 refusal(tem00_stack_intensity_batch(handle, good, good, bad, 2, out)),
             ),
             (
+                "y",
+                refusal(tem00_stack_intensity_batch_f32(
+                    handle,
+                    [0.0].as_ptr(),
+                    [f32::NAN].as_ptr(),
+                    [0.0].as_ptr(),
+                    1,
+                    [0.0].as_mut_ptr(),
+                )),
+            ),
+            (
+                "size",
+                refusal(tem00_stack_average_batch_f32(
+                    handle,
+                    [0.0].as_ptr(),
+                    [0.0].as_ptr(),
+                    negative,
+                    [0.0].as_ptr(),
+                    1,
+                    [0.0].as_mut_ptr(),
+                )),
+            ),
+            (
                 "centre",
                 refusal(tem00_stack_average(handle, bad, good, 0.0, out)),
             ),

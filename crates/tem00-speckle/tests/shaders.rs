@@ -1,10 +1,5 @@
 //! The text for graphics cards compiles, and keeps to its names.
 
-#![expect(
-    clippy::expect_used,
-    reason = "a test stops at what it does not expect"
-)]
-
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use tem00_speckle::closed_form::WGSL;
 

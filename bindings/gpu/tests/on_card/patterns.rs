@@ -6,7 +6,7 @@ use tem00_speckle::{Complex, Phasors, Pupil, PupilField, Transmission};
 
 /// The rms and the largest deviation of one pattern from the other, of the mean.
 fn deviations(card: &[f32], library: &[f32]) -> [f64; 2] {
-    assert_eq!(card.len(), library.len());
+    assert_eq!(card.len(), library.len(), "samples");
     let errors = card
         .iter()
         .zip(library)

@@ -28,7 +28,7 @@ fn stack(gpu: &Gpu, seed: u64) -> GpuStack {
 /// Places two speckles apart on average, anywhere between samples.
 fn places(seed: u64) -> Vec<[f32; 2]> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let mut random = || generator.next_u32() as f32 / 4_294_967_296.0;
+    let mut random = || (generator.next_u32() >> 8) as f32 / 16_777_216.0;
     let cell = SIZE as f32 / CELLS as f32;
     // All cells at the same place within themselves.
     let at = [random(), random()];

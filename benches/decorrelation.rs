@@ -151,7 +151,7 @@ fn by_calls(
     let speckle = SpeckleMotion::new(&setup.geometry, &point, &motion, setup.orientation);
     let scale = setup.geometry.principal_distance() / setup.geometry.pixel_pitch();
     let pattern = setup.geometry.pattern_coordinate(
-        tangents(setup, position) * scale,
+        tangents(setup, position) * DVec2::new(scale, -scale),
         speckle.defocus_displacement,
         setup.pattern_speckle_size,
     );

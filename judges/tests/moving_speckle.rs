@@ -64,7 +64,8 @@ fn the_pattern_moves_by_exactly_the_image_displacement() {
     for i in 0..50 {
         let pixel = DVec2::new(0.37 * f64::from(i), 100.0 - 1.71 * f64::from(i));
         let before = intensity(pixel, DVec2::ZERO);
-        let after = intensity(pixel + in_pixels, displacement);
+        let rows_down = DVec2::new(in_pixels.x, -in_pixels.y);
+        let after = intensity(pixel + rows_down, displacement);
         // Rounding of the coordinates, 1e−14, and of the single-precision weights.
         assert!(
             (after - before).abs() < 1e-5,

@@ -1871,9 +1871,9 @@ tem00_status tem00_imaging_speckle_motion(const tem00_imaging *imaging,
 /**
  * Computes where in a speckle pattern a pixel lies, in pattern samples, not wrapped to its period.
  *
- * `pixel` holds its position x, y in pixels, `displacement` the motion of the speckle since the
- * reference state in metres on the sensor, along the same two axes; `pattern_speckle_size` is the
- * speckle size of the pattern in samples.
+ * `pixel` holds its position in pixels, x to the right and y down as rows count, from any origin;
+ * `displacement` the motion of the speckle since the reference state to the right and up, in metres on
+ * the sensor; `pattern_speckle_size` is the speckle size of the pattern in samples.
  *
  * The pointers are null or valid, those to numbers for two.
  */

@@ -202,7 +202,7 @@ def test_the_geometry_is_that_of_a_thin_lens() -> None:
     x, y = CAMERA.pattern_coordinate(([10.0, 20.0], 5.0), (CAMERA.pixel_pitch, 0.0), 4.0)
     scale = 4 / CAMERA.speckle_size_in_pixels
     np.testing.assert_allclose(x, scale * np.array([9.0, 19.0]), rtol=1e-13)
-    np.testing.assert_allclose(y, scale * np.array([5.0, 5.0]), rtol=1e-13)
+    np.testing.assert_allclose(y, -scale * np.array([5.0, 5.0]), rtol=1e-13)
     thick = dc.ImagingGeometry.from_thick_lens(
         dc.ThickLensData(
             wavelength=WAVELENGTH,
@@ -299,7 +299,7 @@ def test_a_field_is_the_motion_of_each_of_its_points() -> None:
         assert math.isclose(correlation, product, rel_tol=1e-9, abs_tol=1e-12)
         scale = CAMERA.principal_distance / CAMERA.pixel_pitch / depth
         pixel = [float(scale * np.dot(point - bench.eye, axis))
-                 for axis in (bench.frame.right, bench.frame.up)]
+                 for axis in (bench.frame.right, -bench.frame.up)]
         x, y = CAMERA.pattern_coordinate(pixel, one.defocus_displacement, 4.0)
         np.testing.assert_allclose(np.array(whole.pattern_coordinate)[:, i], [x, y], rtol=1e-12)
 

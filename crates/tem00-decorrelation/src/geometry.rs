@@ -449,13 +449,15 @@ impl ImagingGeometry {
     /// the image.
     ///
     /// ```text
-    /// c = (h_p / h_I) t − (h_p / h) a_I
+    /// c = (h_p / h_I) (t_x, −t_y) − (h_p / h) a_I
     /// ```
     ///
-    /// `pixel` is the position t in pixels and `image_displacement` the motion `a_I` of the speckle
-    /// since the reference state, in metres. Both refer to the same two axes, so that the pattern
-    /// moves across the image *by* `a_I`. `pattern_speckle_size` is `h_p`, the speckle size of the
-    /// pattern in samples. The result is not wrapped to the period of the pattern.
+    /// `pixel` is the position t in pixels, x to the right and y *down* as rows count, from any origin.
+    /// `image_displacement` is the motion `a_I` of the speckle since the reference state to the right and
+    /// *up*, in metres, as [`SpeckleMotion`](crate::SpeckleMotion) has it: the pattern moves across the
+    /// image *by* `a_I`. `pattern_speckle_size` is `h_p`, the speckle size of the pattern in samples. The
+    /// result is that of a look-up, to the right and up, and not wrapped to the period of the pattern. For points
+    /// in space there is [`MotionField`](crate::MotionField).
     ///
     /// Bergmann et al. 2016, §6.3, prints a plus sign, by which the pattern runs backwards.
     pub fn pattern_coordinate(
@@ -466,7 +468,7 @@ impl ImagingGeometry {
     ) -> DVec2 {
         let samples_per_pixel = pattern_speckle_size / self.speckle_size_in_pixels();
         let samples_per_metre = pattern_speckle_size / self.speckle_size();
-        pixel * samples_per_pixel - image_displacement * samples_per_metre
+        DVec2::new(pixel.x, -pixel.y) * samples_per_pixel - image_displacement * samples_per_metre
     }
 }
 

@@ -11,8 +11,10 @@ use std::{error::Error, f64::consts::PI, fs};
 
 use rand::rngs::StdRng;
 use rpt::{glm, glm::vec3, image::RgbImage, *};
-use tem00_beam::{DVec2, DVec3, Emitter, GaussianBeam, Placement, SpotLight};
-use tem00_decorrelation::{ImagingGeometry, LensData};
+use tem00_beam::{DVec3, Emitter, GaussianBeam, Placement, SpotLight};
+use tem00_decorrelation::{
+    CameraFrame, FieldSetup, ImageOrientation, ImagingGeometry, LensData, MotionField,
+};
 use tem00_speckle::{PupilField, SlicePath, SpeckleStack};
 use tem00_statistics::{Contrast, pixel_contrast};
 
@@ -27,7 +29,7 @@ const ALBEDO: f64 = 0.8;
 /// Irradiance, in W/m², at which rpt's pictures clip: ten times that of the spot at its middle.
 const WHITE: f64 = 10.0 * 2.0 * POWER / (PI * RADIUS * RADIUS);
 
-type Speckle = (SpeckleStack, ImagingGeometry);
+type Speckle = (SpeckleStack, MotionField);
 
 /// The laser as rpt meets it: an invisible shape that names a point to be lit from.
 struct Laser {
@@ -38,14 +40,11 @@ struct Laser {
 impl Laser {
     /// The speckle at the place where the camera sees `point`.
     fn speckle_at(&self, point: [f64; 3]) -> f64 {
-        let Some((stack, geometry)) = &self.speckle else {
+        let Some((stack, field)) = &self.speckle else {
             return 1.0;
         };
-        let seen = DVec3::from(point) - EYE;
-        let scale = geometry.principal_distance() / (-seen.z * geometry.pixel_pitch());
-        let pixel = DVec2::new(seen.x, seen.y) * scale;
-        let at = geometry.pattern_coordinate(pixel, DVec2::ZERO, stack.speckle_size());
-        stack.intensity_at(at.x, at.y, 0.0)
+        let at = field.pattern_coordinate(DVec3::from(point));
+        at.map_or(1.0, |at| stack.intensity_at(at.x, at.y, 0.0))
     }
 }
 
@@ -121,7 +120,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let stack = SpeckleStack::generate(&PupilField::new(768, 384, 1)?, SlicePath::Still)?;
 
     let smooth = irradiance(&photograph(&paper_under(light, None), &geometry, 0.0));
-    let mut scene = paper_under(light, Some((stack, geometry)));
+    let field = MotionField::new(FieldSetup {
+        geometry,
+        camera: CameraFrame::look_at(EYE, DVec3::ZERO, DVec3::Y)?,
+        pupil_centre: EYE,
+        orientation: ImageOrientation::ScreenUpright,
+        pattern_speckle_size: stack.speckle_size(),
+    })?;
+    let mut scene = paper_under(light, Some((stack, field)));
     let speckled = irradiance(&photograph(&scene, &geometry, 0.0));
     scene.add(Light::Point(vec3(2e-3, 2e-3, 2e-3), vec3(-0.1, 0.2, 0.2)));
     let ball = sphere().scale(&vec3(1e-3, 1e-3, 1e-3));

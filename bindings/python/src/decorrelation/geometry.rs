@@ -89,17 +89,17 @@ impl ImagingGeometry {
     /// Parameters
     /// ----------
     /// pixel : pair of floats or arrays
-    ///     Place in pixels, along two axes.
+    ///     Place in pixels, to the right and down as rows count, from any origin.
     /// image_displacement : pair of floats or arrays
-    ///     Motion of the speckle since the reference state, in metres on the sensor along the same
-    ///     axes.
+    ///     Motion of the speckle since the reference state, in metres on the sensor to the right
+    ///     and up.
     /// pattern_speckle_size : float
     ///     Speckle size of the pattern in samples.
     ///
     /// Returns
     /// -------
     /// pair of floats or arrays
-    ///     Coordinate in samples, not wrapped, in the common shape.
+    ///     Coordinate in samples, to the right and up, not wrapped, in the common shape.
     fn pattern_coordinate<'py>(
         &self,
         py: Python<'py>,

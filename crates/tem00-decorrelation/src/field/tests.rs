@@ -127,7 +127,8 @@ fn by_calls(setup: &FieldSetup, light: Light, shared: &Motion, row: &Row) -> Res
     ]
 }
 
-/// The image of a point by similar triangles, in pixels along the axes that the orientation counts in.
+/// The image of a point by similar triangles, in pixels along the axes that the orientation counts in,
+/// rows downwards.
 fn pixel_of(setup: &FieldSetup, position: DVec3) -> DVec2 {
     let (camera, from_pupil) = (setup.camera, position - setup.pupil_centre);
     let depth = -from_pupil.dot(camera.towards_camera());
@@ -135,8 +136,8 @@ fn pixel_of(setup: &FieldSetup, position: DVec3) -> DVec2 {
     let pixel =
         across * (setup.geometry.principal_distance() / depth / setup.geometry.pixel_pitch());
     match setup.orientation {
-        ImageOrientation::ScreenUpright => pixel,
-        ImageOrientation::SensorInverted => -pixel,
+        ImageOrientation::ScreenUpright => DVec2::new(pixel.x, -pixel.y),
+        ImageOrientation::SensorInverted => DVec2::new(-pixel.x, pixel.y),
     }
 }
 
@@ -196,8 +197,9 @@ fn batches_and_single_calls_agree() {
             }
             for row in &rows {
                 let at_rest = field.pattern_coordinate(vector(row, 0)).unwrap();
-                let samples = 4.0 / setup.geometry.speckle_size_in_pixels();
-                let error = (at_rest - pixel_of(&setup, vector(row, 0)) * samples).length();
+                let pixel = pixel_of(&setup, vector(row, 0));
+                let expected = setup.geometry.pattern_coordinate(pixel, DVec2::ZERO, 4.0);
+                let error = (at_rest - expected).length();
                 assert!(error <= tolerance[5], "{at_rest} at {row:?}");
             }
             let partial = results.iter().filter(|r| r[4] > 0.05 && r[4] < 0.95);

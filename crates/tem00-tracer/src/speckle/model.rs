@@ -316,7 +316,7 @@ impl SpeckleFrame<'_> {
         for (i, (point, mix)) in points.iter().zip(mixes).enumerate() {
             let shift = self.shift(laser, geometry, point, mix.as_ref());
             let pixel = self.change.perspective().point(point.pixel) - shift.displacement;
-            let c = geometry.pattern_coordinate(upright(pixel), DVec2::ZERO, stack.speckle_size());
+            let c = geometry.pattern_coordinate(pixel, DVec2::ZERO, stack.speckle_size());
             block.u[i] = pattern.coordinate_of(stack, shift.pupil, sign);
             [block.x[i], block.y[i]] = c.to_array();
         }

@@ -5,7 +5,7 @@ use tem00_coherence::Recombination;
 use tem00_speckle::{Complex, SpeckleStack};
 
 use super::{
-    super::{SpecklePoint, allocation, plan::SurfacePatterns, upright},
+    super::{SpecklePoint, allocation, plan::SurfacePatterns},
     Block, Mix, SpeckleFrame, Stack,
 };
 
@@ -160,8 +160,7 @@ impl SpeckleFrame<'_> {
         let geometry = &self.model.lasers[laser].geometry;
         let mut block = Block::default();
         for (i, place) in places.iter().enumerate() {
-            let pixel = upright(place.pixel);
-            let c = geometry.pattern_coordinate(pixel, DVec2::ZERO, stack.speckle_size());
+            let c = geometry.pattern_coordinate(place.pixel, DVec2::ZERO, stack.speckle_size());
             (block.x[i], block.y[i]) = (axis.dot(c), axis.perp().dot(c));
             block.u[i] = place.u;
         }

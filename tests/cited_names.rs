@@ -21,7 +21,7 @@ const FOREIGN: &[&str] = &["llvm_ad_mono_polarized"];
 /// Definitions in the sources.
 #[derive(Debug, Default)]
 struct Names {
-    /// Functions and methods of Rust and Python.
+    /// Functions and methods of Rust, WGSL and Python.
     functions: BTreeSet<String>,
     /// Methods, constants, variants and fields of each type.
     members: BTreeMap<String, BTreeSet<String>>,
@@ -33,7 +33,7 @@ impl Names {
     fn of_the_workspace() -> Self {
         let mut names = Self::default();
         for package in packages() {
-            for folder in ["src", "tests", "benches", "examples", "python"] {
+            for folder in ["src", "shaders", "tests", "benches", "examples", "python"] {
                 names.add_folder(&package.join(folder));
             }
         }
@@ -50,7 +50,7 @@ impl Names {
         for path in entries(folder) {
             self.add_folder(&path);
             let extension = path.extension().and_then(|extension| extension.to_str());
-            if let Some("rs" | "py" | "pyi" | "toml") = extension {
+            if let Some("rs" | "wgsl" | "py" | "pyi" | "toml") = extension {
                 let name = path.strip_prefix(root()).expect("below the root");
                 let name = name.to_string_lossy().replace('\\', "/");
                 self.add_file(name, &tokens(&read(&path)));

@@ -253,16 +253,15 @@ fn pipeline(gpu: &Gpu, radix: usize, finish: Finish) -> ComputePipeline {
         Finish::Nothing => ("vec2<f32>", "return v;"),
         Finish::Amplitude { .. } => (
             "vec2<f32>",
-            "let x = tem00_turns(stage.corner.x * line % stage.size.x, stage.size.x);
-            let y = tem00_turns(stage.corner.y * point % stage.size.y, stage.size.y);
-            return stage.scale * tem00_complex_product(v, tem00_unit_phasor(0u - x - y));",
+            "let centring = tem00_centring(stage.corner, vec2<u32>(line, point), stage.size);
+            return stage.scale * tem00_complex_product(v, centring);",
         ),
         Finish::Intensity => ("f32", "return stage.scale * dot(v, v);"),
     };
     let text = format!(
         "{functions}{NO_STACK}{KERNEL}
         const RADIX = {radix}u;
-        fn butterfly(v: array<vec2<f32>, RADIX>) -> array<vec2<f32>, RADIX> {{ return dft{radix}(v); }}
+        fn butterfly(v: array<vec2<f32>, RADIX>) -> array<vec2<f32>, RADIX> {{ return tem00_dft{radix}(v); }}
         @group(0) @binding(2) var<storage, read_write> after: array<{output}>;
         fn finished(v: vec2<f32>, line: u32, point: u32) -> {output} {{ {finished} }}",
         functions = closed_form::WGSL,

@@ -1,4 +1,5 @@
-// Speckle for a renderer's own kernels: random phasors from seed and lattice point, and look-ups in a stack.
+// Speckle for a renderer's own kernels: random phasors from seed and lattice point, the parts of a Fourier transform,
+// and look-ups in a stack.
 //
 // Functions and structs only: no bindings, no entry points, no imports, no extensions. Every name
 // begins with `tem00_` or `Tem00`; those that end in `_` are not for the caller.
@@ -15,6 +16,12 @@
 // by it. Positions x and y count samples, u counts slices; all three are periodic, at any whole number that an
 // i32 holds. An f32 of a thousand samples resolves 6e-5 of one, which moves the intensity by as much: where that
 // is too coarse, split the coordinates in the host or by integers and call `tem00_stack_intensity_at`.
+//
+// A stack is made by `tem00_phasor`, `tem00_prefilter` and a Fourier transform. Stockham's takes a stage for each of the
+// radices 2 to 16 whose product is the side of the pattern: thread `own` of length / radix reads the points own + r length /
+// radix of a line, multiplies them by `tem00_twiddle`, transforms them by `tem00_dft2` to `tem00_dft16`, and writes
+// value r to the point `tem00_stockham` of another array; `done` is the product of the radices before. The rows of the pupil go
+// first, zero where the box ends, then all columns; `tem00_centring` over the root of the pupil's points makes the amplitude.
 //
 // Nothing is left to a device's own sine, exponential or logarithm: additions, multiplications, divisions, square roots
 // and integers come within a few roundings of the library anywhere.
@@ -150,9 +157,104 @@ fn tem00_turns(count: u32, period: u32) -> u32 {
     return count * unit + u32(f32(count) * f32(rest) / f32(period));
 }
 
+/// Returns sinc⁻⁴(π k / size), the factor on the pupil point `k` of which cubic splines pass through the samples, for
+/// 2 |k| ≤ size.
+fn tem00_prefilter(k: i32, size: u32) -> f32 {
+    if k == 0 {
+        return 1.0;
+    }
+    let points = u32(abs(k));
+    let angle = 3.141592653589793 * f32(points) / f32(size);
+    let reciprocal = angle / tem00_unit_phasor(tem00_turns(points, size) >> 1u).y;
+    let square = reciprocal * reciprocal;
+    return square * square;
+}
+
+/// Returns exp(−2πi (`own` mod `done`) r / (`done` · `radix`)): what the thread `own` of a stage multiplies its value r by.
+fn tem00_twiddle(own: u32, r: u32, done: u32, radix: u32) -> vec2<f32> {
+    return tem00_unit_phasor(0u - tem00_turns(own % done * r, done * radix));
+}
+
+/// Returns the point of the line that the thread `own` of a stage writes its value r to.
+fn tem00_stockham(own: u32, r: u32, done: u32, radix: u32) -> u32 {
+    let angle = own % done;
+    return (own - angle) * radix + angle + r * done;
+}
+
+/// Returns exp(−2πi corner · cell / size): what moves a pupil whose box was at the corner of the array, and begins at
+/// `corner` modulo `size` from its centre, to zero frequency.
+fn tem00_centring(corner: vec2<u32>, cell: vec2<u32>, size: vec2<u32>) -> vec2<f32> {
+    let turns = vec2<u32>(corner.x * cell.x % size.x, corner.y * cell.y % size.y);
+    return tem00_unit_phasor(0u - tem00_turns(turns.x, size.x) - tem00_turns(turns.y, size.y));
+}
+
+/// Returns Σ v[j] exp(−2πi j k / 2), and so on for 3 to 16 values.
+fn tem00_dft2(v: array<vec2<f32>, 2>) -> array<vec2<f32>, 2> {
+    return array<vec2<f32>, 2>(v[0] + v[1], v[0] - v[1]);
+}
+
+fn tem00_dft3(v: array<vec2<f32>, 3>) -> array<vec2<f32>, 3> {
+    let sum = v[1] + v[2];
+    let middle = v[0] - 0.5 * sum;
+    let side = 0.8660254037844386 * tem00_turned_back_(v[1] - v[2]);
+    return array<vec2<f32>, 3>(v[0] + sum, middle + side, middle - side);
+}
+
+fn tem00_dft4(v: array<vec2<f32>, 4>) -> array<vec2<f32>, 4> {
+    let a = v[0] + v[2];
+    let b = v[0] - v[2];
+    let c = v[1] + v[3];
+    let d = tem00_turned_back_(v[1] - v[3]);
+    return array<vec2<f32>, 4>(a + c, b + d, a - c, b - d);
+}
+
+fn tem00_dft5(v: array<vec2<f32>, 5>) -> array<vec2<f32>, 5> {
+    let cosine = vec2<f32>(0.30901699437494745, -0.8090169943749475);
+    let sine = vec2<f32>(0.9510565162951535, 0.5877852522924731);
+    let outer = v[1] + v[4];
+    let inner = v[2] + v[3];
+    let outer_side = tem00_turned_back_(v[1] - v[4]);
+    let inner_side = tem00_turned_back_(v[2] - v[3]);
+    let a = v[0] + cosine.x * outer + cosine.y * inner;
+    let b = v[0] + cosine.y * outer + cosine.x * inner;
+    let c = sine.x * outer_side + sine.y * inner_side;
+    let d = sine.y * outer_side - sine.x * inner_side;
+    return array<vec2<f32>, 5>(v[0] + outer + inner, a + c, b + d, b - d, a - c);
+}
+
+fn tem00_dft8(v: array<vec2<f32>, 8>) -> array<vec2<f32>, 8> {
+    let half = 0.7071067811865476;
+    let even = tem00_dft4(array<vec2<f32>, 4>(v[0], v[2], v[4], v[6]));
+    let odd = tem00_dft4(array<vec2<f32>, 4>(v[1], v[3], v[5], v[7]));
+    let b = half * (odd[1] + tem00_turned_back_(odd[1]));
+    let c = tem00_turned_back_(odd[2]);
+    let d = half * (tem00_turned_back_(odd[3]) - odd[3]);
+    return array<vec2<f32>, 8>(
+        even[0] + odd[0], even[1] + b, even[2] + c, even[3] + d,
+        even[0] - odd[0], even[1] - b, even[2] - c, even[3] - d,
+    );
+}
+
+fn tem00_dft16(v: array<vec2<f32>, 16>) -> array<vec2<f32>, 16> {
+    var even = tem00_dft8(array<vec2<f32>, 8>(v[0], v[2], v[4], v[6], v[8], v[10], v[12], v[14]));
+    var odd = tem00_dft8(array<vec2<f32>, 8>(v[1], v[3], v[5], v[7], v[9], v[11], v[13], v[15]));
+    var out: array<vec2<f32>, 16>;
+    for (var k = 0u; k < 8u; k += 1u) {
+        let side = tem00_complex_product(odd[k], tem00_unit_phasor(0u - (k << 28u)));
+        out[k] = even[k] + side;
+        out[k + 8u] = even[k] - side;
+    }
+    return out;
+}
+
 /// Returns the product of two complex numbers.
 fn tem00_complex_product(a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
+}
+
+/// −i z.
+fn tem00_turned_back_(z: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(z.y, -z.x);
 }
 
 /// An amplitude and its expected square.

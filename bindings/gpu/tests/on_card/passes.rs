@@ -149,23 +149,3 @@ fn a_pass_of_a_renderer_shows_the_pattern() {
         );
     }
 }
-
-#[test]
-fn the_texts_of_all_crates_stand_in_one_shader() {
-    let gpu = Gpu::new().expect("an adapter");
-    let text = format!(
-        "{}{}{}
-        fn tem00_slice_overlaps(slice: u32) -> vec2<f32> {{ return vec2(1.0); }}
-        @compute @workgroup_size(1) fn nothing() {{}}",
-        GpuStack::wgsl(0),
-        tem00_beam::closed_form::WGSL,
-        tem00_decorrelation::closed_form::WGSL,
-    );
-    let scope = gpu.device().push_error_scope(wgpu::ErrorFilter::Validation);
-    let module = gpu.device().create_shader_module(ShaderModuleDescriptor {
-        label: None,
-        source: ShaderSource::Wgsl(text.into()),
-    });
-    let error = pollster::block_on(scope.pop());
-    assert!(error.is_none(), "{module:?}: {error:?}");
-}

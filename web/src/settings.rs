@@ -1,0 +1,185 @@
+//! What can be set, in the units that a person thinks in.
+
+use core::fmt;
+
+/// A number that can be set.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// Its name.
+    pub name: &'static str,
+    /// What a person reads beside the control, the unit included.
+    pub label: &'static str,
+    /// What it may be.
+    pub allowed: Allowed,
+    /// The value at the start.
+    pub start: f64,
+    /// What a change asks for.
+    pub changes: Changes,
+}
+
+/// The values of a setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Allowed {
+    /// From the first to the second.
+    Between(f64, f64),
+    /// The number of one of these, from 0.
+    OneOf(&'static [&'static str]),
+}
+
+impl Allowed {
+    /// The least and the greatest value.
+    pub fn range(self) -> [f64; 2] {
+        match self {
+            Self::Between(least, most) => [least, most],
+            Self::OneOf(choices) => [0.0, (choices.len() - 1) as f64],
+        }
+    }
+}
+
+/// Off or on.
+const SWITCH: Allowed = Allowed::OneOf(&["off", "on"]);
+
+/// What has to be made again after a change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Changes {
+    /// The picture from the same light.
+    View,
+    /// The light on the sensor.
+    Frame,
+    /// The speckle, since its size or its path is another.
+    Stack,
+}
+
+macro_rules! settings {
+    ($($field:ident $label:literal $allowed:expr, $start:literal $changes:ident;)*) => {
+        /// Everything that can be set.
+        pub const SETTINGS: &[Setting] = &[$(Setting {
+            name: stringify!($field),
+            label: $label,
+            allowed: $allowed,
+            start: $start,
+            changes: Changes::$changes,
+        }),*];
+
+        /// The values of all settings.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[expect(missing_docs, reason = "the labels say it")]
+        pub struct Values {
+            $(pub $field: f64),*
+        }
+
+        impl Default for Values {
+            fn default() -> Self {
+                Self { $($field: $start),* }
+            }
+        }
+
+        impl Values {
+            fn slot(&mut self, name: &str) -> Option<&mut f64> {
+                match name {
+                    $(stringify!($field) => Some(&mut self.$field),)*
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+settings! {
+    part "Part" Allowed::OneOf(&["plate", "step gauge", "sphere", "corner"]), 1.0 Frame;
+    light "Light" Allowed::OneOf(&["line", "spot"]), 0.0 Frame;
+    wavelength "Wavelength, nm" Allowed::Between(405.0, 850.0), 650.0 Stack;
+    f_number "f-number" Allowed::Between(4.0, 32.0), 16.0 Stack;
+    distance "Distance of the camera, mm" Allowed::Between(150.0, 600.0), 300.0 Stack;
+    line_width "Width of the light, mm" Allowed::Between(0.05, 20.0), 1.0 Frame;
+    power "Power, mW" Allowed::Between(0.1, 50.0), 5.0 Frame;
+    exposure "Exposure, ms" Allowed::Between(0.1, 100.0), 5.0 View;
+    lamp "Lamp, W/m²" Allowed::Between(0.0, 50.0), 5.0 Frame;
+    slide "The part slides, µm" Allowed::Between(-300.0, 300.0), 0.0 Frame;
+    lift "The part lifts, µm" Allowed::Between(-2000.0, 2000.0), 0.0 Frame;
+    tilt "The part tilts, mrad" Allowed::Between(-3.0, 3.0), 0.0 Frame;
+    azimuth "Camera around the part, °" Allowed::Between(-180.0, 180.0), -70.0 Frame;
+    elevation "Camera above the plate, °" Allowed::Between(10.0, 89.0), 50.0 Frame;
+    speckle "Speckle" SWITCH, 1.0 Frame;
+    printed "As printed in 2016" SWITCH, 0.0 Frame;
+    false_colour "False colour" SWITCH, 0.0 View;
+    zoom "Zoom on the pixels" Allowed::Between(1.0, 32.0), 1.0 View;
+    zoom_x "Centre of the zoom, part of the width" Allowed::Between(0.0, 1.0), 0.5 View;
+    zoom_y "Centre of the zoom, part of the height" Allowed::Between(0.0, 1.0), 0.5 View;
+    seed "Seed" Allowed::Between(0.0, 4_294_967_295.0), 1.0 Stack;
+}
+
+/// A value that cannot be set.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SettingError {
+    /// There is no setting of that name.
+    Unknown(String),
+    /// The value is beyond what is allowed.
+    OutOfRange {
+        /// The name of the setting.
+        name: &'static str,
+        /// The value.
+        value: f64,
+        /// What is allowed.
+        range: [f64; 2],
+    },
+}
+
+impl fmt::Display for SettingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(name) => write!(f, "there is no setting `{name}`"),
+            Self::OutOfRange {
+                name,
+                value,
+                range: [min, max],
+            } => write!(f, "`{name}` is {value}: it must be from {min} to {max}"),
+        }
+    }
+}
+
+impl core::error::Error for SettingError {}
+
+impl Values {
+    /// Sets the value of that name, and says what has to be made again.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if there is no such setting, or the value is not in its range.
+    pub fn set(&mut self, name: &str, value: f64) -> Result<Changes, SettingError> {
+        let unknown = || SettingError::Unknown(name.to_owned());
+        let setting = SETTINGS.iter().find(|setting| setting.name == name);
+        let Setting {
+            name,
+            allowed,
+            changes,
+            ..
+        } = *setting.ok_or_else(unknown)?;
+        let range = allowed.range();
+        if !(range[0]..=range[1]).contains(&value) {
+            return Err(SettingError::OutOfRange { name, value, range });
+        }
+        *self.slot(name).ok_or_else(unknown)? = value;
+        Ok(changes)
+    }
+}
+
+/// Returns all settings as JSON: name, label, min, max, start and choices of each.
+pub fn as_json() -> String {
+    let setting = |setting: &Setting| {
+        let [min, max] = setting.allowed.range();
+        let choices = match setting.allowed {
+            Allowed::OneOf(choices) => choices,
+            Allowed::Between(..) => &[],
+        };
+        let Setting {
+            name, label, start, ..
+        } = setting;
+        // Debug quotes as JSON does: no name needs more.
+        format!(
+            "{{\"name\":{name:?},\"label\":{label:?},\"min\":{min},\"max\":{max},\"start\":{start},\"choices\":{choices:?}}}"
+        )
+    };
+    let all: Vec<String> = SETTINGS.iter().map(setting).collect();
+    format!("[{}]", all.join(","))
+}

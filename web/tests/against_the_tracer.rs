@@ -1,0 +1,202 @@
+//! The pass of the page and the reference tracer see the same plate under the same laser line.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test stops at what it does not expect"
+)]
+
+use std::sync::atomic::AtomicBool;
+
+use glam::DVec3;
+use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
+use tem00_gpu::{Gpu, wgpu};
+use tem00_tracer::{
+    BeamShape, Frame, Laser, LaserDescription, LineProfile, Material, Rectangle, RenderOptions,
+    Scene, Shape, SpeckleModel, SpecklePlan, SpectralLine, Surface, Trajectory, render_frame,
+};
+use tem00_web::{
+    Passes, measure,
+    optics::{self, SENSOR, View},
+    scene,
+    settings::Values,
+    speckle::Speckle,
+};
+
+const WIDTH: usize = SENSOR[0] as usize;
+
+/// Light with speckle, light without, the lamp, the correlation with the part at rest, of each pixel.
+type Film = Vec<[f32; 4]>;
+
+/// The plate nearly from above, so that a slide of 24 pixel pitches moves its image by one pixel.
+fn values() -> Values {
+    Values {
+        part: 0.0,
+        azimuth: -90.0,
+        elevation: 80.0,
+        lamp: 0.0,
+        ..Values::default()
+    }
+}
+const SLIDE: f64 = 24.0 * 3.45;
+
+fn film_of_the_page(gpu: &Gpu, values: &Values) -> Film {
+    let passes = Passes::new(gpu, wgpu::TextureFormat::Rgba8Unorm);
+    let speckle = Speckle::new(gpu, values).unwrap();
+    let rows = scene::rows(values, &speckle, measure::SAMPLES).unwrap();
+    assert_eq!(rows.len() as u64, scene::COUNT, "as many as the struct has");
+    passes.show(gpu, &rows);
+    let mut encoder = gpu.device().create_command_encoder(&<_>::default());
+    passes.expose(gpu, &mut encoder, &speckle);
+    let buffer = passes.copy(gpu, &mut encoder);
+    gpu.queue().submit([encoder.finish()]);
+    gpu.read(&buffer).unwrap()
+}
+
+fn frames_of_the_tracer(values: &Values) -> [Film; 2] {
+    let view = View::new(values).unwrap();
+    let mut scene = Scene::new(
+        Camera::new(CameraDescription {
+            position: view.eye,
+            look_at: DVec3::ZERO,
+            up: DVec3::Z,
+            focal_length: view.geometry.focal_length(),
+            f_number: values.f_number,
+            focus_distance: 1e-3 * values.distance,
+            pixel_pitch: view.geometry.pixel_pitch(),
+            resolution: SENSOR.map(|n| n as usize),
+            principal_point: None,
+            tilt: SensorTilt::default(),
+            distortion: RadialDistortion::default(),
+            depth_of_field: false,
+        })
+        .unwrap(),
+    );
+    let laser = Laser::new(LaserDescription {
+        line: SpectralLine::monochromatic(1e-9 * values.wavelength).unwrap(),
+        power: 1e-3 * values.power,
+        position: optics::LASER_DISTANCE * DVec3::Z,
+        look_at: DVec3::ZERO,
+        line_direction: DVec3::X,
+        shape: BeamShape::Line {
+            fan: optics::FAN,
+            waist_radius: 0.5e-3 * values.line_width,
+            m_squared: 1.0,
+            profile: LineProfile::Powell { edge: 0.05 },
+        },
+    });
+    scene.lasers.push(laser.unwrap());
+    let plate = Rectangle::new(DVec3::ZERO, 0.035 * DVec3::X, 0.025 * DVec3::Y).unwrap();
+    scene.surfaces.push(Surface {
+        trajectory: Trajectory::steady(1e-6 * SLIDE * DVec3::X).unwrap(),
+        ..Surface::new(
+            "plate",
+            Shape::Rectangle(plate),
+            Material::lambertian(0.8).unwrap(),
+        )
+    });
+    scene.frames = 2;
+    let options = RenderOptions {
+        samples_per_pixel: 9,
+        max_depth: Some(2),
+        ..RenderOptions::default()
+    };
+    let plan = SpecklePlan::new(&scene, options.formulas, options.seed).unwrap();
+    let speckle = SpeckleModel::generate(&scene, &plan).unwrap();
+    [0, 1].map(|frame| {
+        let end = AtomicBool::new(false);
+        film_of(&render_frame(&scene, Some(&speckle), frame, &options, |_| (), &end).unwrap())
+    })
+}
+
+fn film_of(frame: &Frame) -> Film {
+    let layers = &frame.lasers[0];
+    let (with, without) = (layers.radiance.values(), layers.single.values());
+    with.iter()
+        .zip(without)
+        .map(|(with, without)| [*with, *without, 0.0, 1.0])
+        .collect()
+}
+
+/// Σ over the pixels of the light without speckle, and the standard deviation of its rows, in pixels.
+fn power_and_width(film: &Film) -> [f64; 2] {
+    let mut moments = [0.0; 3];
+    for (index, pixel) in film.iter().enumerate() {
+        let (row, light) = ((index / WIDTH) as f64, f64::from(pixel[1]));
+        for (moment, power) in moments.iter_mut().zip([1.0, row, row * row]) {
+            *moment += light * power;
+        }
+    }
+    let mean = moments[1] / moments[0];
+    [moments[0], (moments[2] / moments[0] - mean * mean).sqrt()]
+}
+
+/// The correlation of the speckle of lit pixels with that of the frame before, one pixel to the left.
+fn correlation(before: &Film, after: &Film) -> f64 {
+    let brightest = before
+        .iter()
+        .fold(0.0_f32, |most, pixel| most.max(pixel[1]));
+    let factor = |pixel: &[f32; 4]| {
+        (pixel[1] > 0.1 * brightest).then(|| f64::from(pixel[0] / pixel[1]) - 1.0)
+    };
+    let pairs = before
+        .iter()
+        .zip(&after[1..])
+        .filter_map(|(a, b)| Some([factor(a)?, factor(b)?]));
+    let [ab, aa, bb] = pairs.fold([0.0; 3], |[ab, aa, bb], [a, b]| {
+        [ab + a * b, aa + a * a, bb + b * b]
+    });
+    ab / (aa * bb).sqrt()
+}
+
+#[test]
+fn the_page_and_the_tracer_see_the_same_light_and_the_same_speckle() {
+    let gpu = Gpu::new().unwrap();
+    let at_rest = values();
+    let page = [
+        at_rest,
+        Values {
+            slide: SLIDE,
+            ..at_rest
+        },
+    ]
+    .map(|values| film_of_the_page(&gpu, &values));
+    let tracer = frames_of_the_tracer(&at_rest);
+
+    let ([power, width], [power_there, width_there]) =
+        (power_and_width(&page[0]), power_and_width(&tracer[0]));
+    assert!(
+        (power / power_there - 1.0).abs() < 2e-3,
+        "power {power}, not {power_there}"
+    );
+    assert!(
+        (width / width_there - 1.0).abs() < 2e-3,
+        "width {width}, not {width_there}"
+    );
+
+    let size = View::new(&at_rest)
+        .unwrap()
+        .geometry
+        .speckle_size_in_pixels();
+    let [here, there] =
+        [&page[0], &tracer[0]].map(|film| measure::measure(film, WIDTH, size).unwrap());
+    // A speckle covers some size² pixels. Both samples scatter by about √(2 / speckles).
+    let speckles = f64::from(here.pixels) / (size * size);
+    let scatter = 2.0 / speckles.sqrt();
+    assert!((here.contrast - there.contrast).abs() < 3.0 * scatter);
+    assert!((here.contrast - here.contrast_in_theory).abs() < 2.0 * scatter);
+
+    let [here, there] = [&page, &tracer].map(|frames| correlation(&frames[0], &frames[1]));
+    let moved = page[1]
+        .iter()
+        .filter(|pixel| pixel[1] > 0.0)
+        .map(|pixel| f64::from(pixel[3]));
+    let theory = moved.clone().sum::<f64>() / moved.count() as f64;
+    assert!(
+        (here - there).abs() < 2.0 * scatter,
+        "correlation {here}, not {there}"
+    );
+    assert!(
+        (here - theory).abs() < 2.0 * scatter,
+        "correlation {here}, not {theory}"
+    );
+}

@@ -1,8 +1,4 @@
 //! The WGSL of the law of motion: what its text promises. What it computes is tested on a card.
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test stops at what it does not expect"
-)]
 
 use naga::{
     Module, TypeInner,

@@ -87,7 +87,7 @@ impl Random {
     }
 
     /// A vector to the pupil, near the surface in focus; one in 16 from behind the camera.
-    fn to_pupil(&mut self, camera: &CameraFrame) -> DVec3 {
+    fn sight(&mut self, camera: &CameraFrame) -> DVec3 {
         let depth = 0.3 * (1.0 + self.within(0.3));
         let depth = if self.within(1.0) > 0.875 {
             -depth
@@ -114,19 +114,19 @@ impl Random {
         let [along, across] = [(); 2].map(|()| self.within(8.0));
         let wave = Wavefront::astigmatic(direction, self.vector(1.0), along, across);
         let k = wave.expect("a wave").curvature().to_cols_array();
-        let kind = f64::from(self.0.random_range(0..3_u8));
-        let source = if kind == 1.0 {
+        let kind = self.0.random_range(0..3_u8);
+        let source = if kind == 1 {
             direction * (0.3 + self.within(0.2))
         } else {
             direction
         };
         let [x, y, z] = source.to_array();
-        [kind, x, y, z, k[0], k[1], k[2], k[4], k[5], k[8]]
+        [kind.into(), x, y, z, k[0], k[1], k[2], k[4], k[5], k[8]]
     }
 
     fn input(&mut self, field: &MotionField) -> Input {
         let imaging = field.to_rows().expect("a field in f32");
-        let to_pupil = self.to_pupil(&field.setup().camera);
+        let to_pupil = self.sight(&field.setup().camera);
         let normal = to_pupil.normalize() + self.vector(0.5);
         let (motion, turn) = self.motion(field);
         let [x, y, z] = turn.to_array();
@@ -224,7 +224,7 @@ fn compare(field: &MotionField, inputs: &[Input]) -> [usize; 2] {
     let (mut gone, mut partial) = (0, 0);
     for (input, output) in inputs.iter().zip(on_card(inputs)) {
         let Some((motion, left)) = between(field, input) else {
-            assert_eq!(output[6], 0.0, "{input:?}: {output:?}");
+            assert_eq!(output[6].to_bits(), 0, "{input:?}: {output:?}");
             assert_eq!(output[2..4], [1e18; 2], "{input:?}: {output:?}");
             gone += 1;
             continue;
@@ -345,7 +345,7 @@ fn small_motions_are_those_of_a_motion_field() {
     for (input, output) in inputs.iter().zip(on_card(&inputs)) {
         let [speckle_x, speckle_y, x, y, left, ..] = in_field(&plain, input);
         if left == 0.0 {
-            assert_eq!(output[6], 0.0, "{input:?}: {output:?}");
+            assert_eq!(output[6].to_bits(), 0, "{input:?}: {output:?}");
             continue;
         }
         let error = (pair(&output, 2) - DVec2::new(x, y)).length();

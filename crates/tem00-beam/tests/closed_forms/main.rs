@@ -3,7 +3,6 @@
 //! Here the WGSL is only parsed: its answers are those of a card. The C header is compiled by the
 //! system's compiler.
 #![expect(
-    clippy::expect_used,
     clippy::unwrap_used,
     reason = "a test stops at what it does not expect"
 )]

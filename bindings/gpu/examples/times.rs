@@ -1,4 +1,4 @@
-//! How long do a pattern and the look-ups of an image take on the card, beside the library on all processors?
+//! How long do a pattern and the look-ups of an image take on the card, beside the library?
 //!
 //! ```sh
 //! cargo run --release -p tem00-gpu --example times

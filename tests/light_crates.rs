@@ -109,19 +109,22 @@ fn no_threads_come_along_unless_asked_for() {
 }
 
 #[test]
-fn the_documentation_names_functions_that_the_header_has() {
-    let (page, header) = (
-        read("docs/integration.md"),
-        read("bindings/c/include/tem00.h"),
-    );
+fn the_documentation_names_functions_that_the_header_or_the_shaders_have() {
+    let page = read("docs/integration.md");
+    let shaders = ["beam", "speckle", "decorrelation"]
+        .map(|name| read(format!("crates/tem00-{name}/shaders/tem00_{name}.wgsl")));
+    let texts = [read("bindings/c/include/tem00.h"), shaders.concat()].concat();
     let names = page.split('`').filter(|word| {
         let kinds = ["tem00_light_", "tem00_stack_", "tem00_imaging_"];
         kinds.iter().any(|kind| word.starts_with(kind))
     });
     let missing: Vec<_> = names
-        .filter(|name| !header.contains(&format!("{name}(")))
+        .filter(|name| !texts.contains(&format!("{name}(")))
         .collect();
-    assert!(missing.is_empty(), "not in tem00.h: {missing:?}");
+    assert!(
+        missing.is_empty(),
+        "neither in tem00.h nor in WGSL: {missing:?}"
+    );
 }
 
 const fn crosses_threads<T: Send + Sync>() {}

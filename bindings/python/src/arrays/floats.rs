@@ -62,7 +62,9 @@ pub(crate) fn fill_in_kind<'py, const N: usize>(
             });
         }
         let columns = columns.try_into().map_err(|_| missing("a column"))?;
-        let [values] = evaluate::<f32, N, 1>(py, columns, [&[]], |x, [out]| single(x, out))?;
+        let [values] = evaluate::<f32, N, 1>(py, columns, [&[]], |x, [out]| {
+            single(x, out);
+        })?;
         return Ok(values);
     }
     let mut wide = Vec::with_capacity(N);
@@ -77,7 +79,7 @@ pub(crate) fn fill_in_kind<'py, const N: usize>(
     let named: Vec<Named<'_, 'py>> = named.collect();
     let named = named.try_into().map_err(|_| missing("an argument"))?;
     let [values] = evaluate(py, columns(named, f64::MAX)?, [&[]], |x, [out]| {
-        double(x, out)
+        double(x, out);
     })?;
     Ok(values)
 }

@@ -210,7 +210,7 @@ impl<T: Real, F: Fan<Scalar = T>> PhaseSpace<T> for F {
         let along = self.profile().between(T::of(low), T::of(high)).wide() + ROUNDING;
         let steepest = low.abs().max(high.abs());
         let secants = [secant(low.max(-high).max(0.0)), secant(steepest)];
-        let dz = line.from_waist([near, far], secants, source * steepest);
+        let dz = line.distances_from_waist([near, far], secants, source * steepest);
         along.min(1.0) * chance(&line.y, dz, target.y, line.cutoff)
     }
 
@@ -283,7 +283,12 @@ impl<T: Real> Fan for LineLight<T> {
 impl LineLight<f64> {
     /// Returns the range of the distances from the waist, along rays whose secants are in a range, at
     /// distances from the plane of the apex that are in another, each ±`slack`.
-    fn from_waist(&self, [near, far]: [f64; 2], secants: [f64; 2], slack: f64) -> [f64; 2] {
+    fn distances_from_waist(
+        &self,
+        [near, far]: [f64; 2],
+        secants: [f64; 2],
+        slack: f64,
+    ) -> [f64; 2] {
         let [near, far, slant] = if self.focus_on_plane > 0.0 {
             [near - self.y.z0, far - self.y.z0, 0.0]
         } else {

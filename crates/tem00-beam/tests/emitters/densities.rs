@@ -8,7 +8,7 @@ use tem00_beam::{DVec3, Emitter, LaserLine, RayPdf};
 use crate::lights::{beams, end_of, fans, place};
 use crate::lines::slopes;
 
-/// σ_b/r: the angle, on the axis, that the rays of a point of the lens differ by.
+/// `σ_b/r`: the angle, on the axis, that the rays of a point of the lens differ by.
 const APEX_ANGLE: f64 = 4.1e-4;
 
 fn pdf(light: &dyn Emitter<f64>, [x, y]: [f64; 2], [s, t]: [f64; 2]) -> RayPdf<f64> {
@@ -138,8 +138,8 @@ fn chi_square_of_positions(light: &dyn Emitter<f64>, half: f64, y: f64) -> f64 {
     let mut counts = [0_u32; BINS];
     for _ in 0..RAYS {
         let x = light.sample_ray(rng.random()).origin[0];
-        let place = (0.5 * (x / half + 1.0) * BINS as f64).floor();
-        if let Some(bin) = (0..BINS).find(|&bin| bin as f64 == place) {
+        let place = 0.5 * (x / half + 1.0) * BINS as f64;
+        if let Some(bin) = (0..BINS).find(|&bin| (bin as f64..(bin + 1) as f64).contains(&place)) {
             counts[bin] += 1;
         }
     }

@@ -47,11 +47,16 @@ fn look_ups_are_those_of_the_library_to_the_last_bit() {
     }
 }
 
+#[expect(clippy::cast_possible_truncation, reason = "rounding is the purpose")]
+fn single(x: f64) -> f32 {
+    x as f32
+}
+
 #[test]
 fn look_ups_in_single_precision_are_those_of_the_library() {
     let stack = Owned::new(&DESCRIPTION);
     let library = stack.library();
-    let [x, y, u] = places().map(|column| column.into_iter().map(|x| x as f32).collect::<Vec<_>>());
+    let [x, y, u] = places().map(|column| column.into_iter().map(single).collect::<Vec<_>>());
     let size = [3.0, 0.5];
     let mut out = [(); 2].map(|()| vec![0.0_f32; x.len()]);
     let mut expected = out.clone();

@@ -86,3 +86,32 @@ fn next_size(side: usize) -> usize {
         .find(allowed)
         .unwrap_or(PupilField::MAX_SIZE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refusals_say_what_would_do() {
+        let limit = GpuError::TooLarge {
+            what: "the stack",
+            needed: 9,
+            allowed: 8,
+        };
+        for (error, parts) in [
+            (
+                GpuError::NoAdapter("none".into()),
+                ["none", "mesa-vulkan-drivers"],
+            ),
+            (GpuError::Size(2047), ["got 2047", "2048 is the next"]),
+            (
+                GpuError::Size(32_769),
+                ["at most 32768", "32768 is the next"],
+            ),
+            (limit, ["at most 8 bytes", "got 9 for the stack"]),
+        ] {
+            let text = error.to_string();
+            assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+        }
+    }
+}

@@ -8,6 +8,8 @@ pub mod optics;
 #[cfg(target_arch = "wasm32")]
 pub mod page;
 mod passes;
+#[cfg(target_arch = "wasm32")]
+pub mod prepare;
 pub mod scene;
 pub mod settings;
 pub mod speckle;

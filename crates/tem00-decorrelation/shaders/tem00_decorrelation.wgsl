@@ -30,8 +30,8 @@
 //
 // Validity: lengths from 1e-9 m to 1e9 m. No difference of near-equal numbers is formed: with the
 // distance L to the pupil, the angle φ by which the light turns and the motion a, displacements in the
-// pupil are off by about 4 ε (|a| + L φ), ε = 1.2e-7, which is some 1e-7 of the pupil diameter while
-// the speckle stays in the pupil, however far away that is. Positions enter at second order only.
+// pupil are off by about 4 ε (|a| + L φ), ε = 1.2e-7, which is 7e-8 of the pupil diameter in rms and 5e-7
+// at worst while the speckle stays in the pupil, however far away that is; γ is off by 3e-6 at worst. Positions enter at second order only.
 // Pattern coordinates are off by 4 ε of the principal distance in samples. A cosine below 2⁻¹² counts as
 // grazing.
 

@@ -112,13 +112,41 @@ fn seen(pixel: vec2<f32>) -> vec4<f32> {
     return vec4<f32>(radiance * speckle.x, radiance, lamp, speckle.y);
 }
 
+/// The turn of the light by a motion, from the curvature of its wavefront: that of a beam, 1/R(z) along each axis.
+fn wave_at(p: vec3<f32>, motion: vec3<f32>) -> Tem00LightMotion {
+    let towards = laser_at(p).wi;
+    if dot(towards, towards) == 0.0 { return tem00_collimated(towards); }
+    if scene.spot_light > 0.5 {
+        let z = dot(p - scene.spot.origin, scene.spot.ez);
+        let along = scene.spot.ex - towards * dot(towards, scene.spot.ex);
+        return tem00_wavefront(towards, tensor(towards, along, curvature(scene.spot.x, z), curvature(scene.spot.y, z)), motion);
+    }
+    // In the plane of the fan the waves spread from its apex.
+    let from_apex = p - scene.line.origin + scene.line.ez * scene.line.apex_offset;
+    let slant = length(from_apex - scene.line.ey * dot(from_apex, scene.line.ey));
+    let across = curvature(scene.line.y, slant);
+    return tem00_wavefront(towards, tensor(towards, cross(scene.line.ey, towards), 1.0 / slant, across), motion);
+}
+
+/// The curvature of a beam at the distance z from where its waist is counted.
+fn curvature(axis: Tem00Axis, z: f32) -> f32 {
+    let beyond = z - axis.z0;
+    return axis.theta_sq * beyond / (axis.w0_sq + axis.theta_sq * beyond * beyond);
+}
+
+/// The tensor of a wave from `towards` with one curvature along an axis across it, and one along the other.
+fn tensor(towards: vec3<f32>, axis: vec3<f32>, first: f32, second: f32) -> mat3x3<f32> {
+    let a = normalize(axis);
+    let b = cross(towards, a);
+    return first * mat3x3<f32>(a * a.x, a * a.y, a * a.z) + second * mat3x3<f32>(b * b.x, b * b.y, b * b.z);
+}
+
 /// The intensity of the speckle, and its correlation with the reference state, at a place of the image in pixels from the
 /// axis, where a point of the part is seen that lay at `p` with this normal in the reference state.
 fn speckle_at(image: vec2<f32>, p: vec3<f32>, normal: vec3<f32>) -> vec2<f32> {
     if scene.speckle < 0.5 { return vec2<f32>(1.0); }
     let motion = tem00_rotation_change(scene.rotation, p) + scene.shift.xyz;
-    let source = select(scene.line.origin - scene.line.ez * scene.line.apex_offset, scene.spot.origin, scene.spot_light > 0.5);
-    let light = tem00_point_source(source - p, motion);
+    let light = wave_at(p, motion);
     let moved = tem00_speckle_motion(scene.imaging, scene.eye.xyz - p, normal, motion, scene.rotation, light);
     let u = tem00_slice_coordinate(moved.correlation, u32(scene.overlaps_used));
     // The paper moves the pattern against the image.

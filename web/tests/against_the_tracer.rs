@@ -28,8 +28,10 @@ const WIDTH: usize = SENSOR[0] as usize;
 type Film = Vec<[f32; 4]>;
 
 /// The plate nearly from above, so that a slide of 24 pixel pitches moves its image by one pixel.
-fn values() -> Values {
+fn values(light: f64, line_width: f64) -> Values {
     Values {
+        light,
+        line_width,
         part: 0.0,
         azimuth: -90.0,
         elevation: 80.0,
@@ -77,12 +79,7 @@ fn frames_of_the_tracer(values: &Values) -> [Film; 2] {
         position: optics::LASER_DISTANCE * DVec3::Z,
         look_at: DVec3::ZERO,
         line_direction: DVec3::X,
-        shape: BeamShape::Line {
-            fan: optics::FAN,
-            waist_radius: 0.5e-3 * values.line_width,
-            m_squared: 1.0,
-            profile: LineProfile::Powell { edge: 0.05 },
-        },
+        shape: shape(values),
     });
     scene.lasers.push(laser.unwrap());
     let plate = Rectangle::new(DVec3::ZERO, 0.035 * DVec3::X, 0.025 * DVec3::Y).unwrap();
@@ -106,6 +103,23 @@ fn frames_of_the_tracer(values: &Values) -> [Film; 2] {
         let end = AtomicBool::new(false);
         film_of(&render_frame(&scene, Some(&speckle), frame, &options, |_| (), &end).unwrap())
     })
+}
+
+fn shape(values: &Values) -> BeamShape {
+    let waist_radius = 0.5e-3 * values.line_width;
+    if values.light > 0.5 {
+        return BeamShape::Spot {
+            waist_radius: [waist_radius; 2],
+            waist_distance: [optics::LASER_DISTANCE; 2],
+            m_squared: [1.0; 2],
+        };
+    }
+    BeamShape::Line {
+        fan: optics::FAN,
+        waist_radius,
+        m_squared: 1.0,
+        profile: LineProfile::Powell { edge: 0.05 },
+    }
 }
 
 fn film_of(frame: &Frame) -> Film {
@@ -149,9 +163,17 @@ fn correlation(before: &Film, after: &Film) -> f64 {
 }
 
 #[test]
-fn the_page_and_the_tracer_see_the_same_light_and_the_same_speckle() {
+fn the_page_and_the_tracer_see_the_same_line_and_the_same_speckle() {
+    agree(values(0.0, 1.0));
+}
+
+#[test]
+fn the_page_and_the_tracer_see_the_same_spot_and_the_same_speckle() {
+    agree(values(1.0, 15.0));
+}
+
+fn agree(at_rest: Values) {
     let gpu = Gpu::new().unwrap();
-    let at_rest = values();
     let page = [
         at_rest,
         Values {

@@ -52,4 +52,11 @@ await check([folder], async (browser, address, expect) => {
   const overflow = await narrow.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   expect(overflow <= 0, 'nothing is wider than a narrow screen');
   await picture(narrow, 'narrow.png', { fullPage: true });
+
+  const without = await browser.newPage();
+  await without.evaluateOnNewDocument(() => Object.defineProperty(navigator, 'gpu', { value: undefined }));
+  await without.goto(address);
+  const shown = await without.waitForFunction(() => document.querySelector('.instead')?.complete && document.querySelector('.error')?.textContent);
+  const said = await shown.jsonValue();
+  expect(said.includes('lacks it'), `without WebGPU: ${said}`);
 });

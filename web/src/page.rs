@@ -56,7 +56,8 @@ impl Page {
             compatible_surface: Some(&surface),
             ..RequestAdapterOptions::default()
         };
-        let adapter = instance.request_adapter(&options).await?;
+        let adapter = instance.request_adapter(&options).await;
+        let adapter = adapter.map_err(|_| JsError::new("it finds no graphics adapter"))?;
         let device = DeviceDescriptor::default();
         let (device, queue) = adapter.request_device(&device).await?;
         device.on_uncaptured_error(std::sync::Arc::new(|error| {

@@ -12,13 +12,14 @@ function say(text, isError = false) {
 
 /** Without WebGPU: a sentence and a picture. */
 function instead(reason) {
+  document.querySelector('table').remove();
   const picture = new Image();
   picture.src = 'instead.png';
   picture.alt = 'A step gauge under a red laser line, with speckle';
   picture.className = 'instead';
   canvas.replaceWith(picture);
   $('settings').remove();
-  say(`This page draws with WebGPU, which ${reason}. The picture shows what it would draw; a recent Chrome, Edge, Firefox or Safari shows it live.`, true);
+  say(`This page draws with WebGPU, but ${reason}. The picture shows what it would draw; a recent Chrome, Edge, Firefox or Safari shows it live.`, true);
 }
 
 /** A control for each setting that is not moved by the mouse. */
@@ -70,13 +71,13 @@ function controls(list, onChange) {
 }
 
 async function start() {
-  if (!navigator.gpu) return instead('this browser lacks or has switched off');
+  if (!navigator.gpu) return instead('this browser lacks it, or has switched it off');
   await init();
   let page;
   try {
     page = await Page.open(canvas);
   } catch (error) {
-    return instead(`found no graphics adapter here (${error.message ?? error})`);
+    return instead(error.message ?? String(error));
   }
   const list = JSON.parse(settings());
   const values = Object.fromEntries(list.map(({ name, start }) => [name, start]));

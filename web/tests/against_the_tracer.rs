@@ -204,8 +204,16 @@ fn agree(at_rest: Values) {
     // A speckle covers some size² pixels. Both samples scatter by about √(2 / speckles).
     let speckles = f64::from(here.pixels) / (size * size);
     let scatter = 2.0 / speckles.sqrt();
-    assert!((here.contrast - there.contrast).abs() < 3.0 * scatter);
-    assert!((here.contrast - here.contrast_in_theory).abs() < 2.0 * scatter);
+    let [contrast, other] = [here, there].map(|found| found.contrast);
+    assert!(
+        (contrast - other).abs() < 3.0 * scatter,
+        "contrast {contrast}, not {other}"
+    );
+    let theory = here.contrast_in_theory;
+    assert!(
+        (contrast - theory).abs() < 2.0 * scatter,
+        "contrast {contrast}, not {theory}"
+    );
 
     let [here, there] = [&page, &tracer].map(|frames| correlation(&frames[0], &frames[1]));
     let moved = page[1]

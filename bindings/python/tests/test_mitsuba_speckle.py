@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import drjit as dr
 import mitsuba as mi
 import numpy as np
 import pytest
@@ -16,12 +17,16 @@ mi.set_variant("llvm_ad_rgb")
 import tem00.mitsuba  # noqa: E402
 from tem00 import ParameterError, speckle  # noqa: E402
 from tem00.coherence import ResolutionCell, SpectralLine  # noqa: E402
-from tem00.mitsuba.patterns import Place, generate  # noqa: E402
+from tem00.mitsuba.amplitudes import AmplitudeTable, amplitude_bytes  # noqa: E402
+from tem00.mitsuba.look_up import Cell  # noqa: E402
+from tem00.mitsuba.patterns import Pattern, Place, generate  # noqa: E402
 from tem00.mitsuba.speckle import speckle_size  # noqa: E402
 from tem00.mitsuba.speckle_settings import PatternSettings  # noqa: E402
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from tem00._typing import Interpolation
 
 tem00.mitsuba.register()
 
@@ -120,35 +125,121 @@ def pixel_means(stack: Any, width: int = WIDTH, height: int = HEIGHT) -> Array:
     return means
 
 
+@pytest.mark.parametrize("table", ["intensity", "amplitude"])
 @pytest.mark.parametrize(
     ("properties", "u"),
     [
         ({}, 0.0),
         ({"path": "straight"}, 3.3),
         ({"path": "straight", "half_period": 16, "length": 4}, -0.5),
+        ({"path": "straight", "half_period": 16, "length": 4}, 7.0),
         ({"path": "circle", "half_period": 3}, 5.5),
         ({"pattern_size": 256, "pattern_diameter": 64}, 0.0),
         ({"pattern_diameter": 90, "seed": 7}, 0.0),
     ],
 )
-def test_the_look_up_is_that_of_the_stack(properties: dict[str, Any], u: float) -> None:
-    # Points in the image and up to three periods beyond it.
-    x, y = np.random.default_rng(1).uniform(-900.0, 1200.0, (2, 20_000))
-    shift = (0.3, -0.7)
-    (pattern,) = generate(settings(**properties), [SPECKLE_SIZE], (320, 240))
-    pattern.move_to(Place(u, shift))
-    scale = pattern.stack.speckle_size / SPECKLE_SIZE
-
-    got = np.array(pattern.factor(mi.Point2f(x, y)), dtype=np.float64)
-
-    expected = pattern.stack.intensity_at(scale * (x - shift[0]), -scale * (y - shift[1]), u)
-    error = got - expected
+def test_the_look_up_is_that_of_the_stack(
+    properties: dict[str, Any], u: float, table: str
+) -> None:
+    (pattern,) = generate(settings(**properties, table=table), [SPECKLE_SIZE], (320, 240))
+    error, expected = errors_of(pattern, u)
     # The spline with 8 nodes per fringe: 1.2e-4 rms, 9e-4 at worst of so many points, by the same
     # comparison in NumPy alone. 16-bit coefficients: 1e-4. Coordinates in single precision: 4 * 1200
     # / 2 * 2**-24 of a node and slopes of 2 pi / 8 of an intensity of 4 per node: 4e-4.
+    rms, worst = (2e-4, 1.5e-3)
+    if table == "amplitude":
+        # Rounding to 1 / 32767 of 5, weighted: 3e-5, and 2 sqrt(12) * 4e-5 at worst; the coordinates
+        # are finer by the nodes per sample.
+        rms, worst = (6e-5, 6e-4)
+    assert np.sqrt(np.mean(error**2)) < rms
+    assert np.abs(error).max() < worst
+    assert np.std(expected) > 0.8
+
+
+def errors_of(pattern: Pattern, u: float) -> tuple[Array, Array]:
+    """Return the errors of a look-up, and the intensities of the stack, in the image and up to three periods beyond."""
+    x, y = np.random.default_rng(1).uniform(-900.0, 1200.0, (2, 20_000)).astype(np.float32)
+    shift = (0.3, -0.7)
+    pattern.move_to(Place(u, shift))
+    scale = pattern.stack.speckle_size / SPECKLE_SIZE
+    got = np.array(pattern.factor(mi.Point2f(x, y)), dtype=np.float64)
+    at = scale * (x.astype(np.float64) - shift[0]), -scale * (y.astype(np.float64) - shift[1])
+    expected = pattern.stack.intensity_at(*at, u)
+    return got - expected, expected
+
+
+@pytest.mark.parametrize("interpolation", ["bilinear", "nearest"])
+def test_amplitudes_are_interpolated_as_the_stack_interpolates(interpolation: Interpolation) -> None:
+    field = speckle.PupilField(128, 48, 5)
+    path = speckle.SlicePath.straight(half_period=8, length=2)
+    stack = speckle.SpeckleStack.generate(field, path, speckle.StackOptions(interpolation))
+    error, _ = errors_of(Pattern(stack, SPECKLE_SIZE, (0.0, 0.0), "amplitude"), 2.3)
+    # Places in single precision may round to the other of two samples: 1e-4 of a sample to either side.
+    flipped = 4 * 1e-4 if interpolation == "nearest" else 0.0
+    assert np.mean(np.abs(error) > 1.5e-3) <= flipped
+
+
+def test_amplitudes_behind_an_asymmetric_pupil_have_its_law() -> None:
+    ramp = np.linspace(0.0, 1.0, 32) ** 2
+    pupil = speckle.Pupil.sampled(speckle.Transmission(np.outer(ramp, ramp)))
+    field = speckle.PupilField(128, 64, 5).with_pupil(pupil)
+    stack = speckle.SpeckleStack.generate(field, speckle.SlicePath.circle(half_period=3))
+    odd = stack.slice_law(0).covariance
+    assert max(np.abs(odd[4:]).max(), np.abs(odd[:, 4:]).max()) > 5e-4
+    x, y = np.random.default_rng(4).uniform(0.0, 1.0, (2, 1000))
+    node = mi.UInt32(0)
+    got = AmplitudeTable(stack, 0.5)._mean_square(Cell(node, mi.Float(x)), Cell(node, mi.Float(y)))
+
+    px, py = x * (1.0 - x), y * (1.0 - y)
+    ox, oy = px * (1.0 - 2.0 * x), py * (1.0 - 2.0 * y)
+    along_x = np.stack([px**0, px, px**2, px**3, ox, ox * px])
+    along_y = np.stack([py**0, py, py**2, py**3, oy, oy * py])
+    laws = [stack.slice_law(number).mean_square for number in range(2)]
+    expected = 0.25 * np.einsum("yx,yi,xi->i", laws[0] + laws[1], along_y[:4], along_x[:4])
+    expected += 0.5 * np.einsum("yx,yi,xi->i", odd, along_y, along_x)
+    # Some thirty roundings; the odd shapes make 4e-5.
+    assert np.abs(np.array(got) - expected).max() < 2e-6
+
+
+def test_five_megapixels_fit_the_memory_as_amplitudes() -> None:
+    (pattern,) = generate(settings(), [1.9], (2592, 1944))
+    assert pattern.table == "amplitude"
+    assert amplitude_bytes(pattern.stack) < 24 * 2**20
+    pattern.move_to(Place(0.0, (0.0, 0.0)))
+    x, y = np.random.default_rng(2).uniform(0.0, 1.0, (2, 20_000)).astype(np.float32)
+    x, y = 2592 * x, 1944 * y
+    scale = pattern.stack.speckle_size / 1.9
+    expected = pattern.stack.intensity_at(scale * x.astype(float), -scale * y.astype(float), 0.0)
+    error = np.array(pattern.factor(mi.Point2f(x, y)), dtype=np.float64) - expected
+    # Samples up to 2880 have 1e-4 of one, and intensities of 4 rise by 2 pi / 2 of themselves per sample.
     assert np.sqrt(np.mean(error**2)) < 2e-4
     assert np.abs(error).max() < 1.5e-3
-    assert np.std(expected) > 0.8
+
+
+@pytest.mark.parametrize("motion", [{}, {"path": "straight", "half_period": 8, "u": 1.3}])
+def test_pictures_of_amplitudes_are_those_of_intensities(motion: dict[str, Any]) -> None:
+    of_amplitudes, of_intensities = (
+        picture({**DIRECT, **motion, "table": table}) for table in ("amplitude", "intensity")
+    )
+    # The same samples: the worst of both errors, beside a mean of 1.
+    assert np.abs(of_amplitudes - of_intensities).max() < 2.1e-3 * of_intensities.mean()
+
+
+@pytest.mark.parametrize("table", ["intensity", "amplitude"])
+def test_motion_compiles_no_kernel_anew(table: str) -> None:
+    loaded = scene({**DIRECT, "path": "straight", "half_period": 8, "table": table})
+    parameters = mi.traverse(loaded)
+    render(loaded)
+    with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
+        dr.kernel_history_clear()
+        for u in (1.0, 2.7, -5.5):
+            parameters["integrator.u"] = mi.Float(u)
+            parameters["integrator.shift_x"] = mi.Float(3.0 * u)
+            parameters.update()
+            render(loaded)
+        kernels = dr.kernel_history([dr.KernelType.JIT])
+    assert len(kernels) >= 3
+    assert all(kernel["cache_hit"] for kernel in kernels)
 
 
 def test_pixels_show_the_mean_of_the_pattern_over_their_areas() -> None:
@@ -434,6 +525,8 @@ def test_a_thin_lens_determines_the_speckle_size() -> None:
         ("speckle_sise", 4.5),
         ("memory", 0),
         ("memory", 0.5),
+        ("table", "amplitudes"),
+        ("table", 3),
     ],
 )
 def test_a_refused_property_is_named(name: str, value: Any) -> None:
@@ -467,12 +560,25 @@ def test_what_takes_too_much_memory_is_named(name: str, properties: dict[str, An
 
 
 def test_the_table_takes_no_more_than_it_may() -> None:
-    # 128**2 speckles of 512 bytes are 8 MiB.
+    # 128**2 speckles of 64 nodes with 28 bytes are 28 MiB, of 4 samples with 4 bytes 1/4 MiB.
     sizes = {"pattern_size": 256, "pattern_diameter": 128}
-    generate(settings(**sizes, memory=9), [4.0], (256, 256))
-    with pytest.raises(ParameterError, match="8 MiB, and `memory` allows 7 MiB") as caught:
-        generate(settings(**sizes, memory=7), [4.0], (256, 256))
+    for memory, table in ((29, "intensity"), (27, "amplitude")):
+        (pattern,) = generate(settings(**sizes, memory=memory), [4.0], (256, 256))
+        assert pattern.table == table
+    asked = settings(**sizes, memory=27, table="intensity")
+    with pytest.raises(ParameterError, match="28 MiB, and `memory` allows 27 MiB") as caught:
+        generate(asked, [4.0], (256, 256))
     assert caught.value.parameter == "speckle_size"
+
+
+def test_tables_of_a_file_for_several_lasers_fit_the_memory_or_are_refused(tmp_path: Path) -> None:
+    file = tmp_path / "stack.t00"
+    speckle.SpeckleStack.generate(
+        speckle.PupilField(256, 128, 1), speckle.SlicePath.still()
+    ).write_to(file)
+    # A stack of half a MiB, and five tables of 1/4 MiB.
+    with pytest.raises(ParameterError, match="amplitude would take 1.25 MiB, and `memory` allows 1 MiB"):
+        generate(settings(file=str(file), memory=1), [SPECKLE_SIZE] * 5, (32, 24))
 
 
 @pytest.mark.parametrize("outer", ["aov", "moment"])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import drjit as dr
 import mitsuba as mi
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,8 +21,10 @@ if TYPE_CHECKING:
 # one speckle size, and the interpolation of its amplitude adds faint ones down to half of that. With
 # 8 nodes per speckle the spline errs by 1.1e-4 (rms) and 9e-4 (worst of 20000) of the mean.
 _FEWEST_NODES = 7.5
+# Eight in the end: the rest is spectra, while the coefficients are made.
+_BYTES_PER_NODE = 28
 # The nodes before and behind a cell's own that its taps reach.
-_BEFORE, _AFTER = 1, 2
+BEFORE, AFTER = 1, 2
 _BITS = 16
 _LARGEST = 2**_BITS - 1
 
@@ -51,6 +54,11 @@ def intensity_coefficients(stack: SpeckleStack, u: float) -> NDArray[np.float32]
     return _prefiltered(_prefiltered(values, axis=1), axis=0)
 
 
+def intensity_bytes(stack: SpeckleStack) -> int:
+    """Return the memory of a table while it is made."""
+    return _BYTES_PER_NODE * stack.size[0] * stack.size[1] * nodes_per_sample(stack) ** 2
+
+
 def nodes_per_sample(stack: SpeckleStack) -> int:
     """Return the number of spline nodes for each sample of a stack, along each axis."""
     finest = stack.speckle_size / (1.0 + _longest_step(stack))
@@ -76,8 +84,8 @@ def _prefiltered(values: NDArray[np.float32], axis: int) -> NDArray[np.float32]:
     return np.fft.irfft(spectrum, n=length, axis=axis).astype(np.float32)
 
 
-class SplineTable:
-    """A periodic cubic B-spline in two dimensions, evaluated inside kernels.
+class IntensityTable:
+    """A periodic cubic B-spline of intensities in two dimensions, evaluated inside kernels.
 
     Coefficients are kept as 16-bit numbers, four neighbours of a row in one word: fetching the taps
     is what a look-up costs. Rounding them moves the values by 1e-4 of 12, a usual range, at most.
@@ -92,31 +100,32 @@ class SplineTable:
         self.rows, self.columns = coefficients.shape
         lowest, highest = float(coefficients.min()), float(coefficients.max())
         step = (highest - lowest) / _LARGEST or 1.0
-        levels = np.rint((coefficients - lowest) / step).astype(np.uint64)
-        padded = np.pad(levels, (_BEFORE, _AFTER), mode="wrap")
+        levels = np.rint((coefficients - lowest) / step).astype(np.uint16)
+        padded = np.pad(levels, (BEFORE, AFTER), mode="wrap")
         self._words = mi.UInt64(_rows_of_four(padded).ravel())
         self._lowest, self._step = mi.Float(lowest), mi.Float(step)
         dr.make_opaque(self._lowest, self._step)
 
     def at(self, x: mi.Float, y: mi.Float) -> mi.Float:
-        """Return the values at x and y, in nodes."""
-        along_x, along_y = _taps(x, self.columns), _taps(y, self.rows)
-        index = along_y.cell * self.columns + along_x.cell
+        """Return the intensities at x and y, in nodes."""
+        column, row = cell_of(x, self.columns), cell_of(y, self.rows)
+        # Words begin one node before their cell.
+        index = row.node * self.columns + column.node
+        weights = cubic_weights(column.fraction)
         total = mi.Float(0.0)
-        for row, weight in enumerate(along_y.weights):
-            word = dr.gather(mi.UInt64, self._words, index + row * self.columns)
-            total = dr.fma(weight, _weighted(word, along_x.weights), total)
+        for tap, weight in enumerate(cubic_weights(row.fraction)):
+            word = dr.gather(mi.UInt64, self._words, index + tap * self.columns)
+            total = dr.fma(weight, _weighted(word, weights), total)
         # The weights add up to 1, so that the scale can wait until here.
-        return dr.fma(self._step, total, self._lowest)
+        intensity = dr.fma(self._step, total, self._lowest)
+        # The spline swings below dark points by 1e-4 at most.
+        return dr.select(intensity > 0.0, intensity, 0.0)
 
 
-def _rows_of_four(padded: NDArray[np.uint64]) -> NDArray[np.uint64]:
+def _rows_of_four(padded: NDArray[np.uint16]) -> NDArray[np.uint64]:
     """Return for each column the word of four neighbours, the first in the lowest bits."""
-    columns = padded.shape[1] - _BEFORE - _AFTER
-    words = np.zeros((padded.shape[0], columns), dtype=np.uint64)
-    for tap in range(_BEFORE + _AFTER + 1):
-        words |= padded[:, tap : tap + columns] << np.uint64(_BITS * tap)
-    return words
+    neighbours = sliding_window_view(padded, BEFORE + AFTER + 1, axis=1)
+    return np.ascontiguousarray(neighbours, dtype="<u2").view("<u8")
 
 
 def _weighted(word: mi.UInt64, weights: Weights) -> mi.Float:
@@ -130,18 +139,23 @@ def _weighted(word: mi.UInt64, weights: Weights) -> mi.Float:
     return total
 
 
-class _Taps(NamedTuple):
-    """The cell of a place, whose word begins one node before it, and the weights of the taps."""
+class Cell(NamedTuple):
+    """The node before a place and the fraction of the way to the next."""
 
-    cell: mi.UInt32
-    weights: Weights
+    node: mi.UInt32
+    fraction: mi.Float
 
 
-def _taps(place: mi.Float, period: int) -> _Taps:
+def cell_of(place: mi.Float, period: int) -> Cell:
+    """Return the cell of a place among nodes that repeat."""
     place = place - period * dr.floor(place * (1.0 / period))
     # Rounding can put the place beside the period, by the last bit.
-    cell = dr.clip(mi.Int32(dr.floor(place)), 0, period - 1)
-    f = place - mi.Float(cell)
+    node = dr.clip(mi.Int32(dr.floor(place)), 0, period - 1)
+    return Cell(mi.UInt32(node), place - mi.Float(node))
+
+
+def cubic_weights(f: mi.Float) -> Weights:
+    """Return the weights of a cubic B-spline: of the node before a cell, its own two, and the next."""
     g = 1.0 - f
     inner = tuple(2.0 / 3.0 - 0.5 * t * t * (2.0 - t) for t in (f, g))
-    return _Taps(mi.UInt32(cell), (g * g * g / 6.0, inner[0], inner[1], f * f * f / 6.0))
+    return g * g * g / 6.0, inner[0], inner[1], f * f * f / 6.0

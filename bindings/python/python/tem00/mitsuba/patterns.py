@@ -8,7 +8,13 @@ import drjit as dr
 import mitsuba as mi
 
 from tem00 import ParameterError
-from tem00.mitsuba.look_up import SplineTable, intensity_coefficients, nodes_per_sample
+from tem00.mitsuba.amplitudes import AmplitudeTable, amplitude_bytes
+from tem00.mitsuba.look_up import (
+    IntensityTable,
+    intensity_bytes,
+    intensity_coefficients,
+    nodes_per_sample,
+)
 from tem00.mitsuba.speckle_settings import refused
 from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackOptions, StackPlan
 
@@ -17,7 +23,6 @@ if TYPE_CHECKING:
 
 # Steps of Weyl's sequence: they keep the seeds of the lasers apart. The same in `tem00 render`.
 _SEED_STEP = 0x9E37_79B9_7F4A_7C15
-_BYTES_PER_NODE = 8
 # What the library's arguments are called here.
 _PROPERTIES = {"size": "pattern_size", "diameter": "pattern_diameter", "image": "speckle_size"}
 # The root of x**3 = x + 1: multiples of its powers are far apart (Roberts 2018).
@@ -46,24 +51,27 @@ class Pattern:
         The speckle size on the sensor, in pixels.
     offset
         The place in the stack that belongs to the image's corner, in periods along x and y.
+    table
+        What the look-up reads: the ``"intensity"`` or the ``"amplitude"`` of the stack.
     """
 
     def __init__(
-        self, stack: SpeckleStack, speckle_size: float, offset: tuple[float, float]
+        self, stack: SpeckleStack, speckle_size: float, offset: tuple[float, float], table: str
     ) -> None:
         self.stack = stack
-        self._per_sample = nodes_per_sample(stack)
-        self._nodes_per_pixel = self._per_sample * stack.speckle_size / speckle_size
+        self.table = table
+        per_sample = nodes_per_sample(stack) if table == "intensity" else 1
+        self._nodes_per_pixel = per_sample * stack.speckle_size / speckle_size
         self._offset = offset
         self._u: float | None = None
 
     def move_to(self, place: Place) -> None:
         """Look the pattern up at another place from now on."""
         if place.u != self._u:
-            self._table = SplineTable(intensity_coefficients(self.stack, place.u))
+            self._look_up = self._table_at(place.u)
             self._u = place.u
         scale = self._nodes_per_pixel
-        periods = self._table.columns, self._table.rows
+        periods = self._look_up.columns, self._look_up.rows
         origin = [
             (-sign * scale * shift + offset * period) % period
             for sign, shift, offset, period in zip(
@@ -78,9 +86,12 @@ class Pattern:
     def factor(self, film: mi.Point2f) -> mi.Float:
         """Return the intensity at points of the film, in pixels; its mean is 1."""
         x, y = dr.fma(self._scale, film, self._origin)
-        intensity = self._table.at(x, y)
-        # The spline swings below dark points by 1e-4 at most.
-        return dr.select(intensity > 0.0, intensity, 0.0)
+        return self._look_up.at(x, y)
+
+    def _table_at(self, u: float) -> IntensityTable | AmplitudeTable:
+        if self.table == "amplitude":
+            return AmplitudeTable(self.stack, u)
+        return IntensityTable(intensity_coefficients(self.stack, u))
 
 
 def generate(
@@ -90,15 +101,16 @@ def generate(
     sizes = speckle_sizes
     if settings.file is not None:
         stack = _read(settings.file, settings.memory_bytes)
-        _check_table([stack], settings)
-        return [Pattern(stack, size, _place(number)) for number, size in enumerate(sizes)]
+        table = _table([stack] * len(sizes), settings)
+        return [Pattern(stack, size, _place(number), table) for number, size in enumerate(sizes)]
     memory = settings.memory_bytes // max(len(sizes), 1)
     stacks = []
     for number, size in enumerate(sizes):
         plan = _plan(settings, size, image, memory)
         stacks.append(_stack(settings, plan, number, memory))
-    _check_table(stacks, settings)
-    return [Pattern(stack, size, (0.0, 0.0)) for stack, size in zip(stacks, sizes, strict=True)]
+    table = _table(stacks, settings)
+    pairs = zip(stacks, sizes, strict=True)
+    return [Pattern(stack, size, (0.0, 0.0), table) for stack, size in pairs]
 
 
 def _plan(
@@ -162,14 +174,16 @@ def _place(number: int) -> tuple[float, float]:
     return number / _PLASTIC % 1.0, number / _PLASTIC**2 % 1.0
 
 
-def _check_table(stacks: list[SpeckleStack], settings: PatternSettings) -> None:
-    needed = sum(
-        _BYTES_PER_NODE * stack.size[0] * stack.size[1] * nodes_per_sample(stack) ** 2
-        for stack in stacks
+def _table(stacks: list[SpeckleStack], settings: PatternSettings) -> str:
+    """Return what tables are made of: what is asked for, or the first that fits the memory."""
+    kinds = {"intensity": intensity_bytes, "amplitude": amplitude_bytes}
+    asked = list(kinds) if settings.table == "auto" else [settings.table]
+    for kind in asked:
+        needed = sum(kinds[kind](stack) for stack in stacks)
+        if needed <= settings.memory_bytes:
+            return kind
+    raise refused(
+        "speckle_size",
+        f"so small that the image holds too many speckles: their table of {kind} would take "
+        f"{needed / 2**20:.4g} MiB, and `memory` allows {settings.memory} MiB",
     )
-    if needed > settings.memory_bytes:
-        raise refused(
-            "speckle_size",
-            f"so small that the image holds too many speckles: their table would take "
-            f"{needed / 2**20:.0f} MiB, and `memory` allows {settings.memory} MiB",
-        )

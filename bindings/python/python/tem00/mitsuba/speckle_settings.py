@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     import mitsuba as mi
 
 PATHS = ("still", "straight", "circle")
+TABLES = ("auto", "intensity", "amplitude")
 # What a stack file says itself.
 _OF_THE_FILE = ("seed", "pattern_size", "pattern_diameter", "path", "half_period", "length")
 _LARGEST_SEED = 2**63 - 1
@@ -40,6 +41,7 @@ class PatternSettings:
     length: int
     file: str | None
     memory: int
+    table: str
 
     @property
     def memory_bytes(self) -> int:
@@ -50,19 +52,17 @@ class PatternSettings:
     def read(cls, props: mi.Properties) -> PatternSettings:
         """Read the properties."""
         file = _file(props)
-        path = props.get("path", PATHS[0])
-        if path not in PATHS:
-            raise refused("path", f"must be one of {', '.join(PATHS)}, got {path!r}")
         return cls(
             speckle_size=_speckle_size(props),
             seed=whole(props, "seed", 0, (0, _LARGEST_SEED)),
             pattern_size=_side(props, "pattern_size", 2 * _SMALLEST_DIAMETER),
             pattern_diameter=_side(props, "pattern_diameter", _SMALLEST_DIAMETER),
-            path=path,
+            path=_choice(props, "path", PATHS),
             half_period=whole(props, "half_period", 64, (1, _LARGEST_SIDE)),
             length=whole(props, "length", 2, (1, _LARGEST_SIDE)),
             file=file,
             memory=whole(props, "memory", 1024, (1, 2**20)),
+            table=_choice(props, "table", TABLES),
         )
 
 
@@ -98,6 +98,14 @@ def refuse_unknown(props: mi.Properties) -> None:
         names = "max_depth, rr_depth, hide_emitters, speckle, u, shift_x, shift_y"
         known = ", ".join([names, *(field.name for field in fields(PatternSettings))])
         raise refused(unknown[0], f"no property of this integrator; those are {known}")
+
+
+def _choice(props: mi.Properties, name: str, allowed: tuple[str, ...]) -> str:
+    """Read one of some words, by default the first."""
+    word = props.get(name, allowed[0])
+    if not isinstance(word, str) or word not in allowed:
+        raise refused(name, f"must be one of {', '.join(allowed)}, got {word!r}")
+    return word
 
 
 def _speckle_size(props: mi.Properties) -> float | None:

@@ -18,9 +18,11 @@ import tem00.mitsuba  # noqa: E402
 from tem00 import ParameterError, speckle  # noqa: E402
 from tem00.coherence import ResolutionCell, SpectralLine  # noqa: E402
 from tem00.mitsuba.amplitudes import amplitude_bytes  # noqa: E402
+from tem00.mitsuba.look_up import Part  # noqa: E402
 from tem00.mitsuba.patterns import Pattern, Place, generate  # noqa: E402
 from tem00.mitsuba.speckle import speckle_size  # noqa: E402
 from tem00.mitsuba.speckle_settings import PatternSettings  # noqa: E402
+from tem00.mitsuba.surfaces import Surface  # noqa: E402
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -49,6 +51,8 @@ PLATE: Node = {
     "to_world": Transform().scale([0.02, 0.02, 1.0]),
     "bsdf": {"type": "diffuse", "reflectance": 0.8},
 }
+# What is looked up where no shape has properties of its own.
+ALIKE = [Surface("", (1.0,), 0)]
 DIRECT: Node = {"type": "speckle", "max_depth": 2, "speckle_size": SPECKLE_SIZE}
 
 
@@ -140,7 +144,7 @@ def pixel_means(stack: Any, width: int = WIDTH, height: int = HEIGHT) -> Array:
 def test_the_look_up_is_that_of_the_stack(
     properties: dict[str, Any], u: float, table: str
 ) -> None:
-    (pattern,) = generate(settings(**properties, table=table), [SPECKLE_SIZE], (320, 240))
+    ((pattern,),) = generate(settings(**properties, table=table), [SPECKLE_SIZE], (320, 240), ALIKE)
     error, expected = errors_of(pattern, u)
     # The spline with 8 nodes per fringe: 1.2e-4 rms, 9e-4 at worst of so many points, by the same
     # comparison in NumPy alone. 16-bit coefficients: 1e-4. Coordinates in single precision: 4 * 1200
@@ -172,7 +176,7 @@ def test_amplitudes_are_interpolated_as_the_stack_interpolates(interpolation: In
     field = speckle.PupilField(128, 48, 5)
     path = speckle.SlicePath.straight(half_period=8, length=2)
     stack = speckle.SpeckleStack.generate(field, path, speckle.StackOptions(interpolation))
-    error, _ = errors_of(Pattern(stack, SPECKLE_SIZE, (0.0, 0.0), "amplitude"), 2.3)
+    error, _ = errors_of(Pattern([Part(1.0, stack, (0.0, 0.0))], SPECKLE_SIZE, "amplitude"), 2.3)
     # Places in single precision may round to the other of two samples: 1e-4 of a sample to either side.
     flipped = 4 * 1e-4 if interpolation == "nearest" else 0.0
     assert np.mean(np.abs(error) > 1.5e-3) <= flipped
@@ -183,12 +187,12 @@ def test_amplitudes_behind_an_asymmetric_pupil_have_its_law() -> None:
     pupil = speckle.Pupil.sampled(speckle.Transmission(np.outer(ramp, ramp)))
     field = speckle.PupilField(128, 64, 5).with_pupil(pupil)
     stack = speckle.SpeckleStack.generate(field, speckle.SlicePath.circle(half_period=3))
-    error, _ = errors_of(Pattern(stack, SPECKLE_SIZE, (0.0, 0.0), "amplitude"), 0.5)
+    error, _ = errors_of(Pattern([Part(1.0, stack, (0.0, 0.0))], SPECKLE_SIZE, "amplitude"), 0.5)
     assert np.sqrt(np.mean(error**2)) < 6e-5
 
 
 def test_five_megapixels_fit_the_memory_as_amplitudes() -> None:
-    (pattern,) = generate(settings(), [1.9], (2592, 1944))
+    ((pattern,),) = generate(settings(), [1.9], (2592, 1944), ALIKE)
     assert pattern.table == "amplitude"
     assert amplitude_bytes(pattern.stack) < 24 * 2**20
     pattern.move_to(Place(0.0, (0.0, 0.0)))
@@ -528,7 +532,7 @@ def text_of(error: BaseException | None) -> str:
 
 def test_a_pattern_too_small_for_its_pupil_is_refused() -> None:
     with pytest.raises(ParameterError) as caught:
-        generate(settings(pattern_size=64, pattern_diameter=50), [SPECKLE_SIZE], (32, 24))
+        generate(settings(pattern_size=64, pattern_diameter=50), [SPECKLE_SIZE], (32, 24), ALIKE)
     assert caught.value.parameter == "pattern_diameter"
 
 
@@ -541,7 +545,7 @@ def test_a_pattern_too_small_for_its_pupil_is_refused() -> None:
 )
 def test_what_takes_too_much_memory_is_named(name: str, properties: dict[str, Any]) -> None:
     with pytest.raises(ParameterError, match="bytes|GiB") as caught:
-        generate(settings(**properties), [SPECKLE_SIZE], (32, 24))
+        generate(settings(**properties), [SPECKLE_SIZE], (32, 24), ALIKE)
     assert caught.value.parameter == name
 
 
@@ -549,11 +553,11 @@ def test_the_table_takes_no_more_than_it_may() -> None:
     # 128**2 speckles of 64 nodes with 28 bytes are 28 MiB, of 4 samples with 4 bytes 1/4 MiB.
     sizes = {"pattern_size": 256, "pattern_diameter": 128}
     for memory, table in ((29, "intensity"), (27, "amplitude")):
-        (pattern,) = generate(settings(**sizes, memory=memory), [4.0], (256, 256))
+        ((pattern,),) = generate(settings(**sizes, memory=memory), [4.0], (256, 256), ALIKE)
         assert pattern.table == table
     asked = settings(**sizes, memory=27, table="intensity")
     with pytest.raises(ParameterError, match="28 MiB, and `memory` allows 27 MiB") as caught:
-        generate(asked, [4.0], (256, 256))
+        generate(asked, [4.0], (256, 256), ALIKE)
     assert caught.value.parameter == "speckle_size"
 
 
@@ -564,7 +568,7 @@ def test_tables_of_a_file_for_several_lasers_fit_the_memory_or_are_refused(tmp_p
     ).write_to(file)
     # A stack of half a MiB, and five tables of 1/4 MiB.
     with pytest.raises(ParameterError, match="amplitude would take 1.25 MiB, and `memory` allows 1 MiB"):
-        generate(settings(file=str(file), memory=1), [SPECKLE_SIZE] * 5, (32, 24))
+        generate(settings(file=str(file), memory=1), [SPECKLE_SIZE] * 5, (32, 24), ALIKE)
 
 
 @pytest.mark.parametrize("outer", ["aov", "moment"])

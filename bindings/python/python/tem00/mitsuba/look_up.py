@@ -11,6 +11,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from tem00.speckle import SpeckleStack
@@ -29,13 +31,21 @@ _BITS = 16
 _LARGEST = 2**_BITS - 1
 
 
-def intensity_coefficients(stack: SpeckleStack, u: float) -> NDArray[np.float32]:
-    """Return the coefficients of the cubic B-spline through the intensities of a stack.
+class Part(NamedTuple):
+    """A pattern in the speckle of a surface: its fraction of the light, and its place in a stack, in periods."""
+
+    fraction: float
+    stack: SpeckleStack
+    offset: tuple[float, float]
+
+
+def intensity_coefficients(parts: Sequence[Part], u: float) -> NDArray[np.float32]:
+    """Return the coefficients of the cubic B-spline through the sum of intensities.
 
     Parameters
     ----------
-    stack
-        The stack, which repeats after ``stack.size`` samples.
+    parts
+        The patterns, of stacks of one size. The place of the first is the origin.
     u
         The slice coordinate.
 
@@ -44,13 +54,16 @@ def intensity_coefficients(stack: SpeckleStack, u: float) -> NDArray[np.float32]
     NDArray[np.float32]
         Coefficients of shape (rows, columns) over one period, a whole number of them per sample.
     """
+    stack, origin = parts[0].stack, np.array(parts[0].offset)
     per_sample = nodes_per_sample(stack)
     columns, rows = (side * per_sample for side in stack.size)
     x = np.arange(columns) / per_sample
-    values: NDArray[np.float32] = np.empty((rows, columns), dtype=np.float32)
-    # Row by row, so that the coordinates take no memory to speak of.
-    for row in range(rows):
-        values[row] = stack.intensity_at(x, row / per_sample, u)
+    values: NDArray[np.float32] = np.zeros((rows, columns), dtype=np.float32)
+    for part in parts:
+        dx, dy = (part.offset - origin) * stack.size
+        # Row by row, so that the coordinates take no memory to speak of.
+        for row in range(rows):
+            values[row] += part.fraction * part.stack.intensity_at(x + dx, row / per_sample + dy, u)
     return _prefiltered(_prefiltered(values, axis=1), axis=0)
 
 

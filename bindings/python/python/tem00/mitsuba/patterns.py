@@ -11,6 +11,7 @@ from tem00 import ParameterError
 from tem00.mitsuba.amplitudes import AmplitudeTable, amplitude_bytes
 from tem00.mitsuba.look_up import (
     IntensityTable,
+    Part,
     intensity_bytes,
     intensity_coefficients,
     nodes_per_sample,
@@ -19,10 +20,18 @@ from tem00.mitsuba.speckle_settings import refused
 from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackOptions, StackPlan
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from tem00.mitsuba.speckle_settings import PatternSettings
+    from tem00.mitsuba.surfaces import Surface
+    from tem00.speckle import PupilField
 
 # Steps of Weyl's sequence: they keep the seeds of the lasers apart. The same in `tem00 render`.
 _SEED_STEP = 0x9E37_79B9_7F4A_7C15
+# The same between the surfaces that move apart.
+_MOTION_STEP = 0xD1B5_4A32_D192_ED03
+# Look-ups of amplitudes are written out in the kernel.
+_MOST_LOOK_UPS = 16
 # What the library's arguments are called here.
 _PROPERTIES = {"size": "pattern_size", "diameter": "pattern_diameter", "image": "speckle_size"}
 # The root of x**3 = x + 1: multiples of its powers are far apart (Roberts 2018).
@@ -41,76 +50,138 @@ class Place(NamedTuple):
 
 
 class Pattern:
-    """The speckle of one laser.
+    """The speckle of one laser on a surface.
 
     Parameters
     ----------
-    stack
-        The stack.
+    parts
+        The patterns that add up, of stacks of one size.
     speckle_size
         The speckle size on the sensor, in pixels.
-    offset
-        The place in the stack that belongs to the image's corner, in periods along x and y.
     table
-        What the look-up reads: the ``"intensity"`` or the ``"amplitude"`` of the stack.
+        What the look-up reads: the ``"intensity"`` of all or the ``"amplitude"`` of each.
     """
 
-    def __init__(
-        self, stack: SpeckleStack, speckle_size: float, offset: tuple[float, float], table: str
-    ) -> None:
-        self.stack = stack
-        self.table = table
-        per_sample = nodes_per_sample(stack) if table == "intensity" else 1
-        self._nodes_per_pixel = per_sample * stack.speckle_size / speckle_size
-        self._offset = offset
+    def __init__(self, parts: Sequence[Part], speckle_size: float, table: str) -> None:
+        self.parts, self.table = parts, table
+        self.stack = parts[0].stack
+        per_sample = nodes_per_sample(self.stack) if table == "intensity" else 1
+        self._nodes_per_pixel = per_sample * self.stack.speckle_size / speckle_size
         self._u: float | None = None
 
     def move_to(self, place: Place) -> None:
         """Look the pattern up at another place from now on."""
         if place.u != self._u:
-            self._look_up = self._table_at(place.u)
+            self._tables = self._tables_at(place.u)
             self._u = place.u
         scale = self._nodes_per_pixel
-        periods = self._look_up.columns, self._look_up.rows
-        origin = [
-            (-sign * scale * shift + offset * period) % period
-            for sign, shift, offset, period in zip(
-                (1.0, -1.0), place.shift, self._offset, periods, strict=True
-            )
-        ]
         # Read from memory, so that motion compiles nothing anew. Patterns have y up.
         self._scale = mi.Vector2f(scale, -scale)
-        self._origin = mi.Vector2f(*origin)
-        dr.make_opaque(self._scale, self._origin)
+        pairs = zip(self._tables, self.parts, strict=False)
+        self._origins = [self._origin(table, part.offset, place.shift) for table, part in pairs]
+        dr.make_opaque(self._scale, self._origins)
 
     def factor(self, film: mi.Point2f) -> mi.Float:
         """Return the intensity at points of the film, in pixels; its mean is 1."""
-        x, y = dr.fma(self._scale, film, self._origin)
-        return self._look_up.at(x, y)
+        if len(self._tables) == 1:
+            return self._tables[0].at(*dr.fma(self._scale, film, self._origins[0]))
+        total = mi.Float(0.0)
+        for part, table, origin in zip(self.parts, self._tables, self._origins, strict=True):
+            total += part.fraction * table.at(*dr.fma(self._scale, film, origin))
+        return total
 
-    def _table_at(self, u: float) -> IntensityTable | AmplitudeTable:
+    def _tables_at(self, u: float) -> Sequence[IntensityTable | AmplitudeTable]:
         if self.table == "amplitude":
-            return AmplitudeTable(self.stack, u)
-        return IntensityTable(intensity_coefficients(self.stack, u))
+            return [AmplitudeTable(part.stack, u) for part in self.parts]
+        return [IntensityTable(intensity_coefficients(self.parts, u))]
+
+    def _origin(
+        self,
+        table: IntensityTable | AmplitudeTable,
+        offset: tuple[float, float],
+        shift: tuple[float, float],
+    ) -> mi.Vector2f:
+        """Return the place in a table that belongs to the image's corner, in nodes."""
+        scale, periods = self._nodes_per_pixel, (table.columns, table.rows)
+        axes = zip((1.0, -1.0), shift, offset, periods, strict=True)
+        places = [(-sign * scale * move + at * period) % period for sign, move, at, period in axes]
+        return mi.Vector2f(*places)
 
 
 def generate(
-    settings: PatternSettings, speckle_sizes: list[float], image: tuple[int, int]
-) -> list[Pattern]:
-    """Return the pattern of each laser, by its speckle size in an image of so many pixels."""
-    sizes = speckle_sizes
+    settings: PatternSettings,
+    speckle_sizes: list[float],
+    image: tuple[int, int],
+    surfaces: list[Surface],
+) -> list[list[Pattern]]:
+    """Return the patterns of each laser on the surfaces, by its speckle size in an image of so many pixels."""
+    lasers = len(speckle_sizes)
+    memory = settings.memory_bytes // max(lasers, 1)
     if settings.file is not None:
         stack = _read(settings.file, settings.memory_bytes)
-        table = _table([stack] * len(sizes), settings)
-        return [Pattern(stack, size, _place(number), table) for number, size in enumerate(sizes)]
-    memory = settings.memory_bytes // max(len(sizes), 1)
-    stacks = []
-    for number, size in enumerate(sizes):
-        plan = _plan(settings, size, image, memory)
-        stacks.append(_stack(settings, plan, number, memory))
-    table = _table(stacks, settings)
-    pairs = zip(stacks, sizes, strict=True)
-    return [Pattern(stack, size, (0.0, 0.0), table) for stack, size in pairs]
+        of_lasers = [_places_in(stack, surfaces, (number, lasers)) for number in range(lasers)]
+    else:
+        plans = [_plan(settings, size, image, memory) for size in speckle_sizes]
+        of_lasers = [
+            _parts(settings, plan, number, memory, surfaces) for number, plan in enumerate(plans)
+        ]
+    table = _table([parts for laser in of_lasers for parts in laser], settings)
+    return [
+        [Pattern(parts, size, table) for parts in laser]
+        for laser, size in zip(of_lasers, speckle_sizes, strict=True)
+    ]
+
+
+def _parts(
+    settings: PatternSettings, plan: StackPlan, number: int, memory: int, surfaces: list[Surface]
+) -> list[list[Part]]:
+    """Return the patterns of a laser on each surface, in stacks of their own where the memory holds them.
+
+    With one surface they are those that `tem00 render` has for the laser of this number in a still scene.
+    """
+    seed = settings.seed + (number + 1) * _SEED_STEP
+    counts = _counts(surfaces)
+    try:
+        path = _path(settings)
+        if path.memory_bytes(plan.size) * sum(counts) > memory:
+            return _places_in(_stack(settings, plan.field(seed % 2**64), memory), surfaces, (0, 1))
+        fields = [
+            plan.field((seed + motion * _MOTION_STEP) % 2**64).independent(count)
+            for motion, count in enumerate(counts)
+        ]
+    except ParameterError as error:
+        raise _renamed(error) from error
+    stacks = [[_stack(settings, field, memory) for field in of_motion] for of_motion in fields]
+    return [
+        [
+            Part(fraction, stack, (0.0, 0.0))
+            for fraction, stack in zip(surface.fractions, stacks[surface.motion], strict=False)
+        ]
+        for surface in surfaces
+    ]
+
+
+def _places_in(
+    stack: SpeckleStack, surfaces: list[Surface], numbers: tuple[int, int]
+) -> list[list[Part]]:
+    """Return the patterns on each surface as places far apart in one stack: a first number, and the step to others."""
+    first, step = numbers
+    counts = _counts(surfaces)
+    return [
+        [
+            Part(fraction, stack, _place(first + step * (sum(counts[: surface.motion]) + index)))
+            for index, fraction in enumerate(surface.fractions)
+        ]
+        for surface in surfaces
+    ]
+
+
+def _counts(surfaces: list[Surface]) -> list[int]:
+    """Return the number of patterns for each motion."""
+    counts = [1] * (1 + max(surface.motion for surface in surfaces))
+    for surface in surfaces:
+        counts[surface.motion] = max(counts[surface.motion], len(surface.fractions))
+    return counts
 
 
 def _plan(
@@ -137,12 +208,9 @@ def _plan(
         raise _renamed(error) from error
 
 
-def _stack(settings: PatternSettings, plan: StackPlan, number: int, memory: int) -> SpeckleStack:
-    """Return the stack that `tem00 render` has for the laser of this number in a still scene."""
-    seed = (settings.seed + (number + 1) * _SEED_STEP) % 2**64
+def _stack(settings: PatternSettings, field: PupilField, memory: int) -> SpeckleStack:
     try:
-        options = StackOptions(memory_limit=memory)
-        return SpeckleStack.generate(plan.field(seed), _path(settings), options)
+        return SpeckleStack.generate(field, _path(settings), StackOptions(memory_limit=memory))
     except MemoryError as error:
         name = "pattern_size" if settings.path == "still" else "half_period"
         raise refused(name, f"too large: {error}") from error
@@ -174,16 +242,29 @@ def _place(number: int) -> tuple[float, float]:
     return number / _PLASTIC % 1.0, number / _PLASTIC**2 % 1.0
 
 
-def _table(stacks: list[SpeckleStack], settings: PatternSettings) -> str:
+def _table(speckles: list[list[Part]], settings: PatternSettings) -> str:
     """Return what tables are made of: what is asked for, or the first that fits the memory."""
-    kinds = {"intensity": intensity_bytes, "amplitude": amplitude_bytes}
-    asked = list(kinds) if settings.table == "auto" else [settings.table]
+    needs = {
+        "intensity": sum(intensity_bytes(parts[0].stack) for parts in speckles),
+        "amplitude": sum(amplitude_bytes(part.stack) for parts in speckles for part in parts),
+    }
+    asked = list(needs) if settings.table == "auto" else [settings.table]
     for kind in asked:
-        needed = sum(kinds[kind](stack) for stack in stacks)
-        if needed <= settings.memory_bytes:
-            return kind
+        if needs[kind] <= settings.memory_bytes:
+            return _checked(kind, speckles)
     raise refused(
         "speckle_size",
         f"so small that the image holds too many speckles: their table of {kind} would take "
-        f"{needed / 2**20:.4g} MiB, and `memory` allows {settings.memory} MiB",
+        f"{needs[kind] / 2**20:.4g} MiB, and `memory` allows {settings.memory} MiB",
     )
+
+
+def _checked(kind: str, speckles: list[list[Part]]) -> str:
+    most = max((len(parts) for parts in speckles), default=0)
+    if kind == "amplitude" and most > _MOST_LOOK_UPS:
+        raise refused(
+            "patterns",
+            f"{most} patterns, two to each where light is depolarised, would each be looked up as amplitudes, and "
+            f"{_MOST_LOOK_UPS} may be: raise `memory` for a table of intensities, which looks up their sum",
+        )
+    return kind

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from math import radians, tan
+from math import isfinite, radians, tan
 from typing import TYPE_CHECKING, NoReturn
 
 import drjit as dr
@@ -15,16 +15,17 @@ from tem00.mitsuba.patterns import Pattern, Place, generate
 from tem00.mitsuba.speckle_settings import (
     PatternSettings,
     flag,
-    number,
     refuse_unknown,
     refused,
     whole,
 )
+from tem00.mitsuba.surfaces import MOTION, read_surfaces, surface_finder
 from tem00.mitsuba.transport import PathTracer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from tem00.mitsuba.surfaces import Surface
     from tem00.mitsuba.transport import Factor
 
 _ENDLESS = 2**32 - 1
@@ -39,7 +40,8 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
 
         Light of an emitter with the private flag bit 0x1000 is multiplied by the intensity of the
         laser's pattern at the place of the camera sample on the film, however many surfaces it
-        meets: of one wavelength, it interferes all the same. All other light is left alone.
+        meets: of one wavelength, it interferes all the same. The pattern is that of the surface that is seen. All other
+        light is left alone.
         """
 
         def __init__(self, props: mi.Properties) -> None:
@@ -52,27 +54,31 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
             self.speckle = flag(props, "speckle", True)
             self.hidden = flag(props, "hide_emitters", False)
             self.settings = PatternSettings.read(props)
-            names = ("u", "shift_x", "shift_y")
-            self.place = {name: mi.Float(number(props, name, 0.0)) for name in names}
+            self.surfaces, self.places = read_surfaces(props)
             refuse_unknown(props)
             self._made_for: object = None
-            self._patterns: list[Pattern] = []
+            self._patterns: list[list[Pattern]] = []
 
         def traverse(self, cb: mi.TraversalCallback) -> None:
             super().traverse(cb)
-            for name, value in self.place.items():
+            for name, value in self.places.items():
                 cb.put(name, value, mi.ParamFlags.NonDifferentiable)
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             super().parameters_changed(list(keys))
-            self._place()
+            for surface in self.surfaces:
+                self._place(surface)
 
-        def _place(self) -> Place:
-            u, x, y = (float(value[0]) for value in self.place.values())
-            for name, value in zip(self.place, (u, x, y), strict=True):
-                if not abs(value) < float("inf"):
-                    raise refused(name, f"must be a finite number, got {value}")
-            return Place(u, (x, y))
+        def _place(self, surface: Surface) -> Place:
+            """Return the place of a surface; what it does not say is that of all others."""
+            values = []
+            for name in MOTION:
+                own = surface.prefix + name
+                given = own if own in self.places else name
+                values.append(float(self.places[given][0]))
+                if not isfinite(values[-1]):
+                    raise refused(given, f"must be a finite number, got {values[-1]}")
+            return Place(values[0], (values[1], values[2]))
 
         def render(
             self,
@@ -95,6 +101,7 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
                     rr_depth=self.rr_depth,
                     meets_light=any(_can_be_met(emitter) for emitter in scene.emitters()),
                     first_surface=self.skip_area_emitters if self.hidden else None,
+                    surface_of=surface_finder(self.surfaces, scene) if self.speckle else None,
                 )
                 walk = tracer.trace(exposure.sampler, rays.ray)
                 exposure.add(rays, walk.radiance, walk.hit)
@@ -114,29 +121,36 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
             patterns = self._patterns_for(lasers, sensor)
 
             def at(film: mi.Point2f) -> Factor:
-                def factor(emitter: mi.EmitterPtr, active: mi.Bool) -> mi.Float:
+                def factor(
+                    emitter: mi.EmitterPtr, seen: mi.UInt32, active: mi.Bool
+                ) -> mi.Float:
                     product = mi.Float(1.0)
-                    for laser, pattern in zip(lasers, patterns, strict=True):
+                    for laser, of_surfaces in zip(lasers, patterns, strict=True):
                         own = active if alone else active & (emitter == mi.EmitterPtr(laser))
-                        product = dr.select(own, pattern.factor(film), product)
+                        for index, pattern in enumerate(of_surfaces):
+                            chosen = own & (seen == index) if len(of_surfaces) > 1 else own
+                            product = dr.select(chosen, pattern.factor(film), product)
                     return product
 
                 return factor
 
             return at
 
-        def _patterns_for(self, lasers: list[mi.Emitter], sensor: mi.Sensor) -> list[Pattern]:
-            """Return the patterns of the lasers, from the last image where nothing has changed."""
+        def _patterns_for(
+            self, lasers: list[mi.Emitter], sensor: mi.Sensor
+        ) -> list[list[Pattern]]:
+            """Return the patterns of each laser on the surfaces, from the last image where nothing has changed."""
             width, height = (int(side) for side in sensor.film().size())
             given = self.settings.speckle_size
             sizes = [given or speckle_size(laser, sensor) for laser in lasers]
             needs = (sizes, width, height)
             if self._made_for != needs:
-                self._patterns = generate(self.settings, sizes, (width, height))
+                self._patterns = generate(self.settings, sizes, (width, height), self.surfaces)
                 self._made_for = needs
-            place = self._place()
-            for pattern in self._patterns:
-                pattern.move_to(place)
+            for number, surface in enumerate(self.surfaces):
+                place = self._place(surface)
+                for of_surfaces in self._patterns:
+                    of_surfaces[number].move_to(place)
             return self._patterns
 
         def to_string(self) -> str:

@@ -95,7 +95,10 @@ def refuse_unknown(props: mi.Properties) -> None:
     """Refuse properties that nobody asked for."""
     unknown = props.unqueried()
     if unknown:
-        names = "max_depth, rr_depth, hide_emitters, speckle, u, shift_x, shift_y"
+        names = (
+            "max_depth, rr_depth, hide_emitters, speckle, "
+            "u, shift_x, shift_y, patterns, polarisation (also of one shape, as `id:u`)"
+        )
         known = ", ".join([names, *(field.name for field in fields(PatternSettings))])
         raise refused(unknown[0], f"no property of this integrator; those are {known}")
 

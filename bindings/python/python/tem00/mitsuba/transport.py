@@ -11,8 +11,10 @@ import mitsuba as mi
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    # The factor on light from an emitter, where active.
-    Factor = Callable[[mi.EmitterPtr, mi.Bool], mi.Float]
+    # The factor on light from an emitter, where active, by the number of the surface that is seen.
+    Factor = Callable[[mi.EmitterPtr, mi.UInt32, mi.Bool], mi.Float]
+    # The number of the surface that rays have met.
+    SurfaceOf = Callable[[mi.SurfaceInteraction3f], mi.UInt32]
     # The first surface along rays that is no emitter: scene, rays, whether coherent, active.
     FirstSurface = Callable[[mi.Scene, mi.Ray3f, bool, mi.Bool], mi.PreliminaryIntersection3f]
 
@@ -23,7 +25,8 @@ class Walk:
 
     ``depth`` counts the surfaces met and ``eta`` is the product of the refractive indices passed.
     ``previous`` is the point that the ray left and ``pdf`` the density of its direction, per
-    steradian, where it was not ``specular``.
+    steradian, where it was not ``specular``. ``seen`` is the number of the surface that has scattered the light into
+    the camera, once it is ``known``: mirrors before it show it.
     """
 
     ray: mi.Ray3f
@@ -34,6 +37,8 @@ class Walk:
     specular: mi.Bool
     pdf: mi.Float
     previous: mi.Interaction3f
+    seen: mi.UInt32
+    known: mi.Bool
     hit: mi.Bool
     active: mi.Bool
 
@@ -49,6 +54,8 @@ class Walk:
             specular=mi.Bool(True),
             pdf=mi.Float(1.0),
             previous=dr.zeros(mi.Interaction3f),
+            seen=mi.UInt32(0),
+            known=mi.Bool(False),
             hit=mi.Bool(False),
             active=mi.Bool(True),
         )
@@ -58,7 +65,7 @@ class PathTracer(NamedTuple):
     """The rules by which paths are followed.
 
     Depths count as in Mitsuba's ``path``: the segments between camera and emitter, 2 for direct
-    light. ``meets_light`` says that rays can meet emitters, which delta emitters are not.
+    light. ``surface_of`` numbers the surfaces that are told apart. ``meets_light`` says that rays can meet emitters, which delta emitters are not.
     ``first_surface`` finds what the camera sees where emitters are hidden from it.
     """
 
@@ -68,6 +75,7 @@ class PathTracer(NamedTuple):
     rr_depth: int
     meets_light: bool
     first_surface: FirstSurface | None
+    surface_of: SurfaceOf | None
 
     def trace(self, sampler: mi.Sampler, ray: mi.Ray3f) -> Walk:
         """Follow paths to their ends."""
@@ -130,8 +138,14 @@ class PathTracer(NamedTuple):
         else:
             value = bsdf.eval(mi.BSDFContext(), si, wo, lit)
         if self.factor is not None:
-            light *= self.factor(ds.emitter, lit)
+            light *= self.factor(ds.emitter, self._seen(walk, si), lit)
         walk.radiance += dr.select(lit, walk.throughput * value * light, 0.0)
+
+    def _seen(self, walk: Walk, si: mi.SurfaceInteraction3f) -> mi.UInt32:
+        """Return the number of the surface that is seen if these scatter."""
+        if self.surface_of is None:
+            return walk.seen
+        return dr.select(walk.known, walk.seen, self.surface_of(si))
 
     def _scatter(
         self, walk: Walk, si: mi.SurfaceInteraction3f, sampler: mi.Sampler
@@ -143,6 +157,8 @@ class PathTracer(NamedTuple):
         walk.throughput *= weight
         walk.eta *= sample.eta
         walk.specular = mi.has_flag(sample.sampled_type, mi.BSDFFlags.Delta)
+        walk.seen = self._seen(walk, si)
+        walk.known |= ~walk.specular
         walk.pdf = sample.pdf
         walk.previous = mi.Interaction3f(si)
         walk.ray = si.spawn_ray(si.to_world(sample.wo))

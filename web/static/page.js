@@ -3,7 +3,6 @@ import init, { Page, settings } from './tem00_web.js';
 
 const $ = (id) => document.getElementById(id);
 const canvas = $('picture');
-const digits = (value, step) => value.toFixed(step >= 1 ? 0 : step >= 0.1 ? 1 : 2);
 
 function say(text, isError = false) {
   $('message').textContent = text;
@@ -50,7 +49,7 @@ function controls(list, onChange) {
       input = Object.assign(document.createElement('input'), { type: 'range', min: to(min), max: to(max), step: (to(max) - to(min)) / 400 });
       input.value = to(start);
       const show = (value) => {
-        output.value = digits(value, (max - min) / 400 > 0.5 ? 1 : 0.01);
+        output.value = value.toFixed(max - min > 200 ? 0 : 2);
         input.setAttribute('aria-valuetext', `${output.value}, ${label}`);
       };
       input.addEventListener('input', () => {

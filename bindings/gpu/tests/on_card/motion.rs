@@ -443,19 +443,3 @@ fn coordinates_are_those_of_the_stack() {
         }
     }
 }
-
-#[test]
-fn all_function_files_go_together() {
-    let gpu = Gpu::new().expect("an adapter");
-    let source = [
-        tem00_speckle::closed_form::WGSL,
-        WGSL,
-        tem00_beam::closed_form::WGSL,
-        "fn tem00_slice_overlaps(slice: u32) -> vec2<f32> { return vec2(1.0); }
-        fn tem00_stack_coefficient(slice: u32, cell: vec2<u32>) -> vec2<f32> { return vec2(1.0); }
-        fn tem00_stack_law(slice: u32, row: u32) -> vec4<f32> { return vec4(1.0); }",
-    ];
-    let body = "output(0u, tem00_correlation(input(0u), 0.0));";
-    let left: Vec<[f32; 1]> = evaluate(&gpu, &source.concat(), body, &[[0.0], [2.0]]);
-    assert_eq!(left, [[1.0], [0.0]]);
-}

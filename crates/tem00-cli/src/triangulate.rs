@@ -8,6 +8,7 @@ mod job;
 mod refusal;
 mod report;
 mod terms;
+mod x3p;
 
 use std::io::Write;
 
@@ -66,7 +67,7 @@ pub(crate) fn run(args: &TriangulateArgs, out: &mut impl Write) -> Result<(), Fa
 fn write(job: &Job<'_>, measured: &Measured) -> Result<Report, Failure> {
     let height = job.measurement.settings().height;
     job.files.write_profiles(&measured.profiles, height)?;
-    job.files.write_point_cloud(&measured.profiles)?;
+    job.files.write_point_clouds(&measured.profiles)?;
     job.files.write_height_map(measured.map.as_ref())?;
     let report = report::report(job, measured)?;
     report.save_json(&job.files.path("measurement.json"))?;

@@ -2,7 +2,7 @@ use glam::DVec3;
 use tem00_numerics::{Grid, cast::to_f32};
 use tem00_triangulation::TriangulationError;
 
-use crate::frame::MeasuredPoint;
+use crate::{frame::MeasuredPoint, quantised::range};
 
 /// The heights of a part on a grid.
 ///
@@ -13,6 +13,10 @@ pub struct HeightMap {
     pub heights: Grid<f32>,
     /// Their standard uncertainties, in metres; NaN where nothing was measured.
     pub uncertainties: Grid<f32>,
+    /// The grey values of the line, summed across it, in DN; NaN where nothing was measured.
+    pub reflectances: Grid<f32>,
+    /// The widths of the line, in pixels; NaN where nothing was measured.
+    pub widths: Grid<f32>,
     /// The meaning of columns and rows.
     pub raster: Raster,
 }
@@ -67,6 +71,8 @@ impl HeightMap {
                 let at = (point.seen.column / averaged, row);
                 map.heights[at] = to_f32(point.position.dot(height));
                 map.uncertainties[at] = to_f32(point.uncertainty_along(height));
+                map.reflectances[at] = to_f32(point.seen.reflectance);
+                map.widths[at] = to_f32(point.seen.width);
             }
         }
         map
@@ -75,7 +81,7 @@ impl HeightMap {
     /// Sorts points into square cells of a side of `pitch` metres along the first two axes; heights are
     /// along the third. All are of length 1 and square to each other.
     ///
-    /// A cell holds the mean height of its points, and the root mean square of their uncertainties: points
+    /// A cell holds the means of its points, and the root mean square of their uncertainties: points
     /// of one cell share their speckle, so that their mean is hardly better than one.
     ///
     /// # Errors
@@ -93,7 +99,7 @@ impl HeightMap {
             |point: &MeasuredPoint| [across, along].map(|axis| point.position.dot(axis));
         let (origin, size) = extent(points().map(coordinates), pitch)?;
         let mut map = Self::empty(size, Raster::Part { origin, pitch });
-        let mut sums = Grid::filled(size[0], size[1], [0.0_f64; 3]);
+        let mut sums = Grid::filled(size[0], size[1], [0.0_f64; 5]);
         for point in points() {
             let cell = coordinates(point);
             let cell = [0, 1].map(|axis| index((cell[axis] - origin[axis]) / pitch, size[axis]));
@@ -102,11 +108,16 @@ impl HeightMap {
             sum[0] += 1.0;
             sum[1] += point.position.dot(height);
             sum[2] += uncertainty * uncertainty;
+            sum[3] += point.seen.reflectance;
+            sum[4] += point.seen.width;
         }
         let filled = sums.values().iter().enumerate();
-        for (i, [count, heights, squares]) in filled.filter(|(_, sum)| sum[0] > 0.0) {
-            map.heights.values_mut()[i] = to_f32(heights / count);
-            map.uncertainties.values_mut()[i] = to_f32((squares / count).sqrt());
+        for (i, [count, sums @ ..]) in filled.filter(|(_, sum)| sum[0] > 0.0) {
+            let [height, square, reflectance, width] = sums.map(|sum| sum / count);
+            map.heights.values_mut()[i] = to_f32(height);
+            map.uncertainties.values_mut()[i] = to_f32(square.sqrt());
+            map.reflectances.values_mut()[i] = to_f32(reflectance);
+            map.widths.values_mut()[i] = to_f32(width);
         }
         Ok(map)
     }
@@ -116,18 +127,15 @@ impl HeightMap {
         Self {
             heights: holes(),
             uncertainties: holes(),
+            reflectances: holes(),
+            widths: holes(),
             raster,
         }
     }
 
     /// Returns the minimum and the maximum height, in metres, or `None` where all are holes.
     pub fn range(&self) -> Option<[f64; 2]> {
-        let heights = self.heights.values().iter().filter(|h| !h.is_nan());
-        heights.fold(None, |range, &height| {
-            let height = f64::from(height);
-            let [low, high] = range.unwrap_or([height; 2]);
-            Some([low.min(height), high.max(height)])
-        })
+        range(&self.heights)
     }
 
     /// Returns the part of the cells that are holes, from 0 to 1.
@@ -136,43 +144,6 @@ impl HeightMap {
         let holes = values.iter().filter(|height| height.is_nan()).count();
         holes as f64 / values.len() as f64
     }
-
-    /// Returns the heights as whole numbers, 0 for a hole, and what they stand for, or `None` where all are
-    /// holes.
-    ///
-    /// ```text
-    /// height = offset + scale · value        for values from 1 to 65535
-    /// ```
-    pub fn quantised(&self) -> Option<(Grid<u16>, HeightScale)> {
-        let [low, high] = self.range()?;
-        let steps = f64::from(u16::MAX - 1);
-        // A flat map has any scale; a nanometre is finer than what is measured.
-        let scale = ((high - low) / steps).max(1e-9 / steps);
-        let offset = low - scale;
-        let values = self.heights.map(|&height| {
-            if height.is_nan() {
-                return 0;
-            }
-            let steps = ((f64::from(height) - offset) / scale).round();
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "between 1 and 65535"
-            )]
-            let value = steps.clamp(1.0, f64::from(u16::MAX)) as u16;
-            value
-        });
-        Some((values, HeightScale { offset, scale }))
-    }
-}
-
-/// Scale of the integers of a height map.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeightScale {
-    /// The height of the value 0, in metres, if it were one.
-    pub offset: f64,
-    /// Metres per step.
-    pub scale: f64,
 }
 
 /// Makes sure that cells have a size.

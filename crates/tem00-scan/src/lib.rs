@@ -23,6 +23,7 @@ mod laser_plane;
 mod measurement;
 mod motion;
 mod point_cloud;
+mod quantised;
 mod scene;
 mod section;
 mod sensor_speckle;
@@ -41,10 +42,11 @@ pub use self::{
     exposure::{Exposure, WHITE_LIGHT_WAVELENGTH},
     frame::{MeasuredFrame, MeasuredPoint},
     frame_correlation::FrameCorrelation,
-    height_map::{HeightMap, HeightScale, Raster},
+    height_map::{HeightMap, Raster},
     measurement::Measurement,
     motion::ScanMotion,
-    point_cloud::write_point_cloud,
+    point_cloud::{write_pcd, write_ply},
+    quantised::QuantisedGrid,
     scene::MeasurementScene,
     sensor_speckle::SensorSpeckle,
     settings::{Averaging, RawFormat, ScanSettings},

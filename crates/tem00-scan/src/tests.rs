@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use ply_rs_bw::{parser::Parser, ply::DefaultElement, ply::Property};
+use tem00_numerics::Grid;
 use tem00_tracer::{Environment, Light, Rotation, Trajectory};
 use tem00_triangulation::{Sensor, SensorDescription, TriangulationError, Validity};
 
@@ -259,10 +260,11 @@ fn a_map_of_profiles_has_holes_where_nothing_is_valid() {
     assert_eq!(holes, [false, true, true, true, false, true]);
     assert_eq!(map.heights[(1, 1)], 2e-3);
     assert!((map.holes() - 4.0 / 6.0).abs() < 1e-15);
-    let (values, scale) = map.quantised().unwrap();
-    assert_eq!(values.values()[2], 0, "a hole");
-    for (&value, &height) in values.values().iter().zip(map.heights.values()) {
-        let back = scale.offset + scale.scale * f64::from(value);
+    let quantised = QuantisedGrid::new(&map.heights).unwrap();
+    let integers = quantised.integers.values();
+    assert_eq!(integers, [1, 0, 0, 0, u16::MAX, 0], "holes are 0");
+    for (&integer, &height) in integers.iter().zip(map.heights.values()) {
+        let back = quantised.offset + quantised.scale * f64::from(integer);
         // Half a step of 1 mm / 65534, and the rounding of f32.
         assert!(
             height.is_nan() || (back - f64::from(height)).abs() < 0.8e-8,
@@ -276,7 +278,15 @@ fn where_nothing_is_valid_there_is_no_height_and_no_scale() {
     let profiles = [vec![], vec![doubtful(2, 5e-3 * DVec3::Z)]];
     let map = HeightMap::of_profiles(&profiles, DVec3::Z, [3, 1]);
     assert_eq!(map.holes(), 1.0);
-    assert_eq!((map.range(), map.quantised()), (None, None));
+    assert_eq!(map.range(), None);
+    assert_eq!(QuantisedGrid::new(&map.heights), None);
+}
+
+#[test]
+fn equal_values_are_quantised_exactly() {
+    let flat = QuantisedGrid::new(&Grid::filled(2, 1, 0.25)).unwrap();
+    assert_eq!(flat.integers.values(), [1, 1]);
+    assert_eq!(flat.offset + flat.scale, 0.25);
 }
 
 #[test]
@@ -308,7 +318,7 @@ fn point_clouds_are_read_by_another_program() {
     let position = DVec3::new(1e-3, -2e-3, 0.123_456_789_012_345);
     let profiles = [vec![], vec![point(4, position), doubtful(5, DVec3::ONE)]];
     let mut file = Vec::new();
-    write_point_cloud(&profiles, &mut file).unwrap();
+    write_ply(&profiles, &mut file).unwrap();
     let ply = Parser::<DefaultElement>::new()
         .read_ply(&mut file.as_slice())
         .unwrap();

@@ -31,8 +31,10 @@ Files:
   measurement.json         what was measured and with what, how uncertain it is and why
   raw_0000.png …           the frames as the camera gives them, 8 or 16 bits (or TIFF, see [scan])
   profile_0000.csv …       the points of each profile, with uncertainties, in metres and pixels
-  points.ply               the point cloud: x y z in metres, their standard uncertainties, intensity
+  points.ply, points.pcd   the point cloud: x y z in metres, their standard uncertainties, intensity
   height.png, height.npy   the height map of several profiles: 16 bits with scale and offset, 0 a hole;
                            and in metres, NaN a hole; height_uncertainty.npy beside it
+  height.x3p               the same for surface metrology, if the scan has a pitch
+  reflectance.png …        the grey values across the line, summed, and width.png, like height.png
   boards/                  photographs of boards, if the calibration is estimated: for `tem00 calibrate`
   profile, uncertainty, height_map, uncertainty_map: diagrams, each .svg and .png";

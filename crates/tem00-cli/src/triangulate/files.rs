@@ -7,10 +7,13 @@ use std::{
 };
 
 use tem00_numerics::Grid;
-use tem00_scan::{HeightMap, MeasuredFrame, MeasuredPoint, Raster, RawFormat, write_point_cloud};
+use tem00_scan::{
+    HeightMap, MeasuredFrame, MeasuredPoint, QuantisedGrid, Raster, RawFormat, write_pcd, write_ply,
+};
 use tem00_speckle::write_real_npy;
 use tem00_triangulation::{DVec3, RawFrame};
 
+use super::x3p::{Lattice, x3p};
 use crate::{
     atomic::write_atomically, failure::Failure, folder_lock::FolderLock, image::write_raw, output,
 };
@@ -20,6 +23,28 @@ pub(super) struct Files {
     pub(super) folder: PathBuf,
     raw: RawFormat,
     _lock: FolderLock,
+}
+
+/// An image of a height map in 16 bits.
+pub(super) struct MapImage {
+    /// Its name, and that of its file without the ending.
+    pub(super) name: &'static str,
+    /// The unit of its values.
+    pub(super) unit: &'static str,
+    pub(super) values: QuantisedGrid,
+}
+
+/// Returns the images of a map; none where it has nothing but holes.
+pub(super) fn images(map: &HeightMap) -> impl Iterator<Item = MapImage> {
+    let grids = [
+        ("height", "m", &map.heights),
+        ("reflectance", "DN", &map.reflectances),
+        ("width", "px", &map.widths),
+    ];
+    grids.into_iter().filter_map(|(name, unit, grid)| {
+        let values = QuantisedGrid::new(grid)?;
+        Some(MapImage { name, unit, values })
+    })
 }
 
 /// The columns of a profile.
@@ -82,37 +107,62 @@ impl Files {
     }
 
     /// Writes the points of all profiles.
-    pub(super) fn write_point_cloud(&self, profiles: &[Vec<MeasuredPoint>]) -> Result<(), Failure> {
-        self.write("points.ply", |file| write_point_cloud(profiles, file))
+    pub(super) fn write_point_clouds(
+        &self,
+        profiles: &[Vec<MeasuredPoint>],
+    ) -> Result<(), Failure> {
+        self.write("points.ply", |file| write_ply(profiles, file))?;
+        self.write("points.pcd", |file| write_pcd(profiles, file))
     }
 
-    /// Writes a height map in 16 bits and in metres, and its uncertainty.
+    /// Writes a map: its heights and their uncertainties in metres, all its images in 16 bits, and a file of
+    /// surface metrology where its cells have a size.
     ///
     /// One that is not there, or has nothing but holes, leaves none of an earlier run.
     pub(super) fn write_height_map(&self, map: Option<&HeightMap>) -> Result<(), Failure> {
-        let quantised = map.and_then(|map| Some((map, map.quantised()?)));
-        let Some((map, (values, scale))) = quantised else {
-            let endings = ["npy", self.extension()];
-            return output::remove(&self.folder, &["height", "height_uncertainty"], &endings);
+        let names = ["height", "height_uncertainty", "reflectance", "width"];
+        output::remove(&self.folder, &names, &["npy", "x3p", self.extension()])?;
+        let Some(map) = map else {
+            return Ok(());
         };
-        let text = [
-            ("offset", format!("{:e} m", scale.offset)),
-            ("scale", format!("{:e} m", scale.scale)),
-            (
-                "Description",
-                "height = offset + scale * value; 0 is a hole; the first row is the first profile"
-                    .to_owned(),
-            ),
-        ];
-        let path = self.path(&format!("height.{}", self.extension()));
-        let picture = RawFrame {
-            saturated: values.map(|_| false),
-            values,
-            bit_depth: 16,
-        };
-        write_raw(&path, &picture, &text).map_err(|error| Failure::writing(&path, error))?;
+        for image in images(map) {
+            self.write_image(&image)?;
+        }
+        if map.range().is_none() {
+            return Ok(());
+        }
+        if let Raster::Part { origin, pitch } = map.raster {
+            let archive = x3p(&map.heights, Lattice { origin, pitch });
+            self.write("height.x3p", |file| file.write_all(&archive?))?;
+        }
         self.write_array("height.npy", &map.heights)?;
         self.write_array("height_uncertainty.npy", &map.uncertainties)
+    }
+
+    fn write_image(&self, image: &MapImage) -> Result<(), Failure> {
+        let QuantisedGrid {
+            integers,
+            offset,
+            scale,
+        } = &image.values;
+        let MapImage { name, unit, .. } = image;
+        let text = [
+            ("offset", format!("{offset:e} {unit}")),
+            ("scale", format!("{scale:e} {unit}")),
+            (
+                "Description",
+                format!(
+                    "{name} = offset + scale * value; 0 is a hole; the first row is the first profile"
+                ),
+            ),
+        ];
+        let path = self.path(&format!("{name}.{}", self.extension()));
+        let picture = RawFrame {
+            saturated: integers.map(|_| false),
+            values: integers.clone(),
+            bit_depth: 16,
+        };
+        write_raw(&path, &picture, &text).map_err(|error| Failure::writing(&path, error))
     }
 
     /// Returns the ending of raw frames and height maps.

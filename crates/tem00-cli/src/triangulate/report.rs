@@ -1,10 +1,11 @@
 //! The report of a measurement.
 
-use serde_json::{Value, json};
-use tem00_scan::{HeightMap, MeasuredPoint, Raster};
+use serde_json::{Map, Value, json};
+use tem00_scan::{HeightMap, MeasuredPoint, QuantisedGrid, Raster};
 
 use super::{
     drawings::Drawings,
+    files::{MapImage, images},
     frame,
     job::{Job, Measured, in_words},
     refusal::Refusal,
@@ -80,10 +81,11 @@ fn height_map(
     drawings: &Drawings<'_>,
     map: &HeightMap,
 ) -> Result<(), Failure> {
-    let Some((_, scale)) = map.quantised() else {
+    let images: Map<String, Value> = images(map).map(image_data).collect();
+    if images.is_empty() {
         report.data("height_map", Value::Null);
         return Ok(());
-    };
+    }
     let (origin, pitch) = match map.raster {
         Raster::Image { .. } => (None, None),
         Raster::Part { origin, pitch } => (Some(origin), Some(pitch)),
@@ -111,10 +113,15 @@ fn height_map(
         // for columns and profiles.
         .data("origin", origin)
         .data("pitch", pitch)
-        // The height of the value v of the 16-bit file: offset + scale v, from 1; 0 is a hole.
-        .data("offset", scale.offset)
-        .data("scale", scale.scale);
+        .data("images", images);
     Ok(())
+}
+
+/// The values of an image in 16 bits: offset + scale · v for v from 1; 0 is a hole.
+fn image_data(image: MapImage) -> (String, Value) {
+    let QuantisedGrid { offset, scale, .. } = image.values;
+    let value = json!({"offset": offset, "scale": scale, "unit": image.unit});
+    (image.name.to_owned(), value)
 }
 
 fn uncertainty(

@@ -66,15 +66,22 @@ fn a_scan_leaves_all_its_files() {
         "height_map.svg",
         "height_uncertainty.npy",
         "measurement.json",
+        "points.pcd",
         "points.ply",
         "profile.png",
         "profile_0003.csv",
         "raw_0003.png",
+        "reflectance.png",
         "report.html",
         "uncertainty_map.png",
+        "width.png",
     ] {
         assert!(found.iter().any(|file| file == name), "{name}: {found:?}");
     }
+    assert!(
+        !found.iter().any(|file| file == "height.x3p"),
+        "columns of an image have no size on the part"
+    );
     let record = record(&results);
     assert_eq!(record["frames"].as_array().map(Vec::len), Some(4));
     assert!(table.contains("Speckle from frame to frame: "), "{table}");
@@ -218,6 +225,7 @@ fn without_a_valid_point_there_is_no_number() {
             "height.png",
             "height.npy",
             "height_map.svg",
+            "reflectance.png",
             "terms.png",
             "profile.svg",
         ] {
@@ -255,7 +263,12 @@ fn height_maps_may_be_tiff_and_square() {
     assert_code(&run(folder.path(), "triangulate a.toml"), 0);
     let results = folder.path().join("out/a");
     let found = files(&results);
-    for name in ["height.tiff", "raw_0000.tiff", "profile_0001.csv"] {
+    for name in [
+        "height.tiff",
+        "height.x3p",
+        "raw_0000.tiff",
+        "profile_0001.csv",
+    ] {
         assert!(found.iter().any(|file| file == name), "{name}: {found:?}");
     }
     let record = record(&results);

@@ -19,6 +19,8 @@ mod setup;
 mod shell;
 mod speckle;
 #[cfg(feature = "full")]
+mod sweep;
+#[cfg(feature = "full")]
 mod triangulate;
 mod values;
 
@@ -38,12 +40,13 @@ pub(crate) use self::{
     list::{ListArgs, Listed},
     setup::SetupArgs,
     shell::{CompletionsArgs, ManArgs},
+    sweep::SweepArgs,
     triangulate::TriangulateArgs,
 };
 pub(crate) use self::{
     files::FileArgs,
     render::RenderArgs,
-    scene::{FrameRange, SceneArgs},
+    scene::{IndexRange, SceneArgs},
     speckle::SpeckleArgs,
 };
 use crate::image::Transfer;
@@ -57,6 +60,7 @@ Examples:
                                                       how large is the speckle?
   tem00 budget setups/data_sheet.toml                 how well will this set-up measure heights?
   tem00 design setups/design.toml                     search for a better one
+  tem00 sweep setups/sweeps/lens_and_line.toml        a table over a grid of values, on any machines
   tem00 triangulate scenes/triangulation/groove.toml  see a part as such a sensor sees it
   tem00 lines frame.png                               find the laser line in a camera frame
   tem00 calibrate photos --corners 9x6 --square \"5 mm\" --pixel-pitch \"3.45 um\"
@@ -104,6 +108,8 @@ pub(crate) enum Command {
     Budget(BudgetArgs),
     #[cfg(feature = "full")]
     Design(DesignArgs),
+    #[cfg(feature = "full")]
+    Sweep(SweepArgs),
     #[cfg(feature = "full")]
     List(ListArgs),
     #[cfg(feature = "full")]
@@ -213,13 +219,14 @@ Examples:
 
 /// The commands that are built with the feature `full` alone.
 #[cfg(any(test, not(feature = "full")))]
-const OTHERS: [&str; 9] = [
+const OTHERS: [&str; 10] = [
     "stats",
     "lines",
     "calibrate",
     "triangulate",
     "budget",
     "design",
+    "sweep",
     "list",
     "completions",
     "man",

@@ -92,6 +92,17 @@ impl Failure {
         }
     }
 
+    /// Returns what is wrong, in one line.
+    pub(crate) fn message(&self) -> &str {
+        match self {
+            Self::Input(problem) | Self::Running(problem) | Self::NoResult(problem) => {
+                &problem.message
+            }
+            Self::Interrupted => "interrupted",
+            Self::NoReader => "nobody reads standard output",
+        }
+    }
+
     /// Returns the exit code of the program.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {

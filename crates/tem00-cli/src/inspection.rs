@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use tem00_tracer::{LaserInspection, Scene, TracerError};
 
-use crate::{args::FrameRange, failure::Failure};
+use crate::{args::IndexRange, failure::Failure};
 #[cfg(not(feature = "full"))]
 use crate::{args::without, output::note};
 
@@ -28,7 +28,7 @@ impl<'a> Inspection<'a> {
     /// # Errors
     ///
     /// Returns an error if the geometry cannot be built.
-    pub(crate) fn new(scene: &'a Scene, frames: FrameRange) -> Result<Self, TracerError> {
+    pub(crate) fn new(scene: &'a Scene, frames: IndexRange) -> Result<Self, TracerError> {
         let frames = spread(frames).map(|frame| Ok((frame, scene.inspect_lasers(frame)?)));
         Ok(Self {
             scene,
@@ -108,7 +108,7 @@ impl<'a> Inspection<'a> {
 }
 
 /// Returns frames spread over a range, both ends among them.
-fn spread(FrameRange { first, last }: FrameRange) -> impl Iterator<Item = u32> {
+fn spread(IndexRange { first, last }: IndexRange) -> impl Iterator<Item = u32> {
     let steps = (last - first).min(MAX_FRAMES - 1);
     let length = u64::from(last - first);
     (0..=steps).map(move |step| {
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn frames_are_spread_over_the_range() {
-        let of = |first, last| spread(FrameRange { first, last }).collect::<Vec<_>>();
+        let of = |first, last| spread(IndexRange { first, last }).collect::<Vec<_>>();
         assert_eq!(of(3, 3), [3]);
         assert_eq!(of(0, 2), [0, 1, 2]);
         assert_eq!(of(10, 80), [10, 20, 30, 40, 50, 60, 70, 80]);

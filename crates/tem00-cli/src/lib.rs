@@ -51,6 +51,8 @@ mod speckle;
 mod stats;
 mod summary;
 #[cfg(feature = "full")]
+mod sweep;
+#[cfg(feature = "full")]
 mod triangulate;
 
 use std::{
@@ -113,7 +115,14 @@ fn refuse(error: &clap::Error, arguments: &[OsString]) -> u8 {
 fn obey(command: &Command) -> Result<(), Failure> {
     interrupt::install()?;
     let mut out = Printable(io::stdout().lock());
-    let done = match command {
+    let done = run_command(command, &mut out);
+    // Within Python nothing else empties the buffer.
+    done.and(out.flush().map_err(|error| Failure::stdout(&error)))
+}
+
+/// Runs a command that prints to `out`.
+fn run_command(command: &Command, mut out: &mut dyn Write) -> Result<(), Failure> {
+    match command {
         Command::Render(args) => render::run(args, &mut out),
         Command::Pattern(args) => pattern::run(args, &mut out),
         #[cfg(feature = "full")]
@@ -135,7 +144,7 @@ fn obey(command: &Command) -> Result<(), Failure> {
         Command::Budget(args) => budget::run(args, &mut out),
         #[cfg(feature = "full")]
         Command::Design(args) => design::run(args, &mut out),
-    };
-    // Within Python nothing else empties the buffer.
-    done.and(out.flush().map_err(|error| Failure::stdout(&error)))
+        #[cfg(feature = "full")]
+        Command::Sweep(args) => sweep::run(args, &mut out),
+    }
 }

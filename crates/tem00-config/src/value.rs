@@ -49,6 +49,13 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// Returns the value as the file has it; a string without its quotation marks.
+    pub fn text(&self) -> String {
+        let written = self.source.text().get(self.item.span());
+        let string = self.item.get_ref().as_str().or(written);
+        string.unwrap_or_default().to_owned()
+    }
+
     /// Returns the value in SI units: a bare number, or a string with a unit.
     ///
     /// # Errors

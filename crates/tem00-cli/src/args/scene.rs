@@ -32,7 +32,7 @@ pub(crate) struct SceneArgs {
     /// Only these frames, counted from 0: one, or FIRST..LAST with both ends; a frame is the same however
     /// frames are distributed [default: all].
     #[arg(long, visible_alias = "frame", value_name = "N|FIRST..LAST")]
-    pub(crate) frames: Option<FrameRange>,
+    pub(crate) frames: Option<IndexRange>,
 
     /// Threads to work with, 1 to 1024; the result does not depend on it [default: all].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -51,22 +51,24 @@ impl SceneArgs {
     }
 }
 
-/// A range of frames, counted from 0, with both ends.
+/// A range of frames or tasks, counted from 0, with both ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct FrameRange {
+pub(crate) struct IndexRange {
     pub(crate) first: u32,
     pub(crate) last: u32,
 }
 
-impl core::str::FromStr for FrameRange {
+impl core::str::FromStr for IndexRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (first, last) = text.split_once("..").unwrap_or((text, text));
         match (first.parse(), last.parse()) {
             (Ok(first), Ok(last)) if first <= last => Ok(Self { first, last }),
-            (Ok(_), Ok(_)) => Err("the first frame must not be after the last".into()),
-            _ => Err("must be a frame, such as 3, or a range with both ends, such as 3..10".into()),
+            (Ok(_), Ok(_)) => Err("the first must not be after the last".into()),
+            _ => {
+                Err("must be a number, such as 3, or a range with both ends, such as 3..10".into())
+            }
         }
     }
 }
@@ -99,7 +101,7 @@ mod tests {
             assert_eq!((args.spp, args.seed), (Some(3), Some(4)));
             assert_eq!(args.threads, Some(2));
             assert!(args.no_speckle, "it is on");
-            assert_eq!(args.frames, Some(FrameRange { first: 2, last: 7 }));
+            assert_eq!(args.frames, Some(IndexRange { first: 2, last: 7 }));
 
             let args = parse(&format!("tem00 {command} a.toml")).expect("the line is valid");
             assert!(args.output.is_none() && args.frames.is_none(), "{args:?}");
@@ -111,9 +113,9 @@ mod tests {
 
     #[test]
     fn frames_are_one_or_a_range() {
-        let range = |text: &str| text.parse::<FrameRange>();
-        assert_eq!(range("4"), Ok(FrameRange { first: 4, last: 4 }));
-        assert_eq!(range("0..9"), Ok(FrameRange { first: 0, last: 9 }));
+        let range = |text: &str| text.parse::<IndexRange>();
+        assert_eq!(range("4"), Ok(IndexRange { first: 4, last: 4 }));
+        assert_eq!(range("0..9"), Ok(IndexRange { first: 0, last: 9 }));
         for bad in [
             "",
             "..",
@@ -128,6 +130,6 @@ mod tests {
             assert!(range(bad).is_err(), "{bad} is no range");
         }
         let one = parse("tem00 render a.toml --frame 4").expect("the line is valid");
-        assert_eq!(one.frames, Some(FrameRange { first: 4, last: 4 }));
+        assert_eq!(one.frames, Some(IndexRange { first: 4, last: 4 }));
     }
 }

@@ -6,7 +6,7 @@ use tem00_tracer::{Formulas, Scene, SpeckleModel, SpecklePlan, TracerError};
 
 use super::{record::Fingerprint, report::note_roughness};
 use crate::{
-    args::{FrameRange, RenderArgs},
+    args::{IndexRange, RenderArgs},
     failure::Failure,
     folder_lock::FolderLock,
     frame_files::{FramePaths, check_room},
@@ -20,7 +20,7 @@ pub(super) struct Render<'a> {
     pub(super) args: &'a RenderArgs,
     pub(super) scene: Scene,
     /// The frames that were asked for.
-    pub(super) frames: FrameRange,
+    pub(super) frames: IndexRange,
     pub(super) name: String,
     pub(super) folder: PathBuf,
     pub(super) plan: Option<SpecklePlan>,
@@ -149,9 +149,9 @@ impl<'a> Render<'a> {
 
 /// Returns the frames that the command line asks for, of the `count` that the scene has; all of them if
 /// it asks for none.
-pub(crate) fn frames(asked: Option<FrameRange>, count: u32) -> Result<FrameRange, Failure> {
+pub(crate) fn frames(asked: Option<IndexRange>, count: u32) -> Result<IndexRange, Failure> {
     let last = count.saturating_sub(1);
-    let asked = asked.unwrap_or(FrameRange { first: 0, last });
+    let asked = asked.unwrap_or(IndexRange { first: 0, last });
     if asked.last <= last {
         return Ok(asked);
     }

@@ -10,7 +10,7 @@ use tem00_tracer::{Formulas, SpeckleChange, SpeckleModel, SpecklePlan};
 
 use super::{files::Files, frame::FrameRecord, refusal::Refusal, terms::Terms};
 use crate::{
-    args::{FrameRange, TriangulateArgs},
+    args::{IndexRange, TriangulateArgs},
     failure::Failure,
     frame_files::check_room,
     inspection::Inspection,
@@ -23,7 +23,7 @@ use crate::{
 pub(super) struct Job<'a> {
     pub(super) args: &'a TriangulateArgs,
     pub(super) measurement: Measurement,
-    pub(super) frames: FrameRange,
+    pub(super) frames: IndexRange,
     pub(super) name: String,
     pub(super) files: Files,
 }

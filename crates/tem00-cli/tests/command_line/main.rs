@@ -18,6 +18,7 @@ mod render;
 mod reports;
 mod sequence;
 mod speckle;
+mod sweep;
 mod triangulate;
 mod tutorial;
 

@@ -3,6 +3,7 @@
 //     wrapper FILE
 //
 // The file is written and read again.
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -88,6 +89,15 @@ void lights() {
                         (density.position * density.direction_given_position);
     expect(std::abs(flux / 5e-3 - 1) < 1e-9, "a ray carries the power of the laser");
 
+    const std::array<double, 8> u = {0.2, 0.4, 0.6, 0.8, 0.1, 0.3, 0.5, 0.7};
+    std::array<tem00_ray_sample, 2> rays;
+    light.sample_ray(u.data(), rays.size(), rays.data());
+    expect(std::memcmp(&rays[0], &ray, sizeof ray) == 0, "a batch of rays has the same rays");
+    std::array<tem00_sampled_event, 2> events;
+    const std::array<double, 6> points = {0, 0, 0, 0.01, 0, 0};
+    light.next_event_sampled(points.data(), u.data(), events.size(), events.data());
+    expect(events[0].pdf > 0 && events[1].pdf == 0, "a batch of sampled events is lit where it is");
+
     const std::vector<float> zero(100, 0);
     std::vector<float> irradiance(100);
     light.irradiance(zero.data(), zero.data(), zero.data(), zero.size(), irradiance.data());
@@ -170,6 +180,20 @@ void cameras() {
     expect(std::abs(moved.image_displacement[0] - 2.5e-5) < 1e-18, "it moves with the image");
     expect(std::abs(moved.pupil_displacement[0] - 1e-4) < 1e-18, "and with the surface");
     expect(moved.correlation == tem00::correlation(0.01, 0), "what is left is the overlap");
+
+    tem00_field_setup setup = {};
+    setup.camera = point.camera;
+    setup.pupil_centre[2] = 0.3;
+    setup.pattern_speckle_size = 4;
+    // 1 mm to the right is 0.25 mm on the sensor, and a speckle has 4 samples.
+    const auto at = camera.field_coordinate(setup, {1e-3, 0, 0});
+    expect(std::abs(at[0] / (4 * 2.5e-4 / camera.info().speckle_size) - 1) < 1e-12 && at[1] == 0,
+           "a point has a place in the pattern");
+    // A source at 0.25 m: its direction turns by 4 rad to the metre.
+    const auto curvature = tem00::curvature_from_differentials({0, 0, 1}, {1, 0, 0, 0, 1, 0},
+                                                               {-4, 0, 0, 0, -4, 0});
+    expect(curvature == std::array<double, 6>{4, 0, 0, 4, 0, 0},
+           "the differentials of a point source have its curvature");
 }
 
 // Threads ask one light at once, and each has its own message.

@@ -1551,6 +1551,33 @@ tem00_status tem00_light_next_event_batch_f32(const tem00_light *light,
                                               const tem00_next_event_columns_f32 *events);
 
 /**
+ * Draws a direction from the light that arrives at each of `count` points: the bits of
+ * `tem00_light_next_event_sampled`.
+ *
+ * `points` holds x, y, z in metres of one point after the other, `u` two random numbers in [0, 1) for
+ * each; `events` must not overlap with them. Where it is dark, all of an event is 0.
+ *
+ * The pointers are null or valid, for `3 * count` and `2 * count` numbers and for `count` events.
+ */
+tem00_status tem00_light_next_event_sampled_batch(const tem00_light *light,
+                                                  const double *points,
+                                                  const double *u,
+                                                  size_t count,
+                                                  tem00_sampled_event *events);
+
+/**
+ * Draws `count` rays that leave the aperture: the bits of `tem00_light_sample_ray`.
+ *
+ * `u` holds four random numbers in [0, 1) for each ray; `rays` must not overlap with it.
+ *
+ * The pointers are null or valid, for `4 * count` numbers and for `count` rays.
+ */
+tem00_status tem00_light_sample_ray_batch(const tem00_light *light,
+                                          const double *u,
+                                          size_t count,
+                                          tem00_ray_sample *rays);
+
+/**
  * Copies a light as plain numbers in single precision, to be uploaded to a GPU or evaluated by
  * `tem00_beam.h`.
  *
@@ -1855,6 +1882,21 @@ tem00_status tem00_camera_axes_look_at(const double *position,
                                        tem00_camera_axes *axes);
 
 /**
+ * Computes the curvature tensor of a wave, in 1/m, from how the direction to its source turns along a
+ * surface, as a renderer has it from its ray differentials: after mirrors and lenses, too.
+ *
+ * `direction_to_source`, of any length, holds x, y, z. `dp` holds the differentials of the surface point
+ * by two parameters, in metres, one after the other, `dl` those of the unit vector to the source.
+ * `curvature` receives xx, xy, xz, yy, yz, zz, as `tem00_field_points` takes them.
+ *
+ * The pointers are null or valid, those of the differentials and of the result for six numbers.
+ */
+tem00_status tem00_curvature_from_differentials(const double *direction_to_source,
+                                                const double *dp,
+                                                const double *dl,
+                                                double *curvature);
+
+/**
  * Computes the motion of the speckle at a surface point since the reference state, at first order in
  * the motion.
  *
@@ -1897,6 +1939,21 @@ tem00_status tem00_imaging_motion_field(const tem00_imaging *imaging,
                                         const tem00_field_points *points,
                                         size_t count,
                                         const tem00_field_results *results);
+
+/**
+ * Computes where in a speckle pattern a surface point at rest lies, in pattern samples from the optical
+ * axis, to the right and upwards, not wrapped: what `tem00_imaging_motion_field` makes of a point that
+ * has not moved.
+ *
+ * `position` holds x, y, z in metres; it is refused where the camera cannot see it. Of the setup,
+ * orientation and motion play no part.
+ *
+ * The pointers are null or valid, `position` for three numbers and `coordinate` for two.
+ */
+tem00_status tem00_imaging_field_coordinate(const tem00_imaging *imaging,
+                                            const tem00_field_setup *setup,
+                                            const double *position,
+                                            double *coordinate);
 
 /**
  * Computes the intensity correlation left after a pupil displacement, in pupil diameters, and an

@@ -184,6 +184,17 @@ public:
         check(tem00_light_next_event_batch_f32(get(), x, y, z, count, &events));
     }
 
+    /** Sampled events at `count` points of x, y, z, with two random numbers for each; all 0 where dark. */
+    void next_event_sampled(const double *points, const double *u, std::size_t count,
+                            tem00_sampled_event *events) const {
+        check(tem00_light_next_event_sampled_batch(get(), points, u, count, events));
+    }
+
+    /** Rays that leave the aperture, `count` of them, drawn with four random numbers for each. */
+    void sample_ray(const double *u, std::size_t count, tem00_ray_sample *rays) const {
+        check(tem00_light_sample_ray_batch(get(), u, count, rays));
+    }
+
     /** The light as plain numbers in single precision, for a GPU or tem00_beam.h. */
     tem00_light_data plain_data() const {
         tem00_light_data data;
@@ -428,6 +439,13 @@ public:
         return coordinate;
     }
 
+    /** Where in a speckle pattern a surface point at rest lies, in pattern samples from the axis. */
+    vec2 field_coordinate(const tem00_field_setup &setup, const vec3 &position) const {
+        vec2 coordinate{};
+        check(tem00_imaging_field_coordinate(get(), &setup, position.data(), coordinate.data()));
+        return coordinate;
+    }
+
     /** What motions do to the speckle at `count` surface points. */
     void motion_field(const tem00_field_setup &setup, const tem00_field_points &points,
                       std::size_t count, const tem00_field_results &results) const {
@@ -444,6 +462,16 @@ private:
 
     std::unique_ptr<tem00_imaging, destroy> handle_;
 };
+
+/** Curvature tensor xx, xy, xz, yy, yz, zz of a wave from differentials of its point and direction. */
+inline std::array<double, 6> curvature_from_differentials(const vec3 &direction_to_source,
+                                                          const std::array<double, 6> &dp,
+                                                          const std::array<double, 6> &dl) {
+    std::array<double, 6> curvature{};
+    check(tem00_curvature_from_differentials(direction_to_source.data(), dp.data(), dl.data(),
+                                             curvature.data()));
+    return curvature;
+}
 
 /** Intensity correlation after a displacement in pupil diameters and in axial lengths. */
 inline double correlation(double pupil_shift, double axial_shift) {

@@ -1,6 +1,6 @@
 //! Pointers from C, made into references at one place each.
 
-use core::slice;
+use core::{ops::Range, slice};
 
 use crate::status::{Failure, Status};
 
@@ -117,19 +117,12 @@ pub(crate) unsafe fn columns<'a, T, const N: usize, const M: usize>(
     for (name, pointer) in read {
         check(name, pointer, count)?;
     }
-    for (i, (name, pointer)) in write.into_iter().enumerate() {
+    let mut others: Vec<_> = read.map(|(name, other)| (name, bytes(other, count))).into();
+    for (name, pointer) in write {
         check(name, pointer, count)?;
-        let others = write[..i]
-            .iter()
-            .map(|(name, other)| (*name, other.cast_const()));
-        for (other_name, other) in read.into_iter().chain(others) {
-            if overlap(pointer, other, count) {
-                return Err(refused(
-                    name,
-                    &format!("must not overlap with {other_name}"),
-                ));
-            }
-        }
+        let room = bytes(pointer, count);
+        check_apart(name, &room, &others)?;
+        others.push((name, room));
     }
     // SAFETY: not null, aligned, valid for `count` reads by the contract of this function, and
     // disjoint from all that is written.
@@ -140,8 +133,63 @@ pub(crate) unsafe fn columns<'a, T, const N: usize, const M: usize>(
     Ok((read, write))
 }
 
-fn overlap<T>(a: *const T, b: *const T, count: usize) -> bool {
-    a.addr().abs_diff(b.addr()) < count * size_of::<T>()
+/// Borrows `count` rows of `N` numbers to read.
+///
+/// # Safety
+///
+/// The pointer is null, or points to `N * count` numbers that nobody writes to during `'a`.
+pub(crate) unsafe fn rows<'a, const N: usize>(
+    count: usize,
+    (name, pointer): Named<*const f64>,
+) -> Result<&'a [[f64; N]], Failure> {
+    let pointer = pointer.cast::<[f64; N]>();
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check(name, pointer, count)?;
+    // SAFETY: not null, aligned, and valid for `count` reads by the contract of this function.
+    Ok(unsafe { slice::from_raw_parts(pointer, count) })
+}
+
+/// Borrows `count` records to write, which overlap with none of the numbers that are `read`.
+///
+/// # Safety
+///
+/// The pointer is null, or points to `count` records that nobody else touches during `'a`.
+pub(crate) unsafe fn records<'a, T, const N: usize>(
+    count: usize,
+    (name, pointer): Named<*mut T>,
+    read: [Named<&[f64]>; N],
+) -> Result<&'a mut [T], Failure> {
+    if count == 0 {
+        return Ok(&mut []);
+    }
+    check(name, pointer, count)?;
+    let read = read.map(|(name, numbers)| (name, bytes(numbers.as_ptr(), numbers.len())));
+    check_apart(name, &bytes(pointer, count), &read)?;
+    // SAFETY: not null, aligned, valid for `count` reads and writes by the contract of this
+    // function, and disjoint from all that is read.
+    Ok(unsafe { slice::from_raw_parts_mut(pointer, count) })
+}
+
+/// The addresses of `count` values.
+fn bytes<T>(pointer: *const T, count: usize) -> Range<usize> {
+    let start = pointer.addr();
+    start..start.saturating_add(count * size_of::<T>())
+}
+
+/// Checks that what is written overlaps with no other column.
+fn check_apart(
+    name: &str,
+    room: &Range<usize>,
+    others: &[Named<Range<usize>>],
+) -> Result<(), Failure> {
+    let met = others
+        .iter()
+        .find(|(_, other)| room.start < other.end && other.start < room.end);
+    met.map_or(Ok(()), |(other, _)| {
+        Err(refused(name, &format!("must not overlap with {other}")))
+    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Helpers of the tests of the functions.
 
-use core::ffi::CStr;
+use core::{ffi::CStr, fmt::Debug};
 
 use crate::status::{Status, tem00_last_error_parameter};
 
@@ -24,4 +24,20 @@ pub(crate) fn argument(name: &str) -> (Status, String) {
 /// The refusal of a pointer.
 pub(crate) fn pointer(name: &str) -> (Status, String) {
     (Status::InvalidPointer, name.to_owned())
+}
+
+/// A change that makes what was good wrong, and the name of what is wrong then.
+type Change<D> = (&'static str, fn(&mut D));
+
+/// Checks that what was good is refused after each of these changes, by the name beside it.
+pub(crate) fn each_is_refused<D: Copy + Debug, const N: usize>(
+    good: D,
+    changes: [Change<D>; N],
+    call: impl Fn(&D) -> Status,
+) {
+    for (name, change) in changes {
+        let mut wrong = good;
+        change(&mut wrong);
+        assert_eq!(refusal(call(&wrong)), argument(name), "{wrong:?}");
+    }
 }

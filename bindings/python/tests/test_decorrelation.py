@@ -228,10 +228,13 @@ def test_an_astigmatic_wave_has_the_curvature_tensor_of_its_axes() -> None:
     again = dc.Wavefront.from_tensor(direction, expected)
     np.testing.assert_allclose(again.curvature, expected, atol=1e-14)
     u, v = np.array([1.0, 0.2, 0.5]), np.array([-0.3, 1.0, 0.1])
-    again = dc.Wavefront.from_differentials(
-        direction, dpdu=u, dpdv=v, dldu=-expected @ u, dldv=-expected @ v
-    )
+    again = dc.Wavefront.from_differentials(direction, [u, v], [-expected @ u, -expected @ v])
     np.testing.assert_allclose(again.curvature, expected, atol=1e-13)
+    for wrong in ([u], [u, v, v], u, [u[:2], v[:2]]):
+        with pytest.raises(ValueError, match=r"dl has the shape .* but must have \[2, 3\]"):
+            dc.Wavefront.from_differentials(direction, [u, v], wrong)
+    with pytest.raises(ValueError, match="^dp must be finite"):
+        dc.Wavefront.from_differentials(direction, [u, u], [u, v])
 
 
 def test_rigid_motions_are_matrices() -> None:

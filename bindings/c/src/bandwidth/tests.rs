@@ -13,7 +13,7 @@ use crate::{
     Interpolation, SlicePath, Stack, StackDescription,
     status::Status,
     tem00_stack_amplitude, tem00_stack_create, tem00_stack_destroy,
-    testing::{argument, last_parameter, pointer, refusal},
+    testing::{argument, each_is_refused, last_parameter, pointer, refusal},
 };
 
 /// Head-on under 30°.
@@ -335,28 +335,28 @@ fn peaks_are_a_line() {
 
 #[test]
 fn senseless_numbers_are_refused_by_name() {
-    type Spoil = fn(&mut BandwidthDescription);
-    let spoils: [(&str, Spoil); 9] = [
-        ("wavelength", |d| d.wavelength = f64::NAN),
-        ("linewidth", |d| d.linewidth = 50e-9),
-        ("shape", |d| d.shape = 3),
-        ("peaks", |d| {
-            static MANY: [f64; 514] = [1.0; 514];
-            (d.peak_count, d.peaks) = (257, MANY.as_ptr());
-        }),
-        ("to_source", |d| d.to_source = [0.0; 3]),
-        ("to_pupil", |d| d.to_pupil = [0.0, 0.0, -1.0]),
-        ("sin_aperture", |d| d.sin_aperture = 2.0),
-        ("rms_height", |d| d.rms_height = 0.1),
-        ("correlation_length", |d| d.correlation_length = -1.0),
-    ];
-    for (name, spoil) in spoils {
-        let mut description = DESCRIPTION;
-        spoil(&mut description);
-        let (status, owned) = create(&description);
-        assert_eq!(refusal(status), argument(name), "{name}");
-        assert!(owned.0.is_null(), "{name}");
-    }
+    each_is_refused(
+        DESCRIPTION,
+        [
+            ("wavelength", |d| d.wavelength = f64::NAN),
+            ("linewidth", |d| d.linewidth = 50e-9),
+            ("shape", |d| d.shape = 3),
+            ("peaks", |d| {
+                static MANY: [f64; 514] = [1.0; 514];
+                (d.peak_count, d.peaks) = (257, MANY.as_ptr());
+            }),
+            ("to_source", |d| d.to_source = [0.0; 3]),
+            ("to_pupil", |d| d.to_pupil = [0.0, 0.0, -1.0]),
+            ("sin_aperture", |d| d.sin_aperture = 2.0),
+            ("rms_height", |d| d.rms_height = 0.1),
+            ("correlation_length", |d| d.correlation_length = -1.0),
+        ],
+        |wrong| {
+            let (status, owned) = create(wrong);
+            assert!(owned.0.is_null(), "{wrong:?} made a bandwidth");
+            status
+        },
+    );
     let null = BandwidthDescription {
         peak_count: 1,
         ..DESCRIPTION

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     numbers::{check_coordinates, code},
-    pointers::{Named, borrow, columns},
+    pointers::{Named, borrow, columns, read, write},
     status::{Failure, Status, call},
 };
 
@@ -225,5 +225,40 @@ pub unsafe extern "C" fn tem00_imaging_motion_field(
         }
         field.evaluate(&points.borrowed(light, read), slices(write));
         Ok(())
+    })
+}
+
+/// Computes where in a speckle pattern a surface point at rest lies, in pattern samples from the optical
+/// axis, to the right and upwards, not wrapped: what `tem00_imaging_motion_field` makes of a point that
+/// has not moved.
+///
+/// `position` holds x, y, z in metres; it is refused where the camera cannot see it. Of the setup,
+/// orientation and motion play no part.
+///
+/// # Safety
+///
+/// The pointers are null or valid, `position` for three numbers and `coordinate` for two.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_imaging_field_coordinate(
+    imaging: *const Imaging,
+    setup: *const FieldSetup,
+    position: *const f64,
+    coordinate: *mut f64,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let imaging = unsafe { borrow("imaging", imaging) }?;
+        // SAFETY: by the contract of this function.
+        let field = unsafe { borrow("setup", setup) }?.field(imaging)?;
+        // SAFETY: by the contract of this function.
+        let position: [f64; 3] = unsafe { read("position", position) }?;
+        check_coordinates("position", &position)?;
+        let result = field.pattern_coordinate(DVec3::from_array(position));
+        let result = result.ok_or_else(|| {
+            let message = format!("position must be in sight of the camera, got {position:?}");
+            Failure::argument("position", message)
+        })?;
+        // SAFETY: by the contract of this function.
+        unsafe { write("coordinate", coordinate.cast(), result.to_array()) }
     })
 }

@@ -211,6 +211,53 @@ pub unsafe extern "C" fn tem00_camera_axes_look_at(
     })
 }
 
+/// Computes the curvature tensor of a wave, in 1/m, from how the direction to its source turns along a
+/// surface, as a renderer has it from its ray differentials: after mirrors and lenses, too.
+///
+/// `direction_to_source`, of any length, holds x, y, z. `dp` holds the differentials of the surface point
+/// by two parameters, in metres, one after the other, `dl` those of the unit vector to the source.
+/// `curvature` receives xx, xy, xz, yy, yz, zz, as `tem00_field_points` takes them.
+///
+/// # Safety
+///
+/// The pointers are null or valid, those of the differentials and of the result for six numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_curvature_from_differentials(
+    direction_to_source: *const f64,
+    dp: *const f64,
+    dl: *const f64,
+    curvature: *mut f64,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let to_source = unsafe { read("direction_to_source", direction_to_source) }?;
+        // SAFETY: by the contract of this function.
+        let dp: [f64; 6] = unsafe { read("dp", dp) }?;
+        // SAFETY: by the contract of this function.
+        let dl: [f64; 6] = unsafe { read("dl", dl) }?;
+        let pair =
+            |[ux, uy, uz, vx, vy, vz]: [f64; 6]| [DVec3::new(ux, uy, uz), DVec3::new(vx, vy, vz)];
+        let wave = tem00_decorrelation::Wavefront::from_differentials(
+            DVec3::from_array(to_source),
+            pair(dp),
+            pair(dl),
+        )?;
+        let DMat3 {
+            x_axis: x,
+            y_axis: y,
+            z_axis: z,
+        } = wave.curvature();
+        // SAFETY: by the contract of this function.
+        unsafe {
+            write(
+                "curvature",
+                curvature.cast(),
+                [x.x, y.x, z.x, y.y, z.y, z.z],
+            )
+        }
+    })
+}
+
 /// Computes the motion of the speckle at a surface point since the reference state, at first order in
 /// the motion.
 ///

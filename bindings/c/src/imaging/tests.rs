@@ -12,7 +12,7 @@ use tem00_decorrelation::{CameraFrame, DVec3, LensData};
 use super::*;
 use crate::{
     status::Status,
-    testing::{argument, last_parameter, pointer, refusal},
+    testing::{argument, each_is_refused, last_parameter, pointer, refusal},
 };
 
 const LENS: LensDescription = LensDescription {

@@ -1,9 +1,9 @@
 use tem00_beam::{NextEventSlices, Real};
 
-use super::{Laser, Light};
+use super::{Laser, Light, RaySample, SampledEvent};
 use crate::{
-    numbers::check_coordinates,
-    pointers::{Borrowed, borrow, columns},
+    numbers::{check_coordinates, check_variates},
+    pointers::{Borrowed, borrow, columns, records, rows},
     status::{Failure, Status, call},
 };
 
@@ -218,5 +218,75 @@ pub unsafe extern "C" fn tem00_light_next_event_batch_f32(
         let out = [out.wi_x, out.wi_y, out.wi_z, out.distance, out.e_perp];
         // SAFETY: by the contract of this function.
         unsafe { next_event(light, [x, y, z], count, out) }
+    })
+}
+
+/// Draws a direction from the light that arrives at each of `count` points: the bits of
+/// `tem00_light_next_event_sampled`.
+///
+/// `points` holds x, y, z in metres of one point after the other, `u` two random numbers in [0, 1) for
+/// each; `events` must not overlap with them. Where it is dark, all of an event is 0.
+///
+/// # Safety
+///
+/// The pointers are null or valid, for `3 * count` and `2 * count` numbers and for `count` events.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_light_next_event_sampled_batch(
+    light: *const Light,
+    points: *const f64,
+    u: *const f64,
+    count: usize,
+    events: *mut SampledEvent,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let light = unsafe { borrow("light", light) }?;
+        // SAFETY: by the contract of this function.
+        let points = unsafe { rows::<3>(count, ("points", points)) }?;
+        // SAFETY: by the contract of this function.
+        let u = unsafe { rows::<2>(count, ("u", u)) }?;
+        let read = [("points", points.as_flattened()), ("u", u.as_flattened())];
+        // SAFETY: by the contract of this function.
+        let events = unsafe { records(count, ("events", events), read) }?;
+        check_coordinates("points", points.as_flattened())?;
+        check_variates("u", u.as_flattened())?;
+        light.double.ask(|light| {
+            for ((&p, &u), event) in points.iter().zip(u).zip(events) {
+                let drawn = light.next_event_sampled(p, u);
+                *event = drawn.map(SampledEvent::from).unwrap_or_default();
+            }
+        });
+        Ok(())
+    })
+}
+
+/// Draws `count` rays that leave the aperture: the bits of `tem00_light_sample_ray`.
+///
+/// `u` holds four random numbers in [0, 1) for each ray; `rays` must not overlap with it.
+///
+/// # Safety
+///
+/// The pointers are null or valid, for `4 * count` numbers and for `count` rays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tem00_light_sample_ray_batch(
+    light: *const Light,
+    u: *const f64,
+    count: usize,
+    rays: *mut RaySample,
+) -> Status {
+    call(|| {
+        // SAFETY: by the contract of this function.
+        let light = unsafe { borrow("light", light) }?;
+        // SAFETY: by the contract of this function.
+        let u = unsafe { rows::<4>(count, ("u", u)) }?;
+        // SAFETY: by the contract of this function.
+        let rays = unsafe { records(count, ("rays", rays), [("u", u.as_flattened())]) }?;
+        check_variates("u", u.as_flattened())?;
+        light.double.ask(|light| {
+            for (&u, ray) in u.iter().zip(rays) {
+                *ray = light.sample_ray(u).into();
+            }
+        });
+        Ok(())
     })
 }

@@ -15,7 +15,7 @@ use tem00_beam::{
 use super::*;
 use crate::{
     status::Status,
-    testing::{argument, last_parameter, pointer, refusal},
+    testing::{argument, each_is_refused, last_parameter, pointer, refusal},
 };
 
 const ANGLES: [f64; 4] = [-0.4, -0.2, 0.3, 0.5];

@@ -102,6 +102,27 @@ fn columns_that_overlap_are_refused_and_neighbours_are_not() {
 }
 
 #[test]
+fn records_that_overlap_with_what_is_read_are_refused_and_neighbours_are_not() {
+    let mut values = [0.0; 10];
+    let start = values.as_mut_ptr();
+    // Two rows of two numbers are read, two records of three written.
+    for (read, written, overlap) in [(0, 3, true), (0, 4, false), (5, 0, true), (6, 0, false)] {
+        // SAFETY: both are inside the array, and used only if they do not overlap.
+        let result = unsafe {
+            let read = rows::<2>(2, ("x", start.add(read).cast_const())).unwrap();
+            let room = start.add(written).cast::<[f64; 3]>();
+            records(2, ("out", room), [("x", read.as_flattened())])
+        };
+        let expected = overlap.then(|| pointer_refused("out")).flatten();
+        assert_eq!(
+            refusal(result),
+            expected,
+            "rows at {read}, records at {written}"
+        );
+    }
+}
+
+#[test]
 fn a_handle_that_cannot_be_made_is_null() {
     let mut here = 7;
     let mut handle = &raw mut here;

@@ -11,7 +11,7 @@ use core::ptr;
 use super::*;
 use crate::{
     status::Status,
-    testing::{argument, last_parameter, pointer, refusal},
+    testing::{argument, each_is_refused, last_parameter, pointer, refusal},
 };
 
 const DESCRIPTION: StackDescription = StackDescription {

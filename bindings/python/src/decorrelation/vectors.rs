@@ -23,17 +23,27 @@ pub(super) fn vec2(name: &'static str, argument: &Numbers<'_>) -> PyResult<DVec2
     Ok(DVec2::from_array(argument.vector(name)?))
 }
 
+/// Returns an argument of shape (N, 3) as vectors of the world.
+pub(super) fn rows<const N: usize>(
+    name: &'static str,
+    argument: &Numbers<'_>,
+) -> PyResult<[DVec3; N]> {
+    let values = argument.finite(name)?;
+    if argument.shape() != [N, 3] {
+        let shape = argument.shape();
+        let message = format!("{name} has the shape {shape:?}, but must have [{N}, 3]");
+        return Err(refused(name, message));
+    }
+    Ok(core::array::from_fn(|i| {
+        DVec3::from_slice(&values[3 * i..])
+    }))
+}
+
 /// Returns an argument of shape (3, 3) as a matrix.
 pub(super) fn mat3(name: &'static str, argument: &Numbers<'_>) -> PyResult<DMat3> {
-    let values = argument.finite(name)?;
-    match (argument.shape(), <&[f64; 9]>::try_from(values)) {
-        // Rows of NumPy are columns of the transpose.
-        ([3, 3], Ok(rows)) => Ok(DMat3::from_cols_array(rows).transpose()),
-        (shape, _) => {
-            let message = format!("{name} has the shape {shape:?}, but must have [3, 3]");
-            Err(refused(name, message))
-        }
-    }
+    // Rows of NumPy are columns of the transpose.
+    let [x, y, z] = rows(name, argument)?;
+    Ok(DMat3::from_cols(x, y, z).transpose())
 }
 
 /// Returns a unit vector, or another that is finite, as an array.

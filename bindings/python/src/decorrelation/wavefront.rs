@@ -1,7 +1,7 @@
 use pyo3::prelude::*;
 use tem00_decorrelation as physics;
 
-use super::vectors::{Array3, array3, mat3, shown, shown33, vec3};
+use super::vectors::{Array3, array3, mat3, rows, shown, shown33, vec3};
 use crate::{
     arrays::{Components, Matrix, Table, Vector},
     error::{OrRaise, refused},
@@ -86,22 +86,18 @@ impl Wavefront {
     /// ----------
     /// direction_to_source : array of shape (3,)
     ///     Direction to the source, of any length.
-    /// dpdu, dpdv : array of shape (3,)
+    /// dp : array of shape (2, 3)
     ///     Differentials of the surface point by two parameters, in metres.
-    /// dldu, dldv : array of shape (3,)
+    /// dl : array of shape (2, 3)
     ///     Differentials of the unit vector to the source by the same parameters.
     #[staticmethod]
-    #[pyo3(signature = (direction_to_source, *, dpdu, dpdv, dldu, dldv))]
     fn from_differentials(
         direction_to_source: Components<'_>,
-        dpdu: Components<'_>,
-        dpdv: Components<'_>,
-        dldu: Components<'_>,
-        dldv: Components<'_>,
+        dp: Table<'_>,
+        dl: Table<'_>,
     ) -> PyResult<Self> {
         let direction = vec3("direction_to_source", &direction_to_source)?;
-        let dp = [vec3("dpdu", &dpdu)?, vec3("dpdv", &dpdv)?];
-        let dl = [vec3("dldu", &dldu)?, vec3("dldv", &dldv)?];
+        let (dp, dl) = (rows("dp", &dp)?, rows("dl", &dl)?);
         let wave = physics::Wavefront::from_differentials(direction, dp, dl);
         Ok(Self(wave.or_raise()?))
     }

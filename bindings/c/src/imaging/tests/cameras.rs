@@ -98,58 +98,30 @@ fn cameras_from_distances_are_those_of_the_library() {
 
 #[test]
 fn cameras_are_refused_by_the_name_of_what_is_wrong() {
-    let create = |lens: LensDescription| {
+    let create = |lens: &LensDescription| {
         let mut imaging = ptr::dangling_mut();
         // SAFETY: the pointers are valid.
-        let status = unsafe { tem00_imaging_create_lens(&raw const lens, &raw mut imaging) };
+        let status = unsafe { tem00_imaging_create_lens(lens, &raw mut imaging) };
         assert!(imaging.is_null(), "{lens:?} made a camera");
-        refusal(status)
+        status
     };
-    let nan = f64::NAN;
-    assert_eq!(
-        create(LensDescription {
-            wavelength: nan,
-            ..LENS
-        }),
-        argument("wavelength"),
-        "NaN"
-    );
-    assert_eq!(
-        create(LensDescription {
-            f_number: 0.1,
-            ..LENS
-        }),
-        argument("f_number"),
-        "0.1"
-    );
-    assert_eq!(
-        create(LensDescription { focus: nan, ..LENS }),
-        argument("focus"),
-        "NaN"
-    );
-    assert_eq!(
-        create(LensDescription {
-            focus_kind: 3,
-            ..LENS
-        }),
-        argument("focus_kind"),
-        "3"
-    );
-    for kind in [Focus::SurfaceToPrincipalPlane, Focus::Magnification] {
-        let lens = LensDescription {
-            focus_kind: kind as u32,
-            focus: -1.0,
-            ..LENS
-        };
-        assert_eq!(create(lens), argument("focus"), "{kind:?}");
-    }
-    let magnification = LensDescription {
-        pupil_magnification: nan,
-        ..LENS
-    };
-    assert_eq!(
-        create(magnification),
-        argument("pupil_magnification"),
-        "NaN"
+    each_is_refused(
+        LENS,
+        [
+            ("wavelength", |lens| lens.wavelength = f64::NAN),
+            ("f_number", |lens| lens.f_number = 0.1),
+            ("focus", |lens| lens.focus = f64::NAN),
+            ("focus_kind", |lens| lens.focus_kind = 3),
+            ("pupil_magnification", |lens| {
+                lens.pupil_magnification = f64::NAN;
+            }),
+            ("focus", |lens| {
+                (lens.focus_kind, lens.focus) = (Focus::SurfaceToPrincipalPlane as u32, -1.0);
+            }),
+            ("focus", |lens| {
+                (lens.focus_kind, lens.focus) = (Focus::Magnification as u32, -1.0);
+            }),
+        ],
+        create,
     );
 }

@@ -142,58 +142,44 @@ fn the_curvature_may_be_null_where_the_light_needs_none() {
 fn fields_are_refused_by_the_name_of_what_is_wrong() {
     let good = inputs();
     let collimated = points(&good, FieldLight::Collimated);
-    let refused = |setup: FieldSetup, points: FieldPoints| {
+    let refused = |setup: &FieldSetup, points: &FieldPoints| {
         let mut out = room();
-        let refused = refusal(evaluate(&setup, &points, &mut out));
+        let status = evaluate(setup, points, &mut out);
         assert_eq!(out, room(), "nothing is written");
-        refused
+        status
     };
-    let bad_setup = |change: fn(&mut FieldSetup)| {
-        let mut setup = setup();
-        change(&mut setup);
-        refused(setup, collimated)
-    };
-    assert_eq!(
-        bad_setup(|s| s.pupil_centre[1] = f64::NAN),
-        argument("pupil_centre"),
-        "NaN"
+    each_is_refused(
+        setup(),
+        [
+            ("pupil_centre", |setup| setup.pupil_centre[1] = f64::NAN),
+            ("orientation", |setup| setup.orientation = 2),
+            ("pattern_speckle_size", |s| s.pattern_speckle_size = 0.0),
+            ("camera", |setup| setup.shared_motion.camera[0] = f64::NAN),
+        ],
+        |wrong| refused(wrong, &collimated),
     );
-    assert_eq!(
-        bad_setup(|s| s.orientation = 2),
-        argument("orientation"),
-        "2"
+    each_is_refused(
+        collimated,
+        [
+            ("light", |points| points.light = 3),
+            ("source", |points| {
+                (points.light, points.source) = (FieldLight::PointSource as u32, [f64::NAN; 3]);
+            }),
+        ],
+        |wrong| refused(&setup(), wrong),
     );
-    assert_eq!(
-        bad_setup(|s| s.pattern_speckle_size = 0.0),
-        argument("pattern_speckle_size"),
-        "0"
-    );
-    assert_eq!(
-        bad_setup(|s| s.shared_motion.camera[0] = f64::NAN),
-        argument("camera"),
-        "NaN"
-    );
-    let light = FieldPoints {
-        light: 3,
-        ..collimated
-    };
-    assert_eq!(refused(setup(), light), argument("light"), "3");
-    let source = FieldPoints {
-        light: FieldLight::PointSource as u32,
-        source: [f64::NAN; 3],
-        ..collimated
-    };
-    assert_eq!(refused(setup(), source), argument("source"), "NaN");
     for (column, name) in [(1, "position"), (5, "normal"), (8, "motion")] {
         let mut bad = good.clone();
         bad[column][COUNT - 1] = f64::NAN;
         let points = points(&bad, FieldLight::Collimated);
-        assert_eq!(refused(setup(), points), argument(name), "column {column}");
+        let status = refused(&setup(), &points);
+        assert_eq!(refusal(status), argument(name), "column {column}");
     }
     let mut bad = good.clone();
     bad[14][0] = f64::INFINITY;
     let points = points(&bad, FieldLight::Curvature);
-    assert_eq!(refused(setup(), points), argument("curvature"), "infinite");
+    let status = refused(&setup(), &points);
+    assert_eq!(refusal(status), argument("curvature"), "infinite");
 }
 
 /// A camera of extreme numbers.
@@ -268,4 +254,52 @@ fn results_in_one_place_are_refused() {
     };
     let expected = pointer("pattern_coordinate");
     assert_eq!(refusal(status), expected, "two results in one column");
+}
+
+fn coordinate(setup: &FieldSetup, position: [f64; 3]) -> (Status, [f64; 2]) {
+    let imaging = Owned::new(&LENS);
+    let mut out = [7.0; 2];
+    // SAFETY: the pointers are valid.
+    let status = unsafe {
+        let out = out.as_mut_ptr();
+        tem00_imaging_field_coordinate(imaging.0, setup, position.as_ptr(), out)
+    };
+    (status, out)
+}
+
+#[test]
+fn a_point_at_rest_is_looked_up_where_the_field_says() {
+    let setup = FieldSetup {
+        shared_motion: Motion::default(),
+        ..setup()
+    };
+    let mut inputs = inputs();
+    inputs[6..9].fill(vec![0.0; COUNT]);
+    let mut out = room();
+    let status = evaluate(&setup, &points(&inputs, FieldLight::Collimated), &mut out);
+    assert_eq!(status, Status::Ok, "{}", last_parameter());
+    let mut places = Vec::new();
+    for i in 0..COUNT {
+        let (status, got) = coordinate(&setup, [inputs[0][i], inputs[1][i], inputs[2][i]]);
+        assert_eq!(status, Status::Ok, "{}", last_parameter());
+        assert_eq!(got, [out[5][i], out[6][i]], "point {i}");
+        places.push(got);
+    }
+    assert!(places[0] != places[COUNT - 1], "{places:?}");
+}
+
+#[test]
+fn a_point_out_of_sight_has_no_coordinate() {
+    let behind = EYE.map(|x| 2.0 * x);
+    for position in [behind, [f64::NAN; 3]] {
+        let (status, out) = coordinate(&setup(), position);
+        assert_eq!(refusal(status), argument("position"), "{position:?}");
+        assert_eq!(out, [7.0; 2], "nothing is written");
+    }
+    let flat = FieldSetup {
+        pattern_speckle_size: 0.0,
+        ..setup()
+    };
+    let refused = refusal(coordinate(&flat, [0.0; 3]).0);
+    assert_eq!(refused, argument("pattern_speckle_size"), "0");
 }

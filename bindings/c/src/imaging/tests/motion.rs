@@ -70,76 +70,37 @@ fn speckle_that_left_the_pupil_is_infinitely_far() {
 #[test]
 fn surface_points_and_motions_are_refused_by_the_name_of_what_is_wrong() {
     let imaging = Owned::new(&LENS);
-    let refused = |point: SurfacePoint, motion: Motion, orientation| {
+    let refused = |point: &SurfacePoint, motion: &Motion, orientation| {
         let mut out = SpeckleMotion::default();
         // SAFETY: the pointers are valid.
-        refusal(unsafe {
-            tem00_imaging_speckle_motion(
-                imaging.0,
-                &raw const point,
-                &raw const motion,
-                orientation,
-                &raw mut out,
-            )
-        })
+        unsafe { tem00_imaging_speckle_motion(imaging.0, point, motion, orientation, &raw mut out) }
     };
-    let nan = [f64::NAN; 3];
-    let bad_point = |change: fn(&mut SurfacePoint)| {
-        let mut point = point();
-        change(&mut point);
-        refused(point, MOTION, 0)
-    };
-    assert_eq!(
-        bad_point(|p| p.camera.up = [0.0; 3]),
-        argument("axes"),
-        "camera"
+    each_is_refused(
+        point(),
+        [
+            ("axes", |point| point.camera.up = [0.0; 3]),
+            ("to_pupil", |point| point.to_pupil = [f64::NAN; 3]),
+            ("normal", |point| point.normal = [0.0; 3]),
+            ("direction_to_source", |point| {
+                point.wavefront.direction_to_source = [0.0; 3];
+            }),
+            ("curvature_along", |point| {
+                point.wavefront.curvature_along = f64::NAN;
+            }),
+        ],
+        |wrong| refused(wrong, &MOTION, 0),
     );
-    assert_eq!(
-        bad_point(|p| p.to_pupil = [f64::NAN; 3]),
-        argument("to_pupil"),
-        "sight"
+    each_is_refused(
+        MOTION,
+        [
+            ("surface", |motion| motion.surface = [f64::NAN; 3]),
+            ("camera", |motion| motion.camera = [f64::NAN; 3]),
+            ("source", |motion| motion.source = [f64::NAN; 3]),
+        ],
+        |wrong| refused(&point(), wrong, 0),
     );
-    assert_eq!(
-        bad_point(|p| p.normal = [0.0; 3]),
-        argument("normal"),
-        "normal"
-    );
-    assert_eq!(
-        bad_point(|p| p.wavefront.direction_to_source = [0.0; 3]),
-        argument("direction_to_source"),
-        "light"
-    );
-    assert_eq!(
-        bad_point(|p| p.wavefront.curvature_along = f64::NAN),
-        argument("curvature_along"),
-        "curvature"
-    );
-    for (name, motion) in [
-        (
-            "surface",
-            Motion {
-                surface: nan,
-                ..MOTION
-            },
-        ),
-        (
-            "camera",
-            Motion {
-                camera: nan,
-                ..MOTION
-            },
-        ),
-        (
-            "source",
-            Motion {
-                source: nan,
-                ..MOTION
-            },
-        ),
-    ] {
-        assert_eq!(refused(point(), motion, 0), argument(name), "{name}");
-    }
-    assert_eq!(refused(point(), MOTION, 2), argument("orientation"), "2");
+    let orientation = refused(&point(), &MOTION, 2);
+    assert_eq!(refusal(orientation), argument("orientation"), "2");
 }
 
 #[test]
@@ -162,5 +123,58 @@ fn pattern_coordinates_are_those_of_the_library() {
         refusal(status),
         argument("pattern_speckle_size"),
         "of speckle of no size"
+    );
+}
+
+fn curvature(direction: [f64; 3], [dp, dl]: [[f64; 6]; 2]) -> (Status, [f64; 6]) {
+    let mut out = [7.0; 6];
+    // SAFETY: the pointers are valid.
+    let status = unsafe {
+        let out = out.as_mut_ptr();
+        tem00_curvature_from_differentials(direction.as_ptr(), dp.as_ptr(), dl.as_ptr(), out)
+    };
+    (status, out)
+}
+
+/// A source at 0.25 m above a surface at 45° to its light: K t = t/0.25 across z.
+const DIFFERENTIALS: [[f64; 6]; 2] = [
+    [1.0, 0.0, 1.0, 0.0, 1.0, 0.0],
+    [-4.0, 0.0, 0.0, 0.0, -4.0, 0.0],
+];
+
+#[test]
+fn curvatures_from_differentials_are_those_of_the_source() {
+    let (status, got) = curvature([0.0, 0.0, 2.0], DIFFERENTIALS);
+    let expected = [4.0, 0.0, 0.0, 4.0, 0.0, 0.0];
+    assert_eq!(
+        (status, got),
+        (Status::Ok, expected),
+        "xx, xy, xz, yy, yz, zz"
+    );
+
+    // A cylinder turned against the axes has all of xx, xy and yy.
+    let [[a, b], [c, d]] = [[3.0, 1.0], [1.0, 2.0]];
+    let cylinder = [-a, -b, 0.0, -c, -d, 0.0];
+    let (_, got) = curvature([0.0, 0.0, 1.0], [[1.0, 0.0, 0.0, 0.0, 1.0, 0.0], cylinder]);
+    assert_eq!(got, [a, b, 0.0, d, 0.0, 0.0], "of {cylinder:?}");
+}
+
+#[test]
+fn differentials_are_refused_by_the_name_of_what_is_wrong() {
+    each_is_refused(
+        ([0.0, 0.0, 1.0], DIFFERENTIALS),
+        [
+            ("direction_to_source", |(direction, _)| {
+                *direction = [0.0; 3];
+            }),
+            ("dp", |(_, [dp, _])| *dp = [1.0; 6]),
+            ("dp", |(_, [dp, _])| dp[5] = f64::NAN),
+            ("dl", |(_, [_, dl])| dl[5] = f64::INFINITY),
+        ],
+        |(direction, differentials)| {
+            let (status, out) = curvature(*direction, *differentials);
+            assert_eq!(out, [7.0; 6], "nothing is written");
+            status
+        },
     );
 }

@@ -223,6 +223,47 @@ fn batches_are_single_calls_to_the_last_bit() {
 }
 
 #[test]
+fn batches_of_samples_are_single_calls_to_the_last_bit() {
+    for Pair { name, handle, peer } in &pairs() {
+        let points = peer.points();
+        let count = points.len();
+        let mut variates = Variates(4);
+        let pairs: Vec<_> = points
+            .iter()
+            .map(|_| [(); 2].map(|()| variates.next()))
+            .collect();
+        let fours: Vec<_> = points
+            .iter()
+            .map(|_| [(); 4].map(|()| variates.next()))
+            .collect();
+        let mut events = vec![SampledEvent::default(); count];
+        let mut rays = vec![RaySample::default(); count];
+        let (p, u) = (
+            points.as_flattened().as_ptr(),
+            pairs.as_flattened().as_ptr(),
+        );
+        let four = fours.as_flattened().as_ptr();
+        // SAFETY: the handle and the pointers are valid.
+        let statuses = unsafe {
+            let (events, rays) = (events.as_mut_ptr(), rays.as_mut_ptr());
+            [
+                tem00_light_next_event_sampled_batch(*handle, p, u, count, events),
+                tem00_light_sample_ray_batch(*handle, four, count, rays),
+            ]
+        };
+        assert_eq!(statuses, [Status::Ok; 2], "{name}");
+        for i in 0..count {
+            let event = peer.ask(|light| light.next_event_sampled(points[i], pairs[i]));
+            let event = event.map(SampledEvent::from).unwrap_or_default();
+            assert_eq!(events[i], event, "{name} at {:?}", points[i]);
+            let ray = peer.ask(|light| light.sample_ray(fours[i]));
+            assert_eq!(rays[i], ray.into(), "{name} of {:?}", fours[i]);
+        }
+        both_lit_and_dark(name, events.into_iter().map(|event| event.value));
+    }
+}
+
+#[test]
 fn single_precision_is_that_of_the_library() {
     for Pair { name, handle, peer } in &pairs() {
         let points: Vec<_> = peer.points();

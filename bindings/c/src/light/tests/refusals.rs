@@ -24,95 +24,84 @@ fn senseless_numbers_are_refused_by_name_and_nothing_is_written() {
     // SAFETY: the handle and the pointers are valid.
     unsafe {
         let cases = [
+            ("point", refusal(tem00_light_irradiance(light, nan, out))),
             (
                 "point",
-                tem00_light_irradiance(light, nan, out),
-                last_parameter(),
+                refusal(tem00_light_flux(light, nan, [7.0; 3].as_mut_ptr())),
             ),
             (
                 "point",
-                tem00_light_flux(light, nan, [7.0; 3].as_mut_ptr()),
-                last_parameter(),
+                refusal(tem00_light_next_event(light, nan, &raw mut event)),
             ),
             (
                 "point",
-                tem00_light_next_event(light, nan, &raw mut event),
-                last_parameter(),
-            ),
-            (
-                "point",
-                tem00_light_next_event_sampled(light, nan, half.as_ptr(), &raw mut drawn),
-                last_parameter(),
+                refusal(tem00_light_next_event_sampled(
+                    light,
+                    nan,
+                    half.as_ptr(),
+                    &raw mut drawn,
+                )),
             ),
             (
                 "u",
-                tem00_light_next_event_sampled(light, point, one.as_ptr(), &raw mut drawn),
-                last_parameter(),
+                refusal(tem00_light_next_event_sampled(
+                    light,
+                    point,
+                    one.as_ptr(),
+                    &raw mut drawn,
+                )),
             ),
             (
                 "point",
-                tem00_light_next_event_pdf(light, nan, unit, out),
-                last_parameter(),
+                refusal(tem00_light_next_event_pdf(light, nan, unit, out)),
             ),
             (
                 "wi",
-                tem00_light_next_event_pdf(light, point, zero, out),
-                last_parameter(),
+                refusal(tem00_light_next_event_pdf(light, point, zero, out)),
             ),
             (
                 "u",
-                tem00_light_sample_ray(light, one.as_ptr(), &raw mut ray),
-                last_parameter(),
+                refusal(tem00_light_sample_ray(light, one.as_ptr(), &raw mut ray)),
             ),
             (
                 "origin",
-                tem00_light_ray_pdf(light, nan, unit, &raw mut pdf),
-                last_parameter(),
+                refusal(tem00_light_ray_pdf(light, nan, unit, &raw mut pdf)),
             ),
             (
                 "direction",
-                tem00_light_ray_pdf(light, point, zero, &raw mut pdf),
-                last_parameter(),
+                refusal(tem00_light_ray_pdf(light, point, zero, &raw mut pdf)),
             ),
             (
                 "origin",
-                tem00_light_radiance(light, nan, unit, out),
-                last_parameter(),
+                refusal(tem00_light_radiance(light, nan, unit, out)),
             ),
             (
                 "direction",
-                tem00_light_radiance(light, point, nan, out),
-                last_parameter(),
+                refusal(tem00_light_radiance(light, point, nan, out)),
             ),
             (
                 "distance",
-                tem00_light_bounds(light, -1.0, &raw mut bounds),
-                last_parameter(),
+                refusal(tem00_light_bounds(light, -1.0, &raw mut bounds)),
             ),
             (
                 "point",
-                tem00_light_hit(light, nan, unit, &raw mut hit),
-                last_parameter(),
+                refusal(tem00_light_hit(light, nan, unit, &raw mut hit)),
             ),
             (
                 "wi",
-                tem00_light_hit(light, point, zero, &raw mut hit),
-                last_parameter(),
+                refusal(tem00_light_hit(light, point, zero, &raw mut hit)),
             ),
             (
                 "min",
-                tem00_light_power_bound(light, nan, point, out),
-                last_parameter(),
+                refusal(tem00_light_power_bound(light, nan, point, out)),
             ),
             (
                 "max",
-                tem00_light_power_bound(light, point, nan, out),
-                last_parameter(),
+                refusal(tem00_light_power_bound(light, point, nan, out)),
             ),
         ];
-        for (i, (name, status, parameter)) in cases.into_iter().enumerate() {
-            let expected = (Status::InvalidArgument, name);
-            assert_eq!((status, parameter.as_str()), expected, "case {i}");
+        for (i, (name, refused)) in cases.into_iter().enumerate() {
+            assert_eq!(refused, argument(name), "case {i}");
         }
     }
     assert_eq!(number, 7.0, "the result");
@@ -134,6 +123,59 @@ fn a_bad_point_of_a_batch_is_refused_before_anything_is_written() {
         assert_eq!(refusal(status), argument("z"), "infinite z");
     }
     assert_eq!(out, [7.0; 2], "the results");
+}
+
+#[test]
+fn batches_of_samples_are_refused_by_name_and_nothing_is_written() {
+    let [pair, ..] = &pairs();
+    let light = pair.handle.cast_const();
+    let (good, mut bad) = ([0.5; 12], [0.5; 12]);
+    bad[5] = f64::NAN;
+    let (good, bad, null) = (good.as_ptr(), bad.as_ptr(), ptr::null());
+    let mut events = [SampledEvent::default(); 2];
+    let mut rays = [RaySample::default(); 2];
+    let (event, ray) = (events.as_mut_ptr(), rays.as_mut_ptr());
+    let drawn = |points, u, events| {
+        // SAFETY: the handle is valid, and the pointers are valid or null.
+        refusal(unsafe { tem00_light_next_event_sampled_batch(light, points, u, 2, events) })
+    };
+    let sampled = |u, rays| {
+        // SAFETY: as above.
+        refusal(unsafe { tem00_light_sample_ray_batch(light, u, 2, rays) })
+    };
+    let cases = [
+        (argument("points"), drawn(bad, good, event)),
+        (argument("u"), drawn(good, bad.wrapping_add(2), event)),
+        (argument("u"), sampled(bad, ray)),
+        (pointer("points"), drawn(null, good, event)),
+        (pointer("u"), drawn(good, null, event)),
+        (pointer("events"), drawn(good, good, ptr::null_mut())),
+        (pointer("u"), sampled(null, ray)),
+        (pointer("rays"), sampled(good, ptr::null_mut())),
+        // What is written would be read.
+        (
+            pointer("events"),
+            drawn(event.cast_const().cast(), good, event),
+        ),
+        (
+            pointer("events"),
+            drawn(good, event.cast_const().cast(), event),
+        ),
+        (pointer("rays"), sampled(ray.cast_const().cast(), ray)),
+    ];
+    for (i, (expected, refused)) in cases.into_iter().enumerate() {
+        assert_eq!(refused, expected, "case {i}");
+    }
+    assert_eq!(events, [SampledEvent::default(); 2], "the events");
+    assert_eq!(rays, [RaySample::default(); 2], "the rays");
+    // SAFETY: no number is read or written.
+    let none = unsafe {
+        [
+            tem00_light_next_event_sampled_batch(light, null, null, 0, ptr::null_mut()),
+            tem00_light_sample_ray_batch(light, null, 0, ptr::null_mut()),
+        ]
+    };
+    assert_eq!(none, [Status::Ok; 2], "of no numbers");
 }
 
 #[test]

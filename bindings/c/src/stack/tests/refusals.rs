@@ -2,130 +2,67 @@ use super::*;
 
 #[test]
 fn descriptions_are_refused_by_the_name_of_what_is_wrong() {
-    let create = |description: StackDescription| {
+    let create = |description: &StackDescription| {
         let mut stack = ptr::dangling_mut();
         // SAFETY: the pointers are valid.
-        let status = unsafe { tem00_stack_create(&raw const description, &raw mut stack) };
+        let status = unsafe { tem00_stack_create(description, &raw mut stack) };
         assert!(stack.is_null(), "{description:?} made a stack");
-        refusal(status)
+        status
     };
-    let memory = (Status::Memory, "memory_limit".to_owned());
-    let d = DESCRIPTION;
-    assert_eq!(
-        create(StackDescription {
-            width: 1 << 20,
-            ..d
-        }),
-        argument("width"),
-        "width"
+    each_is_refused(
+        DESCRIPTION,
+        [
+            ("width", |d| d.width = 1 << 20),
+            ("speckle_size", |d| d.speckle_size = 1.0),
+            ("speckle_size", |d| d.speckle_size = f64::NAN),
+            ("height", |d| d.height = 1 << 20),
+            // Of an oblong, and above half the width.
+            ("diameter", |d| d.diameter = 33),
+            ("diameter", |d| (d.height, d.diameter) = (64, 33)),
+            ("half_period", |d| d.half_period = 0),
+            ("path", |d| d.path = 3),
+            ("interpolation", |d| d.interpolation = 3),
+        ],
+        create,
     );
-    assert_eq!(
-        create(StackDescription {
-            speckle_size: 1.0,
-            ..d
-        }),
-        argument("speckle_size"),
-        "1"
-    );
-    let nan = StackDescription {
-        speckle_size: f64::NAN,
-        ..d
+    let large = StackDescription {
+        memory_limit: 1000,
+        ..DESCRIPTION
     };
-    assert_eq!(create(nan), argument("speckle_size"), "NaN");
-    let high = StackDescription {
-        height: 1 << 20,
-        ..d
+    assert_eq!(refusal(create(&large)), memory(), "1000 bytes");
+    let short = StackDescription {
+        length: 1,
+        ..DESCRIPTION
     };
-    assert_eq!(create(high), argument("height"), "height");
-    let oblong = StackDescription { diameter: 33, ..d };
-    assert_eq!(create(oblong), argument("diameter"), "of an oblong");
-    let wide = StackDescription {
-        height: 64,
-        diameter: 33,
-        ..d
-    };
-    assert_eq!(create(wide), argument("diameter"), "above half the width");
-    assert_eq!(
-        create(StackDescription {
-            half_period: 0,
-            ..d
-        }),
-        argument("half_period"),
-        "0"
-    );
-    assert_eq!(
-        create(StackDescription { path: 3, ..d }),
-        argument("path"),
-        "3"
-    );
-    assert_eq!(
-        create(StackDescription {
-            interpolation: 3,
-            ..d
-        }),
-        argument("interpolation"),
-        "3"
-    );
-    assert_eq!(
-        create(StackDescription {
-            memory_limit: 1000,
-            ..d
-        }),
-        memory,
-        "1000 bytes"
-    );
-    let short = create(StackDescription { length: 1, ..d });
-    assert_eq!(short.0, Status::InvalidArgument, "a path of length 1");
+    assert_eq!(create(&short), Status::InvalidArgument, "of length 1");
+}
+
+fn memory() -> (Status, String) {
+    (Status::Memory, "memory_limit".to_owned())
 }
 
 #[test]
 fn needs_are_refused_by_the_name_of_what_is_wrong() {
-    let plan = |needs: StackNeeds| {
+    let plan = |needs: &StackNeeds| {
         let mut description = DESCRIPTION;
         // SAFETY: the pointers are valid.
-        refusal(unsafe { tem00_stack_plan(&raw const needs, &raw mut description) })
+        unsafe { tem00_stack_plan(needs, &raw mut description) }
     };
-    assert_eq!(
-        plan(StackNeeds {
-            image: [f64::NAN, 1.0],
-            ..NEEDS
-        }),
-        argument("image"),
-        "NaN"
+    each_is_refused(
+        NEEDS,
+        [
+            ("image", |needs| needs.image = [f64::NAN, 1.0]),
+            ("region", |needs| needs.region = [1.0, 0.0]),
+            ("changes", |needs| needs.changes = 2),
+            ("motion", |needs| needs.motion = f64::NAN),
+        ],
+        plan,
     );
-    assert_eq!(
-        plan(StackNeeds {
-            region: [1.0, 0.0],
-            ..NEEDS
-        }),
-        argument("region"),
-        "0"
-    );
-    assert_eq!(
-        plan(StackNeeds {
-            changes: 2,
-            ..NEEDS
-        }),
-        argument("changes"),
-        "2"
-    );
-    assert_eq!(
-        plan(StackNeeds {
-            motion: f64::NAN,
-            ..NEEDS
-        }),
-        argument("motion"),
-        "NaN"
-    );
-    let memory = (Status::Memory, "memory_limit".to_owned());
-    assert_eq!(
-        plan(StackNeeds {
-            memory_limit: 10,
-            ..NEEDS
-        }),
-        memory,
-        "10 bytes"
-    );
+    let large = StackNeeds {
+        memory_limit: 10,
+        ..NEEDS
+    };
+    assert_eq!(refusal(plan(&large)), memory(), "10 bytes");
 }
 
 #[test]

@@ -17,11 +17,12 @@
 // i32 holds. An f32 of a thousand samples resolves 6e-5 of one, which moves the intensity by as much: where that
 // is too coarse, split the coordinates in the host or by integers and call `tem00_stack_intensity_at`.
 //
-// A stack is made by `tem00_phasor`, `tem00_prefilter` and a Fourier transform. Stockham's takes a stage for each of the
-// radices 2 to 16 whose product is the side of the pattern: thread `own` of length / radix reads the points own + r length /
-// radix of a line, multiplies them by `tem00_twiddle`, transforms them by `tem00_dft2` to `tem00_dft16`, and writes
-// value r to the point `tem00_stockham` of another array; `done` is the product of the radices before. The rows of the pupil go
-// first, zero where the box ends, then all columns; `tem00_centring` over the root of the pupil's points makes the amplitude.
+// A stack is made by `tem00_phasor`, the factors that `Aperture::factors` has for each column and row of the pupil, and a
+// Fourier transform. Stockham's takes a stage for each of the radices 2 to 16 whose product is the side of the pattern:
+// thread `own` of length / radix reads the points own + r length / radix of a line, multiplies them by `tem00_twiddle`,
+// transforms them by `tem00_dft2` to `tem00_dft16`, and writes value r to the point `tem00_stockham` of another array; `done`
+// is the product of the radices before. The rows of the pupil go first, zero where the box ends, then all columns;
+// `tem00_centring` over the root of the pupil's points makes the amplitude.
 //
 // Nothing is left to a device's own sine, exponential or logarithm: additions, multiplications, divisions, square roots
 // and integers come within a few roundings of the library anywhere.
@@ -155,19 +156,6 @@ fn tem00_turns(count: u32, period: u32) -> u32 {
     let unit = 0xffffffffu / period;
     let rest = 0u - unit * period;
     return count * unit + u32(f32(count) * f32(rest) / f32(period));
-}
-
-/// Returns sinc⁻⁴(π k / size), the factor on the pupil point `k` of which cubic splines pass through the samples, for
-/// 2 |k| ≤ size.
-fn tem00_prefilter(k: i32, size: u32) -> f32 {
-    if k == 0 {
-        return 1.0;
-    }
-    let points = u32(abs(k));
-    let angle = 3.141592653589793 * f32(points) / f32(size);
-    let reciprocal = angle / tem00_unit_phasor(tem00_turns(points, size) >> 1u).y;
-    let square = reciprocal * reciprocal;
-    return square * square;
 }
 
 /// Returns exp(−2πi (`own` mod `done`) r / (`done` · `radix`)): what the thread `own` of a stage multiplies its value r by.

@@ -166,30 +166,3 @@ fn lattices_close_about_their_origin() {
         assert!(error.abs() < 0.5, "{k} of {period}: off by {error}");
     }
 }
-
-#[test]
-fn prefilters_are_the_reciprocal_of_the_splines() {
-    let points: Vec<_> = [16, 90, 2_048, 32_768]
-        .iter()
-        .flat_map(|&size: &u32| {
-            (0..=size / 4)
-                .step_by(1 + size as usize / 200)
-                .map(move |k| [k, size])
-        })
-        .collect();
-    let body = "output(0, tem00_prefilter(i32(word(0)), word(1)));
-        output(1, tem00_prefilter(-i32(word(0)), word(1)));";
-    let factors: Vec<[f32; 2]> = on_card(body, &points);
-    for ([k, size], got) in points.into_iter().zip(factors) {
-        let angle = core::f64::consts::PI * f64::from(k) / f64::from(size);
-        let expected = if k == 0 {
-            1.0
-        } else {
-            (angle / angle.sin()).powi(4)
-        };
-        for got in got {
-            let error = (f64::from(got) / expected - 1.0).abs();
-            assert!(error < 1.5e-6, "{error:e} at {k} of {size}");
-        }
-    }
-}

@@ -289,7 +289,10 @@ pub trait Emitter<T: Real>: PhaseSpace<T> {
     ///
     /// Never less than the power. Of a box within the beam, as long as it is wide, the bound is less
     /// than four times the power, plus what a box as wide that is turned into the axes of the light
-    /// receives more. It is worse for a box that is longer than the depth of focus and beside it.
+    /// receives more. Of rods along the axis, up to a thousand times as long as wide, half have a bound
+    /// within 10 % of the power; it is up to some twenty times the power beside a focus that the rod
+    /// passes. Of an [`AstigmaticLight`](crate::AstigmaticLight) the bound of a rod is that of one slab
+    /// about it, across x or across y, as its rays do not move along the two independently.
     fn power_bound(&self, min: [T; 3], max: [T; 3]) -> T {
         match LocalBox::around(&self.frame(), min, max) {
             Some(target) => {

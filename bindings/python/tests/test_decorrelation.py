@@ -227,14 +227,14 @@ def test_an_astigmatic_wave_has_the_curvature_tensor_of_its_axes() -> None:
     np.testing.assert_allclose(wave.curvature, expected, atol=1e-14)
     again = dc.Wavefront.from_tensor(direction, expected)
     np.testing.assert_allclose(again.curvature, expected, atol=1e-14)
-    u, v = np.array([1.0, 0.2, 0.5]), np.array([-0.3, 1.0, 0.1])
-    again = dc.Wavefront.from_differentials(direction, [u, v], [-expected @ u, -expected @ v])
+    dp = np.array([[1.0, 0.2, 0.5], [-0.3, 1.0, 0.1]])
+    again = dc.Wavefront.from_differentials(direction, dp, -dp @ expected)
     np.testing.assert_allclose(again.curvature, expected, atol=1e-13)
-    for wrong in ([u], [u, v, v], u, [u[:2], v[:2]]):
+    for wrong in (dp[:1], dp[[0, 1, 1]], dp[0], dp[:, :2]):
         with pytest.raises(ValueError, match=r"dl has the shape .* but must have \[2, 3\]"):
-            dc.Wavefront.from_differentials(direction, [u, v], wrong)
+            dc.Wavefront.from_differentials(direction, dp, wrong)
     with pytest.raises(ValueError, match="^dp must be finite"):
-        dc.Wavefront.from_differentials(direction, [u, u], [u, v])
+        dc.Wavefront.from_differentials(direction, dp[[0, 0]], dp)
 
 
 def test_rigid_motions_are_matrices() -> None:

@@ -80,10 +80,12 @@ def program() -> list[str]:
     return [given] if given else ["cargo", "run", "-q", "--release", "-p", "tem00-cli", "--"]
 
 
-def our_layers(figure: Figure, folder: Path) -> dict[str, NDArray[np.float32]]:
-    """Render a figure by `tem00` and return its layers."""
+def our_layers(figure: Figure, folder: Path, *settings: str) -> dict[str, NDArray[np.float32]]:
+    """Render a figure by `tem00`, with other settings of the scene, and return its layers."""
     command = [*program(), "render", f"scenes/{figure.ours}.toml"]
     command += ["--spp", str(SAMPLES), "--seed", str(SEED), "-o", str(folder)]
+    for setting in settings:
+        command += ["--set", setting]
     if not figure.speckle:
         command.append("--no-speckle")
     if not WHOLE:
@@ -93,9 +95,8 @@ def our_layers(figure: Figure, folder: Path) -> dict[str, NDArray[np.float32]]:
     return read_layers(folder / f"{figure.ours}.exr")
 
 
-def their_pictures(figure: Figure) -> Array:
+def their_pictures(figure: Figure, scene: mi.Scene) -> Array:
     """Render a figure by Mitsuba, several times, and return the red channel of each picture."""
-    scene = mi.load_file(str(figure.theirs), seed=SEED)
     pictures = [mi.render(scene, spp=SAMPLES // ROUNDS, seed=seed) for seed in range(ROUNDS)]
     red = np.array([np.array(picture)[..., 0] for picture in pictures], dtype=np.float64)
     if WHOLE:
@@ -104,11 +105,9 @@ def their_pictures(figure: Figure) -> Array:
     return red[:, y : y + height, x : x + width]
 
 
-def pair(figure: Figure, folder: Path) -> Pair:
-    """Return both pictures of a figure."""
-    layers = our_layers(figure, folder)
+def pair(layers: dict[str, NDArray[np.float32]], theirs: Array) -> Pair:
+    """Return both pictures of a figure, from our layers and from Mitsuba's pictures."""
     ours = layers["laser_0.radiance"]
-    theirs = their_pictures(figure)
     # The variance that `tem00 render` writes is that of independent samples: an upper bound, as its
     # own are spread more evenly.
     variance = layers["laser_0.variance"] + theirs.var(axis=0, ddof=1) / ROUNDS
@@ -148,7 +147,8 @@ def assert_same_light(both: Pair) -> None:
 
 @pytest.mark.parametrize("figure", FIGURES, ids=lambda figure: f"figure_{figure.number}")
 def test_mitsuba_and_tem00_render_the_same_figure(figure: Figure, tmp_path: Path) -> None:
-    both = pair(figure, tmp_path)
+    scene = mi.load_file(str(figure.theirs), seed=SEED)
+    both = pair(our_layers(figure, tmp_path), their_pictures(figure, scene))
     assert_same_light(both)
     assert_within_noise(both, side=1)
     assert_within_noise(both, side=8)

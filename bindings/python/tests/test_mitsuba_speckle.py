@@ -16,7 +16,6 @@ mi.set_variant("llvm_ad_rgb")
 
 import tem00.mitsuba  # noqa: E402
 from tem00 import ParameterError, speckle  # noqa: E402
-from tem00.coherence import ResolutionCell, SpectralLine  # noqa: E402
 from tem00.mitsuba.amplitudes import amplitude_bytes  # noqa: E402
 from tem00.mitsuba.look_up import Part  # noqa: E402
 from tem00.mitsuba.patterns import Pattern, Place, generate  # noqa: E402
@@ -623,20 +622,3 @@ def test_nothing_is_drawn_twice_in_several_passes() -> None:
     # As far apart as two pictures in one pass are: the ratio of two sums of squares of 768 pixels.
     ratio = np.sum((in_parts - whole) ** 2) / np.sum((again - whole) ** 2)
     assert 0.7 < ratio < 1.4
-
-
-def test_pictures_of_wave_numbers_add_to_that_of_a_linewidth() -> None:
-    side = 160
-    slices = {"path": "straight", "half_period": 48, "length": 3}
-    loaded = scene({**DIRECT, **slices}, camera=camera(side, side), plate=PLATE, laser=LASER)
-    parameters = mi.traverse(loaded.integrator())
-    line = SpectralLine(650e-9, 5e-9)
-    cell = ResolutionCell((0.5, 0, math.sqrt(0.75)), (0, 0, 1), (0, 0, 1), 1 / 300, 650e-9)
-    pictures = []
-    for kappa in [0.0, *line.draw((np.arange(32) + 0.5) / 32)]:
-        parameters["u"] = 32 * kappa / cell.tilt_wave_number
-        parameters.update()
-        pictures.append(render(loaded))
-    single, broad = (image.std() / image.mean() for image in (pictures[0], np.mean(pictures[1:], axis=0)))
-    # Some 1000 speckles share their places, and slices leave 1 %.
-    assert broad / single == pytest.approx(cell.contrast(line), rel=0.06)

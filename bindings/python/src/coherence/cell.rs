@@ -107,6 +107,14 @@ impl ResolutionCell {
         Ok(py.detach(|| self.speckle(line).autocovariance(lag)))
     }
 
+    /// Return the cell with a relief without correlation length that has the same contrast in the light of a line.
+    fn dense_equivalent(&self, py: Python<'_>, line: &SpectralLine) -> Self {
+        Self(py.detach(|| {
+            let contrast = |speckle: &PolychromaticSpeckle<'_>| speckle.contrast();
+            self.speckle(line).dense_equivalent(contrast)
+        }))
+    }
+
     /// Return the fractions of the light in its coherent modes, float64 of shape (n,), the largest first.
     fn modes<'py>(&self, py: Python<'py>, line: &SpectralLine) -> PyResult<Array<'py>> {
         let modes = py.detach(|| self.speckle(line).modes());

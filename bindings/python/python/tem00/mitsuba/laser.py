@@ -10,7 +10,14 @@ import mitsuba as mi
 
 from tem00.mitsuba.frame import draw_ray, next_event
 from tem00.mitsuba.placing import frame_of, opaque, place
-from tem00.mitsuba.properties import read, read_color, read_to_world, refuse_unknown, refused
+from tem00.mitsuba.properties import (
+    read,
+    read_color,
+    read_to_world,
+    refuse_unknown,
+    refused,
+    spectral_line,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,6 +40,8 @@ def laser_class(variant: str) -> type[mi.Emitter]:
         ----------
         wavelength : float
             Wavelength, in the scene's unit of length.
+        line : SpectralLine or None
+            Spectrum in that unit; None is light of one wavelength.
         """
 
         def __init__(self, props: mi.Properties) -> None:
@@ -51,6 +60,7 @@ def laser_class(variant: str) -> type[mi.Emitter]:
         def _prepare(self) -> None:
             self.wavelength = self.description.numbers["wavelength"]
             self.law = place(self.description)
+            self.line = spectral_line(self.description)
             self.frame = frame_of(self.to_world)
             dr.make_opaque(self.color, self.numbers)
             _check_color(self.color)

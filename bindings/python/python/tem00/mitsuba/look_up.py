@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil
+from math import ceil, floor
 from typing import TYPE_CHECKING, NamedTuple
 
 import drjit as dr
@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from tem00.speckle import SpeckleStack
+    from tem00.mitsuba.linewidth import LineLight
+    from tem00.speckle import PupilField, SpeckleStack
 
     Weights = tuple[mi.Float, mi.Float, mi.Float, mi.Float]
 
@@ -32,11 +33,16 @@ _LARGEST = 2**_BITS - 1
 
 
 class Part(NamedTuple):
-    """A pattern in the speckle of a surface: its fraction of the light, and its place in a stack, in periods."""
+    """A pattern in the speckle of a surface: its fraction of the light, and its place in a stack, in periods.
+
+    Light that is not of one wavelength has the pupil ``fields`` of its heights, the first that of the stack.
+    """
 
     fraction: float
     stack: SpeckleStack
     offset: tuple[float, float]
+    light: LineLight | None = None
+    fields: tuple[PupilField, ...] = ()
 
 
 def intensity_coefficients(parts: Sequence[Part], u: float) -> NDArray[np.float32]:
@@ -60,11 +66,39 @@ def intensity_coefficients(parts: Sequence[Part], u: float) -> NDArray[np.float3
     x = np.arange(columns) / per_sample
     values: NDArray[np.float32] = np.zeros((rows, columns), dtype=np.float32)
     for part in parts:
+        if part.light is not None:
+            pattern = part.light.pattern(part.fields, pupil_at(part.stack, u))
+            values += part.fraction * _upsampled(pattern, per_sample)
+            continue
         dx, dy = (part.offset - origin) * stack.size
         # Row by row, so that the coordinates take no memory to speak of.
         for row in range(rows):
             values[row] += part.fraction * part.stack.intensity_at(x + dx, row / per_sample + dy, u)
     return _prefiltered(_prefiltered(values, axis=1), axis=0)
+
+
+def pupil_at(stack: SpeckleStack, u: float) -> NDArray[np.float64]:
+    """Return where on its path the pupil of a slice coordinate stands, in diameters."""
+    count = stack.slice_count
+    index, f = floor(u) % count, u - floor(u)
+    here = np.array(stack.offset(index))
+    # From the last slice of a straight path, which closes as the pattern does, the step is that before it.
+    first = index - 1 if index + 1 == count > 2 else index
+    step = np.subtract(stack.offset((first + 1) % count), stack.offset(first))
+    pupil: NDArray[np.float64] = here + f * step
+    return pupil
+
+
+def _upsampled(pattern: NDArray[np.float32], factor: int) -> NDArray[np.float32]:
+    """Return a periodic pattern at ``factor`` nodes per sample, by its Fourier series."""
+    rows, columns = pattern.shape
+    spectrum = np.fft.fft(np.fft.rfft(pattern, axis=1), axis=0)
+    # A pattern has no power at half the sampling rate.
+    wide = np.zeros((rows * factor, spectrum.shape[1]), dtype=spectrum.dtype)
+    half = rows // 2
+    wide[:half], wide[-half:] = spectrum[:half], spectrum[-half:]
+    fine = np.fft.irfft(np.fft.ifft(wide, axis=0), n=columns * factor, axis=1)
+    return (fine * factor**2).astype(np.float32)
 
 
 def intensity_bytes(stack: SpeckleStack) -> int:

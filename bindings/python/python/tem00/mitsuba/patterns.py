@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import drjit as dr
@@ -22,6 +23,7 @@ from tem00.speckle import SlicePath, SpeckleStack, StackNeeds, StackOptions, Sta
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from tem00.mitsuba.linewidth import LineLight
     from tem00.mitsuba.speckle_settings import PatternSettings
     from tem00.mitsuba.surfaces import Surface
     from tem00.speckle import PupilField
@@ -113,17 +115,24 @@ def generate(
     speckle_sizes: list[float],
     image: tuple[int, int],
     surfaces: list[Surface],
+    lights: list[list[LineLight | None]] | None = None,
 ) -> list[list[Pattern]]:
-    """Return the patterns of each laser on the surfaces, by its speckle size in an image of so many pixels."""
+    """Return the patterns of each laser on the surfaces, by its speckle size in an image of so many pixels.
+
+    ``lights`` are those of each laser on each surface, by default of one wavelength.
+    """
     lasers = len(speckle_sizes)
+    lights = lights or [[None] * len(surfaces)] * lasers
     memory = settings.memory_bytes // max(lasers, 1)
     if settings.file is not None:
+        _refuse_lines(lights, "does not go with a stack file, which is of one wavelength")
         stack = _read(settings.file, settings.memory_bytes)
         of_lasers = [_places_in(stack, surfaces, (number, lasers)) for number in range(lasers)]
     else:
         plans = [_plan(settings, size, image, memory) for size in speckle_sizes]
         of_lasers = [
-            _parts(settings, plan, number, memory, surfaces) for number, plan in enumerate(plans)
+            _parts(settings, plan, (number, memory), list(zip(surfaces, of_laser, strict=True)))
+            for number, (plan, of_laser) in enumerate(zip(plans, lights, strict=True))
         ]
     table = _table([parts for laser in of_lasers for parts in laser], settings)
     return [
@@ -133,17 +142,24 @@ def generate(
 
 
 def _parts(
-    settings: PatternSettings, plan: StackPlan, number: int, memory: int, surfaces: list[Surface]
+    settings: PatternSettings,
+    plan: StackPlan,
+    numbers: tuple[int, int],
+    lit: list[tuple[Surface, LineLight | None]],
 ) -> list[list[Part]]:
     """Return the patterns of a laser on each surface, in stacks of their own where the memory holds them.
 
-    With one surface they are those that `tem00 render` has for the laser of this number in a still scene.
+    ``numbers`` are that of the laser and of the bytes it may take, ``lit`` the surfaces with their light. With one
+    surface patterns are those that `tem00 render` has for the laser of this number in a still scene.
     """
+    number, memory = numbers
     seed = settings.seed + (number + 1) * _SEED_STEP
-    counts = _counts(surfaces)
+    surfaces = [surface for surface, _ in lit]
+    counts = _counts([(surface, _stacks_of(surface, light)) for surface, light in lit])
     try:
         path = _path(settings)
         if path.memory_bytes(plan.size) * sum(counts) > memory:
+            _refuse_lines([[light for _, light in lit]], f"needs {sum(counts)} stacks: raise `memory`")
             return _places_in(_stack(settings, plan.field(seed % 2**64), memory), surfaces, (0, 1))
         fields = [
             plan.field((seed + motion * _MOTION_STEP) % 2**64).independent(count)
@@ -151,14 +167,44 @@ def _parts(
         ]
     except ParameterError as error:
         raise _renamed(error) from error
-    stacks = [[_stack(settings, field, memory) for field in of_motion] for of_motion in fields]
+
+    @cache
+    def stack_of(motion: int, index: int) -> SpeckleStack:
+        return _stack(settings, fields[motion][index], memory)
+
     return [
         [
-            Part(fraction, stack, (0.0, 0.0))
-            for fraction, stack in zip(surface.fractions, stacks[surface.motion], strict=False)
+            Part(fraction, stack_of(surface.motion, first), (0.0, 0.0), light, heights)
+            for fraction, first, heights in _fields_of(surface, light, fields[surface.motion])
         ]
-        for surface in surfaces
+        for surface, light in lit
     ]
+
+
+def _stacks_of(surface: Surface, light: LineLight | None) -> int:
+    """Return the number of independent patterns of a surface."""
+    if light is None:
+        return len(surface.fractions)
+    heights = light.heights
+    return len(surface.fractions) * len(light.fractions()) * (1 if heights is None else len(heights))
+
+
+def _fields_of(
+    surface: Surface, light: LineLight | None, fields: Sequence[PupilField]
+) -> list[tuple[float, int, tuple[PupilField, ...]]]:
+    """Return the fraction of each pattern, the number of its first field, and its fields."""
+    modes: Sequence[float] = (1.0,) if light is None else light.fractions()
+    fractions = [own * mode for own in surface.fractions for mode in modes]
+    each = _stacks_of(surface, light) // len(fractions)
+    return [
+        (fraction, each * index, tuple(fields[each * index : each * (index + 1)]))
+        for index, fraction in enumerate(fractions)
+    ]
+
+
+def _refuse_lines(lights: list[list[LineLight | None]], why: str) -> None:
+    if any(light is not None for of_laser in lights for light in of_laser):
+        raise refused("linewidth", why)
 
 
 def _places_in(
@@ -166,7 +212,7 @@ def _places_in(
 ) -> list[list[Part]]:
     """Return the patterns on each surface as places far apart in one stack: a first number, and the step to others."""
     first, step = numbers
-    counts = _counts(surfaces)
+    counts = _counts([(surface, len(surface.fractions)) for surface in surfaces])
     return [
         [
             Part(fraction, stack, _place(first + step * (sum(counts[: surface.motion]) + index)))
@@ -176,11 +222,11 @@ def _places_in(
     ]
 
 
-def _counts(surfaces: list[Surface]) -> list[int]:
-    """Return the number of patterns for each motion."""
-    counts = [1] * (1 + max(surface.motion for surface in surfaces))
-    for surface in surfaces:
-        counts[surface.motion] = max(counts[surface.motion], len(surface.fractions))
+def _counts(surfaces: list[tuple[Surface, int]]) -> list[int]:
+    """Return the number of patterns for each motion, from those of each surface."""
+    counts = [1] * (1 + max(surface.motion for surface, _ in surfaces))
+    for surface, patterns in surfaces:
+        counts[surface.motion] = max(counts[surface.motion], patterns)
     return counts
 
 
@@ -249,6 +295,10 @@ def _table(speckles: list[list[Part]], settings: PatternSettings) -> str:
         "amplitude": sum(amplitude_bytes(part.stack) for parts in speckles for part in parts),
     }
     asked = list(needs) if settings.table == "auto" else [settings.table]
+    if any(part.light for parts in speckles for part in parts):
+        if settings.table == "amplitude":
+            raise refused("table", "amplitudes are of one wavelength: a `linewidth` needs intensities")
+        asked = ["intensity"]
     for kind in asked:
         if needs[kind] <= settings.memory_bytes:
             return _checked(kind, speckles)

@@ -8,11 +8,13 @@ from typing import Any
 import mitsuba as mi
 
 from tem00 import ParameterError
+from tem00.coherence import SpectralLine
 
 SHAPES = ("spot", "line")
 FOCUS_CURVES = ("distance", "plane")
 # Metres per unit of length.
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
+SPECTRA = ("gaussian", "lorentzian", "rectangular", "comb")
 PROFILES = ("gaussian", "gaussian_angle", "gaussian_sin", "uniform", "uniform_angle", "powell")
 
 _COMMON = ("wavelength", "power")
@@ -32,9 +34,11 @@ _OPTIONAL = {
     ),
     "line": ("apex_offset", "edge", "m_squared"),
 }
-_CHOICES = {
-    "spot": {},
-    "line": {"focus_curve": FOCUS_CURVES, "profile": PROFILES},
+_MOST_LINES = 256
+_SPECTRUM = ("linewidth", "lines")
+_CHOICES: dict[str, dict[str, tuple[str, ...]]] = {
+    "spot": {"spectrum": SPECTRA},
+    "line": {"spectrum": SPECTRA, "focus_curve": FOCUS_CURVES, "profile": PROFILES},
 }
 _DEFAULTS = {
     "spot": {"waist_distance": 0.0, "m_squared": 1.0},
@@ -72,7 +76,7 @@ class Description:
 def read(props: mi.Properties) -> Description:
     """Read all properties of the beam; every other name is an error."""
     shape = _choice(props, "shape", SHAPES)
-    known = (*_REQUIRED[shape], *_OPTIONAL[shape])
+    known = (*_REQUIRED[shape], *_OPTIONAL[shape], *_SPECTRUM)
     for name in _REQUIRED[shape]:
         if name not in props:
             raise refused(name, f"required for the shape {shape!r}")
@@ -83,7 +87,29 @@ def read(props: mi.Properties) -> Description:
         raise refused("edge", "belongs to the profile 'powell'")
     if choices.get("profile") == "powell":
         numbers.setdefault("edge", 0.05)
+    if "lines" in numbers and choices["spectrum"] != "comb":
+        raise refused("lines", "belongs to the spectrum 'comb'")
     return Description(shape, numbers, choices, _unit(props, numbers["wavelength"]))
+
+
+def spectral_line(description: Description) -> SpectralLine | None:
+    """Return the spectrum in the unit of the scene; None is light of one wavelength."""
+    numbers = description.numbers
+    wavelength, linewidth = numbers["wavelength"], numbers.get("linewidth", 0.0)
+    spectrum = description.choices["spectrum"]
+    try:
+        if spectrum == "comb":
+            count = numbers.get("lines", 0.0)
+            if count != int(count) or not 1 <= count <= _MOST_LINES:
+                raise refused("lines", f"must be a whole number from 1 to {_MOST_LINES}, got {count:g}")
+            return SpectralLine.comb(wavelength, linewidth, int(count))
+        if linewidth == 0.0:
+            return None
+        make = SpectralLine if spectrum == "gaussian" else getattr(SpectralLine, spectrum)
+        line: SpectralLine = make(wavelength, linewidth)
+    except ParameterError as error:
+        raise refused("linewidth", str(error)) from error
+    return line
 
 
 def _unit(props: mi.Properties, wavelength: float) -> str:
@@ -122,7 +148,7 @@ def refuse_unknown(props: mi.Properties, shape: str) -> None:
     """Refuse properties that nobody asked for."""
     unknown = [name for name in props.unqueried() if name != "sampling_weight"]
     if unknown:
-        own = (*_REQUIRED[shape], *_OPTIONAL[shape], *_CHOICES[shape])
+        own = (*_REQUIRED[shape], *_OPTIONAL[shape], *_SPECTRUM, *_CHOICES[shape])
         known = (*own, "color", "to_world", "unit")
         names = ", ".join(sorted(known))
         raise refused(unknown[0], f"no property of the shape {shape!r}; those are {names}")

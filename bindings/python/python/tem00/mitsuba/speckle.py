@@ -11,6 +11,7 @@ import mitsuba as mi
 
 from tem00.mitsuba.film import Exposure
 from tem00.mitsuba.laser import COHERENT
+from tem00.mitsuba.linewidth import find_lights
 from tem00.mitsuba.patterns import Pattern, Place, generate
 from tem00.mitsuba.speckle_settings import (
     PatternSettings,
@@ -25,6 +26,7 @@ from tem00.mitsuba.transport import PathTracer
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from tem00.mitsuba.linewidth import LineLight
     from tem00.mitsuba.surfaces import Surface
     from tem00.mitsuba.transport import Factor
 
@@ -118,7 +120,8 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
             """Return the factor on light from an emitter, for camera samples on the film."""
             lasers = [e for e in scene.emitters() if e.flags() & COHERENT]
             alone = len(scene.emitters()) == 1
-            patterns = self._patterns_for(lasers, sensor)
+            lights = find_lights(scene, sensor, lasers, self.surfaces)
+            patterns = self._patterns_for(lasers, sensor, lights)
 
             def at(film: mi.Point2f) -> Factor:
                 def factor(
@@ -137,15 +140,20 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
             return at
 
         def _patterns_for(
-            self, lasers: list[mi.Emitter], sensor: mi.Sensor
+            self,
+            lasers: list[mi.Emitter],
+            sensor: mi.Sensor,
+            lights: list[list[LineLight | None]],
         ) -> list[list[Pattern]]:
             """Return the patterns of each laser on the surfaces, from the last image where nothing has changed."""
             width, height = (int(side) for side in sensor.film().size())
             given = self.settings.speckle_size
             sizes = [given or speckle_size(laser, sensor) for laser in lasers]
-            needs = (sizes, width, height)
+            needs = (sizes, width, height, lights)
             if self._made_for != needs:
-                self._patterns = generate(self.settings, sizes, (width, height), self.surfaces)
+                self._patterns = generate(
+                    self.settings, sizes, (width, height), self.surfaces, lights
+                )
                 self._made_for = needs
             for number, surface in enumerate(self.surfaces):
                 place = self._place(surface)

@@ -97,7 +97,7 @@ def refuse_unknown(props: mi.Properties) -> None:
     if unknown:
         names = (
             "max_depth, rr_depth, hide_emitters, speckle, "
-            "u, shift_x, shift_y, patterns, polarisation (also of one shape, as `id:u`)"
+            "u, shift_x, shift_y, patterns, polarisation, rms_height, correlation_length (also of one shape, as `id:u`)"
         )
         known = ", ".join([names, *(field.name for field in fields(PatternSettings))])
         raise refused(unknown[0], f"no property of this integrator; those are {known}")

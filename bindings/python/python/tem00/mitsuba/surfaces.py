@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 MOTION = ("u", "shift_x", "shift_y")
 _MIXTURE = ("patterns", "polarisation")
+_RELIEF = ("rms_height", "correlation_length")
 _MOST_PATTERNS = 1024
 
 
@@ -25,11 +26,13 @@ class Surface:
 
     ``prefix`` begins the names of its properties: ``"gear:"`` of the shape with the id ``gear``, nothing of all
     others. ``fractions`` are those of the light in each of its patterns. Surfaces of one ``motion`` share patterns.
+    ``relief`` is the rms height finer than a resolution cell, and its correlation length, in the unit of the scene.
     """
 
     prefix: str
     fractions: tuple[float, ...]
     motion: int
+    relief: tuple[float, float] = (0.0, 0.0)
 
 
 def read_surfaces(props: mi.Properties) -> tuple[list[Surface], dict[str, mi.Float]]:
@@ -41,7 +44,8 @@ def read_surfaces(props: mi.Properties) -> tuple[list[Surface], dict[str, mi.Flo
     for prefix in _prefixes(props):
         own = bool(prefix) and any(prefix + name in places for name in MOTION)
         motions += own
-        surfaces.append(Surface(prefix, _fractions(props, prefix), motions if own else 0))
+        motion = motions if own else 0
+        surfaces.append(Surface(prefix, _fractions(props, prefix), motion, _relief(props, prefix)))
     return surfaces, places
 
 
@@ -71,7 +75,7 @@ def surface_finder(
 
 def _prefixes(props: mi.Properties) -> list[str]:
     """Return how the names of properties begin, in the order of the scene."""
-    known = {*MOTION, *_MIXTURE}
+    known = {*MOTION, *_MIXTURE, *_RELIEF}
     names = [name.rpartition(":") for name in props.keys()]
     return list(dict.fromkeys(["", *(id + ":" for id, colon, name in names if colon and name in known)]))
 
@@ -85,3 +89,16 @@ def _fractions(props: mi.Properties, prefix: str) -> tuple[float, ...]:
         if not 0.0 <= polarisation <= 1.0:
             raise refused(f"{start}polarisation", f"must be from 0 to 1, got {polarisation:g}")
     return tuple(incoherent_fractions(patterns, polarisation, [1.0]).tolist())
+
+
+def _relief(props: mi.Properties, prefix: str) -> tuple[float, float]:
+    """Return the rms height and its correlation length; what a shape does not say is that of all others."""
+    lengths = []
+    for name in _RELIEF:
+        length = 0.0
+        for start in dict.fromkeys(("", prefix)):
+            length = number(props, start + name, length)
+            if length < 0.0:
+                raise refused(start + name, f"must not be negative, got {length:g}")
+        lengths.append(length)
+    return lengths[0], lengths[1]

@@ -12,6 +12,10 @@ if [ -z "$CHROMIUM" ]; then
     CHROMIUM="$(command -v "$package")"
 fi
 export CHROMIUM
+# The software adapter that comes with it, which the loader of Vulkan does not find by itself everywhere.
+for folder in "$(dirname "$(readlink -f "$CHROMIUM")")" /usr/lib/chromium; do
+    if [ -e "$folder/vk_swiftshader_icd.json" ]; then export VK_DRIVER_FILES="$folder/vk_swiftshader_icd.json"; fi
+done
 mkdir -p target/browser
 [ -d target/browser/node_modules/three ] ||
     npm install --prefix target/browser --no-save --no-audit --no-fund --silent puppeteer-core@25.16.0 three@0.187.0

@@ -22,7 +22,7 @@ async function render({ model, el }) {
   try {
     page = await Page.open(canvas);
   } catch (error) {
-    return answer(`WebGPU finds no graphics adapter: ${error.message ?? error}`);
+    return answer(`this draws with WebGPU, but ${error.message ?? error}`);
   }
   const draw = async () => {
     try {

@@ -16,14 +16,18 @@ pub(crate) fn refusal(status: Status) -> (Status, String) {
     (status, last_parameter())
 }
 
-/// The refusal of a number.
-pub(crate) fn argument(name: &str) -> (Status, String) {
-    (Status::InvalidArgument, name.to_owned())
+/// Checks that a call has just refused the number of this name.
+#[track_caller]
+pub(crate) fn number_is_refused(name: &str, status: Status) {
+    let expected = (Status::InvalidArgument, name.to_owned());
+    assert_eq!(refusal(status), expected, "the number {name}");
 }
 
-/// The refusal of a pointer.
-pub(crate) fn pointer(name: &str) -> (Status, String) {
-    (Status::InvalidPointer, name.to_owned())
+/// Checks that a call has just refused the pointer of this name.
+#[track_caller]
+pub(crate) fn pointer_is_refused(name: &str, status: Status) {
+    let expected = (Status::InvalidPointer, name.to_owned());
+    assert_eq!(refusal(status), expected, "the pointer {name}");
 }
 
 /// A change that makes what was good wrong, and the name of what is wrong then.
@@ -38,6 +42,7 @@ pub(crate) fn each_is_refused<D: Copy + Debug, const N: usize>(
     for (name, change) in changes {
         let mut wrong = good;
         change(&mut wrong);
-        assert_eq!(refusal(call(&wrong)), argument(name), "{wrong:?}");
+        let expected = (Status::InvalidArgument, name.to_owned());
+        assert_eq!(refusal(call(&wrong)), expected, "{wrong:?}");
     }
 }

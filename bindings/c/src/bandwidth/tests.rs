@@ -13,7 +13,7 @@ use crate::{
     Interpolation, SlicePath, Stack, StackDescription,
     status::Status,
     tem00_stack_amplitude, tem00_stack_create, tem00_stack_destroy,
-    testing::{argument, each_is_refused, last_parameter, pointer, refusal},
+    testing::{each_is_refused, last_parameter, number_is_refused, pointer_is_refused},
 };
 
 /// Head-on under 30°.
@@ -361,29 +361,24 @@ fn senseless_numbers_are_refused_by_name() {
         peak_count: 1,
         ..DESCRIPTION
     };
-    assert_eq!(refusal(create(&null).0), pointer("peaks"));
+    pointer_is_refused("peaks", create(&null).0);
     let owned = made(&DESCRIPTION);
     // SAFETY: the handle is valid, and null is allowed.
     unsafe {
         let mut wave = NO_WAVE;
         for uniform in [-0.1, 1.0, f64::NAN] {
             let status = tem00_bandwidth_draw(owned.0, uniform, &raw mut wave);
-            assert_eq!(refusal(status), argument("uniform"), "{uniform}");
+            number_is_refused("uniform", status);
         }
         let status = tem00_bandwidth_line_noise(owned.0, -1.0, &raw mut wave.pupil_shift);
-        assert_eq!(refusal(status), argument("row_height"));
+        number_is_refused("row_height", status);
         let bad = [f64::INFINITY, 0.0];
         let status = tem00_bandwidth_covariance(owned.0, bad.as_ptr(), &raw mut wave.pupil_shift);
-        assert_eq!(refusal(status), argument("displacement"));
+        number_is_refused("displacement", status);
         assert!(wave.pupil_shift.is_nan(), "nothing is written");
-        assert_eq!(
-            refusal(tem00_bandwidth_describe(owned.0, ptr::null_mut())),
-            pointer("info")
-        );
-        assert_eq!(
-            refusal(tem00_bandwidth_draw(ptr::null(), 0.5, &raw mut wave)),
-            pointer("bandwidth")
-        );
+        pointer_is_refused("info", tem00_bandwidth_describe(owned.0, ptr::null_mut()));
+        let bandwidth = tem00_bandwidth_draw(ptr::null(), 0.5, &raw mut wave);
+        pointer_is_refused("bandwidth", bandwidth);
         tem00_bandwidth_destroy(ptr::null_mut());
     }
 }

@@ -15,7 +15,7 @@ use tem00_beam::{
 use super::*;
 use crate::{
     status::Status,
-    testing::{argument, each_is_refused, last_parameter, pointer, refusal},
+    testing::{each_is_refused, last_parameter, number_is_refused, pointer_is_refused},
 };
 
 const ANGLES: [f64; 4] = [-0.4, -0.2, 0.3, 0.5];

@@ -11,7 +11,7 @@ use core::ptr;
 use super::*;
 use crate::{
     status::Status,
-    testing::{argument, each_is_refused, last_parameter, pointer, refusal},
+    testing::{each_is_refused, last_parameter, number_is_refused, pointer_is_refused, refusal},
 };
 
 const DESCRIPTION: StackDescription = StackDescription {

@@ -172,14 +172,12 @@ fn fields_are_refused_by_the_name_of_what_is_wrong() {
         let mut bad = good.clone();
         bad[column][COUNT - 1] = f64::NAN;
         let points = points(&bad, FieldLight::Collimated);
-        let status = refused(&setup(), &points);
-        assert_eq!(refusal(status), argument(name), "column {column}");
+        number_is_refused(name, refused(&setup(), &points));
     }
     let mut bad = good.clone();
     bad[14][0] = f64::INFINITY;
     let points = points(&bad, FieldLight::Curvature);
-    let status = refused(&setup(), &points);
-    assert_eq!(refusal(status), argument("curvature"), "infinite");
+    number_is_refused("curvature", refused(&setup(), &points));
 }
 
 /// A camera of extreme numbers.
@@ -222,7 +220,7 @@ fn no_field_is_nan_and_cameras_out_of_scale_are_refused() {
         };
         let case = format!("{wavelength:e} m, {pixel_pitch:e} m");
         if refused {
-            assert_eq!(refusal(status), argument("imaging"), "{case}");
+            number_is_refused("imaging", status);
             assert_eq!(out, room(), "{case}: nothing is written");
         } else {
             assert_eq!(status, Status::Ok, "{case}");
@@ -252,8 +250,7 @@ fn results_in_one_place_are_refused() {
             results,
         )
     };
-    let expected = pointer("pattern_coordinate");
-    assert_eq!(refusal(status), expected, "two results in one column");
+    pointer_is_refused("pattern_coordinate", status);
 }
 
 fn coordinate(setup: &FieldSetup, position: [f64; 3]) -> (Status, [f64; 2]) {
@@ -293,13 +290,12 @@ fn a_point_out_of_sight_has_no_coordinate() {
     let behind = EYE.map(|x| 2.0 * x);
     for position in [behind, [f64::NAN; 3]] {
         let (status, out) = coordinate(&setup(), position);
-        assert_eq!(refusal(status), argument("position"), "{position:?}");
+        number_is_refused("position", status);
         assert_eq!(out, [7.0; 2], "nothing is written");
     }
     let flat = FieldSetup {
         pattern_speckle_size: 0.0,
         ..setup()
     };
-    let refused = refusal(coordinate(&flat, [0.0; 3]).0);
-    assert_eq!(refused, argument("pattern_speckle_size"), "0");
+    number_is_refused("pattern_speckle_size", coordinate(&flat, [0.0; 3]).0);
 }

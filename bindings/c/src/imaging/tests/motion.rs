@@ -99,8 +99,7 @@ fn surface_points_and_motions_are_refused_by_the_name_of_what_is_wrong() {
         ],
         |wrong| refused(&point(), wrong, 0),
     );
-    let orientation = refused(&point(), &MOTION, 2);
-    assert_eq!(refusal(orientation), argument("orientation"), "2");
+    number_is_refused("orientation", refused(&point(), &MOTION, 2));
 }
 
 #[test]
@@ -119,11 +118,7 @@ fn pattern_coordinates_are_those_of_the_library() {
         let out = [0.0; 2].as_mut_ptr();
         tem00_imaging_pattern_coordinate(imaging.0, pixel.as_ptr(), moved.as_ptr(), 0.0, out)
     };
-    assert_eq!(
-        refusal(status),
-        argument("pattern_speckle_size"),
-        "of speckle of no size"
-    );
+    number_is_refused("pattern_speckle_size", status);
 }
 
 fn curvature(direction: [f64; 3], [dp, dl]: [[f64; 6]; 2]) -> (Status, [f64; 6]) {

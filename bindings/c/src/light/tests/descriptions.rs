@@ -97,8 +97,7 @@ fn a_line_refuses_each_number_that_is_wrong() {
         angles: ptr::null(),
         ..tabulated()
     };
-    let expected = pointer("angles");
-    assert_eq!(refusal(create(&without_table)), expected, "no angles");
+    pointer_is_refused("angles", create(&without_table));
     let short = LineDescription {
         knot_count: 1,
         ..tabulated()

@@ -74,88 +74,39 @@ fn look_ups_are_refused_by_the_name_of_what_is_wrong() {
     let out = result.as_mut_ptr();
     let (good, bad, negative) = ([1.0, 2.0], [1.0, nan], [1.0, -2.0]);
     let (good, bad, negative) = (good.as_ptr(), bad.as_ptr(), negative.as_ptr());
+    let (zero, nan_f32, mut single) = ([0.0], [f32::NAN], [7.0_f32]);
+    let (zero, nan_f32, single) = (zero.as_ptr(), nan_f32.as_ptr(), single.as_mut_ptr());
     // SAFETY: the handle and the pointers are valid.
-    let refusals = unsafe {
-        [
-            (
-                "x",
-                refusal(tem00_stack_intensity(handle, nan, 0.0, 0.0, out)),
-            ),
-            (
-                "y",
-                refusal(tem00_stack_intensity(handle, 0.0, nan, 0.0, out)),
-            ),
-            (
-                "u",
-                refusal(tem00_stack_intensity(handle, 0.0, 0.0, nan, out)),
-            ),
-            (
-                "u",
-                refusal(tem00_stack_intensity_batch(handle, good, good, bad, 2, out)),
-            ),
-            (
-                "y",
-                refusal(tem00_stack_intensity_batch_f32(
-                    handle,
-                    [0.0].as_ptr(),
-                    [f32::NAN].as_ptr(),
-                    [0.0].as_ptr(),
-                    1,
-                    [0.0].as_mut_ptr(),
-                )),
-            ),
-            (
-                "size",
-                refusal(tem00_stack_average_batch_f32(
-                    handle,
-                    [0.0].as_ptr(),
-                    [0.0].as_ptr(),
-                    negative,
-                    [0.0].as_ptr(),
-                    1,
-                    [0.0].as_mut_ptr(),
-                )),
-            ),
-            (
-                "centre",
-                refusal(tem00_stack_average(handle, bad, good, 0.0, out)),
-            ),
-            (
-                "size",
-                refusal(tem00_stack_average(handle, good, negative, 0.0, out)),
-            ),
-            (
-                "u",
-                refusal(tem00_stack_average(handle, good, good, nan, out)),
-            ),
-            (
-                "correlation",
-                refusal(tem00_stack_coordinate_of(handle, nan, out)),
-            ),
-            (
-                "distance",
-                refusal(tem00_stack_correlation_at(handle, nan, out)),
-            ),
-            (
-                "u",
-                refusal(tem00_stack_correlation_between(handle, nan, 0.0, out)),
-            ),
-            (
-                "v",
-                refusal(tem00_stack_correlation_between(handle, 0.0, nan, out)),
-            ),
-            (
-                "slice",
-                refusal(tem00_stack_coefficients(handle, 12, &mut ptr::null())),
-            ),
-            (
-                "slice",
-                refusal(tem00_stack_offset(handle, 12, [0.0; 2].as_mut_ptr())),
-            ),
-        ]
-    };
-    for (name, refused) in refusals {
-        assert_eq!(refused, argument(name), "for {name}");
+    unsafe {
+        number_is_refused("x", tem00_stack_intensity(handle, nan, 0.0, 0.0, out));
+        number_is_refused("y", tem00_stack_intensity(handle, 0.0, nan, 0.0, out));
+        number_is_refused("u", tem00_stack_intensity(handle, 0.0, 0.0, nan, out));
+        number_is_refused(
+            "u",
+            tem00_stack_intensity_batch(handle, good, good, bad, 2, out),
+        );
+        let y = tem00_stack_intensity_batch_f32(handle, zero, nan_f32, zero, 1, single);
+        number_is_refused("y", y);
+        let size = tem00_stack_average_batch_f32(handle, zero, zero, negative, zero, 1, single);
+        number_is_refused("size", size);
+        number_is_refused("centre", tem00_stack_average(handle, bad, good, 0.0, out));
+        number_is_refused(
+            "size",
+            tem00_stack_average(handle, good, negative, 0.0, out),
+        );
+        number_is_refused("u", tem00_stack_average(handle, good, good, nan, out));
+        number_is_refused("correlation", tem00_stack_coordinate_of(handle, nan, out));
+        number_is_refused("distance", tem00_stack_correlation_at(handle, nan, out));
+        number_is_refused("u", tem00_stack_correlation_between(handle, nan, 0.0, out));
+        number_is_refused("v", tem00_stack_correlation_between(handle, 0.0, nan, out));
+        number_is_refused(
+            "slice",
+            tem00_stack_coefficients(handle, 12, &mut ptr::null()),
+        );
+        number_is_refused(
+            "slice",
+            tem00_stack_offset(handle, 12, [0.0; 2].as_mut_ptr()),
+        );
     }
     assert_eq!(result, [7.0; 2], "nothing is written");
 }
@@ -169,59 +120,28 @@ fn null_is_refused_for_every_pointer() {
     let pair = [1.0; 2];
     let (pair, null) = (pair.as_ptr(), ptr::null());
     // SAFETY: null is refused, the other pointers are valid.
-    let refusals = unsafe {
-        [
-            (
-                "stack",
-                refusal(tem00_stack_intensity(ptr::null(), 0.0, 0.0, 0.0, out)),
-            ),
-            (
-                "intensity",
-                refusal(tem00_stack_intensity(
-                    handle,
-                    0.0,
-                    0.0,
-                    0.0,
-                    ptr::null_mut(),
-                )),
-            ),
-            (
-                "x",
-                refusal(tem00_stack_intensity_batch(
-                    handle, null, pair, pair, 2, out,
-                )),
-            ),
-            (
-                "centre",
-                refusal(tem00_stack_average(handle, null, pair, 0.0, out)),
-            ),
-            (
-                "size",
-                refusal(tem00_stack_average(handle, pair, null, 0.0, out)),
-            ),
-            (
-                "info",
-                refusal(tem00_stack_describe(handle, ptr::null_mut())),
-            ),
-            (
-                "offset",
-                refusal(tem00_stack_offset(handle, 0, ptr::null_mut())),
-            ),
-            (
-                "description",
-                refusal(tem00_stack_create(ptr::null(), &mut ptr::null_mut())),
-            ),
-            (
-                "stack",
-                refusal(tem00_stack_create(&DESCRIPTION, ptr::null_mut())),
-            ),
-            (
-                "needs",
-                refusal(tem00_stack_plan(ptr::null(), ptr::null_mut())),
-            ),
-        ]
-    };
-    for (name, refused) in refusals {
-        assert_eq!(refused, pointer(name), "null for {name}");
+    unsafe {
+        pointer_is_refused(
+            "stack",
+            tem00_stack_intensity(ptr::null(), 0.0, 0.0, 0.0, out),
+        );
+        pointer_is_refused(
+            "intensity",
+            tem00_stack_intensity(handle, 0.0, 0.0, 0.0, ptr::null_mut()),
+        );
+        pointer_is_refused(
+            "x",
+            tem00_stack_intensity_batch(handle, null, pair, pair, 2, out),
+        );
+        pointer_is_refused("centre", tem00_stack_average(handle, null, pair, 0.0, out));
+        pointer_is_refused("size", tem00_stack_average(handle, pair, null, 0.0, out));
+        pointer_is_refused("info", tem00_stack_describe(handle, ptr::null_mut()));
+        pointer_is_refused("offset", tem00_stack_offset(handle, 0, ptr::null_mut()));
+        pointer_is_refused(
+            "description",
+            tem00_stack_create(ptr::null(), &mut ptr::null_mut()),
+        );
+        pointer_is_refused("stack", tem00_stack_create(&DESCRIPTION, ptr::null_mut()));
+        pointer_is_refused("needs", tem00_stack_plan(ptr::null(), ptr::null_mut()));
     }
 }

@@ -19,7 +19,7 @@ from tem00 import ParameterError, speckle  # noqa: E402
 from tem00.mitsuba.amplitudes import amplitude_bytes  # noqa: E402
 from tem00.mitsuba.look_up import Part  # noqa: E402
 from tem00.mitsuba.patterns import Pattern, Place, generate  # noqa: E402
-from tem00.mitsuba.speckle import speckle_size  # noqa: E402
+from tem00.mitsuba.speckle import lasers_of, speckle_size  # noqa: E402
 from tem00.mitsuba.speckle_settings import PatternSettings  # noqa: E402
 from tem00.mitsuba.surfaces import Surface  # noqa: E402
 
@@ -365,19 +365,32 @@ def test_other_lights_have_no_speckle() -> None:
         assert np.array_equal(smooth, picture({**DIRECT, "max_depth": depth}, **parts))
 
 
-def test_two_lasers_have_patterns_of_their_own_seeds() -> None:
-    names = ("first", "second")
-    off = {**LASER, "power": 1e-12}
-    for number in range(2):
-        # Nothing to see of the other but the choice between the two.
-        pair: Node = {name: LASER if index == number else off for index, name in enumerate(names)}
-        ratio = picture(DIRECT, 1024, plate=PLATE, **pair) / picture(
-            plain(), 1024, plate=PLATE, **pair
-        )
-        means = [pixel_means(stack_of(other)) for other in range(2)]
-        correlations = [np.corrcoef(ratio.ravel(), mean.ravel())[0, 1] for mean in means]
-        assert correlations[number] > 0.999
-        assert correlations[1 - number] < 0.5
+# Their names sort in another order.
+NAMES = ("violet", "amber", "green")
+
+
+@pytest.mark.parametrize("number", range(len(NAMES)))
+def test_lasers_have_the_seeds_of_their_places_in_a_scene(number: int) -> None:
+    # Nothing to see of the others but the choice between them.
+    lasers: Node = {name: {**LASER, "power": 1e-12} for name in NAMES}
+    lasers[NAMES[number]] = LASER
+    speckled, smooth = (picture(node, 1024, plate=PLATE, **lasers) for node in (DIRECT, plain()))
+    ratio = (speckled / smooth).ravel()
+    correlations = [
+        np.corrcoef(ratio, pixel_means(stack_of(other)).ravel())[0, 1] for other in range(len(NAMES))
+    ]
+    assert correlations.pop(number) > 0.999
+    assert max(correlations) < 0.5
+
+
+def test_the_lasers_of_an_xml_scene_stand_in_its_order() -> None:
+    numbers = "".join(
+        f'<float name="{name}" value="{LASER[name]}"/>' for name in ("wavelength", "power", "waist_radius")
+    )
+    lasers = [f'<emitter type="laser" id="{name}">{numbers}</emitter>' for name in NAMES]
+    light = '<shape type="sphere"><emitter type="area"/></shape>'
+    loaded = mi.load_string(f'<scene version="3.0.0">{light.join(lasers)}</scene>')
+    assert tuple(laser.id() for laser in lasers_of(loaded)) == NAMES
 
 
 def lit_box() -> Node:

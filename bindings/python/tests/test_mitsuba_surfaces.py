@@ -32,7 +32,7 @@ from test_mitsuba_speckle import (
 
 from tem00 import ParameterError, speckle
 from tem00.mitsuba.patterns import Pattern, Place, generate
-from tem00.mitsuba.surfaces import Surface
+from tem00.mitsuba.surfaces import Surface, read_surfaces
 
 MOVING = {**DIRECT, "path": "straight", "half_period": 32}
 WIDE = (128, 96)
@@ -155,6 +155,16 @@ def test_a_shape_with_a_motion_has_a_pattern_of_its_own_and_the_others_keep_thei
     own_field = field.with_seed((field.seed + 0xD1B54A32D192ED03) % 2**64)
     means = pixel_means(speckle.SpeckleStack.generate(own_field, speckle.SlicePath.still()))
     assert np.corrcoef(right_own.ravel(), np.split(means, 2, axis=1)[1].ravel())[0, 1] > 0.999
+
+
+def test_shapes_are_numbered_in_the_order_in_which_the_integrator_names_them() -> None:
+    props = mi.Properties("speckle")
+    # That which only has patterns moves with all others.
+    for name in ("zinc:u", "brass:patterns", "gear:shift_x", "gear:u"):
+        props[name] = 1
+    surfaces, _ = read_surfaces(props)
+    numbers = {surface.prefix: surface.motion for surface in surfaces}
+    assert numbers == {"": 0, "zinc:": 1, "brass:": 0, "gear:": 2}
 
 
 def test_a_shift_of_a_shape_moves_its_pattern_alone() -> None:

@@ -118,7 +118,7 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
 
         def _factor(self, scene: mi.Scene, sensor: mi.Sensor) -> Callable[[mi.Point2f], Factor]:
             """Return the factor on light from an emitter, for camera samples on the film."""
-            lasers = [e for e in scene.emitters() if e.flags() & COHERENT]
+            lasers = lasers_of(scene)
             alone = len(scene.emitters()) == 1
             lights = find_lights(scene, sensor, lasers, self.surfaces)
             patterns = self._patterns_for(lasers, sensor, lights)
@@ -167,6 +167,11 @@ def speckle_class(variant: str) -> type[mi.Integrator]:
             return "Speckle[\n  " + ",\n  ".join(lines) + "\n]"
 
     return Speckle
+
+
+def lasers_of(scene: mi.Scene) -> list[mi.Emitter]:
+    """Return the lasers of a scene, in the order in which its dictionary or XML describes them."""
+    return [emitter for emitter in scene.emitters() if emitter.flags() & COHERENT]
 
 
 def speckle_size(laser: mi.Emitter, sensor: mi.Sensor) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from typing import Any
 
 import drjit as dr
@@ -239,11 +241,23 @@ def test_patterns_that_do_not_fit_the_memory_are_places_in_one() -> None:
     assert values.std() / values.mean() == pytest.approx(1.0 / np.sqrt(3.0), rel=3.3 * 0.018)
 
 
-def test_too_many_look_ups_of_amplitudes_are_refused() -> None:
-    generate(settings(table="amplitude"), [SPECKLE_SIZE], (32, 24), [mixture(8, 0.0)])
-    with pytest.raises(ParameterError, match="17 patterns.*raise `memory`") as caught:
-        generate(settings(table="amplitude"), [SPECKLE_SIZE], (32, 24), [mixture(17, 1.0)])
-    assert caught.value.parameter == "patterns"
+def test_too_many_look_ups_of_amplitudes_are_refused_with_the_memory_of_intensities() -> None:
+    eight, nine = mixture(8, 0.0), replace(mixture(9, 0.0), prefix="gear:")
+
+    def made(surfaces: list[Surface], **properties: Any) -> Any:
+        return generate(settings(**properties), [SPECKLE_SIZE], (32, 24), surfaces)
+
+    made([eight], table="amplitude")
+    with pytest.raises(ParameterError) as caught:
+        made([eight, nine], table="amplitude")
+    assert caught.value.parameter == "gear:patterns"
+    said = re.search(r"at most, got 18.*`memory` of (\d+)", str(caught.value))
+    assert said
+    memory = int(said[1])
+    ((pattern, _),) = made([eight, nine], memory=memory)
+    assert pattern.table == "intensity"
+    with pytest.raises(ParameterError, match="gear:patterns"):
+        made([eight, nine], memory=memory - 1)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from math import ceil
 from typing import TYPE_CHECKING, NamedTuple
 
 import drjit as dr
@@ -134,7 +135,10 @@ def generate(
             _parts(settings, plan, (number, memory), list(zip(surfaces, of_laser, strict=True)))
             for number, (plan, of_laser) in enumerate(zip(plans, lights, strict=True))
         ]
-    table = _table([parts for laser in of_lasers for parts in laser], settings)
+    speckles = [parts for laser in of_lasers for parts in laser]
+    table = _table(speckles, settings)
+    if table == "amplitude":
+        _check_look_ups(speckles, surfaces * lasers)
     return [
         [Pattern(parts, size, table) for parts in laser]
         for laser, size in zip(of_lasers, speckle_sizes, strict=True)
@@ -158,8 +162,13 @@ def _parts(
     counts = _counts([(surface, _stacks_of(surface, light)) for surface, light in lit])
     try:
         path = _path(settings)
-        if path.memory_bytes(plan.size) * sum(counts) > memory:
-            _refuse_lines([[light for _, light in lit]], f"needs {sum(counts)} stacks: raise `memory`")
+        needed = path.memory_bytes(plan.size) * sum(counts)
+        if needed > memory:
+            _refuse_lines(
+                [[light for _, light in lit]],
+                f"needs {sum(counts)} stacks of speckle, {needed / 2**20:.4g} MiB, and `memory` allows "
+                f"{memory / 2**20:.4g} MiB for each laser",
+            )
             return _places_in(_stack(settings, plan.field(seed % 2**64), memory), surfaces, (0, 1))
         fields = [
             plan.field((seed + motion * _MOTION_STEP) % 2**64).independent(count)
@@ -290,18 +299,15 @@ def _place(number: int) -> tuple[float, float]:
 
 def _table(speckles: list[list[Part]], settings: PatternSettings) -> str:
     """Return what tables are made of: what is asked for, or the first that fits the memory."""
-    needs = {
-        "intensity": sum(intensity_bytes(parts[0].stack) for parts in speckles),
-        "amplitude": sum(amplitude_bytes(part.stack) for parts in speckles for part in parts),
-    }
+    needs = {"intensity": _intensity_bytes(speckles), "amplitude": _amplitude_bytes(speckles)}
     asked = list(needs) if settings.table == "auto" else [settings.table]
     if any(part.light for parts in speckles for part in parts):
         if settings.table == "amplitude":
-            raise refused("table", "amplitudes are of one wavelength: a `linewidth` needs intensities")
+            raise refused("table", "must be auto or intensity for a `linewidth`, got 'amplitude', which is of one wavelength")
         asked = ["intensity"]
     for kind in asked:
         if needs[kind] <= settings.memory_bytes:
-            return _checked(kind, speckles)
+            return kind
     raise refused(
         "speckle_size",
         f"so small that the image holds too many speckles: their table of {kind} would take "
@@ -309,12 +315,22 @@ def _table(speckles: list[list[Part]], settings: PatternSettings) -> str:
     )
 
 
-def _checked(kind: str, speckles: list[list[Part]]) -> str:
-    most = max((len(parts) for parts in speckles), default=0)
-    if kind == "amplitude" and most > _MOST_LOOK_UPS:
-        raise refused(
-            "patterns",
-            f"{most} patterns, two to each where light is depolarised, would each be looked up as amplitudes, and "
-            f"{_MOST_LOOK_UPS} may be: raise `memory` for a table of intensities, which looks up their sum",
-        )
-    return kind
+def _check_look_ups(speckles: list[list[Part]], surfaces: list[Surface]) -> None:
+    """Refuse more look-ups of amplitudes than a kernel holds, on the surface of each speckle."""
+    for parts, surface in zip(speckles, surfaces, strict=True):
+        if len(parts) > _MOST_LOOK_UPS:
+            memory = ceil(_intensity_bytes(speckles) / 2**20)
+            raise refused(
+                f"{surface.prefix}patterns",
+                f"must need {_MOST_LOOK_UPS} look-ups of amplitudes at most, got {len(parts)}, two to a pattern where "
+                "`polarisation` is below 1: each is written out in the kernel. A table of intensities looks up their "
+                f'sum: it needs a `memory` of {memory}, and `table` "intensity" or "auto"',
+            )
+
+
+def _intensity_bytes(speckles: list[list[Part]]) -> int:
+    return sum(intensity_bytes(parts[0].stack) for parts in speckles)
+
+
+def _amplitude_bytes(speckles: list[list[Part]]) -> int:
+    return sum(amplitude_bytes(part.stack) for parts in speckles for part in parts)

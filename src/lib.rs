@@ -33,6 +33,10 @@
     doc = "| [`triangulation`] | `tem00-triangulation` | sensor, line detectors, calibration, profiles and their uncertainty (feature `triangulation`) |"
 )]
 #![cfg_attr(
+    feature = "triangulation",
+    doc = "| [`uncertainty`] | `tem00-uncertainty` | uncertainty after the GUM: first order, trials, parts of the variance (feature `triangulation`) |"
+)]
+#![cfg_attr(
     feature = "scan",
     doc = "| [`scan`] | `tem00-scan` | a part as a triangulation sensor sees it: rendered frames, scans, height maps (feature `scan`) |"
 )]
@@ -55,6 +59,8 @@ pub use tem00_statistics as statistics;
 pub use tem00_tracer as tracer;
 #[cfg(feature = "triangulation")]
 pub use tem00_triangulation as triangulation;
+#[cfg(feature = "triangulation")]
+pub use tem00_uncertainty as uncertainty;
 #[cfg(feature = "wave")]
 pub use tem00_wave as wave;
 

@@ -101,6 +101,18 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         &["base64", "exr", "glam", "gltf", "ply-rs-bw", "toml"],
     ),
     (
+        "tem00-uncertainty",
+        &["tem00-numerics"],
+        &[
+            "libm",
+            "rand_chacha",
+            "rand_core",
+            "rand_distr",
+            "rayon",
+            "statrs",
+        ],
+    ),
+    (
         "tem00-triangulation",
         &[
             "tem00-beam",
@@ -111,6 +123,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-numerics",
             "tem00-speckle",
             "tem00-statistics",
+            "tem00-uncertainty",
         ],
         &[
             "glam",
@@ -121,7 +134,6 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "rand_distr",
             "rayon",
             "serde",
-            "statrs",
         ],
     ),
     (
@@ -225,6 +237,7 @@ const PHYSICS: &[&str] = &[
     "tem00-decorrelation",
     "tem00-coherence",
     "tem00-wave",
+    "tem00-uncertainty",
 ];
 
 /// The folder of a crate: bindings are named after what they serve.

@@ -1,16 +1,15 @@
 //! Height uncertainty of a set-up, and the source that dominates it.
 
-mod coverage;
 mod first_order;
 mod monte_carlo;
 mod term;
 
 use tem00_statistics::imaged_line_centroid_deviation;
+use tem00_uncertainty::{CoverageProbability, coverage_factor, effective_degrees_of_freedom};
 
 use crate::{Dorsch, ImagedLine, LightLevel, Setup, TriangulationError};
 
 pub use self::{
-    coverage::{coverage_factor, effective_degrees_of_freedom},
     monte_carlo::{MonteCarloEstimate, Simulation, SimulationOptions, simulate},
     term::{BudgetTerm, ErrorDistribution, Evaluation, UncertaintySource},
 };
@@ -140,12 +139,13 @@ impl Budget {
     /// Returns the effective degrees of freedom of the combined standard uncertainty.
     pub fn degrees_of_freedom(&self) -> f64 {
         let pair = |term: &BudgetTerm| (term.contribution(), term.degrees_of_freedom);
-        effective_degrees_of_freedom(&self.terms.iter().map(pair).collect::<Vec<_>>())
+        let pairs: Vec<_> = self.terms.iter().map(pair).collect();
+        effective_degrees_of_freedom(self.combined(), &pairs)
     }
 
     /// Returns the factor for a coverage of 95 %.
     pub fn coverage_factor(&self) -> f64 {
-        coverage_factor(self.degrees_of_freedom())
+        coverage_factor(self.degrees_of_freedom(), CoverageProbability::P95)
     }
 
     /// Returns the expanded uncertainty of the height for a coverage of 95 %, in metres.

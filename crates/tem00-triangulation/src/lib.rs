@@ -24,7 +24,7 @@ mod setup;
 
 pub use budget::{
     Budget, BudgetTerm, ErrorDistribution, Evaluation, MonteCarloEstimate, Simulation,
-    SimulationOptions, UncertaintySource, coverage_factor, effective_degrees_of_freedom, simulate,
+    SimulationOptions, UncertaintySource, simulate,
 };
 pub use calibration::{
     BoardView, Calibration, CalibrationCovariance, CalibrationQuality, CameraModel, Checkerboard,

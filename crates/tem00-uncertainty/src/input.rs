@@ -1,0 +1,236 @@
+use core::f64::consts::TAU;
+
+use rand_core::Rng;
+use rand_distr::{Distribution as _, StandardNormal, StudentT};
+
+use crate::{Distribution, UncertaintyError};
+
+/// What is known of one input quantity.
+///
+/// `u` is the standard uncertainty, the square root of the variance; of a scaled and shifted t it is the
+/// scale, s/√n of n observations, and the standard deviation is [larger](Self::standard_deviation).
+///
+/// # References
+///
+/// - JCGM 100:2008, *Guide to the expression of uncertainty in measurement*, § 4.2 and 4.3.
+/// - JCGM 101:2008, § 6.4.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Input {
+    estimate: f64,
+    uncertainty: f64,
+    distribution: Distribution,
+    degrees_of_freedom: f64,
+}
+
+impl Input {
+    /// Creates an input from its best estimate and its standard uncertainty, which is exactly known: its
+    /// degrees of freedom are infinite.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if `estimate` is not finite or `uncertainty` is not positive and finite.
+    pub fn new(
+        estimate: f64,
+        uncertainty: f64,
+        distribution: Distribution,
+    ) -> Result<Self, UncertaintyError> {
+        if !estimate.is_finite() {
+            return Err(UncertaintyError::refused("estimate", estimate, "finite"));
+        }
+        if !(uncertainty > 0.0 && uncertainty.is_finite()) {
+            let allowed = "positive and finite";
+            return Err(UncertaintyError::refused(
+                "uncertainty",
+                uncertainty,
+                allowed,
+            ));
+        }
+        Ok(Self {
+            estimate,
+            uncertainty,
+            distribution,
+            degrees_of_freedom: f64::INFINITY,
+        })
+    }
+
+    /// Returns the same input with the degrees of freedom of its standard uncertainty.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if they are below 1, or at most 2 for a t distribution, which has no variance then.
+    pub fn with_degrees_of_freedom(
+        self,
+        degrees_of_freedom: f64,
+    ) -> Result<Self, UncertaintyError> {
+        let (is_allowed, allowed) = match self.distribution {
+            Distribution::StudentT => (
+                degrees_of_freedom > 2.0,
+                "above 2 for a t distribution, which has no variance otherwise",
+            ),
+            _ => (degrees_of_freedom >= 1.0, "at least 1"),
+        };
+        if !is_allowed {
+            let parameter = "degrees_of_freedom";
+            return Err(UncertaintyError::refused(
+                parameter,
+                degrees_of_freedom,
+                allowed,
+            ));
+        }
+        Ok(Self {
+            degrees_of_freedom,
+            ..self
+        })
+    }
+
+    /// Returns the best estimate.
+    pub const fn estimate(&self) -> f64 {
+        self.estimate
+    }
+
+    /// Returns the standard uncertainty.
+    pub const fn uncertainty(&self) -> f64 {
+        self.uncertainty
+    }
+
+    /// Returns the distribution. A t distribution with infinite degrees of freedom is normal.
+    pub const fn distribution(&self) -> Distribution {
+        self.distribution
+    }
+
+    /// Returns the degrees of freedom of the standard uncertainty, possibly infinite.
+    pub const fn degrees_of_freedom(&self) -> f64 {
+        self.degrees_of_freedom
+    }
+
+    /// Returns the standard deviation of the distribution: `u`, or `u √(ν / (ν − 2))` of a t distribution
+    /// with ν degrees of freedom.
+    pub fn standard_deviation(&self) -> f64 {
+        let freedom = self.degrees_of_freedom;
+        match self.distribution {
+            Distribution::StudentT if freedom.is_finite() => {
+                self.uncertainty * (freedom / (freedom - 2.0)).sqrt()
+            }
+            _ => self.uncertainty,
+        }
+    }
+
+    /// Returns whether the input is normal with an exactly known standard uncertainty.
+    pub(crate) fn is_exactly_normal(&self) -> bool {
+        let is_normal = matches!(
+            self.distribution,
+            Distribution::Normal | Distribution::StudentT
+        );
+        is_normal && self.degrees_of_freedom.is_infinite()
+    }
+
+    /// Draws a deviation from the estimate, in standard uncertainties.
+    pub(crate) fn draw(&self, random: &mut impl Rng) -> f64 {
+        let mut within = || uniform(random);
+        let deviation = match self.distribution {
+            Distribution::Rectangular => 2.0 * within() - 1.0,
+            Distribution::Triangular => within() + within() - 1.0,
+            Distribution::Arcsine => libm::sin(TAU * within()),
+            Distribution::StudentT if self.degrees_of_freedom.is_finite() => {
+                return StudentT::new(self.degrees_of_freedom)
+                    .map_or(f64::NAN, |student| student.sample(random));
+            }
+            Distribution::Normal | Distribution::StudentT => return StandardNormal.sample(random),
+        };
+        self.distribution.half_width().unwrap_or(1.0) * deviation
+    }
+}
+
+/// Draws a number from 0 to 1, both excluded.
+fn uniform(random: &mut impl Rng) -> f64 {
+    const STEP: f64 = 1.0 / (1_u64 << 52) as f64;
+    ((random.next_u64() >> 12) as f64 + 0.5) * STEP
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::PI;
+
+    use statrs::distribution::{ContinuousCDF, StudentsT};
+    use tem00_statistics::kolmogorov_smirnov;
+
+    use super::*;
+    use crate::trials::stream;
+
+    /// The distribution function of deviations in standard uncertainties.
+    fn cumulative(input: &Input, x: f64) -> f64 {
+        let inside = |half: f64| (x / half).clamp(-1.0, 1.0);
+        match input.distribution() {
+            Distribution::Normal => 0.5 * libm::erfc(-x / 2.0_f64.sqrt()),
+            Distribution::Rectangular => 0.5 * (1.0 + inside(3.0_f64.sqrt())),
+            Distribution::Triangular => {
+                let t = inside(6.0_f64.sqrt());
+                0.5 + t - 0.5 * t * t.abs()
+            }
+            Distribution::Arcsine => 0.5 + libm::asin(inside(2.0_f64.sqrt())) / PI,
+            Distribution::StudentT => {
+                let freedom = input.degrees_of_freedom();
+                StudentsT::new(0.0, 1.0, freedom).unwrap().cdf(x)
+            }
+        }
+    }
+
+    #[test]
+    fn draws_have_the_distribution_of_the_input() {
+        let student = Input::new(0.0, 1.0, Distribution::StudentT).unwrap();
+        let mut inputs = vec![student.with_degrees_of_freedom(3.5).unwrap()];
+        let others = &Distribution::ALL[..4];
+        inputs.extend(
+            others
+                .iter()
+                .map(|&shape| Input::new(0.0, 1.0, shape).unwrap()),
+        );
+        for input in inputs {
+            let mut random = stream(1, 0);
+            let samples: Vec<f64> = (0..20_000).map(|_| input.draw(&mut random)).collect();
+            let found = kolmogorov_smirnov(&samples, |x| cumulative(&input, x)).unwrap();
+            // Five tests of one seed.
+            assert!(found.p_value > 1e-3, "{}: {found:?}", input.distribution());
+        }
+    }
+
+    #[test]
+    fn a_t_distribution_is_wider_than_its_scale_says() {
+        let input = Input::new(0.0, 2.0, Distribution::StudentT).unwrap();
+        let found = input
+            .with_degrees_of_freedom(18.0)
+            .unwrap()
+            .standard_deviation();
+        assert!(
+            (found - 2.0 * (18.0_f64 / 16.0).sqrt()).abs() < 1e-15,
+            "{found}"
+        );
+        assert!(
+            (input.standard_deviation() - 2.0).abs() < 1e-15,
+            "a normal one"
+        );
+    }
+
+    #[test]
+    fn impossible_inputs_are_refused() {
+        let new = |estimate, uncertainty| Input::new(estimate, uncertainty, Distribution::Normal);
+        let parameter = |result: Result<Input, UncertaintyError>| result.unwrap_err().parameter();
+        for estimate in [f64::NAN, f64::INFINITY] {
+            assert_eq!(parameter(new(estimate, 1.0)), "estimate", "{estimate}");
+        }
+        for uncertainty in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(
+                parameter(new(0.0, uncertainty)),
+                "uncertainty",
+                "{uncertainty}"
+            );
+        }
+        let student = Input::new(0.0, 1.0, Distribution::StudentT).unwrap();
+        let normal = new(0.0, 1.0).unwrap();
+        for (input, freedom) in [(normal, 0.5), (normal, f64::NAN), (student, 2.0)] {
+            let found = input.with_degrees_of_freedom(freedom);
+            assert_eq!(parameter(found), "degrees_of_freedom", "{freedom}");
+        }
+        assert!(normal.with_degrees_of_freedom(1.0).is_ok(), "one degree");
+    }
+}

@@ -1,0 +1,316 @@
+use rand_core::Rng;
+
+use crate::{Input, UncertaintyError};
+
+/// Correlation coefficient of two inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correlation {
+    /// The positions of both inputs.
+    pub between: [usize; 2],
+    /// The correlation coefficient, from −1 to 1.
+    pub coefficient: f64,
+}
+
+/// The inputs of a model and their correlations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inputs {
+    inputs: Vec<Input>,
+    joint: Option<Joint>,
+}
+
+/// The correlation matrix and its lower factor, row by row.
+#[derive(Clone, Debug, PartialEq)]
+struct Joint {
+    coefficients: Vec<Vec<f64>>,
+    factor: Vec<Vec<f64>>,
+}
+
+impl Inputs {
+    /// Creates independent inputs.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if there are none.
+    pub fn independent(inputs: Vec<Input>) -> Result<Self, UncertaintyError> {
+        if inputs.is_empty() {
+            return Err(UncertaintyError::NoInputs);
+        }
+        Ok(Self {
+            inputs,
+            joint: None,
+        })
+    }
+
+    /// Creates inputs of which some are correlated, and jointly normal.
+    ///
+    /// The joint distribution is that of JCGM 101, § 6.4.8. It has none for other shapes, and
+    /// the formula of Welch and Satterthwaite holds for independent inputs: correlated inputs must be normal
+    /// with infinite degrees of freedom. Correlations of ±1 are possible.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if there are no inputs, if a correlation is not between two different ones, is given
+    /// twice or is not from −1 to 1, if a correlated input is not normal, or if no quantities have all of
+    /// the correlations: if their matrix is not positive semi-definite, to 10⁻¹².
+    pub fn correlated(
+        inputs: Vec<Input>,
+        correlations: &[Correlation],
+    ) -> Result<Self, UncertaintyError> {
+        let independent = Self::independent(inputs)?;
+        if correlations.is_empty() {
+            return Ok(independent);
+        }
+        let coefficients = independent.matrix(correlations)?;
+        let factor = lower_factor(&coefficients)?;
+        Ok(Self {
+            joint: Some(Joint {
+                coefficients,
+                factor,
+            }),
+            ..independent
+        })
+    }
+
+    /// Returns the inputs.
+    pub fn as_slice(&self) -> &[Input] {
+        &self.inputs
+    }
+
+    /// Returns the best estimates.
+    pub fn estimates(&self) -> Vec<f64> {
+        self.inputs.iter().map(Input::estimate).collect()
+    }
+
+    /// Returns whether no correlations were given.
+    pub const fn are_independent(&self) -> bool {
+        self.joint.is_none()
+    }
+
+    /// Returns the correlation coefficient of two inputs.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless both positions are below the number of inputs.
+    pub fn correlation(&self, first: usize, second: usize) -> f64 {
+        match &self.joint {
+            Some(joint) => joint.coefficients[first][second],
+            None => f64::from(first == second),
+        }
+    }
+
+    /// Draws the values of all inputs.
+    pub(crate) fn draw(&self, random: &mut impl Rng, values: &mut [f64]) {
+        for (value, input) in values.iter_mut().zip(&self.inputs) {
+            *value = input.draw(random);
+        }
+        if let Some(joint) = &self.joint {
+            // From the last on, whose row needs all deviations before it.
+            for (i, row) in joint.factor.iter().enumerate().rev() {
+                values[i] = row.iter().zip(&*values).map(|(l, z)| l * z).sum();
+            }
+        }
+        for (value, input) in values.iter_mut().zip(&self.inputs) {
+            *value = input.estimate() + input.uncertainty() * *value;
+        }
+    }
+
+    fn matrix(&self, correlations: &[Correlation]) -> Result<Vec<Vec<f64>>, UncertaintyError> {
+        let count = self.inputs.len();
+        let row = |i| (0..count).map(|j| f64::from(i == j)).collect();
+        let mut matrix: Vec<Vec<f64>> = (0..count).map(row).collect();
+        for (index, correlation) in correlations.iter().enumerate() {
+            self.check(correlation)?;
+            let [i, j] = correlation.between;
+            let is_same = |other: &Correlation| {
+                other.between == correlation.between || other.between == [j, i]
+            };
+            if correlations[..index].iter().any(is_same) {
+                return Err(UncertaintyError::Repeated { between: [i, j] });
+            }
+            matrix[i][j] = correlation.coefficient;
+            matrix[j][i] = correlation.coefficient;
+        }
+        Ok(matrix)
+    }
+
+    fn check(&self, correlation: &Correlation) -> Result<(), UncertaintyError> {
+        let Correlation {
+            between,
+            coefficient,
+        } = *correlation;
+        let inputs = self.inputs.len();
+        if between[0] == between[1] || between.iter().any(|&input| input >= inputs) {
+            return Err(UncertaintyError::Between { between, inputs });
+        }
+        if !(-1.0..=1.0).contains(&coefficient) {
+            let (name, allowed) = ("coefficient", "from −1 to 1");
+            return Err(UncertaintyError::refused(name, coefficient, allowed));
+        }
+        match between
+            .into_iter()
+            .find(|&i| !self.inputs[i].is_exactly_normal())
+        {
+            Some(input) => Err(UncertaintyError::NotNormal { input }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Returns the rows of the lower triangular L with L Lᵀ = R, of a correlation matrix that may be singular.
+///
+/// A pivot below 10⁻¹² is rounding, and its column is left out: of a semi-definite matrix the elements of that
+/// column are at most 10⁻⁶.
+fn lower_factor(matrix: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, UncertaintyError> {
+    const ROUNDING: f64 = 1e-12;
+    let mut factor: Vec<Vec<f64>> = Vec::new();
+    for (i, row) in matrix.iter().enumerate() {
+        let mut lower: Vec<f64> = Vec::new();
+        for j in 0..i {
+            let rest = row[j] - dot(&lower, &factor[j]);
+            let pivot = factor[j][j];
+            if pivot == 0.0 && rest.abs() > ROUNDING.sqrt() {
+                return Err(UncertaintyError::Contradiction { input: i });
+            }
+            lower.push(if pivot > 0.0 { rest / pivot } else { 0.0 });
+        }
+        let pivot = row[i] - dot(&lower, &lower);
+        if pivot < -ROUNDING {
+            return Err(UncertaintyError::Contradiction { input: i });
+        }
+        lower.push(if pivot > ROUNDING { pivot.sqrt() } else { 0.0 });
+        factor.push(lower);
+    }
+    Ok(factor)
+}
+
+/// The sum of products as far as both have elements.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Distribution, trials::stream};
+
+    fn normals(count: usize) -> Vec<Input> {
+        vec![Input::new(0.0, 1.0, Distribution::Normal).unwrap(); count]
+    }
+
+    fn correlations(coefficients: &[([usize; 2], f64)]) -> Vec<Correlation> {
+        let correlation = |&(between, coefficient)| Correlation {
+            between,
+            coefficient,
+        };
+        coefficients.iter().map(correlation).collect()
+    }
+
+    /// Columns of draws.
+    fn draws(inputs: &Inputs, trials: usize) -> Vec<Vec<f64>> {
+        let mut random = stream(3, 0);
+        let mut values = inputs.estimates();
+        let mut columns = vec![Vec::new(); values.len()];
+        for _ in 0..trials {
+            inputs.draw(&mut random, &mut values);
+            for (column, &value) in columns.iter_mut().zip(&values) {
+                column.push(value);
+            }
+        }
+        columns
+    }
+
+    #[test]
+    fn draws_have_the_correlations_that_were_given() {
+        const TRIALS: usize = 40_000;
+        let mut all = normals(4);
+        all.push(Input::new(0.0, 1.0, Distribution::Rectangular).unwrap());
+        let given = correlations(&[([0, 2], 0.9), ([3, 0], -0.4), ([3, 2], -0.6)]);
+        let inputs = Inputs::correlated(all, &given).unwrap();
+        let columns = draws(&inputs, TRIALS);
+        for i in 0..5 {
+            for j in 0..i {
+                let expected = inputs.correlation(i, j);
+                let products = columns[i].iter().zip(&columns[j]).map(|(a, b)| a * b);
+                let found = products.sum::<f64>() / TRIALS as f64;
+                // The standard error for normals; 3.9 of it have the probability 1e-4.
+                let error = ((1.0 + expected * expected) / TRIALS as f64).sqrt();
+                assert!(
+                    (found - expected).abs() < 3.9 * error,
+                    "{i}, {j}: {found}, {expected}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn full_correlation_makes_draws_equal() {
+        let given = correlations(&[([0, 1], 1.0), ([0, 2], -1.0), ([1, 2], -1.0)]);
+        let inputs = Inputs::correlated(normals(3), &given).unwrap();
+        let columns = draws(&inputs, 10);
+        let [first, second, third] = &columns[..] else {
+            panic!("three columns");
+        };
+        for ((a, b), c) in first.iter().zip(second).zip(third) {
+            assert!(
+                (a - b).abs() < 1e-15 && (a + c).abs() < 1e-15,
+                "{a}, {b}, {c}"
+            );
+        }
+    }
+
+    #[test]
+    fn correlations_that_no_quantities_have_are_refused() {
+        for contradiction in [
+            // The determinant is 1 + 2 r₁₂ r₁₃ r₂₃ − r₁₂² − r₁₃² − r₂₃² = −0.358 and −4.
+            [0.9, 0.9, 0.4],
+            [1.0, 1.0, -1.0],
+        ] {
+            let [first, second, third] = contradiction;
+            let given = correlations(&[([0, 1], first), ([0, 2], second), ([1, 2], third)]);
+            let found = Inputs::correlated(normals(3), &given);
+            assert_eq!(
+                found,
+                Err(UncertaintyError::Contradiction { input: 2 }),
+                "{given:?}"
+            );
+        }
+        // Singular, and possible: x₂ = (x₀ + x₁)/√2.
+        let half = 0.5_f64.sqrt();
+        let given = correlations(&[([0, 2], half), ([1, 2], half)]);
+        assert!(
+            Inputs::correlated(normals(3), &given).is_ok(),
+            "a singular matrix"
+        );
+    }
+
+    #[test]
+    fn correlations_of_what_is_not_two_normal_inputs_are_refused() {
+        let mut all = normals(2);
+        all.push(Input::new(0.0, 1.0, Distribution::Rectangular).unwrap());
+        all.push(all[0].with_degrees_of_freedom(9.0).unwrap());
+        let refused = |given: &[([usize; 2], f64)]| {
+            Inputs::correlated(all.clone(), &correlations(given)).unwrap_err()
+        };
+        let between = |between| UncertaintyError::Between { between, inputs: 4 };
+        assert_eq!(refused(&[([1, 1], 0.5)]), between([1, 1]), "with itself");
+        assert_eq!(refused(&[([0, 4], 0.5)]), between([0, 4]), "with nothing");
+        let repeated = UncertaintyError::Repeated { between: [1, 0] };
+        assert_eq!(refused(&[([0, 1], 0.5), ([1, 0], 0.5)]), repeated, "twice");
+        for input in [2, 3] {
+            let expected = UncertaintyError::NotNormal { input };
+            assert_eq!(refused(&[([0, input], 0.5)]), expected, "{input}");
+        }
+        for coefficient in [-1.001, 1.001, f64::NAN] {
+            assert_eq!(
+                refused(&[([0, 1], coefficient)]).parameter(),
+                "coefficient",
+                "{coefficient}"
+            );
+        }
+        assert_eq!(
+            Inputs::independent(Vec::new()),
+            Err(UncertaintyError::NoInputs),
+            "none"
+        );
+    }
+}

@@ -1,0 +1,140 @@
+use super::*;
+use crate::{Distribution, Input};
+
+fn normal() -> Inputs {
+    Inputs::independent(vec![Input::new(3.0, 2.0, Distribution::Normal).unwrap()]).unwrap()
+}
+
+fn propagated(options: PropagationOptions) -> Result<Propagation, UncertaintyError> {
+    Propagation::new(&normal(), |x| x[0], options)
+}
+
+#[test]
+fn tolerances_are_half_a_unit_of_the_last_digit() {
+    // The examples of JCGM 101, § 7.9.2, and numbers that gain a digit when they are rounded.
+    for (number, digits, expected) in [
+        (0.000_35, 2, 0.000_005),
+        (0.000_35, 1, 0.000_05),
+        (2.0, 2, 0.05),
+        (0.0996, 2, 0.005),
+        (9.6, 1, 5.0),
+        (35.0, 3, 0.05),
+        (0.0, 2, 0.0),
+    ] {
+        let found = numerical_tolerance(number, digits);
+        assert!(
+            (found - expected).abs() <= 1e-15 * expected,
+            "{number}: {found}"
+        );
+    }
+}
+
+#[test]
+fn trials_end_once_their_results_are_stable() {
+    let found = propagated(PropagationOptions::default()).unwrap();
+    assert!(found.is_stable(), "{}", found.largest_error());
+    let interval = found.interval();
+    // The tolerance bounds two standard deviations; of three results and a seed none leaves 3.3.
+    for (value, expected) in [
+        (found.estimate(), 3.0),
+        (found.uncertainty(), 2.0),
+        (interval.low, 3.0 - 2.0 * 1.959_964),
+        (interval.high, 3.0 + 2.0 * 1.959_964),
+    ] {
+        let error = (value - expected).abs();
+        assert!(error < 1.65 * found.tolerance(), "{value}, {expected}");
+    }
+    // The ends of a normal quantity's interval scatter by 2.67 u/√M: 2 · 2.67 · 2/√M = 0.05.
+    let trials = found.values().len();
+    assert!((20_000..80_000).contains(&trials), "{trials} trials");
+    assert!(found.values().is_sorted(), "values are sorted");
+}
+
+#[test]
+fn trials_that_are_not_enough_say_so() {
+    let options = PropagationOptions {
+        digits: 4,
+        max_trials: 59_999,
+        ..PropagationOptions::default()
+    };
+    let found = propagated(options).unwrap();
+    assert!(!found.is_stable(), "{}", found.largest_error());
+    assert_eq!(found.values().len(), 50_000, "whole blocks only");
+}
+
+#[test]
+fn a_model_without_uncertainty_is_stable_at_once() {
+    let found = Propagation::new(&normal(), |_| 7.0, PropagationOptions::default()).unwrap();
+    assert!(
+        found.is_stable() && found.uncertainty() == 0.0,
+        "{}",
+        found.uncertainty()
+    );
+    assert_eq!(found.values().len(), 20_000, "two blocks");
+}
+
+#[test]
+fn options_outside_their_range_are_refused() {
+    let options = PropagationOptions::default();
+    let refused = |options| propagated(options).unwrap_err().parameter();
+    for digits in [0, 5] {
+        let options = PropagationOptions { digits, ..options };
+        assert_eq!(refused(options), "digits", "{digits}");
+    }
+    for tolerance_divisor in [0.9, f64::NAN, f64::INFINITY] {
+        let options = PropagationOptions {
+            tolerance_divisor,
+            ..options
+        };
+        assert_eq!(refused(options), "tolerance_divisor", "{tolerance_divisor}");
+    }
+    let rare = PropagationOptions {
+        probability: CoverageProbability::new(0.9999).unwrap(),
+        max_trials: 1_999_999,
+        ..options
+    };
+    assert_eq!(refused(rare), "max_trials", "a block has 10⁶ trials");
+    let few = PropagationOptions {
+        max_trials: 19_999,
+        ..options
+    };
+    assert_eq!(refused(few), "max_trials", "a block has 10⁴ trials");
+}
+
+#[test]
+fn values_without_a_finite_variance_are_refused() {
+    let options = PropagationOptions::default();
+    let found = Propagation::new(&normal(), |x| 1e200 * x[0], options);
+    assert_eq!(
+        found.map_err(|error| error.parameter()),
+        Err("model"),
+        "overflow"
+    );
+    let found = Propagation::new(&normal(), |x| x[0].sqrt(), options);
+    let is_refused = matches!(found, Err(UncertaintyError::NotFinite { .. }));
+    assert!(is_refused, "the root of negative values");
+}
+
+#[cfg(feature = "parallel")]
+#[test]
+fn the_same_seed_gives_the_same_bits_for_any_number_of_threads() {
+    let of_threads = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let pool = pool.build().unwrap();
+        pool.install(|| propagated(PropagationOptions::default()))
+            .unwrap()
+    };
+    let single = of_threads(1);
+    for threads in [2, 7] {
+        assert_eq!(of_threads(threads), single, "{threads} threads");
+    }
+    let other = PropagationOptions {
+        seed: 1,
+        ..PropagationOptions::default()
+    };
+    assert_ne!(
+        propagated(other).unwrap().values(),
+        single.values(),
+        "another seed"
+    );
+}

@@ -1,0 +1,63 @@
+//! Values of a model, and streams of random numbers.
+
+use core::ops::Range;
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
+
+use crate::{Inputs, UncertaintyError};
+
+/// Returns the random numbers of a block of trials: a stream of its own.
+pub(crate) fn stream(seed: u64, block: u64) -> ChaCha8Rng {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(block);
+    random
+}
+
+/// Returns the value of a model.
+pub(crate) fn value(
+    model: &impl Fn(&[f64]) -> f64,
+    inputs: &[f64],
+) -> Result<f64, UncertaintyError> {
+    let value = model(inputs);
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(UncertaintyError::NotFinite {
+        value,
+        inputs: inputs.to_vec(),
+    })
+}
+
+/// Returns the values of a model in one block of trials.
+pub(crate) fn block(
+    (inputs, model): (&Inputs, &impl Fn(&[f64]) -> f64),
+    (seed, block): (u64, u64),
+    trials: usize,
+) -> Result<Vec<f64>, UncertaintyError> {
+    let mut random = stream(seed, block);
+    let mut values = inputs.estimates();
+    let mut trial = || {
+        inputs.draw(&mut random, &mut values);
+        value(model, &values)
+    };
+    (0..trials).map(|_| trial()).collect()
+}
+
+/// Returns what `work` makes of each number of a range, in their order.
+pub(crate) fn map<T: Send>(range: Range<u64>, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    #[cfg(feature = "parallel")]
+    let range = range.into_par_iter();
+    range.map(&work).collect()
+}
+
+/// Returns the number of blocks that are worked on at once.
+pub(crate) fn at_once() -> u64 {
+    #[cfg(feature = "parallel")]
+    let threads = rayon::current_num_threads() as u64;
+    #[cfg(not(feature = "parallel"))]
+    let threads = 1;
+    threads
+}

@@ -1,33 +1,58 @@
-// The widget on a model like that of a notebook, made by part.py: JSON on standard input. Usage: python model.py | node check.mjs FOLDER
-import { text } from 'node:stream/consumers';
-import { check, open } from './browser.mjs';
+// Runs part.ipynb in JupyterLab in the same browser. Usage: node check.mjs FOLDER [FOLDER FOR PICTURES]
+import { spawn } from 'node:child_process';
+import { join } from 'node:path';
+import { setTimeout } from 'node:timers/promises';
+import { check } from './browser.mjs';
 
-const [folder] = process.argv.slice(2);
-const state = JSON.parse(await text(process.stdin));
-await check([folder], async (browser, address, expect) => {
-  const page = await open(browser, `${address}empty.html`, [1000, 700], expect);
-  const [first, moved, wrong] = await page.evaluate(async (state) => {
-    const { default: widget } = await import('./part.js');
-    const wasm = await (await fetch('tem00_web_bg.wasm')).arrayBuffer();
-    const values = { ...state, _wasm: new DataView(wasm) };
-    const listeners = [];
-    let saved;
-    const model = {
-      get: (name) => values[name],
-      set: (name, value) => { values[name] = value; },
-      save_changes: () => saved?.(),
-      on: (_, listener) => listeners.push(listener),
-    };
-    await widget.render({ model, el: document.body });
-    const change = (changes) => new Promise((done) => {
-      saved = () => done({ measured: values.measured, error: values.error });
-      values.values = { ...values.values, ...changes };
-      listeners.forEach((listener) => listener());
-    });
-    return [{ measured: values.measured, error: values.error }, await change({ tilt: 0.5 }), await change({ tilt: 50 })];
-  }, state);
-  const { contrast, contrast_in_theory } = first.measured;
-  expect(Math.abs(contrast / contrast_in_theory - 1) < 0.03, `contrast ${contrast}, by theory ${contrast_in_theory}`);
-  expect(moved.measured.correlation < 0.95, `half a mrad of tilt leaves γ = ${moved.measured.correlation}`);
-  expect(wrong.error.includes('`tilt` is 50'), `a value beyond its range: ${wrong.error}`);
+const [folder, pictures] = process.argv.slice(2);
+const lab = spawn('jupyter', ['lab', '--no-browser', `--ServerApp.root_dir=${folder}`, '--ip=127.0.0.1', '--port=0',
+  '--IdentityProvider.token=', '--LabApp.expose_app_in_browser=True', ...(process.getuid() ? [] : ['--allow-root'])]);
+process.on('exit', () => lab.kill());
+const address = new Promise((found, failed) => {
+  let said = '';
+  lab.on('exit', () => failed(new Error(said)));
+  lab.stderr.on('data', (text) => {
+    said += text;
+    const [url] = said.match(/http:\/\/127\.0\.0\.1:\d+\/lab/) ?? [];
+    if (url) found(url);
+  });
+});
+
+/** Runs a cell of the notebook, with other code if it is given, and returns what it shows. */
+const run = (page, index, code) => page.evaluate(async (index, code) => {
+  const { shell, commands } = window.jupyterapp;
+  const { content } = shell.currentWidget;
+  const cell = content.widgets[index];
+  if (code) cell.model.sharedModel.setSource(code);
+  content.activeCellIndex = index;
+  await commands.execute('notebook:run-cell');
+  return cell.outputArea.node.querySelector('.jp-OutputArea-output')?.innerText ?? '';
+}, index, code);
+
+/** Runs the last cell until it shows what the widget answers, for half a minute. */
+async function answer(page, expected) {
+  let text = '';
+  for (let tries = 0; tries < 30 && !expected.test(text); tries += 1) {
+    text = await run(page, 2);
+    await setTimeout(1000);
+  }
+  const number = (name) => Number(text.match(new RegExp(`'${name}': ([\\d.]+)`))?.[1]);
+  return { contrast: number('contrast'), inTheory: number('contrast_in_theory'), correlation: number('correlation'), text };
+}
+
+await check([], async (browser, _, expect) => {
+  const page = await browser.newPage();
+  await page.setViewport({ width: 1200, height: 1000 });
+  await page.goto(`${await address}/tree/part.ipynb`);
+  await page.waitForFunction(() => window.jupyterapp?.shell.currentWidget?.sessionContext?.isReady);
+  await run(page, 0);
+  const first = await answer(page, /'correlation': 1/);
+  expect(Math.abs(first.contrast / first.inTheory - 1) < 0.03, `contrast ${first.contrast}, by theory ${first.inTheory}`);
+  await run(page, 1);
+  const moved = await answer(page, /'correlation': 0/);
+  expect(moved.correlation < 0.95, `half a mrad of tilt leaves γ = ${moved.correlation}`);
+  if (pictures) await page.screenshot({ path: join(pictures, 'notebook.png') });
+  await run(page, 1, 'part.set(tilt=50)');
+  const wrong = await answer(page, /`tilt` is 50/);
+  expect(wrong.text.includes('`tilt` is 50'), `a value beyond its range: ${wrong.text}`);
 });

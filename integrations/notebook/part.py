@@ -1,12 +1,6 @@
 """The page in a notebook: a part under a laser as a widget whose settings are set, and whose speckle is read, in Python.
 
-After `web/build.sh` and `pip install anywidget`, in a notebook in this folder:
-
-    from part import Part
-    part = Part(part=0, light=1, line_width=15, elevation=80)
-    part                                  # draws it, by WebGPU
-    part.set(tilt=0.5)                    # in the units of the page
-    part.measured                         # {'contrast': 0.97, 'contrast_in_theory': 0.96, ...}
+After `web/build.sh`, `pip install anywidget jupyterlab` and `jupyter lab integrations/notebook/part.ipynb` it draws by WebGPU.
 """
 
 import pathlib

@@ -109,7 +109,7 @@ def find_lights(
     seen = _Seen(scene, sensor, surfaces)
     for number in broad:
         for index, surface in enumerate(surfaces):
-            cells = seen.cells(lasers[number], (index, surface.relief), radius)
+            cells = seen.cells(lasers[number], index, surface.relief, radius)
             lights[number][index] = _light(lasers[number].line, cells, seen.axes)
     return lights
 
@@ -165,14 +165,13 @@ class _Seen:
         self.axes = np.array([span / np.linalg.norm(span) for span in spans])
 
     def cells(
-        self, laser: Any, surface: tuple[int, tuple[float, float]], radius: float
+        self, laser: Any, surface: int, relief: tuple[float, float], radius: float
     ) -> list[ResolutionCell]:
-        """Return the cells of the points of a surface, of a number and a relief, that a laser lights."""
-        index, relief = surface
+        """Return the cells of the points of a surface, by its number, that a laser lights."""
         event = next_event(laser.law, laser.frame, self._points)
         source = np.array(event.wi).T
         facing = -np.sign(np.sum(self._normals * self._directions, axis=1))[:, None] * self._normals
-        lit = self._hit & (self._surface == index) & (np.array(event.e_perp) > 0.0)
+        lit = self._hit & (self._surface == surface) & (np.array(event.e_perp) > 0.0)
         lit &= np.sum(source * facing, axis=1) > 0.0
         return [
             ResolutionCell(

@@ -128,12 +128,14 @@ def generate(
     if settings.file is not None:
         _refuse_lines(lights, "does not go with a stack file, which is of one wavelength")
         stack = _read(settings.file, settings.memory_bytes)
-        of_lasers = [_places_in(stack, surfaces, (number, lasers)) for number in range(lasers)]
+        of_lasers = [_places_in(stack, surfaces, number, lasers) for number in range(lasers)]
     else:
         plans = [_plan(settings, size, image, memory) for size in speckle_sizes]
+        motions = 1 + max(surface.motion for surface in surfaces)
+        fields = [_fields(settings.seed, plan, number, motions) for number, plan in enumerate(plans)]
         of_lasers = [
-            _parts(settings, plan, (number, memory), list(zip(surfaces, of_laser, strict=True)))
-            for number, (plan, of_laser) in enumerate(zip(plans, lights, strict=True))
+            _parts(settings, of_motions, memory, list(zip(surfaces, of_laser, strict=True)))
+            for of_motions, of_laser in zip(fields, lights, strict=True)
         ]
     speckles = [parts for laser in of_lasers for parts in laser]
     table = _table(speckles, settings)
@@ -145,46 +147,49 @@ def generate(
     ]
 
 
+def _fields(seed: int, plan: StackPlan, laser: int, motions: int) -> list[PupilField]:
+    """Return the fields of the laser of this number for each motion, the first that of `tem00 render` in a still scene."""
+    first = seed + (laser + 1) * _SEED_STEP
+    try:
+        return [plan.field((first + motion * _MOTION_STEP) % 2**64) for motion in range(motions)]
+    except ParameterError as error:
+        raise _renamed(error) from error
+
+
 def _parts(
     settings: PatternSettings,
-    plan: StackPlan,
-    numbers: tuple[int, int],
+    fields: list[PupilField],
+    memory: int,
     lit: list[tuple[Surface, LineLight | None]],
 ) -> list[list[Part]]:
-    """Return the patterns of a laser on each surface, in stacks of their own where the memory holds them.
+    """Return the patterns of a laser on each surface, in stacks of their own where ``memory`` bytes hold them.
 
-    ``numbers`` are that of the laser and of the bytes it may take, ``lit`` the surfaces with their light. With one
-    surface patterns are those that `tem00 render` has for the laser of this number in a still scene.
+    ``fields`` are those of the laser for each motion, ``lit`` the surfaces with their light.
     """
-    number, memory = numbers
-    seed = settings.seed + (number + 1) * _SEED_STEP
     surfaces = [surface for surface, _ in lit]
     counts = _counts([(surface, _stacks_of(surface, light)) for surface, light in lit])
     try:
         path = _path(settings)
-        needed = path.memory_bytes(plan.size) * sum(counts)
+        needed = path.memory_bytes(fields[0].size) * sum(counts)
         if needed > memory:
             _refuse_lines(
                 [[light for _, light in lit]],
                 f"needs {sum(counts)} stacks of speckle, {needed / 2**20:.4g} MiB, and `memory` allows "
                 f"{memory / 2**20:.4g} MiB for each laser",
             )
-            return _places_in(_stack(settings, plan.field(seed % 2**64), memory), surfaces, (0, 1))
-        fields = [
-            plan.field((seed + motion * _MOTION_STEP) % 2**64).independent(count)
-            for motion, count in enumerate(counts)
-        ]
+            return _places_in(_stack(settings, fields[0], memory), surfaces)
+        independent = [field.independent(count) for field, count in zip(fields, counts, strict=True)]
     except ParameterError as error:
         raise _renamed(error) from error
 
     @cache
     def stack_of(motion: int, index: int) -> SpeckleStack:
-        return _stack(settings, fields[motion][index], memory)
+        return _stack(settings, independent[motion][index], memory)
 
     return [
         [
             Part(fraction, stack_of(surface.motion, first), (0.0, 0.0), light, heights)
-            for fraction, first, heights in _fields_of(surface, light, fields[surface.motion])
+            for fraction, first, heights in _fields_of(surface, light, independent[surface.motion])
         ]
         for surface, light in lit
     ]
@@ -217,10 +222,9 @@ def _refuse_lines(lights: list[list[LineLight | None]], why: str) -> None:
 
 
 def _places_in(
-    stack: SpeckleStack, surfaces: list[Surface], numbers: tuple[int, int]
+    stack: SpeckleStack, surfaces: list[Surface], first: int = 0, step: int = 1
 ) -> list[list[Part]]:
     """Return the patterns on each surface as places far apart in one stack: a first number, and the step to others."""
-    first, step = numbers
     counts = _counts([(surface, len(surface.fractions)) for surface in surfaces])
     return [
         [

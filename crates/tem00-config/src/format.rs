@@ -8,6 +8,9 @@ pub struct Format {
     /// The keys that it may have outside of its sections. `"include"` among them lets it name files
     /// that belong to it.
     pub keys: &'static [&'static str],
+    /// The keys of its sections whose values may be uncertain: a value, or a table with the keys of
+    /// [`UNCERTAIN`](crate::UNCERTAIN).
+    pub uncertain: &'static [&'static str],
     /// The advice given when there is no such file.
     pub help: &'static str,
 }

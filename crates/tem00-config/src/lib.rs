@@ -47,5 +47,5 @@ pub use quantity::{
     ANGLE, DIMENSIONS, DURATION, Dimension, LENGTH, MEMORY, NUMBER, POWER, RADIANCE,
 };
 pub use reader::{parse_document, read_document};
-pub use section::{Choice, Section, rejected};
+pub use section::{Choice, Section, UNCERTAIN, rejected};
 pub use value::{Value, nearest};

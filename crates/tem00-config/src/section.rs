@@ -24,10 +24,14 @@ pub struct Section<'a> {
     header: String,
     is_root: bool,
     keys: &'static [&'static str],
+    uncertain: &'static [&'static str],
     table: &'a DeTable<'a>,
     location: Location,
     source: &'a Source,
 }
+
+/// The keys of an uncertain value, `{ value = "30 deg", uncertainty = "0.05 deg" }`.
+pub const UNCERTAIN: &[&str] = &["value", "uncertainty", "distribution", "degrees_of_freedom"];
 
 impl<'a> Section<'a> {
     /// Opens a document itself.
@@ -40,6 +44,7 @@ impl<'a> Section<'a> {
             header: format!("the {}", format.noun),
             is_root: true,
             keys: format.keys,
+            uncertain: format.uncertain,
             table: document,
             location: source.location(0..0),
             source,
@@ -47,11 +52,34 @@ impl<'a> Section<'a> {
         .checked(None)
     }
 
-    /// Returns the value of a key, if the file gives one.
+    /// Returns the value of a key, if the file gives one; of an uncertain value the best estimate.
     pub fn optional(&self, key: &'static str) -> Option<Value<'a>> {
         debug_assert!(self.keys.contains(&key), "{key} is not declared");
-        let item = self.table.get(key)?;
+        let item = self.best_estimate(key)?;
         Some(Value::new(key, item, self.source))
+    }
+
+    /// Returns the item of a key, or the `value` in the table of an uncertain one.
+    fn best_estimate(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+        let item = self.table.get(key)?;
+        match item.get_ref() {
+            DeValue::Table(table) if self.uncertain.contains(&key) => {
+                Some(table.get("value").unwrap_or(item))
+            }
+            _ => Some(item),
+        }
+    }
+
+    /// Opens the table of an uncertain value; `None` if the file has no such key, or a bare value.
+    ///
+    /// # Errors
+    ///
+    /// Returns a problem, placed in the file, if the table has a key that is not in [`UNCERTAIN`].
+    pub fn uncertain(&self, key: &'static str) -> Result<Option<Self>, Problem> {
+        match self.table.get(key).map(Spanned::get_ref) {
+            Some(DeValue::Table(_)) => self.table(key, UNCERTAIN),
+            _ => Ok(None),
+        }
     }
 
     /// Returns the value of a key that must be there; `example` shows how it may look.
@@ -91,14 +119,13 @@ impl<'a> Section<'a> {
         key: &'static str,
         keys: &'static [&'static str],
     ) -> Result<Option<Self>, Problem> {
-        let Some(value) = self.optional(key) else {
+        let Some(item) = self.table.get(key) else {
             return Ok(None);
         };
         let header = format!("[{}]", self.path_to(key));
-        match self.table.get(key).map(Spanned::get_ref) {
-            Some(DeValue::Table(table)) => {
-                self.open(header, table, value.location(), keys).map(Some)
-            }
+        let value = Value::new(key, item, self.source);
+        match item.get_ref() {
+            DeValue::Table(table) => self.open(header, table, value.location(), keys).map(Some),
             _ => Err(value.must_be(format_args!("a table: write `{header}` and its keys below"))),
         }
     }
@@ -216,7 +243,7 @@ impl<'a> Section<'a> {
     /// Returns a problem that was found when an object was made of the section, placed at the value
     /// of `key` if the file gives one, and in its unit.
     pub fn problem_with(&self, key: &str, message: impl Display) -> Problem {
-        match self.table.get(key) {
+        match self.best_estimate(key) {
             Some(item) => Value::new(key, item, self.source).problem(message),
             None => self.problem(message),
         }
@@ -233,6 +260,7 @@ impl<'a> Section<'a> {
             header,
             is_root: false,
             keys,
+            uncertain: self.uncertain,
             table,
             location,
             source: self.source,

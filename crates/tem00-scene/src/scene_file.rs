@@ -25,6 +25,7 @@ const SCENE: Format = Format {
         "calibration",
         "scan",
     ],
+    uncertain: &[],
     help: "scenes/spot.toml is one, and docs/scene_file.md tells how to write them",
 };
 

@@ -9,6 +9,7 @@ use tem00_uncertainty::{CoverageProbability, coverage_factor, effective_degrees_
 
 use crate::{Dorsch, ImagedLine, LightLevel, Setup, TriangulationError};
 
+pub(crate) use self::monte_carlo::{Outcome, Simulator, estimate, invalid};
 pub use self::{
     monte_carlo::{MonteCarloEstimate, Simulation, SimulationOptions, simulate},
     term::{BudgetTerm, ErrorDistribution, Evaluation, UncertaintySource},

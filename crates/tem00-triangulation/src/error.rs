@@ -3,6 +3,7 @@ use core::{error, fmt};
 use tem00_camera::CameraError;
 use tem00_coherence::CoherenceError;
 use tem00_speckle::SpeckleError;
+use tem00_uncertainty::UncertaintyError;
 
 /// Reason why a part of a triangulation set-up could not be constructed or evaluated.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +61,8 @@ pub enum TriangulationError {
     Coherence(CoherenceError),
     /// A speckle pattern is not possible.
     Speckle(SpeckleError),
+    /// An uncertainty is not possible.
+    Uncertainty(UncertaintyError),
     /// The caller asked to stop.
     Cancelled,
 }
@@ -73,6 +76,7 @@ impl TriangulationError {
             }
             Self::Camera(source) => source.parameter(),
             Self::Coherence(source) => Some(source.parameter()),
+            Self::Uncertainty(source) => Some(source.parameter()),
             _ => None,
         }
     }
@@ -107,6 +111,7 @@ impl fmt::Display for TriangulationError {
             Self::Camera(source) => source.fmt(f),
             Self::Coherence(source) => source.fmt(f),
             Self::Speckle(source) => source.fmt(f),
+            Self::Uncertainty(source) => source.fmt(f),
             Self::Cancelled => write!(f, "the work was cancelled"),
         }
     }
@@ -129,5 +134,11 @@ impl From<CoherenceError> for TriangulationError {
 impl From<SpeckleError> for TriangulationError {
     fn from(source: SpeckleError) -> Self {
         Self::Speckle(source)
+    }
+}
+
+impl From<UncertaintyError> for TriangulationError {
+    fn from(source: UncertaintyError) -> Self {
+        Self::Uncertainty(source)
     }
 }

@@ -3,9 +3,11 @@
 mod calibration;
 mod design;
 mod detector;
+mod keys;
 mod sensor;
 mod setup;
 mod setup_text;
+mod uncertainty;
 
 pub use self::calibration::{
     BoardSettings, CalibrationMethod, CalibrationSettings, read_calibration,
@@ -15,6 +17,7 @@ pub use self::detector::read_detector;
 pub use self::sensor::read_sensor;
 pub use self::setup::{parse_setup, parse_setup_with, read_setup, read_setup_with};
 pub(crate) use self::setup_text::{light_keys, relief_keys};
+pub use self::uncertainty::read_uncertainty;
 
 #[cfg(test)]
 mod tests;

@@ -18,6 +18,7 @@ mod error;
 mod file;
 mod geometry;
 mod line_image;
+mod measurement;
 mod position_noise;
 mod sensor;
 mod setup;
@@ -41,16 +42,18 @@ pub use error::TriangulationError;
 pub use file::{
     BoardSettings, CalibrationMethod, CalibrationSettings, parse_setup, parse_setup_with,
     read_calibration, read_design, read_detector, read_sensor, read_setup, read_setup_with,
+    read_uncertainty,
 };
 pub use geometry::{LaserPlane, ProfilePoint, Triangulator, UncertainPoint};
 pub use line_image::{LineImage, LineImageData};
+pub use measurement::{Measurement, MeasurementInput, SetupUncertainty, VirtualExperiment};
 pub use position_noise::{
     ColumnLight, ColumnSpeckle, PixelCovariance, PositionNoise, speckle_covariance,
 };
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
     Averages, BandwidthEffect, HeightRange, ImagedLine, LaserLineData, LightLevel, Setup,
-    SetupCamera, SetupDescription, SetupSurface,
+    SetupCamera, SetupDescription, SetupQuantity, SetupSurface,
 };
 
 /// The light of a laser and the relief of a surface.

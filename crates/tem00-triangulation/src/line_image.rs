@@ -9,7 +9,7 @@ use self::{
     strip::Strip,
 };
 use crate::{
-    Setup, TriangulationError,
+    ImagedLine, Setup, TriangulationError,
     setup::{LineProfile, within},
 };
 
@@ -114,7 +114,16 @@ impl LineImage {
     ///
     /// Returns the errors of [`new`](Self::new).
     pub fn of_setup(setup: &Setup, size: [usize; 2]) -> Result<Self, TriangulationError> {
-        let (line, surface) = (setup.line(), &setup.description().surface);
+        Self::of_line(setup, setup.line(), size)
+    }
+
+    /// Creates the generator of a line on a flat surface at another height.
+    pub(crate) fn of_line(
+        setup: &Setup,
+        line: &ImagedLine,
+        size: [usize; 2],
+    ) -> Result<Self, TriangulationError> {
+        let surface = &setup.description().surface;
         let mut image = Self::new(LineImageData {
             size,
             width: line.projected_thickness.hypot(line.blur),

@@ -4,6 +4,7 @@ mod description;
 mod imaged_line;
 mod light_level;
 mod line_profile;
+mod quantity;
 mod range;
 mod scene;
 
@@ -22,6 +23,7 @@ pub use self::{
     description::{Averages, LaserLineData, SetupCamera, SetupDescription, SetupSurface},
     imaged_line::{BandwidthEffect, ImagedLine},
     light_level::LightLevel,
+    quantity::SetupQuantity,
     range::HeightRange,
 };
 
@@ -105,6 +107,14 @@ impl Setup {
     /// Returns the description that the set-up was created from.
     pub const fn description(&self) -> &SetupDescription {
         &self.description
+    }
+
+    /// Returns the description with the exposure time that it has: other values do not change that.
+    pub(crate) fn exposed_description(&self) -> SetupDescription {
+        SetupDescription {
+            auto_exposure: false,
+            ..self.description.clone()
+        }
     }
 
     /// Returns what a resolution cell of the camera holds of the reference plane, or `None` if its paths have no law.
@@ -218,13 +228,14 @@ fn saturation(sensor: &Sensor) -> f64 {
 /// ```text
 /// tan τ = −m / tan θ
 /// ```
-fn camera(description: &SetupDescription) -> Result<Camera, TriangulationError> {
+pub(crate) fn camera(description: &SetupDescription) -> Result<Camera, TriangulationError> {
     let SetupCamera {
         focal_length,
         f_number,
         resolution,
         distance,
         angle,
+        principal_row,
         scheimpflug,
     } = description.camera;
     let (sin, cos) = angle.sin_cos();
@@ -243,7 +254,7 @@ fn camera(description: &SetupDescription) -> Result<Camera, TriangulationError> 
         focus_distance: distance,
         pixel_pitch: description.sensor.pixel_pitch,
         resolution,
-        principal_point: None,
+        principal_point: principal_row.map(|row| DVec2::new(0.5 * resolution[0] as f64, row)),
         tilt: SensorTilt {
             angle: tilt,
             azimuth: 0.0,

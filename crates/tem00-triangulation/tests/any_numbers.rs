@@ -40,6 +40,7 @@ fn description() -> SetupDescription {
             resolution: [64, 64],
             distance: 0.3,
             angle: 0.5,
+            principal_row: None,
             scheimpflug: false,
         },
         sensor: SensorDescription {

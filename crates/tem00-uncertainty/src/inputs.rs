@@ -99,7 +99,12 @@ impl Inputs {
     }
 
     /// Draws the values of all inputs.
-    pub(crate) fn draw(&self, random: &mut impl Rng, values: &mut [f64]) {
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `values.len()` is the number of inputs.
+    pub fn draw(&self, random: &mut impl Rng, values: &mut [f64]) {
+        assert_eq!(values.len(), self.inputs.len(), "one value per input");
         for (value, input) in values.iter_mut().zip(&self.inputs) {
             *value = input.draw(random);
         }

@@ -1,5 +1,7 @@
 use tem00_numerics::cast::to_usize;
 
+use crate::CoverageProbability;
+
 /// Choice among the intervals that cover a value with the same probability.
 ///
 /// # References
@@ -30,11 +32,16 @@ impl CoverageInterval {
         self.high - self.low
     }
 
-    /// Returns the interval of sorted values of a model (JCGM 101, § 7.7).
+    /// Returns the interval of sorted values (JCGM 101, § 7.7).
     ///
-    /// Of M values q = pM, rounded, lie between the ends. There are at least 1/(1 − p) values.
-    pub(crate) fn of_sorted(values: &[f64], probability: f64, kind: IntervalKind) -> Self {
-        let count = values.len();
+    /// Of M values q = pM, rounded, lie from the lower end to below the upper one. Fewer than 1/(1 − p) values
+    /// have their range as the interval.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless `values.len() ≥ 1`.
+    pub fn of_sorted(values: &[f64], probability: CoverageProbability, kind: IntervalKind) -> Self {
+        let (count, probability) = (values.len(), probability.value());
         let between = to_usize((probability * count as f64).round()).min(count - 1);
         let first = match kind {
             // The document counts from 1.
@@ -61,7 +68,11 @@ mod tests {
     use super::*;
 
     fn interval(values: &[f64], probability: f64, kind: IntervalKind) -> String {
-        let CoverageInterval { low, high } = CoverageInterval::of_sorted(values, probability, kind);
+        let CoverageInterval { low, high } = CoverageInterval::of_sorted(
+            values,
+            CoverageProbability::new(probability).unwrap(),
+            kind,
+        );
         format!("{low} to {high}")
     }
 

@@ -126,7 +126,7 @@ impl Propagation {
     ) -> Result<(), UncertaintyError> {
         let moments = Moments::of(&values);
         values.sort_unstable_by(f64::total_cmp);
-        let (kind, probability) = (self.options.interval, self.options.probability.value());
+        let (kind, probability) = (self.options.interval, self.options.probability);
         let interval = CoverageInterval::of_sorted(&values, probability, kind);
         summaries.push([
             moments.mean,
@@ -173,7 +173,7 @@ impl Propagation {
 
     /// Returns a coverage interval of the probability that was asked for.
     pub fn interval_of(&self, kind: IntervalKind) -> CoverageInterval {
-        CoverageInterval::of_sorted(&self.values, self.options.probability.value(), kind)
+        CoverageInterval::of_sorted(&self.values, self.options.probability, kind)
     }
 
     /// Returns all values of the model, from the smallest to the largest.

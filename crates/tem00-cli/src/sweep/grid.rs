@@ -9,6 +9,7 @@ use tem00_config::{
 const GRID: Format = Format {
     noun: "grid",
     keys: &["sweep"],
+    uncertain: &[],
     help: HELP,
 };
 pub(super) const HELP: &str = "setups/sweeps/lens_and_line.toml is a grid file";

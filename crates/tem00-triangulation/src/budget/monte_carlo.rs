@@ -10,7 +10,8 @@ use tem00_numerics::Grid;
 use self::noise::Frames;
 use super::{UncertaintySource, first_order};
 use crate::{
-    DetectorSettings, LineDetector, LineImage, Setup, TriangulationError, Validity, setup::within,
+    DetectorSettings, ImagedLine, LineDetector, LineImage, Setup, TriangulationError, Validity,
+    setup::within,
 };
 
 /// The minimum number of columns of a simulated frame.
@@ -89,11 +90,12 @@ type Trial = [Outcome; SIMULATED.len() + 1];
 
 /// Result of a trial with the noise of one source, or of all.
 #[derive(Clone, Copy, Debug)]
-struct Outcome {
-    /// The mean square deviation, in square pixels; `None` without a line that can be trusted.
-    square: Option<f64>,
+pub(crate) struct Outcome {
+    /// The mean square deviation, in square pixels, or square metres of heights; `None` without a line that can
+    /// be trusted.
+    pub(crate) square: Option<f64>,
     /// The fraction of the columns without one.
-    invalid: f64,
+    pub(crate) invalid: f64,
 }
 
 /// The sources that are simulated.
@@ -130,7 +132,7 @@ pub fn simulate(
 ) -> Result<Simulation, TriangulationError> {
     let trials = f64::from(options.trials);
     within("trials", trials, (10.0, 1e6), "from 10 to a million")?;
-    let simulator = Simulator::new(setup)?;
+    let simulator = Simulator::new(setup, *setup.line())?;
     let done = AtomicU64::new(0);
     let trial = |index: u32| {
         if cancel.load(Ordering::Relaxed) {
@@ -145,8 +147,10 @@ pub fn simulate(
     Ok(simulator.summary(options, &outcomes))
 }
 
-struct Simulator<'a> {
+/// Trials of a set-up with a line on a flat surface.
+pub(crate) struct Simulator<'a> {
     setup: &'a Setup,
+    line: ImagedLine,
     /// The detector for noise without a sensor, which does not saturate.
     unlimited: LineDetector,
     image: LineImage,
@@ -154,17 +158,18 @@ struct Simulator<'a> {
 }
 
 impl<'a> Simulator<'a> {
-    fn new(setup: &'a Setup) -> Result<Self, TriangulationError> {
+    pub(crate) fn new(setup: &'a Setup, line: ImagedLine) -> Result<Self, TriangulationError> {
         let group = setup.description().average.columns as usize;
         let columns = group * COLUMNS.div_ceil(group);
-        let rows = first_order::rows(setup.description(), setup.line());
+        let rows = first_order::rows(setup.description(), &line);
         let simulator = Self {
             setup,
+            line,
             unlimited: LineDetector::new(DetectorSettings {
                 saturation: f64::INFINITY,
                 ..*setup.detector().settings()
             })?,
-            image: LineImage::of_setup(setup, [columns, rows])?,
+            image: LineImage::of_line(setup, &line, [columns, rows])?,
             group,
         };
         simulator.noise_free_position(0.0).map(|_| simulator)
@@ -172,7 +177,7 @@ impl<'a> Simulator<'a> {
 
     /// Returns the position at which the detector finds the line without noise.
     fn noise_free_position(&self, phase: f64) -> Result<f64, TriangulationError> {
-        let column = first_order::NoiseFreeColumn::new(self.setup, self.setup.line(), phase);
+        let column = first_order::NoiseFreeColumn::new(self.setup, &self.line, phase);
         let found = column.found(self.setup).map(|point| point.position);
         found.ok_or(TriangulationError::TooFew {
             what: "lines that the detector finds without noise",
@@ -184,10 +189,9 @@ impl<'a> Simulator<'a> {
     fn trial(&self, seed: u64, index: u32) -> Result<Trial, TriangulationError> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(u64::from(index));
-        // A position within a pixel, of 2²⁰ that are possible.
-        let phase = f64::from(random.next_u32() >> 12) / f64::from(1_u32 << 20);
+        let phase = phase(&mut random);
         let position = self.noise_free_position(phase)?;
-        let frames = Frames::new(self.setup, &self.image, phase, random.next_u64());
+        let frames = self.frames(phase, random.next_u64());
         let centre = frames.centre();
         let bias = Outcome {
             square: Some((position - centre).powi(2)),
@@ -208,6 +212,21 @@ impl<'a> Simulator<'a> {
         Ok(trial)
     }
 
+    /// Returns how far the positions that are found in exposed frames are from the true one, averaged over
+    /// columns and frames, in pixels, and the fraction of the columns without a line that can be trusted.
+    pub(crate) fn deviations(&self, seed: u64) -> Result<(Vec<f64>, f64), TriangulationError> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let frames = self.frames(phase(&mut random), random.next_u64());
+        let found = positions(self.setup.detector(), &frames.exposed()?);
+        let reference = Positions::uniform(frames.centre());
+        Ok((self.group_deviations(&found, &reference), found.invalid()))
+    }
+
+    fn frames(&self, phase: f64, seed: u64) -> Frames<'_> {
+        let column = first_order::NoiseFreeColumn::new(self.setup, &self.line, phase);
+        Frames::new(self.setup, &self.image, column, seed)
+    }
+
     fn outcome(&self, found: &Positions, reference: &Positions) -> Outcome {
         Outcome {
             square: self.mean_square(found, reference),
@@ -218,9 +237,15 @@ impl<'a> Simulator<'a> {
     /// Returns the mean square of the deviations, each averaged over a group of columns and all frames;
     /// `None` without any that can be trusted.
     fn mean_square(&self, positions: &Positions, reference: &Positions) -> Option<f64> {
+        let deviations = self.group_deviations(positions, reference);
+        let sum: f64 = deviations.iter().map(|deviation| deviation.powi(2)).sum();
+        (!deviations.is_empty()).then(|| sum / deviations.len() as f64)
+    }
+
+    /// Returns the deviations of groups of columns over all frames; not of groups without a line.
+    fn group_deviations(&self, positions: &Positions, reference: &Positions) -> Vec<f64> {
         let columns = positions.0.first().map_or(0, Vec::len);
-        let (mut sum, mut count) = (0.0, 0.0);
-        for first in (0..columns).step_by(self.group) {
+        let of_group = |first: usize| {
             let (mut deviation, mut members) = (0.0, 0.0);
             for frame in 0..positions.0.len() {
                 for column in first..first + self.group {
@@ -231,12 +256,12 @@ impl<'a> Simulator<'a> {
                     }
                 }
             }
-            if members > 0.0 {
-                sum += (deviation / members).powi(2);
-                count += 1.0;
-            }
-        }
-        (count > 0.0).then(|| sum / count)
+            (members > 0.0).then(|| deviation / members)
+        };
+        (0..columns)
+            .step_by(self.group)
+            .filter_map(of_group)
+            .collect()
     }
 
     fn summary(&self, options: SimulationOptions, outcomes: &[Trial]) -> Simulation {
@@ -250,6 +275,11 @@ impl<'a> Simulator<'a> {
             invalid: invalid(of(SIMULATED.len())),
         }
     }
+}
+
+/// Draws a position within a pixel, of 2²⁰ that are possible.
+fn phase(random: &mut ChaCha8Rng) -> f64 {
+    f64::from(random.next_u32() >> 12) / f64::from(1_u32 << 20)
 }
 
 /// Positions of a line, by frame and column; a single one stands for all.
@@ -283,14 +313,14 @@ fn positions(detector: &LineDetector, frames: &[Grid<f32>]) -> Positions {
 }
 
 /// Returns the mean fraction of columns without a line that can be trusted.
-fn invalid(outcomes: impl Iterator<Item = Outcome> + Clone) -> f64 {
+pub(crate) fn invalid(outcomes: impl Iterator<Item = Outcome> + Clone) -> f64 {
     let trials = outcomes.clone().count() as f64;
     outcomes.map(|outcome| outcome.invalid).sum::<f64>() / trials
 }
 
 /// Returns the root of the mean of independent mean squares, and its standard error by the scatter;
 /// `None` where fewer than half of the columns have a line that can be trusted.
-fn estimate(
+pub(crate) fn estimate(
     outcomes: impl Iterator<Item = Outcome> + Clone,
     per_pixel: f64,
 ) -> Option<MonteCarloEstimate> {

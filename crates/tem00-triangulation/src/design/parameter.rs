@@ -1,8 +1,8 @@
 use core::fmt;
 
-use tem00_config::{ANGLE, DURATION, Dimension, LENGTH, NUMBER, POWER};
+use tem00_config::Dimension;
 
-use crate::SetupDescription;
+use crate::{SetupDescription, SetupQuantity};
 
 /// A number of a set-up that a search may vary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -47,24 +47,13 @@ impl DesignParameter {
 
     /// Returns the name, as set-up files have it.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::FNumber => "f_number",
-            Self::Angle => "angle",
-            Self::LineThickness => "line_thickness",
-            Self::Wavelength => "wavelength",
-            Self::Linewidth => "linewidth",
-            Self::Power => "power",
-            Self::Exposure => "exposure",
-            Self::PixelPitch => "pixel_pitch",
-            Self::FocalLength => "focal_length",
-            Self::Distance => "distance",
-        }
+        let [_, key] = self.quantity().path();
+        key
     }
 
     /// Returns the value in a set-up, in SI units.
     pub fn value_in(self, description: &SetupDescription) -> f64 {
-        let mut description = description.clone();
-        *self.field(&mut description)
+        self.quantity().value_in(description)
     }
 
     /// Returns the set-up with another value, in SI units, whether or not it is possible then. An exposure
@@ -72,52 +61,32 @@ impl DesignParameter {
     #[must_use]
     pub fn set(self, description: &SetupDescription, value: f64) -> SetupDescription {
         let mut description = description.clone();
-        description.auto_exposure &= self != Self::Exposure;
-        *self.field(&mut description) = value;
+        self.quantity().set(&mut description, value);
         description
     }
 
     /// Returns its kind of quantity.
     pub(crate) const fn dimension(self) -> &'static Dimension {
-        match self {
-            Self::FNumber => &NUMBER,
-            Self::Angle => &ANGLE,
-            Self::Power => &POWER,
-            Self::Exposure => &DURATION,
-            Self::LineThickness
-            | Self::Wavelength
-            | Self::Linewidth
-            | Self::PixelPitch
-            | Self::FocalLength
-            | Self::Distance => &LENGTH,
-        }
+        self.quantity().dimension()
     }
 
     /// Returns the symbol of the unit that it is usually written in.
     pub(crate) const fn unit(self) -> &'static str {
-        match self {
-            Self::FNumber => "",
-            Self::Angle => "deg",
-            Self::Power => "mW",
-            Self::Exposure => "ms",
-            Self::Wavelength | Self::Linewidth => "nm",
-            Self::PixelPitch => "um",
-            Self::LineThickness | Self::FocalLength | Self::Distance => "mm",
-        }
+        self.quantity().unit()
     }
 
-    const fn field(self, description: &mut SetupDescription) -> &mut f64 {
+    const fn quantity(self) -> SetupQuantity {
         match self {
-            Self::FNumber => &mut description.camera.f_number,
-            Self::Angle => &mut description.camera.angle,
-            Self::LineThickness => &mut description.laser.line_thickness,
-            Self::Wavelength => &mut description.laser.light.wavelength,
-            Self::Linewidth => &mut description.laser.light.linewidth,
-            Self::Power => &mut description.laser.power,
-            Self::Exposure => &mut description.sensor.exposure_time,
-            Self::PixelPitch => &mut description.sensor.pixel_pitch,
-            Self::FocalLength => &mut description.camera.focal_length,
-            Self::Distance => &mut description.camera.distance,
+            Self::FNumber => SetupQuantity::FNumber,
+            Self::Angle => SetupQuantity::Angle,
+            Self::LineThickness => SetupQuantity::LineThickness,
+            Self::Wavelength => SetupQuantity::Wavelength,
+            Self::Linewidth => SetupQuantity::Linewidth,
+            Self::Power => SetupQuantity::Power,
+            Self::Exposure => SetupQuantity::Exposure,
+            Self::PixelPitch => SetupQuantity::PixelPitch,
+            Self::FocalLength => SetupQuantity::FocalLength,
+            Self::Distance => SetupQuantity::Distance,
         }
     }
 }

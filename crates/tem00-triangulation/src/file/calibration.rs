@@ -146,6 +146,7 @@ mod tests {
     const FORMAT: Format = Format {
         noun: "set-up",
         keys: &["calibration"],
+        uncertain: &[],
         help: "",
     };
 

@@ -122,6 +122,7 @@ mod tests {
     const FORMAT: Format = Format {
         noun: "set-up",
         keys: &["detector"],
+        uncertain: &[],
         help: "",
     };
 

@@ -6,7 +6,7 @@ use tem00_config::{DURATION, Document, NUMBER, Problem, Section, Value};
 use crate::{Sensor, SensorDescription, TriangulationError};
 
 /// The keys of the section `[sensor]`.
-const KEYS: &[&str] = &[
+pub(super) const KEYS: &[&str] = &[
     "quantum_efficiency",
     "exposure",
     "bit_depth",

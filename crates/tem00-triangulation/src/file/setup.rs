@@ -5,7 +5,11 @@ use tem00_config::{
     Section, Value, parse_document, read_document, read_laser_light, read_relief,
 };
 
-use super::{read_detector, sensor::read_sensor_or_auto};
+use super::{
+    keys::{CAMERA, LASER, SURFACE, UNCERTAIN},
+    read_detector, read_uncertainty,
+    sensor::read_sensor_or_auto,
+};
 use crate::{
     Averages, LaserLineData, Setup, SetupCamera, SetupDescription, SetupSurface, TriangulationError,
 };
@@ -23,36 +27,14 @@ const SETUP: Format = Format {
         "detector",
         "calibration",
         "average",
+        "budget",
+        "correlation",
         "design",
         "include",
     ],
+    uncertain: UNCERTAIN,
     help: "setups/ has some, and docs/setup_file.md tells how to write them",
 };
-const LASER: &[&str] = &[
-    "wavelength",
-    "linewidth",
-    "spectrum",
-    "lines",
-    "power",
-    "line_thickness",
-    "line_length",
-];
-const CAMERA: &[&str] = &[
-    "focal_length",
-    "f_number",
-    "pixel_pitch",
-    "resolution",
-    "distance",
-    "angle",
-    "scheimpflug",
-];
-const SURFACE: &[&str] = &[
-    "reflectance",
-    "patterns",
-    "polarisation",
-    "rms_height",
-    "correlation_length",
-];
 const CALIBRATION: &[&str] = &["uncertainty"];
 const AVERAGE: &[&str] = &["columns", "frames", "independent_speckle"];
 
@@ -145,6 +127,7 @@ fn with_further<T>(
     further: impl FnOnce(&Document<'_>, &Setup) -> Result<T, Problem>,
 ) -> Result<(Setup, T), Problem> {
     let setup = setup(document)?;
+    read_uncertainty(document, &setup)?;
     let further = further(document, &setup)?;
     Ok((setup, further))
 }
@@ -217,6 +200,9 @@ fn read_camera(section: &Section<'_>) -> Result<SetupCamera, Problem> {
         resolution: [pixels(&width)?, pixels(&height)?],
         distance: length("distance", "\"300 mm\"")?,
         angle: section.required("angle", "\"30 deg\"")?.positive(&ANGLE)?,
+        principal_row: section.or("principal_row", None, |value| {
+            value.quantity(&NUMBER).map(Some)
+        })?,
         scheimpflug: section.or("scheimpflug", false, Value::boolean)?,
     })
 }

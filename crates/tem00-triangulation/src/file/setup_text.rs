@@ -104,6 +104,10 @@ impl Sections {
             .note("from the lens to the line")
             .quantity("angle", camera.angle, (&ANGLE, "deg"))
             .note("between the optical axis and the plane of the laser");
+        if let Some(row) = camera.principal_row {
+            self.number("principal_row", row)
+                .note("that the optical axis meets");
+        }
         if camera.scheimpflug {
             self.value("scheimpflug", true).note("the sensor is tilted");
         }

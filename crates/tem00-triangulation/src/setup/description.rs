@@ -53,6 +53,8 @@ pub struct SetupCamera {
     pub distance: f64,
     /// The angle between the optical axis and the laser plane, in radians.
     pub angle: f64,
+    /// The row of the image that the optical axis meets, in pixels; the middle without one.
+    pub principal_row: Option<f64>,
     /// True if the sensor is tilted so that the laser plane is in focus, after Scheimpflug.
     pub scheimpflug: bool,
 }
@@ -171,8 +173,14 @@ impl SetupDescription {
             f_number,
             distance,
             angle,
+            principal_row,
+            resolution: [_, rows],
             ..
         } = self.camera;
+        if let Some(row) = principal_row {
+            let allowed = "a row of the image, from 0 to their number";
+            within("principal_row", row, (0.0, rows as f64), allowed)?;
+        }
         let allowed = "from 0.1 mm to 100 m (in metres)";
         within("focal_length", focal_length, (1e-4, 100.0), allowed)?;
         within("f_number", f_number, (0.5, 1e3), "from 0.5 to 1000")?;

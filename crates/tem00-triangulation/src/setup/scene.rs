@@ -17,7 +17,7 @@ impl Setup {
             "[camera]\n\
              position = [{x:e}, {y:e}, {z:e}]\nlook_at = [0, 0, 0]\nup = [0, 0, 1]\n\
              focal_length = {focal_length:e}\nf_number = {f_number:e}\npixel_pitch = {pitch:e}\n\
-             resolution = [{width}, {rows}]\ntilt = {{ angle = {tilt:e} }}\n\n\
+             resolution = [{width}, {rows}]\ntilt = {{ angle = {tilt:e} }}\n{principal}\n\
              [[laser]]\n\
              {light}power = {power:e}\nposition = [0, 0, {distance:e}]\n\
              look_at = [0, 0, 0]\nline_direction = [1, 0, 0]\n\
@@ -34,6 +34,10 @@ impl Setup {
             f_number = camera.f_number,
             pitch = d.sensor.pixel_pitch,
             tilt = self.camera().description().tilt.angle,
+            principal = camera.principal_row.map_or_else(String::new, |row| {
+                let middle = 0.5 * width as f64;
+                format!("principal_point = [{middle:e}, {row:e}]\n")
+            }),
             light = light_keys(&laser.light),
             relief = relief_keys(d.surface.relief),
             power = laser.power,

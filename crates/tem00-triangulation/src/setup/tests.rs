@@ -18,6 +18,7 @@ pub(crate) fn description() -> SetupDescription {
             resolution: [640, 480],
             distance: 0.3,
             angle: 30_f64.to_radians(),
+            principal_row: None,
             scheimpflug: false,
         },
         sensor: SensorDescription {

@@ -30,11 +30,16 @@ enum Purpose {
 }
 
 impl<'a> Frames<'a> {
-    pub(super) fn new(setup: &'a Setup, image: &'a LineImage, phase: f64, seed: u64) -> Self {
+    pub(super) const fn new(
+        setup: &'a Setup,
+        image: &'a LineImage,
+        column: NoiseFreeColumn,
+        seed: u64,
+    ) -> Self {
         Self {
             setup,
             image,
-            column: NoiseFreeColumn::new(setup, setup.line(), phase),
+            column,
             seed,
         }
     }

@@ -7,6 +7,7 @@ use super::*;
 const FORMAT: Format = Format {
     noun: "test",
     keys: &["sensor"],
+    uncertain: &[],
     help: "",
 };
 

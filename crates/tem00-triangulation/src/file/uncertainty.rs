@@ -1,0 +1,176 @@
+use tem00_config::{Document, LENGTH, NUMBER, Problem, Section, Value, nearest};
+use tem00_uncertainty::{Correlation, Distribution, Input, Inputs, UncertaintyError};
+
+use super::keys::section_keys;
+use crate::{HeightRange, Setup, SetupQuantity, SetupUncertainty};
+
+const BUDGET: &[&str] = &["height"];
+const CORRELATION: &[&str] = &["between", "coefficient"];
+
+/// Reads what a set-up file says of uncertain quantities of its set-up.
+///
+/// ```toml
+/// [camera]
+/// angle = { value = "30 deg", uncertainty = "0.05 deg" }
+/// distance = { value = "300 mm", uncertainty = "0.2 mm", degrees_of_freedom = 8 }
+///
+/// [[correlation]]                    # of normal quantities
+/// between = ["camera.angle", "camera.distance"]
+/// coefficient = 0.5
+///
+/// [budget]
+/// height = "5 mm"                    # the greatest of the measuring range without it
+/// ```
+///
+/// An uncertainty of 0 is as good as none.
+///
+/// # Errors
+///
+/// Returns a problem, placed in the file, if a table has a key that it may not have, or a value that cannot be.
+pub fn read_uncertainty(
+    document: &Document<'_>,
+    setup: &Setup,
+) -> Result<SetupUncertainty, Problem> {
+    let mut quantities = Vec::new();
+    for quantity in SetupQuantity::ALL {
+        quantities.extend(read_quantity(document, setup, quantity)?);
+    }
+    let budget = document.table("budget", BUDGET)?;
+    Ok(SetupUncertainty {
+        height: budget.map_or(Ok(None), |section| read_height(&section, setup))?,
+        correlations: read_correlations(document, &quantities)?,
+        quantities,
+    })
+}
+
+fn read_height(section: &Section<'_>, setup: &Setup) -> Result<Option<f64>, Problem> {
+    let Some(value) = section.optional("height") else {
+        return Ok(None);
+    };
+    let HeightRange { low, high } = setup.measuring_range();
+    let [from, to] = [low, high].map(|end| format!("{:.4} mm", 1e3 * end));
+    let allowed = format!("within the measuring range, from {from} to {to}");
+    value.within(&LENGTH, low..=high, &allowed).map(Some)
+}
+
+fn read_quantity(
+    document: &Document<'_>,
+    setup: &Setup,
+    quantity: SetupQuantity,
+) -> Result<Option<(SetupQuantity, Input)>, Problem> {
+    let [section, key] = quantity.path();
+    let Some(section) = document.table(section, section_keys(section))? else {
+        return Ok(None);
+    };
+    let Some(table) = section.uncertain(key)? else {
+        return Ok(None);
+    };
+    table.required("value", "the best estimate")?;
+    let uncertainty = table.required("uncertainty", "a standard uncertainty")?;
+    let uncertainty = uncertainty.within(quantity.dimension(), 0.0.., "at least 0")?;
+    let shapes = Distribution::ALL.map(|shape| (shape.name(), shape));
+    let shape = table.or("distribution", Distribution::Normal, |value| {
+        value.one_of(&shapes)
+    })?;
+    let freedom = match shape {
+        Distribution::StudentT => Some(table.required("degrees_of_freedom", "8")?),
+        _ => table.optional("degrees_of_freedom"),
+    };
+    let freedom = freedom.map_or(Ok(f64::INFINITY), |value| value.quantity(&NUMBER))?;
+    if uncertainty == 0.0 {
+        return Ok(None);
+    }
+    let rejected = |error: UncertaintyError| table.problem_with(error.parameter(), error);
+    let estimate = quantity.value_in(setup.description());
+    let input = Input::new(estimate, uncertainty, shape).map_err(rejected)?;
+    let input = input.with_degrees_of_freedom(freedom).map_err(rejected)?;
+    for value in [estimate - uncertainty, estimate + uncertainty] {
+        let mut description = setup.exposed_description();
+        quantity.set(&mut description, value);
+        Setup::new(description).map_err(|error| {
+            let message = format!("one standard uncertainty from the value {error}");
+            table.problem_with("uncertainty", message)
+        })?;
+    }
+    Ok(Some((quantity, input)))
+}
+
+fn read_correlations(
+    document: &Document<'_>,
+    quantities: &[(SetupQuantity, Input)],
+) -> Result<Vec<Correlation>, Problem> {
+    let mut correlations = Vec::new();
+    for section in document.tables("correlation", CORRELATION)? {
+        let example = "[\"camera.angle\", \"camera.distance\"]";
+        let between = section.required("between", example)?;
+        let [first, second] = between.elements(&format!(
+            "two names of uncertain quantities, such as {example}"
+        ))?;
+        let positions = [
+            position(&first, quantities)?,
+            position(&second, quantities)?,
+        ];
+        let coefficient = section.required("coefficient", "0.5")?;
+        correlations.push(Correlation {
+            between: positions,
+            coefficient: coefficient.within(&NUMBER, -1.0..=1.0, "from -1 to 1")?,
+        });
+        check(&section, quantities, &correlations)?;
+    }
+    Ok(correlations)
+}
+
+/// Returns where a name stands among the uncertain quantities.
+fn position(name: &Value<'_>, quantities: &[(SetupQuantity, Input)]) -> Result<usize, Problem> {
+    let text = name.string()?;
+    let names: Vec<String> = quantities
+        .iter()
+        .map(|(quantity, _)| quantity.to_string())
+        .collect();
+    if let Some(position) = names.iter().position(|known| known == text) {
+        return Ok(position);
+    }
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let allowed = match nearest(text, &names) {
+        Some(meant) => format!("an uncertain quantity of this set-up; did you mean \"{meant}\"?"),
+        None => "an uncertain quantity of this set-up".to_owned(),
+    };
+    Err(name
+        .must_be(allowed)
+        .with_help(format!("uncertain are: {}", names.join(", "))))
+}
+
+/// Checks the last of the correlations.
+fn check(
+    section: &Section<'_>,
+    quantities: &[(SetupQuantity, Input)],
+    correlations: &[Correlation],
+) -> Result<(), Problem> {
+    let inputs = quantities.iter().map(|(_, input)| *input).collect();
+    let Err(error) = Inputs::correlated(inputs, correlations) else {
+        return Ok(());
+    };
+    let message = match &error {
+        UncertaintyError::NotNormal { input } => {
+            let (quantity, _) = quantities[*input];
+            format!(
+                "`between` must name normal quantities without degrees of freedom, {quantity} is none"
+            )
+        }
+        UncertaintyError::Contradiction { .. } => {
+            "`coefficient` contradicts those of other correlations: no quantities have all of them"
+                .into()
+        }
+        UncertaintyError::Between { .. } => "`between` must name two different quantities".into(),
+        UncertaintyError::Repeated { .. } => "`between` names two quantities a second time".into(),
+        error => error.to_string(),
+    };
+    let key = match error {
+        UncertaintyError::Contradiction { .. } => "coefficient",
+        _ => "between",
+    };
+    Err(section.problem_with(key, message))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,292 @@
+//! A height and its uncertainty, where quantities of the set-up are uncertain themselves.
+
+mod virtual_experiment;
+
+use glam::DVec2;
+use tem00_uncertainty::{
+    Correlation, Decomposition, DecompositionOptions, Distribution, FirstOrder, Input, Inputs,
+    Propagation, PropagationOptions,
+};
+
+pub use self::virtual_experiment::VirtualExperiment;
+use crate::{
+    Budget, BudgetTerm, ErrorDistribution, Setup, SetupDescription, SetupQuantity,
+    TriangulationError, Triangulator, UncertaintySource,
+    setup::{camera, within},
+};
+
+/// What is uncertain of a set-up, and the height that is measured with it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SetupUncertainty {
+    /// The height, in metres; the greatest of the measuring range without one.
+    pub height: Option<f64>,
+    /// The uncertain quantities, each once, in SI units.
+    pub quantities: Vec<(SetupQuantity, Input)>,
+    /// The correlations between them, by their positions in the list.
+    pub correlations: Vec<Correlation>,
+}
+
+/// Input quantity of a measured height.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeasurementInput {
+    /// A quantity of the set-up.
+    Quantity(SetupQuantity),
+    /// The error of the position of the line, or of the height, by a term of the budget.
+    Term(UncertaintySource),
+}
+
+/// The measurement of a height with a set-up whose quantities are uncertain.
+///
+/// The measurement model, in the words of JCGM 100, gives the height as a function of its inputs:
+///
+/// ```text
+/// z = g(v + Σ eₖ; L, θ, f, p, v₀) + e_c
+/// ```
+///
+/// `v` is the row at which the set-up as it is described sees the height, known exactly; the `eₖ` are the errors of
+/// that position by the terms of the [`Budget`], of no mean; `e_c` is that of the calibration. `g` meets the
+/// line of sight with the laser plane. Its distance, angle, focal length, pixel pitch and principal row change the
+/// scale of heights, or shift all of them. Heights count from the point of the laser plane that the optical axis is
+/// to meet: where distance and angle change, the camera still looks at it.
+///
+/// What a quantity does to the noise alone, such as the wavelength, it does to the standard uncertainties of the
+/// terms: they change in proportion to it, as their differences over ± one standard uncertainty say. To first order
+/// that changes no height.
+///
+/// # Examples
+///
+/// ```
+/// # let text = r#"
+/// # [laser]
+/// # wavelength = "650 nm"
+/// # power = "5 mW"
+/// # line_thickness = "0.2 mm"
+/// # line_length = "50 mm"
+/// # [camera]
+/// # focal_length = "25 mm"
+/// # f_number = 8
+/// # pixel_pitch = "3.45 um"
+/// # resolution = [640, 480]
+/// # distance = "300 mm"
+/// # angle = "30 deg"
+/// # [sensor]
+/// # quantum_efficiency = 0.6
+/// # exposure = "0.1 ms"
+/// # [surface]
+/// # reflectance = 0.5
+/// # "#;
+/// use tem00_triangulation::{Measurement, SetupQuantity, SetupUncertainty, parse_setup};
+/// use tem00_uncertainty::{Distribution, Input};
+///
+/// let setup = parse_setup(text)?;
+/// let pitch = Input::new(3.45e-6, 3.45e-9, Distribution::Normal)?;
+/// let uncertainty = SetupUncertainty {
+///     height: Some(5e-3),
+///     quantities: vec![(SetupQuantity::PixelPitch, pitch)],
+///     ..SetupUncertainty::default()
+/// };
+/// let found = Measurement::new(&setup, &uncertainty)?.first_order()?;
+/// // A pitch that is a thousandth larger makes heights a thousandth larger, and some perspective more.
+/// let by_pitch = found.contributions()[0].uncertainty;
+/// assert!((by_pitch / 5e-6 - 1.0).abs() < 0.03);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # References
+///
+/// - JCGM 100:2008, *Guide to the expression of uncertainty in measurement*, § 4.1.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    setup: Setup,
+    height: f64,
+    row: f64,
+    sources: Vec<MeasurementInput>,
+    inputs: Inputs,
+    /// For each term with a position, the relative change of its standard uncertainty by each quantity.
+    slopes: Vec<Vec<f64>>,
+}
+
+impl Measurement {
+    /// Creates a measurement.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the height is outside of the measuring range, if nothing can be measured there,
+    /// if a quantity is not possible one standard uncertainty above or below its estimate, or if the
+    /// correlations are not possible.
+    pub fn new(setup: &Setup, uncertainty: &SetupUncertainty) -> Result<Self, TriangulationError> {
+        let range = setup.measuring_range();
+        let height = uncertainty.height.unwrap_or(range.high);
+        let allowed = "within the measuring range of the set-up (in metres)";
+        within("height", height, (range.low, range.high), allowed)?;
+        let budget = Budget::at_height(setup, height)?;
+        let terms = budget.terms().iter().filter(|term| term.uncertainty > 0.0);
+        let terms: Vec<BudgetTerm> = terms.copied().collect();
+        let quantities = &uncertainty.quantities;
+        let of_set_up = quantities
+            .iter()
+            .map(|(quantity, input)| Ok((MeasurementInput::Quantity(*quantity), *input)));
+        let of_terms = terms
+            .iter()
+            .map(|term| Ok((MeasurementInput::Term(term.source), error_of(term)?)));
+        let all: Result<Vec<_>, TriangulationError> = of_set_up.chain(of_terms).collect();
+        let (sources, inputs) = all?.into_iter().unzip();
+        Ok(Self {
+            row: setup.line_at(height).map_or(f64::NAN, |line| line.position),
+            sources,
+            inputs: Inputs::correlated(inputs, &uncertainty.correlations)?,
+            slopes: slopes(setup, height, quantities, &terms)?,
+            height,
+            setup: setup.clone(),
+        })
+    }
+
+    /// Returns the measured height, in metres.
+    pub const fn height(&self) -> f64 {
+        self.height
+    }
+
+    /// Returns what the inputs are, in their order: first the quantities of the set-up, then the terms of the
+    /// budget that are not zero.
+    pub fn sources(&self) -> &[MeasurementInput] {
+        &self.sources
+    }
+
+    /// Returns the inputs: quantities in SI units; errors of the position of the line in pixels, that of the
+    /// calibration in metres.
+    pub const fn inputs(&self) -> &Inputs {
+        &self.inputs
+    }
+
+    /// Returns the height, in metres, that follows from values of the inputs, or NaN where the line of sight meets
+    /// no laser plane or there is no such camera.
+    pub fn height_of(&self, values: &[f64]) -> f64 {
+        let (mut row, mut calibration) = (self.row, 0.0);
+        let (quantities, errors) = values.split_at(values.len() - self.slopes.len());
+        let terms = self.sources[quantities.len()..].iter().zip(errors);
+        for ((source, error), slopes) in terms.zip(&self.slopes) {
+            match source {
+                MeasurementInput::Term(UncertaintySource::Calibration) => calibration = *error,
+                _ => row += error * (1.0 + self.change_of_noise(quantities, slopes)),
+            }
+        }
+        let setup = self.with(quantities);
+        height_at(&setup, &self.setup, row).map_or(f64::NAN, |height| height + calibration)
+    }
+
+    /// Returns the result by the law of propagation of uncertainty.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`FirstOrder::new`].
+    pub fn first_order(&self) -> Result<FirstOrder, TriangulationError> {
+        Ok(FirstOrder::new(&self.inputs, |x| self.height_of(x))?)
+    }
+
+    /// Returns the result by the propagation of distributions.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`Propagation::new`].
+    pub fn propagation(
+        &self,
+        options: PropagationOptions,
+    ) -> Result<Propagation, TriangulationError> {
+        Ok(Propagation::new(
+            &self.inputs,
+            |x| self.height_of(x),
+            options,
+        )?)
+    }
+
+    /// Returns the parts of the variance that the inputs make.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`Decomposition::new`].
+    pub fn decomposition(
+        &self,
+        options: DecompositionOptions,
+    ) -> Result<Decomposition, TriangulationError> {
+        Ok(Decomposition::new(
+            &self.inputs,
+            |x| self.height_of(x),
+            options,
+        )?)
+    }
+
+    /// Returns the description of the set-up with other values of its uncertain quantities.
+    fn with(&self, values: &[f64]) -> SetupDescription {
+        let mut description = self.setup.exposed_description();
+        for (source, &value) in self.sources.iter().zip(values) {
+            if let MeasurementInput::Quantity(quantity) = source {
+                quantity.set(&mut description, value);
+            }
+        }
+        description
+    }
+
+    /// Returns the relative change of the standard uncertainty of a term.
+    fn change_of_noise(&self, quantities: &[f64], slopes: &[f64]) -> f64 {
+        let inputs = self.inputs.as_slice().iter().zip(quantities);
+        let changes = inputs
+            .zip(slopes)
+            .map(|((input, x), slope)| slope * (x - input.estimate()));
+        changes.sum()
+    }
+}
+
+/// Returns the height of a line at a row of the middle column, in metres, as the camera of a description and the
+/// laser plane of a set-up give it.
+fn height_at(description: &SetupDescription, setup: &Setup, row: f64) -> Option<f64> {
+    let triangulator = Triangulator::new(camera(description).ok()?, *setup.triangulator().plane());
+    let [width, _] = description.camera.resolution;
+    let point = triangulator.point(DVec2::new(0.5 * width as f64, row))?;
+    Some(point.z)
+}
+
+/// Returns the error by a term: that of a detector is even over a period, all others are sums of many.
+fn error_of(term: &BudgetTerm) -> Result<Input, TriangulationError> {
+    let distribution = match term.distribution {
+        ErrorDistribution::Periodic => Distribution::Arcsine,
+        ErrorDistribution::Normal | ErrorDistribution::Rectangular => Distribution::Normal,
+    };
+    let input = Input::new(0.0, term.uncertainty, distribution)?;
+    Ok(input.with_degrees_of_freedom(term.degrees_of_freedom)?)
+}
+
+/// Returns the relative changes of the standard uncertainties of the terms by each quantity, from differences over
+/// one standard uncertainty on both sides.
+fn slopes(
+    setup: &Setup,
+    height: f64,
+    quantities: &[(SetupQuantity, Input)],
+    terms: &[BudgetTerm],
+) -> Result<Vec<Vec<f64>>, TriangulationError> {
+    let mut slopes = vec![Vec::new(); terms.len()];
+    for (quantity, input) in quantities {
+        let budget = |sign: f64| {
+            let mut description = setup.exposed_description();
+            quantity.set(
+                &mut description,
+                input.estimate() + sign * input.uncertainty(),
+            );
+            Budget::at_height(&Setup::new(description)?, height)
+        };
+        let (below, above) = (budget(-1.0)?, budget(1.0)?);
+        for (slopes, term) in slopes.iter_mut().zip(terms) {
+            let [below, above] = [&below, &above].map(|budget| uncertainty(budget, term.source));
+            slopes.push((above - below) / (2.0 * input.uncertainty() * term.uncertainty));
+        }
+    }
+    Ok(slopes)
+}
+
+/// Returns the standard uncertainty of a term, in its own unit.
+fn uncertainty(budget: &Budget, source: UncertaintySource) -> f64 {
+    let term = budget.terms().iter().find(|term| term.source == source);
+    term.map_or(0.0, |term| term.uncertainty)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,198 @@
+use tem00_uncertainty::PropagationOptions;
+
+use super::*;
+use crate::{SimulationOptions, setup::tests::description};
+
+const HEIGHT: f64 = 4e-3;
+
+fn setup() -> Setup {
+    Setup::new(description()).unwrap()
+}
+
+fn input(setup: &Setup, quantity: SetupQuantity, relative: f64) -> (SetupQuantity, Input) {
+    let estimate = quantity.value_in(setup.description());
+    let input = Input::new(estimate, relative * estimate, Distribution::Normal);
+    (quantity, input.unwrap())
+}
+
+fn measurement(quantities: &[(SetupQuantity, f64)]) -> Measurement {
+    let setup = setup();
+    let quantities = quantities
+        .iter()
+        .map(|&(quantity, relative)| input(&setup, quantity, relative));
+    let uncertainty = SetupUncertainty {
+        height: Some(HEIGHT),
+        quantities: quantities.collect(),
+        ..SetupUncertainty::default()
+    };
+    Measurement::new(&setup, &uncertainty).unwrap()
+}
+
+/// Returns the height, in metres, by the law of sines in the triangle of pupil, origin and point:
+///
+/// ```text
+/// z = L sin φ / sin(θ + φ)      tan φ = (v₀ − v) p / s      s = f L / (L − f)
+/// ```
+fn by_law_of_sines(
+    [distance, angle, focal_length, pitch, principal_row]: [f64; 5],
+    row: f64,
+) -> f64 {
+    let image_distance = focal_length * distance / (distance - focal_length);
+    let phi = libm::atan((principal_row - row) * pitch / image_distance);
+    distance * libm::sin(phi) / libm::sin(angle + phi)
+}
+
+const GEOMETRY: [SetupQuantity; 5] = [
+    SetupQuantity::Distance,
+    SetupQuantity::Angle,
+    SetupQuantity::FocalLength,
+    SetupQuantity::PixelPitch,
+    SetupQuantity::PrincipalRow,
+];
+
+#[test]
+fn sensitivities_are_those_of_the_law_of_sines() {
+    let measurement = measurement(&GEOMETRY.map(|quantity| (quantity, 1e-3)));
+    let found = measurement.first_order().unwrap();
+    assert!(
+        (found.estimate() - HEIGHT).abs() < 1e-12,
+        "{}",
+        found.estimate()
+    );
+    let row = measurement.setup.line_at(HEIGHT).unwrap().position;
+    let values = GEOMETRY.map(|quantity| quantity.value_in(measurement.setup.description()));
+    for (index, quantity) in GEOMETRY.into_iter().enumerate() {
+        // A central difference, which errs by 10⁻⁸ of a function of powers and sines.
+        let changed = |by: f64| {
+            let mut values = values;
+            values[index] *= 1.0 + by;
+            by_law_of_sines(values, row)
+        };
+        let expected = (changed(1e-4) - changed(-1e-4)) / (2e-4 * values[index]);
+        let sensitivity = found.contributions()[index].sensitivity;
+        let error = (sensitivity / expected - 1.0).abs();
+        assert!(error < 1e-6, "{quantity}: {sensitivity}, {expected}");
+    }
+}
+
+#[test]
+fn a_principal_row_shifts_what_the_position_of_the_line_does() {
+    let found = measurement(&[(SetupQuantity::PrincipalRow, 1e-3)])
+        .first_order()
+        .unwrap();
+    let [row, speckle] = [0, 1].map(|index: usize| found.contributions()[index].sensitivity);
+    assert!((row / speckle + 1.0).abs() < 1e-8, "{row}, {speckle}");
+}
+
+#[test]
+fn an_exact_set_up_has_the_uncertainty_of_its_budget() {
+    let measurement = measurement(&[]);
+    let budget = Budget::at_height(&measurement.setup, HEIGHT).unwrap();
+    let found = measurement.first_order().unwrap();
+    // The budget differentiates the position by the height, over 10⁻⁵ of the distance.
+    let error = (found.combined() / budget.combined() - 1.0).abs();
+    assert!(error < 1e-6, "{}, {}", found.combined(), budget.combined());
+    let trials = measurement
+        .propagation(PropagationOptions::default())
+        .unwrap();
+    // Two digits of u are stable.
+    let error = (trials.uncertainty() - budget.combined()).abs();
+    assert!(error < 1.65 * trials.tolerance(), "{error}");
+}
+
+#[test]
+fn light_changes_noise_and_no_height() {
+    let measurement = measurement(&[(SetupQuantity::Power, 0.01)]);
+    let found = measurement.first_order().unwrap();
+    assert!(found.contributions()[0].uncertainty < 1e-15, "{found:?}");
+    let shot = MeasurementInput::Term(UncertaintySource::ShotNoise);
+    let shot = measurement
+        .sources()
+        .iter()
+        .position(|source| *source == shot)
+        .unwrap();
+    let mut values = measurement.inputs().estimates();
+    values[shot] = 1e-3;
+    let shift = |measurement: &Measurement, values: &[f64]| measurement.height_of(values) - HEIGHT;
+    let before = shift(&measurement, &values);
+    values[0] *= 1.02;
+    let after = shift(&measurement, &values);
+    // Shot noise falls with the root of the power: 0.99 for 1.02, to first order; dark electrons and the
+    // difference over ± 1 % leave 10⁻⁴.
+    assert!((after / before - 0.99).abs() < 2e-4, "{before}, {after}");
+}
+
+#[test]
+fn a_virtual_experiment_agrees_with_the_propagation_of_distributions() {
+    let measurement = measurement(&[
+        (SetupQuantity::Angle, 0.01),
+        (SetupQuantity::Distance, 0.003),
+    ]);
+    let options = SimulationOptions {
+        trials: 300,
+        seed: 2,
+    };
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let run = || measurement.virtual_experiment(options, |_| (), &false.into());
+        pool.build().unwrap().install(run).unwrap()
+    };
+    let found = run(2);
+    let error = found.error().unwrap();
+    let expected = measurement
+        .propagation(PropagationOptions::default())
+        .unwrap();
+    let deviation = (error.uncertainty - expected.uncertainty()).abs();
+    // Of 300 independent set-ups; speckle's part is first order to some percent.
+    assert!(
+        deviation < 3.3 * error.standard_error,
+        "{error:?}, {}",
+        expected.uncertainty()
+    );
+    assert!(error.standard_error < 0.06 * error.uncertainty, "{error:?}");
+    // The mean of 300 scatters by u/√300.
+    let mean = (found.mean() - HEIGHT).abs();
+    assert!(mean < 3.3 * error.uncertainty / 300.0_f64.sqrt(), "{mean}");
+    let interval = found.interval().unwrap();
+    let ratio = interval.length() / expected.interval().length();
+    // An end of 300 values scatters by 0.15 u: both by 6 % of the length.
+    assert!((ratio - 1.0).abs() < 0.2, "{ratio}");
+    assert_eq!(run(1), found, "the same bits for any number of threads");
+}
+
+#[test]
+fn impossible_measurements_are_refused() {
+    let setup = setup();
+    let refused =
+        |uncertainty: &SetupUncertainty| Measurement::new(&setup, uncertainty).unwrap_err();
+    let high = SetupUncertainty {
+        height: Some(1.0),
+        ..SetupUncertainty::default()
+    };
+    assert_eq!(refused(&high).parameter(), Some("height"), "too high");
+    let wide = SetupUncertainty {
+        quantities: vec![input(&setup, SetupQuantity::Angle, 3.0)],
+        ..SetupUncertainty::default()
+    };
+    assert_eq!(refused(&wide).parameter(), Some("angle"), "more than 89°");
+    let correlated = SetupUncertainty {
+        quantities: vec![input(&setup, SetupQuantity::Angle, 0.01)],
+        correlations: vec![Correlation {
+            between: [0, 0],
+            coefficient: 1.0,
+        }],
+        ..SetupUncertainty::default()
+    };
+    assert_eq!(
+        refused(&correlated).parameter(),
+        Some("between"),
+        "with itself"
+    );
+}
+
+#[test]
+fn trials_can_be_cancelled() {
+    let found =
+        measurement(&[]).virtual_experiment(SimulationOptions::default(), |_| (), &true.into());
+    assert_eq!(found, Err(TriangulationError::Cancelled));
+}

@@ -1,0 +1,142 @@
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
+use tem00_uncertainty::{CoverageInterval, CoverageProbability, IntervalKind};
+
+use super::{Measurement, MeasurementInput, height_at};
+use crate::{
+    MonteCarloEstimate, Setup, SimulationOptions, TriangulationError, UncertaintySource,
+    budget::{Outcome, Simulator, estimate, invalid},
+    setup::within,
+};
+
+/// Heights that a set-up measures in a virtual experiment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VirtualExperiment {
+    options: SimulationOptions,
+    mean: f64,
+    error: Option<MonteCarloEstimate>,
+    interval: Option<CoverageInterval>,
+    invalid: f64,
+}
+
+impl VirtualExperiment {
+    /// Returns the options.
+    pub const fn options(&self) -> SimulationOptions {
+        self.options
+    }
+
+    /// Returns the mean of the measured heights, in metres.
+    pub const fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    /// Returns the root mean square error of a height, or `None` where fewer than half of the columns have a line
+    /// that can be trusted.
+    pub const fn error(&self) -> Option<MonteCarloEstimate> {
+        self.error
+    }
+
+    /// Returns the symmetric interval of 95 % of all measured heights, in metres; `None` as for the error.
+    pub const fn interval(&self) -> Option<CoverageInterval> {
+        self.interval
+    }
+
+    /// Returns the fraction of the columns in which the detector found no line that can be trusted, from 0
+    /// to 1.
+    pub const fn invalid(&self) -> f64 {
+        self.invalid
+    }
+}
+
+/// The heights of one trial.
+struct Heights {
+    heights: Vec<f64>,
+    outcome: Outcome,
+}
+
+impl Measurement {
+    /// Measures the height many times with set-ups that differ from their description as it is uncertain.
+    ///
+    /// Each trial draws a true set-up, exposes simulated frames of the line at the height with all noise, has the
+    /// detector find it, and evaluates the height with the set-up as it is described. `progress` is told the
+    /// number of trials that are done; setting `cancel` ends the work. The same seed gives the same bits for any
+    /// number of threads.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`simulate`](crate::simulate), and one if a set-up that is drawn is not possible.
+    pub fn virtual_experiment(
+        &self,
+        options: SimulationOptions,
+        progress: impl Fn(u64) + Sync,
+        cancel: &AtomicBool,
+    ) -> Result<VirtualExperiment, TriangulationError> {
+        let trials = f64::from(options.trials);
+        within("trials", trials, (10.0, 1e6), "from 10 to a million")?;
+        let done = AtomicU64::new(0);
+        let trial = |index: u32| {
+            if cancel.load(Ordering::Relaxed) {
+                return Err(TriangulationError::Cancelled);
+            }
+            let trial = self.trial(options.seed, index);
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+            trial
+        };
+        let trials = (0..options.trials).into_par_iter().map(trial);
+        let trials: Vec<Heights> = trials.collect::<Result<_, _>>()?;
+        let outcomes = trials.iter().map(|trial| trial.outcome);
+        let (error, invalid) = (estimate(outcomes.clone(), 1.0), invalid(outcomes));
+        let mut heights: Vec<f64> = trials.into_iter().flat_map(|trial| trial.heights).collect();
+        heights.sort_by(f64::total_cmp);
+        let interval = || {
+            CoverageInterval::of_sorted(&heights, CoverageProbability::P95, IntervalKind::Symmetric)
+        };
+        Ok(VirtualExperiment {
+            options,
+            mean: heights.iter().sum::<f64>() / heights.len() as f64,
+            error,
+            interval: error.map(|_| interval()),
+            invalid,
+        })
+    }
+
+    fn trial(&self, seed: u64, index: u32) -> Result<Heights, TriangulationError> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(u64::from(index));
+        let mut values = self.inputs.estimates();
+        self.inputs.draw(&mut random, &mut values);
+        let calibration = MeasurementInput::Term(UncertaintySource::Calibration);
+        let calibration = self
+            .sources
+            .iter()
+            .position(|source| *source == calibration);
+        let calibration = calibration.map_or(0.0, |index| values[index]);
+        let described = self.setup.description();
+        let setup = Setup::new(self.with(&values))?;
+        let line = setup
+            .line_at(self.height)
+            .ok_or(TriangulationError::NothingMeasured {
+                why: "the camera does not see the line",
+                advice: "take a smaller height",
+            })?;
+        let (deviations, invalid) = Simulator::new(&setup, line)?.deviations(random.next_u64())?;
+        let height = |deviation: f64| height_at(described, &self.setup, line.position + deviation);
+        let heights: Vec<f64> = deviations
+            .into_iter()
+            .filter_map(height)
+            .map(|height| height + calibration)
+            .collect();
+        let squares = heights.iter().map(|height| (height - self.height).powi(2));
+        let mean = squares.sum::<f64>() / heights.len() as f64;
+        Ok(Heights {
+            outcome: Outcome {
+                square: (!heights.is_empty()).then_some(mean),
+                invalid,
+            },
+            heights,
+        })
+    }
+}

@@ -1,0 +1,203 @@
+use core::fmt;
+
+use tem00_config::{ANGLE, DURATION, Dimension, LENGTH, NUMBER, POWER};
+
+use super::SetupDescription;
+
+/// Physical quantity of a set-up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SetupQuantity {
+    /// The vacuum wavelength of the laser, in metres.
+    Wavelength,
+    /// The linewidth of the laser, in metres.
+    Linewidth,
+    /// The power in the line, in watts.
+    Power,
+    /// The full 1/e² thickness of the line on the part, in metres.
+    LineThickness,
+    /// The length of the line on the part, in metres.
+    LineLength,
+    /// The focal length of the lens, in metres.
+    FocalLength,
+    /// The f-number of the lens.
+    FNumber,
+    /// The distance of the pixels' centres, in metres.
+    PixelPitch,
+    /// The distance from the entrance pupil to the line, in metres.
+    Distance,
+    /// The angle between optical axis and laser plane, in radians.
+    Angle,
+    /// The row of the image that the optical axis meets, in pixels.
+    PrincipalRow,
+    /// The electrons per photon.
+    QuantumEfficiency,
+    /// The exposure time, in seconds.
+    Exposure,
+    /// The electrons at saturation.
+    FullWell,
+    /// The grey value without light.
+    BlackLevel,
+    /// The grey values per electron.
+    Gain,
+    /// The temporal noise without light, in electrons.
+    DarkNoise,
+    /// The dark current, in electrons per second.
+    DarkCurrent,
+    /// The standard deviation of the pixels' responses.
+    Prnu,
+    /// The standard deviation of the pixels' dark signals, in electrons.
+    Dsnu,
+    /// The part of the pixel over which it integrates.
+    FillFactor,
+    /// The reflectance of the surface.
+    Reflectance,
+    /// The degree of polarisation of the scattered light.
+    Polarisation,
+    /// The standard deviation of the relief's heights, in metres.
+    RmsHeight,
+    /// The correlation length of the relief, in metres.
+    CorrelationLength,
+}
+
+impl SetupQuantity {
+    /// All of them, in the order of a set-up file.
+    pub const ALL: [Self; 25] = [
+        Self::Wavelength,
+        Self::Linewidth,
+        Self::Power,
+        Self::LineThickness,
+        Self::LineLength,
+        Self::FocalLength,
+        Self::FNumber,
+        Self::PixelPitch,
+        Self::Distance,
+        Self::Angle,
+        Self::PrincipalRow,
+        Self::QuantumEfficiency,
+        Self::Exposure,
+        Self::FullWell,
+        Self::BlackLevel,
+        Self::Gain,
+        Self::DarkNoise,
+        Self::DarkCurrent,
+        Self::Prnu,
+        Self::Dsnu,
+        Self::FillFactor,
+        Self::Reflectance,
+        Self::Polarisation,
+        Self::RmsHeight,
+        Self::CorrelationLength,
+    ];
+
+    /// Returns the section of a set-up file and the key in it.
+    pub const fn path(self) -> [&'static str; 2] {
+        match self {
+            Self::Wavelength => ["laser", "wavelength"],
+            Self::Linewidth => ["laser", "linewidth"],
+            Self::Power => ["laser", "power"],
+            Self::LineThickness => ["laser", "line_thickness"],
+            Self::LineLength => ["laser", "line_length"],
+            Self::FocalLength => ["camera", "focal_length"],
+            Self::FNumber => ["camera", "f_number"],
+            Self::PixelPitch => ["camera", "pixel_pitch"],
+            Self::Distance => ["camera", "distance"],
+            Self::Angle => ["camera", "angle"],
+            Self::PrincipalRow => ["camera", "principal_row"],
+            Self::QuantumEfficiency => ["sensor", "quantum_efficiency"],
+            Self::Exposure => ["sensor", "exposure"],
+            Self::FullWell => ["sensor", "full_well"],
+            Self::BlackLevel => ["sensor", "black_level"],
+            Self::Gain => ["sensor", "gain"],
+            Self::DarkNoise => ["sensor", "dark_noise"],
+            Self::DarkCurrent => ["sensor", "dark_current"],
+            Self::Prnu => ["sensor", "prnu"],
+            Self::Dsnu => ["sensor", "dsnu"],
+            Self::FillFactor => ["sensor", "fill_factor"],
+            Self::Reflectance => ["surface", "reflectance"],
+            Self::Polarisation => ["surface", "polarisation"],
+            Self::RmsHeight => ["surface", "rms_height"],
+            Self::CorrelationLength => ["surface", "correlation_length"],
+        }
+    }
+
+    /// Returns the value in a set-up, in SI units.
+    pub fn value_in(self, description: &SetupDescription) -> f64 {
+        let mut description = description.clone();
+        *self.field(&mut description)
+    }
+
+    /// Changes the value in a set-up, in SI units, whether or not it is possible then. An exposure that is
+    /// set is no longer chosen by the light.
+    pub fn set(self, description: &mut SetupDescription, value: f64) {
+        description.auto_exposure &= self != Self::Exposure;
+        *self.field(description) = value;
+    }
+
+    /// Returns the symbol of the unit that it is usually written in.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Angle => "deg",
+            Self::Power => "mW",
+            Self::Exposure => "ms",
+            Self::Wavelength | Self::Linewidth | Self::RmsHeight => "nm",
+            Self::PixelPitch | Self::CorrelationLength => "um",
+            Self::LineThickness | Self::LineLength | Self::FocalLength | Self::Distance => "mm",
+            _ => "",
+        }
+    }
+
+    /// Returns its kind of quantity.
+    pub(crate) const fn dimension(self) -> &'static Dimension {
+        match self.unit().as_bytes() {
+            b"deg" => &ANGLE,
+            b"mW" => &POWER,
+            b"ms" => &DURATION,
+            b"" => &NUMBER,
+            _ => &LENGTH,
+        }
+    }
+
+    fn field(self, description: &mut SetupDescription) -> &mut f64 {
+        let (laser, camera) = (&mut description.laser, &mut description.camera);
+        let (sensor, surface) = (&mut description.sensor, &mut description.surface);
+        match self {
+            Self::Wavelength => &mut laser.light.wavelength,
+            Self::Linewidth => &mut laser.light.linewidth,
+            Self::Power => &mut laser.power,
+            Self::LineThickness => &mut laser.line_thickness,
+            Self::LineLength => &mut laser.line_length,
+            Self::FocalLength => &mut camera.focal_length,
+            Self::FNumber => &mut camera.f_number,
+            Self::PixelPitch => &mut sensor.pixel_pitch,
+            Self::Distance => &mut camera.distance,
+            Self::Angle => &mut camera.angle,
+            Self::PrincipalRow => {
+                let middle = 0.5 * camera.resolution[1] as f64;
+                camera.principal_row.get_or_insert(middle)
+            }
+            Self::QuantumEfficiency => &mut sensor.quantum_efficiency,
+            Self::Exposure => &mut sensor.exposure_time,
+            Self::FullWell => &mut sensor.full_well,
+            Self::BlackLevel => &mut sensor.black_level,
+            Self::Gain => &mut sensor.gain,
+            Self::DarkNoise => &mut sensor.dark_noise,
+            Self::DarkCurrent => &mut sensor.dark_current,
+            Self::Prnu => &mut sensor.prnu,
+            Self::Dsnu => &mut sensor.dsnu,
+            Self::FillFactor => &mut sensor.fill_factor,
+            Self::Reflectance => &mut surface.reflectance,
+            Self::Polarisation => &mut surface.polarisation,
+            Self::RmsHeight => &mut surface.relief.rms_height,
+            Self::CorrelationLength => &mut surface.relief.correlation_length,
+        }
+    }
+}
+
+impl fmt::Display for SetupQuantity {
+    /// Writes the path of the key, as in `camera.angle`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [section, key] = self.path();
+        write!(f, "{section}.{key}")
+    }
+}

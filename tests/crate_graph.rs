@@ -164,6 +164,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-scene",
             "tem00-tracer",
             "tem00-triangulation",
+            "tem00-uncertainty",
         ],
         &[
             "annotate-snippets",

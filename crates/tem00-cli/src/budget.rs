@@ -1,13 +1,15 @@
 //! `tem00 budget`: what height uncertainty a set-up gives, and what dominates it.
 
+mod answers;
 mod drawings;
 mod findings;
+mod measured;
 mod report;
 mod words;
 
 use std::{io::Write, path::Path};
 
-use tem00_triangulation::read_setup_with;
+use tem00_triangulation::{read_setup_with, read_uncertainty};
 
 use self::findings::{Findings, HELP};
 use crate::{
@@ -24,10 +26,15 @@ use crate::{
 /// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or, with
 /// all files written, if the set-up measures nothing.
 pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (setup, text) = read_setup_with(
+    let (setup, (text, uncertainty)) = read_setup_with(
         &args.common.setup,
         args.common.files.reading(),
-        |document, _| Ok(document.text().to_owned()),
+        |document, setup| {
+            Ok((
+                document.text().to_owned(),
+                read_uncertainty(document, setup)?,
+            ))
+        },
     )
     .map_err(|error| {
         wrong_or(&args.common.setup, Kind::Setup, || {
@@ -40,7 +47,7 @@ pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure
     );
     let _lock = output::prepare(&folder)?;
     let pool = output::thread_pool(args.common.threads)?;
-    let findings = pool.install(|| Findings::new(args, setup, text))?;
+    let findings = pool.install(|| Findings::new(args, (setup, &uncertainty), text))?;
     let report = report::report(&findings, draw(&findings, &folder)?);
     let files = ["budget.json", "budget.html"].map(|name| folder.join(name));
     report.save_json(&files[0])?;

@@ -9,7 +9,7 @@ mod words;
 
 use std::io::Write;
 
-use tem00_triangulation::{neighbours, read_design, read_setup_with};
+use tem00_triangulation::{neighbours, read_design, read_setup_with, read_uncertainty};
 
 use self::search::Design;
 use crate::{
@@ -29,12 +29,13 @@ const PART: f64 = 0.1;
 /// Returns a failure if the input is not valid, a file cannot be written, the user ends it, or if no set-up
 /// keeps every constraint; all files but `best.toml` are written then, if any set-up is possible.
 pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (_, (search, text)) = read_setup_with(
+    let (_, (search, uncertainty, text)) = read_setup_with(
         &args.common.setup,
         args.common.files.reading(),
         |document, setup| {
             let search = read_design(document, setup.description())?;
-            Ok((search, document.text().to_owned()))
+            let uncertainty = read_uncertainty(document, setup)?;
+            Ok((search, uncertainty, document.text().to_owned()))
         },
     )
     .map_err(|error| {
@@ -46,7 +47,8 @@ pub(crate) fn run(args: &DesignArgs, out: &mut impl Write) -> Result<(), Failure
     let folder = output::folder(args.common.output.as_deref(), &name);
     let _lock = output::prepare(&folder)?;
     let pool = output::thread_pool(args.common.threads)?;
-    let design = pool.install(|| Design::search(args, search, text))?;
+    let mut design = pool.install(|| Design::search(args, search, text))?;
+    design.is_exact = uncertainty.quantities.is_empty();
     if design.winner().is_none() {
         // That of another search would be taken for the winner of this one.
         output::remove(&folder, &["best"], &["toml"])?;

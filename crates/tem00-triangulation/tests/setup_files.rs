@@ -33,6 +33,7 @@ fn the_setups_of_the_repository_are_read() {
     let entries = fs::read_dir(repository().join("setups")).expect("the folder is there");
     let paths: Vec<PathBuf> = entries
         .map(|entry| entry.expect("the entry is read").path())
+        .filter(|path| path.is_file())
         .collect();
     assert!(paths.len() >= 4, "{paths:?}");
     for path in paths {
@@ -167,6 +168,7 @@ fn the_page_has_exactly_the_keys_of_the_reader() {
         "surface",
         "calibration",
         "average",
+        "budget",
         "design",
     ] {
         let keys = keys(&page, section, "?");

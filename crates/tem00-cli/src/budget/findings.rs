@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use tem00_triangulation::{
-    Budget, LightLevel, Setup, Simulation, SimulationOptions, TriangulationError,
+    Budget, LightLevel, Setup, SetupUncertainty, Simulation, SimulationOptions, TriangulationError,
     UncertaintySource, simulate,
 };
 
+use super::measured::Measured;
 use crate::{
     args::BudgetArgs, failure::Failure, interrupt, progress::Progress, report::units::PERCENT,
 };
@@ -33,6 +34,8 @@ pub(super) struct Answer {
     /// The heights that can be measured, and the combined standard uncertainty there, in metres; none where
     /// no line is found.
     pub(super) over_range: Vec<(f64, Option<f64>)>,
+    /// What is measured with a set-up that is not known exactly.
+    pub(super) measured: Option<Measured>,
 }
 
 /// The reason for which a set-up measures nothing.
@@ -44,9 +47,13 @@ pub(super) struct Refusal {
 }
 
 impl<'a> Findings<'a> {
-    pub(super) fn new(args: &'a BudgetArgs, setup: Setup, text: String) -> Result<Self, Failure> {
+    pub(super) fn new(
+        args: &'a BudgetArgs,
+        (setup, uncertainty): (Setup, &SetupUncertainty),
+        text: String,
+    ) -> Result<Self, Failure> {
         let answer = match Budget::new(&setup) {
-            Ok(budget) => Answer::new(args, &setup, budget)?,
+            Ok(budget) => Answer::new(args, (&setup, uncertainty), budget)?,
             Err(TriangulationError::NothingMeasured { why, advice }) => Err(Refusal {
                 why: why.to_owned(),
                 advice,
@@ -69,7 +76,7 @@ impl<'a> Findings<'a> {
 impl Answer {
     pub(super) fn new(
         args: &BudgetArgs,
-        setup: &Setup,
+        (setup, uncertainty): (&Setup, &SetupUncertainty),
         budget: Budget,
     ) -> Result<Result<Self, Refusal>, Failure> {
         let is_tried = args.trials > 0;
@@ -89,6 +96,7 @@ impl Answer {
         }
         Ok(Ok(Self {
             over_range: over_range(setup),
+            measured: Measured::new(args, setup, uncertainty)?,
             budget,
             trials,
         }))

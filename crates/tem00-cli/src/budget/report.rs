@@ -4,6 +4,7 @@ use serde_json::json;
 use tem00_triangulation::{Budget, BudgetTerm, Setup, UncertaintySource};
 
 use super::{
+    answers,
     findings::{Answer, Findings},
     words,
 };
@@ -32,6 +33,12 @@ pub(super) fn report(findings: &Findings<'_>, drawings: Vec<String>) -> Report {
     verdicts.into_iter().for_each(|line| report.verdict(line));
     numbers(&mut report, answer);
     report.data("trials", trials(findings));
+    if let Some(measured) = answer.and_then(|answer| answer.measured.as_ref()) {
+        answers::section(
+            report.section("The measured height").under("measurement"),
+            measured,
+        );
+    }
     match answer {
         Some(answer) => terms(report.section("The budget"), answer, drawings),
         None => report.data("terms", json!([])),

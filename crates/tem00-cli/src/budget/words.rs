@@ -2,7 +2,10 @@
 
 use tem00_triangulation::{LightLevel, Setup};
 
-use super::findings::{Answer, Refusal};
+use super::{
+    answers,
+    findings::{Answer, Refusal},
+};
 use crate::report::units::{MICROMETRES, NUMBER, PERCENT};
 
 /// Returns what the budget comes to.
@@ -10,7 +13,11 @@ pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
     let level = setup.light_level();
     let budget = &answer.budget;
     let dominant = budget.dominant();
-    let mut lines = vec![
+    let mut lines = answer
+        .measured
+        .as_ref()
+        .map_or_else(Vec::new, answers::verdicts);
+    lines.extend([
         result(answer),
         format!(
             "{} dominates, with {} of the variance: {}.",
@@ -26,7 +33,7 @@ pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
             MICROMETRES.text(budget.line_law()),
             MICROMETRES.text(budget.dorsch())
         ),
-    ];
+    ]);
     if level != LightLevel::Good {
         lines.push(format!("The light is not right: {}.", level.advice()));
     }
@@ -49,8 +56,12 @@ fn result(answer: &Answer) -> String {
         let expanded = budget.coverage_factor() * found;
         format!(" By trials {}.", MICROMETRES.text(expanded))
     });
+    let exact = match answer.measured {
+        Some(_) => " at the reference plane, of a set-up that is known exactly",
+        None => "",
+    };
     format!(
-        "Expanded uncertainty of a height: U = {} (95 %, k = {:.2}).{}",
+        "Expanded uncertainty of a height{exact}: U = {} (95 %, k = {:.2}).{}",
         MICROMETRES.text(budget.expanded()),
         budget.coverage_factor(),
         by_trials.unwrap_or_default()

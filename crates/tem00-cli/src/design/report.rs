@@ -47,6 +47,12 @@ pub(super) fn report(
     words::hindrances(design)
         .into_iter()
         .for_each(|line| report.verdict(line));
+    if !design.is_exact {
+        report.note(
+            "The uncertain values of the set-up are taken at their best estimates: the search knows the noise alone, and \
+             best.toml has no uncertainties.",
+        );
+    }
 
     list(&mut report, design);
     if let Some((shown, figures)) = design

@@ -15,6 +15,8 @@ pub(super) struct Design<'a> {
     pub(super) text: String,
     pub(super) search: DesignSearch,
     pub(super) outcome: DesignOutcome,
+    /// No quantity of the set-up is uncertain.
+    pub(super) is_exact: bool,
     /// The most set-ups that are listed.
     pub(super) most: usize,
 }
@@ -38,6 +40,7 @@ impl<'a> Design<'a> {
             text,
             search,
             outcome,
+            is_exact: true,
             most: args.best.into(),
         })
     }

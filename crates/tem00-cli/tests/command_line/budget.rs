@@ -231,3 +231,92 @@ fn below_half_of_the_columns_there_is_no_uncertainty() {
         "% of the columns have no line that can be trusted",
     );
 }
+
+#[test]
+fn an_uncertain_set_up_has_three_answers_and_one_to_quote() {
+    let angle = "angle = { value = \"30 deg\", uncertainty = \"0.3 deg\" }\n\
+                 principal_row = { value = 32, uncertainty = 0.5, distribution = \"rectangular\" }";
+    let folder = setup_folder("angle = \"30 deg\"", angle);
+    let output = run(folder.path(), "budget a.toml --trials 40 --seed 3");
+    assert_code(&output, 0);
+    let table = text(&output.stdout);
+    for part in [
+        "law of propagation",
+        "propagation of distributions",
+        "virtual experiment",
+        "camera.principal_row",
+        "quote it",
+        "at the reference plane, of a set-up that is known exactly",
+    ] {
+        assert!(table.contains(part), "{part} is not in\n{table}");
+    }
+    let record = json(&run(folder.path(), "budget a.toml --trials 40 --seed 3 --json").stdout);
+    let found = &record["measurement"];
+    let height = found["height"].as_f64().expect("a height");
+    let range = record["image"]["measuring_range"][1].as_f64();
+    assert_eq!(Some(height), range, "the greatest height by default");
+    let answers = found["answers"].as_array().expect("the answers");
+    let methods: Vec<_> = answers.iter().map(|answer| &answer["method"]).collect();
+    assert_eq!(
+        methods,
+        ["first_order", "propagation", "virtual_experiment"]
+    );
+    for answer in answers {
+        let number = |key: &str| answer[key].as_f64().expect("a number");
+        let (u, estimate) = (number("uncertainty"), number("estimate"));
+        assert!(
+            number("low") < height && height < number("high"),
+            "{answer}"
+        );
+        assert!((estimate - height).abs() < 0.5 * u, "{answer}");
+    }
+    assert_eq!(found["quoted"], "first_order", "{found}");
+    assert_eq!(found["validation"]["is_valid"], true, "{found}");
+    let fractions = found["inputs"].as_array().expect("the inputs").iter();
+    let fractions = fractions.map(|input| input["variance_fraction"].as_f64().expect("a fraction"));
+    assert!((fractions.sum::<f64>() - 1.0).abs() < 1e-12, "{found}");
+}
+
+#[test]
+fn a_set_up_that_is_known_exactly_has_no_answers() {
+    let folder = setup_folder("[laser]", "[laser]");
+    let output = run(folder.path(), "budget a.toml --trials 0 --json");
+    assert!(
+        json(&output.stdout).get("measurement").is_none(),
+        "{}",
+        text(&output.stdout)
+    );
+}
+
+#[test]
+fn correlated_values_have_no_parts_of_the_variance() {
+    let both = "distance = { value = \"300 mm\", uncertainty = \"1 mm\" }\n\
+                angle = { value = \"30 deg\", uncertainty = \"0.3 deg\" }";
+    let folder = setup_folder("distance = \"300 mm\"\nangle = \"30 deg\"", both);
+    let path = folder.path().join("a.toml");
+    let more = "\n[[correlation]]\nbetween = [\"camera.angle\", \"camera.distance\"]\ncoefficient = 0.5\n\
+                [budget]\nheight = \"0.5 mm\"\n";
+    let set_up = fs::read_to_string(&path).expect("the set-up") + more;
+    fs::write(&path, set_up).expect("written");
+    let output = run(folder.path(), "budget a.toml --trials 0 --json");
+    assert_code(&output, 0);
+    let found = &json(&output.stdout)["measurement"];
+    assert_eq!(found["height"], 0.5e-3, "{found}");
+    assert_eq!(found["correlations"][0]["coefficient"], 0.5, "{found}");
+    assert_eq!(
+        found["answers"].as_array().map(Vec::len),
+        Some(2),
+        "{found}"
+    );
+    assert!(found["inputs"][0].get("total_index").is_none(), "{found}");
+    let output = run(
+        folder.path(),
+        "budget a.toml --set camera.angle.uncertainty=-1deg",
+    );
+    assert_code(&output, 2);
+    assert!(
+        message(&output).contains("`uncertainty` must be at least 0"),
+        "{}",
+        message(&output)
+    );
+}

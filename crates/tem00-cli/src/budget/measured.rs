@@ -1,0 +1,131 @@
+//! A height that is measured with a set-up whose quantities are uncertain.
+
+use tem00_triangulation::{
+    Measurement, Setup, SetupUncertainty, SimulationOptions, TriangulationError, VirtualExperiment,
+};
+use tem00_uncertainty::{
+    CoverageInterval, CoverageProbability, Decomposition, DecompositionOptions, FirstOrder,
+    Propagation, PropagationOptions, Validation,
+};
+
+use crate::{args::BudgetArgs, failure::Failure, interrupt, progress::Progress};
+
+/// The number of samples of the decomposition of the variance.
+const SAMPLES: u32 = 1 << 15;
+/// The maximum number of trials of the propagation of distributions.
+const MAX_TRIALS: u64 = 2_000_000;
+
+/// A height and its uncertainty by three methods.
+pub(super) struct Measured {
+    pub(super) measurement: Measurement,
+    pub(super) first_order: FirstOrder,
+    pub(super) propagation: Propagation,
+    /// The parts of the variance; none with correlated inputs.
+    pub(super) decomposition: Option<Decomposition>,
+    /// The virtual experiment, unless trials were left out.
+    pub(super) experiment: Option<VirtualExperiment>,
+}
+
+/// Method whose uncertainty is to be quoted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quoted {
+    FirstOrder,
+    Propagation,
+    VirtualExperiment,
+}
+
+impl Measured {
+    /// Returns `None` of a set-up that is known exactly.
+    pub(super) fn new(
+        args: &BudgetArgs,
+        setup: &Setup,
+        uncertainty: &SetupUncertainty,
+    ) -> Result<Option<Self>, Failure> {
+        if uncertainty.quantities.is_empty() && uncertainty.height.is_none() {
+            return Ok(None);
+        }
+        let measured = Measurement::new(setup, uncertainty).and_then(|found| Self::of(args, found));
+        measured.map(Some).map_err(|error| match error {
+            TriangulationError::Cancelled => Failure::Interrupted,
+            error => Failure::input(
+                format!("{}: {error}", args.common.setup.display()),
+                "smaller uncertainties, or limits by another `distribution`; --trials 0 leaves the virtual \
+                 experiment out",
+            ),
+        })
+    }
+
+    fn of(args: &BudgetArgs, measurement: Measurement) -> Result<Self, TriangulationError> {
+        let propagation = PropagationOptions {
+            digits: 1,
+            // What a validation of the first order asks for.
+            tolerance_divisor: 5.0,
+            max_trials: MAX_TRIALS,
+            seed: args.seed,
+            ..PropagationOptions::default()
+        };
+        let samples = DecompositionOptions {
+            samples: SAMPLES,
+            seed: args.seed,
+        };
+        let decomposed = || measurement.decomposition(samples);
+        let is_independent = measurement.inputs().are_independent();
+        Ok(Self {
+            first_order: measurement.first_order()?,
+            propagation: measurement.propagation(propagation)?,
+            decomposition: is_independent.then(decomposed).transpose()?,
+            experiment: (args.trials > 0)
+                .then(|| tried(args, &measurement))
+                .transpose()?,
+            measurement,
+        })
+    }
+
+    /// Returns the interval of 95 % by the law of propagation.
+    pub(super) fn interval(&self) -> CoverageInterval {
+        let half = self.first_order.expanded(CoverageProbability::P95);
+        CoverageInterval {
+            low: self.first_order.estimate() - half,
+            high: self.first_order.estimate() + half,
+        }
+    }
+
+    /// Compares the law of propagation with the propagation of distributions.
+    pub(super) fn validation(&self) -> Validation {
+        self.propagation.validate(&self.first_order)
+    }
+
+    /// Returns the ratio of the uncertainty in the virtual experiment to that by distributions, and its standard
+    /// error.
+    pub(super) fn ratio(&self) -> Option<[f64; 2]> {
+        let error = self.experiment.as_ref()?.error()?;
+        let by_distributions = self.propagation.uncertainty();
+        Some([error.uncertainty, error.standard_error].map(|found| found / by_distributions))
+    }
+
+    /// Returns the method to quote: the first that the next one does not contradict. A virtual experiment does by
+    /// a tenth of the uncertainty, and more than three of its standard errors.
+    pub(super) fn quoted(&self) -> Quoted {
+        let differs = |[ratio, error]: [f64; 2]| (ratio - 1.0).abs() > (3.0 * error).max(0.1);
+        if self.ratio().is_some_and(differs) {
+            Quoted::VirtualExperiment
+        } else if self.validation().is_valid() {
+            Quoted::FirstOrder
+        } else {
+            Quoted::Propagation
+        }
+    }
+}
+
+fn tried(
+    args: &BudgetArgs,
+    measurement: &Measurement,
+) -> Result<VirtualExperiment, TriangulationError> {
+    let bar = Progress::of(args.trials.into(), "trials");
+    bar.name("measuring".into());
+    let options = SimulationOptions {
+        trials: args.trials,
+        seed: args.seed,
+    };
+    measurement.virtual_experiment(options, |_| bar.advance(1), interrupt::flag())
+}

@@ -1,12 +1,14 @@
 //! Look-ups of points whose light is a sum of patterns, or of one wave number of a line.
 
+use core::f64::consts::TAU;
+
 use glam::DVec2;
 use tem00_coherence::Recombination;
 use tem00_speckle::{Complex, SpeckleStack};
 
 use super::{
     super::{SpecklePoint, allocation, plan::SurfacePatterns},
-    Block, Mix, SpeckleFrame, Stack,
+    Block, Mix, SpeckleFrame, Stack, in_samples,
 };
 
 /// The fraction of light below which a pattern counts as even: many such leave a contrast below 0.04.
@@ -141,8 +143,12 @@ impl SpeckleFrame<'_> {
                 let mut block = self.block(laser, stack, places, axis);
                 block.shift(part.offset, stack.size());
                 block.shift(beside, stack.size());
+                // Fields are in the frame of the pupil of their slice, a ramp of phases that other positions see elsewhere.
+                let [along, _] = in_samples(part.offset, stack.size());
+                let ramp = TAU * along / (stack.speckle_size() * pattern.slices_per_diameter);
                 for (i, (amplitude, place)) in amplitudes.iter_mut().zip(places).enumerate() {
-                    let phase = Complex::cis(place.phase_per_height * height);
+                    let phase =
+                        Complex::cis(place.phase_per_height * height - ramp * place.u.floor());
                     let field = stack.amplitude_at(block.x[i], block.y[i], block.u[i]);
                     *amplitude += field * phase * root;
                 }

@@ -145,6 +145,6 @@ fn run_command(command: &Command, mut out: &mut dyn Write) -> Result<(), Failure
         #[cfg(feature = "full")]
         Command::Design(args) => design::run(args, &mut out),
         #[cfg(feature = "full")]
-        Command::Sweep(args) => sweep::run(args, &mut out),
+        Command::Sweep(args) => sweep::run(args, &mut out, run_command),
     }
 }

@@ -9,27 +9,31 @@ use std::{fs, io::Write, ops::RangeInclusive};
 use self::{
     grid::{Grid, HELP},
     row::{Outcome, Row, cell, quoted},
-    task::Sweep,
+    task::{RunCommand, Sweep},
 };
 use crate::{
     args::SweepArgs, atomic::write_atomically, failure::Failure, interrupt, output,
     progress::Progress,
 };
 
-/// Lists the tasks, does some of them, or makes the table of their rows.
+/// Lists the tasks, does some of them by `run_command`, or makes the table of their rows.
 ///
 /// # Errors
 ///
 /// Returns a failure if the grid is not valid, if a task fails for another reason than its values, if a file
 /// cannot be written, if the user ends it, if rows are missing for the table, or if all tasks are refused.
-pub(crate) fn run(args: &SweepArgs, out: &mut impl Write) -> Result<(), Failure> {
+pub(crate) fn run(
+    args: &SweepArgs,
+    out: &mut impl Write,
+    run_command: RunCommand,
+) -> Result<(), Failure> {
     let grid = Grid::read(&args.grid).map_err(|error| Failure::file(&args.grid, &error, HELP))?;
     if args.list {
         return list(&grid, out).map_err(|error| Failure::stdout(&error));
     }
     let name = output::name(&args.grid, "sweep");
     let folder = output::folder(args.output.as_deref(), &name);
-    let sweep = Sweep::new(&grid, &folder, args.threads)?;
+    let sweep = Sweep::new((&grid, &folder), args.threads, run_command)?;
     fs::create_dir_all(folder.join("rows")).map_err(|error| Failure::writing(&folder, error))?;
     if !args.gather {
         do_tasks(&sweep, tasks(args, &grid)?)?;

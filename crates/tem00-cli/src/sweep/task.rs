@@ -1,7 +1,8 @@
 //! One task of a sweep.
 
 use std::{
-    fs, io,
+    fs,
+    io::{self, Write},
     path::{Path, PathBuf},
 };
 
@@ -12,7 +13,14 @@ use super::{
     grid::{Grid, Swept},
     row::{Outcome, Row, result_at},
 };
-use crate::{args::Cli, failure::Failure, output, run_command};
+use crate::{
+    args::{Cli, Command},
+    failure::Failure,
+    output,
+};
+
+/// What does a command, as the program does.
+pub(super) type RunCommand = fn(&Command, &mut dyn Write) -> Result<(), Failure>;
 
 /// A sweep with the folder of its results.
 pub(super) struct Sweep<'a> {
@@ -21,14 +29,15 @@ pub(super) struct Sweep<'a> {
     /// The text of the scene or the set-up.
     text: String,
     threads: Option<u16>,
+    run_command: RunCommand,
 }
 
 impl<'a> Sweep<'a> {
     /// Reads the file that the grid names.
     pub(super) fn new(
-        grid: &'a Grid,
-        folder: &'a Path,
+        (grid, folder): (&'a Grid, &'a Path),
         threads: Option<u16>,
+        run_command: RunCommand,
     ) -> Result<Self, Failure> {
         let text = fs::read_to_string(&grid.file).map_err(|error| {
             let message = format!("cannot read {}: {error}", grid.file.display());
@@ -39,6 +48,7 @@ impl<'a> Sweep<'a> {
             folder,
             text,
             threads,
+            run_command,
         })
     }
 
@@ -86,7 +96,7 @@ impl<'a> Sweep<'a> {
             let message = text.trim_start_matches("error: ").replace('\n', " ");
             Failure::input(message, "the grid names the options and the keys")
         })?;
-        run_command(&cli.command, &mut io::sink())
+        (self.run_command)(&cli.command, &mut io::sink())
     }
 
     /// What a failure says, without the path of the file, which may differ from machine to machine.

@@ -16,7 +16,7 @@ use std::error::Error;
 use kuva::prelude::{LinePlot, Plot};
 use tem00::coherence::{
     CellGeometry, CoherenceError, DVec3, LineShape, PolychromaticSpeckle, Relief, ResolutionCell,
-    Rows, SpectralLine,
+    Rows, SourceExtent, SpectralLine,
 };
 
 const LINEWIDTHS: [f64; 7] = [0.1e-9, 1e-9, 2e-9, 5e-9, 10e-9, 20e-9, 40e-9];
@@ -32,6 +32,7 @@ struct Case {
     rms_height: f64,
     sin_aperture: f64,
     linewidth: f64,
+    half_angle: f64,
 }
 
 /// What is left of a line's speckle.
@@ -54,7 +55,8 @@ impl Case {
         .with_relief(Relief {
             rms_height: self.rms_height,
             correlation_length: 0.0,
-        })?;
+        })?
+        .with_source_extent(SourceExtent::disc(self.half_angle)?);
         let line = SpectralLine::new(self.wavelength, self.linewidth, LineShape::Gaussian)?;
         let speckle = PolychromaticSpeckle {
             line: &line,
@@ -86,6 +88,7 @@ fn table(wavelength: f64) -> Result<[Vec<Plot>; 2], CoherenceError> {
                 rms_height,
                 sin_aperture: SIN_APERTURE,
                 linewidth,
+                half_angle: 0.0,
             };
             case.left()
         };
@@ -127,6 +130,7 @@ fn apertures() -> Result<Vec<Plot>, CoherenceError> {
                 rms_height: 1.6e-6,
                 sin_aperture,
                 linewidth,
+                half_angle: 0.0,
             };
             case.left().map(|left| left.noise)
         };
@@ -143,6 +147,32 @@ fn apertures() -> Result<Vec<Plot>, CoherenceError> {
     Ok(plots)
 }
 
+/// Prints contrast and noise under sources of a half-angle, over the aperture of the camera.
+fn extents() -> Result<(), CoherenceError> {
+    let ratios = [0.25, 0.5, 1.0, 2.0, 4.0];
+    row("half-angle over sin u", ratios.into_iter());
+    for linewidth in [0.0, 20e-9] {
+        let left = |ratio: f64| {
+            let case = Case {
+                wavelength: 450e-9,
+                rms_height: 0.4e-6,
+                sin_aperture: SIN_APERTURE,
+                linewidth,
+                half_angle: ratio * SIN_APERTURE,
+            };
+            case.left()
+        };
+        let at: Vec<Left> = ratios.into_iter().map(left).collect::<Result<_, _>>()?;
+        let name = format!("450 nm, 0.4 µm, {:.0} nm", linewidth * 1e9);
+        row(
+            &format!("{name}, contrast"),
+            at.iter().map(|left| left.contrast),
+        );
+        row(&format!("{name}, noise"), at.iter().map(|left| left.noise));
+    }
+    Ok(())
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     println!("Laser along the normal, camera at 30°, sin u = {SIN_APERTURE}; 1 is one wavelength");
     let [mut contrast, mut noise] = table(450e-9)?;
@@ -151,6 +181,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         all.extend(more);
     }
     let over_aperture = apertures()?;
+    extents()?;
 
     let linewidth = "linewidth (nm)";
     let noise_axis = "noise of a line over that in one wavelength";

@@ -871,6 +871,11 @@ typedef struct {
      */
     double to_source[3];
     /**
+     * Half-angle of the disc from which light reaches the surface, seen from there, at most 0.3 rad; 0 for a point. Light of
+     * its parts does not interfere.
+     */
+    double source_half_angle;
+    /**
      * To the centre of the pupil.
      */
     double to_pupil[3];
@@ -913,8 +918,8 @@ typedef struct {
      */
     double tilt_wave_number;
     /**
-     * Fractions of the light in patterns whose intensities add: one, or the coherent modes where heights dominate; none
-     * below a contrast of 0.07, which has a thousand. They belong to the handle.
+     * Fractions of the light in patterns whose intensities add: one; or, of heights that dominate or of the directions of a
+     * source, as many as its contrast asks for, at most 1024. They belong to the handle.
      */
     const double *patterns;
     /**

@@ -4,9 +4,7 @@ mod description;
 
 pub use description::*;
 
-use tem00_coherence::{
-    PolychromaticSpeckle, ResolutionCell, Rows, SpectralLine, representative_heights,
-};
+use tem00_coherence::{PatternSum, PolychromaticSpeckle, ResolutionCell, Rows, SpectralLine};
 
 use crate::{
     numbers::{check_coordinates, check_length, check_variates},
@@ -29,11 +27,8 @@ use crate::{
 pub struct Bandwidth {
     line: SpectralLine,
     cell: ResolutionCell,
-    /// The cell with a relief without correlation length that has the same contrast.
-    dense: ResolutionCell,
     contrast: f64,
-    patterns: Vec<f64>,
-    heights: Vec<[f64; 2]>,
+    patterns: PatternSum,
 }
 
 /// What a linewidth makes of speckle, and what stands for it in a renderer.
@@ -48,8 +43,8 @@ pub struct BandwidthInfo {
     pub tilt: [f64; 3],
     /// Difference of wave numbers that moves it by the pupil's diameter, in rad/m; infinite without a tilt.
     pub tilt_wave_number: f64,
-    /// Fractions of the light in patterns whose intensities add: one, or the coherent modes where heights dominate; none
-    /// below a contrast of 0.07, which has a thousand. They belong to the handle.
+    /// Fractions of the light in patterns whose intensities add: one; or, of heights that dominate or of the directions of a
+    /// source, as many as its contrast asks for, at most 1024. They belong to the handle.
     pub patterns: *const f64,
     /// Number of patterns.
     pub pattern_count: usize,
@@ -72,36 +67,17 @@ pub struct Wave {
     pub phase_per_height: f64,
 }
 
-/// The contrast below which patterns are not told: it takes a thousand of them.
-const LEAST_CONTRAST: f64 = 0.07;
-
 impl Bandwidth {
     fn new(line: SpectralLine, cell: ResolutionCell) -> Self {
         let speckle = PolychromaticSpeckle {
             line: &line,
             cell: &cell,
         };
-        let contrast = speckle.contrast();
-        let dense = speckle.dense_equivalent(|speckle| speckle.contrast());
-        let speckle = PolychromaticSpeckle {
-            line: &line,
-            cell: &dense,
-        };
-        let heights = representative_heights(2.0 * line.effective_spread() * dense.path_spread());
-        let patterns = match heights {
-            Some(_) => vec![1.0],
-            None if contrast < LEAST_CONTRAST => Vec::new(),
-            None => speckle.modes(),
-        };
-        let rms_height = dense.relief().rms_height;
-        let node = |[z, fraction]: [f64; 2]| [z * rms_height, fraction.sqrt()];
         Self {
-            contrast,
-            patterns,
-            heights: heights.into_iter().flatten().map(node).collect(),
+            contrast: speckle.contrast(),
+            patterns: speckle.patterns(|speckle| speckle.contrast().powi(2)),
             line,
             cell,
-            dense,
         }
     }
 
@@ -118,10 +94,10 @@ impl Bandwidth {
             coherence_length: self.line.coherence_length(),
             tilt: (-self.cell.tilt()).normalize_or_zero().to_array(),
             tilt_wave_number: self.cell.tilt_wave_number(),
-            patterns: self.patterns.as_ptr(),
-            pattern_count: self.patterns.len(),
-            heights: self.heights.as_ptr().cast(),
-            height_count: self.heights.len(),
+            patterns: self.patterns.fractions.as_ptr(),
+            pattern_count: self.patterns.fractions.len(),
+            heights: self.patterns.heights.as_ptr().cast(),
+            height_count: self.patterns.heights.len(),
         }
     }
 
@@ -223,13 +199,13 @@ pub unsafe extern "C" fn tem00_bandwidth_covariance(
 ) -> Status {
     call(|| {
         // SAFETY: by the contract of this function.
-        let Bandwidth { line, dense, .. } = unsafe { borrow("bandwidth", bandwidth) }?;
+        let bandwidth = unsafe { borrow("bandwidth", bandwidth) }?;
         // SAFETY: by the contract of this function.
         let displacement: [f64; 2] = unsafe { read("displacement", displacement) }?;
         check_coordinates("displacement", &displacement)?;
-        let speckle = PolychromaticSpeckle { line, cell: dense };
+        let result = bandwidth.speckle().covariance(displacement);
         // SAFETY: by the contract of this function.
-        unsafe { write("covariance", covariance, speckle.covariance(displacement)) }
+        unsafe { write("covariance", covariance, result) }
     })
 }
 

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 pub(crate) mod coherence {
     #[pymodule_export]
     use super::{
-        cell::{ResolutionCell, representative_heights},
+        cell::ResolutionCell,
         line::SpectralLine,
         mixed::{cascade_variance, mixed_contrast},
     };

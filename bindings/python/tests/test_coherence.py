@@ -12,7 +12,6 @@ from tem00.coherence import (
     SpectralLine,
     cascade_variance,
     mixed_contrast,
-    representative_heights,
 )
 from tem00.speckle import PupilField, SlicePath, SpeckleStack
 
@@ -137,8 +136,8 @@ def test_a_small_lit_part_makes_speckle_of_speckle() -> None:
 @pytest.mark.parametrize("height", [0.0, 0.8e-6])
 def test_light_that_is_drawn_has_the_contrast_of_the_law(height: float) -> None:
     line, tilted = SpectralLine(WAVELENGTH, LINEWIDTH), cell(height)
-    heights = representative_heights(2 * line.effective_spread * tilted.path_spread)
-    assert heights is not None
+    fractions, heights = tilted.patterns(line)
+    assert fractions.tolist() == [1.0]
     slices = 2 * 48 / 3
     path = SlicePath.straight(half_period=48, length=3)
     fields = PupilField(256, 64, 1).independent(len(heights))
@@ -149,14 +148,23 @@ def test_light_that_is_drawn_has_the_contrast_of_the_law(height: float) -> None:
     def intensity(kappa: float) -> NDArray[np.floating]:
         u = slices * kappa / tilted.tilt_wave_number
         parts = [
-            np.sqrt(fraction) * np.exp(1j * kappa * tilted.path_spread * z) * stack.amplitude_at(x, y, u)
-            for stack, (z, fraction) in zip(stacks, heights)
+            root * np.exp(1j * kappa * tilted.height_factor * z) * stack.amplitude_at(x, y, u)
+            for stack, (z, root) in zip(stacks, heights)
         ]
         return np.asarray(np.abs(sum(parts)) ** 2)
 
     exposed = np.mean([intensity(kappa) for kappa in waves], axis=0)
     # Some 2000 speckles, and 1 % each by slices and heights.
     assert exposed.std() / exposed.mean() == pytest.approx(tilted.contrast(line), rel=0.045)
-    assert representative_heights(4.1) is None
-    with pytest.raises(tem00.ParameterError, match="spread must be zero or positive"):
-        representative_heights(-1.0)
+
+
+def test_the_extent_of_a_source_adds_patterns() -> None:
+    line = SpectralLine(WAVELENGTH)
+    wide = ResolutionCell([0, 0, 1], [0, 0, 1], [0, 0, 1], 0.025, WAVELENGTH, source_half_angle=0.025)
+    # As wide as the lens.
+    assert wide.contrast(line) == pytest.approx(0.515, abs=1e-3)
+    fractions, heights = wide.patterns(line)
+    assert np.sum(fractions**2) == pytest.approx(wide.contrast(line) ** 2, rel=1e-3)
+    assert heights.tolist() == [[0.0, 1.0]]
+    with pytest.raises(tem00.ParameterError, match="source_half_angle"):
+        ResolutionCell([0, 0, 1], [0, 0, 1], [0, 0, 1], 0.025, WAVELENGTH, source_half_angle=0.4)

@@ -79,6 +79,8 @@ def test_the_cell_is_that_of_the_scene() -> None:
         ({"linewidth": 2e-9, "spectrum": "lorentzian"}, (4e-6, 0.0)),
         ({"linewidth": 8e-9, "spectrum": "comb", "lines": 5}, (4e-6, 60e-6)),
         ({"linewidth": 30e-9}, (20e-6, 0.0)),
+        ({"source_half_angle": 0.3}, (0.0, 0.0)),
+        ({"linewidth": 5e-9, "source_half_angle": 0.1}, (2e-6, 0.0)),
     ],
 )
 def test_contrasts_are_those_of_the_law(laser: Node, relief: tuple[float, float]) -> None:
@@ -174,6 +176,8 @@ def test_a_shape_has_a_relief_of_its_own() -> None:
         ("linewidth", {"linewidth": -1e-9}, {}),
         ("linewidth", {"linewidth": 1e-7}, {}),
         ("linewidth", {"linewidth": float("nan")}, {}),
+        ("source_half_angle", {"source_half_angle": -1.0}, {}),
+        ("source_half_angle", {"source_half_angle": 20.0}, {}),
         ("spectrum", {"linewidth": 1e-9, "spectrum": "gausian"}, {}),
         ("lines", {"linewidth": 1e-9, "lines": 3}, {}),
         ("lines", {"linewidth": 1e-9, "spectrum": "comb", "lines": 2.5}, {}),

@@ -1,7 +1,7 @@
 use core::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use num_complex::Complex;
 use tem00_numerics::{
     cast::to_usize,
@@ -9,7 +9,7 @@ use tem00_numerics::{
     quadrature::{for_each_node, integrate},
 };
 
-use crate::{CoherenceError, lens};
+use crate::{CoherenceError, SourceExtent, lens};
 
 /// How a camera sees a rough surface that a source lights, for [`ResolutionCell::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,11 +69,12 @@ pub struct Relief {
 /// - G. Parry, *Speckle patterns in partially coherent light*, in *Laser Speckle and Related Phenomena*, ed. J. C.
 ///   Dainty, 1975.
 /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 6.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ResolutionCell {
     wavelength: f64,
     sin_aperture: f64,
     source: DVec3,
+    source_extent: SourceExtent,
     pupil: DVec3,
     normal: DVec3,
     tilt: DVec3,
@@ -130,6 +131,7 @@ impl ResolutionCell {
             wavelength: geometry.wavelength,
             sin_aperture,
             source,
+            source_extent: SourceExtent::default(),
             pupil,
             normal,
             tilt: source + pupil - height_factor * normal,
@@ -170,6 +172,65 @@ impl ResolutionCell {
         Ok(Self { defocus, ..self })
     }
 
+    /// Returns the cell under a source of finite extent.
+    ///
+    /// ```text
+    /// C² = ⟨ ∫ R(κ) chat²(|κ v + k w| / κ_t|v|) exp(−(κ q + k p)² R_q²) dκ ⟩     over pairs of directions l_S, l_S'
+    /// w = δ − p n,   p = δ·l / n·l,   δ = l_S − l_S'
+    /// ```
+    ///
+    /// A change δ of the direction to the source displaces the field across the pupil, by w of its distance, as a change
+    /// of the wave number does, by κ v / k; and it changes the phases of heights. In the plane of incidence
+    /// `|w| = |δ| cos θᵢ / cos θₒ`, across it `|w| = |δ|`.
+    ///
+    /// # Validity
+    ///
+    /// All light of one direction is coherent over the cell, and lights of two are not with each other.
+    ///
+    /// # Examples
+    ///
+    /// A fibre of 0.4 mm at 100 mm, head-on, before a lens of sin u = 0.01:
+    ///
+    /// ```
+    /// use tem00_coherence::{
+    ///     CellGeometry, DVec3, PolychromaticSpeckle, ResolutionCell, SourceExtent, SpectralLine,
+    /// };
+    ///
+    /// let cell = ResolutionCell::new(CellGeometry {
+    ///     to_source: DVec3::Z,
+    ///     to_pupil: DVec3::Z,
+    ///     normal: DVec3::Z,
+    ///     sin_aperture: 0.01,
+    ///     wavelength: 650e-9,
+    /// })?;
+    /// let line = SpectralLine::monochromatic(650e-9)?;
+    /// let contrast = |half_angle| {
+    ///     let cell = cell.clone().with_source_extent(SourceExtent::disc(half_angle)?);
+    ///     Ok::<_, tem00_coherence::CoherenceError>(
+    ///         PolychromaticSpeckle { line: &line, cell: &cell }.contrast()
+    ///     )
+    /// };
+    /// assert!(contrast(0.002)? > 0.85);
+    /// assert!(contrast(0.02)? < 0.4);
+    /// # Ok::<(), tem00_coherence::CoherenceError>(())
+    /// ```
+    ///
+    /// # References
+    ///
+    /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 5 and 6: moving diffusers, many lasers.
+    #[must_use]
+    pub fn with_source_extent(self, source_extent: SourceExtent) -> Self {
+        Self {
+            source_extent,
+            ..self
+        }
+    }
+
+    /// Returns the extent of the source.
+    pub const fn source_extent(&self) -> &SourceExtent {
+        &self.source_extent
+    }
+
     /// Returns the relief.
     pub const fn relief(&self) -> Relief {
         self.relief
@@ -190,22 +251,43 @@ impl ResolutionCell {
         self.source
     }
 
-    /// Returns the change of the tilt and of the path per height when the unit vector to the source changes by `change`.
-    ///
-    /// Both are linear in that vector. The speckle moves across the pupil by the change of the tilt times the distance.
-    pub(crate) fn change_with_source(&self, change: DVec3) -> (DVec3, f64) {
+    /// Returns what a change of the unit vector to the source makes, over the wave number: the displacement of the field
+    /// across the pupil in its diameters, along the tilt and across it; and the difference of wave numbers that changes the
+    /// phases of heights as much. Both are linear in that vector.
+    pub(crate) fn change_with_source(&self, change: DVec3) -> (DVec2, f64) {
         let height_factor = change.dot(self.pupil) / self.normal.dot(self.pupil);
-        (change - height_factor * self.normal, height_factor)
+        let moved = change - height_factor * self.normal;
+        let [along, across] = self.axes().map(|axis| moved.dot(axis));
+        (
+            DVec2::new(along, across) / self.full_displacement(),
+            height_factor / self.height_factor,
+        )
     }
 
-    /// Returns the greatest change of the path per height that a radian of the direction to the source makes.
-    pub(crate) fn height_per_angle(&self) -> f64 {
-        self.normal.dot(self.pupil).recip()
+    /// Returns the greatest change that a radian of the direction to the source makes, over the wave number: of the
+    /// displacement in pupil diameters, and of the phases of heights and of defocus in radians.
+    pub(crate) fn greatest_change_with_source(&self) -> f64 {
+        let height = self.normal.dot(self.pupil).recip();
+        let moved = (1.0 + height) / self.full_displacement();
+        let blur = (1.0 + height) * self.defocus.abs() * self.sin_aperture;
+        moved.max(height * self.relief.rms_height).max(blur)
+    }
+
+    /// The directions across the line of sight: of the tilt or, without one, of the plane of incidence or any; and
+    /// across it.
+    fn axes(&self) -> [DVec3; 2] {
+        let across_sight = |v: DVec3| v - v.dot(self.pupil) * self.pupil;
+        let along = [self.tilt, self.normal, self.pupil.any_orthonormal_vector()]
+            .into_iter()
+            .map(across_sight)
+            .find(|axis| axis.length() > 1e-9);
+        let along = along.unwrap_or(DVec3::X).normalize();
+        [along, self.pupil.cross(along)]
     }
 
     /// Returns the gradient of the phase over the object, in rad/m, by which a field is displaced by the diameter of the
     /// pupil.
-    pub(crate) fn full_displacement(&self) -> f64 {
+    fn full_displacement(&self) -> f64 {
         2.0 * TAU * self.sin_aperture / self.wavelength
     }
 
@@ -217,7 +299,7 @@ impl ResolutionCell {
     /// Returns the difference of wave numbers `κ_t`, in rad/m, by which the tilt displaces the field by the diameter of
     /// the pupil; infinite without a tilt.
     pub fn tilt_wave_number(&self) -> f64 {
-        2.0 * TAU * self.sin_aperture / (self.wavelength * self.tilt.length())
+        self.full_displacement() / self.tilt.length()
     }
 
     /// Returns the size of a speckle on the object, `λ / (2 sin u)`, in metres.
@@ -235,7 +317,8 @@ impl ResolutionCell {
     /// Returns the correlation P̂ of the fields of two wave numbers that differ by κ, in rad/m, in one point of the
     /// image, for a dense relief without correlation length.
     pub fn field_correlation(&self, kappa: f64) -> Complex<f64> {
-        self.shared_pupil(kappa) * self.height_correlation(kappa)
+        let shift = kappa / self.tilt_wave_number();
+        self.shared_pupil(shift, kappa) * self.height_correlation(kappa)
     }
 
     /// Returns the mean of `|P̂|²`, with the correlation length of the relief.
@@ -246,11 +329,21 @@ impl ResolutionCell {
     ///
     /// The correlation length is taken into account in focus, and left out beside it.
     pub fn squared_correlation(&self, kappa: f64) -> f64 {
-        let dense = self.field_correlation(kappa).norm_sqr();
+        self.squared_correlation_of(Difference {
+            kappa,
+            shift: DVec2::new(kappa / self.tilt_wave_number(), 0.0),
+            of_heights: kappa,
+        })
+    }
+
+    /// Returns the mean of the squared correlation of two parts of the light.
+    pub(crate) fn squared_correlation_of(&self, difference: Difference) -> f64 {
+        let shared = self.shared_pupil(difference.shift.length(), difference.kappa);
+        let dense = (shared * self.height_correlation(difference.of_heights)).norm_sqr();
         if self.defocus != 0.0 {
             return dense;
         }
-        dense + self.height_excess(kappa, image_autocorrelation)
+        dense + self.height_excess(difference, image_autocorrelation)
     }
 
     /// The correlation length of the relief in speckles.
@@ -260,13 +353,13 @@ impl ResolutionCell {
 
     /// Returns what the correlation length of the relief adds to a mean of `exp(−κ² σ_L² (1 − ρ) + iκ v·η)` over lags η,
     /// in speckles, with the weights of an isotropic kernel.
-    pub(crate) fn height_excess(&self, kappa: f64, kernel: impl Fn(f64) -> f64) -> f64 {
+    pub(crate) fn height_excess(&self, difference: Difference, kernel: impl Fn(f64) -> f64) -> f64 {
         let length = self.correlation_length();
         if length == 0.0 || self.relief.rms_height == 0.0 {
             return 0.0;
         }
-        let exponent = (kappa * self.path_spread()).powi(2);
-        let turns = TAU * kappa / self.tilt_wave_number();
+        let exponent = (difference.of_heights * self.path_spread()).powi(2);
+        let turns = TAU * difference.shift.length();
         let excess = |lag: f64| {
             let correlation = (-(lag / length).powi(2)).exp();
             let excess = (-exponent * (1.0 - correlation)).exp() - (-exponent).exp();
@@ -275,12 +368,12 @@ impl ResolutionCell {
         // The excess falls from lag 0 on over ℓ or, if heights are large, over less; the images over a speckle.
         let width = length / (1.0 + exponent).sqrt();
         // Kernels have no frequency above 1 per speckle, and the excess hardly any above 1 per width.
-        if (turns.abs() - TAU) * width > 12.0 {
+        if (turns - TAU) * width > 12.0 {
             return 0.0;
         }
         let reach = if exponent > 50.0 { 0.0 } else { 6.0 * length };
         let near = 6.0 * width;
-        let step = |width: f64| width.min(1.0).min(1.0 / turns.abs().max(1e-3));
+        let step = |width: f64| width.min(1.0).min(1.0 / turns.max(1e-3));
         let inner = integrate(excess, [0.0, near], step(width));
         inner + integrate(excess, [near, reach], step(length))
     }
@@ -290,20 +383,33 @@ impl ResolutionCell {
         (-0.5 * (kappa * self.path_spread()).powi(2)).exp()
     }
 
-    /// Returns the part of the pupil that two wave numbers share, with the phases of defocus.
-    fn shared_pupil(&self, kappa: f64) -> Complex<f64> {
-        let shift = kappa / self.tilt_wave_number();
+    /// Returns the part of the pupil that two parts of the light share whose fields are so many diameters apart, with the
+    /// phases of defocus.
+    fn shared_pupil(&self, shift: f64, kappa: f64) -> Complex<f64> {
         if self.defocus == 0.0 {
             return disc_overlap(shift).into();
         }
-        let depth = 0.5 * kappa * self.defocus * self.sin_aperture.powi(2);
-        let linear = 2.0 * depth * self.tilt.length() / self.sin_aperture;
+        let half_depth = 0.5 * self.defocus * self.sin_aperture.powi(2);
+        let bend = kappa * half_depth;
+        // Of the displacement: that of a sphere about the plane in focus.
+        let linear = 2.0 * half_depth * shift * self.full_displacement() / self.sin_aperture;
         lens::mean_over_lens(
             shift,
-            [linear.abs() + depth.abs(), depth.abs()],
-            |along, across| linear * along - depth * (along * along + across * across),
+            [linear.abs() + bend.abs(), bend.abs()],
+            |along, across| linear * along - bend * (along * along + across * across),
         )
     }
+}
+
+/// How two parts of the light differ.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Difference {
+    /// Their wave numbers, in rad/m.
+    pub kappa: f64,
+    /// The places in the pupil at which their fields are alike, in its diameters, along the tilt and across it.
+    pub shift: DVec2,
+    /// The difference of wave numbers, in rad/m, that changes the phases of heights as much.
+    pub of_heights: f64,
 }
 
 /// Lags per speckle of the table of the autocorrelation, and the last one, after which a series is as good.

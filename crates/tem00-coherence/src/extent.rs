@@ -3,13 +3,13 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 use tem00_numerics::{disc_overlap, quadrature::for_each_node};
 
-use crate::{CoherenceError, PolychromaticSpeckle};
+use crate::CoherenceError;
 
 /// The directions from which the light of a source reaches the surface: those of its transverse modes, of the points of
 /// a lamp or a fibre, or of a diffuser that moves many times while the detector integrates.
 ///
 /// Lights of different directions do not interfere: the detector adds their intensities, as it adds those of wave
-/// numbers. For [`PolychromaticSpeckle::contrast_of`].
+/// numbers. For [`ResolutionCell::with_source_extent`](crate::ResolutionCell::with_source_extent). The default is a point.
 ///
 /// # Validity
 ///
@@ -26,14 +26,22 @@ enum Directions {
     List(Vec<(DVec3, f64)>),
 }
 
+impl Default for SourceExtent {
+    fn default() -> Self {
+        Self {
+            directions: Directions::Disc { half_angle: 0.0 },
+        }
+    }
+}
+
 /// The largest angles of discs and Gaussians, in radians.
 const MAX_ANGLE: f64 = 0.3;
 
 /// Beyond so many standard deviations of a difference a Gaussian ends, at 2e-11 of its light.
 const GAUSSIAN_REACH: f64 = 7.0;
 
-/// Directions of differences on half a turn; the other half is alike.
-const AZIMUTHS: i32 = 64;
+/// Directions of differences on a turn.
+const AZIMUTHS: i32 = 32;
 
 impl SourceExtent {
     /// A disc about the direction to the source, equally bright, of this half-angle in radians as seen from the surface.
@@ -41,10 +49,12 @@ impl SourceExtent {
     /// # Errors
     ///
     /// Returns an error unless the angle is from 0 to 0.3.
-    pub fn disc(half_angle: f64) -> Result<Self, CoherenceError> {
-        check_angle("half_angle", half_angle)?;
+    pub fn disc(source_half_angle: f64) -> Result<Self, CoherenceError> {
+        check_angle("source_half_angle", source_half_angle)?;
         Ok(Self {
-            directions: Directions::Disc { half_angle },
+            directions: Directions::Disc {
+                half_angle: source_half_angle,
+            },
         })
     }
 
@@ -93,9 +103,19 @@ impl SourceExtent {
         })
     }
 
+    /// Tells whether all light comes from one direction.
+    pub fn is_point(&self) -> bool {
+        match &self.directions {
+            Directions::Disc { half_angle: angle } | Directions::Gaussian { spread: angle } => {
+                *angle == 0.0
+            }
+            Directions::List(list) => list.iter().all(|(direction, _)| *direction == list[0].0),
+        }
+    }
+
     /// Visits the differences of two directions of the light, as vectors in radians about the direction `to_source`,
     /// each with its probability; `feature` is the smallest difference that matters.
-    fn for_each_difference(
+    pub(crate) fn for_each_difference(
         &self,
         to_source: DVec3,
         feature: f64,
@@ -110,7 +130,7 @@ impl SourceExtent {
             for_each_node([0.0, end], feature.min(0.25 * end), |radius, weight| {
                 let share = weight * TAU * radius * density(radius) / f64::from(AZIMUTHS);
                 for azimuth in 0..AZIMUTHS {
-                    let angle = PI * (f64::from(azimuth) + 0.5) / f64::from(AZIMUTHS);
+                    let angle = TAU * (f64::from(azimuth) + 0.5) / f64::from(AZIMUTHS);
                     visit(radius * (angle.cos() * first + angle.sin() * second), share);
                 }
             });
@@ -133,79 +153,6 @@ impl SourceExtent {
                 }
             }
         }
-    }
-}
-
-impl PolychromaticSpeckle<'_> {
-    /// Returns the contrast under a source of finite extent, in focus.
-    ///
-    /// ```text
-    /// C² = ⟨ ∫ R(κ) chat²(|κ v + k w| / κ_t|v|) exp(−(κ q + k p)² R_q²) dκ ⟩     over pairs of directions l_S, l_S'
-    /// w = δ − p n,   p = δ·l / n·l,   δ = l_S − l_S'
-    /// ```
-    ///
-    /// A change δ of the direction to the source displaces the field across the pupil, by w of its distance, as a change
-    /// of the wave number does, by κ v / k; and it changes the phases of heights. In the plane of incidence
-    /// `|w| = |δ| cos θᵢ / cos θₒ`, across it `|w| = |δ|`.
-    ///
-    /// # Validity
-    ///
-    /// That of the cell and of the extent; in focus; of the relief without its correlation length. All light of one
-    /// direction is coherent over the resolution cell, and lights of two are not with each other.
-    ///
-    /// # Examples
-    ///
-    /// A fibre of 0.4 mm at 100 mm, head-on, before a lens of sin u = 0.01:
-    ///
-    /// ```
-    /// use tem00_coherence::{
-    ///     CellGeometry, DVec3, PolychromaticSpeckle, ResolutionCell, SourceExtent, SpectralLine,
-    /// };
-    ///
-    /// let cell = ResolutionCell::new(CellGeometry {
-    ///     to_source: DVec3::Z,
-    ///     to_pupil: DVec3::Z,
-    ///     normal: DVec3::Z,
-    ///     sin_aperture: 0.01,
-    ///     wavelength: 650e-9,
-    /// })?;
-    /// let line = SpectralLine::monochromatic(650e-9)?;
-    /// let speckle = PolychromaticSpeckle { line: &line, cell: &cell };
-    /// let contrast = |half_angle| Ok::<_, tem00_coherence::CoherenceError>(
-    ///     speckle.contrast_of(&SourceExtent::disc(half_angle)?)
-    /// );
-    /// assert!(contrast(0.002)? > 0.85);
-    /// assert!(contrast(0.02)? < 0.4);
-    /// # Ok::<(), tem00_coherence::CoherenceError>(())
-    /// ```
-    ///
-    /// # References
-    ///
-    /// - J. W. Goodman, *Speckle Phenomena in Optics*, 2007, ch. 5 and 6: moving diffusers, many lasers.
-    pub fn contrast_of(&self, extent: &SourceExtent) -> f64 {
-        let cell = self.cell;
-        let wave_number = self.line.wave_number();
-        let full = cell.full_displacement();
-        let (tilt, height_factor) = (cell.tilt(), cell.height_factor());
-        let rms_height = cell.relief().rms_height;
-        let of_difference = |change: DVec3| {
-            let (tilted, heightened) = cell.change_with_source(change);
-            let (tilted, heightened) = (wave_number * tilted, wave_number * heightened);
-            self.mean(|kappa| {
-                let overlap = disc_overlap((kappa * tilt + tilted).length() / full);
-                let phases = (kappa * height_factor + heightened) * rms_height;
-                overlap.powi(2) * (-phases * phases).exp()
-            })
-        };
-        // The largest changes that a radian makes, of the displacement and of the phases.
-        let height_per_angle = cell.height_per_angle();
-        let per_angle = wave_number * (1.0 + height_per_angle) / full;
-        let feature = 0.5 / per_angle.max(wave_number * height_per_angle * rms_height);
-        let mut sum = 0.0;
-        extent.for_each_difference(cell.source(), feature, |change, share| {
-            sum += share * of_difference(change);
-        });
-        sum.sqrt()
     }
 }
 

@@ -42,8 +42,8 @@ pub(crate) fn gauss_hermite(count: usize) -> Vec<[f64; 2]> {
 ///
 /// The fields of patterns of these heights, of independent seeds, add to one of which two wave numbers correlate as
 /// `exp(−κ² σ_L²/2)`: to 0.006 in the contrast for one height below 0.15, and to 0.004 for more up to a spread of 4. Beyond
-/// it there is no such rule: [`PolychromaticSpeckle::modes`](crate::PolychromaticSpeckle::modes) are as good.
-pub fn representative_heights(spread: f64) -> Option<Vec<[f64; 2]>> {
+/// it there is no such rule: coherent modes are as good.
+pub(crate) fn representative_heights(spread: f64) -> Option<Vec<[f64; 2]>> {
     const COUNTS: [(f64, usize); 7] = [
         (0.15, 1),
         (0.5, 2),

@@ -1,13 +1,12 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use num_complex::Complex;
+use glam::{DVec2, DVec3};
 use tem00_numerics::{cast::to_usize, disc_overlap, quadrature::integrate, sinc_pi_squared};
 
 use crate::{
-    Relief, ResolutionCell, SpectralLine,
-    cell::{image_autocorrelation, image_of_point},
-    eigenvalues::hermitian_eigenvalues,
-    lens, mode_ratio,
+    ResolutionCell, SpectralLine,
+    cell::{Difference, image_autocorrelation, image_of_point},
+    lens,
 };
 
 /// The speckle that light of a finite bandwidth makes of one rough surface.
@@ -81,79 +80,106 @@ impl Rows {
     /// Rows taller than so many speckles count as tall: to 0.005 in f.
     const TALLEST: f64 = 40.0;
 
-    /// Returns f of [`line_noise`](PolychromaticSpeckle::line_noise) for s from 0 to 1.
-    fn shared_by_all(self) -> impl Fn(f64) -> f64 {
-        const STEPS: f64 = 128.0;
-        let table: Vec<f64> = match self {
-            Self::Height(_) => (0..=128)
-                .map(|i| self.shared(f64::from(i) / STEPS))
-                .collect(),
-            Self::Thin | Self::Tall => Vec::new(),
-        };
-        move |s| {
-            if table.is_empty() {
-                return self.shared(s);
+    /// Returns f of [`line_noise`](PolychromaticSpeckle::line_noise) from a table by distance and direction, for many
+    /// displacements of an extended source.
+    fn tabulated(self) -> impl Fn(DVec2) -> f64 {
+        const DISTANCES: u32 = 96;
+        const TURNS: u32 = 24;
+        let shared = self.shared_by_all();
+        let values: Vec<f64> = (0..=DISTANCES)
+            .flat_map(|i| (0..=TURNS).map(move |j| [i, j].map(f64::from)))
+            .map(|[i, j]| {
+                let turn = FRAC_PI_2 * j / f64::from(TURNS);
+                shared(i / f64::from(DISTANCES) * DVec2::from_angle(turn))
+            })
+            .collect();
+        let row = to_usize(f64::from(TURNS)) + 1;
+        move |shift| {
+            let [x, y] = shift.abs().to_array();
+            let i = x.hypot(y) * f64::from(DISTANCES);
+            let j = (y.atan2(x) / FRAC_PI_2 * f64::from(TURNS)).min(f64::from(TURNS) - 1e-9);
+            if i >= f64::from(DISTANCES) {
+                return 0.0;
             }
-            let at = (s * STEPS).min(STEPS - 1e-9);
+            let (first, s, t) = (to_usize(i) * row + to_usize(j), i.fract(), j.fract());
+            let between = |first: usize| (1.0 - t) * values[first] + t * values[first + 1];
+            (1.0 - s) * between(first) + s * between(first + row)
+        }
+    }
+
+    /// Returns f of [`line_noise`](PolychromaticSpeckle::line_noise), of a displacement along the tilt and across it.
+    fn shared_by_all(self) -> impl Fn(DVec2) -> f64 {
+        let of_chord = self.power_of_chord();
+        let power = move |shift| of_chord.as_ref().map(|of_chord| power_in(shift, of_chord));
+        let whole = power(DVec2::ZERO);
+        move |shift| match (power(shift), whole) {
+            (Some(power), Some(whole)) => power / whole,
+            _ => disc_overlap(shift.length()),
+        }
+    }
+
+    /// Returns `K(L) ∝ ∫ (L − |g|)₊ sinc²(πag) dg` of chords L along the rows, in diameters of the pupil; none for tall rows,
+    /// whose power is the area.
+    fn power_of_chord(self) -> Option<impl Fn(f64) -> f64> {
+        const STEPS: f64 = 4096.0;
+        let height = match self {
+            Self::Thin => 0.0,
+            Self::Height(height) => height,
+            Self::Tall => f64::INFINITY,
+        };
+        if height > Self::TALLEST {
+            return None;
+        }
+        // K″ = 2 sinc².
+        let (mut slope, mut power) = (0.0, 0.0);
+        let table: Vec<f64> = (0..=to_usize(STEPS) + 1)
+            .map(|i| {
+                let before = power;
+                let middle = sinc_pi_squared(height * (i as f64 + 0.5) / STEPS);
+                power += slope + 0.5 * middle;
+                slope += middle;
+                before
+            })
+            .collect();
+        Some(move |chord: f64| {
+            let at = chord.clamp(0.0, 1.0) * STEPS;
             let (first, t) = (to_usize(at), at.fract());
             (1.0 - t) * table[first] + t * table[first + 1]
-        }
+        })
     }
 
     /// Returns how much of the kernel of a contrast, in place of that of tall rows, the correlation of heights takes:
     /// 0.6 for thin rows, and for others as f lies between both.
     fn weight_of_contrast(self) -> f64 {
         const OF_THIN_ROWS: f64 = 0.6;
-        let [this, thin, tall] = [self, Self::Thin, Self::Tall].map(|rows| rows.shared(0.5));
+        let half = DVec2::new(0.5, 0.0);
+        let [this, thin, tall] =
+            [self, Self::Thin, Self::Tall].map(|rows| rows.shared_by_all()(half));
         OF_THIN_ROWS * (tall - this) / (tall - thin)
     }
-
-    /// Returns f(s) of [`line_noise`](PolychromaticSpeckle::line_noise).
-    fn shared(self, s: f64) -> f64 {
-        match self {
-            Self::Thin => 1.0 - s * (1.5 - 0.5 * s * s),
-            Self::Tall => disc_overlap(s),
-            Self::Height(height) if height > Self::TALLEST => disc_overlap(s),
-            Self::Height(height) if height > 0.0 => power_in(height, s) / power_in(height, 0.0),
-            Self::Height(_) => Self::Thin.shared(s),
-        }
-    }
 }
 
-/// ∫ A(s, g) sinc²(πag) dg.
-fn power_in(height: f64, s: f64) -> f64 {
-    let reach = (1.0 - s * s).sqrt();
-    // The overlap ends with a root.
-    let by_angle = |angle: f64| {
-        let (sin, cos) = angle.sin_cos();
-        lens_overlap(s, reach * sin) * sinc_pi_squared(height * reach * sin) * reach * cos
+/// Returns ∫ K(L) dx over the chords L that cut the lens of two pupils, `shift` diameters apart, across the tilt.
+fn power_in(shift: DVec2, of_chord: impl Fn(f64) -> f64) -> f64 {
+    let [along, across] = (0.5 * shift.abs()).to_array();
+    let half = |x: f64| (0.25 - x * x).max(0.0).sqrt();
+    let chord = |x: f64| {
+        let (this, other) = (half(x - along), half(x + along));
+        (across + this).min(other - across) - (across - this).max(-across - other)
     };
-    integrate(by_angle, [0.0, FRAC_PI_2], (0.5 / height).min(1.0))
-}
-
-/// The overlap, in areas of a disc, of the lens that two discs s diameters apart share with itself g diameters across
-/// that direction: all of its chords get shorter by g diameters.
-fn lens_overlap(s: f64, g: f64) -> f64 {
-    let end = (1.0 - g * g).max(0.0).sqrt();
-    let primitive = |t: f64| 0.5 * (t * (1.0 - t * t).max(0.0).sqrt() + t.asin()) - g * t;
-    if s < end {
-        4.0 / PI * (primitive(end) - primitive(s))
-    } else {
-        0.0
+    let end = 0.5 - along;
+    if end <= 0.0 {
+        return 0.0;
     }
+    // Chords end with a root, and those on the other side of the middle are alike.
+    let by_root = |t: f64| 4.0 * end * t * of_chord(chord(end * (1.0 - t * t)));
+    integrate(by_root, [0.0, 1.0], 0.125)
 }
-
-/// The largest fraction of the light in the last modes that are left out.
-const NEGLIGIBLE_FRACTION: f64 = 1e-4;
-
-/// The largest number of wave numbers that stand for a line in its modes.
-const MAX_NODES: usize = 400;
 
 impl PolychromaticSpeckle<'_> {
     /// Returns the contrast, standard deviation over mean, `C² = ∫ R(κ) |P̂(κ)|² dκ`.
     pub fn contrast(&self) -> f64 {
-        let squared = |kappa| self.cell.squared_correlation(kappa);
-        self.mean(squared).sqrt()
+        self.covariance([0.0; 2]).sqrt()
     }
 
     /// Returns the covariance over ⟨I⟩² of two frames between which the field moved across the pupil by `displacement`,
@@ -162,24 +188,32 @@ impl PolychromaticSpeckle<'_> {
     /// ```text
     /// cov(I₁, I₂) / ⟨I⟩² = ∫ R(κ) exp(−κ² σ_L²) chat²(|m + κ v̂ / κ_t|) dκ
     /// ```
+    ///
+    /// for a relief without correlation length; without a displacement it is the squared contrast.
     pub fn covariance(&self, displacement: [f64; 2]) -> f64 {
-        let [along, across] = displacement;
-        let tilt = self.cell.tilt_wave_number().recip();
-        self.mean(|kappa| {
-            let overlap = disc_overlap((along + kappa * tilt).hypot(across));
-            (overlap * self.cell.height_correlation(kappa)).powi(2)
+        let displacement = DVec2::from_array(displacement);
+        self.mean(|difference| {
+            let shift = displacement + difference.shift;
+            let moved = Difference {
+                shift,
+                ..difference
+            };
+            self.cell.squared_correlation_of(moved)
         })
     }
 
     /// Returns the autocovariance over ⟨I⟩² at a lag on the object, in speckle sizes along the tilt and across it, in
     /// focus: grains grow along the tilt.
     pub fn autocovariance(&self, lag: [f64; 2]) -> f64 {
-        let lag = lag.map(|lag| PI * lag);
-        let tilt = self.cell.tilt_wave_number().recip();
-        self.mean(|kappa| {
-            let phase = |along: f64, across: f64| lag[0] * along + lag[1] * across;
-            let lens = lens::mean_over_lens(kappa * tilt, lag.map(f64::abs), phase);
-            lens.norm_sqr() * self.cell.height_correlation(kappa).powi(2)
+        let lag = PI * DVec2::from_array(lag);
+        self.mean(|difference| {
+            // Along the shift and across it.
+            let axis = difference.shift.try_normalize().unwrap_or(DVec2::X);
+            let [first, second] = [axis.dot(lag), axis.perp_dot(lag)];
+            let phase = |along: f64, across: f64| first * along + second * across;
+            let ranges = [first.abs(), second.abs()];
+            let lens = lens::mean_over_lens(difference.shift.length(), ranges, phase);
+            lens.norm_sqr() * self.cell.height_correlation(difference.of_heights).powi(2)
         })
     }
 
@@ -189,11 +223,11 @@ impl PolychromaticSpeckle<'_> {
     /// ∫ R(κ) exp(−κ² σ_L²) f(s) dκ,     s = |κ| / κ_t
     /// f = 1 − 3s/2 + s³/2               thin rows
     /// f = chat(s)                       tall rows
-    /// f = ∫ A(s, g) sinc²(πag) dg / ∫ chat(g) sinc²(πag) dg      rows of a speckle sizes
+    /// f = ∫ K(L(x, s)) dx / ∫ K(L(x, 0)) dx,   K(L) = ∫ (L − |g|)₊ sinc²(πag) dg      rows of a speckle sizes
     /// ```
     ///
-    /// with the overlap A of the lens that two discs s diameters apart share, and of that lens g diameters along the rows,
-    /// in areas of a disc.
+    /// with the chords L along the rows of the lens that two discs of the diameter 1 share, s apart: K is L² for thin rows and
+    /// L for tall ones. Directions of an extended source displace the discs along the rows as well.
     ///
     /// A centroid asks for the power at low frequencies, to which a lens of the pupil counts with its area or its
     /// chords, and not, as in the contrast, with the square of its area.
@@ -209,8 +243,14 @@ impl PolychromaticSpeckle<'_> {
     /// - R. G. Dorsch, G. Häusler, J. M. Herrmann, *Laser triangulation: fundamental uncertainty in distance
     ///   measurement*, Applied Optics 33, 1994: the line in light of one wavelength.
     pub fn line_noise(&self, rows: Rows) -> f64 {
-        let tilt = self.cell.tilt_wave_number().recip();
-        let shared = rows.shared_by_all();
+        if self.cell.source_extent().is_point() {
+            self.line_noise_by(rows, rows.shared_by_all())
+        } else {
+            self.line_noise_by(rows, rows.tabulated())
+        }
+    }
+
+    fn line_noise_by(&self, rows: Rows, shared: impl Fn(DVec2) -> f64) -> f64 {
         let contrast_like = rows.weight_of_contrast();
         let kernel = |lag: f64| {
             let tall = (1.0 - contrast_like) * image_of_point(lag);
@@ -219,101 +259,50 @@ impl PolychromaticSpeckle<'_> {
         // Heights that are correlated over many speckles leave f alone.
         let long = self.cell.correlation_length().powi(2);
         let long = long / (long + 4.0);
-        self.mean(|kappa| {
-            let s = (kappa * tilt).abs().min(1.0);
-            let dense = shared(s) * self.cell.height_correlation(kappa).powi(2);
-            let chat = disc_overlap(s);
+        self.mean(|difference| {
+            let shared = shared(difference.shift);
+            let heights = self.cell.height_correlation(difference.of_heights);
+            let dense = shared * heights.powi(2);
+            let chat = disc_overlap(difference.shift.length());
             if chat < 1e-9 {
                 return dense;
             }
-            let scale = shared(s) / (chat * (1.0 - contrast_like * (1.0 - chat)));
-            dense + scale.powf(long) * self.cell.height_excess(kappa, kernel)
+            let scale = shared / (chat * (1.0 - contrast_like * (1.0 - chat)));
+            dense + scale.powf(long) * self.cell.height_excess(difference, kernel)
         })
     }
 
-    /// Returns the fractions of the light in its coherent modes, the largest first; their squares sum to the squared
-    /// contrast.
-    ///
-    /// They are the eigenvalues of `√S(k) P̂(k − k') √S(k')`: the intensity is the sum of as many independent speckle
-    /// patterns. The last modes, of together 10⁻⁴ of the light, are left out. The correlation length of the relief is left
-    /// out.
-    ///
-    /// Where the paths are spread so widely that more than some hundred modes would count, the fractions fall by one
-    /// ratio, which is exact for a Gaussian line and heights alone, and keep the contrast.
-    pub fn modes(&self) -> Vec<f64> {
-        let Some(nodes) = self.line.nodes(self.cell.scale(), MAX_NODES) else {
-            return self.geometric_modes();
-        };
-        let mut matrix = vec![Complex::ZERO; nodes.len() * nodes.len()];
-        for (i, first) in nodes.iter().enumerate() {
-            for (j, second) in nodes.iter().enumerate() {
-                let correlation = self.cell.field_correlation(first[0] - second[0]);
-                matrix[i * nodes.len() + j] = correlation * (first[1] * second[1]).sqrt();
-            }
-        }
-        let mut modes = hermitian_eigenvalues(matrix, nodes.len());
-        modes.sort_unstable_by(|a, b| b.total_cmp(a));
-        let total: f64 = modes.iter().sum();
-        let mut left = total;
-        modes.retain(|mode| {
-            let is_kept = left > NEGLIGIBLE_FRACTION * total;
-            left -= mode;
-            is_kept
-        });
-        let kept: f64 = modes.iter().sum();
-        modes.iter().map(|mode| mode / kept).collect()
-    }
-
-    /// Returns the cell with a relief without correlation length that leaves `measure`, a contrast or a noise, as it is.
-    ///
-    /// What draws light in a few representative heights knows no correlation length; this one is as good for one measure.
-    pub fn dense_equivalent(
-        &self,
-        measure: impl Fn(&PolychromaticSpeckle<'_>) -> f64,
-    ) -> ResolutionCell {
-        let relief = self.cell.relief();
-        if relief.correlation_length == 0.0 {
-            return *self.cell;
-        }
-        let with_height = |rms_height| {
-            let dense = Relief {
-                rms_height,
-                correlation_length: 0.0,
+    /// Returns the mean over two parts of the light.
+    fn mean(&self, f: impl Fn(Difference) -> f64) -> f64 {
+        let (cell, wave_number) = (self.cell, self.line.wave_number());
+        let tilt = cell.tilt_wave_number().recip();
+        let of_change = |change: DVec3| {
+            let (moved, heights) = cell.change_with_source(change);
+            let (moved, heights) = (wave_number * moved, wave_number * heights);
+            // Where the fields lie on each other, and where heights have the same phases.
+            let features = match (moved.x == 0.0, heights == 0.0) {
+                (true, true) => &[0.0][..],
+                (false, true) => &[-moved.x / tilt],
+                (_, false) => &[-moved.x / tilt, -heights],
             };
-            self.cell.with_relief(dense).unwrap_or(*self.cell)
-        };
-        let of = |cell: &ResolutionCell| {
-            measure(&PolychromaticSpeckle {
-                line: self.line,
-                cell,
+            self.line.mean_about(features, cell.scale(), |kappa| {
+                f(Difference {
+                    kappa,
+                    shift: moved + DVec2::new(kappa * tilt, 0.0),
+                    of_heights: kappa + heights,
+                })
             })
         };
-        let wanted = of(self.cell);
-        let [mut low, mut high] = [0.0, relief.rms_height];
-        for _ in 0..12 {
-            let middle = 0.5 * (low + high);
-            if of(&with_height(middle)) > wanted {
-                low = middle;
-            } else {
-                high = middle;
-            }
+        let extent = cell.source_extent();
+        if extent.is_point() {
+            return of_change(DVec3::ZERO);
         }
-        with_height(0.5 * (low + high))
-    }
-
-    /// Fractions (1 − t) tⁿ with the contrast of the law.
-    fn geometric_modes(&self) -> Vec<f64> {
-        let ratio = mode_ratio(self.contrast().powi(2));
-        let powers = core::iter::successors(Some(1.0), |power| Some(power * ratio));
-        let powers: Vec<f64> = powers
-            .take_while(|power| *power > NEGLIGIBLE_FRACTION)
-            .collect();
-        let total: f64 = powers.iter().sum();
-        powers.iter().map(|power| power / total).collect()
-    }
-
-    pub(crate) fn mean(&self, f: impl Fn(f64) -> f64) -> f64 {
-        self.line.mean_over_pairs(self.cell.scale(), f)
+        let feature = 0.5 / (wave_number * cell.greatest_change_with_source());
+        let mut sum = 0.0;
+        extent.for_each_difference(cell.source(), feature, |change, share| {
+            sum += share * of_change(change);
+        });
+        sum
     }
 }
 

@@ -15,6 +15,7 @@
 //! | Which light? | [`SpectralLine`], [`LineShape`]; as files state it, [`LaserLight`] |
 //! | Which paths does one point of the image see? | [`ResolutionCell`], [`Relief`] |
 //! | What happens to the speckle? | [`PolychromaticSpeckle`] |
+//! | With which patterns is it drawn? | [`PatternSum`] |
 //! | What if the source is not one point? | [`SourceExtent`] |
 //! | How coherent is light that met several rough surfaces? | [`PathPairs`], of [`DelayedLight`] |
 //! | What is left of the contrast with such light? | [`MixedLight`], [`cascade_variance`] |
@@ -34,6 +35,7 @@ mod lens;
 mod line;
 mod mixed;
 mod paths;
+mod patterns;
 mod recombination;
 mod spectrum;
 
@@ -41,10 +43,10 @@ pub use cell::{CellGeometry, Relief, ResolutionCell};
 pub use error::CoherenceError;
 pub use extent::SourceExtent;
 pub use glam::DVec3;
-pub use heights::representative_heights;
 pub use law::{PolychromaticSpeckle, Rows};
 pub use line::{LineShape, SpectralLine};
 pub use mixed::{MixedLight, cascade_variance};
 pub use paths::{DelayedLight, PathPairs, mode_ratio};
+pub use patterns::PatternSum;
 pub use recombination::Recombination;
 pub use spectrum::{LaserLight, Spectrum};

@@ -255,32 +255,38 @@ impl SpectralLine {
     /// Returns the coherence length ∫ |γ|² dl over all path differences, in metres: for one Gaussian peak
     /// 0.664 λ²/Δλ. It is infinite for peaks without a width.
     pub fn coherence_length(&self) -> f64 {
-        TAU * self.mean_over_differences(f64::INFINITY, |_| 1.0, true)
+        TAU * self.mean_over_differences(|offset| match self.width > 0.0 {
+            true => self.pair_density(offset),
+            false => f64::INFINITY,
+        })
     }
 
     /// Returns the mean `∫ R(κ) f(κ) dκ` of a function over the difference κ of two wave numbers of the line, in rad/m.
     ///
     /// `scale` is the width of the finest feature of f; f may have a cusp at 0, and falls or stays as it is far away.
     pub fn mean_over_pairs(&self, scale: f64, f: impl Fn(f64) -> f64) -> f64 {
-        self.mean_over_differences(scale, f, false)
+        self.mean_about(&[0.0], scale, f)
     }
 
-    /// The mean over the differences of two wave numbers; or, of the density of differences, the value at zero.
-    fn mean_over_differences(&self, scale: f64, f: impl Fn(f64) -> f64, density: bool) -> f64 {
-        let mut sum = 0.0;
-        for first in &self.peaks {
-            for second in &self.peaks {
-                let (weight, offset) = (first.weight * second.weight, first.offset - second.offset);
-                sum += weight
-                    * match (density, self.width > 0.0) {
-                        (true, true) => self.pair_density(offset),
-                        (true, false) => f64::INFINITY,
-                        (false, false) => f(offset),
-                        (false, true) => self.mean_about(offset, scale, &f),
-                    };
-            }
-        }
-        sum
+    /// The same, of a function with features about other differences.
+    pub(crate) fn mean_about(&self, features: &[f64], scale: f64, f: impl Fn(f64) -> f64) -> f64 {
+        self.mean_over_differences(|offset| match self.width > 0.0 {
+            true => self.mean_over_peaks(offset, (features, scale), &f),
+            false => f(offset),
+        })
+    }
+
+    /// The mean over pairs of peaks, of a function of what they are apart.
+    fn mean_over_differences(&self, of_offset: impl Fn(f64) -> f64) -> f64 {
+        let pairs = self
+            .peaks
+            .iter()
+            .flat_map(|first| self.peaks.iter().map(move |second| (first, second)));
+        pairs
+            .map(|(first, second)| {
+                first.weight * second.weight * of_offset(first.offset - second.offset)
+            })
+            .sum()
     }
 
     /// Returns the difference κ between a wave number drawn from the line and the mean one, in rad/m, for a uniform
@@ -339,7 +345,12 @@ impl SpectralLine {
     }
 
     /// ∫ f(κ) times the density of the difference of two draws from two peaks that are `offset` apart.
-    fn mean_about(&self, offset: f64, scale: f64, f: &impl Fn(f64) -> f64) -> f64 {
+    fn mean_over_peaks(
+        &self,
+        offset: f64,
+        (features, scale): (&[f64], f64),
+        f: &impl Fn(f64) -> f64,
+    ) -> f64 {
         // In widths of a peak, of which there may be no reciprocal.
         let width = self.width;
         let reach = match self.shape {
@@ -349,7 +360,10 @@ impl SpectralLine {
         };
         let integrand = |x: f64| self.shape.pair_density(x) * f(offset + width * x);
         let mut breaks = Vec::new();
-        for (centre, feature) in [(0.0, 1.0), (-offset / width, scale / width)] {
+        let features = features
+            .iter()
+            .map(|centre| ((centre - offset) / width, scale / width));
+        for (centre, feature) in features.chain([(0.0, 1.0)]) {
             let steps = ladder()
                 .map(|step| step * feature)
                 .take_while(|step| *step < 4.0 * reach);

@@ -1,4 +1,4 @@
-use crate::{CoherenceError, LineShape, SpectralLine};
+use crate::{CoherenceError, LineShape, SourceExtent, SpectralLine};
 
 /// The light of a laser as a data sheet or a file states it: numbers as they were given. Lengths in metres.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,6 +9,9 @@ pub struct LaserLight {
     pub linewidth: f64,
     /// What lies within.
     pub spectrum: Spectrum,
+    /// The half-angle in radians of the disc from which the light reaches the surface, seen from there; 0 for a point. Light
+    /// of its parts does not interfere: a fibre of many modes, a diffuser that moves during an exposure, a lamp.
+    pub source_half_angle: f64,
 }
 
 /// The form of a spectrum.
@@ -36,6 +39,7 @@ impl LaserLight {
             wavelength,
             linewidth: 0.0,
             spectrum: Spectrum::default(),
+            source_half_angle: 0.0,
         }
     }
 
@@ -49,7 +53,17 @@ impl LaserLight {
             wavelength: SpectralLine::from_peaks(&peaks)?.wavelength(),
             linewidth,
             spectrum: Spectrum::Peaks(peaks),
+            source_half_angle: 0.0,
         })
+    }
+
+    /// Returns the directions from which the light comes.
+    ///
+    /// # Errors
+    ///
+    /// That of [`SourceExtent::disc`].
+    pub fn extent(&self) -> Result<SourceExtent, CoherenceError> {
+        SourceExtent::disc(self.source_half_angle)
     }
 
     /// Returns the spectral line.
@@ -63,6 +77,7 @@ impl LaserLight {
             wavelength,
             linewidth,
             ref spectrum,
+            ..
         } = self;
         match spectrum {
             &Spectrum::Peak(shape) => SpectralLine::new(wavelength, linewidth, shape),
@@ -92,6 +107,7 @@ mod tests {
             wavelength: 450e-9,
             linewidth: 4e-9,
             spectrum,
+            source_half_angle: 0.0,
         };
         for shape in [
             LineShape::Gaussian,
@@ -123,6 +139,7 @@ mod tests {
             wavelength: 450e-9,
             linewidth,
             spectrum,
+            source_half_angle: 0.0,
         };
         assert_eq!(refused(LaserLight::monochromatic(f64::NAN)), "wavelength");
         assert_eq!(refused(light(50e-9, Spectrum::default())), "linewidth");

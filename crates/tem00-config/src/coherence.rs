@@ -2,7 +2,7 @@ use core::ops::RangeInclusive;
 
 use tem00_coherence::{LaserLight, LineShape, Relief, SpectralLine, Spectrum};
 
-use crate::{LENGTH, NUMBER, Problem, Section, Value};
+use crate::{ANGLE, LENGTH, NUMBER, Problem, Section, Value};
 
 /// Allowed wavelengths in metres, and in words.
 pub type Wavelengths = (RangeInclusive<f64>, &'static str);
@@ -17,8 +17,8 @@ const SPECTRA: &[(&str, Spectrum)] = &[
     ("comb", Spectrum::Comb(0)),
 ];
 
-/// Reads the keys of the light of a laser, in scene files and in set-up files: `wavelength`, `linewidth`, `spectrum` and
-/// `lines`.
+/// Reads the keys of the light of a laser, in scene files and in set-up files: `wavelength`, `linewidth`, `spectrum`,
+/// `lines` and `source_half_angle`.
 ///
 /// # Errors
 ///
@@ -33,20 +33,27 @@ pub fn read_laser_light(
     let linewidth = section.or("linewidth", 0.0, |value| {
         value.within(&LENGTH, 0.0.., "zero or positive")
     })?;
-    match section.optional("spectrum") {
+    let source_half_angle = section.or("source_half_angle", 0.0, |value| {
+        value.within(&ANGLE, 0.0..=0.3, "from 0 to 0.3 rad")
+    })?;
+    let light = match section.optional("spectrum") {
         Some(list) if list.is_list() => {
             if section.has("wavelength") {
                 return Err(follows(section, "wavelength", "spectrum"));
             }
             let peaks = peaks(&list, wavelength)?;
-            LaserLight::of_peaks(peaks, linewidth).map_err(|error| list.problem(error))
+            LaserLight::of_peaks(peaks, linewidth).map_err(|error| list.problem(error))?
         }
-        spectrum => Ok(LaserLight {
-            wavelength: wavelength(&section.required("wavelength", "\"650 nm\"")?)?,
+        spectrum => LaserLight {
             linewidth,
             spectrum: named_spectrum(section, spectrum.as_ref())?,
-        }),
-    }
+            ..LaserLight::monochromatic(wavelength(&section.required("wavelength", "\"650 nm\"")?)?)
+        },
+    };
+    Ok(LaserLight {
+        source_half_angle,
+        ..light
+    })
 }
 
 fn follows(section: &Section<'_>, key: &str, from: &str) -> Problem {

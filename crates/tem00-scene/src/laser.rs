@@ -17,6 +17,7 @@ const KEYS: &[&str] = &[
     "linewidth",
     "spectrum",
     "lines",
+    "source_half_angle",
     "power",
     "position",
     "look_at",
@@ -68,6 +69,9 @@ fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
     let spectral_line = light
         .line()
         .map_err(|error| rejected(&error, Some(error.parameter()), &[section]))?;
+    let source_extent = light
+        .extent()
+        .map_err(|error| rejected(&error, Some(error.parameter()), &[section]))?;
     let wavelength = spectral_line.wavelength();
     let placement = Placement::read(section)?;
     let axis = placement.axis();
@@ -88,6 +92,7 @@ fn laser(section: &Section<'_>) -> Result<Laser, Problem> {
     let laser = Laser::new(description)
         .map_err(|error| rejected(&error, error.parameter(), &[&beam, section]))?;
     let pivot = pivot(section, placement.position)?;
+    let laser = laser.with_source_extent(source_extent);
     Ok(laser.with_trajectory(trajectory(section, pivot)?))
 }
 

@@ -6,7 +6,7 @@ use tem00_beam::{
     AstigmaticBeam, BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight,
     LineProfile, LocatedBeam, NextEvent, Placement, SpotLight, TabulatedLineLight,
 };
-use tem00_coherence::SpectralLine;
+use tem00_coherence::{SourceExtent, SpectralLine};
 use tem00_decorrelation::RigidMotion;
 
 pub use self::emission::{EmittedRay, SampledIllumination};
@@ -60,6 +60,7 @@ pub enum BeamShape {
 pub struct Laser {
     description: LaserDescription,
     source: Source,
+    source_extent: SourceExtent,
     trajectory: Trajectory,
 }
 
@@ -120,8 +121,21 @@ impl Laser {
         Ok(Self {
             description,
             source,
+            source_extent: SourceExtent::default(),
             trajectory: Trajectory::default(),
         })
+    }
+
+    /// Returns the laser with a source that is no point, as the surfaces see it: it acts on speckle only.
+    #[must_use]
+    pub fn with_source_extent(mut self, source_extent: SourceExtent) -> Self {
+        self.source_extent = source_extent;
+        self
+    }
+
+    /// Returns the directions from which light reaches a surface.
+    pub const fn source_extent(&self) -> &SourceExtent {
+        &self.source_extent
     }
 
     /// Returns the laser with a motion from frame to frame.
@@ -157,6 +171,7 @@ impl Laser {
                 ..description.clone()
             },
             source: self.source.moved(motion),
+            source_extent: self.source_extent.clone(),
             trajectory: Trajectory::default(),
         }
     }

@@ -65,13 +65,15 @@ fn the_decision_about_a_broader_source_has_the_uncertainty_of_its_setup() {
 fn a_relief_of_too_many_patterns_is_refused_by_its_name() {
     let path = repository().join("setups/superluminescent.toml");
     let text = fs::read_to_string(path).expect("the set-up");
-    let image = |height: &str| {
-        let text = text.replace("\"0.4 um\"", height);
+    let image = |height: &str, patterns: u32| {
+        let height = format!("{height}\npatterns = {patterns}");
+        let text = text.replace("\"0.4 um\"", &height);
         let setup = parse_setup(&text).map_err(|error| error.to_string());
         LineImage::of_setup(&setup.expect("a set-up"), [64, 64]).map(|_| ())
     };
-    assert_eq!(image("\"0.1 mm\""), Ok(()));
-    let refused = image("\"0.5 mm\"").expect_err("1263 patterns");
+    assert_eq!(image("\"0.1 mm\"", 2), Ok(()));
+    assert_eq!(image("\"0.5 mm\"", 1), Ok(()));
+    let refused = image("\"0.5 mm\"", 2).expect_err("2048 patterns");
     assert_eq!(refused.parameter(), Some("rms_height"), "{refused}");
 }
 

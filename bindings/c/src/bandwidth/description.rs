@@ -1,4 +1,4 @@
-use tem00_coherence::{CellGeometry, DVec3, Relief, ResolutionCell, SpectralLine};
+use tem00_coherence::{CellGeometry, DVec3, Relief, ResolutionCell, SourceExtent, SpectralLine};
 
 use crate::{
     numbers::{check_relief, code},
@@ -35,6 +35,9 @@ pub struct BandwidthDescription {
     pub peak_count: usize,
     /// To the source.
     pub to_source: [f64; 3],
+    /// Half-angle of the disc from which light reaches the surface, seen from there, at most 0.3 rad; 0 for a point. Light of
+    /// its parts does not interfere.
+    pub source_half_angle: f64,
     /// To the centre of the pupil.
     pub to_pupil: [f64; 3],
     /// Normal of the surface, on the side of both.
@@ -84,6 +87,7 @@ impl BandwidthDescription {
             rms_height: self.rms_height,
             correlation_length: self.correlation_length,
         };
-        Ok(cell.with_relief(relief)?)
+        let extent = SourceExtent::disc(self.source_half_angle)?;
+        Ok(cell.with_relief(relief)?.with_source_extent(extent))
     }
 }

@@ -24,14 +24,16 @@ use crate::{
 ///     Distance in metres at which the correlation of these heights falls to 1/e.
 /// defocus : float
 ///     Distance of the surface from the plane of focus, in metres.
+/// `source_half_angle` : float
+///     Half-angle in radians, at most 0.3, of the disc from which the light reaches the surface, seen from there.
 #[pyclass(frozen, eq, module = "tem00.coherence")]
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ResolutionCell(physics::ResolutionCell);
 
 #[pymethods]
 impl ResolutionCell {
     #[new]
-    #[pyo3(signature = (to_source, to_pupil, normal, sin_aperture, wavelength, rms_height=0.0, correlation_length=0.0, defocus=0.0))]
+    #[pyo3(signature = (to_source, to_pupil, normal, sin_aperture, wavelength, rms_height=0.0, correlation_length=0.0, defocus=0.0, source_half_angle=0.0))]
     #[expect(clippy::too_many_arguments, reason = "Python passes them by name")]
     fn new(
         to_source: Components<'_>,
@@ -42,6 +44,7 @@ impl ResolutionCell {
         rms_height: f64,
         correlation_length: f64,
         defocus: f64,
+        source_half_angle: f64,
     ) -> PyResult<Self> {
         let vector = |name, argument: &Components<'_>| argument.vector(name).map(DVec3::from_array);
         let cell = physics::ResolutionCell::new(physics::CellGeometry {
@@ -56,7 +59,9 @@ impl ResolutionCell {
             correlation_length,
         };
         let cell = cell.or_raise()?.with_relief(relief).or_raise()?;
-        Ok(Self(cell.with_defocus(defocus).or_raise()?))
+        let extent = physics::SourceExtent::disc(source_half_angle);
+        let cell = cell.with_defocus(defocus).or_raise()?;
+        Ok(Self(cell.with_source_extent(extent.or_raise()?)))
     }
 
     /// Path per length on the object by the tilt of the cell, across the line of sight, of shape (3,).
@@ -107,12 +112,30 @@ impl ResolutionCell {
         Ok(py.detach(|| self.speckle(line).autocovariance(lag)))
     }
 
-    /// Return the cell with a relief without correlation length that has the same contrast in the light of a line.
-    fn dense_equivalent(&self, py: Python<'_>, line: &SpectralLine) -> Self {
-        Self(py.detach(|| {
-            let contrast = |speckle: &PolychromaticSpeckle<'_>| speckle.contrast();
-            self.speckle(line).dense_equivalent(contrast)
-        }))
+    /// Return the patterns of one wavelength that together have the contrast, as two arrays of float64.
+    ///
+    /// Returns
+    /// -------
+    /// fractions : (n,)
+    ///     Fractions of the light in patterns whose intensities add, at most 1024.
+    /// heights : (m, 2)
+    ///     Heights of the relief in metres whose fields add, each with the root of its fraction of the light; none where the
+    ///     patterns are looked up as in one wavelength.
+    fn patterns<'py>(
+        &self,
+        py: Python<'py>,
+        line: &SpectralLine,
+    ) -> PyResult<(Array<'py>, Array<'py>)> {
+        let patterns = py.detach(|| {
+            let speckle = self.speckle(line);
+            speckle.patterns(|speckle| speckle.contrast().powi(2))
+        });
+        let physics::PatternSum { fractions, heights } = patterns;
+        let size = [heights.len(), 2];
+        Ok((
+            array(py, &[fractions.len()], fractions)?.into_any(),
+            array(py, &size, heights.into_flattened())?.into_any(),
+        ))
     }
 
     /// Return the fractions of the light in its coherent modes, float64 of shape (n,), the largest first.
@@ -120,27 +143,6 @@ impl ResolutionCell {
         let modes = py.detach(|| self.speckle(line).modes());
         Ok(array(py, &[modes.len()], modes)?.into_any())
     }
-}
-
-/// Return heights that stand for a normal distribution in light of a finite bandwidth, float64 of shape (n, 2): each in units
-/// of the root mean square height, with its fraction of the light; None above a spread of 4.
-///
-/// Parameters
-/// ----------
-/// spread : float
-///     Twice the spread of the wave numbers times that of the paths.
-#[pyfunction]
-pub(super) fn representative_heights(py: Python<'_>, spread: f64) -> PyResult<Option<Array<'_>>> {
-    if !(0.0..).contains(&spread) {
-        let message = format!("spread must be zero or positive, got {spread}");
-        return Err(refused("spread", message));
-    }
-    let heights = physics::representative_heights(spread);
-    let rows = |heights: Vec<[f64; 2]>| {
-        let values = array(py, &[heights.len(), 2], heights.into_flattened())?;
-        Ok(values.into_any())
-    };
-    heights.map(rows).transpose()
 }
 
 impl ResolutionCell {

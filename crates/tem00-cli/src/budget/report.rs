@@ -207,7 +207,11 @@ fn image(section: &mut Section, setup: &Setup) {
             "speckle contrast in a pixel",
             NUMBER.quantity(setup.contrast()),
         )
-        .fact("bandwidth", "linewidth of the laser", bandwidth(setup))
+        .fact(
+            "bandwidth",
+            "linewidth and extent of the source",
+            bandwidth(setup),
+        )
         .fact(
             "saturation",
             "light",

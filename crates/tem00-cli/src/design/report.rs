@@ -64,7 +64,11 @@ pub(super) fn report(
         let section = report
             .section("What makes its heights uncertain")
             .in_detail()
-            .fact("bandwidth", "linewidth of the laser", bandwidth(&setup));
+            .fact(
+                "bandwidth",
+                "linewidth and extent of the source",
+                bandwidth(&setup),
+            );
         section.table(sources(figures)).paragraph(format!(
             "Light: {}; {}.",
             level.name(),

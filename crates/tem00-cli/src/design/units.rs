@@ -3,13 +3,15 @@
 use tem00_triangulation::{DesignFigure, DesignParameter};
 
 use crate::report::units::{
-    DEGREES, MICROMETRES, MILLIMETRES, MILLISECONDS, MILLIWATTS, NANOMETRES, NUMBER, PERCENT, Unit,
+    DEGREES, MICROMETRES, MILLIMETRES, MILLIRADIANS, MILLISECONDS, MILLIWATTS, NANOMETRES, NUMBER,
+    PERCENT, Unit,
 };
 
 /// Returns the unit of a parameter.
 pub(super) const fn of_parameter(parameter: DesignParameter) -> Unit {
     match parameter {
         DesignParameter::Angle => DEGREES,
+        DesignParameter::SourceHalfAngle => MILLIRADIANS,
         DesignParameter::Wavelength | DesignParameter::Linewidth => NANOMETRES,
         DesignParameter::PixelPitch => MICROMETRES,
         DesignParameter::Power => MILLIWATTS,
@@ -36,7 +38,7 @@ pub(super) const fn of_figure(figure: DesignFigure) -> Unit {
 /// Returns the SI unit of a parameter, as headings of files end with it.
 pub(super) const fn si_of_parameter(parameter: DesignParameter) -> &'static str {
     match parameter {
-        DesignParameter::Angle => "_rad",
+        DesignParameter::Angle | DesignParameter::SourceHalfAngle => "_rad",
         DesignParameter::Power => "_W",
         DesignParameter::Exposure => "_s",
         DesignParameter::FNumber => "",

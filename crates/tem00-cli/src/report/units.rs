@@ -31,6 +31,7 @@ pub(crate) const MICROMETRES: Unit = unit("µm", 1e-6);
 pub(crate) const NANOMETRES: Unit = unit("nm", 1e-9);
 pub(crate) const MILLIWATTS: Unit = unit("mW", 1e-3);
 pub(crate) const MILLISECONDS: Unit = unit("ms", 1e-3);
+pub(crate) const MILLIRADIANS: Unit = unit("mrad", 1e-3);
 pub(crate) const DEGREES: Unit = unit("°", core::f64::consts::PI / 180.0);
 
 impl Unit {

@@ -150,12 +150,12 @@ fn what_cannot_be_is_refused_by_name() {
     }
     let cell = ResolutionCell::new(geometry()).unwrap();
     let relief = |rms_height, correlation_length| {
-        cell.with_relief(Relief {
+        let relief = Relief {
             rms_height,
             correlation_length,
-        })
-        .unwrap_err()
-        .parameter()
+        };
+        let refused = cell.clone().with_relief(relief).unwrap_err();
+        refused.parameter()
     };
     assert_eq!(relief(-1e-6, 0.0), "rms_height");
     assert_eq!(relief(1e-6, f64::NAN), "correlation_length");
@@ -178,7 +178,7 @@ proptest! {
         });
         let relief = Relief { rms_height: height, correlation_length: 0.0 };
         let cell = cell.unwrap().with_relief(relief).unwrap();
-        for cell in [cell, cell.with_defocus(defocus).unwrap()] {
+        for cell in [cell.clone(), cell.with_defocus(defocus).unwrap()] {
             let squared = cell.squared_correlation(kappa);
             prop_assert!((0.0..=1.0 + 1e-9).contains(&squared), "{squared}");
         }

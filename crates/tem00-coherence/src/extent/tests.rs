@@ -1,7 +1,9 @@
 use tem00_numerics::quadrature::integrate;
 
 use super::*;
-use crate::{CellGeometry, LineShape, Relief, ResolutionCell, SpectralLine};
+use crate::{
+    CellGeometry, LineShape, PolychromaticSpeckle, Relief, ResolutionCell, Rows, SpectralLine,
+};
 
 const WAVELENGTH: f64 = 650e-9;
 const SIN_APERTURE: f64 = 0.02;
@@ -25,21 +27,26 @@ fn cell(incidence: f64, observation: f64) -> ResolutionCell {
 
 fn contrast(cell: &ResolutionCell, extent: Result<SourceExtent, CoherenceError>) -> f64 {
     let line = &SpectralLine::monochromatic(WAVELENGTH).unwrap();
-    PolychromaticSpeckle { line, cell }.contrast_of(&extent.unwrap())
+    let cell = &cell.clone().with_source_extent(extent.unwrap());
+    PolychromaticSpeckle { line, cell }.contrast()
 }
 
 #[test]
 fn a_change_in_the_plane_of_incidence_moves_the_field_by_the_ratio_of_cosines() {
-    for (incidence, observation) in [(0.0, 0.0), (40.0, -20.0), (-35.0, 50.0)] {
+    for (incidence, observation) in [(0.0, 0.0), (40.0, -20.0), (-35.0, 50.0), (30.0, -30.0)] {
         let cell = cell(incidence, observation);
+        let pupils = TAU * 2.0 * SIN_APERTURE / WAVELENGTH;
         let change = direction(incidence + 1e-4) - direction(incidence);
         let (moved, _) = cell.change_with_source(change);
         let ratio = incidence.to_radians().cos() / observation.to_radians().cos();
         // The direction turns, too: by half of 2e−6.
-        assert!((moved.length() / change.length() / ratio - 1.0).abs() < 2e-6);
-        assert!(moved.dot(direction(observation)).abs() < 1e-18);
-        let (across, _) = cell.change_with_source(1e-3 * DVec3::Y);
-        assert!((across.length() - 1e-3).abs() < 1e-15);
+        assert!((moved.length() * pupils / change.length() / ratio - 1.0).abs() < 2e-6);
+        let (moved_across, _) = cell.change_with_source(1e-3 * DVec3::Y);
+        assert!((moved_across.length() * pupils - 1e-3).abs() < 1e-15);
+        assert!(
+            moved.dot(moved_across).abs() < 1e-12,
+            "{moved} {moved_across}"
+        );
     }
 }
 
@@ -99,25 +106,72 @@ fn points_of_disc(to_source: DVec3, half_angle: f64, count: u32) -> Vec<(DVec3, 
 
 #[test]
 fn a_disc_is_the_sum_of_its_points_with_heights_and_a_linewidth_too() {
-    const POINTS: u32 = 120;
-    for (linewidth, rms_height) in [(0.0, 0.0), (0.0, 2e-6), (4e-9, 0.0), (4e-9, 2e-6)] {
+    let laws: [fn(&PolychromaticSpeckle<'_>) -> f64; 4] = [
+        |speckle| speckle.contrast().powi(2),
+        |speckle| speckle.covariance([0.3, -0.2]),
+        |speckle| speckle.line_noise(Rows::Height(2.0)),
+        |speckle| speckle.autocovariance([0.4, 0.3]),
+    ];
+    for (linewidth, rms_height, laws) in [
+        (0.0, 0.0, &laws[..]),
+        (0.0, 2e-6, &laws[..3]),
+        (4e-9, 0.0, &laws[..1]),
+        (4e-9, 2e-6, &laws[..1]),
+    ] {
         let relief = Relief {
             rms_height,
             correlation_length: 0.0,
         };
         let cell = cell(35.0, -20.0).with_relief(relief).unwrap();
         let line = &SpectralLine::new(WAVELENGTH, linewidth, LineShape::Gaussian).unwrap();
-        let speckle = PolychromaticSpeckle { line, cell: &cell };
-        let points = points_of_disc(cell.source(), 0.015, POINTS);
-        let points = SourceExtent::directions(&points).unwrap();
-        let [points, disc] = [points, SourceExtent::disc(0.015).unwrap()]
-            .map(|extent| speckle.contrast_of(&extent).powi(2));
-        // Each point stands for its neighbourhood, over which the overlap falls a little.
-        assert!(
-            (disc / points - 1.0).abs() < 0.005,
-            "{linewidth:e}, {rms_height:e}: {disc}, {points}"
-        );
-        assert!(disc < 0.9 * speckle.contrast().powi(2), "{disc}");
+        let points = SourceExtent::directions(&points_of_disc(cell.source(), 0.015, 100)).unwrap();
+        for (i, law) in laws.iter().enumerate() {
+            let of = |extent: &SourceExtent| {
+                let cell = &cell.clone().with_source_extent(extent.clone());
+                law(&PolychromaticSpeckle { line, cell })
+            };
+            let (points, disc) = (of(&points), of(&SourceExtent::disc(0.015).unwrap()));
+            // Each point stands for its neighbourhood, over which the overlap falls a little.
+            assert!(
+                (disc / points - 1.0).abs() < 0.005,
+                "law {i}, {linewidth:e}, {rms_height:e}: {disc}, {points}"
+            );
+            let point = of(&SourceExtent::default());
+            assert!(disc < 0.95 * point, "law {i}: {disc}, {point}");
+        }
+    }
+}
+
+#[test]
+fn directions_share_chords_and_lenses_of_the_pupil() {
+    // Two directions of half of the light each, displaced across the tilt by half a pupil, and along it.
+    let cell = cell(20.0, 0.0);
+    let line = &SpectralLine::monochromatic(WAVELENGTH).unwrap();
+    let displaced = |axis: DVec3| {
+        let other = cell.source() + 2.0 * SIN_APERTURE * 0.5 * axis;
+        let list = [(cell.source(), 1.0), (other, 1.0)];
+        let extent = SourceExtent::directions(&list).unwrap();
+        cell.clone().with_source_extent(extent)
+    };
+    let shared = |cell: &ResolutionCell, rows| {
+        2.0 * PolychromaticSpeckle { line, cell }.line_noise(rows) - 1.0
+    };
+    // Chords of two discs that are displaced along the chords: ∫ (2√(1 − x²) − 1)₊² dx · 3/16 over half a chord.
+    let sine = 0.75_f64.sqrt();
+    let chords = 5.0 * sine - 4.0 * sine.powi(3) / 3.0 - 2.0 * (sine * 0.5 + sine.asin());
+    let across = displaced(DVec3::Y);
+    assert!((shared(&across, Rows::Thin) - 2.0 * chords * 3.0 / 16.0).abs() < 1e-3);
+    // The ratio of the cosines, to first order in the 0.02 rad of the change.
+    let along = displaced(direction(110.0) / 20_f64.to_radians().cos());
+    assert!((shared(&along, Rows::Thin) - (1.0 - 0.75 + 0.0625)).abs() < 0.02);
+    for cell in [&across, &along] {
+        assert!((shared(cell, Rows::Tall) - disc_overlap(0.5)).abs() < 0.02);
+        let rows = [Rows::Thin, Rows::Height(1.0), Rows::Height(4.0), Rows::Tall];
+        let shared = rows.map(|rows| shared(cell, rows));
+        assert!(shared.is_sorted(), "{shared:?}");
+        let squared = disc_overlap(0.5).powi(2);
+        let contrast = 2.0 * PolychromaticSpeckle { line, cell }.contrast().powi(2) - 1.0;
+        assert!((contrast - squared).abs() < 0.02, "{contrast}");
     }
 }
 
@@ -125,7 +179,7 @@ fn a_disc_is_the_sum_of_its_points_with_heights_and_a_linewidth_too() {
 fn what_cannot_be_is_refused_by_its_name() {
     for angle in [-0.1, 0.4, f64::NAN] {
         let refused = SourceExtent::disc(angle).unwrap_err();
-        assert_eq!(refused.parameter(), "half_angle", "{refused}");
+        assert_eq!(refused.parameter(), "source_half_angle", "{refused}");
         let refused = SourceExtent::gaussian(angle).unwrap_err();
         assert_eq!(refused.parameter(), "standard_deviation", "{refused}");
     }

@@ -1,8 +1,8 @@
-//! What light that is not of one wavelength asks of the speckle of a surface.
+//! What light that is not of one wavelength, or not from a point, asks of the speckle of a surface.
 
 use glam::DVec2;
 use rayon::prelude::*;
-use tem00_coherence::{PolychromaticSpeckle, representative_heights};
+use tem00_coherence::{PatternSum, PolychromaticSpeckle};
 use tem00_decorrelation::ImagingGeometry;
 
 use super::{
@@ -10,7 +10,7 @@ use super::{
     change::{Change, ReferencePoint},
     prescan::{LaserGroups, pixels_of},
 };
-use crate::{Intersector, Scene, TracerError};
+use crate::{Intersector, Laser, Scene, TracerError};
 
 /// How a surface looks up the speckle of a laser that has a linewidth.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +41,7 @@ impl Bandwidth {
 /// The light of a laser on a surface: fractions of patterns whose intensities add, and what else its bandwidth asks.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SurfaceLight {
-    /// The coherent modes, if heights dominate; one otherwise.
+    /// One, or the modes of heights that dominate, or of directions of the source.
     pub modes: Vec<f64>,
     pub bandwidth: Option<Bandwidth>,
 }
@@ -54,10 +54,9 @@ struct Response {
     reference_point: ReferencePoint,
 }
 
-/// Spreads of the wave number over that which displaces the pupil by its diameter, and of the phases by heights, below
-/// which a contrast is above 0.999.
+/// The spread of the wave number over that which displaces the pupil by its diameter, below which a contrast is above
+/// 0.999.
 const NEGLIGIBLE_TILT: f64 = 5e-4;
-const NEGLIGIBLE_HEIGHTS: f64 = 0.03;
 
 /// The part of the line to either side that the slices need not hold, and the most that they hold in pupil diameters: on
 /// a path that closes, the rest finds speckle that is new to nearly all of the line.
@@ -84,11 +83,7 @@ pub(super) fn laser_lights(
     laser_groups: LaserGroups<'_>,
 ) -> Result<Vec<Vec<SurfaceLight>>, TracerError> {
     let single = vec![vec![SurfaceLight::single(); scene.surfaces.len()]; scene.lasers.len()];
-    if scene
-        .lasers
-        .iter()
-        .all(|laser| laser.spectral_line().is_monochromatic())
-    {
+    if scene.lasers.iter().all(is_pure) {
         return Ok(single);
     }
     let change = Change::new(scene, scene.reference_frame);
@@ -124,6 +119,11 @@ pub(super) fn laser_lights(
     Ok(lights.collect())
 }
 
+/// Tells whether light is of one wavelength and from a point.
+fn is_pure(laser: &Laser) -> bool {
+    laser.spectral_line().is_monochromatic() && laser.source_extent().is_point()
+}
+
 /// One laser in the reference frame.
 struct Survey<'a> {
     scene: &'a Scene,
@@ -139,10 +139,11 @@ impl Survey<'_> {
         points: impl Iterator<Item = &'p SpecklePoint>,
     ) -> SurfaceLight {
         let single = SurfaceLight::single();
-        let line = self.scene.lasers[self.laser].spectral_line();
-        if line.is_monochromatic() {
+        let laser = &self.scene.lasers[self.laser];
+        if is_pure(laser) {
             return single;
         }
+        let line = laser.spectral_line();
         let responses = points.filter_map(|point| Some((self.response(point)?, point)));
         let farthest = responses.max_by(|a, b| a.0.tilt.total_cmp(&b.0.tilt));
         let Some((
@@ -163,26 +164,22 @@ impl Survey<'_> {
         let Some(cell) = cell.and_then(|cell| cell.with_relief(relief).ok()) else {
             return single;
         };
+        let cell = cell.with_source_extent(laser.source_extent().clone());
         let speckle = PolychromaticSpeckle { line, cell: &cell };
-        let cell = speckle.dense_equivalent(|speckle| speckle.contrast());
-        let spread = line.effective_spread();
-        let heights = 2.0 * spread * cell.path_spread();
-        if spread * tilt < NEGLIGIBLE_TILT && heights < NEGLIGIBLE_HEIGHTS {
-            return single;
-        }
-        let Some(nodes) = representative_heights(heights) else {
-            let speckle = PolychromaticSpeckle { line, cell: &cell };
+        let PatternSum { fractions, heights } =
+            speckle.patterns(|speckle| speckle.contrast().powi(2));
+        let is_flat = line.effective_spread() * tilt < NEGLIGIBLE_TILT && heights.len() == 1;
+        if heights.is_empty() || is_flat {
             return SurfaceLight {
-                modes: speckle.modes(),
+                modes: fractions,
                 bandwidth: None,
             };
-        };
+        }
         let farthest = line.draw(1.0 - LEFT_OUT).max(-line.draw(LEFT_OUT));
-        let rms_height = cell.relief().rms_height;
-        let nodes = nodes.iter().map(|[z, w]| [z * rms_height, w.sqrt()]);
         SurfaceLight {
+            modes: fractions,
             bandwidth: Some(Bandwidth {
-                heights: nodes.collect(),
+                heights,
                 axis: reference_point
                     .way_across()
                     .try_normalize()
@@ -191,7 +188,6 @@ impl Survey<'_> {
                 reference_point,
                 is_crossed: false,
             }),
-            ..single
         }
     }
 

@@ -18,6 +18,8 @@ pub enum DesignParameter {
     Wavelength,
     /// The linewidth of the laser, in metres.
     Linewidth,
+    /// The half-angle of the source as the part sees it, in radians.
+    SourceHalfAngle,
     /// The power in the line, in watts.
     Power,
     /// The exposure time, in seconds.
@@ -32,12 +34,13 @@ pub enum DesignParameter {
 
 impl DesignParameter {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::FNumber,
         Self::Angle,
         Self::LineThickness,
         Self::Wavelength,
         Self::Linewidth,
+        Self::SourceHalfAngle,
         Self::Power,
         Self::Exposure,
         Self::PixelPitch,
@@ -82,6 +85,7 @@ impl DesignParameter {
             Self::LineThickness => SetupQuantity::LineThickness,
             Self::Wavelength => SetupQuantity::Wavelength,
             Self::Linewidth => SetupQuantity::Linewidth,
+            Self::SourceHalfAngle => SetupQuantity::SourceHalfAngle,
             Self::Power => SetupQuantity::Power,
             Self::Exposure => SetupQuantity::Exposure,
             Self::PixelPitch => SetupQuantity::PixelPitch,

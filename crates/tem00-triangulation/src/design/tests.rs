@@ -463,8 +463,8 @@ fn a_search_that_is_cancelled_ends() {
 fn neighbours_differ_in_one_parameter() {
     let description = base();
     let near = neighbours(&description, 0.1);
-    // All but the linewidth of its laser, which has none.
-    assert_eq!(near.len(), DesignParameter::ALL.len() - 1);
+    // All but the linewidth and the extent of its laser, which has none.
+    assert_eq!(near.len(), DesignParameter::ALL.len() - 2);
     let mut wide = description.clone();
     wide.laser.light.linewidth = 5e-9;
     let near_wide = neighbours(&wide, 0.1);

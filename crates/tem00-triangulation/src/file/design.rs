@@ -12,6 +12,7 @@ const VARY: &[&str] = &[
     "line_thickness",
     "wavelength",
     "linewidth",
+    "source_half_angle",
     "power",
     "exposure",
     "pixel_pitch",

@@ -6,6 +6,7 @@ use crate::SetupQuantity;
 pub(super) const LASER: &[&str] = &[
     "wavelength",
     "linewidth",
+    "source_half_angle",
     "spectrum",
     "lines",
     "power",

@@ -77,6 +77,10 @@ impl Sections {
             self.length("linewidth", light.linewidth, "nm")
                 .note("full width at half maximum");
         }
+        if light.source_half_angle > 0.0 {
+            let angle = light.source_half_angle;
+            self.quantity("source_half_angle", angle, (&ANGLE, "mrad"));
+        }
         match light.spectrum {
             Spectrum::Peak(LineShape::Lorentzian) if light.linewidth > 0.0 => {
                 self.value("spectrum", "\"lorentzian\"")

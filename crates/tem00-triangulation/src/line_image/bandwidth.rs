@@ -1,14 +1,14 @@
 //! Images of a line in light that is not of one wavelength.
 
-use tem00_coherence::{PolychromaticSpeckle, Rows, representative_heights};
+use tem00_coherence::{PatternSum, PolychromaticSpeckle, Rows};
 use tem00_numerics::{Grid, cast::to_usize};
 use tem00_speckle::Complex;
 
 use crate::Setup;
 
-/// The light of a laser with a linewidth on the surface of a set-up.
+/// The light of a laser with a linewidth or an extent on the surface of a set-up.
 pub(super) struct PolychromaticLight {
-    /// The coherent modes, if heights dominate; one otherwise.
+    /// One, or the modes of heights that dominate, or of directions of the source.
     pub(super) modes: Vec<f64>,
     pub(super) bandwidth: Option<Bandwidth>,
 }
@@ -19,7 +19,7 @@ pub(super) struct PolychromaticLight {
 pub(super) struct Bandwidth {
     /// Displacements of the pupil in its diameters, with the differences of wave numbers, in rad/m.
     waves: Vec<[f64; 2]>,
-    /// Paths that stand for those by heights, in metres, with the roots of their fractions of the light. Their fields add.
+    /// Paths by heights, in metres, with the roots of their fractions of the light. Their fields add.
     paths: Vec<[f64; 2]>,
 }
 
@@ -34,34 +34,25 @@ const MAX_TILT: f64 = 6.0;
 type Pupil = (Grid<Complex<f32>>, f64);
 
 impl PolychromaticLight {
-    /// Returns nothing for light of one wavelength.
+    /// Returns nothing for light of one wavelength from a point.
     pub(super) fn of_setup(setup: &Setup) -> Option<Self> {
         let line = setup.description().laser.light.line();
         let (Ok(line), Some(cell)) = (line, setup.resolution_cell()) else {
             return None;
         };
-        if line.is_monochromatic() {
+        if line.is_monochromatic() && cell.source_extent().is_point() {
             return None;
         }
         let speckle = PolychromaticSpeckle {
             line: &line,
             cell: &cell,
         };
-        let cell = speckle.dense_equivalent(|speckle| speckle.line_noise(Rows::Thin));
-        let speckle = PolychromaticSpeckle {
-            line: &line,
-            cell: &cell,
-        };
-        let heights = representative_heights(2.0 * line.effective_spread() * cell.path_spread());
-        Some(match heights {
-            None => Self {
-                modes: speckle.modes(),
-                bandwidth: None,
-            },
-            Some(heights) => Self {
-                modes: vec![1.0],
-                bandwidth: Some(Bandwidth::new(&speckle, &heights)),
-            },
+        let PatternSum { fractions, heights } =
+            speckle.patterns(|speckle| speckle.line_noise(Rows::Thin));
+        let is_broad = !line.is_monochromatic() && !heights.is_empty();
+        Some(Self {
+            modes: fractions,
+            bandwidth: is_broad.then(|| Bandwidth::new(&speckle, &heights)),
         })
     }
 }
@@ -78,13 +69,10 @@ impl Bandwidth {
             let kappa = line.draw((i as f64 + 0.5) / count);
             [(kappa / full).clamp(-MAX_TILT, MAX_TILT), kappa]
         });
-        let spread = cell.path_spread();
+        let path = |[height, root]: &[f64; 2]| [height * cell.height_factor(), *root];
         Self {
             waves: waves.collect(),
-            paths: heights
-                .iter()
-                .map(|[z, w]| [z * spread, w.sqrt()])
-                .collect(),
+            paths: heights.iter().map(path).collect(),
         }
     }
 

@@ -156,6 +156,7 @@ impl SetupDescription {
         let allowed = "from 100 nm to 100 µm (in metres)";
         within("wavelength", light.wavelength, (100e-9, 100e-6), allowed)?;
         light.line()?;
+        light.extent()?;
         let allowed = "positive, at most 1 kW (in watts)";
         within("power", power, (f64::MIN_POSITIVE, 1e3), allowed)?;
         let allowed = "from 1 µm to 1 m (in metres)";

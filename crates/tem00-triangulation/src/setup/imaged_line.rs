@@ -50,11 +50,11 @@ pub struct ImagedLine {
     pub column_electrons: f64,
     /// The height of the sensitive part of a pixel, in pixels.
     pub sensitive_height: f64,
-    /// What the linewidth of the laser makes of speckle.
+    /// What the linewidth and the extent of the source make of speckle.
     pub bandwidth: BandwidthEffect,
 }
 
-/// What the linewidth of the laser makes of the speckle of a line, over light of one wavelength.
+/// What the linewidth and the extent of the source make of the speckle of a line, over light of one wavelength and a point.
 ///
 /// # Validity
 ///
@@ -70,7 +70,7 @@ pub struct BandwidthEffect {
 }
 
 impl BandwidthEffect {
-    /// That of light of one wavelength.
+    /// That of light of one wavelength from a point.
     pub const NONE: Self = Self {
         contrast: 1.0,
         line_noise: 1.0,
@@ -79,7 +79,7 @@ impl BandwidthEffect {
 
     /// Returns the effect for a resolution cell and rows of a height in speckle sizes.
     fn new(line: &SpectralLine, cell: &ResolutionCell, rows: f64) -> Self {
-        if line.is_monochromatic() {
+        if line.is_monochromatic() && cell.source_extent().is_point() {
             return Self::NONE;
         }
         let speckle = PolychromaticSpeckle { line, cell };
@@ -199,5 +199,7 @@ pub(super) fn resolution_cell(
         .with_relief(relief)
         .ok()?
         .with_defocus(defocus)
-        .ok()
+        .ok()?
+        .with_source_extent(description.laser.light.extent().ok()?)
+        .into()
 }

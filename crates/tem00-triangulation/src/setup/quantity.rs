@@ -12,6 +12,8 @@ pub enum SetupQuantity {
     Wavelength,
     /// The linewidth of the laser, in metres.
     Linewidth,
+    /// The half-angle of the source as the part sees it, in radians.
+    SourceHalfAngle,
     /// The power in the line, in watts.
     Power,
     /// The full 1/e² thickness of the line on the part, in metres.
@@ -62,9 +64,10 @@ pub enum SetupQuantity {
 
 impl SetupQuantity {
     /// All of them, in the order of a set-up file.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::Wavelength,
         Self::Linewidth,
+        Self::SourceHalfAngle,
         Self::Power,
         Self::LineThickness,
         Self::LineLength,
@@ -95,6 +98,7 @@ impl SetupQuantity {
         match self {
             Self::Wavelength => ["laser", "wavelength"],
             Self::Linewidth => ["laser", "linewidth"],
+            Self::SourceHalfAngle => ["laser", "source_half_angle"],
             Self::Power => ["laser", "power"],
             Self::LineThickness => ["laser", "line_thickness"],
             Self::LineLength => ["laser", "line_length"],
@@ -138,6 +142,7 @@ impl SetupQuantity {
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Angle => "deg",
+            Self::SourceHalfAngle => "mrad",
             Self::Power => "mW",
             Self::Exposure => "ms",
             Self::Wavelength | Self::Linewidth | Self::RmsHeight => "nm",
@@ -150,7 +155,7 @@ impl SetupQuantity {
     /// Returns its kind of quantity.
     pub(crate) const fn dimension(self) -> &'static Dimension {
         match self.unit().as_bytes() {
-            b"deg" => &ANGLE,
+            b"deg" | b"mrad" => &ANGLE,
             b"mW" => &POWER,
             b"ms" => &DURATION,
             b"" => &NUMBER,
@@ -164,6 +169,7 @@ impl SetupQuantity {
         match self {
             Self::Wavelength => &mut laser.light.wavelength,
             Self::Linewidth => &mut laser.light.linewidth,
+            Self::SourceHalfAngle => &mut laser.light.source_half_angle,
             Self::Power => &mut laser.power,
             Self::LineThickness => &mut laser.line_thickness,
             Self::LineLength => &mut laser.line_length,

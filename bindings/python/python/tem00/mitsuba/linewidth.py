@@ -9,7 +9,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from tem00.coherence import ResolutionCell, SpectralLine, representative_heights
+from tem00.coherence import ResolutionCell, SpectralLine
 from tem00.mitsuba.frame import next_event
 from tem00.mitsuba.speckle_settings import refused
 from tem00.mitsuba.surfaces import surface_finder
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 # Rays along each axis of the image that look for the surfaces.
 _RAYS = 24
-# Spreads of the wave number over that which displaces the pupil by its diameter, and of the phases by
-# heights, below which a contrast is above 0.999. The same in `tem00 render`.
-_NEGLIGIBLE_TILT, _NEGLIGIBLE_HEIGHTS = 5e-4, 0.03
+# The spread of the wave number over that which displaces the pupil by its diameter, below which a contrast
+# is above 0.999. The same in `tem00 render`.
+_NEGLIGIBLE_TILT = 5e-4
 # Wave numbers: so many, and so many to a pupil diameter and to a radian of the phases by heights.
 _FEWEST_WAVES, _WAVES_PER_DIAMETER, _WAVES_PER_RADIAN = 24, 16, 12
 _LEFT_OUT = 5e-4
@@ -39,21 +39,15 @@ _VARIATION = 0.05
 class LineLight(NamedTuple):
     """The light of a spectral line on a surface.
 
-    ``axis`` is the direction in the image, y up, in which another wave number displaces the pupil.
+    ``axis`` is the direction in the image, y up, in which another wave number displaces the pupil;
+    ``fractions`` and ``heights`` are those of ``cell.patterns(line)``.
     """
 
     line: SpectralLine
     cell: ResolutionCell
     axis: tuple[float, float]
-
-    @property
-    def heights(self) -> Floats | None:
-        """Heights that stand for the relief and their fractions of the light; None where heights dominate."""
-        return representative_heights(2.0 * self.line.effective_spread * self.cell.path_spread)
-
-    def fractions(self) -> Sequence[float]:
-        """Return the fractions of the coherent modes, if heights dominate."""
-        return self.cell.modes(self.line).tolist() if self.heights is None else (1.0,)
+    fractions: Floats
+    heights: Floats
 
     def pattern(self, fields: Sequence[PupilField], pupil: Floats) -> NDArray[np.float32]:
         """Return the intensity at the samples of a pattern, a mean over the line.
@@ -65,15 +59,14 @@ class LineLight(NamedTuple):
         pupil
             Displacement of the pupil at the middle of the line, in diameters.
         """
-        heights = self.heights
-        if heights is None:
+        if len(self.heights) == 0:
             return fields[0].pattern_at(pupil, 0.0).values
-        z, weights = heights.T
+        z, roots = self.heights.T
         intensity: NDArray[np.float32] = np.zeros(fields[0].size[::-1], dtype=np.float32)
         waves = self._waves()
         for kappa in waves:
             offset = pupil + kappa / self.cell.tilt_wave_number * np.array(self.axis)
-            phasors = np.sqrt(weights) * np.exp(1j * kappa * self.cell.path_spread * z)
+            phasors = roots * np.exp(1j * kappa * self.cell.height_factor * z)
             amplitude = sum(
                 np.complex64(phasor) * field.speckle(offset, 0.0).values
                 for phasor, field in zip(phasors, fields, strict=True)
@@ -85,6 +78,8 @@ class LineLight(NamedTuple):
         """Return wave numbers of equal power, from that of the middle."""
         ends = self.line.draw(np.array([_LEFT_OUT, 1.0 - _LEFT_OUT]))
         diameters = np.ptp(ends) / self.cell.tilt_wave_number
+        if diameters == 0.0:
+            return np.zeros(1)
         radians = self.line.effective_spread * self.cell.path_spread
         enough = max(_WAVES_PER_DIAMETER * diameters, _WAVES_PER_RADIAN * radians)
         count = max(_FEWEST_WAVES, ceil(enough))
@@ -128,14 +123,15 @@ def _light(
             f"speckle: the contrast over a linewidth goes from {few:.2f} to {many:.2f} over a surface, and "
             "is shown as that of its middle: give its parts ids of their own",
         )
-    cell = cells[len(cells) // 2].dense_equivalent(line)
-    spread = line.effective_spread
-    tilted = spread / cell.tilt_wave_number > _NEGLIGIBLE_TILT
-    if not tilted and 2.0 * spread * cell.path_spread < _NEGLIGIBLE_HEIGHTS:
+    cell = cells[len(cells) // 2]
+    fractions, heights = cell.patterns(line)
+    tilted = line.effective_spread / cell.tilt_wave_number > _NEGLIGIBLE_TILT
+    if not tilted and len(fractions) == len(heights) == 1:
         return None
     x, y = (float(np.dot(axis, cell.tilt)) for axis in axes)
     length = np.hypot(x, y)
-    return LineLight(line, cell, (x / length, y / length) if length > 0.0 else (1.0, 0.0))
+    axis = (x / length, y / length) if length > 0.0 else (1.0, 0.0)
+    return LineLight(line, cell, axis, fractions, heights)
 
 
 class _Seen:
@@ -170,6 +166,7 @@ class _Seen:
         """Return the cells of the points of a surface, by its number, that a laser lights."""
         event = next_event(laser.law, laser.frame, self._points)
         source = np.array(event.wi).T
+        extent = laser.description.numbers.get("source_half_angle", 0.0)
         facing = -np.sign(np.sum(self._normals * self._directions, axis=1))[:, None] * self._normals
         lit = self._hit & (self._surface == surface) & (np.array(event.e_perp) > 0.0)
         lit &= np.sum(source * facing, axis=1) > 0.0
@@ -181,6 +178,7 @@ class _Seen:
                 radius / self._distances[point],
                 laser.wavelength,
                 *relief,
+                source_half_angle=np.deg2rad(extent),
             )
             for point in np.flatnonzero(lit)
         ]

@@ -199,15 +199,14 @@ def _stacks_of(surface: Surface, light: LineLight | None) -> int:
     """Return the number of independent patterns of a surface."""
     if light is None:
         return len(surface.fractions)
-    heights = light.heights
-    return len(surface.fractions) * len(light.fractions()) * (1 if heights is None else len(heights))
+    return len(surface.fractions) * len(light.fractions) * max(len(light.heights), 1)
 
 
 def _fields_of(
     surface: Surface, light: LineLight | None, fields: Sequence[PupilField]
 ) -> list[tuple[float, int, tuple[PupilField, ...]]]:
     """Return the fraction of each pattern, the number of its first field, and its fields."""
-    modes: Sequence[float] = (1.0,) if light is None else light.fractions()
+    modes: Sequence[float] = (1.0,) if light is None else light.fractions.tolist()
     fractions = [own * mode for own in surface.fractions for mode in modes]
     each = _stacks_of(surface, light) // len(fractions)
     return [

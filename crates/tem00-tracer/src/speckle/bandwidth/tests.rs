@@ -1,6 +1,6 @@
 use glam::DVec3;
 use tem00_camera::Camera;
-use tem00_coherence::{LineShape, Relief, ResolutionCell, SpectralLine};
+use tem00_coherence::{LineShape, Relief, ResolutionCell, SourceExtent, SpectralLine};
 
 use super::*;
 use crate::{Formulas, LaserDescription, Scene, SpeckleModel, SpecklePlan, Trajectory, testing};
@@ -80,26 +80,34 @@ fn cell(scene: &Scene) -> ResolutionCell {
     let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
     let point = seen(&scene.camera, DVec2::new(240.0, 180.0));
     let cell = change.resolution_cell(0, &geometry, &point).unwrap();
-    cell.with_relief(scene.surfaces[0].relief).unwrap()
+    let cell = cell.with_relief(scene.surfaces[0].relief).unwrap();
+    cell.with_source_extent(scene.lasers[0].source_extent().clone())
 }
 
 #[test]
 fn contrasts_are_those_of_the_law() {
     let comb = SpectralLine::comb(650e-9, 8e-9, 5).unwrap();
-    for (line, height) in [
-        (gaussian(5e-9), 0.0),
-        (gaussian(10e-9), 8e-6),
-        (comb, 2e-6),
-        (gaussian(30e-9), 20e-6),
+    let single = SpectralLine::monochromatic(650e-9).unwrap();
+    // The aperture has sin u = 0.0052.
+    for (line, height, half_angle) in [
+        (gaussian(5e-9), 0.0, 0.0),
+        (gaussian(10e-9), 8e-6, 0.0),
+        (comb, 2e-6, 0.0),
+        (gaussian(30e-9), 20e-6, 0.0),
+        (single.clone(), 0.0, 0.004),
+        (single, 8e-6, 0.01),
+        (gaussian(5e-9), 2e-6, 0.004),
     ] {
-        let scene = scene(line, height);
+        let mut scene = scene(line, height);
+        let extent = SourceExtent::disc(half_angle).unwrap();
+        scene.lasers[0] = scene.lasers[0].clone().with_source_extent(extent);
         let values = picture(&scene, &model(&scene), 0, |_| DVec2::ZERO);
         let (line, cell) = (scene.lasers[0].spectral_line(), cell(&scene));
         let law = PolychromaticSpeckle { line, cell: &cell }.contrast();
         let found = covariance(&values, &values).sqrt();
         assert!(
             (found / law - 1.0).abs() < 0.045,
-            "{height}: {found} for {law}"
+            "{height}, {half_angle}: {found} for {law}"
         );
     }
 }

@@ -107,6 +107,7 @@ fn every_quantity_may_be_uncertain() {
         let [section, key] = quantity.path();
         let value = match key {
             "linewidth" => "\"1 nm\"",
+            "source_half_angle" => "\"2 mrad\"",
             "rms_height" | "correlation_length" => "\"1 um\"",
             "principal_row" => "240",
             "full_well" => "1e4",

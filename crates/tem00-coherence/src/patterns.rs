@@ -1,0 +1,171 @@
+//! Patterns of one wavelength that together make the speckle of other light.
+
+use num_complex::Complex;
+
+use crate::{
+    PolychromaticSpeckle, Relief, ResolutionCell, SourceExtent, eigenvalues::hermitian_eigenvalues,
+    heights::representative_heights, mode_ratio,
+};
+
+/// Speckle patterns of one wavelength that together make the speckle of other light, for renderers.
+///
+/// ```text
+/// I = Σⱼ fⱼ ⟨ |Σₕ rₕ exp(iκ q zₕ) Uⱼₕ|² ⟩      mean over wave numbers κ drawn from the line
+/// ```
+///
+/// Each wave number sees the patterns displaced across the pupil by `κ/κ_t` diameters along the tilt of the cell.
+///
+/// # Validity
+///
+/// Contrasts are right, to 0.006 of representative heights. Where heights dominate, patterns are the coherent modes, and
+/// look alike in all wave numbers. Directions of an extended source add patterns that leave the grains and the
+/// correlation of frames as those of a point; truly, [`autocovariance`](PolychromaticSpeckle::autocovariance) and
+/// [`covariance`](PolychromaticSpeckle::covariance) reach a little farther.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatternSum {
+    /// Fractions f of the light in independent patterns whose intensities add, the largest first; their sum is 1, and there
+    /// are at most 1024.
+    pub fractions: Vec<f64>,
+    /// Heights z of the relief in metres whose fields add, each with the root r of its fraction of the light; none where the
+    /// patterns are looked up as in one wavelength.
+    pub heights: Vec<[f64; 2]>,
+}
+
+/// The largest fraction of the light in the last modes that are left out.
+const NEGLIGIBLE_FRACTION: f64 = 1e-4;
+
+/// The largest number of wave numbers that stand for a line in its modes.
+const MAX_NODES: usize = 400;
+
+/// The largest number of patterns that add up.
+const MAX_PATTERNS: u32 = 1024;
+
+impl PolychromaticSpeckle<'_> {
+    /// Returns the patterns that together have a variance: the squared [`contrast`](Self::contrast), or the
+    /// [`line_noise`](Self::line_noise).
+    ///
+    /// The variance of light in 1024 equal patterns is the least: a contrast of 1/32.
+    pub fn patterns(&self, variance: impl Fn(&PolychromaticSpeckle<'_>) -> f64) -> PatternSum {
+        let of = |cell: &ResolutionCell| {
+            let line = self.line;
+            variance(&PolychromaticSpeckle { line, cell })
+        };
+        let from_point = self
+            .cell
+            .clone()
+            .with_source_extent(SourceExtent::default());
+        let of_point = of(&from_point);
+        let dense = dense_equivalent(from_point, of_point, of);
+        let heights =
+            representative_heights(2.0 * self.line.effective_spread() * dense.path_spread());
+        let is_point = self.cell.source_extent().is_point();
+        let fractions = match (&heights, is_point) {
+            (None, true) => self.modes(),
+            (None, false) => geometric_fractions(of(self.cell)),
+            (Some(_), true) => vec![1.0],
+            (Some(_), false) => geometric_fractions(of(self.cell) / of_point),
+        };
+        let rms_height = dense.relief().rms_height;
+        let node = |[z, fraction]: [f64; 2]| [z * rms_height, fraction.sqrt()];
+        PatternSum {
+            fractions,
+            heights: heights.into_iter().flatten().map(node).collect(),
+        }
+    }
+
+    /// Returns the fractions of the light in its coherent modes, the largest first; their squares sum to the squared
+    /// contrast.
+    ///
+    /// They are the eigenvalues of `√S(k) P̂(k − k') √S(k')`: the intensity is the sum of as many independent speckle
+    /// patterns. The last modes, of together 10⁻⁴ of the light, are left out. The correlation length of the relief is left
+    /// out.
+    ///
+    /// Where the paths are spread so widely that more than some hundred modes would count, the fractions fall by one
+    /// ratio, which is exact for a Gaussian line and heights alone, and keep the contrast down to that of 1024 modes, 1/32. So
+    /// do those of a source that is not a point.
+    pub fn modes(&self) -> Vec<f64> {
+        let is_point = self.cell.source_extent().is_point();
+        let nodes = is_point.then(|| self.line.nodes(self.cell.scale(), MAX_NODES));
+        let Some(nodes) = nodes.flatten() else {
+            return geometric_fractions(self.contrast().powi(2));
+        };
+        let mut matrix = vec![Complex::ZERO; nodes.len() * nodes.len()];
+        for (i, first) in nodes.iter().enumerate() {
+            for (j, second) in nodes.iter().enumerate() {
+                let correlation = self.cell.field_correlation(first[0] - second[0]);
+                matrix[i * nodes.len() + j] = correlation * (first[1] * second[1]).sqrt();
+            }
+        }
+        let mut modes = hermitian_eigenvalues(matrix, nodes.len());
+        modes.sort_unstable_by(|a, b| b.total_cmp(a));
+        let total: f64 = modes.iter().sum();
+        let mut left = total;
+        modes.retain(|mode| {
+            let is_kept = left > NEGLIGIBLE_FRACTION * total;
+            left -= mode;
+            is_kept
+        });
+        let kept: f64 = modes.iter().sum();
+        modes.iter().map(|mode| mode / kept).collect()
+    }
+}
+
+/// Returns the cell with a relief without correlation length that has this variance.
+fn dense_equivalent(
+    cell: ResolutionCell,
+    wanted: f64,
+    variance: impl Fn(&ResolutionCell) -> f64,
+) -> ResolutionCell {
+    let relief = cell.relief();
+    if relief.correlation_length == 0.0 {
+        return cell;
+    }
+    let with_height = |rms_height| {
+        let dense = Relief {
+            rms_height,
+            correlation_length: 0.0,
+        };
+        let dense = cell.clone().with_relief(dense);
+        dense.unwrap_or_else(|_| cell.clone())
+    };
+    let [mut low, mut high] = [0.0, relief.rms_height];
+    for _ in 0..12 {
+        let middle = 0.5 * (low + high);
+        if variance(&with_height(middle)) > wanted {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    with_height(0.5 * (low + high))
+}
+
+/// Returns fractions ∝ tⁿ whose squares sum to a variance from 1/1024 to 1.
+fn geometric_fractions(variance: f64) -> Vec<f64> {
+    let of_ratio = |ratio: f64| {
+        let powers = core::iter::successors(Some(1.0), |power| Some(power * ratio));
+        let powers = powers.take_while(|power| *power > NEGLIGIBLE_FRACTION);
+        let powers: Vec<f64> = powers.take(MAX_PATTERNS as usize).collect();
+        let total: f64 = powers.iter().sum();
+        powers.iter().map(|power| power / total).collect::<Vec<_>>()
+    };
+    let [mut low, mut high] = [mode_ratio(variance.min(1.0)), 1.0];
+    let fractions = of_ratio(low);
+    if fractions.len() < MAX_PATTERNS as usize {
+        return fractions;
+    }
+    // Beyond the last pattern there is light: a ratio nearer to 1 makes up for it.
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        let squares: f64 = of_ratio(middle).iter().map(|part| part * part).sum();
+        if squares > variance {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    of_ratio(high)
+}
+
+#[cfg(test)]
+mod tests;

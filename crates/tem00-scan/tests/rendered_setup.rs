@@ -8,10 +8,10 @@ use tem00_scene::parse_scene;
 use tem00_tracer::{Crop, RenderOptions, render_frame};
 use tem00_triangulation::{DVec2, DVec3, Setup, parse_setup};
 
-fn setup(scheimpflug: bool) -> Setup {
+fn setup(scheimpflug: bool, plane: &str) -> Setup {
     let text = format!(
         r#"
-        laser = {{ wavelength = "650 nm", power = "5 mW", line_thickness = "0.4 mm", line_length = "50 mm" }}
+        laser = {{ wavelength = "650 nm", power = "5 mW", line_thickness = "0.4 mm", line_length = "50 mm"{plane} }}
         surface = {{ reflectance = 0.5 }}
         sensor = {{ quantum_efficiency = 0.6, exposure = "0.1 ms" }}
         [camera]
@@ -72,7 +72,7 @@ fn rendered(setup: &Setup, height: f64) -> [f64; 3] {
 
 #[test]
 fn the_scene_of_a_setup_has_its_camera() {
-    for setup in [setup(false), setup(true)] {
+    for setup in [setup(false, ""), setup(true, "")] {
         let scene = parse_scene(&setup.scene(1e-3), Path::new(".")).expect("a scene");
         let point = DVec3::new(1e-3, 0.0, 2e-3);
         let cameras = [setup.camera(), &scene.camera];
@@ -84,11 +84,18 @@ fn the_scene_of_a_setup_has_its_camera() {
 
 #[test]
 fn a_setup_predicts_what_is_rendered_of_it() {
-    for (scheimpflug, height) in [(false, 0.0), (false, 6e-3), (true, 6e-3)] {
-        let setup = setup(scheimpflug);
+    // One degree changes lengths by 0.02 %.
+    let beside = r#", offset = "2 mm", tilt = "-1 deg""#;
+    for (scheimpflug, height, plane) in [
+        (false, 0.0, ""),
+        (false, 6e-3, ""),
+        (true, 6e-3, ""),
+        (false, 6e-3, beside),
+    ] {
+        let setup = setup(scheimpflug, plane);
         let line = setup.line_at(height).expect("the line is seen");
         let [electrons, position, width] = rendered(&setup, height);
-        let case = format!("Scheimpflug {scheimpflug}, height {height}");
+        let case = format!("Scheimpflug {scheimpflug}, height {height}{plane}");
         // 256 samples in each of 24 · 20 pixels of the line: the rms of their spread, 1 or less, by
         // √123000 is 0.3 %; four times that. At 6 mm the fan is 3 % nearer and the line as much shorter.
         let shorter = 1.0 - height / 0.2;

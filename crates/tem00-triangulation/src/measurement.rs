@@ -40,13 +40,13 @@ pub enum MeasurementInput {
 /// The measurement model, in the words of JCGM 100, gives the height as a function of its inputs:
 ///
 /// ```text
-/// z = g(v + Σ eₖ; L, θ, f, p, v₀) + e_c
+/// z = g(v + Σ eₖ; L, θ, f, p, v₀, y₀, τ) + e_c
 /// ```
 ///
 /// `v` is the row at which the set-up as it is described sees the height, known exactly; the `eₖ` are the errors of
 /// that position by the terms of the [`Budget`], of no mean; `e_c` is that of the calibration. `g` meets the
-/// line of sight with the laser plane. Its distance, angle, focal length, pixel pitch and principal row change the
-/// scale of heights, or shift all of them. Heights count from the point of the laser plane that the optical axis is
+/// line of sight with the laser plane. Distance, angle, focal length, pixel pitch and principal row, and the
+/// offset and tilt of the laser plane, change the scale of heights, or shift all of them. Heights count from the point of the laser plane that the optical axis is
 /// to meet: where distance and angle change, the camera still looks at it.
 ///
 /// What a quantity does to the noise alone, such as the wavelength, it does to the standard uncertainties of the
@@ -171,7 +171,7 @@ impl Measurement {
             }
         }
         let setup = self.with(quantities);
-        height_at(&setup, &self.setup, row).map_or(f64::NAN, |height| height + calibration)
+        height_at(&setup, row).map_or(f64::NAN, |height| height + calibration)
     }
 
     /// Returns the result by the law of propagation of uncertainty.
@@ -236,10 +236,11 @@ impl Measurement {
     }
 }
 
-/// Returns the height of a line at a row of the middle column, in metres, as the camera of a description and the
-/// laser plane of a set-up give it.
-fn height_at(description: &SetupDescription, setup: &Setup, row: f64) -> Option<f64> {
-    let triangulator = Triangulator::new(camera(description).ok()?, *setup.triangulator().plane());
+/// Returns the height of a line at a row of the middle column, in metres, as camera and laser plane of a
+/// description give it.
+fn height_at(description: &SetupDescription, row: f64) -> Option<f64> {
+    let triangulator =
+        Triangulator::new(camera(description).ok()?, description.laser.plane().ok()?);
     let [width, _] = description.camera.resolution;
     let point = triangulator.point(DVec2::new(0.5 * width as f64, row))?;
     Some(point.z)

@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 use tem00_camera::{Camera, CameraDescription, RadialDistortion, SensorTilt};
 use tem00_coherence::ResolutionCell;
 
-use crate::{DetectorSettings, LaserPlane, LineDetector, Sensor, TriangulationError, Triangulator};
+use crate::{DetectorSettings, LineDetector, Sensor, TriangulationError, Triangulator};
 
 pub(crate) use self::{
     description::within,
@@ -43,7 +43,8 @@ const SPECKLE_SIZES: (f64, f64) = (1.0 / 16.0, 64.0);
 /// ```
 ///
 /// x is to the right in the image. A height z moves the line *up* in the image, to first order by
-/// `m z sin θ`; all of the geometry is taken from the camera's projection, not from that.
+/// `m z sin θ`; all of the geometry is taken from the camera's projection, not from that. The plane of the laser may stand
+/// beside y = 0, or lean; see [`LaserLineData`].
 ///
 /// # Validity
 ///
@@ -92,7 +93,7 @@ impl Setup {
             ..*detector.settings()
         })?;
         let line = ImagedLine::at(&description, &camera, 0.0).ok_or(NOT_SEEN)?;
-        let plane = LaserPlane::new(DVec3::ZERO, DVec3::Y)?;
+        let plane = description.laser.plane()?;
         let setup = Self {
             description,
             triangulator: Triangulator::new(camera, plane),
@@ -120,7 +121,10 @@ impl Setup {
     /// Returns what a resolution cell of the camera holds of the reference plane, or `None` if its paths have no law.
     pub(crate) fn resolution_cell(&self) -> Option<ResolutionCell> {
         let (camera, wavelength) = (self.camera(), self.description.laser.light.wavelength);
-        let geometry = camera.imaging_geometry_at(camera.project(DVec3::ZERO)?, wavelength);
+        let geometry = camera.imaging_geometry_at(
+            camera.project(self.description.laser.point_at(0.0))?,
+            wavelength,
+        );
         imaged_line::resolution_cell(&self.description, camera, 0.0, &geometry.ok()?)
     }
 
@@ -140,7 +144,7 @@ impl Setup {
         &self.detector
     }
 
-    /// Returns the geometry that turns positions in the image into points: the camera and the plane y = 0.
+    /// Returns the geometry that turns positions in the image into points: the camera and the plane of the laser.
     pub const fn triangulator(&self) -> &Triangulator {
         &self.triangulator
     }

@@ -33,6 +33,8 @@ fn description() -> SetupDescription {
             power: 5e-3,
             line_thickness: 0.2e-3,
             line_length: 50e-3,
+            offset: 0.0,
+            tilt: 0.0,
         },
         camera: SetupCamera {
             focal_length: 25e-3,

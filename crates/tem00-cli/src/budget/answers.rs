@@ -1,15 +1,15 @@
 //! The report of a height that is measured with a set-up whose quantities are uncertain.
 
 use serde_json::json;
-use tem00_triangulation::{MeasurementInput, UncertaintySource};
+use tem00_triangulation::{MeasurementInput, SetupQuantity, UncertaintySource};
 use tem00_uncertainty::{CoverageInterval, Input};
 
 use super::measured::{Measured, Quoted};
 use crate::report::{
     Cell, Column, Section, Table, Unit,
     units::{
-        DEGREES, MICROMETRES, MILLIMETRES, MILLISECONDS, MILLIWATTS, NANOMETRES, NUMBER, PERCENT,
-        PIXELS,
+        DEGREES, MICROMETRES, MILLIMETRES, MILLIRADIANS, MILLISECONDS, MILLIWATTS, NANOMETRES,
+        NUMBER, PERCENT, PIXELS,
     },
 };
 
@@ -199,9 +199,12 @@ fn source(input: MeasurementInput) -> String {
 fn unit(input: MeasurementInput) -> (Unit, &'static str) {
     match input {
         MeasurementInput::Term(UncertaintySource::Calibration) => (MICROMETRES, "µm"),
-        MeasurementInput::Term(_) => (PIXELS, "px"),
+        MeasurementInput::Term(_) | MeasurementInput::Quantity(SetupQuantity::PrincipalRow) => {
+            (PIXELS, "px")
+        }
         MeasurementInput::Quantity(quantity) => match quantity.unit() {
             "deg" => (DEGREES, "°"),
+            "mrad" => (MILLIRADIANS, "mrad"),
             "mW" => (MILLIWATTS, "mW"),
             "ms" => (MILLISECONDS, "ms"),
             "nm" => (NANOMETRES, "nm"),

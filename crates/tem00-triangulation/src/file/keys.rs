@@ -12,6 +12,8 @@ pub(super) const LASER: &[&str] = &[
     "power",
     "line_thickness",
     "line_length",
+    "offset",
+    "tilt",
 ];
 pub(super) const CAMERA: &[&str] = &[
     "focal_length",

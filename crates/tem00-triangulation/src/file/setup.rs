@@ -187,6 +187,8 @@ fn read_laser(section: &Section<'_>) -> Result<LaserLineData, Problem> {
         power: section.required("power", "\"5 mW\"")?.positive(&POWER)?,
         line_thickness: length("line_thickness", "\"0.2 mm\"")?,
         line_length: length("line_length", "\"50 mm\"")?,
+        offset: section.or("offset", 0.0, |value| value.quantity(&LENGTH))?,
+        tilt: section.or("tilt", 0.0, |value| value.quantity(&ANGLE))?,
     })
 }
 

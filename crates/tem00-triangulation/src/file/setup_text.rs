@@ -60,6 +60,14 @@ impl Sections {
             .length("line_thickness", laser.line_thickness, "mm")
             .note("between the points of 1/e², on the part")
             .length("line_length", laser.line_length, "mm");
+        if laser.offset != 0.0 {
+            self.length("offset", laser.offset, "mm")
+                .note("of the plane of the laser from the optical axis");
+        }
+        if laser.tilt != 0.0 {
+            self.quantity("tilt", laser.tilt, (&ANGLE, "deg"))
+                .note("of the plane of the laser, away from the camera");
+        }
     }
 
     fn light(&mut self, light: &LaserLight) -> &mut Self {

@@ -100,7 +100,8 @@ fn read_correlations(
     quantities: &[(SetupQuantity, Input)],
 ) -> Result<Vec<Correlation>, Problem> {
     let mut correlations = Vec::new();
-    for section in document.tables("correlation", CORRELATION)? {
+    let sections = document.tables("correlation", CORRELATION)?;
+    for section in &sections {
         let example = "[\"camera.angle\", \"camera.distance\"]";
         let between = section.required("between", example)?;
         let [first, second] = between.elements(&format!(
@@ -115,7 +116,8 @@ fn read_correlations(
             between: positions,
             coefficient: coefficient.within(&NUMBER, -1.0..=1.0, "from -1 to 1")?,
         });
-        check(&section, quantities, &correlations)?;
+        let is_all = correlations.len() == sections.len();
+        check(section, quantities, (&correlations, is_all))?;
     }
     Ok(correlations)
 }
@@ -140,11 +142,11 @@ fn position(name: &Value<'_>, quantities: &[(SetupQuantity, Input)]) -> Result<u
         .with_help(format!("uncertain are: {}", names.join(", "))))
 }
 
-/// Checks the last of the correlations.
+/// Checks the last of the correlations so far; only all of them are held to be possible together.
 fn check(
     section: &Section<'_>,
     quantities: &[(SetupQuantity, Input)],
-    correlations: &[Correlation],
+    (correlations, is_all): (&[Correlation], bool),
 ) -> Result<(), Problem> {
     let inputs = quantities.iter().map(|(_, input)| *input).collect();
     let Err(error) = Inputs::correlated(inputs, correlations) else {
@@ -157,6 +159,7 @@ fn check(
                 "`between` must name normal quantities without degrees of freedom, {quantity} is none"
             )
         }
+        UncertaintyError::Contradiction { .. } if !is_all => return Ok(()),
         UncertaintyError::Contradiction { .. } => {
             "`coefficient` contradicts those of other correlations: no quantities have all of them"
                 .into()

@@ -5,13 +5,16 @@ use crate::{SimulationOptions, setup::tests::description};
 
 const HEIGHT: f64 = 4e-3;
 
+/// A set-up whose laser plane stands beside the axis, and leans.
 fn setup() -> Setup {
-    Setup::new(description()).unwrap()
+    let mut description = description();
+    (description.laser.offset, description.laser.tilt) = (1e-3, -0.05);
+    Setup::new(description).unwrap()
 }
 
 fn input(setup: &Setup, quantity: SetupQuantity, relative: f64) -> (SetupQuantity, Input) {
     let estimate = quantity.value_in(setup.description());
-    let input = Input::new(estimate, relative * estimate, Distribution::Normal);
+    let input = Input::new(estimate, (relative * estimate).abs(), Distribution::Normal);
     (quantity, input.unwrap())
 }
 
@@ -28,45 +31,59 @@ fn measurement(quantities: &[(SetupQuantity, f64)]) -> Measurement {
     Measurement::new(&setup, &uncertainty).unwrap()
 }
 
-/// Returns the height, in metres, by the law of sines in the triangle of pupil, origin and point:
+/// Returns the height, in metres, at which the line of sight from the pupil C meets the plane of the laser, in the
+/// plane x = 0:
 ///
 /// ```text
-/// z = L sin φ / sin(θ + φ)      tan φ = (v₀ − v) p / s      s = f L / (L − f)
+/// C + t (sin(θ + φ), −cos(θ + φ))     tan φ = (v₀ − v) p / s     s = f L / (L − f)
+/// y = y₀ + z tan τ
 /// ```
-fn by_law_of_sines(
-    [distance, angle, focal_length, pitch, principal_row]: [f64; 5],
-    row: f64,
-) -> f64 {
+fn by_line_of_sight(values: [f64; 7], row: f64) -> f64 {
+    let [
+        distance,
+        angle,
+        focal_length,
+        pitch,
+        principal_row,
+        offset,
+        tilt,
+    ] = values;
     let image_distance = focal_length * distance / (distance - focal_length);
     let phi = libm::atan((principal_row - row) * pitch / image_distance);
-    distance * libm::sin(phi) / libm::sin(angle + phi)
+    let (sin, cos) = (libm::sin(angle + phi), libm::cos(angle + phi));
+    let [y, z] = [-distance * libm::sin(angle), distance * libm::cos(angle)];
+    let t = (offset + z * libm::tan(tilt) - y) / (sin + cos * libm::tan(tilt));
+    z - t * cos
 }
 
-const GEOMETRY: [SetupQuantity; 5] = [
+const GEOMETRY: [SetupQuantity; 7] = [
     SetupQuantity::Distance,
     SetupQuantity::Angle,
     SetupQuantity::FocalLength,
     SetupQuantity::PixelPitch,
     SetupQuantity::PrincipalRow,
+    SetupQuantity::LaserOffset,
+    SetupQuantity::LaserTilt,
 ];
 
 #[test]
-fn sensitivities_are_those_of_the_law_of_sines() {
+fn sensitivities_are_those_of_the_line_of_sight() {
     let measurement = measurement(&GEOMETRY.map(|quantity| (quantity, 1e-3)));
     let found = measurement.first_order().unwrap();
-    assert!(
-        (found.estimate() - HEIGHT).abs() < 1e-12,
-        "{}",
-        found.estimate()
-    );
+    let estimate = found.estimate();
+    assert!((estimate - HEIGHT).abs() < 1e-12, "{estimate}");
     let row = measurement.setup.line_at(HEIGHT).unwrap().position;
     let values = GEOMETRY.map(|quantity| quantity.value_in(measurement.setup.description()));
+    assert!(
+        (by_line_of_sight(values, row) - HEIGHT).abs() < 1e-12,
+        "the same height"
+    );
     for (index, quantity) in GEOMETRY.into_iter().enumerate() {
         // A central difference, which errs by 10⁻⁸ of a function of powers and sines.
         let changed = |by: f64| {
             let mut values = values;
             values[index] *= 1.0 + by;
-            by_law_of_sines(values, row)
+            by_line_of_sight(values, row)
         };
         let expected = (changed(1e-4) - changed(-1e-4)) / (2e-4 * values[index]);
         let sensitivity = found.contributions()[index].sensitivity;

@@ -123,7 +123,7 @@ impl Measurement {
                 advice: "take a smaller height",
             })?;
         let (deviations, invalid) = Simulator::new(&setup, line)?.deviations(random.next_u64())?;
-        let height = |deviation: f64| height_at(described, &self.setup, line.position + deviation);
+        let height = |deviation: f64| height_at(described, line.position + deviation);
         let heights: Vec<f64> = deviations
             .into_iter()
             .filter_map(height)

@@ -1,6 +1,7 @@
+use glam::DVec3;
 use tem00_coherence::{LaserLight, Relief};
 
-use crate::{DetectorSettings, SensorDescription, TriangulationError};
+use crate::{DetectorSettings, LaserPlane, SensorDescription, TriangulationError};
 
 /// Description of a triangulation set-up by its data sheets.
 ///
@@ -38,6 +39,24 @@ pub struct LaserLineData {
     pub line_thickness: f64,
     /// The length of the line on the part, in metres.
     pub line_length: f64,
+    /// The distance of the laser plane from the point that the optical axis meets on the reference plane, along y,
+    /// in metres.
+    pub offset: f64,
+    /// The angle of the laser plane from the upright, in radians: positive if it leans to +y, away from the camera.
+    pub tilt: f64,
+}
+
+impl LaserLineData {
+    /// Returns the point of the laser plane at a height, in metres, before the middle of the line.
+    pub(crate) fn point_at(&self, height: f64) -> DVec3 {
+        DVec3::new(0.0, self.offset + height * libm::tan(self.tilt), height)
+    }
+
+    /// Returns the plane of the laser.
+    pub(crate) fn plane(&self) -> Result<LaserPlane, TriangulationError> {
+        let normal = DVec3::new(0.0, libm::cos(self.tilt), -libm::sin(self.tilt));
+        LaserPlane::new(self.point_at(0.0), normal)
+    }
 }
 
 /// The lens of a camera, and where the camera stands.
@@ -152,6 +171,8 @@ impl SetupDescription {
             power,
             line_thickness,
             line_length,
+            offset,
+            tilt,
         } = self.laser;
         let allowed = "from 100 nm to 100 µm (in metres)";
         within("wavelength", light.wavelength, (100e-9, 100e-6), allowed)?;
@@ -163,6 +184,14 @@ impl SetupDescription {
         within("line_thickness", line_thickness, (1e-6, 1.0), allowed)?;
         let allowed = "from the thickness of the line to 100 m (in metres)";
         within("line_length", line_length, (line_thickness, 100.0), allowed)?;
+        within(
+            "offset",
+            offset,
+            (-1.0, 1.0),
+            "from -1 m to 1 m (in metres)",
+        )?;
+        let allowed = "from -45° to 45° (in radians)";
+        within("tilt", tilt, (-0.786, 0.786), allowed)?;
         let pitch = self.sensor.pixel_pitch;
         let allowed = "from 0.1 µm to 1 mm (in metres)";
         within("pixel_pitch", pitch, (0.1e-6, 1e-3), allowed)

@@ -96,20 +96,22 @@ impl ImagedLine {
     pub(super) fn at(description: &SetupDescription, camera: &Camera, height: f64) -> Option<Self> {
         let laser = &description.laser;
         let pitch = description.sensor.pixel_pitch;
-        let row = |y: f64, z: f64| camera.project(DVec3::new(0.0, y, z)).map(|pixel| pixel.y);
+        let row = |beside: f64, height: f64| {
+            let point = laser.point_at(height) + beside * DVec3::Y;
+            camera.project(point).map(|pixel| pixel.y)
+        };
         let half = 0.5 * laser.line_thickness;
         let projected_thickness = (row(half, height)? - row(-half, height)?).abs();
         let step = STEP * description.camera.distance;
         let moved = row(0.0, height - step)? - row(0.0, height + step)?;
-        let pixel = camera.project(DVec3::new(0.0, 0.0, height))?;
+        let pixel = camera.project(laser.point_at(height))?;
         let geometry = camera
             .imaging_geometry_at(pixel, laser.light.wavelength)
             .ok()?;
         let stretch = 1.0 / camera.description().tilt.angle.cos();
         let speckle = geometry.speckle_size() / pitch;
         let diffraction_width = 4.0 * SQRT_2 / PI * speckle * stretch;
-        let (sin, cos) = description.camera.angle.sin_cos();
-        let depth = description.camera.distance - height * cos;
+        let depth = depth(description, height);
         let defocus = geometry.defocus_at(depth).abs();
         let disc = geometry.pupil_diameter() * geometry.principal_distance() * defocus;
         let blur = disc * stretch / pitch;
@@ -138,7 +140,7 @@ impl ImagedLine {
             ),
         };
         line.peak_irradiance = column * line.profile_over(0.0, 0.0).at(0.0);
-        (depth > 0.0 && sin > 0.0 && line.height_per_pixel.is_finite()).then_some(line)
+        (depth > 0.0 && line.height_per_pixel.is_finite()).then_some(line)
     }
 
     /// Returns the mean number of electrons that light frees in the pixel of a column that begins at
@@ -172,6 +174,12 @@ impl ImagedLine {
     }
 }
 
+/// Returns the depth of the line at a height before the pupil, along the optical axis.
+fn depth(description: &SetupDescription, height: f64) -> f64 {
+    let (sin, cos) = description.camera.angle.sin_cos();
+    description.camera.distance + description.laser.point_at(height).y * sin - height * cos
+}
+
 /// Returns what a resolution cell of the camera holds of the surface at a height.
 pub(super) fn resolution_cell(
     description: &SetupDescription,
@@ -179,13 +187,13 @@ pub(super) fn resolution_cell(
     height: f64,
     geometry: &ImagingGeometry,
 ) -> Option<ResolutionCell> {
-    let to_pupil = camera.position() - height * DVec3::Z;
+    let laser = &description.laser;
+    let to_pupil = camera.position() - laser.point_at(height);
     let distance = to_pupil.length();
-    let (_, cos) = description.camera.angle.sin_cos();
-    let depth = description.camera.distance - height * cos;
+    let depth = depth(description, height);
     let in_focus = (depth.recip() - geometry.defocus_at(depth)).recip();
     let cell = ResolutionCell::new(CellGeometry {
-        to_source: DVec3::Z,
+        to_source: DVec3::new(0.0, libm::sin(laser.tilt), libm::cos(laser.tilt)),
         to_pupil,
         normal: DVec3::Z,
         sin_aperture: 0.5 * geometry.pupil_diameter() / distance,

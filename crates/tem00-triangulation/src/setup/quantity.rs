@@ -20,6 +20,10 @@ pub enum SetupQuantity {
     LineThickness,
     /// The length of the line on the part, in metres.
     LineLength,
+    /// The distance of the laser plane from the optical axis on the reference plane, in metres.
+    LaserOffset,
+    /// The angle of the laser plane from the upright, in radians.
+    LaserTilt,
     /// The focal length of the lens, in metres.
     FocalLength,
     /// The f-number of the lens.
@@ -64,13 +68,15 @@ pub enum SetupQuantity {
 
 impl SetupQuantity {
     /// All of them, in the order of a set-up file.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 28] = [
         Self::Wavelength,
         Self::Linewidth,
         Self::SourceHalfAngle,
         Self::Power,
         Self::LineThickness,
         Self::LineLength,
+        Self::LaserOffset,
+        Self::LaserTilt,
         Self::FocalLength,
         Self::FNumber,
         Self::PixelPitch,
@@ -102,6 +108,8 @@ impl SetupQuantity {
             Self::Power => ["laser", "power"],
             Self::LineThickness => ["laser", "line_thickness"],
             Self::LineLength => ["laser", "line_length"],
+            Self::LaserOffset => ["laser", "offset"],
+            Self::LaserTilt => ["laser", "tilt"],
             Self::FocalLength => ["camera", "focal_length"],
             Self::FNumber => ["camera", "f_number"],
             Self::PixelPitch => ["camera", "pixel_pitch"],
@@ -141,13 +149,17 @@ impl SetupQuantity {
     /// Returns the symbol of the unit that it is usually written in.
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::Angle => "deg",
+            Self::Angle | Self::LaserTilt => "deg",
             Self::SourceHalfAngle => "mrad",
             Self::Power => "mW",
             Self::Exposure => "ms",
             Self::Wavelength | Self::Linewidth | Self::RmsHeight => "nm",
             Self::PixelPitch | Self::CorrelationLength => "um",
-            Self::LineThickness | Self::LineLength | Self::FocalLength | Self::Distance => "mm",
+            Self::LineThickness
+            | Self::LineLength
+            | Self::LaserOffset
+            | Self::FocalLength
+            | Self::Distance => "mm",
             _ => "",
         }
     }
@@ -173,6 +185,8 @@ impl SetupQuantity {
             Self::Power => &mut laser.power,
             Self::LineThickness => &mut laser.line_thickness,
             Self::LineLength => &mut laser.line_length,
+            Self::LaserOffset => &mut laser.offset,
+            Self::LaserTilt => &mut laser.tilt,
             Self::FocalLength => &mut camera.focal_length,
             Self::FNumber => &mut camera.f_number,
             Self::PixelPitch => &mut sensor.pixel_pitch,
@@ -205,5 +219,41 @@ impl fmt::Display for SetupQuantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [section, key] = self.path();
         write!(f, "{section}.{key}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::setup::tests::description;
+
+    #[test]
+    fn setting_a_quantity_changes_its_key_in_the_text_alone() {
+        let mut base = description();
+        // Numbers that are written, none as it is by default.
+        base.laser.light.linewidth = 1e-9;
+        SetupQuantity::SourceHalfAngle.set(&mut base, 2e-3);
+        (base.laser.offset, base.laser.tilt) = (1e-3, 0.1);
+        base.camera.principal_row = Some(230.0);
+        (base.sensor.black_level, base.sensor.gain) = (17.0, 0.3);
+        base.sensor.fill_factor = 0.7;
+        base.surface.polarisation = 0.6;
+        (
+            base.surface.relief.rms_height,
+            base.surface.relief.correlation_length,
+        ) = (1e-6, 2e-6);
+        let before = base.to_toml();
+        for quantity in SetupQuantity::ALL {
+            let mut changed = base.clone();
+            quantity.set(&mut changed, 1.25 * quantity.value_in(&base));
+            let after = changed.to_toml();
+            let lines = after
+                .lines()
+                .filter(|line| !before.lines().any(|old| old == *line));
+            let lines: Vec<&str> = lines.collect();
+            let [_, key] = quantity.path();
+            let is_key = lines.len() == 1 && lines[0].starts_with(&format!("{key} = "));
+            assert!(is_key, "{quantity}: {lines:?}");
+        }
     }
 }

@@ -42,8 +42,10 @@ impl Setup {
     /// in focus, in metres: there the disc of defocus is as wide as that line.
     ///
     /// ```text
-    /// D s |1/Z − 1/L| = W₀      Z = L − z cos θ
+    /// D s |1/Z − 1/L| = W₀      Z = L + y sin θ − z cos θ
     /// ```
+    ///
+    /// with the place y of the laser plane at the height z.
     ///
     /// A set-up after Scheimpflug has the whole laser plane in focus: its range is without end, as is
     /// that of a pupil so small that the disc never grows as wide as the line.
@@ -59,7 +61,10 @@ impl Setup {
         let camera = self.camera();
         let vergence = width / (camera.pupil_diameter() * camera.image_distance());
         let height = |inverse_depth: f64| {
-            (distance - 1.0 / inverse_depth) / self.description().camera.angle.cos()
+            let (sin, cos) = self.description().camera.angle.sin_cos();
+            let laser = &self.description().laser;
+            (distance + laser.offset * sin - 1.0 / inverse_depth)
+                / (cos - libm::tan(laser.tilt) * sin)
         };
         let farthest = 1.0 / distance - vergence;
         HeightRange {

@@ -19,8 +19,8 @@ impl Setup {
              focal_length = {focal_length:e}\nf_number = {f_number:e}\npixel_pitch = {pitch:e}\n\
              resolution = [{width}, {rows}]\ntilt = {{ angle = {tilt:e} }}\n{principal}\n\
              [[laser]]\n\
-             {light}power = {power:e}\nposition = [0, 0, {distance:e}]\n\
-             look_at = [0, 0, 0]\nline_direction = [1, 0, 0]\n\
+             {light}power = {power:e}\nposition = [0, {beside:e}, {distance:e}]\n\
+             look_at = [0, {offset:e}, 0]\nline_direction = [1, 0, 0]\n\
              [laser.line]\n\
              fan_angle = {fan_angle:e}\nthickness = {line_thickness:e}\nprofile = \"uniform\"\n\n\
              [[surface]]\nname = \"plate\"\n{relief}\
@@ -41,6 +41,8 @@ impl Setup {
             light = light_keys(&laser.light),
             relief = relief_keys(d.surface.relief),
             power = laser.power,
+            beside = laser.point_at(camera.distance).y,
+            offset = laser.offset,
             distance = camera.distance,
             line_thickness = laser.line_thickness,
             reflectance = d.surface.reflectance,

@@ -11,6 +11,8 @@ pub(crate) fn description() -> SetupDescription {
             power: 5e-3,
             line_thickness: 0.2e-3,
             line_length: 50e-3,
+            offset: 0.0,
+            tilt: 0.0,
         },
         camera: SetupCamera {
             focal_length: 25e-3,
@@ -167,6 +169,29 @@ fn at_the_ends_of_the_depth_of_field_the_line_is_wider_by_a_root_of_two() {
         scheimpflug().depth_of_field().length().is_infinite(),
         "all is in focus"
     );
+}
+
+#[test]
+fn a_line_on_a_leaning_plane_is_blurred_by_its_depth() {
+    let mut leaning = description();
+    (leaning.laser.offset, leaning.laser.tilt) = (2e-3, 0.1);
+    let setup = Setup::new(leaning).unwrap();
+    let camera = setup.camera();
+    let disc = |height: f64| {
+        let point = DVec3::new(0.0, 2e-3 + height * libm::tan(0.1), height);
+        let depth = (point - camera.position()).dot(-camera.position().normalize());
+        let vergence = (depth.recip() - 0.3_f64.recip()).abs();
+        camera.pupil_diameter() * camera.image_distance() * vergence
+    };
+    for height in [-4e-3, 0.0, 5e-3] {
+        let blur = setup.line_at(height).unwrap().blur * 3.45e-6;
+        assert_relative_eq!(blur, disc(height), max_relative = 1e-9);
+    }
+    let width = setup.line().width * 3.45e-6;
+    let range = setup.depth_of_field();
+    for height in [range.low, range.high] {
+        assert_relative_eq!(disc(height), width, max_relative = 1e-9);
+    }
 }
 
 #[test]

@@ -108,6 +108,8 @@ fn every_quantity_may_be_uncertain() {
         let value = match key {
             "linewidth" => "\"1 nm\"",
             "source_half_angle" => "\"2 mrad\"",
+            "offset" => "\"1 mm\"",
+            "tilt" => "\"1 deg\"",
             "rms_height" | "correlation_length" => "\"1 um\"",
             "principal_row" => "240",
             "full_well" => "1e4",
@@ -241,6 +243,13 @@ fn uncertain_values_that_cannot_be_are_refused_where_they_stand() {
 }
 
 #[test]
+fn a_set_up_alone_is_not_read_past_what_is_wrong_with_its_uncertainties() {
+    let angle = ("angle", r#"{ value = "30 deg", uncertainty = "-1 deg" }"#);
+    let error = crate::parse_setup(&text(&[angle], "")).unwrap_err();
+    assert!(error.to_string().contains("at least 0"), "{error}");
+}
+
+#[test]
 fn correlations_and_heights_that_cannot_be_are_refused_where_they_stand() {
     let pair = r#"between = ["camera.angle", "camera.distance"]"#;
     let more = format!("[[correlation]]\n{pair}\ncoefficient = 0.5\n");
@@ -288,9 +297,15 @@ fn correlations_and_heights_that_cannot_be_are_refused_where_they_stand() {
         "focal_length",
         r#"{ value = "25 mm", uncertainty = "10 um" }"#,
     );
-    let three = format!(
-        "{more}[[correlation]]\nbetween = [\"camera.angle\", \"camera.focal_length\"]\ncoefficient = 1\n\
-        [[correlation]]\nbetween = [\"camera.distance\", \"camera.focal_length\"]\ncoefficient = -1\n"
-    );
-    assert_refused(&text(&[ANGLE, DISTANCE, focal], &three), "", "contradicts");
+    // With the first coefficient of 0.5, whose second makes focal length and angle one.
+    let three = |coefficient: &str| {
+        format!(
+            "{more}[[correlation]]\nbetween = [\"camera.angle\", \"camera.focal_length\"]\ncoefficient = 1\n\
+             [[correlation]]\nbetween = [\"camera.distance\", \"camera.focal_length\"]\ncoefficient = {coefficient}\n"
+        )
+    };
+    let changes = [ANGLE, DISTANCE, focal];
+    assert_refused(&text(&changes, &three("-1")), "-1", "contradicts");
+    let (_, found) = read(&text(&changes, &three("0.5"))).unwrap();
+    assert_eq!(found.correlations.len(), 3, "possible all together");
 }

@@ -1,11 +1,13 @@
 """GTC, the GUM Tree Calculator, judges the law of propagation of uncertainty.
 
 `examples/guide_to_uncertainty` writes the results of two examples of the Guide: the gauge block of H.1 and the
-circuit of H.2, whose inputs are correlated. GTC differentiates by automatic differentiation.
+circuit of H.2, whose inputs are correlated. `tem00 budget` writes those of a set-up whose geometry is uncertain, which
+is stated here a second time. GTC differentiates by automatic differentiation.
 """
 
 import csv
-from math import inf
+import json
+from math import atan2, cos, inf, sin
 
 import GTC
 from judge import FRAMES, Verdict, run
@@ -57,9 +59,51 @@ def summary(result: GTC.lib.UncertainReal, inputs: list[GTC.lib.UncertainReal]) 
     return numbers
 
 
+def check_set_up(verdict: Verdict) -> None:
+    """Compares the law of propagation of a budget with that of the line of sight."""
+    folder = FRAMES / "certified"
+    run("tem00", "budget", "setups/certified.toml", "--trials", "0", "--output", str(folder))
+    ours = json.loads((folder / "budget.json").read_text())["measurement"]
+    known = {}
+    for row in ours["inputs"]:
+        freedom = row["degrees_of_freedom"]
+        estimate, uncertainty = row["estimate"], row["uncertainty"]
+        known[row["input"]] = GTC.ureal(estimate, uncertainty, freedom or inf, independent=bool(freedom))
+    for row in ours["correlations"]:
+        first, second = row["between"]
+        GTC.set_correlation(row["coefficient"], known[first], known[second])
+    height = height_of(known, ours["height"])
+    first_order = ours["answers"][0]
+    verdict.within("set-up: height (relative)", height.x / first_order["estimate"] - 1, TOLERANCE)
+    verdict.within("set-up: combined (relative)", height.u / first_order["uncertainty"] - 1, TOLERANCE)
+    deviation = height.df / ours["degrees_of_freedom"] - 1
+    verdict.within("set-up: degrees of freedom (relative)", deviation, TOLERANCE)
+    for row in ours["inputs"]:
+        theirs = abs(GTC.component(height, known[row["input"]]))
+        deviation = (row["contribution"] - theirs) / height.u
+        verdict.within(f"set-up: {row['input']} (in parts of u)", deviation, TOLERANCE)
+
+
+def height_of(known: dict[str, GTC.lib.UncertainReal], at: float) -> GTC.lib.UncertainReal:
+    """Returns the height at which the line of sight meets an upright laser plane, in metres.
+
+    The row is that at which the set-up as described sees the height `at`.
+    """
+    names = ["distance", "angle", "focal_length", "pixel_pitch", "principal_row"]
+    distance, angle, focal, pitch, principal = (known[f"camera.{name}"] for name in names)
+    image = focal * distance / (distance - focal)
+    phi = atan2(at * sin(angle.x), distance.x - at * cos(angle.x))
+    row = principal.x - image.x * sin(phi) / cos(phi) / pitch.x
+    errors = [x for name, x in known.items() if "." not in name and name != "calibration"]
+    sight = angle + GTC.atan((principal - row - sum(errors)) * pitch / image)
+    to_plane = (known["laser.offset"] + distance * GTC.sin(angle)) / GTC.sin(sight)
+    return distance * GTC.cos(angle) - to_plane * GTC.cos(sight)
+
+
 def main() -> None:
-    """Has the example write its results, and compares."""
+    """Has the example and the program write their results, and compares."""
     verdict = Verdict()
+    check_set_up(verdict)
     file = FRAMES / "guide_to_uncertainty.csv"
     run("examples/guide_to_uncertainty", str(file))
     expected = {"gauge": by_gauge_block(), "circuit": by_circuit()}

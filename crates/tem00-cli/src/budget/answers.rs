@@ -49,8 +49,8 @@ fn why(measured: &Measured) -> String {
         Quoted::VirtualExperiment => {
             let ratio = measured.ratio().map_or(f64::NAN, |[ratio, _]| ratio);
             format!(
-                "The virtual experiment finds {} times the uncertainty by distributions: the detector or the noise is \
-                 not linear in what the set-up is uncertain by; quote the virtual experiment.",
+                "The virtual experiment finds {} times the uncertainty by distributions, whose noise is first order: \
+                 this detector is not linear under so much noise; quote the virtual experiment.",
                 NUMBER.with_digits(3).text(ratio)
             )
         }

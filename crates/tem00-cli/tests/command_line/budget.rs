@@ -320,3 +320,38 @@ fn correlated_values_have_no_parts_of_the_variance() {
         message(&output)
     );
 }
+
+/// Returns what is to be quoted of a set-up in which `from` is changed, and the table.
+fn quoted(from: &str, to: &str) -> (Value, String) {
+    let folder = setup_folder(from, to);
+    let output = run(folder.path(), "budget a.toml --trials 60");
+    assert_code(&output, 0);
+    let record = fs::read(folder.path().join("out/a/budget.json")).expect("the record");
+    let quoted = json(&record)["measurement"]["quoted"].clone();
+    (quoted, text(&output.stdout))
+}
+
+#[test]
+fn a_dominant_rectangular_quantity_is_quoted_by_its_distribution() {
+    // 30 % of a height, whose interval ends at √3 u and not at 1.96 u.
+    let pitch = "pixel_pitch = { value = \"3.45 um\", uncertainty = \"0.6 um\", distribution = \"rectangular\" }";
+    let (quoted, table) = quoted("pixel_pitch = \"3.45 um\"", pitch);
+    assert_eq!(quoted, "propagation", "{table}");
+    assert!(
+        table.contains("it is not validated, quote the propagation"),
+        "{table}"
+    );
+}
+
+#[test]
+fn a_detector_whose_noise_is_not_first_order_is_quoted_by_the_virtual_experiment() {
+    let from = "angle = \"30 deg\"";
+    let folder = setup_folder(
+        from,
+        "angle = { value = \"30 deg\", uncertainty = \"0.01 deg\" }",
+    );
+    let set_up = fs::read_to_string(folder.path().join("a.toml")).expect("the set-up");
+    let (quoted, table) = quoted(SETUP, &set_up.replace("window = 21", "method = \"steger\""));
+    assert_eq!(quoted, "virtual_experiment", "{table}");
+    assert!(table.contains("quote the virtual experiment"), "{table}");
+}

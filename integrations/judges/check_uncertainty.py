@@ -91,12 +91,14 @@ def height_of(known: dict[str, GTC.lib.UncertainReal], at: float) -> GTC.lib.Unc
     """
     names = ["distance", "angle", "focal_length", "pixel_pitch", "principal_row"]
     distance, angle, focal, pitch, principal = (known[f"camera.{name}"] for name in names)
-    image = focal * distance / (distance - focal)
+    # Base and mount are of aluminium.
+    expansion = 23.6e-6 * known["environment.temperature_change"]
+    image = focal * distance / (distance - focal) * (1 + expansion)
     phi = atan2(at * sin(angle.x), distance.x - at * cos(angle.x))
     row = principal.x - image.x * sin(phi) / cos(phi) / pitch.x
     errors = [x for name, x in known.items() if "." not in name and name != "calibration"]
     sight = angle + GTC.atan((principal - row - sum(errors)) * pitch / image)
-    to_plane = (known["laser.offset"] + distance * GTC.sin(angle)) / GTC.sin(sight)
+    to_plane = (known["laser.offset"] + distance * GTC.sin(angle) * (1 + expansion)) / GTC.sin(sight)
     return distance * GTC.cos(angle) - to_plane * GTC.cos(sight)
 
 

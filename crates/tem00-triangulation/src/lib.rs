@@ -53,7 +53,7 @@ pub use position_noise::{
 pub use sensor::{PhotonTransferPoint, RawFrame, Sensor, SensorDescription};
 pub use setup::{
     Averages, BandwidthEffect, HeightRange, ImagedLine, LaserLineData, LightLevel, Setup,
-    SetupCamera, SetupDescription, SetupQuantity, SetupSurface,
+    SetupCamera, SetupDescription, SetupEnvironment, SetupQuantity, SetupSurface,
 };
 
 /// The light of a laser and the relief of a surface.

@@ -46,7 +46,8 @@ pub enum MeasurementInput {
 /// `v` is the row at which the set-up as it is described sees the height, known exactly; the `eₖ` are the errors of
 /// that position by the terms of the [`Budget`], of no mean; `e_c` is that of the calibration. `g` meets the
 /// line of sight with the laser plane. Distance, angle, focal length, pixel pitch and principal row, and the
-/// offset and tilt of the laser plane, change the scale of heights, or shift all of them. Heights count from the point of the laser plane that the optical axis is
+/// offset and tilt of the laser plane, change the scale of heights, or shift all of them; so does a change of
+/// temperature where it expands base or mount. Heights count from the point of the laser plane that the optical axis is
 /// to meet: where distance and angle change, the camera still looks at it.
 ///
 /// What a quantity does to the noise alone, such as the wavelength, it does to the standard uncertainties of the
@@ -240,7 +241,7 @@ impl Measurement {
 /// description give it.
 fn height_at(description: &SetupDescription, row: f64) -> Option<f64> {
     let triangulator =
-        Triangulator::new(camera(description).ok()?, description.laser.plane().ok()?);
+        Triangulator::new(camera(description).ok()?, description.laser_plane().ok()?);
     let [width, _] = description.camera.resolution;
     let point = triangulator.point(DVec2::new(0.5 * width as f64, row))?;
     Some(point.z)

@@ -20,7 +20,9 @@ pub(crate) use self::{
     line_profile::LineProfile,
 };
 pub use self::{
-    description::{Averages, LaserLineData, SetupCamera, SetupDescription, SetupSurface},
+    description::{
+        Averages, LaserLineData, SetupCamera, SetupDescription, SetupEnvironment, SetupSurface,
+    },
     imaged_line::{BandwidthEffect, ImagedLine},
     light_level::LightLevel,
     quantity::SetupQuantity,
@@ -93,7 +95,7 @@ impl Setup {
             ..*detector.settings()
         })?;
         let line = ImagedLine::at(&description, &camera, 0.0).ok_or(NOT_SEEN)?;
-        let plane = description.laser.plane()?;
+        let plane = description.laser_plane()?;
         let setup = Self {
             description,
             triangulator: Triangulator::new(camera, plane),
@@ -122,7 +124,7 @@ impl Setup {
     pub(crate) fn resolution_cell(&self) -> Option<ResolutionCell> {
         let (camera, wavelength) = (self.camera(), self.description.laser.light.wavelength);
         let geometry = camera.imaging_geometry_at(
-            camera.project(self.description.laser.point_at(0.0))?,
+            camera.project(self.description.laser_point_at(0.0))?,
             wavelength,
         );
         imaged_line::resolution_cell(&self.description, camera, 0.0, &geometry.ok()?)
@@ -256,7 +258,7 @@ pub(crate) fn camera(description: &SetupDescription) -> Result<Camera, Triangula
         focal_length,
         f_number,
         focus_distance: distance,
-        pixel_pitch: description.sensor.pixel_pitch,
+        pixel_pitch: description.effective_pixel_pitch(),
         resolution,
         principal_point: principal_row.map(|row| DVec2::new(0.5 * resolution[0] as f64, row)),
         tilt: SensorTilt {

@@ -5,7 +5,8 @@ use core::sync::atomic::AtomicBool;
 use tem00_triangulation::{
     Averages, Budget, DVec3, DetectorSettings, Dorsch, LaserLight, LaserLineData, LaserPlane,
     LineImage, LineImageData, LineMethod, Relief, SensorDescription, Setup, SetupCamera,
-    SetupDescription, SetupSurface, SimulationOptions, UncertaintySource, simulate,
+    SetupDescription, SetupEnvironment, SetupSurface, SimulationOptions, UncertaintySource,
+    simulate,
 };
 
 /// Numbers that nobody thinks of.
@@ -62,6 +63,7 @@ fn description() -> SetupDescription {
             ..DetectorSettings::default()
         },
         calibration_uncertainty: 1e-6,
+        environment: SetupEnvironment::default(),
         average: Averages::default(),
     }
 }

@@ -169,6 +169,7 @@ fn the_page_has_exactly_the_keys_of_the_reader() {
         "sensor",
         "surface",
         "calibration",
+        "environment",
         "average",
         "budget",
         "design",

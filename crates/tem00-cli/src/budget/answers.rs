@@ -210,6 +210,8 @@ fn unit(input: MeasurementInput) -> (Unit, &'static str) {
             "nm" => (NANOMETRES, "nm"),
             "um" => (MICROMETRES, "µm"),
             "mm" => (MILLIMETRES, "mm"),
+            "K" => (NUMBER, "K"),
+            "1/K" => (NUMBER, "K⁻¹"),
             _ => (NUMBER, "1"),
         },
     }

@@ -32,6 +32,8 @@ pub(super) const SURFACE: &[&str] = &[
     "rms_height",
     "correlation_length",
 ];
+pub(super) const ENVIRONMENT: &[&str] =
+    &["temperature_change", "base_expansion", "mount_expansion"];
 /// The keys of all quantities that may be uncertain.
 pub(super) const UNCERTAIN: &[&str] = &uncertain();
 
@@ -51,6 +53,7 @@ pub(super) fn section_keys(section: &str) -> &'static [&'static str] {
         "laser" => LASER,
         "camera" => CAMERA,
         "surface" => SURFACE,
+        "environment" => ENVIRONMENT,
         _ => sensor::KEYS,
     }
 }

@@ -6,12 +6,13 @@ use tem00_config::{
 };
 
 use super::{
-    keys::{CAMERA, LASER, SURFACE, UNCERTAIN},
+    keys::{CAMERA, ENVIRONMENT, LASER, SURFACE, UNCERTAIN},
     read_detector, read_uncertainty,
     sensor::read_sensor_or_auto,
 };
 use crate::{
-    Averages, LaserLineData, Setup, SetupCamera, SetupDescription, SetupSurface, TriangulationError,
+    Averages, LaserLineData, Setup, SetupCamera, SetupDescription, SetupEnvironment, SetupSurface,
+    TriangulationError,
 };
 
 /// Set-up files.
@@ -26,6 +27,7 @@ const SETUP: Format = Format {
         "surface",
         "detector",
         "calibration",
+        "environment",
         "average",
         "budget",
         "correlation",
@@ -137,6 +139,7 @@ fn setup(document: &Document<'_>) -> Result<Setup, Problem> {
     let camera = needed(document, "camera", CAMERA, "focal_length = \"25 mm\"")?;
     let surface = needed(document, "surface", SURFACE, "reflectance = 0.5")?;
     let calibration = document.table("calibration", CALIBRATION)?;
+    let environment = document.table("environment", ENVIRONMENT)?;
     let average = document.table("average", AVERAGE)?;
     let pitch = camera
         .required("pixel_pitch", "\"3.45 um\"")?
@@ -156,13 +159,17 @@ fn setup(document: &Document<'_>) -> Result<Setup, Problem> {
             })?,
             None => 0.0,
         },
+        environment: match &environment {
+            Some(section) => read_environment(section)?,
+            None => SetupEnvironment::default(),
+        },
         average: match &average {
             Some(section) => read_average(section)?,
             None => Averages::default(),
         },
     };
     Setup::new(description).map_err(|error| {
-        let optional = [calibration.as_ref(), average.as_ref()];
+        let optional = [calibration.as_ref(), environment.as_ref(), average.as_ref()];
         let all = sections.into_iter().chain(optional.into_iter().flatten());
         rejected(&error, &all.collect::<Vec<_>>())
     })
@@ -221,6 +228,15 @@ fn read_surface(section: &Section<'_>) -> Result<SetupSurface, Problem> {
         patterns: section.or("patterns", 1, |value| count(value, 64))?,
         polarisation: section.or("polarisation", 1.0, fraction)?,
         relief: read_relief(section, None)?,
+    })
+}
+
+fn read_environment(section: &Section<'_>) -> Result<SetupEnvironment, Problem> {
+    let number = |key| section.or(key, 0.0, |value| value.quantity(&NUMBER));
+    Ok(SetupEnvironment {
+        temperature_change: number("temperature_change")?,
+        base_expansion: number("base_expansion")?,
+        mount_expansion: number("mount_expansion")?,
     })
 }
 

@@ -4,7 +4,8 @@ use tem00_coherence::{LaserLight, LineShape, Relief, Spectrum};
 use tem00_config::{ANGLE, DURATION, Dimension, LENGTH, NUMBER, POWER};
 
 use crate::{
-    Averages, DetectorSettings, LineMethod, SensorDescription, SetupDescription, SetupSurface,
+    Averages, DetectorSettings, LineMethod, SensorDescription, SetupDescription, SetupEnvironment,
+    SetupSurface,
 };
 
 impl SetupDescription {
@@ -23,6 +24,15 @@ impl SetupDescription {
             text.section("calibration")
                 .length("uncertainty", self.calibration_uncertainty, "um")
                 .note("standard uncertainty of a height");
+        }
+        let environment = &self.environment;
+        if *environment != SetupEnvironment::default() {
+            text.section("environment")
+                .number("temperature_change", environment.temperature_change)
+                .note("kelvins since the calibration")
+                .number("base_expansion", environment.base_expansion)
+                .note("per kelvin")
+                .number("mount_expansion", environment.mount_expansion);
         }
         if self.average != Averages::default() {
             text.section("average")

@@ -1,14 +1,19 @@
 use tem00_uncertainty::PropagationOptions;
 
 use super::*;
-use crate::{SimulationOptions, setup::tests::description};
+use crate::{SetupEnvironment, SimulationOptions, setup::tests::description};
 
 const HEIGHT: f64 = 4e-3;
 
-/// A set-up whose laser plane stands beside the axis, and leans.
+/// A warm set-up whose laser plane stands beside the axis, and leans.
 fn setup() -> Setup {
     let mut description = description();
     (description.laser.offset, description.laser.tilt) = (1e-3, -0.05);
+    description.environment = SetupEnvironment {
+        temperature_change: 5.0,
+        base_expansion: 24e-6,
+        mount_expansion: 12e-6,
+    };
     Setup::new(description).unwrap()
 }
 
@@ -36,19 +41,14 @@ fn measurement(quantities: &[(SetupQuantity, f64)]) -> Measurement {
 ///
 /// ```text
 /// C + t (sin(θ + φ), −cos(θ + φ))     tan φ = (v₀ − v) p / s     s = f L / (L − f)
-/// y = y₀ + z tan τ
+/// y = y₀ + z tan τ                     s and y₀ with their expansions
 /// ```
-fn by_line_of_sight(values: [f64; 7], row: f64) -> f64 {
-    let [
-        distance,
-        angle,
-        focal_length,
-        pitch,
-        principal_row,
-        offset,
-        tilt,
-    ] = values;
-    let image_distance = focal_length * distance / (distance - focal_length);
+fn by_line_of_sight(values: [f64; 10], row: f64) -> f64 {
+    let [distance, angle, focal_length, pitch, principal_row, ..] = values;
+    let [.., offset, tilt, change, base, mount] = values;
+    let in_focus = focal_length * distance / (distance - focal_length);
+    let image_distance = in_focus * (1.0 + mount * change);
+    let offset = offset + distance * libm::sin(angle) * base * change;
     let phi = libm::atan((principal_row - row) * pitch / image_distance);
     let (sin, cos) = (libm::sin(angle + phi), libm::cos(angle + phi));
     let [y, z] = [-distance * libm::sin(angle), distance * libm::cos(angle)];
@@ -56,7 +56,7 @@ fn by_line_of_sight(values: [f64; 7], row: f64) -> f64 {
     z - t * cos
 }
 
-const GEOMETRY: [SetupQuantity; 7] = [
+const GEOMETRY: [SetupQuantity; 10] = [
     SetupQuantity::Distance,
     SetupQuantity::Angle,
     SetupQuantity::FocalLength,
@@ -64,6 +64,9 @@ const GEOMETRY: [SetupQuantity; 7] = [
     SetupQuantity::PrincipalRow,
     SetupQuantity::LaserOffset,
     SetupQuantity::LaserTilt,
+    SetupQuantity::TemperatureChange,
+    SetupQuantity::BaseExpansion,
+    SetupQuantity::MountExpansion,
 ];
 
 #[test]

@@ -24,6 +24,8 @@ pub struct SetupDescription {
     pub detector: DetectorSettings,
     /// The standard uncertainty of a height by the calibration alone, in metres.
     pub calibration_uncertainty: f64,
+    /// The temperature and what it expands.
+    pub environment: SetupEnvironment,
     /// The averaging of heights.
     pub average: Averages,
 }
@@ -46,16 +48,55 @@ pub struct LaserLineData {
     pub tilt: f64,
 }
 
-impl LaserLineData {
+/// What a change of temperature since the calibration does to the geometry, to first order.
+///
+/// The *base* holds camera and laser: as it expands, the laser plane moves away from the camera by the part
+/// `α ΔT` of their distance L sin θ, and the directions of both stay. The *mount* holds lens and sensor: as it expands,
+/// the image distance grows by that part.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SetupEnvironment {
+    /// The temperature less that at which the values of the set-up hold, in kelvins.
+    pub temperature_change: f64,
+    /// The linear expansion of the base, per kelvin.
+    pub base_expansion: f64,
+    /// The linear expansion of the mount, per kelvin.
+    pub mount_expansion: f64,
+}
+
+impl SetupDescription {
+    /// Returns the distance of the laser plane from the optical axis on the reference plane, with the expansion of
+    /// the base, in metres.
+    pub(crate) fn laser_offset(&self) -> f64 {
+        let base = self.camera.distance * libm::sin(self.camera.angle);
+        let SetupEnvironment {
+            temperature_change,
+            base_expansion,
+            ..
+        } = self.environment;
+        self.laser.offset + base * base_expansion * temperature_change
+    }
+
+    /// Returns the pixel pitch that has the same image at the image distance without the expansion of the mount, in
+    /// metres.
+    pub(crate) fn effective_pixel_pitch(&self) -> f64 {
+        let SetupEnvironment {
+            temperature_change,
+            mount_expansion,
+            ..
+        } = self.environment;
+        self.sensor.pixel_pitch / (1.0 + mount_expansion * temperature_change)
+    }
+
     /// Returns the point of the laser plane at a height, in metres, before the middle of the line.
-    pub(crate) fn point_at(&self, height: f64) -> DVec3 {
-        DVec3::new(0.0, self.offset + height * libm::tan(self.tilt), height)
+    pub(crate) fn laser_point_at(&self, height: f64) -> DVec3 {
+        let beside = height * libm::tan(self.laser.tilt);
+        DVec3::new(0.0, self.laser_offset() + beside, height)
     }
 
     /// Returns the plane of the laser.
-    pub(crate) fn plane(&self) -> Result<LaserPlane, TriangulationError> {
-        let normal = DVec3::new(0.0, libm::cos(self.tilt), -libm::sin(self.tilt));
-        LaserPlane::new(self.point_at(0.0), normal)
+    pub(crate) fn laser_plane(&self) -> Result<LaserPlane, TriangulationError> {
+        let (sin, cos) = (libm::sin(self.laser.tilt), libm::cos(self.laser.tilt));
+        LaserPlane::new(self.laser_point_at(0.0), DVec3::new(0.0, cos, -sin))
     }
 }
 
@@ -140,6 +181,7 @@ impl SetupDescription {
         self.check_lengths()?;
         self.check_camera()?;
         self.check_surface()?;
+        self.check_environment()?;
         let uncertainty = self.calibration_uncertainty;
         within(
             "uncertainty",
@@ -225,6 +267,24 @@ impl SetupDescription {
             (0.999_999 * degree, 89.000_001 * degree),
             allowed,
         )
+    }
+
+    fn check_environment(&self) -> Result<(), TriangulationError> {
+        let SetupEnvironment {
+            temperature_change,
+            base_expansion,
+            mount_expansion,
+        } = self.environment;
+        let allowed = "from -200 to 200 K";
+        within(
+            "temperature_change",
+            temperature_change,
+            (-200.0, 200.0),
+            allowed,
+        )?;
+        let allowed = "from -0.001 to 0.001 per kelvin";
+        within("base_expansion", base_expansion, (-1e-3, 1e-3), allowed)?;
+        within("mount_expansion", mount_expansion, (-1e-3, 1e-3), allowed)
     }
 
     fn check_surface(&self) -> Result<(), TriangulationError> {

@@ -97,14 +97,14 @@ impl ImagedLine {
         let laser = &description.laser;
         let pitch = description.sensor.pixel_pitch;
         let row = |beside: f64, height: f64| {
-            let point = laser.point_at(height) + beside * DVec3::Y;
+            let point = description.laser_point_at(height) + beside * DVec3::Y;
             camera.project(point).map(|pixel| pixel.y)
         };
         let half = 0.5 * laser.line_thickness;
         let projected_thickness = (row(half, height)? - row(-half, height)?).abs();
         let step = STEP * description.camera.distance;
         let moved = row(0.0, height - step)? - row(0.0, height + step)?;
-        let pixel = camera.project(laser.point_at(height))?;
+        let pixel = camera.project(description.laser_point_at(height))?;
         let geometry = camera
             .imaging_geometry_at(pixel, laser.light.wavelength)
             .ok()?;
@@ -177,7 +177,7 @@ impl ImagedLine {
 /// Returns the depth of the line at a height before the pupil, along the optical axis.
 fn depth(description: &SetupDescription, height: f64) -> f64 {
     let (sin, cos) = description.camera.angle.sin_cos();
-    description.camera.distance + description.laser.point_at(height).y * sin - height * cos
+    description.camera.distance + description.laser_point_at(height).y * sin - height * cos
 }
 
 /// Returns what a resolution cell of the camera holds of the surface at a height.
@@ -188,7 +188,7 @@ pub(super) fn resolution_cell(
     geometry: &ImagingGeometry,
 ) -> Option<ResolutionCell> {
     let laser = &description.laser;
-    let to_pupil = camera.position() - laser.point_at(height);
+    let to_pupil = camera.position() - description.laser_point_at(height);
     let distance = to_pupil.length();
     let depth = depth(description, height);
     let in_focus = (depth.recip() - geometry.defocus_at(depth)).recip();

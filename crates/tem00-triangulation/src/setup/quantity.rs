@@ -64,11 +64,17 @@ pub enum SetupQuantity {
     RmsHeight,
     /// The correlation length of the relief, in metres.
     CorrelationLength,
+    /// The change of temperature since the calibration, in kelvins.
+    TemperatureChange,
+    /// The linear expansion of the base of camera and laser, per kelvin.
+    BaseExpansion,
+    /// The linear expansion of the mount of lens and sensor, per kelvin.
+    MountExpansion,
 }
 
 impl SetupQuantity {
     /// All of them, in the order of a set-up file.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 31] = [
         Self::Wavelength,
         Self::Linewidth,
         Self::SourceHalfAngle,
@@ -97,6 +103,9 @@ impl SetupQuantity {
         Self::Polarisation,
         Self::RmsHeight,
         Self::CorrelationLength,
+        Self::TemperatureChange,
+        Self::BaseExpansion,
+        Self::MountExpansion,
     ];
 
     /// Returns the section of a set-up file and the key in it.
@@ -130,6 +139,9 @@ impl SetupQuantity {
             Self::Polarisation => ["surface", "polarisation"],
             Self::RmsHeight => ["surface", "rms_height"],
             Self::CorrelationLength => ["surface", "correlation_length"],
+            Self::TemperatureChange => ["environment", "temperature_change"],
+            Self::BaseExpansion => ["environment", "base_expansion"],
+            Self::MountExpansion => ["environment", "mount_expansion"],
         }
     }
 
@@ -160,6 +172,8 @@ impl SetupQuantity {
             | Self::LaserOffset
             | Self::FocalLength
             | Self::Distance => "mm",
+            Self::TemperatureChange => "K",
+            Self::BaseExpansion | Self::MountExpansion => "1/K",
             _ => "",
         }
     }
@@ -170,7 +184,7 @@ impl SetupQuantity {
             b"deg" | b"mrad" => &ANGLE,
             b"mW" => &POWER,
             b"ms" => &DURATION,
-            b"" => &NUMBER,
+            b"" | b"K" | b"1/K" => &NUMBER,
             _ => &LENGTH,
         }
     }
@@ -178,6 +192,7 @@ impl SetupQuantity {
     fn field(self, description: &mut SetupDescription) -> &mut f64 {
         let (laser, camera) = (&mut description.laser, &mut description.camera);
         let (sensor, surface) = (&mut description.sensor, &mut description.surface);
+        let environment = &mut description.environment;
         match self {
             Self::Wavelength => &mut laser.light.wavelength,
             Self::Linewidth => &mut laser.light.linewidth,
@@ -210,6 +225,9 @@ impl SetupQuantity {
             Self::Polarisation => &mut surface.polarisation,
             Self::RmsHeight => &mut surface.relief.rms_height,
             Self::CorrelationLength => &mut surface.relief.correlation_length,
+            Self::TemperatureChange => &mut environment.temperature_change,
+            Self::BaseExpansion => &mut environment.base_expansion,
+            Self::MountExpansion => &mut environment.mount_expansion,
         }
     }
 }
@@ -225,7 +243,7 @@ impl fmt::Display for SetupQuantity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::setup::tests::description;
+    use crate::{SetupEnvironment, setup::tests::description};
 
     #[test]
     fn setting_a_quantity_changes_its_key_in_the_text_alone() {
@@ -242,6 +260,11 @@ mod tests {
             base.surface.relief.rms_height,
             base.surface.relief.correlation_length,
         ) = (1e-6, 2e-6);
+        base.environment = SetupEnvironment {
+            temperature_change: 4.0,
+            base_expansion: 2e-5,
+            mount_expansion: 1e-5,
+        };
         let before = base.to_toml();
         for quantity in SetupQuantity::ALL {
             let mut changed = base.clone();

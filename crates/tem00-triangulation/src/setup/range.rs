@@ -63,7 +63,7 @@ impl Setup {
         let height = |inverse_depth: f64| {
             let (sin, cos) = self.description().camera.angle.sin_cos();
             let laser = &self.description().laser;
-            (distance + laser.offset * sin - 1.0 / inverse_depth)
+            (distance + self.description().laser_offset() * sin - 1.0 / inverse_depth)
                 / (cos - libm::tan(laser.tilt) * sin)
         };
         let farthest = 1.0 / distance - vergence;

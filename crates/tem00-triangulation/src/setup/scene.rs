@@ -32,7 +32,7 @@ impl Setup {
             z = position.z,
             focal_length = camera.focal_length,
             f_number = camera.f_number,
-            pitch = d.sensor.pixel_pitch,
+            pitch = d.effective_pixel_pitch(),
             tilt = self.camera().description().tilt.angle,
             principal = camera.principal_row.map_or_else(String::new, |row| {
                 let middle = 0.5 * width as f64;
@@ -41,8 +41,8 @@ impl Setup {
             light = light_keys(&laser.light),
             relief = relief_keys(d.surface.relief),
             power = laser.power,
-            beside = laser.point_at(camera.distance).y,
-            offset = laser.offset,
+            beside = d.laser_point_at(camera.distance).y,
+            offset = d.laser_offset(),
             distance = camera.distance,
             line_thickness = laser.line_thickness,
             reflectance = d.surface.reflectance,

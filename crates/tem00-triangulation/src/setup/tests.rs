@@ -44,6 +44,7 @@ pub(crate) fn description() -> SetupDescription {
             saturation: f64::INFINITY,
         },
         calibration_uncertainty: 1e-6,
+        environment: SetupEnvironment::default(),
         average: Averages::default(),
     }
 }

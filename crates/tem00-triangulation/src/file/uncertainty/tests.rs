@@ -114,6 +114,8 @@ fn every_quantity_may_be_uncertain() {
             "principal_row" => "240",
             "full_well" => "1e4",
             "black_level" => "64",
+            "temperature_change" => "2",
+            "base_expansion" | "mount_expansion" => "1e-5",
             "gain" | "fill_factor" | "polarisation" => "0.5",
             "dark_noise" | "dark_current" | "dsnu" => "2",
             "prnu" => "0.01",
@@ -134,7 +136,7 @@ fn every_quantity_may_be_uncertain() {
             .and_then(|value| value.split_once(' '))
         {
             Some((_, unit)) => format!("\"0.001 {unit}"),
-            None => "0.001".to_owned(),
+            None => "1e-6".to_owned(),
         };
         let uncertain = format!("{key} = {{ value = {value}, uncertainty = {uncertainty} }}\n");
         let without = line.map_or(bare.clone(), |line| bare.replace(&format!("{line}\n"), ""));
@@ -144,7 +146,11 @@ fn every_quantity_may_be_uncertain() {
             ""
         };
         let header = format!("[{section}]\n");
-        let text = without.replace(&header, &format!("{header}{relief}{uncertain}"));
+        let text = if without.contains(&header) {
+            without.replace(&header, &format!("{header}{relief}{uncertain}"))
+        } else {
+            format!("{without}{header}{uncertain}")
+        };
         let (setup, found) = read(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
         assert_eq!(found.quantities.len(), 1, "{quantity}");
         let (read, input) = found.quantities[0];

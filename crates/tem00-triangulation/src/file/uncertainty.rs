@@ -2,7 +2,7 @@ use tem00_config::{Document, LENGTH, NUMBER, Problem, Section, Value, nearest};
 use tem00_uncertainty::{Correlation, Distribution, Input, Inputs, UncertaintyError};
 
 use super::keys::section_keys;
-use crate::{HeightRange, Setup, SetupQuantity, SetupUncertainty};
+use crate::{HeightRange, Setup, SetupQuantity, SetupUncertainty, TriangulationError};
 
 const BUDGET: &[&str] = &["height"];
 const CORRELATION: &[&str] = &["between", "coefficient"];
@@ -84,15 +84,27 @@ fn read_quantity(
     let estimate = quantity.value_in(setup.description());
     let input = Input::new(estimate, uncertainty, shape).map_err(rejected)?;
     let input = input.with_degrees_of_freedom(freedom).map_err(rejected)?;
-    for value in [estimate - uncertainty, estimate + uncertainty] {
+    for (side, value) in [
+        ("below", estimate - uncertainty),
+        ("above", estimate + uncertainty),
+    ] {
         let mut description = setup.exposed_description();
         quantity.set(&mut description, value);
-        Setup::new(description).map_err(|error| {
-            let message = format!("one standard uncertainty from the value {error}");
-            table.problem_with("uncertainty", message)
-        })?;
+        Setup::new(description).map_err(|error| impossible(&table, side, &error))?;
     }
     Ok(Some((quantity, input)))
+}
+
+/// The problem that there is no set-up one standard uncertainty on a side of the value.
+fn impossible(table: &Section<'_>, side: &str, error: &TriangulationError) -> Problem {
+    let wanted = match error {
+        TriangulationError::OutOfRange {
+            parameter, allowed, ..
+        } => format!("{parameter} must be {allowed}"),
+        error => error.to_string(),
+    };
+    let message = format!("one `uncertainty` {side} its value, {wanted}");
+    table.problem_with("uncertainty", message)
 }
 
 fn read_correlations(

@@ -375,12 +375,56 @@ fn renders(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// A corner whose walls light each other, by a laser so narrow that only the survey of their paths takes time.
+fn corner(linewidth: &str) -> Scene {
+    let text = format!(
+        r#"
+        [render]
+        samples_per_pixel = 32
+        [camera]
+        position = [0.1, 0, 0.3]
+        look_at = [0, 0, 0]
+        focal_length = "25 mm"
+        f_number = 8
+        pixel_pitch = "3.45 um"
+        resolution = [640, 480]
+        [[laser]]
+        wavelength = "650 nm"
+        linewidth = "{linewidth}"
+        power = "5 mW"
+        position = [0.1, 0, 0.2]
+        look_at = [0, 0, 0]
+        spot = {{ waist_radius = "5 mm" }}
+        [[surface]]
+        rectangle = {{ centre = [0.01, 0, 0], normal = [0, 0, 1], size = [0.04, 0.04] }}
+        [[surface]]
+        rectangle = {{ centre = [-0.01, 0, 0.02], normal = [1, 0, 0], size = [0.04, 0.04] }}
+    "#
+    );
+    parse_scene(&text, Path::new(".")).expect("a valid scene")
+}
+
+fn corners(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("a corner, all threads");
+    for (name, linewidth) in [("one wavelength", "0 nm"), ("surveyed", "1e-7 nm")] {
+        let scene = corner(linewidth);
+        let plan = SpecklePlan::new(&scene, scene.render.formulas, 0).expect("a small pattern");
+        let model = SpeckleModel::generate(&scene, &plan).expect("a small pattern");
+        group.throughput(Throughput::Elements(scene.samples_per_frame(&scene.render)));
+        group.bench_function(name, |bencher| {
+            let cancel = AtomicBool::new(false);
+            bencher.iter(|| render_frame(&scene, Some(&model), 0, &scene.render, |_| (), &cancel));
+        });
+    }
+    group.finish();
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default()
         .sample_size(10)
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1));
-    targets = intersections, hierarchies, renders
+    targets = intersections, hierarchies, renders, corners
 }
 criterion_main!(benches);

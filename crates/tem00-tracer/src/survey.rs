@@ -108,6 +108,19 @@ impl SpecklePlan {
 const GROUPS: usize = 16;
 const PATHS: usize = 32;
 
+/// Of so many cells along each side, one is looked at in both ways.
+const PROBE: usize = 4;
+
+/// Where paths start.
+///
+/// A beam narrow against what is seen hides from paths that start at the camera, and what is small in a wide beam from
+/// paths that start at the laser.
+#[derive(Clone, Copy)]
+enum Way {
+    FromLaser,
+    FromCamera,
+}
+
 /// Of each laser, of each group, of each path: the rough surfaces that it has met.
 type LitPoints<'a> = Vec<Vec<Vec<Vec<LitPoint<'a>>>>>;
 
@@ -158,27 +171,49 @@ impl<'a> Survey<'a> {
         let tracer = self.light_tracer();
         let lit = self.lit_points(&tracer);
         let lattice = Lattice::over([camera.width(), camera.height()], self.cells);
+        let lasers = (0..self.scene.lasers.len()).into_par_iter();
+        let ways: Vec<Way> = lasers
+            .map(|laser| self.better_way(laser, &lit[laser], lattice))
+            .collect();
         let cells = (0..lattice.columns * lattice.rows).into_par_iter();
-        let sums: Vec<_> = cells.map(|cell| self.cell(&lit, lattice, cell)).collect();
-        MultipleMap::new(lattice, &self.better(sums))
+        let sums: Vec<CellSums> = cells
+            .map(|cell| {
+                let Some(seen) = self.seen(lattice, cell) else {
+                    return CellSums::new();
+                };
+                let lasers = ways.iter().zip(&lit).enumerate();
+                lasers
+                    .map(|(laser, (&way, groups))| {
+                        let sums = self.sums(laser, way, groups, (lattice, cell, &seen));
+                        ((laser, seen.point.surface), sums)
+                    })
+                    .collect()
+            })
+            .collect();
+        MultipleMap::new(lattice, &sums)
     }
 
-    /// Chooses the way in which the light of each laser was found by more paths.
-    fn better(&self, sums: Vec<BTreeMap<LightKey, [MultipleSums; 2]>>) -> Vec<CellSums> {
-        let mut found = vec![[0.0; 2]; self.scene.lasers.len()];
-        for ((laser, _), ways) in sums.iter().flatten() {
-            for (found, sums) in found[*laser].iter_mut().zip(ways) {
+    /// Chooses the way in which the light of a laser is found by more paths, in one of `PROBE`² cells.
+    fn better_way(&self, laser: usize, groups: &[Vec<Vec<LitPoint<'_>>>], lattice: Lattice) -> Way {
+        let probed = |cell: &usize| {
+            let place = [cell % lattice.columns, cell / lattice.columns];
+            place.map(|i| i % PROBE) == [PROBE / 2; 2]
+        };
+        let mut found = [0.0; 2];
+        for cell in (0..lattice.columns * lattice.rows).filter(probed) {
+            let Some(seen) = self.seen(lattice, cell) else {
+                continue;
+            };
+            for (found, way) in found.iter_mut().zip([Way::FromLaser, Way::FromCamera]) {
+                let sums = self.sums(laser, way, groups, (lattice, cell, &seen));
                 *found += sums.effective_paths();
             }
         }
-        let way = |laser: usize| usize::from(found[laser][1] > found[laser][0]);
-        let cells = sums.into_iter();
-        cells
-            .map(|cell| {
-                let chosen = cell.into_iter();
-                chosen.map(|(key, ways)| (key, ways[way(key.0)])).collect()
-            })
-            .collect()
+        if found[1] > found[0] {
+            Way::FromCamera
+        } else {
+            Way::FromLaser
+        }
     }
 
     fn light_tracer(&self) -> LightTracer<'a> {
@@ -217,44 +252,32 @@ impl<'a> Survey<'a> {
         (0..self.scene.lasers.len()).map(groups).collect()
     }
 
-    /// Sums over pairs of paths to a point of one cell, found from the laser and from the camera.
-    ///
-    /// A beam narrow against what is seen hides from paths that start at the camera, and what is small in a wide beam from
-    /// paths that start at the laser.
-    fn cell(
+    /// Sums over pairs of paths to the point of one cell that the camera sees.
+    fn sums(
         &self,
-        lit: &LitPoints<'_>,
-        lattice: Lattice,
-        cell: usize,
-    ) -> BTreeMap<LightKey, [MultipleSums; 2]> {
-        let mut sums = BTreeMap::new();
-        let Some(seen) = self.seen(lattice, cell) else {
-            return sums;
-        };
-        for (laser, groups) in lit.iter().enumerate() {
-            let line = self.scene.lasers[laser].spectral_line();
-            let place = (seen.point, self.single(laser, &seen.vertex));
-            let of_groups = |groups: [Vec<MultiplePath>; 2]| {
-                let [first, second] = &groups;
-                MultipleSums::of_groups(line, place, [first, second], PATHS)
-            };
-            let number = 2 * (cell % lattice.columns + 3 * (cell / lattice.columns));
-            let from_laser = [0, 1].map(|i| {
+        laser: usize,
+        way: Way,
+        groups: &[Vec<Vec<LitPoint<'_>>>],
+        (lattice, cell, seen): (Lattice, usize, &SeenPoint<'_>),
+    ) -> MultipleSums {
+        let number = 2 * (cell % lattice.columns + 3 * (cell / lattice.columns));
+        let paths = [0, 1].map(|i| match way {
+            Way::FromLaser => {
                 let paths = groups[(number + i) % GROUPS].iter();
-                let paths = paths.flat_map(|points| self.multiple(laser, &seen, points));
-                paths.collect()
-            });
-            let from_camera = [0, 1].map(|i| {
+                let paths = paths.flat_map(|points| self.multiple(laser, seen, points));
+                paths.collect::<Vec<_>>()
+            }
+            Way::FromCamera => {
                 let first = (2 * cell + i) * PATHS + 1;
                 let keys = first..first + PATHS;
-                let paths =
-                    keys.flat_map(|key| self.multiple_from_camera(laser, &seen, key as u64));
+                let paths = keys.flat_map(|key| self.multiple_from_camera(laser, seen, key as u64));
                 paths.collect()
-            });
-            let key = (laser, seen.point.surface);
-            sums.insert(key, [from_laser, from_camera].map(of_groups));
-        }
-        sums
+            }
+        });
+        let line = self.scene.lasers[laser].spectral_line();
+        let place = (seen.point, self.single(laser, &seen.vertex));
+        let [first, second] = &paths;
+        MultipleSums::of_groups(line, place, [first, second], PATHS)
     }
 
     /// The rough surface that the camera sees at some point of a cell.

@@ -305,7 +305,15 @@ impl Planner<'_> {
 impl Sum {
     fn new(speckle: &SurfaceSpeckle, light: &SurfaceLight) -> Result<Self, TracerError> {
         let patterns = speckle.patterns as usize;
-        let fractions = incoherent_fractions(patterns, speckle.polarisation, &light.modes)?;
+        let fractions = incoherent_fractions(patterns, speckle.polarisation, &light.modes);
+        let fractions = fractions.map_err(|error| match light.modes.len() {
+            1 => error.into(),
+            _ => TracerError::OutOfRange {
+                parameter: "patterns",
+                value: f64::from(speckle.patterns),
+                allowed: "so few that at most 1024 add up with those of the linewidth and the extent of the laser",
+            },
+        })?;
         let components = if speckle.polarisation < 1.0 { 2 } else { 1 };
         Ok(Self {
             polarisation: speckle.polarisation,

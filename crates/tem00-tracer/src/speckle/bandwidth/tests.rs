@@ -170,3 +170,14 @@ fn grains_are_longer_along_the_tilt() {
         );
     }
 }
+
+#[test]
+fn more_patterns_than_can_add_up_are_refused_by_their_name() {
+    let mut scene = scene(SpectralLine::monochromatic(650e-9).unwrap(), 0.0);
+    let extent = SourceExtent::disc(0.02).unwrap();
+    scene.lasers[0] = scene.lasers[0].clone().with_source_extent(extent);
+    scene.surfaces[0].speckle.patterns = 40;
+    let refused = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap_err();
+    assert_eq!(refused.parameter(), Some("patterns"), "{refused}");
+    assert!(refused.to_string().ends_with("got 40"), "{refused}");
+}

@@ -124,7 +124,7 @@ impl Rows {
         const STEPS: f64 = 4096.0;
         let height = match self {
             Self::Thin => 0.0,
-            Self::Height(height) => height,
+            Self::Height(height) => height.max(0.0),
             Self::Tall => f64::INFINITY,
         };
         if height > Self::TALLEST {

@@ -260,7 +260,9 @@ fn rows_lie_between_thin_and_tall_ones() {
     };
     let deviation = |rows| speckle.line_noise(rows).sqrt();
     let [thin, tall] = [Rows::Thin, Rows::Tall].map(deviation);
-    assert_relative_eq!(deviation(Rows::Height(0.0)), thin, epsilon = 1e-5);
+    for none in [0.0, -1.0, f64::NAN] {
+        assert_relative_eq!(deviation(Rows::Height(none)), thin, epsilon = 1e-5);
+    }
     assert_relative_eq!(deviation(Rows::Height(0.01)), thin, epsilon = 1e-4);
     assert_relative_eq!(deviation(Rows::Height(39.0)), tall, epsilon = 3e-3);
     assert_relative_eq!(deviation(Rows::Height(41.0)), tall, epsilon = 1e-5);

@@ -307,4 +307,4 @@ impl PolychromaticSpeckle<'_> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -7,7 +7,12 @@ use super::*;
 use crate::{CellGeometry, DVec3, LineShape, Relief};
 
 /// A camera of sin u = 0.025 and a source in one plane, by their angles in degrees.
-fn cell(wavelength: f64, incidence: f64, observation: f64, rms_height: f64) -> ResolutionCell {
+pub(crate) fn cell(
+    wavelength: f64,
+    incidence: f64,
+    observation: f64,
+    rms_height: f64,
+) -> ResolutionCell {
     let direction = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         DVec3::new(sin, 0.0, cos)
@@ -29,7 +34,7 @@ fn cell(wavelength: f64, incidence: f64, observation: f64, rms_height: f64) -> R
         .unwrap()
 }
 
-fn gaussian(wavelength: f64, linewidth: f64) -> SpectralLine {
+pub(crate) fn gaussian(wavelength: f64, linewidth: f64) -> SpectralLine {
     SpectralLine::new(wavelength, linewidth, LineShape::Gaussian).unwrap()
 }
 

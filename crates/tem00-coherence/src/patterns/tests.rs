@@ -1,31 +1,10 @@
 use approx::assert_relative_eq;
 
 use super::*;
-use crate::{CellGeometry, DVec3, LineShape, Rows, SpectralLine};
-
-/// A cell in the plane of incidence, by its angles in degrees.
-fn cell(wavelength: f64, incidence: f64, observation: f64, rms_height: f64) -> ResolutionCell {
-    let direction = |degrees: f64| {
-        let (sin, cos) = degrees.to_radians().sin_cos();
-        DVec3::new(sin, 0.0, cos)
-    };
-    let cell = ResolutionCell::new(CellGeometry {
-        to_source: direction(incidence),
-        to_pupil: direction(observation),
-        normal: DVec3::Z,
-        sin_aperture: 0.025,
-        wavelength,
-    });
-    let relief = Relief {
-        rms_height,
-        correlation_length: 0.0,
-    };
-    cell.unwrap().with_relief(relief).unwrap()
-}
-
-fn gaussian(wavelength: f64, linewidth: f64) -> SpectralLine {
-    SpectralLine::new(wavelength, linewidth, LineShape::Gaussian).unwrap()
-}
+use crate::{
+    LineShape, Rows, SpectralLine,
+    law::tests::{cell, gaussian},
+};
 
 fn squares(fractions: &[f64]) -> f64 {
     assert_relative_eq!(fractions.iter().sum::<f64>(), 1.0, max_relative = 1e-12);

@@ -88,7 +88,8 @@ impl Case {
     }
 
     /// The fractions of measurements whose intervals hold the true height: by the law of propagation, by the propagation of
-    /// distributions, and where a virtual experiment's errors stand about the measured height.
+    /// distributions, and where the errors of all measurements stand about each, as a virtual experiment has them but without
+    /// frames.
     fn coverage(&self) -> [f64; 3] {
         let setup = self.setup();
         let mut measured = self.measured(&setup);

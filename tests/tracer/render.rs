@@ -130,6 +130,35 @@ fn a_crop_has_the_bits_of_the_whole_image() {
 }
 
 #[test]
+fn all_but_speckle_in_the_dark_is_the_same_without_it() {
+    let scene = scene();
+    for max_depth in [1, 3] {
+        let all = RenderOptions {
+            max_depth: Some(max_depth),
+            ..options()
+        };
+        let light_only = RenderOptions {
+            speckle_in_the_dark: false,
+            ..all
+        };
+        let [mut with, without] = [all, light_only].map(|options| render(&scene, &options));
+        let mut changed = 0;
+        for (with, without) in with.lasers.iter_mut().zip(&without.lasers) {
+            for y in 0..with.speckle.height() {
+                for at in (0..with.speckle.width()).map(|x| (x, y)) {
+                    let is_dark = with.single[at] == 0.0 && with.multiple[at] == 0.0;
+                    assert!(!is_dark || without.speckle[at] == 1.0, "{at:?}");
+                    changed += u32::from(is_dark && with.speckle[at] != 1.0);
+                }
+            }
+            with.speckle = without.speckle.clone();
+        }
+        assert!(max_depth > 1 || changed > 20, "{changed} dark pixels");
+        assert!(with == without, "a layer of light, depth {max_depth}");
+    }
+}
+
+#[test]
 fn many_lasers_in_one_pass_are_the_lasers_one_by_one() {
     let all = scene();
     let together = render(&all, &options());

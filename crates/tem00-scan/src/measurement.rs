@@ -68,6 +68,7 @@ impl Measurement {
         scene.render.filter = Filter::Box {
             radius: sensor.sensitive_half_width(),
         };
+        scene.render.speckle_in_the_dark = false;
         Ok(Self {
             detector: LineDetector::new(DetectorSettings {
                 saturation: saturation(sensor.description()),

@@ -48,7 +48,8 @@ pub struct LaserLayers {
     /// Radiance of the light that has met more than one rough surface, before speckle.
     pub multiple: Grid<f32>,
     /// The speckle factor, averaged over the pixel without regard to the light; 1 where the pixel
-    /// sees no rough surface.
+    /// sees no rough surface. [`RenderOptions::speckle_in_the_dark`](crate::RenderOptions) can leave it
+    /// at 1 for samples without light, too.
     pub speckle: Grid<f32>,
     /// Radiance of all light of the laser, each camera sample multiplied by its speckle factor. The
     /// formulas as printed leave the light that has met more than one rough surface without speckle.

@@ -113,11 +113,12 @@ impl<'a> Integrator<'a> {
             // Connect the surfaces to all sources of light.
             self.connect_to_lasers(batch);
             self.connect_to_lights(batch);
-            // Look up the speckle of the first rough surface of each path.
-            self.look_up_speckle(batch);
+            // Remember the first rough surface of each path, whose speckle all of its light has.
+            self.note_speckle(batch);
             // Choose where the paths go on.
             self.scatter(batch);
         }
+        batch.settle(self.speckle, &self.rules);
     }
 
     /// Draws a position in the pupil, as a pair of numbers; a pinhole has only its middle.
@@ -204,9 +205,8 @@ impl<'a> Integrator<'a> {
         });
     }
 
-    /// Looks up the speckle factors where paths meet their first rough surface.
-    fn look_up_speckle(&self, batch: &mut Batch<'a>) {
-        batch.speckle.clear();
+    /// Notes where paths meet their first rough surface.
+    fn note_speckle(&self, batch: &mut Batch<'a>) {
         for (path, vertex) in batch.paths.iter().zip(&batch.vertices) {
             if path.rough == 0 && !vertex.is_specular() {
                 let point = SpecklePoint {
@@ -219,7 +219,6 @@ impl<'a> Integrator<'a> {
                 batch.speckle.push(path.sample, point);
             }
         }
-        batch.settle(self.speckle, self.rules.formulas);
     }
 
     /// Draws the place in the lines of the lasers, if one of them has a width.

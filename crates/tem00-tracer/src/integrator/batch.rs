@@ -1,7 +1,7 @@
 use glam::{DVec2, DVec3};
 use tem00_camera::Ray;
 
-use super::Vertex;
+use super::{PathRules, Vertex};
 use crate::{
     Formulas, Hit, Intersector, Segment,
     sampler::Stream,
@@ -67,10 +67,6 @@ pub(crate) struct LaserSample {
     /// With its speckle.
     pub radiance: f64,
     pub power: f64,
-    /// The factor of light that has met more than one rough surface.
-    speckle_of_multiple: f64,
-    /// Light of the surface point at hand, whose speckle is not yet known.
-    unsettled: f64,
 }
 
 impl LaserSample {
@@ -80,30 +76,30 @@ impl LaserSample {
         speckle: 1.0,
         radiance: 0.0,
         power: 0.0,
-        speckle_of_multiple: 1.0,
-        unsettled: 0.0,
     };
 
-    /// Adds light of a point whose speckle is known, which has met this rough surface alone or others before.
-    pub(super) fn add(&mut self, radiance: f64, is_single: bool) {
+    /// Adds light that has met one rough surface, or more.
+    pub(super) const fn add(&mut self, radiance: f64, is_single: bool) {
         if is_single {
             self.single += radiance;
-            self.radiance += radiance * self.speckle;
         } else {
             self.multiple += radiance;
-            self.radiance += radiance * self.speckle_of_multiple;
         }
     }
 
-    /// Gives the light of a point its speckle.
+    /// Tells whether the sample finds no light of the laser.
+    fn is_dark(&self) -> bool {
+        self.single == 0.0 && self.multiple == 0.0
+    }
+
+    /// Gives the light its speckle.
     fn settle(&mut self, speckle: f64, formulas: Formulas) {
-        self.speckle = speckle;
-        self.speckle_of_multiple = match formulas {
+        let speckle_of_multiple = match formulas {
             Formulas::Derived => speckle,
             Formulas::AsPrinted => 1.0,
         };
-        let unsettled = core::mem::take(&mut self.unsettled);
-        self.add(unsettled, true);
+        self.speckle = speckle;
+        self.radiance = self.single * speckle + self.multiple * speckle_of_multiple;
     }
 }
 
@@ -161,6 +157,7 @@ impl Batch<'_> {
         let samples = self.samples.len();
         self.paths.clear();
         self.rays.clear();
+        self.speckle.clear();
         self.laser_samples.clear();
         self.laser_samples
             .resize(samples * lasers, LaserSample::DARK);
@@ -227,11 +224,7 @@ impl Batch<'_> {
                     is_single,
                 } => {
                     let laser = &mut self.laser_samples[slot];
-                    if is_single {
-                        laser.unsettled += radiance;
-                    } else {
-                        laser.add(radiance, false);
-                    }
+                    laser.add(radiance, is_single);
                     laser.power += power;
                 }
                 Arrival::Light { sample, radiance } => self.samples[sample].lights += radiance,
@@ -242,14 +235,23 @@ impl Batch<'_> {
     }
 }
 
-/// The points where speckle is looked up, with the sample of each.
+/// The points where speckle is looked up, in the order in which paths have met them, with the sample of each.
 #[derive(Debug, Default)]
 pub(super) struct SpeckleLookUps {
     samples: Vec<usize>,
     points: Vec<SpecklePoint>,
-    factors: Vec<f64>,
-    /// The radiance of the light of a laser that has met the surface of each point only.
+    /// Those of one laser at a time.
+    of_laser: LaserLookUps,
+}
+
+/// The points where the speckle of a laser is looked up, with the index of each sample's values for it.
+#[derive(Debug, Default)]
+struct LaserLookUps {
+    slots: Vec<usize>,
+    points: Vec<SpecklePoint>,
+    /// The radiance of the light that has met the surface of each point only.
     singles: Vec<f64>,
+    factors: Vec<f64>,
 }
 
 impl SpeckleLookUps {
@@ -262,36 +264,53 @@ impl SpeckleLookUps {
         self.samples.push(sample);
         self.points.push(point);
     }
+}
 
-    /// Looks up the factors of a laser beside the single light of each point; 1 without a model.
+impl LaserLookUps {
+    fn clear(&mut self) {
+        self.slots.clear();
+        self.points.clear();
+        self.singles.clear();
+    }
+
+    /// Returns the factors of a laser at the points, each with its slot; 1 without a model.
     fn look_up(
         &mut self,
         speckle: Option<&SpeckleFrame<'_>>,
         laser: usize,
-        single: impl Fn(usize) -> f64,
-    ) {
+    ) -> impl Iterator<Item = (usize, f64)> {
         self.factors.clear();
         self.factors.resize(self.points.len(), 1.0);
         if let Some(speckle) = speckle {
-            self.singles.clear();
-            self.singles
-                .extend(self.samples.iter().map(|&sample| single(sample)));
             speckle.factors(laser, &self.points, &self.singles, &mut self.factors);
         }
+        let slots = self.slots.iter().copied();
+        slots.zip(self.factors.iter().copied())
     }
 }
 
 impl Batch<'_> {
-    /// Gives the light of the points at hand its speckle.
-    pub(super) fn settle(&mut self, speckle: Option<&SpeckleFrame<'_>>, formulas: Formulas) {
+    /// Gives the light of the samples its speckle, and those without light a factor where `rules` want it.
+    pub(super) fn settle(&mut self, speckle: Option<&SpeckleFrame<'_>>, rules: &PathRules) {
         let lasers = self.laser_samples.len() / self.samples.len().max(1);
+        let SpeckleLookUps {
+            samples,
+            points,
+            of_laser: look_ups,
+        } = &mut self.speckle;
         for laser in 0..lasers {
-            let values = &self.laser_samples;
-            let single = |sample: usize| values[sample * lasers + laser].unsettled;
-            self.speckle.look_up(speckle, laser, single);
-            let factors = self.speckle.samples.iter().zip(&self.speckle.factors);
-            for (sample, factor) in factors {
-                self.laser_samples[sample * lasers + laser].settle(*factor, formulas);
+            look_ups.clear();
+            for (sample, point) in samples.iter().zip(&*points) {
+                let slot = sample * lasers + laser;
+                let light = &self.laser_samples[slot];
+                if rules.speckle_in_the_dark || !light.is_dark() {
+                    look_ups.slots.push(slot);
+                    look_ups.points.push(*point);
+                    look_ups.singles.push(light.single);
+                }
+            }
+            for (slot, factor) in look_ups.look_up(speckle, laser) {
+                self.laser_samples[slot].settle(factor, rules.formulas);
             }
         }
     }

@@ -15,6 +15,8 @@ pub(crate) struct PathRules {
     /// True if directions towards lasers are drawn, and rays meet their beams by chance.
     pub samples_beams: bool,
     pub light_events: LightEvents,
+    /// True if speckle is looked up for samples without light of a laser, too.
+    pub speckle_in_the_dark: bool,
 }
 
 impl From<&RenderOptions> for PathRules {
@@ -25,6 +27,7 @@ impl From<&RenderOptions> for PathRules {
             finds_lasers: options.method == Method::Path,
             samples_beams: options.samples_beams(),
             light_events: options.light_events,
+            speckle_in_the_dark: options.speckle_in_the_dark,
         }
     }
 }

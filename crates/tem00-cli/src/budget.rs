@@ -1,19 +1,27 @@
 //! `tem00 budget`: what height uncertainty a set-up gives, and what dominates it.
 
 mod answers;
+mod certificate;
 mod drawings;
 mod findings;
 mod measured;
 mod report;
 mod words;
 
-use std::{io::Write, path::Path};
+use std::{
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
 
 use tem00_triangulation::{read_setup_with, read_uncertainty};
 
-use self::findings::{Findings, HELP};
+use self::{
+    certificate::{CertificateData, certificate},
+    findings::{Findings, HELP},
+};
 use crate::{
     args::BudgetArgs,
+    atomic::write_atomically,
     failure::Failure,
     kind::{Kind, wrong_or},
     output,
@@ -26,14 +34,13 @@ use crate::{
 /// Returns a failure if the input is not valid, if a file cannot be written, if the user ends it, or, with
 /// all files written, if the set-up measures nothing.
 pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure> {
-    let (setup, (text, uncertainty)) = read_setup_with(
+    let (setup, (text, uncertainty, data)) = read_setup_with(
         &args.common.setup,
         args.common.files.reading(),
         |document, setup| {
-            Ok((
-                document.text().to_owned(),
-                read_uncertainty(document, setup)?,
-            ))
+            let uncertainty = read_uncertainty(document, setup)?;
+            let data = CertificateData::read(document, uncertainty.states_height())?;
+            Ok((document.text().to_owned(), uncertainty, data))
         },
     )
     .map_err(|error| {
@@ -49,9 +56,12 @@ pub(crate) fn run(args: &BudgetArgs, out: &mut impl Write) -> Result<(), Failure
     let pool = output::thread_pool(args.common.threads)?;
     let findings = pool.install(|| Findings::new(args, (setup, &uncertainty), text))?;
     let report = report::report(&findings, draw(&findings, &folder)?);
-    let files = ["budget.json", "budget.html"].map(|name| folder.join(name));
+    let mut files = ["budget.json", "budget.html"]
+        .map(|name| folder.join(name))
+        .to_vec();
     report.save_json(&files[0])?;
     report.save_page(&files[1])?;
+    files.extend(certify(data.as_ref(), &findings, &folder)?);
     report.print(args.common.json, &files, out)?;
     findings.answer.map(drop).map_err(|refusal| {
         let message = format!(
@@ -78,6 +88,28 @@ fn draw(findings: &Findings<'_>, folder: &Path) -> Result<Vec<String>, Failure> 
     }
 }
 
+/// Writes the certificate into the folder, if the set-up asks for one and there is an uncertainty, and returns its path.
+fn certify(
+    data: Option<&CertificateData>,
+    findings: &Findings<'_>,
+    folder: &Path,
+) -> Result<Option<PathBuf>, Failure> {
+    let answer = findings.answer.as_ref().ok();
+    let measured = answer.and_then(|answer| answer.measured.as_ref());
+    let Some((data, measured)) = data.zip(measured) else {
+        output::remove(folder, &[CERTIFICATE], &["xml"])?;
+        return Ok(None);
+    };
+    let path = folder.join(CERTIFICATE).with_extension("xml");
+    write_atomically(&path, |file| {
+        file.write_all(certificate(data, measured, &findings.setup).as_bytes())
+    })
+    .map_err(|error: io::Error| Failure::writing(&path, error))?;
+    Ok(Some(path))
+}
+
+/// The name of the certificate, without its ending.
+const CERTIFICATE: &str = "certificate";
 /// The names of the drawings.
 const CONTRIBUTIONS: &str = "contributions";
 const OVER_RANGE: &str = "over_range";

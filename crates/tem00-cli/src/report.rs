@@ -17,13 +17,13 @@ pub(crate) mod units;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-#[cfg(feature = "full")]
-pub(crate) use self::cloud::Cloud;
 pub(crate) use self::{
     cell::Cell,
     table::{Column, Table},
     units::Unit,
 };
+#[cfg(feature = "full")]
+pub(crate) use self::{cloud::Cloud, escape::escaped};
 
 /// The results of a command.
 ///

@@ -26,6 +26,13 @@ pub struct SetupUncertainty {
     pub correlations: Vec<Correlation>,
 }
 
+impl SetupUncertainty {
+    /// Returns whether a height is stated, or its uncertainty follows from that of a quantity.
+    pub const fn states_height(&self) -> bool {
+        self.height.is_some() || !self.quantities.is_empty()
+    }
+}
+
 /// Input quantity of a measured height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeasurementInput {

@@ -36,6 +36,7 @@ Examples:
 Files:
   budget.json             the budget, in SI units
   budget.html             all of it in one report that opens offline
+  certificate.xml         a digital calibration certificate, if the set-up has a section [certificate]
   contributions.svg|png   what each source contributes, by formulas and by trials
   over_range.svg|png      the uncertainty over the heights that can be measured";
 

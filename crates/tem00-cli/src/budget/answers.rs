@@ -2,7 +2,7 @@
 
 use serde_json::json;
 use tem00_triangulation::{MeasurementInput, SetupQuantity, UncertaintySource};
-use tem00_uncertainty::{CoverageInterval, Input};
+use tem00_uncertainty::Input;
 
 use super::measured::{Measured, Quoted};
 use crate::report::{
@@ -17,7 +17,7 @@ use crate::report::{
 pub(super) fn verdicts(measured: &Measured) -> Vec<String> {
     let quoted = measured.quoted();
     let height = MILLIMETRES.text(measured.measurement.height());
-    let half = MICROMETRES.text(0.5 * interval(measured, quoted).length());
+    let half = MICROMETRES.text(0.5 * measured.quoted_answer().interval.length());
     let mut lines = vec![format!(
         "Height {height} with the uncertain quantities of the set-up: U = {half} (95 %), by the {}.",
         name(quoted)
@@ -57,7 +57,7 @@ fn why(measured: &Measured) -> String {
     }
 }
 
-const fn name(quoted: Quoted) -> &'static str {
+pub(super) const fn name(quoted: Quoted) -> &'static str {
     match quoted {
         Quoted::FirstOrder => "law of propagation",
         Quoted::Propagation => "propagation of distributions",
@@ -70,18 +70,6 @@ const fn key(quoted: Quoted) -> &'static str {
         Quoted::FirstOrder => "first_order",
         Quoted::Propagation => "propagation",
         Quoted::VirtualExperiment => "virtual_experiment",
-    }
-}
-
-fn interval(measured: &Measured, quoted: Quoted) -> CoverageInterval {
-    let of_experiment = measured
-        .experiment
-        .as_ref()
-        .and_then(|found| found.interval());
-    match (quoted, of_experiment) {
-        (Quoted::FirstOrder, _) => measured.interval(),
-        (Quoted::VirtualExperiment, Some(interval)) => interval,
-        _ => measured.propagation.interval(),
     }
 }
 
@@ -131,64 +119,36 @@ fn answers(measured: &Measured) -> Table {
     let mut table = Table::new("The height and its uncertainty", columns).under("answers");
     let height = measured.measurement.height();
     let end = |end: f64| Cell::new(end, MICROMETRES.cell(end - height).text());
-    let mut row =
-        |quoted, estimate, uncertainty, error: Option<f64>, interval: CoverageInterval| {
-            table.row([
-                key(quoted).into(),
-                name(quoted).into(),
-                Cell::new(estimate, format!("{:.4}", MILLIMETRES.of(estimate))),
-                MICROMETRES.cell(uncertainty),
-                Cell::or_dash(error.map(|error| MICROMETRES.cell(error))),
-                end(interval.low),
-                end(interval.high),
-            ]);
-        };
-    let (first, propagation) = (&measured.first_order, &measured.propagation);
-    row(
+    for method in [
         Quoted::FirstOrder,
-        first.estimate(),
-        first.combined(),
-        None,
-        measured.interval(),
-    );
-    row(
         Quoted::Propagation,
-        propagation.estimate(),
-        propagation.uncertainty(),
-        None,
-        propagation.interval(),
-    );
-    if let Some(found) = &measured.experiment
-        && let Some((error, interval)) = found.error().zip(found.interval())
-    {
-        let (uncertainty, standard_error) = (error.uncertainty, error.standard_error);
-        row(
-            Quoted::VirtualExperiment,
-            found.mean(),
-            uncertainty,
-            Some(standard_error),
-            interval,
-        );
+        Quoted::VirtualExperiment,
+    ] {
+        let Some(answer) = measured.answer(method) else {
+            continue;
+        };
+        let estimate = format!("{:.4}", MILLIMETRES.of(answer.estimate));
+        let error = answer.standard_error.map(|error| MICROMETRES.cell(error));
+        table.row([
+            key(method).into(),
+            name(method).into(),
+            Cell::new(answer.estimate, estimate),
+            MICROMETRES.cell(answer.uncertainty),
+            Cell::or_dash(error),
+            end(answer.interval.low),
+            end(answer.interval.high),
+        ]);
     }
     table
 }
 
 fn correlations(measured: &Measured) -> Vec<serde_json::Value> {
-    let (inputs, sources) = (
-        measured.measurement.inputs(),
-        measured.measurement.sources(),
-    );
-    let pairs = (0..sources.len()).flat_map(|first| (0..first).map(move |second| [second, first]));
-    let correlated = pairs.filter(|&[first, second]| inputs.correlation(first, second) != 0.0);
-    correlated
-        .map(|between| {
-            let coefficient = inputs.correlation(between[0], between[1]);
-            json!({ "between": between.map(|index| source(sources[index])), "coefficient": coefficient })
-        })
-        .collect()
+    let named = |(between, coefficient): ([MeasurementInput; 2], f64)| json!({ "between": between.map(source), "coefficient": coefficient });
+    measured.correlations().map(named).collect()
 }
 
-fn source(input: MeasurementInput) -> String {
+/// Returns the name of an input.
+pub(super) fn source(input: MeasurementInput) -> String {
     match input {
         MeasurementInput::Quantity(quantity) => quantity.to_string(),
         MeasurementInput::Term(source) => source.name().to_owned(),

@@ -1,7 +1,8 @@
 //! A height that is measured with a set-up whose quantities are uncertain.
 
 use tem00_triangulation::{
-    Measurement, Setup, SetupUncertainty, SimulationOptions, TriangulationError, VirtualExperiment,
+    Measurement, MeasurementInput, Setup, SetupUncertainty, SimulationOptions, TriangulationError,
+    VirtualExperiment,
 };
 use tem00_uncertainty::{
     CoverageInterval, CoverageProbability, Decomposition, DecompositionOptions, FirstOrder,
@@ -26,6 +27,18 @@ pub(super) struct Measured {
     pub(super) experiment: Option<VirtualExperiment>,
 }
 
+/// Result of a method.
+pub(super) struct MethodAnswer {
+    /// The height, in metres.
+    pub(super) estimate: f64,
+    /// Its standard uncertainty, in metres.
+    pub(super) uncertainty: f64,
+    /// The standard error of the uncertainty, in metres, where trials estimate it.
+    pub(super) standard_error: Option<f64>,
+    /// The interval of 95 %.
+    pub(super) interval: CoverageInterval,
+}
+
 /// Method whose uncertainty is to be quoted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quoted {
@@ -41,7 +54,7 @@ impl Measured {
         setup: &Setup,
         uncertainty: &SetupUncertainty,
     ) -> Result<Option<Self>, Failure> {
-        if uncertainty.quantities.is_empty() && uncertainty.height.is_none() {
+        if !uncertainty.states_height() {
             return Ok(None);
         }
         let measured = Measurement::new(setup, uncertainty).and_then(|found| Self::of(args, found));
@@ -81,8 +94,62 @@ impl Measured {
         })
     }
 
+    /// Returns the answer of a method; `None` of a virtual experiment that was left out, or whose lines cannot be
+    /// trusted.
+    pub(super) fn answer(&self, method: Quoted) -> Option<MethodAnswer> {
+        Some(match method {
+            Quoted::FirstOrder => MethodAnswer {
+                estimate: self.first_order.estimate(),
+                uncertainty: self.first_order.combined(),
+                standard_error: None,
+                interval: self.interval(),
+            },
+            Quoted::Propagation => self.answer_by_distributions(),
+            Quoted::VirtualExperiment => {
+                let found = self.experiment.as_ref()?;
+                let error = found.error()?;
+                MethodAnswer {
+                    estimate: found.mean(),
+                    uncertainty: error.uncertainty,
+                    standard_error: Some(error.standard_error),
+                    interval: found.interval()?,
+                }
+            }
+        })
+    }
+
+    /// Returns the answer of the method to quote.
+    pub(super) fn quoted_answer(&self) -> MethodAnswer {
+        let answer = self.answer(self.quoted());
+        answer.unwrap_or_else(|| self.answer_by_distributions())
+    }
+
+    fn answer_by_distributions(&self) -> MethodAnswer {
+        MethodAnswer {
+            estimate: self.propagation.estimate(),
+            uncertainty: self.propagation.uncertainty(),
+            standard_error: None,
+            interval: self.propagation.interval(),
+        }
+    }
+
+    /// Returns the pairs of inputs that are correlated, with their coefficients.
+    pub(super) fn correlations(&self) -> impl Iterator<Item = ([MeasurementInput; 2], f64)> {
+        let (inputs, sources) = (self.measurement.inputs(), self.measurement.sources());
+        let pairs =
+            (0..sources.len()).flat_map(|first| (0..first).map(move |second| [second, first]));
+        pairs
+            .map(|pair| {
+                (
+                    pair.map(|index| sources[index]),
+                    inputs.correlation(pair[0], pair[1]),
+                )
+            })
+            .filter(|(_, coefficient)| *coefficient != 0.0)
+    }
+
     /// Returns the interval of 95 % by the law of propagation.
-    pub(super) fn interval(&self) -> CoverageInterval {
+    fn interval(&self) -> CoverageInterval {
         let half = self.first_order.expanded(CoverageProbability::P95);
         CoverageInterval {
             low: self.first_order.estimate() - half,

@@ -1,14 +1,14 @@
-//! Text in HTML.
+//! Text in HTML and XML.
 
 use std::borrow::Cow;
 
 use tem00_config::is_hazard;
 
-/// Returns text as HTML shows it, between tags and in quoted attributes.
+/// Returns text as HTML and XML show it, between tags and in quoted attributes.
 ///
-/// Control characters, which no HTML file may have, and those that turn the direction of writing become the
+/// Control characters, which no such file may have, and those that turn the direction of writing become the
 /// replacement character.
-pub(super) fn escaped(text: &str) -> Cow<'_, str> {
+pub(crate) fn escaped(text: &str) -> Cow<'_, str> {
     let special = |c: char| matches!(c, '&' | '<' | '>' | '"' | '\'') || is_hazard(c);
     if !text.contains(special) {
         return Cow::Borrowed(text);

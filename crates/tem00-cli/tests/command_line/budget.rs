@@ -355,3 +355,145 @@ fn a_detector_whose_noise_is_not_first_order_is_quoted_by_the_virtual_experiment
     assert_eq!(quoted, "virtual_experiment", "{table}");
     assert!(table.contains("quote the virtual experiment"), "{table}");
 }
+
+/// Who signs the certificate of a set-up whose angle is uncertain, in sections after [`SETUP`].
+const CERTIFICATE: &str = r#"
+[certificate]
+identifier = "A-1"
+performed_from = 2026-11-20
+performed_to = 2026-11-23
+performed_at = "laboratory"
+issued = "2026-11-23"
+responsible = "A. Example"
+
+[certificate.laboratory]
+name = "Lines & <heights>"
+city = "Example town"
+country = "DE"
+
+[certificate.customer]
+name = "Rolling mill"
+city = "Example town"
+
+[certificate.item]
+name = "Line sensor"
+identification = "4711"
+issuer = "customer"
+"#;
+
+const UNCERTAIN_ANGLE: &str = "angle = { value = \"30 deg\", uncertainty = \"0.05 deg\" }";
+
+#[test]
+fn a_certificate_states_the_height_to_quote() {
+    let setup = SETUP.replacen("angle = \"30 deg\"", UNCERTAIN_ANGLE, 1);
+    let folder = setup_folder("[laser]", "[laser]");
+    let file = folder.path().join("a.toml");
+    let path = folder.path().join("x/certificate.xml");
+    let line = "budget a.toml --trials 0 --json -o x";
+    fs::write(&file, format!("{setup}{CERTIFICATE}")).expect("the set-up is written");
+    let certified = || {
+        let output = run(folder.path(), line);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        (
+            json(&output.stdout),
+            fs::read_to_string(&path).expect("the certificate"),
+        )
+    };
+    let (record, certificate) = certified();
+    let measurement = &record["measurement"];
+    assert_eq!(measurement["quoted"], "first_order", "{record}");
+    let answer = &measurement["answers"][0];
+    let number = |value: &Value| value.as_f64().expect("a number");
+    for (element, value) in [
+        ("si:value", number(&answer["estimate"])),
+        ("si:valueStandardMU", 0.05_f64.to_radians()),
+        ("si:coverageProbability", 0.95),
+    ] {
+        let element = format!("<{element}>{value}</{element}>");
+        assert!(certificate.contains(&element), "{element}: {certificate}");
+    }
+    let (_, expanded) = certificate.split_once("<si:valueExpandedMU>").expect("U");
+    let (expanded, _) = expanded.split_once('<').expect("its end");
+    let expanded: f64 = expanded.parse().expect("a number");
+    let half = 0.5 * (number(&answer["high"]) - number(&answer["low"]));
+    // The ends are rounded at 10⁻¹⁸ m beside a U of 10⁻⁵ m.
+    assert!((expanded / half - 1.0).abs() < 1e-12, "{expanded}, {half}");
+    assert!(
+        certificate.contains("Lines &amp; &lt;heights&gt;"),
+        "{certificate}"
+    );
+    assert!(
+        certificate.contains("not the result of a measurement"),
+        "{certificate}"
+    );
+    assert_eq!(certified().1, certificate, "the same bytes");
+    fs::write(&file, setup).expect("the set-up is written");
+    assert!(run(folder.path(), line).status.success(), "no certificate");
+    assert!(
+        !path.exists(),
+        "that of another run would be taken for one of this"
+    );
+}
+
+#[test]
+fn certificates_that_cannot_be_are_refused() {
+    let certificate = format!("{CERTIFICATE}[budget]\nheight = 0\n");
+    for (from, to, expected) in [
+        (
+            "responsible = ",
+            "responsable = ",
+            "did you mean `responsible`?",
+        ),
+        (
+            "responsible = \"A. Example\"",
+            "",
+            "[certificate] needs the key `responsible`",
+        ),
+        (
+            "[certificate.customer]",
+            "[certificate.costumer]",
+            "did you mean `customer`?",
+        ),
+        (
+            "country = \"DE\"",
+            "country = \"de\"",
+            "two capital letters",
+        ),
+        (
+            "identifier = \"A-1\"",
+            "identifier = \" A-1\"",
+            "without spaces at its ends",
+        ),
+        (
+            "to = 2026-11-23",
+            "to = 2026-11-19",
+            "`performed_from` or later",
+        ),
+        (
+            "issued = \"2026-11-23\"",
+            "issued = \"23.11.2026\"",
+            "a date such as",
+        ),
+        (
+            "at = \"laboratory\"",
+            "at = \"lab\"",
+            "one of \"laboratory\"",
+        ),
+        (
+            "issuer = \"customer\"",
+            "issuer = \"me\"",
+            "one of \"manufacturer\"",
+        ),
+        ("height = 0", "", "needs a height that is measured"),
+    ] {
+        assert!(certificate.contains(from), "{from}");
+        let folder = setup_folder("[laser]", "[laser]");
+        let setup = format!("{SETUP}{}", certificate.replacen(from, to, 1));
+        fs::write(folder.path().join("a.toml"), setup).expect("the set-up is written");
+        let output = run(folder.path(), "budget a.toml --trials 0");
+        assert_code(&output, 2);
+        let why = message(&output);
+        assert!(why.contains(expected), "{from}: {why}");
+        assert!(!folder.path().join("out").exists(), "nothing is written");
+    }
+}

@@ -17,7 +17,8 @@ use crate::{
 
 /// Set-up files.
 ///
-/// The section `[design]` is for searches among set-ups: it is not read with the set-up.
+/// The section `[design]` is for searches among set-ups, `[certificate]` for who signs a budget: they are not read with
+/// the set-up.
 const SETUP: Format = Format {
     noun: "set-up",
     keys: &[
@@ -30,6 +31,7 @@ const SETUP: Format = Format {
         "environment",
         "average",
         "budget",
+        "certificate",
         "correlation",
         "design",
         "include",

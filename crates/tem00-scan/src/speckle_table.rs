@@ -56,9 +56,19 @@ impl SpeckleTable {
                 offset[axis] + whole
             }))
         };
+        let count = columns * rows;
+        let mut values: Vec<f64>;
+        if offset == [0.0; 2] {
+            // Covariances are the same on both sides of the middle.
+            values = (0..=count / 2).into_par_iter().map(value).collect();
+            values.extend_from_within(..count / 2);
+            values[count / 2 + 1..].reverse();
+        } else {
+            values = (0..count).into_par_iter().map(value).collect();
+        }
         Self {
             offset,
-            values: (0..columns * rows).into_par_iter().map(value).collect(),
+            values,
             reach,
         }
     }

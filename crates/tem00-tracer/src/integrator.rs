@@ -58,6 +58,10 @@ impl<'a> Integrator<'a> {
                 .map(|(index, _)| index)
                 .collect()
         };
+        let mut rules = PathRules::from(options);
+        if scene.is_plate() {
+            rules.max_depth = rules.max_depth.min(1);
+        }
         Self {
             scene,
             camera: scene.camera_at(frame),
@@ -68,7 +72,7 @@ impl<'a> Integrator<'a> {
                 .collect(),
             intersector,
             speckle: None,
-            rules: options.into(),
+            rules,
             sequence: Sequence::new(options.samples_per_pixel),
             spectrum: Spectrum::new(&scene.lasers, &scene.lights),
             light_shapes: lights(|light| matches!(light, Light::Area { .. })),

@@ -146,6 +146,17 @@ impl Scene {
         surfaces.chain(lights).collect()
     }
 
+    /// Returns whether a plate is all that light can meet: it meets it once.
+    pub(crate) fn is_plate(&self) -> bool {
+        matches!(
+            self.surfaces.as_slice(),
+            [] | [Surface {
+                shape: Shape::Rectangle(_),
+                ..
+            }]
+        )
+    }
+
     /// Returns whether the speckle of laser `laser` on surface `surface` may differ between two
     /// frames: whether surface, camera or laser move.
     pub(crate) fn speckle_moves(&self, laser: usize, surface: usize) -> bool {

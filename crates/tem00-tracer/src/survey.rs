@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::{
-    Crop, Formulas, Intersector, RenderOptions, Scene, Segment, Shape, SpecklePlan, TracerError,
+    Crop, Formulas, Intersector, RenderOptions, Scene, Segment, SpecklePlan, TracerError,
     integrator::Vertex,
     light_tracer::{LightJob, LightSelection, LightTracer, LitPoint},
     sampler::{pixel_key, point_in_square},
@@ -53,9 +53,7 @@ impl Scene {
 
     /// Tells whether light cannot meet more than one rough surface.
     fn is_single(&self, options: &RenderOptions) -> bool {
-        let shapes: Vec<_> = self.surfaces.iter().map(|surface| &surface.shape).collect();
-        let is_plate = matches!(shapes.as_slice(), [] | [Shape::Rectangle(_)]);
-        is_plate || options.max_depth == Some(1)
+        self.is_plate() || options.max_depth == Some(1)
     }
 
     /// Tells whether anything that matters to speckle moves.

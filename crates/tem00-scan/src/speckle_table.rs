@@ -58,7 +58,7 @@ impl SpeckleTable {
         };
         let count = columns * rows;
         let mut values: Vec<f64>;
-        if offset == [0.0; 2] {
+        if offset.iter().all(|&part| part == 0.0) {
             // Covariances are the same on both sides of the middle.
             values = (0..=count / 2).into_par_iter().map(value).collect();
             values.extend_from_within(..count / 2);

@@ -1,4 +1,4 @@
-//! The commands of `docs/tutorial.md` do what they say, on smaller set-ups and scenes.
+//! The commands of `docs/tutorial.md` and `docs/certificate.md` do what they say, some on smaller set-ups and scenes.
 
 use std::{
     fs,
@@ -98,7 +98,11 @@ fn commands(page: &str) -> Vec<String> {
 }
 
 fn page() -> String {
-    fs::read_to_string(repository().join("docs/tutorial.md")).expect("the page is there")
+    page_named("tutorial.md")
+}
+
+fn page_named(name: &str) -> String {
+    fs::read_to_string(repository().join("docs").join(name)).expect("the page is there")
 }
 
 /// A folder with what the commands of the page read.
@@ -242,6 +246,32 @@ fn the_results_in_the_tutorial_are_those_of_the_program() {
     assert_eq!(figure.len(), found.len(), "points and ticks");
     let alike = figure.iter().zip(&found).all(|(a, b)| (a - b).abs() < 0.02);
     assert!(alike, "docs/figures/make.sh makes the figure again");
+}
+
+#[test]
+fn the_commands_of_the_page_on_certificates_print_its_results() {
+    let (folder, page) = (clone(), page_named("certificate.md"));
+    let parts: Vec<&str> = page.split("\ntem00 ").skip(1).collect();
+    assert_eq!(parts.len(), 3, "commands");
+    for part in parts {
+        let (command, results) = part.split_once('\n').expect("results");
+        let lines = blocks(results, "text").into_iter().flat_map(str::lines);
+        let lines: Vec<&str> = lines.filter(|line| !line.is_empty()).collect();
+        assert!(lines.len() > 1, "{command} has no results");
+        check_results(
+            &lines,
+            &printed(folder.path(), &format!("{command} --trials 0")),
+        );
+    }
+    for (language, file) in [
+        ("toml", "setups/toleranced.toml"),
+        ("xml", "out/scaled/certificate.xml"),
+    ] {
+        let text = fs::read_to_string(folder.path().join(file)).expect("the file");
+        for line in blocks(&page, language).into_iter().flat_map(str::lines) {
+            assert!(text.contains(line), "{file} has no `{line}`");
+        }
+    }
 }
 
 #[test]

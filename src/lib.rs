@@ -40,6 +40,10 @@
     feature = "scan",
     doc = "| [`scan`] | `tem00-scan` | a part as a triangulation sensor sees it: rendered frames, scans, height maps (feature `scan`) |"
 )]
+#![cfg_attr(
+    feature = "scan",
+    doc = "| [`topography`] | `tem00-topography` | artefacts of known shape, and the characteristics of a sensor that measures them (feature `scan`) |"
+)]
 
 pub use tem00_beam as beam;
 pub use tem00_camera as camera;
@@ -55,6 +59,8 @@ pub use tem00_scene as scene;
 pub use tem00_speckle as speckle;
 #[cfg(feature = "statistics")]
 pub use tem00_statistics as statistics;
+#[cfg(feature = "scan")]
+pub use tem00_topography as topography;
 #[cfg(feature = "tracer")]
 pub use tem00_tracer as tracer;
 #[cfg(feature = "triangulation")]

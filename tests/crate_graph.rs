@@ -100,6 +100,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
         ],
         &["base64", "exr", "glam", "gltf", "ply-rs-bw", "toml"],
     ),
+    ("tem00-topography", &["tem00-numerics"], &["glam", "libm"]),
     (
         "tem00-uncertainty",
         &["tem00-numerics"],
@@ -146,6 +147,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-scene",
             "tem00-speckle",
             "tem00-statistics",
+            "tem00-topography",
             "tem00-tracer",
             "tem00-triangulation",
         ],
@@ -162,6 +164,7 @@ const ALLOWED: &[(&str, &[&str], &[&str])] = &[
             "tem00-statistics",
             "tem00-scan",
             "tem00-scene",
+            "tem00-topography",
             "tem00-tracer",
             "tem00-triangulation",
             "tem00-uncertainty",
@@ -238,6 +241,7 @@ const PHYSICS: &[&str] = &[
     "tem00-decorrelation",
     "tem00-coherence",
     "tem00-wave",
+    "tem00-topography",
     "tem00-uncertainty",
 ];
 

@@ -5,6 +5,8 @@ mod budget;
 #[cfg(feature = "full")]
 mod calibrate;
 #[cfg(feature = "full")]
+mod characterise;
+#[cfg(feature = "full")]
 mod design;
 mod files;
 #[cfg(feature = "full")]
@@ -35,6 +37,7 @@ use self::values::{crop, pupil};
 pub(crate) use self::{
     budget::BudgetArgs,
     calibrate::CalibrateArgs,
+    characterise::CharacteriseArgs,
     design::DesignArgs,
     lines::LinesArgs,
     list::{ListArgs, Listed},
@@ -59,6 +62,7 @@ Examples:
   tem00 speckle --wavelength 650nm --focal-length 25mm --f-number 8 --distance 300mm
                                                       how large is the speckle?
   tem00 budget setups/data_sheet.toml                 how well will this set-up measure heights?
+  tem00 characterise setups/data_sheet.toml           its noise, resolution, linearity … on rendered artefacts
   tem00 design setups/design.toml                     search for a better one
   tem00 sweep setups/sweeps/lens_and_line.toml        a table over a grid of values, on any machines
   tem00 triangulate scenes/triangulation/groove.toml  see a part as such a sensor sees it
@@ -106,6 +110,8 @@ pub(crate) enum Command {
     Speckle(SpeckleArgs),
     #[cfg(feature = "full")]
     Budget(BudgetArgs),
+    #[cfg(feature = "full")]
+    Characterise(CharacteriseArgs),
     #[cfg(feature = "full")]
     Design(DesignArgs),
     #[cfg(feature = "full")]

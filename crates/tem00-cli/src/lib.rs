@@ -19,6 +19,8 @@ mod budget;
 mod calibrate;
 #[cfg(feature = "full")]
 mod calibration_file;
+#[cfg(feature = "full")]
+mod characterise;
 mod colour;
 mod comparison;
 #[cfg(feature = "full")]
@@ -142,6 +144,8 @@ fn run_command(command: &Command, mut out: &mut dyn Write) -> Result<(), Failure
         Command::Speckle(args) => speckle::run(args, &mut out),
         #[cfg(feature = "full")]
         Command::Budget(args) => budget::run(args, &mut out),
+        #[cfg(feature = "full")]
+        Command::Characterise(args) => characterise::run(args, &mut out),
         #[cfg(feature = "full")]
         Command::Design(args) => design::run(args, &mut out),
         #[cfg(feature = "full")]

@@ -28,6 +28,7 @@ mod scene;
 mod section;
 mod sensor_speckle;
 mod settings;
+mod setup_sensor;
 mod speckle_table;
 #[cfg(test)]
 mod testing;
@@ -50,4 +51,5 @@ pub use self::{
     scene::MeasurementScene,
     sensor_speckle::SensorSpeckle,
     settings::{Averaging, RawFormat, ScanSettings},
+    setup_sensor::SetupSensor,
 };

@@ -175,6 +175,20 @@ impl Measurement {
         Ok(measured)
     }
 
+    /// Measures what a frame showed once more, where nothing has moved since: the light is the same, the noise of the
+    /// sensor is drawn anew, from the seed of the scene and the `number` of the repetition.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the light cannot be exposed.
+    pub fn repeat(&self, frame: &MeasuredFrame, number: u32) -> Result<MeasuredFrame, ScanError> {
+        let seed = noise_seed(self.scene.render.seed, u32::MAX - number);
+        let surroundings = self.surroundings(frame.frame, frame.reference_point.is_some());
+        let mut repeated = surroundings.measure(frame.exposure.clone(), frame.frame, seed)?;
+        repeated.reference_point = frame.reference_point;
+        Ok(repeated)
+    }
+
     /// Returns how speckle correlates the positions of the line between a frame and those that follow, up
     /// to `frames` of them together, by the law of its motion and decorrelation.
     pub fn frame_correlation(&self, first: &MeasuredFrame, frames: u32) -> FrameCorrelation {

@@ -5,6 +5,7 @@
 mod budget;
 mod calibrate;
 mod changes;
+mod characterise;
 mod design;
 mod folders;
 mod hostile;

@@ -1,0 +1,313 @@
+//! A set-up that measures artefacts.
+
+use core::{fmt, sync::atomic::AtomicBool};
+use std::path::Path;
+
+use glam::DVec2;
+use tem00_camera::{Camera, CameraDescription};
+use tem00_scene::parse_scene;
+use tem00_topography::{Artefact, Axis, DVec3, Field, Groove, ProfileSensor, Shape, SurfacePoint};
+use tem00_tracer::{
+    Keyframe, Rectangle, RenderOptions, Scene, Shape as Surface, SpeckleModel, SpecklePlan, Sphere,
+    SurfaceSpeckle, TracerError, Trajectory, TriangleMesh,
+};
+use tem00_triangulation::{CalibrationSettings, Setup};
+
+use crate::{
+    Averaging, MeasuredFrame, Measurement, MeasurementScene, ScanError, ScanSettings,
+    average::{SpeckleCorrelation, averaged_profile, brightest_points},
+};
+
+/// The depth of grooves, as a part of the height that moves the line by its own thickness.
+const GROOVE_DEPTH: f64 = 0.5;
+/// The pixels that are rendered beside an artefact.
+const BESIDE: f64 = 8.0;
+/// The frames of one scene: few, so that they need few rows of the image.
+const FRAMES: usize = 8;
+/// The golden ratio, in 2⁻⁶⁴, which keeps the seeds of scenes apart.
+const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+/// The least number of rows of a set-up.
+const MIN_ROWS: usize = 16;
+
+/// A set-up in front of which artefacts are rendered.
+///
+/// The artefacts are of the set-up's surface, under its line; camera and laser plane are known exactly. A profile is one
+/// frame, its columns averaged as the set-up says. Diffraction widens the line across the profile; along the profile it is
+/// left out.
+#[derive(Clone)]
+pub struct SetupSensor<'a> {
+    setup: &'a Setup,
+    samples_per_pixel: u32,
+    seed: u64,
+    progress: &'a dyn Fn(&'static str),
+    cancel: &'a AtomicBool,
+}
+
+impl fmt::Debug for SetupSensor<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SetupSensor")
+            .field("setup", self.setup)
+            .field("samples_per_pixel", &self.samples_per_pixel)
+            .field("seed", &self.seed)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> SetupSensor<'a> {
+    /// Creates a sensor that renders so many samples per pixel. `progress` is told the name of the artefact after each
+    /// profile.
+    pub const fn new(
+        setup: &'a Setup,
+        samples_per_pixel: u32,
+        seed: u64,
+        progress: &'a dyn Fn(&'static str),
+        cancel: &'a AtomicBool,
+    ) -> Self {
+        Self {
+            setup,
+            samples_per_pixel,
+            seed,
+            progress,
+            cancel,
+        }
+    }
+
+    /// Returns the scene of an artefact with a frame for each of its places.
+    fn scene(
+        &self,
+        artefact: &Artefact,
+        frames: &[&[DVec3]],
+    ) -> Result<MeasurementScene, ScanError> {
+        let scene = parse_scene(&self.widened()?.scene(0.0), Path::new("."));
+        let mut scene = scene.map_err(|error| ScanError::Scene(error.to_string()))?;
+        let places: Vec<DVec3> = frames.iter().map(|same| same[0]).collect();
+        scene.camera = self.camera(artefact, &places)?;
+        let surface = &mut scene.surfaces[0];
+        surface.shape = shape(artefact)?;
+        surface.trajectory = self.trajectory(&places)?;
+        let description = self.setup.description();
+        surface.speckle = SurfaceSpeckle {
+            patterns: description.surface.patterns,
+            polarisation: description.surface.polarisation,
+        };
+        Ok(MeasurementScene {
+            scene: Scene {
+                frames: u32::try_from(places.len()).unwrap_or(u32::MAX),
+                render: RenderOptions {
+                    samples_per_pixel: self.samples_per_pixel,
+                    seed: self.seed,
+                    ..scene.render
+                },
+                ..scene
+            },
+            sensor: description.sensor,
+            detector: *self.setup.detector().settings(),
+            calibration: CalibrationSettings::default(),
+            scan: ScanSettings::default(),
+        })
+    }
+
+    /// Returns the set-up with a line on the part that is as wide as the lens makes its image: frames are rendered without
+    /// diffraction, and would have too little noise of a thin line.
+    fn widened(&self) -> Result<Setup, ScanError> {
+        let line = self.setup.line();
+        let mut description = self.setup.description().clone();
+        description.auto_exposure = false;
+        description.laser.line_thickness *= line.width / line.projected_thickness;
+        Ok(Setup::new(description)?)
+    }
+
+    /// Returns the camera with the part of the image in which the line on an artefact may be, at any of its places.
+    fn camera(&self, artefact: &Artefact, places: &[DVec3]) -> Result<Camera, ScanError> {
+        let whole_image = self.setup.camera();
+        let column = self.setup.field_width() / whole_image.width() as f64;
+        let beside = whole_image.width() / 2;
+        let left = beside.saturating_sub(whole(0.5 * artefact.size[0] / column + BESIDE));
+        let [first, last] = self.rows(artefact, places);
+        let description = whole_image.description();
+        let middle = 0.5 * DVec2::from(description.resolution.map(|pixels| pixels as f64));
+        let principal_point = description.principal_point.unwrap_or(middle);
+        Ok(Camera::new(CameraDescription {
+            resolution: [whole_image.width() - 2 * left, last - first],
+            principal_point: Some(principal_point - DVec2::new(left as f64, first as f64)),
+            ..*description
+        })?)
+    }
+
+    /// Returns the first row in which the line on an artefact may be, and that after the last.
+    fn rows(&self, artefact: &Artefact, places: &[DVec3]) -> [usize; 2] {
+        let [_, height] = self.setup.description().camera.resolution;
+        let window = self.setup.detector().settings().window as f64;
+        let margin = window + BESIDE + 2.0 * self.setup.line().width;
+        let seen = places.iter().flat_map(|place| {
+            let sections = artefact.heights_along(-place.y);
+            sections.map(move |(x, z)| DVec3::new(x, 0.0, z + place.z))
+        });
+        let rows = seen.filter_map(|point| {
+            let point = point + self.beside(point) * DVec3::Y;
+            self.setup.camera().project(point).map(|pixel| pixel.y)
+        });
+        let (low, high) = rows.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), row| {
+            (low.min(row), high.max(row))
+        });
+        if low > high {
+            return [0, height];
+        }
+        let last = whole(high + margin).clamp(MIN_ROWS, height);
+        [whole(low - margin).min(last - MIN_ROWS), last]
+    }
+
+    /// The distance along y of the laser plane from a point.
+    fn beside(&self, point: DVec3) -> f64 {
+        let plane = self.setup.triangulator().plane();
+        -plane.distance(point) / plane.normal().y
+    }
+
+    /// The motion from place to place, so that the laser plane meets the section y = 0.
+    fn trajectory(&self, places: &[DVec3]) -> Result<Trajectory, TracerError> {
+        let keyframes = places.iter().zip(0_u32..);
+        Trajectory::keyframed(
+            DVec3::ZERO,
+            keyframes.map(|(place, frame)| Keyframe {
+                displacement: *place + self.beside(place.with_y(0.0)) * DVec3::Y,
+                ..Keyframe::unmoved(f64::from(frame))
+            }),
+        )
+    }
+
+    /// Returns the points that are trusted, their columns averaged.
+    fn points(&self, frame: &MeasuredFrame) -> Vec<SurfacePoint> {
+        let columns = self.setup.description().average.columns as usize;
+        let averaging = Averaging { frames: 1, columns };
+        let averaged;
+        let points: Vec<_> = if columns == 1 {
+            brightest_points(frame).collect()
+        } else {
+            averaged = averaged_profile(core::slice::from_ref(frame), averaging, &Uncorrelated);
+            averaged.iter().collect()
+        };
+        let point = |measured: &&crate::MeasuredPoint| SurfacePoint {
+            column: measured.seen.column / columns,
+            position: measured.position,
+        };
+        points.iter().map(point).collect()
+    }
+}
+
+impl ProfileSensor for SetupSensor<'_> {
+    type Error = ScanError;
+
+    fn field(&self) -> Field {
+        let description = self.setup.description();
+        let range = self.setup.measuring_range();
+        let (width, thickness) = (self.setup.field_width(), description.laser.line_thickness);
+        let column = width / description.camera.resolution[0] as f64;
+        Field {
+            width: width.min(description.laser.line_length),
+            heights: [range.low, range.high],
+            column: column * f64::from(description.average.columns),
+            thickness,
+            groove_depth: GROOVE_DEPTH * thickness / description.camera.angle.tan(),
+        }
+    }
+
+    fn measure(
+        &mut self,
+        artefact: &Artefact,
+        places: &[DVec3],
+    ) -> Result<Vec<Vec<SurfacePoint>>, ScanError> {
+        let frames: Vec<&[DVec3]> = places.chunk_by(|a, b| a == b).collect();
+        let mut profiles = Vec::new();
+        for frames in frames.chunks(FRAMES) {
+            // Each scene has speckle and noise of its own.
+            self.seed = self.seed.wrapping_add(GOLDEN);
+            let measurement = Measurement::new(self.scene(artefact, frames)?)?;
+            let scene = measurement.scene();
+            let plan = SpecklePlan::new(scene, scene.render.formulas, self.seed)?;
+            let speckle = SpeckleModel::generate(scene, &plan)?;
+            for (same, number) in frames.iter().zip(0..) {
+                let frame = measurement.measure(Some(&speckle), number, |_| (), self.cancel)?;
+                profiles.push(self.points(&frame));
+                for _ in 1..same.len() {
+                    let repetition = u32::try_from(profiles.len()).unwrap_or(u32::MAX);
+                    profiles.push(self.points(&measurement.repeat(&frame, repetition)?));
+                }
+                same.iter().for_each(|_| (self.progress)(artefact.name));
+            }
+        }
+        Ok(profiles)
+    }
+}
+
+/// Speckle whose correlation nobody asks for: positions do not depend on it.
+struct Uncorrelated;
+
+impl SpeckleCorrelation for Uncorrelated {
+    fn between(&self, columns: i64, later: u32) -> f64 {
+        f64::from(columns == 0 && later == 0)
+    }
+}
+
+/// A number of pixels, rounded up; at least 0.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "at least 0 and small"
+)]
+fn whole(pixels: f64) -> usize {
+    pixels.max(0.0).ceil() as usize
+}
+
+/// The shape of an artefact about its origin.
+fn shape(artefact: &Artefact) -> Result<Surface, ScanError> {
+    let [half_x, half_y] = artefact.size.map(|side| 0.5 * side);
+    Ok(match &artefact.shape {
+        Shape::Flat { slope } => Surface::Rectangle(Rectangle::new(
+            DVec3::ZERO,
+            half_x * DVec3::new(1.0, 0.0, slope[0]),
+            half_y * DVec3::new(0.0, 1.0, slope[1]),
+        )?),
+        Shape::Sphere { radius } => Surface::Sphere(Sphere::new(-radius * DVec3::Z, *radius)?),
+        Shape::Grooves {
+            across,
+            depth,
+            grooves,
+        } => grooved(*across, -depth, grooves, [half_x, half_y])?,
+    })
+}
+
+/// Land at the height 0 with grooves whose floors are at another.
+fn grooved(
+    across: Axis,
+    floor: f64,
+    grooves: &[Groove],
+    [half_x, half_y]: [f64; 2],
+) -> Result<Surface, ScanError> {
+    let (half, length) = match across {
+        Axis::X => (half_x, half_y),
+        Axis::Y => (half_y, half_x),
+    };
+    let walls = grooves.iter().flat_map(|groove| {
+        let [left, right] = groove.walls();
+        [(left, 0.0), (left, floor), (right, floor), (right, 0.0)]
+    });
+    let section = core::iter::once((-half, 0.0))
+        .chain(walls)
+        .chain([(half, 0.0)]);
+    let vertices: Vec<DVec3> = section
+        .flat_map(|(place, height)| {
+            [-length, length].map(|along| match across {
+                Axis::X => DVec3::new(place, along, height),
+                Axis::Y => DVec3::new(-along, place, height),
+            })
+        })
+        .collect();
+    let strips = 0..u32::try_from(vertices.len() / 2 - 1).unwrap_or(u32::MAX);
+    let triangles = strips.flat_map(|strip| {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|corner| 2 * strip + corner);
+        [[a, c, d], [a, d, b]]
+    });
+    TriangleMesh::new(vertices, triangles.collect())
+        .map(Surface::from)
+        .map_err(|error| ScanError::Scene(error.to_string()))
+}

@@ -166,6 +166,8 @@ impl Prepared {
         let scene = self.measurement.scene();
         let options = RenderOptions {
             samples_per_pixel: 4,
+            // The layer is looked at where the line is not, too.
+            speckle_in_the_dark: true,
             ..scene.render
         };
         let cancel = AtomicBool::new(false);

@@ -1,7 +1,5 @@
 //! The characteristics of a rendered set-up, beside its budget by formulas.
 
-#![expect(clippy::expect_used, reason = "a test fails by panicking")]
-
 use std::sync::atomic::AtomicBool;
 
 use tem00::{

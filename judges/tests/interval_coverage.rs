@@ -170,8 +170,8 @@ impl Case {
         ]
     }
 
-    /// The misses of the law of propagation, of the propagation of distributions, of the errors of the virtual experiment
-    /// laid about each measured height, and of the same errors taken from it.
+    /// The misses of the law of propagation, of the propagation of distributions, and of the errors of the virtual experiment
+    /// laid about each measured height.
     fn misses(&self) -> [Misses; 3] {
         let errors = self.errors();
         let (first, last) = (errors[0], errors[errors.len() - 1]);

@@ -225,10 +225,11 @@ Examples:
 
 /// The commands that are built with the feature `full` alone.
 #[cfg(any(test, not(feature = "full")))]
-const OTHERS: [&str; 10] = [
+const OTHERS: [&str; 11] = [
     "stats",
     "lines",
     "calibrate",
+    "characterise",
     "triangulate",
     "budget",
     "design",

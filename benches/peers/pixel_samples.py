@@ -4,9 +4,9 @@
 
 The mean squared error of the mean over the pixel, of 4000 pixels, for a step of height 1 along the rows
 or columns (as the walls of the box in render_scenes.py have), for one in any direction, and for light that
-grows by 1 over the pixel. `jittered` is how tem00 places camera samples: one by chance in each cell of 8 x 8.
-`multi-jittered` has one sample in each of 64 columns and rows as well, and `Sobol` one in each elementary
-rectangle: its points, scrambled by Owen's method, are those that tem00 has for lights and lenses.
+grows by 1 over the pixel. `jittered` has one by chance in each cell of 8 x 8,
+`multi-jittered` one in each of 64 columns and rows as well, and `Sobol` one in each elementary
+rectangle, scrambled by Owen's method. `lattice` is how tem00 places camera samples.
 """
 
 import numpy as np
@@ -33,6 +33,14 @@ def multi_jittered(rng):
     x, y = np.divmod(np.arange(COUNT), SIDE)
     fine = np.stack([columns[x, y], rows[x, y]], axis=-1)
     return (np.stack([x, y], axis=-1) + (fine + rng.random((COUNT, 2))) / SIDE) / SIDE
+
+
+def lattice(rng):
+    # Of the lattices with one point in each column and row, those whose points are farthest apart.
+    first = np.arange(COUNT)
+    offsets = rng.integers(COUNT, size=2)
+    ranks = np.stack([first, rng.choice([19, 27, 37, 45]) * first], axis=-1) + offsets
+    return (ranks % COUNT + rng.random((COUNT, 2))) / COUNT
 
 
 def sobol(rng):
@@ -62,6 +70,7 @@ def main():
         ("jittered", jittered),
         ("multi-jittered", multi_jittered),
         ("Sobol", sobol),
+        ("lattice", lattice),
     ]:
         rng = np.random.default_rng(1)
         found = np.array([errors(draw(rng), rng) for _ in range(PIXELS)])

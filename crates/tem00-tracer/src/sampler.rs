@@ -1,39 +1,57 @@
 #[cfg(test)]
 mod independent;
-mod strata;
+mod lattice;
+mod sobol;
 
 #[cfg(test)]
 pub(crate) use self::independent::Sampler;
-pub(crate) use self::strata::Strata;
+use self::{
+    lattice::Lattice,
+    sobol::{scrambled, sobol_second},
+};
 
-/// The maximum number of points that a pixel's samples share before they start afresh.
-const MAX_POINTS: u32 = 1 << 12;
-
-/// A set of points that fills the unit square evenly, scrambled anew for every pixel and every use.
+/// Sets of points that fill the unit square evenly, anew for every pixel and every use.
 ///
-/// The points are the first two dimensions of Sobol's sequence: of the first 2ᵏ, each rectangle of
-/// area 2⁻ᵏ with sides that are halves of halves holds exactly one. Owen's scrambling keeps that and
-/// makes each point uniform over the square, so that every estimate is unbiased; the points of
-/// different uses are in independent orders.
+/// The N points of a round of samples are those of a lattice on the torus, which for any N has one
+/// point in each of N columns and of N rows:
+///
+/// ```text
+/// (i + a, g i + b) mod N        g: generator, of those that keep the points far apart
+/// ```
+///
+/// The offsets a and b are random, so each point is uniform over the square and every estimate
+/// unbiased; the generator is drawn for each pixel, so that no direction of an edge is a bad one
+/// throughout an image. Positions in the pixel have whole offsets and lie anywhere in the cell
+/// where column and row cross, which suits edges. All other points are those of the lattice folded in the
+/// middle, which makes every smooth function a periodic one; those of different uses are in random orders.
+///
+/// Each further round shifts the lattice by a point of Sobol's sequence in its unit cell, and has orders of its
+/// own: with the same ones, what depends on several uses at once would see the same samples again.
 ///
 /// # References
 ///
+/// - N. M. Korobov, *The Approximate Computation of Multiple Integrals*, 1959. Lattices.
+/// - F. J. Hickernell, *Obtaining O(N^(−2+ε)) Convergence for Lattice Quadrature Rules*, 2002. Folding.
 /// - I. M. Sobol', *On the Distribution of Points in a Cube and the Approximate Evaluation of
 ///   Integrals*, 1967.
 /// - A. B. Owen, *Randomly Permuted (t, m, s)-Nets and (t, s)-Sequences*, 1995.
 /// - B. Burley, *Practical Hash-based Owen Scrambling*, 2020.
 #[derive(Clone, Debug)]
 pub(crate) struct Sequence {
-    /// The coordinates with their bits in reverse, as the scrambling takes them.
-    points: Vec<[u32; 2]>,
+    /// The number of samples of a round.
+    count: u32,
+    lattices: Vec<Lattice>,
 }
 
 /// The random numbers of one camera sample: the same for any number of threads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Stream {
-    key: u64,
-    /// The number of the sample among those that share the points.
-    index: u32,
+    /// The key of the pixel.
+    pub key: u64,
+    /// The number of the round of samples.
+    pub round: u32,
+    /// The number of the sample in its round.
+    pub index: u32,
 }
 
 /// The use of a pair of random numbers. Different uses have independent numbers.
@@ -73,121 +91,123 @@ impl Use {
 }
 
 impl Sequence {
-    /// Prepares the points for pixels of `samples` samples.
-    pub(crate) fn new(samples: u32) -> Self {
-        let count = samples.clamp(1, MAX_POINTS).next_power_of_two();
-        let points = (0..count).map(|index| [index, sobol_second(index).reverse_bits()]);
+    /// Prepares the points for rounds of `count` samples, at least one.
+    pub(crate) fn new(count: u32) -> Self {
         Self {
-            points: points.collect(),
+            count,
+            lattices: Lattice::good(count),
         }
     }
 
-    /// Returns the random numbers of sample `index` of the pixel that has the key `pixel`.
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "there are at most 2¹² points"
-    )]
-    pub(crate) fn stream(&self, pixel: u64, index: u32) -> Stream {
-        let count = self.points.len() as u32;
-        Stream {
-            key: mixed(pixel ^ mixed(u64::from(index / count))),
-            index: index % count,
-        }
+    /// Returns the position in the pixel, in (0, 1)².
+    pub(crate) fn position(&self, stream: Stream) -> [f64; 2] {
+        let count = u64::from(self.count);
+        let seed = seed(stream, Use::Pixel);
+        let lattice = self.lattice(stream);
+        let point = lattice.point(stream.index);
+        let offsets = self.shifted(seed, stream);
+        let within = scrambled_point(stream.round, mixed(mixed(seed) ^ u64::from(stream.index)));
+        [0, 1].map(|axis| {
+            let columns = (u64::from(offsets[axis]) * count) >> 32;
+            let cell = point[axis].wrapping_add(lattice.column().wrapping_mul(columns));
+            fraction(word(cell >> 32).wrapping_add(within[axis] / self.count))
+        })
     }
 
     /// Returns two numbers in (0, 1).
     ///
     /// Those of one use fill the square evenly over the samples of a pixel.
     pub(crate) fn pair(&self, stream: Stream, purpose: Use) -> [f64; 2] {
-        let [order, first, second] = seeds(stream, purpose);
-        let [x, y] = self.points[self.shuffled(stream.index, order)];
-        [
-            fraction(scrambled(x, first).reverse_bits()),
-            fraction(scrambled(y, second).reverse_bits()),
-        ]
+        let seed = seed(stream, purpose);
+        let order = mixed(seed ^ u64::from(stream.round));
+        let point = self
+            .lattice(stream)
+            .point(permuted(stream.index, self.count, order));
+        let offsets = self.shifted(seed, stream);
+        [0, 1].map(|axis| fraction(folded(word(point[axis] >> 32).wrapping_add(offsets[axis]))))
     }
 
     /// Returns one number in (0, 1): the first of the pair.
     pub(crate) fn uniform(&self, stream: Stream, purpose: Use) -> f64 {
-        let [order, first, _] = seeds(stream, purpose);
-        let [x, _] = self.points[self.shuffled(stream.index, order)];
-        fraction(scrambled(x, first).reverse_bits())
+        let [first, _] = self.pair(stream, purpose);
+        first
     }
 
-    /// Puts the points into another order, in which each half of the points still fills the square.
-    fn shuffled(&self, index: u32, seed: u32) -> usize {
-        let mask = self.points.len() - 1;
-        scrambled(index.reverse_bits(), seed).reverse_bits() as usize & mask
+    /// Returns the offsets of a round, in 2⁻³² of the torus.
+    fn shifted(&self, offsets: u64, stream: Stream) -> [u32; 2] {
+        let (offsets, shift) = (words(offsets), self.lattice(stream).shift(stream.round));
+        [0, 1].map(|axis| offsets[axis].wrapping_add(shift[axis]))
     }
-}
 
-/// Returns two numbers in (0, 1) that are independent from sample to sample.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the words of the number are taken one by one"
-)]
-pub(crate) fn independent_pair(stream: Stream, purpose: Use) -> [f64; 2] {
-    let bits = mixed(mixed(stream.key ^ purpose.code()) ^ u64::from(stream.index));
-    [fraction(bits as u32), fraction((bits >> 32) as u32)]
+    /// Returns the lattice of a pixel.
+    fn lattice(&self, stream: Stream) -> &Lattice {
+        let choice = (stream.key >> 32) * self.lattices.len() as u64;
+        &self.lattices[word(choice >> 32) as usize]
+    }
 }
 
 /// Returns the two numbers in (0, 1) of a key.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the words are taken one by one"
-)]
 pub(crate) fn point_in_square(key: u64) -> [f64; 2] {
-    let bits = mixed(key);
-    [fraction(bits as u32), fraction((bits >> 32) as u32)]
+    words(mixed(key)).map(fraction)
 }
 
-/// Combines the seed of a render with the numbers of a frame, a pixel and a round of samples.
-pub(crate) fn pixel_key(seed: u64, [frame, pixel, round]: [u64; 3]) -> u64 {
-    let key = mixed(mixed(seed) ^ frame);
-    mixed(mixed(key ^ pixel.rotate_left(16)) ^ round.rotate_left(48))
+/// Combines the seed of a render with three numbers, as those of a frame and of a pixel's column and row.
+pub(crate) fn pixel_key(seed: u64, [first, second, third]: [u64; 3]) -> u64 {
+    let key = mixed(mixed(seed) ^ first);
+    mixed(mixed(key ^ second.rotate_left(16)) ^ third.rotate_left(48))
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the words of the numbers are taken one by one"
-)]
-fn seeds(stream: Stream, purpose: Use) -> [u32; 3] {
-    let one = mixed(stream.key ^ purpose.code());
-    let two = mixed(one);
-    [one as u32, (one >> 32) as u32, two as u32]
+/// Returns a random number of a pixel for a use.
+const fn seed(stream: Stream, purpose: Use) -> u64 {
+    mixed(stream.key ^ purpose.code())
+}
+
+/// Returns the lower half of a number.
+#[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
+const fn word(number: u64) -> u32 {
+    number as u32
+}
+
+const fn words(number: u64) -> [u32; 2] {
+    [word(number), word(number >> 32)]
+}
+
+/// Folds the interval in the middle: x becomes 1 − |2x − 1|.
+const fn folded(bits: u32) -> u32 {
+    let below_half = if bits >> 31 == 0 { bits } else { !bits };
+    below_half << 1 | 1
+}
+
+/// Returns where a random permutation of the numbers below `count` takes `index`.
+///
+/// Each step permutes the numbers below a power of two; those that leave the range go round again.
+fn permuted(index: u32, count: u32, seed: u64) -> u32 {
+    let mask = u64::from(count).next_power_of_two() - 1;
+    let half = mask.count_ones().div_ceil(2);
+    let mut number = u64::from(index);
+    loop {
+        for factor in [seed, seed.rotate_left(21), seed.rotate_left(42)] {
+            number = (number ^ (factor >> 32)).wrapping_mul(factor | 1) & mask;
+            number ^= number >> half;
+        }
+        if number < u64::from(count) {
+            return word(number);
+        }
+    }
+}
+
+/// Returns a point of Sobol's sequence in the plane, scrambled by Owen's method, in units of 2⁻³².
+const fn scrambled_point(index: u32, seed: u64) -> [u32; 2] {
+    let [first, second] = words(seed);
+    [
+        scrambled(index, first).reverse_bits(),
+        scrambled(sobol_second(index).reverse_bits(), second).reverse_bits(),
+    ]
 }
 
 /// Returns the middle of one of 2³² equal intervals of (0, 1).
 fn fraction(bits: u32) -> f64 {
     (f64::from(bits) + 0.5) / (1_u64 << 32) as f64
-}
-
-/// Returns the second coordinate of a point of Sobol's sequence, in units of 2⁻³².
-///
-/// The columns of its generator matrix are those of Pascal's triangle modulo 2.
-fn sobol_second(index: u32) -> u32 {
-    let mut column = 1_u32 << 31;
-    let mut value = 0;
-    for bit in 0..u32::BITS {
-        if index >> bit & 1 == 1 {
-            value ^= column;
-        }
-        column ^= column >> 1;
-    }
-    value
-}
-
-/// Scrambles a number by Owen's method, its bits in reverse: each bit is flipped, or not, by chance
-/// that depends on the bits below it.
-///
-/// The hash is that of S. Laine and T. Karras, *Stratified Sampling for Stochastic Transparency*,
-/// 2011, with the constants of Burley 2020.
-const fn scrambled(reversed: u32, seed: u32) -> u32 {
-    let mut x = reversed.wrapping_add(seed);
-    x ^= x.wrapping_mul(0x6c50_b47c);
-    x ^= x.wrapping_mul(0xb82f_1e52);
-    x ^= x.wrapping_mul(0xc7af_e638);
-    x ^ x.wrapping_mul(0x8d22_f6e6)
 }
 
 /// Spreads neighbouring numbers over all: the generator `SplitMix64` of G. L. Steele, D. Lea and

@@ -11,7 +11,7 @@ use crate::{
     FilterSampler, Frame,
     film::{Film, FilmLayout, PixelSums},
     integrator::{Batch, CameraSample, Integrator},
-    sampler::{Strata, Use, independent_pair, pixel_key},
+    sampler::{Stream, pixel_key},
 };
 
 /// The number of neighbouring pixels of a row that one thread works on at a time.
@@ -21,7 +21,7 @@ const STRIP: usize = 32;
 const BATCH: usize = 1024;
 
 /// The maximum number of rounds of samples that a pixel gets for a target error, the first one included.
-const MAX_ROUNDS: u64 = 64;
+const MAX_ROUNDS: u32 = 64;
 
 /// The radiance below which a pixel's error is compared with this radiance instead of its own, by the
 /// mean radiance of the image.
@@ -108,17 +108,17 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
     /// Adds a round of samples to each of the pixels.
     fn add_round(
         &self,
-        round: u64,
+        round: u32,
         pixels: &mut [Pixel],
         batch: &mut Batch<'a>,
     ) -> Result<(), RenderError> {
         batch.clear();
-        let strata = Strata::new(self.options.samples_per_pixel);
         for slot in 0..pixels.len() {
             let position = pixels[slot].position;
-            let key = self.key(position, round);
-            for index in 0..strata.samples() {
-                let sample = self.camera_sample(slot, position, key, (strata, index));
+            let key = self.key(position);
+            for index in 0..self.options.samples_per_pixel {
+                let stream = Stream { key, round, index };
+                let sample = self.camera_sample(slot, position, stream);
                 batch.samples.push(sample);
                 if batch.samples.len() == BATCH {
                     self.trace(batch, pixels)?;
@@ -142,17 +142,9 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         Ok(())
     }
 
-    fn camera_sample(
-        &self,
-        slot: usize,
-        [x, y]: [usize; 2],
-        key: u64,
-        (strata, index): (Strata, u32),
-    ) -> CameraSample {
-        let sequence = self.integrator.sequence();
-        let stream = sequence.stream(key, index);
-        let cell = strata.position(index, independent_pair(stream, Use::Pixel));
-        let beside = self.filter.sample(cell);
+    fn camera_sample(&self, slot: usize, [x, y]: [usize; 2], stream: Stream) -> CameraSample {
+        let within = self.integrator.sequence().position(stream);
+        let beside = self.filter.sample(within);
         CameraSample {
             slot,
             pixel: DVec2::new(x as f64 + 0.5, y as f64 + 0.5) + beside.offset,
@@ -164,11 +156,9 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         }
     }
 
-    /// Every pixel of every round of every frame has random numbers of its own, wherever the image is
-    /// cropped.
-    fn key(&self, [x, y]: [usize; 2], round: u64) -> u64 {
-        let pixel = (y * self.integrator.camera().width() + x) as u64;
-        pixel_key(self.options.seed, [self.frame.into(), pixel, round])
+    /// Every pixel of every frame has random numbers of its own, wherever the image is cropped.
+    fn key(&self, [x, y]: [usize; 2]) -> u64 {
+        pixel_key(self.options.seed, [self.frame.into(), x as u64, y as u64])
     }
 
     fn strips(&self) -> usize {

@@ -1,10 +1,48 @@
 use super::*;
 
 fn pairs(sequence: &Sequence, pixel: u64, samples: u32, purpose: Use) -> Vec<[f64; 2]> {
-    let stream = |index| sequence.stream(pixel, index);
     (0..samples)
-        .map(|index| sequence.pair(stream(index), purpose))
+        .map(|index| sequence.pair(stream(pixel, index), purpose))
         .collect()
+}
+
+/// A sample of the first round.
+fn stream(key: u64, index: u32) -> Stream {
+    let round = 0;
+    Stream { key, round, index }
+}
+
+fn positions(sequence: &Sequence, key: u64, rounds: u32) -> Vec<[f64; 2]> {
+    let streams = (0..rounds)
+        .flat_map(|round| (0..sequence.count).map(move |index| Stream { key, round, index }));
+    streams.map(|stream| sequence.position(stream)).collect()
+}
+
+/// The mean square over many pixels of what `error` finds for the positions of each.
+fn mean_square(count: u32, rounds: u32, error: impl Fn(u32, &[[f64; 2]]) -> f64) -> f64 {
+    const PIXELS: u32 = 4000;
+    let sequence = Sequence::new(count);
+    let square = |pixel: u32| {
+        let key = pixel_key(8, [0, pixel.into(), 0]);
+        error(pixel, &positions(&sequence, key, rounds)).powi(2)
+    };
+    (0..PIXELS).map(square).sum::<f64>() / f64::from(PIXELS)
+}
+
+/// What the mean of points misses of the area to one side of an edge in some direction.
+fn edge_error(pixel: u32, points: &[[f64; 2]]) -> f64 {
+    let angle = (f64::from(pixel) + 0.5) * 2.4;
+    let offset = (f64::from(pixel) * 0.618).fract() * 0.8 - 0.4;
+    let (sin, cos) = libm::sincos(angle);
+    let is_behind = |[x, y]: &[f64; 2]| (x - 0.5) * cos + (y - 0.5) * sin < offset;
+    let found = points.iter().filter(|point| is_behind(point)).count() as f64;
+    // The area of the unit square behind the edge, by the integral of a box over a box.
+    let (a, b) = (cos.abs(), sin.abs());
+    let half_square = |t: f64| 0.5 * t.max(0.0).powi(2);
+    let t = offset + 0.5 * (a + b);
+    let area = (half_square(t) - half_square(t - a) - half_square(t - b) + half_square(t - a - b))
+        / (a * b);
+    found / points.len() as f64 - area
 }
 
 /// Returns which of so many equal parts of (0, 1) holds `x`.
@@ -28,17 +66,118 @@ fn one_in_each_cell(points: &[[f64; 2]], columns: usize, rows: usize) -> bool {
 }
 
 #[test]
-fn every_elementary_rectangle_holds_one_point_of_every_use() {
-    const SAMPLES: u32 = 64;
-    let sequence = Sequence::new(SAMPLES);
-    let uses = [Use::Lens, Use::Scattering(3), Use::Light(1, 2)];
-    for (pixel, purpose) in (0..20).flat_map(|pixel| uses.map(|purpose| (pixel, purpose))) {
-        let points = pairs(&sequence, pixel_key(5, [0, pixel, 0]), SAMPLES, purpose);
-        for columns in [1, 2, 4, 8, 16, 32, 64] {
-            assert!(
-                one_in_each_cell(&points, columns, 64 / columns),
-                "pixel {pixel}, {purpose:?}, {columns} columns"
-            );
+fn every_column_and_every_row_of_a_pixel_holds_one_sample() {
+    for count in [1, 2, 3, 5, 12, 16, 17, 64, 121, 257] {
+        let sequence = Sequence::new(count);
+        for pixel in 0..20 {
+            let points = positions(&sequence, pixel_key(5, [0, pixel, 0]), 1);
+            for (columns, rows) in [(count, 1), (1, count)] {
+                assert!(
+                    one_in_each_cell(&points, columns as usize, rows as usize),
+                    "pixel {pixel}, {columns} columns of {count}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pixel_misses_of_edge_and_ramp_what_one_sample_in_each_column_does() {
+    for count in [7, 64, 121] {
+        let n = f64::from(count);
+        // In one column in n the edge leaves the count to chance: f (1 − f) / n², f between 0 and 1.
+        let edge = mean_square(count, 1, |pixel, points| {
+            let place = (f64::from(pixel) * 0.618).fract();
+            let before = points.iter().filter(|[x, _]| *x < place).count() as f64;
+            before / n - place
+        });
+        // Each sample lies anywhere in its column: 1 / (12 n²), by n.
+        let ramp = mean_square(count, 1, |_, points| {
+            points.iter().map(|[x, _]| x - 0.5).sum::<f64>() / n
+        });
+        let ratios = [edge * 6.0 * n * n, ramp * 12.0 * n * n * n];
+        // The relative standard deviation of a mean square of 4000 is √(2/4000) = 0.022 for normal errors;
+        // 4 of them.
+        for ratio in ratios {
+            assert!((ratio - 1.0).abs() < 0.09, "{count}: {ratios:?}");
+        }
+    }
+}
+
+#[test]
+fn slanted_edges_cost_no_more_than_in_jittered_cells() {
+    // One sample by chance in each of 8 × 8 and of 11 × 11 cells, from benches/peers/pixel_samples.py.
+    for (count, jittered) in [(64, 3.3e-4), (121, 1.3e-4)] {
+        let error = mean_square(count, 1, edge_error);
+        assert!(error < 0.75 * jittered, "{count}: {error:e}");
+    }
+}
+
+#[test]
+fn further_rounds_share_the_columns_of_the_first() {
+    const ROUNDS: u32 = 4;
+    for count in [16, 25] {
+        let n = f64::from(count);
+        let ramp = mean_square(count, ROUNDS, |_, points| {
+            points.iter().map(|[x, _]| x - 0.5).sum::<f64>() / points.len() as f64
+        });
+        // Each sample has one round in each quarter of a column. However the four hang together, their mean
+        // has the variance (1 / 4n)² / 12 at most; independent rounds would leave 4 times as much.
+        let ratio = ramp * 12.0 * 16.0 * n * n * n;
+        // 4 relative standard deviations of a mean square of 4000 normal errors, each √(2/4000) = 0.022.
+        assert!(ratio < 1.09, "{count}: {ratio}");
+    }
+}
+
+#[test]
+fn rounds_are_uncorrelated_where_uses_act_together() {
+    const COUNT: u32 = 16;
+    let sequence = Sequence::new(COUNT);
+    let uses = [Use::Lens, Use::Light(1, 2), Use::Scattering(3)];
+    let product = |stream| -> f64 {
+        let factors = uses.map(|purpose| sequence.uniform(stream, purpose) - 0.5);
+        factors.into_iter().product()
+    };
+    let mean_square = |rounds: u32| {
+        let square = |pixel| {
+            let key = pixel_key(9, [0, pixel, 0]);
+            let streams = (0..rounds)
+                .flat_map(|round| (0..COUNT).map(move |index| Stream { key, round, index }));
+            (streams.map(product).sum::<f64>() / f64::from(rounds * COUNT)).powi(2)
+        };
+        (0..4000).map(square).sum::<f64>() / 4000.0
+    };
+    let ratio = 4.0 * mean_square(4) / mean_square(1);
+    // Each mean square has a relative standard deviation of 0.023: √((κ − 1) / 4000) with the kurtosis
+    // κ = 3 + (1.8³ − 3) / 16 of the mean of 16 products. 4 of those of the ratio.
+    assert!((ratio - 1.0).abs() < 0.13, "{ratio}");
+}
+
+#[test]
+fn smooth_functions_of_any_use_are_integrated_to_second_order() {
+    for count in [5, 64, 121] {
+        let sequence = Sequence::new(count);
+        for pixel in 0..20 {
+            let points = pairs(&sequence, pixel_key(2, [0, pixel, 0]), count, Use::Lens);
+            for axis in [0, 1] {
+                let mean = points.iter().map(|p| p[axis]).sum::<f64>() / f64::from(count);
+                // At each of the two folds the slope jumps by 4: an error of h² / 3 at most, h = 1/N.
+                let bound = 0.67 / f64::from(count * count) + 1e-9;
+                assert!((mean - 0.5).abs() < bound, "{count}: {mean}");
+            }
+        }
+    }
+}
+
+#[test]
+fn orders_are_permutations() {
+    for count in [1, 2, 3, 4, 63, 64, 121] {
+        for seed in 0..10 {
+            let mut found: Vec<_> = (0..count)
+                .map(|i| permuted(i, count, mixed(seed)))
+                .collect();
+            found.sort_unstable();
+            assert!(found.into_iter().eq(0..count), "{count}, {seed}");
         }
     }
 }
@@ -103,31 +242,48 @@ fn uses_and_vertices_are_independent_of_each_other() {
 }
 
 #[test]
-fn more_samples_than_points_start_afresh() {
+fn any_number_of_samples_stays_in_the_pixel() {
     let sequence = Sequence::new(u32::MAX);
-    let of = |index| sequence.pair(sequence.stream(7, index), Use::Lens);
-    let (first, second) = (
-        of(3).map(f64::to_bits),
-        of(3 + MAX_POINTS).map(f64::to_bits),
-    );
-    assert_ne!(first, second, "the second set repeats the first");
+    for index in [0, 1, u32::MAX / 2, u32::MAX - 1] {
+        for round in [0, 1, u32::MAX] {
+            let stream = Stream {
+                key: 7,
+                round,
+                index,
+            };
+            let points = [sequence.position(stream), sequence.pair(stream, Use::Lens)];
+            for x in points.as_flattened() {
+                assert!(*x > 0.0 && *x < 1.0, "{stream:?}: {x}");
+            }
+        }
+    }
 }
 
 #[test]
 fn streams_differ_by_seed_frame_pixel_and_round_and_repeat() {
     let sequence = Sequence::new(16);
-    let first = |seed, place| {
-        let stream = sequence.stream(pixel_key(seed, place), 0);
-        sequence.pair(stream, Use::Lens).map(f64::to_bits)
+    let first = |seed, place, round| {
+        let key = pixel_key(seed, place);
+        let stream = Stream {
+            key,
+            round,
+            index: 0,
+        };
+        [sequence.pair(stream, Use::Lens), sequence.position(stream)].map(|x| x.map(f64::to_bits))
     };
-    let reference = first(1, [2, 3, 4]);
-    assert_eq!(reference, first(1, [2, 3, 4]), "the same again");
-    for (seed, place) in [
-        (2, [2, 3, 4]),
-        (1, [3, 3, 4]),
-        (1, [2, 4, 4]),
-        (1, [2, 3, 5]),
+    let reference = first(1, [2, 3, 4], 0);
+    assert_eq!(reference, first(1, [2, 3, 4], 0), "the same again");
+    for (seed, place, round) in [
+        (2, [2, 3, 4], 0),
+        (1, [3, 3, 4], 0),
+        (1, [2, 4, 4], 0),
+        (1, [2, 3, 5], 0),
+        (1, [2, 3, 4], 1),
     ] {
-        assert_ne!(reference, first(seed, place), "{seed}, {place:?}");
+        assert_ne!(
+            reference,
+            first(seed, place, round),
+            "{seed}, {place:?}, {round}"
+        );
     }
 }

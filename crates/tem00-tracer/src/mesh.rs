@@ -147,9 +147,14 @@ impl TriangleMesh {
 
     /// Returns the hierarchy that finds where rays meet the triangles.
     pub(crate) fn hierarchy(&self) -> &MeshHierarchy {
-        self.hierarchy.get_or_init(|| {
-            MeshHierarchy::build(self.triangles.len(), |triangle| self.corners(triangle))
-        })
+        if let Some(hierarchy) = self.hierarchy.get() {
+            return hierarchy;
+        }
+        // Not inside of `get_or_init`: while it waits for others to finish their part, a thread may
+        // take up work that asks for the same hierarchy, and would wait for itself.
+        let hierarchy =
+            MeshHierarchy::build(self.triangles.len(), |triangle| self.corners(triangle));
+        self.hierarchy.get_or_init(|| hierarchy)
     }
 
     /// Returns the corners of a triangle, in metres.

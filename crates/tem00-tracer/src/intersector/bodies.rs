@@ -119,12 +119,12 @@ pub(super) struct Bodies {
 
 impl Bodies {
     pub(super) fn build(bodies: Vec<Body>) -> Self {
-        let boxes: Vec<_> = bodies.iter().map(Body::bounds).collect();
-        let (hierarchy, leaves) = Hierarchy::build(&boxes, 1);
+        let corners = |body: usize| bodies[body].bounds();
+        let (hierarchy, leaves) = Hierarchy::build(bodies.len(), corners, 1);
         Self {
             hierarchy,
             bodies,
-            order: leaves.iter().flatten().copied().collect(),
+            order: leaves.into_things(),
         }
     }
 

@@ -13,7 +13,7 @@ pub(super) const WIDTH: usize = 8;
 ///
 /// Its unit and origin are radius and centre of a sphere around everything. The boxes are padded by
 /// more than single precision errs, so that no ray that meets a thing misses its box.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Hierarchy {
     nodes: Vec<Node>,
     centre: DVec3,
@@ -22,7 +22,7 @@ pub(super) struct Hierarchy {
 
 /// Up to eight boxes, and what is in them.
 #[repr(align(32))]
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Node {
     low: [[f32; WIDTH]; 3],
     high: [[f32; WIDTH]; 3],

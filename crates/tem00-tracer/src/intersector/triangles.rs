@@ -1,5 +1,6 @@
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x8, f32x16};
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::{
     hierarchy::{Hierarchy, LocalRay, WIDTH, load, pick, splat},
@@ -7,7 +8,7 @@ use super::{
 };
 
 /// The hierarchy over the triangles of a mesh, in the mesh's own coordinates.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MeshHierarchy {
     boxes: Hierarchy,
     blocks: Vec<Block>,
@@ -15,7 +16,7 @@ pub(crate) struct MeshHierarchy {
 
 /// The triangles of a leaf in single precision.
 #[repr(align(32))]
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Block {
     corner: [[f32; WIDTH]; 3],
     edges: [[[f32; WIDTH]; 3]; 2],
@@ -25,16 +26,16 @@ pub(super) struct Block {
 }
 
 impl MeshHierarchy {
-    /// Builds the hierarchy over `count` triangles by their corners.
-    pub(crate) fn build(count: usize, corners: impl Fn(usize) -> [DVec3; 3]) -> Self {
-        let boxes: Vec<_> = (0..count)
-            .map(&corners)
-            .map(|[a, b, c]| (a.min(b).min(c), a.max(b).max(c)))
-            .collect();
-        let (boxes, leaves) = Hierarchy::build(&boxes, 8);
-        let blocks = leaves
-            .iter()
-            .map(|triangles| Block::new(&corners, &boxes, triangles))
+    /// Builds the hierarchy over `count` triangles by their corners, on all threads.
+    pub(crate) fn build(count: usize, corners: impl Fn(usize) -> [DVec3; 3] + Sync) -> Self {
+        let around = |triangle| {
+            let [a, b, c] = corners(triangle);
+            (a.min(b).min(c), a.max(b).max(c))
+        };
+        let (boxes, leaves) = Hierarchy::build(count, around, 8);
+        let blocks = (0..leaves.len())
+            .into_par_iter()
+            .map(|leaf| Block::new(&corners, &boxes, leaves.things(leaf)))
             .collect();
         Self { boxes, blocks }
     }

@@ -5,8 +5,14 @@ use obvhs::{
     bvh2::{Bvh2, reinsertion::ReinsertionOptimizer},
     ploc::PlocBuilder,
 };
+use rayon::prelude::*;
 
 use super::{Child, Hierarchy, Node, PADDING, WIDTH};
+
+/// The number of things up to which a tree is built as one, by one thread.
+///
+/// It does not depend on the number of threads, and neither does the hierarchy.
+const GROUP: usize = 1 << 15;
 
 /// Contents of the leaves of a hierarchy: indices of things, leaf after leaf.
 #[derive(Debug, Default)]
@@ -16,20 +22,38 @@ pub(in super::super) struct Leaves {
 }
 
 impl Leaves {
-    /// Returns the indices in each leaf, in the order of the leaves.
-    pub(in super::super) fn iter(&self) -> impl Iterator<Item = &[u32]> {
-        let starts = core::iter::once(0).chain(self.ends.iter().copied());
-        starts
-            .zip(&self.ends)
-            .map(|(start, &end)| &self.things[start..end])
+    /// Returns the number of leaves.
+    pub(in super::super) fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Returns all indices.
+    pub(in super::super) fn into_things(self) -> Vec<u32> {
+        self.things
+    }
+
+    /// Returns the indices in a leaf.
+    pub(in super::super) fn things(&self, leaf: usize) -> &[u32] {
+        let start = leaf.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.things[start..self.ends[leaf]]
+    }
+
+    fn append(&mut self, other: &Self) {
+        let things = self.things.len();
+        self.things.extend_from_slice(&other.things);
+        self.ends.extend(other.ends.iter().map(|end| things + end));
     }
 }
 
 impl Hierarchy {
-    /// Builds a hierarchy of leaves of up to `capacity` things, given the lowest and the highest
-    /// corner of the box around each, at least one.
-    pub(in super::super) fn build(boxes: &[(DVec3, DVec3)], capacity: u32) -> (Self, Leaves) {
-        let (low, high) = boxes.iter().fold(
+    /// Builds a hierarchy of leaves of up to `capacity` things, given their number, at least one,
+    /// and the lowest and the highest corner of the box around each.
+    pub(in super::super) fn build(
+        count: usize,
+        corners: impl Fn(usize) -> (DVec3, DVec3) + Sync,
+        capacity: u32,
+    ) -> (Self, Leaves) {
+        let (low, high) = (0..count).map(&corners).fold(
             (DVec3::INFINITY, DVec3::NEG_INFINITY),
             |(low, high), corners| (low.min(corners.0), high.max(corners.1)),
         );
@@ -40,19 +64,14 @@ impl Hierarchy {
             centre: low + half,
             radius: longest * (half / longest).length(),
         };
-        let padded: Vec<Aabb> = (0_u64..)
-            .zip(boxes)
-            .map(|(index, corners)| hierarchy.padded(*corners, index))
+        let boxes: Vec<Aabb> = (0..count)
+            .into_par_iter()
+            .map(|index| hierarchy.padded(corners(index), index as u64))
             .collect();
-        let binary = binary_tree(&padded);
-        let mut wide = Widening {
-            counts: counts(&binary),
-            binary: &binary,
-            capacity,
-            leaves: Leaves::default(),
-        };
-        hierarchy.nodes = wide.nodes();
-        (hierarchy, wide.leaves)
+        let mut things: Vec<u32> = (0_u32..).take(count).collect();
+        let tree = Tree::build(&mut things, &boxes, capacity);
+        hierarchy.nodes = tree.nodes;
+        (hierarchy, tree.leaves)
     }
 
     fn padded(&self, (low, high): (DVec3, DVec3), index: u64) -> Aabb {
@@ -72,6 +91,118 @@ fn padding(corner: u64) -> DVec3 {
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     let excess = [bits, bits >> 20, bits >> 40].map(|word| (word % BITS) as f64 / BITS as f64);
     PADDING * (1.0 + DVec3::from_array(excess))
+}
+
+/// Parts things into those that are longer than a quarter of the box around all, and others.
+///
+/// Beside small things a large one makes the box of their half almost as large as that around all.
+fn by_size<'a>(things: &'a mut [u32], boxes: &[Aabb]) -> (&'a mut [u32], &'a mut [u32]) {
+    let length = |around: &Aabb| around.diagonal().max_element();
+    let longest = 0.25 * length(&union(things, boxes));
+    let is_small = |thing: u32| length(&boxes[thing as usize]) <= longest;
+    things.sort_by_key(|&thing| is_small(thing));
+    let large = things.partition_point(|&thing| !is_small(thing));
+    things.split_at_mut(large)
+}
+
+/// Returns the box around things.
+fn union(things: &[u32], boxes: &[Aabb]) -> Aabb {
+    let boxes = things.iter().map(|&thing| &boxes[thing as usize]);
+    boxes.fold(Aabb::empty(), |around, other| around.union(other))
+}
+
+/// Parts things into halves, at the median of their boxes' centres, again and again.
+fn halves<'a>(things: &'a mut [u32], boxes: &[Aabb], times: u32) -> Vec<&'a mut [u32]> {
+    if times == 0 {
+        return vec![things];
+    }
+    let axis = union(things, boxes).largest_axis();
+    let centre = |thing: u32| boxes[thing as usize].center()[axis];
+    let middle = things.len() / 2;
+    things.select_nth_unstable_by(middle, |&a, &b| centre(a).total_cmp(&centre(b)));
+    let (below, above) = things.split_at_mut(middle);
+    let (mut below, above) = rayon::join(
+        || halves(below, boxes, times - 1),
+        || halves(above, boxes, times - 1),
+    );
+    below.extend(above);
+    below
+}
+
+/// A box, and the nodes and leaves below it; the first node is the root.
+struct Tree {
+    around: Aabb,
+    nodes: Vec<Node>,
+    leaves: Leaves,
+}
+
+impl Tree {
+    /// Builds a tree over the boxes of some things.
+    fn build(things: &mut [u32], boxes: &[Aabb], capacity: u32) -> Self {
+        if things.len() <= GROUP {
+            return Self::of_group(things, boxes, capacity);
+        }
+        let (large, small) = by_size(things, boxes);
+        let parts = if large.is_empty() || small.is_empty() {
+            halves(things, boxes, WIDTH.ilog2())
+        } else {
+            vec![large, small]
+        };
+        let trees: Vec<Self> = parts
+            .into_par_iter()
+            .map(|part| Self::build(part, boxes, capacity))
+            .collect();
+        Self::join(&trees)
+    }
+
+    fn of_group(group: &[u32], boxes: &[Aabb], capacity: u32) -> Self {
+        let boxes: Vec<Aabb> = group.iter().map(|&thing| boxes[thing as usize]).collect();
+        let binary = binary_tree(&boxes);
+        let mut wide = Widening {
+            counts: counts(&binary),
+            binary: &binary,
+            group,
+            capacity,
+            leaves: Leaves::default(),
+        };
+        Self {
+            around: *binary.nodes[0].aabb(),
+            nodes: wide.nodes(),
+            leaves: wide.leaves,
+        }
+    }
+
+    /// Puts up to eight trees below one root.
+    fn join(trees: &[Self]) -> Self {
+        let mut joined = Self {
+            around: Aabb::empty(),
+            nodes: vec![Node::EMPTY],
+            leaves: Leaves::default(),
+        };
+        for (slot, tree) in trees.iter().enumerate() {
+            joined.around = joined.around.union(&tree.around);
+            let root = joined.append(tree);
+            joined.nodes[0].set(slot, &tree.around, Child::node(number(root)));
+        }
+        joined
+    }
+
+    /// Adds the nodes and leaves of another tree, and returns the index of its root.
+    fn append(&mut self, other: &Self) -> usize {
+        let (root, leaf) = (self.nodes.len(), self.leaves.len());
+        self.nodes.extend_from_slice(&other.nodes);
+        for child in self.nodes[root..]
+            .iter_mut()
+            .flat_map(|node| &mut node.children)
+        {
+            *child = match child.index() {
+                Ok(index) => Child::node(index + number(root)),
+                Err(index) => Child::leaf(index + number(leaf)),
+            };
+        }
+        self.leaves.append(&other.leaves);
+        root
+    }
 }
 
 fn binary_tree(boxes: &[Aabb]) -> Bvh2 {
@@ -111,9 +242,21 @@ fn counts(tree: &Bvh2) -> Vec<u32> {
     counts
 }
 
+impl Node {
+    fn set(&mut self, slot: usize, around: &Aabb, child: Child) {
+        for axis in 0..3 {
+            self.low[axis][slot] = around.min[axis];
+            self.high[axis][slot] = around.max[axis];
+        }
+        self.children[slot] = child;
+    }
+}
+
 /// Turns a binary tree into one of eight children per node.
 struct Widening<'a> {
     binary: &'a Bvh2,
+    /// The things, as the binary tree numbers them.
+    group: &'a [u32],
     counts: Vec<u32>,
     capacity: u32,
     leaves: Leaves,
@@ -134,14 +277,7 @@ impl Widening<'_> {
                     nodes.push(Node::EMPTY);
                     Child::node(number(nodes.len() - 1))
                 };
-                let corners = self.binary.nodes[index].aabb();
-                let (low, high) = (corners.min.to_array(), corners.max.to_array());
-                let node = &mut nodes[next];
-                node.children[slot] = child;
-                for axis in 0..3 {
-                    node.low[axis][slot] = low[axis];
-                    node.high[axis][slot] = high[axis];
-                }
+                nodes[next].set(slot, self.binary.nodes[index].aabb(), child);
             }
             next += 1;
         }
@@ -184,8 +320,9 @@ impl Widening<'_> {
             let first = node.first_index as usize;
             if node.is_leaf() {
                 let things = first..first + node.prim_count as usize;
-                let things = &self.binary.primitive_indices[things];
-                self.leaves.things.extend_from_slice(things);
+                let things = self.binary.primitive_indices[things].iter();
+                let things = things.map(|&thing| self.group[thing as usize]);
+                self.leaves.things.extend(things);
             } else {
                 open.extend([first, first + 1]);
             }

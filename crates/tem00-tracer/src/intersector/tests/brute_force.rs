@@ -20,6 +20,60 @@ fn hierarchy_and_brute_force_agree_on_every_ray() {
     assert!(hits > 1000, "{hits} hits");
 }
 
+/// A ball of more triangles than one thread builds a tree of, between two plates of two triangles.
+fn ball_between_plates() -> TriangleMesh {
+    let ball = ball(120, 0.3);
+    let mut vertices = ball.vertices().to_vec();
+    let mut triangles = ball.triangles().to_vec();
+    for z in [-0.4, 0.4] {
+        let plate = u32::try_from(vertices.len()).unwrap();
+        vertices.extend(
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x, y, z)),
+        );
+        triangles.extend([[0, 1, 2], [0, 2, 3]].map(|corners| corners.map(|i| plate + i)));
+    }
+    TriangleMesh::new(vertices, triangles).unwrap()
+}
+
+#[test]
+fn hierarchy_of_many_triangles_and_brute_force_agree() {
+    let shapes = [Shape::from(ball_between_plates())];
+    let intersector = build(&shapes);
+    let mut uniform = uniforms(5);
+    let mut surfaces = [0; 2];
+    for _ in 0..60 {
+        let mut point = || DVec3::new(uniform(), uniform(), uniform()) - 0.5;
+        let (from, to) = (2.0 * point(), 0.8 * point());
+        let ray = ray(from, to - from);
+        let found = intersector.intersect(&ray);
+        let distance = found.as_ref().map(|hit| hit.distance);
+        let expected = brute_force(&shapes, &ray).map(|(distance, _)| distance);
+        assert_eq!(distance, expected, "{ray:?}");
+        if let Some(hit) = found {
+            surfaces[usize::from(hit.position.z.abs() > 0.39)] += 1;
+        }
+    }
+    assert!(
+        surfaces[0] > 10 && surfaces[1] > 10,
+        "{surfaces:?} hits of ball and plates"
+    );
+}
+
+#[test]
+fn hierarchy_is_the_same_for_any_number_of_threads() {
+    let mesh = ball_between_plates();
+    let build = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let corners = |triangle| mesh.corners(triangle);
+        let build = || MeshHierarchy::build(mesh.triangles().len(), corners);
+        pool.build().unwrap().install(build)
+    };
+    let alone = build(1);
+    for threads in [2, 3] {
+        assert!(build(threads) == alone, "{threads} threads");
+    }
+}
+
 #[test]
 fn a_nanometre_inside_an_edge_is_found_from_anywhere() {
     // Boxes end at the edges, and single precision moves them and the rays by up to 1e−7 of

@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use crate::{DecorrelationError, RigidMotion, Wavefront};
+use crate::{DecorrelationError, RigidMotion, Wavefront, wavefront::unit_direction};
 
 /// A light source in the world, as far as the speckle it makes is concerned: from where it lights
 /// each point.
@@ -27,6 +27,8 @@ pub struct Illumination {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
+    /// Light from one direction, of unit length.
+    Collimated(DVec3),
     PointSource(DVec3),
     Near {
         reference: DVec3,
@@ -41,7 +43,8 @@ impl Illumination {
     ///
     /// Returns an error if the direction is zero or not finite.
     pub fn collimated(direction_to_source: DVec3) -> Result<Self, DecorrelationError> {
-        Self::near(DVec3::ZERO, Wavefront::plane(direction_to_source)?)
+        let kind = Kind::Collimated(unit_direction(direction_to_source)?);
+        Ok(Self { kind })
     }
 
     /// Creates the light of a point source at a position, in metres.
@@ -91,6 +94,7 @@ impl Illumination {
     /// the source itself.
     pub fn direction_from(&self, point: DVec3) -> Option<DVec3> {
         match self.kind {
+            Kind::Collimated(direction) => Some(direction),
             Kind::PointSource(position) => (position - point).try_normalize(),
             Kind::Near {
                 reference,
@@ -103,6 +107,9 @@ impl Illumination {
     #[must_use]
     pub fn moved(&self, motion: &RigidMotion) -> Self {
         let kind = match self.kind {
+            Kind::Collimated(direction) => {
+                Kind::Collimated(motion.direction(direction).normalize())
+            }
             Kind::PointSource(position) => Kind::PointSource(motion.point(position)),
             Kind::Near {
                 reference,

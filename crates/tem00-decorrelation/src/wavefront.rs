@@ -284,7 +284,7 @@ impl Wavefront {
     }
 }
 
-fn unit_direction(direction: DVec3) -> Result<DVec3, DecorrelationError> {
+pub(crate) fn unit_direction(direction: DVec3) -> Result<DVec3, DecorrelationError> {
     direction.try_normalize().ok_or(DecorrelationError::vector(
         "direction_to_source",
         direction,

@@ -171,10 +171,7 @@ impl SpeckleStack {
         let periods = [field.size()[0], field.size()[1], coefficients.len()].map(Period::new);
         let (slices, variances) = join_all(&field, path, interpolation, coefficients);
         Self {
-            law: PathLaw {
-                path,
-                pupil: field.pupil().clone(),
-            },
+            law: PathLaw::new(path, field.pupil()),
             interpolation,
             periods,
             slices,

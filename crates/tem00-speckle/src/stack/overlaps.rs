@@ -30,19 +30,12 @@ impl SlicePath {
     pub fn overlaps(self, pupil: &Pupil) -> Result<Vec<[f32; 2]>, SpeckleError> {
         self.check()?;
         pupil.check()?;
-        let law = PathLaw {
-            path: self,
-            pupil: pupil.clone(),
-        };
-        let mut table = Vec::new();
-        for slice in 0..=self.slice_count() / 2 {
-            let here = slice as f64;
-            let overlap = law.between(0.0, here);
-            table.push([overlap, law.between(here, here + 1.0)].map(to_f32));
-            if overlap <= 0.0 || self == Self::Still {
-                break;
-            }
-        }
-        Ok(table)
+        let law = PathLaw::new(self, pupil);
+        let slices = &law.overlaps()[..=self.slice_count() / 2];
+        let last = slices
+            .iter()
+            .position(|[first, _]| self == Self::Still || *first <= 0.0);
+        let table = slices[..=last.unwrap_or(slices.len() - 1)].iter();
+        Ok(table.map(|overlaps| overlaps.map(to_f32)).collect())
     }
 }

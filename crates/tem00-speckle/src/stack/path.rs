@@ -2,7 +2,7 @@ use core::f64::consts::PI;
 
 use tem00_numerics::{
     cast::{to_i64, to_signed, to_usize},
-    circular_path_overlap, circular_path_overlap_inverse, disc_overlap_inverse,
+    circular_path_overlap,
 };
 
 use crate::{Pupil, PupilField, SpeckleError, pupil::lattice::Lattice};
@@ -134,6 +134,30 @@ impl SlicePath {
             }
         }
     }
+
+    /// The overlap of the pupils of two slices.
+    fn overlap(self, pupil: &Pupil, [i, j]: [f64; 2]) -> f64 {
+        match self {
+            Self::Still => 1.0,
+            Self::Circle { half_period } => {
+                let half_period = half_period as f64;
+                if *pupil == Pupil::Circle {
+                    return circular_path_overlap((j - i) / half_period);
+                }
+                let [(y0, x0), (y1, x1)] = [i, j].map(|slice| (PI * slice / half_period).sin_cos());
+                pupil.overlap([0.5 * (x1 - x0), 0.5 * (y1 - y0)])
+            }
+            Self::Straight {
+                half_period,
+                length,
+            } => {
+                let period = (2 * half_period) as f64;
+                let steps = (j - i).rem_euclid(period);
+                let steps = steps.min(period - steps);
+                pupil.overlap([steps * length as f64 / period, 0.0])
+            }
+        }
+    }
 }
 
 /// The lattice points along a path of `length` diameters.
@@ -145,7 +169,10 @@ fn points_along(length: usize, field: &PupilField) -> i64 {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PathLaw {
     pub(crate) path: SlicePath,
-    pub(crate) pupil: Pupil,
+    /// The overlaps of the pupils of each slice with slice 0 and with the next slice, over a period.
+    overlaps: Vec<[f64; 2]>,
+    /// The smallest overlap with slice 0 up to each slice, to the half period.
+    lowest: Vec<f64>,
 }
 
 /// Overlaps of a blend of two neighbouring slices with a slice before them: all as overlaps
@@ -185,13 +212,36 @@ impl Blend {
 }
 
 impl PathLaw {
+    pub(crate) fn new(path: SlicePath, pupil: &Pupil) -> Self {
+        let overlaps = |slice: usize| {
+            let here = slice as f64;
+            [[0.0, here], [here, here + 1.0]].map(|slices| path.overlap(pupil, slices))
+        };
+        let overlaps: Vec<_> = (0..=path.slice_count()).map(overlaps).collect();
+        let to_half_period = overlaps.iter().take(path.slice_count() / 2 + 1);
+        let lowest = to_half_period.scan(f64::INFINITY, |lowest, [overlap, _]| {
+            *lowest = lowest.min(*overlap);
+            Some(*lowest)
+        });
+        Self {
+            path,
+            lowest: lowest.collect(),
+            overlaps,
+        }
+    }
+
+    /// Returns the overlaps of the pupils of each slice with slice 0 and with the next slice, over a period.
+    pub(super) fn overlaps(&self) -> &[[f64; 2]] {
+        &self.overlaps
+    }
+
     /// The amplitude correlation of look-ups at the coordinates 0 and `u`.
     pub(crate) fn overlap_at(&self, u: f64) -> f64 {
         if self.path == SlicePath::Still {
             return 1.0;
         }
         let u = u.rem_euclid(self.path.slice_count() as f64);
-        self.blend_after(u.floor()).overlap(u - u.floor())
+        self.blend_after(to_usize(u)).overlap(u.fract())
     }
 
     /// The smallest u ≥ 0 at which the overlap has fallen to `overlap`.
@@ -200,97 +250,21 @@ impl PathLaw {
             return 0.0;
         }
         let overlap = overlap.max(0.0); // NaN counts as no correlation, too
-        let Some(slice) = self.first_slice_below(overlap) else {
-            return (self.path.slice_count() / 2) as f64;
-        };
-        let before = (slice - 1) as f64;
-        before + self.blend_after(before).fraction(overlap)
+        let slice = self.lowest.partition_point(|&lowest| lowest > overlap);
+        if slice == self.lowest.len() {
+            return (slice - 1) as f64;
+        }
+        let before = slice - 1;
+        before as f64 + self.blend_after(before).fraction(overlap)
     }
 
     /// The blend of slice `index` and the next, beside slice 0.
-    fn blend_after(&self, index: f64) -> Blend {
-        let [here, next] = [index, index + 1.0];
+    fn blend_after(&self, index: usize) -> Blend {
+        let [here, to_next] = self.overlaps[index];
+        let [next, _] = self.overlaps[index + 1];
         Blend {
-            overlaps: [self.between(0.0, here), self.between(0.0, next)],
-            apart: 1.0 - self.between(here, next),
+            overlaps: [here, next],
+            apart: 1.0 - to_next,
         }
     }
-
-    /// The overlap of the pupils of two slices.
-    pub(super) fn between(&self, i: f64, j: f64) -> f64 {
-        match self.path {
-            SlicePath::Still => 1.0,
-            SlicePath::Circle { half_period } => {
-                let half_period = half_period as f64;
-                if self.pupil == Pupil::Circle {
-                    return circular_path_overlap((j - i) / half_period);
-                }
-                let [(y0, x0), (y1, x1)] = [i, j].map(|slice| (PI * slice / half_period).sin_cos());
-                self.pupil.overlap([0.5 * (x1 - x0), 0.5 * (y1 - y0)])
-            }
-            SlicePath::Straight {
-                half_period,
-                length,
-            } => {
-                let period = (2 * half_period) as f64;
-                let steps = (j - i).rem_euclid(period);
-                let steps = steps.min(period - steps);
-                self.pupil.overlap([steps * length as f64 / period, 0.0])
-            }
-        }
-    }
-
-    /// The first slice whose overlap with slice 0 is `overlap` or less, up to the half period.
-    fn first_slice_below(&self, overlap: f64) -> Option<usize> {
-        let last = self.path.slice_count() / 2;
-        let fallen = |slice: usize| self.between(0.0, slice as f64) <= overlap;
-        let mut slice = match self.guess(overlap) {
-            Some(guess) => guess.clamp(1, last),
-            None => scan(last, fallen),
-        };
-        while slice > 1 && fallen(slice - 1) {
-            slice -= 1;
-        }
-        while !fallen(slice) {
-            slice += 1;
-            if slice > last {
-                return None;
-            }
-        }
-        Some(slice)
-    }
-
-    /// The same for a circular pupil in closed form, but for rounding.
-    fn guess(&self, overlap: f64) -> Option<usize> {
-        let slices = match self.path {
-            _ if self.pupil != Pupil::Circle => return None,
-            SlicePath::Still => return None,
-            SlicePath::Circle { half_period } => {
-                half_period as f64 * circular_path_overlap_inverse(overlap)
-            }
-            SlicePath::Straight {
-                half_period,
-                length,
-            } => (2 * half_period) as f64 / length as f64 * disc_overlap_inverse(overlap),
-        };
-        Some(to_usize(slices.ceil()))
-    }
-}
-
-/// The first of the slices 1 to `last` that has `fallen`, or the last: for pupils whose overlap has no
-/// closed inverse or is not monotonic, to within 1/256 of the way.
-fn scan(last: usize, fallen: impl Fn(usize) -> bool) -> usize {
-    let stride = last.div_ceil(256);
-    let coarse = (stride..last).step_by(stride).find(|&slice| fallen(slice));
-    let mut high = coarse.unwrap_or(last);
-    let mut low = (high - 1) / stride * stride;
-    while high - low > 1 {
-        let middle = low.midpoint(high);
-        if fallen(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    high
 }

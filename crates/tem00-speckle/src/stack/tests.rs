@@ -176,10 +176,7 @@ fn blended_overlap(law: &PathLaw, u0: f64, u1: f64) -> f64 {
 #[test]
 fn blending_rounds_the_cusp_of_the_law_as_documented() {
     for (half_period, stated) in [(8, 0.2), (32, 0.06)] {
-        let law = PathLaw {
-            path: circle(half_period),
-            pupil: Pupil::Circle,
-        };
+        let law = PathLaw::new(circle(half_period), &Pupil::Circle);
         let mut worst = 0.0_f64;
         for start in 0..16_u32 {
             for distance in 0..32_u32 {
@@ -254,10 +251,7 @@ fn neighbours_are_correlated_by_the_closed_form() {
         (1_024, 512, straight(8)),
         (1_024, 200, straight(16)),
     ] {
-        let law = PathLaw {
-            path,
-            pupil: Pupil::Circle,
-        };
+        let law = PathLaw::new(path, &Pupil::Circle);
         let field = path.close(&PupilField::new(size, diameter, 0).unwrap());
         let count = path.slice_count();
         for i in [0, 3, 7] {
@@ -466,10 +460,8 @@ proptest! {
         let pupil = [
             Pupil::Circle, Pupil::Annulus { inner: 0.3 }, Pupil::Rectangle { height: 0.7 },
         ][pupil].clone();
-        let law = PathLaw {
-            path: [circle(6), SlicePath::Straight { half_period: 6, length }][path],
-            pupil,
-        };
+        let path = [circle(6), SlicePath::Straight { half_period: 6, length }][path];
+        let law = PathLaw::new(path, &pupil);
         let u = law.coordinate_of(gamma.sqrt());
         prop_assert!((0.0..=6.0).contains(&u), "u = {u}");
         // Slopes of γ in u are below 2.
@@ -595,4 +587,17 @@ fn stacks_are_the_same_bits_for_any_number_of_threads() {
         assert_eq!(one, with_threads(2), "{path:?} by 2 threads");
         assert_eq!(one, with_threads(7), "{path:?} by 7 threads");
     }
+}
+
+#[test]
+fn the_first_of_the_slices_that_have_fallen_as_low_is_found() {
+    // The overlap of two rings is least where they cross at right angles, and rises until they touch.
+    let law = PathLaw::new(circle(2_048), &Pupil::Annulus { inner: 0.8 });
+    let overlaps: Vec<_> = law.overlaps()[..2_048].iter().map(|[o, _]| *o).collect();
+    let dip = (1..2_048)
+        .find(|&slice| overlaps[slice] <= overlaps[slice + 1])
+        .unwrap();
+    assert!(dip % 8 != 0 && overlaps[dip] < overlaps[dip + 200], "{dip}");
+    let u = law.coordinate_of(overlaps[dip]);
+    assert!(u > dip as f64 - 1.0 && u <= dip as f64, "{u} for {dip}");
 }

@@ -212,6 +212,9 @@ def test_a_folder_that_cannot_be_made_ends_the_program_with_a_message(
 
 
 def test_an_interrupt_says_how_to_go_on(tmp_path: Path, scheduler: str) -> None:
-    with start(tmp_path, scheduler) as process:
-        process.send_signal(signal.SIGINT)
+    # A shell that starts the tests in the background has its programs ignore interrupts.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    process = start(tmp_path, scheduler)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
     assert process.returncode == 130

@@ -74,7 +74,7 @@ fn verdict(rows: &[Row]) -> String {
 
 fn table(rows: &[Row]) -> Table {
     let mut table = Table::new(
-        "Characteristics",
+        "Values and standard uncertainties",
         [
             Column::new("key", "characteristic"),
             Column::new("symbol", "symbol"),
@@ -88,7 +88,9 @@ fn table(rows: &[Row]) -> Table {
     for row in rows {
         let [value, uncertainty] = match &row.found {
             Ok(found) => [
-                row.unit.quantity(found.value),
+                row.unit
+                    .with_digits_known(found.value, found.uncertainty)
+                    .quantity(found.value),
                 row.unit.with_digits(2).quantity(found.uncertainty),
             ],
             Err(reason) => [Cell::missing(reason.clone()), Cell::missing("-")],
@@ -110,7 +112,7 @@ fn table(rows: &[Row]) -> Table {
 
 fn defined(rows: &[Row]) -> Table {
     let columns = [Column::shown("characteristic"), Column::shown("definition")];
-    let mut table = Table::new("Definitions", columns);
+    let mut table = Table::new("How each is found", columns);
     for row in rows {
         table.row([row.name.into(), row.definition.into()]);
     }

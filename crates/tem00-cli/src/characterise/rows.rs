@@ -34,7 +34,7 @@ fn heights(found: &Characteristics) -> Vec<Row> {
     let (response, flat) = (found.response.as_ref(), found.flat.as_ref());
     vec![
         Row {
-            unit: NUMBER.with_digits(6),
+            unit: NUMBER,
             ..row(
                 [
                     "amplification_coefficient",
@@ -142,7 +142,7 @@ fn laterals(found: &Characteristics) -> Vec<Row> {
 
 fn probing(found: &Characteristics) -> Vec<Row> {
     let (sphere, flat) = (found.sphere.as_ref(), found.flat.as_ref());
-    let form = "Distance of the planes, parallel to that of least squares, that enclose 95 % of the points of all repetitions";
+    let form = "Distance of the planes, parallel to that of least squares, that enclose 95 % of the points of all repetitions.";
     vec![
         row(
             ["probing_size_error", "probing size error", "P_Size.Sph.All"],

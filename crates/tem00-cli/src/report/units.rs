@@ -50,6 +50,21 @@ impl Unit {
         Self { digits, ..self }
     }
 
+    /// Returns the unit for a value known no better than this: to the place of the second digit of its uncertainty.
+    pub(crate) fn with_digits_known(self, value: f64, uncertainty: f64) -> Self {
+        let place = |number: f64| number.abs().log10().floor();
+        let digits = place(value) - place(uncertainty) + 2.0;
+        if !digits.is_finite() {
+            return self;
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the number of digits lies in [1, 9]"
+        )]
+        self.with_digits(digits.clamp(1.0, 9.0) as u8)
+    }
+
     /// Returns a value in SI units in this unit.
     pub(crate) fn of(self, value: f64) -> f64 {
         value / self.size
@@ -108,5 +123,20 @@ mod tests {
         assert_eq!(cell, Cell::new(38.431e-6, "38.43 µm"));
         assert_eq!(PERCENT.with_digits(3).cell(0.994_21).text(), "99.4");
         assert_eq!(MICROMETRES.label("height"), "height (µm)");
+    }
+
+    #[test]
+    fn an_uncertain_value_ends_where_its_uncertainty_does() {
+        for (value, uncertainty, text) in [
+            (11.07e-6, 3.3e-6, "11.1 µm"),
+            (25.86e-6, 13e-6, "26 µm"),
+            (3.472e-6, 20e-6, "3 µm"),
+            (3.472e-6, 0.0, "3.472 µm"),
+        ] {
+            let unit = MICROMETRES.with_digits_known(value, uncertainty);
+            assert_eq!(unit.text(value), text);
+        }
+        let unit = NUMBER.with_digits_known(1.000_08, 1.75e-4);
+        assert_eq!(unit.text(1.000_08), "1.00008");
     }
 }

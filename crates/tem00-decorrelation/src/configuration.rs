@@ -107,6 +107,22 @@ impl Configuration {
     /// Returns an error if the point no longer lies in front of the camera, or if the light comes
     /// from no direction there. The speckle is then decorrelated, if there is any.
     pub fn moved(&self, motions: &RigidMotions) -> Result<Self, DecorrelationError> {
+        self.moved_into(motions, self.illumination.moved(&motions.source))
+    }
+
+    /// Returns the state after surface and camera have moved, in other light as it is then.
+    ///
+    /// The motion of the source does not count.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the point no longer lies in front of the camera, or if that light comes
+    /// from no direction there.
+    pub fn moved_into(
+        &self,
+        motions: &RigidMotions,
+        illumination: Illumination,
+    ) -> Result<Self, DecorrelationError> {
         let point = motions.surface.point(self.point);
         let pupil = motions.camera.point(self.pupil);
         let camera = self.sight.camera().turned(motions.camera.rotation());
@@ -114,7 +130,7 @@ impl Configuration {
             wavelength: self.wavelength,
             point,
             surface_axes: motions.surface.rotation() * self.surface_axes,
-            illumination: self.illumination.moved(&motions.source),
+            illumination,
             to_source: DVec3::ZERO,
             sight: LineOfSight::new(&camera, pupil - point)?,
             pupil,

@@ -81,6 +81,9 @@ impl CameraFrame {
 
     /// The axes turned by a rotation.
     pub(crate) fn turned(&self, rotation: DMat3) -> Self {
+        if rotation == DMat3::IDENTITY {
+            return *self;
+        }
         let axes = rotation * self.axes;
         let towards_camera = axes.z_axis.normalize();
         Self::from_right(

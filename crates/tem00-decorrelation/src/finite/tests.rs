@@ -190,6 +190,20 @@ fn a_wave_longer_than_the_pattern_leaves_none() {
 }
 
 #[test]
+fn moving_into_other_light_is_moving_and_then_changing_it() {
+    let before = Configuration::new(upright(0.25)).unwrap();
+    let turn = RigidMotion::about(DVec3::X, DVec3::new(0.3, 1.0, -0.2), 0.1).unwrap();
+    let motions = RigidMotions {
+        surface: turn,
+        camera: turn.inverse(),
+        source: turn,
+    };
+    let light = Illumination::point_source(DVec3::new(0.1, 0.2, 0.5)).unwrap();
+    let in_turn = before.moved(&motions).unwrap().with_illumination(light);
+    assert_eq!(before.moved_into(&motions, light), in_turn);
+}
+
+#[test]
 fn invalid_states_are_rejected() {
     use crate::DecorrelationError as E;
     let reject = |data| Configuration::new(data).unwrap_err();

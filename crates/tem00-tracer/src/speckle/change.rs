@@ -375,9 +375,8 @@ impl Change {
             camera: self.camera.forth,
             source: RigidMotion::IDENTITY,
         };
-        let now = before.moved(&motions).ok()?;
-        let lit = now.with_illumination(light(&laser.now, point.position)?);
-        Some([before, lit.ok()?])
+        let now = before.moved_into(&motions, light(&laser.now, point.position)?);
+        Some([before, now.ok()?])
     }
 
     /// Returns how far the surface has moved at a point, and the camera.
@@ -426,6 +425,10 @@ fn axial_shift(geometry: &ImagingGeometry, before: &Configuration, now: &Configu
 /// across the line of sight; along it, beyond the first zero of the correlation, by the unit of that
 /// zero, without the revival of 4.7 % behind it.
 fn equivalent_shift(correlation: f64, lateral: f64, axial: f64) -> f64 {
+    // Here motion along the line of sight takes at most β²/4 = π² x² = 1e-13 of the correlation.
+    if axial.abs() < 1e-7 {
+        return lateral;
+    }
     let beyond_the_zero = if axial.abs() >= 1.0 { axial.abs() } else { 0.0 };
     equivalent_pupil_shift(correlation)
         .max(lateral)

@@ -185,3 +185,20 @@ fn points_that_the_theory_does_not_know_have_speckle_of_their_own() {
     };
     assert_eq!(speckle_shift(&scene, 3, [0.0, 0.0]), expected);
 }
+
+#[test]
+fn negligible_axial_motion_leaves_the_lateral_shift() {
+    use tem00_decorrelation::CorrelationLaw::AtPeak;
+    for lateral in [0.0, 1e-3, 0.25, 0.7, 0.98, 1.0, 3.0] {
+        for axial in [0.0, -0.99e-7, 0.99e-7, 1.01e-7, 1e-5, 1e-3] {
+            let correlation = AtPeak.correlation(lateral, axial);
+            let inverted = equivalent_pupil_shift(correlation).max(lateral);
+            // The loss of 1e-13, by at most half of it in the shift, and rounding.
+            let error = equivalent_shift(correlation, lateral, axial) - inverted;
+            assert!(
+                error.abs() < 2e-13,
+                "{lateral} across, {axial:e} along: {error:e}"
+            );
+        }
+    }
+}

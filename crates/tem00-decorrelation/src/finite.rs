@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     Configuration, CorrelationLaw, GRAZING_COSINE, ImageOrientation, ImagingGeometry,
-    SpeckleMotion, motion::defocus_displacement,
+    SpeckleMotion, motion::defocus_displacement, rigid_change::leaving,
 };
 
 /// The law of speckle motion between two states, however far apart.
@@ -141,16 +141,13 @@ impl Configuration {
     /// The direction in which the field leaves after the change that left in `direction` before.
     fn direction_after(&self, after: &Self, direction: DVec3) -> Option<DVec3> {
         let side = self.normal().dot(direction);
-        let sum = self.surface_axes.transpose() * (self.to_source + direction);
-        let source = after.surface_axes.transpose() * after.to_source;
-        let tangential = sum.truncate() * (after.wavelength / self.wavelength) - source.truncate();
-        let rest = 1.0 - tangential.length_squared();
-        let lit_side = self.normal().dot(self.to_source) * source.z;
-        // Not a number fails all.
-        if !(rest > 0.0 && side.abs() > GRAZING_COSINE && lit_side >= 0.0) {
-            return None;
-        }
-        Some(after.surface_axes * tangential.extend(rest.sqrt().copysign(side)))
+        let turned =
+            after.surface_axes * (self.surface_axes.transpose() * (self.to_source + direction));
+        let sum = turned * (after.wavelength / self.wavelength) - after.to_source;
+        let (leaves, rest) = leaving(after.normal(), sum, side);
+        let lit_side = self.normal().dot(self.to_source) * after.normal().dot(after.to_source);
+        // NaN fails every comparison.
+        (rest > 0.0 && side.abs() > GRAZING_COSINE && lit_side >= 0.0).then_some(leaves)
     }
 
     /// The point of the pupil that a line from the surface point meets.

@@ -71,6 +71,7 @@ mod illumination;
 mod lens;
 mod motion;
 mod rigid;
+mod rigid_change;
 mod wavefront;
 
 pub use configuration::{Configuration, ConfigurationData};
@@ -87,6 +88,7 @@ pub use illumination::Illumination;
 pub use lens::{Focus, LensData, PupilDistances, ThickLensData};
 pub use motion::{ImageOrientation, Motion, SpeckleMotion, SurfacePoint};
 pub use rigid::{RigidMotion, RigidMotions};
+pub use rigid_change::{ChangedPoint, PointChange, RigidChange};
 pub use wavefront::Wavefront;
 
 /// The smallest cosine between two directions that still counts as different from zero, `2⁻²⁶`.

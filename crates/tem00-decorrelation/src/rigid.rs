@@ -129,11 +129,13 @@ impl RigidMotion {
     }
 
     /// Returns where the motion takes a point, in metres.
+    #[inline(always)]
     pub fn point(&self, point: DVec3) -> DVec3 {
         self.rotation * point + self.translation
     }
 
     /// Returns where the motion turns a direction.
+    #[inline(always)]
     pub fn direction(&self, direction: DVec3) -> DVec3 {
         self.rotation * direction
     }

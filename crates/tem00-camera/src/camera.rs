@@ -186,6 +186,18 @@ impl Camera {
         self.geometry_for(wavelength, in_focus)
     }
 
+    /// Returns the vergence 1/L of what is in focus at an image point, in 1/m, with its distance L along the axis: not
+    /// positive where nothing real is.
+    pub fn focus_vergence_at(&self, pixel: DVec2) -> f64 {
+        self.description.focal_length.recip() - self.sensor.point(pixel).z.recip()
+    }
+
+    /// Returns the tangents of the viewing angle at an image point, to the right and up.
+    pub fn tangents_at(&self, pixel: DVec2) -> DVec2 {
+        let chief = self.chief(pixel);
+        chief.truncate() / chief.z
+    }
+
     /// Returns the ray that arrives at the image point `pixel` through the centre of the lens.
     pub fn ray(&self, pixel: DVec2) -> Ray {
         Ray {

@@ -283,12 +283,19 @@ impl SpeckleStack {
     /// path. For a still stack the distance is always 0. Where the law is not monotonic (an annulus),
     /// it is the smallest distance.
     pub fn coordinate_of(&self, correlation: f64) -> f64 {
-        let overlap = if correlation > 0.0 {
-            correlation.sqrt()
-        } else {
-            0.0
-        };
-        self.law.coordinate_of(overlap)
+        let mut coordinate = [correlation];
+        self.coordinates_of(&mut coordinate);
+        coordinate[0]
+    }
+
+    /// Puts the coordinate of each correlation in its place, as [`coordinate_of`](Self::coordinate_of) returns it.
+    ///
+    /// Neighbours between the same two slices are found fastest.
+    pub fn coordinates_of(&self, correlations: &mut [f64]) {
+        for value in &mut *correlations {
+            *value = if *value > 0.0 { value.sqrt() } else { 0.0 };
+        }
+        self.law.coordinates_of(correlations);
     }
 }
 

@@ -10,6 +10,7 @@ use tem00_coherence::{SourceExtent, SpectralLine};
 use tem00_decorrelation::RigidMotion;
 
 pub use self::emission::{EmittedRay, SampledIllumination};
+pub(crate) use self::wave::{WaveFrame, WaveShape};
 use crate::{TracerError, Trajectory};
 
 /// Parameters of a [`Laser`].
@@ -226,11 +227,6 @@ impl Laser {
             direction: DVec3::from_array(event.wi),
             irradiance: event.radiance,
         })
-    }
-
-    /// Returns the unit direction from `point` to the middle of the aperture.
-    pub(crate) fn direction_from(&self, point: DVec3) -> Option<DVec3> {
-        (self.description.position - point).try_normalize()
     }
 }
 

@@ -1,6 +1,7 @@
 //! From the camera and the motion in a scene to the speckle factor of a camera sample.
 
 mod allocation;
+mod axial_loss;
 mod bandwidth;
 mod between_frames;
 mod change;
@@ -11,6 +12,7 @@ mod perspective;
 mod plan;
 mod prescan;
 mod printed;
+mod shifts;
 
 use glam::{DVec2, DVec3};
 

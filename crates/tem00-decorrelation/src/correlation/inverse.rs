@@ -27,6 +27,7 @@ use super::correlation as product_law;
 /// assert!((shift * 3.125e-3 - 0.7254e-3).abs() < 1e-7);
 /// assert!((pupil_overlap_correlation(shift) - 0.5).abs() < 1e-12);
 /// ```
+#[inline]
 pub fn equivalent_pupil_shift(correlation: f64) -> f64 {
     disc_overlap_inverse(amplitude(correlation))
 }
@@ -108,6 +109,7 @@ fn between(low: f64, high: f64) -> Option<f64> {
 }
 
 /// √γ, with rounding noise below zero taken for zero.
+#[inline]
 fn amplitude(correlation: f64) -> f64 {
     correlation.max(0.0).sqrt()
 }

@@ -244,18 +244,34 @@ impl PathLaw {
         self.blend_after(to_usize(u)).overlap(u.fract())
     }
 
-    /// The smallest u ≥ 0 at which the overlap has fallen to `overlap`.
-    pub(crate) fn coordinate_of(&self, overlap: f64) -> f64 {
-        if self.path == SlicePath::Still || overlap >= 1.0 {
-            return 0.0;
+    /// Puts the smallest u ≥ 0 at which the overlap has fallen to each of `overlaps` in its place; none of them is negative.
+    pub(crate) fn coordinates_of(&self, overlaps: &mut [f64]) {
+        // The blend in which the last one was found, and the overlaps to which it falls.
+        let (mut before, mut blend) = (0, self.blend_after(0));
+        let mut range = self.fall_after(0);
+        for overlap in overlaps {
+            let u = &mut *overlap;
+            if self.path == SlicePath::Still || *u >= 1.0 {
+                *u = 0.0;
+                continue;
+            }
+            if !(range[1] <= *u && *u < range[0]) {
+                let slice = self.lowest.partition_point(|lowest| lowest > u);
+                if slice == self.lowest.len() {
+                    *u = (slice - 1) as f64;
+                    continue;
+                }
+                before = slice - 1;
+                (blend, range) = (self.blend_after(before), self.fall_after(before));
+            }
+            *u = before as f64 + blend.fraction(*u);
         }
-        let overlap = overlap.max(0.0); // NaN counts as no correlation, too
-        let slice = self.lowest.partition_point(|&lowest| lowest > overlap);
-        if slice == self.lowest.len() {
-            return (slice - 1) as f64;
-        }
-        let before = slice - 1;
-        before as f64 + self.blend_after(before).fraction(overlap)
+    }
+
+    /// The smallest overlap with slice 0 up to slice `index`, and up to the next.
+    fn fall_after(&self, index: usize) -> [f64; 2] {
+        let next = self.lowest.get(index + 1);
+        [self.lowest[index], next.copied().unwrap_or(f64::INFINITY)]
     }
 
     /// The blend of slice `index` and the next, beside slice 0.

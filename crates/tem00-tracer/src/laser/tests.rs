@@ -31,7 +31,7 @@ fn line(profile: LineProfile, focus_curve: FocusCurve) -> Laser {
 /// 1/m: a component of the curvature of its wavefront.
 fn curvature(laser: &Laser, point: DVec3, [along, turned]: [DVec3; 2]) -> f64 {
     const STEP: f64 = 1e-7;
-    let wave = |part: f64| laser.wave_direction_at(point + part * along).unwrap();
+    let wave = |part: f64| laser.wave_direction_at(point + part * along);
     (wave(-STEP) - wave(STEP)).dot(turned) / (2.0 * STEP)
 }
 

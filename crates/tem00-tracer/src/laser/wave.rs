@@ -1,31 +1,133 @@
 //! The wave of a laser, where it lights a surface and where it does not.
 
 use glam::DVec3;
-use tem00_beam::LaserLine;
+use tem00_beam::FocusCurve;
 
 use super::{Laser, Source};
 
+/// The wave of a laser at rest in its own axes: the slopes of its rays.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum WaveShape {
+    Spot(SpotWave),
+    Line(LineWave),
+}
+
+/// The wave of a beam: for each axis, where its waist lies and the square of its Rayleigh range.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpotWave {
+    waist_distance: [f64; 2],
+    rayleigh_range_squared: [f64; 2],
+}
+
+/// The wave of a line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LineWave {
+    apex_offset: f64,
+    /// The slant distance of the waist from the apex in the middle of the fan, and its growth with the secant.
+    waist_slant_distance: [f64; 2],
+    rayleigh_range_squared: f64,
+}
+
+/// Where a laser stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WaveFrame {
+    origin: DVec3,
+    axes: [DVec3; 3],
+}
+
+impl SpotWave {
+    /// The slopes of the ray through a point in the axes of the beam.
+    #[inline(always)]
+    pub(crate) fn slopes(&self, [x, y, z]: [f64; 3]) -> [f64; 2] {
+        let curvature = |axis: usize| {
+            let from_waist = z - self.waist_distance[axis];
+            curvature(from_waist, self.rayleigh_range_squared[axis])
+        };
+        [x * curvature(0), y * curvature(1)]
+    }
+}
+
+impl LineWave {
+    /// The slopes of the ray through a point in the axes of the line: NaN at the apex and behind it.
+    #[inline(always)]
+    pub(crate) fn slopes(&self, [x, y, z]: [f64; 3]) -> [f64; 2] {
+        let depth = z + self.apex_offset;
+        let slope = x / depth;
+        let secant = (1.0 + slope * slope).sqrt();
+        let [middle, growth] = self.waist_slant_distance;
+        let from_waist = depth * secant - (middle + growth * secant);
+        let across = y * curvature(from_waist, self.rayleigh_range_squared) * secant;
+        [if depth > 0.0 { slope } else { f64::NAN }, across]
+    }
+}
+
+/// 1/R of a Gaussian beam.
+#[inline(always)]
+fn curvature(from_waist: f64, rayleigh_range_squared: f64) -> f64 {
+    from_waist / (from_waist * from_waist + rayleigh_range_squared)
+}
+
+impl WaveFrame {
+    /// Returns the unit direction from `point` along which the wave arrives, by the slopes of its rays: towards the
+    /// aperture where they are not finite.
+    #[inline(always)]
+    pub(crate) fn to_source(&self, point: DVec3, slopes: impl Fn([f64; 3]) -> [f64; 2]) -> DVec3 {
+        let offset = point - self.origin;
+        let [ex, ey, ez] = self.axes;
+        let [sx, sy] = slopes([offset.dot(ex), offset.dot(ey), offset.dot(ez)]);
+        let along = -(sx * ex + sy * ey + ez);
+        let square = along.length_squared();
+        let has_wave = square <= f64::MAX;
+        let choose = |wave: f64, aperture: f64| if has_wave { wave } else { -aperture };
+        let direction = DVec3::new(
+            choose(along.x, offset.x),
+            choose(along.y, offset.y),
+            choose(along.z, offset.z),
+        );
+        direction * (1.0 / choose(square, -offset.length_squared()).sqrt())
+    }
+}
+
 impl Laser {
+    /// Returns where the laser stands.
+    pub(crate) fn wave_frame(&self) -> WaveFrame {
+        WaveFrame {
+            origin: self.description.position,
+            axes: self.axes(),
+        }
+    }
+
+    /// Returns its wave.
+    pub(crate) fn wave_shape(&self) -> WaveShape {
+        match &self.source {
+            Source::Spot { beam, .. } => WaveShape::Spot(SpotWave {
+                waist_distance: beam.axes().map(|axis| axis.waist_distance()),
+                rayleigh_range_squared: beam
+                    .axes()
+                    .map(|axis| axis.beam().rayleigh_range().powi(2)),
+            }),
+            Source::Line { line, .. } => WaveShape::Line(LineWave {
+                apex_offset: line.fan().apex_offset,
+                waist_slant_distance: match line.fan().focus_curve {
+                    FocusCurve::EqualDistance => [line.waist_slant_distance(), 0.0],
+                    FocusCurve::EqualPlane => [0.0, line.waist_slant_distance()],
+                },
+                rayleigh_range_squared: line.focus().rayleigh_range().powi(2),
+            }),
+        }
+    }
+
     /// Returns the unit direction from `point` along which the wave arrives, towards its source.
     ///
     /// Where the laser lights the point it is the direction of the light. Beyond its cut-off, where
-    /// no light is followed any more, the wave goes on.
-    ///
-    /// Returns `None` at the apex of a line and behind it.
-    pub fn wave_direction_at(&self, point: DVec3) -> Option<DVec3> {
-        let [x, y, z] = self.local(point);
-        let slope = match &self.source {
-            Source::Spot { beam, .. } => {
-                let [first, second] = beam.curvatures_at(z);
-                [x * first, y * second]
-            }
-            Source::Line { line, .. } => {
-                let fan = FanPoint::new(line, [x, z])?;
-                [fan.slope, y * fan.curvature * fan.secant]
-            }
-        };
-        let [ex, ey, ez] = self.axes();
-        (-(slope[0] * ex + slope[1] * ey + ez)).try_normalize()
+    /// no light is followed any more, the wave goes on; at the apex of a line and behind it, there is none, and the
+    /// direction is that to the middle of the aperture.
+    pub(crate) fn wave_direction_at(&self, point: DVec3) -> DVec3 {
+        let frame = self.wave_frame();
+        match self.wave_shape() {
+            WaveShape::Spot(wave) => frame.to_source(point, |local| wave.slopes(local)),
+            WaveShape::Line(wave) => frame.to_source(point, |local| wave.slopes(local)),
+        }
     }
 
     /// Returns the optical path of the wave to `point`, in metres, less one that is the same for all points.
@@ -44,8 +146,12 @@ impl Laser {
                 Some(z + 0.5 * (first * x * x + second * y * y))
             }
             Source::Line { line, .. } => {
-                let fan = FanPoint::new(line, [x, z])?;
-                Some(fan.distance + 0.5 * fan.curvature * y * y)
+                let depth = z + line.fan().apex_offset;
+                let slope = x / depth;
+                let distance = depth * (1.0 + slope * slope).sqrt();
+                let from_waist = distance - line.waist_slant_distance_at(slope);
+                let curvature = line.focus().curvature_at(from_waist);
+                (depth > 0.0).then_some(distance + 0.5 * curvature * y * y)
             }
         }
     }
@@ -65,39 +171,9 @@ impl Laser {
     }
 }
 
-/// A point in the fan of a line.
-struct FanPoint {
-    /// The tangent of the angle in the fan, and the secant.
-    slope: f64,
-    secant: f64,
-    /// The distance from the apex, in metres.
-    distance: f64,
-    /// The curvature of the wave across the line, in m⁻¹.
-    curvature: f64,
-}
-
-impl FanPoint {
-    fn new(line: &LaserLine, [x, z]: [f64; 2]) -> Option<Self> {
-        let depth = z + line.fan().apex_offset;
-        if depth <= 0.0 {
-            return None;
-        }
-        let slope = x / depth;
-        let secant = (1.0 + slope * slope).sqrt();
-        let distance = depth * secant;
-        let from_waist = distance - line.waist_slant_distance_at(slope);
-        Some(Self {
-            slope,
-            secant,
-            distance,
-            curvature: line.focus().curvature_at(from_waist),
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use tem00_beam::{FanGeometry, FocusCurve, LineProfile};
+    use tem00_beam::{FanGeometry, LineProfile};
 
     use super::*;
     use crate::{BeamShape, LaserDescription, testing::spot};
@@ -134,7 +210,7 @@ mod tests {
             for i in 0..400_u32 {
                 let (x, y) = (f64::from(i % 20) - 9.5, f64::from(i / 20) - 9.5);
                 let point = DVec3::new(3e-3 * x, 0.02e-3 * y, 1e-3 * x);
-                let wave = laser.wave_direction_at(point).unwrap();
+                let wave = laser.wave_direction_at(point);
                 let across = wave.any_orthonormal_vector();
                 let slope = |direction: DVec3| {
                     let [ahead, behind] =
@@ -159,7 +235,7 @@ mod tests {
             for i in 0..400_u32 {
                 let (x, y) = (f64::from(i % 20) - 9.5, f64::from(i / 20) - 9.5);
                 let point = DVec3::new(3e-3 * x, 0.2e-3 * y, 1e-3 * x);
-                let wave = laser.wave_direction_at(point).unwrap();
+                let wave = laser.wave_direction_at(point);
                 assert!((wave.length() - 1.0).abs() < 1e-15, "{wave}");
                 if let Some(light) = laser.illuminate(point) {
                     lit += 1;

@@ -5,7 +5,7 @@ use tem00_camera::Camera;
 use tem00_coherence::{CellGeometry, ResolutionCell};
 use tem00_decorrelation::{
     CameraFrame, Configuration, ConfigurationData, Illumination, ImageOrientation, ImagingGeometry,
-    RigidMotion, RigidMotions, SpeckleMotion, equivalent_pupil_shift,
+    RigidChange, RigidMotion, RigidMotions, SpeckleMotion,
 };
 
 use super::{SpecklePoint, perspective::Perspective, upright};
@@ -24,6 +24,8 @@ pub(crate) struct Change {
     camera: BodyChange,
     lasers: Vec<LaserChange>,
     surfaces: Vec<BodyChange>,
+    /// The law for the points of each surface.
+    laws: Vec<RigidChange>,
 }
 
 /// The motion of a body from the reference frame to now, and back.
@@ -40,15 +42,6 @@ struct LaserChange {
     before: Laser,
     now: Laser,
     moved: bool,
-}
-
-/// Motion of the speckle of a point since the reference frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct SpeckleShift {
-    /// The displacement of the speckle in the image in perspective, in pixels with y down.
-    pub displacement: DVec2,
-    /// The displacement of the pupil over the speckle, in pupil diameters, never negative.
-    pub pupil: f64,
 }
 
 /// Change of the speckle of a point with the wave number.
@@ -112,14 +105,26 @@ impl Change {
             now: scene.laser_at(index, frame),
             moved: laser.trajectory().pose_at(reference) != laser.trajectory().pose_at(frame),
         };
+        let axes = CameraFrame::from_axes(scene.camera_at(reference).axes()).ok();
+        let camera = body(&scene.camera_trajectory);
+        let surfaces: Vec<_> = scene.surfaces.iter().map(|s| body(&s.trajectory)).collect();
+        let law = |surface: &BodyChange| {
+            let motions = RigidMotions {
+                surface: surface.forth,
+                camera: camera.forth,
+                source: RigidMotion::IDENTITY,
+            };
+            RigidChange::new(axes?, scene.camera_at(reference).position(), &motions).ok()
+        };
         Self {
-            axes: CameraFrame::from_axes(scene.camera_at(reference).axes()).ok(),
+            laws: surfaces.iter().map_while(law).collect(),
+            axes,
             frames: f64::from(frame) - f64::from(reference),
             cameras: [scene.camera_at(reference), scene.camera_at(frame)],
             perspective: Perspective::new(scene.camera_at(frame)),
-            camera: body(&scene.camera_trajectory),
+            camera,
             lasers: scene.lasers.iter().enumerate().map(laser).collect(),
-            surfaces: scene.surfaces.iter().map(|s| body(&s.trajectory)).collect(),
+            surfaces,
         }
     }
 
@@ -203,7 +208,6 @@ impl Change {
     /// line of sight in axial decorrelation lengths.
     fn way(&self, laser: usize, geometry: &ImagingGeometry, point: &SpecklePoint) -> Option<DVec3> {
         let [before, now] = self.states(laser, point)?;
-        let geometry = &self.perspective.geometry(geometry, point.pixel);
         let across = before.pupil_point_after(&now, DVec2::ZERO)?;
         let along = axial_shift(geometry, &before, &now);
         let way = (across / geometry.pupil_diameter()).extend(along);
@@ -216,76 +220,19 @@ impl Change {
         !moved && self.surfaces.get(surface).is_none_or(|body| !body.moved)
     }
 
-    /// Returns what has become of the speckle of a laser at a point.
-    ///
-    /// Where the theory has no value, every frame has speckle of its own.
-    pub(super) fn speckle_shift(
-        &self,
-        laser: usize,
-        geometry: &ImagingGeometry,
-        point: &SpecklePoint,
-    ) -> SpeckleShift {
-        let new = SpeckleShift {
-            displacement: DVec2::ZERO,
-            pupil: self.frames.abs(),
-        };
-        self.known_shift(laser, geometry, point).unwrap_or(new)
+    /// Returns the law for the points of a surface.
+    pub(super) fn law(&self, surface: usize) -> Option<&RigidChange> {
+        self.laws.get(surface)
     }
 
-    /// Returns what has become of the speckle of a laser at a point, if the theory has a value.
-    pub(super) fn known_shift(
-        &self,
-        laser: usize,
-        geometry: &ImagingGeometry,
-        point: &SpecklePoint,
-    ) -> Option<SpeckleShift> {
-        if self.is_still(laser, point.surface) {
-            return Some(SpeckleShift::default());
-        }
-        self.shift_between(geometry, point, self.states(laser, point)?)
+    /// Returns the number of frames since the reference frame, negative before it.
+    pub(super) const fn frames(&self) -> f64 {
+        self.frames
     }
 
-    /// Returns what has become of the speckle at a point of light that keeps its phases where it meets the surface, if
-    /// the theory has a value.
-    pub(super) fn shift_without_source(
-        &self,
-        laser: usize,
-        geometry: &ImagingGeometry,
-        point: &SpecklePoint,
-    ) -> Option<SpeckleShift> {
-        let [before, now] = self.states(laser, point)?;
-        let body = self.surfaces.get(point.surface)?;
-        let carried = body.forth.direction(before.direction_to_source());
-        let now = now.with_illumination(Illumination::collimated(carried).ok()?);
-        self.shift_between(geometry, point, [before, now.ok()?])
-    }
-
-    /// The law of speckle motion between two states, however far apart.
-    fn shift_between(
-        &self,
-        geometry: &ImagingGeometry,
-        point: &SpecklePoint,
-        [before, now]: [Configuration; 2],
-    ) -> Option<SpeckleShift> {
-        let screen = ImageOrientation::ScreenUpright;
-        let pixels_per_tangent = geometry.principal_distance() / geometry.pixel_pitch();
-        let geometry = &self.perspective.geometry(geometry, point.pixel);
-        let speckle = SpeckleMotion::between(geometry, &before, &now, screen);
-        let tangents = speckle.speckle_displacement() / geometry.principal_distance();
-        let displacement = upright(tangents * pixels_per_tangent);
-        let pupil = match speckle.pupil_displacement {
-            Some(pupil) => {
-                let lateral = pupil.length() / geometry.pupil_diameter();
-                let axial = axial_shift(geometry, &before, &now);
-                equivalent_shift(speckle.correlation, lateral, axial)
-            }
-            None => self.frames.abs(),
-        };
-        Some(SpeckleShift {
-            displacement,
-            pupil,
-        })
-        .filter(SpeckleShift::is_finite)
+    /// Returns laser `index` in the reference frame.
+    pub(super) fn laser_before(&self, index: usize) -> &Laser {
+        &self.lasers[index].before
     }
 
     /// Returns where a point of a surface stood in the reference frame, in metres.
@@ -338,7 +285,6 @@ impl Change {
         point: &SpecklePoint,
     ) -> Option<ResolutionCell> {
         let [_, now] = self.states(laser, point)?;
-        let geometry = &self.perspective.geometry(geometry, point.pixel);
         let to_pupil = self.cameras[1].position() - point.position;
         ResolutionCell::new(CellGeometry {
             to_source: now.direction_to_source(),
@@ -358,8 +304,7 @@ impl Change {
         // The phase of the light at a point follows from its direction alone, in either state: the
         // wave between them need not be known.
         let light = |laser: &Laser, point: DVec3| {
-            let wave = laser.wave_direction_at(point);
-            Illumination::collimated(wave.or_else(|| laser.direction_from(point))?).ok()
+            Illumination::collimated(laser.wave_direction_at(point)).ok()
         };
         let before = Configuration::new(ConfigurationData {
             wavelength: laser.now.wavelength(),
@@ -405,35 +350,9 @@ impl SpectralShift {
     }
 }
 
-impl SpeckleShift {
-    fn is_finite(&self) -> bool {
-        self.displacement.is_finite() && self.pupil.is_finite()
-    }
-}
-
 /// Change of the surface's defocus, in axial decorrelation lengths.
 fn axial_shift(geometry: &ImagingGeometry, before: &Configuration, now: &Configuration) -> f64 {
     let defocus = |state: &Configuration| geometry.defocus_at(state.sight().depth());
     let diameter = geometry.pupil_diameter();
     (defocus(now) - defocus(before)) * diameter * diameter / (8.0 * now.wavelength())
 }
-
-/// The shift of the pupil, in its diameters, whose overlap leaves `correlation`.
-///
-/// Motion along the line of sight is turned into the shift of equal correlation. Shifts beyond one
-/// diameter keep growing, which tells the speckle of two later frames apart: exactly so for motion
-/// across the line of sight; along it, beyond the first zero of the correlation, by the unit of that
-/// zero, without the revival of 4.7 % behind it.
-fn equivalent_shift(correlation: f64, lateral: f64, axial: f64) -> f64 {
-    // Here motion along the line of sight takes at most β²/4 = π² x² = 1e-13 of the correlation.
-    if axial.abs() < 1e-7 {
-        return lateral;
-    }
-    let beyond_the_zero = if axial.abs() >= 1.0 { axial.abs() } else { 0.0 };
-    equivalent_pupil_shift(correlation)
-        .max(lateral)
-        .max(beyond_the_zero)
-}
-
-#[cfg(test)]
-mod tests;

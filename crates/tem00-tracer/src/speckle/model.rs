@@ -8,10 +8,11 @@ use tem00_speckle::SpeckleStack;
 use super::{
     PatternPlan, SpecklePlan, SpecklePoint,
     allocation::PatternAllocation,
-    change::{Change, SpeckleShift},
+    change::Change,
     multiple::{MultipleLight, MultipleMap},
     plan::SurfacePatterns,
     printed::displacement_and_slice,
+    shifts::{BLOCK, Light, SpeckleShift},
     upright,
 };
 use crate::{Scene, TracerError};
@@ -70,9 +71,6 @@ struct Mix {
     /// Whether the light is faint.
     is_faint: bool,
 }
-
-/// Points that are looked up together.
-const BLOCK: usize = 64;
 
 /// Coordinates in a stack: x and y in samples, u in slices.
 #[derive(Clone, Copy, Debug)]
@@ -164,14 +162,25 @@ impl Pattern {
         })
     }
 
-    /// Returns the coordinate in slices where the pupil has moved by so many of its diameters to one side.
-    fn coordinate_of(&self, stack: &SpeckleStack, pupil: f64, sign: f64) -> f64 {
+    /// Writes the coordinates in slices where the pupil has moved by the shifts to one side.
+    fn coordinates_of(
+        &self,
+        stack: &SpeckleStack,
+        shifts: &[SpeckleShift],
+        sign: f64,
+        coordinates: &mut [f64],
+    ) {
         // Beyond the reach the speckle is new to the reference frame, wherever the pupil stands.
-        let shift = pupil.min(self.reaches[usize::from(sign > 0.0)]);
+        let reach = self.reaches[usize::from(sign > 0.0)];
+        for (u, shift) in coordinates.iter_mut().zip(shifts) {
+            *u = pupil_overlap_correlation(shift.pupil.min(reach));
+        }
         // Where the blend of two slices has kept as much of the reference frame as that shift, and
         // on along the path once nothing is left.
-        let u = stack.coordinate_of(pupil_overlap_correlation(shift));
-        sign * u.max(shift * self.slices_per_diameter)
+        stack.coordinates_of(coordinates);
+        for (u, shift) in coordinates.iter_mut().zip(shifts) {
+            *u = sign * u.max(shift.pupil.min(reach) * self.slices_per_diameter);
+        }
     }
 }
 
@@ -282,20 +291,28 @@ impl SpeckleFrame<'_> {
         }
     }
 
-    /// What has become of the speckle of a point since the reference frame.
-    fn shift(
+    /// Writes what has become of the speckle of points of one surface since the reference frame.
+    fn shifts(
         &self,
         laser: usize,
-        geometry: &ImagingGeometry,
-        point: &SpecklePoint,
-        mix: Option<&Mix>,
-    ) -> SpeckleShift {
-        match mix {
-            None => self.change.speckle_shift(laser, geometry, point),
-            Some(mix) => {
-                let of_laser = (laser, geometry);
-                mix.multiple
-                    .shift(&self.change, of_laser, point, mix.fraction)
+        (points, mixes): (&[SpecklePoint], &[Option<Mix>]),
+        shifts: &mut [SpeckleShift],
+    ) {
+        let (change, geometry) = (&self.change, &self.model.lasers[laser].geometry);
+        let new = change.new_speckle();
+        let mut known = [None; BLOCK];
+        let known = &mut known[..points.len()];
+        change.known_shifts((laser, Light::Direct), geometry, points, known);
+        for (shift, known) in shifts.iter_mut().zip(&*known) {
+            *shift = known.unwrap_or(new);
+        }
+        if change.is_reference() || mixes.iter().all(Option::is_none) {
+            return;
+        }
+        change.known_shifts((laser, Light::Carried), geometry, points, known);
+        for ((shift, known), mix) in shifts.iter_mut().zip(&*known).zip(mixes) {
+            if let (Some(mix), Some(carried)) = (mix, known) {
+                *shift = mix.multiple.shift([*shift, *carried], mix.fraction);
             }
         }
     }
@@ -308,18 +325,21 @@ impl SpeckleFrame<'_> {
         stack: &SpeckleStack,
         (points, mixes): (&[SpecklePoint], &[Option<Mix>]),
     ) -> Block {
+        let mut shifts = [SpeckleShift::default(); BLOCK];
+        let shifts = &mut shifts[..points.len()];
+        self.shifts(laser, (points, mixes), shifts);
         let geometry = &self.model.lasers[laser].geometry;
+        let per_pixel = geometry.pattern_coordinate(DVec2::ONE, DVec2::ZERO, stack.speckle_size());
         let sides = &self.sides[laser];
         let side = points.first().and_then(|p| sides.get(p.surface));
         let sign = side.copied().unwrap_or(1.0);
         let mut block = Block::default();
-        for (i, (point, mix)) in points.iter().zip(mixes).enumerate() {
-            let shift = self.shift(laser, geometry, point, mix.as_ref());
+        for (i, (point, shift)) in points.iter().zip(&*shifts).enumerate() {
             let pixel = self.change.perspective().point(point.pixel) - shift.displacement;
-            let c = geometry.pattern_coordinate(pixel, DVec2::ZERO, stack.speckle_size());
-            block.u[i] = pattern.coordinate_of(stack, shift.pupil, sign);
-            [block.x[i], block.y[i]] = c.to_array();
+            [block.x[i], block.y[i]] = (pixel * per_pixel).to_array();
         }
+        let u = &mut block.u[..points.len()];
+        pattern.coordinates_of(stack, shifts, sign, u);
         block
     }
 

@@ -34,9 +34,8 @@ impl Perspective {
         if self.plain {
             return pixel;
         }
-        let local = self.camera.axes().transpose() * self.camera.ray(pixel).direction;
-        // The camera looks along −z; pixels count downwards.
-        let tangent = DVec2::new(local.x, -local.y) / -local.z;
+        // Pixels count downwards.
+        let tangent = self.camera.tangents_at(pixel) * DVec2::new(1.0, -1.0);
         let pitch = self.camera.description().pixel_pitch;
         let point = tangent * (self.camera.image_distance() / pitch) + 0.5 * self.size();
         if point.is_finite() { point } else { pixel }
@@ -82,6 +81,15 @@ impl Perspective {
                 .ok()
         });
         tilted.flatten().unwrap_or(*on_axis)
+    }
+
+    /// Returns the vergence 1/L of what is in focus at an image point, in 1/m.
+    pub(super) fn focus_vergence(&self, on_axis: &ImagingGeometry, pixel: DVec2) -> f64 {
+        if self.tilted {
+            self.camera.focus_vergence_at(pixel)
+        } else {
+            on_axis.surface_to_pupil().recip()
+        }
     }
 
     fn size(&self) -> DVec2 {

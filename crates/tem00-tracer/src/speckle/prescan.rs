@@ -10,6 +10,7 @@ use super::{
     change::{Change, ReferencePoint},
     multiple::MultipleMap,
     perspective::Perspective,
+    shifts::Light,
 };
 use crate::{Intersector, Scene, TracerError};
 
@@ -197,7 +198,12 @@ fn add_multiple_light(
         for ((_, surface), light) in map.bright().filter(|((of, _), _)| *of == laser) {
             let point = &light.point;
             let fraction = light.fraction_beside(light.single);
-            let shift = light.shift(change, (laser, geometry), point, fraction);
+            let single = change.speckle_shift(laser, geometry, point);
+            let carried = change.known_shift(laser, geometry, point, Light::Carried);
+            let shift = match carried {
+                Some(carried) if !change.is_reference() => light.shift([single, carried], fraction),
+                _ => single,
+            };
             let origin = change.perspective().point(point.pixel) - shift.displacement;
             if let Some(&group) = laser_groups.groups.get(surface) {
                 samples[laser][group].add(point, origin, shift.pupil);

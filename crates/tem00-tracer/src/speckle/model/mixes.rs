@@ -7,7 +7,11 @@ use tem00_coherence::Recombination;
 use tem00_speckle::{Complex, SpeckleStack};
 
 use super::{
-    super::{SpecklePoint, allocation, plan::SurfacePatterns},
+    super::{
+        SpecklePoint, allocation,
+        plan::SurfacePatterns,
+        shifts::{BLOCK, SpeckleShift},
+    },
     Block, Mix, SpeckleFrame, Stack, in_samples,
 };
 
@@ -37,9 +41,12 @@ impl SpeckleFrame<'_> {
         (points, mixes): (&[SpecklePoint], &[Option<Mix>]),
         factors: &mut [f64],
     ) {
-        let mixed = points.iter().zip(mixes);
-        let places: Vec<_> = mixed
-            .map(|(point, mix)| self.place(laser, surface, point, mix.as_ref()))
+        let mut shifts = [SpeckleShift::default(); BLOCK];
+        let shifts = &mut shifts[..points.len()];
+        self.shifts(laser, (points, mixes), shifts);
+        let shifted = points.iter().zip(&*shifts);
+        let places: Vec<_> = shifted
+            .map(|(point, motion)| self.place(laser, surface, point, motion))
             .collect();
         factors.fill(0.0);
         for component in [0, 1] {
@@ -72,21 +79,21 @@ impl SpeckleFrame<'_> {
         laser: usize,
         surface: &SurfacePatterns,
         point: &SpecklePoint,
-        mix: Option<&Mix>,
+        motion: &SpeckleShift,
     ) -> Place {
         let patterns = &self.model.lasers[laser];
         let (geometry, pattern) = (&patterns.geometry, &patterns.patterns[surface.allocation]);
-        let motion = self.shift(laser, geometry, point, mix);
         let sign = self.sides[laser].get(point.surface).copied().unwrap_or(1.0);
         let mut pixel = self.change.perspective().point(point.pixel) - motion.displacement;
         let Some(bandwidth) = &surface.bandwidth else {
-            let u = match &pattern.stacks[0] {
-                Stack::Derived(stack) => pattern.coordinate_of(stack, motion.pupil, sign),
-                Stack::AsPrinted(..) => 0.0,
-            };
+            let mut u = [0.0];
+            if let Stack::Derived(stack) = &pattern.stacks[0] {
+                let motion = core::slice::from_ref(motion);
+                pattern.coordinates_of(stack, motion, sign, &mut u);
+            }
             return Place {
                 pixel,
-                u,
+                u: u[0],
                 phase_per_height: 0.0,
             };
         };

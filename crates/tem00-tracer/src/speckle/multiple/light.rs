@@ -1,9 +1,6 @@
-use tem00_decorrelation::{ImagingGeometry, equivalent_pupil_shift, pupil_overlap_correlation};
+use tem00_decorrelation::{equivalent_pupil_shift, pupil_overlap_correlation};
 
-use super::super::{
-    SpecklePoint,
-    change::{Change, SpeckleShift},
-};
+use super::super::{SpecklePoint, shifts::SpeckleShift};
 
 /// Light at a place of the image that has met several rough surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +26,7 @@ pub(crate) struct MultipleLight {
 
 impl MultipleLight {
     /// Returns what has become of the speckle of single and multiple light together, of which this is the given
-    /// `fraction`, at a point.
+    /// `fraction`, at a point, from the shifts of both.
     ///
     /// ```text
     /// γ = |f₁ chat(s₁) + f₂ chat(s₂) ⟨e^{ik(δ − δ₁)}⟩|²
@@ -39,18 +36,9 @@ impl MultipleLight {
     /// surfaces take the place of: their paths change by δ, over which the mean is taken.
     pub(in crate::speckle) fn shift(
         &self,
-        change: &Change,
-        (laser, geometry): (usize, &ImagingGeometry),
-        point: &SpecklePoint,
+        [single, multiple]: [SpeckleShift; 2],
         fraction: f64,
     ) -> SpeckleShift {
-        let single = change.speckle_shift(laser, geometry, point);
-        if change.is_reference() {
-            return single;
-        }
-        let Some(multiple) = change.shift_without_source(laser, geometry, point) else {
-            return single;
-        };
         let [f1, f2] = [1.0 - fraction, fraction];
         let [c1, c2] = [single, multiple].map(|shift| pupil_overlap_correlation(shift.pupil));
         let cross = 2.0 * f1 * f2 * (c1 * c2).sqrt() * self.kept_with_single;

@@ -1,5 +1,10 @@
+use tem00_decorrelation::{
+    CameraFrame, Configuration, ConfigurationData, Illumination, ImageOrientation, RigidMotions,
+    SpeckleMotion,
+};
+
 use super::*;
-use crate::{BeamShape, Keyframe, Rotation, Trajectory, testing};
+use crate::{BeamShape, Keyframe, Rotation, Scene, Trajectory, testing};
 
 /// A plate under a spot that diverges, from the side, a little out of focus.
 fn scene() -> Scene {
@@ -187,17 +192,47 @@ fn points_that_the_theory_does_not_know_have_speckle_of_their_own() {
 }
 
 #[test]
-fn negligible_axial_motion_leaves_the_lateral_shift() {
+fn shifts_along_the_axis_add_what_they_take_of_the_correlation() {
     use tem00_decorrelation::CorrelationLaw::AtPeak;
+    let shift = |lateral, axial| {
+        let mut changes = Changes {
+            displacement: [[0.0; BLOCK]; 2],
+            pupil: [lateral; BLOCK],
+            axial: [axial; BLOCK],
+        };
+        changes.add_axial(1);
+        changes.pupil[0]
+    };
     for lateral in [0.0, 1e-3, 0.25, 0.7, 0.98, 1.0, 3.0] {
-        for axial in [0.0, -0.99e-7, 0.99e-7, 1.01e-7, 1e-5, 1e-3] {
+        for axial in [0.0, 0.99e-7, 1.01e-7, 1e-5, 1e-3, 0.3, 0.9] {
+            let shift = shift(lateral, axial);
             let correlation = AtPeak.correlation(lateral, axial);
-            let inverted = equivalent_pupil_shift(correlation).max(lateral);
-            // The loss of 1e-13, by at most half of it in the shift, and rounding.
-            let error = equivalent_shift(correlation, lateral, axial) - inverted;
+            let error = pupil_overlap_correlation(shift) - correlation;
             assert!(
-                error.abs() < 2e-13,
+                error.abs() < 1e-5 && shift >= lateral,
                 "{lateral} across, {axial:e} along: {error:e}"
+            );
+        }
+        assert_eq!(shift(lateral, 1.5), lateral.max(1.5));
+    }
+}
+
+/// A block of many points has what each of them has alone.
+#[test]
+fn a_point_does_not_depend_on_the_points_beside_it() {
+    let scene = moving();
+    let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
+    let change = Change::new(&scene, 5);
+    let places = (0..13).map(|i| [0.01 * f64::from(i), 0.02 - 0.015 * f64::from(i)]);
+    let points: Vec<_> = places.map(|place| point(&scene, 5, place)).collect();
+    for light in [Light::Direct, Light::Carried] {
+        let mut together = vec![None; points.len()];
+        change.known_shifts((0, light), &geometry, &points, &mut together);
+        for (point, shift) in points.iter().zip(together) {
+            let alone = change.known_shift(0, &geometry, point, light);
+            assert!(
+                alone.is_some() && shift == alone,
+                "{shift:?}, not {alone:?}"
             );
         }
     }

@@ -10,6 +10,7 @@
 //!
 //! Those of [`tem00_triangulation`]: metres, pixels with y down, standard uncertainties.
 
+mod airy_pattern;
 mod assembly;
 mod average;
 mod boards;

@@ -1,7 +1,7 @@
-use core::f64::consts::PI;
-
 use glam::{DMat2, DVec2};
-use tem00_numerics::{cast::to_usize, jinc, quadrature::gauss_legendre};
+use tem00_numerics::{cast::to_usize, quadrature::gauss_legendre};
+
+use crate::airy_pattern::airy_pattern;
 
 /// Speckle as the pixels of a sensor see it, at a position of the image.
 ///
@@ -49,8 +49,7 @@ impl SensorSpeckle {
             .flat_map(|a| down.iter().map(move |d| (a, d)))
             .map(|((x, weight_x), (y, weight_y))| {
                 let speckles = self.speckles_per_pixel * DVec2::new(*x, *y);
-                let field = jinc(PI * speckles.length());
-                weight_x * weight_y * field * field
+                weight_x * weight_y * airy_pattern(speckles.length())
             })
             .sum();
         self.variance * sum

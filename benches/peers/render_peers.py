@@ -8,7 +8,7 @@ does so with each of the samplers, of which some take more samples than they are
 medians: seconds to load, seconds to render, samples per second; the squared error of a pixel, which is the
 variance between seeds since all estimates are unbiased: its mean over the image and its median; and ours by
 theirs of time, and of the time that an equal error takes, by the mean and by the median, if errors fell with
-the samples. `mean` is the mean of our image by theirs.
+the samples, of images brought to the same mean. `mean` is the mean of our image by theirs.
 """
 
 import argparse
@@ -88,7 +88,9 @@ def report(name, ours, theirs):
         if program is not ours:
             ratio = ours.median() / time
             mean = ours.mean_image().mean() / program.mean_image().mean()
-            costs = ratio * own.mean() / errors.mean(), ratio * np.median(own) / np.median(errors)
+            # Of images brought to the same mean: a light that stands in for another may be brighter.
+            scaled = errors * mean**2
+            costs = ratio * own.mean() / scaled.mean(), ratio * np.median(own) / np.median(scaled)
             line += (
                 f"  ours/theirs: time {ratio:5.2f} cost {costs[0]:6.3f}, median {costs[1]:6.3f}"
                 f" mean {mean:.4f}"

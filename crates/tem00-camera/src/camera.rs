@@ -388,6 +388,7 @@ impl Camera {
     }
 
     /// Returns the world components of a vector in the axes right, up and along the view.
+    #[inline(always)]
     fn world(&self, local: DVec3) -> DVec3 {
         local.x * self.right + local.y * self.up + local.z * self.view
     }

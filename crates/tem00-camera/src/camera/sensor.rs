@@ -37,6 +37,7 @@ impl Sensor {
     }
 
     /// Returns the position of an image point, in metres.
+    #[inline(always)]
     pub(super) fn point(&self, pixel: DVec2) -> DVec3 {
         let offset = (pixel - self.axis_point) * self.pitch;
         offset.x * self.right - offset.y * self.up + self.distance * DVec3::Z
@@ -66,6 +67,7 @@ impl Sensor {
     /// ```text
     /// 1/s = 1/d_PI + w·t
     /// ```
+    #[inline(always)]
     pub(super) fn slope(&self) -> DVec2 {
         self.normal.truncate() / (self.distance * self.normal.z)
     }
@@ -75,6 +77,7 @@ impl Sensor {
     /// ```text
     /// d²t = pitch² d_PI cos τ / s³
     /// ```
+    #[inline(always)]
     pub(super) fn tangents_per_pixel(&self, depth: f64) -> f64 {
         let side = self.pitch / self.distance;
         side * side * (self.normal.z * (self.distance / depth).powi(3))

@@ -36,7 +36,7 @@ proptest! {
     ) {
         let camera = Camera::new(crooked()).unwrap();
         let pixel = DVec2::from_array(pixel);
-        let ray = camera.sample_ray(pixel, lens).ray;
+        let CameraRay { ray, solid_angle: seen_angle, .. } = camera.sample_ray(pixel, lens);
         let point = ray.origin + distance * ray.direction;
         let seen = camera.connect(point, lens).unwrap();
         // 1e4 pixels of image distance; the blur at 5 cm magnifies roundings by another hundred.
@@ -44,6 +44,9 @@ proptest! {
         prop_assert!(seen.lens_point.distance(ray.origin) < 1e-16, "{}", seen.lens_point);
         let product = seen.importance * distance * distance * solid_angle(&camera, pixel, lens);
         prop_assert!((product - 1.0).abs() < DIFFERENCES, "{product}");
+        // The same closed form; the search for the pixel leaves 1e−12 of a tangent.
+        let product = seen.importance * distance * distance * seen_angle;
+        prop_assert!((product - 1.0).abs() < 1e-11, "{product}");
     }
 }
 
@@ -131,4 +134,44 @@ fn a_tilted_sensor_is_lit_by_the_pupil_at_its_own_angle() {
     let expected = area * direction.z * direction.dot(normal) / position.length_squared();
     let got = camera.irradiance_per_radiance(DVec2::new(320.0, 140.0));
     assert_relative_eq!(got, expected, max_relative = 1e-13, epsilon = 0.0);
+}
+
+#[test]
+fn many_rays_are_those_of_single_calls() {
+    let pinhole = CameraDescription {
+        depth_of_field: false,
+        ..description()
+    };
+    let tilted = CameraDescription {
+        distortion: RadialDistortion::default(),
+        ..crooked()
+    };
+    // The middle of the pupil, its diagonals and its axes among them.
+    let number = |index: usize| (index % 13) as f64 / 12.5;
+    let lens: Vec<_> = (0..200)
+        .map(|index| [number(index), number(index / 13)])
+        .chain([[0.5, 0.5], [0.5, 0.2], [0.2, 0.5], [0.3, 0.3]])
+        .collect();
+    let pixels: Vec<_> = (0..lens.len())
+        .map(|index| DVec2::new(3.1 * index as f64, 477.3 - 2.3 * index as f64))
+        .collect();
+    for description in [description(), crooked(), pinhole, tilted] {
+        let camera = Camera::new(description).unwrap();
+        for count in [0, 1, 63, 64, 65, lens.len()] {
+            let mut rays = vec![camera.ray(DVec2::ZERO); count];
+            let mut solid_angles = vec![0.0; count];
+            camera.sample_rays(
+                &pixels[..count],
+                &lens[..count],
+                &mut rays,
+                &mut solid_angles,
+            );
+            for index in 0..count {
+                let alone = camera.sample_ray(pixels[index], lens[index]);
+                assert_eq!(rays[index], alone.ray, "{index} of {count}");
+                let angles = [solid_angles[index], alone.solid_angle].map(f64::to_bits);
+                assert_eq!(angles[0], angles[1], "{index} of {count}");
+            }
+        }
+    }
 }

@@ -9,6 +9,7 @@ mod weights;
 
 use core::mem::take;
 
+use glam::DVec3;
 use tem00_camera::{Camera, Ray};
 
 use self::{batch::Path, rules::Spectrum};
@@ -125,24 +126,34 @@ impl<'a> Integrator<'a> {
         batch.settle(self.speckle, &self.rules);
     }
 
-    /// Draws a position in the pupil, as a pair of numbers; a pinhole has only its middle.
-    pub(crate) fn lens(&self, stream: Stream) -> [f64; 2] {
+    /// Draws positions in the pupil for the samples that have none yet, from that of the stream
+    /// `first` on; a pinhole has only its middle.
+    pub(crate) fn draw_lens(&self, first: Stream, batch: &mut Batch<'a>) {
+        let drawn = batch.lens.len();
+        batch.lens.resize(batch.samples.len(), [0.5, 0.5]);
         if self.camera.description().depth_of_field {
-            self.sequence.pair(stream, Use::Lens)
-        } else {
-            [0.5, 0.5]
+            let lens = &mut batch.lens[drawn..];
+            self.sequence.pairs(first, Use::Lens, lens);
         }
     }
 
     /// Sends a ray from the camera for each sample.
     fn start(&self, batch: &mut Batch<'a>) {
+        const NONE: Ray = Ray {
+            origin: DVec3::ZERO,
+            direction: DVec3::Z,
+        };
         batch.prepare(self.lasers.len(), self.spectrum.wavelengths.len());
-        for (index, sample) in batch.samples.iter().enumerate() {
-            batch.paths.push(Path::of_sample(index));
-            batch
-                .rays
-                .push(self.camera.sample_ray(sample.pixel, sample.lens).ray);
-        }
+        let samples = batch.samples.len();
+        batch.paths.extend((0..samples).map(Path::of_sample));
+        batch.rays.resize(samples, NONE);
+        batch.solid_angles.resize(samples, 0.0);
+        self.camera.sample_rays(
+            &batch.pixels,
+            &batch.lens,
+            &mut batch.rays,
+            &mut batch.solid_angles,
+        );
     }
 
     /// Moves every path to the surface that its ray meets; ends those that meet a light or nothing.
@@ -214,7 +225,7 @@ impl<'a> Integrator<'a> {
         for (path, vertex) in batch.paths.iter().zip(&batch.vertices) {
             if path.rough == 0 && !vertex.is_specular() {
                 let point = SpecklePoint {
-                    pixel: batch.samples[path.sample].pixel,
+                    pixel: batch.pixels[path.sample],
                     position: vertex.position,
                     normal: vertex.seen_normal(),
                     surface: vertex.surface,

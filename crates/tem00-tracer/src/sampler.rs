@@ -3,6 +3,8 @@ mod independent;
 mod lattice;
 mod sobol;
 
+use tem00_numerics::vectorised;
+
 #[cfg(test)]
 pub(crate) use self::independent::Sampler;
 use self::{
@@ -99,32 +101,66 @@ impl Sequence {
         }
     }
 
-    /// Returns the position in the pixel, in (0, 1)².
-    pub(crate) fn position(&self, stream: Stream) -> [f64; 2] {
-        let count = u64::from(self.count);
-        let seed = seed(stream, Use::Pixel);
-        let lattice = self.lattice(stream);
-        let point = lattice.point(stream.index);
-        let offsets = self.shifted(seed, stream);
-        let within = scrambled_point(stream.round, mixed(mixed(seed) ^ u64::from(stream.index)));
-        [0, 1].map(|axis| {
-            let columns = (u64::from(offsets[axis]) * count) >> 32;
-            let cell = point[axis].wrapping_add(lattice.column().wrapping_mul(columns));
-            fraction(word(cell >> 32).wrapping_add(within[axis] / self.count))
-        })
+    /// Writes the positions in the pixel, in (0, 1)², of the samples of a round from `first` on.
+    pub(crate) fn positions(&self, first: Stream, positions: &mut [[f64; 2]]) {
+        let seed = seed(first, Use::Pixel);
+        let lattice = self.lattice(first);
+        let columns = self
+            .shifted(seed, first)
+            .map(|offset| (u64::from(offset) * u64::from(self.count)) >> 32);
+        let corner = columns.map(|columns| lattice.column().wrapping_mul(columns));
+        let (seed, sobol) = (mixed(seed), sobol_point(first.round));
+        vectorised(
+            #[inline(always)]
+            || {
+                for (position, index) in positions.iter_mut().zip(first.index..) {
+                    let cell = lattice.point(index);
+                    let within = scrambled_point(sobol, mixed(seed ^ u64::from(index)));
+                    *position = [0, 1].map(|axis| {
+                        let place = word(cell[axis].wrapping_add(corner[axis]) >> 32);
+                        fraction(place.wrapping_add(quotient(within[axis], self.count)))
+                    });
+                }
+            },
+        );
     }
 
     /// Returns two numbers in (0, 1).
     ///
     /// Those of one use fill the square evenly over the samples of a pixel.
     pub(crate) fn pair(&self, stream: Stream, purpose: Use) -> [f64; 2] {
+        let points = self.points(stream, purpose);
+        points.pair(permuted(stream.index, self.count, points.order))
+    }
+
+    /// Writes the [pairs](Self::pair) of the samples of a round from `first` on.
+    pub(crate) fn pairs(&self, first: Stream, purpose: Use, pairs: &mut [[f64; 2]]) {
+        let points = self.points(first, purpose);
+        let pairs = pairs.iter_mut().zip(first.index..);
+        if self.count.is_power_of_two() {
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (pair, index) in pairs {
+                        let place = permuted_bits(index.into(), points.order, self.count - 1);
+                        *pair = points.pair(word(place));
+                    }
+                },
+            );
+        } else {
+            for (pair, index) in pairs {
+                *pair = points.pair(permuted(index, self.count, points.order));
+            }
+        }
+    }
+
+    fn points(&self, stream: Stream, purpose: Use) -> Points<'_> {
         let seed = seed(stream, purpose);
-        let order = mixed(seed ^ u64::from(stream.round));
-        let point = self
-            .lattice(stream)
-            .point(permuted(stream.index, self.count, order));
-        let offsets = self.shifted(seed, stream);
-        [0, 1].map(|axis| fraction(folded(word(point[axis] >> 32).wrapping_add(offsets[axis]))))
+        Points {
+            lattice: self.lattice(stream),
+            offsets: self.shifted(seed, stream),
+            order: mixed(seed ^ u64::from(stream.round)),
+        }
     }
 
     /// Returns one number in (0, 1): the first of the pair.
@@ -146,6 +182,27 @@ impl Sequence {
     }
 }
 
+/// The pairs of the samples of a round for a use.
+struct Points<'a> {
+    lattice: &'a Lattice,
+    /// In 2⁻³² of the torus.
+    offsets: [u32; 2],
+    /// The seed of the order in which the samples take the points of the lattice.
+    order: u64,
+}
+
+impl Points<'_> {
+    #[inline(always)]
+    fn pair(&self, point: u32) -> [f64; 2] {
+        let point = self.lattice.point(point);
+        [0, 1].map(|axis| {
+            fraction(folded(
+                word(point[axis] >> 32).wrapping_add(self.offsets[axis]),
+            ))
+        })
+    }
+}
+
 /// Returns the two numbers in (0, 1) of a key.
 pub(crate) fn point_in_square(key: u64) -> [f64; 2] {
     words(mixed(key)).map(fraction)
@@ -164,15 +221,18 @@ const fn seed(stream: Stream, purpose: Use) -> u64 {
 
 /// Returns the lower half of a number.
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
+#[inline(always)]
 const fn word(number: u64) -> u32 {
     number as u32
 }
 
+#[inline(always)]
 const fn words(number: u64) -> [u32; 2] {
     [word(number), word(number >> 32)]
 }
 
 /// Folds the interval in the middle: x becomes 1 − |2x − 1|.
+#[inline(always)]
 const fn folded(bits: u32) -> u32 {
     let below_half = if bits >> 31 == 0 { bits } else { !bits };
     below_half << 1 | 1
@@ -182,36 +242,63 @@ const fn folded(bits: u32) -> u32 {
 ///
 /// Each step permutes the numbers below a power of two; those that leave the range go round again.
 fn permuted(index: u32, count: u32, seed: u64) -> u32 {
-    let mask = u64::from(count).next_power_of_two() - 1;
-    let half = mask.count_ones().div_ceil(2);
+    let mask = word(u64::from(count).next_power_of_two() - 1);
     let mut number = u64::from(index);
     loop {
-        for factor in [seed, seed.rotate_left(21), seed.rotate_left(42)] {
-            number = (number ^ (factor >> 32)).wrapping_mul(factor | 1) & mask;
-            number ^= number >> half;
-        }
+        number = permuted_bits(number, seed, mask);
         if number < u64::from(count) {
             return word(number);
         }
     }
 }
 
-/// Returns a point of Sobol's sequence in the plane, scrambled by Owen's method, in units of 2⁻³².
-const fn scrambled_point(index: u32, seed: u64) -> [u32; 2] {
+/// Permutes the numbers up to `mask`, one less than a power of two.
+#[inline(always)]
+fn permuted_bits(mut number: u64, seed: u64, mask: u32) -> u64 {
+    let half = mask.count_ones().div_ceil(2);
+    for factor in [seed, seed.rotate_left(21), seed.rotate_left(42)] {
+        number = (number ^ (factor >> 32)).wrapping_mul(factor | 1) & u64::from(mask);
+        number ^= number >> half;
+    }
+    number
+}
+
+/// Returns a point of Sobol's sequence in the plane, its bits in reverse.
+const fn sobol_point(index: u32) -> [u32; 2] {
+    [index, sobol_second(index).reverse_bits()]
+}
+
+/// Returns a point of Sobol's sequence, scrambled by Owen's method, in units of 2⁻³².
+#[inline(always)]
+const fn scrambled_point([x, y]: [u32; 2], seed: u64) -> [u32; 2] {
     let [first, second] = words(seed);
     [
-        scrambled(index, first).reverse_bits(),
-        scrambled(sobol_second(index).reverse_bits(), second).reverse_bits(),
+        scrambled(x, first).reverse_bits(),
+        scrambled(y, second).reverse_bits(),
     ]
 }
 
+/// Returns the whole part of a quotient, by a division that vectorises: it is exact, as no quotient of
+/// such numbers is less than 2⁻³³ of itself below a whole number.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the whole part is meant"
+)]
+#[inline(always)]
+fn quotient(number: u32, by: u32) -> u32 {
+    (f64::from(number) / f64::from(by)) as u32
+}
+
 /// Returns the middle of one of 2³² equal intervals of (0, 1).
+#[inline(always)]
 fn fraction(bits: u32) -> f64 {
     (f64::from(bits) + 0.5) / (1_u64 << 32) as f64
 }
 
 /// Spreads neighbouring numbers over all: the generator `SplitMix64` of G. L. Steele, D. Lea and
 /// C. H. Flood, *Fast Splittable Pseudorandom Number Generators*, 2014.
+#[inline(always)]
 const fn mixed(number: u64) -> u64 {
     let mut bits = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

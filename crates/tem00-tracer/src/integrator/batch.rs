@@ -15,6 +15,12 @@ use crate::{
 #[derive(Debug, Default)]
 pub(crate) struct Batch<'a> {
     pub samples: Vec<CameraSample>,
+    /// For each sample, its image point, in pixels.
+    pub pixels: Vec<DVec2>,
+    /// For each sample, its position in the pupil, as a pair of numbers in [0, 1).
+    pub(super) lens: Vec<[f64; 2]>,
+    /// For each sample, the solid angle that a pixel sees along its ray, in steradian.
+    pub(super) solid_angles: Vec<f64>,
     /// For each sample, its values for each laser.
     pub(super) laser_samples: Vec<LaserSample>,
     /// The paths that go on, with the ray and the surface point of each.
@@ -35,10 +41,6 @@ pub(crate) struct Batch<'a> {
 pub(crate) struct CameraSample {
     /// The number of the pixel, among those that are sampled together.
     pub slot: usize,
-    /// The image point, in pixels.
-    pub pixel: DVec2,
-    /// The position in the pupil, as a pair of numbers in [0, 1).
-    pub lens: [f64; 2],
     pub stream: Stream,
     /// The weight of the sample in its pixel, of mean 1.
     pub weight: f64,
@@ -135,6 +137,8 @@ impl Batch<'_> {
     /// Forgets all samples.
     pub(crate) fn clear(&mut self) {
         self.samples.clear();
+        self.pixels.clear();
+        self.lens.clear();
     }
 
     /// Returns the number of rays followed, shadow rays included, since the last call.

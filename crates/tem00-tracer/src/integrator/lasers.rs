@@ -43,7 +43,8 @@ impl<'a> Integrator<'a> {
         let radiance = weight * throughput * light.irradiance * reflected;
         let power = if path.depth == 1 && vertex.is_seen_side(wi) {
             let on_surface = light.irradiance * vertex.normal.dot(light.direction).abs();
-            on_surface * self.footprint(sample, vertex)
+            let solid_angle = batch.solid_angles[path.sample];
+            on_surface * solid_angle * vertex.distance.powi(2) / vertex.cosine.abs()
         } else {
             0.0
         };
@@ -125,15 +126,5 @@ impl<'a> Integrator<'a> {
     fn laser_throughput(&self, laser: usize, path: &Path, batch: &Batch<'_>) -> f64 {
         let first = path.sample * self.spectrum.wavelengths.len();
         batch.throughput[first + self.spectrum.of_laser[laser]]
-    }
-
-    /// Returns the area of the surface that the camera sample stands for, in m².
-    fn footprint(&self, sample: &CameraSample, vertex: &Vertex<'_>) -> f64 {
-        if self.camera.description().depth_of_field {
-            let seen = self.camera.connect(vertex.position, sample.lens);
-            return seen.map_or(0.0, |seen| 1.0 / (seen.importance * vertex.cosine.abs()));
-        }
-        let solid_angle = self.camera.solid_angle_per_pixel(sample.pixel);
-        solid_angle * vertex.distance.powi(2) / vertex.cosine.abs()
     }
 }

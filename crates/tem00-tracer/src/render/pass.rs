@@ -20,6 +20,9 @@ const STRIP: usize = 32;
 /// The maximum number of samples that are traced together.
 const BATCH: usize = 1024;
 
+/// The maximum number of samples of a pixel that are drawn together.
+const RUN: u32 = 64;
+
 /// The maximum number of rounds of samples that a pixel gets for a target error, the first one included.
 const MAX_ROUNDS: u32 = 64;
 
@@ -116,13 +119,11 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         for slot in 0..pixels.len() {
             let position = pixels[slot].position;
             let key = self.key(position);
-            for index in 0..self.options.samples_per_pixel {
-                let stream = Stream { key, round, index };
-                let sample = self.camera_sample(slot, position, stream);
-                batch.samples.push(sample);
-                if batch.samples.len() == BATCH {
+            for index in (0..self.options.samples_per_pixel).step_by(RUN as usize) {
+                if batch.samples.len() + RUN as usize > BATCH {
                     self.trace(batch, pixels)?;
                 }
+                self.add_samples(slot, position, Stream { key, round, index }, batch);
             }
         }
         self.trace(batch, pixels)
@@ -142,18 +143,26 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         Ok(())
     }
 
-    fn camera_sample(&self, slot: usize, [x, y]: [usize; 2], stream: Stream) -> CameraSample {
-        let within = self.integrator.sequence().position(stream);
-        let beside = self.filter.sample(within);
-        CameraSample {
-            slot,
-            pixel: DVec2::new(x as f64 + 0.5, y as f64 + 0.5) + beside.offset,
-            lens: self.integrator.lens(stream),
-            stream,
-            weight: beside.weight,
-            lights: 0.0,
-            seen: None,
+    /// Adds samples of a pixel, from that of the stream `first` on, at most a run.
+    fn add_samples(&self, slot: usize, [x, y]: [usize; 2], first: Stream, batch: &mut Batch<'a>) {
+        let end = first.index.saturating_add(RUN);
+        let indices = first.index..end.min(self.options.samples_per_pixel);
+        let mut positions = [[0.0; 2]; RUN as usize];
+        let positions = &mut positions[..indices.len()];
+        self.integrator.sequence().positions(first, positions);
+        let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+        for (index, within) in indices.zip(&*positions) {
+            let beside = self.filter.sample(*within);
+            batch.pixels.push(centre + beside.offset);
+            batch.samples.push(CameraSample {
+                slot,
+                stream: Stream { index, ..first },
+                weight: beside.weight,
+                lights: 0.0,
+                seen: None,
+            });
         }
+        self.integrator.draw_lens(first, batch);
     }
 
     /// Every pixel of every frame has random numbers of its own, wherever the image is cropped.

@@ -49,6 +49,7 @@ impl Lattice {
     }
 
     /// Returns the position of a point, in 2⁻⁶⁴ of the torus.
+    #[inline(always)]
     pub(super) fn point(&self, index: u32) -> [u64; 2] {
         self.step.map(|step| step.wrapping_mul(index.into()))
     }

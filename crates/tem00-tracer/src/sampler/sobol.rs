@@ -19,6 +19,7 @@ pub(super) const fn sobol_second(index: u32) -> u32 {
 ///
 /// The hash is that of S. Laine and T. Karras, *Stratified Sampling for Stochastic Transparency*,
 /// 2011, with the constants of Burley 2020.
+#[inline(always)]
 pub(super) const fn scrambled(reversed: u32, seed: u32) -> u32 {
     let mut x = reversed.wrapping_add(seed);
     x ^= x.wrapping_mul(0x6c50_b47c);

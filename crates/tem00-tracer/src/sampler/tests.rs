@@ -12,10 +12,16 @@ fn stream(key: u64, index: u32) -> Stream {
     Stream { key, round, index }
 }
 
+fn position(sequence: &Sequence, stream: Stream) -> [f64; 2] {
+    let mut position = [[0.0; 2]];
+    sequence.positions(stream, &mut position);
+    position[0]
+}
+
 fn positions(sequence: &Sequence, key: u64, rounds: u32) -> Vec<[f64; 2]> {
     let streams = (0..rounds)
         .flat_map(|round| (0..sequence.count).map(move |index| Stream { key, round, index }));
-    streams.map(|stream| sequence.position(stream)).collect()
+    streams.map(|stream| position(sequence, stream)).collect()
 }
 
 /// The mean square over many pixels of what `error` finds for the positions of each.
@@ -251,7 +257,10 @@ fn any_number_of_samples_stays_in_the_pixel() {
                 round,
                 index,
             };
-            let points = [sequence.position(stream), sequence.pair(stream, Use::Lens)];
+            let points = [
+                position(&sequence, stream),
+                sequence.pair(stream, Use::Lens),
+            ];
             for x in points.as_flattened() {
                 assert!(*x > 0.0 && *x < 1.0, "{stream:?}: {x}");
             }
@@ -269,7 +278,11 @@ fn streams_differ_by_seed_frame_pixel_and_round_and_repeat() {
             round,
             index: 0,
         };
-        [sequence.pair(stream, Use::Lens), sequence.position(stream)].map(|x| x.map(f64::to_bits))
+        [
+            sequence.pair(stream, Use::Lens),
+            position(&sequence, stream),
+        ]
+        .map(|x| x.map(f64::to_bits))
     };
     let reference = first(1, [2, 3, 4], 0);
     assert_eq!(reference, first(1, [2, 3, 4], 0), "the same again");
@@ -285,5 +298,59 @@ fn streams_differ_by_seed_frame_pixel_and_round_and_repeat() {
             first(seed, place, round),
             "{seed}, {place:?}, {round}"
         );
+    }
+}
+
+#[test]
+fn runs_of_samples_are_those_of_single_calls() {
+    for (count, round, start) in [(1, 0, 0), (7, 3, 2), (64, 0, 0), (64, 2, 5), (100, 1, 64)] {
+        let sequence = Sequence::new(count);
+        let first = Stream {
+            key: pixel_key(3, [0, 5, 8]),
+            round,
+            index: start,
+        };
+        let length = (count - start) as usize;
+        let (mut pairs, mut positions) = (vec![[0.0; 2]; length], vec![[0.0; 2]; length]);
+        sequence.pairs(first, Use::Lens, &mut pairs);
+        sequence.positions(first, &mut positions);
+        for (index, points) in (start..).zip(pairs.iter().zip(&positions)) {
+            let stream = Stream { index, ..first };
+            let alone = [
+                sequence.pair(stream, Use::Lens),
+                position(&sequence, stream),
+            ];
+            let together = [*points.0, *points.1];
+            assert_eq!(
+                alone.map(|x| x.map(f64::to_bits)),
+                together.map(|x| x.map(f64::to_bits)),
+                "{stream:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn quotients_are_those_of_whole_numbers() {
+    let numbers =
+        |around: u32| (0..5).map(move |step| around.saturating_sub(2).saturating_add(step));
+    for by in [
+        1,
+        2,
+        3,
+        7,
+        64,
+        100,
+        641,
+        65_537,
+        1 << 31,
+        u32::MAX - 1,
+        u32::MAX,
+    ] {
+        for times in [0, 1, 2, 3, 1000, u32::MAX / by / 2, u32::MAX / by] {
+            for number in numbers(by.saturating_mul(times)) {
+                assert_eq!(quotient(number, by), number / by, "{number} / {by}");
+            }
+        }
     }
 }

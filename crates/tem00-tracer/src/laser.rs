@@ -4,7 +4,7 @@ mod wave;
 use glam::DVec3;
 use tem00_beam::{
     AstigmaticBeam, BeamError, Emitter, FanGeometry, GaussianBeam, LaserLine, LineLight,
-    LineProfile, LocatedBeam, NextEvent, Placement, SpotLight, TabulatedLineLight,
+    LineProfile, LocatedBeam, NextEvent, NextEventSlices, Placement, SpotLight, TabulatedLineLight,
 };
 use tem00_coherence::{SourceExtent, SpectralLine};
 use tem00_decorrelation::RigidMotion;
@@ -210,6 +210,21 @@ impl Laser {
         })
     }
 
+    /// Finds for each of the points what [`illuminate`](Self::illuminate) finds, but for the rounding of
+    /// the source, in less time.
+    pub(crate) fn illuminate_all(&self, lit: &mut Illuminations) {
+        match &self.source {
+            Source::Spot { light, .. } => lit.by(light),
+            Source::Line { line, light } => match line.profile() {
+                LineProfile::Tabulated(profile) => lit.by(&TabulatedLineLight {
+                    line: *light,
+                    knots: profile.knots(),
+                }),
+                _ => lit.by(light),
+            },
+        }
+    }
+
     /// Returns how the laser lights `point` of a surface with the unit normal `normal`, by eq. (3)
     /// of Bergmann et al. 2016 as printed.
     pub(crate) fn illuminate_as_printed(
@@ -284,6 +299,58 @@ fn line_event(line: &LaserLine, light: &LineLight<f64>, point: [f64; 3]) -> Opti
             TabulatedLineLight { line, knots }.next_event(point)
         }
         _ => light.next_event(point),
+    }
+}
+
+/// Points, and how a laser lights them.
+#[derive(Debug, Default)]
+pub(crate) struct Illuminations {
+    /// Their coordinates x, y, z, in metres.
+    points: [Vec<f64>; 3],
+    /// The coordinates of the directions towards the light, the distances to the aperture and the
+    /// irradiances.
+    events: [Vec<f64>; 5],
+}
+
+impl Illuminations {
+    /// Sets the points.
+    pub(crate) fn place(&mut self, points: impl Iterator<Item = DVec3>) {
+        self.points.iter_mut().for_each(Vec::clear);
+        for point in points {
+            for (axis, value) in self.points.iter_mut().zip(point.to_array()) {
+                axis.push(value);
+            }
+        }
+    }
+
+    fn by(&mut self, light: &impl Emitter<f64>) {
+        let [x, y, z] = &self.points;
+        for values in &mut self.events {
+            values.resize(x.len(), 0.0);
+        }
+        let [wi_x, wi_y, wi_z, distance, e_perp] = &mut self.events;
+        let wi = [wi_x, wi_y, wi_z].map(Vec::as_mut_slice);
+        let out = NextEventSlices {
+            wi,
+            distance,
+            e_perp,
+        };
+        light.next_event_batch(x, y, z, out);
+    }
+
+    /// Returns how a point is lit, or `None` where it is not.
+    pub(crate) fn at(&self, index: usize) -> Option<Illumination> {
+        let vector = |of: &[Vec<f64>]| DVec3::new(of[0][index], of[1][index], of[2][index]);
+        let [.., distances, irradiances] = &self.events;
+        let irradiance = irradiances[index];
+        (irradiance > 0.0).then(|| {
+            let direction = vector(&self.events);
+            Illumination {
+                source: vector(&self.points) + distances[index] * direction,
+                direction,
+                irradiance,
+            }
+        })
     }
 }
 

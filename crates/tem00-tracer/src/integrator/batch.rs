@@ -4,6 +4,7 @@ use tem00_camera::Ray;
 use super::{PathRules, Vertex};
 use crate::{
     Formulas, Hit, Intersector, Segment,
+    laser::Illuminations,
     sampler::Stream,
     speckle::{SpeckleFrame, SpecklePoint},
 };
@@ -31,6 +32,7 @@ pub(crate) struct Batch<'a> {
     /// For each sample, what is left of radiance at the end of its path, by wavelength.
     pub(super) throughput: Vec<f64>,
     pub(super) connections: Connections,
+    pub(super) lit: Illuminations,
     pub(super) speckle: SpeckleLookUps,
     /// The rays followed since they were counted last.
     pub(super) rays_followed: u64,

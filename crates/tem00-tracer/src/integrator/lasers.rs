@@ -1,9 +1,8 @@
 use tem00_camera::Ray;
 
 use super::{
-    CameraSample, Integrator,
+    Integrator,
     batch::{Arrival, Batch, Path},
-    vertex::Vertex,
     weights::{power_heuristic, random_number},
 };
 use crate::{Formulas, Hit, laser::Illumination, sampler::Use};
@@ -14,10 +13,25 @@ impl<'a> Integrator<'a> {
         if !self.rules.finds_lasers {
             return;
         }
+        let mean_direction = self.rules.formulas == Formulas::Derived && !self.rules.samples_beams;
+        if mean_direction {
+            let positions = batch.vertices.iter().map(|vertex| vertex.position);
+            batch.lit.place(positions);
+        }
         for laser in 0..self.lasers.len() {
+            if mean_direction {
+                self.lasers[laser].illuminate_all(&mut batch.lit);
+            }
             for index in 0..batch.paths.len() {
-                if !batch.vertices[index].is_specular() {
-                    self.connect_to_laser(laser, index, batch);
+                let light = if batch.vertices[index].is_specular() {
+                    None
+                } else if mean_direction {
+                    batch.lit.at(index).map(|light| (light, None))
+                } else {
+                    self.illuminate(laser, index, batch)
+                };
+                if let Some(light) = light {
+                    self.connect_to_laser(laser, index, light, batch);
                 }
                 if batch.connections.is_full() {
                     batch.resolve_connections(self.intersector);
@@ -27,12 +41,14 @@ impl<'a> Integrator<'a> {
         batch.resolve_connections(self.intersector);
     }
 
-    fn connect_to_laser(&self, laser: usize, index: usize, batch: &mut Batch<'a>) {
+    fn connect_to_laser(
+        &self,
+        laser: usize,
+        index: usize,
+        (light, pdf): (Illumination, Option<f64>),
+        batch: &mut Batch<'a>,
+    ) {
         let (path, vertex) = (batch.paths[index], &batch.vertices[index]);
-        let sample = &batch.samples[path.sample];
-        let Some((light, pdf)) = self.illuminate(laser, &path, vertex, sample) else {
-            return;
-        };
         let Some(wi) = vertex.towards(light.direction) else {
             return;
         };
@@ -60,24 +76,22 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Returns how a laser lights a surface point, and the density of a drawn direction.
+    /// Returns how a laser lights a surface point as printed, or with the density of a drawn direction.
     fn illuminate(
         &self,
         laser: usize,
-        path: &Path,
-        vertex: &Vertex<'_>,
-        sample: &CameraSample,
+        index: usize,
+        batch: &Batch<'_>,
     ) -> Option<(Illumination, Option<f64>)> {
-        let source = &self.lasers[laser];
+        let (source, vertex) = (&self.lasers[laser], &batch.vertices[index]);
         if self.rules.formulas == Formulas::AsPrinted {
             let light = source.illuminate_as_printed(vertex.position, vertex.seen_normal())?;
             return Some((light, None));
         }
-        if !self.rules.samples_beams {
-            return Some((source.illuminate(vertex.position)?, None));
-        }
+        let path = &batch.paths[index];
         let purpose = Use::Laser(path.depth, random_number(laser));
-        let u = self.sequence.pair(sample.stream, purpose);
+        let stream = batch.samples[path.sample].stream;
+        let u = self.sequence.pair(stream, purpose);
         let event = source.sampled_event(vertex.position, u)?;
         let light = Illumination {
             source: event.source,

@@ -275,3 +275,40 @@ fn rays_leave_the_aperture_with_the_power_of_the_laser() {
         }
     }
 }
+
+#[test]
+fn points_together_are_lit_as_each_alone() {
+    let table = AngularProfile::from_pairs(&[(-0.2, 1.0), (0.0, 2.0), (0.4, 0.0)]).unwrap();
+    let lasers = [
+        elliptic_spot().0,
+        line(LineProfile::GaussianTan, FocusCurve::EqualDistance),
+        line(LineProfile::Tabulated(table), FocusCurve::EqualPlane),
+    ];
+    for laser in lasers {
+        let description = laser.description();
+        let (axis, across) = (description.look_at - description.position, DVec3::Y);
+        let point = |index: u32| {
+            let (along, aside) = (f64::from(index % 10) - 1.0, f64::from(index / 10) - 5.0);
+            description.position + 0.2 * along * axis + 0.2e-4 * aside * across
+        };
+        let mut lit = Illuminations::default();
+        lit.place((0..100).map(point));
+        laser.illuminate_all(&mut lit);
+        let mut bright = 0;
+        for index in 0..100 {
+            let alone = laser.illuminate(point(index));
+            let together = lit.at(index as usize);
+            assert_eq!(alone.is_some(), together.is_some(), "{index}");
+            let Some((alone, together)) = alone.zip(together) else {
+                continue;
+            };
+            bright += 1;
+            assert_eq!(alone.direction, together.direction, "{index}");
+            let [one, other] = [alone, together].map(|light| light.irradiance.to_bits());
+            assert_eq!(one, other, "{index}");
+            // Roundings of coordinates up to 2.
+            assert!(alone.source.distance(together.source) < 2e-15, "{index}");
+        }
+        assert!(bright > 20 && bright < 100, "{bright} are lit");
+    }
+}

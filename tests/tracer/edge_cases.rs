@@ -212,3 +212,22 @@ fn printed_formulas_find_mirrored_light_whatever_the_events() {
     assert!(radiance(&frames[0]) > 0.0, "the plate is dark");
     assert_eq!(frames[0], frames[1], "beam | sampled");
 }
+
+#[test]
+fn a_plate_alone_is_lit_as_beside_what_nobody_sees() {
+    // Behind the camera, and behind the aperture of the laser.
+    let behind = "[[surface]]\nsphere = { centre = [0, 0, 1], radius = 0.001 }";
+    let lamp = "[[light]]\npoint = { position = [0.01, 0, 0.05], power = 0.1 }";
+    let [alone, beside] = ["", behind].map(|more| {
+        let mut scene = plate(&format!("{more}\n{lamp}"));
+        scene.lasers.push(scene.lasers[0].clone());
+        let options = RenderOptions {
+            samples_per_pixel: 9,
+            max_depth: Some(1),
+            ..RenderOptions::default()
+        };
+        render_frame(&scene, None, 0, &options, |_| (), &AtomicBool::new(false)).unwrap()
+    });
+    assert!(radiance(&alone) > 0.0, "it is lit");
+    assert_eq!(alone, beside, "layers and rays");
+}

@@ -197,14 +197,26 @@ pub(super) enum Arrival {
     Light { sample: usize, radiance: f64 },
 }
 
+impl Arrival {
+    fn add_to(&self, lasers: &mut [LaserSample], samples: &mut [CameraSample]) {
+        match *self {
+            Self::Laser {
+                slot,
+                radiance,
+                power,
+                is_single,
+            } => {
+                lasers[slot].add(radiance, is_single);
+                lasers[slot].power += power;
+            }
+            Self::Light { sample, radiance } => samples[sample].lights += radiance,
+        }
+    }
+}
+
 impl Connections {
     /// The maximum number of ways that wait to be tested.
     const CAPACITY: usize = 4096;
-
-    pub(super) fn push(&mut self, segment: Segment, arrival: Arrival) {
-        self.segments.push(segment);
-        self.arrivals.push(arrival);
-    }
 
     pub(super) const fn is_full(&self) -> bool {
         self.segments.len() >= Self::CAPACITY
@@ -212,6 +224,22 @@ impl Connections {
 }
 
 impl Batch<'_> {
+    /// Adds what arrives over a connection unless something hides it: at once where nothing can.
+    pub(super) fn connect(
+        &mut self,
+        segment: Segment,
+        arrival: Arrival,
+        intersector: &Intersector,
+    ) {
+        if intersector.is_plane() {
+            self.rays_followed += 1;
+            arrival.add_to(&mut self.laser_samples, &mut self.samples);
+        } else {
+            self.connections.segments.push(segment);
+            self.connections.arrivals.push(arrival);
+        }
+    }
+
     /// Adds what arrives over the connections that nothing hides, and forgets them all.
     pub(super) fn resolve_connections(&mut self, intersector: &Intersector) {
         let connections = &mut self.connections;
@@ -222,19 +250,7 @@ impl Batch<'_> {
         self.rays_followed += connections.segments.len() as u64;
         let arrivals = connections.arrivals.iter().zip(&connections.visible);
         for (arrival, _) in arrivals.filter(|(_, visible)| **visible) {
-            match *arrival {
-                Arrival::Laser {
-                    slot,
-                    radiance,
-                    power,
-                    is_single,
-                } => {
-                    let laser = &mut self.laser_samples[slot];
-                    laser.add(radiance, is_single);
-                    laser.power += power;
-                }
-                Arrival::Light { sample, radiance } => self.samples[sample].lights += radiance,
-            }
+            arrival.add_to(&mut self.laser_samples, &mut self.samples);
         }
         connections.segments.clear();
         connections.arrivals.clear();

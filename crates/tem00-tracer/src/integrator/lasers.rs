@@ -72,7 +72,7 @@ impl<'a> Integrator<'a> {
                 is_single: path.rough == 0,
             };
             let segment = vertex.segment_to(light.source);
-            batch.connections.push(segment, arrival);
+            batch.connect(segment, arrival, self.intersector);
         }
     }
 

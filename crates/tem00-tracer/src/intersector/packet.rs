@@ -187,7 +187,7 @@ fn load_one<S: Simd>(simd: S, values: &[f32; LANES], chunk: usize) -> f32x16<S> 
 }
 
 #[inline(always)]
-const fn vector(values: &[[f64; LANES]; 3], lane: usize) -> DVec3 {
+pub(super) const fn vector(values: &[[f64; LANES]; 3], lane: usize) -> DVec3 {
     DVec3::new(values[0][lane], values[1][lane], values[2][lane])
 }
 

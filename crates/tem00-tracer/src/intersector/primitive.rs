@@ -111,8 +111,7 @@ impl Primitive {
             }
             Self::Rectangle(rectangle) => {
                 let (_, u, v) = meet_rectangle(ray, rectangle)?;
-                let point = rectangle.centre() + u * rectangle.half_u() + v * rectangle.half_v();
-                Some((point, rectangle.normal()))
+                Some((rectangle.at(u, v), rectangle.normal()))
             }
             Self::Sphere(sphere) => {
                 let distance = meet_sphere(ray, sphere)?;
@@ -135,16 +134,19 @@ impl Primitive {
 /// Returns the distance to a rectangle and where it is met, as fractions of the half edges.
 #[inline(always)]
 fn meet_rectangle(ray: &Ray, rectangle: &Rectangle) -> Option<(f64, f64, f64)> {
-    let Ray { origin, direction } = *ray;
-    let approach = rectangle.normal().dot(direction);
-    if approach == 0.0 {
-        return None;
-    }
-    let offset = rectangle.centre() - origin;
-    let distance = rectangle.normal().dot(offset) / approach;
-    let point = distance * direction - offset;
-    let [u, v] = rectangle.fractions(point);
+    let [distance, u, v] = meet_plane(ray, rectangle);
     (u.abs() <= 1.0 && v.abs() <= 1.0).then_some((distance, u, v))
+}
+
+/// Returns the distance to the plane of a rectangle and where it is met, as fractions of the half
+/// edges. No ray along the plane has finite ones.
+#[inline(always)]
+pub(super) fn meet_plane(ray: &Ray, rectangle: &Rectangle) -> [f64; 3] {
+    let Ray { origin, direction } = *ray;
+    let offset = rectangle.centre() - origin;
+    let distance = rectangle.normal().dot(offset) / rectangle.normal().dot(direction);
+    let [u, v] = rectangle.fractions(distance * direction - offset);
+    [distance, u, v]
 }
 
 /// Returns the nearest positive distance to a sphere.

@@ -99,9 +99,15 @@ impl Rectangle {
     }
 
     /// Returns how far an offset from the centre reaches along the half edges, as fractions of them.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn fractions(&self, offset: DVec3) -> [f64; 2] {
         [offset.dot(self.inverse_u), offset.dot(self.inverse_v)]
+    }
+
+    /// Returns the point at so many half edges from the centre.
+    #[inline(always)]
+    pub(crate) fn at(&self, u: f64, v: f64) -> DVec3 {
+        self.centre + u * self.half_u + v * self.half_v
     }
 
     pub(crate) fn bounds(&self) -> (DVec3, DVec3) {

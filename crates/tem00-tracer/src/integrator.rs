@@ -32,6 +32,8 @@ const CERTAIN_BOUNCES: u32 = 1;
 pub(crate) struct Integrator<'a> {
     scene: &'a Scene,
     camera: Camera,
+    /// The direction in which the camera looks.
+    camera_axis: DVec3,
     lasers: Vec<Laser>,
     intersector: &'a Intersector,
     speckle: Option<&'a SpeckleFrame<'a>>,
@@ -63,9 +65,11 @@ impl<'a> Integrator<'a> {
         if scene.is_plate() {
             rules.max_depth = rules.max_depth.min(1);
         }
+        let camera = scene.camera_at(frame);
         Self {
             scene,
-            camera: scene.camera_at(frame),
+            camera,
+            camera_axis: -camera.axes().z_axis,
             lasers: scene
                 .lasers
                 .iter()
@@ -123,7 +127,11 @@ impl<'a> Integrator<'a> {
             // Choose where the paths go on.
             self.scatter(batch);
         }
-        batch.settle(self.speckle, &self.rules);
+        if self.speckle.is_some() {
+            batch.settle(self.speckle, &self.rules);
+        } else {
+            batch.settle_without_speckle();
+        }
     }
 
     /// Draws positions in the pupil for the samples that have none yet, from that of the stream
@@ -174,7 +182,8 @@ impl<'a> Integrator<'a> {
             };
             path.depth += 1;
             if path.depth == 1 {
-                batch.samples[path.sample].seen = Some(self.seen(&vertex));
+                batch.samples[path.sample].seen =
+                    Some(self.seen(vertex.position, vertex.seen_normal()));
             }
             if path.depth <= self.rules.max_depth {
                 batch.vertices.push(vertex);
@@ -200,28 +209,24 @@ impl<'a> Integrator<'a> {
         Vertex::new(ray, hit, &surface.material)
     }
 
-    fn seen(&self, vertex: &Vertex<'_>) -> Seen {
-        let axis = -self.camera.axes().z_axis;
-        Seen {
-            depth: (vertex.position - self.camera.position()).dot(axis),
-            normal: vertex.seen_normal(),
-        }
+    fn seen(&self, position: DVec3, normal: DVec3) -> Seen {
+        let depth = (position - self.camera.position()).dot(self.camera_axis);
+        Seen { depth, normal }
     }
 
     /// Records the position of a light that the camera sees.
     fn see_light(&self, path: &Path, ray: &Ray, hit: Option<&Hit>, batch: &mut Batch<'a>) {
-        let Some(hit) = hit.filter(|_| path.depth == 0) else {
-            return;
-        };
-        let axis = -self.camera.axes().z_axis;
-        batch.samples[path.sample].seen = Some(Seen {
-            depth: (hit.position - self.camera.position()).dot(axis),
-            normal: -hit.normal * hit.normal.dot(ray.direction).signum(),
-        });
+        if let Some(hit) = hit.filter(|_| path.depth == 0) {
+            let normal = -hit.normal * hit.normal.dot(ray.direction).signum();
+            batch.samples[path.sample].seen = Some(self.seen(hit.position, normal));
+        }
     }
 
     /// Notes where paths meet their first rough surface.
     fn note_speckle(&self, batch: &mut Batch<'a>) {
+        if self.speckle.is_none() {
+            return;
+        }
         for (path, vertex) in batch.paths.iter().zip(&batch.vertices) {
             if path.rough == 0 && !vertex.is_specular() {
                 let point = SpecklePoint {
@@ -253,7 +258,11 @@ impl<'a> Integrator<'a> {
     fn scatter(&self, batch: &mut Batch<'a>) {
         let wavelengths = self.spectrum.wavelengths.len();
         let mut kept = 0;
-        for index in 0..batch.paths.len() {
+        // All paths have met as many surfaces.
+        let depth = batch.paths.first().map_or(0, |path| path.depth);
+        let ends = depth == self.rules.max_depth && !self.meets_light(true);
+        let paths = if ends { 0 } else { batch.paths.len() };
+        for index in 0..paths {
             let (path, vertex) = (batch.paths[index], &batch.vertices[index]);
             let stream = batch.samples[path.sample].stream;
             let throughput = &mut batch.throughput[path.sample * wavelengths..][..wavelengths];

@@ -312,6 +312,13 @@ impl LaserLookUps {
 }
 
 impl Batch<'_> {
+    /// Leaves the light of the samples as it is.
+    pub(super) fn settle_without_speckle(&mut self) {
+        for laser in &mut self.laser_samples {
+            laser.settle(1.0, Formulas::Derived);
+        }
+    }
+
     /// Gives the light of the samples its speckle, and those without light a factor where `rules` want it.
     pub(super) fn settle(&mut self, speckle: Option<&SpeckleFrame<'_>>, rules: &PathRules) {
         let lasers = self.laser_samples.len() / self.samples.len().max(1);

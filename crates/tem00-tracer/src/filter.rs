@@ -202,6 +202,7 @@ impl FilterSampler {
     }
 
     /// Draws a sample by two uniform numbers in [0, 1).
+    #[inline(always)]
     pub fn sample(&self, u: [f64; 2]) -> FilterSample {
         let [x, y] = u.map(|u| self.sample_axis(2.0 * u - 1.0));
         FilterSample {
@@ -211,6 +212,7 @@ impl FilterSampler {
     }
 
     /// Returns offset and weight along one axis for a number in [−1, 1).
+    #[inline(always)]
     fn sample_axis(&self, signed: f64) -> (f64, f64) {
         match &self.table {
             None => (self.filter.radius() * signed, 1.0),

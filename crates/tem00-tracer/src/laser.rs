@@ -339,6 +339,7 @@ impl Illuminations {
     }
 
     /// Returns how a point is lit, or `None` where it is not.
+    #[inline(always)]
     pub(crate) fn at(&self, index: usize) -> Option<Illumination> {
         let vector = |of: &[Vec<f64>]| DVec3::new(of[0][index], of[1][index], of[2][index]);
         let [.., distances, irradiances] = &self.events;

@@ -132,6 +132,7 @@ impl Light {
     }
 }
 
+#[inline(always)]
 fn sample_point(offset: DVec3, power: f64) -> Option<LightSample> {
     let squared = offset.length_squared();
     let direction = offset.try_normalize()?;

@@ -225,6 +225,7 @@ impl Connections {
 
 impl Batch<'_> {
     /// Adds what arrives over a connection unless something hides it: at once where nothing can.
+    #[inline(always)]
     pub(super) fn connect(
         &mut self,
         segment: Segment,

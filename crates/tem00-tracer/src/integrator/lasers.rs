@@ -41,6 +41,7 @@ impl<'a> Integrator<'a> {
         batch.resolve_connections(self.intersector);
     }
 
+    #[inline(always)]
     fn connect_to_laser(
         &self,
         laser: usize,

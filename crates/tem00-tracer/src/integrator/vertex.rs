@@ -25,6 +25,7 @@ pub(crate) struct Vertex<'a> {
 impl<'a> Vertex<'a> {
     /// Creates the point where a ray hits a surface; `None` for a ray along the surface, which sees
     /// no area of it.
+    #[inline(always)]
     pub(crate) fn new(ray: &Ray, hit: &Hit, material: &'a Material) -> Option<Self> {
         let back = -ray.direction;
         let cosine = hit.normal.dot(back);

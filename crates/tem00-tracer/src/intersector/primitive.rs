@@ -101,6 +101,7 @@ impl Primitive {
     ///
     /// The point is composed of the primitive's own points, so that it lies on the primitive within
     /// the rounding of their coordinates, however long the ray.
+    #[inline(always)]
     pub(super) fn point_and_normal(&self, ray: &Ray) -> Option<(DVec3, DVec3)> {
         match self {
             Self::Triangle(corners) => {

@@ -39,8 +39,10 @@ def lattice(rng):
     # Of the lattices with one point in each column and row, those whose points are farthest apart.
     first = np.arange(COUNT)
     offsets = rng.integers(COUNT, size=2)
-    ranks = np.stack([first, rng.choice([19, 27, 37, 45]) * first], axis=-1) + offsets
-    return (ranks % COUNT + rng.random((COUNT, 2))) / COUNT
+    ranks = (np.stack([first, rng.choice([19, 27, 37, 45]) * first], axis=-1) + offsets) % COUNT
+    # Within two neighbouring columns, or rows, the samples mirror each other.
+    within = np.take_along_axis(rng.random((COUNT // 2, 2)), ranks // 2, axis=0)
+    return (ranks + np.where(ranks % 2 == 0, within, 1 - within)) / COUNT
 
 
 def sobol(rng):

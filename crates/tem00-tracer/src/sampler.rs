@@ -24,7 +24,8 @@ use self::{
 /// The offsets a and b are random, so each point is uniform over the square and every estimate
 /// unbiased; the generator is drawn for each pixel, so that no direction of an edge is a bad one
 /// throughout an image. Positions in the pixel have whole offsets and lie anywhere in the cell
-/// where column and row cross, which suits edges. All other points are those of the lattice folded in the
+/// where column and row cross, which suits edges; those in two neighbouring columns, or rows, mirror each other, so that
+/// light that grows steadily over the pixel is met exactly. All other points are those of the lattice folded in the
 /// middle, which makes every smooth function a periodic one; those of different uses are in random orders.
 ///
 /// Each further round shifts the lattice by a point of Sobol's sequence in its unit cell, and has orders of its
@@ -109,20 +110,32 @@ impl Sequence {
             .shifted(seed, first)
             .map(|offset| (u64::from(offset) * u64::from(self.count)) >> 32);
         let corner = columns.map(|columns| lattice.column().wrapping_mul(columns));
-        let (seed, sobol) = (mixed(seed), sobol_point(first.round));
+        let [x, y] = sobol_point(first.round);
+        let seeds = [mixed(seed), mixed(!seed)];
         vectorised(
             #[inline(always)]
             || {
                 for (position, index) in positions.iter_mut().zip(first.index..) {
-                    let cell = lattice.point(index);
-                    let within = scrambled_point(sobol, mixed(seed ^ u64::from(index)));
-                    *position = [0, 1].map(|axis| {
-                        let place = word(cell[axis].wrapping_add(corner[axis]) >> 32);
-                        fraction(place.wrapping_add(quotient(within[axis], self.count)))
-                    });
+                    let [column, row] = lattice.point(index);
+                    *position = [
+                        self.place(column.wrapping_add(corner[0]), x, seeds[0]),
+                        self.place(row.wrapping_add(corner[1]), y, seeds[1]),
+                    ];
                 }
             },
         );
+    }
+
+    /// Returns a place in the column that begins at `start`, in 2⁻⁶⁴ of the torus, by a number of Sobol's sequence: in two
+    /// neighbouring columns they mirror each other.
+    #[inline(always)]
+    fn place(&self, start: u64, sobol: u32, seed: u64) -> f64 {
+        let start = word(start >> 32);
+        // The start is rounded down.
+        let column = ((u64::from(start) + 1) * u64::from(self.count)) >> 32;
+        let within = scrambled(sobol, word(mixed(seed ^ (column >> 1)))).reverse_bits();
+        let mirrored = if column & 1 == 0 { within } else { !within };
+        fraction(start.wrapping_add(quotient(mirrored, self.count)))
     }
 
     /// Returns two numbers in (0, 1).
@@ -266,16 +279,6 @@ fn permuted_bits(mut number: u64, seed: u64, mask: u32) -> u64 {
 /// Returns a point of Sobol's sequence in the plane, its bits in reverse.
 const fn sobol_point(index: u32) -> [u32; 2] {
     [index, sobol_second(index).reverse_bits()]
-}
-
-/// Returns a point of Sobol's sequence, scrambled by Owen's method, in units of 2⁻³².
-#[inline(always)]
-const fn scrambled_point([x, y]: [u32; 2], seed: u64) -> [u32; 2] {
-    let [first, second] = words(seed);
-    [
-        scrambled(x, first).reverse_bits(),
-        scrambled(y, second).reverse_bits(),
-    ]
 }
 
 /// Returns the whole part of a quotient, by a division that vectorises: it is exact, as no quotient of

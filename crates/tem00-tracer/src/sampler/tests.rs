@@ -88,7 +88,7 @@ fn every_column_and_every_row_of_a_pixel_holds_one_sample() {
 }
 
 #[test]
-fn a_pixel_misses_of_edge_and_ramp_what_one_sample_in_each_column_does() {
+fn a_pixel_misses_of_an_edge_what_one_sample_in_each_column_does() {
     for count in [7, 64, 121] {
         let n = f64::from(count);
         // In one column in n the edge leaves the count to chance: f (1 − f) / n², f between 0 and 1.
@@ -97,15 +97,28 @@ fn a_pixel_misses_of_edge_and_ramp_what_one_sample_in_each_column_does() {
             let before = points.iter().filter(|[x, _]| *x < place).count() as f64;
             before / n - place
         });
-        // Each sample lies anywhere in its column: 1 / (12 n²), by n.
-        let ramp = mean_square(count, 1, |_, points| {
-            points.iter().map(|[x, _]| x - 0.5).sum::<f64>() / n
-        });
-        let ratios = [edge * 6.0 * n * n, ramp * 12.0 * n * n * n];
+        let ratio = edge * 6.0 * n * n;
         // The relative standard deviation of a mean square of 4000 is √(2/4000) = 0.022 for normal errors;
         // 4 of them.
-        for ratio in ratios {
-            assert!((ratio - 1.0).abs() < 0.09, "{count}: {ratios:?}");
+        assert!((ratio - 1.0).abs() < 0.09, "{count}: {ratio}");
+    }
+}
+
+#[test]
+fn a_ramp_over_the_pixel_is_met_exactly_but_for_a_column_without_a_neighbour() {
+    for (count, rounds) in [(64, 1), (64, 3), (7, 1), (121, 1)] {
+        let n = f64::from(count);
+        for axis in 0..2 {
+            let ramp = mean_square(count, rounds, |_, points| {
+                let sum: f64 = points.iter().map(|point| point[axis] - 0.5).sum();
+                sum / points.len() as f64
+            });
+            // The last of an odd number lies anywhere in its column: 1 / (12 n²), by n².
+            let alone = f64::from(count % 2) / (12.0 * n.powi(4));
+            // 4 relative standard deviations of a mean square of 4000, √(0.8/4000) of uniform numbers, and a rounding
+            // to 2⁻³² for each sample.
+            let error = ramp - alone;
+            assert!(error.abs() < 0.06 * alone + 1e-18, "{count}: {ramp:e}");
         }
     }
 }
@@ -124,14 +137,16 @@ fn further_rounds_share_the_columns_of_the_first() {
     const ROUNDS: u32 = 4;
     for count in [16, 25] {
         let n = f64::from(count);
-        let ramp = mean_square(count, ROUNDS, |_, points| {
-            points.iter().map(|[x, _]| x - 0.5).sum::<f64>() / points.len() as f64
+        let edge = mean_square(count, ROUNDS, |pixel, points| {
+            let place = (f64::from(pixel) * 0.618).fract();
+            let before = points.iter().filter(|[x, _]| *x < place).count() as f64;
+            before / points.len() as f64 - place
         });
-        // Each sample has one round in each quarter of a column. However the four hang together, their mean
-        // has the variance (1 / 4n)² / 12 at most; independent rounds would leave 4 times as much.
-        let ratio = ramp * 12.0 * 16.0 * n * n * n;
+        // Each sample has one round in each quarter of a column, of which one is left to chance: 1/6 (1 / 4n)².
+        // Independent rounds would leave 4 times as much.
+        let ratio = edge * 6.0 * 16.0 * n * n;
         // 4 relative standard deviations of a mean square of 4000 normal errors, each √(2/4000) = 0.022.
-        assert!(ratio < 1.09, "{count}: {ratio}");
+        assert!((ratio - 1.0).abs() < 0.09, "{count}: {ratio}");
     }
 }
 

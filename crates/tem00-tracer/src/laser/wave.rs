@@ -71,7 +71,11 @@ impl WaveFrame {
     /// Returns the unit direction from `point` along which the wave arrives, by the slopes of its rays: towards the
     /// aperture where they are not finite.
     #[inline(always)]
-    pub(crate) fn to_source(&self, point: DVec3, slopes: impl Fn([f64; 3]) -> [f64; 2]) -> DVec3 {
+    pub(crate) fn direction_to_source(
+        &self,
+        point: DVec3,
+        slopes: impl Fn([f64; 3]) -> [f64; 2],
+    ) -> DVec3 {
         let offset = point - self.origin;
         let [ex, ey, ez] = self.axes;
         let [sx, sy] = slopes([offset.dot(ex), offset.dot(ey), offset.dot(ez)]);
@@ -125,8 +129,8 @@ impl Laser {
     pub(crate) fn wave_direction_at(&self, point: DVec3) -> DVec3 {
         let frame = self.wave_frame();
         match self.wave_shape() {
-            WaveShape::Spot(wave) => frame.to_source(point, |local| wave.slopes(local)),
-            WaveShape::Line(wave) => frame.to_source(point, |local| wave.slopes(local)),
+            WaveShape::Spot(wave) => frame.direction_to_source(point, |local| wave.slopes(local)),
+            WaveShape::Line(wave) => frame.direction_to_source(point, |local| wave.slopes(local)),
         }
     }
 

@@ -4,9 +4,6 @@ use core::f64::consts::PI;
 
 use tem00_decorrelation::{CorrelationLaw, pupil_overlap_correlation};
 
-/// Points that share vector instructions.
-pub(super) const LANES: usize = 8;
-
 /// Coefficients along each axis.
 const TERMS: usize = 12;
 
@@ -34,27 +31,33 @@ impl AxialLoss {
         }
     }
 
-    /// Writes the factors for shifts of the pupil and along the axis, each counted up to 1, into `factors`.
-    ///
-    /// A rest of the slices after the last eight is left as it is.
+    /// Writes the factors for the first `count` shifts of the pupil and along the axis, each counted up to 1.
     #[inline(always)]
-    pub(super) fn write(&self, pupil_shifts: &[f64], axial_shifts: &[f64], factors: &mut [f64]) {
-        let shifts = pupil_shifts
-            .as_chunks()
-            .0
-            .iter()
-            .zip(axial_shifts.as_chunks().0);
-        for (factors, (pupil, axial)) in factors.as_chunks_mut::<LANES>().0.iter_mut().zip(shifts) {
-            *factors = self.at(*pupil, *axial);
-        }
-    }
-
-    #[inline(always)]
-    fn at<const N: usize>(&self, pupil_shifts: [f64; N], axial_shifts: [f64; N]) -> [f64; N] {
+    pub(super) fn write<const N: usize>(
+        &self,
+        count: usize,
+        [pupil_shifts, axial_shifts]: [&[f64; N]; 2],
+        factors: &mut [f64; N],
+    ) {
+        let count = count.min(N);
         let s = pupil_shifts.map(|shift| 2.0 * shift.min(1.0) - 1.0);
         let y = axial_shifts.map(|shift| 2.0 * (shift * shift).min(1.0) - 1.0);
-        let of_row = |row: &[f64; TERMS]| sum(y, |l| [row[l]; N]);
-        sum(s, |k| of_row(&self.coefficients[k])).map(|factor| factor.clamp(0.0, 1.0))
+        factors.fill(0.0);
+        // Horner's rule, step by step for all points.
+        for row in self.coefficients.iter().rev() {
+            let mut sums = [0.0; N];
+            for coefficient in row.iter().rev() {
+                for i in 0..count {
+                    sums[i] = sums[i] * y[i] + coefficient;
+                }
+            }
+            for i in 0..count {
+                factors[i] = factors[i] * s[i] + sums[i];
+            }
+        }
+        for factor in factors {
+            *factor = factor.clamp(0.0, 1.0);
+        }
     }
 }
 
@@ -102,19 +105,6 @@ fn powers(chebyshev: [f64; TERMS]) -> [f64; TERMS] {
     sum
 }
 
-/// Polynomials at several places, by Horner's rule.
-#[inline(always)]
-fn sum<const N: usize>(places: [f64; N], coefficients: impl Fn(usize) -> [f64; N]) -> [f64; N] {
-    let mut sum = coefficients(TERMS - 1);
-    for k in (0..TERMS - 1).rev() {
-        let coefficients = coefficients(k);
-        for lane in 0..N {
-            sum[lane] = sum[lane] * places[lane] + coefficients[lane];
-        }
-    }
-    sum
-}
-
 fn transposed(rows: [[f64; TERMS]; TERMS]) -> [[f64; TERMS]; TERMS] {
     core::array::from_fn(|column| rows.map(|row| row[column]))
 }
@@ -126,11 +116,12 @@ mod tests {
     #[test]
     fn the_polynomial_meets_the_integral() {
         let loss = AxialLoss::new();
-        let mut worst = 0.0_f64;
+        let (mut worst, mut factor) = (0.0_f64, [0.0]);
         for (i, j) in (0..=200).flat_map(|i| (0..=200).map(move |j| (i, j))) {
             let (shift, axial) = (f64::from(i) / 200.0, f64::from(j) / 200.0);
             let exact = CorrelationLaw::AtPeak.correlation(shift, axial);
-            let found = pupil_overlap_correlation(shift) * loss.at([shift], [axial])[0];
+            loss.write(1, [&[shift], &[axial]], &mut factor);
+            let found = pupil_overlap_correlation(shift) * factor[0];
             worst = worst.max((found - exact).abs());
         }
         assert!(worst < 1e-5, "off by {worst:e}");

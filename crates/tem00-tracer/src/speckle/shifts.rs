@@ -9,16 +9,14 @@ use tem00_decorrelation::{
 };
 use tem00_numerics::vectorised;
 
-use super::{
-    SpecklePoint,
-    axial_loss::{AxialLoss, LANES},
-    change::Change,
-    upright,
-};
+use super::{SpecklePoint, axial_loss::AxialLoss, change::Change, upright};
 use crate::laser::{WaveFrame, WaveShape};
 
 /// Points that are worked out together.
 pub(super) const BLOCK: usize = 64;
+
+/// Points that share vector instructions: a block with fewer ends on a multiple of it.
+const LANES: usize = 8;
 
 /// The light whose speckle is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -201,8 +199,8 @@ impl Shared<'_> {
         for i in 0..end {
             let position = DVec3::new(px[i], py[i], pz[i]);
             let [before, now] = &self.lasers;
-            let source = before.to_source(self.law.origin(position), &slopes);
-            let direct = now.to_source(position, &slopes);
+            let source = before.direction_to_source(self.law.origin(position), &slopes);
+            let direct = now.direction_to_source(position, &slopes);
             let carried = self.law.turned(source);
             let point = self.law.at(&ChangedPoint {
                 position,
@@ -245,9 +243,10 @@ impl Changes {
         vectorised(
             #[inline(always)]
             || {
-                loss.write(&self.pupil[..end], &self.axial[..end], &mut kept[..end]);
-                for i in 0..end {
-                    self.pupil[i] = equivalent_shift(self.pupil[i], self.axial[i].abs(), kept[i]);
+                loss.write(end, [&self.pupil, &self.axial], &mut kept);
+                let axial = self.axial.iter().zip(&kept);
+                for (pupil, (axial, kept)) in self.pupil[..end].iter_mut().zip(axial) {
+                    *pupil = equivalent_shift(*pupil, axial.abs(), *kept);
                 }
             },
         );

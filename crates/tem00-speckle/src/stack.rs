@@ -293,7 +293,7 @@ impl SpeckleStack {
     /// Neighbours between the same two slices are found fastest.
     pub fn coordinates_of(&self, correlations: &mut [f64]) {
         for value in &mut *correlations {
-            *value = if *value > 0.0 { value.sqrt() } else { 0.0 };
+            *value = value.sqrt();
         }
         self.law.coordinates_of(correlations);
     }

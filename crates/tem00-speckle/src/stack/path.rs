@@ -244,13 +244,15 @@ impl PathLaw {
         self.blend_after(to_usize(u)).overlap(u.fract())
     }
 
-    /// Puts the smallest u ≥ 0 at which the overlap has fallen to each of `overlaps` in its place; none of them is negative.
+    /// Puts the smallest u ≥ 0 at which the overlap has fallen to each of `overlaps` in its place; NaN counts as no
+    /// overlap.
     pub(crate) fn coordinates_of(&self, overlaps: &mut [f64]) {
         // The blend in which the last one was found, and the overlaps to which it falls.
         let (mut before, mut blend) = (0, self.blend_after(0));
         let mut range = self.fall_after(0);
         for overlap in overlaps {
-            let u = &mut *overlap;
+            let u = overlap;
+            *u = u.max(0.0);
             if self.path == SlicePath::Still || *u >= 1.0 {
                 *u = 0.0;
                 continue;

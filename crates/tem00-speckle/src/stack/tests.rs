@@ -462,10 +462,33 @@ proptest! {
         ][pupil].clone();
         let path = [circle(6), SlicePath::Straight { half_period: 6, length }][path];
         let law = PathLaw::new(path, &pupil);
-        let u = law.coordinate_of(gamma.sqrt());
+        let u = coordinate_of(&law, gamma.sqrt());
         prop_assert!((0.0..=6.0).contains(&u), "u = {u}");
         // Slopes of γ in u are below 2.
         prop_assert!((law.overlap_at(u).powi(2) - gamma).abs() < 1e-12, "u = {u}");
+    }
+}
+
+fn coordinate_of(law: &PathLaw, overlap: f64) -> f64 {
+    let mut coordinate = [overlap];
+    law.coordinates_of(&mut coordinate);
+    coordinate[0]
+}
+
+#[test]
+fn a_coordinate_does_not_depend_on_those_found_beside_it() {
+    for path in [SlicePath::Still, circle(6), straight(6)] {
+        let law = PathLaw::new(path, &Pupil::Circle);
+        let overlaps: Vec<_> = (0..400_u32)
+            .map(|i| (0.618 * f64::from(i)).fract() * 1.1)
+            .chain([0.0, 1.0, f64::NAN, 0.5, 0.5])
+            .collect();
+        let mut together = overlaps.clone();
+        law.coordinates_of(&mut together);
+        for (overlap, u) in overlaps.iter().zip(together) {
+            let alone = coordinate_of(&law, *overlap);
+            assert_eq!(u.to_bits(), alone.to_bits(), "{path:?}, {overlap}");
+        }
     }
 }
 
@@ -598,6 +621,6 @@ fn the_first_of_the_slices_that_have_fallen_as_low_is_found() {
         .find(|&slice| overlaps[slice] <= overlaps[slice + 1])
         .unwrap();
     assert!(dip % 8 != 0 && overlaps[dip] < overlaps[dip + 200], "{dip}");
-    let u = law.coordinate_of(overlaps[dip]);
+    let u = coordinate_of(&law, overlaps[dip]);
     assert!(u > dip as f64 - 1.0 && u <= dip as f64, "{u} for {dip}");
 }

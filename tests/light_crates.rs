@@ -208,10 +208,10 @@ fn every_type_of_speckle_crosses_threads() {
 fn every_type_of_decorrelation_crosses_threads() {
     use tem00::decorrelation::*;
     let names = names_of_shared! {
-        CameraFrame, Configuration, ConfigurationData, CorrelationLaw, DMat3, DVec2, DVec3,
+        CameraFrame, ChangedPoint, Configuration, ConfigurationData, CorrelationLaw, DMat3, DVec2, DVec3,
         DecorrelationError, FieldLight<'static>, FieldPoints<'static>, FieldSetup,
         FieldSlices<'static>, Focus, Illumination, ImageOrientation, ImagingGeometry,
-        LensData, LineOfSight, Motion, MotionField, PupilDistances, RigidMotion,
+        LensData, LineOfSight, Motion, MotionField, PointChange, PupilDistances, RigidChange, RigidMotion,
         RigidMotions, SpeckleMotion, SurfacePoint, ThickLensData, Wavefront,
     };
     let listed: BTreeSet<_> = names.collect();

@@ -260,11 +260,7 @@ impl<'a> Survey<'a> {
     ) -> MultipleSums {
         let number = 2 * (cell % lattice.columns + 3 * (cell / lattice.columns));
         let paths = [0, 1].map(|i| match way {
-            Way::FromLaser => {
-                let paths = groups[(number + i) % GROUPS].iter();
-                let paths = paths.flat_map(|points| self.multiple(laser, seen, points));
-                paths.collect::<Vec<_>>()
-            }
+            Way::FromLaser => self.multiple(laser, seen, &groups[(number + i) % GROUPS]),
             Way::FromCamera => {
                 let first = (2 * cell + i) * PATHS + 1;
                 let keys = first..first + PATHS;
@@ -327,12 +323,12 @@ impl<'a> Survey<'a> {
         self.scene.surfaces[surface].speckle.polarisation
     }
 
-    /// The light of one path from a laser that arrives over the rough surfaces it has met.
+    /// The light of a group of paths from a laser that arrives over the rough surfaces they have met.
     fn multiple(
         &self,
         laser: usize,
         seen: &SeenPoint<'_>,
-        points: &[LitPoint<'_>],
+        group: &[Vec<LitPoint<'_>>],
     ) -> Vec<MultiplePath> {
         let (position, surface) = (seen.point.position, seen.point.surface);
         let origin = self.change.origin(surface, position);
@@ -341,20 +337,26 @@ impl<'a> Survey<'a> {
             .paths_to(laser, surface, position)
             .unwrap_or_default();
         let wavelength = self.change.laser(laser).wavelength();
-        let paths = points.iter().filter_map(|lit| {
+        let arriving = group.iter().flatten().filter_map(|lit| {
             let (irradiance, wi) = lit.irradiance_at(position, wavelength)?;
             let radiance = irradiance * seen.vertex.reflected_from(wi, wavelength);
-            if radiance <= 0.0 || !self.is_free(lit.segment_to(position)) {
-                return None;
-            }
+            (radiance > 0.0).then_some((lit, wi, radiance))
+        });
+        let arriving: Vec<_> = arriving.collect();
+        let ways = arriving.iter().map(|(lit, ..)| lit.segment_to(position));
+        let mut free = vec![false; arriving.len()];
+        self.intersector
+            .visible_batch(&ways.collect::<Vec<_>>(), &mut free);
+        let paths = arriving.into_iter().zip(free).filter(|(_, free)| *free);
+        let paths = paths.map(|((lit, wi, radiance), _)| {
             let way = lit.way_to(position, origin);
-            Some(MultiplePath {
+            MultiplePath {
                 radiance,
                 delay: way.length - now,
                 added: way.change - (now - before),
                 polarisation: way.polarisation * self.polarisation_of(surface),
                 pupil: seen.pupil_of(wi),
-            })
+            }
         });
         paths.collect()
     }

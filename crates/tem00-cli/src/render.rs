@@ -8,7 +8,7 @@ mod sequence;
 use std::io::Write;
 
 use tem00_scene::SceneFile;
-use tem00_tracer::{Formulas, Scene};
+use tem00_tracer::{Formulas, Sampling, Scene};
 
 pub(crate) use self::job::{frames, tracer_failure};
 use self::{
@@ -96,7 +96,9 @@ fn overruled(mut scene: Scene, args: &RenderArgs) -> Result<Scene, Failure> {
     args.common.overrule(options);
     options.method = args.method.unwrap_or(options.method);
     options.max_depth = args.max_depth.or(options.max_depth);
-    options.target_error = args.target_error.or(options.target_error);
+    if let Some(error) = args.target_error {
+        options.sampling = Sampling::TargetError(error);
+    }
     options.crop = args.crop.or(options.crop);
     if args.paper {
         options.formulas = Formulas::AsPrinted;
@@ -123,7 +125,12 @@ fn report(render: &Render<'_>, Sequence { exposure, finished }: &Sequence) -> Re
     report.data("samples_per_pixel", options.samples_per_pixel);
     report.data("method", options.method.name());
     report.data("max_depth", options.max_depth);
-    report.data("target_error", options.target_error);
+    let target = match options.sampling {
+        Sampling::TargetError(error) => Some(error),
+        Sampling::Even | Sampling::Adaptive => None,
+    };
+    report.data("target_error", target);
+    report.data("adaptive", options.sampling == Sampling::Adaptive);
     report.data("width", camera.width());
     report.data("height", camera.height());
     let crop = options.crop;

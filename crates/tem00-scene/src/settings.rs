@@ -1,6 +1,6 @@
 use tem00_camera::Camera;
-use tem00_config::{Document, MEMORY, NUMBER, Problem, Value};
-use tem00_tracer::{Crop, LaserEvents, Method, RenderOptions, Scene, SpeckleSettings};
+use tem00_config::{Document, MEMORY, NUMBER, Problem, Section, Value};
+use tem00_tracer::{Crop, LaserEvents, Method, RenderOptions, Sampling, Scene, SpeckleSettings};
 
 use crate::filter;
 
@@ -13,6 +13,7 @@ const RENDER_KEYS: &[&str] = &[
     "method",
     "laser_events",
     "crop",
+    "adaptive",
     "target_error",
     "filter",
 ];
@@ -52,15 +53,29 @@ pub(crate) fn render(root: &Document<'_>, scene: &mut Scene) -> Result<(), Probl
         crop: section.or("crop", default.crop, |value| {
             crop(value, &scene.camera).map(Some)
         })?,
-        target_error: section.or("target_error", default.target_error, |value| {
-            value
-                .within(&NUMBER, 1e-6..=1.0, "from 1e-6 to 1")
-                .map(Some)
-        })?,
+        sampling: sampling(&section)?,
         filter: filter::read(&section)?,
         ..default
     };
     Ok(())
+}
+
+/// Reads how the samples are shared among the pixels.
+fn sampling(section: &Section<'_>) -> Result<Sampling, Problem> {
+    let target = section.or("target_error", None, |value| {
+        let error = value.within(&NUMBER, 1e-6..=1.0, "from 1e-6 to 1")?;
+        Ok(Some(error))
+    })?;
+    let is_adaptive = section.or("adaptive", false, Value::boolean)?;
+    match target {
+        Some(_) if is_adaptive => Err(section.problem_with(
+            "adaptive",
+            "`adaptive` must be false where `target_error` says how many samples a pixel gets",
+        )),
+        Some(error) => Ok(Sampling::TargetError(error)),
+        None if is_adaptive => Ok(Sampling::Adaptive),
+        None => Ok(Sampling::Even),
+    }
 }
 
 /// Reads a part of the image, `[x, y, width, height]`.

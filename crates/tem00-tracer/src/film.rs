@@ -5,7 +5,7 @@ mod sums;
 use tem00_numerics::{Grid, cast::to_f32};
 
 pub(crate) use self::layout::FilmLayout;
-pub(crate) use self::sums::{LaserSums, Moments, PixelSums};
+pub(crate) use self::sums::PixelSums;
 use crate::TracerError;
 
 /// The rendered layers of one frame, or of the part of it that was cropped.
@@ -24,10 +24,10 @@ pub struct Frame {
     /// The variance of `lights`.
     pub lights_variance: Grid<f32>,
     /// The distance from the camera to what is seen, along the axis of the camera, in metres: the
-    /// mean over the pixel's first samples that meet something, and 0 where none does.
+    /// mean over the pixel's samples that meet something, and 0 where none does.
     pub depth: Grid<f32>,
     /// The components x, y and z of the unit normal of what is seen, on the side that is seen and as
-    /// it is shaded: the mean over the pixel's first samples, with 0 for those that meet nothing.
+    /// it is shaded: the mean over the pixel's samples, with 0 for those that meet nothing.
     pub normal: [Grid<f32>; 3],
     /// The number of samples that the pixel got.
     pub samples: Grid<f32>,
@@ -58,7 +58,7 @@ pub struct LaserLayers {
     pub variance: Grid<f32>,
     /// The power that the laser brings to the surfaces seen in the image, in watts.
     ///
-    /// It is estimated from the camera's first samples: the irradiance at each hit times the area
+    /// It is estimated from the camera's samples: the irradiance at each hit times the area
     /// that the sample covers there. It is the laser's power when the whole footprint is in the image.
     /// Surfaces seen in a mirror or through glass do not count.
     pub power_on_target: f64,
@@ -71,8 +71,6 @@ pub(crate) struct Film {
     /// The power on target by strip and laser, summed at the end in the order of the strips, so that
     /// the sum has the same bits for any number of threads.
     power: Vec<f64>,
-    /// The radiance of all sources, kept where the number of samples depends on it.
-    total: Option<[Grid<f32>; 2]>,
 }
 
 impl Film {
@@ -106,7 +104,6 @@ impl Film {
                 rays: 0,
             },
             power: vec![0.0; layout.strips * layout.wavelengths.len()],
-            total: layout.adaptive.then(|| [layer(), layer()]),
         })
     }
 
@@ -115,23 +112,9 @@ impl Film {
         self.frame.rays += rays;
     }
 
-    /// Writes what the first samples of a pixel of a strip have found.
-    pub(crate) fn write_first(&mut self, strip: usize, [x, y]: [usize; 2], pixel: &PixelSums) {
-        self.write([x, y], pixel);
-        self.frame.depth[(x, y)] = to_f32(pixel.depth());
-        for (layer, component) in self.frame.normal.iter_mut().zip(pixel.normal().to_array()) {
-            layer[(x, y)] = to_f32(component);
-        }
-        let lasers = self.frame.lasers.len();
-        let powers = self.power[strip * lasers..].iter_mut();
-        for (power, laser) in powers.zip(&pixel.lasers) {
-            *power += pixel.mean(laser.power);
-        }
-    }
-
-    /// Writes the radiances of a pixel.
-    pub(crate) fn write(&mut self, [x, y]: [usize; 2], pixel: &PixelSums) {
-        let at = (x, y);
+    /// Writes what the samples of a pixel of a strip have found.
+    pub(crate) fn write(&mut self, strip: usize, at: [usize; 2], pixel: &PixelSums) {
+        let at = at.into();
         for (layers, laser) in self.frame.lasers.iter_mut().zip(&pixel.lasers) {
             layers.single[at] = to_f32(pixel.mean(laser.single));
             layers.multiple[at] = to_f32(pixel.mean(laser.multiple));
@@ -142,49 +125,15 @@ impl Film {
         self.frame.lights[at] = to_f32(pixel.mean(pixel.lights.sum));
         self.frame.lights_variance[at] = to_f32(pixel.variance(&pixel.lights));
         self.frame.samples[at] = to_f32(f64::from(pixel.samples));
-        if let Some([mean, variance]) = &mut self.total {
-            mean[at] = to_f32(pixel.mean(pixel.total.sum));
-            variance[at] = to_f32(pixel.variance(&pixel.total));
+        self.frame.depth[at] = to_f32(pixel.depth());
+        for (layer, component) in self.frame.normal.iter_mut().zip(pixel.normal().to_array()) {
+            layer[at] = to_f32(component);
         }
-    }
-
-    /// Returns what the film holds of a pixel, so that more samples can be added.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "numbers of samples are stored exactly up to 2²⁴"
-    )]
-    pub(crate) fn read(&self, [x, y]: [usize; 2]) -> PixelSums {
-        let at = (x, y);
-        let samples = self.frame.samples[at] as u32;
-        let sum = |layer: &Grid<f32>| f64::from(samples) * f64::from(layer[at]);
-        let moments = |mean: f64, variance: &Grid<f32>| {
-            Moments::restored(samples, mean, f64::from(variance[at]))
-        };
-        let lasers = self.frame.lasers.iter().map(|layers| LaserSums {
-            single: sum(&layers.single),
-            multiple: sum(&layers.multiple),
-            speckle: sum(&layers.speckle),
-            radiance: moments(f64::from(layers.radiance[at]), &layers.variance),
-            power: 0.0,
-        });
-        let total = self.total.as_ref().map(|[mean, variance]| {
-            let mean = f64::from(mean[at]);
-            moments(mean, variance)
-        });
-        let lights = moments(
-            f64::from(self.frame.lights[at]),
-            &self.frame.lights_variance,
-        );
-        PixelSums::restored(samples, lasers.collect(), lights, total.unwrap_or_default())
-    }
-
-    /// Returns the mean radiance of all sources over the film; 0 unless the film keeps it.
-    pub(crate) fn mean_radiance(&self) -> f64 {
-        self.total.as_ref().map_or(0.0, |[mean, _]| {
-            let values = mean.values();
-            values.iter().map(|&value| f64::from(value)).sum::<f64>() / values.len() as f64
-        })
+        let lasers = self.frame.lasers.len();
+        let powers = self.power[strip * lasers..].iter_mut();
+        for (power, laser) in powers.zip(&pixel.lasers) {
+            *power += pixel.mean(laser.power);
+        }
     }
 
     /// Returns the finished frame.

@@ -38,7 +38,8 @@ pub(crate) struct Integrator<'a> {
     intersector: &'a Intersector,
     speckle: Option<&'a SpeckleFrame<'a>>,
     rules: PathRules,
-    sequence: Sequence,
+    /// Those of each number of samples that a pixel can get.
+    sequences: Vec<Sequence>,
     spectrum: Spectrum,
     /// The lights that rays can meet, in the order of their shapes behind the surfaces.
     light_shapes: Vec<usize>,
@@ -78,7 +79,11 @@ impl<'a> Integrator<'a> {
             intersector,
             speckle: None,
             rules,
-            sequence: Sequence::new(options.samples_per_pixel),
+            sequences: options
+                .sample_counts()
+                .into_iter()
+                .map(Sequence::new)
+                .collect(),
             spectrum: Spectrum::new(&scene.lasers, &scene.lights),
             light_shapes: lights(|light| matches!(light, Light::Area { .. })),
             environments: lights(|light| matches!(light, Light::Environment(_))),
@@ -96,9 +101,9 @@ impl<'a> Integrator<'a> {
         &self.camera
     }
 
-    /// Returns the random numbers of the render.
-    pub(crate) fn sequence(&self) -> &Sequence {
-        &self.sequence
+    /// Returns the random numbers of a pixel.
+    pub(crate) fn sequence(&self, stream: Stream) -> &Sequence {
+        &self.sequences[usize::from(stream.level)]
     }
 
     /// Returns the wavelengths of the lasers, in metres.
@@ -141,7 +146,7 @@ impl<'a> Integrator<'a> {
         batch.lens.resize(batch.samples.len(), [0.5, 0.5]);
         if self.camera.description().depth_of_field {
             let lens = &mut batch.lens[drawn..];
-            self.sequence.pairs(first, Use::Lens, lens);
+            self.sequence(first).pairs(first, Use::Lens, lens);
         }
     }
 
@@ -248,7 +253,7 @@ impl<'a> Integrator<'a> {
             .map(|laser| laser.spectral_line())
             .any(|line| !line.is_monochromatic());
         if is_wide {
-            self.sequence.uniform(stream, Use::Wave)
+            self.sequence(stream).uniform(stream, Use::Wave)
         } else {
             0.5
         }
@@ -288,7 +293,9 @@ impl<'a> Integrator<'a> {
         }
         // Choose the direction.
         let wavelengths = &self.spectrum.wavelengths;
-        let u = self.sequence.pair(stream, Use::Scattering(path.depth));
+        let u = self
+            .sequence(stream)
+            .pair(stream, Use::Scattering(path.depth));
         let event = vertex.sample(u, *wavelengths.first()?)?;
         // Weight each wavelength.
         let mut largest = 0.0_f64;
@@ -300,7 +307,11 @@ impl<'a> Integrator<'a> {
         let compression = path.compression * event.eta_squared;
         if path.depth > CERTAIN_BOUNCES {
             let survival = (largest * compression).min(0.95);
-            if self.sequence.uniform(stream, Use::Survival(path.depth)) >= survival {
+            if self
+                .sequence(stream)
+                .uniform(stream, Use::Survival(path.depth))
+                >= survival
+            {
                 return None;
             }
             throughput.iter_mut().for_each(|value| *value /= survival);

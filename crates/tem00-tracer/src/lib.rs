@@ -62,7 +62,8 @@ pub use material::{BsdfSample, Material, OpticalRoughness, OpticalRoughnessQuery
 pub use mesh::{MeshError, TriangleMesh};
 pub use metal::Metal;
 pub use render::{
-    Crop, Formulas, LaserEvents, LightEvents, Method, RenderError, RenderOptions, render_frame,
+    Crop, Formulas, LaserEvents, LightEvents, Method, RenderError, RenderOptions, Sampling,
+    render_frame,
 };
 pub use scene::{Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 

@@ -1,11 +1,14 @@
 mod error;
 mod options;
 mod pass;
+mod pilot;
 
 use core::sync::atomic::AtomicBool;
 
 pub use self::error::RenderError;
-pub use self::options::{Crop, Formulas, LaserEvents, LightEvents, Method, RenderOptions};
+pub use self::options::{
+    Crop, Formulas, LaserEvents, LightEvents, Method, RenderOptions, Sampling,
+};
 use self::pass::PathPass;
 use crate::{
     FilterSampler, Frame, Intersector, Scene, SpeckleModel,
@@ -91,6 +94,7 @@ pub fn render_frame(
     let pass = PathPass {
         integrator: &integrator,
         options,
+        counts: options.sample_counts(),
         filter: FilterSampler::new(options.filter)?,
         frame,
         area,

@@ -1,20 +1,16 @@
 #[cfg(test)]
 mod independent;
 mod lattice;
-mod sobol;
 
 use tem00_numerics::vectorised;
 
 #[cfg(test)]
 pub(crate) use self::independent::Sampler;
-use self::{
-    lattice::Lattice,
-    sobol::{scrambled, sobol_second},
-};
+use self::lattice::Lattice;
 
 /// Sets of points that fill the unit square evenly, anew for every pixel and every use.
 ///
-/// The N points of a round of samples are those of a lattice on the torus, which for any N has one
+/// The N points of a pixel are those of a lattice on the torus, which for any N has one
 /// point in each of N columns and of N rows:
 ///
 /// ```text
@@ -28,20 +24,13 @@ use self::{
 /// light that grows steadily over the pixel is met exactly. All other points are those of the lattice folded in the
 /// middle, which makes every smooth function a periodic one; those of different uses are in random orders.
 ///
-/// Each further round shifts the lattice by a point of Sobol's sequence in its unit cell, and has orders of its
-/// own: with the same ones, what depends on several uses at once would see the same samples again.
-///
 /// # References
 ///
 /// - N. M. Korobov, *The Approximate Computation of Multiple Integrals*, 1959. Lattices.
 /// - F. J. Hickernell, *Obtaining O(N^(−2+ε)) Convergence for Lattice Quadrature Rules*, 2002. Folding.
-/// - I. M. Sobol', *On the Distribution of Points in a Cube and the Approximate Evaluation of
-///   Integrals*, 1967.
-/// - A. B. Owen, *Randomly Permuted (t, m, s)-Nets and (t, s)-Sequences*, 1995.
-/// - B. Burley, *Practical Hash-based Owen Scrambling*, 2020.
 #[derive(Clone, Debug)]
 pub(crate) struct Sequence {
-    /// The number of samples of a round.
+    /// The number of samples of a pixel.
     count: u32,
     lattices: Vec<Lattice>,
 }
@@ -51,9 +40,9 @@ pub(crate) struct Sequence {
 pub(crate) struct Stream {
     /// The key of the pixel.
     pub key: u64,
-    /// The number of the round of samples.
-    pub round: u32,
-    /// The number of the sample in its round.
+    /// Which of the numbers of samples that a pixel can get this one has.
+    pub level: u8,
+    /// The number of the sample.
     pub index: u32,
 }
 
@@ -94,7 +83,7 @@ impl Use {
 }
 
 impl Sequence {
-    /// Prepares the points for rounds of `count` samples, at least one.
+    /// Prepares the points for pixels of `count` samples, at least one.
     pub(crate) fn new(count: u32) -> Self {
         Self {
             count,
@@ -102,15 +91,12 @@ impl Sequence {
         }
     }
 
-    /// Writes the positions in the pixel, in (0, 1)², of the samples of a round from `first` on.
+    /// Writes the positions in the pixel, in (0, 1)², of the samples from `first` on.
     pub(crate) fn positions(&self, first: Stream, positions: &mut [[f64; 2]]) {
         let seed = seed(first, Use::Pixel);
         let lattice = self.lattice(first);
-        let columns = self
-            .shifted(seed, first)
-            .map(|offset| (u64::from(offset) * u64::from(self.count)) >> 32);
+        let columns = words(seed).map(|offset| (u64::from(offset) * u64::from(self.count)) >> 32);
         let corner = columns.map(|columns| lattice.column().wrapping_mul(columns));
-        let [x, y] = sobol_point(first.round);
         let seeds = [mixed(seed), mixed(!seed)];
         vectorised(
             #[inline(always)]
@@ -118,22 +104,22 @@ impl Sequence {
                 for (position, index) in positions.iter_mut().zip(first.index..) {
                     let [column, row] = lattice.point(index);
                     *position = [
-                        self.place(column.wrapping_add(corner[0]), x, seeds[0]),
-                        self.place(row.wrapping_add(corner[1]), y, seeds[1]),
+                        self.place(column.wrapping_add(corner[0]), seeds[0]),
+                        self.place(row.wrapping_add(corner[1]), seeds[1]),
                     ];
                 }
             },
         );
     }
 
-    /// Returns a place in the column that begins at `start`, in 2⁻⁶⁴ of the torus, by a number of Sobol's sequence: in two
-    /// neighbouring columns they mirror each other.
+    /// Returns a place in the column that begins at `start`, in 2⁻⁶⁴ of the torus: those in two neighbouring columns
+    /// mirror each other.
     #[inline(always)]
-    fn place(&self, start: u64, sobol: u32, seed: u64) -> f64 {
+    fn place(&self, start: u64, seed: u64) -> f64 {
         let start = word(start >> 32);
         // The start is rounded down.
         let column = ((u64::from(start) + 1) * u64::from(self.count)) >> 32;
-        let within = scrambled(sobol, word(mixed(seed ^ (column >> 1)))).reverse_bits();
+        let within = word(mixed(seed ^ (column >> 1)));
         let mirrored = if column & 1 == 0 { within } else { !within };
         fraction(start.wrapping_add(quotient(mirrored, self.count)))
     }
@@ -146,7 +132,7 @@ impl Sequence {
         points.pair(permuted(stream.index, self.count, points.order))
     }
 
-    /// Writes the [pairs](Self::pair) of the samples of a round from `first` on.
+    /// Writes the [pairs](Self::pair) of the samples from `first` on.
     pub(crate) fn pairs(&self, first: Stream, purpose: Use, pairs: &mut [[f64; 2]]) {
         let points = self.points(first, purpose);
         let pairs = pairs.iter_mut().zip(first.index..);
@@ -171,8 +157,8 @@ impl Sequence {
         let seed = seed(stream, purpose);
         Points {
             lattice: self.lattice(stream),
-            offsets: self.shifted(seed, stream),
-            order: mixed(seed ^ u64::from(stream.round)),
+            offsets: words(seed),
+            order: mixed(seed),
         }
     }
 
@@ -180,12 +166,6 @@ impl Sequence {
     pub(crate) fn uniform(&self, stream: Stream, purpose: Use) -> f64 {
         let [first, _] = self.pair(stream, purpose);
         first
-    }
-
-    /// Returns the offsets of a round, in 2⁻³² of the torus.
-    fn shifted(&self, offsets: u64, stream: Stream) -> [u32; 2] {
-        let (offsets, shift) = (words(offsets), self.lattice(stream).shift(stream.round));
-        [0, 1].map(|axis| offsets[axis].wrapping_add(shift[axis]))
     }
 
     /// Returns the lattice of a pixel.
@@ -274,11 +254,6 @@ fn permuted_bits(mut number: u64, seed: u64, mask: u32) -> u64 {
         number ^= number >> half;
     }
     number
-}
-
-/// Returns a point of Sobol's sequence in the plane, its bits in reverse.
-const fn sobol_point(index: u32) -> [u32; 2] {
-    [index, sobol_second(index).reverse_bits()]
 }
 
 /// Returns the whole part of a quotient, by a division that vectorises: it is exact, as no quotient of

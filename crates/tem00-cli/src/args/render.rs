@@ -38,8 +38,9 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) max_depth: Option<u32>,
 
-    /// The relative standard error at which a pixel gets no more samples [default: from the scene].
-    #[arg(long, value_name = "ERROR", value_parser = relative_error)]
+    /// As many samples in each pixel as this relative standard error needs, the mean of --spp times 1 to 64
+    /// [default: from the scene].
+    #[arg(long, value_name = "ERROR", value_parser = relative_error, conflicts_with = "adaptive")]
     pub(crate) target_error: Option<f64>,
 
     /// Use the formulas as printed in Bergmann et al. 2016, with their errors, for comparison.

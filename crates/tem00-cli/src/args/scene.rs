@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use tem00_tracer::RenderOptions;
+use tem00_tracer::{RenderOptions, Sampling};
 
 use super::FileArgs;
 
@@ -24,6 +24,11 @@ pub(crate) struct SceneArgs {
     /// Camera samples per pixel, 1 to a million [default: from the scene].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     spp: Option<u32>,
+
+    /// Fewer samples where they agree, more at edges and in narrow beams: --spp on average at most
+    /// [default: from the scene].
+    #[arg(long)]
+    adaptive: bool,
 
     /// The seed of everything random [default: from the scene].
     #[arg(long, value_name = "N")]
@@ -48,6 +53,9 @@ impl SceneArgs {
     pub(crate) fn overrule(&self, options: &mut RenderOptions) {
         options.samples_per_pixel = self.spp.unwrap_or(options.samples_per_pixel);
         options.seed = self.seed.unwrap_or(options.seed);
+        if self.adaptive {
+            options.sampling = Sampling::Adaptive;
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::{path::Path, time::Instant};
 
 use tem00_tracer::{
-    Filter, Frame, Method, RenderError, SpeckleModel, SurfaceSpeckle, render_frame,
+    Filter, Frame, Method, RenderError, Sampling, SpeckleModel, SurfaceSpeckle, render_frame,
 };
 
 use super::{
@@ -233,21 +233,22 @@ impl Render<'_> {
     fn knows_contrast(&self) -> bool {
         let mut surfaces = self.scene.surfaces.iter();
         self.scene.render.method == Method::Path
-            && self.scene.render.target_error.is_none()
+            && self.scene.render.sampling == Sampling::Even
             && self.scene.render.filter == Filter::default()
             && surfaces.all(|surface| surface.speckle == SurfaceSpeckle::default())
     }
 
-    /// Returns the number of samples that a frame took: with a target error, those of its pixels.
+    /// Returns the number of samples that a frame took: where they depend on the light, those that its pixels are
+    /// made of.
     fn samples_of(&self, frame: &Frame) -> u64 {
-        match self.scene.render.target_error {
-            None => self.samples_per_frame(),
+        match self.scene.render.sampling {
+            Sampling::Even => self.samples_per_frame(),
             #[expect(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
                 reason = "numbers of samples are whole and not negative"
             )]
-            Some(_) => frame
+            Sampling::Adaptive | Sampling::TargetError(_) => frame
                 .samples
                 .values()
                 .iter()

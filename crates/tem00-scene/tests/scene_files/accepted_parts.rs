@@ -14,7 +14,7 @@ use tem00_scene::{SceneFile, read_scene};
 use super::{CAMERA, LASER, TETRAHEDRON, minimal, parse, parse_with_mesh, with};
 use tem00_tracer::{
     Crop, Cylinder, Environment, Filter, Keyframe, LaserEvents, Light, LineShape, Material, Metal,
-    Method, Relief, Rotation, Shape, SpectralLine, Surface, SurfaceSpeckle, Trajectory,
+    Method, Relief, Rotation, Sampling, Shape, SpectralLine, Surface, SurfaceSpeckle, Trajectory,
 };
 
 /// Reads the minimal scene with further keys of its surface.
@@ -49,7 +49,9 @@ fn the_image_is_rendered_as_the_file_says() {
         height: 200,
     };
     assert_eq!(settings.crop, Some(crop), "crop");
-    assert_eq!(settings.target_error, Some(0.02), "error");
+    assert_eq!(settings.sampling, Sampling::TargetError(0.02), "error");
+    let adaptive = parse(&format!("[render]\nadaptive = true\n{}", minimal())).unwrap();
+    assert_eq!(adaptive.render.sampling, Sampling::Adaptive, "adaptive");
 }
 
 #[test]

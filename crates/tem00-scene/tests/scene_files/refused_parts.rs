@@ -11,7 +11,7 @@ fn surface(keys: &str) -> String {
 #[test]
 fn settings_of_the_image_must_fit_it() {
     let render = |line: &str| format!("[render]\n{line}\n{}", minimal());
-    let cases: [(&str, &[&str]); 15] = [
+    let cases: [(&str, &[&str]); 16] = [
         (
             "reference_frame = 1",
             &["`reference_frame`", "from 0 to 0", "got 1"],
@@ -39,10 +39,13 @@ fn settings_of_the_image_must_fit_it() {
         ("target_error = 0", &["`target_error`", "from 1e-6 to 1"]),
         ("target_error = 1.5", &["`target_error`", "from 1e-6 to 1"]),
         ("target_error = nan", &["`target_error`", "finite"]),
+        ("adaptive = 1", &["`adaptive`", "true or false"]),
     ];
     for (line, words) in cases {
         assert_refused(&render(line), 2, words);
     }
+    let both = render("target_error = 0.1\nadaptive = true");
+    assert_refused(&both, 3, &["`adaptive`", "`target_error`"]);
 }
 
 #[test]

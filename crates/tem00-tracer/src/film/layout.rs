@@ -9,8 +9,8 @@ pub(crate) struct FilmLayout<'a> {
     pub area: Crop,
     /// The number of strips into which the area is divided.
     pub strips: usize,
-    /// True if the number of samples depends on the radiance.
-    pub adaptive: bool,
+    /// True if first samples tell how many each pixel gets.
+    pub has_pilot: bool,
     /// True if light is followed from the lasers, too.
     pub light_traced: bool,
 }

@@ -9,6 +9,9 @@ use crate::TracerError;
 const LAYERS_PER_LASER: u64 = 5;
 const COMMON_LAYERS: u64 = 7;
 
+/// Layers of what first samples tell: two, two for neighbours, and a quarter for what follows from it.
+const PILOT_LAYERS: u64 = 5;
+
 /// Layers of the light followed from one laser, before it is added to its own: four sums in double
 /// precision, and four layers made of them.
 const LIGHT_LAYERS: u64 = 12;
@@ -31,9 +34,9 @@ fn check_against(needed: u64, available: Option<u64>) -> Result<(), TracerError>
 fn needed(layout: &FilmLayout<'_>) -> u64 {
     let pixels = (layout.area.width as u64).saturating_mul(layout.area.height as u64);
     let lasers = layout.wavelengths.len() as u64;
-    let totals = if layout.adaptive { 2 } else { 0 };
+    let pilot = if layout.has_pilot { PILOT_LAYERS } else { 0 };
     let light = if layout.light_traced { LIGHT_LAYERS } else { 0 };
-    let layers = LAYERS_PER_LASER * lasers + COMMON_LAYERS + totals + light;
+    let layers = LAYERS_PER_LASER * lasers + COMMON_LAYERS + pilot + light;
     pixels.saturating_mul(layers * size_of::<f32>() as u64)
 }
 
@@ -53,7 +56,7 @@ mod tests {
                 height: 1024,
             },
             strips: 1,
-            adaptive: false,
+            has_pilot: false,
             light_traced: false,
         };
         // 50 · 5 + 7 layers of 4 MiB.

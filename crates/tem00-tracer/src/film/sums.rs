@@ -42,21 +42,6 @@ impl Moments {
         self.squares += value * value;
     }
 
-    /// Returns the sums of `samples` values with this mean and this variance of the mean.
-    pub(crate) fn restored(samples: u32, mean: f64, variance: f64) -> Self {
-        let n = f64::from(samples);
-        // The square of one sample is known from its value; its variance is infinite.
-        let spread = if samples > 1 {
-            variance * (n - 1.0)
-        } else {
-            0.0
-        };
-        Self {
-            sum: n * mean,
-            squares: n * (mean * mean + spread),
-        }
-    }
-
     /// Returns the variance of the mean of so many independent values.
     fn variance_of_mean(&self, samples: u32) -> f64 {
         if samples < 2 {
@@ -74,22 +59,6 @@ impl PixelSums {
     pub(crate) fn new(lasers: usize) -> Self {
         Self {
             lasers: vec![LaserSums::default(); lasers],
-            ..Self::default()
-        }
-    }
-
-    /// Goes on from the sums of so many samples.
-    pub(crate) fn restored(
-        samples: u32,
-        lasers: Vec<LaserSums>,
-        lights: Moments,
-        total: Moments,
-    ) -> Self {
-        Self {
-            samples,
-            lasers,
-            lights,
-            total,
             ..Self::default()
         }
     }
@@ -133,12 +102,9 @@ impl PixelSums {
         self.mean(self.total.sum)
     }
 
-    /// Returns an upper estimate of the standard error of the mean radiance of all sources.
-    ///
-    /// The standard error itself is uncertain by about 1/√n of it, more where light is rare.
-    pub(crate) fn error(&self) -> f64 {
-        let uncertainty = 2.0 / f64::from(self.samples.max(1)).sqrt();
-        self.variance(&self.total).sqrt() * (1.0 + uncertainty)
+    /// Returns the standard deviation of the radiances of the samples; infinite for a single one.
+    pub(crate) fn deviation(&self) -> f64 {
+        (self.variance(&self.total) * f64::from(self.samples)).sqrt()
     }
 
     /// Returns the mean depth of the samples that meet something, in metres, or 0.
@@ -167,25 +133,5 @@ mod tests {
         assert!((variance - 32.0 / 56.0).abs() < 1e-15, "{variance}");
         let of_one = moments.variance_of_mean(1);
         assert!(of_one.is_infinite(), "{of_one} of one sample");
-    }
-
-    #[test]
-    fn restored_moments_go_on_as_if_nothing_had_been_stored() {
-        let mut all = Moments::default();
-        for value in [0.5, 3.0, 1.0, 0.25, 2.0] {
-            all.add(value);
-        }
-        let mut first = Moments::default();
-        for value in [0.5, 3.0, 1.0] {
-            first.add(value);
-        }
-        let mut again = Moments::restored(3, first.sum / 3.0, first.variance_of_mean(3));
-        again.add(0.25);
-        again.add(2.0);
-        let relative = again.variance_of_mean(5) / all.variance_of_mean(5) - 1.0;
-        assert!(relative.abs() < 1e-14, "{relative:e}");
-        let mut one = Moments::restored(1, 0.5, f64::INFINITY);
-        one.add(3.0);
-        assert!((one.variance_of_mean(2) - 1.5625).abs() < 1e-15, "{one:?}");
     }
 }

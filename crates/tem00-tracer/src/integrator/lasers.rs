@@ -92,7 +92,7 @@ impl<'a> Integrator<'a> {
         let path = &batch.paths[index];
         let purpose = Use::Laser(path.depth, random_number(laser));
         let stream = batch.samples[path.sample].stream;
-        let u = self.sequence.pair(stream, purpose);
+        let u = self.sequence(stream).pair(stream, purpose);
         let event = source.sampled_event(vertex.position, u)?;
         let light = Illumination {
             source: event.source,

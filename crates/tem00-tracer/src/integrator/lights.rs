@@ -44,7 +44,7 @@ impl<'a> Integrator<'a> {
         let (path, vertex) = (batch.paths[path], &batch.vertices[path]);
         let stream = batch.samples[path.sample].stream;
         let u = self
-            .sequence
+            .sequence(stream)
             .pair(stream, Use::Light(path.depth, random_number(index)));
         let Some(sample) = light.sample(vertex.position, u) else {
             return;

@@ -5,8 +5,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::DVec2;
 use rayon::prelude::*;
+use tem00_numerics::Grid;
 
-use super::{Crop, RenderError, RenderOptions};
+use super::{Crop, RenderError, RenderOptions, pilot::Pilot};
 use crate::{
     FilterSampler, Frame,
     film::{Film, FilmLayout, PixelSums},
@@ -23,17 +24,12 @@ const BATCH: usize = 1024;
 /// The maximum number of samples of a pixel that are drawn together.
 const RUN: u32 = 64;
 
-/// The maximum number of rounds of samples that a pixel gets for a target error, the first one included.
-const MAX_ROUNDS: u32 = 64;
-
-/// The radiance below which a pixel's error is compared with this radiance instead of its own, by the
-/// mean radiance of the image.
-const DARK: f64 = 0.1;
-
 /// One pass over the image, or over a part of it.
 pub(super) struct PathPass<'a, P> {
     pub integrator: &'a Integrator<'a>,
     pub options: &'a RenderOptions,
+    /// The numbers of samples that a pixel can get.
+    pub counts: Vec<u32>,
     pub filter: FilterSampler,
     pub frame: u32,
     pub area: Crop,
@@ -58,75 +54,88 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
             wavelengths: &wavelengths,
             area: self.area,
             strips: self.strips(),
-            adaptive: self.options.target_error.is_some(),
+            has_pilot: self.counts.len() > 1,
             light_traced: self.light_traced,
         })?);
-        self.first_round(&film)?;
-        if let Some(target) = self.options.target_error {
-            self.further_rounds(&film, target)?;
-        }
+        let levels = match self.counts.as_slice() {
+            [_] => None,
+            _ => Some(self.levels(&film)?),
+        };
+        let level_at = |at: [usize; 2]| levels.as_ref().map_or(0, |levels| levels[at.into()]);
+        self.for_each_strip(self.options.seed, level_at, |strip, pixels, rays| {
+            let mut film = locked(&film);
+            film.count_rays(rays);
+            for pixel in pixels {
+                film.write(strip, self.in_area(pixel.position), &pixel.sums);
+            }
+        })?;
         let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
         Ok(film.into_frame())
     }
 
-    /// Gives every pixel the same number of samples.
-    fn first_round(&self, film: &Mutex<Film>) -> Result<(), RenderError> {
-        let strips = (0..self.strips()).into_par_iter();
-        strips.try_for_each_init(Batch::default, |batch, strip| {
-            let mut pixels = self.strip(strip);
-            self.add_round(0, &mut pixels, batch)?;
-            let mut film = locked(film);
-            film.count_rays(batch.take_ray_count());
-            for pixel in &pixels {
-                film.write_first(strip, self.in_area(pixel.position), &pixel.sums);
-            }
-            Ok(())
-        })
-    }
-
-    /// Gives pixels more samples, round by round, until their relative error is below the target.
-    fn further_rounds(&self, film: &Mutex<Film>, target: f64) -> Result<(), RenderError> {
-        let dark = DARK * locked(film).mean_radiance();
-        let is_done =
-            |pixel: &Pixel| pixel.sums.error() <= target * pixel.sums.radiance().max(dark);
-        let strips = (0..self.strips()).into_par_iter();
-        strips.try_for_each_init(Batch::default, |batch, strip| {
-            let mut pixels = self.strip(strip);
-            for pixel in &mut pixels {
-                pixel.sums = locked(film).read(self.in_area(pixel.position));
-            }
-            for round in 1..MAX_ROUNDS {
-                pixels.retain(|pixel| !is_done(pixel));
-                self.add_round(round, &mut pixels, batch)?;
-                let mut film = locked(film);
-                film.count_rays(batch.take_ray_count());
-                for pixel in &pixels {
-                    film.write(self.in_area(pixel.position), &pixel.sums);
+    /// Returns by which of the numbers of samples each pixel is rendered, from a pilot with samples of its own.
+    fn levels(&self, film: &Mutex<Film>) -> Result<Grid<u8>, RenderError> {
+        let pilot = Mutex::new(Pilot::new(self.area.width, self.area.height));
+        self.for_each_strip(
+            !self.options.seed,
+            |_| 0,
+            |_, pixels, rays| {
+                locked(film).count_rays(rays);
+                let mut pilot = locked(&pilot);
+                for pixel in pixels {
+                    pilot.write(self.in_area(pixel.position), &pixel.sums);
                 }
-            }
-            Ok(())
-        })
+            },
+        )?;
+        let pilot = pilot.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let levels = pilot.levels(self.options, &self.counts);
+        // What is left over counts as done.
+        let pixels = levels.values();
+        let samples = |level: &u8| u64::from(self.counts[usize::from(*level)]);
+        let asked: u64 = pixels.iter().map(samples).sum();
+        let left = self
+            .options
+            .samples_per_pixel
+            .saturating_sub(self.counts[0]);
+        let budget = pixels.len() as u64 * u64::from(left);
+        (self.progress)(budget.saturating_sub(asked));
+        Ok(levels)
     }
 
-    /// Adds a round of samples to each of the pixels.
-    fn add_round(
+    /// Traces the samples of all pixels, strip by strip, and hands over what was found with the number of rays.
+    fn for_each_strip(
         &self,
-        round: u32,
-        pixels: &mut [Pixel],
-        batch: &mut Batch<'a>,
+        seed: u64,
+        level: impl Fn([usize; 2]) -> u8 + Sync,
+        done: impl Fn(usize, &[Pixel], u64) + Sync,
     ) -> Result<(), RenderError> {
-        batch.clear();
-        for slot in 0..pixels.len() {
-            let position = pixels[slot].position;
-            let key = self.key(position);
-            for index in (0..self.options.samples_per_pixel).step_by(RUN as usize) {
-                if batch.samples.len() + RUN as usize > BATCH {
-                    self.trace(batch, pixels)?;
+        let strips = (0..self.strips()).into_par_iter();
+        strips.try_for_each_init(Batch::default, |batch, strip| {
+            let mut pixels = self.strip(strip);
+            batch.clear();
+            for slot in 0..pixels.len() {
+                let position = pixels[slot].position;
+                let first = Stream {
+                    key: self.key(seed, position),
+                    level: level(self.in_area(position)),
+                    index: 0,
+                };
+                for index in (0..self.count(first)).step_by(RUN as usize) {
+                    if batch.samples.len() + RUN as usize > BATCH {
+                        self.trace(batch, &mut pixels)?;
+                    }
+                    self.add_samples(slot, position, Stream { index, ..first }, batch);
                 }
-                self.add_samples(slot, position, Stream { key, round, index }, batch);
             }
-        }
-        self.trace(batch, pixels)
+            self.trace(batch, &mut pixels)?;
+            done(strip, &pixels, batch.take_ray_count());
+            Ok(())
+        })
+    }
+
+    /// Returns the number of samples of a pixel.
+    fn count(&self, stream: Stream) -> u32 {
+        self.counts[usize::from(stream.level)]
     }
 
     /// Traces the samples of a batch, adds them to their pixels, and forgets them.
@@ -146,10 +155,10 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
     /// Adds samples of a pixel, from that of the stream `first` on, at most a run.
     fn add_samples(&self, slot: usize, [x, y]: [usize; 2], first: Stream, batch: &mut Batch<'a>) {
         let end = first.index.saturating_add(RUN);
-        let indices = first.index..end.min(self.options.samples_per_pixel);
+        let indices = first.index..end.min(self.count(first));
         let mut positions = [[0.0; 2]; RUN as usize];
         let positions = &mut positions[..indices.len()];
-        self.integrator.sequence().positions(first, positions);
+        self.integrator.sequence(first).positions(first, positions);
         let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
         for (index, within) in indices.zip(&*positions) {
             let beside = self.filter.sample(*within);
@@ -166,8 +175,8 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
     }
 
     /// Every pixel of every frame has random numbers of its own, wherever the image is cropped.
-    fn key(&self, [x, y]: [usize; 2]) -> u64 {
-        pixel_key(self.options.seed, [self.frame.into(), x as u64, y as u64])
+    fn key(&self, seed: u64, [x, y]: [usize; 2]) -> u64 {
+        pixel_key(seed, [self.frame.into(), x as u64, y as u64])
     }
 
     fn strips(&self) -> usize {
@@ -192,7 +201,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
     }
 }
 
-/// A thread that panicked has not left the film half written: it writes only finished pixels.
-fn locked(film: &Mutex<Film>) -> MutexGuard<'_, Film> {
-    film.lock().unwrap_or_else(PoisonError::into_inner)
+/// A thread that panicked has left nothing half written: only finished pixels are.
+fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

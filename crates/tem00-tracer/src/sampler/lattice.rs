@@ -1,5 +1,3 @@
-use super::sobol::sobol_second;
-
 /// About the maximum number of generators that are tried.
 const MAX_TRIED: u32 = 1024;
 
@@ -11,8 +9,6 @@ const GOOD: f64 = 0.9;
 pub(super) struct Lattice {
     /// The way from a point to the next one: (1, g) / N, rounded up to 2⁻⁶⁴ of the torus.
     step: [u64; 2],
-    /// Two shortest vectors that span the lattice, in 2⁻⁶⁴ of the torus.
-    basis: [[i128; 2]; 2],
     /// The square of the shortest distance between two points, in columns.
     square_distance: i128,
 }
@@ -34,12 +30,10 @@ impl Lattice {
     }
 
     fn new(generator: u32, count: u32) -> Self {
-        let basis = shortest_vectors(generator, count);
-        let of_torus = |columns: i128| (columns << 64).div_euclid(count.into());
+        let shortest = shortest_vector(generator, count);
         Self {
             step: [1, generator].map(|columns| step(columns, count)),
-            basis: basis.map(|vector| vector.map(of_torus)),
-            square_distance: dot(basis[0], basis[0]),
+            square_distance: dot(shortest, shortest),
         }
     }
 
@@ -53,21 +47,6 @@ impl Lattice {
     pub(super) fn point(&self, index: u32) -> [u64; 2] {
         self.step.map(|step| step.wrapping_mul(index.into()))
     }
-
-    /// Returns the shift in a round, in 2⁻³² of the torus: Sobol's point of that number in the unit cell.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "whole turns of the torus are dropped"
-    )]
-    pub(super) fn shift(&self, round: u32) -> [u32; 2] {
-        if round == 0 {
-            return [0; 2];
-        }
-        let [short, long] = self.basis;
-        let parts = [round.reverse_bits(), sobol_second(round)].map(i128::from);
-        [0, 1].map(|axis| ((parts[0] * short[axis] + parts[1] * long[axis]) >> 64) as u32)
-    }
 }
 
 /// Returns so many columns out of `count`, rounded up to 2⁻⁶⁴ of the torus; the whole torus is 0.
@@ -79,8 +58,8 @@ fn step(columns: u32, count: u32) -> u64 {
     (u128::from(columns) << 64).div_ceil(count.into()) as u64
 }
 
-/// Finds two shortest vectors that span the lattice, in columns, by the algorithm of Lagrange and Gauss.
-fn shortest_vectors(generator: u32, count: u32) -> [[i128; 2]; 2] {
+/// Finds a shortest vector of the lattice, in columns, by the algorithm of Lagrange and Gauss.
+fn shortest_vector(generator: u32, count: u32) -> [i128; 2] {
     let (mut short, mut long) = ([1, generator.into()], [0, count.into()]);
     loop {
         if dot(short, short) > dot(long, long) {
@@ -89,7 +68,7 @@ fn shortest_vectors(generator: u32, count: u32) -> [[i128; 2]; 2] {
         let square = dot(short, short);
         let times = (2 * dot(short, long) + square).div_euclid(2 * square);
         if times == 0 {
-            return [short, long];
+            return short;
         }
         long = [0, 1].map(|axis| long[axis] - times * short[axis]);
     }
@@ -135,35 +114,5 @@ mod tests {
                 .iter()
                 .any(|lattice| column_and_row(lattice, 89, 1) == [1, 34])
         );
-    }
-
-    /// The smallest distance of a shift, in 2⁻³² of the torus, to a point of the lattice, in columns.
-    fn distance_to_lattice(lattice: &Lattice, count: u32, shift: [u32; 2]) -> f64 {
-        let unit = f64::from(count) / (1_u64 << 32) as f64;
-        let distance = |index| {
-            let point = lattice.point(index).map(|x| x >> 32);
-            let [x, y] = [0, 1].map(|axis| {
-                let apart = u64::from(shift[axis]).abs_diff(point[axis]);
-                apart.min((1 << 32) - apart) as f64 * unit
-            });
-            x.hypot(y)
-        };
-        (0..count).map(distance).fold(f64::INFINITY, f64::min)
-    }
-
-    #[test]
-    fn points_of_four_rounds_keep_apart() {
-        for count in [1, 7, 16, 64, 121] {
-            for lattice in Lattice::good(count) {
-                let shortest = (lattice.square_distance as f64).sqrt();
-                for (first, second) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
-                    let [a, b] = [first, second].map(|round| lattice.shift(round));
-                    let between = [0, 1].map(|axis| b[axis].wrapping_sub(a[axis]));
-                    let distance = distance_to_lattice(&lattice, count, between);
-                    // Four times it is a vector of the lattice and not zero. Shifts are rounded to 2⁻³².
-                    assert!(distance > 0.25 * shortest - 1e-6, "{lattice:?}: {distance}");
-                }
-            }
-        }
     }
 }

@@ -6,10 +6,9 @@ fn pairs(sequence: &Sequence, pixel: u64, samples: u32, purpose: Use) -> Vec<[f6
         .collect()
 }
 
-/// A sample of the first round.
 fn stream(key: u64, index: u32) -> Stream {
-    let round = 0;
-    Stream { key, round, index }
+    let level = 0;
+    Stream { key, level, index }
 }
 
 fn position(sequence: &Sequence, stream: Stream) -> [f64; 2] {
@@ -18,19 +17,18 @@ fn position(sequence: &Sequence, stream: Stream) -> [f64; 2] {
     position[0]
 }
 
-fn positions(sequence: &Sequence, key: u64, rounds: u32) -> Vec<[f64; 2]> {
-    let streams = (0..rounds)
-        .flat_map(|round| (0..sequence.count).map(move |index| Stream { key, round, index }));
+fn positions(sequence: &Sequence, key: u64) -> Vec<[f64; 2]> {
+    let streams = (0..sequence.count).map(|index| stream(key, index));
     streams.map(|stream| position(sequence, stream)).collect()
 }
 
 /// The mean square over many pixels of what `error` finds for the positions of each.
-fn mean_square(count: u32, rounds: u32, error: impl Fn(u32, &[[f64; 2]]) -> f64) -> f64 {
+fn mean_square(count: u32, error: impl Fn(u32, &[[f64; 2]]) -> f64) -> f64 {
     const PIXELS: u32 = 4000;
     let sequence = Sequence::new(count);
     let square = |pixel: u32| {
         let key = pixel_key(8, [0, pixel.into(), 0]);
-        error(pixel, &positions(&sequence, key, rounds)).powi(2)
+        error(pixel, &positions(&sequence, key)).powi(2)
     };
     (0..PIXELS).map(square).sum::<f64>() / f64::from(PIXELS)
 }
@@ -76,7 +74,7 @@ fn every_column_and_every_row_of_a_pixel_holds_one_sample() {
     for count in [1, 2, 3, 5, 12, 16, 17, 64, 121, 257] {
         let sequence = Sequence::new(count);
         for pixel in 0..20 {
-            let points = positions(&sequence, pixel_key(5, [0, pixel, 0]), 1);
+            let points = positions(&sequence, pixel_key(5, [0, pixel, 0]));
             for (columns, rows) in [(count, 1), (1, count)] {
                 assert!(
                     one_in_each_cell(&points, columns as usize, rows as usize),
@@ -92,7 +90,7 @@ fn a_pixel_misses_of_an_edge_what_one_sample_in_each_column_does() {
     for count in [7, 64, 121] {
         let n = f64::from(count);
         // In one column in n the edge leaves the count to chance: f (1 − f) / n², f between 0 and 1.
-        let edge = mean_square(count, 1, |pixel, points| {
+        let edge = mean_square(count, |pixel, points| {
             let place = (f64::from(pixel) * 0.618).fract();
             let before = points.iter().filter(|[x, _]| *x < place).count() as f64;
             before / n - place
@@ -106,10 +104,10 @@ fn a_pixel_misses_of_an_edge_what_one_sample_in_each_column_does() {
 
 #[test]
 fn a_ramp_over_the_pixel_is_met_exactly_but_for_a_column_without_a_neighbour() {
-    for (count, rounds) in [(64, 1), (64, 3), (7, 1), (121, 1)] {
+    for count in [64, 7, 121] {
         let n = f64::from(count);
         for axis in 0..2 {
-            let ramp = mean_square(count, rounds, |_, points| {
+            let ramp = mean_square(count, |_, points| {
                 let sum: f64 = points.iter().map(|point| point[axis] - 0.5).sum();
                 sum / points.len() as f64
             });
@@ -127,51 +125,9 @@ fn a_ramp_over_the_pixel_is_met_exactly_but_for_a_column_without_a_neighbour() {
 fn slanted_edges_cost_no_more_than_in_jittered_cells() {
     // One sample by chance in each of 8 × 8 and of 11 × 11 cells, from benches/peers/pixel_samples.py.
     for (count, jittered) in [(64, 3.3e-4), (121, 1.3e-4)] {
-        let error = mean_square(count, 1, edge_error);
+        let error = mean_square(count, edge_error);
         assert!(error < 0.75 * jittered, "{count}: {error:e}");
     }
-}
-
-#[test]
-fn further_rounds_share_the_columns_of_the_first() {
-    const ROUNDS: u32 = 4;
-    for count in [16, 25] {
-        let n = f64::from(count);
-        let edge = mean_square(count, ROUNDS, |pixel, points| {
-            let place = (f64::from(pixel) * 0.618).fract();
-            let before = points.iter().filter(|[x, _]| *x < place).count() as f64;
-            before / points.len() as f64 - place
-        });
-        // Each sample has one round in each quarter of a column, of which one is left to chance: 1/6 (1 / 4n)².
-        // Independent rounds would leave 4 times as much.
-        let ratio = edge * 6.0 * 16.0 * n * n;
-        // 4 relative standard deviations of a mean square of 4000 normal errors, each √(2/4000) = 0.022.
-        assert!((ratio - 1.0).abs() < 0.09, "{count}: {ratio}");
-    }
-}
-
-#[test]
-fn rounds_are_uncorrelated_where_uses_act_together() {
-    const COUNT: u32 = 16;
-    let sequence = Sequence::new(COUNT);
-    let uses = [Use::Lens, Use::Light(1, 2), Use::Scattering(3)];
-    let product = |stream| -> f64 {
-        let factors = uses.map(|purpose| sequence.uniform(stream, purpose) - 0.5);
-        factors.into_iter().product()
-    };
-    let mean_square = |rounds: u32| {
-        let square = |pixel| {
-            let key = pixel_key(9, [0, pixel, 0]);
-            let streams = (0..rounds)
-                .flat_map(|round| (0..COUNT).map(move |index| Stream { key, round, index }));
-            (streams.map(product).sum::<f64>() / f64::from(rounds * COUNT)).powi(2)
-        };
-        (0..4000).map(square).sum::<f64>() / 4000.0
-    };
-    let ratio = 4.0 * mean_square(4) / mean_square(1);
-    // Each mean square has a relative standard deviation of 0.023: √((κ − 1) / 4000) with the kurtosis
-    // κ = 3 + (1.8³ − 3) / 16 of the mean of 16 products. 4 of those of the ratio.
-    assert!((ratio - 1.0).abs() < 0.13, "{ratio}");
 }
 
 #[test]
@@ -266,65 +222,45 @@ fn uses_and_vertices_are_independent_of_each_other() {
 fn any_number_of_samples_stays_in_the_pixel() {
     let sequence = Sequence::new(u32::MAX);
     for index in [0, 1, u32::MAX / 2, u32::MAX - 1] {
-        for round in [0, 1, u32::MAX] {
-            let stream = Stream {
-                key: 7,
-                round,
-                index,
-            };
-            let points = [
-                position(&sequence, stream),
-                sequence.pair(stream, Use::Lens),
-            ];
-            for x in points.as_flattened() {
-                assert!(*x > 0.0 && *x < 1.0, "{stream:?}: {x}");
-            }
+        let stream = stream(7, index);
+        let points = [
+            position(&sequence, stream),
+            sequence.pair(stream, Use::Lens),
+        ];
+        for x in points.as_flattened() {
+            assert!(*x > 0.0 && *x < 1.0, "{stream:?}: {x}");
         }
     }
 }
 
 #[test]
-fn streams_differ_by_seed_frame_pixel_and_round_and_repeat() {
+fn streams_differ_by_seed_frame_and_pixel_and_repeat() {
     let sequence = Sequence::new(16);
-    let first = |seed, place, round| {
-        let key = pixel_key(seed, place);
-        let stream = Stream {
-            key,
-            round,
-            index: 0,
-        };
+    let first = |seed, place| {
+        let stream = stream(pixel_key(seed, place), 0);
         [
             sequence.pair(stream, Use::Lens),
             position(&sequence, stream),
         ]
         .map(|x| x.map(f64::to_bits))
     };
-    let reference = first(1, [2, 3, 4], 0);
-    assert_eq!(reference, first(1, [2, 3, 4], 0), "the same again");
-    for (seed, place, round) in [
-        (2, [2, 3, 4], 0),
-        (1, [3, 3, 4], 0),
-        (1, [2, 4, 4], 0),
-        (1, [2, 3, 5], 0),
-        (1, [2, 3, 4], 1),
+    let reference = first(1, [2, 3, 4]);
+    assert_eq!(reference, first(1, [2, 3, 4]), "the same again");
+    for (seed, place) in [
+        (2, [2, 3, 4]),
+        (1, [3, 3, 4]),
+        (1, [2, 4, 4]),
+        (1, [2, 3, 5]),
     ] {
-        assert_ne!(
-            reference,
-            first(seed, place, round),
-            "{seed}, {place:?}, {round}"
-        );
+        assert_ne!(reference, first(seed, place), "{seed}, {place:?}");
     }
 }
 
 #[test]
 fn runs_of_samples_are_those_of_single_calls() {
-    for (count, round, start) in [(1, 0, 0), (7, 3, 2), (64, 0, 0), (64, 2, 5), (100, 1, 64)] {
+    for (count, start) in [(1, 0), (7, 2), (64, 0), (64, 5), (100, 64)] {
         let sequence = Sequence::new(count);
-        let first = Stream {
-            key: pixel_key(3, [0, 5, 8]),
-            round,
-            index: start,
-        };
+        let first = stream(pixel_key(3, [0, 5, 8]), start);
         let length = (count - start) as usize;
         let (mut pairs, mut positions) = (vec![[0.0; 2]; length], vec![[0.0; 2]; length]);
         sequence.pairs(first, Use::Lens, &mut pairs);

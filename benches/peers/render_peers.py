@@ -1,6 +1,6 @@
 """The same scenes by tem00 and Mitsuba, in turns.
 
-    render_peers.py SERVER [--rounds N] [--only WORD] [--variants A,B] [--samplers A,B]
+    render_peers.py SERVER [--rounds N] [--only WORD] [--variants A,B] [--samplers A,B] [--sampling A,B]
 
 SERVER is the example `render_server`. Each scene is loaded by a fresh process of every program; then
 they render in turns, one image that does not count and N that do, each with a seed of its own. Mitsuba
@@ -8,7 +8,8 @@ does so with each of the samplers, of which some take more samples than they are
 medians: seconds to load, seconds to render, samples per second; the squared error of a pixel, which is the
 variance between seeds since all estimates are unbiased: its mean over the image and its median; and ours by
 theirs of time, and of the time that an equal error takes, by the mean and by the median, if errors fell with
-the samples, of images brought to the same mean. `mean` is the mean of our image by theirs.
+the samples, of images brought to the same mean. `mean` is the mean of our image by theirs. Ours renders with even and
+with adaptive samples.
 """
 
 import argparse
@@ -74,10 +75,9 @@ class Program:
 
 
 def report(name, ours, theirs):
-    pixels = len(ours.images[0])
+    pixels = len(ours[0].images[0])
     print(f"{name}")
-    own = ours.squared_errors()
-    for program in [ours, *theirs]:
+    for program in [*ours, *theirs]:
         time, errors = program.median(), program.squared_errors()
         rate = pixels * program.samples / time / 1e6
         line = (
@@ -85,14 +85,14 @@ def report(name, ours, theirs):
             f"  render {time:6.3f} s  {program.samples} samples  {rate:6.2f} Msamples/s"
             f"  error {errors.mean():.2e}  median {np.median(errors):.2e}  peak {program.peak:5.0f} MiB"
         )
-        if program is not ours:
-            ratio = ours.median() / time
-            mean = ours.mean_image().mean() / program.mean_image().mean()
+        for our in ours if program in theirs else []:
+            ratio = our.median() / time
+            mean = our.mean_image().mean() / program.mean_image().mean()
             # Of images brought to the same mean: a light that stands in for another may be brighter.
-            scaled = errors * mean**2
+            own, scaled = our.squared_errors(), errors * mean**2
             costs = ratio * own.mean() / scaled.mean(), ratio * np.median(own) / np.median(scaled)
             line += (
-                f"  ours/theirs: time {ratio:5.2f} cost {costs[0]:6.3f}, median {costs[1]:6.3f}"
+                f"\n    {our.name} by it: time {ratio:5.2f} cost {costs[0]:8.5f}, median {costs[1]:8.5f}"
                 f" mean {mean:.4f}"
             )
         print(line, flush=True)
@@ -101,21 +101,23 @@ def report(name, ours, theirs):
 def compare(row, arguments, folder):
     name, our_file, their_file, lights_only = row
     here = pathlib.Path(__file__).parent
-    ours = Program("tem00", [arguments.server])
+    ours = [Program(f"tem00 {sampling}", [arguments.server]) for sampling in arguments.sampling.split(",")]
     theirs = [
         Program(f"{variant} {sampler}", [sys.executable, here / "mitsuba_server.py", variant], sampler)
         for variant in arguments.variants.split(",")
         for sampler in arguments.samplers.split(",")
     ]
     # Mitsuba's integrator of direct light makes no use of the directions that materials draw.
-    ours.task = "connect" if name.startswith("direct") else "render"
-    ours.load(f"{'lights' if lights_only else 'load'} {our_file}")
+    for program in ours:
+        program.task = "connect" if name.startswith("direct") else "render"
+        program.load(f"{'lights' if lights_only else 'load'} {our_file}")
+        program.ask(program.name.removeprefix("tem00 "))
     for program in theirs:
         program.load(f"load {their_file} {program.sampler}")
     for seed in range(arguments.rounds + 1):
-        for program in [ours, *theirs]:
+        for program in [*ours, *theirs]:
             program.render(seed, seed > 0, folder / "image.raw")
-    for program in [ours, *theirs]:
+    for program in [*ours, *theirs]:
         program.finish()
     report(name, ours, theirs)
 
@@ -127,6 +129,7 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--variants", default="scalar_rgb,llvm_ad_rgb")
     parser.add_argument("--samplers", default="independent,multijitter,orthogonal")
+    parser.add_argument("--sampling", default="even,adaptive")
     arguments = parser.parse_args()
     folder = ROOT / "target/peers/scenes"
     for row in write_scenes(folder):

@@ -3,6 +3,7 @@
 //! ```text
 //! load scene.toml   reads a scene
 //! lights scene.toml  reads a scene and leaves its lasers out
+//! even | adaptive   from now on, how samples are shared among the pixels
 //! render 64 1       renders it without speckle: samples per pixel, and seed
 //! connect 64 1      the same, but lights count only where surfaces are connected to them
 //! write image.raw   writes what was rendered as rows of 32-bit floats: the sum of all light
@@ -21,12 +22,13 @@ use std::{
 };
 
 use tem00::scene::read_scene;
-use tem00::tracer::{Frame, LightEvents, RenderOptions, Scene, render_frame};
+use tem00::tracer::{Frame, LightEvents, RenderOptions, Sampling, Scene, render_frame};
 
 #[derive(Default)]
 struct Server {
     scene: Option<Scene>,
     frame: Option<Frame>,
+    sampling: Sampling,
 }
 
 impl Server {
@@ -38,6 +40,8 @@ impl Server {
                 scene.lasers.clear();
                 self.scene = Some(scene);
             }
+            "even" => self.sampling = Sampling::Even,
+            "adaptive" => self.sampling = Sampling::Adaptive,
             "render" => self.frame = Some(self.render(arguments, LightEvents::Both)?),
             "connect" => self.frame = Some(self.render(arguments, LightEvents::NextEvent)?),
             "write" => write(arguments, self.image()?)?,
@@ -53,6 +57,7 @@ impl Server {
             samples_per_pixel: samples.parse()?,
             seed: seed.parse()?,
             light_events,
+            sampling: self.sampling,
             ..scene.render
         };
         let never = AtomicBool::new(false);

@@ -1,11 +1,14 @@
 """Answers the tasks of render_server.rs with Mitsuba.
 
-    mitsuba_server.py VARIANT
+    mitsuba_server.py VARIANT[:avx2]
 
+`avx2` compiles for eight lanes in place of AVX-512's sixteen, with which loops over surfaces abort (LLVM 19).
 The tasks are `load scene.xml SAMPLER`, `render SAMPLES SEED`, `write image.raw`, `peak` and `samples`: the
 samples per pixel that were taken, which some samplers round up.
 """
 
+import ctypes
+import pathlib
 import resource
 import sys
 import time
@@ -14,7 +17,18 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-mi.set_variant(sys.argv[1])
+
+
+def compile_for_avx2():
+    """Dr.Jit has the call in its library, but not in Python."""
+    library = ctypes.CDLL(str(pathlib.Path(dr.__file__).parent / "libdrjit-core.so"))
+    library._Z19jit_llvm_set_targetPKcS0_j(b"skylake", b"+avx2,+fma,-avx512f", ctypes.c_uint32(8))
+
+
+variant, _, lanes = sys.argv[1].partition(":")
+mi.set_variant(variant)
+if lanes:
+    compile_for_avx2()
 mi.set_log_level(mi.LogLevel.Error)
 scene = image = None
 

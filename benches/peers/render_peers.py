@@ -9,7 +9,7 @@ medians: seconds to load, seconds to render, samples per second; the squared err
 variance between seeds since all estimates are unbiased: its mean over the image and its median; and ours by
 theirs of time, and of the time that an equal error takes, by the mean and by the median, if errors fell with
 the samples, of images brought to the same mean. `mean` is the mean of our image by theirs. Ours renders with even and
-with adaptive samples.
+with adaptive samples. A variant may be `llvm_ad_rgb:avx2`, see mitsuba_server.py.
 """
 
 import argparse

@@ -29,7 +29,7 @@ pub struct Frame {
     /// The components x, y and z of the unit normal of what is seen, on the side that is seen and as
     /// it is shaded: the mean over the pixel's samples, with 0 for those that meet nothing.
     pub normal: [Grid<f32>; 3],
-    /// The number of samples that the pixel got.
+    /// The number of samples that the pixel is made of, those of a pilot left out.
     pub samples: Grid<f32>,
     /// The column and the row of the first pixel in the whole image.
     pub origin: [usize; 2],

@@ -101,12 +101,14 @@ mod tests {
     fn scenes_are_rendered_with_the_same_options() {
         for command in ["render", "triangulate"] {
             let line = format!(
-                "tem00 {command} a.toml -o d --spp 3 --seed 4 --threads 2 --no-speckle --frames 2..7"
+                "tem00 {command} a.toml -o d --spp 3 --adaptive --seed 4 --threads 2 --no-speckle \
+                 --frames 2..7"
             );
             let args = parse(&line).expect("the line is valid");
             assert_eq!(args.scene, PathBuf::from("a.toml"));
             assert_eq!(args.output, Some(PathBuf::from("d")));
             assert_eq!((args.spp, args.seed), (Some(3), Some(4)));
+            assert!(args.adaptive, "it is on");
             assert_eq!(args.threads, Some(2));
             assert!(args.no_speckle, "it is on");
             assert_eq!(args.frames, Some(IndexRange { first: 2, last: 7 }));
@@ -114,7 +116,7 @@ mod tests {
             let args = parse(&format!("tem00 {command} a.toml")).expect("the line is valid");
             assert!(args.output.is_none() && args.frames.is_none(), "{args:?}");
             assert!(args.spp.is_none() && args.seed.is_none(), "{args:?}");
-            assert!(!args.no_speckle, "{args:?}");
+            assert!(!args.no_speckle && !args.adaptive, "{args:?}");
             assert!(parse(&format!("tem00 {command}")).is_err(), "no scene");
         }
     }

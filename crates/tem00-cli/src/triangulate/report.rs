@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 use tem00_scan::{HeightMap, MeasuredPoint, QuantisedGrid, Raster};
+use tem00_tracer::Sampling;
 
 use super::{
     drawings::Drawings,
@@ -164,7 +165,8 @@ fn settings(section: &mut Section, job: &Job<'_>, measured: &Measured) {
             "samples_per_pixel",
             "samples per pixel",
             render.samples_per_pixel,
-        );
+        )
+        .data("adaptive", render.sampling == Sampling::Adaptive);
 }
 
 fn average(job: &Job<'_>, measured: &Measured) -> Cell {

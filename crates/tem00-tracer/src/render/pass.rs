@@ -50,17 +50,15 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
     /// Renders all layers.
     pub(super) fn render(&self) -> Result<Frame, RenderError> {
         let wavelengths: Vec<f64> = self.integrator.laser_wavelengths().collect();
+        let has_pilot = self.counts.len() > 1;
         let film = Mutex::new(Film::new(&FilmLayout {
             wavelengths: &wavelengths,
             area: self.area,
             strips: self.strips(),
-            has_pilot: self.counts.len() > 1,
+            has_pilot,
             light_traced: self.light_traced,
         })?);
-        let levels = match self.counts.as_slice() {
-            [_] => None,
-            _ => Some(self.levels(&film)?),
-        };
+        let levels = has_pilot.then(|| self.levels(&film)).transpose()?;
         let level_at = |at: [usize; 2]| levels.as_ref().map_or(0, |levels| levels[at.into()]);
         self.for_each_strip(self.options.seed, level_at, |strip, pixels, rays| {
             let mut film = locked(&film);

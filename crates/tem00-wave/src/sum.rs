@@ -4,6 +4,7 @@ use core::slice;
 
 use glam::DVec3;
 use num_complex::Complex;
+use tem00_numerics::vectorised;
 
 /// Scatterers summed side by side: two AVX-512 or eight SSE2 registers of `f64`.
 const LANES: usize = 8;
@@ -43,20 +44,28 @@ impl Sources {
     /// Returns `Σ amplitude · exp(ikr) / r` at a point, with `r` at least one wavelength in 1/r.
     pub(crate) fn wave_at(&self, point: DVec3, wavelength: f64) -> Complex<f64> {
         let half_turns_per_metre = 2.0 / wavelength;
-        let (mut re, mut im) = ([0.0; LANES], [0.0; LANES]);
-        let positions = groups(&self.x).zip(groups(&self.y)).zip(groups(&self.z));
-        let amplitudes = groups(&self.re).zip(groups(&self.im));
-        for (((x, y), z), (a, b)) in positions.zip(amplitudes) {
-            for lane in 0..LANES {
-                let (dx, dy, dz) = (point.x - x[lane], point.y - y[lane], point.z - z[lane]);
-                let distance = (dx * dx + dy * dy + dz * dz).sqrt();
-                let inverse = 1.0 / distance.max(wavelength);
-                let (sin, cos) = sin_cos_half_turns(distance * half_turns_per_metre);
-                re[lane] += inverse * (a[lane] * cos - b[lane] * sin);
-                im[lane] += inverse * (a[lane] * sin + b[lane] * cos);
-            }
-        }
-        Complex::new(re.iter().sum(), im.iter().sum())
+        let mut sum = Complex::ZERO;
+        vectorised(
+            #[inline(always)]
+            || {
+                let (mut re, mut im) = ([0.0; LANES], [0.0; LANES]);
+                let positions = groups(&self.x).zip(groups(&self.y)).zip(groups(&self.z));
+                let amplitudes = groups(&self.re).zip(groups(&self.im));
+                for (((x, y), z), (a, b)) in positions.zip(amplitudes) {
+                    for lane in 0..LANES {
+                        let (dx, dy, dz) =
+                            (point.x - x[lane], point.y - y[lane], point.z - z[lane]);
+                        let distance = (dx * dx + dy * dy + dz * dz).sqrt();
+                        let inverse = 1.0 / distance.max(wavelength);
+                        let (sin, cos) = sin_cos_half_turns(distance * half_turns_per_metre);
+                        re[lane] += inverse * (a[lane] * cos - b[lane] * sin);
+                        im[lane] += inverse * (a[lane] * sin + b[lane] * cos);
+                    }
+                }
+                sum = Complex::new(re.iter().sum(), im.iter().sum());
+            },
+        );
+        sum
     }
 }
 

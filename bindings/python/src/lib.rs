@@ -16,14 +16,13 @@ mod pickling;
 mod speckle;
 mod statistics;
 
-use std::ffi::OsString;
-
 use pyo3::prelude::*;
 
 /// Runs the program `tem00` with the arguments of this process; returns the exit code.
+#[cfg(not(target_family = "wasm"))]
 #[pyfunction]
 fn main(py: Python<'_>) -> PyResult<u8> {
-    let arguments: Vec<OsString> = py.import("sys")?.getattr("argv")?.extract()?;
+    let arguments: Vec<std::ffi::OsString> = py.import("sys")?.getattr("argv")?.extract()?;
     Ok(py.detach(|| tem00_cli::run(&arguments)))
 }
 
@@ -32,8 +31,12 @@ mod _tem00 {
     #[pymodule_export]
     use super::{
         beam::beam, coherence::coherence, decorrelation::decorrelation, error::ParameterError,
-        main, speckle::speckle, statistics::statistics,
+        speckle::speckle, statistics::statistics,
     };
+
+    #[cfg(not(target_family = "wasm"))]
+    #[pymodule_export]
+    use super::main;
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "Python's name for it")]

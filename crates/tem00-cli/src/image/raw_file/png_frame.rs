@@ -138,6 +138,7 @@ pub(super) fn write(
     let size = |pixels: usize| u32::try_from(pixels).unwrap_or(u32::MAX);
     let values = &frame.values;
     let mut encoder = Encoder::new(writer, size(values.width()), size(values.height()));
+    encoder.set_compression(png::Compression::Fast);
     encoder.set_color(ColorType::Grayscale);
     encoder.add_itxt_chunk(BIT_DEPTH.to_owned(), frame.bit_depth.to_string())?;
     for (keyword, content) in text {

@@ -294,8 +294,27 @@ fn stated_variances_are_those_between_renders() {
 }
 
 #[test]
+fn light_over_two_surfaces_is_found_with_few_samples() {
+    let (scene, multiple) = sphere();
+    let mut squares = Vec::new();
+    for seed in 0..4 {
+        let options = RenderOptions {
+            samples_per_pixel: 16,
+            seed,
+            ..RenderOptions::default()
+        };
+        let frame = render_smooth(&scene, &options);
+        let values = frame.lasers[0].multiple.values().iter();
+        squares.extend(values.map(|&value| (f64::from(value) / multiple - 1.0).powi(2)));
+    }
+    let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    // 0.12; directions alone, which seldom meet the spot, leave 0.40.
+    assert!(rms < 0.16, "error {rms}");
+}
+
+#[test]
 fn a_target_is_reached_without_bias() {
-    const TARGET: f64 = 0.2;
+    const TARGET: f64 = 0.1;
     let (scene, multiple) = sphere();
     let direct = RenderOptions {
         max_depth: Some(1),
@@ -329,11 +348,12 @@ fn a_target_is_reached_without_bias() {
         biases.push(errors.iter().sum::<f64>() / n);
     }
     let rms = squares.iter().sum::<f64>() / squares.len() as f64;
-    // What is left of the target is for the uncertainty of the estimated error.
-    assert!((0.5 * TARGET..TARGET).contains(&rms), "error {rms}");
+    // The rest of the target is for the uncertainty of the estimated error, and for samples that are more even than the
+    // independent ones for which it is asked.
+    assert!((0.4 * TARGET..TARGET).contains(&rms), "error {rms}");
     let bias = biases.iter().sum::<f64>() / biases.len() as f64;
     // 4 standard errors of the mean over 6912 pixels: what a pilot finds, the image does not see.
-    assert!(bias.abs() < 0.0072, "bias {bias}");
+    assert!(bias.abs() < 0.0021, "bias {bias}");
 }
 
 #[test]

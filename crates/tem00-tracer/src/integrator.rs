@@ -3,6 +3,7 @@
 mod batch;
 mod lasers;
 mod lights;
+mod lit_points;
 mod rules;
 mod vertex;
 mod weights;
@@ -12,7 +13,7 @@ use core::mem::take;
 use glam::DVec3;
 use tem00_camera::{Camera, Ray};
 
-use self::{batch::Path, rules::Spectrum};
+use self::{batch::Path, lit_points::LitPoints, rules::Spectrum};
 pub(crate) use self::{
     batch::{Batch, CameraSample, LaserSample, Seen},
     rules::PathRules,
@@ -20,6 +21,7 @@ pub(crate) use self::{
 };
 use crate::{
     Hit, Intersector, Laser, Light, RenderOptions, Scene,
+    light_tracer::DrawKey,
     sampler::{Sequence, Stream, Use},
     speckle::{SpeckleFrame, SpecklePoint},
 };
@@ -36,6 +38,8 @@ pub(crate) struct Integrator<'a> {
     /// The direction in which the camera looks.
     camera_axis: DVec3,
     lasers: Vec<Laser>,
+    /// Points that each laser lights, if surfaces are connected to them.
+    lit_points: Vec<LitPoints<'a>>,
     intersector: &'a Intersector,
     speckle: Option<&'a SpeckleFrame<'a>>,
     rules: PathRules,
@@ -68,23 +72,36 @@ impl<'a> Integrator<'a> {
             rules.max_depth = rules.max_depth.min(1);
         }
         let camera = scene.camera_at(frame);
+        let lasers: Vec<_> = scene
+            .lasers
+            .iter()
+            .map(|laser| laser.in_frame(frame))
+            .collect();
+        let counts = options.sample_counts();
+        // The same numbers for all: a laser alone has the bits of one among others.
+        let key = DrawKey {
+            seed: options.seed,
+            frame,
+            laser: 0,
+            group: u64::MAX,
+        };
+        let most = counts[counts.len() - 1];
+        let lit_by = |laser| LitPoints::new(scene, laser, key, intersector, most);
+        let lit_points = if rules.connects_to_lit_points() {
+            lasers.iter().map(lit_by).collect()
+        } else {
+            Vec::new()
+        };
         Self {
             scene,
             camera,
             camera_axis: -camera.axes().z_axis,
-            lasers: scene
-                .lasers
-                .iter()
-                .map(|laser| laser.in_frame(frame))
-                .collect(),
+            lasers,
+            lit_points,
             intersector,
             speckle: None,
             rules,
-            sequences: options
-                .sample_counts()
-                .into_iter()
-                .map(Sequence::new)
-                .collect(),
+            sequences: counts.into_iter().map(Sequence::new).collect(),
             spectrum: Spectrum::new(&scene.lasers, &scene.lights),
             light_shapes: lights(|light| matches!(light, Light::Area { .. })),
             environments: lights(|light| matches!(light, Light::Environment(_))),
@@ -127,6 +144,7 @@ impl<'a> Integrator<'a> {
             self.arrive(batch);
             // Connect the surfaces to all sources of light.
             self.connect_to_lasers(batch);
+            self.connect_to_lit_points(batch);
             self.connect_to_lights(batch);
             // Remember the first rough surface of each path, whose speckle all of its light has.
             self.note_speckle(batch);
@@ -306,7 +324,7 @@ impl<'a> Integrator<'a> {
         }
         // End long and dark paths by chance, without bias; glass makes a path dark only for a while.
         let compression = path.compression * event.eta_squared;
-        if path.depth > CERTAIN_BOUNCES {
+        if path.depth > self.certain_bounces() {
             let survival = (largest * compression).min(0.95);
             if self
                 .sequence(stream)
@@ -325,6 +343,16 @@ impl<'a> Integrator<'a> {
         };
         let ray = vertex.leave(self.intersector, event.wi);
         (path.depth < self.rules.max_depth || self.finds_light(&ray)).then_some((next, ray))
+    }
+
+    /// Returns the number of vertices from which a path always goes on. Where all light is that of lasers, the first of them
+    /// has found most of it by its connections.
+    fn certain_bounces(&self) -> u32 {
+        if self.scene.lights.is_empty() && !self.lit_points.is_empty() {
+            0
+        } else {
+            CERTAIN_BOUNCES
+        }
     }
 
     /// Tells whether a ray can find light if no surface may follow.

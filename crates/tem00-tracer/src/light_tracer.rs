@@ -24,6 +24,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
+pub(crate) use self::draws::{DrawKey, Draws};
 pub(crate) use self::job::{LightJob, LightLayers, LightSelection, LightTracer};
 pub(crate) use self::lit::LitPoint;
 use self::{splats::SplatFilm, walk::Walk};

@@ -63,6 +63,8 @@ pub(crate) enum Use {
     Wave,
     /// The direction towards a laser: number of the vertex, number of the laser.
     Laser(u32, u32),
+    /// The point that a laser lights, to which the vertex of this number is connected.
+    LitPoint(u32),
 }
 
 impl Use {
@@ -78,6 +80,7 @@ impl Use {
             Self::Light(vertex, light) => pack(4, vertex, light),
             Self::Wave => pack(6, 0, 0),
             Self::Laser(vertex, laser) => pack(5, vertex, laser),
+            Self::LitPoint(vertex) => pack(7, vertex, 0),
         }
     }
 }

@@ -1,8 +1,9 @@
 use tem00_camera::Ray;
 
 use super::{
-    Integrator,
+    Integrator, Vertex,
     batch::{Arrival, Batch, Path},
+    lit_points::{LitPoints, density},
     weights::{power_heuristic, random_number},
 };
 use crate::{Formulas, Hit, laser::Illumination, sampler::Use};
@@ -54,7 +55,10 @@ impl<'a> Integrator<'a> {
             return;
         };
         // Weigh the connection against the chance to meet the beam by itself.
-        let weight = pdf.map_or(1.0, |pdf| power_heuristic(pdf, vertex.pdf(wi)));
+        let weight = pdf.map_or_else(
+            || self.weight_beside_lit_points(laser, &path, vertex, &light),
+            |pdf| power_heuristic(pdf, vertex.pdf(wi)),
+        );
         let reflected = vertex.reflected(wi, self.lasers[laser].wavelength());
         let throughput = self.laser_throughput(laser, &path, batch);
         let radiance = weight * throughput * light.irradiance * reflected;
@@ -74,6 +78,68 @@ impl<'a> Integrator<'a> {
             };
             let segment = vertex.segment_to(light.source);
             batch.connect(segment, arrival, self.intersector);
+        }
+    }
+
+    /// Connects every rough surface point to one that each laser lights.
+    pub(super) fn connect_to_lit_points(&self, batch: &mut Batch<'a>) {
+        for (laser, points) in self.lit_points.iter().enumerate() {
+            for index in 0..batch.paths.len() {
+                self.connect_to_lit_point(laser, points, index, batch);
+                if batch.connections.is_full() {
+                    batch.resolve_connections(self.intersector);
+                }
+            }
+        }
+        batch.resolve_connections(self.intersector);
+    }
+
+    #[inline(always)]
+    fn connect_to_lit_point(
+        &self,
+        laser: usize,
+        points: &LitPoints<'a>,
+        index: usize,
+        batch: &mut Batch<'a>,
+    ) {
+        let (path, vertex) = (batch.paths[index], &batch.vertices[index]);
+        if vertex.is_specular() || path.depth >= self.rules.max_depth {
+            return;
+        }
+        let stream = batch.samples[path.sample].stream;
+        let purpose = Use::LitPoint(path.depth);
+        let u = self.sequence(stream).uniform(stream, purpose);
+        let Some((point, share)) = points.choose(u) else {
+            return;
+        };
+        let wavelength = self.lasers[laser].wavelength();
+        if let Some(radiance) = point.radiance_over(vertex, wavelength) {
+            let arrival = Arrival::Laser {
+                slot: path.sample * self.lasers.len() + laser,
+                radiance: self.laser_throughput(laser, &path, batch) * share * radiance,
+                power: 0.0,
+                is_single: false,
+            };
+            let segment = vertex.segment_to(point.hit.position);
+            batch.connect(segment, arrival, self.intersector);
+        }
+    }
+
+    /// Returns the weight of light of a laser that a path finds by a direction drawn from the rough surface before.
+    #[inline(always)]
+    fn weight_beside_lit_points(
+        &self,
+        laser: usize,
+        path: &Path,
+        vertex: &Vertex<'a>,
+        light: &Illumination,
+    ) -> f64 {
+        match path.scattering_pdf {
+            Some(pdf) if !self.lit_points.is_empty() => {
+                let density = density(&self.lasers[laser], light, vertex.normal);
+                power_heuristic(vertex.area_pdf(pdf), density)
+            }
+            _ => 1.0,
         }
     }
 

@@ -19,6 +19,16 @@ pub(crate) struct PathRules {
     pub speckle_in_the_dark: bool,
 }
 
+impl PathRules {
+    /// Tells whether light of lasers over two rough surfaces is found from the first of them, too.
+    pub(super) fn connects_to_lit_points(&self) -> bool {
+        self.finds_lasers
+            && !self.samples_beams
+            && self.formulas == Formulas::Derived
+            && self.max_depth > 1
+    }
+}
+
 impl From<&RenderOptions> for PathRules {
     fn from(options: &RenderOptions) -> Self {
         Self {

@@ -76,6 +76,12 @@ impl<'a> Vertex<'a> {
         self.material.pdf(self.wo, wi)
     }
 
+    /// Returns the density of the vertex on its surface, per square metre, if the direction of the ray to it was drawn
+    /// with `pdf`, per steradian.
+    pub(crate) fn area_pdf(&self, pdf: f64) -> f64 {
+        pdf * self.cosine.abs() / self.distance.powi(2)
+    }
+
     /// Tells whether the local direction is on the side from which the path came.
     pub(crate) fn is_seen_side(&self, wi: DVec3) -> bool {
         wi.z * self.wo.z > 0.0

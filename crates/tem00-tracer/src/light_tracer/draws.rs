@@ -14,7 +14,7 @@ use rand_core::{Rng, SeedableRng};
 /// - S. Joe and F. Y. Kuo, *Constructing Sobol Sequences with Better Two-Dimensional Projections*,
 ///   2008.
 #[derive(Clone, Debug)]
-pub(super) struct Draws {
+pub(crate) struct Draws {
     generator: ChaCha8Rng,
     /// The next start, in units of 2⁻⁶⁴.
     start: [u64; 4],
@@ -24,7 +24,7 @@ pub(super) struct Draws {
 
 /// Key of a sequence of random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct DrawKey {
+pub(crate) struct DrawKey {
     pub seed: u64,
     pub frame: u32,
     pub laser: usize,
@@ -32,7 +32,7 @@ pub(super) struct DrawKey {
 }
 
 impl Draws {
-    pub(super) fn new(key: DrawKey) -> Self {
+    pub(crate) fn new(key: DrawKey) -> Self {
         let mut bytes = [0; 32];
         bytes[..8].copy_from_slice(&key.seed.to_le_bytes());
         bytes[8..12].copy_from_slice(&key.frame.to_le_bytes());
@@ -48,7 +48,7 @@ impl Draws {
     }
 
     /// Returns the four numbers in [0, 1) with which the next path starts.
-    pub(super) fn start(&mut self) -> [f64; 4] {
+    pub(crate) fn start(&mut self) -> [f64; 4] {
         let point = self.start.map(unit);
         self.started = self.started.wrapping_add(1);
         // In the order of Gray's code, neighbours of the sequence differ by one direction number.

@@ -1,3 +1,4 @@
+use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::sensor_speckle::SensorSpeckle;
@@ -40,10 +41,31 @@ impl SpeckleTable {
         Self::within(speckle, offset, speckle.size().map(pixels_within_reach))
     }
 
-    /// Integrates the covariances of the pixels of one column.
-    pub(super) fn of_column(speckle: &SensorSpeckle) -> Self {
-        let [_, down] = speckle.size().map(pixels_within_reach);
-        Self::within(speckle, [0.0; 2], [0, down])
+    /// Integrates the covariances of the pixels of one column, up to so many rows apart.
+    pub(super) fn of_column(speckle: &SensorSpeckle, rows: usize) -> Self {
+        Self::within(speckle, [0.0; 2], [0, rows])
+    }
+
+    /// Returns the number of rows beyond which the covariances of a speckle count as 0.
+    pub(super) fn rows_within_reach(speckle: &SensorSpeckle) -> usize {
+        pixels_within_reach(speckle.size()[1])
+    }
+
+    /// Interpolates between tables of one size in two rows of two.
+    pub(super) fn between(corners: [[&Self; 2]; 2], position: DVec2) -> Self {
+        let mix = |a: f64, b: f64, fraction: f64| a + fraction * (b - a);
+        let value = |index: usize| {
+            let rows = corners.map(|row| {
+                let [left, right] = row.map(|table| table.values[index]);
+                mix(left, right, position.x)
+            });
+            mix(rows[0], rows[1], position.y)
+        };
+        let first = corners[0][0];
+        Self {
+            values: (0..first.values.len()).map(value).collect(),
+            ..*first
+        }
     }
 
     fn within(speckle: &SensorSpeckle, offset: [f64; 2], reach: [usize; 2]) -> Self {
@@ -120,7 +142,6 @@ mod tests {
     use tem00_statistics::{PixelAutocovariance, PixelColumn, pixel_contrast};
 
     use super::*;
-    use glam::DVec2;
 
     fn speckle(size: f64, sensitive_side: f64) -> SensorSpeckle {
         SensorSpeckle {

@@ -73,9 +73,9 @@ pub enum Sampling {
     /// Pixels get so many on average at most, and more of them where samples differ: at edges, in the light of a
     /// narrow beam, where rare paths bring light.
     ///
-    /// A pilot of a quarter of the samples, from 2 to 8, tells how much the samples of a pixel and its eight
-    /// neighbours differ: the largest of their standard deviations σ. Then the pixel gets a number in proportion to
-    /// σ^⅔, from half of `samples_per_pixel` to 32 times as many. The samples of the pilot are not used for the image,
+    /// A pilot of a quarter of the samples, 8 at most, tells how much the samples of a pixel and its eight neighbours
+    /// differ: the largest of their standard deviations σ. It takes 2 in every second pixel where a quarter is less than 2.
+    /// Then the pixel gets a number in proportion to σ^⅔, from half of `samples_per_pixel` to 32 times as many. The samples of the pilot are not used for the image,
     /// so that it is as unbiased as with even samples. What it cannot see, as light that one path in a thousand
     /// finds, has up to twice the variance. Fewer than 4 samples per pixel are shared evenly.
     Adaptive,

@@ -59,7 +59,10 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
             light_traced: self.light_traced,
         })?);
         let levels = has_pilot.then(|| self.levels(&film)).transpose()?;
-        let level_at = |at: [usize; 2]| levels.as_ref().map_or(0, |levels| levels[at.into()]);
+        let level_at = |position: [usize; 2]| {
+            let at = self.in_area(position).into();
+            Some(levels.as_ref().map_or(0, |levels| levels[at]))
+        };
         self.for_each_strip(self.options.seed, level_at, |strip, pixels, rays| {
             let mut film = locked(&film);
             film.count_rays(rays);
@@ -76,7 +79,7 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         let pilot = Mutex::new(Pilot::new(self.area.width, self.area.height));
         self.for_each_strip(
             !self.options.seed,
-            |_| 0,
+            |position| Pilot::looks_at(self.options, position).then_some(0),
             |_, pixels, rays| {
                 locked(film).count_rays(rays);
                 let mut pilot = locked(&pilot);
@@ -91,20 +94,16 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
         let pixels = levels.values();
         let samples = |level: &u8| u64::from(self.counts[usize::from(*level)]);
         let asked: u64 = pixels.iter().map(samples).sum();
-        let left = self
-            .options
-            .samples_per_pixel
-            .saturating_sub(self.counts[0]);
-        let budget = pixels.len() as u64 * u64::from(left);
-        (self.progress)(budget.saturating_sub(asked));
+        (self.progress)(pilot.left(self.options).saturating_sub(asked));
         Ok(levels)
     }
 
-    /// Traces the samples of all pixels, strip by strip, and hands over what was found with the number of rays.
+    /// Traces the samples of all pixels that have a level, strip by strip, and hands over what was found with the
+    /// number of rays.
     fn for_each_strip(
         &self,
         seed: u64,
-        level: impl Fn([usize; 2]) -> u8 + Sync,
+        level: impl Fn([usize; 2]) -> Option<u8> + Sync,
         done: impl Fn(usize, &[Pixel], u64) + Sync,
     ) -> Result<(), RenderError> {
         let strips = (0..self.strips()).into_par_iter();
@@ -113,9 +112,12 @@ impl<'a, P: Fn(u64) + Sync> PathPass<'a, P> {
             batch.clear();
             for slot in 0..pixels.len() {
                 let position = pixels[slot].position;
+                let Some(level) = level(position) else {
+                    continue;
+                };
                 let first = Stream {
                     key: self.key(seed, position),
-                    level: level(self.in_area(position)),
+                    level,
                     index: 0,
                 };
                 for index in (0..self.count(first)).step_by(RUN as usize) {

@@ -24,7 +24,9 @@ pub(super) struct Pilot {
     radiance: Grid<f32>,
     /// The standard deviation of the samples.
     deviation: Grid<f32>,
+    /// The number of samples of a pixel, and of all pixels.
     samples: u32,
+    all_samples: u64,
 }
 
 impl Pilot {
@@ -34,25 +36,39 @@ impl Pilot {
             radiance: layer(),
             deviation: layer(),
             samples: 0,
+            all_samples: 0,
         }
     }
 
-    /// Writes what was found in a pixel.
+    /// Tells whether a pilot looks at a pixel of the whole image. Two samples are the least that differ: where they would be more
+    /// than a quarter of all, every second pixel speaks for its neighbours, as on a chessboard.
+    pub(super) const fn looks_at(options: &RenderOptions, [x, y]: [usize; 2]) -> bool {
+        let all = matches!(options.sampling, Sampling::TargetError(_));
+        all || options.samples_per_pixel >= 8 || (x + y).is_multiple_of(2)
+    }
+
+    /// Writes what was found in a pixel, if it was looked at.
     pub(super) fn write(&mut self, at: [usize; 2], pixel: &PixelSums) {
+        if pixel.samples == 0 {
+            return;
+        }
         self.radiance[at.into()] = to_f32(pixel.radiance());
         self.deviation[at.into()] = to_f32(pixel.deviation());
         self.samples = pixel.samples;
+        self.all_samples += u64::from(pixel.samples);
+    }
+
+    /// Returns the number of samples that the pilot leaves of those asked for.
+    pub(super) fn left(&self, options: &RenderOptions) -> u64 {
+        let pixels = self.radiance.values().len() as u64;
+        (pixels * u64::from(options.samples_per_pixel)).saturating_sub(self.all_samples)
     }
 
     /// Returns which of the numbers of samples, the first of which is that of the pilot, each pixel gets.
     pub(super) fn levels(&self, options: &RenderOptions, counts: &[u32]) -> Grid<u8> {
         match options.sampling {
             Sampling::TargetError(target) => self.levels_for(target, counts),
-            Sampling::Even | Sampling::Adaptive => {
-                let pixels = self.radiance.values().len() as u64;
-                let samples = u64::from(options.samples_per_pixel - self.samples);
-                self.shared_levels(pixels * samples, counts)
-            }
+            Sampling::Even | Sampling::Adaptive => self.shared_levels(self.left(options), counts),
         }
     }
 
@@ -141,6 +157,7 @@ mod tests {
             radiance: layer(&vec![2.0; deviations.len()]),
             deviation: layer(deviations),
             samples: 8,
+            all_samples: 24 * deviations.len() as u64,
         }
     }
 

@@ -20,7 +20,7 @@ const SMALLER: [(&str, &str, &str); 8] = [
     ),
     (
         "scenes/triangulation/step_gauge.toml",
-        "samples_per_pixel = 6",
+        "samples_per_pixel = 4",
         "samples_per_pixel = 2",
     ),
     // The middle of the line has the noise of all of it.

@@ -211,11 +211,12 @@ fn tem00_blend_fraction_(a: f32, b: f32, between: f32, g: f32) -> f32 {
     let k = 1.0 - between;
     let half_slope = a * step + k * g * g;
     let inner = step * step + 2.0 * k * a * b - k * (1.0 + between) * g * g;
-    let root = g * sqrt(max(inner, 0.0)) - half_slope;
-    if root <= 0.0 {
-        return 0.0;
+    let root = g * sqrt(max(inner, 0.0));
+    // Of the two forms of the solution, the one whose terms do not cancel.
+    if half_slope > 0.0 {
+        return clamp((root + half_slope) / (2.0 * k * g * g - step * step), 0.0, 1.0);
     }
-    return clamp((a - g) * (a + g) / root, 0.0, 1.0);
+    return clamp((a - g) * (a + g) / max(root - half_slope, 1e-30), 0.0, 1.0);
 }
 
 struct Tem00Turn_ {

@@ -14,7 +14,7 @@ use std::{
 use tem00_gpu::{Gpu, GpuPattern, GpuStack, wgpu};
 use tem00_speckle::{PupilField, SlicePath, SpeckleStack};
 
-const SIZE: usize = 1024;
+const SIZES: [usize; 3] = [1024, 2048, 4096];
 const PATH: SlicePath = SlicePath::Circle { half_period: 4 };
 const IMAGE: [u32; 2] = [1920, 1080];
 
@@ -22,11 +22,12 @@ const IMAGE: [u32; 2] = [1920, 1080];
 const PITCH: f32 = 0.8;
 const SLICE: f32 = 2.375;
 
-/// The fastest of so many runs, once the kernels are compiled.
-fn fastest<E>(runs: u32, mut run: impl FnMut() -> Result<(), E>) -> Result<Duration, E> {
+/// The fastest of the runs of one second, once the kernels are compiled.
+fn fastest<E>(mut run: impl FnMut() -> Result<(), E>) -> Result<Duration, E> {
     run()?;
+    let begin = Instant::now();
     let mut fastest = Duration::MAX;
-    for _ in 0..runs {
+    while begin.elapsed() < Duration::from_secs(1) {
         let start = Instant::now();
         run()?;
         fastest = fastest.min(start.elapsed());
@@ -125,21 +126,40 @@ fn wait(gpu: &Gpu) -> Result<(), wgpu::PollError> {
 fn main() -> Result<(), Box<dyn Error>> {
     let gpu = Gpu::new()?;
     println!("{}", gpu.name());
-    let field = PupilField::new(SIZE, SIZE / 2, 7)?;
-    let card = fastest(20, || -> Result<(), Box<dyn Error>> {
-        GpuPattern::generate(&gpu, &field, [0.0; 2], 0.0)?;
+    let nothing = fastest(|| {
+        gpu.queue().submit([gpu
+            .device()
+            .create_command_encoder(&<_>::default())
+            .finish()]);
+        wait(&gpu)
+    })?;
+    println!("an empty order: {nothing:.2?}");
+    for size in SIZES {
+        let field = PupilField::new(size, size / 2, 7)?;
+        let card = fastest(|| -> Result<(), Box<dyn Error>> {
+            GpuPattern::generate(&gpu, &field, [0.0; 2], 0.0)?;
+            Ok(wait(&gpu)?)
+        })?;
+        let library = fastest(|| {
+            field.pattern();
+            Ok::<_, Box<dyn Error>>(())
+        })?;
+        report(&format!("pattern of {size}²"), card, library);
+    }
+
+    let field = PupilField::new(SIZES[0], SIZES[0] / 2, 7)?;
+    let path = SlicePath::Circle { half_period: 16 };
+    let card = fastest(|| -> Result<(), Box<dyn Error>> {
+        GpuStack::generate(&gpu, &field, path)?;
         Ok(wait(&gpu)?)
     })?;
-    let library = fastest(20, || {
-        field.pattern();
-        Ok::<_, Box<dyn Error>>(())
-    })?;
-    report("pattern of 1024²", card, library);
+    let library = fastest(|| SpeckleStack::generate(&field, path).map(drop))?;
+    report("stack of 32 slices of 1024²", card, library);
 
     let library_stack = SpeckleStack::generate(&field, PATH)?;
     let stack = GpuStack::upload(&gpu, &library_stack)?;
     let pass = Pass::new(&gpu);
-    let card = fastest(20, || pass.run(&gpu, stack.bind_group()))?;
+    let card = fastest(|| pass.run(&gpu, stack.bind_group()))?;
     let place = |n: u32| f64::from(PITCH * n as f32);
     let [x, y]: [Vec<_>; 2] = [0, 1].map(|axis| {
         let pixels = (0..IMAGE[0] * IMAGE[1]).map(|i| [i % IMAGE[0], i / IMAGE[0]]);
@@ -147,7 +167,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     });
     let u = vec![f64::from(SLICE); x.len()];
     let mut intensity = vec![0.0; x.len()];
-    let library = fastest(5, || {
+    let library = fastest(|| {
         library_stack.intensity_batch(&x, &y, &u, &mut intensity);
         Ok::<_, Box<dyn Error>>(())
     })?;

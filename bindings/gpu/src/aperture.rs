@@ -92,7 +92,9 @@ impl Seeded {
         let gaussian = u32::from(phasors == Phasors::Gaussian);
         let weighted = u32::from(transmission.is_some());
         Ok(Self {
-            pipeline: gpu.pipeline(&format!("{}{KERNEL}{NO_STACK}", closed_form::WGSL), None),
+            pipeline: gpu.pipeline("aperture", || {
+                (format!("{}{KERNEL}{NO_STACK}", closed_form::WGSL), None)
+            }),
             spans: uploaded(gpu, "the rows of the pupil", &spans)?,
             factors,
             weights,

@@ -19,7 +19,7 @@ pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
     name: String,
-    /// The kernels that have been compiled, by their text.
+    /// The kernels that have been compiled, by their names.
     kernels: Arc<Mutex<HashMap<String, ComputePipeline>>>,
 }
 
@@ -96,14 +96,19 @@ impl Gpu {
         Ok(values)
     }
 
-    /// The kernel of this text, compiled once; without a layout, all bindings in group 0.
-    pub(crate) fn pipeline(&self, text: &str, layout: Option<&PipelineLayout>) -> ComputePipeline {
+    /// The kernel of this name, made of its text once; without a layout, all bindings in group 0.
+    pub(crate) fn pipeline(
+        &self,
+        name: &str,
+        source: impl FnOnce() -> (String, Option<PipelineLayout>),
+    ) -> ComputePipeline {
         let mut kernels = self.kernels.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(kernel) = kernels.get(text) {
+        if let Some(kernel) = kernels.get(name) {
             return kernel.clone();
         }
-        let kernel = self.compiled(text, layout);
-        kernels.insert(text.to_owned(), kernel.clone());
+        let (text, layout) = source();
+        let kernel = self.compiled(&text, layout.as_ref());
+        kernels.insert(name.to_owned(), kernel.clone());
         kernel
     }
 

@@ -6,7 +6,8 @@ use tem00_speckle::{
 };
 use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType,
-    Buffer, BufferBindingType, ComputePipeline, PipelineLayoutDescriptor, ShaderStages,
+    Buffer, BufferBindingType, ComputePipeline, PipelineLayout, PipelineLayoutDescriptor,
+    ShaderStages,
 };
 
 use crate::{
@@ -236,6 +237,10 @@ impl GpuStack {
 
 /// The kernel of batches.
 fn look_up(gpu: &Gpu) -> ComputePipeline {
+    gpu.pipeline("look-up", || look_up_source(gpu))
+}
+
+fn look_up_source(gpu: &Gpu) -> (String, Option<PipelineLayout>) {
     let text = GpuStack::wgsl(0) + include_str!("../shaders/look_up.wgsl");
     let points = gpu
         .device()
@@ -253,7 +258,7 @@ fn look_up(gpu: &Gpu) -> ComputePipeline {
             bind_group_layouts: &[Some(&GpuStack::bind_group_layout(gpu)), Some(&points)],
             immediate_size: 0,
         });
-    gpu.pipeline(&text, Some(&layout))
+    (text, Some(layout))
 }
 
 const fn entry(binding: u32, ty: BufferBindingType) -> BindGroupLayoutEntry {

@@ -249,24 +249,27 @@ fn radices(length: usize) -> Result<Vec<usize>, GpuError> {
 }
 
 fn pipeline(gpu: &Gpu, radix: usize, finish: Finish) -> ComputePipeline {
-    let (output, finished) = match finish {
-        Finish::Nothing => ("vec2<f32>", "return v;"),
+    let (name, output, finished) = match finish {
+        Finish::Nothing => ("values", "vec2<f32>", "return v;"),
         Finish::Amplitude { .. } => (
+            "amplitude",
             "vec2<f32>",
             "let centring = tem00_centring(stage.corner, vec2<u32>(line, point), stage.size);
             return stage.scale * tem00_complex_product(v, centring);",
         ),
-        Finish::Intensity => ("f32", "return stage.scale * dot(v, v);"),
+        Finish::Intensity => ("intensity", "f32", "return stage.scale * dot(v, v);"),
     };
-    let text = format!(
+    let text = || {
+        format!(
         "{functions}{NO_STACK}{KERNEL}
         const RADIX = {radix}u;
         fn butterfly(v: array<vec2<f32>, RADIX>) -> array<vec2<f32>, RADIX> {{ return tem00_dft{radix}(v); }}
         @group(0) @binding(2) var<storage, read_write> after: array<{output}>;
         fn finished(v: vec2<f32>, line: u32, point: u32) -> {output} {{ {finished} }}",
         functions = closed_form::WGSL,
-    );
-    gpu.pipeline(&text, None)
+    )
+    };
+    gpu.pipeline(&format!("{name}, radix {radix}"), || (text(), None))
 }
 
 #[cfg(test)]

@@ -147,6 +147,7 @@ impl Change {
 }
 
 impl Block {
+    #[inline(always)] // It is filled in where it lies.
     fn new(points: &[SpecklePoint], focus_vergence: impl Fn(DVec2) -> f64) -> Self {
         let mut block = Self {
             position: [[0.0; BLOCK]; 3],
@@ -166,6 +167,7 @@ impl Block {
 
 impl Shared<'_> {
     /// Works out the first `count` points of a block.
+    #[inline(always)] // They are written where they lie.
     fn changes(&self, block: &Block, count: usize, shape: &WaveShape) -> Changes {
         let end = count.next_multiple_of(LANES).min(BLOCK);
         let mut changes = Changes {

@@ -15,10 +15,10 @@
 
 mod draws;
 mod job;
-mod lit;
 mod specular_search;
 mod splats;
 mod walk;
+mod way;
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
@@ -26,7 +26,7 @@ use rayon::prelude::*;
 
 pub(crate) use self::draws::{DrawKey, Draws};
 pub(crate) use self::job::{LightJob, LightLayers, LightSelection, LightTracer};
-pub(crate) use self::lit::LitPoint;
+pub(crate) use self::way::WayPoint;
 use self::{splats::SplatFilm, walk::Walk};
 use crate::{LaserLayers, RenderError};
 

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::{
     Crop, Formulas, Intersector, RenderOptions, Scene, Segment, SpecklePlan, TracerError,
     integrator::Vertex,
-    light_tracer::{LightJob, LightSelection, LightTracer, LitPoint},
+    light_tracer::{LightJob, LightSelection, LightTracer, WayPoint},
     sampler::{pixel_key, point_in_square},
     speckle::{
         CascadeNote, Change, Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums,
@@ -120,7 +120,7 @@ enum Way {
 }
 
 /// Of each laser, of each group, of each path: the rough surfaces that it has met.
-type LitPoints<'a> = Vec<Vec<Vec<Vec<LitPoint<'a>>>>>;
+type WayPoints<'a> = Vec<Vec<Vec<Vec<WayPoint<'a>>>>>;
 
 impl Scene {
     /// Returns a note for each laser and surface where multiple light comes from so small a part of another surface that
@@ -167,7 +167,7 @@ impl<'a> Survey<'a> {
     pub(crate) fn map(&self) -> Option<MultipleMap> {
         let camera = self.change.camera();
         let tracer = self.light_tracer();
-        let lit = self.lit_points(&tracer);
+        let lit = self.way_points(&tracer);
         let lattice = Lattice::over([camera.width(), camera.height()], self.cells);
         let lasers = (0..self.scene.lasers.len()).into_par_iter();
         let ways: Vec<Way> = lasers
@@ -192,7 +192,7 @@ impl<'a> Survey<'a> {
     }
 
     /// Chooses the way in which the light of a laser is found by more paths, in one of `PROBE`² cells.
-    fn better_way(&self, laser: usize, groups: &[Vec<Vec<LitPoint<'_>>>], lattice: Lattice) -> Way {
+    fn better_way(&self, laser: usize, groups: &[Vec<Vec<WayPoint<'_>>>], lattice: Lattice) -> Way {
         let probed = |cell: &usize| {
             let place = [cell % lattice.columns, cell / lattice.columns];
             place.map(|i| i % PROBE) == [PROBE / 2; 2]
@@ -235,7 +235,7 @@ impl<'a> Survey<'a> {
         }
     }
 
-    fn lit_points<'t>(&self, tracer: &'t LightTracer<'t>) -> LitPoints<'t> {
+    fn way_points<'t>(&self, tracer: &'t LightTracer<'t>) -> WayPoints<'t> {
         let groups = |laser: usize| {
             let job = LightJob {
                 laser,
@@ -244,7 +244,7 @@ impl<'a> Survey<'a> {
             };
             let groups = (0..GROUPS).into_par_iter();
             groups
-                .map(|group| tracer.lit_points(&job, group as u64, self.change))
+                .map(|group| tracer.way_points(&job, group as u64, self.change))
                 .collect()
         };
         (0..self.scene.lasers.len()).map(groups).collect()
@@ -255,7 +255,7 @@ impl<'a> Survey<'a> {
         &self,
         laser: usize,
         way: Way,
-        groups: &[Vec<Vec<LitPoint<'_>>>],
+        groups: &[Vec<Vec<WayPoint<'_>>>],
         (lattice, cell, seen): (Lattice, usize, &SeenPoint<'_>),
     ) -> MultipleSums {
         let number = 2 * (cell % lattice.columns + 3 * (cell / lattice.columns));
@@ -328,7 +328,7 @@ impl<'a> Survey<'a> {
         &self,
         laser: usize,
         seen: &SeenPoint<'_>,
-        group: &[Vec<LitPoint<'_>>],
+        group: &[Vec<WayPoint<'_>>],
     ) -> Vec<MultiplePath> {
         let (position, surface) = (seen.point.position, seen.point.surface);
         let origin = self.change.origin(surface, position);

@@ -10,7 +10,7 @@ use crate::{Segment, speckle::Change};
 
 /// A point of a rough surface that the light of a laser has met, and its way there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LitPoint<'a> {
+pub(crate) struct WayPoint<'a> {
     vertex: Vertex<'a>,
     way: Way,
 }
@@ -30,12 +30,12 @@ pub(crate) struct Way {
 
 impl<'a> LightTracer<'a> {
     /// Follows a group of paths from a laser and returns, for each path, the rough surfaces that it meets.
-    pub(crate) fn lit_points(
+    pub(crate) fn way_points(
         &'a self,
         job: &LightJob,
         group: u64,
         change: &Change,
-    ) -> Vec<Vec<LitPoint<'a>>> {
+    ) -> Vec<Vec<WayPoint<'a>>> {
         let count = usize::try_from(job.paths).unwrap_or(0);
         let mut ways: Vec<Option<Way>> = vec![None; count];
         let mut points = vec![Vec::new(); count];
@@ -47,7 +47,7 @@ impl<'a> LightTracer<'a> {
                 };
                 ways[number] = Some(way);
                 if vertex.is_rough() {
-                    points[number].push(LitPoint {
+                    points[number].push(WayPoint {
                         vertex: *vertex,
                         way,
                     });
@@ -91,7 +91,7 @@ impl<'a> LightTracer<'a> {
     }
 }
 
-impl LitPoint<'_> {
+impl WayPoint<'_> {
     /// Returns the irradiance that the point sends to another across the direction between them, in W/m², as if its path
     /// were the only one, and the unit direction towards it.
     pub(crate) fn irradiance_at(&self, point: DVec3, wavelength: f64) -> Option<(f64, DVec3)> {

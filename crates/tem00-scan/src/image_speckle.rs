@@ -72,10 +72,12 @@ impl ImageSpeckle {
 
     /// Returns the covariances of the pixels about an image point.
     pub(super) fn table(&self, pixel: DVec2) -> Cow<'_, SpeckleTable> {
-        self.known(pixel).map_or_else(
-            |local| Cow::Owned(SpeckleTable::new(&local, [0.0; 2])),
-            Cow::Borrowed,
-        )
+        let local = self.speckle_at(pixel);
+        if local == self.middle {
+            Cow::Borrowed(&self.table)
+        } else {
+            Cow::Owned(SpeckleTable::new(&local, [0.0; 2]))
+        }
     }
 
     /// Returns the covariances of the pixels of one column about an image point.
@@ -112,16 +114,6 @@ impl ImageSpeckle {
     /// The size of a cell, in pixels.
     fn cell(&self) -> DVec2 {
         DVec2::new(self.camera.width() as f64, self.camera.height() as f64) / CELLS as f64
-    }
-
-    /// The covariances in the middle of the image where they hold at an image point, as on a plain
-    /// sensor, or else the speckle there.
-    fn known(&self, pixel: DVec2) -> Result<&SpeckleTable, SensorSpeckle> {
-        let local = self.speckle_at(pixel);
-        if local == self.middle {
-            return Ok(&self.table);
-        }
-        Err(local)
     }
 }
 

@@ -27,7 +27,7 @@ pub(super) struct LitPoints<'a> {
 /// Where the light of a laser first meets a rough surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LitPoint<'a> {
-    pub hit: Hit,
+    pub(super) hit: Hit,
     material: &'a Material,
     light: Illumination,
     /// The density with which points are drawn there, per square metre.
@@ -62,6 +62,12 @@ impl<'a> LitPoints<'a> {
         order_along_curve(&mut points);
         let share = points.len() as f64 / f64::from(rays);
         Self { points, share }
+    }
+
+    /// Chooses a point by a number in [0, 1), with the fraction of the drawn rays that have met one.
+    pub(super) fn choose(&self, u: f64) -> Option<(&LitPoint<'a>, f64)> {
+        let point = self.points.get(to_usize(u * self.points.len() as f64))?;
+        Some((point, self.share))
     }
 }
 
@@ -100,14 +106,6 @@ fn order_along_curve(points: &mut [LitPoint<'_>]) {
 /// Returns the density of points that are drawn by the power of a laser, on a surface of this normal, per square metre.
 pub(super) fn density(laser: &Laser, light: &Illumination, normal: DVec3) -> f64 {
     light.irradiance * light.direction.dot(normal).abs() / laser.power()
-}
-
-impl<'a> LitPoints<'a> {
-    /// Chooses a point by a number in [0, 1), with the fraction of the drawn rays that have met one.
-    pub(super) fn choose(&self, u: f64) -> Option<(&LitPoint<'a>, f64)> {
-        let point = self.points.get(to_usize(u * self.points.len() as f64))?;
-        Some((point, self.share))
-    }
 }
 
 impl<'a> LitPoint<'a> {

@@ -123,17 +123,29 @@ fn wait(gpu: &Gpu) -> Result<(), wgpu::PollError> {
         .map(drop)
 }
 
+fn new_memory(gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
+    gpu.device().create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: bytes,
+        usage: wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+/// Clears the first number of a buffer: an order that takes no time but its own.
+fn clear(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<(), wgpu::PollError> {
+    let mut encoder = gpu.device().create_command_encoder(&<_>::default());
+    encoder.clear_buffer(buffer, 0, Some(4));
+    gpu.queue().submit([encoder.finish()]);
+    wait(gpu)
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let gpu = Gpu::new()?;
     println!("{}", gpu.name());
-    let nothing = fastest(|| {
-        gpu.queue().submit([gpu
-            .device()
-            .create_command_encoder(&<_>::default())
-            .finish()]);
-        wait(&gpu)
-    })?;
-    println!("an empty order: {nothing:.2?}");
+    let nothing = fastest(|| clear(&gpu, &new_memory(&gpu, 4)))?;
+    let memory = fastest(|| clear(&gpu, &new_memory(&gpu, 128 << 20)))?;
+    println!("4 bytes of new memory: {nothing:.2?}, 128 MiB: {memory:.2?}");
     for size in SIZES {
         let field = PupilField::new(size, size / 2, 7)?;
         let card = fastest(|| -> Result<(), Box<dyn Error>> {

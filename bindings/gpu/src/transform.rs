@@ -259,17 +259,18 @@ fn pipeline(gpu: &Gpu, radix: usize, finish: Finish) -> ComputePipeline {
         ),
         Finish::Intensity => ("intensity", "f32", "return stage.scale * dot(v, v);"),
     };
-    let text = || {
-        format!(
+    let source = || {
+        let text = format!(
         "{functions}{NO_STACK}{KERNEL}
         const RADIX = {radix}u;
         fn butterfly(v: array<vec2<f32>, RADIX>) -> array<vec2<f32>, RADIX> {{ return tem00_dft{radix}(v); }}
         @group(0) @binding(2) var<storage, read_write> after: array<{output}>;
         fn finished(v: vec2<f32>, line: u32, point: u32) -> {output} {{ {finished} }}",
         functions = closed_form::WGSL,
-    )
+        );
+        (text, None)
     };
-    gpu.pipeline(&format!("{name}, radix {radix}"), || (text(), None))
+    gpu.pipeline(&format!("{name}, radix {radix}"), source)
 }
 
 #[cfg(test)]

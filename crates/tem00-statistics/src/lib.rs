@@ -23,7 +23,7 @@
 //! - In space: [`airy_autocovariance`], [`airy_power_spectrum`], [`ObjectiveSpeckle`],
 //!   [`COHERENCE_AREA`], [`VORTEX_DENSITY`], [`level_crossings`], [`area_fraction_above`].
 //! - Laser lines and spots under speckle: [`line_centroid_deviation`], [`SpeckledLine`],
-//!   [`imaged_line_centroid_deviation`],
+//!   [`imaged_line_centroid_deviation`], [`defocused_line_centroid_deviation`], [`imaged_line_power_contrast`],
 //!   [`gaussian_spot_centroid_deviation`], [`disc_spot_centroid_deviation`], [`speckle_length`],
 //!   [`PixelAutocovariance`].
 //! - Estimators: [`Moments`], [`Contrast`], [`local_contrast`], [`GammaFit`],
@@ -52,7 +52,10 @@ mod synthetic;
 
 pub use axis::Axis;
 pub use centroid::{
-    imaged::imaged_line_centroid_deviation,
+    imaged::{
+        defocused_line_centroid_deviation, imaged_line_centroid_deviation,
+        imaged_line_power_contrast,
+    },
     line::{SpeckledLine, line_centroid_deviation},
     pixel_autocovariance::{PixelAutocovariance, PixelColumn},
     row_spectrum::speckle_length,

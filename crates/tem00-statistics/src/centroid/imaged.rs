@@ -48,30 +48,130 @@ use crate::centroid::row_spectrum::Row;
 /// - Own derivation: the centroid as the mean of the operator i ∂/∂k over the light in the pupil, whose
 ///   correlation at a distance of k is the Fourier transform of the line's irradiance.
 pub fn imaged_line_centroid_deviation(radius: f64, row_height: f64) -> f64 {
+    defocused_line_centroid_deviation(radius, row_height, 0.0)
+}
+
+/// Returns the standard deviation of the centroid of a laser line that a lens images out of focus: that of
+/// [`imaged_line_centroid_deviation`] for a point that is spread over a disc of the diameter `blur` in
+/// the image, in units of the speckle size h as all lengths.
+///
+/// ```text
+/// σ² = σ²(b = 0) + (2 b² / 3π²) ∫∫ sinc²(π p (x − x')/2) c⁴ Q(L) dx dx'      over [−1, 1]²
+/// Q(L) = ∫₀¹ exp(−L² t²) (1 − 3t + 2t³) dt      c = √(1 − max(x², x'²)), L = π w c, b = blur
+/// ```
+///
+/// Out of focus the light through one half of the pupil lies beside that through the other. The line's
+/// centroid therefore moves by b times the centroid, in diameters, of the speckle that the line makes *in the pupil*,
+/// whose correlation length is h/w: a thinner line has larger grains there and more noise. The two
+/// parts are independent.
+///
+/// # Validity
+///
+/// That of the line in focus; the blur may be of any size, and the sign of the defocus does not matter.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_statistics::{defocused_line_centroid_deviation, imaged_line_centroid_deviation};
+///
+/// // A line twice as wide as its speckle, blurred to √2 of its width: 1.4 times the noise.
+/// let ratio = defocused_line_centroid_deviation(2.0, 0.0, 4.0) / imaged_line_centroid_deviation(2.0, 0.0);
+/// assert!((ratio - 1.421).abs() < 1e-3, "{ratio}");
+/// ```
+///
+/// # References
+///
+/// - Own derivation: the phase π b ρ² of defocus, ρ in diameters of the pupil, under the operator i ∂/∂k of the centroid.
+pub fn defocused_line_centroid_deviation(radius: f64, row_height: f64, blur: f64) -> f64 {
     if radius.is_infinite() {
         return f64::INFINITY;
     }
     let width = PI * radius.abs();
-    let density = |g: f64| 2.0 / PI.powi(4) * over_chords(width, g);
+    let in_pupil = 4.0 / 3.0 * (PI * blur).powi(2);
+    let of_chord = |chord: f64| {
+        let length = width * chord;
+        let in_focus = PI.sqrt() * length * erf(length);
+        in_focus + in_pupil * chord.powi(4) * chord_centroid(length)
+    };
+    let density = |g: f64| 2.0 / PI.powi(4) * over_chords(of_chord, width, g);
     Row::of_height(row_height)
         .weigh(density, 0.0, 1.0)
         .max(0.0)
         .sqrt()
 }
 
-/// Returns ∫ √π L erf L dx for x from `least` to 1, with L = width √(1 − x²).
-fn over_chords(width: f64, least: f64) -> f64 {
+/// Returns the contrast of the power that rows of `row_height` get of a laser line of the 1/e² half-width `radius`, in or
+/// out of focus: its standard deviation over its mean. Both lengths are in units of the speckle size h in the image.
+///
+/// ```text
+/// K² = (8/π²) ∫∫ sinc²(π p (x − x')/2) c² q(L) dx dx'      over [−1, 1]²
+/// q(L) = ∫₀¹ exp(−L² t²) (1 − t) dt      c = √(1 − max(x², x'²)), L = π w c
+/// K² → ℓ(p) / (√π w)                     w → ∞, ℓ the speckle length
+/// ```
+///
+/// A centroid divides by this power. Its part by defocus is a mean over the light in the pupil, whose variance is
+/// 1 + K² times smaller than to first order, as that of the mean place of 1/K² equal and independent modes; the part in
+/// focus is hardly changed.
+///
+/// # Examples
+///
+/// ```
+/// use tem00_statistics::imaged_line_power_contrast;
+///
+/// // A line four speckles in full width on rows one speckle high.
+/// assert!((imaged_line_power_contrast(2.0, 1.0) - 0.4375).abs() < 1e-3);
+/// ```
+///
+/// # References
+///
+/// - Own derivation, as that of [`defocused_line_centroid_deviation`].
+pub fn imaged_line_power_contrast(radius: f64, row_height: f64) -> f64 {
+    if radius.is_infinite() {
+        return 0.0;
+    }
+    let width = PI * radius.abs();
+    let of_chord = |chord: f64| chord * chord * chord_power(width * chord);
+    let density = |g: f64| 32.0 * (FRAC_1_PI * FRAC_1_PI) * over_chords(of_chord, width, g);
+    Row::of_height(row_height)
+        .weigh(density, 0.0, 1.0)
+        .max(0.0)
+        .sqrt()
+}
+
+/// Returns ∫ exp(−L² t²) (1 − t) dt over [0, 1]: the variance of the power of speckle on a chord, L coherence lengths
+/// long, over twice the square of its mean.
+fn chord_power(length: f64) -> f64 {
+    let squared = length * length;
+    if squared < 1e-4 {
+        // The next term is L⁴/60.
+        return 0.5 - squared / 12.0;
+    }
+    let flat = 0.5 * PI.sqrt() * erf(length) / length;
+    flat - 0.5 * (1.0 - (-squared).exp()) / squared
+}
+
+/// Returns ∫ exp(−L² t²) (1 − 3t + 2t³) dt over [0, 1]: the variance of the centroid of speckle on a chord, L coherence
+/// lengths long, over (8/3) of the fourth power of half the chord.
+fn chord_centroid(length: f64) -> f64 {
+    let squared = length * length;
+    if squared < 0.01 {
+        // The next term is L⁸/800.
+        return squared * (1.0 / 12.0 - squared * (1.0 / 40.0 - squared * 3.0 / 560.0));
+    }
+    let end = (-squared).exp();
+    let flat = 0.5 * PI.sqrt() * erf(length) / length;
+    flat - 1.5 * (1.0 - end) / squared + (1.0 - (1.0 + squared) * end) / (squared * squared)
+}
+
+/// Returns ∫ f(√(1 − x²)) dx for x from `least` to 1, for an f that rises over 1/width.
+fn over_chords(f: impl Fn(f64) -> f64, width: f64, least: f64) -> f64 {
     // x = cos a
     let end = least.min(1.0).acos();
-    let f = |a: f64| {
-        let chord = width * a.sin();
-        PI.sqrt() * chord * erf(chord) * a.sin()
-    };
-    // The error function rises over 1/width.
+    let substituted = |a: f64| f(a.sin()) * a.sin();
     let (mut start, mut next, mut sum) = (0.0, FRAC_1_PI.min(width.recip()), 0.0);
     while start < end {
         let stop = f64::min(next, end);
-        sum += integrate(f, [start, stop], 1.0);
+        sum += integrate(substituted, [start, stop], 1.0);
         (start, next) = (stop, 2.0 * next);
     }
     sum
@@ -114,5 +214,55 @@ mod tests {
         assert!(imaged_line_centroid_deviation(0.0, 1.0).abs() < f64::MIN_POSITIVE);
         let endless = imaged_line_centroid_deviation(f64::INFINITY, 1.0);
         assert!(endless.is_infinite(), "{endless}");
+    }
+
+    #[test]
+    fn a_point_of_the_line_s_image_out_of_focus_moves_with_the_centroid_of_its_pupil() {
+        // ∫∫ v v' |E(v − v')|² over the common chord of two places u, u' in the pupil, by the midpoint rule.
+        let (radius, row_height, blur) = (1.3, 0.8, 3.0);
+        let steps = 60_i32;
+        let places = || (0..steps).map(|i| (f64::from(i) + 0.5) / f64::from(steps) - 0.5);
+        let cell = f64::from(steps).powi(-2);
+        let in_chord = |u: f64| move |v: &f64| u * u + v * v < 0.25;
+        let mut sum = 0.0;
+        for (u, u2) in places().flat_map(|u| places().map(move |u2| (u, u2))) {
+            let row = tem00_numerics::sinc(PI * row_height * (u - u2)).powi(2);
+            let outer = u.abs().max(u2.abs());
+            for v in places().filter(in_chord(outer)) {
+                for v2 in places().filter(in_chord(outer)) {
+                    sum += row * v * v2 * (-(PI * radius * (v - v2)).powi(2)).exp();
+                }
+            }
+        }
+        let in_pupil = (blur * 4.0 / PI * cell).powi(2) * sum;
+        let expected = imaged_line_centroid_deviation(radius, row_height).hypot(in_pupil.sqrt());
+        let deviation = defocused_line_centroid_deviation(radius, row_height, blur);
+        // The staircase of the rim is a hundredth of a chord.
+        assert_relative_eq!(deviation, expected, max_relative = 5e-3);
+    }
+
+    #[test]
+    fn the_centroid_of_a_chord_has_no_step_where_its_series_ends() {
+        let [below, above] = [0.1 - 1e-9, 0.1 + 1e-9].map(chord_centroid);
+        assert_relative_eq!(below, above, max_relative = 1e-7);
+    }
+
+    #[test]
+    fn wide_lines_have_the_power_of_independent_speckles() {
+        for row_height in [0.0, 0.7, 5.0] {
+            let contrast = imaged_line_power_contrast(200.0, row_height);
+            let expected = crate::speckle_length(row_height) / (PI.sqrt() * 200.0);
+            // The next order of q is 1/(√π L) of it, 1e-3.
+            assert_relative_eq!(contrast * contrast, expected, max_relative = 2e-3);
+        }
+    }
+
+    #[test]
+    fn rows_of_a_thin_line_share_what_chords_have_in_common() {
+        // (4/π)² ∫∫ (2c)² du du' over the shorter chord, for a point of a row: ∫∫ 4 (1/4 − max²) = 1/2.
+        let contrast = imaged_line_power_contrast(1e-5, 0.0);
+        assert_relative_eq!(contrast * contrast, 8.0 / (PI * PI), max_relative = 1e-6);
+        let [below, above] = [0.01 - 1e-9, 0.01 + 1e-9].map(chord_power);
+        assert_relative_eq!(below, above, max_relative = 1e-8);
     }
 }

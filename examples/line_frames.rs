@@ -18,6 +18,7 @@ use tem00::triangulation::{LineImage, LineImageData, RawFrame, Sensor, SensorDes
 const LINE: LineImageData = LineImageData {
     size: [240, 96],
     width: 12.0,
+    blur: 0.0,
     // A quarter of a full well at the peak of the line; bright speckles have several times as much.
     column_electrons: 20_000.0,
     speckle_size: [2.0, 2.0],

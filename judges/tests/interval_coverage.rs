@@ -122,7 +122,8 @@ impl Case {
         let rows = 2 * to_usize((3.0 * line.width).ceil()) + 24;
         let image = LineImage::new(LineImageData {
             size: [FRAME, rows],
-            width: line.projected_thickness.hypot(line.blur),
+            width: line.projected_thickness,
+            blur: line.blur,
             column_electrons: line.column_electrons,
             speckle_size: line.speckle_size,
             sensitive_side: line.sensitive_height,

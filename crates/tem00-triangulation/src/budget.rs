@@ -4,7 +4,6 @@ mod first_order;
 mod monte_carlo;
 mod term;
 
-use tem00_statistics::imaged_line_centroid_deviation;
 use tem00_uncertainty::{CoverageProbability, coverage_factor, effective_degrees_of_freedom};
 
 use crate::{Dorsch, ImagedLine, LightLevel, Setup, TriangulationError};
@@ -86,17 +85,13 @@ impl Budget {
         let terms = first_order::terms(setup, line)?;
         let d = setup.description();
         let contrast = d.surface.contrast();
-        let [along, across] = line.speckle_size;
         let frames = if d.average.independent_speckle {
             f64::from(d.average.frames)
         } else {
             1.0
         };
-        let radius = 0.5 * line.projected_thickness.hypot(line.blur) / across;
-        let row_height = f64::from(d.average.columns) / along;
-        let deviation = imaged_line_centroid_deviation(radius, row_height);
         let bandwidth = line.bandwidth;
-        let position = contrast * across * deviation / frames.sqrt();
+        let position = contrast * line.centroid_deviation(d.average.columns) / frames.sqrt();
         Some(Self {
             height,
             terms,

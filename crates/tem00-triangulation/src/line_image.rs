@@ -10,7 +10,7 @@ use self::{
 };
 use crate::{
     ImagedLine, Setup, TriangulationError,
-    setup::{LineProfile, within},
+    setup::{LensedLine, LineProfile, within},
 };
 
 /// Minimum number of samples of a speckle along each axis.
@@ -23,7 +23,7 @@ const SAMPLES_PER_SPECKLE: f64 = 6.0;
 /// The maximum number of samples of a pattern.
 const MAXIMUM_SAMPLES: usize = 1 << 25;
 
-/// Dark distance between the images of a pattern that repeats, in speckle sizes.
+/// Dark distance between the images of a pattern that repeats, in speckle sizes; the disc of defocus is added.
 const DARK: f64 = 8.0;
 
 /// Parameters of a [`LineImage`]. Lengths are in pixels.
@@ -33,6 +33,8 @@ pub struct LineImageData {
     pub size: [usize; 2],
     /// The full width of the line between the points of 1/e², before the lens blurs it.
     pub width: f64,
+    /// The diameter of the disc of defocus along the columns, 0 in focus.
+    pub blur: f64,
     /// The mean number of electrons that light frees in a column.
     pub column_electrons: f64,
     /// The speckle size along the rows and along the columns.
@@ -56,10 +58,12 @@ pub struct LineImageData {
 /// G is the Gaussian line about its position c(u) and n normal white noise. The lens blurs the line and
 /// lets its light interfere at once, so that lines of any width have the speckle of waves: for wide
 /// ones a pattern times the blurred line, for thin ones grains that are the image of the line itself.
+/// Out of focus the pupil has the phase π b ρ²/h, with ρ in its diameters and the disc of defocus b: grains of a line
+/// narrower than b grow across it.
 ///
 /// # Validity
 ///
-/// Fully developed speckle of a surface in focus. Each pixel is a sum over whole samples, of which a
+/// Fully developed speckle of a surface all of which is as far out of focus. Each pixel is a sum over whole samples, of which a
 /// speckle has six at least. Speckle that the tilt of the sensor stretches along the columns is
 /// matched by unequal numbers of samples along and across, which leaves at most 2 % of its size. The
 /// position of the line changes little over a speckle along the rows.
@@ -89,7 +93,8 @@ impl LineImage {
         let samples = samples_per_pixel(data.speckle_size);
         let [sx, sy] = [0, 1].map(|axis| data.speckle_size[axis] * samples[axis] as f64);
         let speckle = (sx * sy).sqrt();
-        let period = [0, 1].map(|axis| pattern_side(data.size[axis] * samples[axis], speckle));
+        let dark = [0.0, data.blur * samples[1] as f64].map(|blur| DARK * speckle + blur);
+        let period = [0, 1].map(|axis| pattern_side(data.size[axis] * samples[axis], dark[axis]));
         if period[0].saturating_mul(period[1]) > MAXIMUM_SAMPLES {
             return Err(TriangulationError::OutOfRange {
                 parameter: "speckle_size",
@@ -126,7 +131,8 @@ impl LineImage {
         let surface = &setup.description().surface;
         let mut image = Self::new(LineImageData {
             size,
-            width: line.projected_thickness.hypot(line.blur),
+            width: line.projected_thickness,
+            blur: line.blur,
             column_electrons: line.column_electrons,
             speckle_size: line.speckle_size,
             sensitive_side: line.sensitive_height,
@@ -158,12 +164,19 @@ impl LineImage {
         let LineImageData {
             size: [columns, rows],
             width,
-            speckle_size: [_, across],
-            sensitive_side,
+            blur,
+            speckle_size: [_, speckle_size],
+            sensitive_side: pixel,
             column_electrons,
             ..
         } = self.data;
-        let profile = LineProfile::new(width, across, sensitive_side, rows as f64);
+        let line = LensedLine {
+            width,
+            blur,
+            speckle_size,
+            pixel,
+        };
+        let profile = LineProfile::new(&line, rows as f64);
         let centres: Vec<f64> = (0..columns).map(|x| centre(x as f64 + 0.5)).collect();
         let mut image = Grid::filled(columns, rows, 0.0_f32);
         image.for_each_row_mut(|y, pixels| {
@@ -187,6 +200,7 @@ impl LineImage {
         let period = [0, 1].map(|axis| self.period[axis] as f64 / self.samples[axis] as f64);
         let strip = Strip {
             width: self.data.width,
+            defocus: self.data.blur / self.data.speckle_size[1],
             size: self.data.size.map(|side| side as f64),
             period,
             speckle_size: [0, 1].map(|axis| self.speckle / self.samples[axis] as f64),
@@ -263,15 +277,15 @@ fn samples_per_pixel([along, across]: [f64; 2]) -> [usize; 2] {
     [nx as usize, ny as usize]
 }
 
-/// Returns the side of a pattern of `needed` samples, and darkness beside them, that is fast to
+/// Returns the side of a pattern of `needed` samples, and `dark` ones beside them, that is fast to
 /// transform: the smallest number without prime factors above 5.
-fn pattern_side(needed: usize, speckle: f64) -> usize {
+fn pattern_side(needed: usize, dark: f64) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a valid speckle is some hundred samples wide at most"
+        reason = "a valid speckle is some hundred samples wide, a blur some million at most"
     )]
-    let least = needed.saturating_add((DARK * speckle).ceil() as usize);
+    let least = needed.saturating_add(dark.ceil() as usize);
     let smooth = |&n: &usize| {
         let mut rest = n;
         for factor in [2, 3, 5] {
@@ -296,6 +310,7 @@ fn check(data: &LineImageData) -> Result<(), TriangulationError> {
     )?;
     let allowed = "from 0.01 to 1e5 pixels";
     within("width", data.width, (0.01, 1e5), allowed)?;
+    within("blur", data.blur, (0.0, 1e5), "from 0 to 1e5 pixels")?;
     let allowed = "from 0 to 1e12";
     within(
         "column_electrons",

@@ -261,6 +261,7 @@ fn pieces_with_strange_numbers_are_refused_or_work() {
             let image = LineImage::new(LineImageData {
                 size: [8, 8],
                 width: a,
+                blur: b,
                 column_electrons: 100.0,
                 speckle_size: [b, b],
                 sensitive_side: 1.0,

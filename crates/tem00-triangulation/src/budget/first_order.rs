@@ -3,6 +3,7 @@ use tem00_statistics::{PixelAutocovariance, PixelColumn};
 use super::{BudgetTerm, ErrorDistribution, Evaluation, UncertaintySource};
 use crate::{
     ColumnLight, ColumnSpeckle, ImagedLine, LinePoint, PositionNoise, Setup, SetupDescription,
+    setup::LineProfile, speckle_covariance,
 };
 
 /// The positions of the line within a pixel over which the noise is averaged.
@@ -28,14 +29,12 @@ pub(super) struct NoiseFreeColumn {
 impl NoiseFreeColumn {
     /// Returns the column whose line is `phase` of a pixel behind its middle.
     #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
-    pub(super) fn new(setup: &Setup, line: &ImagedLine, phase: f64) -> Self {
-        let rows = rows(setup.description(), line);
-        let centre = (rows / 2) as f64 + phase;
+    pub(super) fn new(setup: &Setup, line: &ColumnProfile, phase: f64) -> Self {
+        let centre = (line.rows / 2) as f64 + phase;
         let sensor = setup.description().sensor;
         let dark = setup.sensor().dark_electrons();
-        let profile = line.profile(rows as f64);
-        let electrons: Vec<f64> = (0..rows)
-            .map(|y| line.column_electrons * profile.at(y as f64 + 0.5 - centre))
+        let electrons: Vec<f64> = (0..line.rows)
+            .map(|y| line.electrons * line.profile.at(y as f64 + 0.5 - centre))
             .collect();
         let grey = |&e: &f64| (sensor.black_level + sensor.gain * (e + dark)) as f32;
         Self {
@@ -45,9 +44,45 @@ impl NoiseFreeColumn {
         }
     }
 
+    /// Returns the light of the column, all of it speckled, for a position with these sensitivities.
+    fn light<'a>(&'a self, sensitivities: &'a [f64]) -> ColumnLight<'a> {
+        ColumnLight {
+            electrons: &self.electrons,
+            coherent: &self.electrons,
+            sensitivities,
+        }
+    }
+
+    /// Returns the sensitivities of the centre of gravity of the whole column.
+    fn centroid_sensitivities(&self, gain: f64) -> Vec<f64> {
+        let all = gain * self.electrons.iter().sum::<f64>();
+        let rows = 0..self.electrons.len();
+        rows.map(|y| (y as f64 + 0.5 - self.centre) / all).collect()
+    }
+
     /// Returns the line that the detector finds, if any.
     pub(super) fn found(&self, setup: &Setup) -> Option<LinePoint> {
         brightest(setup.detector().detect_column(&self.values))
+    }
+}
+
+/// The image of a line in columns of so many rows.
+#[derive(Clone, Debug)]
+pub(super) struct ColumnProfile {
+    rows: usize,
+    /// The mean electrons that light frees in a column.
+    electrons: f64,
+    profile: LineProfile,
+}
+
+impl ColumnProfile {
+    pub(super) fn new(setup: &Setup, line: &ImagedLine) -> Self {
+        let rows = rows(setup.description(), line);
+        Self {
+            rows,
+            electrons: line.column_electrons,
+            profile: line.profile(rows as f64),
+        }
     }
 }
 
@@ -74,8 +109,9 @@ pub(super) fn rows(description: &SetupDescription, line: &ImagedLine) -> usize {
 
 /// Returns all terms of the budget of a line, or `None` if the detector finds none.
 pub(super) fn terms(setup: &Setup, line: &ImagedLine) -> Option<Vec<BudgetTerm>> {
-    let noise = position_noise(setup, line)?;
-    let bias = detector_bias(setup, line)?;
+    let profile = ColumnProfile::new(setup, line);
+    let noise = position_noise(setup, line, &profile)?;
+    let bias = detector_bias(setup, &profile)?;
     let calibration = setup.description().calibration_uncertainty;
     let terms = UncertaintySource::ALL.map(|source| {
         let (distribution, variance) = match source {
@@ -106,28 +142,40 @@ pub(super) fn terms(setup: &Setup, line: &ImagedLine) -> Option<Vec<BudgetTerm>>
 }
 
 /// Returns the variances of the position of the line after all averages, in square pixels.
-fn position_noise(setup: &Setup, line: &ImagedLine) -> Option<PositionNoise> {
+///
+/// A speckle pattern times the image of the line tells how detector and window weigh the light; how much speckle moves all
+/// of it is the law of a line that a lens images.
+fn position_noise(
+    setup: &Setup,
+    line: &ImagedLine,
+    profile: &ColumnProfile,
+) -> Option<PositionNoise> {
     let d = setup.description();
-    let (autocovariance, fewer) = autocovariance(d, line)?;
+    let autocovariance = autocovariance(d, line)?;
     let speckle = Some(ColumnSpeckle {
         autocovariance: &autocovariance,
-        variance: d.surface.contrast().powi(2) * line.bandwidth.line_noise * fewer,
+        variance: 1.0,
     });
     let mut sum = PositionNoise::default();
+    let mut of_all_light = 0.0;
     for phase in 0..PHASES {
         // Between them: at an edge or a middle two pixels would be equally bright.
         let phase = (f64::from(phase) + 0.5) / f64::from(PHASES);
-        let column = NoiseFreeColumn::new(setup, line, phase);
+        let column = NoiseFreeColumn::new(setup, profile, phase);
         let point = column.found(setup)?;
-        let light = ColumnLight {
-            electrons: &column.electrons,
-            coherent: &column.electrons,
-            sensitivities: &setup.detector().sensitivities(&column.values, &point),
-        };
-        let noise = PositionNoise::of_column(&d.sensor, &speckle, &light);
-        sum = plus(sum, noise);
+        let by_detector = setup.detector().sensitivities(&column.values, &point);
+        let light = column.light(&by_detector);
+        sum = plus(sum, PositionNoise::of_column(&d.sensor, &speckle, &light));
+        let by_centroid = column.centroid_sensitivities(d.sensor.gain);
+        let light = column.light(&by_centroid);
+        of_all_light += speckle_covariance(&d.sensor, &speckle, [&light; 2], [0.0; 2]);
     }
-    Some(averaged(d, sum.scaled(1.0 / f64::from(PHASES))))
+    let law = d.surface.contrast() * line.centroid_deviation(d.average.columns);
+    let mean = PositionNoise {
+        speckle: law * law * line.bandwidth.line_noise * sum.speckle / of_all_light,
+        ..sum.scaled(1.0 / f64::from(PHASES))
+    };
+    Some(averaged(d, mean))
 }
 
 fn plus(a: PositionNoise, b: PositionNoise) -> PositionNoise {
@@ -164,37 +212,33 @@ fn averaged(d: &SetupDescription, noise: PositionNoise) -> PositionNoise {
     }
 }
 
-/// Returns the autocovariance of the mean of the columns that are averaged, and a factor on it: beyond
-/// 4000 speckles columns are counted as independent groups.
+/// Returns the autocovariance of speckle in the mean of the columns that are averaged, of the first 4000 speckles of them.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
     reason = "positive numbers of pixels, at most 64 times 4000"
 )]
-fn autocovariance(d: &SetupDescription, line: &ImagedLine) -> Option<(PixelAutocovariance, f64)> {
+fn autocovariance(d: &SetupDescription, line: &ImagedLine) -> Option<PixelAutocovariance> {
     let [along, across] = line.speckle_size;
     let side = line.sensitive_height;
     let most = |size: f64| (LONGEST * size).floor().max(1.0) as usize;
     // Farther apart, both see little light or hardly the same speckle: 10⁻³ of its variance or less.
     let reach = (2.5 * line.width).ceil() as usize + 2;
-    let columns = d.average.columns as usize;
-    let together = columns.min(most(along));
-    let autocovariance = PixelAutocovariance::new(&PixelColumn {
+    PixelAutocovariance::new(&PixelColumn {
         size: [side / along, side / across],
         pitch: [1.0 / along, 1.0 / across],
         pixels: rows(d, line).min(reach).min(most(across)),
-        averaged_columns: together,
-    });
-    let fewer = together as f64 / columns as f64;
-    autocovariance.ok().map(|found| (found, fewer))
+        averaged_columns: (d.average.columns as usize).min(most(along)),
+    })
+    .ok()
 }
 
 /// Returns the root mean square of what the detector errs by on noise-free lines, in pixels.
-fn detector_bias(setup: &Setup, line: &ImagedLine) -> Option<f64> {
+fn detector_bias(setup: &Setup, profile: &ColumnProfile) -> Option<f64> {
     let mut squares = 0.0;
     for phase in 0..BIAS_PHASES {
         let phase = (f64::from(phase) + 0.5) / f64::from(BIAS_PHASES);
-        let column = NoiseFreeColumn::new(setup, line, phase);
+        let column = NoiseFreeColumn::new(setup, profile, phase);
         squares += (column.found(setup)?.position - column.centre).powi(2);
     }
     Some((squares / f64::from(BIAS_PHASES)).sqrt())

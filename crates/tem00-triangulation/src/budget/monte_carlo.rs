@@ -8,7 +8,10 @@ use rayon::prelude::*;
 use tem00_numerics::Grid;
 
 use self::noise::Frames;
-use super::{UncertaintySource, first_order};
+use super::{
+    UncertaintySource,
+    first_order::{self, ColumnProfile, NoiseFreeColumn},
+};
 use crate::{
     DetectorSettings, ImagedLine, LineDetector, LineImage, Setup, TriangulationError, Validity,
     setup::within,
@@ -150,7 +153,7 @@ pub fn simulate(
 /// Trials of a set-up with a line on a flat surface.
 pub(crate) struct Simulator<'a> {
     setup: &'a Setup,
-    line: ImagedLine,
+    line: ColumnProfile,
     /// The detector for noise without a sensor, which does not saturate.
     unlimited: LineDetector,
     image: LineImage,
@@ -164,7 +167,7 @@ impl<'a> Simulator<'a> {
         let rows = first_order::rows(setup.description(), &line);
         let simulator = Self {
             setup,
-            line,
+            line: ColumnProfile::new(setup, &line),
             unlimited: LineDetector::new(DetectorSettings {
                 saturation: f64::INFINITY,
                 ..*setup.detector().settings()
@@ -177,7 +180,7 @@ impl<'a> Simulator<'a> {
 
     /// Returns the position at which the detector finds the line without noise.
     fn noise_free_position(&self, phase: f64) -> Result<f64, TriangulationError> {
-        let column = first_order::NoiseFreeColumn::new(self.setup, &self.line, phase);
+        let column = NoiseFreeColumn::new(self.setup, &self.line, phase);
         let found = column.found(self.setup).map(|point| point.position);
         found.ok_or(TriangulationError::TooFew {
             what: "lines that the detector finds without noise",
@@ -223,7 +226,7 @@ impl<'a> Simulator<'a> {
     }
 
     fn frames(&self, phase: f64, seed: u64) -> Frames<'_> {
-        let column = first_order::NoiseFreeColumn::new(self.setup, &self.line, phase);
+        let column = NoiseFreeColumn::new(self.setup, &self.line, phase);
         Frames::new(self.setup, &self.image, column, seed)
     }
 

@@ -1,4 +1,4 @@
-use core::f64::consts::TAU;
+use core::f64::consts::{PI, TAU};
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -15,6 +15,8 @@ const REACH: f64 = 3.0;
 pub(super) struct Strip {
     /// The full width of the line between the points of 1/e².
     pub(super) width: f64,
+    /// The diameter of the disc of defocus, in speckle sizes.
+    pub(super) defocus: f64,
     /// The size of the image.
     pub(super) size: [f64; 2],
     /// The size of the image with the darkness beside it, after which it repeats.
@@ -99,7 +101,29 @@ impl Strip {
                 columns[(x, y)] = sum * self.wave(rows, y, position - self.first_sample[1]);
             }
         }
-        (along(&columns), power / positions.len() as f64)
+        let mut pupil = along(&columns);
+        self.defocus(&mut pupil);
+        (pupil, power / positions.len() as f64)
+    }
+
+    /// Multiplies by the phase of defocus, exp(iπ b ρ²/h) at ρ diameters from the middle of the pupil.
+    #[expect(clippy::cast_possible_truncation, reason = "pupils are f32")]
+    fn defocus(&self, pupil: &mut Grid<Complex<f32>>) {
+        if self.defocus == 0.0 {
+            return;
+        }
+        let middle = [pupil.width() / 2, pupil.height() / 2];
+        let place = |index: usize, axis: usize| {
+            let frequency = index as f64 - middle[axis] as f64;
+            frequency * self.speckle_size[axis] / self.period[axis]
+        };
+        pupil.for_each_row_mut(|y, amplitudes| {
+            for (x, amplitude) in amplitudes.iter_mut().enumerate() {
+                let squared = place(x, 0).powi(2) + place(y, 1).powi(2);
+                let phase = Complex::cis(PI * self.defocus * squared);
+                *amplitude *= Complex::new(phase.re as f32, phase.im as f32);
+            }
+        });
     }
 
     /// Returns the distances of scatterers from the middle of the line, and their irradiances.

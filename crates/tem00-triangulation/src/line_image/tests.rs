@@ -7,6 +7,7 @@ use super::*;
 const DATA: LineImageData = LineImageData {
     size: [96, 48],
     width: 12.0,
+    blur: 0.0,
     column_electrons: 1e4,
     speckle_size: [1.6; 2],
     sensitive_side: 1.0,

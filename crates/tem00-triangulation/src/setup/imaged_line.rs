@@ -4,8 +4,12 @@ use glam::DVec3;
 use tem00_camera::Camera;
 use tem00_coherence::{CellGeometry, PolychromaticSpeckle, ResolutionCell, Rows, SpectralLine};
 use tem00_decorrelation::ImagingGeometry;
+use tem00_statistics::{defocused_line_centroid_deviation, imaged_line_power_contrast};
 
-use super::{SetupDescription, line_profile::LineProfile};
+use super::{
+    SetupDescription,
+    line_profile::{LensedLine, LineProfile},
+};
 use crate::Sensor;
 
 /// The step in height, as a part of the distance, of central differences: they err by its square.
@@ -13,8 +17,8 @@ const STEP: f64 = 1e-5;
 
 /// The image of the line on a flat surface.
 ///
-/// Its profile along a column is a Gaussian, of the line and of defocus, blurred by the Airy pattern of
-/// the lens, whose wings fall as 1/y²: outside of ±Y lie 4h/(π³Y) of the light. For its width the
+/// Its profile along a column is the Gaussian of the line, blurred by the image that the lens makes of a point,
+/// in or out of focus, whose wings fall as 1/y²: outside of ±Y lie 4h/(π³Y) of the light. For its width the
 /// squares of what makes it wide add:
 ///
 /// ```text
@@ -26,7 +30,7 @@ const STEP: f64 = 1e-5;
 ///
 /// Z is the depth of the surface before the lens, `Z_focus` that in focus at this image point, s the
 /// depth of the sensor behind the lens, D the diameter of the pupil and h = λ s / D the speckle size.
-/// Defocus counts as a Gaussian of 4σ = b.
+/// Across the disc of defocus 4σ = b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImagedLine {
     /// The position along the middle column, in pixels, y down.
@@ -115,6 +119,8 @@ impl ImagedLine {
         let defocus = geometry.defocus_at(depth).abs();
         let disc = geometry.pupil_diameter() * geometry.principal_distance() * defocus;
         let blur = disc * stretch / pitch;
+        // Less is rounding of what is in focus.
+        let blur = if blur < 1e-9 { 0.0 } else { blur };
         let width = projected_thickness.hypot(diffraction_width).hypot(blur);
         let on_part = laser.power / laser.line_length * (8.0 / PI).sqrt() / laser.line_thickness;
         let radiance = description.surface.reflectance * on_part / PI;
@@ -148,10 +154,11 @@ impl ImagedLine {
     /// the pixel, of the height a about its middle.
     ///
     /// ```text
-    /// n = N ∫ exp(−π² (W_line² + b²) f²/8) chat(h f) sinc(π a f) cos(2π f (y − c)) df
+    /// n = N ∫ exp(−π² W_line² f²/8) T(f) sinc(π a f) cos(2π f (y − c)) df
     /// ```
     ///
-    /// with N electrons in the column and the middle y of the pixel.
+    /// with N electrons in the column, the transfer function T of the lens in or out of focus, and the
+    /// middle y of the pixel.
     pub fn pixel_electrons(&self, start: f64, centre: f64) -> f64 {
         let distance = start + 0.5 - centre;
         self.column_electrons * self.profile(distance.abs()).at(distance)
@@ -162,9 +169,34 @@ impl ImagedLine {
         self.profile_over(self.sensitive_height, reach)
     }
 
+    /// Returns the standard deviation, in pixels, that fully developed speckle gives the mean position over so many
+    /// neighbouring columns, each the centre of gravity of all light in it.
+    ///
+    /// To first order in the fluctuations but for defocus, which moves a line by the mean place of its light in the pupil: a column's
+    /// power divides that.
+    pub(crate) fn centroid_deviation(&self, columns: u32) -> f64 {
+        let [along, across] = self.speckle_size;
+        let column = self.sensitive_height / along;
+        let row_height = column + (f64::from(columns) - 1.0) / along;
+        let radius = 0.5 * self.projected_thickness / across;
+        let deviation = |blur| defocused_line_centroid_deviation(radius, row_height, blur);
+        let in_focus = deviation(0.0);
+        if self.blur == 0.0 {
+            return across * in_focus;
+        }
+        let by_defocus = deviation(self.blur / across).powi(2) - in_focus.powi(2);
+        let power = 1.0 + imaged_line_power_contrast(radius, column).powi(2);
+        across * in_focus.hypot((by_defocus / power).max(0.0).sqrt())
+    }
+
     fn profile_over(&self, pixel: f64, reach: f64) -> LineProfile {
-        let gaussian = self.projected_thickness.hypot(self.blur);
-        LineProfile::new(gaussian, self.speckle_size[1], pixel, reach)
+        let line = LensedLine {
+            width: self.projected_thickness,
+            blur: self.blur,
+            speckle_size: self.speckle_size[1],
+            pixel,
+        };
+        LineProfile::new(&line, reach)
     }
 
     /// Returns the mean number of electrons that light frees in the brightest pixel, for a line in the

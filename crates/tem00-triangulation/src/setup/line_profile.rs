@@ -1,20 +1,22 @@
 use core::f64::consts::PI;
 
-use tem00_numerics::{disc_overlap, sinc};
+use tem00_numerics::{disc_overlap, quadrature::integrate, sinc};
 
 /// The period of the sum, in units of what is looked at: copies of the line stay that far away.
 const PERIOD: f64 = 4.0;
 
 /// The profile of the image of a laser line along a column of pixels: a Gaussian that a round pupil
-/// blurs and pixels integrate.
+/// blurs, in or out of focus, and pixels integrate.
 ///
 /// ```text
-/// m(y) = ∫ exp(−π² W² f²/8) chat(h f) sinc(π a f) cos(2π f y) df        from −1/h to 1/h
-/// m(y) → 2h / (π³ y²)                                                   far from the line
+/// m(y) = ∫ exp(−π² W² f²/8) T(f) sinc(π a f) cos(2π f y) df        from −1/h to 1/h
+/// T(f) = (4/π) ∫ sin²φ cos(π b f (cos φ − h f)) dφ                  from 0 to acos(h f)
+/// m(y) → 2h / (π³ y²)                                              far from the line
 /// ```
 ///
-/// W is the full width of the Gaussian between the points of 1/e², h the speckle size along the column
-/// and a the height of the sensitive part of a pixel; the integral of m is 1. The wings are those of
+/// W is the full width of the Gaussian between the points of 1/e², h the speckle size along the column,
+/// b the diameter of the disc of defocus and a the height of the sensitive part of a pixel; the integral of m is 1.
+/// T is the transfer function of the lens (Hopkins 1955), chat(h f) in focus. The wings are those of
 /// the lens: they hold 4h/(π³ Y) of the light outside of ±Y.
 ///
 /// The integral is a sum over equal steps of the frequency. Its copies of the line, a period apart, are
@@ -27,18 +29,36 @@ pub(crate) struct LineProfile {
     spectrum: Vec<f64>,
 }
 
+/// A line that a lens images onto pixels. All lengths are along the column, in pixels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LensedLine {
+    /// The full width of the line between the points of 1/e², as a sharp lens would image it.
+    pub(crate) width: f64,
+    /// The diameter of the disc of defocus.
+    pub(crate) blur: f64,
+    pub(crate) speckle_size: f64,
+    /// The height of the sensitive part of a pixel.
+    pub(crate) pixel: f64,
+}
+
 impl LineProfile {
-    /// Creates the profile for positions up to `reach` from the middle of the line. All lengths are in
-    /// pixels.
-    pub(crate) fn new(width: f64, speckle_size: f64, pixel: f64, reach: f64) -> Self {
-        let period = PERIOD * reach.max(4.0 * (width + speckle_size));
+    /// Creates the profile for positions up to `reach` from the middle of the line, in pixels.
+    pub(crate) fn new(line: &LensedLine, reach: f64) -> Self {
+        let LensedLine {
+            width,
+            blur,
+            speckle_size,
+            pixel,
+        } = *line;
+        let period = PERIOD * reach.max(4.0 * (width + blur + speckle_size));
         // Beyond 5.5/W the Gaussian is 10⁻¹⁶.
         let end = speckle_size.recip().min(5.5 / width);
         let at = |index: u32| {
             let f = f64::from(index) / period;
             let gaussian = (-(PI * width * f).powi(2) / 8.0).exp();
             let half = if index == 0 { 0.5 } else { 1.0 };
-            2.0 / period * half * gaussian * disc_overlap(speckle_size * f) * sinc(PI * pixel * f)
+            let lens = transfer(speckle_size * f, blur * f);
+            2.0 / period * half * gaussian * lens * sinc(PI * pixel * f)
         };
         #[expect(
             clippy::cast_possible_truncation,
@@ -78,6 +98,20 @@ impl LineProfile {
     }
 }
 
+/// The transfer function of a round pupil at the frequency at which its copies lie `shift` diameters apart
+/// and the disc of defocus is `blur` periods wide.
+fn transfer(shift: f64, blur: f64) -> f64 {
+    if blur == 0.0 {
+        return disc_overlap(shift);
+    }
+    let f = |angle: f64| {
+        let phase = PI * blur * (angle.cos() - shift);
+        angle.sin().powi(2) * phase.cos()
+    };
+    // A panel holds a period at most.
+    4.0 / PI * integrate(f, [0.0, shift.min(1.0).acos()], 2.0 / blur.max(1.0))
+}
+
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
@@ -85,23 +119,54 @@ mod tests {
 
     use super::*;
 
-    /// The profile in space: the Airy pattern summed along the line, then over line and pixel by the
-    /// midpoint rule.
-    fn in_space(width: f64, speckle_size: f64, pixel: f64, distance: f64) -> f64 {
-        const STEPS: u32 = 400;
+    /// Returns the profile of a line in focus.
+    fn in_focus(width: f64, speckle_size: f64, pixel: f64, reach: f64) -> LineProfile {
+        let line = LensedLine {
+            width,
+            blur: 0.0,
+            speckle_size,
+            pixel,
+        };
+        LineProfile::new(&line, reach)
+    }
+
+    /// The Airy pattern summed along the line, at a distance in speckle sizes.
+    fn airy_line(x: f64) -> f64 {
+        // Beyond 200 h the mean of the pattern, 4/(π⁴ r³) in units of h, goes on.
         const ALONG: f64 = 200.0;
+        let airy = |step: u32| {
+            let y = f64::from(step) / 8.0;
+            let half = if step == 0 { 0.5 } else { 1.0 };
+            half * jinc(PI * x.hypot(y)).powi(2)
+        };
+        let sum = (0..1600).map(airy).sum::<f64>() / 4.0;
+        PI / 4.0 * (sum + 4.0 / (PI.powi(4) * ALONG * ALONG))
+    }
+
+    /// The same out of focus: the light through each chord of the pupil. `blur` is in speckle sizes.
+    fn defocused_line(x: f64, blur: f64) -> f64 {
+        let of_chord = |angle: f64| {
+            let half = 0.5 * angle.sin();
+            let wave = |part: fn(f64) -> f64| {
+                let at = |v: f64| part(PI * (blur * v * v + 2.0 * v * x));
+                integrate(at, [-half, half], 0.1)
+            };
+            angle.sin() * wave(f64::cos).hypot(wave(f64::sin)).powi(2)
+        };
+        4.0 / PI * integrate(of_chord, [0.0, 0.5 * PI], 0.2)
+    }
+
+    /// The profile in space: the image of a sharp line, over line and pixel by the midpoint rule.
+    fn in_space(line: &LensedLine, distance: f64, of_point: impl Fn(f64) -> f64) -> f64 {
+        const STEPS: u32 = 400;
+        let LensedLine {
+            width,
+            speckle_size,
+            pixel,
+            ..
+        } = *line;
         let middle =
             |step: u32, end: f64| ((f64::from(step) + 0.5) / f64::from(STEPS) * 2.0 - 1.0) * end;
-        // Beyond 200 h the mean of the pattern, 4/(π⁴ r³) in units of h, goes on.
-        let of_point = |x: f64| {
-            let airy = |step: u32| {
-                let y = f64::from(step) / 8.0;
-                let half = if step == 0 { 0.5 } else { 1.0 };
-                half * jinc(PI * x.hypot(y)).powi(2)
-            };
-            let sum = (0..1600).map(airy).sum::<f64>() / 4.0;
-            PI / 4.0 * (sum + 4.0 / (PI.powi(4) * ALONG * ALONG))
-        };
         let mut sum = 0.0;
         let mut weights = 0.0;
         for step in 0..STEPS {
@@ -116,11 +181,28 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_line_blurred_by_the_airy_pattern_and_the_pixel() {
-        for (width, speckle_size) in [(0.5, 1.6), (4.6, 1.67), (12.0, 4.0)] {
-            let profile = LineProfile::new(width, speckle_size, 0.9, 30.0);
+    fn it_is_the_line_blurred_by_the_lens_and_the_pixel() {
+        for (width, speckle_size, blur) in [
+            (0.5, 1.6, 0.0),
+            (4.6, 1.67, 0.0),
+            (12.0, 4.0, 0.0),
+            (0.5, 1.6, 6.4),
+            (4.6, 1.67, 8.0),
+        ] {
+            let line = LensedLine {
+                width,
+                blur,
+                speckle_size,
+                pixel: 0.9,
+            };
+            let profile = LineProfile::new(&line, 30.0);
             for distance in [0.0, 0.7, 3.1, 9.0, 29.5] {
-                let expected = in_space(width, speckle_size, 0.9, distance);
+                let expected = if blur == 0.0 {
+                    in_space(&line, distance, airy_line)
+                } else {
+                    let of_point = |x: f64| defocused_line(x, blur / speckle_size);
+                    in_space(&line, distance, of_point)
+                };
                 // The rings of the copies are left, a tenth of their wings of 10⁻⁵ and below.
                 assert_relative_eq!(
                     profile.at(distance),
@@ -135,7 +217,7 @@ mod tests {
     #[test]
     fn all_light_is_in_the_pixels_and_the_wings_beyond() {
         let (width, speckle_size) = (4.0, 1.6);
-        let profile = LineProfile::new(width, speckle_size, 1.0, 200.0);
+        let profile = in_focus(width, speckle_size, 1.0, 200.0);
         let inside: f64 = (-200..200).map(|y| profile.at(f64::from(y) + 0.2)).sum();
         let outside = 4.0 * speckle_size / (PI.powi(3) * 200.0);
         // The next order of the wings is 3σ²/Y² of them.
@@ -144,7 +226,7 @@ mod tests {
 
     #[test]
     fn a_sharp_lens_leaves_the_gaussian() {
-        let profile = LineProfile::new(8.0, 1e-3, 1.0, 30.0);
+        let profile = in_focus(8.0, 1e-3, 1.0, 30.0);
         for distance in [0.0_f64, 1.3, 5.0] {
             let scale = 8.0_f64.sqrt() / 8.0;
             let of = |edge: f64| 0.5 * libm::erf(scale * (distance + edge));

@@ -1,4 +1,5 @@
 use glam::DVec3;
+use tem00_beam::GaussianBeam;
 use tem00_coherence::{LaserLight, Relief};
 
 use crate::{DetectorSettings, LaserPlane, SensorDescription, TriangulationError};
@@ -91,6 +92,23 @@ impl SetupDescription {
     pub(crate) fn laser_point_at(&self, height: f64) -> DVec3 {
         let beside = height * libm::tan(self.laser.tilt);
         DVec3::new(0.0, self.laser_offset() + beside, height)
+    }
+
+    /// Returns the laser line across, a Gaussian beam whose waist on the reference plane is as wide as the line is thick.
+    pub(crate) fn line_beam(&self) -> Result<GaussianBeam, TriangulationError> {
+        let laser = &self.laser;
+        let beam = GaussianBeam::from_waist(laser.light.wavelength, 0.5 * laser.line_thickness);
+        beam.map_err(|_| TriangulationError::OutOfRange {
+            parameter: "line_thickness",
+            value: laser.line_thickness,
+            allowed: "at least 4 λ / π: a finer line is no beam",
+        })
+    }
+
+    /// Returns the full thickness of the line on a flat part at a height, in metres.
+    pub(crate) fn line_thickness_at(&self, height: f64) -> Option<f64> {
+        let along = height / libm::cos(self.laser.tilt);
+        Some(2.0 * self.line_beam().ok()?.radius_at(along))
     }
 
     /// Returns the plane of the laser.
@@ -224,6 +242,7 @@ impl SetupDescription {
         within("power", power, (f64::MIN_POSITIVE, 1e3), allowed)?;
         let allowed = "from 1 µm to 1 m (in metres)";
         within("line_thickness", line_thickness, (1e-6, 1.0), allowed)?;
+        self.line_beam()?;
         let allowed = "from the thickness of the line to 100 m (in metres)";
         within("line_length", line_length, (line_thickness, 100.0), allowed)?;
         within(

@@ -23,11 +23,12 @@ const STEP: f64 = 1e-5;
 ///
 /// ```text
 /// W² = W_line² + W_lens² + b²
-/// W_line   the projection of the line on the part, m · line_thickness · cos θ to first order
+/// W_line   the projection of the line on the part, m · line_thickness √(1 + z²/z_R²) · cos θ to first order
 /// W_lens   = 4√2 h / π, the Gaussian of the same curvature as the peak of the lens's Airy disc
 /// b        = D s |1/Z_focus − 1/Z|, the diameter of the disc of defocus, whose 4σ across is b
 /// ```
 ///
+/// The line has its waist on the reference plane, with the Rayleigh range z_R = π w₀²/λ of w₀ = line_thickness/2.
 /// Z is the depth of the surface before the lens, `Z_focus` that in focus at this image point, s the
 /// depth of the sensor behind the lens, D the diameter of the pupil and h = λ s / D the speckle size.
 /// Across the disc of defocus 4σ = b.
@@ -104,7 +105,8 @@ impl ImagedLine {
             let point = description.laser_point_at(height) + beside * DVec3::Y;
             camera.project(point).map(|pixel| pixel.y)
         };
-        let half = 0.5 * laser.line_thickness;
+        let thickness = description.line_thickness_at(height)?;
+        let half = 0.5 * thickness;
         let projected_thickness = (row(half, height)? - row(-half, height)?).abs();
         let step = STEP * description.camera.distance;
         let moved = row(0.0, height - step)? - row(0.0, height + step)?;
@@ -122,7 +124,7 @@ impl ImagedLine {
         // Less is rounding of what is in focus.
         let blur = if blur < 1e-9 { 0.0 } else { blur };
         let width = projected_thickness.hypot(diffraction_width).hypot(blur);
-        let on_part = laser.power / laser.line_length * (8.0 / PI).sqrt() / laser.line_thickness;
+        let on_part = laser.power / laser.line_length * (8.0 / PI).sqrt() / thickness;
         let radiance = description.surface.reflectance * on_part / PI;
         // Of a line as it is on the part; the lens spreads what a column gets.
         let unwidened = radiance * camera.irradiance_per_radiance(pixel);

@@ -38,18 +38,31 @@ impl Setup {
         }
     }
 
-    /// Returns the heights at which defocus makes the image of the line at most √2 times as wide as
-    /// in focus, in metres: there the disc of defocus is as wide as that line.
+    /// Returns the heights at which the line stays fine, in metres: defocus makes its image at most √2 times as wide as in
+    /// focus, and it spreads on the part to at most √2 times its thickness.
     ///
     /// ```text
-    /// D s |1/Z − 1/L| = W₀      Z = L + y sin θ − z cos θ
+    /// D s |1/Z − 1/L| ≤ W₀      Z = L + y sin θ − z cos θ
+    /// |z| ≤ π w₀² cos τ / λ     w₀ = line_thickness / 2
     /// ```
     ///
-    /// with the place y of the laser plane at the height z.
-    ///
-    /// A set-up after Scheimpflug has the whole laser plane in focus: its range is without end, as is
-    /// that of a pupil so small that the disc never grows as wide as the line.
+    /// with the place y of the laser plane at the height z and its tilt τ. The line has its waist on the reference
+    /// plane: a fine one spreads within its Rayleigh range, which ends the depth of field where the lens does not. A set-up
+    /// after Scheimpflug has the whole laser plane in focus.
     pub fn depth_of_field(&self) -> HeightRange {
+        self.lens_range().and(&self.line_range())
+    }
+
+    fn line_range(&self) -> HeightRange {
+        let description = self.description();
+        let beam = description.line_beam().ok();
+        let rayleigh_range = beam.map_or(0.0, |beam| beam.rayleigh_range());
+        let high = rayleigh_range * libm::cos(description.laser.tilt);
+        HeightRange { low: -high, high }
+    }
+
+    /// That of the lens, without end for a pupil so small that the disc of defocus never grows as wide as the line.
+    fn lens_range(&self) -> HeightRange {
         if self.description().camera.scheimpflug {
             return HeightRange {
                 low: f64::NEG_INFINITY,

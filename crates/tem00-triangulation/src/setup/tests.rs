@@ -166,10 +166,31 @@ fn at_the_ends_of_the_depth_of_field_the_line_is_wider_by_a_root_of_two() {
         smaller.length() > 2.0 * range.length(),
         "{smaller:?}, {range:?}"
     );
-    assert!(
-        scheimpflug().depth_of_field().length().is_infinite(),
-        "all is in focus"
-    );
+}
+
+#[test]
+fn a_line_that_is_all_in_focus_is_measured_where_it_has_spread_by_a_root_of_two() {
+    let setup = scheimpflug();
+    let d = setup.description();
+    let HeightRange { low, high } = setup.depth_of_field();
+    let waist = 0.5 * d.laser.line_thickness;
+    let rayleigh_range = core::f64::consts::PI * waist * waist / 650e-9;
+    assert_relative_eq!(high, rayleigh_range, max_relative = 1e-12);
+    assert_relative_eq!(low, -high);
+    let row = |beside: f64| {
+        setup
+            .camera()
+            .project(DVec3::new(0.0, beside, high))
+            .unwrap()
+            .y
+    };
+    let spread = core::f64::consts::SQRT_2 * waist;
+    let width = row(-spread) - row(spread);
+    let line = setup.line_at(high).unwrap();
+    assert_relative_eq!(line.projected_thickness, width.abs(), max_relative = 1e-9);
+    // The light is the same.
+    let electrons = line.column_electrons / setup.line().column_electrons;
+    assert!((0.9..1.1).contains(&electrons), "{electrons}");
 }
 
 #[test]

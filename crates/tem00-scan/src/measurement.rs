@@ -167,12 +167,21 @@ impl Measurement {
         let options = &self.scene.render;
         let rendered = render_frame(&self.scene, speckle, frame, options, progress, cancel)?;
         let exposure = Exposure::of_frame(&rendered, &self.scene.camera, &self.sensor);
-        let seed = noise_seed(options.seed, frame);
-        let mut measured = self
-            .surroundings(frame, speckle.is_some())
-            .measure(exposure, frame, seed)?;
+        let mut measured = self.measure_light(exposure, frame, speckle.is_some())?;
         measured.reference_point = speckle.and_then(|_| self.reference_point(&measured, &rendered));
         Ok(measured)
+    }
+
+    /// Measures light that falls on the sensor in a frame.
+    pub(crate) fn measure_light(
+        &self,
+        exposure: Exposure,
+        frame: u32,
+        speckled: bool,
+    ) -> Result<MeasuredFrame, ScanError> {
+        let seed = noise_seed(self.scene.render.seed, frame);
+        let surroundings = self.surroundings(frame, speckled);
+        surroundings.measure(exposure, frame, seed)
     }
 
     /// Measures what a frame showed once more, where nothing has moved since: the light is the same, the noise of the

@@ -5,16 +5,17 @@ use std::path::Path;
 
 use glam::DVec2;
 use tem00_camera::{Camera, CameraDescription};
+use tem00_numerics::{Grid, cast::to_f32};
 use tem00_scene::parse_scene;
 use tem00_topography::{Artefact, Axis, DVec3, Field, Groove, ProfileSensor, Shape, SurfacePoint};
 use tem00_tracer::{
-    Keyframe, Rectangle, RenderOptions, Scene, Shape as Surface, SpeckleModel, SpecklePlan, Sphere,
-    SurfaceSpeckle, TracerError, Trajectory, TriangleMesh,
+    Filter, Keyframe, Rectangle, RenderOptions, Scene, Shape as Surface, Sphere, TracerError,
+    Trajectory, TriangleMesh, render_frame,
 };
-use tem00_triangulation::{CalibrationSettings, Setup};
+use tem00_triangulation::{CalibrationSettings, LineImage, Setup};
 
 use crate::{
-    Averaging, MeasuredFrame, Measurement, MeasurementScene, ScanError, ScanSettings,
+    Averaging, Exposure, MeasuredFrame, Measurement, MeasurementScene, ScanError, ScanSettings,
     average::{SpeckleCorrelation, averaged_profile, brightest_points},
 };
 
@@ -32,8 +33,13 @@ const MIN_ROWS: usize = 16;
 /// A set-up in front of which artefacts are rendered.
 ///
 /// The artefacts are of the set-up's surface, under its line; camera and laser plane are known exactly. A profile is one
-/// frame, its columns averaged as the set-up says. Diffraction widens the line across the profile; along the profile it is
-/// left out.
+/// frame, its columns averaged as the set-up says. The tracer renders the light on an artefact as a lens without blur sees it,
+/// in parts of pixels; a [`LineImage`] makes of it what the lens does, with diffraction, defocus and speckle as waves have
+/// them.
+///
+/// # Validity
+///
+/// All of a profile counts as equally far out of focus, as the middle of its heights is.
 #[derive(Clone)]
 pub struct SetupSensor<'a> {
     setup: &'a Setup,
@@ -78,7 +84,7 @@ impl<'a> SetupSensor<'a> {
         artefact: &Artefact,
         frames: &[&[DVec3]],
     ) -> Result<MeasurementScene, ScanError> {
-        let scene = parse_scene(&self.widened()?.scene(0.0), Path::new("."));
+        let scene = parse_scene(&self.setup.scene(0.0), Path::new("."));
         let mut scene = scene.map_err(|error| ScanError::Scene(error.to_string()))?;
         let places: Vec<DVec3> = frames.iter().map(|same| same[0]).collect();
         scene.camera = self.camera(artefact, &places)?;
@@ -86,10 +92,6 @@ impl<'a> SetupSensor<'a> {
         surface.shape = shape(artefact)?;
         surface.trajectory = self.trajectory(&places)?;
         let description = self.setup.description();
-        surface.speckle = SurfaceSpeckle {
-            patterns: description.surface.patterns,
-            polarisation: description.surface.polarisation,
-        };
         Ok(MeasurementScene {
             scene: Scene {
                 frames: u32::try_from(places.len()).unwrap_or(u32::MAX),
@@ -107,14 +109,56 @@ impl<'a> SetupSensor<'a> {
         })
     }
 
-    /// Returns the set-up with a line on the part that is as wide as the lens makes its image: frames are rendered without
-    /// diffraction, and would have too little noise of a thin line.
-    fn widened(&self) -> Result<Setup, ScanError> {
-        let line = self.setup.line();
-        let mut description = self.setup.description().clone();
-        description.auto_exposure = false;
-        description.laser.line_thickness *= line.width / line.projected_thickness;
-        Ok(Setup::new(description)?)
+    /// Returns the scene as a lens without blur sees it, in `parts` of each pixel.
+    fn sharp(&self, scene: &Scene, parts: usize) -> Result<Scene, ScanError> {
+        let camera = scene.camera.description();
+        let finer = parts as f64;
+        let in_pixel = u32::try_from(parts * parts).unwrap_or(u32::MAX);
+        Ok(Scene {
+            camera: Camera::new(CameraDescription {
+                pixel_pitch: camera.pixel_pitch / finer,
+                resolution: camera.resolution.map(|pixels| parts * pixels),
+                principal_point: camera.principal_point.map(|point| finer * point),
+                depth_of_field: false,
+                ..*camera
+            })?,
+            render: RenderOptions {
+                samples_per_pixel: scene.render.samples_per_pixel.div_ceil(in_pixel),
+                filter: Filter::Box { radius: 0.5 },
+                ..scene.render
+            },
+            ..scene.clone()
+        })
+    }
+
+    /// Returns the light that falls on the sensor in a frame of a scene, with the middle of the artefact's heights at `height`.
+    fn exposure(
+        &self,
+        measurement: &Measurement,
+        frame: u32,
+        height: f64,
+    ) -> Result<Exposure, ScanError> {
+        let scene = measurement.scene();
+        let line = self.setup.line_at(height).ok_or_else(|| {
+            ScanError::Scene(format!("the camera does not see the line at {height} m"))
+        })?;
+        let size = [scene.camera.width(), scene.camera.height()];
+        let image = LineImage::of_line(self.setup, &line, size)?;
+        let parts = image.parts_of_pixel();
+        let sharp = self.sharp(scene, parts)?;
+        let options = &sharp.render;
+        let rendered = render_frame(&sharp, None, frame, options, |_| (), self.cancel)?;
+        let light = Exposure::of_frame(&rendered, &sharp.camera, measurement.sensor());
+        let light = light
+            .electrons
+            .map(|&electrons| electrons / to_f32((parts * parts) as f64));
+        let seed = scene.render.seed.wrapping_add(u64::from(frame));
+        let without_speckle = sums(&light, parts);
+        Ok(Exposure {
+            electrons: image.speckled_light(seed, &light)?,
+            coherent: without_speckle.clone(),
+            without_speckle,
+        })
     }
 
     /// Returns the camera with the part of the image in which the line on an artefact may be, at any of its places.
@@ -222,11 +266,10 @@ impl ProfileSensor for SetupSensor<'_> {
             // Each scene has speckle and noise of its own.
             self.seed = self.seed.wrapping_add(GOLDEN);
             let measurement = Measurement::new(self.scene(artefact, frames)?)?;
-            let scene = measurement.scene();
-            let plan = SpecklePlan::new(scene, scene.render.formulas, self.seed)?;
-            let speckle = SpeckleModel::generate(scene, &plan)?;
             for (same, number) in frames.iter().zip(0..) {
-                let frame = measurement.measure(Some(&speckle), number, |_| (), self.cancel)?;
+                let height = middle_height(artefact, same[0]);
+                let exposure = self.exposure(&measurement, number, height)?;
+                let frame = measurement.measure_light(exposure, number, true)?;
                 profiles.push(self.points(&frame));
                 for _ in 1..same.len() {
                     let repetition = u32::try_from(profiles.len()).unwrap_or(u32::MAX);
@@ -246,6 +289,24 @@ impl SpeckleCorrelation for Uncorrelated {
     fn between(&self, columns: i64, later: u32) -> f64 {
         f64::from(columns == 0 && later == 0)
     }
+}
+
+/// Returns the sums of the parts of each pixel.
+fn sums(light: &Grid<f32>, parts: usize) -> Grid<f32> {
+    Grid::from_fn(light.width() / parts, light.height() / parts, |x, y| {
+        let rows = (parts * y..parts * (y + 1)).map(|y| &light.row(y)[parts * x..parts * (x + 1)]);
+        rows.flatten().sum()
+    })
+}
+
+/// Returns the middle of the heights of an artefact along the line.
+fn middle_height(artefact: &Artefact, place: DVec3) -> f64 {
+    let heights = artefact.heights_along(-place.y).map(|(_, height)| height);
+    let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), height| {
+        (low.min(height), high.max(height))
+    });
+    let middle = if low > high { 0.0 } else { 0.5 * (low + high) };
+    place.z + middle
 }
 
 /// A number of pixels, rounded up; at least 0.

@@ -1,11 +1,11 @@
 mod bandwidth;
 mod strip;
 
-use tem00_numerics::Grid;
+use tem00_numerics::{Grid, cast::to_usize};
 use tem00_speckle::{PupilField, SpeckleError, incoherent_fractions};
 
 use self::{
-    bandwidth::{Bandwidth, PolychromaticLight},
+    bandwidth::{Bandwidth, PolychromaticLight, Pupil},
     strip::Strip,
 };
 use crate::{
@@ -73,7 +73,7 @@ pub struct LineImage {
     samples: [usize; 2],
     /// Fractions of the light in patterns whose intensities add.
     fractions: Vec<f64>,
-    /// The numbers of samples after which the image repeats.
+    /// The numbers of pixels after which the image repeats.
     period: [usize; 2],
     /// The speckle size in samples.
     speckle: f64,
@@ -93,9 +93,11 @@ impl LineImage {
         let samples = samples_per_pixel(data.speckle_size);
         let [sx, sy] = [0, 1].map(|axis| data.speckle_size[axis] * samples[axis] as f64);
         let speckle = (sx * sy).sqrt();
-        let dark = [0.0, data.blur * samples[1] as f64].map(|blur| DARK * speckle + blur);
-        let period = [0, 1].map(|axis| pattern_side(data.size[axis] * samples[axis], dark[axis]));
-        if period[0].saturating_mul(period[1]) > MAXIMUM_SAMPLES {
+        let blur = [0.0, data.blur];
+        let dark = [0, 1].map(|axis| DARK * speckle / samples[axis] as f64 + blur[axis]);
+        let period = [0, 1].map(|axis| pattern_side(data.size[axis], dark[axis]));
+        let [wide, high] = [0, 1].map(|axis| period[axis].saturating_mul(samples[axis]));
+        if wide.saturating_mul(high) > MAXIMUM_SAMPLES {
             return Err(TriangulationError::OutOfRange {
                 parameter: "speckle_size",
                 value: data.speckle_size[0],
@@ -122,8 +124,12 @@ impl LineImage {
         Self::of_line(setup, setup.line(), size)
     }
 
-    /// Creates the generator of a line on a flat surface at another height.
-    pub(crate) fn of_line(
+    /// Creates the generator of images of the line of a set-up on a flat surface at another height.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`new`](Self::new).
+    pub fn of_line(
         setup: &Setup,
         line: &ImagedLine,
         size: [usize; 2],
@@ -197,31 +203,76 @@ impl LineImage {
         seed: u64,
         centre: impl Fn(f64) -> f64 + Sync,
     ) -> Result<Grid<f32>, TriangulationError> {
-        let period = [0, 1].map(|axis| self.period[axis] as f64 / self.samples[axis] as f64);
-        let strip = Strip {
+        let strip = self.strip();
+        let positions = strip.positions(centre);
+        let per_pixel = self.data.column_electrons / self.period[1] as f64;
+        self.image(|stream, tilt| {
+            let (pupil, lit) = strip.pupil(&positions, seed, stream, tilt);
+            (pupil, lit * per_pixel)
+        })
+    }
+
+    /// Returns the mean numbers of electrons that a surface of any shape frees behind the lens, with the speckle of a seed.
+    ///
+    /// `light` has the electrons of the image that a lens without blur would make, in some parts of each pixel
+    /// along both axes, of which a speckle needs [two](Self::parts_of_pixel). All of the surface counts as equally far out of
+    /// focus.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error unless the sides of `light` are the same multiple of the image's.
+    pub fn speckled_light(
+        &self,
+        seed: u64,
+        light: &Grid<f32>,
+    ) -> Result<Grid<f32>, TriangulationError> {
+        let [columns, rows] = self.data.size;
+        let parts = light.width() / columns;
+        if parts == 0 || [light.width(), light.height()] != [parts * columns, parts * rows] {
+            return Err(TriangulationError::OutOfRange {
+                parameter: "light",
+                value: light.width() as f64 / columns as f64,
+                allowed: "as large as the image, times the same whole number along both sides",
+            });
+        }
+        let strip = self.strip();
+        self.image(|stream, tilt| strip.pupil_of_light(light, parts, (seed, stream), tilt))
+    }
+
+    /// Returns the number of parts of a pixel, along each axis, in which [`speckled_light`](Self::speckled_light) needs its light:
+    /// two in a speckle.
+    pub fn parts_of_pixel(&self) -> usize {
+        let [along, across] = self.data.speckle_size;
+        to_usize((2.0 / along.min(across)).ceil())
+    }
+
+    fn strip(&self) -> Strip {
+        Strip {
             width: self.data.width,
             defocus: self.data.blur / self.data.speckle_size[1],
             size: self.data.size.map(|side| side as f64),
-            period,
+            period: self.period.map(|side| side as f64),
             speckle_size: [0, 1].map(|axis| self.speckle / self.samples[axis] as f64),
             first_sample: self.samples.map(|samples| 0.5 / samples as f64),
             widest_tilt: self.bandwidth.as_ref().map_or(0.0, Bandwidth::widest_tilt),
-        };
-        let positions = strip.positions(centre);
+        }
+    }
+
+    /// Returns the image of the amplitudes that `pupil` makes for the number of a random stream and a tilt.
+    fn image(&self, pupil: impl Fn(u64, f64) -> Pupil) -> Result<Grid<f32>, TriangulationError> {
         let [columns, rows] = self.data.size;
         let mut image = Grid::filled(columns, rows, 0.0_f32);
+        let samples = [0, 1].map(|axis| self.period[axis] * self.samples[axis]);
         for (fraction, part) in self.fractions.iter().zip(0..) {
-            let strip = |stream, tilt| strip.pupil(&positions, seed, stream, tilt);
             let pupils = match &self.bandwidth {
-                None => vec![strip(part, 0.0)],
-                Some(bandwidth) => bandwidth.pupils(part, strip),
+                None => vec![pupil(part, 0.0)],
+                Some(bandwidth) => bandwidth.pupils(part, &pupil),
             };
             let fraction = fraction / pupils.len() as f64;
-            for (pupil, lit) in pupils {
-                let field = PupilField::from_samples(pupil, self.period, self.speckle)?;
-                // The pattern is 1 in the mean over its period, in which this much of the light lies.
-                let electrons = fraction * lit * self.data.column_electrons / period[1];
-                self.add_pixels(&mut image, field.pattern().values(), electrons);
+            for (pupil, electrons) in pupils {
+                let field = PupilField::from_samples(pupil, samples, self.speckle)?;
+                // The pattern is 1 in the mean over its period.
+                self.add_pixels(&mut image, field.pattern().values(), fraction * electrons);
             }
         }
         Ok(image)
@@ -277,13 +328,13 @@ fn samples_per_pixel([along, across]: [f64; 2]) -> [usize; 2] {
     [nx as usize, ny as usize]
 }
 
-/// Returns the side of a pattern of `needed` samples, and `dark` ones beside them, that is fast to
+/// Returns the side of a pattern of `needed` pixels, and `dark` ones beside them, that is fast to
 /// transform: the smallest number without prime factors above 5.
 fn pattern_side(needed: usize, dark: f64) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a valid speckle is some hundred samples wide, a blur some million at most"
+        reason = "a valid speckle is at most 64 pixels wide, a blur 10⁵"
     )]
     let least = needed.saturating_add(dark.ceil() as usize);
     let smooth = |&n: &usize| {

@@ -18,9 +18,8 @@ use crate::SensorDescription;
 ///
 /// # Validity
 ///
-/// First order, and speckle as a pattern times the line as the lens blurs it. Against waves it is within 2 % for a
-/// centre of gravity of lines of at least one speckle in full width, 9 % too much at 0.8 speckles and half too much at
-/// 0.4; it says about a third too much for detectors that look at three pixels, and half for Steger's.
+/// First order, and speckle as a pattern times the line as the lens blurs it, which is what a renderer makes. A camera sees light that
+/// interferes: a [`Budget`](crate::Budget) scales this speckle to its law.
 ///
 /// # References
 ///

@@ -1,9 +1,13 @@
 //! The budget of a set-up against images of a rough surface that are summed wave by wave.
 
+use core::sync::atomic::AtomicBool;
+
 use tem00::{
+    scan::SetupSensor,
+    topography::{Artefact, ProfileSensor, Shape},
     triangulation::{
-        Budget, DetectorSettings, ImagedLine, LineDetector, LineImage, LineImageData, LinePoint,
-        Setup, UncertaintySource, parse_setup,
+        Budget, BudgetTerm, DetectorSettings, ImagedLine, LineDetector, LineImage, LineImageData,
+        LinePoint, Setup, UncertaintySource, parse_setup,
     },
     wave::{
         Amplitudes, Arrangement, Camera, DVec2, DVec3, FanDescription, Grid, Illumination,
@@ -83,6 +87,11 @@ impl Judged {
         }
     }
 
+    /// Pixels at each end of the line that are not looked at.
+    fn ends(&self) -> usize {
+        whole(END * self.line.speckle_size[0] + 0.5 * self.line.blur)
+    }
+
     /// Returns how far the detector finds the line from where it is, in pixels, column by column.
     fn deviations(&self, columns: &Grid<f32>, middle: f64) -> Vec<f64> {
         let found = self.detector.detect(columns).into_iter();
@@ -160,7 +169,7 @@ impl Waves {
                 seed: 0,
             },
             samples,
-            end: whole(END * speckle + 0.5 * line.blur),
+            end: judged.ends(),
         }
     }
 
@@ -248,6 +257,55 @@ fn judge(case: &Case, formula: [f64; 2]) {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Holds the heights of a level flat on the reference plane, as `characterise` measures it, to waves and the noise of the sensor.
+fn judge_characteristics(case: &Case) {
+    let setup = case.setup(1);
+    let judged = Judged::new(&setup, 0.0);
+    let waves = Waves::of(&judged);
+    let by_waves = (0..case.images).map(|seed| {
+        let (columns, middle) = waves.columns(seed);
+        judged.deviations(&columns, middle)
+    });
+    let [speckle, error] = root_mean(&by_waves.collect::<Vec<_>>(), 1);
+    let budget = Budget::new(&setup).expect("a line");
+    let of_sensor = |term: &&BudgetTerm| term.source != UncertaintySource::Speckle;
+    let squares = budget
+        .terms()
+        .iter()
+        .filter(of_sensor)
+        .map(|term| term.uncertainty.powi(2));
+    let expected = (speckle * speckle + squares.sum::<f64>()).sqrt();
+    let cancel = AtomicBool::new(false);
+    let mut sensor = SetupSensor::new(&setup, 8, 1, &|_| (), &cancel);
+    let flat = Artefact {
+        name: "flat",
+        shape: Shape::Flat { slope: [0.0; 2] },
+        size: [PIXELS as f64 * sensor.field().column, 0.2],
+    };
+    let count = u32::try_from(case.images).expect("a small number");
+    let places: Vec<_> = (0..count)
+        .map(|i| DVec3::new(0.0, 1e-3 * f64::from(i), 0.0))
+        .collect();
+    let profiles = sensor.measure(&flat, &places).expect("profiles");
+    let per_pixel = judged.line.height_per_pixel;
+    let heights = profiles.iter().map(|profile| {
+        // The ends of the flat are edges.
+        let inside = &profile[judged.ends()..profile.len() - judged.ends()];
+        inside
+            .iter()
+            .map(|point| point.position.z / per_pixel)
+            .collect()
+    });
+    let [measured, error_of_measured] = root_mean(&heights.collect::<Vec<_>>(), 1);
+    let found = format!(
+        "waves {expected:.4} ± {error:.4}, measured {measured:.4} ± {error_of_measured:.4} px"
+    );
+    assert!(
+        (measured / expected - 1.0).abs() < 0.03 + 3.3 * error.hypot(error_of_measured) / expected,
+        "{found}"
+    );
 }
 
 /// Returns the deviations in images that are drawn as trials draw them.
@@ -347,6 +405,11 @@ fn the_budget_of_a_line_in_a_narrow_window_is_that_of_waves() {
     // Half of the blurred line's width on either side, and a little.
     let narrow = Case { window: 15, ..RED };
     judge(&narrow, [0.05; 2]);
+}
+
+#[test]
+fn the_noise_of_a_characterised_set_up_is_that_of_waves() {
+    [RED, GREEN, BLUE].iter().for_each(judge_characteristics);
 }
 
 #[test]

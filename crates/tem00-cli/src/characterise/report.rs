@@ -25,7 +25,7 @@ pub(super) fn report(
     report.verdict(verdict(&rows));
     report.note(
         "Rendered, not measured: camera, laser plane and stage are known exactly, and the artefacts are of the surface of \
-         the set-up. A profile is one frame; diffraction widens the line, and blurs nothing along it.",
+         the set-up. A profile is one frame, imaged as waves: with diffraction, defocus and speckle.",
     );
     let section = report.section("Characteristics");
     section.table(table(&rows)).paragraph(

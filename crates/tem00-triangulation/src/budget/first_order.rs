@@ -108,9 +108,12 @@ pub(super) fn rows(description: &SetupDescription, line: &ImagedLine) -> usize {
 }
 
 /// Returns all terms of the budget of a line, or `None` if the detector finds none.
-pub(super) fn terms(setup: &Setup, line: &ImagedLine) -> Option<Vec<BudgetTerm>> {
+///
+/// `law` is the standard deviation, in pixels, that speckle gives the centre of gravity of all light in the columns that are averaged, before
+/// the linewidth counts.
+pub(super) fn terms(setup: &Setup, line: &ImagedLine, law: f64) -> Option<Vec<BudgetTerm>> {
     let profile = ColumnProfile::new(setup, line);
-    let noise = position_noise(setup, line, &profile)?;
+    let noise = position_noise(setup, line, (&profile, law))?;
     let bias = detector_bias(setup, &profile)?;
     let calibration = setup.description().calibration_uncertainty;
     let terms = UncertaintySource::ALL.map(|source| {
@@ -148,7 +151,7 @@ pub(super) fn terms(setup: &Setup, line: &ImagedLine) -> Option<Vec<BudgetTerm>>
 fn position_noise(
     setup: &Setup,
     line: &ImagedLine,
-    profile: &ColumnProfile,
+    (profile, law): (&ColumnProfile, f64),
 ) -> Option<PositionNoise> {
     let d = setup.description();
     let autocovariance = autocovariance(d, line)?;
@@ -170,7 +173,6 @@ fn position_noise(
         let light = column.light(&by_centroid);
         of_all_light += speckle_covariance(&d.sensor, &speckle, [&light; 2], [0.0; 2]);
     }
-    let law = d.surface.contrast() * line.centroid_deviation(d.average.columns);
     let mean = PositionNoise {
         speckle: law * law * line.bandwidth.line_noise * sum.speckle / of_all_light,
         ..sum.scaled(1.0 / f64::from(PHASES))

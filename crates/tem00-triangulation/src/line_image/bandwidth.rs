@@ -30,8 +30,8 @@ const WAVES_PER_PATTERN: f64 = 8.0;
 /// The largest displacement of the pupil, in its diameters: farther wings find new speckle there, too.
 const MAX_TILT: f64 = 6.0;
 
-/// The pupil of a strip, and how much of the line's light it holds.
-type Pupil = (Grid<Complex<f32>>, f64);
+/// The amplitude in the pupil, and the light that it holds.
+pub(super) type Pupil = (Grid<Complex<f32>>, f64);
 
 impl PolychromaticLight {
     /// Returns nothing for light of one wavelength from a point.

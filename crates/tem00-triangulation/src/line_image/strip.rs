@@ -3,7 +3,7 @@ use core::f64::consts::{PI, TAU};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
-use tem00_numerics::{Fft2, Grid};
+use tem00_numerics::{Fft2, Grid, cast::to_usize};
 use tem00_speckle::Complex;
 
 /// Distance from its middle up to which a line has scatterers, in half-widths: 10⁻⁸ of the light lie
@@ -106,6 +106,59 @@ impl Strip {
         (pupil, power / positions.len() as f64)
     }
 
+    /// Returns the amplitude in the pupil, displaced by `tilt` diameters across the line, of a surface whose sharp image is
+    /// `light` in parts of pixels, and the mean of that light per pixel of the period.
+    ///
+    /// A scatterer lies in the middle of each part.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the transform works in f32"
+    )]
+    pub(super) fn pupil_of_light(
+        &self,
+        light: &Grid<f32>,
+        parts: usize,
+        (seed, stream): (u64, u64),
+        tilt: f64,
+    ) -> (Grid<Complex<f32>>, f64) {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(1 << 63 | stream);
+        let place = |index: usize| (index as f64 + 0.5) / parts as f64;
+        let mut scattered = Grid::filled(light.width(), light.height(), Complex::default());
+        let all = scattered.values_mut().iter_mut().zip(light.values());
+        for (index, (amplitude, &electrons)) in all.enumerate().filter(|(_, (_, lit))| **lit > 0.0)
+        {
+            let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+            let turns = tilt * place(index / light.width()) / self.speckle_size[1];
+            let wave = Complex::new(normal(), normal()) * Complex::cis(TAU * turns);
+            let wave = wave * (0.5 * f64::from(electrons)).sqrt();
+            *amplitude = Complex::new(wave.re as f32, wave.im as f32);
+        }
+        let electrons: f64 = light.values().iter().map(|&e| f64::from(e)).sum();
+        let [wide, high] = self.period.map(|side| to_usize(side) * parts);
+        let [columns, rows] = [self.lattice(0), self.lattice(1)];
+        let mut pupil = Grid::filled(columns, rows, Complex::default());
+        let Ok(transform) = Fft2::with_aperture(wide, high, light.width(), light.height()) else {
+            return (pupil, 0.0);
+        };
+        let spectrum = transform
+            .on_one_thread()
+            .forward(&scattered, |_, _, value| value);
+        // From the first sample of the image to the first scatterer, in periods.
+        let start = [0, 1].map(|axis| (place(0) - self.first_sample[axis]) / self.period[axis]);
+        pupil.for_each_row_mut(|y, amplitudes| {
+            for (x, amplitude) in amplitudes.iter_mut().enumerate() {
+                // The image is the transform of the pupil: this is the inverse one, of the other sign.
+                let at = (mirrored(x, columns, wide), mirrored(y, rows, high));
+                let [fx, fy] = [(x, columns), (y, rows)].map(|(i, n)| i as f64 - (n / 2) as f64);
+                let phase = Complex::cis(TAU * (fx * start[0] + fy * start[1]));
+                *amplitude = spectrum[at] * Complex::new(phase.re as f32, phase.im as f32);
+            }
+        });
+        self.defocus(&mut pupil);
+        (pupil, electrons / (self.period[0] * self.period[1]))
+    }
+
     /// Multiplies by the phase of defocus, exp(iπ b ρ²/h) at ρ diameters from the middle of the pupil.
     #[expect(clippy::cast_possible_truncation, reason = "pupils are f32")]
     fn defocus(&self, pupil: &mut Grid<Complex<f32>>) {
@@ -179,6 +232,11 @@ impl Strip {
     }
 }
 
+/// The index, in a transform of `length`, of the opposite of the frequency that stands at `index` of a pupil of `side` points.
+fn mirrored(index: usize, side: usize, length: usize) -> usize {
+    (side / 2 + length - index) % length
+}
+
 /// Transforms each row, with the frequency zero in the middle: positions along the line become those in
 /// the pupil.
 #[expect(
@@ -202,7 +260,7 @@ fn along(columns: &Grid<Complex<f64>>) -> Grid<Complex<f32>> {
         let spectrum = transform.forward(&of_row, |_, _, value| value);
         for (x, amplitude) in amplitudes.iter_mut().enumerate() {
             // The image is the transform of the pupil: this is the inverse one, of the other sign.
-            *amplitude = spectrum[((width / 2 + width - x) % width, 0)];
+            *amplitude = spectrum[(mirrored(x, width, width), 0)];
         }
     }
     pupil

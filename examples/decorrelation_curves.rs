@@ -116,7 +116,7 @@ fn plots() -> io::Result<()> {
 fn main() -> Result<(), Box<dyn Error>> {
     println!("Correlation left by s pupil diameters and x axial decorrelation lengths 8λ(L/D)²");
     table();
-    let half = motion_multiple(0.5, 0.4, 1.0).ok_or("the motion leaves the pattern as it is")?;
+    let half = motion_multiple(0.5, 0.4, 1.0)?.ok_or("the motion leaves the pattern as it is")?;
     println!(
         "half is left after s = {:.3}, x = {half:.3} on the way to (0.4, 1)",
         0.4 * half

@@ -67,7 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("The paper's statement is wrong by its own formula, sinc²(π a_O / 2):");
     println!("  λ [2 (1 + 1/m) F]² = {stated:.3} mm leave {left:.3} of the correlation");
     println!("2 λ [2 (1 + 1/m) F]² = {zero:.3} mm are its first zero");
-    let half = zero * equivalent_axial_shift(0.5);
+    let half = zero * equivalent_axial_shift(0.5)?;
     println!("half of it is left after {half:.3} mm");
 
     let curve = (0..=300).map(|i| f64::from(i) * 0.01);

@@ -52,6 +52,26 @@ pub(crate) fn map_many<'py, const N: usize, const M: usize>(
     })
 }
 
+/// As [`map`], for a function of one argument that can fail: `raise` makes the exception of its first error.
+pub(crate) fn try_map<'py, E: Send>(
+    py: Python<'py>,
+    argument: Named<'_, 'py>,
+    f: impl Fn(f64) -> Result<f64, E> + Send + Sync,
+    raise: impl FnOnce(E) -> PyErr,
+) -> PyResult<Values<'py>> {
+    let mut first_error = Ok(());
+    let [values] = fill(py, [argument], |[x], [out]| {
+        for (out, &x) in out.iter_mut().zip(x) {
+            match f(x) {
+                Ok(value) => *out = value,
+                Err(error) if first_error.is_ok() => first_error = Err(error),
+                Err(_) => {}
+            }
+        }
+    })?;
+    first_error.map(|()| values).map_err(raise)
+}
+
 /// Hands `N` arguments of numbers, broadcast together, to `f`: [`evaluate`] for arguments of any size
 /// and for results that are numbers.
 ///

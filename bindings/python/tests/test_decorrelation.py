@@ -476,6 +476,9 @@ REFUSALS: list[tuple[Callable[[], object], str]] = [
     (lambda: setup(pattern_speckle_size=-1.0), "pattern_speckle_size"),
     (lambda: setup(orientation="left"), "orientation"),
     (lambda: dc.motion_multiple(0.5, math.nan, 0.0), "pupil_shift"),
+    (lambda: dc.motion_multiple(-0.2, 0.1, 0.0), "correlation"),
+    (lambda: dc.equivalent_pupil_shift([0.5, -0.2]), "correlation"),
+    (lambda: dc.equivalent_axial_shift(1.2), "correlation"),
 ]
 
 

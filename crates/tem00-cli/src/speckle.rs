@@ -255,12 +255,13 @@ fn decorrelation(
     let cell = geometry.object_speckle_size();
     let axial = geometry.axial_decorrelation_length();
     let [across, tilt, wavelength] = pupil_shifts(geometry, angle)?;
+    let halving = equivalent_pupil_shift(0.5)?;
     let sliding = |by: Change, pupil_shift: f64| {
         // What rounding leaves of a shift is none.
         let reach = (pupil_shift > 1e-9).then(|| geometry.pupil_diameter() / pupil_shift);
         Decorrelation {
             by,
-            half: reach.map(|reach| equivalent_pupil_shift(0.5) * reach),
+            half: reach.map(|reach| halving * reach),
             none: reach,
         }
     };
@@ -277,7 +278,7 @@ fn decorrelation(
         sliding(Change::Across, across),
         Decorrelation {
             by: Change::Along,
-            half: Some(equivalent_axial_shift(0.5) * axial),
+            half: Some(equivalent_axial_shift(0.5)? * axial),
             none: Some(axial),
         },
         sliding(Change::Tilt, tilt),

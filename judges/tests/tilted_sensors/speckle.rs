@@ -44,7 +44,7 @@ fn settings() -> Vec<Setting> {
 /// slopes by 0.765 π/√N per speckle. The peak is γ π²/2 times as curved, or less where the pupils share
 /// a lens 1 − s as wide as they are: (1 − s)² times that.
 fn displacement_error(change: &SpeckleChange, size: [f64; 2]) -> f64 {
-    let shift = equivalent_pupil_shift(change.correlation);
+    let shift = equivalent_pupil_shift(change.correlation).expect("a correlation");
     let slope = 0.765 * PI / speckles(size).sqrt();
     size[0].max(size[1]) * slope / (0.5 * PI * PI * change.correlation * (1.0 - shift).powi(2))
 }

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use tem00_beam::BeamError;
 
 use crate::{
-    arrays::{Column, Named, Numbers, Values, columns, evaluate},
+    arrays::{self, Column, Named, Numbers, Values, columns, evaluate},
     error::{IntoPython, refused},
 };
 
@@ -97,21 +97,7 @@ pub(super) fn try_map<'py>(
     f: impl Fn(f64) -> Result<f64, BeamError> + Send + Sync,
 ) -> PyResult<Values<'py>> {
     let name = argument.0;
-    let mut first_error = Ok(());
-    let column = Column::new(argument, f64::MAX)?;
-    let [values] = evaluate(py, [column], [&[]], |[x], [out]| {
-        for (out, &x) in out.iter_mut().zip(x) {
-            match f(x) {
-                Ok(value) => *out = value,
-                Err(error) if first_error.is_ok() => first_error = Err(error),
-                Err(_) => {}
-            }
-        }
-    })?;
-    match first_error {
-        Ok(()) => Ok(values),
-        Err(error) => Err(named(name, error)),
-    }
+    arrays::try_map(py, argument, f, |error| named(name, error))
 }
 
 /// The exception for an error of the argument `name`.

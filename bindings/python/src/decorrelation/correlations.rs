@@ -2,8 +2,8 @@ use pyo3::prelude::*;
 use tem00_decorrelation as physics;
 
 use crate::{
-    arrays::map,
-    error::refused,
+    arrays::{Numbers, Values, map, try_map},
+    error::{IntoPython, OrRaise},
     pickling::{Recipe, by_constructor},
 };
 
@@ -93,12 +93,34 @@ functions! {
     map correlation(pupil_shift, axial_shift);
 }
 
-functions! {
-    /// Return the pupil displacement, in pupil diameters, that alone would leave a correlation.
-    map equivalent_pupil_shift(correlation);
+/// Return the pupil displacement, in pupil diameters, that alone would leave a correlation.
+///
+/// Parameters
+/// ----------
+/// correlation : float or array
+///     Intensity correlation, from 0 to 1.
+#[pyfunction]
+pub(super) fn equivalent_pupil_shift<'py>(
+    py: Python<'py>,
+    correlation: Numbers<'py>,
+) -> PyResult<Values<'py>> {
+    let argument = ("correlation", &correlation);
+    try_map(py, argument, physics::equivalent_pupil_shift, IntoPython::into_python)
+}
 
-    /// Return the axial displacement, in axial decorrelation lengths, that alone leaves a correlation.
-    map equivalent_axial_shift(correlation);
+/// Return the axial displacement, in axial decorrelation lengths, that alone leaves a correlation.
+///
+/// Parameters
+/// ----------
+/// correlation : float or array
+///     Intensity correlation, from 0 to 1.
+#[pyfunction]
+pub(super) fn equivalent_axial_shift<'py>(
+    py: Python<'py>,
+    correlation: Numbers<'py>,
+) -> PyResult<Values<'py>> {
+    let argument = ("correlation", &correlation);
+    try_map(py, argument, physics::equivalent_axial_shift, IntoPython::into_python)
 }
 
 /// Return the multiple of a motion at which the product law first leaves a correlation.
@@ -106,7 +128,7 @@ functions! {
 /// Parameters
 /// ----------
 /// correlation : float
-///     Intensity correlation.
+///     Intensity correlation, from 0 to 1.
 /// pupil_shift : float
 ///     Displacement across the pupil in pupil diameters.
 /// axial_shift : float
@@ -122,17 +144,5 @@ pub(super) fn motion_multiple(
     pupil_shift: f64,
     axial_shift: f64,
 ) -> PyResult<Option<f64>> {
-    let named = [
-        ("correlation", correlation),
-        ("pupil_shift", pupil_shift),
-        ("axial_shift", axial_shift),
-    ];
-    if let Some((name, value)) = named.iter().find(|(_, value)| !value.is_finite()) {
-        return Err(refused(name, format!("{name} must be finite, got {value}")));
-    }
-    Ok(physics::motion_multiple(
-        correlation,
-        pupil_shift,
-        axial_shift,
-    ))
+    physics::motion_multiple(correlation, pupil_shift, axial_shift).or_raise()
 }

@@ -4,10 +4,9 @@ use std::sync::OnceLock;
 
 use glam::{DVec2, DVec3};
 use tem00_decorrelation::{
-    ChangedPoint, ImagingGeometry, PointChange, RigidChange, equivalent_pupil_shift,
-    pupil_overlap_correlation,
+    ChangedPoint, ImagingGeometry, PointChange, RigidChange, pupil_overlap_correlation,
 };
-use tem00_numerics::vectorised;
+use tem00_numerics::{disc_overlap_inverse, vectorised};
 
 use super::{SpecklePoint, axial_loss::AxialLoss, change::Change, upright};
 use crate::laser::{WaveFrame, WaveShape};
@@ -277,7 +276,7 @@ const NO_AXIAL_SHIFT: f64 = 1e-7;
 /// zero, without the revival of 4.7 % behind it.
 #[inline(always)]
 fn equivalent_shift(lateral: f64, axial: f64, kept: f64) -> f64 {
-    let equivalent = equivalent_pupil_shift(pupil_overlap_correlation(lateral) * kept);
+    let equivalent = disc_overlap_inverse((pupil_overlap_correlation(lateral) * kept).sqrt());
     let beyond_the_zero = if axial >= 1.0 { axial } else { 0.0 };
     let both = equivalent.max(lateral).max(beyond_the_zero);
     if axial < NO_AXIAL_SHIFT {

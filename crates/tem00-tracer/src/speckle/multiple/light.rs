@@ -1,4 +1,5 @@
-use tem00_decorrelation::{equivalent_pupil_shift, pupil_overlap_correlation};
+use tem00_decorrelation::pupil_overlap_correlation;
+use tem00_numerics::disc_overlap_inverse;
 
 use super::super::{SpecklePoint, shifts::SpeckleShift};
 
@@ -43,7 +44,7 @@ impl MultipleLight {
         let [c1, c2] = [single, multiple].map(|shift| pupil_overlap_correlation(shift.pupil));
         let cross = 2.0 * f1 * f2 * (c1 * c2).sqrt() * self.kept_with_single;
         let correlation = f1 * f1 * c1 + cross + f2 * f2 * c2 * self.kept;
-        let pupil = equivalent_pupil_shift(correlation.clamp(0.0, 1.0));
+        let pupil = disc_overlap_inverse(correlation.clamp(0.0, 1.0).sqrt());
         SpeckleShift {
             displacement: f1 * single.displacement + f2 * multiple.displacement,
             pupil: if pupil < 1.0 {

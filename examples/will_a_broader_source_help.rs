@@ -64,7 +64,7 @@ impl Case {
         };
         Ok(Left {
             contrast: speckle.contrast(),
-            noise: speckle.line_noise(Rows::Thin).sqrt(),
+            noise: speckle.line_noise_ratio(Rows::Thin),
         })
     }
 }

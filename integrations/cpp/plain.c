@@ -100,7 +100,7 @@ static void broaden(void) {
     double noise = 0;
     expect(tem00_bandwidth_create(&diode, &light) == TEM00_STATUS_OK &&
                tem00_bandwidth_describe(light, &info) == TEM00_STATUS_OK &&
-               tem00_bandwidth_line_noise(light, 0, &noise) == TEM00_STATUS_OK &&
+               tem00_bandwidth_line_noise_ratio(light, 0, &noise) == TEM00_STATUS_OK &&
                tem00_bandwidth_draw(light, 0.1, &first) == TEM00_STATUS_OK &&
                tem00_bandwidth_draw(light, 0.9, &last) == TEM00_STATUS_OK,
            "a linewidth is answered");

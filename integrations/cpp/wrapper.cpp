@@ -153,7 +153,7 @@ void linewidths() {
     const double contrast = light.info().contrast;
     expect(contrast < 1 && std::abs(light.covariance({0, 0}) / (contrast * contrast) - 1) < 1e-9,
            "two frames without a motion share all of the contrast");
-    expect(light.line_noise(0) > contrast, "the noise of a line falls less than the contrast");
+    expect(light.line_noise_ratio(0) > contrast, "the noise of a line falls less than the contrast");
     expect(light.draw(0.25).wave_number > light.draw(0.75).wave_number, "peaks stand in their order");
     const tem00::stack stack(stack_description());
     expect(std::abs(std::norm(stack.amplitude(3, 5, 0.5)) - stack.intensity(3, 5, 0.5)) < 1e-5,

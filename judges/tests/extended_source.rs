@@ -359,7 +359,7 @@ fn compare(geometry: u64) -> Vec<[[f64; MEASURES.len()]; 2]> {
                 law.covariance(moved).sqrt(),
                 law.autocovariance([pixel, 0.0]).sqrt(),
                 law.autocovariance([0.0, pixel]).sqrt(),
-                law.line_noise(Rows::Thin).sqrt(),
+                law.line_noise_ratio(Rows::Thin),
             ];
             [bench.measures(&parts, geometry), laws]
         })

@@ -1835,9 +1835,9 @@ tem00_status tem00_bandwidth_covariance(const tem00_bandwidth *bandwidth,
  *
  * The pointers are null or valid.
  */
-tem00_status tem00_bandwidth_line_noise(const tem00_bandwidth *bandwidth,
-                                        double row_height,
-                                        double *ratio);
+tem00_status tem00_bandwidth_line_noise_ratio(const tem00_bandwidth *bandwidth,
+                                              double row_height,
+                                              double *ratio);
 
 /**
  * Frees a camera; null is allowed. No thread may be using it, and it must not be used again.

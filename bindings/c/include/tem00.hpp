@@ -374,9 +374,9 @@ public:
     }
 
     /** Deviation of the position of a line over that in light of one wavelength. */
-    double line_noise(double row_height) const {
+    double line_noise_ratio(double row_height) const {
         double ratio = 0;
-        check(tem00_bandwidth_line_noise(get(), row_height, &ratio));
+        check(tem00_bandwidth_line_noise_ratio(get(), row_height, &ratio));
         return ratio;
     }
 

@@ -219,7 +219,7 @@ pub unsafe extern "C" fn tem00_bandwidth_covariance(
 ///
 /// The pointers are null or valid.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn tem00_bandwidth_line_noise(
+pub unsafe extern "C" fn tem00_bandwidth_line_noise_ratio(
     bandwidth: *const Bandwidth,
     row_height: f64,
     ratio: *mut f64,
@@ -233,7 +233,7 @@ pub unsafe extern "C" fn tem00_bandwidth_line_noise(
         } else {
             Rows::Thin
         };
-        let result = bandwidth.speckle().line_noise(rows).sqrt();
+        let result = bandwidth.speckle().line_noise_ratio(rows);
         // SAFETY: by the contract of this function.
         unsafe { write("ratio", ratio, result) }
     })

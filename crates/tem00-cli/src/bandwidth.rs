@@ -15,8 +15,8 @@ pub(crate) fn bandwidth(setup: &Setup) -> Cell {
         "linewidth": light.linewidth,
         "source_half_angle": light.source_half_angle,
         "contrast_ratio": effect.contrast,
-        "line_noise_ratio": effect.line_noise.sqrt(),
-        "spot_noise_ratio": effect.spot_noise.sqrt(),
+        "line_noise_ratio": effect.line_noise_ratio,
+        "spot_noise_ratio": effect.spot_noise_ratio,
     });
     if effect == BandwidthEffect::NONE {
         return Cell::new(
@@ -37,7 +37,7 @@ pub(crate) fn bandwidth(setup: &Setup) -> Cell {
     let words = format!(
         "{source}: this leaves {} of the noise of the line, which counts for the uncertainty, and {} of the contrast, which \
          counts for what is seen and for bright grains",
-        ratio(effect.line_noise.sqrt()),
+        ratio(effect.line_noise_ratio),
         ratio(effect.contrast),
     );
     Cell::new(data, words)

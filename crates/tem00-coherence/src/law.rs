@@ -47,7 +47,7 @@ use crate::{
 /// let line = SpectralLine::new(450e-9, 20e-9, LineShape::Gaussian)?;
 /// let speckle = PolychromaticSpeckle { line: &line, cell: &cell };
 /// assert!((speckle.contrast() - 0.731).abs() < 1e-3);
-/// assert!((speckle.line_noise(Rows::Thin).sqrt() - 0.809).abs() < 1e-3);
+/// assert!((speckle.line_noise_ratio(Rows::Thin) - 0.809).abs() < 1e-3);
 /// # Ok::<(), tem00_coherence::CoherenceError>(())
 /// ```
 ///
@@ -80,7 +80,7 @@ impl Rows {
     /// Rows taller than so many speckles count as tall: to 0.005 in f.
     const TALLEST: f64 = 40.0;
 
-    /// Returns f of [`line_noise`](PolychromaticSpeckle::line_noise) from a table by distance and direction, for many
+    /// Returns f of [`line_noise_ratio`](PolychromaticSpeckle::line_noise_ratio) from a table by distance and direction, for many
     /// displacements of an extended source.
     fn tabulated(self) -> impl Fn(DVec2) -> f64 {
         const DISTANCES: u32 = 96;
@@ -107,7 +107,7 @@ impl Rows {
         }
     }
 
-    /// Returns f of [`line_noise`](PolychromaticSpeckle::line_noise), of a displacement along the tilt and across it.
+    /// Returns f of [`line_noise_ratio`](PolychromaticSpeckle::line_noise_ratio), of a displacement along the tilt and across it.
     fn shared_by_all(self) -> impl Fn(DVec2) -> f64 {
         let of_chord = self.power_of_chord();
         let power = move |shift| of_chord.as_ref().map(|of_chord| power_in(shift, of_chord));
@@ -217,10 +217,11 @@ impl PolychromaticSpeckle<'_> {
         })
     }
 
-    /// Returns the variance of the position of a line over that in light of one wavelength, for a tilt across the line.
+    /// Returns the standard deviation of the position of a line over that in light of one wavelength, for a tilt across the
+    /// line.
     ///
     /// ```text
-    /// ∫ R(κ) exp(−κ² σ_L²) f(s) dκ,     s = |κ| / κ_t
+    /// √∫ R(κ) exp(−κ² σ_L²) f(s) dκ,     s = |κ| / κ_t
     /// f = 1 − 3s/2 + s³/2               thin rows
     /// f = chat(s)                       tall rows
     /// f = ∫ K(L(x, s)) dx / ∫ K(L(x, 0)) dx,   K(L) = ∫ (L − |g|)₊ sinc²(πag) dg      rows of a speckle sizes
@@ -242,15 +243,16 @@ impl PolychromaticSpeckle<'_> {
     ///
     /// - R. G. Dorsch, G. Häusler, J. M. Herrmann, *Laser triangulation: fundamental uncertainty in distance
     ///   measurement*, Applied Optics 33, 1994: the line in light of one wavelength.
-    pub fn line_noise(&self, rows: Rows) -> f64 {
-        if self.cell.source_extent().is_point() {
-            self.line_noise_by(rows, rows.shared_by_all())
+    pub fn line_noise_ratio(&self, rows: Rows) -> f64 {
+        let variance = if self.cell.source_extent().is_point() {
+            self.line_variance_by(rows, rows.shared_by_all())
         } else {
-            self.line_noise_by(rows, rows.tabulated())
-        }
+            self.line_variance_by(rows, rows.tabulated())
+        };
+        variance.sqrt()
     }
 
-    fn line_noise_by(&self, rows: Rows, shared: impl Fn(DVec2) -> f64) -> f64 {
+    fn line_variance_by(&self, rows: Rows, shared: impl Fn(DVec2) -> f64) -> f64 {
         let contrast_like = rows.weight_of_contrast();
         let kernel = |lag: f64| {
             let tall = (1.0 - contrast_like) * image_of_point(lag);

@@ -41,8 +41,8 @@ const MAX_NODES: usize = 400;
 const MAX_PATTERNS: u32 = 1024;
 
 impl PolychromaticSpeckle<'_> {
-    /// Returns the patterns that together have a variance: the squared [`contrast`](Self::contrast), or the
-    /// [`line_noise`](Self::line_noise).
+    /// Returns the patterns that together have a variance: the squared [`contrast`](Self::contrast) or
+    /// [`line_noise_ratio`](Self::line_noise_ratio).
     ///
     /// The variance of light in 1024 equal patterns is the least: a contrast of 1/32.
     pub fn patterns(&self, variance: impl Fn(&PolychromaticSpeckle<'_>) -> f64) -> PatternSum {

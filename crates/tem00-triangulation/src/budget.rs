@@ -95,8 +95,8 @@ impl Budget {
         Some(Self {
             height,
             terms,
-            line_law: position * line.height_per_pixel.abs() * bandwidth.line_noise.sqrt(),
-            dorsch: dorsch(setup, contrast)? * bandwidth.spot_noise.sqrt(),
+            line_law: position * line.height_per_pixel.abs() * bandwidth.line_noise_ratio,
+            dorsch: dorsch(setup, contrast)? * bandwidth.spot_noise_ratio,
         })
     }
 

@@ -85,7 +85,7 @@ fn lines_of_a_broad_source_scatter_as_the_law_says_and_not_as_their_contrast() {
         .enumerate()
     {
         let waves = ratio(&surfaces.iter().map(|s| s[i]).collect::<Vec<_>>());
-        let expected = law.line_noise(rows).sqrt();
+        let expected = law.line_noise_ratio(rows);
         assert_agrees(&format!("{rows:?}"), waves, expected, tolerance);
         if rows == Rows::Thin {
             assert_refutes("contrast", waves, law.contrast());

@@ -92,10 +92,10 @@ impl Owned {
         })
     }
 
-    fn line_noise(&self, row_height: f64) -> f64 {
+    fn line_noise_ratio(&self, row_height: f64) -> f64 {
         // SAFETY: the handle is valid.
         answer(f64::NAN, |ratio| unsafe {
-            tem00_bandwidth_line_noise(self.0, row_height, ratio)
+            tem00_bandwidth_line_noise_ratio(self.0, row_height, ratio)
         })
     }
 
@@ -126,9 +126,9 @@ fn answers_are_those_of_the_library() {
     assert_eq!(info.coherence_length, line.coherence_length());
     assert_eq!(info.tilt_wave_number, cell.tilt_wave_number());
     assert_eq!(owned.covariance([0.3, 0.1]), speckle.covariance([0.3, 0.1]));
-    assert_eq!(owned.line_noise(0.0), speckle.line_noise(Rows::Thin).sqrt());
-    let tall = speckle.line_noise(Rows::Height(3.0)).sqrt();
-    assert_eq!(owned.line_noise(3.0), tall);
+    assert_eq!(owned.line_noise_ratio(0.0), speckle.line_noise_ratio(Rows::Thin));
+    let tall = speckle.line_noise_ratio(Rows::Height(3.0));
+    assert_eq!(owned.line_noise_ratio(3.0), tall);
     let wave = owned.draw(0.2);
     assert_eq!(wave.wave_number, line.draw(0.2));
     assert_eq!(wave.pupil_shift, line.draw(0.2) / cell.tilt_wave_number());
@@ -388,7 +388,7 @@ fn senseless_numbers_are_refused_by_name() {
             let status = tem00_bandwidth_draw(owned.0, uniform, &raw mut wave);
             number_is_refused("uniform", status);
         }
-        let status = tem00_bandwidth_line_noise(owned.0, -1.0, &raw mut wave.pupil_shift);
+        let status = tem00_bandwidth_line_noise_ratio(owned.0, -1.0, &raw mut wave.pupil_shift);
         number_is_refused("row_height", status);
         let bad = [f64::INFINITY, 0.0];
         let status = tem00_bandwidth_covariance(owned.0, bad.as_ptr(), &raw mut wave.pupil_shift);

@@ -75,13 +75,13 @@ impl ResolutionCell {
         py.detach(|| self.speckle(line).contrast())
     }
 
-    /// Return the variance of the position of a laser line over that in light of one wavelength.
+    /// Return the standard deviation of the position of a laser line over that in light of one wavelength.
     ///
     /// The tilt lies across the line, whose rows are finer than a speckle, or much taller.
     #[pyo3(signature = (line, tall_rows=false))]
-    fn line_noise(&self, py: Python<'_>, line: &SpectralLine, tall_rows: bool) -> f64 {
+    fn line_noise_ratio(&self, py: Python<'_>, line: &SpectralLine, tall_rows: bool) -> f64 {
         let rows = if tall_rows { Rows::Tall } else { Rows::Thin };
-        py.detach(|| self.speckle(line).line_noise(rows))
+        py.detach(|| self.speckle(line).line_noise_ratio(rows))
     }
 
     /// Return the covariance, over the squared mean, of two frames by the displacement of the pupil, of shape (2,).

@@ -113,7 +113,7 @@ fn write_figures(
                 write!(out, ",{:e}", figure.value_in(figures))?;
             }
             let effect = figures.bandwidth;
-            write!(out, ",{:e},{:e}", effect.line_noise.sqrt(), effect.contrast)?;
+            write!(out, ",{:e},{:e}", effect.line_noise_ratio, effect.contrast)?;
             let broken = candidate
                 .broken
                 .iter()

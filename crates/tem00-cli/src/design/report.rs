@@ -204,7 +204,7 @@ fn cells(design: &Design<'_>, figures: &[DesignFigure], candidate: &Candidate) -
         .map(|constraint| constraint.figure.name());
     let ratio = NUMBER.with_digits(3);
     cells.extend([
-        ratio.cell(found.bandwidth.line_noise.sqrt()),
+        ratio.cell(found.bandwidth.line_noise_ratio),
         ratio.cell(found.bandwidth.contrast),
         found.dominant.name().into(),
         Cell::new(contributions, ""),

@@ -70,7 +70,7 @@ fn a_search_over_linewidths_says_what_each_leaves_of_noise_and_contrast() {
     let effect = winner.line().bandwidth;
     let best = &report["best"][0];
     assert_eq!(best["linewidth"], 20e-9, "{best}");
-    assert_eq!(best["line_noise_ratio"], effect.line_noise.sqrt(), "{best}");
+    assert_eq!(best["line_noise_ratio"], effect.line_noise_ratio, "{best}");
     assert_eq!(best["contrast_ratio"], effect.contrast, "{best}");
     let words = "of the noise of the line, which counts for the uncertainty";
     let page = fs::read_to_string(folder.path().join("out/a/design.html")).expect("text");

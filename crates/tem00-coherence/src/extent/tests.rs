@@ -109,7 +109,7 @@ fn a_disc_is_the_sum_of_its_points_with_heights_and_a_linewidth_too() {
     let laws: [fn(&PolychromaticSpeckle<'_>) -> f64; 4] = [
         |speckle| speckle.contrast().powi(2),
         |speckle| speckle.covariance([0.3, -0.2]),
-        |speckle| speckle.line_noise(Rows::Height(2.0)),
+        |speckle| speckle.line_noise_ratio(Rows::Height(2.0)).powi(2),
         |speckle| speckle.autocovariance([0.4, 0.3]),
     ];
     for (linewidth, rms_height, laws) in [
@@ -154,7 +154,8 @@ fn directions_share_chords_and_lenses_of_the_pupil() {
         cell.clone().with_source_extent(extent)
     };
     let shared = |cell: &ResolutionCell, rows| {
-        2.0 * PolychromaticSpeckle { line, cell }.line_noise(rows) - 1.0
+        let ratio = PolychromaticSpeckle { line, cell }.line_noise_ratio(rows);
+        2.0 * ratio.powi(2) - 1.0
     };
     // Chords of two discs that are displaced along the chords: ∫ (2√(1 − x²) − 1)₊² dx · 3/16 over half a chord.
     let sine = 0.75_f64.sqrt();

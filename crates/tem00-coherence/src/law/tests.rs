@@ -117,7 +117,7 @@ fn a_table_of_contrasts_and_line_noise_is_met() {
             };
             assert_relative_eq!(speckle.contrast(), contrasts[i], epsilon = 1.1e-3);
             assert_relative_eq!(
-                speckle.line_noise(Rows::Thin).sqrt(),
+                speckle.line_noise_ratio(Rows::Thin),
                 noises[i],
                 epsilon = 1.1e-3
             );
@@ -169,12 +169,12 @@ fn a_gaussian_line_has_an_approximate_closed_form() {
         };
         assert_relative_eq!(speckle.contrast(), approximate(2.40, 2.80), epsilon = 3e-3);
         assert_relative_eq!(
-            speckle.line_noise(Rows::Thin).sqrt(),
+            speckle.line_noise_ratio(Rows::Thin),
             approximate(1.30, 2.31),
             epsilon = 4e-3
         );
         assert_relative_eq!(
-            speckle.line_noise(Rows::Tall).sqrt(),
+            speckle.line_noise_ratio(Rows::Tall),
             approximate(1.05, 1.97),
             epsilon = 4e-3
         );
@@ -263,7 +263,7 @@ fn rows_lie_between_thin_and_tall_ones() {
         line: &line,
         cell: &cell,
     };
-    let deviation = |rows| speckle.line_noise(rows).sqrt();
+    let deviation = |rows| speckle.line_noise_ratio(rows);
     let [thin, tall] = [Rows::Thin, Rows::Tall].map(deviation);
     for none in [0.0, -1.0, f64::NAN] {
         assert_relative_eq!(deviation(Rows::Height(none)), thin, epsilon = 1e-5);
@@ -297,7 +297,7 @@ fn long_relief_leaves_a_line_its_noise() {
             line: &line,
             cell: &cell,
         };
-        speckle.line_noise(rows).sqrt()
+        speckle.line_noise_ratio(rows)
     };
     for (case, thin) in [
         ([0.65, 0.0, 0.5], 0.8288),
@@ -336,7 +336,7 @@ fn the_wings_of_a_lorentzian_end_on_a_long_relief() {
         line: &line,
         cell: &cell,
     };
-    let noise = speckle.line_noise(Rows::Thin).sqrt();
+    let noise = speckle.line_noise_ratio(Rows::Thin);
     assert!(speckle.contrast() < noise && noise < 1.0, "{noise}");
 }
 

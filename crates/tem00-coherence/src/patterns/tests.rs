@@ -69,7 +69,7 @@ fn fractions_keep_any_variance_down_to_that_of_the_most_patterns() {
 #[test]
 fn the_extent_of_a_source_adds_patterns_to_those_of_its_line() {
     let contrast = |speckle: &PolychromaticSpeckle<'_>| speckle.contrast().powi(2);
-    let noise = |speckle: &PolychromaticSpeckle<'_>| speckle.line_noise(Rows::Thin);
+    let noise = |speckle: &PolychromaticSpeckle<'_>| speckle.line_noise_ratio(Rows::Thin).powi(2);
     let extent = SourceExtent::disc(0.03).unwrap();
     for (linewidth, rms_height, few_heights) in
         [(0.0, 0.0, true), (5e-9, 1e-6, true), (20e-9, 9e-6, false)]

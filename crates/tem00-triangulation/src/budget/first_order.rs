@@ -174,7 +174,7 @@ fn position_noise(
         of_all_light += speckle_covariance(&d.sensor, &speckle, [&light; 2], [0.0; 2]);
     }
     let mean = PositionNoise {
-        speckle: law * law * line.bandwidth.line_noise * sum.speckle / of_all_light,
+        speckle: (law * line.bandwidth.line_noise_ratio).powi(2) * sum.speckle / of_all_light,
         ..sum.scaled(1.0 / f64::from(PHASES))
     };
     Some(averaged(d, mean))

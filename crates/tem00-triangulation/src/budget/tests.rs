@@ -335,7 +335,7 @@ fn trials_in_light_of_a_linewidth_agree_with_first_order() {
         let speckle = trials.term(UncertaintySource::Speckle).unwrap();
         let ratio = speckle.uncertainty / budget.contribution(UncertaintySource::Speckle);
         let chance = 4.0 * speckle.standard_error / speckle.uncertainty;
-        let left = setup.line().bandwidth.line_noise.sqrt();
+        let left = setup.line().bandwidth.line_noise_ratio;
         assert!(left < 0.8, "{left}");
         assert!(
             (ratio - 1.0).abs() < 0.05 + chance,
@@ -501,17 +501,17 @@ fn a_linewidth_scales_speckle_by_the_noise_of_the_line_and_nothing_else() {
     let wide = Setup::new(wide).unwrap();
     let [before, after] = [&single, &wide].map(|setup| Budget::new(setup).unwrap());
     let effect = wide.line().bandwidth;
-    assert!(effect.contrast < effect.line_noise.sqrt(), "{effect:?}");
+    assert!(effect.contrast < effect.line_noise_ratio, "{effect:?}");
     for (a, b) in before.terms().iter().zip(after.terms()) {
         let ratio = b.contribution() / a.contribution();
         let expected = match a.source {
-            UncertaintySource::Speckle => effect.line_noise.sqrt(),
+            UncertaintySource::Speckle => effect.line_noise_ratio,
             _ => 1.0,
         };
         assert!((ratio - expected).abs() < 1e-12, "{}: {ratio}", a.source);
     }
     let ratio = after.line_law() / before.line_law();
-    assert!((ratio - effect.line_noise.sqrt()).abs() < 1e-12, "{ratio}");
+    assert!((ratio - effect.line_noise_ratio).abs() < 1e-12, "{ratio}");
     let ratio = wide.contrast() / single.contrast();
     assert!((ratio - effect.contrast).abs() < 1e-12, "{ratio}");
 }

@@ -216,7 +216,7 @@ fn a_linewidth_lowers_the_noise_of_a_line_less_than_the_contrast() {
             let effect = setup.line().bandwidth;
             let what = format!("{wavelength} nm, {height} µm, {linewidth} nm: {effect:?}");
             assert!((effect.contrast - contrasts[index]).abs() < 4e-3, "{what}");
-            let noise = effect.line_noise.sqrt();
+            let noise = effect.line_noise_ratio;
             assert!((noise - noises[index]).abs() < 4e-3, "{what}");
         }
     }

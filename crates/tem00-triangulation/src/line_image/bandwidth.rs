@@ -48,7 +48,7 @@ impl PolychromaticLight {
             cell: &cell,
         };
         let PatternSum { fractions, heights } =
-            speckle.patterns(|speckle| speckle.line_noise(Rows::Thin));
+            speckle.patterns(|speckle| speckle.line_noise_ratio(Rows::Thin).powi(2));
         let is_broad = !line.is_monochromatic() && !heights.is_empty();
         Some(Self {
             modes: fractions,

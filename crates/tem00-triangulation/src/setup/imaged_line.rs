@@ -68,18 +68,18 @@ pub struct ImagedLine {
 pub struct BandwidthEffect {
     /// The ratio of the contrast in a point. Pixels larger than a speckle lose less than this.
     pub contrast: f64,
-    /// The ratio of the variance of the position of the line, over the columns that are averaged.
-    pub line_noise: f64,
-    /// The ratio of the variance of the position of a round spot.
-    pub spot_noise: f64,
+    /// The ratio of the standard deviation of the position of the line, over the columns that are averaged.
+    pub line_noise_ratio: f64,
+    /// The ratio of the standard deviation of the position of a round spot.
+    pub spot_noise_ratio: f64,
 }
 
 impl BandwidthEffect {
     /// That of light of one wavelength from a point.
     pub const NONE: Self = Self {
         contrast: 1.0,
-        line_noise: 1.0,
-        spot_noise: 1.0,
+        line_noise_ratio: 1.0,
+        spot_noise_ratio: 1.0,
     };
 
     /// Returns the effect for a resolution cell and rows of a height in speckle sizes.
@@ -90,8 +90,8 @@ impl BandwidthEffect {
         let speckle = PolychromaticSpeckle { line, cell };
         Self {
             contrast: speckle.contrast(),
-            line_noise: speckle.line_noise(Rows::Height(rows)),
-            spot_noise: speckle.line_noise(Rows::Tall),
+            line_noise_ratio: speckle.line_noise_ratio(Rows::Height(rows)),
+            spot_noise_ratio: speckle.line_noise_ratio(Rows::Tall),
         }
     }
 }

@@ -103,7 +103,7 @@ fn measurement(args: &StatsArgs, image: &LoadedImage) -> Result<Measurement, Fai
     let cannot = |error: &dyn core::fmt::Display, help: &str| {
         Failure::input(format!("{}: {error}", args.image.display()), help)
     };
-    let help = "give an image that light and speckle fill, or a part of one with --crop";
+    let help = "give an image that light and speckle fill, or a part of one with --crop; --flatten divides by uneven light";
     let flat = match args.flatten {
         Some(window) => Some(flattened(&image.values, window).map_err(|error| {
             cannot(
@@ -166,27 +166,17 @@ impl Measurement {
 /// Divides an image by its mean over windows of so many pixels, or as many as its speckle wants.
 fn flattened(image: &Grid<f32>, window: Option<usize>) -> Result<FlatImage, String> {
     let words = |error: StatisticsError| error.to_string();
-    let size_in = |flat: &FlatImage| match SpeckleSize::from_image(flat.values(), Boundary::Finite)
-    {
-        Ok(size) => Ok(size.mean()),
-        Err(StatisticsError::Unresolved { .. }) => Ok(1.0),
-        Err(error) => Err(words(error)),
-    };
     let shorter = image.width().min(image.height());
-    let flat = match window {
-        Some(window) => FlatImage::new(image, window).map_err(words)?,
-        // Uneven light makes speckles seem larger than they are: it is taken out before they are
-        // measured.
+    let chosen = match window {
+        Some(window) => window,
         None => {
-            let coarse = FlatImage::new(image, shorter / 4).map_err(words)?;
-            let size = size_in(&coarse)?;
-            // Enough windows to follow the light of a small image.
-            let wanted = pixels(WINDOW * size).min(shorter / 3);
-            let window = wanted.max(pixels(MIN_WINDOW * size)).min(shorter);
-            FlatImage::new(image, window).map_err(words)?
+            let (size, largest) = size_in_light(image).map_err(words)?;
+            let wanted = pixels(WINDOW * size).min(largest);
+            wanted.max(pixels(MIN_WINDOW * size)).min(shorter)
         }
     };
-    let size = size_in(&flat)?;
+    let flat = FlatImage::new(image, chosen).map_err(words)?;
+    let size = size_in(&flat).map_err(words)?;
     let smallest = pixels(SMALLEST_WINDOW * size);
     if window.unwrap_or(shorter) < smallest {
         return Err(format!(
@@ -196,6 +186,38 @@ fn flattened(image: &Grid<f32>, window: Option<usize>) -> Result<FlatImage, Stri
         ));
     }
     Ok(flat)
+}
+
+/// Returns the size of the speckle in uneven light, and the largest window that follows the light.
+///
+/// Light makes speckles seem larger than they are: it is taken out before they are measured. Where the image does not
+/// hold eight of what is left, that is light as well, and smaller windows are tried until speckle fills them.
+fn size_in_light(image: &Grid<f32>) -> Result<(f64, usize), StatisticsError> {
+    let shorter = image.width().min(image.height());
+    let size_over = |window| size_in(&FlatImage::new(image, window)?);
+    let coarse = size_over(shorter / 4);
+    if coarse
+        .as_ref()
+        .is_ok_and(|size| MIN_WINDOW * size <= shorter as f64)
+    {
+        // Enough windows to follow the light of a small image.
+        return coarse.map(|size| (size, shorter / 3));
+    }
+    let windows = core::iter::successors(Some(shorter / 8), |window| Some(window / 2));
+    let mut filled = windows
+        .take_while(|&window| window as f64 >= SMALLEST_WINDOW)
+        .filter_map(|window| Some((size_over(window).ok()?, window)))
+        .filter(|&(size, window)| SMALLEST_WINDOW * size <= window as f64);
+    filled.next().map_or_else(|| Ok((coarse?, shorter)), Ok)
+}
+
+/// Returns the speckle size of a flat image, or a pixel where speckles are smaller.
+fn size_in(flat: &FlatImage) -> Result<f64, StatisticsError> {
+    match SpeckleSize::from_image(flat.values(), Boundary::Finite) {
+        Ok(size) => Ok(size.mean()),
+        Err(StatisticsError::Unresolved { .. }) => Ok(1.0),
+        Err(error) => Err(error),
+    }
 }
 
 #[expect(
@@ -222,6 +244,7 @@ fn measure(
         levels,
         mean: Moments::from_samples(values.values())?.mean(),
         contrast: Contrast::from_samples(values.values())?,
+        is_even: true,
         rows: Vec::new(),
         warnings: Vec::new(),
         assumptions: Vec::new(),
@@ -230,7 +253,7 @@ fn measure(
     found.brightness(mean, image.saturated, original.as_ref());
     let lags = autocovariance(values, Boundary::Finite)?;
     let size = found.size(&lags)?;
-    found.evenness(&lags, size);
+    found.evenness(&lags, size)?;
     found.contrast(size)?;
     found.size_rows(size);
     let fit = found.distribution(size)?;

@@ -29,7 +29,7 @@
 //! - Estimators: [`Moments`], [`Contrast`], [`local_contrast`], [`GammaFit`],
 //!   [`pearson_correlation`], [`autocovariance`], [`power_spectrum`], [`radial_average`],
 //!   [`SpeckleSize`], [`phase_singularities`], [`VortexDensity`], [`decorrelated_samples`].
-//! - Uneven light: [`UnevenLight`] finds it, [`FlatImage`] divides by it.
+//! - Uneven light: [`Evenness`] finds it, [`FlatImage`] divides by it.
 //! - Hypothesis tests: [`kolmogorov_smirnov`], [`chi_squared`], [`t_test_mean`], and for images that
 //!   are rounded to few [`GreyLevels`]: [`GoodnessOfFit`].
 //!
@@ -77,7 +77,7 @@ pub use estimate::{
     pixel_widening::size_before_pixels,
     singularities::{Singularity, VortexDensity, phase_singularities},
     speckle_size::SpeckleSize,
-    uneven_light::{FlatImage, UnevenLight},
+    uneven_light::{Evenness, FlatImage, UnevenLight},
 };
 pub use hypothesis::{
     goodness::GoodnessOfFit,

@@ -2,8 +2,8 @@
 
 use tem00_numerics::Grid;
 use tem00_statistics::{
-    AIRY_FIRST_ZERO, Contrast, FlatImage, GammaFit, GoodnessOfFit, GreyLevels, SpeckleSize,
-    StatisticsError, UnevenLight, decorrelated_samples, exponential_cumulative, pixel_contrast,
+    AIRY_FIRST_ZERO, Contrast, Evenness, FlatImage, GammaFit, GoodnessOfFit, GreyLevels,
+    SpeckleSize, StatisticsError, decorrelated_samples, exponential_cumulative, pixel_contrast,
     size_before_pixels,
 };
 
@@ -39,6 +39,8 @@ pub(super) struct Findings<'a> {
     pub(super) levels: Option<&'a GreyLevels>,
     pub(super) mean: f64,
     pub(super) contrast: Contrast,
+    /// Whether the light is even, as theory takes it to be.
+    pub(super) is_even: bool,
     pub(super) rows: Vec<Row>,
     pub(super) warnings: Vec<String>,
     pub(super) assumptions: Vec<String>,
@@ -46,6 +48,11 @@ pub(super) struct Findings<'a> {
 
 impl Findings<'_> {
     fn row(&mut self, quantity: impl Into<String>, measured: f64, theory: Expectation) {
+        let theory = if self.is_even {
+            theory
+        } else {
+            Expectation::Open
+        };
         self.rows.push(Row::new(quantity, measured, theory));
     }
 
@@ -82,8 +89,12 @@ impl Findings<'_> {
         }
     }
 
-    /// Says whether the light is even over the image.
-    pub(super) fn evenness(&mut self, lags: &Grid<f32>, size: Option<SpeckleSize>) {
+    /// Says whether the light is even over the image, and if not, why.
+    pub(super) fn evenness(
+        &mut self,
+        lags: &Grid<f32>,
+        size: Option<SpeckleSize>,
+    ) -> Result<(), StatisticsError> {
         if let Some(flat) = self.flat {
             let lost = 100.0 * flat.lost_share(size.map_or(1.0, |size| size.mean()));
             self.assume(format!(
@@ -98,25 +109,70 @@ impl Findings<'_> {
                 ));
             }
         }
-        let Some(uneven) = UnevenLight::find(lags, size) else {
-            self.assume(
-                "the autocovariance falls to zero: the light counts as even over the image",
-            );
-            return;
-        };
-        let scale = size.map_or(1.0, |size| size.mean());
-        let [from, to] = uneven.lags.map(|lag| scale * lag);
         let help = if self.flat.is_some() {
             "take an evenly lit part with --crop, or a smaller window with --flatten=PIXELS"
         } else {
             "take an evenly lit part with --crop, or divide by the light with --flatten"
         };
+        let (scale, theory) = (size.map_or(1.0, |size| size.mean()), self.exponential());
+        let found = match Evenness::find(lags, size) {
+            Evenness::Even { limit }
+                if self.contrast.value() <= theory + SIGMAS * self.spread(theory, size)? =>
+            {
+                self.assume(format!(
+                    "the autocovariance falls to zero: the light counts as even over the image, and its shape \
+                     makes less than {:.0} % of the variance",
+                    100.0 * limit
+                ));
+                return Ok(());
+            }
+            Evenness::Even { .. } => {
+                "its contrast is higher than that of speckle in even light".to_owned()
+            }
+            Evenness::Uneven(uneven) => format!(
+                "{:.0} to {:.0} pixels apart the autocovariance is {:.3}, where speckle in even light has less \
+                 than {:.3}",
+                scale * uneven.lags[0],
+                scale * uneven.lags[1],
+                uneven.covariance,
+                uneven.limit
+            ),
+            Evenness::FewSpeckles { across: [x, y] } => format!(
+                "the image is only {x:.1} × {y:.1} speckle sizes large, so that the size may be that of the light"
+            ),
+            Evenness::FinerGrains { share, lag } => format!(
+                "grains finer than {lag} pixels make {:.1} % of the variance, noise or the speckle itself, \
+                 where the size is that of the light",
+                100.0 * share
+            ),
+        };
+        self.is_even = false;
         self.warnings.push(format!(
-            "the light is not even over the image, and its shape counts as contrast and as speckle \
-             size: {from:.0} to {to:.0} pixels apart the autocovariance is {:.3}, where speckle in even \
-             light has less than {:.3}; {help}",
-            uneven.covariance, uneven.limit
+            "the light does not count as even over the image, and nothing is compared with theory: {found}; {help}"
         ));
+        Ok(())
+    }
+
+    /// Returns the contrast of an exponential law, behind the rounding of the image.
+    fn exponential(&self) -> f64 {
+        self.levels
+            .map_or(1.0, |levels| levels.exponential_contrast(self.mean))
+    }
+
+    /// Returns the standard deviation, from image to image, of the contrast of evenly lit speckle.
+    ///
+    /// It is that of a Gamma law of this contrast, `C √((1 + C²)/2)` over the root of the number of independent samples.
+    fn spread(&self, contrast: f64, size: Option<SpeckleSize>) -> Result<f64, StatisticsError> {
+        let of_image = self.of_image(size)?.standard_error() / self.contrast.standard_error();
+        let of_sample = contrast * (0.5 * (1.0 + contrast * contrast)).sqrt();
+        Ok(of_sample * of_image / (self.values.values().len() as f64).sqrt())
+    }
+
+    /// Returns the contrast with the standard error of pixels that share speckles.
+    fn of_image(&self, size: Option<SpeckleSize>) -> Result<Contrast, StatisticsError> {
+        size.map_or(Ok(self.contrast), |size| {
+            self.contrast.with_speckle_size(size.mean())
+        })
     }
 
     /// Returns the mean of a rounded image in steps of its levels.
@@ -149,10 +205,7 @@ impl Findings<'_> {
 
     /// Compares the contrast with that of point-like pixels and of pixels without gaps.
     pub(super) fn contrast(&mut self, size: Option<SpeckleSize>) -> Result<(), StatisticsError> {
-        let contrast = match size {
-            Some(size) => self.contrast.with_speckle_size(size.mean())?,
-            None => self.contrast,
-        };
+        let contrast = self.of_image(size)?;
         let restored = match (self.flat, size) {
             (Some(flat), Some(size)) => flat.contrast_before(contrast.value(), size.mean()),
             (Some(flat), None) => flat.contrast_before(contrast.value(), 1.0),
@@ -160,13 +213,10 @@ impl Findings<'_> {
         };
         let factor = restored / contrast.value();
         let value = restored;
-        let tolerance = SIGMAS * contrast.standard_error() * factor;
-        let theory = self
-            .levels
-            .map_or(1.0, |levels| levels.exponential_contrast(self.mean));
+        let theory = self.exponential();
         let near = Expectation::Near {
             value: theory,
-            tolerance,
+            tolerance: SIGMAS * self.spread(theory, size)? * factor,
         };
         self.row("contrast", value, near);
         let [low, high] = contrast.confidence_interval(CONFIDENCE)?;
@@ -177,10 +227,11 @@ impl Findings<'_> {
              pattern, seen through pixels much smaller than a speckle",
         );
         let size = size.filter(|_| !self.is_coarse());
-        if let Some([theory, uncertainty]) = size.and_then(|size| self.gapless_contrast(size)) {
+        let gapless = size.and_then(|size| Some((size, self.gapless_contrast(size)?)));
+        if let Some((size, [theory, uncertainty])) = gapless {
             let near = Expectation::Near {
                 value: theory,
-                tolerance: tolerance + uncertainty,
+                tolerance: SIGMAS * self.spread(theory, Some(size))? * factor + uncertainty,
             };
             self.row("contrast, if pixels have no gaps", value, near);
         }

@@ -1,6 +1,9 @@
 use core::f64::consts::{PI, SQRT_2};
 
-use tem00_numerics::{Grid, cast::to_f32};
+use tem00_numerics::{
+    Grid,
+    cast::{to_f32, to_usize},
+};
 
 use crate::{COHERENCE_AREA, SpeckleSize, StatisticsError, estimate::moments};
 
@@ -14,6 +17,39 @@ const SIGMAS: f64 = 4.5;
 /// 0.005, an annulus with an opening of one half 0.03, of nine tenths 0.07.
 const SIDE_LOBES: f64 = 0.08;
 
+/// Largest share of the variance that chance may hide where light is called even: that of some hundred speckles.
+const HIDDEN: f64 = 0.25;
+
+/// Lag at which finer grains are looked for, in speckle sizes.
+const FINE_LAG: f64 = 0.125;
+
+/// Share of the variance from which on grains are finer than the law of the speckle, which leaves 0.008 at most.
+const FINE_SHARE: f64 = 0.02;
+
+/// Evenness of the light over an image, as far as its autocovariance tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Evenness {
+    /// The light is even: its shape makes less than `limit` of the variance.
+    Even {
+        /// The share of the variance that side lobes and chance may hide.
+        limit: f64,
+    },
+    /// The light is not even.
+    Uneven(UnevenLight),
+    /// Too few speckles to tell their grains from the shape of the light, which may have set the size.
+    FewSpeckles {
+        /// The width and the height of the image, in speckle sizes.
+        across: [f64; 2],
+    },
+    /// Grains much finer than the speckle size: noise, or the speckle itself, where the light has set the size.
+    FinerGrains {
+        /// The share of the variance that they make.
+        share: f64,
+        /// The lag within which they decorrelate, in pixels.
+        lag: usize,
+    },
+}
+
 /// Light that is not even over an image: the autocovariance of the image does not fall to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnevenLight {
@@ -26,9 +62,8 @@ pub struct UnevenLight {
     pub limit: f64,
 }
 
-impl UnevenLight {
-    /// Looks for uneven light in the autocovariance of a finite image, with zero lag at `(0, 0)`:
-    /// nothing is found where the light is even or its shape cannot be told from chance.
+impl Evenness {
+    /// Judges the light by the autocovariance of a finite image, with zero lag at `(0, 0)`.
     ///
     /// The lags are averaged over rings from 1.5 to 3 speckle sizes, from 3 to 6, and so on up to half
     /// of the image. In even light that average is 0, with the standard deviation
@@ -41,11 +76,19 @@ impl UnevenLight {
     /// first ring and half as much in each further one. `size` is the speckle size, or `None` where
     /// pixels are larger than speckles.
     ///
+    /// Light that makes more than half of the variance sets the speckle size itself, and no ring shows it. A
+    /// smooth profile is then no more than a few such sizes wide: below six along an axis, or a hundred in all, there
+    /// are too few. Finer structure leaves the speckle as a fall of the autocovariance c near zero lag, where speckle of
+    /// the size h ≥ 8 pixels has a parabola:
+    ///
+    /// ```text
+    /// share = 1 − (4 c(h/8) − c(h/4)) / 3        along x or y, the smaller
+    /// ```
+    ///
     /// # Validity
     ///
-    /// Speckle of one size all over the image. Images of less than six speckle sizes have no ring, and
-    /// nothing is found.
-    pub fn find(lags: &Grid<f32>, size: Option<SpeckleSize>) -> Option<Self> {
+    /// Speckle of one size all over the image.
+    pub fn find(lags: &Grid<f32>, size: Option<SpeckleSize>) -> Self {
         // Independent pixels have a coherence area of one of them.
         let size = size.map_or([COHERENCE_AREA.sqrt().recip(); 2], |s| [s.x(), s.y()]);
         // The grid of lags of a finite image is twice as large as the image.
@@ -53,23 +96,46 @@ impl UnevenLight {
         let speckles = image[0] * image[1] / (size[0] * size[1]);
         // Farther than half of the image the average is that of pixels near its edges.
         let farthest = (0.5 * image[0] / size[0]).min(0.5 * image[1] / size[1]);
+        let across = [image[0] / size[0], image[1] / size[1]];
+        let limit = |inner: f64| {
+            let spread = SQRT_2 * COHERENCE_AREA / (speckles * 3.0 * PI * inner * inner).sqrt();
+            SIGMAS * spread + SIDE_LOBES * FIRST_RING / inner
+        };
         let radii = core::iter::successors(Some(FIRST_RING), |inner| Some(2.0 * inner));
         let rings = radii
             .take_while(|inner| 2.0 * inner <= farthest)
-            .map(|inner| {
-                let spread = SQRT_2 * COHERENCE_AREA / (speckles * 3.0 * PI * inner * inner).sqrt();
-                Self {
-                    lags: [inner, 2.0 * inner],
-                    // The mean that was taken from the image lowers all lags.
-                    covariance: mean_over_ring(lags, size, inner) + COHERENCE_AREA / speckles,
-                    limit: SIGMAS * spread + SIDE_LOBES * FIRST_RING / inner,
-                }
+            .map(|inner| UnevenLight {
+                lags: [inner, 2.0 * inner],
+                // The mean that was taken from the image lowers all lags.
+                covariance: mean_over_ring(lags, size, inner) + COHERENCE_AREA / speckles,
+                limit: limit(inner),
             });
-        let excess = |ring: &Self| ring.covariance - ring.limit;
-        rings
+        let excess = |ring: &UnevenLight| ring.covariance - ring.limit;
+        let uneven = rings
             .filter(|ring| excess(ring) > 0.0)
-            .max_by(|a, b| excess(a).total_cmp(&excess(b)))
+            .max_by(|a, b| excess(a).total_cmp(&excess(b)));
+        let limit = limit(FIRST_RING);
+        match (uneven, finer_grains(lags, size)) {
+            (Some(uneven), _) => Self::Uneven(uneven),
+            _ if farthest < 2.0 * FIRST_RING || limit > HIDDEN => Self::FewSpeckles { across },
+            (None, Some((share, lag))) => Self::FinerGrains { share, lag },
+            (None, None) => Self::Even { limit },
+        }
     }
+}
+
+/// Returns the share of the variance in grains finer than the speckle size, and the lag within which they decorrelate.
+fn finer_grains(lags: &Grid<f32>, size: [f64; 2]) -> Option<(f64, usize)> {
+    let lag = size.map(|size| FINE_LAG * size);
+    if lag[0].min(lag[1]) < 1.0 {
+        return None;
+    }
+    let [x, y] = lag.map(|lag| to_usize(lag.round()));
+    let beyond = |near: f32, far: f32| 1.0 - (4.0 * f64::from(near) - f64::from(far)) / 3.0;
+    let along_x = beyond(lags[(x, 0)], lags[(2 * x, 0)]);
+    let along_y = beyond(lags[(0, y)], lags[(0, 2 * y)]);
+    let share = along_x.min(along_y);
+    (share > FINE_SHARE).then_some((share, x.max(y)))
 }
 
 /// Returns the mean over lags from `inner` to twice that, in speckle sizes.
@@ -251,9 +317,20 @@ mod tests {
     use super::*;
     use crate::{Boundary, Contrast, Moments, autocovariance, synthetic::speckle_tile};
 
-    fn found(image: &Grid<f32>) -> Option<UnevenLight> {
+    fn evenness(image: &Grid<f32>) -> Evenness {
         let lags = autocovariance(image, Boundary::Finite).unwrap();
-        UnevenLight::find(&lags, SpeckleSize::from_autocovariance(&lags).ok())
+        Evenness::find(&lags, SpeckleSize::from_autocovariance(&lags).ok())
+    }
+
+    fn found(image: &Grid<f32>) -> Option<UnevenLight> {
+        match evenness(image) {
+            Evenness::Uneven(light) => Some(light),
+            _ => None,
+        }
+    }
+
+    fn is_even(image: &Grid<f32>) -> bool {
+        matches!(evenness(image), Evenness::Even { .. })
     }
 
     fn window(tile: &Grid<f32>, [width, height]: [usize; 2]) -> Grid<f32> {
@@ -280,8 +357,14 @@ mod tests {
         ] {
             for seed in 0..seeds {
                 let (tile, _) = speckle_tile(size, diameter, seed);
-                let light = found(&window(&tile, part));
-                assert_eq!(light, None, "{size}, {diameter}, seed {seed}");
+                let light = evenness(&window(&tile, part));
+                // 64 speckles are too few to call their light anything.
+                let is_right = match light {
+                    Evenness::Even { limit } => diameter > 8 && limit < HIDDEN,
+                    Evenness::FewSpeckles { .. } => diameter == 8,
+                    _ => false,
+                };
+                assert!(is_right, "{size}, {diameter}, seed {seed}: {light:?}");
             }
         }
     }
@@ -311,14 +394,70 @@ mod tests {
     fn pixels_larger_than_speckles_need_no_size() {
         let (tile, _) = speckle_tile(512, 256, 3);
         let sparse = Grid::from_fn(100, 100, |x, y| tile[(5 * x, 5 * y)]);
-        assert_eq!(found(&sparse), None, "even");
+        assert!(is_even(&sparse), "{:?}", evenness(&sparse));
         assert!(found(&lit(&sparse, 40.0)).is_some(), "a spot");
     }
 
     #[test]
-    fn images_of_few_speckles_are_not_judged() {
-        let (tile, _) = speckle_tile(256, 16, 4);
-        assert_eq!(found(&lit(&window(&tile, [80, 80]), 30.0)), None);
+    fn light_that_sets_the_size_is_not_called_even() {
+        const WIDTH: usize = 384;
+        const HEIGHT: usize = 300;
+        let (grains, _) = speckle_tile(384, 256, 4);
+        let (texture, _) = speckle_tile(384, 12, 5);
+        let shades = |name, light: &dyn Fn(f64, f64) -> f64| {
+            let pixel = |x: usize, y: usize| light(x as f64 / 384.0 - 0.5, y as f64 / 300.0 - 0.5);
+            (
+                name,
+                Grid::from_fn(WIDTH, HEIGHT, |x, y| to_f32(pixel(x, y))),
+            )
+        };
+        let spot = |x: f64, y: f64, radius: f64| (-2.0 * (x * x + y * y) / (radius * radius)).exp();
+        let lights = [
+            shades("blob", &|x, y| 0.05 + spot(x, y, 0.4)),
+            shades("vignette", &|x, y| (1.0 + x * x + y * y).powi(-4)),
+            shades("three blobs", &|x, y| {
+                spot(x - 0.2, y, 0.2) + spot(x + 0.3, y - 0.1, 0.2)
+            }),
+            (
+                "texture",
+                Grid::from_fn(WIDTH, HEIGHT, |x, y| 1.0 + 0.3 * texture[(x, y)]),
+            ),
+        ];
+        for (name, light) in &lights {
+            // Grains of 1.5 pixels, as weak as in blood that flows: they make 0.2 to 7 % of the variance.
+            let image = Grid::from_fn(WIDTH, HEIGHT, |x, y| {
+                light[(x, y)] * (1.0 + 0.08 * (grains[(x, y)] - 1.0))
+            });
+            let lags = autocovariance(&image, Boundary::Finite).unwrap();
+            let size = SpeckleSize::from_autocovariance(&lags).unwrap();
+            assert!(size.mean() > 12.0, "the {name} sets the size: {size:?}");
+            assert!(!is_even(&image), "{name}: {:?}", evenness(&image));
+        }
+        // The blob alone has the contrast of speckle.
+        assert!(!is_even(&lights[0].1), "{:?}", evenness(&lights[0].1));
+    }
+
+    #[test]
+    fn finer_grains_are_found_with_their_share() {
+        let (tile, _) = speckle_tile(384, 20, 4);
+        let (fine, _) = speckle_tile(384, 256, 5);
+        for (part, found) in [(0.0, false), (0.01, false), (0.03, true), (0.2, true)] {
+            // Two variances of 1, the coarse one times 1 − part.
+            let [coarse, noise] = [1.0 - part, part].map(f64::sqrt).map(to_f32);
+            let image = Grid::from_fn(384, 384, |x, y| {
+                coarse * tile[(x, y)] + noise * fine[(x, y)]
+            });
+            match evenness(&image) {
+                Evenness::FinerGrains { share, lag } => {
+                    assert!(found && lag == 2, "{part}: {share} within {lag}");
+                    // The variance of 20 speckles across spreads by 1.53 / 20, here 3.3 σ; they leave 0.0013 at two
+                    // pixels themselves.
+                    let tolerance = 0.25 * part + 0.002;
+                    assert!((share - part).abs() < tolerance, "{part}: {share}");
+                }
+                light => assert!(!found, "{part}: {light:?}"),
+            }
+        }
     }
 
     #[test]
@@ -391,7 +530,7 @@ mod tests {
         let uneven = lit(&window(&tile, [300, 300]), 300.0);
         assert!(found(&uneven).is_some(), "the light is not even");
         let flat = FlatImage::new(&uneven, 41).unwrap();
-        assert_eq!(found(flat.values()), None);
+        assert!(is_even(flat.values()), "{:?}", evenness(flat.values()));
         // Speckle of two pixels: 0.77 / 150 of it at 4 σ.
         let contrast = Contrast::from_samples(flat.values().values())
             .unwrap()

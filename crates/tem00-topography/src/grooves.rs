@@ -137,6 +137,13 @@ impl GrooveResult {
     }
 }
 
+impl Field {
+    /// Returns the shortest profile that a comb of grooves of all widths fits into, in metres.
+    pub fn shortest_for_grooves(&self) -> f64 {
+        Comb::one_across_profile(self).length / PART
+    }
+}
+
 /// Grooves of falling width side by side, in one or several copies.
 struct Comb {
     across: Axis,
@@ -175,7 +182,7 @@ impl Comb {
 
     /// As many copies as a profile has room for; `None` if there is none.
     fn across_profile(field: &Field) -> Option<Self> {
-        let one = Self::new(Axis::X, field.column, 1);
+        let one = Self::one_across_profile(field);
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -183,6 +190,10 @@ impl Comb {
         )]
         let room = (PART * field.width / one.length) as usize;
         (room > 0).then(|| Self::new(Axis::X, field.column, room.min(MAX_COPIES)))
+    }
+
+    fn one_across_profile(field: &Field) -> Self {
+        Self::new(Axis::X, field.column, 1)
     }
 
     fn artefact(&self, field: &Field, size: [f64; 2]) -> Artefact {

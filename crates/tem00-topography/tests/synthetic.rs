@@ -272,3 +272,34 @@ fn profiles_are_counted_before_they_are_measured() {
     let Ok(_) = characterise(&mut sensor, options);
     assert_eq!(sensor.0, options.profiles());
 }
+
+#[test]
+fn a_comb_that_does_not_fit_is_not_measured() {
+    struct Short(f64, bool);
+    impl ProfileSensor for Short {
+        type Error = Infallible;
+        fn field(&self) -> Field {
+            Field {
+                width: self.0,
+                ..FIELD
+            }
+        }
+        fn measure(
+            &mut self,
+            artefact: &Artefact,
+            places: &[DVec3],
+        ) -> Result<Vec<Vec<SurfacePoint>>, Infallible> {
+            self.1 |= artefact.name == "grooves across the profile";
+            Ok(vec![Vec::new(); places.len()])
+        }
+    }
+    // Twelve widths from 16 columns on, each smaller by √2, and 16 columns of land beside each, over nine tenths.
+    let widths = 16.0 * (1.0 - 1.0 / 64.0) / (1.0 - 0.5_f64.sqrt());
+    let shortest = (widths + 12.0 * 16.0) * FIELD.column / 0.9;
+    assert!((FIELD.shortest_for_grooves() / shortest - 1.0).abs() < 1e-12);
+    for (length, fits) in [(0.999, false), (1.001, true)] {
+        let mut sensor = Short(length * shortest, false);
+        let Ok(_) = characterise(&mut sensor, Options { repetitions: 4 });
+        assert_eq!(sensor.1, fits, "{length}");
+    }
+}

@@ -1,6 +1,6 @@
 //! The characteristics by name, with their definitions.
 
-use tem00_topography::{Characteristics, Estimate, Extreme, GrooveResult};
+use tem00_topography::{Characteristics, Estimate, Extreme, Field, GrooveResult};
 
 use crate::report::{
     Unit,
@@ -73,7 +73,8 @@ fn heights(found: &Characteristics) -> Vec<Row> {
 
 fn laterals(found: &Characteristics) -> Vec<Row> {
     let [across_profile, across_scan] = &found.grooves;
-    let (x, y) = (across_profile.as_ref(), across_scan.as_ref());
+    let x = &across_profile.as_ref().ok_or_else(|| unseen(&found.field));
+    let y = &across_scan.as_ref().ok_or_else(|| NOT_SEEN.to_owned());
     let resolution = "Width of a groove with upright walls that is measured with half of its depth in its middle, from a comb \
          of twelve widths in steps of √2.";
     let fidelity = "Width of a groove down to which the depth in the middle is right within a tenth, of the same comb.";
@@ -98,7 +99,7 @@ fn laterals(found: &Characteristics) -> Vec<Row> {
             y,
             |grooves| grooves.resolution,
         ),
-        extreme(
+        mapping(
             [
                 "mapping_deviation_along_profile",
                 "x-y mapping deviation along the profile",
@@ -106,16 +107,16 @@ fn laterals(found: &Characteristics) -> Vec<Row> {
             ],
             "Largest error of the place of the widest grooves, which lie side by side over nine tenths of the profile: \
              half-way between the places at which the mean profile is half as deep as they are.",
-            x.and_then(|grooves| grooves.mapping),
+            x,
         ),
-        extreme(
+        mapping(
             [
                 "mapping_deviation_along_scan",
                 "x-y mapping deviation along the scan",
                 "Δ_y",
             ],
             "Error of the place of the widest groove across the scan, found in the same way.",
-            y.and_then(|grooves| grooves.mapping),
+            y,
         ),
         of_grooves(
             [
@@ -224,16 +225,47 @@ fn extreme(names: [&'static str; 3], definition: &'static str, found: Option<Ext
 fn of_grooves(
     names: [&'static str; 3],
     definition: &'static str,
-    grooves: Option<&GrooveResult>,
+    grooves: &Result<&GrooveResult, String>,
     found: fn(&GrooveResult) -> Option<Estimate>,
 ) -> Row {
-    let Some(grooves) = grooves else {
-        return row(names, definition, None);
-    };
+    let found = grooves
+        .clone()
+        .and_then(|grooves| found(grooves).ok_or_else(|| beyond(grooves)));
     Row {
-        found: found(grooves).ok_or_else(|| beyond(grooves)),
+        found,
         ..row(names, definition, None)
     }
+}
+
+fn mapping(
+    names: [&'static str; 3],
+    definition: &'static str,
+    grooves: &Result<&GrooveResult, String>,
+) -> Row {
+    let shallow = "not measured: the widest grooves are not seen half as deep as they are";
+    let found = grooves
+        .clone()
+        .and_then(|grooves| grooves.mapping.ok_or_else(|| shallow.to_owned()));
+    match found {
+        Ok(mapping) => extreme(names, definition, Some(mapping)),
+        Err(reason) => Row {
+            found: Err(reason),
+            ..row(names, definition, None)
+        },
+    }
+}
+
+/// Says why a comb of grooves across the profile was not seen.
+fn unseen(field: &Field) -> String {
+    let [needed, points] =
+        [field.shortest_for_grooves(), field.width].map(|length| length / field.column);
+    if needed <= points {
+        return NOT_SEEN.to_owned();
+    }
+    format!(
+        "not measured: the comb of grooves needs {:.0} points along the profile, and there are {points:.0}",
+        needed.ceil()
+    )
 }
 
 /// Says where a limit lies that no two widths of a comb enclose.

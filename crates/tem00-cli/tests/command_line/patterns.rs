@@ -281,6 +281,9 @@ fn write_image(folder: &Path, name: &str, pupil: u32, pixel: impl Fn(f64, f64, f
     fs::write(folder.join(name), map).expect("the image");
 }
 
+/// Light over x and y, in pixels from the middle.
+type Light = dyn Fn(f64, f64) -> f64;
+
 /// The light of a Gaussian spot of the radius `radius`, in pixels.
 fn spot(x: f64, y: f64, radius: f64) -> f64 {
     (-2.0 * (x * x + y * y) / (radius * radius)).exp()
@@ -351,7 +354,7 @@ fn light_that_sets_the_size_is_warned_of_and_taken_out() {
     let folder = folder();
     let path = folder.path();
     let blob = |x: f64, y: f64| 0.05 + spot(x, y, 160.0);
-    let cases: [(&str, f64, &dyn Fn(f64, f64) -> f64); 6] = [
+    let cases: [(&str, f64, &Light); 6] = [
         ("blob.pgm", WEAK, &blob),
         ("vignette.pgm", WEAK, &|x, y| {
             (1.0 + (x * x + y * y) / 9e4).powi(-2)

@@ -262,6 +262,7 @@ mod tests {
             multiple: dark.clone(),
             variance: dark.clone(),
             power_on_target: 1e-3,
+            power_error: 0.0,
         }
     }
 

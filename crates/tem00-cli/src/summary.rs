@@ -72,6 +72,8 @@ pub(crate) struct FrameLaser {
     pub(crate) power_on_target: f64,
     /// The same in units of the laser's power: 1 if the whole footprint is in the image.
     pub(crate) power_ratio: f64,
+    /// The standard error of that ratio; `None` with one sample in a pixel.
+    pub(crate) power_ratio_error: Option<f64>,
     /// The contrast of the speckle in the lit pixels; `None` without speckle, without light, or where
     /// what to expect is not known.
     pub(crate) contrast: Option<ContrastSummary>,
@@ -121,6 +123,7 @@ impl FrameLaser {
         Self {
             power_on_target: layers.power_on_target,
             power_ratio: layers.power_on_target / power,
+            power_ratio_error: Some(layers.power_error / power).filter(|error| error.is_finite()),
             contrast,
         }
     }
@@ -227,6 +230,7 @@ mod tests {
             multiple: Grid::filled(256, 256, 0.0),
             variance: Grid::filled(256, 256, 0.0),
             power_on_target: 1e-3,
+            power_error: 0.0,
         };
         let found = contrast(&layers, 4.0, 1).expect("it varies");
         assert!(
@@ -248,6 +252,7 @@ mod tests {
             multiple: dark(),
             variance: dark(),
             power_on_target: 0.0,
+            power_error: 0.0,
         };
         assert!(contrast(&layers, 4.0, 1).is_err(), "nothing is lit");
         let found = FrameLaser::measure(&layers, 1e-3, None, 1);

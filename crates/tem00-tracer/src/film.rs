@@ -62,15 +62,18 @@ pub struct LaserLayers {
     /// that the sample covers there. It is the laser's power when the whole footprint is in the image.
     /// Surfaces seen in a mirror or through glass do not count.
     pub power_on_target: f64,
+    /// The standard error of `power_on_target`, as if the samples of a pixel were independent; infinite with one sample in
+    /// a pixel. A spot that few samples hit has a large one, and one that no sample hits has none.
+    pub power_error: f64,
 }
 
 /// The layers while they are rendered.
 #[derive(Debug)]
 pub(crate) struct Film {
     frame: Frame,
-    /// The power on target by strip and laser, summed at the end in the order of the strips, so that
+    /// The power on target and its variance by strip and laser, summed at the end in the order of the strips, so that
     /// the sum has the same bits for any number of threads.
-    power: Vec<f64>,
+    power: Vec<[f64; 2]>,
 }
 
 impl Film {
@@ -91,6 +94,7 @@ impl Film {
             radiance: layer(),
             variance: layer(),
             power_on_target: 0.0,
+            power_error: 0.0,
         });
         Ok(Self {
             frame: Frame {
@@ -103,7 +107,7 @@ impl Film {
                 origin: [area.x, area.y],
                 rays: 0,
             },
-            power: vec![0.0; layout.strips * layout.wavelengths.len()],
+            power: vec![[0.0; 2]; layout.strips * layout.wavelengths.len()],
         })
     }
 
@@ -132,7 +136,8 @@ impl Film {
         let lasers = self.frame.lasers.len();
         let powers = self.power[strip * lasers..].iter_mut();
         for (power, laser) in powers.zip(&pixel.lasers) {
-            *power += pixel.mean(laser.power);
+            power[0] += pixel.mean(laser.power.sum);
+            power[1] += pixel.variance(&laser.power);
         }
     }
 
@@ -140,8 +145,57 @@ impl Film {
     pub(crate) fn into_frame(mut self) -> Frame {
         let lasers = self.frame.lasers.len();
         for (index, layers) in self.frame.lasers.iter_mut().enumerate() {
-            layers.power_on_target = self.power.iter().skip(index).step_by(lasers).sum();
+            let strips = || self.power.iter().skip(index).step_by(lasers);
+            layers.power_on_target = strips().map(|[power, _]| power).sum();
+            layers.power_error = strips().map(|[_, variance]| variance).sum::<f64>().sqrt();
         }
         self.frame
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use core::sync::atomic::AtomicBool;
+
+    use glam::DVec3;
+    use tem00_statistics::{Moments, t_test_mean};
+
+    use crate::{RenderOptions, render_frame, testing};
+
+    #[test]
+    fn the_error_of_the_power_is_its_scatter_from_seed_to_seed() {
+        // A spot of an eighth of a pixel, which one or none of 16 samples meets.
+        let camera = testing::camera(DVec3::new(0.0, 0.0, 0.3), [8, 8]);
+        let laser = testing::spot(DVec3::new(0.1, 0.0, 0.3), 5e-6);
+        let scene = testing::scene(
+            camera,
+            &[laser],
+            testing::plate(DVec3::ZERO, DVec3::Z, [0.02, 0.02]),
+        );
+        let render = |seed| {
+            let options = RenderOptions {
+                samples_per_pixel: 16,
+                seed,
+                ..scene.render
+            };
+            let frame = render_frame(&scene, None, 0, &options, |_| (), &AtomicBool::new(false));
+            frame.unwrap().lasers.remove(0)
+        };
+        let layers: Vec<_> = (0..2000).map(render).collect();
+        let powers: Vec<f64> = layers
+            .iter()
+            .map(|layers| layers.power_on_target / 1e-3)
+            .collect();
+        let variance = layers
+            .iter()
+            .map(|layers| (layers.power_error / 1e-3).powi(2));
+        let stated = (variance.sum::<f64>() / layers.len() as f64).sqrt();
+        let seen = Moments::from_samples(&powers).unwrap().standard_deviation();
+        assert!(t_test_mean(&powers, 1.0).unwrap().p_value > 1e-3);
+        // Samples that keep apart meet it somewhat more evenly than independent ones.
+        assert!(
+            (1.0..1.25).contains(&(stated / seen)),
+            "stated {stated}, seen {seen}"
+        );
     }
 }

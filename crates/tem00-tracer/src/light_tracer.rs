@@ -113,6 +113,7 @@ impl LightLayers {
             values.for_each(|(sum, light)| *sum += light);
         }
         layers.power_on_target += self.power_on_target;
+        layers.power_error = layers.power_error.hypot(self.power_error);
     }
 }
 

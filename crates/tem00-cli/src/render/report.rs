@@ -43,9 +43,11 @@ pub(super) fn of_frames(frames: &[FrameSummary]) -> Vec<String> {
     for frame in frames {
         for (index, laser) in frame.lasers.iter().enumerate() {
             let ratio = 100.0 * laser.power_ratio;
+            let error = laser.power_ratio_error;
+            let error = error.map_or(String::new(), |error| format!(" ± {:.2}", 100.0 * error));
             let watts = laser.power_on_target;
             let found = if watts > 0.0 {
-                format!("{watts:.4e} W on target, {ratio:.2} % of its power")
+                format!("{watts:.4e} W on target, {ratio:.2}{error} % of its power")
             } else {
                 "no light on target".into()
             };

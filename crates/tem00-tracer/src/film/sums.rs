@@ -26,7 +26,7 @@ pub(crate) struct LaserSums {
     pub speckle: f64,
     /// The radiance with its speckle.
     pub radiance: Moments,
-    pub power: f64,
+    pub power: Moments,
 }
 
 /// The sums of values and of their squares.
@@ -74,7 +74,7 @@ impl PixelSums {
             sums.multiple += weight * laser.multiple;
             sums.speckle += weight * laser.speckle;
             sums.radiance.add(radiance);
-            sums.power += weight * laser.power;
+            sums.power.add(weight * laser.power);
             total += radiance;
         }
         self.samples += 1;

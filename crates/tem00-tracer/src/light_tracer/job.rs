@@ -57,4 +57,6 @@ pub(crate) struct LightLayers {
     /// The power that the light paths bring to the first rough surface where that is seen in the
     /// image, in watts.
     pub power_on_target: f64,
+    /// The standard error of that, from the groups; infinite for a single one.
+    pub power_error: f64,
 }

@@ -48,7 +48,8 @@ impl Splats {
 pub(super) struct SplatFilm {
     area: Crop,
     pixels: Vec<PixelSums>,
-    power: f64,
+    /// The sums over groups of the power and of its square.
+    power: [f64; 2],
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,7 +66,7 @@ impl SplatFilm {
         Self {
             area,
             pixels: vec![PixelSums::default(); area.width * area.height],
-            power: 0.0,
+            power: [0.0; 2],
         }
     }
 
@@ -78,26 +79,28 @@ impl SplatFilm {
             pixel.radiance += splat.radiance;
             pixel.squares += splat.radiance.powi(2);
         }
-        self.power += splats.power;
+        self.power[0] += splats.power;
+        self.power[1] += splats.power.powi(2);
     }
 
     /// Returns the layers after so many groups and paths, each of which stood for the whole laser.
     pub(super) fn layers(&self, groups: u64, paths: u64) -> LightLayers {
         let (groups, paths) = (groups as f64, paths.max(1) as f64);
-        let variance = |pixel: &PixelSums| {
+        let variance = |[sum, squares]: [f64; 2]| {
             if groups < 2.0 {
                 return f64::INFINITY;
             }
             // Rounding alone can make it negative.
-            let scatter = (pixel.squares - pixel.radiance.powi(2) / groups).max(0.0);
+            let scatter = (squares - sum * sum / groups).max(0.0);
             groups / (groups - 1.0) * scatter / (paths * paths)
         };
         LightLayers {
             single: self.layer(|pixel| pixel.single / paths),
             multiple: self.layer(|pixel| pixel.multiple / paths),
             radiance: self.layer(|pixel| pixel.radiance / paths),
-            variance: self.layer(variance),
-            power_on_target: self.power / paths,
+            variance: self.layer(|pixel| variance([pixel.radiance, pixel.squares])),
+            power_on_target: self.power[0] / paths,
+            power_error: variance(self.power).sqrt(),
         }
     }
 

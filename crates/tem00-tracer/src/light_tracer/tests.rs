@@ -2,7 +2,7 @@ use core::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 use tem00_camera::CameraDescription;
-use tem00_statistics::{kolmogorov_smirnov, t_test_mean};
+use tem00_statistics::{Moments, kolmogorov_smirnov, t_test_mean};
 
 use super::{
     draws::{DrawKey, Draws},
@@ -186,6 +186,39 @@ fn the_power_on_target_is_that_of_the_laser() {
         // The whole spot is in the image, so that every path counts.
         assert!((power / POWER - 1.0).abs() < 1e-12, "{power}");
     }
+}
+
+#[test]
+fn the_error_of_the_power_is_its_scatter_from_seed_to_seed() {
+    const SEEDS: u64 = 200;
+    let mut scene = plate();
+    // A plate under one half of the spot, up to a plane that holds the axis of the beam.
+    let along = scene.lasers[0]
+        .description()
+        .position
+        .with_z(0.0)
+        .normalize();
+    let across = along.cross(DVec3::Z);
+    let half = Rectangle::new(0.02 * across, 0.02 * across, 0.05 * along).unwrap();
+    scene.surfaces[0].shape = Shape::Rectangle(half);
+    let layers: Vec<_> = (0..SEEDS)
+        .map(|seed| trace(&scene, &job(4_096, seed)))
+        .collect();
+    let powers: Vec<f64> = layers
+        .iter()
+        .map(|layers| layers.power_on_target / POWER)
+        .collect();
+    let variance = layers
+        .iter()
+        .map(|layers| (layers.power_error / POWER).powi(2));
+    let stated = (variance.sum::<f64>() / SEEDS as f64).sqrt();
+    let seen = Moments::from_samples(&powers).unwrap().standard_deviation();
+    assert!(t_test_mean(&powers, 0.5).unwrap().p_value > SIGNIFICANCE);
+    // Groups of equal size; standard deviations from 200 seeds are known to 5 %.
+    assert!(
+        (stated / seen - 1.0).abs() < 0.2,
+        "stated {stated}, seen {seen}"
+    );
 }
 
 #[test]

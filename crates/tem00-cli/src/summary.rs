@@ -4,8 +4,10 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use tem00_statistics::{Contrast, StatisticsError, pixel_contrast};
-use tem00_tracer::{Laser, LaserLayers, PatternPlan, Scene, SpecklePlan};
+use tem00_statistics::{Contrast, StatisticsError, airy_autocovariance};
+use tem00_tracer::{
+    Laser, LaserLayers, PatternPlan, Scene, SpecklePlan, mean_over_sample_displacements,
+};
 
 /// The brightness of the previews.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -148,19 +150,15 @@ fn contrast(
     })
 }
 
-/// Returns the contrast of fully developed speckle over square pixels, each averaged over n samples
-/// that lie at random in n equal, nearly square cells of it.
+/// Returns the contrast of fully developed speckle in square pixels, each the mean of n samples that lie in it as those of a
+/// render do.
 ///
 /// ```text
-/// C² = C²(1 / h) + (1 − C²(1 / h√n)) / n        h in pixels, C(q) of a pixel of q speckle sizes
+/// C² = ⟨c(d / h)⟩        h in pixels, d from sample to sample, c the autocovariance
 /// ```
-///
-/// The first term is the contrast of the perfect average; the second, the variance within a cell, is
-/// what n samples miss.
 fn expected_contrast(speckle_size: f64, samples_per_pixel: u32) -> f64 {
-    let samples = f64::from(samples_per_pixel);
-    let squared = |pixel: f64| pixel_contrast(pixel / speckle_size).powi(2);
-    (squared(1.0) + (1.0 - squared(samples.sqrt().recip())) / samples).sqrt()
+    let autocovariance = |[x, y]: [f64; 2]| airy_autocovariance(x.hypot(y) / speckle_size);
+    mean_over_sample_displacements(samples_per_pixel, autocovariance).sqrt()
 }
 
 #[cfg(test)]
@@ -168,6 +166,7 @@ mod tests {
     use approx::assert_abs_diff_eq;
     use tem00_numerics::Grid;
     use tem00_speckle::PupilField;
+    use tem00_statistics::pixel_contrast;
 
     use super::*;
 
@@ -181,35 +180,11 @@ mod tests {
 
     #[test]
     fn many_samples_average_over_the_pixel() {
-        // 0.711268 is the contrast of pixels as large as a speckle.
-        assert_abs_diff_eq!(expected_contrast(1.0, 1_000_000), 0.711_268, epsilon = 2e-6);
-    }
-
-    #[test]
-    fn a_few_samples_leave_noise() {
-        // A pattern of speckles of 16 samples seen by pixels of 32 samples with 2 × 2 cells, each
-        // looked up at one place that changes from pixel to pixel.
-        let pattern = PupilField::new(2048, 128, 5).expect("valid").pattern();
-        // Multiplicative hashing (Knuth, The Art of Computer Programming, vol. 3, § 6.4).
-        let hash = |x: u32| x.wrapping_mul(2_654_435_761).rotate_right(15);
-        let jitter = |x: usize, y: usize| {
-            let [x, y] = [x, y].map(|i| u32::try_from(i).expect("small"));
-            (hash(hash(x) ^ y) >> 28) as usize
-        };
-        let pixel = |x: usize, y: usize| {
-            let cell = |i: usize, j: usize| {
-                let (cx, cy) = (2 * x + i, 2 * y + j);
-                pattern.values()[(16 * cx + jitter(cx, cy), 16 * cy + jitter(cy, cx + 5))]
-            };
-            0.25 * (cell(0, 0) + cell(0, 1) + cell(1, 0) + cell(1, 1))
-        };
-        let pixels = Grid::from_fn(64, 64, pixel);
-        let measured = Contrast::from_samples(pixels.values())
-            .expect("it varies")
-            .value();
-        // Half a speckle to the pixel; the contrast of one tile spreads by about 0.765/128.
-        let expected = expected_contrast(0.5, 4);
-        assert_abs_diff_eq!(measured, expected, epsilon = 4.0 * 0.006 + 0.01);
+        for size in [0.2, 1.0] {
+            // 2^12 samples are 1/64 apart, which the spectrum of speckle does not reach.
+            let contrast = expected_contrast(size, 4096);
+            assert_abs_diff_eq!(contrast, pixel_contrast(1.0 / size), epsilon = 1e-4);
+        }
     }
 
     #[test]

@@ -65,6 +65,7 @@ pub use render::{
     Crop, Formulas, LaserEvents, LightEvents, Method, RenderError, RenderOptions, Sampling,
     render_frame,
 };
+pub use sampler::mean_over_sample_displacements;
 pub use scene::{Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};

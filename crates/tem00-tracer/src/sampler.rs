@@ -1,9 +1,11 @@
+mod displacements;
 #[cfg(test)]
 mod independent;
 mod lattice;
 
 use tem00_numerics::vectorised;
 
+pub use self::displacements::mean_over_sample_displacements;
 #[cfg(test)]
 pub(crate) use self::independent::Sampler;
 use self::lattice::Lattice;

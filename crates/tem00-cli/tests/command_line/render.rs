@@ -274,6 +274,32 @@ fn surfaces_too_smooth_for_speckle_are_told() {
 }
 
 #[test]
+fn a_fast_lens_shows_the_contrast_that_its_samples_leave() {
+    let folder = scene_folder();
+    let wide = SCENE
+        .replace("[48, 40]", "[120, 100]")
+        .replace("0.2 mm", "2 mm");
+    fs::write(folder.path().join("a.toml"), wide).expect("written");
+    // Speckles of 0.1 and 0.41 pixels, from the law of pixels that few samples miss to that of one sample.
+    for (f_number, samples) in [("0.5", 1), ("0.5", 16), ("0.5", 64), ("2", 2), ("2", 8)] {
+        let options = format!("--set camera.f_number={f_number} --spp {samples}");
+        assert_code(
+            &run(folder.path(), &format!("render a.toml -o . {options}")),
+            0,
+        );
+        let summary = fs::read(folder.path().join("a.json")).expect("a summary");
+        let summary: Value = serde_json::from_slice(&summary).expect("JSON");
+        let contrast = &summary["frames"][0]["lasers"][0]["contrast"];
+        let [measured, expected, error] = ["measured", "expected", "standard_error"]
+            .map(|key| contrast[key].as_f64().expect("a number"));
+        assert!(
+            (measured - expected).abs() < 4.0 * error && error < 0.01 * (1.0 + expected),
+            "f/{f_number}, {samples}: {measured} ± {error}, {expected}"
+        );
+    }
+}
+
+#[test]
 fn contrast_is_told_only_where_it_is_known() {
     let folder = scene_folder();
     let contrast = |scene: &str, options: &str| {

@@ -47,6 +47,16 @@ impl Lattice {
     pub(super) fn point(&self, index: u32) -> [u64; 2] {
         self.step.map(|step| step.wrapping_mul(index.into()))
     }
+
+    /// Returns the column and the row of a point, of `count`.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "columns are less than their count"
+    )]
+    pub(super) fn column_and_row(&self, index: u32, count: u32) -> [u32; 2] {
+        let whole = |place: u64| (u128::from(place) * u128::from(count)) >> 64;
+        self.point(index).map(|place| whole(place) as u32)
+    }
 }
 
 /// Returns so many columns out of `count`, rounded up to 2⁻⁶⁴ of the torus; the whole torus is 0.
@@ -86,21 +96,13 @@ const fn common_divisor(a: u32, b: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// Returns the column and the row of a point.
-    fn column_and_row(lattice: &Lattice, count: u32, index: u32) -> [u64; 2] {
-        let whole = |place: u64| (u128::from(place) * u128::from(count)) >> 64;
-        lattice
-            .point(index)
-            .map(|place| u64::try_from(whole(place)).unwrap())
-    }
-
     #[test]
     fn distances_are_those_of_a_search_over_all_points() {
         for count in [2, 7, 16, 64, 89, 121, 200] {
             for lattice in Lattice::good(count) {
                 let square = |index| {
-                    let near = |x: u64| x.min(u64::from(count) - x);
-                    let [x, y] = column_and_row(&lattice, count, index).map(near);
+                    let near = |x: u32| u64::from(x.min(count - x));
+                    let [x, y] = lattice.column_and_row(index, count).map(near);
                     i128::from(x * x + y * y)
                 };
                 let found = (1..count).map(square).min();
@@ -112,7 +114,7 @@ mod tests {
         assert!(
             lattices
                 .iter()
-                .any(|lattice| column_and_row(lattice, 89, 1) == [1, 34])
+                .any(|lattice| lattice.column_and_row(1, 89) == [1, 34])
         );
     }
 }

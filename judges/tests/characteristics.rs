@@ -88,7 +88,7 @@ fn a_rendered_set_up_has_the_characteristics_of_its_budget() {
     is("amplification", response.amplification, 1.0);
     let sphere = found.sphere.expect("seen");
     is("size", sphere.size, 0.0);
-    // A line that has no width along the profile: a column sees grooves down to its own width.
+    // A column sees grooves down to its own width and that of the lens's image of an edge.
     let [along_profile, along_scan] = found.grooves.map(|grooves| grooves.expect("seen"));
     let columns = along_profile.resolution.expect("crossed").value / found.field.column;
     assert!((0.3..2.0).contains(&columns), "{columns} columns");

@@ -30,6 +30,7 @@ mod section;
 mod sensor_speckle;
 mod settings;
 mod setup_sensor;
+mod speckle_by_waves;
 mod speckle_table;
 #[cfg(test)]
 mod testing;

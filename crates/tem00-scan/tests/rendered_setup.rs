@@ -4,9 +4,10 @@
 
 use std::{f64::consts::PI, path::Path, sync::atomic::AtomicBool};
 
+use tem00_scan::{Measurement, MeasurementScene, ScanSettings};
 use tem00_scene::parse_scene;
-use tem00_tracer::{Crop, RenderOptions, render_frame};
-use tem00_triangulation::{DVec2, DVec3, Setup, parse_setup};
+use tem00_tracer::{Crop, RenderOptions, SpeckleModel, SpecklePlan, render_frame};
+use tem00_triangulation::{Budget, CalibrationSettings, DVec2, DVec3, Setup, parse_setup};
 
 fn setup(scheimpflug: bool, plane: &str) -> Setup {
     let text = format!(
@@ -115,6 +116,56 @@ fn a_setup_predicts_what_is_rendered_of_it() {
         assert!(
             (width / expected - 1.0).abs() < 0.02,
             "{case}: {width}, {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_frame_out_of_focus_says_how_much_more_speckle_noise_a_camera_sees() {
+    let setup = parse_setup(
+        r#"
+        laser = { wavelength = "520 nm", power = "8 mW", line_thickness = "0.15 mm", line_length = "60 mm" }
+        surface = { reflectance = 0.35 }
+        sensor = { quantum_efficiency = 0.55, exposure = "auto" }
+        detector = { window = 31 }
+        [camera]
+        focal_length = "16 mm"
+        f_number = 5.6
+        pixel_pitch = "4.8 um"
+        resolution = [320, 300]
+        distance = "110 mm"
+        angle = "32 deg"
+        "#,
+    )
+    .expect("a set-up");
+    for (height, expected) in [(0.0, 1.0..1.1), (5.6e-3, 1.25..1.4)] {
+        let mut scene = parse_scene(&setup.scene(height), Path::new(".")).expect("a scene");
+        scene.render.samples_per_pixel = 16;
+        let measurement = Measurement::new(MeasurementScene {
+            sensor: setup.description().sensor,
+            detector: *setup.detector().settings(),
+            calibration: CalibrationSettings::default(),
+            scan: ScanSettings::default(),
+            scene,
+        })
+        .expect("a measurement");
+        let scene = measurement.scene();
+        let plan = SpecklePlan::new(scene, scene.render.formulas, 1).expect("a plan");
+        let speckle = SpeckleModel::generate(scene, &plan).expect("speckle");
+        let frame = measurement.measure(Some(&speckle), 0, |_| (), &AtomicBool::new(false));
+        let frame = frame.expect("a frame");
+        let ratio = measurement.speckle_by_waves(&frame).expect("a ratio");
+        assert!(expected.contains(&ratio), "{height}: {ratio}");
+        // The budget is held to sums of waves.
+        let budget = Budget::at_height(&setup, height).expect("a budget");
+        let by_waves = budget.terms()[0].uncertainty;
+        let middle = &frame.points[frame.points.len() / 2];
+        let stated = middle.noise.speckle.sqrt();
+        // The law for all of the light, and a line whose width is measured under speckle.
+        let apart = ratio * stated / by_waves - 1.0;
+        assert!(
+            apart.abs() < 0.06,
+            "{height}: {ratio} · {stated}, {by_waves}"
         );
     }
 }

@@ -226,7 +226,7 @@ const HELD: [(&str, [f64; 2]); 4] = [
 ];
 
 fn cases() -> [Case; 4] {
-    use Distribution::{Normal, Rectangular, StudentT};
+    use Distribution::{Normal, Rectangular};
     use SetupQuantity::{Angle, Distance, FocalLength, PixelPitch};
     let degrees = 1_f64.to_radians();
     let data_sheet = [
@@ -234,7 +234,7 @@ fn cases() -> [Case; 4] {
         input(Distance, 0.3, 1e-4, Normal),
         input(PixelPitch, 3.45e-6, 2e-9, Rectangular),
     ];
-    let (quantity, few) = input(Angle, 30.0 * degrees, 2e-3, StudentT);
+    let (quantity, few) = input(Angle, 30.0 * degrees, 2e-3, Normal);
     let few = [(quantity, few.with_degrees_of_freedom(4.0).expect("freedom"))];
     let limits = [input(Angle, 8.0 * degrees, 0.04, Rectangular)];
     // A catalogue's ± 5 %, seen through a lens less than two focal lengths from the part.

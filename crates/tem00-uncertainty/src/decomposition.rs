@@ -83,8 +83,8 @@ impl Decomposition {
     ///
     /// # Errors
     ///
-    /// Returns an error if inputs are correlated, if there are fewer than 1000 samples, if a value of the
-    /// model is not finite, or if all are the same.
+    /// Returns an error if inputs are correlated, if a t distribution has 2 degrees of freedom or fewer, if there are fewer
+    /// than 1000 samples, if a value of the model is not finite, or if all are the same.
     pub fn new(
         inputs: &Inputs,
         model: impl Fn(&[f64]) -> f64 + Sync,
@@ -93,6 +93,7 @@ impl Decomposition {
         if !inputs.are_independent() {
             return Err(UncertaintyError::Correlated);
         }
+        inputs.check_variances()?;
         if options.samples < 1000 {
             let samples = f64::from(options.samples);
             return Err(UncertaintyError::refused(

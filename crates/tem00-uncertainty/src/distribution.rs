@@ -7,7 +7,8 @@ use core::fmt;
 /// - JCGM 101:2008, *Propagation of distributions using a Monte Carlo method*, § 6.4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Distribution {
-    /// Normal (§ 6.4.7): an estimate and its standard uncertainty are known, and nothing else.
+    /// Normal (§ 6.4.7): an estimate and its standard uncertainty are known, and nothing else. With
+    /// [degrees of freedom](crate::Input::with_degrees_of_freedom) it is a t.
     Normal,
     /// Rectangular (§ 6.4.2): the limits are known, and nothing else.
     Rectangular,

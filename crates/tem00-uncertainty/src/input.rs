@@ -55,30 +55,31 @@ impl Input {
 
     /// Returns the same input with the degrees of freedom of its standard uncertainty.
     ///
+    /// If they are finite, a normal input becomes a scaled and shifted t (JCGM 101, § 6.4.9). Those of other shapes count
+    /// in the law of propagation alone.
+    ///
     /// # Errors
     ///
-    /// Returns an error if they are below 1, or at most 2 for a t distribution, which has no variance then.
+    /// Returns an error if they are below 1.
     pub fn with_degrees_of_freedom(
         self,
         degrees_of_freedom: f64,
     ) -> Result<Self, UncertaintyError> {
-        let (is_allowed, allowed) = match self.distribution {
-            Distribution::StudentT => (
-                degrees_of_freedom > 2.0,
-                "above 2 for a t distribution, which has no variance otherwise",
-            ),
-            _ => (degrees_of_freedom >= 1.0, "at least 1"),
-        };
-        if !is_allowed {
+        if degrees_of_freedom.is_nan() || degrees_of_freedom < 1.0 {
             let parameter = "degrees_of_freedom";
             return Err(UncertaintyError::refused(
                 parameter,
                 degrees_of_freedom,
-                allowed,
+                "at least 1",
             ));
         }
+        let distribution = match self.distribution {
+            Distribution::Normal if degrees_of_freedom.is_finite() => Distribution::StudentT,
+            shape => shape,
+        };
         Ok(Self {
             degrees_of_freedom,
+            distribution,
             ..self
         })
     }
@@ -104,12 +105,12 @@ impl Input {
     }
 
     /// Returns the standard deviation of the distribution: `u`, or `u √(ν / (ν − 2))` of a t distribution
-    /// with ν degrees of freedom.
+    /// with ν degrees of freedom, infinite where they are 2 or fewer.
     pub fn standard_deviation(&self) -> f64 {
         let freedom = self.degrees_of_freedom;
         match self.distribution {
             Distribution::StudentT if freedom.is_finite() => {
-                self.uncertainty * (freedom / (freedom - 2.0)).sqrt()
+                self.uncertainty * (freedom / (freedom - 2.0).max(0.0)).sqrt()
             }
             _ => self.uncertainty,
         }
@@ -169,7 +170,8 @@ mod tests {
             }
             Distribution::Arcsine => 0.5 + libm::asin(inside(2.0_f64.sqrt())) / PI,
             Distribution::StudentT => {
-                let freedom = input.degrees_of_freedom();
+                // Of so many degrees of freedom it is normal.
+                let freedom = input.degrees_of_freedom().min(1e9);
                 StudentsT::new(0.0, 1.0, freedom).unwrap().cdf(x)
             }
         }
@@ -177,19 +179,23 @@ mod tests {
 
     #[test]
     fn draws_have_the_distribution_of_the_input() {
-        let student = Input::new(0.0, 1.0, Distribution::StudentT).unwrap();
-        let mut inputs = vec![student.with_degrees_of_freedom(3.5).unwrap()];
+        let of_shape = |shape| Input::new(0.0, 1.0, shape).unwrap();
         let others = &Distribution::ALL[..4];
-        inputs.extend(
-            others
-                .iter()
-                .map(|&shape| Input::new(0.0, 1.0, shape).unwrap()),
-        );
+        let mut inputs: Vec<_> = others.iter().map(|&shape| of_shape(shape)).collect();
+        // Both are one statement: 3.5 degrees of freedom of a normal input make a t.
+        for shape in [Distribution::StudentT, Distribution::Normal] {
+            inputs.push(of_shape(shape).with_degrees_of_freedom(3.5).unwrap());
+            inputs.push(
+                of_shape(shape)
+                    .with_degrees_of_freedom(f64::INFINITY)
+                    .unwrap(),
+            );
+        }
         for input in inputs {
             let mut random = stream(1, 0);
             let samples: Vec<f64> = (0..20_000).map(|_| input.draw(&mut random)).collect();
             let found = kolmogorov_smirnov(&samples, |x| cumulative(&input, x)).unwrap();
-            // Five tests of one seed.
+            // Eight tests of one seed.
             assert!(found.p_value > 1e-3, "{}: {found:?}", input.distribution());
         }
     }
@@ -225,10 +231,9 @@ mod tests {
                 "{uncertainty}"
             );
         }
-        let student = Input::new(0.0, 1.0, Distribution::StudentT).unwrap();
         let normal = new(0.0, 1.0).unwrap();
-        for (input, freedom) in [(normal, 0.5), (normal, f64::NAN), (student, 2.0)] {
-            let found = input.with_degrees_of_freedom(freedom);
+        for freedom in [0.5, f64::NAN] {
+            let found = normal.with_degrees_of_freedom(freedom);
             assert_eq!(parameter(found), "degrees_of_freedom", "{freedom}");
         }
         assert!(normal.with_degrees_of_freedom(1.0).is_ok(), "one degree");

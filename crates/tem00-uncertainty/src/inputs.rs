@@ -98,6 +98,19 @@ impl Inputs {
         }
     }
 
+    /// Checks that trials can settle on a variance of what is made of the inputs.
+    pub(crate) fn check_variances(&self) -> Result<(), UncertaintyError> {
+        let has_none = |input: &&Input| input.standard_deviation().is_infinite();
+        match self.inputs.iter().find(has_none) {
+            Some(input) => Err(UncertaintyError::refused(
+                "degrees_of_freedom",
+                input.degrees_of_freedom(),
+                "above 2 for trials: a t distribution has no variance otherwise",
+            )),
+            None => Ok(()),
+        }
+    }
+
     /// Draws the values of all inputs.
     ///
     /// # Panics

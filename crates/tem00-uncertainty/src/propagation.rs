@@ -87,13 +87,15 @@ impl Propagation {
     /// # Errors
     ///
     /// Returns an error if an option is outside its range, if fewer trials are allowed than two blocks have,
-    /// or if a value of the model, or the variance of all, is not finite.
+    /// if a t distribution has 2 degrees of freedom or fewer, or if a value of the model, or the variance of all, is not
+    /// finite.
     pub fn new(
         inputs: &Inputs,
         model: impl Fn(&[f64]) -> f64 + Sync,
         options: PropagationOptions,
     ) -> Result<Self, UncertaintyError> {
         let trials = options.checked_block()?;
+        inputs.check_variances()?;
         let blocks = options.max_trials / trials as u64;
         let mut result = Self {
             options,

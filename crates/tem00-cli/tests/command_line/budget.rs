@@ -344,6 +344,30 @@ fn a_dominant_rectangular_quantity_is_quoted_by_its_distribution() {
 }
 
 #[test]
+fn few_readings_are_quoted_with_the_factor_of_students_t() {
+    let offset =
+        "offset = { value = 0, uncertainty = \"0.1 mm\", degrees_of_freedom = 4 }\n[camera]";
+    let folder = setup_folder("[camera]", offset);
+    let output = run(
+        folder.path(),
+        "budget a.toml --trials 0 --json --set budget.height=0 --set average.columns=400",
+    );
+    let found = &json(&output.stdout)["measurement"];
+    assert_eq!(found["quoted"], "first_order", "{found}");
+    // The 0.975 quantile of t for 4, the offset and cot 30°. Noise adds 4 µm to 173 in quadrature, 0.03 %; ends of the
+    // trials are known to a fifth of 50 µm.
+    let half = 2.776_445 * 1e-4 * 3_f64.sqrt();
+    for (index, tolerance) in [(0, 0.002), (1, 0.02)] {
+        let [low, high] =
+            ["low", "high"].map(|end| found["answers"][index][end].as_f64().expect("an end"));
+        assert!(
+            (0.5 * (high - low) / half - 1.0).abs() < tolerance,
+            "{found}"
+        );
+    }
+}
+
+#[test]
 fn a_detector_whose_noise_is_not_first_order_is_quoted_by_the_virtual_experiment() {
     let from = "angle = \"30 deg\"";
     let folder = setup_folder(

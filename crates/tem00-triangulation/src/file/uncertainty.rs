@@ -22,7 +22,7 @@ const CORRELATION: &[&str] = &["between", "coefficient"];
 /// height = "5 mm"                    # the greatest of the measuring range without it
 /// ```
 ///
-/// An uncertainty of 0 is as good as none.
+/// An uncertainty of 0 is as good as none. A normal value with degrees of freedom has a t distribution.
 ///
 /// # Errors
 ///
@@ -84,6 +84,13 @@ fn read_quantity(
     let estimate = quantity.value_in(setup.description());
     let input = Input::new(estimate, uncertainty, shape).map_err(rejected)?;
     let input = input.with_degrees_of_freedom(freedom).map_err(rejected)?;
+    if input.standard_deviation().is_infinite() {
+        let message = format!(
+            "`degrees_of_freedom` must be above 2, got {freedom}: a t distribution of fewer has no variance; \
+             pool more readings, or state another `distribution`"
+        );
+        return Err(table.problem_with("degrees_of_freedom", message));
+    }
     for (side, value) in [
         ("below", estimate - uncertainty),
         ("above", estimate + uncertainty),

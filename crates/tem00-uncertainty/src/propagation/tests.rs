@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Distribution, Input};
+use crate::{Decomposition, DecompositionOptions, Distribution, Input};
 
 fn normal() -> Inputs {
     Inputs::independent(vec![Input::new(3.0, 2.0, Distribution::Normal).unwrap()]).unwrap()
@@ -48,6 +48,76 @@ fn trials_end_once_their_results_are_stable() {
     let trials = found.values().len();
     assert!((20_000..80_000).contains(&trials), "{trials} trials");
     assert!(found.values().is_sorted(), "values are sorted");
+}
+
+#[test]
+fn a_normal_input_of_few_readings_has_the_interval_of_students_t() {
+    let normal = Input::new(3.0, 2.0, Distribution::Normal).unwrap();
+    let options = PropagationOptions {
+        tolerance_divisor: 5.0,
+        digits: 1,
+        ..PropagationOptions::default()
+    };
+    // The 0.975 quantiles of scipy.stats.t; a rectangular input keeps its limits, the others the standard deviation
+    // u √(ν / (ν − 2)).
+    for (input, quantile, deviation) in [
+        (normal.with_degrees_of_freedom(4.0), 2.776_445, 2_f64.sqrt()),
+        (
+            normal.with_degrees_of_freedom(8.0),
+            2.306_004,
+            (8_f64 / 6.0).sqrt(),
+        ),
+        (
+            Input::new(3.0, 2.0, Distribution::Rectangular)
+                .and_then(|input| input.with_degrees_of_freedom(4.0)),
+            0.95 * 3_f64.sqrt(),
+            1.0,
+        ),
+    ] {
+        let input = input.unwrap();
+        let inputs = Inputs::independent(vec![input]).unwrap();
+        let found = Propagation::new(&inputs, |x| x[0], options).unwrap();
+        let (interval, tolerance) = (found.interval(), 1.65 * found.tolerance());
+        for (value, expected) in [
+            (found.uncertainty(), 2.0 * deviation),
+            (interval.low, 3.0 - 2.0 * quantile),
+            (interval.high, 3.0 + 2.0 * quantile),
+        ] {
+            assert!(
+                (value - expected).abs() < tolerance,
+                "{input:?}: {value}, {expected}"
+            );
+        }
+        let first_order = FirstOrder::new(&inputs, |x| x[0]).unwrap();
+        let is_t = input.distribution() == Distribution::StudentT;
+        assert_eq!(found.validate(&first_order).is_valid(), is_t, "{input:?}");
+    }
+}
+
+#[test]
+fn inputs_without_a_variance_are_refused_by_trials_alone() {
+    let normal = Input::new(3.0, 2.0, Distribution::Normal).unwrap();
+    for freedom in [1.0, 2.0] {
+        let input = normal.with_degrees_of_freedom(freedom).unwrap();
+        let inputs = Inputs::independent(vec![input]).unwrap();
+        let found = Propagation::new(&inputs, |x| x[0], PropagationOptions::default());
+        assert_eq!(
+            found.map(drop).unwrap_err().parameter(),
+            "degrees_of_freedom",
+            "{freedom}"
+        );
+        let found = Decomposition::new(&inputs, |x| x[0], DecompositionOptions::default());
+        assert_eq!(
+            found.map(drop).unwrap_err().parameter(),
+            "degrees_of_freedom",
+            "{freedom}"
+        );
+        let first_order = FirstOrder::new(&inputs, |x| x[0]).unwrap();
+        assert!(
+            (first_order.combined() - 2.0).abs() < 1e-9,
+            "{first_order:?}"
+        );
+    }
 }
 
 #[test]

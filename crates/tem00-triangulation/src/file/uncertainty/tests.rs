@@ -237,6 +237,11 @@ fn uncertain_values_that_cannot_be_are_refused_where_they_stand() {
             "0 }",
             "at least 1",
         ),
+        (
+            r#"{ value = "30 deg", uncertainty = 0.01, degrees_of_freedom = 2 }"#,
+            "2 }",
+            "`degrees_of_freedom` must be above 2, got 2",
+        ),
     ] {
         assert_refused(&text(&[("angle", angle)], ""), at, words);
     }

@@ -33,7 +33,7 @@ pub use self::{
 /// # Validity
 ///
 /// First order in the fluctuations. Against images that were summed wave by wave the speckle of a centre of gravity is within 5 %
-/// for lines of at least two speckles in full width, in and out of focus, in single columns and in means. It is too small for
+/// for lines of at least [`LEAST_SPECKLES`](Self::LEAST_SPECKLES) in full width, in and out of focus, in single columns and in means. It is too small for
 /// thinner lines, by 14 % at 1.2 speckles and a fifth at 0.8; about a third too large for detectors that look at three
 /// pixels, and half for Steger's, which also looks at neighbouring columns. [`simulate`], whose light interferes
 /// as waves do, tells how far, and whether all columns have a line that can be trusted. Pixels count as linear, also where bright
@@ -48,11 +48,16 @@ pub use self::{
 pub struct Budget {
     height: f64,
     terms: Vec<BudgetTerm>,
+    speckles: f64,
     line_law: f64,
     dorsch: f64,
 }
 
 impl Budget {
+    /// The full width of a line, in speckles, below which its budget does not hold: a column then has few grains, so that
+    /// its position is far from linear in their light.
+    pub const LEAST_SPECKLES: f64 = 2.0;
+
     /// Returns the budget of a height at the reference plane.
     ///
     /// # Errors
@@ -90,11 +95,13 @@ impl Budget {
         } else {
             1.0
         };
+        let speckles = line.projected_thickness / line.speckle_size[1];
         let bandwidth = line.bandwidth;
         let position = contrast * line.centroid_deviation(d.average.columns) / frames.sqrt();
         Some(Self {
             height,
             terms,
+            speckles,
             line_law: position * line.height_per_pixel.abs() * bandwidth.line_noise_ratio,
             dorsch: dorsch(setup, contrast)? * bandwidth.spot_noise_ratio,
         })
@@ -103,6 +110,12 @@ impl Budget {
     /// Returns the height that the budget is for, in metres.
     pub const fn height(&self) -> f64 {
         self.height
+    }
+
+    /// Returns the full width of the line in the image between the points of 1/e², out of focus but without diffraction, in
+    /// speckles.
+    pub const fn speckles(&self) -> f64 {
+        self.speckles
     }
 
     /// Returns all terms, in the order of [`UncertaintySource::ALL`].

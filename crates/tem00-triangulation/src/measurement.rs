@@ -42,6 +42,29 @@ pub enum MeasurementInput {
     Term(UncertaintySource),
 }
 
+impl MeasurementInput {
+    /// Returns a measure that lowers its contribution.
+    pub const fn remedy(self) -> &'static str {
+        use SetupQuantity::{
+            Angle, BaseExpansion, Distance, FocalLength, LaserOffset, LaserTilt, MountExpansion,
+            PixelPitch, PrincipalRow, TemperatureChange,
+        };
+        match self {
+            Self::Term(source) => source.remedy(),
+            Self::Quantity(PrincipalRow | LaserOffset) => {
+                "it shifts all heights alike; the line on a flat plate at height zero tells it"
+            }
+            Self::Quantity(Distance | Angle | FocalLength | PixelPitch | LaserTilt) => {
+                "it changes the scale of heights; a step of known height or a calibration with a board tells it"
+            }
+            Self::Quantity(TemperatureChange | BaseExpansion | MountExpansion) => {
+                "a steadier temperature, or a base and a mount that expand less, lower it"
+            }
+            Self::Quantity(_) => "a better known value lowers it",
+        }
+    }
+}
+
 /// The measurement of a height with a set-up whose quantities are uncertain.
 ///
 /// The measurement model, in the words of JCGM 100, gives the height as a function of its inputs:
@@ -108,6 +131,7 @@ pub struct Measurement {
     setup: Setup,
     height: f64,
     row: f64,
+    speckles: f64,
     sources: Vec<MeasurementInput>,
     inputs: Inputs,
     /// For each term with a position, the relative change of its standard uncertainty by each quantity.
@@ -141,6 +165,7 @@ impl Measurement {
         let (sources, inputs) = all?.into_iter().unzip();
         Ok(Self {
             row: setup.line_at(height).map_or(f64::NAN, |line| line.position),
+            speckles: budget.speckles(),
             sources,
             inputs: Inputs::correlated(inputs, &uncertainty.correlations)?,
             slopes: slopes(setup, height, quantities, &terms)?,
@@ -152,6 +177,11 @@ impl Measurement {
     /// Returns the measured height, in metres.
     pub const fn height(&self) -> f64 {
         self.height
+    }
+
+    /// Returns the full width of the line at the height, in speckles; see [`Budget::LEAST_SPECKLES`].
+    pub const fn speckles(&self) -> f64 {
+        self.speckles
     }
 
     /// Returns what the inputs are, in their order: first the quantities of the set-up, then the terms of the

@@ -418,6 +418,50 @@ fn there_is_no_uncertainty_by_trials_below_half_of_the_columns() {
 }
 
 #[test]
+fn an_expanded_uncertainty_by_trials_holds_as_much_as_it_says() {
+    // Lines of 0.03 speckles, whose errors have long tails, and of four.
+    for (thickness, calibration) in [(5e-6, 0.0), (5e-6, 50e-6), (0.6e-3, 0.0)] {
+        let setup = setup_of(|d| {
+            d.laser.line_thickness = thickness;
+            d.camera.f_number = 16.0;
+            d.detector.window = 31;
+            d.sensor.exposure_time *= 0.2;
+            d.average.columns = 4;
+            d.calibration_uncertainty = calibration;
+        });
+        let found = simulated(&setup, 100);
+        let (expanded, rms) = (
+            found.expanded().unwrap(),
+            found.total().unwrap().uncertainty,
+        );
+        // Other frames; how much of the normal error of the calibration is small enough, is a closed form.
+        let simulator = Simulator::new(&setup, *setup.line()).unwrap();
+        let errors = (1000..1100).flat_map(|seed| simulator.deviations(seed).unwrap().0);
+        let held = errors.map(|deviation| {
+            let error = setup.line().height_per_pixel * deviation;
+            let below = |end: f64| {
+                let scale = calibration.max(1e-12) * 2_f64.sqrt();
+                0.5 * libm::erfc((error - end) / scale)
+            };
+            below(expanded) - below(-expanded)
+        });
+        let held: Vec<f64> = held.collect();
+        let fraction = held.iter().sum::<f64>() / held.len() as f64;
+        // 3200 means of four columns in each, nearly independent: 2.7 standard errors.
+        assert!(
+            (fraction - 0.95).abs() < 0.015,
+            "{thickness:e}, {calibration:e}: {fraction}"
+        );
+        let factor = expanded / rms.hypot(calibration);
+        assert_eq!(
+            factor < 1.8,
+            thickness < 1e-4,
+            "{thickness:e}, {calibration:e}: {factor}"
+        );
+    }
+}
+
+#[test]
 fn a_line_that_saturates_has_no_budget() {
     // The crest of a Gaussian line of N electrons and the full width W is N √(8/π)/W.
     let setup = setup_of(|_| ());

@@ -32,6 +32,8 @@ pub struct DesignFigures {
     pub signal: f64,
     /// The full width of the line in the image between the points of 1/e², in pixels.
     pub imaged_width: f64,
+    /// The full width of the line in speckles; see [`Budget::LEAST_SPECKLES`].
+    pub speckles: f64,
     /// The speckle size along rows and columns, in pixels.
     pub speckle_size: [f64; 2],
     /// What the linewidth of the laser makes of speckle.
@@ -65,6 +67,7 @@ impl DesignFigures {
             grain_saturation: setup.grain_saturation(),
             signal: setup.signal(),
             imaged_width: setup.line().width,
+            speckles: budget.speckles(),
             speckle_size: setup.line().speckle_size,
             bandwidth: setup.line().bandwidth,
         })

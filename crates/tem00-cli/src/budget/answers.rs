@@ -1,7 +1,7 @@
 //! The report of a height that is measured with a set-up whose quantities are uncertain.
 
 use serde_json::json;
-use tem00_triangulation::{MeasurementInput, SetupQuantity, UncertaintySource};
+use tem00_triangulation::{Budget, MeasurementInput, SetupQuantity, UncertaintySource};
 use tem00_uncertainty::Input;
 
 use super::measured::{Measured, Quoted};
@@ -32,8 +32,24 @@ pub(super) fn verdicts(measured: &Measured) -> Vec<String> {
     lines
 }
 
+/// Tells that formulas do not hold of so thin a line, and what to quote.
+pub(super) fn thin(speckles: f64, quote: &str) -> String {
+    format!(
+        "The line is {} speckles wide: formulas, which are first order, do not hold below {}; quote {quote}.",
+        NUMBER.with_digits(2).text(speckles),
+        NUMBER.text(Budget::LEAST_SPECKLES)
+    )
+}
+
 /// Tells where the methods differ, and so which to quote.
 fn why(measured: &Measured) -> String {
+    if measured.is_thin() {
+        let quote = match measured.quoted() {
+            Quoted::VirtualExperiment => "the virtual experiment",
+            _ => "a virtual experiment, which was left out",
+        };
+        return thin(measured.measurement.speckles(), quote);
+    }
     let validation = measured.validation();
     let [low, high, tolerance] = [validation.low, validation.high, validation.tolerance]
         .map(|length| MICROMETRES.text(length));

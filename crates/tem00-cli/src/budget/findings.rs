@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use tem00_triangulation::{
-    Budget, LightLevel, Setup, SetupUncertainty, Simulation, SimulationOptions, TriangulationError,
-    UncertaintySource, simulate,
+    Budget, BudgetTerm, LightLevel, MeasurementInput, Setup, SetupUncertainty, Simulation,
+    SimulationOptions, TriangulationError, UncertaintySource, simulate,
 };
 
 use super::measured::Measured;
@@ -108,6 +108,67 @@ impl Answer {
         let calibration = self.budget.contribution(UncertaintySource::Calibration);
         Some(total.hypot(calibration))
     }
+
+    /// Returns the ratio of the combined standard uncertainty by trials to that by formulas, and its standard error.
+    pub(super) fn ratio(&self) -> Option<[f64; 2]> {
+        let error = self.trials.as_ref()?.total()?.standard_error;
+        let by_trials = self.combined_by_trials()?;
+        Some([by_trials, error].map(|found| found / self.budget.combined()))
+    }
+
+    /// Returns whether the line is so thin that formulas do not hold.
+    pub(super) fn is_thin(&self) -> bool {
+        self.budget.speckles() < Budget::LEAST_SPECKLES
+    }
+
+    /// Returns the trials if they are to be quoted: where formulas do not hold, or both differ.
+    pub(super) fn quoted_trials(&self) -> Option<&Simulation> {
+        let is_quoted = self.is_thin() || self.ratio().is_some_and(differs);
+        self.trials.as_ref().filter(|_| is_quoted)
+    }
+
+    /// Returns the combined and the expanded uncertainty to quote, in metres.
+    pub(super) fn quoted(&self) -> [f64; 2] {
+        let by_trials = || {
+            Some([
+                self.combined_by_trials()?,
+                self.quoted_trials()?.expanded()?,
+            ])
+        };
+        by_trials().unwrap_or_else(|| [self.budget.combined(), self.budget.expanded()])
+    }
+
+    /// Returns what makes most of the variance of the answer to quote, and its part.
+    pub(super) fn dominant(&self) -> (MeasurementInput, f64) {
+        let parts = match &self.measured {
+            Some(measured) => measured.parts(),
+            None => self.parts(),
+        };
+        let larger = |a: (_, f64), b: (_, f64)| if b.1 > a.1 { b } else { a };
+        let none = (MeasurementInput::Term(UncertaintySource::Speckle), 0.0);
+        parts.into_iter().fold(none, larger)
+    }
+
+    /// Returns the parts of the variance of the budget that its terms make.
+    fn parts(&self) -> Vec<(MeasurementInput, f64)> {
+        let trials = self.quoted_trials();
+        let square = |term: &BudgetTerm| {
+            let by_trials = trials.and_then(|trials| trials.term(term.source));
+            by_trials
+                .map_or(term.contribution(), |found| found.uncertainty)
+                .powi(2)
+        };
+        let terms = self.budget.terms();
+        let sum: f64 = terms.iter().map(square).sum();
+        let part = |term: &BudgetTerm| (MeasurementInput::Term(term.source), square(term) / sum);
+        terms.iter().map(part).collect()
+    }
+}
+
+/// Returns whether an uncertainty is not that of another method: whether their ratio, with its standard error, is farther
+/// from 1 than a twentieth and chance.
+pub(super) fn differs([ratio, error]: [f64; 2]) -> bool {
+    (ratio - 1.0).abs() > 0.05 + 3.3 * error
 }
 
 pub(super) fn tried(args: &BudgetArgs, setup: &Setup) -> Result<Simulation, Failure> {

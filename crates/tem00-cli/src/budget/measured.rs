@@ -1,14 +1,15 @@
 //! A height that is measured with a set-up whose quantities are uncertain.
 
 use tem00_triangulation::{
-    Measurement, MeasurementInput, Setup, SetupUncertainty, SimulationOptions, TriangulationError,
-    VirtualExperiment,
+    Budget, Measurement, MeasurementInput, Setup, SetupUncertainty, SimulationOptions,
+    TriangulationError, VirtualExperiment,
 };
 use tem00_uncertainty::{
     CoverageInterval, CoverageProbability, Decomposition, DecompositionOptions, FirstOrder,
     Propagation, PropagationOptions, Validation,
 };
 
+use super::findings::differs;
 use crate::{args::BudgetArgs, failure::Failure, interrupt, progress::Progress};
 
 /// The number of samples of the decomposition of the variance.
@@ -170,11 +171,41 @@ impl Measured {
         Some([error.uncertainty, error.standard_error].map(|found| found / by_distributions))
     }
 
-    /// Returns the method to quote: the first that the next one does not contradict. A virtual experiment does by
-    /// a tenth of the uncertainty, and more than three of its standard errors.
+    /// Returns the parts of the variance of the height that its inputs make: in the trials of distributions, or by the law of
+    /// propagation where that is quoted or inputs are correlated.
+    pub(super) fn parts(&self) -> Vec<(MeasurementInput, f64)> {
+        let by_trials = self
+            .decomposition
+            .as_ref()
+            .filter(|_| self.quoted() != Quoted::FirstOrder);
+        let parts: Vec<f64> = match by_trials {
+            Some(found) => found.inputs().iter().map(|part| part.total.value).collect(),
+            None => {
+                let contributions = self.first_order.contributions().iter();
+                contributions.map(|part| part.variance_fraction).collect()
+            }
+        };
+        let sources = self.measurement.sources().iter().copied();
+        sources.zip(parts).collect()
+    }
+
+    /// Returns whether the line is so thin that formulas of its noise do not hold, and that noise counts: for a twentieth of
+    /// the variance.
+    pub(super) fn is_thin(&self) -> bool {
+        let sources = self.measurement.sources().iter();
+        let noise = sources
+            .zip(self.first_order.contributions())
+            .filter(|(source, _)| matches!(source, MeasurementInput::Term(_)));
+        let part: f64 = noise.map(|(_, part)| part.variance_fraction).sum();
+        part > 0.05 && self.measurement.speckles() < Budget::LEAST_SPECKLES
+    }
+
+    /// Returns the method to quote: the first that neither the line nor the next one contradicts.
     pub(super) fn quoted(&self) -> Quoted {
-        let differs = |[ratio, error]: [f64; 2]| (ratio - 1.0).abs() > (3.0 * error).max(0.1);
-        if self.ratio().is_some_and(differs) {
+        if self
+            .ratio()
+            .is_some_and(|ratio| self.is_thin() || differs(ratio))
+        {
             Quoted::VirtualExperiment
         } else if self.validation().is_valid() {
             Quoted::FirstOrder

@@ -1,7 +1,7 @@
 //! The report of a budget.
 
 use serde_json::json;
-use tem00_triangulation::{Budget, BudgetTerm, Setup, UncertaintySource};
+use tem00_triangulation::{BudgetTerm, Setup, UncertaintySource};
 
 use super::{
     answers,
@@ -50,22 +50,37 @@ pub(super) fn report(findings: &Findings<'_>, drawings: Vec<String>) -> Report {
 
 /// Adds the numbers that the verdicts tell in words.
 fn numbers(report: &mut Report, answer: Option<&Answer>) {
-    type Value = fn(&Budget) -> f64;
-    let values: [(&str, Value); 7] = [
-        ("height", Budget::height),
-        ("combined", Budget::combined),
-        ("degrees_of_freedom", Budget::degrees_of_freedom),
-        ("coverage_factor", Budget::coverage_factor),
-        ("expanded", Budget::expanded),
-        ("line_law", Budget::line_law),
-        ("dorsch", Budget::dorsch),
+    type Value = fn(&Answer) -> f64;
+    let values: [(&str, Value); 8] = [
+        ("height", |answer| answer.budget.height()),
+        ("combined", |answer| answer.quoted()[0]),
+        ("degrees_of_freedom", |answer| {
+            answer.budget.degrees_of_freedom()
+        }),
+        ("coverage_factor", |answer| {
+            let [combined, expanded] = answer.quoted();
+            expanded / combined
+        }),
+        ("expanded", |answer| answer.quoted()[1]),
+        ("speckles", |answer| answer.budget.speckles()),
+        ("line_law", |answer| answer.budget.line_law()),
+        ("dorsch", |answer| answer.budget.dorsch()),
     ];
     for (key, value) in values {
-        report.data(key, answer.map(|answer| value(&answer.budget)));
+        report.data(key, answer.map(value));
     }
+    let quoted = |answer: &Answer| match answer.quoted_trials() {
+        Some(_) => "trials",
+        None => "formulas",
+    };
+    report.data("quoted", answer.map(quoted));
+    report.data(
+        "formulas",
+        answer.map(|Answer { budget, .. }| json!({ "combined": budget.combined(), "expanded": budget.expanded() })),
+    );
     report.data(
         "dominant",
-        answer.map(|answer| answer.budget.dominant().source.name()),
+        answer.map(|answer| answers::source(answer.dominant().0)),
     );
     let over_range = answer.map_or(&[][..], |answer| &answer.over_range);
     let over_range = over_range.iter();
@@ -91,6 +106,7 @@ fn trials(findings: &Findings<'_>) -> serde_json::Value {
         "uncertainty": total.map(|total| total.uncertainty),
         "standard_error": total.map(|total| total.standard_error),
         "combined": combined,
+        "expanded": trials.expanded(),
         "invalid": trials.invalid(),
     })
 }

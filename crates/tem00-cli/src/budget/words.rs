@@ -1,10 +1,10 @@
 //! A budget in sentences.
 
-use tem00_triangulation::{LightLevel, Setup};
+use tem00_triangulation::{LightLevel, MeasurementInput, Setup, Simulation};
 
 use super::{
     answers,
-    findings::{Answer, Refusal},
+    findings::{Answer, Refusal, differs},
 };
 use crate::report::units::{MICROMETRES, NUMBER, PERCENT};
 
@@ -12,28 +12,31 @@ use crate::report::units::{MICROMETRES, NUMBER, PERCENT};
 pub(super) fn verdicts(answer: &Answer, setup: &Setup) -> Vec<String> {
     let level = setup.light_level();
     let budget = &answer.budget;
-    let dominant = budget.dominant();
+    let (dominant, part) = answer.dominant();
+    let name = match dominant {
+        MeasurementInput::Quantity(quantity) => quantity.to_string(),
+        MeasurementInput::Term(source) => capitalised(source.name()),
+    };
+    let dominates = format!(
+        "{name} dominates, with {} of the variance: {}.",
+        PERCENT.with_digits(3).text(part),
+        dominant.remedy()
+    );
     let mut lines = answer
         .measured
         .as_ref()
         .map_or_else(Vec::new, answers::verdicts);
-    lines.extend([
-        result(answer),
-        format!(
-            "{} dominates, with {} of the variance: {}.",
-            capitalised(dominant.source.name()),
-            PERCENT
-                .with_digits(3)
-                .text(budget.variance_fraction(dominant)),
-            dominant.source.remedy()
-        ),
-        format!(
-            "Speckle by closed forms: {} for the line that a lens images, {} for a spot after Dorsch, Häusler \
-             and Herrmann.",
-            MICROMETRES.text(budget.line_law()),
-            MICROMETRES.text(budget.dorsch())
-        ),
-    ]);
+    // It stands behind the answer that it is of.
+    lines.extend(match answer.measured {
+        Some(_) => [dominates, result(answer)],
+        None => [result(answer), dominates],
+    });
+    lines.push(format!(
+        "Speckle by closed forms: {} for the line that a lens images, {} for a spot after Dorsch, Häusler \
+         and Herrmann.",
+        MICROMETRES.text(budget.line_law()),
+        MICROMETRES.text(budget.dorsch())
+    ));
     if level != LightLevel::Good {
         lines.push(format!("The light is not right: {}.", level.advice()));
     }
@@ -52,40 +55,55 @@ pub(super) fn refusal(refusal: &Refusal) -> [String; 2] {
 /// Returns the result, with the expanded uncertainty.
 fn result(answer: &Answer) -> String {
     let budget = &answer.budget;
-    let by_trials = answer.combined_by_trials().map(|found| {
-        let expanded = budget.coverage_factor() * found;
-        format!(" By trials {}.", MICROMETRES.text(expanded))
-    });
+    let length = |length: f64| MICROMETRES.text(length);
     let exact = match answer.measured {
         Some(_) => " at the reference plane, of a set-up that is known exactly",
         None => "",
     };
+    let [_, expanded] = answer.quoted();
+    let by_trials = answer.trials.as_ref().and_then(Simulation::expanded);
+    let (how, other) = match answer.quoted_trials() {
+        Some(_) => (
+            "by trials".to_owned(),
+            Some(("formulas", budget.expanded())),
+        ),
+        None => (
+            format!("k = {:.2}", budget.coverage_factor()),
+            by_trials.map(|found| ("trials", found)),
+        ),
+    };
+    let other = other.map(|(method, found)| format!(" By {method} {}.", length(found)));
     format!(
-        "Expanded uncertainty of a height{exact}: U = {} (95 %, k = {:.2}).{}",
-        MICROMETRES.text(budget.expanded()),
-        budget.coverage_factor(),
-        by_trials.unwrap_or_default()
+        "Expanded uncertainty of a height{exact}: U = {} (95 %, {how}).{}",
+        length(expanded),
+        other.unwrap_or_default()
     )
 }
 
 /// Returns what trials tell that formulas do not.
 fn of_trials(answer: &Answer) -> Vec<String> {
-    let Some((trials, combined)) = answer.trials.as_ref().zip(answer.combined_by_trials()) else {
-        return Vec::new();
-    };
     let mut lines = Vec::new();
-    let ratio = combined / answer.budget.combined();
-    if !(0.9..=1.1).contains(&ratio) {
+    let trials = answer.trials.as_ref();
+    if answer.is_thin() {
+        let quote = match trials {
+            Some(_) => "the trials",
+            None => "trials, which were left out",
+        };
+        lines.push(answers::thin(answer.budget.speckles(), quote));
+    } else if let Some([ratio, _]) = answer.ratio().filter(|ratio| differs(*ratio)) {
         lines.push(format!(
             "Trials find {} times the uncertainty of the formulas, which are first order: this detector is not \
-             linear under so much noise; go by the trials.",
+             linear under so much noise; quote the trials.",
             NUMBER.with_digits(3).text(ratio)
         ));
     }
-    if trials.invalid() > 0.01 {
+    if let Some(invalid) = trials
+        .map(Simulation::invalid)
+        .filter(|invalid| *invalid > 0.01)
+    {
         lines.push(format!(
             "{} of the columns have no line that can be trusted; the trials leave them out.",
-            PERCENT.with_digits(2).text(trials.invalid())
+            PERCENT.with_digits(2).text(invalid)
         ));
     }
     lines

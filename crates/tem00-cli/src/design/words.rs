@@ -1,6 +1,6 @@
 //! A search in sentences.
 
-use tem00_triangulation::Exclusion;
+use tem00_triangulation::{Budget, Exclusion};
 
 use super::{search::Design, units};
 use crate::failure::Failure;
@@ -17,7 +17,12 @@ pub(super) fn verdict(design: &Design<'_>) -> String {
             let value = units::of_figure(objective).text(objective.value_in(figures));
             let name = units::words(objective.name());
             let dominant = figures.dominant.name();
-            format!("{counts}. The best: {name} {value}, most of it by {dominant}.")
+            let thin = if figures.speckles < Budget::LEAST_SPECKLES {
+                " Its line is below two speckles wide, where formulas do not hold: ask the trials of `tem00 budget`."
+            } else {
+                ""
+            };
+            format!("{counts}. The best: {name} {value}, most of it by {dominant}.{thin}")
         }
         None => format!("{counts}. The nearest to them is shown."),
     }

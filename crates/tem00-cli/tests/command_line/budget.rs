@@ -277,6 +277,94 @@ fn an_uncertain_set_up_has_three_answers_and_one_to_quote() {
     assert!((fractions.sum::<f64>() - 1.0).abs() < 1e-12, "{found}");
 }
 
+/// Returns the record of a set-up whose line is `thickness` wide behind a small pupil, and what is printed.
+fn of_line(thickness: &str, trials: u32) -> (Value, String) {
+    let folder = setup_folder("\"0.2 mm\"", &format!("\"{thickness}\""));
+    let line = format!(
+        "budget a.toml --trials {trials} --set camera.f_number=16 --set sensor.exposure=2e-5"
+    );
+    let output = run(folder.path(), &line);
+    assert_code(&output, 0);
+    let record = fs::read(folder.path().join("out/a/budget.json")).expect("the record");
+    (json(&record), text(&output.stdout))
+}
+
+#[test]
+fn a_line_below_two_speckles_is_quoted_by_trials() {
+    // A speckle is 0.15 mm on the part.
+    for (thickness, trials, method) in [
+        ("0.02 mm", 40, "trials"),
+        ("0.2 mm", 40, "trials"),
+        ("0.6 mm", 40, "formulas"),
+        ("0.02 mm", 0, "formulas"),
+    ] {
+        let (record, table) = of_line(thickness, trials);
+        let number = |value: &Value| value.as_f64().expect("a number");
+        assert_eq!(record["quoted"], method, "{thickness}, {trials}: {table}");
+        for key in ["combined", "expanded"] {
+            assert_eq!(
+                record[key], record[method][key],
+                "{thickness}, {trials}: {key}"
+            );
+        }
+        let factor = number(&record["expanded"]) / number(&record["combined"]);
+        assert!(
+            (number(&record["coverage_factor"]) / factor - 1.0).abs() < 1e-12,
+            "{record}"
+        );
+        let is_told = table.contains("do not hold below 2; quote");
+        assert_eq!(is_told, thickness != "0.6 mm", "{thickness}: {table}");
+        let is_quoted = table.contains("(95 %, by trials). By formulas");
+        assert_eq!(is_quoted, method == "trials", "{thickness}: {table}");
+        if thickness == "0.02 mm" && trials > 0 {
+            let by_formulas = number(&record["formulas"]["expanded"]);
+            let ratio = by_formulas / number(&record["expanded"]);
+            assert!((ratio - 1.0).abs() > 0.3, "far from first order: {ratio}");
+        }
+    }
+}
+
+#[test]
+fn trials_that_refute_the_formulas_are_quoted() {
+    let folder = setup_folder("window = 21", "method = \"steger\"");
+    let output = run(folder.path(), "budget a.toml --trials 40");
+    let record = fs::read(folder.path().join("out/a/budget.json")).expect("the record");
+    assert_eq!(json(&record)["quoted"], "trials");
+    let table = text(&output.stdout);
+    for part in [
+        "by trials). By formulas",
+        "not linear under so much noise; quote the trials",
+    ] {
+        assert!(table.contains(part), "{part} is not in\n{table}");
+    }
+}
+
+#[test]
+fn what_dominates_is_of_the_answer_to_quote() {
+    let row = "principal_row = { value = 32, uncertainty = 5.8, distribution = \"rectangular\" }\n[sensor]";
+    let exact = ("speckle", "a larger pupil (smaller f-number)");
+    let uncertain = (
+        "camera.principal_row",
+        "the line on a flat plate at height zero tells it",
+    );
+    for (to, (name, advice)) in [("[sensor]", exact), (row, uncertain)] {
+        let folder = setup_folder("[sensor]", to);
+        let output = run(folder.path(), "budget a.toml --trials 0");
+        let record = fs::read(folder.path().join("out/a/budget.json")).expect("the record");
+        assert_eq!(json(&record)["dominant"], name);
+        let table = text(&output.stdout);
+        let lines: Vec<&str> = table
+            .lines()
+            .filter(|line| line.contains(" dominates, "))
+            .collect();
+        let [line] = lines[..] else { panic!("{table}") };
+        let begins = line
+            .to_lowercase()
+            .starts_with(&format!("{name} dominates"));
+        assert!(begins && line.contains(advice), "{line}");
+    }
+}
+
 #[test]
 fn a_set_up_that_is_known_exactly_has_no_answers() {
     let folder = setup_folder("[laser]", "[laser]");

@@ -49,6 +49,19 @@ fn json(path: &Path) -> serde_json::Value {
 }
 
 #[test]
+fn a_best_line_below_two_speckles_sends_for_trials() {
+    for (thickness, is_thin) in [("2e-5", true), ("2e-4", false)] {
+        let folder = setup_folder("");
+        let line =
+            format!("design a.toml --set laser.line_thickness={thickness} --set laser.power=1e-3");
+        let output = run(folder.path(), &line);
+        assert_code(&output, 0);
+        let told = text(&output.stdout).contains("ask the trials of `tem00 budget`");
+        assert_eq!(told, is_thin, "{thickness}: {}", text(&output.stdout));
+    }
+}
+
+#[test]
 fn a_search_over_linewidths_says_what_each_leaves_of_noise_and_contrast() {
     let folder = folder();
     let file = folder.path().join("a.toml");

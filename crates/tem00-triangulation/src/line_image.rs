@@ -71,8 +71,10 @@ pub struct LineImageData {
 pub struct LineImage {
     data: LineImageData,
     samples: [usize; 2],
-    /// Fractions of the light in patterns whose intensities add.
+    /// Fractions of the speckled light in patterns whose intensities add.
     fractions: Vec<f64>,
+    /// The fraction of the light without speckle.
+    even: f64,
     /// The numbers of pixels after which the image repeats.
     period: [usize; 2],
     /// The speckle size in samples.
@@ -108,6 +110,7 @@ impl LineImage {
             data,
             samples,
             fractions: fractions(&data, &[1.0])?,
+            even: 0.0,
             period,
             speckle,
             bandwidth: None,
@@ -153,6 +156,7 @@ impl LineImage {
                     allowed: "so small that in this light at most 1024 speckle patterns add up",
                 }
             })?;
+            image.even = light.even;
             image.bandwidth = light.bandwidth;
         }
         Ok(image)
@@ -198,15 +202,22 @@ impl LineImage {
     /// # Errors
     ///
     /// None for images that [`new`](Self::new) accepted.
+    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
     pub fn speckled(
         &self,
         seed: u64,
         centre: impl Fn(f64) -> f64 + Sync,
     ) -> Result<Grid<f32>, TriangulationError> {
+        let even = self.even as f32;
+        let image = if even > 0.0 {
+            self.mean(&centre).map(|electrons| even * electrons)
+        } else {
+            self.dark()
+        };
         let strip = self.strip();
         let positions = strip.positions(centre);
         let per_pixel = self.data.column_electrons / self.period[1] as f64;
-        self.image(|stream, tilt| {
+        self.add_speckled(image, |stream, tilt| {
             let (pupil, lit) = strip.pupil(&positions, seed, stream, tilt);
             (pupil, lit * per_pixel)
         })
@@ -236,7 +247,14 @@ impl LineImage {
             });
         }
         let strip = self.strip();
-        self.image(|stream, tilt| strip.pupil_of_light(light, parts, (seed, stream), tilt))
+        let mut image = self.dark();
+        if self.even > 0.0 {
+            let scale = self.even * (parts * parts) as f64;
+            self.add_pixels(&mut image, &strip.blurred(light, parts), [parts; 2], scale);
+        }
+        self.add_speckled(image, |stream, tilt| {
+            strip.pupil_of_light(light, parts, (seed, stream), tilt)
+        })
     }
 
     /// Returns the number of parts of a pixel, along each axis, in which [`speckled_light`](Self::speckled_light) needs its light:
@@ -244,6 +262,11 @@ impl LineImage {
     pub fn parts_of_pixel(&self) -> usize {
         let [along, across] = self.data.speckle_size;
         to_usize((2.0 / along.min(across)).ceil())
+    }
+
+    fn dark(&self) -> Grid<f32> {
+        let [columns, rows] = self.data.size;
+        Grid::filled(columns, rows, 0.0)
     }
 
     fn strip(&self) -> Strip {
@@ -258,30 +281,38 @@ impl LineImage {
         }
     }
 
-    /// Returns the image of the amplitudes that `pupil` makes for the number of a random stream and a tilt.
-    fn image(&self, pupil: impl Fn(u64, f64) -> Pupil) -> Result<Grid<f32>, TriangulationError> {
-        let [columns, rows] = self.data.size;
-        let mut image = Grid::filled(columns, rows, 0.0_f32);
+    /// Adds the speckled part of an image, of the amplitudes that `pupil` makes for the number of a random stream and a tilt.
+    fn add_speckled(
+        &self,
+        mut image: Grid<f32>,
+        pupil: impl Fn(u64, f64) -> Pupil,
+    ) -> Result<Grid<f32>, TriangulationError> {
         let samples = [0, 1].map(|axis| self.period[axis] * self.samples[axis]);
         for (fraction, part) in self.fractions.iter().zip(0..) {
             let pupils = match &self.bandwidth {
                 None => vec![pupil(part, 0.0)],
                 Some(bandwidth) => bandwidth.pupils(part, &pupil),
             };
-            let fraction = fraction / pupils.len() as f64;
+            let fraction = (1.0 - self.even) * fraction / pupils.len() as f64;
             for (pupil, electrons) in pupils {
                 let field = PupilField::from_samples(pupil, samples, self.speckle)?;
                 // The pattern is 1 in the mean over its period.
-                self.add_pixels(&mut image, field.pattern().values(), fraction * electrons);
+                let scale = fraction * electrons;
+                self.add_pixels(&mut image, field.pattern().values(), self.samples, scale);
             }
         }
         Ok(image)
     }
 
-    /// Adds the mean of a pattern over the sensitive part of each pixel, times `scale`.
+    /// Adds the mean of a pattern, of so many samples in a pixel, over the sensitive part of each pixel, times `scale`.
     #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
-    fn add_pixels(&self, image: &mut Grid<f32>, pattern: &Grid<f32>, scale: f64) {
-        let [nx, ny] = self.samples;
+    fn add_pixels(
+        &self,
+        image: &mut Grid<f32>,
+        pattern: &Grid<f32>,
+        [nx, ny]: [usize; 2],
+        scale: f64,
+    ) {
         let side = self.data.sensitive_side;
         let [across, along] = [nx, ny].map(|samples| cells(samples, side));
         image.for_each_row_mut(|y, pixels| {

@@ -17,7 +17,7 @@ use crate::{DetectorSettings, LineDetector, Sensor, TriangulationError, Triangul
 pub(crate) use self::{
     description::within,
     light_level::{MAX_GRAIN_SATURATION, MIN_SIGNAL},
-    line_profile::{LensedLine, LineProfile},
+    line_profile::{LensedLine, LineProfile, transfer},
 };
 pub use self::{
     description::{

@@ -229,7 +229,7 @@ impl<'a> Simulator<'a> {
         let found = positions(self.setup.detector(), &frames.exposed()?);
         let deviations = self.group_deviations(&found, &Positions::uniform(centre));
         outcomes[SIMULATED.len()] = outcome_of(&deviations, found.invalid());
-        let per_pixel = self.line.height_per_pixel;
+        let per_pixel = self.setup.line().height_per_pixel;
         let calibration = self.setup.description().calibration_uncertainty;
         let error = |deviation: f64| {
             let of_calibration: f64 = StandardNormal.sample(&mut random);

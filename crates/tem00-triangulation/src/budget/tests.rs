@@ -316,16 +316,20 @@ fn trials_agree_with_first_order_term_by_term() {
 
 #[test]
 fn trials_in_light_of_a_linewidth_agree_with_first_order() {
-    // Without a tilt there would be 1.9 times as much of the first, without heights 1.2 times of the second.
-    for (linewidth, half_angle, rms_height, correlation_length) in [
-        (20e-9, 0.0, 0.0, 0.0),
-        (10e-9, 0.0, 10e-6, 20e-6),
-        (0.0, 0.01, 0.0, 0.0),
-        (10e-9, 0.005, 1e-6, 0.0),
+    // Without a tilt there would be 1.9 times as much of the first, without heights 1.2 times of the second. Rows that are
+    // averaged keep more of their noise than thin ones: 1.25 times. Of the last there is a 75th, far below that of 1024 patterns.
+    for (linewidth, half_angle, rms_height, correlation_length, columns) in [
+        (20e-9, 0.0, 0.0, 0.0, 1),
+        (10e-9, 0.0, 10e-6, 20e-6, 1),
+        (0.0, 0.01, 0.0, 0.0, 1),
+        (10e-9, 0.005, 1e-6, 0.0, 1),
+        (0.0, 0.02, 0.0, 0.0, 16),
+        (0.0, 0.3, 0.0, 0.0, 1),
     ] {
         let setup = setup_of(|d| {
             d.laser.light.linewidth = linewidth;
             d.laser.light.source_half_angle = half_angle;
+            d.average.columns = columns;
             (
                 d.surface.relief.rms_height,
                 d.surface.relief.correlation_length,

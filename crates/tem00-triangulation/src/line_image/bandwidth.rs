@@ -1,6 +1,6 @@
 //! Images of a line in light that is not of one wavelength.
 
-use tem00_coherence::{PatternSum, PolychromaticSpeckle, Rows};
+use tem00_coherence::{PatternSum, PolychromaticSpeckle, Rows, SourceExtent};
 use tem00_numerics::{Grid, cast::to_usize};
 use tem00_speckle::Complex;
 
@@ -10,8 +10,13 @@ use crate::Setup;
 pub(super) struct PolychromaticLight {
     /// One, or the modes of heights that dominate, or of directions of the source.
     pub(super) modes: Vec<f64>,
+    /// The fraction of the light that has no speckle at all.
+    pub(super) even: f64,
     pub(super) bandwidth: Option<Bandwidth>,
 }
+
+/// The number of equal patterns that stand for more, together with those of the surface.
+const PATTERNS: f64 = 16.0;
 
 /// Wave numbers that stand for a line. Each sees the pupil displaced across the line by the tilt of the resolution cell,
 /// and heights of the relief in other phases.
@@ -47,14 +52,46 @@ impl PolychromaticLight {
             line: &line,
             cell: &cell,
         };
-        let PatternSum { fractions, heights } =
-            speckle.patterns(|speckle| speckle.line_noise_ratio(Rows::Thin).powi(2));
+        let description = setup.description();
+        let rows = f64::from(description.average.columns) / setup.line().speckle_size[0];
+        let noise = |speckle: &PolychromaticSpeckle<'_>| {
+            speckle.line_noise_ratio(Rows::Height(rows)).powi(2)
+        };
+        let PatternSum { fractions, heights } = speckle.patterns(noise);
         let is_broad = !line.is_monochromatic() && !heights.is_empty();
+        let from_point = PolychromaticSpeckle {
+            cell: &cell.clone().with_source_extent(SourceExtent::default()),
+            ..speckle
+        };
+        // Fields of heights still add in each mode.
+        let in_mode = match heights[..] {
+            [] => 1.0,
+            _ => noise(&from_point),
+        };
+        let (modes, even) = enough(
+            fractions,
+            noise(&speckle) / in_mode,
+            f64::from(description.surface.patterns),
+        );
         Some(Self {
-            modes: fractions,
-            bandwidth: is_broad.then(|| Bandwidth::new(&speckle, &heights)),
+            modes,
+            even,
+            bandwidth: is_broad.then(|| Bandwidth::new(&from_point, &heights)),
         })
     }
+}
+
+/// Returns modes that have a variance, and the fraction of even light beside them.
+///
+/// Of a variance v below that of n equal patterns, these are in a part √(v n) of the light, and the rest is even: more patterns
+/// would have the same covariance.
+fn enough(modes: Vec<f64>, variance: f64, patterns: f64) -> (Vec<f64>, f64) {
+    let count = (PATTERNS / patterns).max(1.0).floor();
+    if variance * count >= 1.0 {
+        return (modes, 0.0);
+    }
+    let equal = vec![count.recip(); to_usize(count)];
+    (equal, 1.0 - (variance * count).sqrt())
 }
 
 impl Bandwidth {

@@ -6,9 +6,14 @@ use rand_distr::{Distribution, StandardNormal};
 use tem00_numerics::{Fft2, Grid, cast::to_usize};
 use tem00_speckle::Complex;
 
+use crate::setup::transfer;
+
 /// Distance from its middle up to which a line has scatterers, in half-widths: 10⁻⁸ of the light lie
 /// beyond.
 const REACH: f64 = 3.0;
+
+/// Steps of the table of the lens's transfer function.
+const TRANSFER: u32 = 512;
 
 /// A strip of a rough surface under a laser line, as the pupil of a camera sees it. Lengths are in
 /// pixels of the image; the first of two is along the line.
@@ -157,6 +162,38 @@ impl Strip {
         });
         self.defocus(&mut pupil);
         (pupil, electrons / (self.period[0] * self.period[1]))
+    }
+
+    /// Returns light in parts of pixels as the lens blurs it without speckle, over the whole period.
+    #[expect(clippy::cast_possible_truncation, reason = "images are f32")]
+    pub(super) fn blurred(&self, light: &Grid<f32>, parts: usize) -> Grid<f32> {
+        let [wide, high] = self.period.map(|side| to_usize(side) * parts);
+        let planned = Fft2::with_aperture(wide, high, light.width(), light.height());
+        let (Ok(forward), Ok(back)) = (planned, Fft2::new(wide, high)) else {
+            return light.clone();
+        };
+        let table = (0..=TRANSFER).map(|step| {
+            let shift = f64::from(step) / f64::from(TRANSFER);
+            transfer(shift, self.defocus * shift)
+        });
+        let table: Vec<f64> = table.collect();
+        let lens = |kx: usize, ky: usize| {
+            let shift = |k: usize, length: usize, axis: usize| {
+                k.min(length - k) as f64 * self.speckle_size[axis] / self.period[axis]
+            };
+            let step = shift(kx, wide, 0).hypot(shift(ky, high, 1)) * f64::from(TRANSFER);
+            let at = |index: usize| table.get(index).copied().unwrap_or(0.0);
+            let below = to_usize(step);
+            at(below) + (step - below as f64) * (at(below + 1) - at(below))
+        };
+        let all = (wide * high) as f64;
+        let sharp = light.map(|&electrons| Complex::new(electrons, 0.0));
+        // The transform of the conjugate is that back.
+        let blurred = forward.on_one_thread().forward(&sharp, |kx, ky, value| {
+            value.conj() * ((lens(kx, ky) / all) as f32)
+        });
+        back.on_one_thread()
+            .forward(&blurred, |_, _, value| value.re)
     }
 
     /// Multiplies by the phase of defocus, exp(iπ b ρ²/h) at ρ diameters from the middle of the pupil.

@@ -271,3 +271,31 @@ fn light_that_does_not_fit_the_image_is_refused_by_name() {
         assert!(error.to_string().starts_with("light must be"), "{error}");
     }
 }
+
+#[test]
+fn light_without_speckle_is_the_mean_of_light_with_it() {
+    for blur in [0.0, 9.0] {
+        let data = LineImageData {
+            width: 3.0,
+            blur,
+            ..DATA
+        };
+        let mut lines = LineImage::new(data).unwrap();
+        lines.even = 1.0;
+        let parts = 4;
+        let light = Grid::from_fn(96 * parts, 48 * parts, |_, y| {
+            let distance = (y as f64 + 0.5) / parts as f64 - 23.6;
+            let line =
+                (-8.0 * (distance / 3.0).powi(2)).exp() * (8.0 / core::f64::consts::PI).sqrt();
+            (data.column_electrons * line / 3.0 / (parts * parts) as f64) as f32
+        });
+        let found = lines.speckled_light(1, &light).unwrap();
+        let mean = lines.mean(|_| 23.6);
+        let most = f64::from(mean.values().iter().fold(0.0, |a: f32, &b| a.max(b)));
+        for y in 0..48 {
+            let [found, expected] = [&found, &mean].map(|image| f64::from(image[(48, y)]));
+            // Wings come in from the lines after which the image repeats, and go out at the ends of the line.
+            assert_relative_eq!(found, expected, epsilon = 4e-3 * most);
+        }
+    }
+}

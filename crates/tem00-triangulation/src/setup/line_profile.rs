@@ -100,7 +100,7 @@ impl LineProfile {
 
 /// The transfer function of a round pupil at the frequency at which its copies lie `shift` diameters apart
 /// and the disc of defocus is `blur` periods wide.
-fn transfer(shift: f64, blur: f64) -> f64 {
+pub(crate) fn transfer(shift: f64, blur: f64) -> f64 {
     if blur == 0.0 {
         return disc_overlap(shift);
     }

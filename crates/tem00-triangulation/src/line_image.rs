@@ -149,13 +149,7 @@ impl LineImage {
             polarisation: surface.polarisation,
         })?;
         if let Some(light) = PolychromaticLight::of_setup(setup) {
-            image.fractions = fractions(&image.data, &light.modes).map_err(|_| {
-                TriangulationError::OutOfRange {
-                    parameter: "rms_height",
-                    value: surface.relief.rms_height,
-                    allowed: "so small that in this light at most 1024 speckle patterns add up",
-                }
-            })?;
+            image.fractions = fractions(&image.data, &light.modes)?;
             image.even = light.even;
             image.bandwidth = light.bandwidth;
         }

@@ -126,7 +126,10 @@ fn answers_are_those_of_the_library() {
     assert_eq!(info.coherence_length, line.coherence_length());
     assert_eq!(info.tilt_wave_number, cell.tilt_wave_number());
     assert_eq!(owned.covariance([0.3, 0.1]), speckle.covariance([0.3, 0.1]));
-    assert_eq!(owned.line_noise_ratio(0.0), speckle.line_noise_ratio(Rows::Thin));
+    assert_eq!(
+        owned.line_noise_ratio(0.0),
+        speckle.line_noise_ratio(Rows::Thin)
+    );
     let tall = speckle.line_noise_ratio(Rows::Height(3.0));
     assert_eq!(owned.line_noise_ratio(3.0), tall);
     let wave = owned.draw(0.2);

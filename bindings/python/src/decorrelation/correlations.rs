@@ -105,7 +105,12 @@ pub(super) fn equivalent_pupil_shift<'py>(
     correlation: Numbers<'py>,
 ) -> PyResult<Values<'py>> {
     let argument = ("correlation", &correlation);
-    try_map(py, argument, physics::equivalent_pupil_shift, IntoPython::into_python)
+    try_map(
+        py,
+        argument,
+        physics::equivalent_pupil_shift,
+        IntoPython::into_python,
+    )
 }
 
 /// Return the axial displacement, in axial decorrelation lengths, that alone leaves a correlation.
@@ -120,7 +125,12 @@ pub(super) fn equivalent_axial_shift<'py>(
     correlation: Numbers<'py>,
 ) -> PyResult<Values<'py>> {
     let argument = ("correlation", &correlation);
-    try_map(py, argument, physics::equivalent_axial_shift, IntoPython::into_python)
+    try_map(
+        py,
+        argument,
+        physics::equivalent_axial_shift,
+        IntoPython::into_python,
+    )
 }
 
 /// Return the multiple of a motion at which the product law first leaves a correlation.

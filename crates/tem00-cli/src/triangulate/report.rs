@@ -26,6 +26,22 @@ const CORRELATIONS: &str = "Speckle correlates the errors of neighbouring column
     every pixel and frame; PRNU and DSNU are new in every pixel and stay from frame to frame; the error of \
     the calibration is common to all points.";
 
+/// The ratio of the speckle noise of a camera to that of a frame from which on a reader is told.
+const MUCH_MORE_SPECKLE: f64 = 1.1;
+
+/// Tells how much more speckle noise a camera would see, where it is much.
+fn speckle_by_waves(report: &mut Report, job: &Job<'_>, measured: &Measured) {
+    let shown = measured.shown.as_ref();
+    let ratio = shown.and_then(|frame| job.measurement.speckle_by_waves(frame));
+    report.data("speckle_by_waves", ratio);
+    if let Some(ratio) = ratio.filter(|ratio| *ratio >= MUCH_MORE_SPECKLE) {
+        report.verdict(format!(
+            "A camera would see {ratio:.2} times as much speckle noise of this line: it is narrower than its speckle or its \
+             blur, which rendered frames leave out. U is that of the frames; `tem00 budget` has that of a camera."
+        ));
+    }
+}
+
 /// Returns the report, and writes its diagrams.
 ///
 /// # Errors
@@ -45,6 +61,7 @@ pub(super) fn report(job: &Job<'_>, measured: &Measured) -> Result<Report, Failu
                 .speckle_sentence(average)
                 .into_iter()
                 .for_each(|line| report.verdict(line));
+            speckle_by_waves(&mut report, job, measured);
         }
         Err(refusal) => {
             report.verdict(format!("Nothing was measured: {}.", refusal.why));

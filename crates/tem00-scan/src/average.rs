@@ -3,7 +3,7 @@ use glam::{DVec2, DVec3};
 use tem00_triangulation::PositionNoise;
 
 use crate::{
-    frame::{MeasuredFrame, MeasuredPoint},
+    frame::{IndirectLight, MeasuredFrame, MeasuredPoint},
     settings::Averaging,
 };
 
@@ -84,7 +84,13 @@ pub fn mean_point(
     seen.point.position = points().map(|p| p.seen.point.position).sum::<DVec3>() / count;
     mean.calibration = points().fold(DMat3::ZERO, |sum, p| sum + p.calibration) * count.recip();
     mean.noise = mean_noise(members, speckle);
-    let deviation = mean.noise.total().sqrt();
+    // An error that neighbours and frames share.
+    mean.indirect = IndirectLight {
+        fraction: points().map(|point| point.indirect.fraction).sum::<f64>() / count,
+        shift: points().map(|point| point.indirect.shift).sum::<f64>() / count,
+        alone: points().any(|point| point.indirect.alone),
+    };
+    let deviation = mean.position_uncertainty();
     let along = mean.per_pixel.length();
     mean.seen.point.uncertainty = deviation * points().map(seen_per_pixel).sum::<DVec3>() / count;
     mean.seen.point.along = deviation * along;

@@ -16,6 +16,8 @@ pub struct Exposure {
     pub without_speckle: Grid<f32>,
     /// The part of `without_speckle` that carries speckle.
     pub coherent: Grid<f32>,
+    /// The part of `coherent` that met several rough surfaces.
+    pub multiple: Grid<f32>,
 }
 
 impl Exposure {
@@ -46,6 +48,7 @@ impl Exposure {
             electrons: dark(),
             without_speckle: dark(),
             coherent: dark(),
+            multiple: dark(),
         };
         for y in 0..height {
             for x in 0..width {
@@ -67,17 +70,20 @@ impl Exposure {
             sensor.electrons(per_radiance * f64::from(radiance), wavelength)
         };
         let lights = electrons(frame.lights[at], WHITE_LIGHT_WAVELENGTH);
-        let [mut total, mut mean, mut coherent] = [lights, lights, 0.0];
+        let [mut total, mut mean, mut coherent, mut multiple] = [lights, lights, 0.0, 0.0];
         for laser in &frame.lasers {
             let count = |radiance| electrons(radiance, laser.wavelength);
-            let smooth = count(laser.single[at]) + count(laser.multiple[at]);
+            let of_several = count(laser.multiple[at]);
+            let smooth = count(laser.single[at]) + of_several;
             total += count(laser.radiance[at]);
             mean += smooth;
             coherent += smooth;
+            multiple += of_several;
         }
         self.electrons[at] = to_f32(total);
         self.without_speckle[at] = to_f32(mean);
         self.coherent[at] = to_f32(coherent);
+        self.multiple[at] = to_f32(multiple);
     }
 }
 

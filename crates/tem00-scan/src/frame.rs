@@ -45,8 +45,23 @@ pub struct MeasuredPoint {
     pub per_pixel: DVec3,
     /// The contributions to the variance of the line's position, in square pixels.
     pub noise: PositionNoise,
+    /// The light in the line that met a second surface.
+    pub indirect: IndirectLight,
     /// The covariance that the calibration gives to the position, in m²: common to all points.
     pub calibration: DMat3,
+}
+
+/// Light of a line that met several rough surfaces: a render knows it apart, a camera does not.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct IndirectLight {
+    /// Its part of the light in the window about the line, from 0 to 1.
+    pub fraction: f64,
+    /// What it moves the line by, in pixels down: an error that no repetition shows, whose size counts as a standard
+    /// uncertainty. It is the distance, without noise, from the nearest line in the column that other light makes; half of the
+    /// window of the detector if there is none.
+    pub shift: f64,
+    /// Whether the line is of such light alone: no other is within half of the window.
+    pub alone: bool,
 }
 
 impl MeasuredPoint {
@@ -62,10 +77,15 @@ impl MeasuredPoint {
             .hypot(self.calibration_uncertainty_along(direction))
     }
 
+    /// Returns the standard uncertainty of the position of the line, in pixels, by noise and indirect light.
+    pub fn position_uncertainty(&self) -> f64 {
+        self.noise.total().sqrt().hypot(self.indirect.shift)
+    }
+
     /// Returns the standard uncertainty along a direction of length 1 that comes from the position of the
     /// line, in metres.
     pub fn line_uncertainty_along(&self, direction: DVec3) -> f64 {
-        self.noise.total().sqrt() * self.per_pixel.dot(direction).abs()
+        self.position_uncertainty() * self.per_pixel.dot(direction).abs()
     }
 
     /// Returns the standard uncertainty along a direction of length 1 that comes from the calibration, in
@@ -136,14 +156,19 @@ impl Surroundings<'_> {
             if seen.validity == Validity::Valid && expected.is_sliver(&seen, self.reach()) {
                 seen.validity = Validity::Sliver;
             }
-            seen.point = triangulator.point_with_uncertainty(seen.pixel, noise.total().sqrt())?;
-            Some(MeasuredPoint {
-                position: self.to_part.point(seen.point.position),
+            let indirect = expected.indirect(self, &seen);
+            let mut point = MeasuredPoint {
+                position: DVec3::ZERO,
                 per_pixel: self.to_part.direction(down),
                 calibration: turn * calibration * turn.transpose() + self.further,
                 noise,
+                indirect,
                 seen,
-            })
+            };
+            let deviation = point.position_uncertainty();
+            point.seen.point = triangulator.point_with_uncertainty(seen.pixel, deviation)?;
+            point.position = self.to_part.point(point.seen.point.position);
+            Some(point)
         };
         profile.iter().filter_map(measured).collect()
     }
@@ -209,8 +234,11 @@ pub(super) fn middle(points: &[MeasuredPoint]) -> Option<&MeasuredPoint> {
 struct Expected {
     electrons: Grid<f32>,
     coherent: Grid<f32>,
+    multiple: Grid<f32>,
     grey_values: Grid<f32>,
     lines: Vec<Vec<LinePoint>>,
+    /// The lines in light that met one rough surface alone; `None` where there is no other.
+    direct: Option<Vec<Vec<LinePoint>>>,
     /// The median of the widths of the lines, in pixels; 0 without any.
     usual_width: f64,
 }
@@ -224,17 +252,57 @@ impl Expected {
         let sensor = surroundings.sensor.description();
         let dark = surroundings.sensor.dark_electrons();
         let largest = f64::from((1_u32 << sensor.bit_depth) - 1);
-        let grey_values = exposure.without_speckle.map(|&electrons| {
+        let grey_value = |electrons: f32| {
             let charge = (f64::from(electrons) + dark).min(sensor.full_well);
             to_f32((sensor.black_level + sensor.gain * charge).min(largest))
-        });
+        };
+        let mean = &exposure.without_speckle;
+        let grey_values = mean.map(|&electrons| grey_value(electrons));
         let lines = surroundings.detector.detect(&grey_values);
+        let multiple = &exposure.multiple;
+        let has_several = multiple.values().iter().any(|&electrons| electrons > 0.0);
+        let direct = has_several.then(|| {
+            let light = |x, y| grey_value(mean[(x, y)] - multiple[(x, y)]);
+            let frame = Grid::from_fn(mean.width(), mean.height(), light);
+            surroundings.detector.detect(&frame)
+        });
         Self {
             usual_width: median_width(&lines),
             lines,
-            electrons: exposure.without_speckle.clone(),
+            direct,
+            electrons: mean.clone(),
             coherent: exposure.coherent.clone(),
+            multiple: multiple.clone(),
             grey_values,
+        }
+    }
+
+    /// Returns the light that met a second surface in the line of a point.
+    fn indirect(&self, surroundings: &Surroundings<'_>, seen: &ProfilePoint) -> IndirectLight {
+        let Some(direct) = &self.direct else {
+            return IndirectLight::default();
+        };
+        let reach = surroundings.reach();
+        let position = self
+            .nearest(seen, reach)
+            .map_or(seen.pixel.y, |line| line.position);
+        let distances = direct[seen.column]
+            .iter()
+            .map(|line| position - line.position);
+        let nearest = distances.min_by(|a, b| a.abs().total_cmp(&b.abs()));
+        let window = |grid: &Grid<f32>| -> f64 {
+            let rows = (0..grid.height()).filter(|&y| (y as f64 + 0.5 - position).abs() <= reach);
+            rows.map(|y| f64::from(grid[(seen.column, y)])).sum()
+        };
+        let all = window(&self.electrons);
+        IndirectLight {
+            fraction: if all > 0.0 {
+                window(&self.multiple) / all
+            } else {
+                0.0
+            },
+            shift: nearest.unwrap_or(reach),
+            alone: nearest.is_none_or(|distance| distance.abs() > reach),
         }
     }
 

@@ -43,7 +43,7 @@ pub use self::{
     boards::{BoardPlan, calibrate_scene},
     error::ScanError,
     exposure::{Exposure, WHITE_LIGHT_WAVELENGTH},
-    frame::{MeasuredFrame, MeasuredPoint},
+    frame::{IndirectLight, MeasuredFrame, MeasuredPoint},
     frame_correlation::FrameCorrelation,
     height_map::{HeightMap, Raster},
     measurement::Measurement,

@@ -82,7 +82,7 @@ fn points(profiles: &[Vec<MeasuredPoint>]) -> impl Iterator<Item = (i32, &Measur
 /// Writes what follows the coordinates of a point.
 fn write_properties(frame: i32, point: &MeasuredPoint, out: &mut impl Write) -> io::Result<()> {
     let [x, y, z] = point.uncertainty().to_array();
-    let along = point.noise.total().sqrt() * point.per_pixel.length();
+    let along = point.position_uncertainty() * point.per_pixel.length();
     let properties: [f64; PROPERTIES.len()] = [x, y, z, along, point.seen.reflectance];
     out.write_all(
         properties

@@ -4,7 +4,7 @@ use glam::DMat3;
 use glam::{DVec2, DVec3};
 use tem00_triangulation::{PositionNoise, ProfilePoint, UncertainPoint, Validity};
 
-use crate::frame::MeasuredPoint;
+use crate::frame::{IndirectLight, MeasuredPoint};
 
 /// A point in a column whose position moves it by 10 µm per pixel along z.
 pub(super) fn point(column: usize, position: DVec3) -> MeasuredPoint {
@@ -31,6 +31,7 @@ pub(super) fn point(column: usize, position: DVec3) -> MeasuredPoint {
             prnu: 0.01,
             ..PositionNoise::default()
         },
+        indirect: IndirectLight::default(),
         calibration: DMat3::ZERO,
     }
 }

@@ -1,5 +1,7 @@
 #![expect(clippy::float_cmp, reason = "what is stored comes back as it was")]
 
+use core::sync::atomic::AtomicBool;
+
 use glam::DVec3;
 use ply_rs_bw::{parser::Parser, ply::DefaultElement, ply::Property};
 use tem00_numerics::Grid;
@@ -31,7 +33,7 @@ fn an_even_radiance_frees_the_electrons_that_the_aperture_tells() {
     let camera = measured.scene.camera;
     let measurement = Measurement::new(measured).unwrap();
     let frame = measurement
-        .measure(None, 0, |_| (), &core::sync::atomic::AtomicBool::new(false))
+        .measure(None, 0, |_| (), &AtomicBool::new(false))
         .unwrap();
 
     // On the axis E = π L / (4 F²) with the working f-number, at 550 nm for white light.
@@ -167,6 +169,69 @@ fn files_with_mistakes_in_the_scan_are_placed() {
     );
 }
 
+/// Measures the first frame of a scene without speckle.
+fn without_speckle(text: &str) -> MeasuredFrame {
+    let measurement = Measurement::new(measured(text)).unwrap();
+    measurement
+        .measure(None, 0, |_| (), &AtomicBool::new(false))
+        .unwrap()
+}
+
+#[test]
+fn light_that_met_a_second_wall_moves_a_line_by_what_is_stated() {
+    let (before, _) = SCENE.split_once("[[surface]]").unwrap();
+    let (_, after) = SCENE.split_once("[sensor]").unwrap();
+    // A groove of 90° in milled aluminium, along the scan, whose height at x is |x|.
+    let wall = |x: i32| {
+        format!(
+            "[[surface]]\nconductor = {{ metal = \"aluminium\", roughness = 0.35 }}\n\
+             rectangle = {{ centre = [\"{x} mm\", 0, \"8 mm\"], normal = [{}, 0, 1], size = [\"22.627 mm\", \"40 mm\"] }}\n",
+            -x / 8
+        )
+    };
+    let scene = |walls: &[i32]| {
+        let walls: String = walls.iter().map(|&x| wall(x)).collect();
+        let text = format!("{before}{walls}[sensor]{after}")
+            .replace(
+                "resolution = [32, 24]",
+                "resolution = [160, 160]\nlook_at = [0, 0, \"1 mm\"]",
+            )
+            .replace("samples_per_pixel = 4", "samples_per_pixel = 32")
+            .replace("\"0.1 ms\"", "\"0.2 ms\"");
+        without_speckle(&text)
+    };
+    let frame = scene(&[-8, 8]);
+    let points = frame.points.iter().filter(|point| point.is_valid());
+    let (mut count, mut held, mut by_noise, mut left) = (0.0, 0.0, 0.0, 0.0);
+    for point in points {
+        let error = point.position.z - point.position.x.abs();
+        let noise = point.noise.total().sqrt() * point.per_pixel.z.abs();
+        count += 1.0;
+        held += f64::from(u8::from(
+            error.abs() < 1.96 * point.uncertainty_along(DVec3::Z),
+        ));
+        by_noise += f64::from(u8::from(error.abs() < 1.96 * noise));
+        // What the shift leaves is noise of the sensor and of 32 samples of a pixel.
+        left += ((error - point.indirect.shift * point.per_pixel.z) / noise).powi(2);
+        if point.position.x.abs() < 1e-3 {
+            assert!(
+                (0.6..0.95).contains(&point.indirect.fraction),
+                "{:?}",
+                point.indirect
+            );
+        }
+    }
+    let ratios = [held, by_noise, left].map(|sum| sum / count);
+    assert!(count > 150.0 && ratios[0] > 0.95, "{ratios:?}");
+    assert!(ratios[1] < 0.5, "by noise alone far too few: {ratios:?}");
+    assert!(ratios[2] < 4.0, "the shift is the error: {ratios:?}");
+    let alone = scene(&[-8]);
+    assert!(!alone.points.is_empty(), "one wall is seen");
+    for point in &alone.points {
+        assert_eq!(point.indirect, IndirectLight::default(), "one wall alone");
+    }
+}
+
 /// A correlation that falls to a half from column to column, and to a quarter from frame to frame.
 struct Halving;
 
@@ -178,7 +243,10 @@ impl SpeckleCorrelation for Halving {
 
 #[test]
 fn a_mean_is_as_uncertain_as_its_correlations_say() {
-    let points = [point(0, DVec3::ZERO), point(1, 2e-3 * DVec3::Z)];
+    let mut points = [point(0, DVec3::ZERO), point(1, 2e-3 * DVec3::Z)];
+    for (point, shift) in points.iter_mut().zip([0.2, 0.4]) {
+        point.indirect.shift = shift;
+    }
     let members: Vec<_> = [0, 1]
         .iter()
         .flat_map(|&f| points.iter().map(move |p| (f, p)))
@@ -190,9 +258,10 @@ fn a_mean_is_as_uncertain_as_its_correlations_say() {
     assert!((mean.noise.shot - 0.0025 / 4.0).abs() < 1e-15);
     // The response of a pixel stays over frames: two columns average.
     assert!((mean.noise.prnu - 0.01 / 2.0).abs() < 1e-15);
+    // Indirect light moves all alike.
     let up = mean.uncertainty_along(DVec3::Z);
     assert!(
-        (up - 1e-5 * mean.noise.total().sqrt()).abs() < 1e-18,
+        (up - 1e-5 * mean.noise.total().sqrt().hypot(0.3)).abs() < 1e-18,
         "{up}"
     );
 }
@@ -363,7 +432,7 @@ fn frame_with_slivers() -> MeasuredFrame {
     let mut measured = measured(&text);
     measured.scene.render.samples_per_pixel = 64;
     let measurement = Measurement::new(measured).unwrap();
-    let cancel = core::sync::atomic::AtomicBool::new(false);
+    let cancel = AtomicBool::new(false);
     measurement.measure(None, 0, |_| (), &cancel).unwrap()
 }
 

@@ -51,7 +51,7 @@ pub(super) fn images(map: &HeightMap) -> impl Iterator<Item = MapImage> {
 const HEADINGS: &str = "column,line,x_pixel,y_pixel,width_pixel,intensity_dn,validity,\
                         x_m,y_m,z_m,height_m,u_x_m,u_y_m,u_z_m,u_height_m,u_position_pixel,\
                         u_speckle_pixel,u_shot_pixel,u_dark_pixel,u_quantisation_pixel,u_prnu_pixel,\
-                        u_dsnu_pixel,u_calibration_height_m";
+                        u_dsnu_pixel,u_calibration_height_m,u_indirect_pixel,indirect_fraction";
 
 impl Files {
     /// Makes sure, before the work, that files can be written.
@@ -197,7 +197,7 @@ fn row(point: &MeasuredPoint, height: DVec3) -> String {
         .chain(uncertainty.to_array())
         .chain([point.uncertainty_along(height)]);
     let places = [
-        noise.total(),
+        point.position_uncertainty().powi(2),
         noise.speckle,
         noise.shot,
         noise.dark,
@@ -208,10 +208,14 @@ fn row(point: &MeasuredPoint, height: DVec3) -> String {
     let numbers: Vec<String> = lengths
         .map(|length| format!("{length:.9e}"))
         .chain(places.map(|variance| format!("{:.4e}", variance.sqrt())))
-        .chain([format!(
-            "{:.4e}",
-            point.calibration_uncertainty_along(height)
-        )])
+        .chain(
+            [
+                point.calibration_uncertainty_along(height),
+                point.indirect.shift.abs(),
+                point.indirect.fraction,
+            ]
+            .map(|number| format!("{number:.4e}")),
+        )
         .collect();
     format!(
         "{},{},{:.4},{:.5},{:.4},{:.2},{},{}",

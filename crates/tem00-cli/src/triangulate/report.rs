@@ -56,6 +56,9 @@ pub(super) fn report(job: &Job<'_>, measured: &Measured) -> Result<Report, Failu
     match &measured.terms {
         Ok(terms) => {
             report.verdict(terms.verdict());
+            for line in terms.notes_of_indirect_light() {
+                report.verdict(line);
+            }
             let average = job.measurement.settings().average;
             measured
                 .speckle_sentence(average)
@@ -150,6 +153,8 @@ fn uncertainty(
     section
         .under("uncertainty")
         .data("points", terms.points)
+        .data("indirect_points", terms.indirect)
+        .data("points_of_indirect_light_alone", terms.alone)
         .table(terms.table())
         .data("combined", terms.combined)
         .data("expanded", terms.expanded)

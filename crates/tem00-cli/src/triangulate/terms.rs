@@ -1,7 +1,7 @@
 //! The terms of the height uncertainty, over all points.
 
 use tem00_scan::MeasuredPoint;
-use tem00_triangulation::{DVec3, PositionNoise, UncertaintySource};
+use tem00_triangulation::{DVec3, UncertaintySource};
 
 use crate::report::{
     Cell, Column, Table,
@@ -26,6 +26,10 @@ pub(super) struct Term {
 pub(super) struct Terms {
     /// The number of valid points.
     pub(super) points: usize,
+    /// The part of them in whose light a tenth or more met a second surface.
+    pub(super) indirect: f64,
+    /// The number of valid points on lines of such light alone, which the terms leave out.
+    pub(super) alone: usize,
     /// Each term.
     pub(super) terms: Vec<Term>,
     /// The combined standard uncertainty of a height, in metres.
@@ -37,26 +41,37 @@ pub(super) struct Terms {
 /// The coverage factor of 95 % of a normal distribution.
 const COVERAGE: f64 = 1.96;
 
-/// A term of the noise of a position, in square pixels.
-type Variance = fn(&PositionNoise) -> f64;
+/// A term of the variance of a position, in square pixels.
+type Variance = fn(&MeasuredPoint) -> f64;
 
-/// The terms of the noise of a position, by name.
-const NOISE: [(&str, Variance); 6] = [
-    ("speckle", |noise| noise.speckle),
-    ("shot noise", |noise| noise.shot),
-    ("dark noise", |noise| noise.dark),
-    ("quantisation", |noise| noise.quantisation),
-    ("PRNU", |noise| noise.prnu),
-    ("DSNU", |noise| noise.dsnu),
+/// The terms of the variance of a position, by name.
+const OF_POSITION: [(&str, Variance); 7] = [
+    ("speckle", |point| point.noise.speckle),
+    ("shot noise", |point| point.noise.shot),
+    ("dark noise", |point| point.noise.dark),
+    ("quantisation", |point| point.noise.quantisation),
+    ("PRNU", |point| point.noise.prnu),
+    ("DSNU", |point| point.noise.dsnu),
+    (INDIRECT, |point| point.indirect.shift.powi(2)),
 ];
 
-/// The term that is not noise of a position.
+/// The term of light that met a second surface, which is no noise.
+const INDIRECT: &str = "indirect light";
+
+/// The term that is not of a position.
 const CALIBRATION: &str = "calibration";
+
+/// The part of indirect light in a line from which on a point is counted.
+const MUCH: f64 = 0.1;
 
 impl Terms {
     /// Sums up the terms of all valid points for heights along a direction; `None` if there is none.
     pub(super) fn of(profiles: &[Vec<MeasuredPoint>], height: DVec3) -> Option<Self> {
-        let valid = || profiles.iter().flatten().filter(|point| point.is_valid());
+        let all = || profiles.iter().flatten().filter(|point| point.is_valid());
+        let found = all().count();
+        // Their errors are as large as the part, and would be all that a mean square shows.
+        let alone = all().filter(|point| point.indirect.alone).count();
+        let valid = || all().filter(|point| alone == found || !point.indirect.alone);
         let points = valid().count();
         if points == 0 {
             return None;
@@ -65,14 +80,14 @@ impl Terms {
             let count = points as f64;
             valid().map(term).sum::<f64>() / count
         };
-        let mut terms: Vec<Term> = NOISE
+        let mut terms: Vec<Term> = OF_POSITION
             .iter()
             .map(|(name, of)| {
                 let per_pixel = |point: &MeasuredPoint| point.per_pixel.dot(height).powi(2);
-                let variance = mean(&|point| of(&point.noise) * per_pixel(point));
+                let variance = mean(&|point| of(point) * per_pixel(point));
                 Term {
                     name,
-                    position: Some(mean(&|point| of(&point.noise)).sqrt()),
+                    position: Some(mean(of).sqrt()),
                     height: variance.sqrt(),
                     variance_fraction: 0.0,
                 }
@@ -89,8 +104,11 @@ impl Terms {
         for term in terms.iter_mut().filter(|_| variance > 0.0) {
             term.variance_fraction = term.height.powi(2) / variance;
         }
+        let has_much = |point: &MeasuredPoint| f64::from(u8::from(point.indirect.fraction >= MUCH));
         Some(Self {
             points,
+            indirect: mean(&has_much),
+            alone,
             terms,
             combined: variance.sqrt(),
             expanded: COVERAGE * variance.sqrt(),
@@ -119,6 +137,25 @@ impl Terms {
             MICROMETRES.with_digits(3).text(self.expanded),
             self.points,
         )
+    }
+
+    /// Tells of light that met a second surface, where there is much.
+    pub(super) fn notes_of_indirect_light(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if self.indirect > 0.0 {
+            lines.push(format!(
+                "In {} of the points a tenth or more of the light came by a second surface. No repetition shows what \
+                 that moves them by; u has it, as the render knows it.",
+                PERCENT.with_digits(2).text(self.indirect)
+            ));
+        }
+        if self.alone > 0 {
+            lines.push(format!(
+                "Points on lines of such light alone, left out of U: {}.",
+                self.alone
+            ));
+        }
+        lines
     }
 
     /// Returns the terms as a table.
@@ -151,6 +188,9 @@ impl Terms {
 
 /// Returns what lowers a term.
 fn remedy(name: &str) -> &'static str {
+    if name == INDIRECT {
+        return "another pose, a duller surface or a smaller window lower it; averages do not";
+    }
     let mut sources = UncertaintySource::ALL.into_iter();
     let source = sources.find(|source| source.name() == name);
     source.map_or("", UncertaintySource::remedy)
@@ -168,7 +208,7 @@ mod tests {
 
     #[test]
     fn every_term_has_a_remedy() {
-        for (name, _) in NOISE {
+        for (name, _) in OF_POSITION {
             assert!(!remedy(name).is_empty(), "{name}");
         }
         assert!(!remedy(CALIBRATION).is_empty(), "{CALIBRATION}");

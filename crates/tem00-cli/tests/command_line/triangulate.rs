@@ -101,6 +101,29 @@ fn a_scan_leaves_all_its_files() {
 }
 
 #[test]
+fn light_of_a_second_surface_is_told() {
+    // A wall along the scan at the end of a plate.
+    let wall = "[[surface]]\nlambertian.reflectance = 0.9\n\
+                rectangle = { centre = [0, 0, \"10 mm\"], normal = [-1, 0, 0], size = [\"80 mm\", \"20 mm\"] }\n[sensor]";
+    let with_wall = SCAN.replacen("[sensor]", wall, 1);
+    for (scene, is_told) in [(SCAN, false), (&*with_wall, true)] {
+        let folder = written(scene);
+        let output = run(folder.path(), "triangulate a.toml --frames 1 --spp 16");
+        assert_code(&output, 0);
+        let table = text(&output.stdout);
+        assert!(table.contains("indirect light"), "{table}");
+        assert_eq!(
+            table.contains("came by a second surface"),
+            is_told,
+            "{table}"
+        );
+        let found = &record(&folder.path().join("out/a"))["uncertainty"]["indirect_points"];
+        let fraction = found.as_f64().expect("a fraction");
+        assert_eq!(fraction > 0.02, is_told, "{fraction}");
+    }
+}
+
+#[test]
 fn profiles_are_tables_with_uncertainties() {
     let folder = written(SCAN);
     let output = run(folder.path(), "triangulate a.toml --frames 1 -o r --spp 8");

@@ -156,6 +156,7 @@ impl<'a> SetupSensor<'a> {
         let without_speckle = sums(&light, parts);
         Ok(Exposure {
             electrons: image.speckled_light(seed, &light)?,
+            multiple: Grid::filled(size[0], size[1], 0.0),
             coherent: without_speckle.clone(),
             without_speckle,
         })

@@ -37,7 +37,9 @@ impl Values {
         aperture: &Aperture<'_>,
     ) -> Result<Self, GpuError> {
         let extent = aperture.extent();
+        // The kernel counts phasors from the origin of the seed.
         let seeded = field.seed().zip(field.phasors());
+        let seeded = seeded.filter(|_| field.origin() == [0; 2]);
         Ok(Self {
             buffer: storage(gpu, "the pupil", 8 * (extent[0] * extent[1]) as u64)?,
             extent,

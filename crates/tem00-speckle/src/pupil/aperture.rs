@@ -29,7 +29,8 @@ const ZERO: Complex<f32> = Complex::new(0.0, 0.0);
 /// ```
 ///
 /// with the [`transmission`](Self::transmission) t, or 1, and the phasor P of word kx of the `ChaCha8` stream ky, both of
-/// the lattice point nearest to the origin on a lattice that closes after [`period`](Self::period). With its box at the
+/// the lattice point nearest to the origin on a lattice that closes after [`period`](Self::period), and farther by the
+/// [`origin`](PupilField::origin) of the field. With its box at the
 /// corner of an array of W × H zeros it transforms to the pattern and, about zero frequency, to the amplitude:
 ///
 /// ```text

@@ -244,6 +244,34 @@ impl PupilField {
         self
     }
 
+    /// Returns the same field about a pupil that rests `points` lattice points farther along each axis.
+    ///
+    /// A stack of it holds another part of a path than a stack of the field itself. Where both hold the same
+    /// slices, they hold the same speckle.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use tem00_speckle::PupilField;
+    ///
+    /// let field = PupilField::new(64, 16, 7)?;
+    /// // Two diameters of the pupil.
+    /// let farther = field.clone().displaced([32, 0]);
+    /// assert_eq!(farther.pattern(), field.pattern_at([2.0, 0.0], 0.0));
+    /// # Ok::<(), tem00_speckle::SpeckleError>(())
+    /// ```
+    #[must_use]
+    pub fn displaced(mut self, points: [i64; 2]) -> Self {
+        self.lattice = self.lattice.displaced(points);
+        self
+    }
+
+    /// Returns the lattice point of the phasors or samples at which the pupil rests: the origin unless the field
+    /// has been [displaced](Self::displaced).
+    pub const fn origin(&self) -> [i64; 2] {
+        self.lattice.origin
+    }
+
     /// Returns the same field on a lattice that closes after `period` points along each axis.
     pub(crate) const fn closed(mut self, period: [i64; 2]) -> Self {
         self.lattice.period = period;

@@ -12,12 +12,14 @@ use crate::Phasors;
 
 /// A field on the points of a torus, of so many points along each axis.
 ///
-/// On a torus of P points the point k shows what lies at the representative of k in [−P/2, P/2), so
-/// that the surroundings of the origin are the same for every P.
+/// On a torus of P points the point k shows what the source has at the representative of k in [−P/2, P/2),
+/// counted from the origin, so that the surroundings of the origin are the same for every P.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Lattice {
     pub(crate) source: Source,
     pub(crate) period: [i64; 2],
+    /// The point of the source at which the pupil rests.
+    pub(crate) origin: [i64; 2],
 }
 
 /// Source of the values at the lattice points.
@@ -56,7 +58,19 @@ impl Lattice {
         Self {
             source,
             period: [Self::SIDE; 2],
+            origin: [0; 2],
         }
+    }
+
+    /// The same lattice about a point so far from its origin.
+    pub(crate) const fn displaced(mut self, [x, y]: [i64; 2]) -> Self {
+        let [x0, y0] = self.origin;
+        // 2³² points lead back.
+        self.origin = [
+            nearest(x0.wrapping_add(x), Self::SIDE),
+            nearest(y0.wrapping_add(y), Self::SIDE),
+        ];
+        self
     }
 
     /// Fills `row` with the values at (kx, ky), (kx + 1, ky), …
@@ -65,15 +79,14 @@ impl Lattice {
         let end = (self.period[0] + 1) / 2;
         let (mut start, mut rest) = (kx, row);
         while !rest.is_empty() {
-            // Words run on from −1 to 2³², not to 0: a run ends there.
-            let stop = if start < 0 { 0 } else { end };
-            let length = usize::try_from(stop - start).unwrap_or(usize::MAX);
+            let length = usize::try_from(end - start).unwrap_or(usize::MAX);
             let (run, tail) = rest.split_at_mut(length.min(rest.len()));
+            let point = [start + self.origin[0], ky + self.origin[1]];
             match &self.source {
-                Source::Seeded(seeded) => seeded.fill_run([start, ky], run),
-                Source::Measured(samples) => copy_run(samples, [start, ky], run),
+                Source::Seeded(seeded) => seeded.fill_run(point, run),
+                Source::Measured(samples) => copy_run(samples, point, run),
             }
-            start = if start < 0 { 0 } else { end - self.period[0] };
+            start = end - self.period[0];
             rest = tail;
         }
     }
@@ -85,7 +98,7 @@ impl Lattice {
 }
 
 /// The representative of k modulo `period` in [−period/2, period/2).
-fn nearest(k: i64, period: i64) -> i64 {
+const fn nearest(k: i64, period: i64) -> i64 {
     let k = k.rem_euclid(period);
     if k < period - k { k } else { k - period }
 }
@@ -108,7 +121,7 @@ fn copy_run(samples: &Grid<Complex<f32>>, [kx, ky]: [i64; 2], run: &mut [Complex
 }
 
 impl Seeded {
-    /// Fills a run of phasors that does not pass from negative kx to others.
+    /// Fills a run of phasors.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -119,6 +132,10 @@ impl Seeded {
             return;
         }
         let (word, stream) = (kx as u32, u64::from(ky as u32));
+        // The generator runs on from word 2³² − 1 to 2³², not to 0.
+        let length = usize::try_from(Lattice::SIDE - i64::from(word)).unwrap_or(usize::MAX);
+        let (run, beyond) = run.split_at_mut(length.min(run.len()));
+        self.fill_run([0, ky], beyond);
         self.for_each_word(stream, word, run, |value, word| {
             *value = unit_phasor(word);
         });
@@ -378,6 +395,22 @@ mod tests {
             let closed = row(&torus(3, [period; 2]), [-8, -8], 16);
             assert_eq!(closed, row(&lattice(3), [-8, -8], 16), "period {period}");
         }
+    }
+
+    #[test]
+    fn a_displaced_lattice_has_the_phasors_of_another_place() {
+        let here = |start: [i64; 2]| row(&lattice(7), start, 40);
+        for origin in [[1_000, -3], [-1_000, 5], [1 << 31, 0], [(1 << 40) + 9, -1]] {
+            for start in [[-20, 2], [-1_010, -2], [(1 << 31) - 9, 0]] {
+                let there = here([0, 1].map(|axis| start[axis] + origin[axis]));
+                let displaced = lattice(7).displaced(origin);
+                assert_eq!(row(&displaced, start, 40), there, "{start:?} by {origin:?}");
+            }
+        }
+        // One that closes keeps what lies around its origin.
+        let closed = torus(7, [64, 16]).displaced([500, 0]);
+        assert_eq!(row(&closed, [-20, 2], 40), here([480, 2]));
+        assert_eq!(row(&closed, [44, 18], 40), here([480, 2]));
     }
 
     #[test]

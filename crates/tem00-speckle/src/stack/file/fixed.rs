@@ -44,6 +44,7 @@ pub(super) struct Fixed {
     pub(super) samples: [u32; 2],
     pub(super) pupil: PupilKind,
     pub(super) transmission: [u32; 2],
+    pub(super) origin: [i64; 2],
 }
 
 impl Fixed {
@@ -86,6 +87,7 @@ impl Fixed {
         let samples = [entries.u32()?, entries.u32()?];
         let pupil = pupil_of(entries.u32()?, entries.u32()?, entries.f64()?)?;
         let transmission = [entries.u32()?, entries.u32()?];
+        let origin = [entries.i64()?, entries.i64()?];
         Ok(Self {
             bytes,
             checksum,
@@ -100,6 +102,7 @@ impl Fixed {
             samples,
             pupil,
             transmission,
+            origin,
         })
     }
 

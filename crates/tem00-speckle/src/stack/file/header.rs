@@ -31,6 +31,8 @@ impl Header {
         write_layout(&mut body, stack);
         write_source(&mut body, &stack.field);
         write_pupil(&mut body, stack.field.pupil());
+        let [x, y] = stack.field.origin();
+        body.i64(x).i64(y);
         body.bytes.resize(FIXED - PROLOGUE - 8, 0);
         write_slices(&mut body, stack);
         if let Pupil::Sampled(transmission) = stack.field.pupil() {
@@ -92,8 +94,8 @@ impl Header {
         };
         fixed.path.check()?;
         let lattice = Lattice {
-            source,
             period: fixed.period,
+            ..Lattice::endless(source).displaced(fixed.origin)
         };
         let field = PupilField::restore(lattice, fixed.layout, pupil)?;
         Ok(fixed.path.close(&field))

@@ -65,6 +65,7 @@ proptest! {
         };
         let phasors = if source == 0 { Phasors::Unit } else { Phasors::Gaussian };
         let field = field.with_phasors(phasors).with_pupil(pupils()[pupil].clone()).unwrap();
+        let field = field.displaced([[0, 0], [3, -1]][kind % 2]);
         let path = [
             SlicePath::Still,
             SlicePath::Circle { half_period: 2 },

@@ -70,8 +70,8 @@ pub use scene::{Scene, SpeckleSettings, Surface, SurfaceSpeckle};
 
 pub use shape::{Cylinder, Hit, MeshInstance, Rectangle, Shape, Sphere};
 pub use speckle::{
-    CascadeNote, PatternPlan, ReferencePoint, RoughnessNote, SpeckleChange, SpeckleModel,
-    SpecklePlan,
+    CascadeNote, CorrelationNote, PatternPlan, ReferencePoint, RoughnessNote, SpeckleChange,
+    SpeckleModel, SpecklePlan,
 };
 pub use trajectory::{Keyframe, Rotation, Trajectory};
 

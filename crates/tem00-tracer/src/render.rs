@@ -11,7 +11,7 @@ pub use self::options::{
 };
 use self::pass::PathPass;
 use crate::{
-    FilterSampler, Frame, Intersector, Scene, SpeckleModel,
+    FilterSampler, Frame, Intersector, Scene, SpeckleModel, TracerError,
     integrator::Integrator,
     light_tracer::{LightJob, LightSelection, LightTracer},
     survey::Survey,
@@ -73,7 +73,7 @@ pub fn render_frame(
     let area = options.area(&scene.camera)?;
     let intersector = Intersector::build(&scene.shapes_at(frame))?;
     let speckle = speckle.map(|model| {
-        let speckle = model.in_frame(scene, frame);
+        let speckle = model.in_frame(scene, frame)?;
         let map = scene.asks_for_survey(frame, options).then(|| {
             let survey = Survey {
                 scene,
@@ -86,8 +86,9 @@ pub fn render_frame(
             };
             survey.map()
         });
-        speckle.with_multiple_light(map.flatten())
+        Ok::<_, TracerError>(speckle.with_multiple_light(map.flatten()))
     });
+    let speckle = speckle.transpose()?;
     let integrator =
         Integrator::new(scene, frame, &intersector, options).with_speckle(speckle.as_ref());
     let selection = light_traced(scene, options);

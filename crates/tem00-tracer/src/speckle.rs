@@ -5,6 +5,7 @@ mod axial_loss;
 mod bandwidth;
 mod between_frames;
 mod change;
+mod crossing;
 mod model;
 mod multiple;
 mod notes;
@@ -18,6 +19,7 @@ use glam::{DVec2, DVec3};
 
 pub use between_frames::{ReferencePoint, SpeckleChange};
 pub(crate) use change::Change;
+pub use crossing::CorrelationNote;
 pub(crate) use model::SpeckleFrame;
 pub use model::SpeckleModel;
 pub(crate) use multiple::{Lattice, LightKey, MultipleMap, MultiplePath, MultipleSums};

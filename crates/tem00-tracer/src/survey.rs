@@ -71,14 +71,15 @@ impl SpecklePlan {
     /// Chooses the patterns for a scene.
     ///
     /// Each is the [`StackPlan`](tem00_speckle::StackPlan) for the image, the part of the scene that moves into it, and the
-    /// longest way by which the frames carry the pupil. What the scene file sets is kept. What the
-    /// motion asks for beyond the memory is left out, and said so.
+    /// longest way by which the frames carry the pupil: rays find it in every frame. Where the slices of all frames do not
+    /// fit the memory, or do not lie along one line, each frame has slices of its own, a part of a path without end. What
+    /// the scene file sets is kept.
     ///
     /// # Errors
     ///
     /// Returns an error if C exceeds Q/2, if the imaging geometry is not possible, if the speckle of
-    /// a surface is not a sum of patterns, or if the patterns do not fit the memory that the scene
-    /// allows.
+    /// a surface is not a sum of patterns, if something moves in more than 262,144 frames, or if the patterns of no frame
+    /// fit the memory that the scene allows.
     pub fn new(scene: &Scene, formulas: Formulas, seed: u64) -> Result<Self, TracerError> {
         let options = RenderOptions {
             formulas,

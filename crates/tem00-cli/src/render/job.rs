@@ -118,6 +118,9 @@ impl<'a> Render<'a> {
         for line in cascades.map_err(|error| tracer_failure(&self.args.common.scene, &error))? {
             note(&format!("speckle: {line}"));
         }
+        for line in plan.correlation_notes() {
+            note(&format!("speckle: {line}"));
+        }
         let model = SpeckleModel::generate(&self.scene, plan)
             .map_err(|error| tracer_failure(&self.args.common.scene, &error))?;
         interrupt::check()?;

@@ -119,6 +119,9 @@ impl<'a> Job<'a> {
         let refused = |error| tracer_failure(&self.args.common.scene, &error);
         let plan =
             SpecklePlan::new(scene, Formulas::Derived, scene.render.seed).map_err(refused)?;
+        for line in plan.correlation_notes() {
+            output::note(&format!("speckle: {line}"));
+        }
         let model = SpeckleModel::generate(scene, &plan).map_err(refused)?;
         interrupt::check()?;
         Ok(Some(model))

@@ -1,5 +1,6 @@
 //! Allocation of patterns to the surfaces of a scene, so that none shows the speckle of another.
 
+use tem00_numerics::cast::to_i64;
 use tem00_speckle::{SpeckleError, StackNeeds, StackPlan};
 
 use crate::TracerError;
@@ -10,10 +11,32 @@ pub(super) struct Request {
     pub needs: StackNeeds,
     /// The largest motion of the pupil to either side of the reference frame, in its diameters.
     pub shifts: [f64; 2],
+    /// What each frame asks for, where one can have slices of its own.
+    pub frames: Option<FrameRequest>,
     /// The number of independent patterns that add up.
     pub parts: usize,
     /// The surfaces.
     pub surfaces: Vec<usize>,
+}
+
+/// Requirements of single frames on their slices of a path that has no end.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct FrameRequest {
+    /// Width and height of what frames look up from slices that they share, in pixels.
+    pub region: [f64; 2],
+    /// Where each frame looks up along the path, in pupil diameters: from and to.
+    pub spans: Vec<[f64; 2]>,
+    /// How far across it, where frames do not have one line.
+    pub across: Option<Vec<f64>>,
+}
+
+/// A stack for a request.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Choice {
+    stack: StackPlan,
+    needs: StackNeeds,
+    /// Whether each frame has slices of its own.
+    by_frame: bool,
 }
 
 /// Patterns of one size for surfaces that move alike, or for all that share it.
@@ -24,6 +47,9 @@ pub(super) struct PatternAllocation {
     /// The largest motion of the pupil to either side of the reference frame, in its diameters.
     pub shifts: [f64; 2],
     pub stack: StackPlan,
+    /// The lattice points about which the slices of each frame lie, whole diameters along the path; empty where one stack
+    /// holds those of all frames.
+    pub middles: Vec<[i64; 2]>,
     /// The number of stacks.
     pub count: usize,
     /// The number of positions in each stack: more than one if the memory does not hold a stack for
@@ -45,6 +71,9 @@ impl PatternAllocation {
     ///
     /// Where the path is too short for both, each gets its part of it.
     pub(super) fn reaches(&self) -> [f64; 2] {
+        if !self.middles.is_empty() {
+            return [f64::INFINITY; 2];
+        }
         let reach = self.stack.reach();
         let [before, after] = self.shifts;
         if before == 0.0 || after == 0.0 {
@@ -69,6 +98,119 @@ pub(super) struct Part {
 /// in one with more slices: the blend between them then exceeds the correlation law by up to 0.11.
 const ENOUGH_SLICES: f64 = 16.0;
 
+/// The path that the slices of a frame hold beyond its span, in pupil diameters: half a one to either side, as they lie
+/// about a whole one, and a quarter for points that no ray has met.
+const MARGIN: f64 = 1.5;
+
+impl Choice {
+    /// Returns the same with what the scene file asks for.
+    fn asked(self, asked: impl Fn(StackPlan) -> StackPlan) -> Self {
+        Self {
+            stack: asked(self.stack),
+            ..self
+        }
+    }
+}
+
+impl FrameRequest {
+    /// Returns the requirements of the frame that asks for most.
+    fn needs(&self, whole: &StackNeeds) -> StackNeeds {
+        let spans = self.spans.iter().map(|[low, high]| high - low);
+        StackNeeds {
+            region: self.region,
+            motion: whole.motion.map(|_| MARGIN + spans.fold(0.0, f64::max)),
+            // Of two frames the second, too, has a path as long as it needs.
+            frames: u32::MAX,
+            ..*whole
+        }
+    }
+
+    /// Returns the requirements of both.
+    fn with(mut self, other: &Self) -> Self {
+        for axis in [0, 1] {
+            self.region[axis] = self.region[axis].max(other.region[axis]);
+        }
+        for ([low, high], [from, to]) in self.spans.iter_mut().zip(&other.spans) {
+            (*low, *high) = (low.min(*from), high.max(*to));
+        }
+        self
+    }
+
+    fn middles(&self, stack: &StackPlan) -> Vec<[i64; 2]> {
+        let [along, across] = stack.diameter().map(|diameter| diameter as f64);
+        let middle = |(frame, [low, high]): (usize, &[f64; 2])| {
+            let beside = self.across.as_ref().map_or(0.0, |frames| frames[frame]);
+            let diameters = (0.5 * (low + high)).round();
+            [diameters * along, beside * across].map(|points| to_i64(points.round()))
+        };
+        self.spans.iter().enumerate().map(middle).collect()
+    }
+}
+
+impl Request {
+    /// Returns the stacks that hold all that is asked for, the best first.
+    ///
+    /// A stack for all frames comes before one for each with as many slices per diameter.
+    fn choices(&self) -> Result<Vec<Choice>, TracerError> {
+        let of = |needs: StackNeeds, by_frame: bool| {
+            let candidates = StackPlan::candidates(&needs)?.into_iter();
+            let holds =
+                move |stack: &StackPlan| self.frames.is_none() || stack.holds_motion(&needs);
+            let choice = move |stack| Choice {
+                stack,
+                needs,
+                by_frame,
+            };
+            Ok::<_, TracerError>(candidates.filter(holds).map(choice))
+        };
+        let mut choices: Vec<_> = of(self.needs, false)?.collect();
+        if let Some(frames) = &self.frames {
+            if frames.across.is_some() {
+                choices.clear();
+            }
+            choices.extend(of(frames.needs(&self.needs), true)?);
+            let slices = |c: &Choice| c.stack.slices_per_diameter();
+            let holds_region = |c: &Choice| c.stack.holds_region(&c.needs);
+            choices.sort_by(|a, b| {
+                let by_region = holds_region(b).cmp(&holds_region(a));
+                by_region.then(slices(b).total_cmp(&slices(a)))
+            });
+        }
+        Ok(choices)
+    }
+
+    fn allocation(&self, choice: &Choice, [count, positions]: [usize; 2]) -> PatternAllocation {
+        let frames = self.frames.as_ref().filter(|_| choice.by_frame);
+        PatternAllocation {
+            needs: StackNeeds {
+                motion: self.needs.motion,
+                ..choice.needs
+            },
+            shifts: self.shifts,
+            stack: choice.stack,
+            middles: frames.map_or_else(Vec::new, |frames| frames.middles(&choice.stack)),
+            count,
+            positions,
+            surfaces: self.surfaces.clone(),
+        }
+    }
+
+    /// Returns the requirements of both on one stack.
+    fn with(mut self, other: &Self) -> Self {
+        for axis in [0, 1] {
+            self.needs.region[axis] = self.needs.region[axis].max(other.needs.region[axis]);
+            self.shifts[axis] = self.shifts[axis].max(other.shifts[axis]);
+        }
+        let motion = self.needs.motion.or(other.needs.motion);
+        self.needs.motion = motion.map(|_| self.shifts[0] + self.shifts[1]);
+        let frames = self.frames.zip(other.frames.as_ref());
+        self.frames = frames.map(|(own, other)| own.with(other));
+        self.parts += other.parts;
+        self.surfaces.extend(&other.surfaces);
+        self
+    }
+}
+
 /// Allocates patterns to requests within a memory in bytes: a stack for each pattern, or else a position
 /// in one stack for all. `asked` makes of a plan what the scene file asks for.
 pub(super) fn allocate(
@@ -78,92 +220,61 @@ pub(super) fn allocate(
 ) -> Result<Vec<PatternAllocation>, TracerError> {
     let positions: usize = requests.iter().map(|request| request.parts).sum();
     if positions > 1
-        && let Some(stacks) = separate(requests, memory, &asked)?
+        && let Some(choices) = separate(requests, memory, &asked)?
     {
-        let pairs = requests.iter().zip(stacks);
-        return Ok(pairs
-            .map(|(request, stack)| PatternAllocation {
-                needs: request.needs,
-                shifts: request.shifts,
-                stack,
-                count: request.parts,
-                positions: 1,
-                surfaces: request.surfaces.clone(),
-            })
-            .collect());
+        let pairs = requests.iter().zip(&choices);
+        let allocations =
+            pairs.map(|(request, choice)| request.allocation(choice, [request.parts, 1]));
+        return Ok(allocations.collect());
     }
-    let (needs, shifts) = together(requests).ok_or(TracerError::Missing("a surface"))?;
-    let candidates = StackPlan::candidates(&needs)?.into_iter().map(asked);
-    let stack = StackPlan::first_within(candidates, memory).map_err(|error| match error {
+    let all = requests.iter().cloned();
+    let all = all.reduce(|all, request| all.with(&request));
+    let all = all.ok_or(TracerError::Missing("a surface"))?;
+    let choices: Vec<_> = all.choices()?.iter().map(|c| c.asked(&asked)).collect();
+    let stacks = choices.iter().map(|choice| choice.stack);
+    let stack = StackPlan::first_within(stacks, memory).map_err(|error| match error {
         SpeckleError::MemoryLimit { needed, limit } => TracerError::PatternMemory {
             needed,
             allowed: limit,
         },
         other => other.into(),
     })?;
-    Ok(vec![PatternAllocation {
-        needs,
-        shifts,
-        stack,
-        count: 1,
-        positions,
-        surfaces: requests.iter().flat_map(|r| r.surfaces.clone()).collect(),
-    }])
+    let first = choices.iter().find(|choice| choice.stack == stack);
+    let allocation = first.map(|choice| all.allocation(choice, [1, positions]));
+    Ok(allocation.into_iter().collect())
 }
 
-/// The best plans with which each request gets its own stacks, if there are good ones.
+/// The best stacks with which each request gets its own, if there are good ones.
 fn separate(
     requests: &[Request],
     memory: u64,
     asked: impl Fn(StackPlan) -> StackPlan,
-) -> Result<Option<Vec<StackPlan>>, TracerError> {
+) -> Result<Option<Vec<Choice>>, TracerError> {
+    let good = |Choice { stack, needs, .. }: &Choice| {
+        needs.motion.is_none()
+            || (stack.slices_per_diameter() >= ENOUGH_SLICES && stack.holds_motion(needs))
+    };
     let choices = requests
         .iter()
-        .map(|Request { needs, .. }| {
-            let good = |plan: &StackPlan| {
-                needs.motion.is_none()
-                    || (plan.slices_per_diameter() >= ENOUGH_SLICES && plan.holds_motion(needs))
-            };
-            Ok(StackPlan::candidates(needs)?
-                .into_iter()
-                .filter(good)
-                .collect())
-        })
-        .collect::<Result<Vec<Vec<_>>, TracerError>>()?;
+        .map(|request| Ok(request.choices()?.into_iter().filter(good).collect()))
+        .collect::<Result<Vec<Vec<Choice>>, TracerError>>()?;
     let levels = choices.iter().map(Vec::len).max().unwrap_or(0);
-    let plans = |level: usize| -> Option<Vec<StackPlan>> {
-        let plans = choices
-            .iter()
-            .map(|plans| plans.get(level).or(plans.last()));
-        plans.map(|plan| plan.copied().map(&asked)).collect()
+    let at = |level: usize| -> Option<Vec<Choice>> {
+        let choices = choices.iter();
+        let at_level = choices.map(|list| list.get(level).or(list.last()));
+        at_level.map(|choice| Some(choice?.asked(&asked))).collect()
     };
-    let fits = |plans: &Vec<StackPlan>| {
+    let fits = |choices: &Vec<Choice>| {
         let needed = requests
             .iter()
-            .zip(plans)
-            .fold(0_u64, |sum, (request, plan)| {
+            .zip(choices)
+            .fold(0_u64, |sum, (request, choice)| {
                 let stacks = u64::try_from(request.parts).unwrap_or(u64::MAX);
-                sum.saturating_add(plan.memory_bytes().saturating_mul(stacks))
+                sum.saturating_add(choice.stack.memory_bytes().saturating_mul(stacks))
             });
-        needed <= memory && plans.iter().all(|plan| plan.field(0).is_ok())
+        needed <= memory && choices.iter().all(|choice| choice.stack.field(0).is_ok())
     };
-    Ok((0..levels).filter_map(plans).find(fits))
-}
-
-/// Requirements of all requests on one stack.
-fn together(requests: &[Request]) -> Option<(StackNeeds, [f64; 2])> {
-    let requests = requests
-        .iter()
-        .map(|request| (request.needs, request.shifts));
-    requests.reduce(|(mut needs, mut shifts), (other, further)| {
-        for axis in [0, 1] {
-            needs.region[axis] = needs.region[axis].max(other.region[axis]);
-            shifts[axis] = shifts[axis].max(further[axis]);
-        }
-        let motion = needs.motion.or(other.motion);
-        needs.motion = motion.map(|_| shifts[0] + shifts[1]);
-        (needs, shifts)
-    })
+    Ok((0..levels).filter_map(at).find(fits))
 }
 
 /// Returns how far beside its own position a surface looks up a further pattern, in periods along x and y; 0 is its own.

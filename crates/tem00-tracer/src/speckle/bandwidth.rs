@@ -1,14 +1,17 @@
 //! What light that is not of one wavelength, or not from a point, asks of the speckle of a surface.
 
+use core::iter;
+
 use glam::DVec2;
 use rayon::prelude::*;
 use tem00_coherence::{PatternSum, PolychromaticSpeckle};
 use tem00_decorrelation::ImagingGeometry;
+use tem00_speckle::Complex;
 
 use super::{
     SpecklePoint,
-    change::{Change, ReferencePoint},
-    prescan::{LaserGroups, pixels_of},
+    change::{Change, ReferencePoint, SpectralShift},
+    prescan::{LaserGroups, RAYS_PER_SIDE, first_ray, pixels_of, rays_per_side},
 };
 use crate::{Intersector, Laser, Scene, TracerError};
 
@@ -17,24 +20,54 @@ use crate::{Intersector, Laser, Scene, TracerError};
 pub(super) struct Bandwidth {
     /// Heights that stand for the relief, in metres, with the roots of their fractions of the light. Their fields add.
     pub heights: Vec<[f64; 2]>,
-    /// The unit vector in the image, with y up, along which another wavelength displaces the pupil.
+    /// The unit vector in the image, with y up, along which another wavelength displaces the pupil, on the side to which
+    /// it moves farthest.
     pub axis: DVec2,
     /// The largest such displacement that the slices hold to either side, in pupil diameters.
     pub reach: f64,
-    /// The point that tells the motion of the pupil along the axis from that against it.
-    pub reference_point: ReferencePoint,
-    /// Whether something moves the pupil across the axis: frames then correlate as if it moved along.
-    pub is_crossed: bool,
+    /// The displacement in pupil diameters over the difference of wave numbers.
+    pub tilt: f64,
+    /// The change of the phase with the height, in radians per metre, over the difference of wave numbers.
+    pub phase_per_height: f64,
 }
 
 impl Bandwidth {
-    /// The same, beside the motion of a point.
+    /// The same beside the motion of a point: the axis leads to its side.
     pub(super) fn beside(&self, moving: Option<&ReferencePoint>) -> Self {
         let way = moving.map_or(DVec2::ZERO, ReferencePoint::way_across);
         Self {
-            is_crossed: way.perp_dot(self.axis).abs() > MAX_CROSSING,
+            axis: if way.dot(self.axis) < 0.0 {
+                -self.axis
+            } else {
+                self.axis
+            },
             ..self.clone()
         }
+    }
+
+    /// The same beside a motion that is followed along an axis.
+    pub(super) fn along(&self, axis: DVec2) -> Self {
+        Self {
+            axis,
+            ..self.clone()
+        }
+    }
+
+    /// Returns the difference of wave numbers over which the speckle changes.
+    pub(super) fn scale(&self) -> f64 {
+        let largest = self.heights.iter().map(|[height, _]| height.abs());
+        let phases = self.phase_per_height.abs() * largest.fold(0.0, f64::max);
+        self.tilt.max(phases).recip()
+    }
+
+    /// Returns the squared correlation that the heights leave of a difference of wave numbers.
+    pub(super) fn kept_by_heights(&self, kappa: f64) -> f64 {
+        let phase = |height: f64| Complex::cis(self.phase_per_height * kappa * height);
+        let fields = self.heights.iter();
+        let field: Complex<f64> = fields
+            .map(|[height, root]| phase(*height) * root * root)
+            .sum();
+        field.norm_sqr()
     }
 }
 
@@ -46,14 +79,6 @@ pub(super) struct SurfaceLight {
     pub bandwidth: Option<Bandwidth>,
 }
 
-/// The response of a point to the wave number, at its greatest among those that are seen.
-#[derive(Clone, Copy, Debug)]
-struct Response {
-    /// Displacement of the pupil in its diameters over the difference of wave numbers.
-    tilt: f64,
-    reference_point: ReferencePoint,
-}
-
 /// The spread of the wave number over that which displaces the pupil by its diameter, below which a contrast is above
 /// 0.999.
 const NEGLIGIBLE_TILT: f64 = 5e-4;
@@ -62,9 +87,6 @@ const NEGLIGIBLE_TILT: f64 = 5e-4;
 /// a path that closes, the rest finds speckle that is new to nearly all of the line.
 const LEFT_OUT: f64 = 5e-4;
 const MAX_REACH: f64 = 1.5;
-
-/// The largest motion across the axis in pupil diameters that changes no correlation by more than some 0.03.
-const MAX_CROSSING: f64 = 0.1;
 
 impl SurfaceLight {
     /// Light of one wavelength.
@@ -76,47 +98,68 @@ impl SurfaceLight {
     }
 }
 
-/// Follows rays of the reference frame to the points that the lasers light, and returns the light of each laser on
-/// each surface.
+/// Follows rays of the reference frame to what the camera sees, and returns the light of each laser on each surface. Those
+/// of other frames show surfaces that are not seen there.
 pub(super) fn laser_lights(
     scene: &Scene,
     laser_groups: LaserGroups<'_>,
 ) -> Result<Vec<Vec<SurfaceLight>>, TracerError> {
-    let single = vec![vec![SurfaceLight::single(); scene.surfaces.len()]; scene.lasers.len()];
-    if scene.lasers.iter().all(is_pure) {
-        return Ok(single);
+    let mut lights = vec![vec![None; scene.surfaces.len()]; scene.lasers.len()];
+    let others = if scene.moves() { 0..scene.frames } else { 0..0 };
+    let frames = iter::once(scene.reference_frame).chain(others);
+    let is_pure = scene.lasers.iter().all(is_pure);
+    for frame in frames.take_while(|_| !is_pure) {
+        if lights.iter().flatten().all(Option::is_some) {
+            break;
+        }
+        let change = Change::new(scene, frame);
+        let points = points_seen(scene, &change, frame)?;
+        lights
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(laser, lights)| {
+                let survey = Survey {
+                    scene,
+                    laser,
+                    geometry: &laser_groups.geometries[laser],
+                    change: &change,
+                };
+                for (surface, light) in lights.iter_mut().enumerate() {
+                    let points = points.iter().filter(|point| point.surface == surface);
+                    *light = light.take().or_else(|| survey.light(surface, points));
+                }
+            });
     }
-    let change = Change::new(scene, scene.reference_frame);
-    let intersector = Intersector::build(&scene.shapes_at(scene.reference_frame))?;
-    let points: Vec<SpecklePoint> = pixels_of(&scene.camera)
-        .filter_map(|pixel| {
-            let hit = intersector.intersect(&change.camera().ray(pixel))?;
-            Some(SpecklePoint {
-                pixel,
-                position: hit.position,
-                normal: hit.normal,
-                surface: hit.surface,
-                wave: 0.5,
-            })
+    let known = |light: Option<SurfaceLight>| light.unwrap_or_else(SurfaceLight::single);
+    let lights = lights.into_iter();
+    Ok(lights
+        .map(|lights| lights.into_iter().map(known).collect())
+        .collect())
+}
+
+/// The points that the camera sees.
+fn points_seen(
+    scene: &Scene,
+    change: &Change,
+    frame: u32,
+) -> Result<Vec<SpecklePoint>, TracerError> {
+    let intersector = Intersector::build(&scene.shapes_at(frame))?;
+    let side = match frame == scene.reference_frame {
+        true => RAYS_PER_SIDE,
+        false => rays_per_side(scene.frames),
+    };
+    let point = |pixel: DVec2| {
+        let hit = intersector.intersect(&change.camera().ray(pixel))?;
+        Some(SpecklePoint {
+            pixel,
+            position: hit.position,
+            normal: hit.normal,
+            surface: hit.surface,
+            wave: 0.5,
         })
-        .collect();
-    let lights = single
-        .into_par_iter()
-        .enumerate()
-        .map(|(laser, mut lights)| {
-            let survey = Survey {
-                scene,
-                laser,
-                geometry: &laser_groups.geometries[laser],
-                change: &change,
-            };
-            for (surface, light) in lights.iter_mut().enumerate() {
-                let points = points.iter().filter(|point| point.surface == surface);
-                *light = survey.light(surface, points);
-            }
-            lights
-        });
-    Ok(lights.collect())
+    };
+    let pixels = pixels_of(change.camera(), side, first_ray(change, side));
+    Ok(pixels.filter_map(point).collect())
 }
 
 /// Tells whether light is of one wavelength and from a point.
@@ -133,36 +176,30 @@ struct Survey<'a> {
 }
 
 impl Survey<'_> {
+    /// Returns the light on a surface of which these points are seen, if there are any.
     fn light<'p>(
         &self,
         surface: usize,
         points: impl Iterator<Item = &'p SpecklePoint>,
-    ) -> SurfaceLight {
+    ) -> Option<SurfaceLight> {
         let single = SurfaceLight::single();
         let laser = &self.scene.lasers[self.laser];
         if is_pure(laser) {
-            return single;
+            return Some(single);
         }
         let line = laser.spectral_line();
         let responses = points.filter_map(|point| Some((self.response(point)?, point)));
-        let farthest = responses.max_by(|a, b| a.0.tilt.total_cmp(&b.0.tilt));
-        let Some((
-            Response {
-                tilt,
-                reference_point,
-            },
-            point,
-        )) = farthest
-        else {
-            return single;
-        };
+        let tilt = |response: &SpectralShift| response.pupil.length();
+        let farthest = responses.max_by(|a, b| tilt(&a.0).total_cmp(&tilt(&b.0)));
+        let (response, point) = farthest?;
+        let tilt = tilt(&response);
         // The point of the greatest tilt stands for all: q changes by little over a surface.
         let cell = self
             .change
             .resolution_cell(self.laser, self.geometry, point);
         let relief = self.scene.surfaces[surface].relief;
         let Some(cell) = cell.and_then(|cell| cell.with_relief(relief).ok()) else {
-            return single;
+            return Some(single);
         };
         let cell = cell.with_source_extent(laser.source_extent().clone());
         let speckle = PolychromaticSpeckle { line, cell: &cell };
@@ -170,39 +207,35 @@ impl Survey<'_> {
             speckle.patterns(|speckle| speckle.contrast().powi(2));
         let is_flat = line.effective_spread() * tilt < NEGLIGIBLE_TILT && heights.len() == 1;
         if heights.is_empty() || is_flat {
-            return SurfaceLight {
+            return Some(SurfaceLight {
                 modes: fractions,
                 bandwidth: None,
-            };
+            });
         }
         let farthest = line.draw(1.0 - LEFT_OUT).max(-line.draw(LEFT_OUT));
-        SurfaceLight {
+        Some(SurfaceLight {
             modes: fractions,
             bandwidth: Some(Bandwidth {
                 heights,
-                axis: reference_point
-                    .way_across()
-                    .try_normalize()
-                    .unwrap_or(DVec2::X),
+                axis: response.pupil.try_normalize().unwrap_or(DVec2::X),
                 reach: (tilt * farthest).min(MAX_REACH),
-                reference_point,
-                is_crossed: false,
+                tilt,
+                phase_per_height: response.phase_per_height,
             }),
-        }
+        })
     }
 
-    fn response(&self, point: &SpecklePoint) -> Option<Response> {
+    /// Returns the change of the speckle of a point over the difference of wave numbers.
+    fn response(&self, point: &SpecklePoint) -> Option<SpectralShift> {
         // Small against every linewidth that counts, and large against rounding.
         let kappa = 1e-6 * self.scene.lasers[self.laser].spectral_line().wave_number();
         let shift = self
             .change
             .spectral_shift(self.laser, self.geometry, point, kappa)?;
-        let reference_point = self
-            .change
-            .reference_point_along(point, shift.pupil.extend(0.0))?;
-        Some(Response {
-            tilt: shift.pupil.length() / kappa,
-            reference_point,
+        Some(SpectralShift {
+            displacement: shift.displacement / kappa,
+            pupil: shift.pupil / kappa,
+            phase_per_height: shift.phase_per_height / kappa,
         })
     }
 }

@@ -52,8 +52,8 @@ impl SpeckleChange {
     /// # Validity
     ///
     /// Two later frames of a render, neither of them its reference, have both changed from a third one.
-    /// Their displacement is the difference of two; they correlate as said here where the pupil has
-    /// moved across its speckle steadily, and else only about so.
+    /// Their displacement is the difference of two. They correlate as said here, within 0.05 and what the blend of two
+    /// slices adds, unless [`SpecklePlan::correlation_notes`](crate::SpecklePlan::correlation_notes) has a note.
     ///
     /// # Panics
     ///

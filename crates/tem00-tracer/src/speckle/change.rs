@@ -160,14 +160,7 @@ impl Change {
         reference_point: Option<&ReferencePoint>,
     ) -> f64 {
         let along = reference_point.and_then(|reference_point| {
-            let body = self.surfaces.get(reference_point.surface)?;
-            let point = SpecklePoint {
-                pixel: reference_point.pixel,
-                position: body.forth.point(reference_point.position),
-                normal: body.forth.direction(reference_point.normal),
-                surface: reference_point.surface,
-                wave: 0.5,
-            };
+            let point = self.carried(reference_point)?;
             Some(self.way(laser, geometry, &point)?.dot(reference_point.way))
         });
         match along {
@@ -202,6 +195,29 @@ impl Change {
             normal: body.back.direction(point.normal),
             way,
         })
+    }
+
+    /// The point now, at the image point where it was seen.
+    fn carried(&self, point: &ReferencePoint) -> Option<SpecklePoint> {
+        let body = self.surfaces.get(point.surface)?;
+        Some(SpecklePoint {
+            pixel: point.pixel,
+            position: body.forth.point(point.position),
+            normal: body.forth.direction(point.normal),
+            surface: point.surface,
+            wave: 0.5,
+        })
+    }
+
+    /// Returns the point now, if it lies in the image and is lit by a laser.
+    pub(super) fn seen(&self, laser: usize, point: &ReferencePoint) -> Option<SpecklePoint> {
+        let point = self.carried(point)?;
+        let camera = self.camera();
+        let pixel = camera.project(point.position)?;
+        let size = DVec2::new(camera.width() as f64, camera.height() as f64);
+        let is_inside = pixel.cmpge(DVec2::ZERO).all() && pixel.cmple(size).all();
+        let is_lit = self.laser(laser).illuminate(point.position).is_some();
+        (is_inside && is_lit).then_some(SpecklePoint { pixel, ..point })
     }
 
     /// The way of the pupil over the speckle of a point: across it in pupil diameters, and along the
@@ -260,7 +276,7 @@ impl Change {
         point: &SpecklePoint,
         kappa: f64,
     ) -> Option<SpectralShift> {
-        let [_, mean] = self.states(laser, point)?;
+        let mean = self.state_now(laser, point)?;
         let other = mean
             .with_wavelength(TAU / (TAU / mean.wavelength() + kappa))
             .ok()?;
@@ -284,7 +300,7 @@ impl Change {
         geometry: &ImagingGeometry,
         point: &SpecklePoint,
     ) -> Option<ResolutionCell> {
-        let [_, now] = self.states(laser, point)?;
+        let now = self.state_now(laser, point)?;
         let to_pupil = self.cameras[1].position() - point.position;
         ResolutionCell::new(CellGeometry {
             to_source: now.direction_to_source(),
@@ -296,21 +312,30 @@ impl Change {
         .ok()
     }
 
+    /// The point with its light and its camera now, wherever they were in the reference frame.
+    fn state_now(&self, laser: usize, point: &SpecklePoint) -> Option<Configuration> {
+        let (laser, camera) = (self.laser(laser), self.camera());
+        Configuration::new(ConfigurationData {
+            wavelength: laser.wavelength(),
+            point: point.position,
+            normal: point.normal,
+            illumination: light_at(laser, point.position)?,
+            camera: CameraFrame::from_axes(camera.axes()).ok()?,
+            pupil: camera.position(),
+        })
+        .ok()
+    }
+
     /// The point with its light and its camera, in the reference frame and now.
     fn states(&self, laser: usize, point: &SpecklePoint) -> Option<[Configuration; 2]> {
         let body = self.surfaces.get(point.surface)?;
         let laser = &self.lasers[laser];
         let then = body.back.point(point.position);
-        // The phase of the light at a point follows from its direction alone, in either state: the
-        // wave between them need not be known.
-        let light = |laser: &Laser, point: DVec3| {
-            Illumination::collimated(laser.wave_direction_at(point)).ok()
-        };
         let before = Configuration::new(ConfigurationData {
             wavelength: laser.now.wavelength(),
             point: then,
             normal: body.back.direction(point.normal),
-            illumination: light(&laser.before, then)?,
+            illumination: light_at(&laser.before, then)?,
             camera: self.axes?,
             pupil: self.cameras[0].position(),
         })
@@ -320,7 +345,7 @@ impl Change {
             camera: self.camera.forth,
             source: RigidMotion::IDENTITY,
         };
-        let now = before.moved_into(&motions, light(&laser.now, point.position)?);
+        let now = before.moved_into(&motions, light_at(&laser.now, point.position)?);
         Some([before, now.ok()?])
     }
 
@@ -348,6 +373,12 @@ impl SpectralShift {
     fn is_finite(&self) -> bool {
         self.displacement.is_finite() && self.pupil.is_finite() && self.phase_per_height.is_finite()
     }
+}
+
+/// The light of a laser at a point: its phase follows from its direction alone in every state, so that the wave between
+/// two need not be known.
+fn light_at(laser: &Laser, point: DVec3) -> Option<Illumination> {
+    Illumination::collimated(laser.wave_direction_at(point)).ok()
 }
 
 /// Change of the surface's defocus, in axial decorrelation lengths.

@@ -1,14 +1,17 @@
 mod mixes;
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use glam::DVec2;
 use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
 use tem00_paper::BilinearStack;
-use tem00_speckle::SpeckleStack;
+use tem00_speckle::{PupilField, SlicePath, SpeckleStack};
 
 use super::{
     PatternPlan, SpecklePlan, SpecklePoint,
     allocation::PatternAllocation,
     change::Change,
+    crossing::Following,
     multiple::{MultipleLight, MultipleMap},
     plan::SurfacePatterns,
     printed::displacement_and_slice,
@@ -32,7 +35,7 @@ struct LaserPatterns {
     surface_patterns: Vec<SurfacePatterns>,
 }
 
-/// Independent stacks of one size.
+/// Independent patterns of one size.
 #[derive(Clone, Debug)]
 struct Pattern {
     /// Slices per pupil diameter.
@@ -41,6 +44,24 @@ struct Pattern {
     /// diameters.
     reaches: [f64; 2],
     half_period: usize,
+    /// One for each stack.
+    fields: Vec<PupilField>,
+    path: SlicePath,
+    as_printed: bool,
+    /// The lattice points about which the slices of each frame lie; empty where one stack holds those of all frames.
+    middles: Vec<[i64; 2]>,
+    /// The slices that a frame has asked for last.
+    last: Arc<Mutex<Option<Arc<Window>>>>,
+}
+
+/// The slices of a pattern that a frame looks up.
+#[derive(Clone, Debug)]
+struct Window {
+    /// The lattice point about which they lie, and the slice there.
+    middle: [i64; 2],
+    middle_slice: f64,
+    /// The slices that they hold to either side.
+    reach: f64,
     stacks: Vec<Stack>,
 }
 
@@ -58,6 +79,8 @@ pub(crate) struct SpeckleFrame<'a> {
     change: Change,
     /// On which side of the reference frame each surface is for each laser, as 1 or −1.
     sides: Vec<Vec<f64>>,
+    /// The slices of each pattern of each laser.
+    windows: Vec<Vec<Arc<Window>>>,
     /// The light that has met several rough surfaces, where its speckle is not simply that of the single light.
     multiple: Option<MultipleMap>,
 }
@@ -102,7 +125,15 @@ impl SpeckleModel {
     }
 
     /// Returns the speckle in a frame of the scene that the model was generated for.
-    pub(crate) fn in_frame(&self, scene: &Scene, frame: u32) -> SpeckleFrame<'_> {
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the memory for the slices of the frame cannot be had.
+    pub(crate) fn in_frame(
+        &self,
+        scene: &Scene,
+        frame: u32,
+    ) -> Result<SpeckleFrame<'_>, TracerError> {
         let change = Change::new(scene, frame);
         let lasers = self.lasers.iter().enumerate();
         let sides = lasers.map(|(index, laser)| {
@@ -111,12 +142,17 @@ impl SpeckleModel {
                 .map(|p| change.side(index, &laser.geometry, p.reference_point.as_ref()));
             sides.collect()
         });
-        SpeckleFrame {
+        let windows = self.lasers.iter().map(|laser| {
+            let patterns = laser.patterns.iter();
+            patterns.map(|pattern| pattern.window(frame)).collect()
+        });
+        Ok(SpeckleFrame {
             model: self,
             sides: sides.collect(),
+            windows: windows.collect::<Result<_, _>>()?,
             change,
             multiple: None,
-        }
+        })
     }
 }
 
@@ -141,24 +177,56 @@ impl Pattern {
         seed: u64,
     ) -> Result<Self, TracerError> {
         let first = allocation.stack.field(seed)?;
-        let stacks = first
-            .independent(allocation.count)?
-            .into_iter()
-            .map(|field| {
-                if plan.is_as_printed() {
-                    let stack = BilinearStack::generate(&field, allocation.half_period())?;
-                    Ok(Stack::AsPrinted(stack, field.speckle_size()))
-                } else {
-                    let stack = SpeckleStack::generate(&field, allocation.stack.path())?;
-                    Ok(Stack::Derived(stack))
-                }
-            })
-            .collect::<Result<_, TracerError>>()?;
-        Ok(Self {
+        let pattern = Self {
             slices_per_diameter: allocation.stack.slices_per_diameter(),
             reaches: allocation.reaches(),
             half_period: allocation.half_period(),
-            stacks,
+            fields: first.independent(allocation.count)?,
+            path: allocation.stack.path(),
+            as_printed: plan.is_as_printed(),
+            middles: allocation.middles.clone(),
+            last: Arc::default(),
+        };
+        // The memory is asked for before anything is rendered.
+        pattern.window(0)?;
+        Ok(pattern)
+    }
+
+    /// Returns the slices that a frame looks up: those of the last one, or new ones.
+    fn window(&self, frame: u32) -> Result<Arc<Window>, TracerError> {
+        let middle = self.middles.get(frame as usize).copied();
+        let middle = middle.unwrap_or([0; 2]);
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(window) = last.as_ref().filter(|window| window.middle == middle) {
+            return Ok(Arc::clone(window));
+        }
+        // Its memory is free for the new ones.
+        *last = None;
+        let window = Arc::new(self.generate_window(middle)?);
+        *last = Some(Arc::clone(&window));
+        Ok(window)
+    }
+
+    fn generate_window(&self, middle: [i64; 2]) -> Result<Window, TracerError> {
+        let stacks = self.fields.iter().map(|field| {
+            let field = field.clone().displaced(middle);
+            if self.as_printed {
+                let stack = BilinearStack::generate(&field, self.half_period)?;
+                return Ok(Stack::AsPrinted(stack, field.speckle_size()));
+            }
+            Ok(Stack::Derived(SpeckleStack::generate(&field, self.path)?))
+        });
+        let diameter = self.fields.first().map_or(1.0, |field| field.diameter()[0]);
+        let half_of_them = 0.5 * (self.path.slice_count() as f64 - self.slices_per_diameter);
+        Ok(Window {
+            middle,
+            middle_slice: middle[0] as f64 / diameter * self.slices_per_diameter,
+            reach: if self.middles.is_empty() {
+                f64::INFINITY
+            } else {
+                half_of_them
+            },
+            stacks: stacks.collect::<Result<_, TracerError>>()?,
         })
     }
 
@@ -181,6 +249,13 @@ impl Pattern {
         for (u, shift) in coordinates.iter_mut().zip(shifts) {
             *u = sign * u.max(shift.pupil.min(reach) * self.slices_per_diameter);
         }
+    }
+}
+
+impl Window {
+    /// Returns where its stacks have a coordinate in slices.
+    fn local(&self, u: f64) -> f64 {
+        (u - self.middle_slice).clamp(-self.reach, self.reach)
     }
 }
 
@@ -251,6 +326,7 @@ impl SpeckleFrame<'_> {
             return;
         };
         let pattern = &patterns.patterns[surface.allocation];
+        let window = &self.windows[laser][surface.allocation];
         let map = self.multiple.as_ref();
         let layer = map.and_then(|map| map.layer((laser, points[0].surface)));
         let mut mixes = [const { None }; BLOCK];
@@ -268,15 +344,17 @@ impl SpeckleFrame<'_> {
         let is_one_pattern = |mix: &Option<Mix>| {
             mix.is_none_or(|mix| mix.multiple.is_coherent(surface.polarisation))
         };
-        if surface.bandwidth.is_some() || !mixes.iter().all(is_one_pattern) {
+        let follows_axis = surface.following != Following::Length;
+        if surface.bandwidth.is_some() || follows_axis || !mixes.iter().all(is_one_pattern) {
             self.look_up_mixes(laser, surface, (points, mixes), factors);
             return;
         }
         factors.fill(0.0);
         for part in &surface.parts {
-            match &pattern.stacks[part.stack] {
+            match &window.stacks[part.stack] {
                 Stack::Derived(stack) => {
                     let mut block = self.coordinates(laser, pattern, stack, (points, mixes));
+                    block.u.iter_mut().for_each(|u| *u = window.local(*u));
                     block.shift(part.offset, stack.size());
                     block.add(stack, part.fraction, factors);
                 }

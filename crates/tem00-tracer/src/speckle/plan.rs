@@ -5,9 +5,10 @@ use tem00_decorrelation::ImagingGeometry;
 use tem00_speckle::{SlicePath, StackNeeds, StackPlan, incoherent_fractions};
 
 use super::{
-    allocation::{self, Part, PatternAllocation, Request},
+    allocation::{self, FrameRequest, Part, PatternAllocation, Request},
     bandwidth::{Bandwidth, SurfaceLight, laser_lights},
     change::ReferencePoint,
+    crossing::{CorrelationNote, Followed, Following, Tracks, Waves},
     prescan::{LaserGroups, MotionPrescan, SurveyOfFrame, prescan},
 };
 use crate::{Formulas, Scene, SpeckleSettings, SurfaceSpeckle, TracerError, Trajectory};
@@ -35,6 +36,7 @@ pub struct PatternPlan {
     surface_patterns: Vec<SurfacePatterns>,
     /// The names of the surfaces.
     names: Vec<String>,
+    notes: Vec<CorrelationNote>,
     as_printed: bool,
     chosen: bool,
     seed: u64,
@@ -54,6 +56,8 @@ pub(super) struct SurfacePatterns {
     pub modes: usize,
     /// The point that tells one side of the reference frame from the other.
     pub reference_point: Option<ReferencePoint>,
+    /// How the slices follow a motion.
+    pub following: Following,
     /// What the linewidth of the laser asks. Each part is then several, one after the other, whose fields add.
     pub bandwidth: Option<Bandwidth>,
 }
@@ -115,6 +119,12 @@ impl SpecklePlan {
             })
             .collect::<Result<_, _>>()?;
         Ok(Self { patterns })
+    }
+
+    /// Returns a note for each laser and each group of surfaces that move alike whose frames correlate otherwise, by
+    /// more than 0.05, than by the law.
+    pub fn correlation_notes(&self) -> impl Iterator<Item = &CorrelationNote> {
+        self.patterns.iter().flat_map(|pattern| &pattern.notes)
     }
 
     /// Returns the patterns, in the order of the lasers.
@@ -181,22 +191,48 @@ impl Planner<'_> {
         let sums = surfaces
             .map(|(surface, light)| Sum::new(&surface.speckle, light))
             .collect::<Result<Vec<_>, _>>()?;
-        let requests = prescans.iter().enumerate();
-        let requests: Vec<_> = requests
-            .map(|(group, prescan)| self.request(group, prescan, &sums, geometry))
-            .collect();
         let as_printed = self.formulas == Formulas::AsPrinted;
         let settings = &self.scene.speckle;
-        let allocations = allocation::allocate(&requests, memory, |plan| {
-            let plan = as_asked(plan, settings);
-            if as_printed { plan.on_circle() } else { plan }
-        })?;
+        let allocate = |followed: &[Followed]| {
+            let requests = prescans.iter().zip(followed).enumerate();
+            let requests: Vec<_> = requests
+                .map(|(group, (prescan, followed))| {
+                    self.request(group, prescan, followed.following, &sums, geometry)
+                })
+                .collect();
+            let allocations = allocation::allocate(&requests, memory, |plan| {
+                let plan = as_asked(plan, settings);
+                if as_printed { plan.on_circle() } else { plan }
+            })?;
+            Ok::<_, TracerError>((requests, allocations))
+        };
+        let candidates = prescans.iter().enumerate();
+        let candidates: Vec<_> = candidates
+            .map(|(group, prescan)| self.followed(group, prescan, geometry))
+            .collect();
+        let chosen = |number: usize| candidates.iter().map(move |followed| followed[number]);
+        let mut followed: Vec<_> = chosen(1).collect();
+        let (mut requests, mut allocations) = allocate(&followed)?;
+        if allocations.len() < requests.len() && chosen(1).any(|f| f.following.axis().is_some()) {
+            // What shares a stack has one line.
+            followed = chosen(0).collect();
+            (requests, allocations) = allocate(&followed)?;
+        }
         // Weyl steps keep the seeds of the lasers apart from each other and from the camera's.
         let number = self.laser as u64 + 1;
         Ok(PatternPlan {
             wavelength: geometry.wavelength(),
             speckle_size: geometry.speckle_size_in_pixels(),
-            surface_patterns: self.surface_patterns(&requests, &allocations, &sums, prescans),
+            surface_patterns: self.surface_patterns(
+                &requests,
+                &allocations,
+                &sums,
+                (prescans, &followed),
+            ),
+            notes: followed
+                .iter()
+                .filter_map(|followed| followed.note(self.scene, self.laser))
+                .collect(),
             allocations,
             names: self.scene.surfaces.iter().map(|s| s.name.clone()).collect(),
             as_printed,
@@ -205,45 +241,94 @@ impl Planner<'_> {
         })
     }
 
+    /// Returns how slices can follow the motion of a group: by its length, and as well as they can.
+    fn followed(
+        &self,
+        group: usize,
+        prescan: &MotionPrescan,
+        geometry: &ImagingGeometry,
+    ) -> [Followed; 2] {
+        if prescan.frames.is_empty() || self.formulas == Formulas::AsPrinted {
+            return [Followed::default(); 2];
+        }
+        let line = self.scene.lasers[self.laser].spectral_line();
+        let surfaces = self.surfaces_of(group);
+        let waves = surfaces.iter().filter_map(|&surface| {
+            let bandwidth = self.lights[surface].bandwidth.as_ref()?;
+            let bandwidth = bandwidth.beside(prescan.reference_point.as_ref());
+            Some(Waves::of(line, surface, bandwidth))
+        });
+        let mut waves: Vec<_> = waves.collect();
+        if waves.is_empty() {
+            waves.push(Waves::single(surfaces[0]));
+        }
+        Tracks::new(self.scene, (self.laser, geometry), prescan).followed(&waves)
+    }
+
+    fn surfaces_of(&self, group: usize) -> Vec<usize> {
+        let of_group = |&surface: &usize| self.groups[surface] == group;
+        (0..self.groups.len()).filter(of_group).collect()
+    }
+
     /// Returns the requirements of the surfaces of a group.
     fn request(
         &self,
         group: usize,
         prescan: &MotionPrescan,
+        following: Following,
         sums: &[Sum],
         geometry: &ImagingGeometry,
     ) -> Request {
-        let of_group = |&surface: &usize| self.groups[surface] == group;
-        let surfaces: Vec<_> = (0..self.groups.len()).filter(of_group).collect();
+        let surfaces = self.surfaces_of(group);
         let moves = |&surface: &usize| self.scene.speckle_moves(self.laser, surface);
         let moves = surfaces.iter().any(moves);
         let parts = surfaces.iter().map(|&surface| sums[surface].parts());
         let bandwidths = surfaces
             .iter()
             .filter_map(|&surface| self.lights[surface].bandwidth.as_ref());
-        let (mut region, mut shifts) = (prescan.region(), prescan.shifts);
+        let reach = bandwidths.clone().map(|b| b.reach).fold(0.0, f64::max);
+        let axis = following.axis();
+        let axes = bandwidths.map(|b| b.axis).chain(axis);
+        // Turned so that the slices stand along each axis.
+        let turned = |region: DVec2| {
+            axes.clone().fold(region, |largest, axis| {
+                let [along, across] = [axis.abs(), axis.perp().abs()];
+                largest.max(DVec2::new(along.dot(region), across.dot(region)))
+            })
+        };
+        let mut shifts = prescan.shifts;
         let moves = moves || shifts.iter().any(|shift| *shift > 0.0);
-        let mut reach = 0.0_f64;
-        for bandwidth in bandwidths {
-            // Turned so that the slices stand along the axis.
-            let [along, across] = [bandwidth.axis.abs(), bandwidth.axis.perp().abs()];
-            let turned = DVec2::new(along.dot(prescan.region()), across.dot(prescan.region()));
-            region = region.max(turned);
-            reach = reach.max(bandwidth.reach);
-        }
         if reach > 0.0 {
             shifts = [shifts[0].max(shifts[1]) + reach; 2];
         }
+        // Two frames have new speckle beyond a diameter, and the printed formulas their circle.
+        let by_frame = prescan.frames.len() > 2 && self.formulas == Formulas::Derived;
+        let frames = prescan.frames.iter();
+        let spans: Vec<_> = frames
+            .map(|frame| axis.map_or(frame.span, |axis| frame.ways.along(axis)))
+            .map(|[low, high]| [low - reach, high + reach])
+            .collect();
+        let across = axis.map(|axis| {
+            let frames = prescan.frames.iter();
+            frames
+                .map(|frame| frame.ways.middle().dot(axis.perp()))
+                .collect()
+        });
         Request {
             needs: StackNeeds {
                 image: prescan.image.to_array(),
-                region: region.to_array(),
+                region: turned(prescan.region()).to_array(),
                 speckle_size: geometry.speckle_size_in_pixels(),
                 motion: (moves || reach > 0.0).then_some(shifts[0] + shifts[1]),
                 frames: self.scene.frames,
                 memory_limit: self.scene.speckle.memory,
             },
             shifts,
+            frames: (by_frame || across.is_some()).then(|| FrameRequest {
+                region: turned(prescan.shared_region(&spans)).to_array(),
+                spans,
+                across,
+            }),
             parts: parts.max().unwrap_or(1),
             surfaces,
         }
@@ -255,7 +340,7 @@ impl Planner<'_> {
         requests: &[Request],
         allocations: &[PatternAllocation],
         sums: &[Sum],
-        prescans: &[MotionPrescan],
+        (prescans, followed): (&[MotionPrescan], &[Followed]),
     ) -> Vec<SurfacePatterns> {
         let shared = allocations
             .iter()
@@ -271,16 +356,18 @@ impl Planner<'_> {
                 let parts = fields.enumerate();
                 let moving = prescans[group].reference_point;
                 let bandwidth = light.bandwidth.as_ref();
-                let bandwidth = bandwidth.map(|bandwidth| bandwidth.beside(moving.as_ref()));
-                let along_axis = bandwidth
-                    .as_ref()
-                    .map(|bandwidth| bandwidth.reference_point);
+                let following = followed[group].following;
+                let bandwidth = bandwidth.map(|bandwidth| match following {
+                    Following::Length => bandwidth.beside(moving.as_ref()),
+                    Following::Axis(axis) => bandwidth.along(axis),
+                });
                 SurfacePatterns {
                     polarisation: sum.polarisation,
                     components: sum.components,
                     modes: sum.modes,
                     allocation: if shared { 0 } else { group },
-                    reference_point: along_axis.or(moving),
+                    reference_point: moving,
+                    following,
                     bandwidth,
                     parts: parts
                         .map(|(number, &fraction)| match shared {

@@ -33,6 +33,15 @@ pub(super) struct SpeckleShift {
     pub displacement: DVec2,
     /// The displacement of the pupil over the speckle, in pupil diameters, never negative.
     pub pupil: f64,
+    /// The part of it across the line of sight, to the right and up, in pupil diameters.
+    pub across: DVec2,
+}
+
+impl SpeckleShift {
+    /// Returns the displacement of the pupil as a vector: one without direction is to the right.
+    pub(super) fn way(&self) -> DVec2 {
+        self.pupil * self.across.try_normalize().unwrap_or(DVec2::X)
+    }
 }
 
 /// What is the same for all points of a surface.
@@ -57,6 +66,7 @@ struct Block {
 /// What has become of their speckle.
 struct Changes {
     displacement: [[f64; BLOCK]; 2],
+    across: [[f64; BLOCK]; 2],
     /// Across the pupil, in its diameters; infinite where the theory has no value.
     pupil: [f64; BLOCK],
     /// Along the axis, in axial decorrelation lengths.
@@ -94,8 +104,8 @@ impl Change {
     /// Speckle that has nothing of that in the reference frame.
     pub(super) fn new_speckle(&self) -> SpeckleShift {
         SpeckleShift {
-            displacement: DVec2::ZERO,
             pupil: self.frames().abs(),
+            ..SpeckleShift::default()
         }
     }
 
@@ -171,6 +181,7 @@ impl Shared<'_> {
         let end = count.next_multiple_of(LANES).min(BLOCK);
         let mut changes = Changes {
             displacement: [[0.0; BLOCK]; 2],
+            across: [[0.0; BLOCK]; 2],
             pupil: [0.0; BLOCK],
             axial: [0.0; BLOCK],
         };
@@ -223,6 +234,8 @@ impl Shared<'_> {
         let tangents = point.tangent_displacement;
         changes.displacement[0][i] = (tangents.x - beside(pupil.x)) * self.pixels_per_tangent;
         changes.displacement[1][i] = (tangents.y - beside(pupil.y)) * self.pixels_per_tangent;
+        changes.across[0][i] = pupil.x * self.per_diameter;
+        changes.across[1][i] = pupil.y * self.per_diameter;
         changes.pupil[i] = pupil.length_squared().sqrt() * self.per_diameter;
         changes.axial[i] = (now - before) * self.axial_length;
     }
@@ -261,6 +274,7 @@ impl Changes {
         displacement.is_finite().then_some(SpeckleShift {
             displacement,
             pupil: if pupil.is_finite() { pupil } else { new },
+            across: DVec2::from_array(self.across.map(|along| along[index])),
         })
     }
 }

@@ -2,8 +2,10 @@ use glam::DVec3;
 use tem00_camera::Camera;
 use tem00_coherence::{LineShape, Relief, ResolutionCell, SourceExtent, SpectralLine};
 
-use super::*;
-use crate::{Formulas, LaserDescription, Scene, SpeckleModel, SpecklePlan, Trajectory, testing};
+use super::{super::crossing::Waves, *};
+use crate::{
+    Formulas, Keyframe, LaserDescription, Scene, SpeckleModel, SpecklePlan, Trajectory, testing,
+};
 
 /// A plate under a laser along its normal, seen under 30° about the axis y.
 fn scene(line: SpectralLine, rms_height: f64) -> Scene {
@@ -34,7 +36,7 @@ fn picture(
     offset: impl Fn(DVec2) -> DVec2,
 ) -> Vec<f64> {
     const WAVES: u32 = 24;
-    let speckle = model.in_frame(scene, frame);
+    let speckle = model.in_frame(scene, frame).unwrap();
     let camera = scene.camera_at(frame);
     let places = (0..64).flat_map(|i| (0..56).map(move |j| DVec2::new(f64::from(i), f64::from(j))));
     places
@@ -78,7 +80,8 @@ fn covariance(a: &[f64], b: &[f64]) -> f64 {
 fn cell(scene: &Scene) -> ResolutionCell {
     let change = Change::new(scene, 0);
     let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
-    let point = seen(&scene.camera, DVec2::new(240.0, 180.0));
+    let size = [scene.camera.width(), scene.camera.height()].map(|side| side as f64);
+    let point = seen(&scene.camera, 0.5 * DVec2::from_array(size));
     let cell = change.resolution_cell(0, &geometry, &point).unwrap();
     let cell = cell.with_relief(scene.surfaces[0].relief).unwrap();
     cell.with_source_extent(scene.lasers[0].source_extent().clone())
@@ -113,40 +116,79 @@ fn contrasts_are_those_of_the_law() {
 }
 
 #[test]
-fn frames_of_a_motion_along_the_tilt_are_those_of_the_law() {
-    let mut scene = scene(gaussian(5e-9), 0.0);
-    scene.frames = 5;
-    scene.reference_frame = 2;
-    // The camera sees the plate move along the tilt, by a quarter of its pupil a frame.
-    let step = 0.25 * 3.125e-3 / 30_f64.to_radians().cos();
-    scene.surfaces[0].trajectory = Trajectory::steady(step * DVec3::X).unwrap();
-    let model = model(&scene);
-    let cell = cell(&scene);
-    let (line, geometry) = (
-        scene.lasers[0].spectral_line().clone(),
-        scene.camera.imaging_geometry(650e-9).unwrap(),
-    );
-    let law = PolychromaticSpeckle {
-        line: &line,
-        cell: &cell,
-    };
-    let here = picture(&scene, &model, 2, |_| DVec2::ZERO);
-    for frame in [1, 4] {
-        // The same speckle, where it went.
-        let (change, camera) = (Change::new(&scene, frame), scene.camera_at(frame));
-        let shift = |pixel: DVec2| change.speckle_shift(0, &geometry, &seen(&camera, pixel));
-        let there = picture(&scene, &model, frame, |pixel| {
-            let near = shift(pixel).displacement;
-            shift(pixel + near).displacement
-        });
-        let shift = shift(DVec2::new(240.0, 180.0));
-        let found = covariance(&here, &there);
-        let expected = law.covariance([shift.pupil, 0.0]);
-        assert!(
-            (found - expected).abs() < 0.04,
-            "{frame}: {found} for {expected}"
-        );
+fn frames_of_motions_along_and_across_the_tilt_are_those_of_the_law() {
+    // What the camera sees the plate move by in a frame, in diameters of its pupil: along the tilt, and across it.
+    for (way, line, height) in [
+        ([0.25, 0.0], gaussian(5e-9), 0.0),
+        ([0.0, 0.25], gaussian(5e-9), 0.0),
+        ([-0.1, 0.2], gaussian(10e-9), 8e-6),
+    ] {
+        let mut scene = scene(line, height);
+        scene.frames = 5;
+        scene.reference_frame = 2;
+        let step = DVec3::new(way[0] / 30_f64.to_radians().cos(), way[1], 0.0);
+        scene.surfaces[0].trajectory = Trajectory::steady(3.125e-3 * step).unwrap();
+        let (model, cell) = (model(&scene), cell(&scene));
+        let line = scene.lasers[0].spectral_line();
+        let law = PolychromaticSpeckle { line, cell: &cell };
+        let geometry = scene.camera.imaging_geometry(650e-9).unwrap();
+        let here = picture(&scene, &model, 2, |_| DVec2::ZERO);
+        for frame in [1, 4] {
+            // The same speckle, where it went.
+            let (change, camera) = (Change::new(&scene, frame), scene.camera_at(frame));
+            let shift = |pixel: DVec2| change.speckle_shift(0, &geometry, &seen(&camera, pixel));
+            let there = picture(&scene, &model, frame, |pixel| {
+                let near = shift(pixel).displacement;
+                shift(pixel + near).displacement
+            });
+            let found = covariance(&here, &there);
+            let expected = law.covariance(way.map(|part| part * (f64::from(frame) - 2.0)));
+            assert!(
+                (found - expected).abs() < 0.04,
+                "{way:?}, frame {frame}: {found} for {expected}"
+            );
+        }
     }
+}
+
+#[test]
+fn correlations_that_are_noted_are_those_of_the_law() {
+    for (line, height) in [(gaussian(5e-9), 0.0), (gaussian(10e-9), 8e-6)] {
+        let mut scene = scene(line, height);
+        // So few pixels that the tilt is one.
+        let camera = testing::camera(scene.camera.position(), [48, 36]);
+        scene.camera = Camera::new(camera).unwrap();
+        let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+        let bandwidth = plan.patterns()[0].surface_patterns()[0].bandwidth.clone();
+        let (cell, line) = (cell(&scene), scene.lasers[0].spectral_line());
+        let law = PolychromaticSpeckle { line, cell: &cell };
+        let waves = Waves::of(line, 0, bandwidth.unwrap());
+        for way in [[0.25, 0.0], [0.0, 0.25], [0.5, 0.0], [-0.1, 0.2]] {
+            // The tilt is along x.
+            let found = waves.correlation(DVec2::from_array(way), DVec2::X);
+            let expected = law.covariance(way) / law.covariance([0.0; 2]);
+            let error = (found - expected).abs();
+            assert!(error < 0.01, "{way:?}: {found} for {expected}");
+        }
+    }
+}
+
+#[test]
+fn surfaces_that_come_into_view_have_the_contrast_of_the_line() {
+    let mut scene = scene(gaussian(5e-9), 0.0);
+    scene.frames = 3;
+    // Behind the camera at first.
+    let away = Keyframe {
+        displacement: DVec3::X,
+        ..Keyframe::unmoved(0.0)
+    };
+    let keyframes = [away, Keyframe::unmoved(2.0)];
+    scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
+    let values = picture(&scene, &model(&scene), 2, |_| DVec2::ZERO);
+    let (line, cell) = (scene.lasers[0].spectral_line(), cell(&scene));
+    let law = PolychromaticSpeckle { line, cell: &cell }.contrast();
+    let found = covariance(&values, &values).sqrt();
+    assert!((found / law - 1.0).abs() < 0.045, "{found} for {law}");
 }
 
 #[test]

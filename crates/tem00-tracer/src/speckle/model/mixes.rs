@@ -9,10 +9,11 @@ use tem00_speckle::{Complex, SpeckleStack};
 use super::{
     super::{
         SpecklePoint, allocation,
+        crossing::Following,
         plan::SurfacePatterns,
         shifts::{BLOCK, SpeckleShift},
     },
-    Block, Mix, SpeckleFrame, Stack, in_samples,
+    Block, Mix, SpeckleFrame, Stack, Window, in_samples,
 };
 
 /// The fraction of light below which a pattern counts as even: many such leave a contrast below 0.04.
@@ -85,9 +86,15 @@ impl SpeckleFrame<'_> {
         let (geometry, pattern) = (&patterns.geometry, &patterns.patterns[surface.allocation]);
         let sign = self.sides[laser].get(point.surface).copied().unwrap_or(1.0);
         let mut pixel = self.change.perspective().point(point.pixel) - motion.displacement;
+        let along = match surface.following {
+            Following::Length => sign * motion.pupil,
+            Following::Axis(axis) => motion.way().dot(axis),
+        };
         let Some(bandwidth) = &surface.bandwidth else {
-            let mut u = [0.0];
-            if let Stack::Derived(stack) = &pattern.stacks[0] {
+            let mut u = [pattern.slices_per_diameter * along];
+            if surface.following == Following::Length
+                && let Stack::Derived(stack) = &self.windows[laser][surface.allocation].stacks[0]
+            {
                 let motion = core::slice::from_ref(motion);
                 pattern.coordinates_of(stack, motion, sign, &mut u);
             }
@@ -104,7 +111,7 @@ impl SpeckleFrame<'_> {
         let tilt = wave.pupil.length() * wave.pupil.dot(bandwidth.axis).signum();
         Place {
             pixel,
-            u: pattern.slices_per_diameter * (tilt + sign * motion.pupil),
+            u: pattern.slices_per_diameter * (tilt + along),
             phase_per_height: wave.phase_per_height,
         }
     }
@@ -120,13 +127,17 @@ impl SpeckleFrame<'_> {
         let single = [[0.0, 1.0]];
         let (heights, axis) = match &surface.bandwidth {
             Some(bandwidth) => (bandwidth.heights.as_slice(), bandwidth.axis),
-            None => (single.as_slice(), DVec2::X),
+            None => (
+                single.as_slice(),
+                surface.following.axis().unwrap_or(DVec2::X),
+            ),
         };
         let mut sums = vec![0.0; places.len()];
         if places.is_empty() {
             return sums;
         }
         let pattern = &self.model.lasers[laser].patterns[surface.allocation];
+        let window = &self.windows[laser][surface.allocation];
         // A component that the single light does not have takes positions of its own.
         let planned = component.min(surface.components - 1);
         let number = number + (component - planned) * Recombination::PATTERNS;
@@ -135,8 +146,8 @@ impl SpeckleFrame<'_> {
         for fields in surface.fields_of(planned, heights.len()) {
             let fraction = fields[0].fraction;
             whole += fraction;
-            if let ([part], Stack::Derived(stack)) = (fields, &pattern.stacks[fields[0].stack]) {
-                let mut block = self.block(laser, stack, places, axis);
+            if let ([part], Stack::Derived(stack)) = (fields, &window.stacks[fields[0].stack]) {
+                let mut block = self.block(laser, (window, stack), places, axis);
                 block.shift(part.offset, stack.size());
                 block.shift(beside, stack.size());
                 block.add(stack, fraction, &mut sums);
@@ -144,18 +155,20 @@ impl SpeckleFrame<'_> {
             }
             let mut amplitudes = vec![Complex::<f64>::ZERO; places.len()];
             for (part, [height, root]) in fields.iter().zip(heights) {
-                let Stack::Derived(stack) = &pattern.stacks[part.stack] else {
+                let Stack::Derived(stack) = &window.stacks[part.stack] else {
                     continue;
                 };
-                let mut block = self.block(laser, stack, places, axis);
+                let mut block = self.block(laser, (window, stack), places, axis);
                 block.shift(part.offset, stack.size());
                 block.shift(beside, stack.size());
                 // Fields are in the frame of the pupil of their slice, a ramp of phases that other positions see elsewhere.
                 let [along, _] = in_samples(part.offset, stack.size());
                 let ramp = TAU * along / (stack.speckle_size() * pattern.slices_per_diameter);
+                let across = TAU * part.offset[1] * window.middle[1] as f64;
                 for (i, (amplitude, place)) in amplitudes.iter_mut().zip(places).enumerate() {
+                    let slice = window.middle_slice + block.u[i].floor();
                     let phase =
-                        Complex::cis(place.phase_per_height * height - ramp * place.u.floor());
+                        Complex::cis(place.phase_per_height * height - ramp * slice - across);
                     let field = stack.amplitude_at(block.x[i], block.y[i], block.u[i]);
                     *amplitude += field * phase * root;
                 }
@@ -169,13 +182,19 @@ impl SpeckleFrame<'_> {
     }
 
     /// Coordinates of places in a stack whose slices stand along an axis.
-    fn block(&self, laser: usize, stack: &SpeckleStack, places: &[Place], axis: DVec2) -> Block {
+    fn block(
+        &self,
+        laser: usize,
+        (window, stack): (&Window, &SpeckleStack),
+        places: &[Place],
+        axis: DVec2,
+    ) -> Block {
         let geometry = &self.model.lasers[laser].geometry;
         let mut block = Block::default();
         for (i, place) in places.iter().enumerate() {
             let c = geometry.pattern_coordinate(place.pixel, DVec2::ZERO, stack.speckle_size());
             (block.x[i], block.y[i]) = (axis.dot(c), axis.perp().dot(c));
-            block.u[i] = place.u;
+            block.u[i] = window.local(place.u);
         }
         block
     }

@@ -47,6 +47,7 @@ impl MultipleLight {
         let pupil = disc_overlap_inverse(correlation.clamp(0.0, 1.0).sqrt());
         SpeckleShift {
             displacement: f1 * single.displacement + f2 * multiple.displacement,
+            across: f1 * single.across + f2 * multiple.across,
             pupil: if pupil < 1.0 {
                 pupil
             } else {

@@ -81,26 +81,20 @@ impl PatternPlan {
             None => write!(f, "one slice, since nothing moves; ")?,
             Some(motion) => write!(
                 f,
-                "{} slices for a motion of up to {motion:.2} pupil diameters{}; ",
+                "{} slices{} for a motion of up to {motion:.2} pupil diameters; ",
                 stack.path().slice_count(),
-                // No memory gives the circle of the printed formulas more than one diameter.
-                if self.as_printed || stack.holds_motion(needs) {
+                if allocation.middles.is_empty() {
                     ""
                 } else {
-                    ", MORE than the slices hold: frames beyond share their speckle"
+                    " at a time"
                 }
             )?,
         }
         if let Some(bandwidth) = self.bandwidth(allocation) {
             write!(
                 f,
-                "a linewidth that displaces the pupil by up to {:.2} diameters{}; ",
+                "a linewidth that displaces the pupil by up to {:.2} diameters; ",
                 bandwidth.reach,
-                if bandwidth.is_crossed {
-                    ", ACROSS the motion: frames correlate as if it were along"
-                } else {
-                    ""
-                }
             )?;
         }
         if allocation.count > 1 {

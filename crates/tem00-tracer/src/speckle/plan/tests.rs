@@ -1,4 +1,5 @@
 use glam::DVec3;
+use tem00_decorrelation::pupil_overlap_correlation;
 
 use super::*;
 use crate::{
@@ -298,40 +299,116 @@ fn memory_bounds_the_number_of_slices() {
 }
 
 #[test]
-fn a_motion_that_does_not_fit_the_memory_is_cut_and_said() {
+fn slices_that_do_not_fit_the_memory_are_those_of_one_frame_at_a_time() {
     let moving = || scene(4, 20e-3 * DVec3::X);
-    // 12.8 diameters take a path of 14, of 56 slices of 3/4 MiB with four to a diameter.
-    let whole = plan_within(42.0, moving()).unwrap();
-    assert_eq!(whole.stack().path().slice_count(), 56, "{whole}");
-    assert!(!whole.to_string().contains("MORE"), "{whole}");
-    let plan = plan_within(41.0, moving()).unwrap();
-    assert!(plan.stack().memory_bytes() <= 41 << 20, "{plan}");
-    assert!(
-        plan.to_string().contains("MORE than the slices hold"),
-        "{plan}"
-    );
+    // 12.8 diameters take a path of 14; what a frame sees takes one of 3, of 3/4 MiB a slice.
+    for (memory, slices) in [(72.0, 96), (71.0, 48), (9.0, 12)] {
+        let plan = plan_within(memory, moving()).unwrap();
+        assert_eq!(plan.stack().path().slice_count(), slices, "{plan}");
+        assert!(plan.to_string().contains("slices at a time"), "{plan}");
+        // 6.4 diameters a frame, until the plate has left the image.
+        let middles = [0, 6, 13, 13].map(|diameters| [192 * diameters, 0]);
+        assert_eq!(plan.allocations()[0].middles, middles, "{plan}");
+    }
+    let refused = TracerError::PatternMemory {
+        needed: 9 << 20,
+        allowed: 8 << 20,
+    };
+    assert_eq!(plan_within(8.0, moving()), Err(refused));
 }
 
 #[test]
 fn frames_share_no_speckle_while_a_smaller_field_fits_the_memory() {
     // 1.28 diameters take a path of 3, of 12 slices or more: 12 MiB of 512 × 256 samples for the image
     // and where it came from, 9 MiB of 384 × 256 for the image alone.
-    let plan = |mebibytes: f64| plan_within(mebibytes, scene(3, 2e-3 * DVec3::X)).unwrap();
-    for (memory, width, slices, shares) in [
-        (12.0, 512, 12, false),
-        (11.0, 384, 12, false),
-        (9.0, 384, 12, false),
-        (8.0, 512, 8, true),
-    ] {
-        let plan = plan(memory);
+    let plan = |mebibytes: f64| plan_within(mebibytes, scene(3, 2e-3 * DVec3::X));
+    for (memory, width) in [(12.0, 512), (11.0, 384), (9.0, 384)] {
+        let plan = plan(memory).unwrap();
         assert_eq!(plan.stack().size(), [width, 256], "{memory}: {plan}");
-        assert_eq!(
-            plan.stack().path().slice_count(),
-            slices,
-            "{memory}: {plan}"
-        );
-        assert_eq!(plan.to_string().contains("MORE"), shares, "{plan}");
+        assert_eq!(plan.stack().path().slice_count(), 12, "{memory}: {plan}");
     }
+    assert!(matches!(plan(8.0), Err(TracerError::PatternMemory { .. })));
+}
+
+#[test]
+fn every_frame_of_a_long_sequence_is_sampled() {
+    // A plate of 0.1 m leaves the field after so many frames; 16 that are spread evenly would see it in the first.
+    for (frames, step, seen) in [(65, 2e-3, 27.0), (1000, 6.25e-3, 8.0), (1000, 12.5e-3, 4.0)] {
+        let mut moving = scene(frames, step * DVec3::X);
+        moving.speckle.memory = 8 << 30;
+        let plan = plan_of(&moving).unwrap();
+        let expected = step / 3.125e-3 * seen;
+        let error = plan.largest_shift() - expected;
+        assert!(error.abs() < 0.02, "{frames}, {step}: {error}: {plan}");
+    }
+}
+
+#[test]
+fn frames_that_slices_cannot_follow_are_noted() {
+    // Along two edges of a square, of 0.48 pupil diameters, each as far from where the plate began.
+    let square = [[0.0, 0.0], [1.5, 0.0], [0.0, 1.5]];
+    let square = (0..).zip(square).map(|(frame, [x, y])| Keyframe {
+        displacement: 1e-3 * DVec3::new(x, y, 0.0),
+        ..Keyframe::unmoved(f64::from(frame))
+    });
+    let mut scene = scene(3, DVec3::ZERO);
+    scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, square).unwrap();
+    let notes = |scene: &Scene| -> Vec<CorrelationNote> {
+        let plan = SpecklePlan::new(scene, Formulas::Derived, 0).unwrap();
+        plan.correlation_notes().cloned().collect()
+    };
+    assert_eq!(notes(&scene), []);
+    // Bodies that share a stack for want of memory have one line.
+    scene.surfaces.push(rest());
+    assert_eq!(notes(&scene), []);
+    scene.speckle.memory = 24 << 20;
+    let notes = notes(&scene);
+    let [note] = &notes[..] else {
+        panic!("one note: {notes:?}");
+    };
+    let law = pupil_overlap_correlation(0.48 * core::f64::consts::SQRT_2);
+    assert_eq!(note.frames, [1, 2], "{note}");
+    assert!((note.rendered - 1.0).abs() < 1e-3, "{note}");
+    assert!((note.law - law).abs() < 1e-3, "{note}: {law}");
+}
+
+#[test]
+fn frames_far_from_a_reference_frame_without_a_law_are_noted() {
+    // Light from the side: at 0.7 m the camera would see it come along the plate.
+    let mut scene = scene(3, DVec3::ZERO);
+    scene.lasers[0] = Laser::new(testing::spot(DVec3::new(0.1, 0.0, 0.173), 0.5e-3)).unwrap();
+    let away = [(0.0, -0.7), (1.0, 0.0), (2.0, 0.5e-3)].map(|(frame, x)| Keyframe {
+        displacement: x * DVec3::X,
+        ..Keyframe::unmoved(frame)
+    });
+    scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, away).unwrap();
+    let plan = SpecklePlan::new(&scene, Formulas::Derived, 0).unwrap();
+    let notes: Vec<_> = plan.correlation_notes().collect();
+    let [note] = &notes[..] else {
+        panic!("one note: {notes:?}");
+    };
+    // 0.16 pupil diameters, of frames that have speckle of their own.
+    let law = pupil_overlap_correlation(0.5 / 3.125);
+    assert_eq!((note.frames, note.rendered), ([1, 2], 0.0), "{note}");
+    assert!((note.law - law).abs() < 1e-3, "{note}: {law}");
+}
+
+#[test]
+fn a_small_part_is_followed_where_the_rays_miss_it() {
+    // Rays of a thousand frames are 1/32 of the image apart, the part 1/50 wide.
+    let part = Surface {
+        trajectory: Trajectory::steady(0.02e-3 * DVec3::X).unwrap(),
+        ..testing::plate(DVec3::new(-5e-3, 2.3e-4, 1e-3), DVec3::Z, [0.2e-3; 2])
+    };
+    let plan = plan_with(1000, DVec3::ZERO, [part]);
+    let allocation = &plan.allocations()[1];
+    // It is seen until its left edge has left the image, 5.674 mm from the middle.
+    let [before, after] = allocation.shifts;
+    let expected = (5e-3 + 0.1e-3 + 5.674e-3) / 3.125e-3;
+    assert!(
+        before == 0.0 && (after - expected).abs() < 0.01,
+        "{after}: {plan}"
+    );
 }
 
 #[test]

@@ -187,8 +187,8 @@ fn points_that_the_theory_does_not_know_have_speckle_of_their_own() {
     ];
     scene.surfaces[0].trajectory = Trajectory::keyframed(DVec3::ZERO, keyframes).unwrap();
     let expected = SpeckleShift {
-        displacement: DVec2::ZERO,
         pupil: 3.0,
+        ..SpeckleShift::default()
     };
     assert_eq!(speckle_shift(&scene, 3, [0.0, 0.0]), expected);
 }
@@ -199,6 +199,7 @@ fn shifts_along_the_axis_add_what_they_take_of_the_correlation() {
     let shift = |lateral, axial| {
         let mut changes = Changes {
             displacement: [[0.0; BLOCK]; 2],
+            across: [[0.0; BLOCK]; 2],
             pupil: [lateral; BLOCK],
             axial: [axial; BLOCK],
         };

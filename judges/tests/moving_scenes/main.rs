@@ -8,6 +8,7 @@
 
 mod background;
 mod bodies;
+mod sequences;
 mod setting;
 mod sums;
 mod wave;

@@ -157,18 +157,16 @@ impl Surroundings<'_> {
                 seen.validity = Validity::Sliver;
             }
             let indirect = expected.indirect(self, &seen);
-            let mut point = MeasuredPoint {
-                position: DVec3::ZERO,
+            let deviation = noise.total().sqrt().hypot(indirect.shift);
+            seen.point = triangulator.point_with_uncertainty(seen.pixel, deviation)?;
+            Some(MeasuredPoint {
+                position: self.to_part.point(seen.point.position),
                 per_pixel: self.to_part.direction(down),
                 calibration: turn * calibration * turn.transpose() + self.further,
-                noise,
                 indirect,
+                noise,
                 seen,
-            };
-            let deviation = point.position_uncertainty();
-            point.seen.point = triangulator.point_with_uncertainty(seen.pixel, deviation)?;
-            point.position = self.to_part.point(point.seen.point.position);
-            Some(point)
+            })
         };
         profile.iter().filter_map(measured).collect()
     }

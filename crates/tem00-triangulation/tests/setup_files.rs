@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use tem00_triangulation::{
-    Budget, LineMethod, parse_setup, parse_setup_with, read_design, read_setup,
+    Budget, LineImage, LineMethod, parse_setup, parse_setup_with, read_design, read_setup,
 };
 
 fn repository() -> PathBuf {
@@ -59,6 +59,19 @@ fn the_decision_about_a_broader_source_has_the_uncertainty_of_its_setup() {
     assert!(read("docs/broader_source.md").contains(&stated), "{stated}");
     let single = expanded(&broad.replace("linewidth", "# linewidth"));
     assert!(expanded(&broad) < 0.6 * single, "of {single} µm");
+}
+
+#[test]
+fn a_relief_of_any_height_has_images() {
+    let path = repository().join("setups/superluminescent.toml");
+    let text = fs::read_to_string(path).expect("the set-up");
+    for (height, patterns) in [("0.1 mm", 2), ("0.5 mm", 1), ("0.5 mm", 2), ("0.5 mm", 64)] {
+        let height = format!("\"{height}\"\npatterns = {patterns}");
+        let text = text.replace("\"0.4 um\"", &height);
+        let setup = parse_setup(&text).map_err(|error| error.to_string());
+        let image = LineImage::of_setup(&setup.expect("a set-up"), [64, 64]);
+        assert!(image.is_ok(), "{height}: {image:?}");
+    }
 }
 
 #[test]

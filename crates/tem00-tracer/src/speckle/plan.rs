@@ -161,6 +161,9 @@ struct Planner<'a> {
     lights: &'a [SurfaceLight],
 }
 
+/// The largest change of the motion of the pupil from speckle to speckle, in its diameters, that leaves their size.
+const WIDEST_SPREAD: f64 = 0.25;
+
 /// The patterns that the speckle of a surface is the sum of.
 #[derive(Clone, Debug)]
 struct Sum {
@@ -303,10 +306,15 @@ impl Planner<'_> {
         }
         // Two frames have new speckle beyond a diameter, and the printed formulas their circle.
         let by_frame = prescan.frames.len() > 2 && self.formulas == Formulas::Derived;
+        // What spreads wider makes grains of its own in an image of so many speckles.
+        let widest = WIDEST_SPREAD * prescan.image.length() / geometry.speckle_size_in_pixels();
         let frames = prescan.frames.iter();
         let spans: Vec<_> = frames
             .map(|frame| axis.map_or(frame.span, |axis| frame.ways.along(axis)))
-            .map(|[low, high]| [low - reach, high + reach])
+            .map(|[low, high]| {
+                let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).min(widest));
+                [middle - half - reach, middle + half + reach]
+            })
             .collect();
         let across = axis.map(|axis| {
             let frames = prescan.frames.iter();

@@ -7,7 +7,7 @@ use tem00_triangulation::{
     SimulationOptions, TriangulationError, UncertaintySource, simulate,
 };
 
-use super::measured::Measured;
+use super::measured::{Measured, differs};
 use crate::{
     args::BudgetArgs, failure::Failure, interrupt, progress::Progress, report::units::PERCENT,
 };
@@ -163,12 +163,6 @@ impl Answer {
         let part = |term: &BudgetTerm| (MeasurementInput::Term(term.source), square(term) / sum);
         terms.iter().map(part).collect()
     }
-}
-
-/// Returns whether an uncertainty is not that of another method: whether their ratio, with its standard error, is farther
-/// from 1 than a twentieth and chance.
-pub(super) fn differs([ratio, error]: [f64; 2]) -> bool {
-    (ratio - 1.0).abs() > 0.05 + 3.3 * error
 }
 
 pub(super) fn tried(args: &BudgetArgs, setup: &Setup) -> Result<Simulation, Failure> {

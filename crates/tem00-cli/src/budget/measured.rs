@@ -9,13 +9,18 @@ use tem00_uncertainty::{
     Propagation, PropagationOptions, Validation,
 };
 
-use super::findings::differs;
 use crate::{args::BudgetArgs, failure::Failure, interrupt, progress::Progress};
 
 /// The number of samples of the decomposition of the variance.
 const SAMPLES: u32 = 1 << 15;
 /// The maximum number of trials of the propagation of distributions.
 const MAX_TRIALS: u64 = 2_000_000;
+
+/// Returns whether an uncertainty is not that of another method: whether their ratio, with its standard error, is farther
+/// from 1 than a twentieth and chance.
+pub(super) fn differs([ratio, error]: [f64; 2]) -> bool {
+    (ratio - 1.0).abs() > 0.05 + 3.3 * error
+}
 
 /// A height and its uncertainty by three methods.
 pub(super) struct Measured {

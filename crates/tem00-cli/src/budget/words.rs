@@ -4,7 +4,8 @@ use tem00_triangulation::{LightLevel, MeasurementInput, Setup, Simulation};
 
 use super::{
     answers,
-    findings::{Answer, Refusal, differs},
+    findings::{Answer, Refusal},
+    measured::differs,
 };
 use crate::report::units::{MICROMETRES, NUMBER, PERCENT};
 

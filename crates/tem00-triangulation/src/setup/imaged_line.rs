@@ -28,7 +28,7 @@ const STEP: f64 = 1e-5;
 /// b        = D s |1/Z_focus − 1/Z|, the diameter of the disc of defocus, whose 4σ across is b
 /// ```
 ///
-/// The line has its waist on the reference plane, with the Rayleigh range z_R = π w₀²/λ of w₀ = line_thickness/2.
+/// The line has its waist on the reference plane, with the Rayleigh range `z_R = π w₀²/λ`, w₀ being half its thickness.
 /// Z is the depth of the surface before the lens, `Z_focus` that in focus at this image point, s the
 /// depth of the sensor behind the lens, D the diameter of the pupil and h = λ s / D the speckle size.
 /// Across the disc of defocus 4σ = b.

@@ -129,13 +129,31 @@ fn frames_of_motions_that_are_not_steady_correlate_by_their_distance() {
     // A part of 600 pixels that fills the image in three frames of a thousand, 250 diameters from where it began.
     let passes = keyed([(0, [-2e4, 0.0]), (1000, [2e4, 0.0])]);
     // To the right, up, and back to the left, by a quarter of the pupil a frame.
-    let rows = [0, 20, 40].map(f64::from);
-    let rows = rows.map(|y| rows.map(|x| [if y == 20.0 { 40.0 - x } else { x }, y]));
-    let rows = keyed((0..).zip(rows.concat()));
+    let rows = [
+        [0, 0],
+        [1, 0],
+        [2, 0],
+        [2, 1],
+        [1, 1],
+        [0, 1],
+        [0, 2],
+        [1, 2],
+    ];
+    let rows = keyed((0..).zip(rows.map(|place| place.map(|steps| 20.0 * f64::from(steps)))));
+    // Rows of a hundred frames, 50 diameters long.
+    let ends = |row: u32| {
+        let [first, last] = [0.0, 3960.0].map(|x| [x, 20.0 * f64::from(row)]);
+        let frames = [100 * row, 100 * row + 99];
+        let turned = row % 2 == 1;
+        frames
+            .into_iter()
+            .zip(if turned { [last, first] } else { [first, last] })
+    };
+    let scan = keyed((0..10).flat_map(ends));
     let turns = |frame: u32| (TAU * f64::from(frame) / 64.0).sin_cos();
     let circle = (0..1000).map(|frame| (frame, turns(frame)));
     let circle = keyed(circle.map(|(frame, (sin, cos))| (frame, [60.0 * cos, 60.0 * sin])));
-    let cases: [(&str, Scene, &[Pair]); 6] = [
+    let cases: [(&str, Scene, &[Pair]); 7] = [
         (
             "a rest, and a jump",
             long(1000, rests),
@@ -176,13 +194,22 @@ fn frames_of_motions_that_are_not_steady_correlate_by_their_distance() {
         ),
         (
             "rows",
-            long(9, rows),
+            long(8, rows),
             &[
                 ([0, 1], [20, 0]),
                 ([0, 5], [0, 20]),
                 ([1, 5], [-20, 20]),
                 ([2, 6], [-40, 40]),
                 ([1, 4], [0, 20]),
+            ],
+        ),
+        (
+            "a scan",
+            long(1000, scan),
+            &[
+                ([50, 149], [0, 20]),
+                ([450, 549], [0, 20]),
+                ([450, 451], [40, 0]),
             ],
         ),
         (

@@ -154,8 +154,7 @@ impl Request {
     fn choices(&self) -> Result<Vec<Choice>, TracerError> {
         let of = |needs: StackNeeds, by_frame: bool| {
             let candidates = StackPlan::candidates(&needs)?.into_iter();
-            let holds =
-                move |stack: &StackPlan| self.frames.is_none() || stack.holds_motion(&needs);
+            let holds = move |stack: &StackPlan| stack.holds_motion(&needs);
             let choice = move |stack| Choice {
                 stack,
                 needs,

@@ -9,7 +9,7 @@ use tem00_decorrelation::{ImagingGeometry, pupil_overlap_correlation};
 use super::{
     bandwidth::Bandwidth,
     change::{Change, ReferencePoint},
-    prescan::MotionPrescan,
+    prescan::{FrameNeeds, MotionPrescan},
     shifts::Light,
 };
 use crate::{Scene, SpectralLine};
@@ -113,10 +113,15 @@ impl Followed {
 const MAX_ERROR: f64 = 0.05;
 
 /// Frames that are compared, evenly spread; with each, the next.
-const SPREAD: u32 = 16;
+const SPREAD: u32 = 32;
 
-/// Points that are compared.
+/// Frames with which one is compared, of those where the pupil has moved about as far.
+const NEIGHBOURS: usize = 64;
+
+/// Points that are followed, beside the middle of what each frame sees, where ways differ by less than this, in pupil
+/// diameters.
 const POINTS: usize = 4;
+const ALIKE: f64 = 0.1;
 
 /// The ways of the pupil over the speckle of some points, of surfaces that move alike, in some frames.
 pub(super) struct Tracks {
@@ -177,10 +182,13 @@ impl Tracks {
         };
         let ways = |point| (0..changes.len()).filter_map(|f| way(point, f)).collect();
         let stride = prescan.points.len().div_ceil(POINTS).max(1);
-        let middle = |frame: &u32| prescan.frames[*frame as usize].ways.middle();
+        let points = prescan.points.iter().step_by(stride).map(ways);
+        let needs = frames.iter().map(|&f| &prescan.frames[f as usize]);
+        let middle = needs.clone().zip(0..);
+        let middle = middle.filter_map(|(needs, frame)| Way::in_the_middle(needs, frame));
         Self {
-            points: prescan.points.iter().step_by(stride).map(ways).collect(),
-            middles: frames.iter().map(middle).collect(),
+            points: points.chain([middle.collect()]).collect(),
+            middles: needs.map(|needs| needs.ways.middle()).collect(),
             axis: prescan.widest_axis(),
             frames,
         }
@@ -239,23 +247,50 @@ impl Tracks {
     }
 }
 
-/// The frames that are compared: some that are spread evenly, and those where the pupil stands farthest beside the line to
-/// where it is farthest, each with the next.
+/// The frames that are compared: some that are spread evenly, and the two that slices along one line confuse most, each
+/// with the next.
 fn compared(prescan: &MotionPrescan, count: u32) -> Vec<u32> {
-    let middle = |frame: u32| prescan.frames[frame as usize].ways.middle();
-    let farther = |a: DVec2, b: DVec2| if b.length() > a.length() { b } else { a };
-    let farthest = (0..count).map(middle).fold(DVec2::ZERO, farther);
-    let beside = |a: &u32, b: &u32| {
-        let [a, b] = [a, b].map(|frame| farthest.perp_dot(middle(*frame)));
-        a.total_cmp(&b)
-    };
-    let outermost = [(0..count).min_by(beside), (0..count).max_by(beside)];
     let spread = (0..SPREAD).map(|i| i * (count - 1) / (SPREAD - 1));
-    let frames = spread.chain(outermost.into_iter().flatten());
+    let frames = spread.chain(most_confused(prescan, count));
     let frames: BTreeSet<_> = frames
         .flat_map(|frame| [frame, (frame + 1).min(count - 1)])
         .collect();
     frames.into_iter().collect()
+}
+
+/// The two frames in which the pupil has moved about as far, but elsewhere.
+fn most_confused(prescan: &MotionPrescan, count: u32) -> [u32; 2] {
+    let middle = |frame: u32| {
+        let middle = Way::in_the_middle(&prescan.frames[frame as usize], 0);
+        Some((frame, middle?))
+    };
+    let mut ways: Vec<_> = (0..count).filter_map(middle).collect();
+    ways.sort_by(|(_, a), (_, b)| a.length.total_cmp(&b.length));
+    let mut most = ([0; 2], 0.0);
+    for (i, (first, one)) in ways.iter().enumerate() {
+        let near = ways[i + 1..].iter().take(NEIGHBOURS);
+        for (second, other) in near.take_while(|(_, other)| other.length - one.length < 1.0) {
+            let rendered = pupil_overlap_correlation(other.length - one.length);
+            let law = pupil_overlap_correlation((other.vector - one.vector).length());
+            if rendered - law > most.1 {
+                most = ([*first, *second], rendered - law);
+            }
+        }
+    }
+    most.0
+}
+
+impl Way {
+    /// That in the middle of what a frame sees, if all of it moves about alike.
+    fn in_the_middle(needs: &FrameNeeds, frame: usize) -> Option<Self> {
+        let is_alike = needs.ways.size().length() < ALIKE;
+        is_alike.then(|| Self {
+            frame,
+            vector: needs.ways.middle(),
+            length: 0.5 * (needs.span[0] + needs.span[1]),
+            step: None,
+        })
+    }
 }
 
 impl<'a> Waves<'a> {

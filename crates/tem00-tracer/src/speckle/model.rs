@@ -50,7 +50,7 @@ struct Pattern {
     as_printed: bool,
     /// The lattice points about which the slices of each frame lie; empty where one stack holds those of all frames.
     middles: Vec<[i64; 2]>,
-    /// The slices that a frame has asked for last.
+    /// The slices that the last frame has looked up.
     last: Arc<Mutex<Option<Arc<Window>>>>,
 }
 
@@ -60,7 +60,7 @@ struct Window {
     /// The lattice point about which they lie, and the slice there.
     middle: [i64; 2],
     middle_slice: f64,
-    /// The slices that they hold to either side.
+    /// The slices that are looked up to either side.
     reach: f64,
     stacks: Vec<Stack>,
 }
@@ -217,14 +217,14 @@ impl Pattern {
             Ok(Stack::Derived(SpeckleStack::generate(&field, self.path)?))
         });
         let diameter = self.fields.first().map_or(1.0, |field| field.diameter()[0]);
-        let half_of_them = 0.5 * (self.path.slice_count() as f64 - self.slices_per_diameter);
+        let slices = self.path.slice_count() as f64;
         Ok(Window {
             middle,
             middle_slice: middle[0] as f64 / diameter * self.slices_per_diameter,
-            reach: if self.middles.is_empty() {
-                f64::INFINITY
-            } else {
-                half_of_them
+            reach: match self.middles.is_empty() {
+                true => f64::INFINITY,
+                // The pupil itself takes a diameter of the path.
+                false => 0.5 * (slices - self.slices_per_diameter),
             },
             stacks: stacks.collect::<Result<_, TracerError>>()?,
         })

@@ -304,12 +304,17 @@ impl Planner<'_> {
         if reach > 0.0 {
             shifts = [shifts[0].max(shifts[1]) + reach; 2];
         }
-        // Two frames have new speckle beyond a diameter, and the printed formulas their circle.
-        let by_frame = prescan.frames.len() > 2 && self.formulas == Formulas::Derived;
+        // Two frames have new speckle beyond a diameter; the circle of the printed formulas has no more for many.
+        let frames = match self.formulas {
+            Formulas::Derived => self.scene.frames,
+            Formulas::AsPrinted => self.scene.frames.min(2),
+        };
+        let by_frame = frames > 2 && !prescan.frames.is_empty();
         // What spreads wider makes grains of its own in an image of so many speckles.
         let widest = WIDEST_SPREAD * prescan.image.length() / geometry.speckle_size_in_pixels();
-        let frames = prescan.frames.iter();
-        let spans: Vec<_> = frames
+        let needs = prescan.frames.iter();
+        let spans: Vec<_> = needs
+            .clone()
             .map(|frame| axis.map_or(frame.span, |axis| frame.ways.along(axis)))
             .map(|[low, high]| {
                 let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).min(widest));
@@ -317,10 +322,8 @@ impl Planner<'_> {
             })
             .collect();
         let across = axis.map(|axis| {
-            let frames = prescan.frames.iter();
-            frames
-                .map(|frame| frame.ways.middle().dot(axis.perp()))
-                .collect()
+            let middles = needs.map(|frame| frame.ways.middle());
+            middles.map(|middle| middle.dot(axis.perp())).collect()
         });
         Request {
             needs: StackNeeds {
@@ -328,7 +331,7 @@ impl Planner<'_> {
                 region: turned(prescan.region()).to_array(),
                 speckle_size: geometry.speckle_size_in_pixels(),
                 motion: (moves || reach > 0.0).then_some(shifts[0] + shifts[1]),
-                frames: self.scene.frames,
+                frames,
                 memory_limit: self.scene.speckle.memory,
             },
             shifts,

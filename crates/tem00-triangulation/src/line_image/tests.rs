@@ -1,4 +1,5 @@
 use approx::assert_relative_eq;
+use tem00_numerics::cast::to_f32;
 use tem00_statistics::{PixelAutocovariance, PixelColumn, rectangular_pixel_contrast};
 
 use super::*;
@@ -203,6 +204,16 @@ fn impossible_images_are_rejected_by_name() {
     }
 }
 
+/// The light of a line as a sharp lens would image it, in parts of pixels.
+fn sharp(data: &LineImageData, parts: usize, middle: f64) -> Grid<f32> {
+    let peak = (8.0 / core::f64::consts::PI).sqrt() * data.column_electrons / data.width;
+    Grid::from_fn(data.size[0] * parts, data.size[1] * parts, |_, y| {
+        let distance = (y as f64 + 0.5) / parts as f64 - middle;
+        let density = peak * (-8.0 * (distance / data.width).powi(2)).exp();
+        to_f32(density / (parts * parts) as f64)
+    })
+}
+
 #[test]
 fn a_line_that_is_given_by_its_light_has_the_mean_and_the_noise_of_one_that_is_given_by_its_width()
 {
@@ -217,12 +228,7 @@ fn a_line_that_is_given_by_its_light_has_the_mean_and_the_noise_of_one_that_is_g
         let lines = LineImage::new(data).unwrap();
         let parts = lines.parts_of_pixel();
         let middle = 31.3;
-        let light = Grid::from_fn(96 * parts, 64 * parts, |_, y| {
-            let distance = (y as f64 + 0.5) / parts as f64 - middle;
-            let line =
-                (-8.0 * (distance / width).powi(2)).exp() * (8.0 / core::f64::consts::PI).sqrt();
-            (data.column_electrons * line / width / (parts * parts) as f64) as f32
-        });
+        let light = sharp(&data, parts, middle);
         // The moment of a column, over its mean power.
         let moment = |image: &Grid<f32>, x: usize| -> f64 {
             let moments = (0..64).map(|y| f64::from(image[(x, y)]) * (y as f64 + 0.5 - middle));
@@ -283,12 +289,7 @@ fn light_without_speckle_is_the_mean_of_light_with_it() {
         let mut lines = LineImage::new(data).unwrap();
         lines.even = 1.0;
         let parts = 4;
-        let light = Grid::from_fn(96 * parts, 48 * parts, |_, y| {
-            let distance = (y as f64 + 0.5) / parts as f64 - 23.6;
-            let line =
-                (-8.0 * (distance / 3.0).powi(2)).exp() * (8.0 / core::f64::consts::PI).sqrt();
-            (data.column_electrons * line / 3.0 / (parts * parts) as f64) as f32
-        });
+        let light = sharp(&data, parts, 23.6);
         let found = lines.speckled_light(1, &light).unwrap();
         let mean = lines.mean(|_| 23.6);
         let most = f64::from(mean.values().iter().fold(0.0, |a: f32, &b| a.max(b)));

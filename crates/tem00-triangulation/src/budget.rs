@@ -33,7 +33,7 @@ pub use self::{
 /// # Validity
 ///
 /// First order in the fluctuations. Against images that were summed wave by wave the speckle of a centre of gravity is within 5 %
-/// for lines of at least [`LEAST_SPECKLES`](Self::LEAST_SPECKLES) in full width, in and out of focus, in single columns and in means. It is too small for
+/// for lines of at least [`LEAST_SPECKLES`](Self::LEAST_SPECKLES) in full width, in and out of focus, in single columns and means of a few; of sixteen it is 3 to 6 % too large. It is too small for
 /// thinner lines, by 14 % at 1.2 speckles and a fifth at 0.8; about a third too large for detectors that look at three
 /// pixels, and half for Steger's, which also looks at neighbouring columns. [`simulate`], whose light interferes
 /// as waves do, tells how far, and whether all columns have a line that can be trusted. Pixels count as linear, also where bright

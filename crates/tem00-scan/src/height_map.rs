@@ -81,6 +81,9 @@ impl HeightMap {
     /// Sorts points into square cells of a side of `pitch` metres along the first two axes; heights are
     /// along the third. All are of length 1 and square to each other.
     ///
+    /// The points with the smallest lengths lie in the middle of the first cells, so that of profiles
+    /// that are one pitch apart each lies in the middle of a row of its own.
+    ///
     /// A cell holds the means of its points, and the root mean square of their uncertainties: points
     /// of one cell share their speckle, so that their mean is hardly better than one.
     ///
@@ -158,7 +161,8 @@ pub(super) fn check_pitch(pitch: f64) -> Result<(), TriangulationError> {
     })
 }
 
-/// The lower corner of a grid around all positions, in metres, and its number of cells.
+/// The lower corner of a grid that begins half a cell below all positions, in metres, and its number
+/// of cells.
 fn extent(
     positions: impl Iterator<Item = [f64; 2]>,
     pitch: f64,
@@ -178,7 +182,8 @@ fn extent(
             needed: 1,
         });
     }
-    let cells = [0, 1].map(|axis| ((high[axis] - low[axis]) / pitch).floor() + 1.0);
+    let origin = low.map(|low| low - 0.5 * pitch);
+    let cells = [0, 1].map(|axis| cell((high[axis] - origin[axis]) / pitch) + 1.0);
     let count = cells[0] * cells[1];
     if count.is_nan() || count > MAX_CELLS {
         return Err(TriangulationError::OutOfRange {
@@ -193,16 +198,25 @@ fn extent(
         reason = "at most 2²⁴"
     )]
     let size = cells.map(|cells| cells as usize);
-    Ok((low, size))
+    Ok((origin, size))
 }
 
-/// The cell of a position, in cells from the first; the last one holds the upper edge.
+/// The cell of a position, in cells from the lower edge of the first.
+///
+/// An edge belongs to the cell above it, also where rounding puts a position just below the edge:
+/// half of a pitch of two steps, say, is a position on an edge.
+fn cell(position: f64) -> f64 {
+    const ROUNDING: f64 = 1e-6;
+    (position + ROUNDING).floor()
+}
+
+/// The index of the [`cell`] of a position.
 fn index(position: f64, size: usize) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "positions lie in the grid"
     )]
-    let index = position.max(0.0) as usize;
+    let index = cell(position) as usize;
     index.min(size - 1)
 }

@@ -363,7 +363,7 @@ fn a_map_of_the_part_has_square_cells() {
     let at = |x: f64, y: f64, z: f64| point(0, 1e-3 * DVec3::new(x, y, z));
     let profiles = [
         vec![at(0.0, 0.0, 1.0), at(0.4, 0.3, 3.0)],
-        vec![at(2.2, 1.1, 7.0)],
+        vec![at(2.2, 0.8, 7.0)],
     ];
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     let map = HeightMap::of_points(&profiles, axes, 1e-3).unwrap();
@@ -379,6 +379,46 @@ fn a_map_of_the_part_has_square_cells() {
     for pitch in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let refused = HeightMap::of_points(&profiles, axes, pitch);
         assert!(refused.is_err(), "{pitch}");
+    }
+}
+
+/// Profiles that are a whole number of parts of a pitch apart fall into rows evenly, wherever the part
+/// stands and however their places were rounded.
+#[test]
+fn rows_of_a_map_have_equally_many_profiles() {
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    for (step, count) in [
+        (3e-4, 30),
+        (1e-4, 200),
+        (2.2e-4, 61),
+        (1e-3 / 3.0, 97),
+        (7e-6, 1000),
+    ] {
+        for offset in [0.0, -4.35e-3, 0.1, -1.0 / 3.0] {
+            let sum = |k: usize| (0..k).fold(offset, |y, _| y + step);
+            let roundings: [&dyn Fn(usize) -> f64; 3] = [
+                &|k| offset + k as f64 * step,
+                &|k| offset - (count - 1 - k) as f64 * step,
+                &sum,
+            ];
+            let ways = roundings
+                .iter()
+                .flat_map(|place| [1, 2, 3].map(|steps| (place, steps)));
+            for (place, steps) in ways {
+                let at = |k| vec![point(0, DVec3::new(0.0, place(k), k as f64))];
+                let profiles: Vec<_> = (0..count).map(at).collect();
+                let map = HeightMap::of_points(&profiles, axes, step * steps as f64).unwrap();
+                // The first row begins half a pitch below the first profile.
+                let row = |k: usize| (2 * k + steps) / (2 * steps);
+                let rows = row(count - 1) + 1;
+                let mean = |r| {
+                    let of_row: Vec<usize> = (0..count).filter(|&k| row(k) == r).collect();
+                    of_row.iter().sum::<usize>() as f32 / of_row.len() as f32
+                };
+                let expected: Vec<f32> = (0..rows).map(mean).collect();
+                assert_eq!(map.heights.values(), expected, "{step} m from {offset} m");
+            }
+        }
     }
 }
 

@@ -52,7 +52,8 @@ fn the_image_of_a_point_is_like_itself() {
     assert_relative_eq!(table, series, max_relative = 0.05);
 }
 
-/// The sum over powers of the correlation, each a Gaussian about the tilt, by sums over two dimensions.
+/// The sum over powers of the correlation, each a Gaussian about the tilt, by sums over two dimensions. A length of 1 is
+/// the reciprocal of the frequencies that the pupil spans, λ / (2 sin u).
 #[test]
 fn correlated_heights_are_the_sum_of_their_powers() {
     for (angle, length, kappa) in [
@@ -68,7 +69,7 @@ fn correlated_heights_are_the_sum_of_their_powers() {
         .unwrap();
         let relief = Relief {
             rms_height: 1.6e-6,
-            correlation_length: length * cell.speckle_size(),
+            correlation_length: length * 9e-6,
         };
         let cell = cell.with_relief(relief).unwrap();
         let shift = kappa / cell.tilt_wave_number();

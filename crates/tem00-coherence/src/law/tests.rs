@@ -257,6 +257,24 @@ fn a_defocused_cell_mixes_the_paths_of_its_blur() {
 }
 
 #[test]
+fn a_table_of_displacements_has_the_closed_forms_until_the_pupils_part() {
+    let (thin, tall) = (Rows::Thin.tabulated(), Rows::Tall.tabulated());
+    for distance in [0.0, 0.1, 0.375, 0.8, 0.995, 1.0, 1.2, 7.0] {
+        let shared = f64::min(distance, 1.0);
+        // Nodes are 1/96 apart, and f″ is 3 at most; of discs that part it grows, in the last cell, by a root.
+        let along = 1.0 - 1.5 * shared + 0.5 * shared.powi(3);
+        for side in [-distance, distance] {
+            assert_relative_eq!(thin(DVec2::new(side, 0.0)), along, epsilon = 5e-5);
+        }
+        let overlap = 2.0 / PI * (shared.acos() - shared * (1.0 - shared * shared).sqrt());
+        for turn in [0.0, 0.7, 1.571, 2.4, -1.0] {
+            let found = tall(distance * DVec2::from_angle(turn));
+            assert_relative_eq!(found, overlap, epsilon = 2e-4);
+        }
+    }
+}
+
+#[test]
 fn rows_lie_between_thin_and_tall_ones() {
     let (line, cell) = (gaussian(450e-9, 20e-9), cell(450e-9, 0.0, 30.0, 0.0));
     let speckle = PolychromaticSpeckle {

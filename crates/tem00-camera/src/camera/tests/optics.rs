@@ -72,6 +72,32 @@ fn distortion_that_folds_inside_the_image_is_refused() {
 }
 
 #[test]
+fn an_image_may_turn_back_behind_the_farthest_of_its_corners_alone() {
+    let to_tangent = 3.45e-6 * 0.275 / (25e-3 * 0.3);
+    let centre = DVec2::new(320.0, 240.0);
+    // The corners lie 16 pixels beyond the image.
+    for corner in [
+        [-16.0, -16.0],
+        [656.0, -16.0],
+        [-16.0, 496.0],
+        [656.0, 496.0],
+    ] {
+        let corner = DVec2::from_array(corner);
+        let axis = centre + 0.25 * (centre - corner);
+        let radius = corner.distance(axis) * to_tangent;
+        for (part, is_possible) in [(0.999, false), (1.001, true)] {
+            // r (1 + k₁ r²) is largest at r² = −1/3k₁, where it is 2r/3.
+            let k1 = -4.0 / 27.0 / (part * radius).powi(2);
+            let camera = Camera::new(CameraDescription {
+                principal_point: Some(axis),
+                ..with_distortion(k1, 0.0, 0.0)
+            });
+            assert_eq!(camera.is_ok(), is_possible, "{corner}: {camera:?}");
+        }
+    }
+}
+
+#[test]
 fn tilts_that_turn_the_sensor_away_are_refused() {
     let tilted = |angle| CameraDescription {
         tilt: SensorTilt {

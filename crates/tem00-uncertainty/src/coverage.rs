@@ -53,14 +53,12 @@ impl CoverageProbability {
 ///
 /// - JCGM 100:2008, *Guide to the expression of uncertainty in measurement*, eq. (G.2b).
 pub fn effective_degrees_of_freedom(combined: f64, contributions: &[(f64, f64)]) -> f64 {
-    if combined == 0.0 {
-        return f64::INFINITY;
-    }
     // In parts of the combined one, so that no power leaves the range of numbers.
     let terms = contributions
         .iter()
         .map(|(u, freedom)| (u / combined).powi(4) / freedom);
     let sum = terms.sum::<f64>();
+    // NaN, of contributions that are all 0 or cancel, is not.
     if sum > 0.0 {
         sum.recip()
     } else {
@@ -155,6 +153,7 @@ mod tests {
         for (combined, contributions) in [
             (0.0, &[][..]),
             (0.0, &[(0.0, 3.0)]),
+            (0.0, &[(1.0, f64::INFINITY), (1.0, f64::INFINITY)]),
             (2.0, &[(1e-200, f64::INFINITY), (2.0, f64::INFINITY)]),
         ] {
             let freedom = effective_degrees_of_freedom(combined, contributions);

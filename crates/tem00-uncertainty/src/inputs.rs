@@ -318,13 +318,12 @@ mod tests {
             let expected = UncertaintyError::NotNormal { input };
             assert_eq!(refused(&[([0, input], 0.5)]), expected, "{input}");
         }
-        for coefficient in [-1.001, 1.001, f64::NAN] {
-            assert_eq!(
-                refused(&[([0, 1], coefficient)]).parameter(),
-                "coefficient",
-                "{coefficient}"
-            );
+        for coefficient in [-1.001, 1.0_f64.next_up(), f64::INFINITY] {
+            let expected = UncertaintyError::refused("coefficient", coefficient, "from −1 to 1");
+            assert_eq!(refused(&[([0, 1], coefficient)]), expected);
         }
+        let nan = refused(&[([0, 1], f64::NAN)]).to_string();
+        assert!(nan.contains("from −1 to 1, got NaN"), "{nan}");
         assert_eq!(
             Inputs::independent(Vec::new()),
             Err(UncertaintyError::NoInputs),

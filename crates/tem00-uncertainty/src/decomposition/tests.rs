@@ -49,6 +49,17 @@ fn a_sum_far_from_zero_is_decomposed_into_its_variances() {
 }
 
 #[test]
+fn sums_have_the_ratio_of_their_samples_and_its_standard_error() {
+    let samples = [(1.0, 2.0), (2.0, 1.0), (3.0, 1.0)];
+    let sums = samples.map(|(part, variance)| Sums::of_sample(part, variance));
+    let index = total(sums.into_iter()).index().unwrap();
+    // 6/4; the deviations t − 1.5 v are −2, 0.5 and 1.5.
+    assert!((index.value - 1.5).abs() < 1e-15, "{index:?}");
+    let error = 6.5_f64.sqrt() / 4.0;
+    assert!((index.standard_error - error).abs() < 1e-15, "{index:?}");
+}
+
+#[test]
 fn standard_errors_are_the_scatter_between_seeds() {
     let model = |x: &[f64]| x[0] + x[0] * x[1];
     let inputs = inputs(&[1.0, 1.0]);

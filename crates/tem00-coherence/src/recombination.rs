@@ -121,6 +121,14 @@ mod tests {
     }
 
     #[test]
+    fn a_coherence_beyond_the_inequality_counts_as_its_bound() {
+        for find in [Recombination::new, Recombination::of_two] {
+            let [found, bound] = [0.9, 0.5].map(|with_single| find([1.0, 0.3], with_single, 0.25));
+            assert_eq!(found, bound);
+        }
+    }
+
+    #[test]
     fn light_of_one_wavelength_is_one_pattern() {
         let mix = Recombination::new([1.0, 0.3], 1.0, 1.0);
         assert!((mix.patterns[0] - 1.3).abs() < 1e-15, "{mix:?}");

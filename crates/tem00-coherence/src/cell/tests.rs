@@ -115,13 +115,13 @@ fn what_cannot_be_is_refused_by_name() {
         }),
         "normal"
     );
-    assert_eq!(
-        name(CellGeometry {
-            to_source: -DVec3::Z,
+    for to_source in [-DVec3::Z, direction(91.0), DVec3::X] {
+        let below = CellGeometry {
+            to_source,
             ..geometry()
-        }),
-        "to_source"
-    );
+        };
+        assert_eq!(name(below), "to_source", "{to_source}");
+    }
     assert_eq!(
         name(CellGeometry {
             to_pupil: DVec3::NAN,
@@ -160,10 +160,10 @@ fn what_cannot_be_is_refused_by_name() {
     };
     assert_eq!(relief(-1e-6, 0.0), "rms_height");
     assert_eq!(relief(1e-6, f64::NAN), "correlation_length");
-    assert_eq!(
-        cell.with_defocus(f64::NAN).unwrap_err().parameter(),
-        "defocus"
-    );
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let refused = cell.clone().with_defocus(bad).unwrap_err();
+        assert_eq!(refused.parameter(), "defocus", "{bad}");
+    }
 }
 
 proptest! {

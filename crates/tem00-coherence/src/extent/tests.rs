@@ -142,6 +142,40 @@ fn a_disc_is_the_sum_of_its_points_with_heights_and_a_linewidth_too() {
     }
 }
 
+/// Pairs of the four waves k (l_S + l), split across the line of sight and along the normal.
+#[test]
+fn two_wavelengths_from_two_directions_correlate_by_their_waves() {
+    let (sight, rms_height) = (direction(-20.0), 2e-6);
+    let relief = Relief {
+        rms_height,
+        correlation_length: 0.0,
+    };
+    let list = [34.75, 35.75].map(|degrees| (direction(degrees), 1.0));
+    let wavelengths = [640e-9, 660e-9];
+    let waves = wavelengths.map(|wavelength| {
+        list.map(|(source, _)| {
+            let wave = TAU / wavelength * (source + sight);
+            let height_factor = wave.dot(sight) / sight.z;
+            (wave - height_factor * DVec3::Z, height_factor)
+        })
+    });
+    let waves = waves.as_flattened();
+    let pairs = waves.iter().flat_map(|a| waves.iter().map(move |b| (a, b)));
+    let squares = pairs.map(|((across, factor), (other_across, other_factor))| {
+        let pupils = (across - other_across).length() * WAVELENGTH / (2.0 * TAU * SIN_APERTURE);
+        let heights = (factor - other_factor) * rms_height;
+        disc_overlap(pupils).powi(2) * (-heights * heights).exp()
+    });
+    let expected = squares.sum::<f64>() / 16.0;
+    let extent = SourceExtent::directions(&list).unwrap();
+    let cell = cell(35.25, -20.0).with_relief(relief).unwrap();
+    let cell = &cell.with_source_extent(extent);
+    let line = &SpectralLine::from_peaks(&wavelengths.map(|peak| [peak, 1.0])).unwrap();
+    let found = PolychromaticSpeckle { line, cell }.contrast().powi(2);
+    // Linear in both changes, of 1 % and 3 % of their sums.
+    assert!((found / expected - 1.0).abs() < 0.01, "{found}, {expected}");
+}
+
 #[test]
 fn directions_share_chords_and_lenses_of_the_pupil() {
     // Two directions of half of the light each, displaced across the tilt by half a pupil, and along it.

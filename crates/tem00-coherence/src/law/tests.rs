@@ -2,6 +2,7 @@ use approx::assert_relative_eq;
 use core::f64::consts::PI;
 use libm::{erf, erfc};
 use num_complex::Complex;
+use tem00_numerics::jinc;
 
 use super::*;
 use crate::{CellGeometry, DVec3, LineShape, Relief};
@@ -63,8 +64,15 @@ fn without_a_tilt_contrasts_have_closed_forms() {
         }),
     ];
     for (shape, squared) in squares {
-        let found = contrast(&lines(shape), &cell);
+        let line = &lines(shape);
+        let found = contrast(line, &cell);
         assert_relative_eq!(found * found, squared, max_relative = 1e-8);
+        // Grains are those of one wavelength, and their covariance that of Airy's pattern.
+        let speckle = PolychromaticSpeckle { line, cell: &cell };
+        for (lag, airy) in [([0.0, 0.0], 1.0), ([0.5, 0.0], jinc(0.5 * PI).powi(2))] {
+            let found = speckle.autocovariance(lag);
+            assert_relative_eq!(found, squared * airy, max_relative = 1e-7);
+        }
     }
     let two = SpectralLine::from_peaks(&[[450e-9, 2.0], [453e-9, 1.0]]).unwrap();
     let kappa = 2.0 * PI * (1.0 / 450e-9 - 1.0 / 453e-9);

@@ -91,6 +91,40 @@ fn spreads_are_those_of_the_shapes() {
         .unwrap()
         .wave_number_spread();
     assert_relative_eq!(two, 0.5 * full, max_relative = 1e-12);
+    let lorentzian = |linewidth| shaped(linewidth, LineShape::Lorentzian).wave_number_spread();
+    assert_eq!([0.0, 3e-9].map(lorentzian), [0.0, f64::INFINITY]);
+}
+
+#[test]
+fn a_comb_stands_about_its_wavelength() {
+    let half = 0.5 * TAU * 3e-9 / 650e-9_f64.powi(2);
+    for count in [2, 3, 8] {
+        let comb = SpectralLine::comb(650e-9, 3e-9, count).unwrap();
+        for (uniform, end) in [(0.0, -half), (1.0, half)] {
+            assert_relative_eq!(comb.draw(uniform), end, max_relative = 1e-12);
+        }
+    }
+}
+
+#[test]
+fn nodes_have_the_moments_of_the_line() {
+    // Of more than 24 peaks the widths are left out.
+    for (count, is_wide) in [(1, true), (3, true), (24, true), (25, false)] {
+        let comb = SpectralLine::comb(650e-9, 4e-9, count).unwrap();
+        let modes = comb.clone().with_linewidth(0.1e-9, LineShape::Gaussian);
+        let modes = modes.unwrap();
+        let nodes = modes.nodes(modes.width, 1000).unwrap();
+        let moment = |power| {
+            nodes
+                .iter()
+                .map(move |[x, weight]| weight * x.powi(power))
+                .sum::<f64>()
+        };
+        let spread = if is_wide { modes } else { comb }.wave_number_spread();
+        // A Gaussian ends after 5.5 standard deviations, with 1e-6 of its variance.
+        assert_relative_eq!(moment(0), 1.0, epsilon = 1e-6);
+        assert_relative_eq!(moment(2).sqrt(), spread, max_relative = 1e-5);
+    }
 }
 
 #[test]
@@ -121,6 +155,8 @@ fn what_cannot_be_is_refused_by_name() {
         assert_eq!(name(line), "linewidth", "{bad}");
         assert_eq!(name(SpectralLine::comb(650e-9, bad, 3)), "span", "{bad}");
     }
+    let widest = SpectralLine::new(650e-9, 0.1 * 650e-9, LineShape::Gaussian);
+    assert!(widest.is_ok(), "a tenth of the wavelength");
     for count in [0, 257, usize::MAX] {
         assert_eq!(
             name(SpectralLine::comb(650e-9, 1e-9, count)),
@@ -130,10 +166,11 @@ fn what_cannot_be_is_refused_by_name() {
     }
     assert_eq!(name(SpectralLine::from_peaks(&[])), "peaks");
     assert_eq!(name(SpectralLine::from_peaks(&[[650e-9, 0.0]])), "power");
-    assert_eq!(
-        name(SpectralLine::from_peaks(&[[650e-9, 1.0], [450e-9, 1.0]])),
-        "wavelength"
-    );
+    // A faint peak on either side, 13 and 14 % from the mean.
+    for far in [750e-9, 570e-9] {
+        let line = SpectralLine::from_peaks(&[[650e-9, 1e6], [far, 1.0]]);
+        assert_eq!(name(line), "wavelength", "{far}");
+    }
 }
 
 #[test]

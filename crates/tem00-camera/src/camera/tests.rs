@@ -116,6 +116,28 @@ fn impossible_cameras_are_rejected() {
     for description in bad {
         assert!(Camera::new(description).is_err(), "{description:?}");
     }
+    let of = |f_number, resolution| {
+        let camera = CameraDescription {
+            f_number,
+            resolution,
+            ..description()
+        };
+        Camera::new(camera).is_ok()
+    };
+    let nowhere = Camera::new(CameraDescription {
+        look_at: DVec3::NAN,
+        ..description()
+    });
+    let refused = nowhere.unwrap_err().to_string();
+    assert!(refused.contains("a finite point"), "{refused}");
+    assert!(
+        of(0.5, [640, 480]) && !of(0.499, [640, 480]),
+        "the fastest lens"
+    );
+    assert!(
+        of(8.0, [1 << 14, 1 << 14]) && !of(8.0, [1 << 14, 16_385]),
+        "2²⁸ pixels"
+    );
 }
 
 #[test]

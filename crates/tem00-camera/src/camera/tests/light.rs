@@ -100,6 +100,14 @@ fn what_is_not_in_the_image_is_not_connected() {
         let behind = camera.connect(point, [0.2, 0.7]);
         assert!(behind.is_none(), "{behind:?}");
     }
+    let camera = Camera::new(CameraDescription {
+        position: DVec3::ZERO,
+        look_at: -DVec3::Z,
+        ..description()
+    });
+    // So near to the lens that the importance overflows.
+    let on_lens = camera.unwrap().connect(-1e-200 * DVec3::Z, [0.5, 0.5]);
+    assert!(on_lens.is_none(), "{on_lens:?}");
 }
 
 #[test]

@@ -106,11 +106,12 @@ fn tilts_that_turn_the_sensor_away_are_refused() {
         },
         ..description()
     };
+    // The rim of the pupil, f/16 off the axis, is behind the sensor, which is 25 mm · 0.3 / 0.275 away.
+    let steepest = (16.0_f64 * 0.3 / 0.275).atan();
     let bad = [
         tilted(1.6),
         tilted(f64::NAN),
-        // The rim of the pupil, 1.6 mm off the axis, is behind the sensor: tan τ > 17.5.
-        tilted(1.52),
+        tilted(1.001 * steepest),
         // The image is higher than the lens is far, so that its top reaches through the lens.
         CameraDescription {
             focal_length: 2e-3,
@@ -129,14 +130,28 @@ fn tilts_that_turn_the_sensor_away_are_refused() {
         );
         assert!(refused, "{camera:?}");
     }
-    assert!(Camera::new(tilted(1.5)).is_ok(), "tan τ = 14");
+    assert!(
+        Camera::new(tilted(0.999 * steepest)).is_ok(),
+        "just in front"
+    );
+    // Rays meet the sensor above its horizon, where their tangent is −cot τ.
+    let camera = Camera::new(tilted(1.5)).unwrap();
+    let horizon = 1.5_f64.tan().recip();
+    for (tangent, is_met) in [(-0.99, true), (-1.01, false), (1.01, true)] {
+        let point = at_tangent(&camera, DVec2::new(0.0, tangent * horizon));
+        assert_eq!(camera.project(point).is_some(), is_met, "{tangent}");
+    }
 }
 
 #[test]
 fn the_axis_meets_the_principal_point() {
     let camera = Camera::new(crooked()).unwrap();
     let image = camera.project(crooked().look_at).unwrap();
-    assert!(image.distance(DVec2::new(300.0, 260.0)) < 1e-9, "{image}");
+    let principal_point = DVec2::new(300.0, 260.0);
+    assert!(image.distance(principal_point) < 1e-9, "{image}");
+    let view = (crooked().look_at - crooked().position).normalize();
+    let direction = camera.ray(principal_point).direction;
+    assert!(direction.distance(view) < 1e-15, "{direction}");
     let nowhere = Camera::new(CameraDescription {
         principal_point: Some(DVec2::new(f64::INFINITY, 0.0)),
         ..description()

@@ -115,6 +115,10 @@ mod tests {
                 assert!((found - k).abs() <= rounding, "{freedom}: {found}, {k}");
             }
         }
+        for freedom in [0.5, -2.0, f64::NAN] {
+            let found = coverage_factor(freedom, CoverageProbability::P95);
+            assert!((found - 12.71).abs() < 0.005, "{freedom}: {found}");
+        }
     }
 
     #[test]
@@ -172,6 +176,10 @@ mod tests {
                 Err("probability"),
                 "{probability}"
             );
+        }
+        for probability in [0.5, 0.9999] {
+            let found = CoverageProbability::new(probability);
+            assert_eq!(found, Ok(CoverageProbability(probability)));
         }
     }
 }

@@ -292,13 +292,23 @@ mod tests {
                 "{given:?}"
             );
         }
-        // Singular, and possible: x₂ = (x₀ + x₁)/√2.
-        let half = 0.5_f64.sqrt();
-        let given = correlations(&[([0, 2], half), ([1, 2], half)]);
-        assert!(
-            Inputs::correlated(normals(3), &given).is_ok(),
-            "a singular matrix"
-        );
+    }
+
+    #[test]
+    fn singular_correlations_draw_what_depends_on_the_others() {
+        for turn in 1..12 {
+            let (sin, cos) = (0.13 * f64::from(turn)).sin_cos();
+            let given = correlations(&[([0, 2], sin), ([1, 2], cos)]);
+            let inputs = Inputs::correlated(normals(3), &given).unwrap();
+            let columns = draws(&inputs, 10);
+            for (i, found) in columns[2].iter().enumerate() {
+                let expected = sin * columns[0][i] + cos * columns[1][i];
+                assert!(
+                    (found - expected).abs() < 1e-14,
+                    "{turn}: {found}, {expected}"
+                );
+            }
+        }
     }
 
     #[test]

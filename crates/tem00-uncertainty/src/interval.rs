@@ -95,5 +95,18 @@ mod tests {
         let mirrored: Vec<f64> = squares.iter().rev().map(|x| 0.0 - x).collect();
         let found = interval(&mirrored, 0.9, IntervalKind::Shortest);
         assert_eq!(found, "-810000 to 0", "dense above");
+        let even: Vec<f64> = (0..100).map(f64::from).collect();
+        let found = interval(&even, 0.9, IntervalKind::Shortest);
+        assert_eq!(found, "0 to 90", "the first of equal ones");
+    }
+
+    #[test]
+    fn few_values_have_their_range() {
+        for kind in [IntervalKind::Symmetric, IntervalKind::Shortest] {
+            for count in [1, 2, 9] {
+                let values: Vec<f64> = (1..=count).map(f64::from).collect();
+                assert_eq!(interval(&values, 0.95, kind), format!("1 to {count}"));
+            }
+        }
     }
 }

@@ -91,12 +91,12 @@ fn what_has_no_parts_is_refused() {
     assert_eq!(parameter(constant), "model", "no variance");
     let wide = Decomposition::new(&inputs(&[1.0]), |x| 1e300 * x[0], options);
     assert_eq!(parameter(wide), "model", "an infinite variance");
-    let few = DecompositionOptions {
-        samples: 999,
-        ..options
+    let few = |samples| {
+        let options = DecompositionOptions { samples, ..options };
+        Decomposition::new(&inputs(&[1.0]), |x| x[0], options)
     };
-    let few = Decomposition::new(&inputs(&[1.0]), |x| x[0], few);
-    assert_eq!(parameter(few), "samples", "too few");
+    assert_eq!(parameter(few(999)), "samples", "too few");
+    assert!(few(1000).is_ok(), "as many as are needed");
     let normal = Input::new(0.0, 1.0, Distribution::Normal).unwrap();
     let correlation = Correlation {
         between: [0, 1],

@@ -11,7 +11,10 @@ fn independent(inputs: &[Input]) -> Inputs {
 
 #[test]
 fn sensitivities_are_the_derivatives() {
-    let inputs = independent(&[input(0.7, 0.02), input(-2.0, 1.0), input(1e5, 0.05)]);
+    let uncertainties = [0.02, 1.0, 0.05];
+    let inputs = [0.7, -2.0, 1e5].into_iter().zip(uncertainties);
+    let inputs: Vec<Input> = inputs.map(|(estimate, u)| input(estimate, u)).collect();
+    let inputs = independent(&inputs);
     let model = |x: &[f64]| libm::sin(x[0]) * libm::exp(x[1]) + 1e-3 * x[2] / x[0];
     let found = FirstOrder::new(&inputs, model).unwrap();
     let exp = libm::exp(-2.0);
@@ -20,12 +23,34 @@ fn sensitivities_are_the_derivatives() {
         libm::sin(0.7) * exp,
         1e-3 / 0.7,
     ];
-    for (contribution, c) in found.contributions().iter().zip(expected) {
+    for ((contribution, c), u) in found
+        .contributions()
+        .iter()
+        .zip(expected)
+        .zip(uncertainties)
+    {
         // Rounding of values of 140 over steps of at least 1/20 of 0.02; over one of 1/20 the second would err
         // by 4e-5 without extrapolation.
         let error = (contribution.sensitivity - c).abs();
         assert!(error < 1e-9, "{contribution:?}, {c}: {error:e}");
+        let error = (contribution.uncertainty - c.abs() * u).abs();
+        assert!(error < 1e-9, "{contribution:?}, {c}: {error:e}");
     }
+}
+
+#[test]
+fn a_falling_model_has_a_sensitivity_between_the_numbers_there_are() {
+    // Numbers lie 1.5e-8 apart, which is 1.5 % of the uncertainty, and differences are exact.
+    let found = FirstOrder::new(&independent(&[input(1e8, 1e-6)]), |x| -4.0 * x[0]);
+    let contribution = found.unwrap().contributions()[0];
+    assert!(
+        (contribution.sensitivity + 4.0).abs() < 1e-12,
+        "{contribution:?}"
+    );
+    let found = FirstOrder::new(&independent(&[input(0.5, 0.1)]), |x| -libm::exp(x[0]));
+    let contribution = found.unwrap().contributions()[0];
+    let error = (contribution.sensitivity + libm::exp(0.5)).abs();
+    assert!(error < 1e-9, "{contribution:?}");
 }
 
 #[test]
@@ -64,6 +89,18 @@ fn what_is_fully_correlated_cancels() {
     // The root of what rounding leaves of a variance of 0.01 · 10⁻¹⁶ · 10².
     assert!(found.combined() < 1e-8, "{found:?}");
     assert!(found.expanded(CoverageProbability::P95) < 2e-8, "{found:?}");
+    // x₂ is made of both others: rounding leaves a variance of some 1e-16, of either sign.
+    for turn in 1..12 {
+        let (sin, cos) = (0.13 * f64::from(turn)).sin_cos();
+        let with_last = |(input, coefficient)| Correlation {
+            between: [input, 2],
+            coefficient,
+        };
+        let given = [(0, sin), (1, cos)].map(with_last);
+        let inputs = Inputs::correlated(vec![input(0.0, 1.0); 3], &given).unwrap();
+        let found = FirstOrder::new(&inputs, |x| sin * x[0] + cos * x[1] - x[2]).unwrap();
+        assert!(found.combined() < 1e-7, "{turn}: {found:?}");
+    }
 }
 
 #[test]
@@ -73,23 +110,27 @@ fn a_model_with_a_stationary_point_has_no_first_order() {
     // JCGM 101, table 6: the first order is 0 with an interval of no length.
     assert!(found.combined() == 0.0, "{found:?}");
     assert!(found.degrees_of_freedom().is_infinite(), "{found:?}");
+    for part in found.contributions() {
+        assert!(part.variance_fraction == 0.0, "{part:?}");
+    }
 }
 
 #[test]
 fn models_that_are_not_smooth_are_refused() {
     let inputs = independent(&[input(1.0, 0.1), input(0.3, 0.1)]);
-    let found = FirstOrder::new(&inputs, |x| x[0] + if x[1] < 0.302 { 0.0 } else { 1.0 });
-    let is_refused = matches!(
-        found,
-        Err(UncertaintyError::NotDifferentiable { input: 1, .. })
-    );
-    assert!(is_refused, "{found:?}");
-    let found = FirstOrder::new(&inputs, |x| x[0] + (x[1] - 0.301).abs());
-    let is_refused = matches!(
-        found,
-        Err(UncertaintyError::NotDifferentiable { input: 1, .. })
-    );
-    assert!(is_refused, "{found:?}");
+    let step = |x: f64| if x < 0.302 { 0.0 } else { 1.0 };
+    let kink = |x: f64| (x - 0.301).abs();
+    for rough in [step as fn(f64) -> f64, kink] {
+        // What is left open is a fraction: the unit of the result does not matter.
+        let open = [1.0, 1000.0].map(|unit| {
+            let found = FirstOrder::new(&inputs, |x| unit * (x[0] + rough(x[1])));
+            match found {
+                Err(UncertaintyError::NotDifferentiable { input: 1, open }) => open,
+                found => panic!("{found:?}"),
+            }
+        });
+        assert!((open[1] / open[0] - 1.0).abs() < 1e-6, "{open:?}");
+    }
 }
 
 #[test]

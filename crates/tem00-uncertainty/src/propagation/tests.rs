@@ -90,7 +90,25 @@ fn a_normal_input_of_few_readings_has_the_interval_of_students_t() {
         }
         let first_order = FirstOrder::new(&inputs, |x| x[0]).unwrap();
         let is_t = input.distribution() == Distribution::StudentT;
-        assert_eq!(found.validate(&first_order).is_valid(), is_t, "{input:?}");
+        let validation = found.validate(&first_order);
+        assert_eq!(validation.is_valid(), is_t, "{input:?}");
+        // Half of 10⁰ of 2 or 3, and a fifth of it for the trials.
+        let tolerances = [validation.tolerance, found.tolerance()];
+        assert!((tolerances[0] - 0.5).abs() < 1e-15, "{tolerances:?}");
+        assert!((tolerances[1] - 0.1).abs() < 1e-15, "{tolerances:?}");
+    }
+}
+
+#[test]
+fn a_first_order_is_valid_if_both_ends_agree() {
+    for (low, high, is_valid) in [(1.0, 1.0, true), (0.0, 1.1, false), (1.1, 0.0, false)] {
+        let tolerance = 1.0;
+        let found = Validation {
+            low,
+            high,
+            tolerance,
+        };
+        assert_eq!(found.is_valid(), is_valid, "{found:?}");
     }
 }
 
@@ -169,6 +187,11 @@ fn options_outside_their_range_are_refused() {
         ..options
     };
     assert_eq!(refused(few), "max_trials", "a block has 10⁴ trials");
+    let two_blocks = PropagationOptions {
+        max_trials: 20_000,
+        ..options
+    };
+    assert_eq!(propagated(two_blocks).unwrap().values().len(), 20_000);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 use std::{path::Path, sync::atomic::AtomicBool};
 
+use tem00_camera::{CameraDescription, RadialDistortion};
 use tem00_scene::parse_scene;
 use tem00_triangulation::{
     DetectorSettings, LineDetector, Sensor, SensorDescription, find_corners,
@@ -118,6 +119,58 @@ fn rendered_boards_give_the_scene_back() {
         );
         // A pixel is 1 mm in height; six boards know it to a fifth.
         assert!(uncertainty < 2e-4, "{uncertainty:e} m");
+    }
+}
+
+/// The stage before a lens without distortion.
+fn stage() -> Stage {
+    let scene = scene();
+    let camera = Camera::new(CameraDescription {
+        distortion: RadialDistortion::default(),
+        ..*scene.camera.description()
+    });
+    Stage::new(&camera.unwrap(), &scene.lasers[0]).unwrap()
+}
+
+#[test]
+fn boards_shift_until_the_line_is_off_their_middle_or_by_a_tenth_of_the_distance() {
+    // A board leans by half of the angle between view and laser plane. A shift s moves its middle from the plane by
+    // s sin of that angle, and the line on it by so much over the cosine of the half.
+    let angle = 125_f64.atan2(216.5);
+    let by_line = 0.3 * 20e-3 * (0.5 * angle).cos() / angle.sin();
+    for (square, expected) in [(5e-3, by_line), (20e-3, 0.1 * 0.125_f64.hypot(0.2165))] {
+        let board = Checkerboard::new([7, 5], square).unwrap();
+        let found = stage().largest_shift(&board);
+        assert!((found - expected).abs() < 1e-12, "{found}, not {expected}");
+    }
+}
+
+#[test]
+fn a_board_is_seen_if_four_pixels_are_left_beside_its_squares() {
+    let stage = stage();
+    let board = Checkerboard::new([7, 5], 5e-3).unwrap();
+    let axes = stage.camera.axes();
+    // Across the axis, in the plane in focus, where a pixel is 16 µm (L − f) / f wide.
+    let focus = stage.camera.position() - 0.25 * axes.z_axis;
+    let pixel = 16e-6 * 242.0 / 8.0;
+    // Half of the image less half of the 8 × 6 squares, which are turned so that one corner leads on each side.
+    let turn = 0.2_f64;
+    let (right, up) = (
+        120.0 * pixel - 20e-3 * turn.cos() - 15e-3 * turn.sin(),
+        90.0 * pixel - 20e-3 * turn.sin() - 15e-3 * turn.cos(),
+    );
+    let turned = axes * DMat3::from_rotation_z(turn);
+    for (side, gap) in [
+        (axes.x_axis, right),
+        (-axes.x_axis, right),
+        (axes.y_axis, up),
+        (-axes.y_axis, up),
+    ] {
+        for (left, is_seen) in [(3.99, false), (4.01, true)] {
+            let middle = focus + (gap - left * pixel) * side;
+            let pose = RigidMotion::new(turned, middle - turned * board.middle()).unwrap();
+            assert_eq!(stage.sees(&board, &pose), is_seen, "{side}: {left}");
+        }
     }
 }
 

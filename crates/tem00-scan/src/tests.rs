@@ -178,6 +178,85 @@ fn without_speckle(text: &str) -> MeasuredFrame {
 }
 
 #[test]
+fn a_further_uncertainty_of_heights_is_one_along_them() {
+    let mut measured = measured(SCENE);
+    measured.calibration.uncertainty = 7e-6;
+    measured.scan.height = DVec3::new(2.0, 3.0, 6.0) / 7.0;
+    let measurement = Measurement::new(measured).unwrap();
+    let frame = measurement.measure(None, 0, |_| (), &AtomicBool::new(false));
+    let point = frame.unwrap().points[0];
+    // 7 µm times the cosine to the heights, for the calibration is exact but for them.
+    for (direction, expected) in [
+        (DVec3::X, 2e-6),
+        (DVec3::Y, 3e-6),
+        (DVec3::Z, 6e-6),
+        (DVec3::new(0.6, 0.8, 0.0), 3.6e-6),
+        (DVec3::new(-0.6, 0.0, 0.8), 3.6e-6),
+        (DVec3::new(6.0, 2.0, -3.0) / 7.0, 0.0),
+    ] {
+        let found = point.calibration_uncertainty_along(direction);
+        assert!((found - expected).abs() < 1e-12, "{direction}: {found}");
+    }
+}
+
+#[test]
+fn pixels_are_saturated_from_four_deviations_of_noise_below_a_full_well() {
+    // 4 √(3² + 4²) = 20 electrons of noise, four to a grey value.
+    for (full_well, black_level, expected) in [
+        (10_000.0, 100.0, 2595.0),
+        (10_000.0, 0.0, 2495.0),
+        (1e6, 100.0, 4095.0),
+        (10.0, 0.0, 1.0),
+    ] {
+        let mut measured = measured(SCENE);
+        measured.sensor = SensorDescription {
+            full_well,
+            black_level,
+            gain: 0.25,
+            dark_noise: 3.0,
+            dsnu: 4.0,
+            bit_depth: 12,
+            ..measured.sensor
+        };
+        let measurement = Measurement::new(measured).unwrap();
+        assert_eq!(measurement.detector().settings().saturation, expected);
+    }
+}
+
+#[test]
+fn speckle_has_the_variance_of_the_surface_where_it_is_greatest() {
+    // (1 + P²) / 2 by the number of patterns.
+    for (others, expected) in [((0.0, 2), 0.25), ((0.0, 4), 0.17)] {
+        let mut measured = measured(SCENE);
+        let kinds = [(0.6, 4), others];
+        for (surface, (polarisation, patterns)) in measured.scene.surfaces.iter_mut().zip(kinds) {
+            (surface.speckle.polarisation, surface.speckle.patterns) = (polarisation, patterns);
+        }
+        let found = Measurement::new(measured).unwrap().speckle().variance;
+        assert!((found - expected).abs() < 1e-15, "{found}");
+    }
+}
+
+#[test]
+fn light_without_speckle_correlates_no_columns() {
+    let scene = SCENE.replace("[32, 24]", "[32, 64]");
+    let measurement = Measurement::new(measured(&scene)).unwrap();
+    let speckled = without_speckle(&scene).exposure;
+    let smooth = Exposure {
+        coherent: speckled.coherent.map(|_| 0.0),
+        ..speckled.clone()
+    };
+    let correlation = |exposure| {
+        let frame = measurement.measure_light(exposure, 0, true);
+        frame.unwrap().correlation
+    };
+    assert_eq!(correlation(smooth), [1.0]);
+    let falling = correlation(speckled);
+    assert!(falling.len() > 10 && falling[0] == 1.0, "{falling:?}");
+    assert!((0.1..0.9).contains(&falling[1]), "{falling:?}");
+}
+
+#[test]
 fn light_that_met_a_second_wall_moves_a_line_by_what_is_stated() {
     let (before, _) = SCENE.split_once("[[surface]]").unwrap();
     let (_, after) = SCENE.split_once("[sensor]").unwrap();

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use tem00_scan::SetupSensor;
 use tem00_statistics::imaged_line_power_contrast;
-use tem00_topography::{Artefact, DVec3, ProfileSensor, Shape, SurfacePoint};
+use tem00_topography::{Artefact, Axis, DVec3, Groove, ProfileSensor, Shape, SurfacePoint};
 use tem00_triangulation::{Budget, Setup, UncertaintySource, parse_setup};
 
 fn setup(plane: &str) -> Setup {
@@ -34,9 +34,13 @@ fn profiles(setup: &Setup, places: &[DVec3]) -> Vec<Vec<SurfacePoint>> {
         shape: Shape::Flat { slope: [0.0; 2] },
         size: [5e-3, 20e-3],
     };
+    profiles_of(&flat, setup, places)
+}
+
+fn profiles_of(artefact: &Artefact, setup: &Setup, places: &[DVec3]) -> Vec<Vec<SurfacePoint>> {
     let cancel = AtomicBool::new(false);
     let mut sensor = SetupSensor::new(setup, 16, 3, &|_| (), &cancel);
-    sensor.measure(&flat, places).expect("it is measured")
+    sensor.measure(artefact, places).expect("it is measured")
 }
 
 /// The mean of the points, and the standard deviation of their heights.
@@ -72,6 +76,82 @@ fn a_flat_is_measured_where_it_stands() {
                 "{plane}, {place}: {mean}"
             );
         }
+    }
+}
+
+#[test]
+fn artefacts_are_measured_as_they_are_shaped() {
+    let setup = setup("");
+    let grooves = |across, centre| Shape::Grooves {
+        across,
+        depth: 1e-3,
+        grooves: vec![Groove {
+            centre,
+            width: 3e-3,
+        }],
+    };
+    for shape in [
+        Shape::Flat { slope: [0.1, 0.0] },
+        Shape::Flat { slope: [0.0, -0.2] },
+        Shape::Sphere { radius: 8e-3 },
+        grooves(Axis::X, -0.6e-3),
+        grooves(Axis::Y, 1.6e-3),
+    ] {
+        let artefact = Artefact {
+            name: "artefact",
+            shape,
+            size: [5e-3, 8e-3],
+        };
+        // Both on one side: the rows beside a line do not reach the heights on the other.
+        let places = [DVec3::new(0.0, -1.6e-3, 3e-3), DVec3::new(0.0, 2e-3, 2e-3)];
+        for points in profiles_of(&artefact, &setup, &places) {
+            // Walls, ends and grains of speckle take some columns; the shapes differ by 0.2 mm and more.
+            let is_there = |point: &&SurfacePoint| {
+                let DVec3 { x, y, z } = point.position;
+                let height = artefact.height(x, y);
+                height.is_some_and(|height| (z - height).abs() < 0.1e-3)
+            };
+            let there = points.iter().filter(is_there).count() as f64;
+            let [found, expected] = [points.len() as f64, 5e-3 / (7.728e-3 / 320.0)];
+            assert!(there > 0.9 * found, "{artefact:?}: {there} of {found}");
+            assert!(there > 0.85 * expected, "{artefact:?}: {there}");
+        }
+    }
+}
+
+#[test]
+fn a_field_is_that_of_lens_line_and_means() {
+    for (line_length, columns, width) in [(50e-3, 1, 7.728e-3), (6e-3, 4, 6e-3)] {
+        let mut description = setup("").description().clone();
+        description.laser.line_length = line_length;
+        description.average.columns = columns;
+        let setup = Setup::new(description).expect("a set-up");
+        let field = SetupSensor::new(&setup, 1, 0, &|_| (), &AtomicBool::new(false)).field();
+        // 320 pixels of 3.45 µm by the magnification f / (L − f) = 1/7; the line of 0.3 mm moves by itself over 0.3 mm / tan 35°.
+        let column = 7.728e-3 / 320.0 * f64::from(columns);
+        let found = [
+            field.width,
+            field.column,
+            field.thickness,
+            field.groove_depth,
+        ];
+        let expected = [width, column, 0.3e-3, 0.15e-3 / 35_f64.to_radians().tan()];
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!(
+                (found / expected - 1.0).abs() < 1e-12,
+                "{found}, {expected}"
+            );
+        }
+        let points = &profiles(&setup, &[DVec3::ZERO])[0];
+        // Dark grains take single columns at the ends.
+        let [first, last] = [0, points.len() - 1].map(|i| &points[i]);
+        let columns = (last.column - first.column) as f64;
+        let apart = last.position.x - first.position.x;
+        assert!(
+            (apart / (columns * column) - 1.0).abs() < 0.02,
+            "{apart}, {columns}"
+        );
+        assert!((apart / 5e-3 - 1.0).abs() < 0.05, "{apart}");
     }
 }
 

@@ -142,7 +142,7 @@ fn a_disc_is_the_sum_of_its_points_with_heights_and_a_linewidth_too() {
     }
 }
 
-/// Pairs of the four waves k (l_S + l), split across the line of sight and along the normal.
+/// Pairs of the four waves `k (l_S + l)`, split across the line of sight and along the normal.
 #[test]
 fn two_wavelengths_from_two_directions_correlate_by_their_waves() {
     let (sight, rms_height) = (direction(-20.0), 2e-6);

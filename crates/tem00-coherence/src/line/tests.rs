@@ -92,7 +92,7 @@ fn spreads_are_those_of_the_shapes() {
         .wave_number_spread();
     assert_relative_eq!(two, 0.5 * full, max_relative = 1e-12);
     let lorentzian = |linewidth| shaped(linewidth, LineShape::Lorentzian).wave_number_spread();
-    assert_eq!([0.0, 3e-9].map(lorentzian), [0.0, f64::INFINITY]);
+    assert!(lorentzian(0.0) == 0.0 && lorentzian(3e-9).is_infinite());
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use tem00_camera::{Camera, CameraDescription};
-use tem00_config::{MAX_TEXT_BYTES, read_input};
+use tem00_config::{MAX_TEXT_BYTES, read_input, without_byte_order_mark};
 use tem00_triangulation::{
     Calibration, CalibrationCovariance, CalibrationQuality, LaserPlane, PARAMETERS,
     TriangulationError,
@@ -69,8 +69,8 @@ pub(crate) fn read_calibration(path: &Path) -> Result<Calibration, Failure> {
             "a calibration is a JSON file of `tem00 calibrate`",
         )
     })?;
-    let record: CalibrationRecord =
-        serde_json::from_slice(&content).map_err(|error| refused(error.to_string()))?;
+    let record: CalibrationRecord = serde_json::from_slice(without_byte_order_mark(&content))
+        .map_err(|error| refused(error.to_string()))?;
     record.calibration().map_err(refused)
 }
 
@@ -210,6 +210,9 @@ mod tests {
         let path = folder.path().join("calibration.json");
         let calibration = calibration();
         write_calibration(&path, &calibration).expect("the file is written");
+        // As an editor may save it, with a byte order mark.
+        let text = fs::read_to_string(&path).expect("it is text");
+        fs::write(&path, format!("\u{feff}{text}")).expect("the file is written");
         let back = read_calibration(&path).expect("the file is read");
         // Reading rounds the last digit, and a normal is normalised again.
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-15 * a.abs();

@@ -31,7 +31,7 @@ pub enum DocumentKind {
 /// A scene may have several lasers and surfaces, `[[laser]]` and `[[surface]]`; a set-up has one `[laser]`
 /// and one `[surface]`.
 pub fn kind_of_document(text: &str) -> Option<DocumentKind> {
-    let document = DeTable::parse(text).ok()?;
+    let document = DeTable::parse(text.trim_start_matches('\u{feff}')).ok()?;
     let sections = ["laser", "surface"].map(|key| document.get_ref().get(key));
     let kinds = sections
         .into_iter()

@@ -69,6 +69,11 @@ pub fn is_standard_input(path: &Path) -> bool {
     path == Path::new(STANDARD_INPUT)
 }
 
+/// Returns a text without the byte order mark of UTF-8 that some editors and spreadsheets put in front.
+pub fn without_byte_order_mark(content: &[u8]) -> &[u8] {
+    content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content)
+}
+
 fn read_bounded(reader: impl Read, max_bytes: u64) -> io::Result<Vec<u8>> {
     let mut content = Vec::new();
     let read = reader.take(max_bytes + 1).read_to_end(&mut content)?;

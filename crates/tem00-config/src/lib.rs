@@ -41,6 +41,7 @@ pub use folder::Folder;
 pub use format::{DocumentKind, Format, kind_of_document};
 pub use input_file::{
     FileAccess, MAX_ASSET_BYTES, MAX_TEXT_BYTES, is_standard_input, open_input, read_input,
+    without_byte_order_mark,
 };
 pub use printable::{is_hazard, printable, printable_line};
 pub use quantity::{

@@ -124,7 +124,11 @@ impl Sources {
         &self.folder
     }
 
-    fn add(&mut self, source: Source, canonical: Option<PathBuf>) -> Result<(), Problem> {
+    fn add(&mut self, mut source: Source, canonical: Option<PathBuf>) -> Result<(), Problem> {
+        // Some editors begin a text with a byte order mark, which would shift the first line by a column.
+        if source.text.starts_with('\u{feff}') {
+            source.text.remove(0);
+        }
         let index = source.index;
         self.all.push(source);
         self.canonical.push(canonical);

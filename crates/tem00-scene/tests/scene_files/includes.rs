@@ -163,3 +163,20 @@ fn text_without_a_file_may_include_files() {
     assert_eq!(error.path(), None, "the text has no file");
     assert_eq!(error.line_column(), Some((1, 12)), "{error}");
 }
+
+#[test]
+fn a_byte_order_mark_is_no_part_of_a_file() {
+    let marked = |text: &str| format!("\u{feff}{text}");
+    let scene = format!("include = [\"surface.toml\"]\n{CAMERA}{LASER}");
+    let read_scene = read(&[
+        ("scene.toml", &marked(&scene)),
+        ("surface.toml", &marked(SURFACE)),
+    ]);
+    assert_eq!(read_scene.unwrap().surfaces.len(), 1);
+    assert!(
+        tem00_scene::parse_scene(&marked(&[CAMERA, LASER, SURFACE].concat()), Path::new("."))
+            .is_ok()
+    );
+    let error = read(&[("scene.toml", "\u{feff}inclode = 1\n")]).unwrap_err();
+    assert_eq!(error.line_column(), Some((1, 1)), "{error}");
+}

@@ -41,7 +41,8 @@ impl Kind {
         let file = is_file.then(|| File::open(path).ok()).flatten()?;
         let mut bytes = Vec::new();
         file.take(MAX_BYTES).read_to_end(&mut bytes).ok()?;
-        if IMAGES.iter().any(|magic| bytes.starts_with(magic)) {
+        let is_netpbm = matches!(*bytes, [b'P', b'2' | b'3' | b'5' | b'6', end, ..] if end.is_ascii_whitespace());
+        if is_netpbm || IMAGES.iter().any(|magic| bytes.starts_with(magic)) {
             return Some(Self::Image);
         }
         match kind_of_document(core::str::from_utf8(&bytes).ok()?)? {
@@ -52,8 +53,8 @@ impl Kind {
     }
 }
 
-/// The first bytes of image files: PNG, OpenEXR, NumPy, JPEG, TIFF in both orders of bytes, BMP, PGM and PPM.
-const IMAGES: [&[u8]; 11] = [
+/// The first bytes of image files: PNG, OpenEXR, NumPy, JPEG, TIFF in both orders of bytes, and BMP.
+const IMAGES: [&[u8]; 7] = [
     b"\x89PNG",
     b"\x76\x2f\x31\x01",
     b"\x93NUMPY",
@@ -61,10 +62,6 @@ const IMAGES: [&[u8]; 11] = [
     b"II*\0",
     b"MM\0*",
     b"BM",
-    b"P5\n",
-    b"P2\n",
-    b"P6\n",
-    b"P3\n",
 ];
 
 /// Returns the failure that a file is of another kind than a command needs, with the command that takes

@@ -105,6 +105,41 @@ fn maps_are_read_as_text_and_in_colour() {
 }
 
 #[test]
+fn headers_of_maps_may_end_as_on_windows_and_the_length_must_fit() {
+    // The first byte of the pixels is a line feed, or a carriage return.
+    for first in [b'\n', b'\r', b' ', 7] {
+        for (magic, largest, pixels) in [
+            ("P5", 255, &[first, 1, 2][..]),
+            ("P5", 65_535, &[first, 1, 2, 3, 4, 5]),
+            ("P6", 255, &[first, 1, 2, 3, 4, 5, 6, 7, 8]),
+        ] {
+            let header = format!("{magic}\n# a camera\n3 1\n{largest}\n");
+            let map = |header: &str, pixels: &[u8]| {
+                raw(&[header.as_bytes(), pixels].concat(), RawFormat::Pnm, None)
+            };
+            let expected = map(&header, pixels).expect("a map");
+            for end in ["\r\n", " "] {
+                let header = if end == " " {
+                    header.trim_end().to_owned() + end
+                } else {
+                    header.replace('\n', end)
+                };
+                let image = map(&header, pixels).expect("a map");
+                assert_eq!(image.values, expected.values, "{header:?}, {first}");
+                let next = map(&header, &[pixels, header.as_bytes()].concat());
+                assert!(next.expect("two maps").has_further_images, "{header:?}");
+                for wrong in [&[pixels, &b"\n"[..]].concat(), &pixels[1..]] {
+                    let error = map(&header, wrong).expect_err("another length").to_string();
+                    assert!(error.contains("last pixel"), "{error}");
+                }
+            }
+        }
+    }
+    let error = raw(b"P2 2 1 9 1 2 3", RawFormat::Pnm, None).expect_err("three values");
+    assert!(error.to_string().contains("goes on"), "{error}");
+}
+
+#[test]
 fn photographs_have_the_grey_values_of_another_reader() {
     let grey = raw(GREY_JPEG, RawFormat::Jpeg, None).expect("a photograph");
     assert_eq!((grey.values.width(), grey.values.height()), (24, 16));

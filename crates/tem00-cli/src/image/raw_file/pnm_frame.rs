@@ -9,6 +9,9 @@ use super::{
     BYTES_PER_PIXEL, Components, ImageError, Samples, StoredCurve, check_room, checked_area,
 };
 
+const TOO_SHORT: ImageError = ImageError::Pnm("it ends before its last pixel");
+const TOO_LONG: ImageError = ImageError::Pnm("it goes on behind its last pixel");
+
 pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
     let mut magic = [0; 2];
     reader.read_exact(&mut magic)?;
@@ -19,8 +22,12 @@ pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
         b"P6" => (Components::Rgb, true),
         _ => return Err(ImageError::Pnm("it begins with none of P2, P3, P5 and P6")),
     };
-    let mut number = || number(&mut reader);
-    let (width, height, largest) = (number()?, number()?, number()?);
+    let mut header = Numbers {
+        reader,
+        last: 0,
+        is_windows: false,
+    };
+    let (width, height, largest) = (header.number()?, header.number()?, header.number()?);
     let area = checked_area(width.into(), height.into())?;
     let largest = u16::try_from(largest)
         .ok()
@@ -30,14 +37,18 @@ pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
         ))?;
     let length = area * components.names().len();
     check_room(area, 2 * components.names().len() + BYTES_PER_PIXEL)?;
-    let values = if binary {
-        binary_values(&mut reader, length, largest)?
+    let (values, has_further_images) = if binary {
+        header.binary_values(length, largest)?
     } else {
         let mut values = Vec::new();
         for _ in 0..length {
-            values.push(u16::try_from(number()?).unwrap_or(u16::MAX));
+            values.push(u16::try_from(header.number()?).unwrap_or(u16::MAX));
         }
-        values
+        let mut behind = header.reader.bytes().filter_map(Result::ok);
+        match behind.find(|byte| !byte.is_ascii_whitespace()) {
+            None | Some(b'#') => (values, false),
+            Some(_) => return Err(TOO_LONG),
+        }
     };
     if values.iter().any(|&value| value > largest) {
         return Err(ImageError::Pnm(
@@ -52,59 +63,85 @@ pub(super) fn read(mut reader: impl BufRead) -> Result<Samples, ImageError> {
         bit_depth: u16::BITS - largest.leading_zeros(),
         curve: StoredCurve::Unknown,
         remark: ", as the file says",
-        has_further_images: false,
+        has_further_images,
     })
 }
 
-/// Reads values of one byte, or of two with the higher one first.
-fn binary_values(
-    reader: &mut impl Read,
-    length: usize,
-    largest: u16,
-) -> Result<Vec<u16>, ImageError> {
-    let width = if largest > u8::MAX.into() { 2 } else { 1 };
-    // The memory grows with what the file holds, not with what it says.
-    let mut data = Vec::new();
-    reader
-        .take((length * width) as u64)
-        .read_to_end(&mut data)?;
-    if data.len() != length * width {
-        return Err(ImageError::Pnm("it ends before its last pixel"));
-    }
-    let value = |bytes: &[u8]| {
-        bytes
-            .iter()
-            .fold(0, |sum, &byte| sum << 8 | u16::from(byte))
-    };
-    Ok(data.chunks_exact(width).map(value).collect())
+/// The numbers of a header, or of a text.
+struct Numbers<R> {
+    reader: R,
+    /// The last character that was read.
+    last: u8,
+    /// Whether a line ended with a carriage return and a line feed.
+    is_windows: bool,
 }
 
-/// Reads a decimal number and the character behind it; comments run from `#` to the end of the line.
-fn number(reader: &mut impl BufRead) -> Result<u32, ImageError> {
-    let mut digits = None;
-    let mut comment = false;
-    for byte in reader.bytes() {
-        match byte? {
-            b'\n' | b'\r' if comment => comment = false,
-            _ if comment => (),
-            b'#' if digits.is_none() => comment = true,
-            byte @ b'0'..=b'9' => {
-                let next = |sum: u32| sum.checked_mul(10)?.checked_add(u32::from(byte - b'0'));
-                let too_large = ImageError::Pnm("it has a number that is too large");
-                digits = Some(next(digits.unwrap_or(0)).ok_or(too_large)?);
-            }
-            byte if byte.is_ascii_whitespace() => {
-                if let Some(number) = digits {
-                    return Ok(number);
+impl<R: BufRead> Numbers<R> {
+    /// Reads a decimal number and the character behind it; comments run from `#` to the end of the line.
+    fn number(&mut self) -> Result<u32, ImageError> {
+        let mut digits = None;
+        let mut comment = false;
+        for byte in self.reader.by_ref().bytes() {
+            let byte = byte?;
+            self.is_windows |= [self.last, byte] == *b"\r\n";
+            self.last = byte;
+            match byte {
+                b'\n' | b'\r' if comment => comment = false,
+                _ if comment => (),
+                b'#' if digits.is_none() => comment = true,
+                b'0'..=b'9' => {
+                    let next = |sum: u32| sum.checked_mul(10)?.checked_add(u32::from(byte - b'0'));
+                    let too_large = ImageError::Pnm("it has a number that is too large");
+                    digits = Some(next(digits.unwrap_or(0)).ok_or(too_large)?);
+                }
+                byte if byte.is_ascii_whitespace() => {
+                    if let Some(number) = digits {
+                        return Ok(number);
+                    }
+                }
+                _ => {
+                    return Err(ImageError::Pnm(
+                        "it has something else where a number should be",
+                    ));
                 }
             }
-            _ => {
-                return Err(ImageError::Pnm(
-                    "it has something else where a number should be",
-                ));
-            }
         }
+        // The last number of a text may be the end of the file.
+        digits.ok_or(TOO_SHORT)
     }
-    // The last number of a text may be the end of the file.
-    digits.ok_or(ImageError::Pnm("it ends before its last pixel"))
+
+    /// Reads values of one byte, or of two with the higher one first, and returns whether another map follows.
+    ///
+    /// One character of white space ends the header, or the two that end a line on Windows: its other lines tell, and
+    /// if it has none the length.
+    fn binary_values(
+        &mut self,
+        length: usize,
+        largest: u16,
+    ) -> Result<(Vec<u16>, bool), ImageError> {
+        let width = if largest > u8::MAX.into() { 2 } else { 1 };
+        let needed = length * width;
+        // The memory grows with what the file holds, not with what it says.
+        let mut data = Vec::new();
+        let mut rest = self.reader.by_ref().take(needed as u64 + 2);
+        rest.read_to_end(&mut data)?;
+        let is_windows = self.is_windows || data.len() == needed + 1;
+        if self.last == b'\r' && data.first() == Some(&b'\n') && is_windows {
+            data.remove(0);
+        }
+        if data.len() < needed {
+            return Err(TOO_SHORT);
+        }
+        let behind = data.split_off(needed);
+        if !behind.is_empty() && !behind.starts_with(b"P") {
+            return Err(TOO_LONG);
+        }
+        let value = |bytes: &[u8]| {
+            bytes
+                .iter()
+                .fold(0, |sum, &byte| sum << 8 | u16::from(byte))
+        };
+        let values = data.chunks_exact(width).map(value).collect();
+        Ok((values, !behind.is_empty()))
+    }
 }

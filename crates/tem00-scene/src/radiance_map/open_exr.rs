@@ -1,10 +1,14 @@
 use std::io::Cursor;
 
-use exr::prelude::{FlatSamples, MetaData, ReadChannels, ReadLayers};
+use exr::{
+    meta::attribute::Chromaticities,
+    prelude::{FlatSamples, MetaData, ReadChannels, ReadLayers, Vec2},
+};
+use glam::DVec2;
 use tem00_numerics::{Grid, check_memory};
 
 use super::{
-    content::{checked_size, luminance},
+    content::{REC_709, checked_size, luminance},
     error::RadianceMapError,
 };
 
@@ -43,6 +47,7 @@ pub(super) fn parse(content: &[u8]) -> Result<Grid<f32>, RadianceMapError> {
         .map(|channel| (channel.name.to_string(), &channel.sample_data))
         .collect();
     let chosen = select(&channels)?;
+    let parts = image.attributes.chromaticities.map_or(Ok(REC_709), parts)?;
     let (width, height) = (layer.size.width(), layer.size.height());
     let mut columns: Vec<_> = chosen
         .iter()
@@ -50,10 +55,59 @@ pub(super) fn parse(content: &[u8]) -> Result<Grid<f32>, RadianceMapError> {
         .collect();
     let values = (0..width * height).map(|_| {
         let pixel: Vec<f32> = columns.iter_mut().filter_map(Iterator::next).collect();
-        luminance(&pixel)
+        luminance(&pixel, parts)
     });
     Grid::from_vec(width, height, values.collect())
         .map_err(|error| RadianceMapError::Format(error.to_string()))
+}
+
+/// The primaries and the white point of Rec. 709.
+const OF_REC_709: Chromaticities = Chromaticities {
+    red: Vec2(0.64, 0.33),
+    green: Vec2(0.3, 0.6),
+    blue: Vec2(0.15, 0.06),
+    white: Vec2(0.3127, 0.329),
+};
+
+/// Returns the parts of red, green and blue in the luminance: those of the primaries that together make
+/// white, of luminance 1.
+///
+/// In the chromaticity diagram white is a mean of the primaries, with weights b. A primary of chromaticity (x, y)
+/// takes part with the luminance b y / y_white (CIE 15:2018; SMPTE RP 177).
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "pixels are in single precision"
+)]
+fn parts(colours: Chromaticities) -> Result<[f32; 3], RadianceMapError> {
+    if colours == OF_REC_709 {
+        return Ok(REC_709);
+    }
+    let Chromaticities {
+        red,
+        green,
+        blue,
+        white,
+    } = colours;
+    let [r, g, b, w] = [red, green, blue, white].map(|Vec2(x, y)| DVec2::new(x.into(), y.into()));
+    let area = (g - r).perp_dot(b - r);
+    let weights = [
+        (g - w).perp_dot(b - w) / area,
+        (b - w).perp_dot(r - w) / area,
+        (r - w).perp_dot(g - w) / area,
+    ];
+    if !(weights
+        .iter()
+        .all(|weight| *weight > 0.0 && weight.is_finite())
+        && w.y > 0.0)
+    {
+        let [r, g, b, w] = [red, green, blue, white].map(|Vec2(x, y)| format!("({x}, {y})"));
+        return Err(RadianceMapError::Format(format!(
+            "its chromaticities must have white inside the triangle of red, green and blue, got white {w}, red {r}, \
+             green {g} and blue {b}"
+        )));
+    }
+    let [r, g, b] = [r, g, b].map(|primary| primary.y / w.y);
+    Ok([weights[0] * r, weights[1] * g, weights[2] * b].map(|part| part as f32))
 }
 
 /// Returns R, G and B, in this order, or the only channel.

@@ -1,7 +1,7 @@
 use tem00_numerics::Grid;
 
 use super::{
-    content::{checked_size, luminance},
+    content::{REC_709, checked_size, luminance},
     error::RadianceMapError,
 };
 
@@ -18,13 +18,22 @@ pub(super) fn parse(content: &[u8]) -> Result<Grid<f32>, RadianceMapError> {
     let (width, height) = checked_size(width, height)?;
     let little_endian = number::<f64>(&mut rest, "the byte order")? < 0.0;
     let needed = width * height * channels * size_of::<f32>();
-    // One character of white space ends the header.
-    let data = rest.get(1..).unwrap_or_default();
-    if data.len() < needed {
-        let message = format!("{} bytes of {needed} are missing", needed - data.len());
+    // One character of white space ends the header, or the two that end a line on Windows: its other lines tell,
+    // and if it has none the length.
+    let header = &content[..content.len() - rest.len()];
+    let is_windows = header.windows(2).any(|pair| pair == b"\r\n") || rest.len() == needed + 2;
+    let end = if rest.starts_with(b"\r\n") && is_windows {
+        2
+    } else {
+        1
+    };
+    let data = rest.get(end..).unwrap_or_default();
+    if data.len() != needed {
+        let got = data.len();
+        let message = format!("its header announces {needed} bytes of pixels, but it has {got}");
         return Err(format_error(message));
     }
-    let values: Vec<f32> = data[..needed]
+    let values: Vec<f32> = data
         .as_chunks()
         .0
         .iter()
@@ -38,7 +47,7 @@ pub(super) fn parse(content: &[u8]) -> Result<Grid<f32>, RadianceMapError> {
         .collect();
     let pixel = |x: usize, y: usize| {
         let start = ((height - 1 - y) * width + x) * channels;
-        luminance(&values[start..start + channels])
+        luminance(&values[start..start + channels], REC_709)
     };
     Ok(Grid::from_fn(width, height, pixel))
 }

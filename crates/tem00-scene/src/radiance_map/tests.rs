@@ -1,8 +1,11 @@
 use std::fs;
 
-use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, Layer, LayerAttributes,
-    WritableImage,
+use exr::{
+    meta::attribute::Chromaticities,
+    prelude::{
+        AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, Layer,
+        LayerAttributes, Vec2, WritableImage,
+    },
 };
 use proptest::prelude::*;
 
@@ -26,6 +29,11 @@ fn read_file(name: &str, content: &[u8], scale: f64) -> Result<Grid<f32>, Radian
 }
 
 fn exr_file(channels: &[(&str, [f32; 6])]) -> Vec<u8> {
+    exr_file_in(channels, None)
+}
+
+/// Writes an OpenEXR file that states its colours: red, green, blue and white.
+fn exr_file_in(channels: &[(&str, [f32; 6])], colours: Option<[[f32; 2]; 4]>) -> Vec<u8> {
     let list = channels
         .iter()
         .map(|(name, values)| AnyChannel::new(*name, FlatSamples::F32(values.to_vec())));
@@ -35,7 +43,17 @@ fn exr_file(channels: &[(&str, [f32; 6])]) -> Vec<u8> {
         Encoding::SMALL_LOSSLESS,
         AnyChannels::sort(list.collect()),
     );
-    let image = Image::from_layers(ImageAttributes::with_size((3, 2)), vec![layer]);
+    let mut attributes = ImageAttributes::with_size((3, 2));
+    attributes.chromaticities = colours.map(|colours| {
+        let [red, green, blue, white] = colours.map(|[x, y]| Vec2(x, y));
+        Chromaticities {
+            red,
+            green,
+            blue,
+            white,
+        }
+    });
+    let image = Image::from_layers(attributes, vec![layer]);
     let mut bytes = std::io::Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes).unwrap();
     bytes.into_inner()
@@ -66,6 +84,109 @@ fn colours_of_open_exr_become_luminance() {
     let single = exr_file(&[("Y", RED)]);
     let doubled = RED.map(|value| 2.0 * value);
     assert_close(&read_file("sky.exr", &single, 2.0).unwrap(), &doubled);
+}
+
+#[test]
+fn colours_are_those_that_the_file_states() {
+    const D65: [f32; 2] = [0.3127, 0.329];
+    const ACES: [f32; 2] = [0.32168, 0.33767];
+    let third = 1.0 / 3.0;
+    for (colours, parts, tolerance) in [
+        // By definition: the second channel is the luminance.
+        (
+            [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [third, third]],
+            [0.0, 1.0, 0.0],
+            1e-6,
+        ),
+        // ITU-R BT.2020-2, table 4, rounded there.
+        (
+            [[0.708, 0.292], [0.17, 0.797], [0.131, 0.046], D65],
+            [0.2627, 0.678, 0.0593],
+            5.1e-5,
+        ),
+        // SMPTE ST 2065-1, the matrix to XYZ of AP0, whose blue lies outside of all colours.
+        (
+            [[0.7347, 0.2653], [0.0, 1.0], [0.0001, -0.077], ACES],
+            [0.343_966_45, 0.728_166_1, -0.072_132_546],
+            1e-6,
+        ),
+        // S-2014-004, that of AP1.
+        (
+            [[0.713, 0.293], [0.165, 0.83], [0.128, 0.044], ACES],
+            [0.272_228_72, 0.674_081_77, 0.053_689_517],
+            1e-6,
+        ),
+        // Green and red the other way around, which is as good.
+        (
+            [[0.3, 0.6], [0.64, 0.33], [0.15, 0.06], D65],
+            [0.7152, 0.2126, 0.0722],
+            5e-5,
+        ),
+    ] {
+        let file = exr_file_in(&[("R", RED), ("G", GREEN), ("B", BLUE)], Some(colours));
+        let map = read_file("sky.exr", &file, 1.0).unwrap();
+        for (got, expected) in map.values().iter().zip(parts) {
+            assert!(
+                (got - expected).abs() <= tolerance,
+                "{got}, not {expected}: {colours:?}"
+            );
+        }
+        assert!(
+            (map.values()[5] - 4.0).abs() < 1e-5,
+            "white stays: {colours:?}"
+        );
+    }
+    let rec_709 = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], D65];
+    let named = exr_file_in(&[("R", RED), ("G", GREEN), ("B", BLUE)], Some(rec_709));
+    assert_close(&read_file("sky.exr", &named, 1.0).unwrap(), &GREY);
+    // Of a single channel nothing is converted.
+    let grey = exr_file_in(
+        &[("Y", RED)],
+        Some([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [third, third]]),
+    );
+    assert_close(&read_file("sky.exr", &grey, 1.0).unwrap(), &RED);
+    for colours in [
+        [[0.0; 2]; 4],
+        [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.9, 0.9]],
+        [[0.1, 0.1], [0.2, 0.2], [0.3, 0.3], [0.2, 0.2]],
+        [[f32::NAN, 0.33], [0.3, 0.6], [0.15, 0.06], D65],
+        [[1.0, -1.0], [0.0, -1.0], [0.5, -0.5], [0.5, -0.8]],
+    ] {
+        let file = exr_file_in(&[("R", RED), ("G", GREEN), ("B", BLUE)], Some(colours));
+        let error = read_file("sky.exr", &file, 1.0).unwrap_err().to_string();
+        let [red, _, _, white] = colours.map(|[x, y]| format!("({x}, {y})"));
+        let named = error.contains(&format!("got white {white}, red {red}, green "));
+        assert!(
+            named && error.contains("white inside the triangle"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn headers_of_portable_float_maps_may_end_as_on_windows_and_the_length_must_fit() {
+    // The first byte of the pixels is a line feed, or a carriage return.
+    for first in [0x0a, 0x0d, 0x20, 0x00] {
+        let grey = f32::from_le_bytes([first, 0, 0x80, 0x3f]);
+        let pixels = [grey.to_le_bytes(), 2.0_f32.to_le_bytes()].concat();
+        for header in [
+            "Pf\n2 1\n-1.0\n",
+            "Pf\r\n2 1\r\n-1.0\r\n",
+            "Pf\r2 1\r-1.0\r",
+            "Pf 2 1 -1 ",
+        ] {
+            let file = [header.as_bytes(), &pixels].concat();
+            let map = read_file("sky.pfm", &file, 1.0).unwrap();
+            assert_eq!(map.values(), [grey, 2.0], "{header:?}, {first}");
+            for wrong in [&file[..file.len() - 1], &[&file[..], &[0; 2]].concat()] {
+                let error = read_file("sky.pfm", wrong, 1.0).unwrap_err().to_string();
+                assert!(
+                    error.contains("announces 8 bytes of pixels, but it has"),
+                    "{error}"
+                );
+            }
+        }
+    }
 }
 
 #[test]
